@@ -1,0 +1,2 @@
+//! The `kempe` command line.
+fn main() {}

@@ -1,0 +1,111 @@
+//! Measures: what a study reports. An expression whose leaves ask the mechanism something.
+
+use kempe_units::Expr;
+
+use crate::model::{DriveId, LinkId, Line, LinkPointRef, ParameterId, PointId};
+
+/// An expression over parameters, names and questions to the mechanism, in SI.
+pub type Measure = Expr<Leaf>;
+
+/// A leaf of a measure.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Leaf {
+    /// A parameter of the model.
+    Parameter(ParameterId),
+    /// Another named measure of the model, by index into `Model::measures`.
+    Named(usize),
+    /// The coordinate of a drive.
+    Drive(DriveId),
+    /// Time since the start of the motion.
+    Time,
+    /// A question to the mechanism at one pose.
+    Pose(PoseMeasure),
+    /// The n-th time derivative of a measure.
+    Rate(Box<Measure>, u32),
+    /// The n-th derivative of a measure to a drive's coordinate, the other drives at rest: a kinematic coefficient.
+    Coefficient(Box<Measure>, DriveId, u32),
+    /// One number over a whole motion.
+    Over(Statistic, Box<Measure>),
+}
+
+/// What may be asked of one pose.
+#[derive(Clone, Debug, PartialEq)]
+pub enum PoseMeasure {
+    /// `x(P)`, `y(P)`: a coordinate of a point in the frame, m.
+    X(PointId),
+    /// See [`PoseMeasure::X`].
+    Y(PointId),
+    /// `x(P, link)`, `y(P, link)`: a coordinate of a point seen from a link, in the link's own frame, m.
+    XOn(PointId, LinkId),
+    /// See [`PoseMeasure::XOn`].
+    YOn(PointId, LinkId),
+    /// `angle(link)`: from the frame's x axis to the link's, unwrapped along the motion, rad.
+    Angle(LinkId),
+    /// `angle(link, other)`: from the other link's x axis to the link's, rad.
+    AngleBetween(LinkId, LinkId),
+    /// `angle(A -> B)`: direction of a line between two points, unwrapped along the motion, rad.
+    Direction(PointId, PointId),
+    /// `distance(A, B)`, m.
+    Distance(PointId, PointId),
+    /// `distance(P, A -> B)`: signed distance of a point from a line, positive on its left, m.
+    DistanceToLine(PointId, Line),
+    /// `travel(joint)`: coordinate of a slider or of a pin along its guide, from the guide's first point, m.
+    Travel(LinkPointRef, Line),
+    /// `transmission_angle(P)`: the angle between the two links pinned at P that pass the motion on, folded into
+    /// [0, pi/2]: measured at P between the directions to each link's other pin.
+    TransmissionAngle {
+        /// The pin.
+        at: PointId,
+        /// The other end on the first link.
+        a: PointId,
+        /// The other end on the second link.
+        b: PointId,
+        /// Fold into [0, pi/2], or leave the angle in [0, pi].
+        folded: bool,
+    },
+    /// `speed(P)`: m/s.
+    Speed(PointId),
+    /// `acceleration(P)`: size of the acceleration of a point, m/s^2.
+    Acceleration(PointId),
+    /// `angular_speed(link)`: rad/s, signed.
+    AngularSpeed(LinkId),
+    /// `angular_acceleration(link)`: rad/s^2, signed.
+    AngularAcceleration(LinkId),
+    /// `instant_center_x(a, b)`: x of the instant centre of two links, m (infinite when they translate).
+    InstantCenterX(LinkId, LinkId),
+    /// `instant_center_y(a, b)`: y of it.
+    InstantCenterY(LinkId, LinkId),
+    /// `curvature(P)`: signed curvature of the point's path, positive turning left along the motion, 1/m.
+    Curvature(PointId),
+    /// `curvature_center_x(P)`: x of the centre of curvature, m.
+    CurvatureCenterX(PointId),
+    /// `curvature_center_y(P)`: y of it.
+    CurvatureCenterY(PointId),
+    /// `path_length(P)`: length of path swept since the start of the motion, m.
+    PathLength(PointId),
+    /// `mechanical_advantage(out, drive)`: the drive's speed over that of the output measure, as a ratio of
+    /// virtual displacements: 1 / d(out, drive).
+    MechanicalAdvantage(Box<Measure>, DriveId),
+}
+
+/// A number over a whole motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Statistic {
+    /// Smallest, located between rows.
+    Min,
+    /// Largest, located between rows.
+    Max,
+    /// Mean over time.
+    Mean,
+    /// Largest minus smallest.
+    Range,
+    /// Value at a drive coordinate or time (SI).
+    At {
+        /// The drive, or time when none.
+        drive: Option<DriveId>,
+        /// Where.
+        value: f64,
+    },
+    /// Duration ratio of the slower to the faster of the two strokes of a measure over a cycle.
+    TimeRatio,
+}

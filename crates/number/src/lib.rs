@@ -1,0 +1,6 @@
+//! The numbers Kempe's plans run on.
+
+pub mod math;
+mod number;
+
+pub use number::Number;

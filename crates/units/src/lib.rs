@@ -1,0 +1,7 @@
+//! Dimensions, units and the expression language.
+
+mod dimension;
+mod expr;
+
+pub use dimension::Dimension;
+pub use expr::{Builtin, Expr};

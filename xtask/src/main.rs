@@ -1,0 +1,2 @@
+//! Kempe developer tasks.
+fn main() {}
