@@ -44,7 +44,7 @@ pub trait Number:
     /// Sine and cosine together, argument in rad.
     fn sin_cos(self) -> (Self, Self);
 
-    /// Angle of the vector (`x`, `self`) in rad, in (-pi, pi].
+    /// Angle of the vector (`x`, `self`) in rad, in [-pi, pi].
     fn atan2(self, x: Self) -> Self;
 
     /// Exponential.
@@ -56,11 +56,17 @@ pub trait Number:
     /// Absolute value.
     fn abs(self) -> Self;
 
-    /// The smaller of two numbers (lane by lane; derivatives of the smaller one).
+    /// The smaller of two numbers (lane by lane; derivatives of the smaller one), NaN if either is.
     fn min(self, other: Self) -> Self;
 
-    /// The larger of two numbers.
+    /// The larger of two numbers, as [`min`](Number::min).
     fn max(self, other: Self) -> Self;
+
+    /// `nonnegative` where the value of `self` is at least zero, `negative` where it is below; undefined (NaN) where
+    /// it is NaN. Decides lane by lane; an interval that straddles zero gives the hull of both.
+    ///
+    /// The branch for formulas that may not branch. Only the value of `self` is looked at, not its derivatives.
+    fn choose(self, nonnegative: Self, negative: Self) -> Self;
 
     /// Whether every part of the number (coefficients, lanes, bounds) is finite.
     fn is_finite(self) -> bool;
@@ -119,11 +125,21 @@ impl Number for f64 {
     }
     #[inline(always)]
     fn min(self, other: Self) -> Self {
-        f64::min(self, other)
+        crate::math::min(self, other)
     }
     #[inline(always)]
     fn max(self, other: Self) -> Self {
-        f64::max(self, other)
+        crate::math::max(self, other)
+    }
+    #[inline(always)]
+    fn choose(self, nonnegative: Self, negative: Self) -> Self {
+        if self >= 0.0 {
+            nonnegative
+        } else if self < 0.0 {
+            negative
+        } else {
+            f64::NAN
+        }
     }
     #[inline(always)]
     fn is_finite(self) -> bool {

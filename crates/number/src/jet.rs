@@ -1,0 +1,354 @@
+//! Truncated Taylor series: time (or drive) derivatives of any order from the position formula alone.
+#![allow(
+    clippy::needless_range_loop,
+    reason = "the recurrences are sums over indices"
+)]
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+use crate::Number;
+use crate::operators::assigning_operators;
+
+/// A power series cut off after `N` coefficients: f(t0 + h) = c0 + c1 h + ... + c(N-1) h^(N-1) + O(h^N).
+///
+/// Coefficient k is the k-th derivative over k!, so `N = 4` carries position, velocity, acceleration and jerk.
+/// Products and functions follow the usual recurrences (Griewank and Walther, *Evaluating Derivatives*, 2008,
+/// table 13.2); every one costs O(N^2) operations of `T` and no allocation. `N` must be at least 1.
+///
+/// # Example
+/// ```
+/// use kempe_number::{Jet, Number};
+/// let t = Jet::<f64, 4>::variable(0.0);
+/// let x = (t * 2.0).sin_cos().0; // sin 2t
+/// assert_eq!([x.derivative(0), x.derivative(1), x.derivative(3)], [0.0, 2.0, -8.0]);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Jet<T, const N: usize>([T; N]);
+
+impl<T: Number, const N: usize> Jet<T, N> {
+    /// The series of the independent variable at `x0`: c0 = `x0`, c1 = 1.
+    #[inline(always)]
+    pub fn variable(x0: T) -> Self {
+        let mut c = Self::constant(x0).0;
+        if N > 1 {
+            c[1] = T::one();
+        }
+        Self(c)
+    }
+
+    /// A constant: every derivative zero.
+    #[inline(always)]
+    pub fn constant(x: T) -> Self {
+        let mut c = [T::zero(); N];
+        c[0] = x;
+        Self(c)
+    }
+
+    /// The series with these coefficients (derivative k over k!).
+    #[inline(always)]
+    pub const fn from_coefficients(coefficients: [T; N]) -> Self {
+        Self(coefficients)
+    }
+
+    /// The series whose k-th derivative is `derivatives[k]`, e.g. `[q, qd, qdd]` of a drive.
+    #[inline(always)]
+    pub fn from_derivatives(derivatives: [T; N]) -> Self {
+        let mut c = derivatives;
+        let mut factorial = 1.0;
+        for k in 1..N {
+            factorial *= k as f64;
+            c[k] = c[k] / factorial;
+        }
+        Self(c)
+    }
+
+    /// All coefficients, constant term first.
+    #[inline(always)]
+    pub const fn coefficients(&self) -> &[T; N] {
+        &self.0
+    }
+
+    /// Coefficient of the k-th power.
+    ///
+    /// # Panics
+    /// When `k >= N`.
+    #[inline(always)]
+    pub fn coefficient(&self, k: usize) -> T {
+        self.0[k]
+    }
+
+    /// The k-th derivative, k! times the coefficient.
+    ///
+    /// # Panics
+    /// When `k >= N`.
+    #[inline(always)]
+    pub fn derivative(&self, k: usize) -> T {
+        let factorial: f64 = (1..=k).map(|i| i as f64).product();
+        self.0[k] * factorial
+    }
+
+    /// The series of the derivative. Its last coefficient is not known from this series and set to zero.
+    #[inline(always)]
+    pub fn differentiate(&self) -> Self {
+        let mut c = [T::zero(); N];
+        for k in 1..N {
+            c[k - 1] = self.0[k] * k as f64;
+        }
+        Self(c)
+    }
+
+    /// The series of the antiderivative with this value at the expansion point; the last coefficient is lost.
+    #[inline(always)]
+    pub fn integrate(&self, value: T) -> Self {
+        let mut c = [T::zero(); N];
+        c[0] = value;
+        for k in 1..N {
+            c[k] = self.0[k - 1] / k as f64;
+        }
+        Self(c)
+    }
+
+    /// Substitutes a series into this one: `self` is a series in q - q0, `inner` is q(t), the result is in t.
+    ///
+    /// The constant term of `inner` must be q0; it is not looked at.
+    #[inline(always)]
+    pub fn compose(&self, inner: &Self) -> Self {
+        let mut step = *inner;
+        step.0[0] = T::zero();
+        let mut sum = Self::constant(self.0[N - 1]);
+        for k in (0..N - 1).rev() {
+            sum *= step;
+            sum.0[0] += self.0[k];
+        }
+        sum
+    }
+
+    /// The value of the truncated polynomial a step `h` away from the expansion point.
+    #[inline(always)]
+    pub fn evaluate(&self, h: T) -> T {
+        let mut sum = self.0[N - 1];
+        for k in (0..N - 1).rev() {
+            sum = sum * h + self.0[k];
+        }
+        sum
+    }
+
+    /// Applies `f` to every coefficient.
+    #[inline(always)]
+    fn each(self, f: impl Fn(T) -> T) -> Self {
+        Self(self.0.map(f))
+    }
+
+    /// Applies `f` to the coefficients of both series in pairs.
+    #[inline(always)]
+    fn pairwise(self, other: Self, f: impl Fn(T, T) -> T) -> Self {
+        Self(std::array::from_fn(|k| f(self.0[k], other.0[k])))
+    }
+}
+
+impl<T: Number, const N: usize> Add for Jet<T, N> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        self.pairwise(other, |a, b| a + b)
+    }
+}
+
+impl<T: Number, const N: usize> Sub for Jet<T, N> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        self.pairwise(other, |a, b| a - b)
+    }
+}
+
+impl<T: Number, const N: usize> Mul for Jet<T, N> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        let mut c = self.0;
+        for k in 0..N {
+            c[k] = self.0[0] * other.0[k];
+            for i in 1..=k {
+                c[k] += self.0[i] * other.0[k - i];
+            }
+        }
+        Self(c)
+    }
+}
+
+impl<T: Number, const N: usize> Div for Jet<T, N> {
+    type Output = Self;
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        let mut q = self.0;
+        for k in 0..N {
+            for i in 0..k {
+                q[k] -= q[i] * other.0[k - i];
+            }
+            q[k] = q[k] / other.0[0];
+        }
+        Self(q)
+    }
+}
+
+impl<T: Number, const N: usize> Neg for Jet<T, N> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        self.each(|a| -a)
+    }
+}
+
+impl<T: Number, const N: usize> Add<f64> for Jet<T, N> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(mut self, other: f64) -> Self {
+        self.0[0] = self.0[0] + other;
+        self
+    }
+}
+
+impl<T: Number, const N: usize> Mul<f64> for Jet<T, N> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, other: f64) -> Self {
+        self.each(|a| a * other)
+    }
+}
+
+impl<T: Number, const N: usize> Div<f64> for Jet<T, N> {
+    type Output = Self;
+    #[inline(always)]
+    fn div(self, other: f64) -> Self {
+        self.each(|a| a / other)
+    }
+}
+
+assigning_operators!([T: Number, const N: usize] Jet<T, N>);
+
+impl<T: Number, const N: usize> Number for Jet<T, N> {
+    #[inline(always)]
+    fn from_f64(x: f64) -> Self {
+        Self::constant(T::from_f64(x))
+    }
+
+    #[inline(always)]
+    fn value(self) -> f64 {
+        self.0[0].value()
+    }
+
+    /// s s = a gives s_k = (a_k - sum of s_i s_(k-i), 0 < i < k) / (2 s_0). Derivatives at zero are not finite.
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        let mut s = self.0;
+        s[0] = self.0[0].sqrt();
+        let twice = s[0] * 2.0;
+        for k in 1..N {
+            for i in 1..k {
+                s[k] -= s[i] * s[k - i];
+            }
+            s[k] = s[k] / twice;
+        }
+        Self(s)
+    }
+
+    /// s' = c a' and c' = -s a'.
+    #[inline(always)]
+    fn sin_cos(self) -> (Self, Self) {
+        let (sin, cos) = self.0[0].sin_cos();
+        let (mut s, mut c) = (Self::constant(sin).0, Self::constant(cos).0);
+        let slope = self.differentiate().0;
+        for k in 1..N {
+            let (mut sum_s, mut sum_c) = (T::zero(), T::zero());
+            for i in 0..k {
+                sum_s += slope[i] * c[k - 1 - i];
+                sum_c += slope[i] * s[k - 1 - i];
+            }
+            s[k] = sum_s / k as f64;
+            c[k] = -(sum_c / k as f64);
+        }
+        (Self(s), Self(c))
+    }
+
+    /// theta' = (x y' - y x') / (x^2 + y^2), integrated from the angle of the constant terms.
+    #[inline(always)]
+    fn atan2(self, x: Self) -> Self {
+        let angle = self.0[0].atan2(x.0[0]);
+        if N == 1 {
+            return Self::constant(angle);
+        }
+        let turning = x * self.differentiate() - self * x.differentiate();
+        let slope = turning / (x.square() + self.square());
+        slope.integrate(angle)
+    }
+
+    /// e' = e a'.
+    #[inline(always)]
+    fn exp(self) -> Self {
+        let mut e = Self::constant(self.0[0].exp()).0;
+        let slope = self.differentiate().0;
+        for k in 1..N {
+            let mut sum = T::zero();
+            for i in 0..k {
+                sum += slope[i] * e[k - 1 - i];
+            }
+            e[k] = sum / k as f64;
+        }
+        Self(e)
+    }
+
+    /// l' = a' / a, integrated from the logarithm of the constant term.
+    #[inline(always)]
+    fn ln(self) -> Self {
+        (self.differentiate() / self).integrate(self.0[0].ln())
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        let mut r = self.choose(self, -self);
+        r.0[0] = self.0[0].abs();
+        r
+    }
+
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        let mut r = (other - self).choose(self, other);
+        r.0[0] = self.0[0].min(other.0[0]);
+        r
+    }
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        let mut r = (self - other).choose(self, other);
+        r.0[0] = self.0[0].max(other.0[0]);
+        r
+    }
+
+    #[inline(always)]
+    fn choose(self, nonnegative: Self, negative: Self) -> Self {
+        nonnegative.pairwise(negative, |a, b| self.0[0].choose(a, b))
+    }
+
+    #[inline(always)]
+    fn is_finite(self) -> bool {
+        self.0.iter().all(|c| c.is_finite())
+    }
+
+    /// Symmetric products are formed once, and the constant term uses the tighter square of `T`.
+    #[inline(always)]
+    fn square(self) -> Self {
+        let mut c = self.0;
+        for k in 0..N {
+            let mut sum = T::zero();
+            for i in 0..k.div_ceil(2) {
+                sum += self.0[i] * self.0[k - i];
+            }
+            c[k] = sum * 2.0;
+            if k % 2 == 0 {
+                c[k] += self.0[k / 2].square();
+            }
+        }
+        Self(c)
+    }
+}

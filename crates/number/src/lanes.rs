@@ -1,0 +1,203 @@
+//! Several plain numbers side by side: the same formula for `W` designs or `W` instants at once.
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+use crate::operators::assigning_operators;
+use crate::{Number, math};
+
+/// `W` independent `f64`s worked on together.
+///
+/// Every operation is a plain loop over the lanes that the compiler turns into vector instructions of whatever
+/// width the calling function is compiled for (see [`multiversion!`](crate::multiversion)). Lane k of a result has
+/// exactly the bits that the scalar formula gives for lane k of the arguments.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C, align(64))]
+pub struct Lanes<const W: usize>(pub [f64; W]);
+
+/// Four lanes: one 256-bit register.
+pub type Lanes4 = Lanes<4>;
+/// Eight lanes: one 512-bit register, one cache line.
+pub type Lanes8 = Lanes<8>;
+
+impl<const W: usize> Lanes<W> {
+    /// The number whose lane k is `f(k)`.
+    #[inline(always)]
+    pub fn from_fn(f: impl FnMut(usize) -> f64) -> Self {
+        Self(std::array::from_fn(f))
+    }
+
+    /// The value in lane `k`.
+    ///
+    /// # Panics
+    /// When `k >= W`.
+    #[inline(always)]
+    pub fn lane(&self, k: usize) -> f64 {
+        self.0[k]
+    }
+
+    /// Applies `f` to every lane.
+    #[inline(always)]
+    fn each(mut self, f: impl Fn(f64) -> f64) -> Self {
+        for k in 0..W {
+            self.0[k] = f(self.0[k]);
+        }
+        self
+    }
+
+    /// Applies `f` to both arguments lane by lane.
+    #[inline(always)]
+    fn pairwise(mut self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
+        for k in 0..W {
+            self.0[k] = f(self.0[k], other.0[k]);
+        }
+        self
+    }
+}
+
+impl<const W: usize> Default for Lanes<W> {
+    /// Zero in every lane.
+    fn default() -> Self {
+        Self([0.0; W])
+    }
+}
+
+/// Implements the operators between two lane numbers and with one `f64`.
+macro_rules! lane_operators {
+    ($($trait:ident $method:ident $operator:tt;)*) => {$(
+        impl<const W: usize> $trait for Lanes<W> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                self.pairwise(other, |a, b| a $operator b)
+            }
+        }
+    )*};
+}
+
+lane_operators! {
+    Add add +;
+    Sub sub -;
+    Mul mul *;
+    Div div /;
+}
+
+/// Implements the operators with one `f64` for all lanes (`Sub<f64>` comes from `assigning_operators!`).
+macro_rules! lane_scalar_operators {
+    ($($trait:ident $method:ident $operator:tt;)*) => {$(
+        impl<const W: usize> $trait<f64> for Lanes<W> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: f64) -> Self {
+                self.each(|a| a $operator other)
+            }
+        }
+    )*};
+}
+
+lane_scalar_operators! {
+    Add add +;
+    Mul mul *;
+    Div div /;
+}
+
+impl<const W: usize> Neg for Lanes<W> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        self.each(|a| -a)
+    }
+}
+
+assigning_operators!([const W: usize] Lanes<W>);
+
+impl<const W: usize> Number for Lanes<W> {
+    #[inline(always)]
+    fn from_f64(x: f64) -> Self {
+        Self([x; W])
+    }
+
+    /// The first lane.
+    #[inline(always)]
+    fn value(self) -> f64 {
+        self.0[0]
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        self.each(f64::sqrt)
+    }
+
+    /// All lanes through the vector code; if any lane is beyond [`math::SIN_COS_LIMIT`], one lane at a time.
+    #[inline(always)]
+    fn sin_cos(self) -> (Self, Self) {
+        let (mut sin, mut cos) = (self, self);
+        let mut near = true;
+        for k in 0..W {
+            near &= self.0[k].abs() <= math::SIN_COS_LIMIT;
+        }
+        if near {
+            for k in 0..W {
+                (sin.0[k], cos.0[k]) = math::sin_cos_core(self.0[k]);
+            }
+        } else {
+            sin_cos_one_by_one(&self.0, &mut sin.0, &mut cos.0);
+        }
+        (sin, cos)
+    }
+
+    #[inline(always)]
+    fn atan2(self, x: Self) -> Self {
+        self.pairwise(x, math::atan2)
+    }
+
+    #[inline(always)]
+    fn exp(self) -> Self {
+        self.each(math::exp)
+    }
+
+    #[inline(always)]
+    fn ln(self) -> Self {
+        self.each(math::ln)
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        self.each(f64::abs)
+    }
+
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        self.pairwise(other, math::min)
+    }
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        self.pairwise(other, math::max)
+    }
+
+    #[inline(always)]
+    fn choose(mut self, nonnegative: Self, negative: Self) -> Self {
+        for k in 0..W {
+            self.0[k] = self.0[k].choose(nonnegative.0[k], negative.0[k]);
+        }
+        self
+    }
+
+    #[inline(always)]
+    fn is_finite(self) -> bool {
+        let mut finite = true;
+        for k in 0..W {
+            finite &= self.0[k].is_finite();
+        }
+        finite
+    }
+}
+
+/// The rare path of `sin_cos`, kept out of the caller's code.
+#[cold]
+#[inline(never)]
+fn sin_cos_one_by_one(x: &[f64], sin: &mut [f64], cos: &mut [f64]) {
+    for k in 0..x.len() {
+        (sin[k], cos[k]) = math::sin_cos(x[k]);
+    }
+}
