@@ -1,0 +1,653 @@
+//! Text to tree: a Pratt parser that reports all it finds.
+//!
+//! # Grammar
+//!
+//! ```text
+//! condition  = expression comparison expression ;
+//! comparison = "<=" | ">=" | "<" | ">" ;
+//! expression = term { ( "+" | "-" ) term } ;
+//! term       = factor { ( "*" | "·" | "/" ) factor } ;
+//! factor     = "-" factor | power ;
+//! power      = atom [ "^" factor | raised ] ;
+//! atom       = number [ unit ] | name | point | call | "(" expression ")" ;
+//! call       = name "(" [ argument { "," argument } ] ")" ;
+//! argument   = expression [ "->" expression ] ;
+//! unit       = unit-power { ( blank | "*" | "·" | "/" ) unit-power } ;
+//! unit-power = unit-name [ "^" [ "-" ] digits | raised ] ;
+//! number     = ( digits [ "." [ digits ] ] | "." digits ) [ "e" [ "+" | "-" ] digits ] ;
+//! raised     = [ "⁻" ] ( "⁰" | "¹" | "²" | … | "⁹" ) { … } ;
+//! name       = ( small letter | "_" ) { letter | digit | "_" } ;
+//! point      = capital letter { letter | digit | "_" } ;
+//! ```
+//!
+//! Written alone ([`Unit::parse`]), a unit may also be `1`, start with `1/`, or be empty: the unit of plain numbers.
+//!
+//! # How a number takes its unit
+//!
+//! * A unit stands directly after a number literal and binds tighter than any operator: `1/2 m` is `1/(2 m)`,
+//!   `5 mm^2` is five square millimetres, `(5 mm)^2` is 25. Nothing else may follow a number without an operator, so `2 crank`
+//!   is an error.
+//! * The unit goes on greedily while a blank, `*`, `·` or `/` is followed by a unit's name that is not called:
+//!   `9.81 m/s^2`, `3 N m`, `2 kg*mm^2`. After a blank the name must be a unit; after an operator any other name ends the
+//!   unit. Elsewhere a unit's name is an ordinary name: in `2*s` it is the parameter `s`.
+//! * A product by a blank does not follow a division: `kg/m s` could mean two things and is an error.
+//! * Where a name behind `*`, `·` or `/` is both a unit and declared, [`check`](crate::check()) does not guess: see there.
+
+use crate::issue::{Issue, Span, SyntaxError};
+use crate::lexer::{Token, tokens};
+use crate::syntax::{BinaryOp, Comparison, Condition, JoinedUnit, Kind, Node, Quantity};
+use crate::unit::MAX_UNIT_POWER;
+use crate::unit_table::{UnitDefinition, find, instead_of};
+use crate::{Unit, unit_table};
+
+/// The longest text that is read, in bytes.
+pub const MAX_LENGTH: usize = 4096;
+
+/// The deepest tree that is built: nested brackets, and operators in a row.
+pub const MAX_DEPTH: usize = 128;
+
+/// After this many problems no more are looked for.
+const MAX_ERRORS: usize = 16;
+
+/// The expression written `text`.
+///
+/// # Errors
+///
+/// All problems found, in the order of the text.
+///
+/// # Example
+///
+/// ```
+/// let node = kempe_units::parse("2*crank + 5 mm").unwrap();
+/// assert_eq!(node.to_string(), "2 * crank + 5 mm");
+/// let errors = kempe_units::parse("2*crank + 5 mmm").unwrap_err();
+/// assert_eq!(errors[0].message, "unknown unit `mmm`");
+/// assert_eq!(errors[0].help.as_deref(), Some("did you mean `mm`?"));
+/// ```
+pub fn parse(text: &str) -> Result<Node, Vec<SyntaxError>> {
+    Parser::run(text, |parser| parser.expression(Power::LOWEST).node)
+}
+
+/// One argument written alone: an expression, or a directed line `A -> B`.
+///
+/// # Errors
+///
+/// All problems found, in the order of the text.
+pub fn parse_argument(text: &str) -> Result<Node, Vec<SyntaxError>> {
+    Parser::run(text, |parser| parser.argument().node)
+}
+
+/// The condition written `text`, such as `range(y(M)) >= 450 mm`.
+///
+/// # Errors
+///
+/// All problems found, in the order of the text.
+pub fn parse_condition(text: &str) -> Result<Condition, Vec<SyntaxError>> {
+    Parser::run(text, Parser::condition)
+}
+
+/// The unit written `text` and nothing else.
+pub(crate) fn parse_unit_alone(text: &str) -> Result<Unit, SyntaxError> {
+    let unit = Parser::run(text, |parser| {
+        let mut factors = Vec::new();
+        let mut divides = false;
+        if parser.peek() == &Token::Number(1.0) {
+            parser.advance();
+            if parser.peek() == &Token::Slash {
+                parser.advance();
+                divides = true;
+            }
+        }
+        match parser.peek() {
+            Token::End if !divides => {}
+            Token::Name(_) => {
+                parser.unit_factors(&mut factors, divides);
+            }
+            _ => parser.error_here("a unit is expected"),
+        }
+        Unit::from_factors(&factors)
+    });
+    unit.map_err(|mut errors| errors.swap_remove(0))
+}
+
+/// How tightly operators bind.
+struct Power;
+
+impl Power {
+    const LOWEST: u8 = 0;
+    const SUM: u8 = 1;
+    const PRODUCT: u8 = 3;
+    const NEGATION: u8 = 5;
+    const POWER: u8 = 7;
+}
+
+/// A node and the height of the tree under it.
+struct Built {
+    node: Node,
+    height: usize,
+}
+
+/// The tokens, the place in them, and what is wrong so far.
+struct Parser {
+    tokens: Vec<(Token, Span)>,
+    at: usize,
+    depth: usize,
+    errors: Vec<SyntaxError>,
+}
+
+impl Parser {
+    /// Reads `text` by `read` up to its end.
+    fn run<T>(text: &str, read: impl FnOnce(&mut Self) -> T) -> Result<T, Vec<SyntaxError>> {
+        if text.len() > MAX_LENGTH {
+            let issue = Issue::new(
+                "too-long",
+                0..text.len(),
+                format!("the text is longer than {MAX_LENGTH} bytes"),
+            )
+            .with_help("give parts of it names");
+            return Err(vec![issue]);
+        }
+        let mut errors = Vec::new();
+        let tokens = tokens(text, &mut errors);
+        let mut parser = Self {
+            tokens,
+            at: 0,
+            depth: 0,
+            errors,
+        };
+        let out = read(&mut parser);
+        parser.rest();
+        if parser.errors.is_empty() {
+            return Ok(out);
+        }
+        parser
+            .errors
+            .sort_by_key(|error| (error.span.start, error.span.end));
+        parser.errors.truncate(MAX_ERRORS);
+        Err(parser.errors)
+    }
+
+    /// Reports what stands behind the end of the reading, and goes on reading there for further problems.
+    fn rest(&mut self) {
+        while self.peek() != &Token::End && self.errors.len() < MAX_ERRORS {
+            match self.peek() {
+                Token::Close => self.error_here("a bracket is closed that was not opened"),
+                Token::Comma => {
+                    let issue = self.issue_here("a comma stands outside of a call");
+                    self.push(issue.with_help("a decimal point is written `.`"));
+                }
+                Token::Arrow => {
+                    let issue = self.issue_here("a directed line stands only as an argument");
+                    self.push(issue);
+                }
+                Token::LessEqual | Token::GreaterEqual | Token::Less | Token::Greater => {
+                    let issue = self.issue_here("a comparison has no place here");
+                    self.push(issue.with_help("write two conditions for two bounds"));
+                }
+                _ => self.error_here("an operator is missing before this"),
+            }
+            let before = self.at;
+            if self.starts_operand() {
+                self.expression(Power::LOWEST);
+            }
+            if self.at == before {
+                self.advance();
+            }
+        }
+    }
+
+    fn peek(&self) -> &Token {
+        &self.tokens[self.at].0
+    }
+
+    fn peek_second(&self) -> &Token {
+        &self.tokens[(self.at + 1).min(self.tokens.len() - 1)].0
+    }
+
+    fn span(&self) -> Span {
+        self.tokens[self.at].1.clone()
+    }
+
+    fn advance(&mut self) -> Span {
+        let span = self.span();
+        self.at = (self.at + 1).min(self.tokens.len() - 1);
+        span
+    }
+
+    fn starts_operand(&self) -> bool {
+        matches!(
+            self.peek(),
+            Token::Number(_) | Token::Name(_) | Token::Open | Token::Minus
+        )
+    }
+
+    /// Records an issue unless one starts at the same place already.
+    fn push(&mut self, issue: SyntaxError) {
+        if !self
+            .errors
+            .iter()
+            .any(|error| error.span.start == issue.span.start)
+        {
+            self.errors.push(issue);
+        }
+    }
+
+    fn issue_here(&self, message: &str) -> SyntaxError {
+        Issue::new("syntax", self.span(), message)
+    }
+
+    fn error_here(&mut self, message: &str) {
+        self.push(self.issue_here(message));
+    }
+
+    /// A stand-in for what could not be read; no result that holds one is ever returned.
+    fn stand_in(&self) -> Built {
+        let start = self.span().start;
+        Built {
+            node: Node::new(Kind::Number(0.0), start..start),
+            height: 1,
+        }
+    }
+
+    /// Builds the node of `kind`, or stops the reading where the tree gets too deep.
+    fn build(&mut self, kind: Kind, span: Span, below: usize) -> Built {
+        if below + 1 > MAX_DEPTH {
+            self.too_deep(span.clone());
+            return Built {
+                node: Node::new(Kind::Number(0.0), span),
+                height: 1,
+            };
+        }
+        Built {
+            node: Node::new(kind, span),
+            height: below + 1,
+        }
+    }
+
+    fn too_deep(&mut self, span: Span) {
+        if !self.errors.iter().any(|error| error.code == "too-deep") {
+            let message = format!("the expression has more than {MAX_DEPTH} levels");
+            self.errors
+                .push(Issue::new("too-deep", span, message).with_help("give parts of it names"));
+        }
+        self.at = self.tokens.len() - 1;
+    }
+
+    /// `condition`.
+    fn condition(&mut self) -> Condition {
+        let left = self.expression(Power::LOWEST).node;
+        let comparison = match self.peek() {
+            Token::LessEqual => Some(Comparison::LessEqual),
+            Token::GreaterEqual => Some(Comparison::GreaterEqual),
+            Token::Less => Some(Comparison::Less),
+            Token::Greater => Some(Comparison::Greater),
+            _ => None,
+        };
+        let comparison_span = self.span();
+        if comparison.is_some() {
+            self.advance();
+        } else if self.errors.is_empty() {
+            let issue = self.issue_here("a condition needs a comparison");
+            self.push(issue.with_help("such as `max(load) <= 80 kN`"));
+        }
+        let right = match comparison {
+            Some(_) => self.expression(Power::LOWEST).node,
+            None => self.stand_in().node,
+        };
+        Condition {
+            left,
+            comparison: comparison.unwrap_or(Comparison::LessEqual),
+            comparison_span,
+            right,
+        }
+    }
+
+    /// `expression`, of operators that bind at least as tightly as `lowest`.
+    fn expression(&mut self, lowest: u8) -> Built {
+        self.depth += 1;
+        if self.depth > MAX_DEPTH {
+            self.too_deep(self.span());
+            self.depth -= 1;
+            return self.stand_in();
+        }
+        let mut left = self.operand();
+        loop {
+            let (op, power, right_power) = match self.peek() {
+                Token::Plus => (BinaryOp::Add, Power::SUM, Power::SUM + 1),
+                Token::Minus => (BinaryOp::Sub, Power::SUM, Power::SUM + 1),
+                Token::Star | Token::Dot => (BinaryOp::Mul, Power::PRODUCT, Power::PRODUCT + 1),
+                Token::Slash => (BinaryOp::Div, Power::PRODUCT, Power::PRODUCT + 1),
+                Token::Caret => (BinaryOp::Pow, Power::POWER, Power::NEGATION),
+                Token::Raised(_) => (BinaryOp::Pow, Power::POWER, Power::POWER),
+                _ => break,
+            };
+            if power < lowest {
+                break;
+            }
+            let right = if let Token::Raised(exponent) = *self.peek() {
+                self.raised(exponent)
+            } else {
+                self.advance();
+                if op == BinaryOp::Mul && self.peek() == &Token::Star {
+                    let issue = self.issue_here("two operators stand side by side");
+                    self.push(issue.with_help("a power is written `^`"));
+                    self.advance();
+                }
+                self.expression(right_power)
+            };
+            let span = left.node.span.start..right.node.span.end;
+            let below = left.height.max(right.height);
+            let kind = Kind::Binary {
+                op,
+                left: Box::new(left.node),
+                right: Box::new(right.node),
+            };
+            left = self.build(kind, span, below);
+        }
+        self.depth -= 1;
+        left
+    }
+
+    /// The exponent that raised digits stand for.
+    fn raised(&mut self, exponent: i32) -> Built {
+        let span = self.advance();
+        let number = self.build(Kind::Number(f64::from(exponent.abs())), span.clone(), 0);
+        if exponent < 0 {
+            self.build(Kind::Neg(Box::new(number.node)), span, number.height)
+        } else {
+            number
+        }
+    }
+
+    /// `atom`, or a negation.
+    fn operand(&mut self) -> Built {
+        match self.peek().clone() {
+            Token::Minus => {
+                let start = self.advance().start;
+                let inner = self.expression(Power::NEGATION);
+                let span = start..inner.node.span.end;
+                self.build(Kind::Neg(Box::new(inner.node)), span, inner.height)
+            }
+            Token::Number(value) => self.number(value),
+            Token::Name(name) if self.peek_second() == &Token::Open => self.call(name),
+            Token::Name(name) => {
+                let span = self.advance();
+                let kind = if name.starts_with(char::is_uppercase) {
+                    Kind::Point(name)
+                } else {
+                    Kind::Name(name)
+                };
+                self.build(kind, span, 0)
+            }
+            Token::Open => {
+                let open = self.advance();
+                let inner = self.expression(Power::LOWEST);
+                self.close(open);
+                inner
+            }
+            Token::End => {
+                self.error_here("the text ends where a value is expected");
+                self.stand_in()
+            }
+            Token::Plus => {
+                self.error_here("a value is expected before `+`");
+                self.advance();
+                self.expression(Power::NEGATION)
+            }
+            _ => {
+                self.error_here("a value is expected here");
+                self.stand_in()
+            }
+        }
+    }
+
+    /// The `)` that belongs to the bracket at `open`; what stands before it is reported and skipped.
+    fn close(&mut self, open: Span) {
+        match self.peek() {
+            Token::Close => {
+                self.advance();
+            }
+            Token::End => self.push(Issue::new("syntax", open, "this bracket is not closed")),
+            _ => self.error_here("`)` or an operator is expected"),
+        }
+    }
+
+    /// `call`, at its name.
+    fn call(&mut self, function: String) -> Built {
+        let function_span = self.advance();
+        let open = self.advance();
+        let mut arguments = Vec::new();
+        let mut below = 0;
+        while !matches!(self.peek(), Token::Close | Token::End) {
+            let argument = self.argument();
+            below = below.max(argument.height);
+            arguments.push(argument.node);
+            // What no argument goes on with is reported and skipped up to the next one.
+            if !matches!(self.peek(), Token::Comma | Token::Close | Token::End) {
+                self.error_here("`,` or `)` is expected");
+                self.skip_argument();
+            }
+            if self.peek() == &Token::Comma {
+                self.advance();
+                if matches!(self.peek(), Token::Close) {
+                    self.error_here("an argument is expected after the comma");
+                }
+            }
+        }
+        let end = self.span().end;
+        self.close(open);
+        let span = function_span.start..end;
+        self.build(
+            Kind::Call {
+                function,
+                function_span,
+                arguments,
+            },
+            span,
+            below,
+        )
+    }
+
+    /// Skips to the comma or bracket that ends the argument.
+    fn skip_argument(&mut self) {
+        let mut open = 0_usize;
+        loop {
+            match self.peek() {
+                Token::End => return,
+                Token::Comma if open == 0 => return,
+                Token::Close if open == 0 => return,
+                Token::Close => open -= 1,
+                Token::Open => open += 1,
+                _ => {}
+            }
+            self.advance();
+        }
+    }
+
+    /// `argument`.
+    fn argument(&mut self) -> Built {
+        let from = self.expression(Power::LOWEST);
+        if self.peek() != &Token::Arrow {
+            return from;
+        }
+        self.advance();
+        let to = self.expression(Power::LOWEST);
+        for end in [&from.node, &to.node] {
+            if end.as_point().is_none() {
+                let issue = Issue::new(
+                    "syntax",
+                    end.span.clone(),
+                    "a directed line goes from a point to a point",
+                );
+                self.push(issue.with_help("such as `A -> B`; points start with a capital letter"));
+            }
+        }
+        let span = from.node.span.start..to.node.span.end;
+        let below = from.height.max(to.height);
+        self.build(
+            Kind::Line {
+                from: Box::new(from.node),
+                to: Box::new(to.node),
+            },
+            span,
+            below,
+        )
+    }
+
+    /// `number [ unit ]`.
+    fn number(&mut self, value: f64) -> Built {
+        let span = self.advance();
+        let Token::Name(name) = self.peek() else {
+            return self.build(Kind::Number(value), span, 0);
+        };
+        let name = name.clone();
+        let calls = self.peek_second() == &Token::Open;
+        if calls || (find(&name).is_none() && instead_of(&name).is_none()) {
+            let code = if calls { "syntax" } else { "unknown-unit" };
+            let message = if calls {
+                "an operator is missing".to_owned()
+            } else {
+                format!("unknown unit `{name}`")
+            };
+            let number = crate::unit::format_number(value);
+            let issue = Issue::new(code, self.span(), message);
+            self.push(issue.with_help(format!("for a product write `{number}*{name}`")));
+            if !calls {
+                self.advance();
+            }
+            return self.build(Kind::Number(value), span, 0);
+        }
+        let mut factors = Vec::new();
+        let start = self.span().start;
+        let (joined, end) = self.unit_factors(&mut factors, false);
+        let unit = Unit::from_factors(&factors);
+        if !unit.to_si(value).is_finite() {
+            self.push(Issue::new(
+                "syntax",
+                span.clone(),
+                "this number is too large",
+            ));
+        }
+        let quantity = Quantity {
+            value,
+            unit,
+            unit_span: start..end,
+            joined,
+        };
+        self.build(Kind::Quantity(quantity), span.start..end, 0)
+    }
+
+    /// `unit`, at its first name, into `factors`; returns the names that an operator stands before, and the end.
+    fn unit_factors(
+        &mut self,
+        factors: &mut Vec<(&'static UnitDefinition, i32)>,
+        mut divides: bool,
+    ) -> (Vec<JoinedUnit>, usize) {
+        let mut joined = Vec::new();
+        let mut divided = divides;
+        let mut end = self.unit_power(factors, divides);
+        loop {
+            let operator = match self.peek() {
+                Token::Name(_) => None,
+                Token::Star | Token::Dot | Token::Slash => Some(self.peek().clone()),
+                _ => break,
+            };
+            match (&operator, self.peek_second()) {
+                (None, Token::Open) => break,
+                (None, _) if divided => {
+                    let issue =
+                        self.issue_here("a unit after a division needs `*` or `/` before it");
+                    self.push(issue.with_help("write `kg s/m`, or `kg/m/s`"));
+                }
+                (None, _) => {}
+                (Some(_), Token::Name(name)) => {
+                    let called = self
+                        .tokens
+                        .get(self.at + 2)
+                        .is_some_and(|(token, _)| token == &Token::Open);
+                    let Some(definition) = find(name).filter(|_| !called) else {
+                        break;
+                    };
+                    joined.push(JoinedUnit {
+                        name: name.clone(),
+                        span: self.tokens[self.at + 1].1.clone(),
+                        dimension: definition.dimension,
+                    });
+                    self.advance();
+                }
+                (Some(_), _) => break,
+            }
+            divides = operator == Some(Token::Slash);
+            divided |= divides;
+            end = self.unit_power(factors, divides);
+        }
+        (joined, end)
+    }
+
+    /// `unit-power`, at its name; returns its end.
+    fn unit_power(
+        &mut self,
+        factors: &mut Vec<(&'static UnitDefinition, i32)>,
+        divides: bool,
+    ) -> usize {
+        let Token::Name(name) = self.peek().clone() else {
+            self.error_here("a unit is expected");
+            return self.span().start;
+        };
+        let span = self.advance();
+        let definition = unit_table::find(&name);
+        if definition.is_none() {
+            let issue = Issue::new(
+                "unknown-unit",
+                span.clone(),
+                format!("unknown unit `{name}`"),
+            );
+            let help = instead_of(&name).map(|near| format!("did you mean `{near}`?"));
+            self.push(Issue { help, ..issue });
+        }
+        let (power, end) = self.unit_exponent(span.end);
+        if let Some(definition) = definition {
+            factors.push((definition, if divides { -power } else { power }));
+        }
+        end
+    }
+
+    /// The exponent of a unit whose name ends at `name_end`, one where none is written, and the end of both.
+    fn unit_exponent(&mut self, name_end: usize) -> (i32, usize) {
+        let start = self.span().start;
+        let power = match *self.peek() {
+            Token::Raised(power) => f64::from(power),
+            Token::Caret => {
+                self.advance();
+                let sign = if self.peek() == &Token::Minus {
+                    self.advance();
+                    -1.0
+                } else {
+                    1.0
+                };
+                let Token::Number(power) = *self.peek() else {
+                    let issue = self.issue_here("the power of a unit is a whole number");
+                    self.push(
+                        issue.with_help("set the quantity in brackets to raise it: `(5 mm)^n`"),
+                    );
+                    return (1, name_end);
+                };
+                sign * power
+            }
+            _ => return (1, name_end),
+        };
+        let end = self.advance().end;
+        if power.fract() != 0.0 || power == 0.0 || power.abs() > f64::from(MAX_UNIT_POWER) {
+            let message = format!(
+                "the power of a unit is a whole number from 1 to {MAX_UNIT_POWER}, or its negative"
+            );
+            self.push(Issue::new("syntax", start..end, message));
+            return (1, end);
+        }
+        #[expect(
+            clippy::cast_possible_truncation,
+            reason = "a small whole number, checked above"
+        )]
+        (power as i32, end)
+    }
+}
