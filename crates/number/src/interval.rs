@@ -35,6 +35,18 @@ fn up2(x: f64) -> f64 {
     x.next_up().next_up()
 }
 
+/// The smaller of two numbers that are not NaN: one instruction.
+#[inline(always)]
+fn lesser(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+/// The larger of two numbers that are not NaN.
+#[inline(always)]
+fn greater(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
 /// The product of two bounds; zero times an unbounded bound is zero, because the bound is never reached.
 #[inline(always)]
 fn corner_product(a: f64, b: f64) -> f64 {
@@ -206,6 +218,17 @@ impl Interval {
         }
     }
 
+    /// Bounds of a product or quotient from its four corner values.
+    #[inline(always)]
+    fn from_corners(left: Self, right: Self, [a, b, c, d]: [f64; 4]) -> Self {
+        let lo = lesser(lesser(a, b), lesser(c, d));
+        let hi = greater(greater(a, b), greater(c, d));
+        let (rise, fall) = (left.nonnegative(), left.nonpositive());
+        let same = rise && right.nonnegative() || fall && right.nonpositive();
+        let opposite = rise && right.nonpositive() || fall && right.nonnegative();
+        Self::outward(lo, hi, same, opposite)
+    }
+
     /// Whether all numbers are >= 0.
     #[inline(always)]
     fn nonnegative(self) -> bool {
@@ -257,16 +280,7 @@ impl Mul for Interval {
             corner_product(self.hi, other.lo),
             corner_product(self.hi, other.hi),
         );
-        let same =
-            self.nonnegative() && other.nonnegative() || self.nonpositive() && other.nonpositive();
-        let opposite =
-            self.nonnegative() && other.nonpositive() || self.nonpositive() && other.nonnegative();
-        Self::outward(
-            a.min(b).min(c.min(d)),
-            a.max(b).max(c.max(d)),
-            same,
-            opposite,
-        )
+        Self::from_corners(self, other, [a, b, c, d])
     }
 }
 
@@ -289,16 +303,7 @@ impl Div for Interval {
             corner_quotient(self.hi, other.lo),
             corner_quotient(self.hi, other.hi),
         );
-        let same =
-            self.nonnegative() && other.nonnegative() || self.nonpositive() && other.nonpositive();
-        let opposite =
-            self.nonnegative() && other.nonpositive() || self.nonpositive() && other.nonnegative();
-        Self::outward(
-            a.min(b).min(c.min(d)),
-            a.max(b).max(c.max(d)),
-            same,
-            opposite,
-        )
+        Self::from_corners(self, other, [a, b, c, d])
     }
 }
 

@@ -130,17 +130,16 @@ impl<const W: usize> Number for Lanes<W> {
     /// All lanes through the vector code; if any lane is beyond [`math::SIN_COS_LIMIT`], one lane at a time.
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
-        let (mut sin, mut cos) = (self, self);
         let mut near = true;
         for k in 0..W {
             near &= self.0[k].abs() <= math::SIN_COS_LIMIT;
         }
-        if near {
-            for k in 0..W {
-                (sin.0[k], cos.0[k]) = math::sin_cos_core(self.0[k]);
-            }
-        } else {
-            sin_cos_one_by_one(&self.0, &mut sin.0, &mut cos.0);
+        if !near {
+            return one_by_one(self.0);
+        }
+        let (mut sin, mut cos) = (self, self);
+        for k in 0..W {
+            (sin.0[k], cos.0[k]) = math::sin_cos_core(self.0[k]);
         }
         (sin, cos)
     }
@@ -193,11 +192,13 @@ impl<const W: usize> Number for Lanes<W> {
     }
 }
 
-/// The rare path of `sin_cos`, kept out of the caller's code.
+/// The rare path of `sin_cos`, kept out of the caller's code; by value, so that the caller's lanes stay in registers.
 #[cold]
 #[inline(never)]
-fn sin_cos_one_by_one(x: &[f64], sin: &mut [f64], cos: &mut [f64]) {
-    for k in 0..x.len() {
-        (sin[k], cos[k]) = math::sin_cos(x[k]);
-    }
+fn one_by_one<const W: usize>(x: [f64; W]) -> (Lanes<W>, Lanes<W>) {
+    let both = x.map(math::sin_cos);
+    (
+        Lanes(both.map(|(sin, _)| sin)),
+        Lanes(both.map(|(_, cos)| cos)),
+    )
 }

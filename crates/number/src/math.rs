@@ -38,7 +38,7 @@ fn sin_cos_far(x: f64) -> (f64, f64) {
 
 /// Sine and cosine for |x| <= [`SIN_COS_LIMIT`], without a branch, so that a loop over it becomes vector code.
 ///
-/// x = n pi/2 + (r + e) with |r| <= pi/4 (Cody and Waite 1980, ch. 8, with the tail e kept), then the minimax
+/// x = n pi/2 + (r + tail) with |r| <= pi/4 (Cody and Waite 1980, ch. 8, with the tail kept), then the minimax
 /// polynomials of FreeBSD's msun `k_sin.c` and `k_cos.c` (Sun Microsystems 1993), then the quadrant n mod 4 swaps
 /// and negates by bit masks. Outside the limit the result is meaningless.
 #[inline(always)]
@@ -47,16 +47,13 @@ pub(crate) fn sin_cos_core(x: f64) -> (f64, f64) {
     let quadrant = shifted.to_bits();
     let n = shifted - ROUND;
 
-    // The first product and difference are exact; the error of the second difference is recovered.
+    // Both products and the first difference are exact; the tail holds the rounding of the second and the third part.
     let first = x - n * HALF_PI_HIGH;
     let middle = n * HALF_PI_MIDDLE;
-    let second = first - middle;
-    let error = (first - second) - middle;
-    let low = n * HALF_PI_LOW - error;
-    let r = second - low;
-    let e = (second - r) - low;
+    let r = first - middle;
+    let tail = ((first - r) - middle) - n * HALF_PI_LOW;
 
-    let (sine, cosine) = (sin_kernel(r, e), cos_kernel(r, e));
+    let (sine, cosine) = (sin_kernel(r, tail), cos_kernel(r, tail));
     let swap = 0_u64.wrapping_sub(quadrant & 1);
     let (s, c) = (sine.to_bits(), cosine.to_bits());
     let difference = (s ^ c) & swap;
@@ -65,7 +62,7 @@ pub(crate) fn sin_cos_core(x: f64) -> (f64, f64) {
     (f64::from_bits(s), f64::from_bits(c))
 }
 
-/// sin(x + y) for |x| <= pi/4 and a tail y below half an ulp of x (msun `k_sin.c`).
+/// sin(x + y) for |x| <= pi/4 and a tail |y| < 2^-53 (msun `k_sin.c`).
 #[allow(clippy::excessive_precision, reason = "printed as in the source")]
 #[inline(always)]
 fn sin_kernel(x: f64, y: f64) -> f64 {
@@ -82,7 +79,7 @@ fn sin_kernel(x: f64, y: f64) -> f64 {
     x - ((z * (0.5 * y - v * r) - y) - v * S1)
 }
 
-/// cos(x + y) for |x| <= pi/4 and a tail y below half an ulp of x (msun `k_cos.c`).
+/// cos(x + y) for |x| <= pi/4 and a tail |y| < 2^-53 (msun `k_cos.c`).
 #[allow(clippy::excessive_precision, reason = "printed as in the source")]
 #[inline(always)]
 fn cos_kernel(x: f64, y: f64) -> f64 {

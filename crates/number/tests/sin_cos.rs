@@ -121,11 +121,11 @@ proptest! {
         for set in InstructionSet::ALL {
             let (s8, c8) = sin_cos_8(set, Lanes::from_fn(|k| xs[k]));
             let (s16, c16) = sin_cos_16(set, Lanes::from_fn(|k| xs[k]));
-            for k in 0..16 {
-                let (s, c) = math::sin_cos(xs[k]);
-                prop_assert!(same(s16.lane(k), s) && same(c16.lane(k), c), "{set:?} {}", xs[k]);
+            for (k, &x) in xs.iter().enumerate() {
+                let (s, c) = math::sin_cos(x);
+                prop_assert!(same(s16.lane(k), s) && same(c16.lane(k), c), "{set:?} {x}");
                 if k < 8 {
-                    prop_assert!(same(s8.lane(k), s) && same(c8.lane(k), c), "{set:?} {}", xs[k]);
+                    prop_assert!(same(s8.lane(k), s) && same(c8.lane(k), c), "{set:?} {x}");
                 }
             }
         }
