@@ -36,10 +36,10 @@ pub trait Resolver<L> {
         None
     }
 
-    /// What `name` measures if it is declared, without any effect: asked where a name could also be a unit.
-    fn declared(&self, name: &str) -> Option<Dimension> {
+    /// Whether `name` is declared, asked without any effect where the name is a unit too.
+    fn declared(&self, name: &str) -> bool {
         let _ = name;
-        None
+        false
     }
 
     /// The names of the functions that [`call`](Self::call) knows, for the help on a misspelt one.
@@ -60,8 +60,8 @@ type Checked<L> = Result<(Expr<L>, Dimension), Vec<Issue>>;
 /// # A unit's name that is declared too
 ///
 /// In `5 mm * h`, with a parameter `h`, the unit goes on to the hour, and the writer may have meant the parameter. This
-/// is reported as `ambiguous-name`. The one case in which the unit is taken: the quantity is all there is (`20 mm/s`, possibly
-/// negated) and the unit's dimension is not that of the declared name.
+/// is reported as `ambiguous-name` ([`Resolver::declared`] is asked). The one case in which the unit is taken: the
+/// quantity is the whole text, possibly negated, and divides without blanks, as `20 mm/s` does.
 ///
 /// # Errors
 ///
@@ -172,11 +172,7 @@ pub fn check_condition<L, R: Resolver<L> + ?Sized>(
             left_is.with_article(),
             right_is.with_article()
         );
-        return Err(vec![checker.mismatch(
-            message,
-            sides,
-            condition.right.span.clone(),
-        )]);
+        return Err(vec![checker.mismatch(message, sides)]);
     }
     Ok(CheckedCondition {
         left,
@@ -297,23 +293,16 @@ impl<R: ?Sized> Checker<'_, R> {
     {
         let mut issues = Vec::new();
         for unit in &quantity.joined {
-            let Some(declared) = self.resolver.declared(&unit.name) else {
-                continue;
-            };
-            if whole && !declared.compatible(unit.dimension) {
+            if whole && unit.tight_division || !self.resolver.declared(&unit.name) {
                 continue;
             }
             let name = &unit.name;
-            let message =
-                format!("`{name}` is a unit here, and something declared has this name too");
-            issues.push(
-                Issue::new("ambiguous-name", unit.span.clone(), message).with_label("unit or name?").with_help(
-                    format!(
-                        "for what is declared, close the quantity in brackets before it; for the unit, write a blank and a \
-                         power instead of the operator, as in `m s^-1`; or give `{name}` a longer name"
-                    ),
-                ),
+            let message = format!("`{name}` could be the unit or what is declared by this name");
+            let help = format!(
+                "for what is declared, put the quantity before it in brackets; for the unit, write a blank instead of the \
+                 operator (`N m`, `m s^-1`); or give `{name}` a longer name"
             );
+            issues.push(Issue::new("ambiguous-name", unit.span.clone(), message).with_help(help));
         }
         if !issues.is_empty() {
             return Err(issues);
@@ -338,11 +327,7 @@ impl<R: ?Sized> Checker<'_, R> {
             _ if !a_is.compatible(b_is) => {
                 let word = if op == BinaryOp::Add { "plus" } else { "minus" };
                 let message = format!("{} {word} {}", a_is.with_article(), b_is.with_article());
-                one(self.mismatch(
-                    message,
-                    [(left, a_is), (right, b_is)],
-                    left.span.start..right.span.end,
-                ))
+                one(self.mismatch(message, [(left, a_is), (right, b_is)]))
             }
             BinaryOp::Add => Ok((Expr::Add(a, b), a_is.common(b_is))),
             _ => Ok((Expr::Sub(a, b), a_is.common(b_is))),
@@ -350,7 +335,7 @@ impl<R: ?Sized> Checker<'_, R> {
     }
 
     /// The issue on two sides that do not fit: it marks the bare number if there is one, else the right side.
-    fn mismatch(&self, message: String, sides: [(&Node, Dimension); 2], fallback: Span) -> Issue {
+    fn mismatch(&self, message: String, sides: [(&Node, Dimension); 2]) -> Issue {
         let [(left, left_is), (right, right_is)] = sides;
         for (node, wanted) in [(right, left_is), (left, right_is)] {
             if let Some(value) = node.as_bare_number() {
@@ -370,14 +355,7 @@ impl<R: ?Sized> Checker<'_, R> {
                 "a number is made an angle by `* 1 rad`, an angle a number by `/ 1 rad`",
             );
         }
-        if fallback.is_empty() {
-            Issue {
-                span: fallback,
-                ..issue
-            }
-        } else {
-            issue
-        }
+        issue
     }
 
     /// The unit to propose for a bare number beside a quantity of `dimension`.
@@ -523,7 +501,7 @@ impl<R: ?Sized> Checker<'_, R> {
                     let found = dimension.with_article();
                     let message = format!("`{builtin}` of {} and {found}", x_is.with_article());
                     let sides = [(*first, x_is), (*argument, *dimension)];
-                    issues.push(self.mismatch(message, sides, argument.span.clone()));
+                    issues.push(self.mismatch(message, sides));
                 }
                 if !issues.is_empty() {
                     return Err(issues);

@@ -80,11 +80,11 @@ impl Issue {
     ) -> Self {
         let issue = Self::new("unknown-name", span, format!("unknown name `{name}`"))
             .with_label("not declared");
+        if crate::unit_table::find(name).is_some() {
+            return issue.with_help(format!("a unit stands after a number: write `1 {name}`"));
+        }
         match nearest(name, known) {
             Some(near) => issue.with_help(format!("did you mean `{near}`?")),
-            None if crate::unit_table::find(name).is_some() => {
-                issue.with_help(format!("a unit stands after a number: write `1 {name}`"))
-            }
             None => issue,
         }
     }

@@ -95,12 +95,18 @@ pub(crate) fn tokens(text: &str, errors: &mut Vec<SyntaxError>) -> Vec<(Token, S
                 span,
                 format!("`{}` has no meaning here", first.escape_debug()),
             );
-            errors.push(match stands_for(first) {
-                Some(help) => issue.with_help(help),
-                None => issue,
-            });
-            at += first.len_utf8();
-            continue;
+            let length = first.len_utf8();
+            match stands_for(first) {
+                Some((meant, help)) => {
+                    errors.push(issue.with_help(help));
+                    (meant, length)
+                }
+                None => {
+                    errors.push(issue);
+                    at += length;
+                    continue;
+                }
+            }
         };
         out.push((token, at..at + length));
         at += length;
@@ -135,16 +141,20 @@ fn symbol(rest: &str) -> Option<(Token, usize)> {
         .map(|(sign, token)| (token, sign.len()))
 }
 
-/// Advice for signs the language does not have.
-fn stands_for(sign: char) -> Option<&'static str> {
+/// What is meant by signs the language does not have, so that the reading goes on as if it were written, and advice.
+fn stands_for(sign: char) -> Option<(Token, &'static str)> {
     Some(match sign {
-        '−' | '–' => "minus is written `-`",
-        '×' | '⋅' => "times is written `*`",
-        '÷' | ':' => "a division is written `/`",
-        '→' => "a directed line is written `A -> B`",
-        '=' => "a comparison is one of `<=`, `>=`, `<`, `>`",
-        '[' | ']' | '{' | '}' => "only round brackets group",
-        'π' => "the constant is called `pi`",
+        '−' | '–' => (Token::Minus, "minus is written `-`"),
+        '×' | '⋅' => (Token::Star, "times is written `*`"),
+        '÷' | ':' => (Token::Slash, "a division is written `/`"),
+        '→' => (Token::Arrow, "a directed line is written `A -> B`"),
+        '=' => (
+            Token::LessEqual,
+            "a comparison is one of `<=`, `>=`, `<`, `>`",
+        ),
+        '[' | '{' => (Token::Open, "only round brackets group"),
+        ']' | '}' => (Token::Close, "only round brackets group"),
+        'π' => (Token::Name("pi".to_owned()), "the constant is called `pi`"),
         _ => return None,
     })
 }

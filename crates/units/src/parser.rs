@@ -33,12 +33,16 @@
 //! * A product by a blank does not follow a division: `kg/m s` could mean two things and is an error.
 //! * Where a name behind `*`, `·` or `/` is both a unit and declared, [`check`](crate::check()) does not guess: see there.
 
+mod unit;
+
+pub(crate) use unit::parse_unit_alone;
+
+use crate::Unit;
 use crate::issue::{Issue, Span, SyntaxError};
 use crate::lexer::{Token, tokens};
-use crate::syntax::{BinaryOp, Comparison, Condition, JoinedUnit, Kind, Node, Quantity};
-use crate::unit::MAX_UNIT_POWER;
-use crate::unit_table::{UnitDefinition, find, instead_of};
-use crate::{Unit, unit_table};
+use crate::syntax::{BinaryOp, CONSTANTS, Comparison, Condition, Kind, Node, Quantity};
+use crate::unit::format_number;
+use crate::unit_table::{find, instead_of};
 
 /// The longest text that is read, in bytes.
 pub const MAX_LENGTH: usize = 4096;
@@ -86,30 +90,6 @@ pub fn parse_condition(text: &str) -> Result<Condition, Vec<SyntaxError>> {
     Parser::run(text, Parser::condition)
 }
 
-/// The unit written `text` and nothing else.
-pub(crate) fn parse_unit_alone(text: &str) -> Result<Unit, SyntaxError> {
-    let unit = Parser::run(text, |parser| {
-        let mut factors = Vec::new();
-        let mut divides = false;
-        if parser.peek() == &Token::Number(1.0) {
-            parser.advance();
-            if parser.peek() == &Token::Slash {
-                parser.advance();
-                divides = true;
-            }
-        }
-        match parser.peek() {
-            Token::End if !divides => {}
-            Token::Name(_) => {
-                parser.unit_factors(&mut factors, divides);
-            }
-            _ => parser.error_here("a unit is expected"),
-        }
-        Unit::from_factors(&factors)
-    });
-    unit.map_err(|mut errors| errors.swap_remove(0))
-}
-
 /// How tightly operators bind.
 struct Power;
 
@@ -121,10 +101,21 @@ impl Power {
     const POWER: u8 = 7;
 }
 
-/// A node and the height of the tree under it.
+/// A node, where it stands with the brackets around it, and the height of the tree.
 struct Built {
     node: Node,
+    outer: Span,
     height: usize,
+}
+
+impl Built {
+    fn new(node: Node, height: usize) -> Self {
+        Self {
+            outer: node.span.clone(),
+            node,
+            height,
+        }
+    }
 }
 
 /// The tokens, the place in them, and what is wrong so far.
@@ -181,8 +172,7 @@ impl Parser {
                     self.push(issue);
                 }
                 Token::LessEqual | Token::GreaterEqual | Token::Less | Token::Greater => {
-                    let issue = self.issue_here("a comparison has no place here");
-                    self.push(issue.with_help("write two conditions for two bounds"));
+                    self.error_here("a comparison has no place here");
                 }
                 _ => self.error_here("an operator is missing before this"),
             }
@@ -243,25 +233,16 @@ impl Parser {
     /// A stand-in for what could not be read; no result that holds one is ever returned.
     fn stand_in(&self) -> Built {
         let start = self.span().start;
-        Built {
-            node: Node::new(Kind::Number(0.0), start..start),
-            height: 1,
-        }
+        Built::new(Node::new(Kind::Number(0.0), start..start), 1)
     }
 
     /// Builds the node of `kind`, or stops the reading where the tree gets too deep.
     fn build(&mut self, kind: Kind, span: Span, below: usize) -> Built {
         if below + 1 > MAX_DEPTH {
             self.too_deep(span.clone());
-            return Built {
-                node: Node::new(Kind::Number(0.0), span),
-                height: 1,
-            };
+            return Built::new(Node::new(Kind::Number(0.0), span), 1);
         }
-        Built {
-            node: Node::new(kind, span),
-            height: below + 1,
-        }
+        Built::new(Node::new(kind, span), below + 1)
     }
 
     fn too_deep(&mut self, span: Span) {
@@ -273,16 +254,21 @@ impl Parser {
         self.at = self.tokens.len() - 1;
     }
 
-    /// `condition`.
-    fn condition(&mut self) -> Condition {
-        let left = self.expression(Power::LOWEST).node;
-        let comparison = match self.peek() {
+    /// The comparison that comes next.
+    fn at_comparison(&self) -> Option<Comparison> {
+        match self.peek() {
             Token::LessEqual => Some(Comparison::LessEqual),
             Token::GreaterEqual => Some(Comparison::GreaterEqual),
             Token::Less => Some(Comparison::Less),
             Token::Greater => Some(Comparison::Greater),
             _ => None,
-        };
+        }
+    }
+
+    /// `condition`.
+    fn condition(&mut self) -> Condition {
+        let left = self.expression(Power::LOWEST).node;
+        let comparison = self.at_comparison();
         let comparison_span = self.span();
         if comparison.is_some() {
             self.advance();
@@ -294,6 +280,10 @@ impl Parser {
             Some(_) => self.expression(Power::LOWEST).node,
             None => self.stand_in().node,
         };
+        if self.at_comparison().is_some() {
+            let issue = self.issue_here("a condition has one comparison");
+            self.push(issue.with_help("write two conditions for two bounds"));
+        }
         Condition {
             left,
             comparison: comparison.unwrap_or(Comparison::LessEqual),
@@ -335,7 +325,7 @@ impl Parser {
                 }
                 self.expression(right_power)
             };
-            let span = left.node.span.start..right.node.span.end;
+            let span = left.outer.start..right.outer.end;
             let below = left.height.max(right.height);
             let kind = Kind::Binary {
                 op,
@@ -365,7 +355,7 @@ impl Parser {
             Token::Minus => {
                 let start = self.advance().start;
                 let inner = self.expression(Power::NEGATION);
-                let span = start..inner.node.span.end;
+                let span = start..inner.outer.end;
                 self.build(Kind::Neg(Box::new(inner.node)), span, inner.height)
             }
             Token::Number(value) => self.number(value),
@@ -382,8 +372,9 @@ impl Parser {
             Token::Open => {
                 let open = self.advance();
                 let inner = self.expression(Power::LOWEST);
+                let outer = open.start..self.span().end;
                 self.close(open);
-                inner
+                Built { outer, ..inner }
             }
             Token::End => {
                 self.error_here("the text ends where a value is expected");
@@ -502,15 +493,17 @@ impl Parser {
         };
         let name = name.clone();
         let calls = self.peek_second() == &Token::Open;
-        if calls || (find(&name).is_none() && instead_of(&name).is_none()) {
-            let code = if calls { "syntax" } else { "unknown-unit" };
-            let message = if calls {
-                "an operator is missing".to_owned()
-            } else {
-                format!("unknown unit `{name}`")
+        let constant = CONSTANTS.iter().any(|(constant, _)| *constant == name);
+        if calls || constant || (find(&name).is_none() && instead_of(&name).is_none()) {
+            let number = format_number(value);
+            let issue = match calls || constant {
+                true => self.issue_here("an operator is missing before this"),
+                false => Issue::new(
+                    "unknown-unit",
+                    self.span(),
+                    format!("unknown unit `{name}`"),
+                ),
             };
-            let number = crate::unit::format_number(value);
-            let issue = Issue::new(code, self.span(), message);
             self.push(issue.with_help(format!("for a product write `{number}*{name}`")));
             if !calls {
                 self.advance();
@@ -520,6 +513,10 @@ impl Parser {
         let mut factors = Vec::new();
         let start = self.span().start;
         let (joined, end) = self.unit_factors(&mut factors, false);
+        if matches!(self.peek(), Token::Caret | Token::Raised(_)) {
+            let issue = self.issue_here("this power could be of the unit or of the quantity");
+            self.push(issue.with_help("set the quantity in brackets to raise it: `(5 mm^2)^2`"));
+        }
         let unit = Unit::from_factors(&factors);
         if !unit.to_si(value).is_finite() {
             self.push(Issue::new(
@@ -535,119 +532,5 @@ impl Parser {
             joined,
         };
         self.build(Kind::Quantity(quantity), span.start..end, 0)
-    }
-
-    /// `unit`, at its first name, into `factors`; returns the names that an operator stands before, and the end.
-    fn unit_factors(
-        &mut self,
-        factors: &mut Vec<(&'static UnitDefinition, i32)>,
-        mut divides: bool,
-    ) -> (Vec<JoinedUnit>, usize) {
-        let mut joined = Vec::new();
-        let mut divided = divides;
-        let mut end = self.unit_power(factors, divides);
-        loop {
-            let operator = match self.peek() {
-                Token::Name(_) => None,
-                Token::Star | Token::Dot | Token::Slash => Some(self.peek().clone()),
-                _ => break,
-            };
-            match (&operator, self.peek_second()) {
-                (None, Token::Open) => break,
-                (None, _) if divided => {
-                    let issue =
-                        self.issue_here("a unit after a division needs `*` or `/` before it");
-                    self.push(issue.with_help("write `kg s/m`, or `kg/m/s`"));
-                }
-                (None, _) => {}
-                (Some(_), Token::Name(name)) => {
-                    let called = self
-                        .tokens
-                        .get(self.at + 2)
-                        .is_some_and(|(token, _)| token == &Token::Open);
-                    let Some(definition) = find(name).filter(|_| !called) else {
-                        break;
-                    };
-                    joined.push(JoinedUnit {
-                        name: name.clone(),
-                        span: self.tokens[self.at + 1].1.clone(),
-                        dimension: definition.dimension,
-                    });
-                    self.advance();
-                }
-                (Some(_), _) => break,
-            }
-            divides = operator == Some(Token::Slash);
-            divided |= divides;
-            end = self.unit_power(factors, divides);
-        }
-        (joined, end)
-    }
-
-    /// `unit-power`, at its name; returns its end.
-    fn unit_power(
-        &mut self,
-        factors: &mut Vec<(&'static UnitDefinition, i32)>,
-        divides: bool,
-    ) -> usize {
-        let Token::Name(name) = self.peek().clone() else {
-            self.error_here("a unit is expected");
-            return self.span().start;
-        };
-        let span = self.advance();
-        let definition = unit_table::find(&name);
-        if definition.is_none() {
-            let issue = Issue::new(
-                "unknown-unit",
-                span.clone(),
-                format!("unknown unit `{name}`"),
-            );
-            let help = instead_of(&name).map(|near| format!("did you mean `{near}`?"));
-            self.push(Issue { help, ..issue });
-        }
-        let (power, end) = self.unit_exponent(span.end);
-        if let Some(definition) = definition {
-            factors.push((definition, if divides { -power } else { power }));
-        }
-        end
-    }
-
-    /// The exponent of a unit whose name ends at `name_end`, one where none is written, and the end of both.
-    fn unit_exponent(&mut self, name_end: usize) -> (i32, usize) {
-        let start = self.span().start;
-        let power = match *self.peek() {
-            Token::Raised(power) => f64::from(power),
-            Token::Caret => {
-                self.advance();
-                let sign = if self.peek() == &Token::Minus {
-                    self.advance();
-                    -1.0
-                } else {
-                    1.0
-                };
-                let Token::Number(power) = *self.peek() else {
-                    let issue = self.issue_here("the power of a unit is a whole number");
-                    self.push(
-                        issue.with_help("set the quantity in brackets to raise it: `(5 mm)^n`"),
-                    );
-                    return (1, name_end);
-                };
-                sign * power
-            }
-            _ => return (1, name_end),
-        };
-        let end = self.advance().end;
-        if power.fract() != 0.0 || power == 0.0 || power.abs() > f64::from(MAX_UNIT_POWER) {
-            let message = format!(
-                "the power of a unit is a whole number from 1 to {MAX_UNIT_POWER}, or its negative"
-            );
-            self.push(Issue::new("syntax", start..end, message));
-            return (1, end);
-        }
-        #[expect(
-            clippy::cast_possible_truncation,
-            reason = "a small whole number, checked above"
-        )]
-        (power as i32, end)
     }
 }

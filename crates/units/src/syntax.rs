@@ -1,7 +1,7 @@
 //! The tree of an expression as it was written, with byte spans.
 
+use crate::Unit;
 use crate::issue::Span;
-use crate::{Dimension, Unit};
 
 /// Constants of the language.
 pub const CONSTANTS: &[(&str, f64)] = &[("pi", std::f64::consts::PI)];
@@ -75,8 +75,8 @@ pub struct JoinedUnit {
     pub name: String,
     /// Where.
     pub span: Span,
-    /// What the unit of this name measures.
-    pub dimension: Dimension,
+    /// Whether the operator is a `/` without blanks around it, as in `mm/s`.
+    pub tight_division: bool,
 }
 
 /// An operator between two operands.
