@@ -1,6 +1,6 @@
 //! Accuracy of the sine and cosine kernel, and its bit-for-bit agreement between scalar and lanes.
 
-use kempe_number::{InstructionSet, Lanes, Number, math, multiversion};
+use kempe_number::{InstructionSet, Interval, Lanes, Number, math, multiversion};
 use proptest::prelude::*;
 
 /// Units in the last place of `exact` between `x` and `exact`.
@@ -38,6 +38,22 @@ fn hard_points_are_within_one_ulp() {
             cos_error <= LARGEST_ERROR,
             "cos {x:e} = {c:e}, error {cos_error}"
         );
+    }
+}
+
+/// Whether the interval holds `rounded + rest`, which no single number is.
+fn encloses(bounds: Interval, rounded: f64, rest: f64) -> bool {
+    bounds.contains(rounded)
+        && (rest >= 0.0 || bounds.lo() < rounded)
+        && (rest <= 0.0 || bounds.hi() > rounded)
+}
+
+#[test]
+fn intervals_enclose_what_rounding_leaves() {
+    for [x, sin, sin_rest, cos, cos_rest] in rows(include_str!("data/sin_cos_points.csv")) {
+        let (s, c) = Interval::from_f64(x).sin_cos();
+        assert!(encloses(s, sin, sin_rest), "sin {x:e} not in {s:?}");
+        assert!(encloses(c, cos, cos_rest), "cos {x:e} not in {c:?}");
     }
 }
 
