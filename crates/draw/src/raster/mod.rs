@@ -1,0 +1,52 @@
+//! Pixels: the same scenes as PNG, GIF and APNG.
+
+pub mod animation;
+mod canvas;
+mod font;
+mod palette;
+
+use crate::scene::Scene;
+use crate::tokens::Theme;
+
+pub use canvas::Canvas;
+
+/// Why a picture could not be made.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum RasterError {
+    /// The picture would have more pixels than are allowed.
+    #[error("a picture of {width} x {height} pixels is larger than the limit of {limit} pixels: lower the resolution")]
+    TooLarge {
+        /// Width, pixels.
+        width: u64,
+        /// Height, pixels.
+        height: u64,
+        /// Limit.
+        limit: u64,
+    },
+    /// There is no pose to show.
+    #[error("there is no pose to show")]
+    NoFrames,
+    /// The encoder failed.
+    #[error("cannot encode the picture: {0}")]
+    Encode(String),
+}
+
+/// A PNG file of a scene at a resolution in dots per inch.
+///
+/// # Errors
+/// [`RasterError::TooLarge`] above 64 million pixels.
+pub fn png(scene: &Scene, theme: Theme, dpi: f64) -> Result<Vec<u8>, RasterError> {
+    let canvas = Canvas::draw(scene, theme, dpi / 25.4)?;
+    let encode = || -> Result<Vec<u8>, png::EncodingError> {
+        let mut bytes = Vec::new();
+        let mut encoder = png::Encoder::new(&mut bytes, canvas.width, canvas.height);
+        encoder.set_color(png::ColorType::Rgb);
+        encoder.set_depth(png::BitDepth::Eight);
+        encoder.set_compression(png::Compression::Balanced);
+        let mut writer = encoder.write_header()?;
+        writer.write_image_data(&canvas.rgb)?;
+        writer.finish()?;
+        Ok(bytes)
+    };
+    encode().map_err(|error| RasterError::Encode(error.to_string()))
+}

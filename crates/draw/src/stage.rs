@@ -1,0 +1,204 @@
+//! A mechanism with all its poses, laid out on one sheet: the box over all poses, so that an animation does not jump.
+
+use kempe_number::math::sin_cos;
+
+use crate::context::{Anchor, Context, link_angle, point, reference_frame};
+use crate::fit::{Bounds, Fit, Margins};
+use crate::furniture;
+use crate::scene::{Group, Layer, Point, Scene};
+use crate::symbols::{self, Part};
+use crate::trace::TracePath;
+use crate::view::{Frame, JointView, MechanismView};
+
+/// How a mechanism is laid out.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DrawOptions {
+    /// Width of the picture, mm.
+    pub width: f64,
+    /// Largest height of the picture, mm; it is lower for a flat mechanism.
+    pub max_height: f64,
+    /// Title above the drawing.
+    pub title: bool,
+    /// The pose's own label below the drawing.
+    pub caption: bool,
+    /// Names of the points.
+    pub labels: bool,
+    /// Paths of the traced points.
+    pub traces: bool,
+    /// A bar of known length.
+    pub scale_bar: bool,
+    /// Other poses to show faintly, by index.
+    pub ghosts: Vec<usize>,
+    /// Model coordinates (m) that must be on the sheet: lower left and upper right corner; all poses when `None`.
+    pub view_box: Option<[[f64; 2]; 2]>,
+}
+
+impl Default for DrawOptions {
+    /// A sheet 160 mm wide with everything but ghosts: it fills a text page at full width.
+    fn default() -> Self {
+        DrawOptions {
+            width: 160.0,
+            max_height: 130.0,
+            title: true,
+            caption: true,
+            labels: true,
+            traces: true,
+            scale_bar: true,
+            ghosts: Vec::new(),
+            view_box: None,
+        }
+    }
+}
+
+/// A mechanism laid out on paper, ready to be drawn at any of its poses.
+pub struct Stage<'a> {
+    pub(crate) context: Context<'a>,
+    pub(crate) options: DrawOptions,
+    pub(crate) parts: Vec<Part>,
+    pub(crate) traces: Vec<TracePath>,
+}
+
+/// Room around the mechanism for the paper-sized symbols, mm.
+const SYMBOL_ROOM: f64 = 9.0;
+/// The lowest sheet, mm.
+const LEAST_HEIGHT: f64 = 40.0;
+
+impl<'a> Stage<'a> {
+    /// Lays the mechanism out. Poses may be missing or not finite; what cannot be drawn is left out.
+    pub fn new(view: &'a MechanismView, frames: &'a [Frame], options: DrawOptions) -> Stage<'a> {
+        let options = DrawOptions {
+            width: if options.width.is_finite() { options.width.clamp(20.0, 5000.0) } else { 160.0 },
+            max_height: if options.max_height.is_finite() { options.max_height.clamp(20.0, 5000.0) } else { 130.0 },
+            ..options
+        };
+        let mut bounds = Bounds::EMPTY;
+        match options.view_box {
+            Some(corners) => corners.iter().for_each(|&p| bounds.add(p, 0.0)),
+            None => frames.iter().for_each(|frame| add_frame(&mut bounds, view, frame)),
+        }
+        let top = if options.title { 10.0 } else { 0.0 };
+        let bottom = if options.scale_bar || options.caption { 9.0 } else { 0.0 };
+        let margins = Margins { sides: [SYMBOL_ROOM, SYMBOL_ROOM, SYMBOL_ROOM + top, SYMBOL_ROOM + bottom] };
+        let fit =
+            Fit::new(bounds, options.width, [LEAST_HEIGHT, options.max_height], margins, view.length_unit.size());
+        let context = Context { view, frames, fit, reference: reference_frame(view, frames) };
+        let parts = symbols::parts(&context, options.labels);
+        let traces = if options.traces { TracePath::all(&context) } else { Vec::new() };
+        Stage { context, options, parts, traces }
+    }
+
+    /// Number of poses.
+    pub fn len(&self) -> usize {
+        self.context.frames.len()
+    }
+
+    /// Whether there is no pose at all.
+    pub fn is_empty(&self) -> bool {
+        self.context.frames.is_empty()
+    }
+
+    /// Width and height of the sheet, mm.
+    pub fn size(&self) -> [f64; 2] {
+        [self.context.fit.width, self.context.fit.height]
+    }
+
+    /// Millimetres on paper per metre of the mechanism.
+    pub fn scale(&self) -> f64 {
+        self.context.fit.scale
+    }
+
+    /// The picture of one pose. Past the last pose, or where a pose cannot be drawn, it shows what there is.
+    pub fn scene(&self, index: usize) -> Scene {
+        let frame = self.context.frames.get(index);
+        let mut groups = Vec::new();
+        for &ghost in &self.options.ghosts {
+            groups.extend(self.ghost(ghost));
+        }
+        for trace in &self.traces {
+            groups.extend(trace.groups(index));
+        }
+        if let Some(frame) = frame {
+            groups.extend(self.pose(frame));
+        }
+        groups.extend(furniture::groups(self, frame));
+        groups.sort_by_key(|group| group.layer);
+        let [width, height] = self.size();
+        let mut title = self.context.view.title.clone();
+        if let Some(label) = frame.map(|f| f.label.as_str()).filter(|l| !l.is_empty()) {
+            title = format!("{title}: {label}");
+        }
+        Scene { width, height, title, groups }
+    }
+
+    /// The mechanism itself in a pose, each group with the number of its part as key.
+    fn pose(&self, frame: &Frame) -> Vec<Group> {
+        let group = |(number, part): (usize, &Part)| {
+            let place = self.context.place(frame, part.anchor)?;
+            Some(Group { layer: part.layer, key: Some(number.to_string()), place, items: part.items.clone() })
+        };
+        self.parts.iter().enumerate().filter_map(group).collect()
+    }
+
+    fn ghost(&self, index: usize) -> Vec<Group> {
+        let Some(frame) = self.context.frames.get(index) else { return Vec::new() };
+        let solid = |part: &&Part| matches!(part.layer, Layer::Link(_) | Layer::Gear | Layer::Body);
+        let group = |part: &Part| {
+            let place = self.context.place(frame, part.anchor)?;
+            let items = part.items.iter().map(symbols::ghost_item).collect();
+            Some(Group { layer: Layer::Ghost, key: None, place, items })
+        };
+        self.parts.iter().filter(solid).filter_map(group).collect()
+    }
+
+    /// For scripts that move the drawing: how each part is anchored, in the order of the keys of the groups.
+    pub fn anchors(&self) -> Vec<Anchor> {
+        self.parts.iter().map(|part| part.anchor).collect()
+    }
+
+    /// For scripts that move the drawing: the paper position of a link's first point and the link's angle in a pose.
+    pub fn link_pose(&self, frame: &Frame, link: usize) -> Option<[f64; 3]> {
+        let first = *self.context.view.links.get(link)?.points.first()?;
+        let at = self.context.paper(frame, first)?;
+        Some([at[0], at[1], link_angle(frame, link)?])
+    }
+
+    /// For scripts that move the drawing: a point as the link that carries it and its place there from the link's first
+    /// point, mm.
+    pub fn point_on_link(&self, index: usize) -> Option<(usize, Point)> {
+        let link = *self.context.carriers(index).first()?;
+        let first = *self.context.view.links[link].points.first()?;
+        Some((link, self.context.local(link, first, index)?))
+    }
+}
+
+fn add_frame(bounds: &mut Bounds, view: &MechanismView, frame: &Frame) {
+    let guides_only = |index: usize| {
+        let used = |guide: &crate::view::Guide| guide.link == 0 && (guide.from == index || guide.to == index);
+        view.joints.iter().any(|joint| match joint {
+            JointView::Slider { guide, .. } | JointView::Slot { guide, .. } => used(guide),
+            _ => false,
+        }) && crate::context::carriers(view, index) == [0]
+    };
+    for index in 0..view.points.len() {
+        if let (Some(p), false) = (point(frame, index), guides_only(index)) {
+            bounds.add(p, 0.0);
+        }
+    }
+    for joint in &view.joints {
+        match joint {
+            JointView::Gears { a, b, .. } => {
+                for wheel in [a, b] {
+                    point(frame, wheel.center).into_iter().for_each(|p| bounds.add(p, wheel.radius.abs()));
+                }
+            }
+            JointView::Rack { link, pinion, side } => {
+                if let (Some(p), Some(angle)) = (point(frame, pinion.center), link_angle(frame, *link)) {
+                    bounds.add(p, pinion.radius.abs());
+                    let ((s, c), r) = (sin_cos(angle), side * pinion.radius);
+                    bounds.add([p[0] + r * s, p[1] - r * c], 0.0);
+                }
+            }
+            _ => {}
+        }
+    }
+}

@@ -1,0 +1,34 @@
+//! Hatching: what stands still.
+
+use super::LINE;
+use crate::scene::{Item, Path, Style};
+use crate::tokens::Token;
+
+/// Distance of hatch lines, mm.
+const STEP: f64 = 1.3;
+/// Depth of the hatching, mm.
+const DEPTH: f64 = 1.5;
+
+/// A line at height `y` from `x0` to `x1` with hatching below (`down`) or above.
+pub(super) fn hatched_line(x0: f64, x1: f64, y: f64, down: bool) -> Vec<Item> {
+    let depth = if down { -DEPTH } else { DEPTH };
+    let count = (((x1 - x0) / STEP).floor().max(0.0) as usize).min(2000);
+    let slack = (x1 - x0) - count as f64 * STEP;
+    let hatch = |k: usize| {
+        let x = x0 + slack / 2.0 + (k as f64 + 0.5) * STEP;
+        Path::polyline(&[[x + 0.5, y], [x - 0.7, y + depth]])
+    };
+    vec![
+        Item::Shape { paths: (0..count).map(hatch).collect(), style: Style::stroke(Token::Ground, 0.22) },
+        Item::path(Path::polyline(&[[x0, y], [x1, y]]), Style::stroke(Token::Ground, LINE)),
+    ]
+}
+
+/// The foot of a ground pivot whose pin is at the origin.
+pub(super) fn pedestal() -> Vec<Item> {
+    let triangle = Path::polygon(&[[0.0, 0.0], [-2.7, -4.3], [2.7, -4.3]]);
+    let style = Style::stroke(Token::Ground, LINE).filled(Token::Panel, 1.0);
+    let mut items = vec![Item::path(triangle, style)];
+    items.extend(hatched_line(-3.7, 3.7, -4.3, true));
+    items
+}

@@ -1,0 +1,87 @@
+//! The field's drawing symbols (after ISO 3952): each file draws one. Symbols keep their size on paper, bars scale.
+
+mod cylinder;
+mod drive;
+mod gear;
+mod ground;
+mod label;
+mod link;
+mod pin;
+mod rack;
+mod slider;
+mod spring;
+mod weld;
+
+use crate::context::{Anchor, Context};
+use crate::scene::{Item, Layer, Style};
+use crate::tokens::Token;
+use crate::view::JointView;
+
+/// Half the width of a bar, mm.
+pub(crate) const BAR: f64 = 1.7;
+/// Radius of a pin, mm.
+pub(crate) const PIN: f64 = 1.25;
+/// Width of outlines, mm.
+pub(crate) const LINE: f64 = 0.35;
+
+/// A rigid piece of the drawing, in mm from its anchor.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Part {
+    /// What it belongs to.
+    pub layer: Layer,
+    /// To what it is fixed.
+    pub anchor: Anchor,
+    /// What it holds.
+    pub items: Vec<Item>,
+}
+
+impl Part {
+    pub(crate) fn new(layer: Layer, anchor: Anchor, items: Vec<Item>) -> Part {
+        Part { layer, anchor, items }
+    }
+}
+
+/// The colour of a link: the frame's own, or the next of the series.
+pub(crate) fn link_token(link: usize) -> Token {
+    if link == 0 { Token::Ground } else { Token::Series(link - 1) }
+}
+
+/// All parts of a mechanism.
+pub(crate) fn parts(context: &Context, labels: bool) -> Vec<Part> {
+    let mut parts = Vec::new();
+    parts.extend(gear::parts(context));
+    parts.extend(link::parts(context));
+    for joint in &context.view.joints {
+        match *joint {
+            JointView::Slider { block, at, guide } => parts.extend(slider::slider(context, block, at, guide)),
+            JointView::Slot { pin, guide } => parts.extend(slider::slot(context, pin, guide)),
+            JointView::Weld { at, links } => parts.extend(weld::parts(context, at, links)),
+            JointView::Rack { link, pinion, side } => parts.extend(rack::parts(context, link, pinion, side)),
+            JointView::Cylinder { a, b } => parts.extend(cylinder::cylinder(context, a, b)),
+            JointView::Damper { a, b } => parts.extend(cylinder::damper(context, a, b)),
+            JointView::Spring { a, b } => parts.extend(spring::parts(context, a, b)),
+            JointView::Gears { .. } => {}
+        }
+    }
+    parts.extend(pin::parts(context));
+    parts.extend(drive::parts(context));
+    if labels {
+        parts.extend(label::parts(context));
+    }
+    parts
+}
+
+/// An item as it looks in a ghost pose: a faint outline.
+pub(crate) fn ghost_item(item: &Item) -> Item {
+    let faint = |style: &Style| Style {
+        fill: None,
+        stroke: style.stroke.or(style.fill).map(|paint| crate::scene::Paint { alpha: 0.3, ..paint }),
+        width: 0.3,
+        dash: style.dash.clone(),
+    };
+    match item {
+        Item::Shape { paths, style } => Item::Shape { paths: paths.clone(), style: faint(style) },
+        Item::Circle { center, radius, style } => Item::Circle { center: *center, radius: *radius, style: faint(style) },
+        Item::Text(text) => Item::Text(text.clone()),
+    }
+}

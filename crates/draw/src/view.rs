@@ -1,0 +1,199 @@
+//! What to draw: a mechanism and its poses as plain data. SI units: lengths m, angles rad counter-clockwise from +x.
+
+/// A unit in which lengths are shown.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LengthUnit {
+    /// As shown, such as `mm`.
+    pub name: String,
+    /// One of it, in m.
+    pub factor: f64,
+}
+
+impl LengthUnit {
+    /// A unit by name and size in m.
+    pub fn new(name: impl Into<String>, factor: f64) -> LengthUnit {
+        LengthUnit { name: name.into(), factor }
+    }
+
+    /// The size in m, or 1 when it is not a positive number.
+    pub(crate) fn size(&self) -> f64 {
+        if self.factor.is_finite() && self.factor > 0.0 { self.factor } else { 1.0 }
+    }
+}
+
+/// A mechanism, independent of its pose.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MechanismView {
+    /// Title.
+    pub title: String,
+    /// Unit of the scale bar and of DXF files.
+    pub length_unit: LengthUnit,
+    /// Names of the points, in the order of [`Frame::points`].
+    pub points: Vec<String>,
+    /// Links in the order of [`Frame::links`]; the first is the frame. A point that several links carry is drawn as a
+    /// pin (a ground pivot when the frame is one of them, rings when they are three or more), unless a weld says otherwise.
+    pub links: Vec<LinkView>,
+    /// Joints other than pins.
+    pub joints: Vec<JointView>,
+    /// Paths of points to draw.
+    pub traces: Vec<TraceView>,
+    /// What is moved from outside.
+    pub drives: Vec<DriveView>,
+}
+
+/// A rigid body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LinkView {
+    /// Name.
+    pub name: String,
+    /// Its points, as indices into [`MechanismView::points`].
+    pub points: Vec<usize>,
+}
+
+/// A straight line of a link through two of its points.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Guide {
+    /// The link that carries it.
+    pub link: usize,
+    /// The point it starts from.
+    pub from: usize,
+    /// A point that gives its direction.
+    pub to: usize,
+}
+
+/// A gear.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wheel {
+    /// The link that is the gear.
+    pub link: usize,
+    /// The point at its centre.
+    pub center: usize,
+    /// Pitch radius, m.
+    pub radius: f64,
+    /// Number of teeth; 0 draws the pitch circle only.
+    pub teeth: u32,
+}
+
+/// A joint other than a pin.
+#[derive(Clone, Debug, PartialEq)]
+pub enum JointView {
+    /// A block that slides along a guide without turning against it.
+    Slider {
+        /// The sliding link.
+        block: usize,
+        /// The point of it that stays on the guide.
+        at: usize,
+        /// The guide.
+        guide: Guide,
+    },
+    /// A pin in a straight slot.
+    Slot {
+        /// The pin.
+        pin: usize,
+        /// The slot.
+        guide: Guide,
+    },
+    /// Two links made one.
+    Weld {
+        /// The point they share.
+        at: usize,
+        /// The links.
+        links: [usize; 2],
+    },
+    /// Two gears in mesh.
+    Gears {
+        /// First gear.
+        a: Wheel,
+        /// Second gear.
+        b: Wheel,
+        /// The larger of them is a ring with its teeth inside.
+        internal: bool,
+    },
+    /// A pinion on a rack. The pitch line is parallel to the x axis of the rack's link and touches the pinion.
+    Rack {
+        /// The link that carries the rack.
+        link: usize,
+        /// The pinion.
+        pinion: Wheel,
+        /// +1 when the pinion lies on the left of the rack's x axis, -1 on the right.
+        side: f64,
+    },
+    /// A hydraulic cylinder.
+    Cylinder {
+        /// Foot of the barrel.
+        a: usize,
+        /// Eye of the rod.
+        b: usize,
+    },
+    /// A spring between two points.
+    Spring {
+        /// One end.
+        a: usize,
+        /// The other end.
+        b: usize,
+    },
+    /// A damper between two points.
+    Damper {
+        /// One end.
+        a: usize,
+        /// The other end.
+        b: usize,
+    },
+}
+
+/// A path to draw.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TraceView {
+    /// What it is called.
+    pub label: String,
+    /// The point that draws it.
+    pub point: usize,
+}
+
+/// Something that is moved from outside.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DriveView {
+    /// Name.
+    pub name: String,
+    /// What it moves.
+    pub kind: DriveKind,
+    /// The drive's coordinate grows along the motion; the arrow shows that sense.
+    pub forward: bool,
+}
+
+/// What a drive moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DriveKind {
+    /// A link turns.
+    Turn {
+        /// The link.
+        link: usize,
+        /// The point around which the arrow is drawn.
+        about: usize,
+    },
+    /// A point slides along a guide.
+    Slide {
+        /// The point.
+        at: usize,
+        /// The guide.
+        guide: Guide,
+    },
+    /// Two points move apart.
+    Extend {
+        /// One point.
+        a: usize,
+        /// The other point.
+        b: usize,
+    },
+}
+
+/// A pose. A pose that was not reached has NaN coordinates; it is not drawn.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Frame {
+    /// Points in the fixed frame, m.
+    pub points: Vec<[f64; 2]>,
+    /// Links: x and y of the origin of each link's own frame (m) and the direction of its x axis (rad).
+    pub links: Vec<[f64; 3]>,
+    /// What distinguishes the pose, such as `motor = 30 deg`.
+    pub label: String,
+}
