@@ -54,14 +54,15 @@ type Checked<L> = Result<(Expr<L>, Dimension), Vec<Issue>>;
 /// Resolves and checks `node`: the expression in SI, and what it measures.
 ///
 /// The dimensions of both sides of `+` and `-`, and of all arguments of `min`, `max`, `hypot` and `atan2`, are
-/// [compatible](Dimension::compatible). Trigonometric functions take angles, their inverses give them; `exp` and `ln` take
-/// numbers. An exponent is a constant number; a number (not a quantity) may also be raised to an expression, `x^y = exp(y ln x)`.
+/// [compatible](Dimension::compatible). Trigonometric functions take angles, their inverses give them; `exp` and
+/// `ln` take numbers. An exponent is a constant number; a number (not a quantity) may also be raised to an
+/// expression, `x^y = exp(y ln x)`.
 ///
 /// # A unit's name that is declared too
 ///
 /// In `5 mm * h`, with a parameter `h`, the unit goes on to the hour, and the writer may have meant the parameter. This
-/// is reported as `ambiguous-name` ([`Resolver::declared`] is asked). The one case in which the unit is taken: the
-/// quantity is the whole text, possibly negated, and divides without blanks, as `20 mm/s` does.
+/// is reported as `ambiguous-name` ([`Resolver::declared`] is asked). A division without blanks, as in `9.81 m/s^2`, is
+/// the unit's, whatever is declared.
 ///
 /// # Errors
 ///
@@ -72,7 +73,7 @@ pub fn check<L, R: Resolver<L> + ?Sized>(node: &Node, resolver: &mut R) -> Check
             resolver,
             default: None,
         }
-        .whole(node),
+        .node(node),
     )
 }
 
@@ -114,7 +115,7 @@ pub fn check_as<L, R: Resolver<L> + ?Sized>(
             resolver,
             default: Some(default),
         }
-        .whole(node),
+        .node(node),
     )?;
     if found.compatible(expected) {
         return Ok((expr, found));
@@ -162,8 +163,8 @@ pub fn check_condition<L, R: Resolver<L> + ?Sized>(
         resolver,
         default: None,
     };
-    let left = checker.whole(&condition.left);
-    let right = checker.whole(&condition.right);
+    let left = checker.node(&condition.left);
+    let right = checker.node(&condition.right);
     let ((left, left_is), (right, right_is)) = sorted(both(left, right))?;
     if !left_is.compatible(right_is) {
         let sides = [(&condition.left, left_is), (&condition.right, right_is)];
@@ -215,28 +216,13 @@ struct Checker<'a, R: ?Sized> {
 }
 
 impl<R: ?Sized> Checker<'_, R> {
-    /// Checks a text that is not part of a larger one.
-    fn whole<L>(&mut self, node: &Node) -> Checked<L>
-    where
-        R: Resolver<L>,
-    {
-        match &node.kind {
-            Kind::Neg(inner) => {
-                let (expr, dimension) = self.whole(inner)?;
-                Ok((Expr::Neg(Box::new(expr)), dimension))
-            }
-            Kind::Quantity(quantity) => self.quantity(quantity, true),
-            _ => self.node(node),
-        }
-    }
-
     fn node<L>(&mut self, node: &Node) -> Checked<L>
     where
         R: Resolver<L>,
     {
         match &node.kind {
             Kind::Number(value) => Ok((Expr::Const(*value), Dimension::NONE)),
-            Kind::Quantity(quantity) => self.quantity(quantity, false),
+            Kind::Quantity(quantity) => self.quantity(quantity),
             Kind::Name(name) => match CONSTANTS.iter().find(|(constant, _)| constant == name) {
                 Some((_, value)) => Ok((Expr::Const(*value), Dimension::NONE)),
                 None => match self.resolver.name(name, node.span.clone()) {
@@ -287,13 +273,13 @@ impl<R: ?Sized> Checker<'_, R> {
         }
     }
 
-    fn quantity<L>(&mut self, quantity: &Quantity, whole: bool) -> Checked<L>
+    fn quantity<L>(&mut self, quantity: &Quantity) -> Checked<L>
     where
         R: Resolver<L>,
     {
         let mut issues = Vec::new();
         for unit in &quantity.joined {
-            if whole && unit.tight_division || !self.resolver.declared(&unit.name) {
+            if unit.tight_division || !self.resolver.declared(&unit.name) {
                 continue;
             }
             let name = &unit.name;

@@ -25,13 +25,14 @@
 //! # How a number takes its unit
 //!
 //! * A unit stands directly after a number literal and binds tighter than any operator: `1/2 m` is `1/(2 m)`,
-//!   `5 mm^2` is five square millimetres, `(5 mm)^2` is 25. Nothing else may follow a number without an operator, so `2 crank`
-//!   is an error.
+//!   `5 mm^2` is five square millimetres, `(5 mm)^2` is 25. Nothing else may follow a number without an operator,
+//!   so `2 crank` is an error, and a unit is raised once: `5 mm^2^2` is an error too.
 //! * The unit goes on greedily while a blank, `*`, `·` or `/` is followed by a unit's name that is not called:
 //!   `9.81 m/s^2`, `3 N m`, `2 kg*mm^2`. After a blank the name must be a unit; after an operator any other name ends the
 //!   unit. Elsewhere a unit's name is an ordinary name: in `2*s` it is the parameter `s`.
 //! * A product by a blank does not follow a division: `kg/m s` could mean two things and is an error.
-//! * Where a name behind `*`, `·` or `/` is both a unit and declared, [`check`](crate::check()) does not guess: see there.
+//! * Where a name behind `*`, `·` or a spaced `/` is both a unit and declared, [`check`](crate::check()) does not
+//!   guess: see there. A division without blanks, `9.81 m/s^2`, is the unit's.
 
 mod unit;
 
@@ -211,13 +212,11 @@ impl Parser {
         )
     }
 
-    /// Records an issue unless one starts at the same place already.
+    /// Records an issue, unless one starts at the same place already or the reading was stopped.
     fn push(&mut self, issue: SyntaxError) {
-        if !self
-            .errors
-            .iter()
-            .any(|error| error.span.start == issue.span.start)
-        {
+        let known =
+            |error: &Issue| error.span.start == issue.span.start || error.code == "too-deep";
+        if !self.errors.iter().any(known) {
             self.errors.push(issue);
         }
     }
@@ -246,11 +245,8 @@ impl Parser {
     }
 
     fn too_deep(&mut self, span: Span) {
-        if !self.errors.iter().any(|error| error.code == "too-deep") {
-            let message = format!("the expression has more than {MAX_DEPTH} levels");
-            self.errors
-                .push(Issue::new("too-deep", span, message).with_help("give parts of it names"));
-        }
+        let message = format!("the expression has more than {MAX_DEPTH} levels");
+        self.push(Issue::new("too-deep", span, message).with_help("give parts of it names"));
         self.at = self.tokens.len() - 1;
     }
 

@@ -6,9 +6,9 @@ const LONGEST_WORD: usize = 64;
 /// The candidate nearest to `word`, if one is near enough to be meant.
 ///
 /// The distance is Damerau–Levenshtein in its optimal-alignment form (insert, delete, replace, swap neighbours),
-/// letters compared without case and a pure difference in case counted as the least one. Near enough is a
-/// third of the word's length, at least one edit, and always fewer edits than the word has characters. Of equally near candidates the
-/// first one wins.
+/// letters compared without case. Near enough is a third of the word's length, at least one edit, and always fewer
+/// edits than the word has characters. Of equally near candidates one with the same first letter wins, then the
+/// first one.
 ///
 /// # Example
 ///

@@ -26,7 +26,7 @@ fn bracket(f: &mut fmt::Formatter<'_>, bracketed: bool, inner: &dyn fmt::Display
     }
 }
 
-/// Writes `inner` behind a caret: a fraction bar or minus in an exponent is set in brackets.
+/// Writes a call.
 fn list<T: fmt::Display>(f: &mut fmt::Formatter<'_>, name: &str, arguments: &[T]) -> fmt::Result {
     write!(f, "{name}(")?;
     for (i, argument) in arguments.iter().enumerate() {
@@ -121,6 +121,7 @@ impl fmt::Display for Node {
             Kind::Binary { op, left, right } => {
                 // `5 m / s` would take `s` for the second.
                 let joins = op.level() == Level::Product
+                    && right.level() > op.level()
                     && left.ends_in_unit()
                     && right.starts_with_unit_name();
                 bracket(f, left.level() < op.level() || joins, left)?;

@@ -89,10 +89,10 @@ impl Unit {
     /// The unit a table or a message shows a quantity of `dimension` in, given the `preferred` units of the file
     /// (at most one per dimension, say `mm` and `deg`; the first of several wins).
     ///
-    /// A preferred unit of just this dimension is taken first; then the unit mechanics uses (N, N m, W, kg m^2, …, which do not
-    /// change with the preferred length); else a product of base units, each the preferred one of its
-    /// dimension or m, kg, s, rad: `mm/s`, `deg/s^2`. Dimensions with broken exponents are shown in SI base units
-    /// rounded away: there is no unit for them, and the answer is [`Unit::one`], the SI value.
+    /// A preferred unit of just this dimension is taken first; then the unit mechanics uses (N, N m, W, kg m^2, …,
+    /// which do not change with the preferred length); else a product of base units, each the preferred one of its
+    /// dimension or kg, m, rad, s: `mm/s`, `deg/s^2`. There is no unit for broken exponents: the answer is
+    /// [`Unit::one`], and the SI value is shown.
     ///
     /// # Example
     ///
