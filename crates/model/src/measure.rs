@@ -2,7 +2,7 @@
 
 use kempe_units::Expr;
 
-use crate::model::{DriveId, LinkId, Line, LinkPointRef, ParameterId, PointId};
+use crate::model::{DriveId, Line, LinkId, LinkPointRef, ParameterId, PointId};
 
 /// An expression over parameters, names and questions to the mechanism, in SI.
 pub type Measure = Expr<Leaf>;

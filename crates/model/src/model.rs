@@ -397,6 +397,8 @@ pub enum LawPiece {
         times: Vec<f64>,
         /// Coordinates, SI.
         values: Vec<f64>,
+        /// Second derivatives of the spline through them at these times, SI.
+        moments: Vec<f64>,
     },
 }
 

@@ -1,0 +1,286 @@
+//! A TOML text as a tree in which every key and value knows its place.
+
+use toml::de::{DeTable, DeValue};
+
+use crate::diagnostic::Diagnostic;
+use crate::model::Span;
+
+/// A value with its place (quotes and brackets included).
+#[derive(Clone, Debug)]
+pub(crate) struct Node {
+    pub span: Span,
+    pub value: Value,
+}
+
+/// A TOML value.
+#[derive(Clone, Debug)]
+pub(crate) enum Value {
+    Text(Text),
+    Number(f64),
+    Bool(bool),
+    Date,
+    Array(Vec<Node>),
+    Table(Table),
+}
+
+/// A string, with the way back from its characters to the file's bytes.
+#[derive(Clone, Debug)]
+pub(crate) struct Text {
+    pub content: String,
+    /// Byte of the file where the content starts, behind the opening quote.
+    start: usize,
+    /// Decoded and file offsets (from the start) behind every escape; empty for a string without one.
+    escapes: Vec<(usize, usize)>,
+}
+
+/// A table's entries in file order.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Table {
+    pub entries: Vec<(Key, Node)>,
+}
+
+/// A key with its place.
+#[derive(Clone, Debug)]
+pub(crate) struct Key {
+    pub name: String,
+    pub span: Span,
+}
+
+impl Node {
+    /// What the value is, in words: `a string`.
+    pub fn what(&self) -> &'static str {
+        match &self.value {
+            Value::Text(_) => "a string",
+            Value::Number(_) => "a number",
+            Value::Bool(_) => "true or false",
+            Value::Date => "a date",
+            Value::Array(_) => "an array",
+            Value::Table(_) => "a table",
+        }
+    }
+}
+
+impl Table {
+    /// The value of a key.
+    pub fn get(&self, name: &str) -> Option<&Node> {
+        self.entries
+            .iter()
+            .find(|(k, _)| k.name == name)
+            .map(|(_, v)| v)
+    }
+
+    /// A key and its value.
+    pub fn entry(&self, name: &str) -> Option<&(Key, Node)> {
+        self.entries.iter().find(|(k, _)| k.name == name)
+    }
+}
+
+impl Text {
+    /// The file's bytes of a range of the content's bytes.
+    pub fn span(&self, inner: Span) -> Span {
+        self.place(inner.start)..self.place(inner.end.max(inner.start))
+    }
+
+    fn place(&self, inner: usize) -> usize {
+        let inner = inner.min(self.content.len());
+        let i = self
+            .escapes
+            .partition_point(|(decoded, _)| *decoded <= inner);
+        match i.checked_sub(1).and_then(|i| self.escapes.get(i)) {
+            Some((decoded, raw)) => self.start + raw + (inner - decoded),
+            None => self.start + inner,
+        }
+    }
+
+    fn new(content: String, span: &Span, source: &str) -> Self {
+        let raw = source.get(span.clone()).unwrap_or("");
+        let quotes = if raw.starts_with("\"\"\"") || raw.starts_with("'''") {
+            3
+        } else {
+            1
+        };
+        let body = raw.get(quotes..).unwrap_or("");
+        // a line end right behind the opening quotes does not count
+        let skip = match (quotes, body) {
+            (3, b) if b.starts_with("\r\n") => 2,
+            (3, b) if b.starts_with('\n') => 1,
+            _ => 0,
+        };
+        let mut escapes = Vec::new();
+        if raw.starts_with('"') {
+            find_escapes(body.get(skip..).unwrap_or(""), &mut escapes);
+        }
+        Self {
+            content,
+            start: span.start + quotes + skip,
+            escapes,
+        }
+    }
+}
+
+/// Offsets behind each escape of a basic string, decoded and as written.
+fn find_escapes(body: &str, escapes: &mut Vec<(usize, usize)>) {
+    let bytes = body.as_bytes();
+    let (mut raw, mut decoded) = (0, 0);
+    while let Some(&b) = bytes.get(raw) {
+        if b != b'\\' {
+            raw += 1;
+            decoded += 1;
+            continue;
+        }
+        let (length, width) = match bytes.get(raw + 1) {
+            Some(b'u') => (6, hex_width(body.get(raw + 2..raw + 6))),
+            Some(b'U') => (10, hex_width(body.get(raw + 2..raw + 10))),
+            Some(b'x') => (4, hex_width(body.get(raw + 2..raw + 4))),
+            // a backslash at a line's end swallows the white space behind it
+            Some(b' ' | b'\t' | b'\n' | b'\r') => {
+                let rest = bytes.get(raw + 1..).unwrap_or(&[]);
+                (
+                    1 + rest.iter().take_while(|b| b.is_ascii_whitespace()).count(),
+                    0,
+                )
+            }
+            _ => (2, 1),
+        };
+        raw += length;
+        decoded += width;
+        escapes.push((decoded, raw));
+    }
+}
+
+fn hex_width(digits: Option<&str>) -> usize {
+    let code = digits
+        .and_then(|d| u32::from_str_radix(d, 16).ok())
+        .and_then(char::from_u32);
+    code.map_or(1, char::len_utf8)
+}
+
+/// Reads a TOML text. What is wrong with its syntax goes to `diagnostics`; the tree is what could be read anyway.
+pub(crate) fn parse(text: &str, diagnostics: &mut Vec<Diagnostic>) -> Table {
+    let (root, errors) = DeTable::parse_recoverable(text);
+    for error in errors.iter().take(MAX_SYNTAX_ERRORS) {
+        diagnostics.push(syntax_error(error, text));
+    }
+    table(root.get_ref(), text)
+}
+
+/// Syntax errors shown at most: after a few, the rest are consequences.
+const MAX_SYNTAX_ERRORS: usize = 20;
+
+fn table(source: &DeTable<'_>, text: &str) -> Table {
+    let mut entries: Vec<(Key, Node)> = source
+        .iter()
+        .map(|(k, v)| {
+            let key = Key {
+                name: k.get_ref().to_string(),
+                span: k.span(),
+            };
+            (key, node(v.get_ref(), v.span(), text))
+        })
+        .collect();
+    entries.sort_by_key(|(k, _)| k.span.start);
+    Table { entries }
+}
+
+fn node(value: &DeValue<'_>, span: Span, text: &str) -> Node {
+    let value = match value {
+        DeValue::String(s) => Value::Text(Text::new(s.to_string(), &span, text)),
+        DeValue::Integer(i) => {
+            let magnitude = i64::from_str_radix(i.as_str(), i.radix()).map(|i| i as f64);
+            Value::Number(
+                magnitude
+                    .or_else(|_| i.as_str().parse())
+                    .unwrap_or(f64::NAN),
+            )
+        }
+        DeValue::Float(f) => Value::Number(f.as_str().parse().unwrap_or(f64::NAN)),
+        DeValue::Boolean(b) => Value::Bool(*b),
+        DeValue::Datetime(_) => Value::Date,
+        DeValue::Array(a) => Value::Array(
+            a.iter()
+                .map(|v| node(v.get_ref(), v.span(), text))
+                .collect(),
+        ),
+        DeValue::Table(t) => Value::Table(table(t, text)),
+    };
+    Node { span, value }
+}
+
+fn syntax_error(error: &toml::de::Error, text: &str) -> Diagnostic {
+    let span = error.span().unwrap_or(0..0);
+    let at = text.get(span.clone()).unwrap_or("");
+    let message = error.message();
+    if message.starts_with("duplicate key") {
+        return Diagnostic::error("duplicate-name", format!("`{at}` is written twice"))
+            .at(span, "the second one")
+            .help("a name may be given once in a table: rename one of them, or join the two");
+    }
+    let help = if message.contains("recursion limit") {
+        "this is nested deeper than any model needs"
+    } else if message.contains("string") || message.contains("quote") {
+        "strings stand between two double quotes, on one line: \"20 mm\""
+    } else if message.contains("float") || message.contains("number") || message.contains("integer")
+    {
+        "a number is written like 20 or 0.5 or 1e-3; a number with a unit is a string: \"20 mm\""
+    } else if message.contains("array") {
+        "an array is written [0, 0], with commas between its values"
+    } else if message.contains("table") {
+        "an inline table is written { A-B = 20, B-C = 30 }, with commas between its entries"
+    } else {
+        "a line is `name = value`, where the value is a number, a \"string\", an [array] or a { table }"
+    };
+    Diagnostic::error("toml-syntax", format!("not TOML: {message}"))
+        .at(span, "")
+        .help(help)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn text_of(source: &str) -> (Text, String) {
+        let root = parse(source, &mut Vec::new());
+        match &root.entries[0].1.value {
+            Value::Text(t) => (t.clone(), source.to_owned()),
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn string_places_survive_escapes() {
+        for source in [
+            "a = \"1\\u00b0 + zz\"",
+            "a = '1° + zz'",
+            "a = \"1\\t\\\\ + zz\"",
+            "a = \"\"\"\r\n1 \\\n   + zz\"\"\"",
+            "a = \"\\x41\\U0001F600 zz\"",
+        ] {
+            let (text, source) = text_of(source);
+            let inner = text.content.find("zz").expect("there");
+            assert_eq!(
+                source.get(text.span(inner..inner + 2)),
+                Some("zz"),
+                "{source}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_broken_line_does_not_hide_the_others() {
+        let mut diagnostics = Vec::new();
+        let root = parse(
+            "a = 1\nb = \nc = 3\nc = 4\n[d]\ne = \"x\n f = 2\n",
+            &mut diagnostics,
+        );
+        assert!(diagnostics.len() >= 3, "{diagnostics:#?}");
+        assert!(root.get("a").is_some() && root.get("d").is_some());
+    }
+
+    #[test]
+    fn deep_nesting_is_refused_without_a_stack_overflow() {
+        let mut diagnostics = Vec::new();
+        let deep = format!("a = {}{}", "[".repeat(200_000), "]".repeat(200_000));
+        parse(&deep, &mut diagnostics);
+        assert!(!diagnostics.is_empty());
+    }
+}

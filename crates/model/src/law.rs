@@ -1,0 +1,237 @@
+//! How a drive moves in time, in numbers: the coordinate of a [`Law`] and, on a Taylor number, all its derivatives.
+
+use std::f64::consts::{PI, TAU};
+
+use kempe_number::Number;
+
+use crate::geometry::value;
+use crate::model::{Law, LawPiece, RiseLaw};
+use crate::spline::spline_at;
+
+/// A piece of a law with its place in time.
+struct Stretch<'a, T> {
+    piece: &'a LawPiece,
+    start: T,
+    from: T,
+    duration: T,
+    to: T,
+}
+
+impl Law {
+    /// How long the law takes, s. A held coordinate takes no time.
+    pub fn duration<T: Number>(&self, parameters: &[T]) -> T {
+        self.stretches(parameters)
+            .last()
+            .map_or(T::zero(), |s| s.start + s.duration)
+    }
+
+    /// The coordinate (rad or m) at the time `t` s; before the start and behind the end the law stands still.
+    ///
+    /// With a Taylor number that runs in `t` this gives speed, acceleration and jerk as well. Where two pieces meet, the
+    /// later one is meant.
+    pub fn at<T: Number>(&self, t: T, parameters: &[T]) -> T {
+        let mut end = value(&self.from, parameters);
+        if t.value() < 0.0 {
+            return end;
+        }
+        let stretches = self.stretches(parameters);
+        let count = stretches.len();
+        for (i, stretch) in stretches.iter().enumerate() {
+            let local = t.value() - stretch.start.value();
+            let duration = stretch.duration.value();
+            if local < duration || (i + 1 == count && local <= duration && duration > 0.0) {
+                return stretch.at(t - stretch.start);
+            }
+            end = stretch.to;
+        }
+        end
+    }
+
+    /// The times at which one piece ends and the next begins, both ends of the motion included, s.
+    pub fn breaks(&self, parameters: &[f64]) -> Vec<f64> {
+        let mut breaks = vec![0.0];
+        breaks.extend(
+            self.stretches(parameters)
+                .iter()
+                .map(|s| s.start + s.duration),
+        );
+        breaks
+    }
+
+    /// Smallest and largest coordinate of the motion (rad or m).
+    pub fn extent(&self, parameters: &[f64]) -> (f64, f64) {
+        let from = value(&self.from, parameters);
+        let mut extent = (from, from);
+        let mut take = |x: f64| extent = (extent.0.min(x), extent.1.max(x));
+        for stretch in self.stretches(parameters) {
+            take(stretch.to);
+            if let LawPiece::Table { times, .. } = stretch.piece {
+                for t in fine_times(times) {
+                    take(stretch.at(t));
+                }
+            }
+        }
+        extent
+    }
+
+    /// The first time at which the coordinate takes the value `x`, s; `None` when it never does.
+    pub fn first_time(&self, x: f64, parameters: &[f64]) -> Option<f64> {
+        if value(&self.from, parameters) == x {
+            return Some(0.0);
+        }
+        self.stretches(parameters)
+            .iter()
+            .find_map(|s| Some(s.start + s.first_time(x)?))
+    }
+
+    fn stretches<T: Number>(&self, parameters: &[T]) -> Vec<Stretch<'_, T>> {
+        let mut start = T::zero();
+        let mut from = value(&self.from, parameters);
+        let mut stretches = Vec::with_capacity(self.pieces.len());
+        for piece in &self.pieces {
+            let (to, duration) = match piece {
+                LawPiece::ConstantSpeed { to, speed } => {
+                    let to = value(to, parameters);
+                    (to, (to - from).abs() / value(speed, parameters))
+                }
+                LawPiece::ConstantAcceleration { to, acceleration } => {
+                    let to = value(to, parameters);
+                    (
+                        to,
+                        ((to - from).abs() * 2.0 / value(acceleration, parameters)).sqrt(),
+                    )
+                }
+                LawPiece::Dwell { duration } => (from, value(duration, parameters)),
+                LawPiece::Rise { to, duration, .. } => {
+                    (value(to, parameters), value(duration, parameters))
+                }
+                LawPiece::Table { times, values, .. } => {
+                    let last = |list: &[f64]| T::from_f64(list.last().copied().unwrap_or(0.0));
+                    (last(values), last(times))
+                }
+            };
+            stretches.push(Stretch {
+                piece,
+                start,
+                from,
+                duration,
+                to,
+            });
+            start += duration;
+            from = to;
+        }
+        stretches
+    }
+}
+
+impl<T: Number> Stretch<'_, T> {
+    /// The coordinate at a time counted from the stretch's start.
+    fn at(&self, t: T) -> T {
+        let travel = self.to - self.from;
+        match self.piece {
+            LawPiece::ConstantSpeed { .. } => self.from + travel * (t / self.duration),
+            LawPiece::ConstantAcceleration { .. } => {
+                self.from + travel * (t / self.duration).square()
+            }
+            LawPiece::Dwell { .. } => self.from,
+            LawPiece::Rise { by, .. } => self.from + travel * by.at(t / self.duration),
+            LawPiece::Table {
+                times,
+                values,
+                moments,
+            } => spline_at(times, values, moments, t),
+        }
+    }
+}
+
+impl Stretch<'_, f64> {
+    fn first_time(&self, x: f64) -> Option<f64> {
+        if let LawPiece::Table { times, .. } = self.piece {
+            let fine: Vec<f64> = fine_times(times).collect();
+            return fine
+                .windows(2)
+                .find_map(|w| self.crossing(x, *w.first()?, *w.last()?));
+        }
+        self.crossing(x, 0.0, self.duration)
+    }
+
+    /// The time in `[low, high]`, between which the coordinate is monotone, where it is `x`; by bisection to the last bit.
+    fn crossing(&self, x: f64, mut low: f64, mut high: f64) -> Option<f64> {
+        let rising = self.at(high) >= self.at(low);
+        let beyond = |t: f64| {
+            if rising {
+                self.at(t) >= x
+            } else {
+                self.at(t) <= x
+            }
+        };
+        // the end counts as reached although the last bits of the formula may miss it
+        let reached = |t: f64| (t == self.duration && self.to == x) || beyond(t);
+        if !reached(high) || (beyond(low) && self.at(low) != x) {
+            return None;
+        }
+        loop {
+            let middle = low + (high - low) / 2.0;
+            if middle <= low || middle >= high {
+                return Some(if beyond(low) { low } else { high });
+            }
+            if reached(middle) {
+                high = middle
+            } else {
+                low = middle
+            }
+        }
+    }
+}
+
+/// Times of a table close enough to find its extremes and crossings between: 16 steps to a segment.
+fn fine_times(times: &[f64]) -> impl Iterator<Item = f64> {
+    let steps = 16;
+    times.windows(2).flat_map(move |w| {
+        let (a, b) = (
+            w.first().copied().unwrap_or(0.0),
+            w.last().copied().unwrap_or(0.0),
+        );
+        (0..=steps).map(move |i| {
+            if i == steps {
+                b
+            } else {
+                a + (b - a) * f64::from(i) / f64::from(steps)
+            }
+        })
+    })
+}
+
+impl RiseLaw {
+    /// The part of the rise done when the part `s` in `[0, 1]` of the time has passed; from 0 to 1.
+    ///
+    /// Source: VDI 2143 part 1 (1980), the standard laws from rest to rest.
+    pub fn at<T: Number>(self, s: T) -> T {
+        match self {
+            RiseLaw::Cycloidal => s - (s * TAU).sin_cos().0 / TAU,
+            RiseLaw::Harmonic => (-(s * PI).sin_cos().1 + 1.0) / 2.0,
+            RiseLaw::Polynomial345 => s.square() * s * ((s * 6.0 - 15.0) * s + 10.0),
+            RiseLaw::Polynomial4567 => {
+                s.square().square() * (((s * -20.0 + 70.0) * s - 84.0) * s + 35.0)
+            }
+        }
+    }
+
+    /// The law's name in a model file.
+    pub fn name(self) -> &'static str {
+        match self {
+            RiseLaw::Cycloidal => "cycloidal",
+            RiseLaw::Harmonic => "harmonic",
+            RiseLaw::Polynomial345 => "3-4-5",
+            RiseLaw::Polynomial4567 => "4-5-6-7",
+        }
+    }
+
+    /// All of them.
+    pub const ALL: [RiseLaw; 4] = [
+        RiseLaw::Cycloidal,
+        RiseLaw::Harmonic,
+        RiseLaw::Polynomial345,
+        RiseLaw::Polynomial4567,
+    ];
+}

@@ -1,0 +1,147 @@
+//! From the text of a model file to a [`Model`], with everything that is to be said about it.
+
+mod assembly;
+pub(crate) mod context;
+pub(crate) mod drives;
+pub(crate) mod joints;
+pub(crate) mod law_table;
+pub(crate) mod laws;
+pub(crate) mod links;
+mod measure_names;
+mod measures;
+pub(crate) mod names;
+mod parameters;
+mod phrase;
+mod place;
+mod sections;
+pub(crate) mod studies;
+mod value;
+
+use crate::diagnostic::{Diagnostic, Severity};
+use crate::document;
+use crate::model::Model;
+use context::Context;
+
+/// A model that stands, and what a careful engineer would want to be told about its file.
+#[derive(Clone, Debug)]
+pub struct Checked {
+    /// The model.
+    pub model: Model,
+    /// Warnings, in the order of the file.
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// The largest file that is read, in bytes.
+pub const MAX_FILE_BYTES: usize = 8 << 20;
+
+impl Model {
+    /// Reads a model file.
+    ///
+    /// `name` is the title of a file that has none. `files` is asked for the content of files that the model names (tables
+    /// of measured motions); it answers with the reason where it cannot.
+    ///
+    /// # Errors
+    ///
+    /// Everything that is wrong with the file, in the order of the file, warnings included.
+    ///
+    /// # Example
+    ///
+    /// ```
+    /// use kempe_model::Model;
+    /// let text = r#"
+    ///     units = { length = "mm", angle = "deg" }
+    ///     [links]
+    ///     frame   = { A = [0, 0], D = [60, 0] }
+    ///     crank   = { A-B = 20 }
+    ///     coupler = { B-C = 50 }
+    ///     rocker  = { D-C = 40 }
+    ///     [drives]
+    ///     motor = { turns = "crank", speed = "1 rad/s" }
+    /// "#;
+    /// let checked = Model::from_toml(text, "four-bar", &mut |name| Err(format!("no file {name}"))).unwrap();
+    /// assert_eq!(checked.model.links.len(), 4);
+    /// ```
+    pub fn from_toml(
+        text: &str,
+        name: &str,
+        files: &mut dyn FnMut(&str) -> Result<String, String>,
+    ) -> Result<Checked, Vec<Diagnostic>> {
+        Self::from_toml_with(text, name, files, &[])
+    }
+
+    /// Reads a model file, with parameters set from outside: `("a", "25 mm")`. Of two for one name the later counts.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`from_toml`](Self::from_toml); what is wrong with an override is labelled in the override's own text.
+    pub fn from_toml_with(
+        text: &str,
+        name: &str,
+        files: &mut dyn FnMut(&str) -> Result<String, String>,
+        overrides: &[(String, String)],
+    ) -> Result<Checked, Vec<Diagnostic>> {
+        if text.len() > MAX_FILE_BYTES {
+            return Err(vec![too_large(text.len())]);
+        }
+        let mut cx = Context::new(name, files);
+        let root = document::parse(text, &mut cx.found);
+        // what follows from a line that is not TOML is not told: its names are missing everywhere
+        let broken_syntax = cx.found.iter().any(|d| d.code == "toml-syntax");
+        sections::read(&mut cx, &root, overrides, broken_syntax);
+        let mut found = cx.found;
+        found.sort_by_key(Diagnostic::start);
+        found.dedup();
+        if found.iter().any(|d| d.severity == Severity::Error) {
+            return Err(found);
+        }
+        Ok(Checked {
+            model: cx.model,
+            warnings: found,
+        })
+    }
+
+    /// Reads a model file from its bytes.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`from_toml_with`](Self::from_toml_with), and `not-utf8` with the offset of the first byte that is no text.
+    pub fn from_bytes(
+        bytes: &[u8],
+        name: &str,
+        files: &mut dyn FnMut(&str) -> Result<String, String>,
+        overrides: &[(String, String)],
+    ) -> Result<Checked, Vec<Diagnostic>> {
+        if bytes.len() > MAX_FILE_BYTES {
+            return Err(vec![too_large(bytes.len())]);
+        }
+        match std::str::from_utf8(bytes) {
+            Ok(text) => Self::from_toml_with(text, name, files, overrides),
+            Err(error) => {
+                let offset = error.valid_up_to();
+                let line = bytes
+                    .get(..offset)
+                    .unwrap_or(&[])
+                    .iter()
+                    .filter(|b| **b == b'\n')
+                    .count()
+                    + 1;
+                let byte = bytes.get(offset).copied().unwrap_or(0);
+                Err(vec![
+                    Diagnostic::error(
+                        "not-utf8",
+                        format!(
+                            "line {line} is not UTF-8 text: byte 0x{byte:02x} at offset {offset}"
+                        ),
+                    )
+                    .at(offset..offset, "")
+                    .help("save the file as UTF-8"),
+                ])
+            }
+        }
+    }
+}
+
+fn too_large(bytes: usize) -> Diagnostic {
+    Diagnostic::error("too-large", format!("the file has {bytes} bytes"))
+        .help(format!("a model file has at most {MAX_FILE_BYTES} bytes"))
+}

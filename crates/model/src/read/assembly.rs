@@ -1,0 +1,138 @@
+//! `[assembly]`: which of several assemblies is meant, at the start of the drives.
+
+use kempe_units::Dimension;
+
+use crate::diagnostic::Diagnostic;
+use crate::document::{Key, Node, Value};
+use crate::model::{AssemblyHint, FRAME, HintKind, Place, PointId};
+use crate::read::context::{Context, Meaning};
+use crate::read::names::is_point_name;
+
+/// Reads all hints.
+pub(crate) fn read(cx: &mut Context<'_>, entries: &[&(Key, Node)]) {
+    for (key, node) in entries {
+        let kind = if is_point_name(&key.name) {
+            point_hint(cx, key, node)
+        } else {
+            link_hint(cx, key, node)
+        };
+        if let Some(kind) = kind {
+            cx.model.assembly.push(AssemblyHint {
+                kind,
+                span: key.span.clone(),
+            });
+        }
+    }
+}
+
+fn point_hint(cx: &mut Context<'_>, key: &Key, node: &Node) -> Option<HintKind> {
+    let point = cx.point(&key.name, key.span.clone())?;
+    if let Value::Text(text) = &node.value {
+        let (side, line) = cx.side_phrase(text)?;
+        if point == line.from || point == line.to {
+            cx.push(
+                Diagnostic::error(
+                    "bad-side",
+                    format!(
+                        "{} is an end of this line and lies on neither side of it",
+                        key.name
+                    ),
+                )
+                .at(line.span, "")
+                .help("name two other points"),
+            );
+            return None;
+        }
+        idle_hint(cx, key, &[point, line.from, line.to]);
+        return Some(HintKind::Side {
+            point,
+            side,
+            from: line.from,
+            to: line.to,
+        });
+    }
+    let near = near(cx, key, node, "\"left of B -> D\" or { near = [173, 151] }")?;
+    match cx.place(near, &format!("`near` of {}", key.name))? {
+        Place::Cartesian { x, y } => {
+            idle_hint(cx, key, &[point]);
+            Some(HintKind::NearPlace { point, x, y })
+        }
+        _ => {
+            cx.push(
+                Diagnostic::error(
+                    "wrong-type",
+                    format!("`near` of {} is a place in the frame, [x, y]", key.name),
+                )
+                .at(near.span.clone(), "")
+                .help("write { near = [173, 151] }"),
+            );
+            None
+        }
+    }
+}
+
+fn link_hint(cx: &mut Context<'_>, key: &Key, node: &Node) -> Option<HintKind> {
+    if !matches!(cx.names.get(&key.name), Some((Meaning::Link(_), _))) {
+        let known: Vec<String> = cx
+            .points
+            .keys()
+            .chain(cx.model.links.iter().map(|l| &l.name))
+            .cloned()
+            .collect();
+        let d = cx.no_such(
+            "point or link",
+            &key.name,
+            key.span.clone(),
+            known.iter().map(String::as_str),
+        );
+        cx.push(d);
+        return None;
+    }
+    let link = cx.link(&key.name, key.span.clone())?;
+    let near = near(cx, key, node, "{ near = \"30 deg\" }")?;
+    let angle = cx.scalar(near, Dimension::ANGLE)?;
+    if link == FRAME {
+        cx.push(
+            Diagnostic::warning("idle-hint", "the frame stands still whatever is said of it")
+                .at(key.span.clone(), "")
+                .help("leave this out"),
+        );
+    }
+    Some(HintKind::NearAngle { link, angle })
+}
+
+fn near<'n>(cx: &mut Context<'_>, key: &Key, node: &'n Node, example: &str) -> Option<&'n Node> {
+    let place = format!("the assembly of {}", key.name);
+    let table = cx.table(node, &place, example)?;
+    cx.unknown_keys(table, &place, &["near"]);
+    cx.required(
+        table,
+        "near",
+        &place,
+        &key.span,
+        "[173, 151], or an angle for a link",
+    )
+}
+
+/// Warns when all points are on one link (or the frame): then nothing is left to choose.
+fn idle_hint(cx: &mut Context<'_>, key: &Key, points: &[PointId]) {
+    let Some((first, rest)) = points.split_first() else {
+        return;
+    };
+    let common = cx.carriers(*first).iter().copied().find(|l| {
+        (*l == FRAME || !rest.is_empty())
+            && rest
+                .iter()
+                .all(|p| cx.carriers(*p).binary_search(l).is_ok())
+    });
+    let Some(link) = common else { return };
+    let name = cx.link_name(link).to_owned();
+    cx.push(
+        Diagnostic::warning(
+            "idle-hint",
+            format!("this says nothing about the assembly: link `{name}` settles it"),
+        )
+        .at(key.span.clone(), "")
+        .help("name points of different links, or leave this out"),
+    );
+}

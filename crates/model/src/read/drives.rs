@@ -1,0 +1,314 @@
+//! `[drives]`: what is moved from outside.
+
+use kempe_units::Dimension;
+
+use crate::diagnostic::Diagnostic;
+use crate::document::{Key, Node, Table};
+use crate::model::{
+    Drive, DriveId, DriveKind, FRAME, JointId, JointKind, LinkId, LinkPointRef, PointId,
+};
+use crate::read::context::{Context, Meaning};
+use crate::read::joints::link_of;
+use crate::read::laws::{LAW_KEYS, read_law};
+
+/// What a drive may move.
+pub(crate) const DRIVE_KINDS: &[(&str, &str)] = &[
+    (
+        "turns",
+        "motor = { turns = \"crank\", from = 0, to = 360, speed = \"1 rad/s\" }",
+    ),
+    (
+        "cylinder",
+        "lift = { cylinder = \"A-B\", from = \"380 mm\", to = \"520 mm\", speed = \"20 mm/s\" }",
+    ),
+    (
+        "slides",
+        "feed = { slides = \"piston\", from = \"0 mm\", to = \"40 mm\", law = \"cycloidal\", in = \"0.2 s\" }",
+    ),
+];
+
+/// A file has at most so many drives.
+const MAX_DRIVES: usize = 1_000;
+
+/// Reads all drives.
+pub(crate) fn read(cx: &mut Context<'_>, entries: &[&(Key, Node)]) {
+    for (i, (key, node)) in entries.iter().enumerate() {
+        if i == MAX_DRIVES {
+            cx.push(
+                Diagnostic::error("too-large", format!("{} drives", entries.len()))
+                    .at(key.span.clone(), "one too many")
+                    .help(format!("a model has at most {MAX_DRIVES} drives")),
+            );
+            return;
+        }
+        let drive = read_drive(cx, key, node);
+        let id = DriveId(cx.model.drives.len() as u32);
+        cx.drives.push(drive.is_some().then_some(id));
+        if let Some(drive) = drive {
+            same_coordinate(cx, &drive);
+            cx.model.drives.push(drive);
+        }
+    }
+}
+
+fn read_drive(cx: &mut Context<'_>, key: &Key, node: &Node) -> Option<Drive> {
+    let place = format!("drive `{}`", key.name);
+    let table = cx.table(node, &place, DRIVE_KINDS[0].1)?;
+    let kinds: Vec<&(&str, &str)> = DRIVE_KINDS
+        .iter()
+        .filter(|(kind, _)| table.get(kind).is_some())
+        .collect();
+    let (kind, _) = match kinds.as_slice() {
+        [one] => **one,
+        [] => {
+            let names = DRIVE_KINDS.iter().map(|(kind, _)| *kind);
+            let near = table
+                .entries
+                .iter()
+                .find_map(|(k, _)| kempe_units::nearest(&k.name, names.clone()));
+            let help = match near {
+                Some(near) => format!("did you mean `{near}`?"),
+                None => format!(
+                    "a drive turns a link, is a cylinder between two points, or slides a slider: {}",
+                    DRIVE_KINDS[0].1
+                ),
+            };
+            cx.push(
+                Diagnostic::error("missing-key", format!("{place}: what does it move?"))
+                    .at(key.span.clone(), "")
+                    .help(help),
+            );
+            return None;
+        }
+        [first, second, ..] => {
+            cx.push(
+                Diagnostic::error(
+                    "over-specified",
+                    format!("{place} has both `{}` and `{}`", first.0, second.0),
+                )
+                .at(key.span.clone(), "")
+                .help("a drive moves one thing: make two drives of it"),
+            );
+            return None;
+        }
+    };
+    let mut known = vec![kind];
+    if kind == "turns" {
+        known.push("relative_to");
+    }
+    known.extend(LAW_KEYS);
+    cx.unknown_keys(table, &place, &known);
+    let kind_read = match kind {
+        "turns" => turns(cx, table, &place, key),
+        "cylinder" => cylinder(cx, table, &place),
+        _ => slides(cx, table, &place),
+    };
+    let dimension = if kind == "turns" {
+        Dimension::ANGLE
+    } else {
+        Dimension::LENGTH
+    };
+    let law = read_law(cx, table, &place, &key.span, dimension, kind);
+    Some(Drive {
+        name: key.name.clone(),
+        kind: kind_read?,
+        law: law?,
+        dimension,
+        span: key.span.clone(),
+    })
+}
+
+fn turns(cx: &mut Context<'_>, table: &Table, place: &str, key: &Key) -> Option<DriveKind> {
+    let link = table
+        .get("turns")
+        .and_then(|node| link_of(cx, node, &format!("`turns` of {place}")));
+    let relative_to = match table.get("relative_to") {
+        None => Some(FRAME),
+        Some(node) => link_of(cx, node, &format!("`relative_to` of {place}")),
+    };
+    let (link, relative_to) = (link?, relative_to?);
+    if link == relative_to {
+        let name = cx.link_name(link).to_owned();
+        let d = if link == FRAME {
+            Diagnostic::error(
+                "same-link",
+                format!("{place} turns the frame, which stands still"),
+            )
+            .help(
+                "name the link that turns, or say relative to which link: relative_to = \"plate\"",
+            )
+        } else {
+            Diagnostic::error(
+                "same-link",
+                format!("{place} turns `{name}` against itself"),
+            )
+            .help("relative_to names another link")
+        };
+        cx.push(d.at(key.span.clone(), ""));
+        return None;
+    }
+    Some(DriveKind::Turn { link, relative_to })
+}
+
+fn cylinder(cx: &mut Context<'_>, table: &Table, place: &str) -> Option<DriveKind> {
+    let node = table.get("cylinder")?;
+    let text = cx.text(node, &format!("`cylinder` of {place}"), "\"A-B\"")?;
+    let (a, b) = cx.pair_phrase(text)?;
+    if a == b {
+        cx.push(
+            Diagnostic::error(
+                "same-link",
+                format!("{place} is between a point and itself"),
+            )
+            .at(node.span.clone(), "")
+            .help("a cylinder is between two points of different links"),
+        );
+        return None;
+    }
+    let (on_a, on_b) = different_links(cx, a, b)?;
+    if cx
+        .carriers(a)
+        .iter()
+        .any(|l| cx.carriers(b).binary_search(l).is_ok())
+    {
+        let (a_name, b_name) = (cx.point_name(a).to_owned(), cx.point_name(b).to_owned());
+        cx.push(
+            Diagnostic::error("same-link", format!("{place}: {a_name} and {b_name} are on one link, so their distance cannot change"))
+                .at(node.span.clone(), "")
+                .help("a cylinder takes the place of a bar: leave that bar out of [links]"),
+        );
+        return None;
+    }
+    Some(DriveKind::Cylinder {
+        a: LinkPointRef {
+            link: on_a,
+            point: a,
+        },
+        b: LinkPointRef {
+            link: on_b,
+            point: b,
+        },
+    })
+}
+
+fn different_links(cx: &Context<'_>, a: PointId, b: PointId) -> Option<(LinkId, LinkId)> {
+    Some((*cx.carriers(a).first()?, *cx.carriers(b).first()?))
+}
+
+fn slides(cx: &mut Context<'_>, table: &Table, place: &str) -> Option<DriveKind> {
+    let node = table.get("slides")?;
+    let text = cx.text(node, &format!("`slides` of {place}"), "\"piston\"")?;
+    let name = text.content.trim().to_owned();
+    let span = text.span(0..text.content.len());
+    match cx.names.get(&name).map(|(m, _)| *m) {
+        Some(Meaning::Joint(i)) => {
+            let id = cx.joints.get(i).copied().flatten()?;
+            if guided(cx, id).is_some() {
+                return Some(DriveKind::Slide { joint: id });
+            }
+            cx.push(
+                Diagnostic::error(
+                    "not-a-slider",
+                    format!("{place}: joint `{name}` does not slide"),
+                )
+                .at(span, "")
+                .help("name a slider, its joint, or the joint of a pin in a slot"),
+            );
+            None
+        }
+        Some(Meaning::Link(link)) => joint_of_slider(cx, link, &name, place, span),
+        _ => {
+            let known: Vec<String> = cx
+                .names
+                .iter()
+                .filter(|(_, (m, _))| matches!(m, Meaning::Joint(_) | Meaning::Link(_)))
+                .map(|(n, _)| n.clone())
+                .collect();
+            let d = cx.no_such("slider", &name, span, known.iter().map(String::as_str));
+            cx.push(d);
+            None
+        }
+    }
+}
+
+/// The link that a joint guides along a line.
+fn guided(cx: &Context<'_>, joint: JointId) -> Option<LinkId> {
+    match cx.model.joints.get(joint.index())?.kind {
+        JointKind::Slider { at, .. } => Some(at.link),
+        JointKind::Slot { pin, .. } => Some(pin.link),
+        _ => None,
+    }
+}
+
+fn joint_of_slider(
+    cx: &mut Context<'_>,
+    link: LinkId,
+    name: &str,
+    place: &str,
+    span: crate::model::Span,
+) -> Option<DriveKind> {
+    let all: Vec<JointId> = (0..cx.model.joints.len())
+        .map(|i| JointId(i as u32))
+        .filter(|id| guided(cx, *id) == Some(link))
+        .collect();
+    match all.as_slice() {
+        [joint] => Some(DriveKind::Slide { joint: *joint }),
+        [] => {
+            // a broken joint of its own has been told
+            if cx.joints.iter().all(Option::is_some) {
+                cx.push(
+                    Diagnostic::error("not-a-slider", format!("{place}: link `{name}` does not slide along a line"))
+                        .at(span, "")
+                        .help(format!("guide it under [joints]: guide = {{ slider = \"{name}\", at = \"C\", on = \"E -> F\" }}")),
+                );
+            }
+            None
+        }
+        _ => {
+            let names: Vec<&str> = all
+                .iter()
+                .filter_map(|id| cx.model.joints.get(id.index()))
+                .map(|j| j.name.as_str())
+                .collect();
+            let help = format!("name the joint that is meant: {}", names.join(" or "));
+            cx.push(
+                Diagnostic::error(
+                    "not-a-slider",
+                    format!("{place}: link `{name}` slides along several lines"),
+                )
+                .at(span, "")
+                .help(help),
+            );
+            None
+        }
+    }
+}
+
+/// Two drives of one coordinate contradict each other.
+fn same_coordinate(cx: &mut Context<'_>, drive: &Drive) {
+    let key = |kind: &DriveKind| match *kind {
+        DriveKind::Turn { link, relative_to } => {
+            (0, link.0.min(relative_to.0), link.0.max(relative_to.0))
+        }
+        DriveKind::Cylinder { a, b } => (1, a.point.0.min(b.point.0), a.point.0.max(b.point.0)),
+        DriveKind::Slide { joint } => (2, joint.0, 0),
+    };
+    let Some(other) = cx
+        .model
+        .drives
+        .iter()
+        .find(|d| key(&d.kind) == key(&drive.kind))
+    else {
+        return;
+    };
+    let (name, span) = (other.name.clone(), other.span.clone());
+    cx.push(
+        Diagnostic::error(
+            "driven-twice",
+            format!("drives `{name}` and `{}` move the same thing", drive.name),
+        )
+        .at(drive.span.clone(), "")
+        .see(span, "")
+        .help("leave one of them out"),
+    );
+}

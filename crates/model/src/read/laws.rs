@@ -1,0 +1,459 @@
+//! How a drive moves: limits and a speed, a standard law, a sequence, a measured table.
+
+use kempe_units::{Builtin, Dimension, Expr};
+
+use crate::diagnostic::Diagnostic;
+use crate::document::{Node, Table, Value};
+use crate::model::{Law, LawPiece, RiseLaw, Scalar, Span};
+use crate::read::context::Context;
+use crate::read::law_table::read_table;
+
+/// Keys of a drive that say how it moves.
+pub(crate) const LAW_KEYS: [&str; 7] = ["from", "to", "speed", "acceleration", "law", "in", "at"];
+
+/// Keys of a piece of a sequence.
+pub(crate) const PIECE_KEYS: &[&str] = &[
+    "dwell",
+    "rise",
+    "fall",
+    "to",
+    "in",
+    "by",
+    "speed",
+    "acceleration",
+];
+
+/// A sequence has at most so many pieces.
+const MAX_PIECES: usize = 1_000;
+
+/// A drive's law while it is read.
+pub(crate) struct LawReader<'d> {
+    pub table: &'d Table,
+    pub place: &'d str,
+    pub span: &'d Span,
+    pub dimension: Dimension,
+    pub kind: &'d str,
+}
+
+/// Reads the law of a drive.
+pub(crate) fn read_law(
+    cx: &mut Context<'_>,
+    table: &Table,
+    place: &str,
+    span: &Span,
+    dimension: Dimension,
+    kind: &str,
+) -> Option<Law> {
+    LawReader {
+        table,
+        place,
+        span,
+        dimension,
+        kind,
+    }
+    .read(cx)
+}
+
+impl LawReader<'_> {
+    fn read(&self, cx: &mut Context<'_>) -> Option<Law> {
+        if let Some(node) = self.table.get("at") {
+            return self.held(cx, node);
+        }
+        match self.table.get("law") {
+            Some(Node {
+                value: Value::Table(table),
+                span,
+            }) => {
+                self.idle(
+                    cx,
+                    &["from", "to", "speed", "acceleration", "in"],
+                    "the table says it all",
+                );
+                read_table(cx, table, self.place, span, self.dimension)
+            }
+            Some(Node {
+                value: Value::Array(pieces),
+                span,
+            }) => {
+                self.idle(
+                    cx,
+                    &["to", "speed", "acceleration", "in"],
+                    "the sequence says it all",
+                );
+                self.sequence(cx, pieces, span)
+            }
+            Some(node) => self.standard(cx, node),
+            None => self.constant(cx),
+        }
+    }
+
+    /// `at = 30`: the coordinate is held.
+    fn held(&self, cx: &mut Context<'_>, node: &Node) -> Option<Law> {
+        self.idle(
+            cx,
+            &["from", "to", "speed", "acceleration", "law", "in"],
+            "`at` holds the drive where it is",
+        );
+        let from = cx.scalar(node, self.dimension)?;
+        self.check_coordinate(cx, &from, &node.span);
+        Some(Law {
+            pieces: vec![LawPiece::Dwell {
+                duration: Expr::Const(0.0),
+            }],
+            from,
+        })
+    }
+
+    /// Reports keys that say something a second time.
+    fn idle(&self, cx: &mut Context<'_>, keys: &[&str], why: &str) {
+        for (key, _) in self
+            .table
+            .entries
+            .iter()
+            .filter(|(k, _)| keys.contains(&k.name.as_str()))
+        {
+            cx.push(
+                Diagnostic::error(
+                    "over-specified",
+                    format!("{} needs no `{}`", self.place, key.name),
+                )
+                .at(key.span.clone(), why)
+                .help(format!("leave `{}` out", key.name)),
+            );
+        }
+    }
+
+    /// The start: 0 unless said otherwise; a cylinder has no such default.
+    fn from(&self, cx: &mut Context<'_>) -> Option<Scalar> {
+        match self.table.get("from") {
+            Some(node) => {
+                let from = cx.scalar(node, self.dimension)?;
+                self.check_coordinate(cx, &from, &node.span);
+                Some(from)
+            }
+            None if self.kind == "cylinder" => {
+                cx.required(
+                    self.table,
+                    "from",
+                    self.place,
+                    self.span,
+                    "\"380 mm\", the length at the start",
+                );
+                None
+            }
+            None => Some(Expr::Const(0.0)),
+        }
+    }
+
+    /// The end: one turn further unless said otherwise; lengths have no such default.
+    fn to(&self, cx: &mut Context<'_>, from: Option<&Scalar>) -> Option<Scalar> {
+        match self.table.get("to") {
+            Some(node) => {
+                let to = cx.scalar(node, self.dimension)?;
+                self.check_coordinate(cx, &to, &node.span);
+                Some(to)
+            }
+            None if self.kind == "turns" => {
+                let turn = Expr::Const(std::f64::consts::TAU);
+                match from? {
+                    Expr::Const(x) => Some(Expr::Const(x + std::f64::consts::TAU)),
+                    from => Some(Expr::Add(Box::new(from.clone()), Box::new(turn))),
+                }
+            }
+            None => {
+                cx.required(
+                    self.table,
+                    "to",
+                    self.place,
+                    self.span,
+                    &cx.example(self.dimension),
+                );
+                None
+            }
+        }
+    }
+
+    /// A cylinder's length is positive.
+    fn check_coordinate(&self, cx: &mut Context<'_>, scalar: &Scalar, span: &Span) {
+        if self.kind == "cylinder" && cx.number(scalar) <= 0.0 {
+            cx.push(
+                Diagnostic::error("bad-size", format!("{}: a cylinder's length must be positive", self.place))
+                    .at(span.clone(), "")
+                    .help("the coordinate of a cylinder is the distance of its two points, not its stroke"),
+            );
+        }
+    }
+
+    fn limits(&self, cx: &mut Context<'_>) -> Option<(Scalar, Scalar)> {
+        let from = self.from(cx);
+        let to = self.to(cx, from.as_ref());
+        let (from, to) = (from?, to?);
+        if cx.number(&from) == cx.number(&to) {
+            let span = self
+                .table
+                .get("to")
+                .or(self.table.get("from"))
+                .map_or(self.span.clone(), |n| n.span.clone());
+            cx.push(
+                Diagnostic::error(
+                    "no-motion",
+                    format!("{} starts and ends at the same place", self.place),
+                )
+                .at(span, "")
+                .help("to hold a drive, write at = … instead of from and to"),
+            );
+            return None;
+        }
+        Some((from, to))
+    }
+
+    /// `from`, `to` and `speed` or `acceleration`.
+    fn constant(&self, cx: &mut Context<'_>) -> Option<Law> {
+        let limits = self.limits(cx);
+        if let Some((key, _)) = self.table.entry("in") {
+            cx.push(
+                Diagnostic::error("missing-key", format!("{} has `in` but no `law`", self.place))
+                    .at(key.span.clone(), "in this time, but how?")
+                    .help("add law = \"cycloidal\", \"harmonic\", \"3-4-5\" or \"4-5-6-7\", or give a speed instead"),
+            );
+            return None;
+        }
+        let piece = match (self.table.get("speed"), self.table.get("acceleration")) {
+            (Some(_), Some(_)) => {
+                self.idle(cx, &["acceleration"], "`speed` says how it moves");
+                return None;
+            }
+            (None, None) => {
+                let unit = cx.bare_unit(rate(self.dimension, 1)).text().to_owned();
+                cx.push(
+                    Diagnostic::error("missing-key", format!("{}: how fast?", self.place))
+                        .at(self.span.clone(), "`speed` is missing")
+                        .help(format!(
+                            "add speed = \"1 {unit}\"; or acceleration = \"1 {unit}^2\" from rest; or law = \"cycloidal\" and in = \"1 s\""
+                        )),
+                );
+                return None;
+            }
+            (Some(node), None) => self.moving(cx, node, 1, limits.as_ref()),
+            (None, Some(node)) => self.moving(cx, node, 2, limits.as_ref()),
+        };
+        let (from, _) = limits?;
+        Some(Law {
+            pieces: vec![piece?],
+            from,
+        })
+    }
+
+    /// A piece of constant speed (`order` 1) or acceleration (2) between the limits.
+    fn moving(
+        &self,
+        cx: &mut Context<'_>,
+        node: &Node,
+        order: i32,
+        limits: Option<&(Scalar, Scalar)>,
+    ) -> Option<LawPiece> {
+        let what = if order == 1 { "speed" } else { "acceleration" };
+        let rate = cx.scalar(node, rate(self.dimension, order))?;
+        let size = cx.number(&rate);
+        let (from, to) = limits?;
+        let travel = cx.number(to) - cx.number(from);
+        if size == 0.0 {
+            cx.push(
+                Diagnostic::error(
+                    "bad-size",
+                    format!("{}: with {what} zero it never arrives", self.place),
+                )
+                .at(node.span.clone(), "this is zero")
+                .help(format!(
+                    "give a {what} that is not zero, or hold the drive with at = …"
+                )),
+            );
+            return None;
+        }
+        if size < 0.0 && travel > 0.0 {
+            let (a, b) = (
+                cx.show(cx.number(from), self.dimension),
+                cx.show(cx.number(to), self.dimension),
+            );
+            cx.push(
+                Diagnostic::error("wrong-direction", format!("{}: a negative {what} does not lead from {a} to {b}", self.place))
+                    .at(node.span.clone(), "leads the other way")
+                    .help(format!("from and to say the direction: write the {what} without a sign, or swap from and to")),
+            );
+            return None;
+        }
+        let rate = if size < 0.0 {
+            Expr::Call(Builtin::Abs, vec![rate])
+        } else {
+            rate
+        };
+        let to = to.clone();
+        Some(if order == 1 {
+            LawPiece::ConstantSpeed { to, speed: rate }
+        } else {
+            LawPiece::ConstantAcceleration {
+                to,
+                acceleration: rate,
+            }
+        })
+    }
+
+    /// `law = "cycloidal"` with `in`.
+    fn standard(&self, cx: &mut Context<'_>, node: &Node) -> Option<Law> {
+        self.idle(
+            cx,
+            &["speed", "acceleration"],
+            "the law and `in` say how fast",
+        );
+        let by = rise_law(cx, node, &format!("`law` of {}", self.place));
+        let limits = self.limits(cx);
+        let duration = cx
+            .required(self.table, "in", self.place, self.span, "\"0.2 s\"")
+            .and_then(|node| {
+                cx.positive(node, Dimension::TIME, "the time `in` which it moves", false)
+            });
+        let (from, to) = limits?;
+        Some(Law {
+            pieces: vec![LawPiece::Rise {
+                to,
+                duration: duration?,
+                by: by?,
+            }],
+            from,
+        })
+    }
+
+    /// `law = [ { dwell = … }, { rise = …, in = …, by = … } ]`.
+    fn sequence(&self, cx: &mut Context<'_>, pieces: &[Node], span: &Span) -> Option<Law> {
+        let start = self.from(cx)?;
+        if pieces.is_empty() || pieces.len() > MAX_PIECES {
+            cx.push(
+                Diagnostic::error("bad-law", format!("{}: a sequence of {} pieces", self.place, pieces.len()))
+                    .at(span.clone(), "")
+                    .help(format!("write law = [ {{ dwell = \"0.1 s\" }}, {{ rise = \"30 deg\", in = \"0.3 s\" }} ], at most {MAX_PIECES} pieces")),
+            );
+            return None;
+        }
+        let mut from = start.clone();
+        let mut read = Vec::with_capacity(pieces.len());
+        let mut whole = true;
+        for node in pieces {
+            let place = format!("a piece of the law of {}", self.place);
+            let piece = cx
+                .table(node, &place, "{ rise = \"30 deg\", in = \"0.3 s\" }")
+                .and_then(|t| {
+                    cx.unknown_keys(t, &place, PIECE_KEYS);
+                    self.piece(cx, t, node, &from)
+                });
+            let Some(piece) = piece else {
+                whole = false;
+                continue;
+            };
+            if let LawPiece::Rise { to, .. }
+            | LawPiece::ConstantSpeed { to, .. }
+            | LawPiece::ConstantAcceleration { to, .. } = &piece
+            {
+                from = to.clone();
+                self.check_coordinate(cx, to, &node.span);
+            }
+            read.push(piece);
+        }
+        whole.then_some(Law {
+            pieces: read,
+            from: start,
+        })
+    }
+
+    fn piece(
+        &self,
+        cx: &mut Context<'_>,
+        table: &Table,
+        node: &Node,
+        from: &Scalar,
+    ) -> Option<LawPiece> {
+        let ends: Vec<&str> = ["dwell", "rise", "fall", "to"]
+            .into_iter()
+            .filter(|k| table.get(k).is_some())
+            .collect();
+        let [end] = ends.as_slice() else {
+            cx.push(
+                Diagnostic::error("bad-law", format!("{}: a piece is one of `dwell`, `rise`, `fall` and `to`", self.place))
+                    .at(node.span.clone(), if ends.is_empty() { "none of them here" } else { "several of them here" })
+                    .help("write { dwell = \"0.1 s\" }, { rise = \"30 deg\", in = \"0.3 s\" }, { fall = … } or { to = … }"),
+            );
+            return None;
+        };
+        let value = table.get(end)?;
+        if *end == "dwell" {
+            let duration = cx.positive(value, Dimension::TIME, "a dwell", false)?;
+            return Some(LawPiece::Dwell { duration });
+        }
+        let by_how_much = cx.scalar(value, self.dimension)?;
+        let to = match (*end, from, by_how_much) {
+            ("to", _, to) => to,
+            ("rise", Expr::Const(a), Expr::Const(b)) => Expr::Const(a + b),
+            (_, Expr::Const(a), Expr::Const(b)) => Expr::Const(a - b),
+            ("rise", a, b) => Expr::Add(Box::new(a.clone()), Box::new(b)),
+            (_, a, b) => Expr::Sub(Box::new(a.clone()), Box::new(b)),
+        };
+        if cx.number(&to) == cx.number(from) {
+            cx.push(
+                Diagnostic::error(
+                    "no-motion",
+                    format!(
+                        "{}: this piece starts and ends at the same place",
+                        self.place
+                    ),
+                )
+                .at(value.span.clone(), "")
+                .help("to stand still, write { dwell = \"0.1 s\" }"),
+            );
+            return None;
+        }
+        let limits = (from.clone(), to.clone());
+        match (table.get("speed"), table.get("acceleration")) {
+            (Some(node), _) => return self.moving(cx, node, 1, Some(&limits)),
+            (None, Some(node)) => return self.moving(cx, node, 2, Some(&limits)),
+            (None, None) => {}
+        }
+        let duration = cx
+            .required(table, "in", "this piece", &node.span, "\"0.3 s\"")
+            .and_then(|node| {
+                cx.positive(node, Dimension::TIME, "the time `in` which it moves", false)
+            });
+        let by = match table.get("by") {
+            None => Some(RiseLaw::Cycloidal),
+            Some(node) => rise_law(cx, node, "`by`"),
+        };
+        Some(LawPiece::Rise {
+            to,
+            duration: duration?,
+            by: by?,
+        })
+    }
+}
+
+/// The dimension of the `order`-th rate of a coordinate.
+pub(crate) fn rate(coordinate: Dimension, order: i32) -> Dimension {
+    let per = Dimension::TIME.powi(order).unwrap_or(Dimension::TIME);
+    coordinate / per
+}
+
+fn rise_law(cx: &mut Context<'_>, node: &Node, place: &str) -> Option<RiseLaw> {
+    let text = cx.text(node, place, "\"cycloidal\"")?;
+    let name = text.content.trim();
+    if let Some(law) = RiseLaw::ALL.into_iter().find(|law| law.name() == name) {
+        return Some(law);
+    }
+    let names: Vec<&str> = RiseLaw::ALL.iter().map(|law| law.name()).collect();
+    let help = match kempe_units::nearest(name, names.iter().copied()) {
+        Some(near) => format!("did you mean `{near}`?"),
+        None => format!("the laws are {}", names.join(", ")),
+    };
+    cx.push(
+        Diagnostic::error("bad-law", format!("there is no law `{name}`"))
+            .at(text.span(0..text.content.len()), "")
+            .help(help),
+    );
+    None
+}

@@ -1,0 +1,267 @@
+//! `[links]`: points by coordinates and by distances, mass properties.
+
+use std::collections::BTreeSet;
+
+use kempe_units::Dimension;
+
+use crate::diagnostic::Diagnostic;
+use crate::document::{Key, Node, Table, Value};
+use crate::model::{Center, Inertia, LinkId, Place, PointId, Scalar, Side, Span};
+use crate::read::context::Context;
+use crate::read::names::{is_point_name, pair_of};
+use crate::read::place::place_points;
+
+/// Keys of a link that are not points.
+pub(crate) const LINK_KEYS: &[&str] = &["mass", "inertia", "center"];
+
+/// What a link's table says about its points.
+#[derive(Default)]
+pub(crate) struct Draft {
+    /// In order of first appearance.
+    pub points: Vec<(PointId, Span)>,
+    /// The same as a set.
+    pub known: BTreeSet<PointId>,
+    pub coordinates: Vec<Coordinates>,
+    pub distances: Vec<Distance>,
+    pub sides: Vec<SideOf>,
+    /// Something of it could not be read: do not complain about what is missing.
+    pub broken: bool,
+}
+
+/// A point by its coordinates.
+pub(crate) struct Coordinates {
+    pub point: PointId,
+    pub place: Place,
+    pub span: Span,
+}
+
+/// Two points by their distance.
+pub(crate) struct Distance {
+    pub a: PointId,
+    pub b: PointId,
+    pub length: Scalar,
+    pub key: Span,
+    pub span: Span,
+}
+
+/// A point by its side of a line.
+pub(crate) struct SideOf {
+    pub point: PointId,
+    pub side: Side,
+    pub from: PointId,
+    pub to: PointId,
+    pub span: Span,
+}
+
+/// Reads all links.
+pub(crate) fn read(cx: &mut Context<'_>, entries: &[&(Key, Node)]) {
+    if entries.first().is_none_or(|(key, _)| key.name != "frame") {
+        let near = entries.iter().map(|(k, _)| k).find(|k| {
+            ["ground", "base", "fixed", "chassis"].contains(&k.name.as_str())
+                || kempe_units::nearest(&k.name, ["frame"]).is_some()
+        });
+        let d = Diagnostic::error("no-frame", "the file has no link `frame`");
+        let d = match (near, entries.first()) {
+            (Some(key), _) => d.at(key.span.clone(), "perhaps this is meant"),
+            (None, Some((key, _))) => d.at(key.span.clone(), "the first link"),
+            (None, None) => d,
+        };
+        cx.push(d.help("the link that stands still is called frame: frame = { A = [0, 0], D = [60, 0] } under [links]"));
+    }
+    for (i, (key, node)) in entries.iter().enumerate() {
+        read_link(cx, LinkId(i as u32), key, node);
+    }
+}
+
+fn read_link(cx: &mut Context<'_>, id: LinkId, key: &Key, node: &Node) {
+    let place = format!("link `{}`", key.name);
+    let Some(table) = cx.table(node, &place, "crank = { A-B = 20 }") else {
+        return;
+    };
+    let mut draft = Draft::default();
+    for (key, value) in &table.entries {
+        read_entry(cx, &mut draft, &place, key, value);
+    }
+    if draft.points.is_empty() && !draft.broken {
+        cx.push(
+            Diagnostic::error("empty-link", format!("{place} has no points"))
+                .at(key.span.clone(), "")
+                .help("a link is its points: give their coordinates, A = [0, 0], or their distances, A-B = 20"),
+        );
+    }
+    let points = place_points(cx, &draft, &place, &key.span);
+    let inertia = read_inertia(cx, table, &draft, &place, key);
+    if let Some(link) = cx.model.links.get_mut(id.index()) {
+        link.points = points;
+        link.inertia = inertia;
+    }
+}
+
+fn read_entry(cx: &mut Context<'_>, draft: &mut Draft, place: &str, key: &Key, value: &Node) {
+    let name = key.name.as_str();
+    if LINK_KEYS.contains(&name) {
+        return;
+    }
+    let known = |cx: &Context<'_>, name: &str| cx.points.get(name).copied();
+    if let Some((a, b)) = pair_of(name) {
+        if a == b {
+            draft.broken = true;
+            cx.push(
+                Diagnostic::error("bad-size", format!("the distance of {a} to itself"))
+                    .at(key.span.clone(), "")
+                    .help("a distance is between two points: A-B = 20"),
+            );
+            return;
+        }
+        let (Some(a_id), Some(b_id)) = (known(cx, a), known(cx, b)) else {
+            return;
+        };
+        note_point(draft, a_id, &key.span);
+        note_point(draft, b_id, &key.span);
+        match cx.positive(
+            value,
+            Dimension::LENGTH,
+            &format!("the distance {a}-{b}"),
+            false,
+        ) {
+            Some(length) => draft.distances.push(Distance {
+                a: a_id,
+                b: b_id,
+                length,
+                key: key.span.clone(),
+                span: value.span.clone(),
+            }),
+            None => draft.broken = true,
+        }
+    } else if is_point_name(name) {
+        let Some(point) = known(cx, name) else { return };
+        note_point(draft, point, &key.span);
+        let read = match &value.value {
+            Value::Text(text) => cx.side_phrase(text).map(|(side, line)| {
+                draft.sides.push(SideOf {
+                    point,
+                    side,
+                    from: line.from,
+                    to: line.to,
+                    span: value.span.clone(),
+                });
+            }),
+            _ => cx
+                .place(value, &format!("the place of {name}"))
+                .map(|place| {
+                    draft.coordinates.push(Coordinates {
+                        point,
+                        place,
+                        span: key.span.clone(),
+                    });
+                }),
+        };
+        draft.broken |= read.is_none();
+    } else {
+        draft.broken = true;
+        let capital = capitalised(name);
+        if matches!(value.value, Value::Array(_))
+            || (name.contains('-') && pair_of(&capital).is_some())
+        {
+            cx.push(
+                Diagnostic::error("bad-name", format!("`{name}` cannot name a point"))
+                    .at(key.span.clone(), "points start with a capital letter")
+                    .help(format!("write `{capital}`")),
+            );
+        } else {
+            cx.unknown_key(key, place, LINK_KEYS);
+        }
+    }
+}
+
+/// The name with a capital at the start of each of its points.
+fn capitalised(name: &str) -> String {
+    let upper = |part: &str| {
+        let mut letters = part.chars();
+        letters
+            .next()
+            .map_or(String::new(), |c| c.to_uppercase().chain(letters).collect())
+    };
+    name.split('-')
+        .map(|part| upper(part.trim()))
+        .collect::<Vec<_>>()
+        .join("-")
+}
+
+fn note_point(draft: &mut Draft, point: PointId, span: &Span) {
+    if draft.known.insert(point) {
+        draft.points.push((point, span.clone()));
+    }
+}
+
+fn read_inertia(
+    cx: &mut Context<'_>,
+    table: &Table,
+    draft: &Draft,
+    place: &str,
+    key: &Key,
+) -> Option<Inertia> {
+    let scalar = |cx: &mut Context<'_>, name: &str, dimension: Dimension| {
+        let node = table.get(name)?;
+        cx.positive(node, dimension, &format!("the {name} of {place}"), true)
+    };
+    let mass = scalar(cx, "mass", Dimension::MASS);
+    let moment = scalar(cx, "inertia", Dimension::INERTIA);
+    let center = match table.entry("center") {
+        None => Center::Centroid,
+        Some((_, node)) => read_center(cx, node, draft, place)?,
+    };
+    if table.get("mass").is_none() && table.get("inertia").is_none() {
+        if let Some((center, _)) = table.entry("center") {
+            cx.push(
+                Diagnostic::warning("idle-key", format!("{place} has a center but no mass"))
+                    .at(center.span.clone(), "means nothing without `mass`")
+                    .see(key.span.clone(), "")
+                    .help("add mass = \"1 kg\" and inertia = \"1 kg m^2\", or leave center out"),
+            );
+        }
+        return None;
+    }
+    Some(Inertia {
+        mass,
+        moment,
+        center,
+    })
+}
+
+fn read_center(cx: &mut Context<'_>, node: &Node, draft: &Draft, place: &str) -> Option<Center> {
+    let Value::Text(text) = &node.value else {
+        return cx
+            .place(node, &format!("the center of {place}"))
+            .map(Center::Place);
+    };
+    if text.content.trim() == "centroid" {
+        return Some(Center::Centroid);
+    }
+    if !is_point_name(text.content.trim()) {
+        cx.push(
+            Diagnostic::error("wrong-type", format!("the center of {place} is not known"))
+                .at(node.span.clone(), "")
+                .help(
+                    "write center = \"centroid\", the name of one of the link's points, or [x, y]",
+                ),
+        );
+        return None;
+    }
+    let point = cx.point_text(text)?;
+    if !draft.known.contains(&point) {
+        let name = cx.point_name(point).to_owned();
+        cx.push(
+            Diagnostic::error(
+                "point-not-on-link",
+                format!("{name} is not a point of {place}"),
+            )
+            .at(node.span.clone(), "")
+            .help(format!(
+                "give {name} a place on the link, or write the center as [x, y]"
+            )),
+        );
+        return None;
+    }
+    Some(Center::Point(point))
+}

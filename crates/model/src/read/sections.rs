@@ -1,0 +1,144 @@
+//! The file's sections, in the order in which they build on each other.
+
+use kempe_units::{Dimension, Unit};
+
+use crate::diagnostic::Diagnostic;
+use crate::document::{Node, Table};
+use crate::model::UnitName;
+use crate::read::context::Context;
+use crate::read::{assembly, drives, joints, links, measures, names, parameters, studies};
+
+/// Keys of a file.
+pub(crate) const FILE_KEYS: &[&str] = &[
+    "title",
+    "units",
+    "parameters",
+    "links",
+    "joints",
+    "drives",
+    "assembly",
+    "loads",
+    "springs",
+    "dampers",
+    "clearance",
+    "measures",
+    "studies",
+];
+
+/// Sections of the language that this version has not got.
+pub(crate) const ANNOUNCED_SECTIONS: &[&str] = &["loads", "springs", "dampers", "clearance"];
+
+/// Reads the whole file.
+pub(crate) fn read(
+    cx: &mut Context<'_>,
+    root: &Table,
+    overrides: &[(String, String)],
+    broken_syntax: bool,
+) {
+    let own = cx.found.len();
+    cx.unknown_keys(root, "the file", FILE_KEYS);
+    if let Some(node) = root.get("title")
+        && let Some(text) = cx.text(node, "`title`", "\"Crank-rocker\"")
+    {
+        cx.model.title = text.content.clone();
+    }
+    if let Some(node) = root.get("units") {
+        units(cx, node);
+    }
+    for (key, _) in root
+        .entries
+        .iter()
+        .filter(|(k, _)| ANNOUNCED_SECTIONS.contains(&k.name.as_str()))
+    {
+        cx.push(
+            Diagnostic::warning(
+                "section-not-available",
+                format!(
+                    "[{}] is skipped: this version does not compute with it",
+                    key.name
+                ),
+            )
+            .at(key.span.clone(), "")
+            .help("the motion of the file does not depend on it"),
+        );
+    }
+    let sections = names::collect(cx, root);
+    parameters::read(cx, &sections.parameters, overrides);
+    links::read(cx, &sections.links);
+    joints::read(cx, &sections.joints);
+    drives::read(cx, &sections.drives);
+    assembly::read(cx, &sections.assembly);
+    measures::read(cx, &sections.measures);
+    studies::read(cx, &sections.studies);
+    if broken_syntax {
+        // a line that could not be read may have held the name or the key that is missed elsewhere
+        let mut i = 0;
+        cx.found.retain(|d| {
+            i += 1;
+            i <= own || !FOLLOWS_FROM_SYNTAX.contains(&d.code)
+        });
+    }
+}
+
+/// Codes of errors that a line which is not TOML may cause elsewhere.
+const FOLLOWS_FROM_SYNTAX: &[&str] = &[
+    "unknown-name",
+    "missing-key",
+    "no-frame",
+    "empty-link",
+    "not-placed",
+    "side-missing",
+    "point-not-on-link",
+    "no-common-link",
+    "no-common-point",
+    "no-drive",
+];
+
+/// Keys of `units`.
+pub(crate) const UNIT_KEYS: &[&str] = &["length", "angle"];
+
+fn units(cx: &mut Context<'_>, node: &Node) {
+    let Some(table) = cx.table(
+        node,
+        "`units`",
+        "units = { length = \"mm\", angle = \"deg\" }",
+    ) else {
+        return;
+    };
+    cx.unknown_keys(table, "`units`", UNIT_KEYS);
+    for (i, (key, dimension)) in [("length", Dimension::LENGTH), ("angle", Dimension::ANGLE)]
+        .into_iter()
+        .enumerate()
+    {
+        let Some(node) = table.get(key) else { continue };
+        let example = if key == "length" { "\"mm\"" } else { "\"deg\"" };
+        let Some(text) = cx.text(node, &format!("the unit of {key}"), example) else {
+            continue;
+        };
+        match Unit::parse(&text.content) {
+            Err(issue) => cx.issues(text, vec![issue]),
+            Ok(unit) if unit.dimension() != dimension => cx.push(
+                Diagnostic::error("unit-mismatch", format!("a unit of {key} expected"))
+                    .at(
+                        node.span.clone(),
+                        format!("this is a unit of {}", unit.dimension()),
+                    )
+                    .help(format!("write {key} = {example}")),
+            ),
+            Ok(unit) => {
+                let name = UnitName {
+                    name: text.content.trim().to_owned(),
+                    factor: unit.factor(),
+                };
+                if i == 0 {
+                    cx.model.units.length = name
+                } else {
+                    cx.model.units.angle = name
+                }
+                if let Some(preferred) = cx.preferred.get_mut(i) {
+                    *preferred = unit;
+                }
+            }
+        }
+    }
+}

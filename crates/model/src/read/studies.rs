@@ -1,0 +1,331 @@
+//! `[studies.NAME]`: what is asked of the model.
+
+use kempe_units::{Builtin, Dimension, Expr, parse};
+
+use crate::diagnostic::Diagnostic;
+use crate::document::{Key, Node, Table, Value};
+use crate::model::{Column, LawPiece, Model, MotionStudy, Plot, Rows, Scalar, Study, StudyKind};
+use crate::read::context::Context;
+use crate::read::measures::measure_text;
+
+/// Keys of a motion study.
+pub(crate) const MOTION_KEYS: &[&str] = &["kind", "step", "rows", "columns", "plot", "circuit"];
+
+/// Kinds of study of the language that this version has not got.
+pub(crate) const ANNOUNCED_KINDS: &[&str] = &[
+    "forces",
+    "simulate",
+    "clearance",
+    "sweep",
+    "tolerance",
+    "adjust",
+    "synthesize",
+    "optimize",
+];
+
+/// Rows of a table by default, when a step is not the thing to say.
+const DEFAULT_ROWS: usize = 181;
+
+/// Rows a table may have.
+pub(crate) const MAX_ROWS: usize = 10_000_000;
+
+/// Reads all studies; without any, there is one motion study called `motion`.
+pub(crate) fn read(cx: &mut Context<'_>, entries: &[&(Key, Node)]) {
+    for (key, node) in entries {
+        if let Some(kind) = read_study(cx, key, node) {
+            cx.model.studies.push(Study {
+                name: key.name.clone(),
+                kind,
+                span: key.span.clone(),
+            });
+        }
+    }
+    if entries.is_empty() && !cx.model.drives.is_empty() {
+        let kind = StudyKind::Motion(MotionStudy {
+            rows: default_rows(cx),
+            columns: Vec::new(),
+            plots: Vec::new(),
+            circuit: false,
+        });
+        cx.model.studies.push(Study {
+            name: "motion".to_owned(),
+            kind,
+            span: 0..0,
+        });
+    }
+}
+
+fn read_study(cx: &mut Context<'_>, key: &Key, node: &Node) -> Option<StudyKind> {
+    let place = format!("study `{}`", key.name);
+    if key.name.is_empty()
+        || !key
+            .name
+            .chars()
+            .all(|c| c.is_alphanumeric() || c == '_' || c == '-')
+    {
+        cx.push(
+            Diagnostic::error("bad-name", format!("`{}` cannot name a study", key.name))
+                .at(key.span.clone(), "")
+                .help("its name becomes a file's name: letters, digits, _ and -"),
+        );
+    }
+    let table = cx.table(
+        node,
+        &place,
+        "[studies.turn] with the line kind = \"motion\"",
+    )?;
+    let kind = cx.required(table, "kind", &place, &key.span, "\"motion\"")?;
+    let text = cx.text(kind, "`kind`", "\"motion\"")?;
+    let name = text.content.trim();
+    if ANNOUNCED_KINDS.contains(&name) {
+        cx.push(
+            Diagnostic::warning(
+                "study-not-available",
+                format!("{place} is skipped: this version has no `{name}` studies"),
+            )
+            .at(kind.span.clone(), "")
+            .help("the other studies of the file run without it"),
+        );
+        return None;
+    }
+    if name != "motion" {
+        let known = ANNOUNCED_KINDS.iter().copied().chain(["motion"]);
+        let help = match kempe_units::nearest(name, known) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => "write kind = \"motion\"".to_owned(),
+        };
+        cx.push(
+            Diagnostic::error(
+                "unknown-study",
+                format!("there is no kind of study `{name}`"),
+            )
+            .at(text.span(0..text.content.len()), "")
+            .help(help),
+        );
+        return None;
+    }
+    cx.unknown_keys(table, &place, MOTION_KEYS);
+    if cx.drives.is_empty() {
+        cx.push(
+            Diagnostic::error("no-drive", format!("{place} has nothing that moves"))
+                .at(key.span.clone(), "")
+                .help("say what moves: [drives] motor = { turns = \"crank\", from = 0, to = 360, speed = \"1 rad/s\" }"),
+        );
+        return None;
+    }
+    let rows = rows(cx, table, &place);
+    let columns = entries(cx, table, "columns", "[\"swing\", \"rate(swing)\"]");
+    let columns = columns
+        .into_iter()
+        .filter_map(|node| column(cx, node))
+        .collect();
+    let plots = entries(cx, table, "plot", "[\"swing\", \"path(P)\"]");
+    let plots = plots
+        .into_iter()
+        .filter_map(|node| plot(cx, node))
+        .collect();
+    let circuit = match table.get("circuit") {
+        Some(node) => cx.flag(node, "`circuit`")?,
+        None => false,
+    };
+    Some(StudyKind::Motion(MotionStudy {
+        rows: rows?,
+        columns,
+        plots,
+        circuit,
+    }))
+}
+
+fn entries<'n>(cx: &mut Context<'_>, table: &'n Table, key: &str, example: &str) -> Vec<&'n Node> {
+    match table.get(key) {
+        None => Vec::new(),
+        // one alone needs no brackets
+        Some(
+            node @ Node {
+                value: Value::Text(_),
+                ..
+            },
+        ) => vec![node],
+        Some(node) => cx
+            .array(node, &format!("`{key}`"), example)
+            .map_or(Vec::new(), |a| a.iter().collect()),
+    }
+}
+
+fn column(cx: &mut Context<'_>, node: &Node) -> Option<Column> {
+    let text = cx.text(node, "a column", "\"angle(rocker)\"")?;
+    let name = text.content.trim().to_owned();
+    let (measure, dimension) = measure_text(cx, text)?;
+    Some(Column {
+        name,
+        measure,
+        dimension,
+    })
+}
+
+fn plot(cx: &mut Context<'_>, node: &Node) -> Option<Plot> {
+    let text = cx.text(node, "a plot", "\"angle(rocker)\" or \"path(P)\"")?;
+    if let Ok(tree) = parse(&text.content)
+        && let kempe_units::Kind::Call {
+            function,
+            arguments,
+            ..
+        } = &tree.kind
+        && function == "path"
+    {
+        if let [point] = arguments.as_slice()
+            && let Some(name) = point.as_point()
+        {
+            return cx
+                .point(name, text.span(point.span.clone()))
+                .map(Plot::Path);
+        }
+        cx.push(
+            Diagnostic::error("wrong-arguments", "`path` draws the path of one point")
+                .at(text.span(tree.span.clone()), "")
+                .help("write path(P)"),
+        );
+        return None;
+    }
+    column(cx, node).map(Plot::Column)
+}
+
+/// Where the rows stand: `step` or `rows`, or the default.
+fn rows(cx: &mut Context<'_>, table: &Table, place: &str) -> Option<Rows> {
+    match (table.get("step"), table.entry("rows")) {
+        (None, None) => Some(default_rows(cx)),
+        (Some(_), Some((key, _))) => {
+            cx.push(
+                Diagnostic::error(
+                    "over-specified",
+                    format!("{place} has both `step` and `rows`"),
+                )
+                .at(key.span.clone(), "one of them is enough")
+                .help("leave one of them out"),
+            );
+            None
+        }
+        (None, Some((_, node))) => match node.value {
+            Value::Number(n) if n == n.trunc() && n >= 1.0 && n <= MAX_ROWS as f64 => {
+                Some(Rows::Count(n as usize))
+            }
+            _ => {
+                cx.wrong_type(
+                    node,
+                    "`rows`",
+                    &format!("a whole number from 1 to {MAX_ROWS}"),
+                    "rows = 361",
+                );
+                None
+            }
+        },
+        (Some(node), None) => step(cx, node, place),
+    }
+}
+
+/// The drive whose coordinate runs one way through the whole motion, when there is only one that moves.
+fn running(model: &Model) -> Option<(usize, Scalar, Scalar)> {
+    let holds =
+        |d: &crate::model::Drive| matches!(d.law.pieces.as_slice(), [LawPiece::Dwell { .. }]);
+    let mut moving = model.drives.iter().enumerate().filter(|(_, d)| !holds(d));
+    let (i, drive) = moving.next()?;
+    if moving.next().is_some() {
+        return None;
+    }
+    match drive.law.pieces.as_slice() {
+        [
+            LawPiece::ConstantSpeed { to, .. }
+            | LawPiece::ConstantAcceleration { to, .. }
+            | LawPiece::Rise { to, .. },
+        ] => Some((i, drive.law.from.clone(), to.clone())),
+        _ => None,
+    }
+}
+
+fn step(cx: &mut Context<'_>, node: &Node, place: &str) -> Option<Rows> {
+    let running = running(&cx.model);
+    let of_drive = running
+        .as_ref()
+        .and_then(|(i, ..)| cx.model.drives.get(*i))
+        .map(|d| d.dimension);
+    let (step, dimension) = cx.inferred(node, of_drive.unwrap_or(Dimension::TIME))?;
+    let size = cx.number(&step);
+    if size <= 0.0 {
+        cx.push(
+            Diagnostic::error("bad-size", format!("{place}: a step must be positive"))
+                .at(node.span.clone(), "")
+                .help("write step = 1: one degree (or one unit of length) of the drive"),
+        );
+        return None;
+    }
+    let (rows, count) = if dimension == Dimension::TIME {
+        let durations = cx.model.drives.iter().map(|d| d.law.duration(&cx.values));
+        (Rows::TimeStep(step), durations.fold(0.0, f64::max) / size)
+    } else if let Some((_, from, to)) =
+        running.filter(|_| of_drive.is_some_and(|d| d.compatible(dimension)))
+    {
+        let travel = (cx.number(&to) - cx.number(&from)).abs();
+        (Rows::DriveStep(step), travel / size)
+    } else {
+        // drives that are broken have been told
+        if cx.drives.iter().all(Option::is_some) {
+            let (message, help) = match of_drive {
+                Some(d) => (
+                    format!("{d} or time expected, found {}", dimension.with_article()),
+                    format!(
+                        "a step is a step of the drive, {}, or of time, \"1 ms\"",
+                        cx.example(d)
+                    ),
+                ),
+                None => (
+                    "no single drive runs one way, so this is a step of what?".to_owned(),
+                    "give the step in time, step = \"1 ms\", or the number of rows, rows = 361"
+                        .to_owned(),
+                ),
+            };
+            cx.push(
+                Diagnostic::error("unit-mismatch", format!("{place}: {message}"))
+                    .at(node.span.clone(), "")
+                    .help(help),
+            );
+        }
+        return None;
+    };
+    if count > MAX_ROWS as f64 {
+        cx.push(
+            Diagnostic::error("too-large", format!("{place}: {count:.0} rows"))
+                .at(node.span.clone(), "this step is too small")
+                .help(format!("a table has at most {MAX_ROWS} rows")),
+        );
+        return None;
+    }
+    Some(rows)
+}
+
+/// One degree of an angle, the 180th part of a length; evenly in time when not one drive alone runs one way.
+fn default_rows(cx: &Context<'_>) -> Rows {
+    if cx
+        .model
+        .drives
+        .iter()
+        .all(|d| d.law.duration(&cx.values) == 0.0)
+    {
+        return Rows::Count(1);
+    }
+    let Some((i, from, to)) = running(&cx.model) else {
+        return Rows::Count(DEFAULT_ROWS);
+    };
+    let angle = cx
+        .model
+        .drives
+        .get(i)
+        .is_some_and(|d| d.dimension == Dimension::ANGLE);
+    let travel = (cx.number(&to) - cx.number(&from)).abs();
+    let degree = 1.0f64.to_radians();
+    if angle && travel / degree <= MAX_ROWS as f64 {
+        return Rows::DriveStep(Expr::Const(degree));
+    }
+    let parts = (DEFAULT_ROWS - 1) as f64;
+    let travel = Expr::Call(Builtin::Abs, vec![Expr::Sub(Box::new(to), Box::new(from))]);
+    Rows::DriveStep(Expr::Div(Box::new(travel), Box::new(Expr::Const(parts))))
+}

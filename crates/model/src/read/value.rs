@@ -1,0 +1,257 @@
+//! Values: a bare number in the file's unit, or a string with an expression.
+
+use kempe_units::{Dimension, Expr, Issue, Resolver, Unit, check, check_as, format_digits, parse};
+
+use crate::diagnostic::{Diagnostic, Label};
+use crate::document::{Node, Text, Value};
+use crate::geometry::value;
+use crate::model::{ParameterId, Place, Scalar, Span};
+use crate::read::context::{Context, Meaning};
+
+/// The code of an issue that follows from one already told, and is not told again.
+pub(crate) const ALREADY_TOLD: &str = "already-told";
+
+/// Names of an expression over the parameters.
+pub(crate) struct Parameters<'c, 'a>(pub &'c Context<'a>);
+
+impl Resolver<ParameterId> for Parameters<'_, '_> {
+    fn name(&mut self, name: &str, span: Span) -> Result<(ParameterId, Dimension), Issue> {
+        match self.0.names.get(name) {
+            Some((Meaning::Parameter(id), _)) => self.0.parameter(*id, span),
+            Some((meaning, _)) => {
+                let message = format!(
+                    "`{name}` is {}: a dimension is computed from parameters only",
+                    meaning.what()
+                );
+                Err(Issue::new("unknown-name", span, message).with_label("not a parameter"))
+            }
+            None => {
+                let known = self
+                    .0
+                    .names
+                    .iter()
+                    .filter(|(_, (m, _))| matches!(m, Meaning::Parameter(_)));
+                Err(Issue::unknown_name(
+                    name,
+                    span,
+                    known.map(|(name, _)| name.as_str()),
+                ))
+            }
+        }
+    }
+
+    fn declared(&self, name: &str) -> bool {
+        matches!(self.0.names.get(name), Some((Meaning::Parameter(_), _)))
+    }
+}
+
+impl Context<'_> {
+    /// A parameter with its dimension, unless it is broken.
+    pub fn parameter(
+        &self,
+        id: ParameterId,
+        span: Span,
+    ) -> Result<(ParameterId, Dimension), Issue> {
+        match (
+            self.sound.get(id.index()),
+            self.model.parameters.get(id.index()),
+        ) {
+            (Some(true), Some(p)) => Ok((id, p.dimension)),
+            _ => Err(Issue::new(ALREADY_TOLD, span, "")),
+        }
+    }
+
+    /// Tells what is wrong with a text of the file.
+    pub fn issues(&mut self, text: &Text, issues: Vec<Issue>) {
+        for issue in issues.into_iter().filter(|i| i.code != ALREADY_TOLD) {
+            let mut d = Diagnostic::error(issue.code, issue.message).maybe_help(issue.help);
+            d.labels.push(Label {
+                span: text.span(issue.span),
+                text: issue.label,
+                primary: true,
+                source: None,
+            });
+            self.push(d);
+        }
+    }
+
+    /// The unit of bare numbers where a `dimension` is expected.
+    pub fn bare_unit(&self, dimension: Dimension) -> Unit {
+        Unit::for_display(dimension, &self.preferred)
+    }
+
+    /// A dimension of the design: an expression over the parameters that measures `expected` and is finite.
+    pub fn scalar(&mut self, node: &Node, expected: Dimension) -> Option<Scalar> {
+        let scalar = match &node.value {
+            Value::Number(x) => Expr::Const(self.bare_unit(expected).to_si(*x)),
+            Value::Text(text) => {
+                let unit = self.bare_unit(expected);
+                let checked = parse(&text.content)
+                    .and_then(|tree| check_as(&tree, &mut Parameters(self), expected, &unit));
+                match checked {
+                    Ok((scalar, _)) => scalar,
+                    Err(issues) => {
+                        self.issues(text, issues);
+                        return None;
+                    }
+                }
+            }
+            _ => {
+                let example = self.example(expected);
+                self.wrong_type(
+                    node,
+                    &format!("{} here", expected.with_article()),
+                    "a number or a string",
+                    &example,
+                );
+                return None;
+            }
+        };
+        self.finite(&scalar, &node.span)?;
+        Some(scalar)
+    }
+
+    /// A dimension of the design whose dimension is to be seen from the text; a bare number measures `bare`.
+    pub fn inferred(&mut self, node: &Node, bare: Dimension) -> Option<(Scalar, Dimension)> {
+        let Value::Text(text) = &node.value else {
+            return self.scalar(node, bare).map(|s| (s, bare));
+        };
+        let checked = parse(&text.content).and_then(|tree| match tree.as_bare_number() {
+            Some(x) => Ok((Expr::Const(self.bare_unit(bare).to_si(x)), bare)),
+            None => check(&tree, &mut Parameters(self)),
+        });
+        match checked {
+            Ok((scalar, dimension)) => {
+                self.finite(&scalar, &node.span)?;
+                Some((scalar, dimension))
+            }
+            Err(issues) => {
+                self.issues(text, issues);
+                None
+            }
+        }
+    }
+
+    /// The value of a scalar in SI.
+    pub fn number(&self, scalar: &Scalar) -> f64 {
+        value(scalar, &self.values)
+    }
+
+    /// The value, or an error when it is not finite.
+    fn finite(&mut self, scalar: &Scalar, span: &Span) -> Option<f64> {
+        let x = self.number(scalar);
+        if x.is_finite() {
+            return Some(x);
+        }
+        let found = if x.is_nan() {
+            "not a number"
+        } else {
+            "infinite"
+        };
+        self.push(
+            Diagnostic::error("not-finite", format!("this value is {found}"))
+                .at(span.clone(), format!("{found} with the parameters' values"))
+                .help("look for a division by zero, the root of a negative number or an overflow"),
+        );
+        None
+    }
+
+    /// A scalar that must be positive (or, with `zero`, not negative).
+    pub fn positive(
+        &mut self,
+        node: &Node,
+        dimension: Dimension,
+        what: &str,
+        zero: bool,
+    ) -> Option<Scalar> {
+        let scalar = self.scalar(node, dimension)?;
+        let x = self.number(&scalar);
+        if x > 0.0 || (zero && x == 0.0) {
+            return Some(scalar);
+        }
+        let found = if x == 0.0 {
+            "zero".to_owned()
+        } else {
+            self.show(x, dimension)
+        };
+        let wanted = if zero {
+            "must not be negative"
+        } else {
+            "must be positive"
+        };
+        self.push(
+            Diagnostic::error("bad-size", format!("{what} {wanted}, found {found}"))
+                .at(node.span.clone(), format!("this is {found}"))
+                .help(format!("write it like {}", self.example(dimension))),
+        );
+        None
+    }
+
+    /// A value in the file's units.
+    pub fn show(&self, x: f64, dimension: Dimension) -> String {
+        format_digits(x, &self.bare_unit(dimension), 6)
+    }
+
+    /// An example of a value of a dimension, as it would stand in the file.
+    pub fn example(&self, dimension: Dimension) -> String {
+        match dimension {
+            Dimension::NONE => "20".to_owned(),
+            d => format!("\"20 {}\"", self.bare_unit(d).text()),
+        }
+    }
+
+    /// A pair: `[x, y]`, or `[r, angle]` when the second is an angle.
+    pub fn place(&mut self, node: &Node, what: &str) -> Option<Place> {
+        let items = self.array(node, what, "[0, 20] or [\"20 mm\", \"30 deg\"]")?;
+        let [first, second] = items else {
+            let count = items.len();
+            self.push(
+                Diagnostic::error("wrong-type", format!("{what} has two values, found {count}"))
+                    .at(node.span.clone(), "")
+                    .help("write [x, y], or [radius, angle] with the angle as a string such as \"30 deg\""),
+            );
+            return None;
+        };
+        let a = self.inferred(first, Dimension::LENGTH);
+        let b = self.inferred(second, Dimension::LENGTH);
+        let ((a, a_is), (b, b_is)) = (a?, b?);
+        let is_length = |d: Dimension| d.compatible(Dimension::LENGTH);
+        if is_length(a_is) && is_length(b_is) {
+            return Some(Place::Cartesian { x: a, y: b });
+        }
+        if is_length(a_is) && b_is == Dimension::ANGLE {
+            return Some(Place::Polar {
+                radius: a,
+                angle: b,
+            });
+        }
+        let (bad, found) = if is_length(a_is) {
+            (second, b_is)
+        } else {
+            (first, a_is)
+        };
+        let wanted = if is_length(a_is) {
+            "length or angle"
+        } else {
+            "length"
+        };
+        let swapped = a_is == Dimension::ANGLE && is_length(b_is);
+        let help = if swapped {
+            "polar coordinates are [radius, angle]: swap the two"
+        } else {
+            "a place is [x, y] in lengths, or [radius, angle]"
+        };
+        self.push(
+            Diagnostic::error(
+                "unit-mismatch",
+                format!("{wanted} expected, found {}", found.with_article()),
+            )
+            .at(
+                bad.span.clone(),
+                format!("this is {}", found.with_article()),
+            )
+            .help(help),
+        );
+        None
+    }
+}

@@ -1,0 +1,127 @@
+//! The vocabulary of measures: one table for the reader, `kempe measures`, the docs and the hints on misspelt names.
+
+use serde::Serialize;
+
+/// A function that measures something.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct MeasureEntry {
+    /// Its name.
+    pub name: &'static str,
+    /// How it is called.
+    pub signatures: &'static [&'static str],
+    /// What it measures: a dimension, or how it follows from the arguments'.
+    pub dimension: &'static str,
+    /// What it is, in one line.
+    pub doc: &'static str,
+    /// An example of its use.
+    pub example: &'static str,
+}
+
+/// The registry of measures.
+#[derive(Clone, Copy, Debug)]
+pub struct Registry;
+
+impl Registry {
+    /// All measures, in the order of the reference.
+    pub fn all() -> &'static [MeasureEntry] {
+        MEASURES
+    }
+
+    /// The measure of a name.
+    pub fn find(name: &str) -> Option<&'static MeasureEntry> {
+        MEASURES.iter().find(|m| m.name == name)
+    }
+
+    /// Measures that the language has and this version has not: a file may name them, and what does is left out with a warning.
+    pub fn announced() -> &'static [&'static str] {
+        ANNOUNCED
+    }
+}
+
+/// See [`Registry::announced`].
+const ANNOUNCED: &[&str] = &[
+    "force",
+    "force_x",
+    "force_y",
+    "torque",
+    "power",
+    "energy",
+    "shaking_force",
+    "shaking_moment",
+    "reduced_mass",
+    "reduced_inertia",
+];
+
+const fn row(
+    name: &'static str,
+    signatures: &'static [&'static str],
+    dimension: &'static str,
+    doc: &'static str,
+    example: &'static str,
+) -> MeasureEntry {
+    MeasureEntry {
+        name,
+        signatures,
+        dimension,
+        doc,
+        example,
+    }
+}
+
+#[rustfmt::skip]
+const MEASURES: &[MeasureEntry] = &[
+    row("x", &["x(P)", "x(P, link)"], "length",
+        "x of a point in the frame, or seen from a link in the link's own coordinates", "x(P)"),
+    row("y", &["y(P)", "y(P, link)"], "length",
+        "y of a point in the frame, or seen from a link in the link's own coordinates", "y(P, coupler)"),
+    row("angle", &["angle(link)", "angle(link, other)", "angle(A -> B)", "angle(A, B, C)"], "angle",
+        "from the frame's x axis (or another link's) to the link's, counter-clockwise and unwrapped; of a directed line; or at B between A and C, 0 to 180 deg", "angle(rocker)"),
+    row("distance", &["distance(A, B)", "distance(P, A -> B)"], "length",
+        "of two points; or of a point from a line of a link, positive on its left", "distance(B, D)"),
+    row("travel", &["travel(slider)", "travel(joint)"], "length",
+        "of a slider or a pin along its guide, from the guide's first point", "travel(piston)"),
+    row("length", &["length(drive)"], "length",
+        "of a cylinder", "length(lift)"),
+    row("transmission_angle", &["transmission_angle(P)", "transmission_angle(P, A, B)"], "angle",
+        "between the two links pinned at P, 0 to 90 deg; each link's direction goes to its pin on the frame, or else to its first other pin; or name the two ends", "transmission_angle(C)"),
+    row("speed", &["speed(P)"], "length/time",
+        "of a point in the frame, its size", "speed(C)"),
+    row("acceleration", &["acceleration(P)"], "length/time^2",
+        "of a point in the frame, its size", "acceleration(C)"),
+    row("angular_speed", &["angular_speed(link)"], "angle/time",
+        "of a link, positive counter-clockwise", "angular_speed(rocker)"),
+    row("angular_acceleration", &["angular_acceleration(link)"], "angle/time^2",
+        "of a link, positive counter-clockwise", "angular_acceleration(rocker)"),
+    row("instant_center_x", &["instant_center_x(link)", "instant_center_x(link, other)"], "length",
+        "x of the instant centre of a link against the frame or another link; infinite when they translate", "instant_center_x(coupler)"),
+    row("instant_center_y", &["instant_center_y(link)", "instant_center_y(link, other)"], "length",
+        "y of the instant centre of a link against the frame or another link; infinite when they translate", "instant_center_y(coupler)"),
+    row("curvature", &["curvature(P)"], "1/length",
+        "of the point's path, positive where it turns left along the motion", "curvature(P)"),
+    row("curvature_center_x", &["curvature_center_x(P)"], "length",
+        "x of the centre of curvature of the point's path", "curvature_center_x(P)"),
+    row("curvature_center_y", &["curvature_center_y(P)"], "length",
+        "y of the centre of curvature of the point's path", "curvature_center_y(P)"),
+    row("path_length", &["path_length(P)"], "length",
+        "length of path swept since the start of the motion", "path_length(P)"),
+    row("mechanical_advantage", &["mechanical_advantage(measure, drive)"], "drive/measure",
+        "the drive's speed over that of the measure: force out over force in without friction", "mechanical_advantage(y(P), motor)"),
+    row("rate", &["rate(measure)", "rate(measure, n)"], "measure/time^n",
+        "n-th time derivative (first unless said otherwise)", "rate(y(C), 2)"),
+    row("d", &["d(measure, drive)", "d(measure, drive, n)"], "measure/drive^n",
+        "n-th derivative to a drive's coordinate, the other drives at rest: a transfer function", "d(angle(rocker), motor)"),
+    row("min", &["min(measure)"], "that of the measure",
+        "smallest over the motion (with two or more arguments: the smallest of them)", "min(transmission_angle(C))"),
+    row("max", &["max(measure)"], "that of the measure",
+        "largest over the motion (with two or more arguments: the largest of them)", "max(speed(C))"),
+    row("mean", &["mean(measure)"], "that of the measure",
+        "mean over the time of the motion", "mean(rate(x(C)))"),
+    row("range", &["range(measure)"], "that of the measure",
+        "largest less smallest over the motion", "range(angle(rocker))"),
+    row("stroke", &["stroke(measure)", "stroke(slider)", "stroke(drive)"], "that of the measure; length of a slider",
+        "range of a measure, of the travel of a slider or of the length of a cylinder", "stroke(piston)"),
+    row("at", &["at(measure, drive, value)", "at(measure, time, value)"], "that of the measure",
+        "value where a drive or the time has a value", "at(y(P), motor, 30 deg)"),
+    row("time_ratio", &["time_ratio(measure)"], "number",
+        "duration of the slower stroke of a measure over that of the faster, in one cycle", "time_ratio(angle(rocker))"),
+];
