@@ -138,10 +138,7 @@ impl<T: Number> State<T> {
             .zip(&mechanism.model.drives)
             .zip(coordinates)
         {
-            *input = match drive.kind {
-                DriveKind::Turn { .. } => Input::turn(value),
-                DriveKind::Cylinder { .. } | DriveKind::Slide { .. } => Input::length(value),
-            };
+            *input = input_of(drive, value);
         }
     }
 
@@ -153,5 +150,14 @@ impl<T: Number> State<T> {
             poses: &self.poses,
             near: &branch.near,
         }
+    }
+}
+
+/// A drive's coordinate as the constraints see it.
+#[inline(always)]
+pub(crate) fn input_of<T: Number>(drive: &kempe_model::Drive, value: T) -> Input<T> {
+    match drive.kind {
+        DriveKind::Turn { .. } => Input::turn(value),
+        DriveKind::Cylinder { .. } | DriveKind::Slide { .. } => Input::length(value),
     }
 }
