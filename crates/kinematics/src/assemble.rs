@@ -1,0 +1,442 @@
+//! All assemblies of a mechanism at given drive coordinates, and the one that the user means.
+
+use kempe_model::HintKind;
+use kempe_number::math;
+
+use crate::blocks::Unknown;
+use crate::homotopy::{PathReport, Random, all_real_solutions};
+use crate::mechanism::{BodyId, Mechanism};
+use crate::newton::PlanNumber;
+use crate::plan::{NewtonBlock, Plan, Step};
+use crate::pose::{Pose, cross, sub};
+use crate::state::{Branch, Design, State};
+
+/// Most assemblies that are listed; a file with many dyads and no hints can have more than anyone wants to see.
+pub const ASSEMBLY_LIMIT: usize = 512;
+/// Most partial assemblies that are tried while looking for them.
+const TRIAL_LIMIT: usize = 200_000;
+/// Random starts for a block to which the complete method does not apply.
+const SEARCH_STARTS: usize = 400;
+/// Two poses of a block closer than this (in sizes of the mechanism, and rad) are one.
+const SAME_POSE: f64 = 1e-7;
+/// Side hints are not held against a point closer to the line than this, in sizes of the mechanism.
+const ON_THE_LINE: f64 = 1e-9;
+
+/// One way to put the mechanism together.
+#[derive(Clone, Debug)]
+pub struct Assembly {
+    /// The branch that leads to it.
+    pub branch: Branch,
+    /// Where the bodies are.
+    pub poses: Vec<Pose<f64>>,
+    /// Root mean square distance of the points of `near` hints from where they should be, m (angles in rad count as
+    /// lengths of one mechanism size).
+    pub distance: f64,
+}
+
+/// All ways to put the mechanism together, the one meant first.
+#[derive(Clone, Debug, Default)]
+pub struct Assemblies {
+    /// The assemblies that agree with the file's sides, nearest to its `near` hints first.
+    pub list: Vec<Assembly>,
+    /// How many more there are when the sides are not asked for.
+    pub rejected: usize,
+    /// Whether every assembly was found: all blocks were solved in closed form or by the complete method, no path was
+    /// lost and no limit was met.
+    pub complete: bool,
+    /// What the homotopies did, one entry for each block solved.
+    pub paths: Vec<PathReport>,
+    /// The step that could not be closed when there is no assembly at all.
+    pub open_step: Option<usize>,
+}
+
+/// A side that can be checked once its points are placed.
+struct SideCheck {
+    points: [crate::mechanism::Marker; 3],
+    sign: f64,
+    after_step: usize,
+}
+
+struct Search<'a> {
+    mechanism: &'a Mechanism,
+    plan: &'a Plan,
+    design: &'a Design<f64>,
+    size: f64,
+    checks: Vec<SideCheck>,
+    found: Vec<Assembly>,
+    rejected: usize,
+    trials: usize,
+    complete: bool,
+    paths: Vec<PathReport>,
+    furthest: usize,
+}
+
+/// Finds all assemblies at the drive coordinates (SI).
+pub fn all_assemblies(
+    mechanism: &Mechanism,
+    plan: &Plan,
+    design: &Design<f64>,
+    coordinates: &[f64],
+) -> Assemblies {
+    let size = design.geometry.size(mechanism);
+    let mut search = Search {
+        mechanism,
+        plan,
+        design,
+        size,
+        checks: side_checks(mechanism, plan),
+        found: Vec::new(),
+        rejected: 0,
+        trials: 0,
+        complete: true,
+        paths: Vec::new(),
+        furthest: 0,
+    };
+    let mut state = State::new(mechanism, plan);
+    state.set_inputs(mechanism, coordinates);
+    let branch = Branch::neutral(mechanism, plan);
+    search.descend(0, state, branch, true);
+
+    for assembly in &mut search.found {
+        assembly.distance = hint_distance(mechanism, design, assembly, size);
+    }
+    // A stable sort: where the hints say nothing, the order of the search decides, left before right.
+    search
+        .found
+        .sort_by(|a, b| a.distance.total_cmp(&b.distance));
+    let open_step = search.found.is_empty().then_some(search.furthest);
+    Assemblies {
+        list: search.found,
+        rejected: search.rejected,
+        complete: search.complete,
+        paths: search.paths,
+        open_step,
+    }
+}
+
+impl Search<'_> {
+    /// Solves the steps from `step` on, in every way there is. `wanted` is false once a side hint failed: such
+    /// assemblies are only counted.
+    fn descend(
+        &mut self,
+        mut step: usize,
+        mut state: State<f64>,
+        mut branch: Branch,
+        wanted: bool,
+    ) {
+        let mut wanted = wanted;
+        loop {
+            self.trials += 1;
+            if self.found.len() >= ASSEMBLY_LIMIT || self.trials > TRIAL_LIMIT {
+                self.complete = false;
+                return;
+            }
+            let Some(kind) = self.plan.steps.get(step) else {
+                break;
+            };
+            if let Step::Newton { block } = kind {
+                return self.descend_newton(step, *block, state, branch, wanted);
+            }
+            if kind.has_modes() {
+                return self.descend_modes(step, state, branch, wanted);
+            }
+            if !self.solve(step, 1.0, &mut state, &mut branch) {
+                return;
+            }
+            wanted &= self.sides_hold(step, &state);
+            step += 1;
+        }
+        if wanted {
+            let distance = 0.0;
+            self.found.push(Assembly {
+                branch,
+                poses: state.poses,
+                distance,
+            });
+        } else {
+            self.rejected += 1;
+        }
+    }
+
+    fn descend_modes(&mut self, step: usize, state: State<f64>, branch: Branch, wanted: bool) {
+        let mut first: Option<Vec<Pose<f64>>> = None;
+        for sign in [1.0, -1.0] {
+            let (mut state, mut branch) = (state.clone(), branch.clone());
+            branch.signs[step] = sign;
+            if !self.solve(step, sign, &mut state, &mut branch) {
+                continue;
+            }
+            // At a dead point both modes are one assembly.
+            if let Some(first) = &first
+                && self.same(first, &state.poses)
+            {
+                continue;
+            }
+            first = Some(state.poses.clone());
+            let wanted = wanted && self.sides_hold(step, &state);
+            if !wanted && self.rejected >= ASSEMBLY_LIMIT {
+                self.complete = false;
+                continue;
+            }
+            self.descend(step + 1, state, branch, wanted);
+        }
+    }
+
+    fn descend_newton(
+        &mut self,
+        step: usize,
+        block: usize,
+        state: State<f64>,
+        branch: Branch,
+        wanted: bool,
+    ) {
+        let block = &self.plan.newton_blocks[block];
+        let situation = state.situation(self.design, &branch);
+        let candidates = match all_real_solutions(block, self.mechanism, &situation, self.size) {
+            Some((poses, report)) => {
+                self.complete &= report.lost == 0;
+                self.paths.push(report);
+                poses
+            }
+            None => {
+                self.complete = false;
+                self.random_starts(block, &state)
+            }
+        };
+        let mut found: Vec<(State<f64>, Branch)> = Vec::new();
+        for candidate in candidates {
+            let (mut state, mut branch) = (state.clone(), branch.clone());
+            branch.guess.clone_from(&candidate);
+            for unknown in &block.unknowns {
+                let body = unknown.body().index();
+                branch.near[body] = candidate[body].angle_near(0.0);
+            }
+            if self.solve(step, 1.0, &mut state, &mut branch)
+                && self.closes(block, &state, &branch)
+                && found
+                    .iter()
+                    .all(|(other, _)| !self.same(&other.poses, &state.poses))
+            {
+                branch.guess.clone_from(&state.poses);
+                found.push((state, branch));
+            }
+        }
+        // In a fixed order: by the angles of the block's bodies.
+        found.sort_by(|(a, _), (b, _)| {
+            let angles = |s: &State<f64>| -> Vec<f64> {
+                block
+                    .unknowns
+                    .iter()
+                    .map(|u| s.poses[u.body().index()].angle_near(0.0))
+                    .collect()
+            };
+            let (a, b) = (angles(a), angles(b));
+            a.iter()
+                .zip(&b)
+                .map(|(x, y)| x.total_cmp(y))
+                .find(|o| o.is_ne())
+                .unwrap_or(std::cmp::Ordering::Equal)
+        });
+        for (state, branch) in found {
+            let wanted = wanted && self.sides_hold(step, &state);
+            self.descend(step + 1, state, branch, wanted);
+        }
+    }
+
+    /// Solves one step; false when it does not close. Keeps the branch's turn counts and guesses up to date.
+    fn solve(
+        &mut self,
+        step: usize,
+        sign: f64,
+        state: &mut State<f64>,
+        branch: &mut Branch,
+    ) -> bool {
+        self.plan
+            .solve_step(step, sign, self.mechanism, self.design, branch, state);
+        for unknown in &self.plan.blocks[step].unknowns {
+            let body = unknown.body().index();
+            let pose = state.poses[body];
+            if !(pose.c.is_finite()
+                && pose.s.is_finite()
+                && pose.x.is_finite()
+                && pose.y.is_finite())
+            {
+                self.furthest = self.furthest.max(step);
+                return false;
+            }
+            branch.near[body] = match self.plan.steps[step] {
+                Step::Newton { .. } => branch.near[body],
+                _ => pose.angle_near(0.0),
+            };
+            branch.guess[body] = pose;
+        }
+        if let Step::Turn {
+            body,
+            from,
+            offset,
+            input: Some(drive),
+            reversed,
+        } = self.plan.steps[step]
+        {
+            // A driven angle counts its turns.
+            let constant = self.design.geometry.angles[offset as usize];
+            let turn = state.inputs[drive.index()].value + math::atan2(constant[1], constant[0]);
+            branch.near[body.index()] =
+                branch.near[from.index()] + if reversed { -turn } else { turn };
+        }
+        true
+    }
+
+    fn closes(&self, block: &NewtonBlock, state: &State<f64>, branch: &Branch) -> bool {
+        let situation = state.situation(self.design, branch);
+        block.rows.iter().all(|row| {
+            let residual =
+                situation.residual(&self.mechanism.constraints[row.constraint].0)[row.row];
+            residual.abs() <= 1e-9 * self.size.max(f64::MIN_POSITIVE) || residual.abs() <= 1e-12
+        })
+    }
+
+    fn sides_hold(&self, step: usize, state: &State<f64>) -> bool {
+        self.checks
+            .iter()
+            .filter(|c| c.after_step == step)
+            .all(|check| {
+                let [from, to, p] = check
+                    .points
+                    .map(|m| state.poses[m.body.index()].place(self.design.geometry.marker(m)));
+                let line = sub(to, from);
+                let side = cross(line, sub(p, from)) * check.sign;
+                side >= -ON_THE_LINE * self.size * math::hypot(line[0], line[1])
+            })
+    }
+
+    fn same(&self, a: &[Pose<f64>], b: &[Pose<f64>]) -> bool {
+        a.iter().zip(b).all(|(a, b)| {
+            let length = (a.x - b.x).abs().max((a.y - b.y).abs());
+            let angle = (a.c - b.c).abs().max((a.s - b.s).abs());
+            length <= SAME_POSE * self.size && angle <= SAME_POSE
+        })
+    }
+
+    /// Starts spread over the mechanism's surroundings, for blocks with gears or too many paths.
+    fn random_starts(&self, block: &NewtonBlock, state: &State<f64>) -> Vec<Vec<Pose<f64>>> {
+        let mut random = Random(0x005e_ed0f_ba11);
+        let reach = 4.0 * self.size;
+        let mut starts = Vec::with_capacity(SEARCH_STARTS);
+        for _ in 0..SEARCH_STARTS {
+            let mut poses = state.poses.clone();
+            for unknown in &block.unknowns {
+                let pose = &mut poses[unknown.body().index()];
+                match unknown {
+                    Unknown::Angle(_) => {
+                        (pose.s, pose.c) = math::sin_cos(random.next() * std::f64::consts::TAU);
+                    }
+                    Unknown::Place(_) => {
+                        pose.x = (random.next() - 0.5) * reach;
+                        pose.y = (random.next() - 0.5) * reach;
+                    }
+                }
+            }
+            starts.push(poses);
+        }
+        starts
+    }
+}
+
+fn side_checks(mechanism: &Mechanism, plan: &Plan) -> Vec<SideCheck> {
+    // A body is placed once the last step that seeks anything of it is done.
+    let mut placed_after = vec![0; mechanism.bodies];
+    for (step, block) in plan.blocks.iter().enumerate() {
+        for unknown in &block.unknowns {
+            placed_after[unknown.body().index()] = step;
+        }
+    }
+    mechanism
+        .model
+        .assembly
+        .iter()
+        .filter_map(|hint| match hint.kind {
+            HintKind::Side {
+                point,
+                side,
+                from,
+                to,
+            } => {
+                let points = [from, to, point].map(|p| mechanism.any_marker(p));
+                let points = [points[0]?, points[1]?, points[2]?];
+                let after_step = points
+                    .iter()
+                    .map(|m| placed_after[m.body.index()])
+                    .max()
+                    .unwrap_or(0);
+                Some(SideCheck {
+                    points,
+                    sign: side.sign(),
+                    after_step,
+                })
+            }
+            _ => None,
+        })
+        .collect()
+}
+
+/// How far an assembly is from the file's `near` hints.
+fn hint_distance(
+    mechanism: &Mechanism,
+    design: &Design<f64>,
+    assembly: &Assembly,
+    size: f64,
+) -> f64 {
+    let parameters = mechanism.model.parameter_values::<f64>();
+    let value = |expr: &kempe_model::Scalar| expr.eval(&mut |id| parameters[id.index()]);
+    let (mut sum, mut count) = (0.0, 0);
+    for hint in &mechanism.model.assembly {
+        match &hint.kind {
+            HintKind::NearPlace { point, x, y } => {
+                let Some(marker) = mechanism.any_marker(*point) else {
+                    continue;
+                };
+                let p = assembly.poses[marker.body.index()].place(design.geometry.marker(marker));
+                let (dx, dy) = (p[0] - value(x), p[1] - value(y));
+                sum += dx * dx + dy * dy;
+                count += 1;
+            }
+            HintKind::NearAngle { link, angle } => {
+                let seat = design.geometry.seat_angles[link.index()];
+                let body = mechanism.body_of(*link);
+                let wanted = value(angle);
+                let off =
+                    (assembly.poses[body.index()].angle_near(wanted - seat) + seat - wanted) * size;
+                sum += off * off;
+                count += 1;
+            }
+            HintKind::Side { .. } => {}
+        }
+    }
+    if count == 0 {
+        0.0
+    } else {
+        (sum / count as f64).sqrt()
+    }
+}
+
+/// Runs the whole plan on plain numbers from a branch; `None` when it does not close.
+pub fn solve_plain(
+    mechanism: &Mechanism,
+    plan: &Plan,
+    design: &Design<f64>,
+    branch: &Branch,
+    coordinates: &[f64],
+) -> Option<State<f64>>
+where
+    f64: PlanNumber,
+{
+    let mut state = State::new(mechanism, plan);
+    state.set_inputs(mechanism, coordinates);
+    plan.solve(mechanism, design, branch, &mut state);
+    let finite =
+        |p: &Pose<f64>| p.x.is_finite() && p.y.is_finite() && p.c.is_finite() && p.s.is_finite();
+    (1..mechanism.bodies)
+        .all(|b| finite(&state.poses[BodyId(b as u32).index()]))
+        .then_some(state)
+}

@@ -1,0 +1,294 @@
+//! The one definition of every joint: its residuals over the bodies it ties.
+//!
+//! Lengths in m, directions as sines, gears and racks as angles. Everything else (rank, Newton groups, closure evidence,
+//! reactions) comes from these rows; the closed forms are held to them.
+
+use kempe_number::Number;
+
+use crate::geometry::Geometry;
+use crate::mechanism::{BodyId, Constraint, LineRef, Marker};
+use crate::pose::{Pose, cross, dot, sub};
+
+/// A drive's coordinate, with the unit vector of that angle for drives that turn.
+#[derive(Clone, Copy, Debug)]
+pub struct Input<T> {
+    /// The coordinate, SI.
+    pub value: T,
+    /// Cosine (only meaningful for turning drives).
+    pub c: T,
+    /// Sine.
+    pub s: T,
+}
+
+impl<T: Number> Input<T> {
+    /// A turning drive at `value` rad.
+    #[inline(always)]
+    pub fn turn(value: T) -> Self {
+        let (s, c) = value.sin_cos();
+        Self { value, c, s }
+    }
+
+    /// A drive along a length, at `value` m.
+    #[inline(always)]
+    pub fn length(value: T) -> Self {
+        Self {
+            value,
+            c: T::one(),
+            s: T::zero(),
+        }
+    }
+}
+
+/// Everything a residual needs: dimensions, drives, poses and the turn count of every body.
+pub struct Situation<'a, T> {
+    /// Dimensions.
+    pub geometry: &'a Geometry<T>,
+    /// Coordinates of the drives.
+    pub inputs: &'a [Input<T>],
+    /// Poses of the bodies.
+    pub poses: &'a [Pose<T>],
+    /// Angles of the bodies to within half a turn, rad: gears count turns.
+    pub near: &'a [f64],
+}
+
+impl<T: Number> Situation<'_, T> {
+    /// A marker in the frame.
+    #[inline(always)]
+    pub fn place(&self, marker: Marker) -> [T; 2] {
+        self.poses[marker.body.index()].place(self.geometry.marker(marker))
+    }
+
+    /// Origin and unit direction of a line in the frame.
+    #[inline(always)]
+    pub fn line(&self, line: LineRef) -> ([T; 2], [T; 2]) {
+        let local = self.geometry.line(line);
+        let pose = &self.poses[line.body.index()];
+        (pose.place(local.origin), pose.turn(local.direction))
+    }
+
+    /// Unwrapped angle of a body, rad.
+    #[inline]
+    pub fn angle(&self, body: BodyId) -> T {
+        self.poses[body.index()].angle_near(self.near[body.index()])
+    }
+
+    /// The wanted direction of body `a` of a [`Constraint::Direction`], as a unit vector.
+    #[inline(always)]
+    pub fn wanted_direction(
+        &self,
+        b: BodyId,
+        offset: u32,
+        input: Option<kempe_model::DriveId>,
+    ) -> [T; 2] {
+        let base = self.poses[b.index()].turn(self.geometry.angles[offset as usize]);
+        match input {
+            Some(drive) => {
+                let q = &self.inputs[drive.index()];
+                [base[0] * q.c - base[1] * q.s, base[1] * q.c + base[0] * q.s]
+            }
+            None => base,
+        }
+    }
+
+    /// The residual rows of a constraint; only the first [`Constraint::rows`] count.
+    #[inline]
+    pub fn residual(&self, constraint: &Constraint) -> [T; 2] {
+        let row = match *constraint {
+            Constraint::Coincide { a, b } => return sub(self.place(b), self.place(a)),
+            Constraint::OnLine { point, line } => {
+                let (origin, direction) = self.line(line);
+                cross(direction, sub(self.place(point), origin))
+            }
+            Constraint::Direction {
+                a,
+                b,
+                offset,
+                input,
+            } => {
+                let pose = &self.poses[a.index()];
+                cross(self.wanted_direction(b, offset, input), [pose.c, pose.s])
+            }
+            Constraint::Distance { a, b, input } => {
+                let span = sub(self.place(b), self.place(a));
+                let length = self.inputs[input.index()].value;
+                // (|span|^2 - length^2) / (2 length): a length, and smooth where the points meet.
+                (dot(span, span) - length.square()) / (length * 2.0)
+            }
+            Constraint::Travel { point, line, input } => {
+                let (origin, direction) = self.line(line);
+                dot(direction, sub(self.place(point), origin)) - self.inputs[input.index()].value
+            }
+            Constraint::Gears {
+                a,
+                b,
+                arm,
+                constants,
+            } => {
+                let k = &self.geometry.gears[constants as usize];
+                let arm = self.angle(arm);
+                (k.first * (self.angle(a) - arm) + k.second * (self.angle(b) - arm) - k.constant)
+                    / (k.first.abs() + k.second.abs())
+            }
+            Constraint::Rack {
+                line,
+                center,
+                constants,
+            } => {
+                let k = &self.geometry.gears[constants as usize];
+                let (origin, direction) = self.line(line);
+                let travel = dot(direction, sub(self.place(center), origin));
+                travel + k.second * (self.angle(center.body) - self.angle(line.body)) - k.constant
+            }
+        };
+        [row, T::zero()]
+    }
+}
+
+/// One entry of the constraint Jacobian: the derivative of a row to a body's x, y and angle.
+#[derive(Clone, Copy, Debug)]
+pub struct Gradient {
+    /// Row of the constraint.
+    pub row: usize,
+    /// The body.
+    pub body: BodyId,
+    /// Derivatives to x, y (per m) and angle (per rad).
+    pub to: [f64; 3],
+}
+
+impl Situation<'_, f64> {
+    /// Hands the rows of the constraint Jacobian to `emit`, and returns the derivative of each row to the coordinate
+    /// of the constraint's drive (zero without one). These are the derivatives of [`Situation::residual`].
+    #[inline]
+    pub fn gradients(&self, constraint: &Constraint, mut emit: impl FnMut(Gradient)) -> f64 {
+        let arm = |body: BodyId, p: [f64; 2]| {
+            let pose = &self.poses[body.index()];
+            [p[0] - pose.x, p[1] - pose.y]
+        };
+        match *constraint {
+            Constraint::Coincide { a, b } => {
+                for (marker, sign) in [(b, 1.0), (a, -1.0)] {
+                    let r = arm(marker.body, self.place(marker));
+                    emit(Gradient {
+                        row: 0,
+                        body: marker.body,
+                        to: [sign, 0.0, -sign * r[1]],
+                    });
+                    emit(Gradient {
+                        row: 1,
+                        body: marker.body,
+                        to: [0.0, sign, sign * r[0]],
+                    });
+                }
+                0.0
+            }
+            Constraint::OnLine { point, line } => {
+                let (p, t) = (self.place(point), self.line(line).1);
+                emit(Gradient {
+                    row: 0,
+                    body: point.body,
+                    to: [-t[1], t[0], dot(t, arm(point.body, p))],
+                });
+                emit(Gradient {
+                    row: 0,
+                    body: line.body,
+                    to: [t[1], -t[0], -dot(t, arm(line.body, p))],
+                });
+                0.0
+            }
+            Constraint::Direction {
+                a,
+                b,
+                offset,
+                input,
+            } => {
+                let pose = &self.poses[a.index()];
+                let cosine = dot(self.wanted_direction(b, offset, input), [pose.c, pose.s]);
+                emit(Gradient {
+                    row: 0,
+                    body: a,
+                    to: [0.0, 0.0, cosine],
+                });
+                emit(Gradient {
+                    row: 0,
+                    body: b,
+                    to: [0.0, 0.0, -cosine],
+                });
+                if input.is_some() { -cosine } else { 0.0 }
+            }
+            Constraint::Distance { a, b, input } => {
+                let (pa, pb) = (self.place(a), self.place(b));
+                let length = self.inputs[input.index()].value;
+                let span = sub(pb, pa);
+                for (marker, p, sign) in [(b, pb, 1.0 / length), (a, pa, -1.0 / length)] {
+                    let turn = cross(arm(marker.body, p), span);
+                    emit(Gradient {
+                        row: 0,
+                        body: marker.body,
+                        to: [span[0] * sign, span[1] * sign, turn * sign],
+                    });
+                }
+                -0.5 * (dot(span, span) / (length * length) + 1.0)
+            }
+            Constraint::Travel { point, line, .. } => {
+                self.travel_gradients(point, line, &mut emit);
+                -1.0
+            }
+            Constraint::Gears {
+                a,
+                b,
+                arm,
+                constants,
+            } => {
+                let k = &self.geometry.gears[constants as usize];
+                let size = k.first.abs() + k.second.abs();
+                for (body, factor) in [(a, k.first), (b, k.second), (arm, -k.first - k.second)] {
+                    emit(Gradient {
+                        row: 0,
+                        body,
+                        to: [0.0, 0.0, factor / size],
+                    });
+                }
+                0.0
+            }
+            Constraint::Rack {
+                line,
+                center,
+                constants,
+            } => {
+                self.travel_gradients(center, line, &mut emit);
+                let k = &self.geometry.gears[constants as usize];
+                emit(Gradient {
+                    row: 0,
+                    body: center.body,
+                    to: [0.0, 0.0, k.second],
+                });
+                emit(Gradient {
+                    row: 0,
+                    body: line.body,
+                    to: [0.0, 0.0, -k.second],
+                });
+                0.0
+            }
+        }
+    }
+
+    fn travel_gradients(&self, point: Marker, line: LineRef, emit: &mut impl FnMut(Gradient)) {
+        let (p, t) = (self.place(point), self.line(line).1);
+        let (own, guide) = (
+            &self.poses[point.body.index()],
+            &self.poses[line.body.index()],
+        );
+        let turn = cross([p[0] - own.x, p[1] - own.y], t);
+        emit(Gradient {
+            row: 0,
+            body: point.body,
+            to: [t[0], t[1], turn],
+        });
+        let turn = cross(t, [p[0] - guide.x, p[1] - guide.y]);
+        emit(Gradient {
+            row: 0,
+            body: line.body,
+            to: [-t[0], -t[1], turn],
+        });
+    }
+}

@@ -1,0 +1,182 @@
+//! The path through drive space along which a motion is followed.
+
+use kempe_model::{Law, Model};
+use kempe_number::Number;
+
+use crate::trace::Path;
+
+/// Where the drives are along a motion.
+#[derive(Clone, Debug)]
+pub enum DrivePath {
+    /// One drive moves and its coordinate is the path parameter; the others are held.
+    Coordinate {
+        /// Index of the moving drive.
+        drive: usize,
+        /// Coordinates of all drives (that of the moving one does not count).
+        held: Vec<f64>,
+        /// Size of a typical change: 1 rad, or the mechanism's size.
+        scale: f64,
+    },
+    /// Several drives move by their laws; the path parameter is time.
+    Time {
+        /// The laws.
+        laws: Vec<Law>,
+        /// The model's parameters.
+        parameters: Vec<f64>,
+        /// Typical time, s.
+        scale: f64,
+    },
+}
+
+impl DrivePath {
+    /// The path of a model's drives: along the coordinate of its only moving drive, or along time when several move.
+    pub fn new(model: &Model, parameters: &[f64], size: f64) -> Self {
+        let moving: Vec<usize> = (0..model.drives.len())
+            .filter(|&i| {
+                let (low, high) = model.drives[i].law.extent(parameters);
+                low < high
+            })
+            .collect();
+        match moving.as_slice() {
+            [] | [_] => {
+                let drive = moving.first().copied().unwrap_or(0);
+                let held = model
+                    .drives
+                    .iter()
+                    .map(|d| d.law.at(0.0, parameters))
+                    .collect();
+                let is_angle = model
+                    .drives
+                    .get(drive)
+                    .is_none_or(|d| d.dimension == kempe_units::Dimension::ANGLE);
+                Self::Coordinate {
+                    drive,
+                    held,
+                    scale: if is_angle { 1.0 } else { size },
+                }
+            }
+            _ => {
+                let laws: Vec<Law> = model.drives.iter().map(|d| d.law.clone()).collect();
+                let total = laws
+                    .iter()
+                    .map(|l| l.duration(parameters))
+                    .fold(0.0, f64::max);
+                // A radian, or a mechanism size, of the drives' whole travel counts as one.
+                let travel: f64 = model
+                    .drives
+                    .iter()
+                    .map(|d| {
+                        let (low, high) = d.law.extent(parameters);
+                        (high - low)
+                            / if d.dimension == kempe_units::Dimension::ANGLE {
+                                1.0
+                            } else {
+                                size
+                            }
+                    })
+                    .sum();
+                let scale = if travel > 0.0 && total > 0.0 {
+                    total / travel
+                } else {
+                    1.0
+                };
+                Self::Time {
+                    laws,
+                    parameters: parameters.to_vec(),
+                    scale,
+                }
+            }
+        }
+    }
+
+    /// The range of the path parameter: the moving drive's extent, or the whole time.
+    pub fn range(&self, model: &Model, parameters: &[f64]) -> (f64, f64) {
+        match self {
+            Self::Coordinate { drive, .. } => model
+                .drives
+                .get(*drive)
+                .map_or((0.0, 0.0), |d| d.law.extent(parameters)),
+            Self::Time { laws, .. } => (
+                0.0,
+                laws.iter()
+                    .map(|l| l.duration(parameters))
+                    .fold(0.0, f64::max),
+            ),
+        }
+    }
+
+    /// Where the motion starts.
+    pub fn start(&self, model: &Model, parameters: &[f64]) -> f64 {
+        match self {
+            Self::Coordinate { drive, .. } => model
+                .drives
+                .get(*drive)
+                .map_or(0.0, |d| d.law.at(0.0, parameters)),
+            Self::Time { .. } => 0.0,
+        }
+    }
+
+    /// Drive coordinates at the path parameter, on any number.
+    pub fn coordinates<T: Number>(&self, p: T, out: &mut [T]) {
+        match self {
+            Self::Coordinate { drive, held, .. } => {
+                for (index, (out, held)) in out.iter_mut().zip(held).enumerate() {
+                    *out = if index == *drive {
+                        p
+                    } else {
+                        T::from_f64(*held)
+                    };
+                }
+            }
+            Self::Time {
+                laws, parameters, ..
+            } => {
+                let parameters: Vec<T> = parameters.iter().map(|x| T::from_f64(*x)).collect();
+                for (out, law) in out.iter_mut().zip(laws) {
+                    *out = law.at(p, &parameters);
+                }
+            }
+        }
+    }
+
+    /// The path parameter at a time, as a series when `t` is one. Along a coordinate this is the drive's law.
+    pub fn parameter_at<T: Number>(&self, model: &Model, t: T, parameters: &[T]) -> T {
+        match self {
+            Self::Coordinate { drive, .. } => model
+                .drives
+                .get(*drive)
+                .map_or(T::zero(), |d| d.law.at(t, parameters)),
+            Self::Time { .. } => t,
+        }
+    }
+}
+
+impl Path for DrivePath {
+    fn at(&self, p: f64, coordinates: &mut [f64], rates: &mut [f64]) {
+        match self {
+            Self::Coordinate { drive, .. } => {
+                self.coordinates(p, coordinates);
+                rates.fill(0.0);
+                if let Some(rate) = rates.get_mut(*drive) {
+                    *rate = 1.0;
+                }
+            }
+            Self::Time {
+                laws, parameters, ..
+            } => {
+                type Series = kempe_number::Jet<f64, 2>;
+                let rich: Vec<Series> = parameters.iter().map(|x| Series::constant(*x)).collect();
+                for (law, (q, rate)) in laws.iter().zip(coordinates.iter_mut().zip(rates)) {
+                    let series = law.at(Series::variable(p), &rich);
+                    (*q, *rate) = (series.derivative(0), series.derivative(1));
+                }
+            }
+        }
+    }
+
+    fn scale(&self) -> f64 {
+        match self {
+            Self::Coordinate { scale, .. } | Self::Time { scale, .. } => *scale,
+        }
+    }
+}

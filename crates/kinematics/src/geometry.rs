@@ -1,0 +1,224 @@
+//! The dimensions of a mechanism on one kind of number: everything the constraints need, in body coordinates.
+
+use kempe_number::Number;
+
+use crate::mechanism::{LineRef, LineSource, Marker, Mechanism};
+use crate::pose::{Pose, sub};
+
+/// A directed line of a body, in the body's own coordinates.
+#[derive(Clone, Copy, Debug)]
+pub struct LocalLine<T> {
+    /// A point of the line.
+    pub origin: [T; 2],
+    /// Its unit direction.
+    pub direction: [T; 2],
+}
+
+/// Constants of a gear pair or rack: `first angle_a + second angle_b - (first + second) angle_arm = constant`.
+#[derive(Clone, Copy, Debug)]
+pub struct GearConstants<T> {
+    /// Factor of the first angle.
+    pub first: T,
+    /// Factor of the second angle.
+    pub second: T,
+    /// Right-hand side, link seats taken in.
+    pub constant: T,
+}
+
+/// A design: the dimensions of a mechanism on one kind of number.
+#[derive(Clone, Debug)]
+pub struct Geometry<T> {
+    /// Pose of every link in its body.
+    pub seats: Vec<Pose<T>>,
+    /// Angle of every link in its body, rad.
+    pub seat_angles: Vec<T>,
+    /// Local coordinates of every marker in its body.
+    pub markers: Vec<[T; 2]>,
+    /// Lines.
+    pub lines: Vec<LocalLine<T>>,
+    /// Angle constants as unit vectors.
+    pub angles: Vec<[T; 2]>,
+    /// Gear constants.
+    pub gears: Vec<GearConstants<T>>,
+}
+
+impl<T: Number> Geometry<T> {
+    /// Evaluates a mechanism's dimensions for parameter values (SI, in the model's order).
+    pub fn new(mechanism: &Mechanism, parameters: &[T]) -> Self {
+        let model = &mechanism.model;
+        let scalar = |expr: &kempe_model::Scalar| expr.eval(&mut |id| parameters[id.index()]);
+        let local: Vec<Vec<[T; 2]>> = model
+            .links
+            .iter()
+            .map(|link| link.evaluate(parameters))
+            .collect();
+
+        let count = model.links.len();
+        let mut seats: Vec<Option<(Pose<T>, T)>> = vec![None; count];
+        for link in 0..count {
+            seat(mechanism, &local, &scalar, link, &mut seats);
+        }
+        let seats: Vec<(Pose<T>, T)> = seats
+            .into_iter()
+            .map(|s| s.unwrap_or((Pose::identity(), T::zero())))
+            .collect();
+
+        let mut it = Self {
+            markers: (mechanism.markers.iter())
+                .map(|at| {
+                    let link = &model.links[at.link.index()];
+                    let place = link
+                        .points
+                        .iter()
+                        .position(|p| p.point == at.point)
+                        .unwrap_or(0);
+                    seats[at.link.index()]
+                        .0
+                        .place(local[at.link.index()][place])
+                })
+                .collect(),
+            seat_angles: seats.iter().map(|s| s.1).collect(),
+            seats: seats.into_iter().map(|s| s.0).collect(),
+            lines: Vec::new(),
+            angles: Vec::new(),
+            gears: Vec::new(),
+        };
+        for line in &mechanism.lines {
+            let line = match *line {
+                LineSource::Points(from, to) => {
+                    let origin = it.marker(from);
+                    let span = sub(it.marker(to), origin);
+                    let length = (span[0].square() + span[1].square()).sqrt();
+                    LocalLine {
+                        origin,
+                        direction: [span[0] / length, span[1] / length],
+                    }
+                }
+                LineSource::AxisOf(link) => {
+                    let seat = it.seats[link.index()];
+                    LocalLine {
+                        origin: [seat.x, seat.y],
+                        direction: [seat.c, seat.s],
+                    }
+                }
+            };
+            it.lines.push(line);
+        }
+        for angle in &mechanism.angles {
+            let value = Pose::from_angle(T::zero(), T::zero(), scalar(&angle.value));
+            let base = match angle.along {
+                Some(line) => it.line(line).direction,
+                None => [it.seats[angle.b.index()].c, it.seats[angle.b.index()].s],
+            };
+            it.angles
+                .push(it.seats[angle.a.index()].unturn(value.turn(base)));
+        }
+        for gear in &mechanism.gears {
+            let (first, second) = (scalar(&gear.first), scalar(&gear.second));
+            let seat = gear.links.map(|link| it.seat_angles[link.index()]);
+            let constant =
+                scalar(&gear.constant) - first * (seat[0] - seat[2]) - second * (seat[1] - seat[2]);
+            it.gears.push(GearConstants {
+                first,
+                second,
+                constant,
+            });
+        }
+        it
+    }
+
+    /// Local coordinates of a marker.
+    #[inline(always)]
+    pub fn marker(&self, marker: Marker) -> [T; 2] {
+        self.markers[marker.index as usize]
+    }
+
+    /// A line in its body.
+    #[inline(always)]
+    pub fn line(&self, line: LineRef) -> LocalLine<T> {
+        self.lines[line.index as usize]
+    }
+
+    /// The plain values.
+    pub fn value(&self) -> Geometry<f64> {
+        let pair = |v: &[T; 2]| [v[0].value(), v[1].value()];
+        Geometry {
+            seats: self.seats.iter().map(Pose::value).collect(),
+            seat_angles: self.seat_angles.iter().map(|a| a.value()).collect(),
+            markers: self.markers.iter().map(pair).collect(),
+            lines: (self.lines.iter())
+                .map(|l| LocalLine {
+                    origin: pair(&l.origin),
+                    direction: pair(&l.direction),
+                })
+                .collect(),
+            angles: self.angles.iter().map(pair).collect(),
+            gears: (self.gears.iter())
+                .map(|g| GearConstants {
+                    first: g.first.value(),
+                    second: g.second.value(),
+                    constant: g.constant.value(),
+                })
+                .collect(),
+        }
+    }
+}
+
+impl Geometry<f64> {
+    /// A characteristic length of the mechanism, m: the largest distance of two markers of one body.
+    pub fn size(&self, mechanism: &Mechanism) -> f64 {
+        let mut low = vec![[f64::INFINITY; 2]; mechanism.bodies];
+        let mut high = vec![[f64::NEG_INFINITY; 2]; mechanism.bodies];
+        for (at, p) in mechanism.markers.iter().zip(&self.markers) {
+            let body = mechanism.body_of(at.link).index();
+            for k in 0..2 {
+                low[body][k] = low[body][k].min(p[k]);
+                high[body][k] = high[body][k].max(p[k]);
+            }
+        }
+        let size = (low.iter().zip(&high))
+            .filter(|(l, h)| l[0] <= h[0])
+            .map(|(l, h)| kempe_number::math::hypot(h[0] - l[0], h[1] - l[1]))
+            .fold(0.0, f64::max);
+        if size > 0.0 && size.is_finite() {
+            size
+        } else {
+            1.0
+        }
+    }
+}
+
+/// Places a link in its body: welded links hang on the link they are welded to.
+fn seat<T: Number>(
+    mechanism: &Mechanism,
+    local: &[Vec<[T; 2]>],
+    scalar: &impl Fn(&kempe_model::Scalar) -> T,
+    link: usize,
+    seats: &mut Vec<Option<(Pose<T>, T)>>,
+) -> (Pose<T>, T) {
+    if let Some(known) = seats[link] {
+        return known;
+    }
+    let seated = match &mechanism.seats[link].weld {
+        None => (Pose::identity(), T::zero()),
+        Some((parent, point, angle)) => {
+            let (base, base_angle) = seat(mechanism, local, scalar, parent.index(), seats);
+            let find = |l: usize| {
+                let points = &mechanism.model.links[l].points;
+                points
+                    .iter()
+                    .position(|p| p.point == *point)
+                    .map_or([T::zero(); 2], |i| local[l][i])
+            };
+            let angle = scalar(angle);
+            let turn = Pose::from_angle(T::zero(), T::zero(), angle);
+            let [c, s] = base.turn([turn.c, turn.s]);
+            (
+                Pose::pinned(c, s, find(link), base.place(find(parent.index()))),
+                base_angle + angle,
+            )
+        }
+    };
+    seats[link] = Some(seated);
+    seated
+}

@@ -1,0 +1,538 @@
+//! A motion: the branch through the chosen assembly, known all along the drives' path.
+
+use crate::assemble::{Assemblies, all_assemblies};
+use crate::drive_path::DrivePath;
+use crate::events::{Event, EventKind, locate_change_point, locate_limit};
+use crate::mechanism::Mechanism;
+use crate::newton::PlanNumber;
+use crate::plan::{Plan, Step};
+use crate::state::{Branch, Design, State};
+use crate::trace::{Follower, Node, hermite};
+
+/// Steps after which a trace is given up.
+pub const STEP_LIMIT: usize = 200_000;
+/// A motion may end this close to a limit (in path scales) and still count as reaching it.
+pub const AT_LIMIT: f64 = 1e-12;
+/// Where a motion starts at a singular pose, its branch is looked for at these parts of the range instead.
+const ANCHORS: [f64; 6] = [0.0, 0.0137, 0.0411, 0.1234, 0.3719, 0.7183];
+
+/// Why there is no motion.
+#[derive(Clone, Debug)]
+pub enum MotionError {
+    /// No drive moves anything.
+    NoDrive,
+    /// Freedoms that no drive determines.
+    Undetermined {
+        /// Bodies that stay free.
+        bodies: Vec<crate::mechanism::BodyId>,
+    },
+    /// The mechanism cannot be assembled at the start.
+    CannotAssemble {
+        /// Path parameter of the start.
+        at: f64,
+        /// What was found.
+        assemblies: Box<Assemblies>,
+    },
+    /// Every pose tried near the start is singular: there is no direction in which the drive moves the mechanism.
+    Locked {
+        /// Path parameter of the start.
+        at: f64,
+    },
+}
+
+/// Why the motion ends before the demanded range does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum EndReason {
+    /// The demanded range, or a whole turn, is covered.
+    Covered,
+    /// The drive can go no further: a limit (for this drive a dead point).
+    Limit,
+    /// The trace got stuck: no regular continuation was found.
+    Stuck,
+}
+
+/// One stretch of the motion on which every assembly mode stays the same.
+#[derive(Clone, Debug)]
+pub(crate) struct Patch {
+    pub from: usize,
+    pub signs: usize,
+}
+
+/// The branch of a motion, all along the path: what every row of a table is computed from.
+#[derive(Clone, Debug)]
+pub struct Motion<'m> {
+    /// The mechanism.
+    pub mechanism: &'m Mechanism,
+    /// Its plan.
+    pub plan: &'m Plan,
+    /// The design.
+    pub design: &'m Design<f64>,
+    /// The drives' path.
+    pub path: DrivePath,
+    /// All assemblies at the anchor, the chosen one first.
+    pub assemblies: Assemblies,
+    /// Path parameter where the assembly was chosen: the start, or near it when the start is singular.
+    pub anchor: f64,
+    /// Path parameter where the motion starts.
+    pub start: f64,
+    /// Demanded range of the path parameter.
+    pub demanded: (f64, f64),
+    /// Why the trace ended at its low and its high end.
+    pub ends: (EndReason, EndReason),
+    /// Dead points, change points and limits met, in order of the path parameter.
+    pub events: Vec<Event>,
+    nodes: Vec<Node>,
+    parameters: Vec<f64>,
+    patches: Vec<Patch>,
+    signs: Vec<Vec<f64>>,
+    scale: f64,
+    size: f64,
+}
+
+impl<'m> Motion<'m> {
+    /// Finds the assembly at the start and follows it over the demanded range of the drives.
+    ///
+    /// # Errors
+    /// When it cannot start. A range that is cut short by a limit is not an error here: see [`Motion::ends`].
+    pub fn new(
+        mechanism: &'m Mechanism,
+        plan: &'m Plan,
+        design: &'m Design<f64>,
+        parameters: &[f64],
+    ) -> Result<Self, MotionError> {
+        let size = design.geometry.size(mechanism);
+        let model = &mechanism.model;
+        let path = DrivePath::new(model, parameters, size);
+        let demanded = path.range(model, parameters);
+        let start = path.start(model, parameters);
+        Self::along(mechanism, plan, design, path, demanded, start)
+    }
+
+    /// Follows the branch through the assembly meant by the file's hints over `demanded`, starting at `start`.
+    ///
+    /// # Errors
+    /// As [`Motion::new`].
+    pub fn along(
+        mechanism: &'m Mechanism,
+        plan: &'m Plan,
+        design: &'m Design<f64>,
+        path: DrivePath,
+        demanded: (f64, f64),
+        start: f64,
+    ) -> Result<Self, MotionError> {
+        if mechanism.model.drives.is_empty() {
+            return Err(MotionError::NoDrive);
+        }
+        if !plan.decomposition.undetermined.is_empty() {
+            let mut bodies: Vec<_> = plan
+                .decomposition
+                .undetermined
+                .iter()
+                .map(|u| u.body())
+                .collect();
+            bodies.dedup();
+            return Err(MotionError::Undetermined { bodies });
+        }
+        let size = design.geometry.size(mechanism);
+        let scale = crate::trace::Path::scale(&path);
+        let idle = plan.decomposition.idle.as_slice();
+        let mut follower = Follower::new(mechanism, &design.geometry, &path, idle);
+
+        let far = if (start - demanded.0).abs() > (demanded.1 - start).abs() {
+            demanded.0
+        } else {
+            demanded.1
+        };
+        let mut coordinates = vec![0.0; mechanism.model.drives.len()];
+        let mut nothing: Option<Assemblies> = None;
+        for part in ANCHORS {
+            let anchor = start + part * (far - start);
+            path.coordinates(anchor, &mut coordinates);
+            let assemblies = all_assemblies(mechanism, plan, design, &coordinates);
+            let Some(chosen) = assemblies.list.first() else {
+                nothing.get_or_insert(assemblies);
+                // A start right at a limit may miss closure by a rounding error: look a little inside.
+                if part > 0.0 && part > ANCHORS[1] {
+                    break;
+                } else {
+                    continue;
+                }
+            };
+            let z = follower.scaled(&chosen.poses, &chosen.branch.near, anchor);
+            let (Some(up), Some(down)) = (follower.start(z.clone(), 1.0), follower.start(z, -1.0))
+            else {
+                continue;
+            };
+            let (high, end_high) = follow(&mut follower, up, demanded.1 / scale);
+            let (low, end_low) = follow(&mut follower, down, demanded.0 / scale);
+            // From the low end to the high one; the tangents of the lower half turned round.
+            let mut nodes: Vec<Node> = low
+                .into_iter()
+                .skip(1)
+                .map(|mut node| {
+                    node.tangent.iter_mut().for_each(|t| *t = -*t);
+                    node
+                })
+                .rev()
+                .collect();
+            nodes.extend(high);
+            let mut motion = Self {
+                mechanism,
+                plan,
+                design,
+                assemblies,
+                anchor,
+                start,
+                demanded,
+                ends: (end_low, end_high),
+                events: Vec::new(),
+                parameters: Vec::new(),
+                patches: Vec::new(),
+                signs: Vec::new(),
+                nodes,
+                scale,
+                size,
+                path: path.clone(),
+            };
+            motion.find_events(&mut follower);
+            return Ok(motion);
+        }
+        match nothing {
+            Some(assemblies) => Err(MotionError::CannotAssemble {
+                at: start,
+                assemblies: Box::new(assemblies),
+            }),
+            None => Err(MotionError::Locked { at: start }),
+        }
+    }
+
+    /// The range that was reached of the demanded one.
+    pub fn reached(&self) -> (f64, f64) {
+        let (first, last) = (self.parameters.first(), self.parameters.last());
+        let (first, last) = (
+            first.copied().unwrap_or(self.start),
+            last.copied().unwrap_or(self.start),
+        );
+        (self.demanded.0.max(first), self.demanded.1.min(last))
+    }
+
+    /// Whether a path parameter lies on the motion.
+    pub fn reaches(&self, p: f64) -> bool {
+        let tolerance = AT_LIMIT * self.scale;
+        let (Some(first), Some(last)) = (self.parameters.first(), self.parameters.last()) else {
+            return false;
+        };
+        p >= first - tolerance && p <= last + tolerance
+    }
+
+    /// Size of the mechanism, m: the scale of closure residuals.
+    pub fn size(&self) -> f64 {
+        self.size
+    }
+
+    /// How many nodes the trace needed.
+    pub fn nodes(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// The change point within whose bridge `p` lies, if any.
+    pub fn bridge(&self, p: f64) -> Option<&Event> {
+        self.events
+            .iter()
+            .find(|e| e.kind == EventKind::ChangePoint && (p - e.at).abs() < 0.5 * e.bridge)
+    }
+
+    /// Fills the branch for a path parameter: modes, guesses and turn counts.
+    pub fn branch_at(&self, p: f64, branch: &mut Branch) {
+        let node = self
+            .parameters
+            .partition_point(|&q| q <= p)
+            .clamp(1, self.nodes.len().max(2) - 1)
+            - 1;
+        let patch = self
+            .patches
+            .partition_point(|patch| patch.from <= node)
+            .max(1)
+            - 1;
+        if let Some(patch) = self.patches.get(patch) {
+            branch.signs.clone_from(&self.signs[patch.signs]);
+        }
+        let (Some(from), Some(to)) = (self.nodes.get(node), self.nodes.get(node + 1)) else {
+            return;
+        };
+        // Where on the cubic the path parameter is p: it is monotonic between nodes.
+        let wanted = p / self.scale;
+        let last = from.z.len() - 1;
+        let h = from
+            .z
+            .iter()
+            .zip(&to.z)
+            .map(|(a, b)| (b - a) * (b - a))
+            .sum::<f64>()
+            .sqrt();
+        let parameter = |s: f64| {
+            let (a, b) = (
+                (1.0 + 2.0 * s) * (1.0 - s) * (1.0 - s),
+                s * s * (3.0 - 2.0 * s),
+            );
+            let (c, d) = (s * (1.0 - s) * (1.0 - s) * h, s * s * (s - 1.0) * h);
+            a * from.z[last] + b * to.z[last] + c * from.tangent[last] + d * to.tangent[last]
+        };
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..30 {
+            let middle = 0.5 * (low + high);
+            if parameter(middle) <= wanted {
+                low = middle
+            } else {
+                high = middle
+            }
+        }
+        let z = hermite(from, to, 0.5 * (low + high));
+        for (body, part) in z
+            .chunks_exact(3)
+            .enumerate()
+            .take(self.mechanism.bodies - 1)
+        {
+            branch.guess[body + 1] =
+                crate::pose::Pose::from_angle(part[0] * self.size, part[1] * self.size, part[2]);
+            branch.near[body + 1] = part[2];
+        }
+    }
+
+    /// Storage for solving poses of this motion on the number `T`.
+    pub fn solver<T: PlanNumber>(&self) -> Solver<T> {
+        Solver {
+            branch: Branch::neutral(self.mechanism, self.plan),
+            state: State::new(self.mechanism, self.plan),
+            coordinates: vec![T::zero(); self.mechanism.model.drives.len()],
+        }
+    }
+
+    /// Solves the pose at a path parameter. The series' direction, if `T` has one, is the path's.
+    pub fn solve<T: PlanNumber>(&self, design: &Design<T>, p: T, solver: &mut Solver<T>) {
+        self.branch_at(p.value(), &mut solver.branch);
+        self.path.coordinates(p, &mut solver.coordinates);
+        solver.run(self, design);
+    }
+
+    /// Finds where modes change between nodes, splits the motion there and records what was met.
+    fn find_events(&mut self, follower: &mut Follower<'_, DrivePath>) {
+        let modes: Vec<Vec<f64>> = self
+            .nodes
+            .iter()
+            .map(|node| self.determinants(follower, node))
+            .collect();
+        let mut nodes: Vec<Node> = Vec::with_capacity(self.nodes.len());
+        let mut signs: Vec<Vec<f64>> = Vec::new();
+        let old = std::mem::take(&mut self.nodes);
+        for (index, node) in old.iter().enumerate() {
+            nodes.push(node.clone());
+            let at_limit = node.parameter_rate().abs() < 1e-9;
+            if at_limit {
+                self.events.push(Event {
+                    kind: EventKind::Limit,
+                    at: follower.parameter(&node.z),
+                    steps: vanishing(&modes[index], index.checked_sub(1).map(|i| &modes[i])),
+                    bridge: 0.0,
+                });
+            }
+            let Some(next) = old.get(index + 1) else {
+                break;
+            };
+            let next_limit = next.parameter_rate().abs() < 1e-9;
+            // Next to a limit the sign of the regular end counts.
+            let here = if at_limit {
+                &modes[index + 1]
+            } else {
+                &modes[index]
+            };
+            let there = if next_limit {
+                &modes[index]
+            } else {
+                &modes[index + 1]
+            };
+            signs.push(here.iter().map(|d| d.signum()).collect());
+            let flipped: Vec<usize> = (0..here.len())
+                .filter(|&k| here[k] * there[k] < 0.0)
+                .collect();
+            if at_limit || next_limit || flipped.is_empty() {
+                continue;
+            }
+            let mut found: Vec<(f64, Node, usize)> = Vec::new();
+            for &step in &flipped {
+                let measure = |follower: &mut Follower<'_, DrivePath>, node: &Node| {
+                    self.determinants(follower, node)[step]
+                };
+                if let Some((s, at)) = locate_change_point(follower, node, next, measure) {
+                    found.push((s, at, step));
+                }
+            }
+            found.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let mut current: Vec<f64> = here.iter().map(|d| d.signum()).collect();
+            let spacing = (follower.parameter(&next.z) - follower.parameter(&node.z)).abs();
+            let mut last_s = f64::NEG_INFINITY;
+            for (s, at, step) in found {
+                current[step] = -current[step];
+                if s - last_s < 1e-7 {
+                    // Several groups change at one pose.
+                    if let (Some(event), Some(now)) = (self.events.last_mut(), signs.last_mut()) {
+                        event.steps.push(step);
+                        now.clone_from(&current);
+                    }
+                    continue;
+                }
+                last_s = s;
+                self.events.push(Event {
+                    kind: EventKind::ChangePoint,
+                    at: follower.parameter(&at.z),
+                    steps: vec![step],
+                    bridge: 0.15 * spacing,
+                });
+                nodes.push(at);
+                signs.push(current.clone());
+            }
+        }
+        self.nodes = nodes;
+        self.parameters = self
+            .nodes
+            .iter()
+            .map(|n| follower.parameter(&n.z))
+            .collect();
+        for (index, now) in signs.into_iter().enumerate() {
+            if self.signs.last() != Some(&now) {
+                self.signs.push(now);
+                self.patches.push(Patch {
+                    from: index,
+                    signs: self.signs.len() - 1,
+                });
+            }
+        }
+    }
+
+    /// The determinant of every step at a node, with the sign of its assembly mode.
+    fn determinants(&self, follower: &mut Follower<'_, DrivePath>, node: &Node) -> Vec<f64> {
+        let mut branch = Branch::neutral(self.mechanism, self.plan);
+        let mut state: State<f64> = State::new(self.mechanism, self.plan);
+        follower.unscaled(&node.z, &mut state.poses, &mut branch.near);
+        branch.guess.clone_from(&state.poses);
+        let mut coordinates = vec![0.0; self.mechanism.model.drives.len()];
+        self.path
+            .coordinates(follower.parameter(&node.z), &mut coordinates);
+        state.set_inputs(self.mechanism, &coordinates);
+        let truth = state.poses.clone();
+        let mut list = Vec::with_capacity(self.plan.steps.len());
+        for (index, step) in self.plan.steps.iter().enumerate() {
+            let unknowns = &self.plan.blocks[index].unknowns;
+            let mut best = (f64::INFINITY, 1.0);
+            let trials: &[f64] = if step.has_modes() {
+                &[1.0, -1.0]
+            } else {
+                &[1.0]
+            };
+            for &sign in trials {
+                self.plan.solve_step(
+                    index,
+                    sign,
+                    self.mechanism,
+                    self.design,
+                    &branch,
+                    &mut state,
+                );
+                let gap: f64 = unknowns
+                    .iter()
+                    .map(|u| {
+                        let (a, b) = (&state.poses[u.body().index()], &truth[u.body().index()]);
+                        ((a.x - b.x).abs() + (a.y - b.y).abs()) / self.size
+                            + (a.c - b.c).abs()
+                            + (a.s - b.s).abs()
+                    })
+                    .sum();
+                if gap < best.0 {
+                    best = (gap, state.determinants[index]);
+                }
+            }
+            // The next steps build on the true pose.
+            for unknown in unknowns {
+                state.poses[unknown.body().index()] = truth[unknown.body().index()];
+            }
+            let relevant =
+                step.has_modes() || matches!(step, Step::Newton { .. } | Step::Cross { .. });
+            list.push(if relevant && best.0.is_finite() {
+                best.1
+            } else if relevant {
+                0.0
+            } else {
+                1.0
+            });
+        }
+        list
+    }
+}
+
+/// Steps whose determinant is all but zero, compared with a regular neighbour.
+fn vanishing(at: &[f64], regular: Option<&Vec<f64>>) -> Vec<usize> {
+    let Some(regular) = regular else {
+        return Vec::new();
+    };
+    (0..at.len())
+        .filter(|&k| !(at[k].abs() > 1e-3 * regular[k].abs()))
+        .collect()
+}
+
+/// Follows one direction until the scaled parameter `target` is passed, a limit is met, or the trace is stuck.
+fn follow(
+    follower: &mut Follower<'_, DrivePath>,
+    start: Node,
+    target: f64,
+) -> (Vec<Node>, EndReason) {
+    let last = start.z.len() - 1;
+    let direction = start.tangent[last].signum();
+    let mut nodes = vec![start];
+    let mut step = 0.02;
+    for _ in 0..STEP_LIMIT {
+        let from = &nodes[nodes.len() - 1];
+        // A margin beyond the target, so that it lies inside a patch and not at the rim.
+        if (from.z[last] - target) * direction > 1e-9 {
+            return (nodes, EndReason::Covered);
+        }
+        let Some(next) = follower.advance(from, &mut step) else {
+            return (nodes, EndReason::Stuck);
+        };
+        if next.parameter_rate() * direction <= 0.0 {
+            let limit = locate_limit(follower, from, &next);
+            let covered = (limit.z[last] - target) * direction > 0.0;
+            nodes.push(limit);
+            return (
+                nodes,
+                if covered {
+                    EndReason::Covered
+                } else {
+                    EndReason::Limit
+                },
+            );
+        }
+        nodes.push(next);
+    }
+    (nodes, EndReason::Stuck)
+}
+
+/// Storage for solving poses of a motion, reused from row to row.
+#[derive(Clone, Debug)]
+pub struct Solver<T> {
+    /// The branch last used.
+    pub branch: Branch,
+    /// The state last solved.
+    pub state: State<T>,
+    /// Drive coordinates last used.
+    pub coordinates: Vec<T>,
+}
+
+impl<T: PlanNumber> Solver<T> {
+    /// Solves with the branch and coordinates set.
+    pub fn run(&mut self, motion: &Motion<'_>, design: &Design<T>) {
+        self.state.set_inputs(motion.mechanism, &self.coordinates);
+        motion
+            .plan
+            .solve(motion.mechanism, design, &self.branch, &mut self.state);
+    }
+}

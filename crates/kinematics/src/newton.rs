@@ -1,0 +1,363 @@
+//! Blocks without a closed form: Newton's method on plain numbers, then carried over to richer ones.
+
+use kempe_number::{Dual, Jet, Lanes, Number};
+
+use crate::blocks::{Row, Unknown};
+use crate::constraint::Situation;
+use crate::geometry::Geometry;
+use crate::mechanism::Mechanism;
+use crate::plan::NewtonBlock;
+use crate::pose::Pose;
+use crate::qr::Qr;
+use crate::state::{Branch, Design, State};
+
+/// A scaled step below this is taken as converged (one more step is made after it).
+pub const NEWTON_STEP: f64 = 1e-9;
+/// Newton steps before a block is given up.
+pub const NEWTON_LIMIT: usize = 30;
+
+/// A number a plan can run on: it knows how to solve a block that has no closed form.
+pub trait PlanNumber: Number {
+    /// Solves a block from the branch's guess; returns its determinant. What cannot be solved becomes NaN.
+    fn solve_newton(
+        block: &NewtonBlock,
+        mechanism: &Mechanism,
+        design: &Design<Self>,
+        branch: &Branch,
+        state: &mut State<Self>,
+    ) -> Self;
+}
+
+impl PlanNumber for f64 {
+    fn solve_newton(
+        block: &NewtonBlock,
+        mechanism: &Mechanism,
+        design: &Design<f64>,
+        branch: &Branch,
+        state: &mut State<f64>,
+    ) -> f64 {
+        start(block, branch, &mut state.poses);
+        let scratch = &mut state.scratch;
+        plain_newton(
+            block,
+            mechanism,
+            &design.geometry,
+            &state.inputs,
+            branch,
+            &mut state.poses,
+            &mut scratch.qr,
+            &mut scratch.rhs,
+        )
+    }
+}
+
+impl<T: PlanNumber, const N: usize> PlanNumber for Jet<T, N> {
+    fn solve_newton(
+        block: &NewtonBlock,
+        mechanism: &Mechanism,
+        design: &Design<Self>,
+        branch: &Branch,
+        state: &mut State<Self>,
+    ) -> Self {
+        // Every pass makes one more coefficient exact; a nested dual needs one pass of its own.
+        carry_over(block, mechanism, design, branch, state, N)
+    }
+}
+
+impl<T: PlanNumber, const K: usize> PlanNumber for Dual<T, K> {
+    fn solve_newton(
+        block: &NewtonBlock,
+        mechanism: &Mechanism,
+        design: &Design<Self>,
+        branch: &Branch,
+        state: &mut State<Self>,
+    ) -> Self {
+        carry_over(block, mechanism, design, branch, state, 2)
+    }
+}
+
+impl<const W: usize> PlanNumber for Lanes<W> {
+    fn solve_newton(
+        block: &NewtonBlock,
+        mechanism: &Mechanism,
+        design: &Design<Self>,
+        branch: &Branch,
+        state: &mut State<Self>,
+    ) -> Self {
+        let mut determinant = [f64::NAN; W];
+        for lane in 0..W {
+            let State {
+                inputs,
+                poses,
+                scratch,
+                ..
+            } = state;
+            for (plain, wide) in scratch.poses.iter_mut().zip(poses.iter()) {
+                *plain = Pose {
+                    x: wide.x.0[lane],
+                    y: wide.y.0[lane],
+                    c: wide.c.0[lane],
+                    s: wide.s.0[lane],
+                };
+            }
+            for (plain, wide) in scratch.inputs.iter_mut().zip(inputs.iter()) {
+                (plain.value, plain.c, plain.s) =
+                    (wide.value.0[lane], wide.c.0[lane], wide.s.0[lane]);
+            }
+            let geometry = &design.plain[lane.min(design.plain.len() - 1)];
+            start(block, branch, &mut scratch.poses);
+            determinant[lane] = plain_newton(
+                block,
+                mechanism,
+                geometry,
+                &scratch.inputs,
+                branch,
+                &mut scratch.poses,
+                &mut scratch.qr,
+                &mut scratch.rhs,
+            );
+            for unknown in &block.unknowns {
+                let (wide, plain) = (
+                    &mut poses[unknown.body().index()],
+                    &scratch.poses[unknown.body().index()],
+                );
+                (wide.x.0[lane], wide.y.0[lane]) = (plain.x, plain.y);
+                (wide.c.0[lane], wide.s.0[lane]) = (plain.c, plain.s);
+            }
+        }
+        Lanes(determinant)
+    }
+}
+
+fn start(block: &NewtonBlock, branch: &Branch, poses: &mut [Pose<f64>]) {
+    for unknown in &block.unknowns {
+        let body = unknown.body().index();
+        let (pose, guess) = (&mut poses[body], &branch.guess[body]);
+        match unknown {
+            Unknown::Angle(_) => (pose.c, pose.s) = (guess.c, guess.s),
+            Unknown::Place(_) => (pose.x, pose.y) = (guess.x, guess.y),
+        }
+    }
+}
+
+/// Fills the block's Jacobian into `qr` and factors it.
+pub(crate) fn factor_block(
+    block: &NewtonBlock,
+    mechanism: &Mechanism,
+    situation: &Situation<'_, f64>,
+    qr: &mut Qr,
+) {
+    qr.reset(block.rows.len(), block.size);
+    for_each_constraint(block, |constraint, at| {
+        situation.gradients(&mechanism.constraints[constraint].0, |gradient| {
+            let Some(row) = at[gradient.row] else { return };
+            for (unknown, &column) in block.unknowns.iter().zip(&block.columns) {
+                if unknown.body() != gradient.body {
+                    continue;
+                }
+                match unknown {
+                    Unknown::Angle(_) => qr.add(row, column, gradient.to[2]),
+                    Unknown::Place(_) => {
+                        qr.add(row, column, gradient.to[0]);
+                        qr.add(row, column + 1, gradient.to[1]);
+                    }
+                }
+            }
+        });
+    });
+    qr.factor();
+}
+
+/// Calls `f` for every constraint of the block with the places of its rows in the block.
+fn for_each_constraint(block: &NewtonBlock, mut f: impl FnMut(usize, [Option<usize>; 2])) {
+    for (place, &Row { constraint, row }) in block.rows.iter().enumerate() {
+        if block.rows[..place]
+            .iter()
+            .any(|r| r.constraint == constraint)
+        {
+            continue;
+        }
+        let mut at = [None; 2];
+        at[row] = Some(place);
+        for (later, r) in block.rows.iter().enumerate().skip(place + 1) {
+            if r.constraint == constraint {
+                at[r.row] = Some(later);
+            }
+        }
+        f(constraint, at);
+    }
+}
+
+fn fill_residuals<T: Number>(
+    block: &NewtonBlock,
+    mechanism: &Mechanism,
+    situation: &Situation<'_, T>,
+    rhs: &mut [T],
+) {
+    for_each_constraint(block, |constraint, at| {
+        let rows = situation.residual(&mechanism.constraints[constraint].0);
+        for k in 0..2 {
+            if let Some(place) = at[k] {
+                rhs[place] = rows[k];
+            }
+        }
+    });
+}
+
+fn apply_step<T: Number>(block: &NewtonBlock, poses: &mut [Pose<T>], step: &[T]) {
+    for (unknown, &column) in block.unknowns.iter().zip(&block.columns) {
+        let pose = &mut poses[unknown.body().index()];
+        *pose = match unknown {
+            Unknown::Angle(_) => pose.moved(T::zero(), T::zero(), -step[column]),
+            Unknown::Place(_) => Pose {
+                x: pose.x - step[column],
+                y: pose.y - step[column + 1],
+                ..*pose
+            },
+        };
+    }
+}
+
+/// Keeps the direction a unit vector against rounding.
+fn normalise(block: &NewtonBlock, poses: &mut [Pose<f64>]) {
+    for unknown in &block.unknowns {
+        if let Unknown::Angle(body) = unknown {
+            let pose = &mut poses[body.index()];
+            let size = (pose.c * pose.c + pose.s * pose.s).sqrt();
+            (pose.c, pose.s) = (pose.c / size, pose.s / size);
+        }
+    }
+}
+
+#[allow(
+    clippy::too_many_arguments,
+    reason = "the parts of a state, borrowed apart"
+)]
+fn plain_newton(
+    block: &NewtonBlock,
+    mechanism: &Mechanism,
+    geometry: &Geometry<f64>,
+    inputs: &[crate::constraint::Input<f64>],
+    branch: &Branch,
+    poses: &mut [Pose<f64>],
+    qr: &mut Qr,
+    rhs: &mut [f64],
+) -> f64 {
+    let rhs = &mut rhs[..block.rows.len()];
+    let mut converged = false;
+    for _ in 0..NEWTON_LIMIT {
+        let situation = Situation {
+            geometry,
+            inputs,
+            poses,
+            near: &branch.near,
+        };
+        fill_residuals(block, mechanism, &situation, rhs);
+        factor_block(block, mechanism, &situation, qr);
+        qr.solve(rhs);
+        let size = scaled_size(block, poses, &rhs[..block.size]);
+        if !size.is_finite() {
+            break;
+        }
+        apply_step(block, poses, &rhs[..block.size]);
+        normalise(block, poses);
+        if converged {
+            return qr.determinant();
+        }
+        converged = size <= NEWTON_STEP;
+    }
+    for unknown in &block.unknowns {
+        poses[unknown.body().index()] = Pose {
+            x: f64::NAN,
+            y: f64::NAN,
+            c: f64::NAN,
+            s: f64::NAN,
+        };
+    }
+    f64::NAN
+}
+
+/// Largest part of a step: angles in rad, lengths against the largest coordinate.
+fn scaled_size(block: &NewtonBlock, poses: &[Pose<f64>], step: &[f64]) -> f64 {
+    let mut length = 0.0_f64;
+    let mut reach = f64::MIN_POSITIVE;
+    let mut angle = 0.0_f64;
+    let mut bad = false;
+    for (unknown, &column) in block.unknowns.iter().zip(&block.columns) {
+        match unknown {
+            Unknown::Angle(_) => {
+                bad |= !step[column].is_finite();
+                angle = angle.max(step[column].abs());
+            }
+            Unknown::Place(body) => {
+                let pose = &poses[body.index()];
+                bad |= !(step[column].is_finite() && step[column + 1].is_finite());
+                length = length.max(step[column].abs()).max(step[column + 1].abs());
+                reach = reach.max(pose.x.abs()).max(pose.y.abs());
+            }
+        }
+    }
+    if bad {
+        f64::NAN
+    } else {
+        angle.max(length / reach)
+    }
+}
+
+/// Solves on plain numbers, then makes the higher parts exact: with the plain Jacobian's inverse every pass of the
+/// simplified Newton iteration x <- x - J0^-1 F(x) corrects one more order of a nilpotent number.
+fn carry_over<T: PlanNumber>(
+    block: &NewtonBlock,
+    mechanism: &Mechanism,
+    design: &Design<T>,
+    branch: &Branch,
+    state: &mut State<T>,
+    passes: usize,
+) -> T {
+    let State {
+        inputs,
+        poses,
+        scratch,
+        ..
+    } = state;
+    for (plain, rich) in scratch.poses.iter_mut().zip(poses.iter()) {
+        *plain = rich.value();
+    }
+    for (plain, rich) in scratch.inputs.iter_mut().zip(inputs.iter()) {
+        (plain.value, plain.c, plain.s) = (rich.value.value(), rich.c.value(), rich.s.value());
+    }
+    start(block, branch, &mut scratch.poses);
+    let determinant = plain_newton(
+        block,
+        mechanism,
+        &design.plain[0],
+        &scratch.inputs,
+        branch,
+        &mut scratch.poses,
+        &mut scratch.qr,
+        &mut scratch.rhs,
+    );
+    for unknown in &block.unknowns {
+        let (rich, plain) = (
+            &mut poses[unknown.body().index()],
+            &scratch.poses[unknown.body().index()],
+        );
+        match unknown {
+            Unknown::Angle(_) => (rich.c, rich.s) = (T::from_f64(plain.c), T::from_f64(plain.s)),
+            Unknown::Place(_) => (rich.x, rich.y) = (T::from_f64(plain.x), T::from_f64(plain.y)),
+        }
+    }
+    let rhs = &mut scratch.wide_rhs[..block.rows.len()];
+    for _ in 0..passes {
+        let situation = Situation {
+            geometry: &design.geometry,
+            inputs,
+            poses,
+            near: &branch.near,
+        };
+        fill_residuals(block, mechanism, &situation, rhs);
+        scratch.qr.solve(rhs);
+        apply_step(block, poses, &rhs[..block.size]);
+    }
+    T::from_f64(determinant)
+}

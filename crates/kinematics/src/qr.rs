@@ -1,0 +1,146 @@
+//! Dense least squares by Householder reflections, with storage that is reused from solve to solve.
+
+use kempe_number::Number;
+
+/// A factored matrix of `rows >= columns`. Square systems are solved, taller ones in the least-squares sense.
+#[derive(Clone, Debug, Default)]
+pub struct Qr {
+    rows: usize,
+    columns: usize,
+    /// Column-major: R above the diagonal, reflectors on and below it.
+    a: Vec<f64>,
+    /// Diagonal of R.
+    diagonal: Vec<f64>,
+    /// Reflector scale, 2 / v.v.
+    scale: Vec<f64>,
+}
+
+impl Qr {
+    /// Storage for matrices up to this size; no later call allocates while it suffices.
+    pub fn with_capacity(rows: usize, columns: usize) -> Self {
+        Self {
+            rows: 0,
+            columns: 0,
+            a: Vec::with_capacity(rows * columns),
+            diagonal: Vec::with_capacity(columns),
+            scale: Vec::with_capacity(columns),
+        }
+    }
+
+    /// Starts a new matrix of zeros.
+    pub fn reset(&mut self, rows: usize, columns: usize) {
+        self.rows = rows;
+        self.columns = columns;
+        self.a.clear();
+        self.a.resize(rows * columns, 0.0);
+    }
+
+    /// Adds to an entry of the matrix, before [`Qr::factor`].
+    #[inline(always)]
+    pub fn add(&mut self, row: usize, column: usize, value: f64) {
+        self.a[column * self.rows + row] += value;
+    }
+
+    /// Factors the matrix in place.
+    pub fn factor(&mut self) {
+        let m = self.rows;
+        self.diagonal.clear();
+        self.scale.clear();
+        for k in 0..self.columns {
+            let (head, tail) = self.a.split_at_mut((k + 1) * m);
+            let v = &mut head[k * m + k..];
+            let norm = v.iter().map(|x| x * x).sum::<f64>().sqrt();
+            let alpha = if v[0] > 0.0 { -norm } else { norm };
+            v[0] -= alpha;
+            let size = v.iter().map(|x| x * x).sum::<f64>();
+            let scale = if size > 0.0 { 2.0 / size } else { 0.0 };
+            self.diagonal.push(alpha);
+            self.scale.push(scale);
+            for column in tail.chunks_exact_mut(m) {
+                let w = &mut column[k..];
+                let sum = v.iter().zip(w.iter()).map(|(x, y)| x * y).sum::<f64>() * scale;
+                for (x, y) in v.iter().zip(w) {
+                    *y -= sum * x;
+                }
+            }
+        }
+    }
+
+    /// Solves in place: on return the first `columns` entries of `rhs` are the solution.
+    pub fn solve<T: Number>(&self, rhs: &mut [T]) {
+        let m = self.rows;
+        for k in 0..self.columns {
+            let v = &self.a[k * m + k..(k + 1) * m];
+            let mut sum = T::zero();
+            for (x, y) in v.iter().zip(&rhs[k..]) {
+                sum += *y * *x;
+            }
+            sum = sum * self.scale[k];
+            for (x, y) in v.iter().zip(&mut rhs[k..]) {
+                *y -= sum * *x;
+            }
+        }
+        for k in (0..self.columns).rev() {
+            let mut sum = rhs[k];
+            for j in k + 1..self.columns {
+                sum -= rhs[j] * self.a[j * m + k];
+            }
+            rhs[k] = sum / self.diagonal[k];
+        }
+    }
+
+    /// Determinant of a square matrix (of R with the sign of the reflections).
+    pub fn determinant(&self) -> f64 {
+        // Every reflection that was made turns the sign.
+        self.diagonal
+            .iter()
+            .zip(&self.scale)
+            .map(|(r, s)| if *s > 0.0 { -r } else { *r })
+            .product()
+    }
+
+    /// Smallest over largest diagonal entry of R: a cheap measure of how near the matrix is to losing rank.
+    pub fn smallest_pivot_ratio(&self) -> f64 {
+        let (low, high) = self
+            .diagonal
+            .iter()
+            .fold((f64::INFINITY, 0.0_f64), |(low, high), r| {
+                (low.min(r.abs()), high.max(r.abs()))
+            });
+        if high > 0.0 { low / high } else { 0.0 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn solves_a_square_and_a_tall_system() {
+        let mut qr = Qr::with_capacity(3, 2);
+        qr.reset(2, 2);
+        for (r, c, v) in [(0, 0, 1.0), (0, 1, 2.0), (1, 0, 3.0), (1, 1, -1.0)] {
+            qr.add(r, c, v);
+        }
+        qr.factor();
+        assert!((qr.determinant() + 7.0).abs() < 1e-14);
+        let mut rhs = [5.0, 1.0];
+        qr.solve(&mut rhs);
+        assert!((rhs[0] - 1.0).abs() < 1e-14 && (rhs[1] - 2.0).abs() < 1e-14);
+
+        qr.reset(3, 2);
+        for (r, c, v) in [
+            (0, 0, 1.0),
+            (1, 0, 1.0),
+            (2, 0, 1.0),
+            (1, 1, 1.0),
+            (2, 1, 2.0),
+        ] {
+            qr.add(r, c, v);
+        }
+        qr.factor();
+        let mut rhs = [1.0, 3.0, 5.0];
+        qr.solve(&mut rhs);
+        assert!((rhs[0] - 1.0).abs() < 1e-14 && (rhs[1] - 2.0).abs() < 1e-14);
+    }
+}

@@ -1,0 +1,407 @@
+//! Running a plan: from drive coordinates to poses.
+
+use kempe_model::DriveId;
+use kempe_number::Number;
+
+use crate::closed_form::{Locus, direction, dyad, meet, reach_locus};
+use crate::constraint::Situation;
+use crate::mechanism::{Constraint, Marker, Mechanism};
+use crate::newton::PlanNumber;
+use crate::plan::{Carrier, Condition, Plan, Reach, Sliding, Step};
+use crate::pose::{Pose, cross, dot, left, sub};
+use crate::state::{Branch, Design, State};
+
+impl Plan {
+    /// Finds the pose for the drive coordinates in `state.inputs` on the given branch: fills `state.poses` and
+    /// `state.determinants`. Where the mechanism cannot be assembled the poses become NaN (empty for intervals).
+    ///
+    /// Allocates nothing.
+    #[inline(always)]
+    pub fn solve<T: PlanNumber>(
+        &self,
+        mechanism: &Mechanism,
+        design: &Design<T>,
+        branch: &Branch,
+        state: &mut State<T>,
+    ) {
+        for (index, &sign) in branch.signs.iter().enumerate() {
+            self.solve_step(index, sign, mechanism, design, branch, state);
+        }
+    }
+
+    /// Solves one step with the given assembly mode; the steps before it must have been solved.
+    #[inline(always)]
+    pub(crate) fn solve_step<T: PlanNumber>(
+        &self,
+        index: usize,
+        sign: f64,
+        mechanism: &Mechanism,
+        design: &Design<T>,
+        branch: &Branch,
+        state: &mut State<T>,
+    ) {
+        let determinant = match self.steps[index] {
+            Step::Turn {
+                body,
+                from,
+                offset,
+                input,
+                reversed,
+            } => {
+                let [c, s] = turned(
+                    design,
+                    state,
+                    state.poses[from.index()],
+                    offset,
+                    input,
+                    reversed,
+                );
+                let pose = &mut state.poses[body.index()];
+                (pose.c, pose.s) = (c, s);
+                T::one()
+            }
+            Step::Pin { own, at } => {
+                let world = place(design, state, at);
+                let pose = &mut state.poses[own.body.index()];
+                *pose = Pose::pinned(pose.c, pose.s, design.geometry.marker(own), world);
+                T::one()
+            }
+            Step::Dyad {
+                outer_a,
+                at_a,
+                inner_a,
+                outer_b,
+                at_b,
+                inner_b,
+                constants,
+            } => {
+                let placed = (place(design, state, at_a), place(design, state, at_b));
+                let outer = (
+                    design.geometry.marker(outer_a),
+                    design.geometry.marker(outer_b),
+                );
+                let constants =
+                    &design.constants[constants..constants + crate::closed_form::DYAD_CONSTANTS];
+                let (a, b, h) = dyad(constants, outer, placed, sign);
+                state.poses[inner_a.body.index()] = a;
+                state.poses[inner_b.body.index()] = b;
+                h
+            }
+            Step::Swing {
+                own,
+                at,
+                tip,
+                condition,
+                partner,
+            } => swing(design, state, (own, at, tip), condition, partner, sign),
+            Step::SwingLine {
+                own,
+                at,
+                toward,
+                reach,
+                partner,
+            } => swing_line(design, state, (own, at, toward), reach, partner, sign),
+            Step::Cross {
+                carriers,
+                conditions,
+            } => {
+                let loci = [0, 1].map(|k| locus(design, state, carriers[k], conditions[k]));
+                let (x, determinant) = meet(loci[0], loci[1], sign);
+                for carrier in carriers {
+                    carry(design, state, carrier, x);
+                }
+                determinant
+            }
+            Step::TwoPins { a, at_a, b, at_b } => {
+                let (wa, wb) = (place(design, state, at_a), place(design, state, at_b));
+                let seen = sub(wb, wa);
+                let own = sub(design.geometry.marker(b), design.geometry.marker(a));
+                let [c, s] = direction(own, seen, (dot(own, own) * dot(seen, seen)).sqrt());
+                state.poses[a.body.index()] = Pose::pinned(c, s, design.geometry.marker(a), wa);
+                T::one()
+            }
+            Step::Hold { body } => {
+                let pose = &mut state.poses[body.index()];
+                (pose.c, pose.s) = (T::one(), T::zero());
+                T::one()
+            }
+            Step::Gear { body, constraint } => gear(
+                &state.situation(design, branch),
+                mechanism,
+                body,
+                constraint,
+            )
+            .map_or(T::one(), |angle| {
+                let (s, c) = angle.sin_cos();
+                let pose = &mut state.poses[body.index()];
+                (pose.c, pose.s) = (c, s);
+                T::one()
+            }),
+            Step::Newton { block } => {
+                T::solve_newton(&self.newton_blocks[block], mechanism, design, branch, state)
+            }
+        };
+        state.determinants[index] = determinant;
+    }
+}
+
+#[inline(always)]
+fn place<T: Number>(design: &Design<T>, state: &State<T>, marker: Marker) -> [T; 2] {
+    state.poses[marker.body.index()].place(design.geometry.marker(marker))
+}
+
+/// Direction of a body that is turned by an angle constant and a drive against another.
+#[inline(always)]
+fn turned<T: Number>(
+    design: &Design<T>,
+    state: &State<T>,
+    from: Pose<T>,
+    offset: u32,
+    input: Option<DriveId>,
+    reversed: bool,
+) -> [T; 2] {
+    let mut by = design.geometry.angles[offset as usize];
+    if let Some(drive) = input {
+        let q = &state.inputs[drive.index()];
+        by = [by[0] * q.c - by[1] * q.s, by[1] * q.c + by[0] * q.s];
+    }
+    if reversed {
+        by[1] = -by[1];
+    }
+    from.turn(by)
+}
+
+/// What a condition says about the point its carrier holds. The carrier's angle must be known.
+#[inline(always)]
+fn locus<T: Number>(
+    design: &Design<T>,
+    state: &State<T>,
+    carrier: Carrier,
+    condition: Condition,
+) -> Locus<T> {
+    let geometry = &design.geometry;
+    let pose = &state.poses[carrier.body.index()];
+    let pin = carrier
+        .pin
+        .map_or([T::zero(); 2], |pin| geometry.marker(pin));
+    match condition {
+        Condition::OnLine { own, line } | Condition::TravelOn { own, line, .. } => {
+            let local = geometry.line(line);
+            let guide = &state.poses[line.body.index()];
+            let along = guide.turn(local.direction);
+            let from = sub(
+                guide.place(local.origin),
+                pose.turn(sub(geometry.marker(own), pin)),
+            );
+            on_line(state, condition, along, from)
+        }
+        Condition::Through { line, point } | Condition::TravelThrough { line, point, .. } => {
+            let local = geometry.line(line);
+            let along = pose.turn(local.direction);
+            let from = sub(
+                place(design, state, point),
+                pose.turn(sub(local.origin, pin)),
+            );
+            match condition {
+                Condition::TravelThrough { input, .. } => {
+                    Locus::Line(along, dot(along, from) - state.inputs[input.index()].value)
+                }
+                _ => Locus::Line(left(along), dot(left(along), from)),
+            }
+        }
+        Condition::Radius { own, center, input } => {
+            let center = sub(
+                place(design, state, center),
+                pose.turn(sub(geometry.marker(own), pin)),
+            );
+            Locus::Circle(center, state.inputs[input.index()].value)
+        }
+    }
+}
+
+/// A point on the line through `from` along `along`, or with the drive's coordinate along it.
+#[inline(always)]
+fn on_line<T: Number>(
+    state: &State<T>,
+    condition: Condition,
+    along: [T; 2],
+    from: [T; 2],
+) -> Locus<T> {
+    match condition {
+        Condition::TravelOn { input, .. } => {
+            Locus::Line(along, dot(along, from) + state.inputs[input.index()].value)
+        }
+        _ => Locus::Line(left(along), dot(left(along), from)),
+    }
+}
+
+/// Places a translating body by the point it carries.
+#[inline(always)]
+fn carry<T: Number>(design: &Design<T>, state: &mut State<T>, carrier: Carrier, x: [T; 2]) {
+    let pin = carrier
+        .pin
+        .map_or([T::zero(); 2], |pin| design.geometry.marker(pin));
+    let pose = &mut state.poses[carrier.body.index()];
+    *pose = Pose::pinned(pose.c, pose.s, pin, x);
+}
+
+#[inline(always)]
+fn swing<T: Number>(
+    design: &Design<T>,
+    state: &mut State<T>,
+    (own, at, tip): (Marker, Marker, Marker),
+    condition: Condition,
+    partner: Option<Carrier>,
+    sign: f64,
+) -> T {
+    let center = place(design, state, at);
+    let pin = design.geometry.marker(own);
+    let arm = sub(design.geometry.marker(tip), pin);
+    let square = dot(arm, arm);
+    // On the body itself the condition acts at the tip, whatever the body's angle.
+    let locus = match (partner, condition) {
+        (Some(carrier), _) => locus(design, state, carrier, condition),
+        (None, Condition::Radius { center, input, .. }) => Locus::Circle(
+            place(design, state, center),
+            state.inputs[input.index()].value,
+        ),
+        (None, Condition::OnLine { line, .. } | Condition::TravelOn { line, .. }) => {
+            let local = design.geometry.line(line);
+            let guide = &state.poses[line.body.index()];
+            on_line(
+                state,
+                condition,
+                guide.turn(local.direction),
+                guide.place(local.origin),
+            )
+        }
+        // Conditions with a line of the swinging body are `SwingLine`s.
+        (None, Condition::Through { .. } | Condition::TravelThrough { .. }) => {
+            return T::from_f64(f64::NAN);
+        }
+    };
+    let (reach, h) = reach_locus(center, square.sqrt(), locus, sign);
+    let [c, s] = direction(arm, reach, square);
+    state.poses[own.body.index()] = Pose::pinned(c, s, pin, center);
+    if let Some(carrier) = partner {
+        carry(
+            design,
+            state,
+            carrier,
+            [center[0] + reach[0], center[1] + reach[1]],
+        );
+    }
+    h
+}
+
+#[inline(always)]
+fn swing_line<T: Number>(
+    design: &Design<T>,
+    state: &mut State<T>,
+    (own, at, toward): (Marker, Marker, Marker),
+    reach: Reach,
+    partner: Option<Sliding>,
+    sign: f64,
+) -> T {
+    let geometry = &design.geometry;
+    let (center, far) = (place(design, state, at), place(design, state, toward));
+    let pin = geometry.marker(own);
+    let v = sub(far, center);
+    // Turn of the partner against the body, as a unit vector.
+    let relative = partner.map(|p| {
+        let mut by = geometry.angles[p.offset as usize];
+        if let Some(drive) = p.input {
+            let q = &state.inputs[drive.index()];
+            by = [by[0] * q.c - by[1] * q.s, by[1] * q.c + by[0] * q.s];
+        }
+        if p.reversed {
+            by[1] = -by[1];
+        }
+        Pose {
+            x: T::zero(),
+            y: T::zero(),
+            c: by[0],
+            s: by[1],
+        }
+    });
+    let outer = partner.map_or([T::zero(); 2], |p| geometry.marker(p.outer));
+    let relative = relative.unwrap_or(Pose::identity());
+    // Seen from the body, `v` has this known projection on this unit vector.
+    let (unit, k) = match reach {
+        Reach::Line { line } => {
+            let local = geometry.line(line);
+            let n = left(local.direction);
+            (n, dot(n, sub(local.origin, pin)))
+        }
+        Reach::Travel { line, input } => {
+            let local = geometry.line(line);
+            (
+                local.direction,
+                state.inputs[input.index()].value + dot(local.direction, sub(local.origin, pin)),
+            )
+        }
+        Reach::PartnerPoint { line, point } => {
+            let local = geometry.line(line);
+            let n = left(local.direction);
+            let lever = relative.turn(sub(geometry.marker(point), outer));
+            (n, dot(n, sub(local.origin, pin)) - dot(n, lever))
+        }
+        Reach::PartnerLine { point, line } => {
+            let local = geometry.line(line);
+            let n = relative.turn(left(local.direction));
+            let origin = relative.turn(sub(local.origin, outer));
+            (n, dot(n, sub(geometry.marker(point), pin)) - dot(n, origin))
+        }
+    };
+    let square = dot(v, v);
+    let (seen, h) = crate::closed_form::with_projection(unit, k, square, sign);
+    // The body sees `v` as `seen`: its direction is v / seen.
+    let (c, s) = (dot(seen, v) / square, cross(seen, v) / square);
+    let pose = Pose::pinned(c, s, pin, center);
+    state.poses[own.body.index()] = pose;
+    if let Some(sliding) = partner {
+        let [c, s] = pose.turn([relative.c, relative.s]);
+        state.poses[sliding.outer.body.index()] = Pose::pinned(c, s, outer, far);
+    }
+    h
+}
+
+/// Angle of a body from a gear pair or a rack; `None` when the constraint is of another kind.
+#[inline]
+fn gear<T: Number>(
+    situation: &Situation<'_, T>,
+    mechanism: &Mechanism,
+    body: crate::mechanism::BodyId,
+    constraint: usize,
+) -> Option<T> {
+    match mechanism.constraints[constraint].0 {
+        Constraint::Gears {
+            a,
+            b,
+            arm,
+            constants,
+        } => {
+            let k = &situation.geometry.gears[constants as usize];
+            let angle = |body| situation.angle(body);
+            Some(if body == a {
+                (k.constant - k.second * (angle(b) - angle(arm))) / k.first + angle(arm)
+            } else if body == b {
+                (k.constant - k.first * (angle(a) - angle(arm))) / k.second + angle(arm)
+            } else {
+                (k.first * angle(a) + k.second * angle(b) - k.constant) / (k.first + k.second)
+            })
+        }
+        Constraint::Rack {
+            line,
+            center,
+            constants,
+        } => {
+            let k = &situation.geometry.gears[constants as usize];
+            let (origin, along) = situation.line(line);
+            let turn = (k.constant - dot(along, sub(situation.place(center), origin))) / k.second;
+            // The rack itself can only be the one sought when its line's place is known without its angle.
+            (body == center.body).then(|| situation.angle(line.body) + turn)
+        }
+        _ => None,
+    }
+}

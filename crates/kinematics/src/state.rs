@@ -1,0 +1,163 @@
+//! What a position solve works on: a design, a branch, and the state it fills.
+
+use kempe_model::DriveKind;
+use kempe_number::Number;
+
+use crate::closed_form::dyad_constants;
+use crate::constraint::{Input, Situation};
+use crate::geometry::Geometry;
+use crate::mechanism::Mechanism;
+use crate::plan::{Plan, Step};
+use crate::pose::Pose;
+use crate::qr::Qr;
+
+/// The dimensions of one design (or several in lanes), with what the plan's closed forms prepare from them.
+#[derive(Clone, Debug)]
+pub struct Design<T> {
+    /// Dimensions.
+    pub geometry: Geometry<T>,
+    /// Constants of the dyads.
+    pub constants: Vec<T>,
+    /// Plain dimensions behind `geometry`, one per lane: where Newton's method starts.
+    pub plain: Vec<Geometry<f64>>,
+}
+
+impl<T: Number> Design<T> {
+    /// Prepares a design from parameter values (SI, in the model's order).
+    pub fn new(mechanism: &Mechanism, plan: &Plan, parameters: &[T]) -> Self {
+        let geometry = Geometry::new(mechanism, parameters);
+        let plain = vec![geometry.value()];
+        Self::from_geometry(plan, geometry, plain)
+    }
+
+    pub(crate) fn from_geometry(
+        plan: &Plan,
+        geometry: Geometry<T>,
+        plain: Vec<Geometry<f64>>,
+    ) -> Self {
+        let mut constants = vec![T::zero(); plan.constants];
+        for step in &plan.steps {
+            if let Step::Dyad {
+                outer_a,
+                inner_a,
+                outer_b,
+                inner_b,
+                constants: at,
+                ..
+            } = *step
+            {
+                let a = (geometry.marker(outer_a), geometry.marker(inner_a));
+                let b = (geometry.marker(outer_b), geometry.marker(inner_b));
+                let values = dyad_constants(a, b);
+                constants[at..at + values.len()].copy_from_slice(&values);
+            }
+        }
+        Self {
+            geometry,
+            constants,
+            plain,
+        }
+    }
+}
+
+/// Which of the assemblies: the sign of every closed form and a place to start for every Newton block.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Branch {
+    /// Assembly mode of every step; 0 where there is no choice.
+    pub signs: Vec<f64>,
+    /// A pose near the one wanted (only bodies of Newton blocks need one).
+    pub guess: Vec<Pose<f64>>,
+    /// Angle of every body to within half a turn, rad.
+    pub near: Vec<f64>,
+}
+
+impl Branch {
+    /// A branch with every mode at +1 and every guess at the frame's pose.
+    pub fn neutral(mechanism: &Mechanism, plan: &Plan) -> Self {
+        Self {
+            signs: vec![1.0; plan.steps.len()],
+            guess: vec![Pose::identity(); mechanism.bodies],
+            near: vec![0.0; mechanism.bodies],
+        }
+    }
+}
+
+/// Where everything is, and the storage a solve needs.
+#[derive(Clone, Debug)]
+pub struct State<T> {
+    /// Coordinates of the drives.
+    pub inputs: Vec<Input<T>>,
+    /// Poses of the bodies.
+    pub poses: Vec<Pose<T>>,
+    /// Determinant of every step: vanishes where assemblies meet.
+    pub determinants: Vec<T>,
+    pub(crate) scratch: Scratch<T>,
+}
+
+/// Storage of the Newton blocks.
+#[derive(Clone, Debug)]
+pub(crate) struct Scratch<T> {
+    pub poses: Vec<Pose<f64>>,
+    pub inputs: Vec<Input<f64>>,
+    pub rhs: Vec<f64>,
+    pub wide_rhs: Vec<T>,
+    pub qr: Qr,
+}
+
+impl<T: Number> State<T> {
+    /// Storage for a mechanism and its plan.
+    pub fn new(mechanism: &Mechanism, plan: &Plan) -> Self {
+        let rows = plan
+            .newton_blocks
+            .iter()
+            .map(|b| b.rows.len())
+            .max()
+            .unwrap_or(0);
+        let columns = plan.newton_blocks.iter().map(|b| b.size).max().unwrap_or(0);
+        let drives = mechanism.model.drives.len();
+        Self {
+            inputs: vec![Input::length(T::zero()); drives],
+            poses: vec![Pose::identity(); mechanism.bodies],
+            determinants: vec![T::one(); plan.steps.len()],
+            scratch: Scratch {
+                poses: vec![Pose::identity(); mechanism.bodies],
+                inputs: vec![Input::length(0.0); drives],
+                rhs: vec![0.0; rows],
+                wide_rhs: vec![T::zero(); rows],
+                qr: Qr::with_capacity(rows, columns),
+            },
+        }
+    }
+
+    /// Sets the drives' coordinates (SI).
+    #[inline]
+    pub fn set_inputs(&mut self, mechanism: &Mechanism, coordinates: &[T]) {
+        for ((input, drive), &value) in self
+            .inputs
+            .iter_mut()
+            .zip(&mechanism.model.drives)
+            .zip(coordinates)
+        {
+            *input = input_of(drive, value);
+        }
+    }
+
+    /// What the constraints see of this state.
+    pub fn situation<'a>(&'a self, design: &'a Design<T>, branch: &'a Branch) -> Situation<'a, T> {
+        Situation {
+            geometry: &design.geometry,
+            inputs: &self.inputs,
+            poses: &self.poses,
+            near: &branch.near,
+        }
+    }
+}
+
+/// A drive's coordinate as the constraints see it.
+#[inline(always)]
+pub(crate) fn input_of<T: Number>(drive: &kempe_model::Drive, value: T) -> Input<T> {
+    match drive.kind {
+        DriveKind::Turn { .. } => Input::turn(value),
+        DriveKind::Cylinder { .. } | DriveKind::Slide { .. } => Input::length(value),
+    }
+}

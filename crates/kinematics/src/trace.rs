@@ -1,0 +1,372 @@
+//! Following the motion: pseudo-arc-length continuation of all constraints at once.
+//!
+//! The step depends on the mechanism alone, never on the rows that a study wants, so the branch that comes out cannot
+//! depend on them either. Every step is accepted only if the cubic through its ends, with their tangents, agrees with a
+//! corrected point in the middle: a jump to another branch would show there.
+
+use crate::constraint::{Input, Situation};
+use crate::geometry::Geometry;
+use crate::mechanism::{BodyId, Constraint, Mechanism};
+use crate::pose::Pose;
+use crate::qr::Qr;
+
+/// How far the corrected middle of a step may lie from the cubic through its ends, as a part of the step.
+pub const MIDDLE_TOLERANCE: f64 = 1e-3;
+/// Smallest cosine between the tangents at the ends of a step.
+pub const TURN_LIMIT: f64 = 0.97;
+/// A correction below this (in mechanism sizes and rad) ends Newton's method.
+const CORRECTED: f64 = 1e-13;
+/// Corrections before a point is given up.
+const CORRECTIONS: usize = 8;
+/// Longest step, in mechanism sizes and rad over all bodies (root of the sum of squares).
+const LONGEST_STEP: f64 = 0.5;
+/// Shortest step: below it the motion is stuck.
+const SHORTEST_STEP: f64 = 1e-9;
+
+/// A path through the space of drive coordinates.
+pub trait Path {
+    /// Drive coordinates at the path parameter, and their derivatives to it.
+    fn at(&self, p: f64, coordinates: &mut [f64], rates: &mut [f64]);
+    /// Size of a typical change of the parameter: 1 for an angle, a mechanism size for a length.
+    fn scale(&self) -> f64;
+}
+
+/// A point of the motion: scaled unknowns (x and y over the mechanism's size, angle, for every body; last the path
+/// parameter over its scale) and the unit tangent.
+#[derive(Clone, Debug)]
+pub struct Node {
+    /// Unknowns.
+    pub z: Vec<f64>,
+    /// Unit tangent, in the direction of travel.
+    pub tangent: Vec<f64>,
+}
+
+impl Node {
+    /// Rate of the path parameter along the arc; zero at a limit.
+    pub fn parameter_rate(&self) -> f64 {
+        self.tangent[self.tangent.len() - 1]
+    }
+}
+
+/// Follows the solution curve of a mechanism along a path of its drives.
+pub struct Follower<'a, P> {
+    mechanism: &'a Mechanism,
+    geometry: &'a Geometry<f64>,
+    path: &'a P,
+    /// Mechanism size, m.
+    pub size: f64,
+    idle: &'a [BodyId],
+    rows: usize,
+    qr: Qr,
+    rhs: Vec<f64>,
+    poses: Vec<Pose<f64>>,
+    near: Vec<f64>,
+    inputs: Vec<Input<f64>>,
+    coordinates: Vec<f64>,
+    rates: Vec<f64>,
+}
+
+impl<'a, P: Path> Follower<'a, P> {
+    /// A follower for a design; `idle` angles are held.
+    pub fn new(
+        mechanism: &'a Mechanism,
+        geometry: &'a Geometry<f64>,
+        path: &'a P,
+        idle: &'a [BodyId],
+    ) -> Self {
+        let rows: usize = mechanism
+            .constraints
+            .iter()
+            .map(|(c, _)| c.rows())
+            .sum::<usize>()
+            + idle.len()
+            + 1;
+        let unknowns = 3 * (mechanism.bodies - 1) + 1;
+        let drives = mechanism.model.drives.len();
+        Self {
+            mechanism,
+            geometry,
+            path,
+            size: geometry.size(mechanism),
+            idle,
+            rows: rows.max(unknowns),
+            qr: Qr::with_capacity(rows.max(unknowns), unknowns),
+            rhs: Vec::new(),
+            poses: vec![Pose::identity(); mechanism.bodies],
+            near: vec![0.0; mechanism.bodies],
+            inputs: vec![Input::length(0.0); drives],
+            coordinates: vec![0.0; drives],
+            rates: vec![0.0; drives],
+        }
+    }
+
+    /// How many unknowns, the path parameter included.
+    pub fn unknowns(&self) -> usize {
+        3 * (self.mechanism.bodies - 1) + 1
+    }
+
+    /// Path parameter at scaled unknowns.
+    pub fn parameter(&self, z: &[f64]) -> f64 {
+        z[z.len() - 1] * self.path.scale()
+    }
+
+    /// Scaled unknowns of a pose with unwrapped angles `near`.
+    pub fn scaled(&self, poses: &[Pose<f64>], near: &[f64], p: f64) -> Vec<f64> {
+        let mut z = Vec::with_capacity(self.unknowns());
+        for (pose, near) in poses.iter().zip(near).skip(1) {
+            z.extend([
+                pose.x / self.size,
+                pose.y / self.size,
+                pose.angle_near(*near),
+            ]);
+        }
+        z.push(p / self.path.scale());
+        z
+    }
+
+    /// Poses and unwrapped angles of scaled unknowns.
+    pub fn unscaled(&self, z: &[f64], poses: &mut [Pose<f64>], near: &mut [f64]) {
+        for (body, part) in z
+            .chunks_exact(3)
+            .enumerate()
+            .take(self.mechanism.bodies - 1)
+        {
+            poses[body + 1] = Pose::from_angle(part[0] * self.size, part[1] * self.size, part[2]);
+            near[body + 1] = part[2];
+        }
+    }
+
+    /// Fills residuals and the bordered Jacobian (last row: `border`) and factors it.
+    fn linearise(&mut self, z: &[f64], border: &[f64]) {
+        let n = self.unknowns();
+        let p = self.parameter(z);
+        let (mut poses, mut near) = (
+            std::mem::take(&mut self.poses),
+            std::mem::take(&mut self.near),
+        );
+        self.unscaled(z, &mut poses, &mut near);
+        self.path.at(p, &mut self.coordinates, &mut self.rates);
+        for ((input, drive), &value) in self
+            .inputs
+            .iter_mut()
+            .zip(&self.mechanism.model.drives)
+            .zip(&self.coordinates)
+        {
+            *input = crate::state::input_of(drive, value);
+        }
+        let situation = Situation {
+            geometry: self.geometry,
+            inputs: &self.inputs,
+            poses: &poses,
+            near: &near,
+        };
+        self.qr.reset(self.rows, n);
+        self.rhs.clear();
+        self.rhs.resize(self.rows, 0.0);
+        let (size, scale) = (self.size, self.path.scale());
+        let mut row = 0;
+        for (constraint, _) in &self.mechanism.constraints {
+            // Lengths count in mechanism sizes, directions and gear angles as they are.
+            let unit = if is_length(constraint) {
+                1.0 / size
+            } else {
+                1.0
+            };
+            let residual = situation.residual(constraint);
+            for k in 0..constraint.rows() {
+                self.rhs[row + k] = residual[k] * unit;
+            }
+            let qr = &mut self.qr;
+            let to_drive = situation.gradients(constraint, |g| {
+                if g.body != BodyId::GROUND {
+                    let column = 3 * (g.body.index() - 1);
+                    qr.add(row + g.row, column, g.to[0] * size * unit);
+                    qr.add(row + g.row, column + 1, g.to[1] * size * unit);
+                    qr.add(row + g.row, column + 2, g.to[2] * unit);
+                }
+            });
+            if let Some(drive) = drive_of(constraint) {
+                qr.add(row, n - 1, to_drive * self.rates[drive] * scale * unit);
+            }
+            row += constraint.rows();
+        }
+        for body in self.idle {
+            self.qr.add(row, 3 * (body.index() - 1) + 2, 1.0);
+            row += 1;
+        }
+        for (column, value) in border.iter().enumerate() {
+            self.qr.add(row, column, *value);
+        }
+        self.qr.factor();
+        (self.poses, self.near) = (poses, near);
+    }
+
+    /// The unit tangent at a point, on the side of `toward`. `None` where it is not unique.
+    pub fn tangent(&mut self, z: &[f64], toward: &[f64]) -> Option<Vec<f64>> {
+        self.linearise(z, toward);
+        let n = self.unknowns();
+        let last = self.border_row();
+        self.rhs.fill(0.0);
+        self.rhs[last] = 1.0;
+        let mut t = std::mem::take(&mut self.rhs);
+        self.qr.solve(&mut t);
+        t.truncate(n);
+        let length = norm(&t);
+        if !length.is_finite() || length == 0.0 {
+            return None;
+        }
+        for value in &mut t {
+            *value /= length;
+        }
+        Some(t)
+    }
+
+    fn border_row(&self) -> usize {
+        self.mechanism
+            .constraints
+            .iter()
+            .map(|(c, _)| c.rows())
+            .sum::<usize>()
+            + self.idle.len()
+    }
+
+    /// Smallest over largest pivot of the bordered Jacobian at the point last linearised: how well the tangent is
+    /// determined.
+    pub fn conditioning(&self) -> f64 {
+        self.qr.smallest_pivot_ratio()
+    }
+
+    /// Corrects a point within the hyperplane across `border` through it. Returns the length of the first correction.
+    pub fn correct(&mut self, z: &mut [f64], border: &[f64]) -> Option<f64> {
+        let mut first = None;
+        let mut last = f64::INFINITY;
+        for _ in 0..CORRECTIONS {
+            self.linearise(z, border);
+            let mut step = std::mem::take(&mut self.rhs);
+            self.qr.solve(&mut step);
+            let length = norm(&step[..z.len()]);
+            for (z, d) in z.iter_mut().zip(&step) {
+                *z -= d;
+            }
+            self.rhs = step;
+            if !length.is_finite() || (length > 0.5 * last && length > 1e-10) {
+                return None;
+            }
+            first.get_or_insert(length);
+            if length <= CORRECTED || (length > 0.1 * last && length < 1e-11) {
+                return first;
+            }
+            last = length;
+        }
+        None
+    }
+
+    /// The start of a trace: corrects `z` at fixed path parameter and finds the tangent with the parameter growing
+    /// (`direction` > 0) or shrinking. `None` at a singular pose.
+    pub fn start(&mut self, mut z: Vec<f64>, direction: f64) -> Option<Node> {
+        let mut border = vec![0.0; z.len()];
+        let last = z.len() - 1;
+        border[last] = direction.signum();
+        self.correct(&mut z, &border)?;
+        let tangent = self.tangent(&z, &border)?;
+        (self.conditioning() > 1e-9 && tangent[last].abs() > 1e-7).then_some(Node { z, tangent })
+    }
+
+    /// One step along the arc; `step` is the length to try and is adapted for the next. `None` when stuck.
+    pub fn advance(&mut self, from: &Node, step: &mut f64) -> Option<Node> {
+        let longest = LONGEST_STEP * ((self.mechanism.bodies - 1) as f64).sqrt();
+        let mut odd = 0;
+        while *step > SHORTEST_STEP {
+            let h = step.min(longest);
+            let mut z: Vec<f64> = from
+                .z
+                .iter()
+                .zip(&from.tangent)
+                .map(|(z, t)| z + h * t)
+                .collect();
+            let outcome = self
+                .correct(&mut z, &from.tangent)
+                .filter(|first| *first <= 0.3 * h)
+                .and_then(|_| {
+                    let tangent = self.tangent(&z, &from.tangent)?;
+                    // Right on a crossing of branches the tangent is not determined: step elsewhere.
+                    if self.conditioning() < 1e-10 {
+                        odd += 1;
+                        return None;
+                    }
+                    (dot(&tangent, &from.tangent) >= TURN_LIMIT).then_some(tangent)
+                });
+            let Some(tangent) = outcome else {
+                *step = h * if odd > 0 { 0.71 } else { 0.5 };
+                continue;
+            };
+            let to = Node { z, tangent };
+            let mut middle = hermite(from, &to, 0.5);
+            let chord = chord(from, &to);
+            let gap = self.correct(&mut middle, &chord);
+            match gap {
+                Some(gap) if gap <= MIDDLE_TOLERANCE * h => {
+                    // The cubic's error goes with the fourth power of the step.
+                    let grow = (0.5 * MIDDLE_TOLERANCE * h / gap.max(1e-18)).sqrt().sqrt();
+                    *step = (h * grow.clamp(0.5, 2.0)).min(longest);
+                    return Some(to);
+                }
+                _ => *step = 0.6 * h,
+            }
+        }
+        None
+    }
+}
+
+/// Rows of a constraint that are lengths.
+pub(crate) fn is_length(constraint: &Constraint) -> bool {
+    !matches!(
+        constraint,
+        Constraint::Direction { .. } | Constraint::Gears { .. }
+    )
+}
+
+fn drive_of(constraint: &Constraint) -> Option<usize> {
+    match constraint {
+        Constraint::Direction { input, .. } => input.map(|d| d.index()),
+        Constraint::Distance { input, .. } | Constraint::Travel { input, .. } => {
+            Some(input.index())
+        }
+        _ => None,
+    }
+}
+
+/// The cubic through two nodes with their tangents, at a part `s` of the step.
+pub fn hermite(from: &Node, to: &Node, s: f64) -> Vec<f64> {
+    let h = from
+        .z
+        .iter()
+        .zip(&to.z)
+        .map(|(a, b)| (b - a) * (b - a))
+        .sum::<f64>()
+        .sqrt();
+    let (a, b) = (
+        (1.0 + 2.0 * s) * (1.0 - s) * (1.0 - s),
+        s * s * (3.0 - 2.0 * s),
+    );
+    let (c, d) = (s * (1.0 - s) * (1.0 - s) * h, s * s * (s - 1.0) * h);
+    (0..from.z.len())
+        .map(|i| a * from.z[i] + b * to.z[i] + c * from.tangent[i] + d * to.tangent[i])
+        .collect()
+}
+
+/// Unit vector from one node to the next.
+pub fn chord(from: &Node, to: &Node) -> Vec<f64> {
+    let mut v: Vec<f64> = from.z.iter().zip(&to.z).map(|(a, b)| b - a).collect();
+    let length = norm(&v);
+    v.iter_mut().for_each(|x| *x /= length);
+    v
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}
+
+fn norm(a: &[f64]) -> f64 {
+    dot(a, a).sqrt()
+}
