@@ -10,9 +10,9 @@ use crate::svg;
 
 /// Width of the stage and size of a plot, mm; the page scales them.
 const STAGE: [f64; 2] = [170.0, 150.0];
-const PLOT: [f64; 2] = [130.0, 74.0];
+const PLOT: [f64; 2] = [104.0, 66.0];
 /// Height of a plot with equal axes, mm.
-const PATH_PLOT_HEIGHT: f64 = 100.0;
+const PATH_PLOT_HEIGHT: f64 = 84.0;
 
 pub(super) struct Built {
     pub html: String,

@@ -1,0 +1,184 @@
+//! Nothing that a model file can hold breaks a picture or gets out of its place in the page.
+
+#[path = "../examples/showcase/mechanisms.rs"]
+mod mechanisms;
+#[path = "../examples/showcase/reports.rs"]
+mod reports;
+
+use kempe_draw::plot::{Axis, Curve, PlotSpec};
+use kempe_draw::report::{Block, MOST_ROWS, Report};
+use kempe_draw::*;
+use proptest::prelude::*;
+
+const EVIL: &str = "</script><script>alert(1)</script><img src=x onerror=alert(2)>\"' {{data}} ]]> \u{2028}\u{0}&amp;";
+
+fn evil_report() -> Report {
+    let mut report = reports::report(&[mechanisms::crank_rocker(), mechanisms::slider_crank()]);
+    let text = || EVIL.to_string();
+    (report.title, report.file_name, report.generator) = (text(), text(), text());
+    for motion in &mut report.motions {
+        (motion.name, motion.summary, motion.view.title) = (text(), text(), text());
+        motion.view.points.iter_mut().for_each(|p| *p = text());
+        motion.view.links.iter_mut().for_each(|l| l.name = text());
+        motion.columns.iter_mut().for_each(|c| (c.name, c.unit) = (text(), text()));
+        (motion.drive.name, motion.drive.unit) = (text(), text());
+        motion.view.length_unit.name = text();
+        motion.events.iter_mut().for_each(|e| (e.label, e.place) = (text(), text()));
+        motion.evidence.facts.push((text(), text()));
+        for plot in &mut motion.plots {
+            (plot.title, plot.x.label, plot.y.unit) = (text(), text(), text());
+            plot.curves.iter_mut().for_each(|c| c.label = text());
+            plot.markers.iter_mut().for_each(|m| m.label = text());
+        }
+    }
+    for section in &mut report.sections {
+        section.title = text();
+        section.blocks = vec![Block::Paragraph(text()), Block::List(vec![text()])];
+    }
+    report
+}
+
+#[test]
+fn no_text_gets_out_of_its_place() {
+    let html = evil_report().to_html();
+    // the page's own two script elements, and no other element from a text
+    assert_eq!(html.matches("<script").count(), 2);
+    assert_eq!(html.matches("</script").count(), 2);
+    assert_eq!(html.matches("<img").count(), 0);
+    assert!(!html.contains("\u{2028}\u{0}"));
+    let start = html.find("id=\"data\">").unwrap() + 10;
+    let json = &html[start..start + html[start..].find("</script>").unwrap()];
+    let data: serde_json::Value = serde_json::from_str(json).unwrap();
+    assert_eq!(data[0]["name"], EVIL);
+    let case = mechanisms::crank_rocker();
+    let mut view = case.view.clone();
+    view.title = EVIL.into();
+    let picture = svg::document(&Stage::new(&view, &case.frames, DrawOptions::default()).scene(0), Theme::Light);
+    assert!(!picture.contains("<script") && !picture.contains("<img"));
+}
+
+#[test]
+fn long_motions_are_thinned_and_the_ends_kept() {
+    let mut case = mechanisms::slider_crank();
+    let n = 25_001;
+    case.frames = (0..n).map(|k| case.frames[k % 121].clone()).collect();
+    case.drive = (0..n).map(|k| k as f64 * 1e-3).collect();
+    let html = reports::report(&[case]).to_html();
+    let start = html.find("\"row\":[").unwrap() + 7;
+    let rows: Vec<&str> = html[start..start + html[start..].find(']').unwrap()].split(',').collect();
+    assert!(rows.len() <= MOST_ROWS + 1 && rows.first() == Some(&"0") && rows.last() == Some(&"25000"));
+    assert!(html.len() < 1_500_000, "{}", html.len());
+}
+
+/// Any number, with the awkward ones often.
+fn number() -> impl Strategy<Value = f64> {
+    prop_oneof![
+        4 => -1.0..1.0_f64,
+        1 => prop::sample::select(vec![f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 0.0, -0.0, 1e308, -1e308, 5e-324, 1e6, 1e-6]),
+    ]
+}
+
+fn guide() -> impl Strategy<Value = Guide> {
+    (0..6_usize, 0..6_usize, 0..6_usize).prop_map(|(link, from, to)| Guide { link, from, to })
+}
+
+fn wheel() -> impl Strategy<Value = Wheel> {
+    (0..6_usize, 0..6_usize, number(), prop::sample::select(vec![0, 1, 4, 5, 20, 399, u32::MAX]))
+        .prop_map(|(link, center, radius, teeth)| Wheel { link, center, radius, teeth })
+}
+
+fn joint() -> impl Strategy<Value = JointView> {
+    let i = 0..6_usize;
+    prop_oneof![
+        (i.clone(), i.clone(), guide()).prop_map(|(block, at, guide)| JointView::Slider { block, at, guide }),
+        (i.clone(), guide()).prop_map(|(pin, guide)| JointView::Slot { pin, guide }),
+        (i.clone(), i.clone(), i.clone()).prop_map(|(at, a, b)| JointView::Weld { at, links: [a, b] }),
+        (wheel(), wheel(), any::<bool>()).prop_map(|(a, b, internal)| JointView::Gears { a, b, internal }),
+        (i.clone(), wheel(), number()).prop_map(|(link, pinion, side)| JointView::Rack { link, pinion, side }),
+        (i.clone(), i.clone()).prop_map(|(a, b)| JointView::Cylinder { a, b }),
+        (i.clone(), i.clone()).prop_map(|(a, b)| JointView::Spring { a, b }),
+        (i.clone(), i).prop_map(|(a, b)| JointView::Damper { a, b }),
+    ]
+}
+
+fn drive() -> impl Strategy<Value = DriveView> {
+    let i = 0..6_usize;
+    let kind = prop_oneof![
+        (i.clone(), i.clone()).prop_map(|(link, about)| DriveKind::Turn { link, about }),
+        (i.clone(), guide()).prop_map(|(at, guide)| DriveKind::Slide { at, guide }),
+        (i.clone(), i).prop_map(|(a, b)| DriveKind::Extend { a, b }),
+    ];
+    (kind, any::<bool>()).prop_map(|(kind, forward)| DriveView { name: "m".into(), kind, forward })
+}
+
+prop_compose! {
+    fn mechanism()(
+        links in prop::collection::vec(prop::collection::vec(0..6_usize, 0..5), 0..5),
+        joints in prop::collection::vec(joint(), 0..4),
+        drives in prop::collection::vec(drive(), 0..3),
+        points in 0..6_usize,
+        frames in prop::collection::vec(
+            (prop::collection::vec([number(), number()], 0..7), prop::collection::vec([number(), number(), number()], 0..6)), 0..5),
+        size in prop::sample::select(vec![1e-6, 1.0, 1e6]),
+        factor in number(),
+    ) -> (MechanismView, Vec<Frame>) {
+        let view = MechanismView {
+            title: "any".into(),
+            length_unit: LengthUnit::new("u", factor),
+            points: (0..points).map(|k| format!("P{k}")).collect(),
+            links: links.into_iter().map(|points| LinkView { name: "l".into(), points }).collect(),
+            joints,
+            traces: vec![TraceView { label: "t".into(), point: 2 }],
+            drives,
+        };
+        let frames = frames.into_iter().map(|(points, links)| Frame {
+            points: points.into_iter().map(|p| p.map(|v| v * size)).collect(), links, label: "f".into() }).collect();
+        (view, frames)
+    }
+}
+
+fn all_numbers_are_numbers(text: &str) {
+    for bad in ["NaN", "inf", "null"] {
+        assert!(!text.contains(bad), "{bad} in {text}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(300))]
+
+    #[test]
+    fn any_mechanism_gives_a_picture((view, frames) in mechanism(), index in 0..6_usize) {
+        let options = DrawOptions { ghosts: vec![0, 9], ..DrawOptions::default() };
+        let stage = Stage::new(&view, &frames, options);
+        all_numbers_are_numbers(&svg::document(&stage.scene(index), Theme::Page));
+        let file = dxf::document(&stage, index);
+        prop_assert!(::dxf::Drawing::load(&mut file.as_bytes()).is_ok());
+        #[cfg(feature = "raster")]
+        raster::Canvas::draw(&stage.scene(index), Theme::Light, 1.0).unwrap();
+    }
+
+    #[test]
+    fn any_report_is_a_page_with_json((view, frames) in mechanism(), values in prop::collection::vec(number(), 0..6)) {
+        let mut report = reports::report(&[mechanisms::crank_rocker()]);
+        let motion = &mut report.motions[0];
+        (motion.view, motion.frames, motion.time) = (view, frames, values.clone());
+        motion.drive.values = values;
+        let html = report.to_html();
+        let start = html.find("id=\"data\">").unwrap() + 10;
+        let json = &html[start..start + html[start..].find("</script>").unwrap()];
+        prop_assert!(serde_json::from_str::<serde_json::Value>(json).is_ok(), "{}", json);
+    }
+
+    #[test]
+    fn any_plot_is_drawn(
+        x in prop::collection::vec(number(), 0..20), y in prop::collection::vec(number(), 0..20),
+        logs in any::<[bool; 2]>(), equal_aspect in any::<bool>(), limits in prop::option::of([number(), number()]),
+    ) {
+        let axis = |log| Axis { log, limits, ..Axis::new("a", "deg") };
+        let curve = Curve { label: "c".into(), x, y, dashed: true };
+        let plot = PlotSpec {
+            x: axis(logs[0]), y: axis(logs[1]), curves: vec![curve.clone(), curve], equal_aspect, ..PlotSpec::default()
+        };
+        all_numbers_are_numbers(&svg::document(&plot.draw(100.0, 60.0).scene, Theme::Dark));
+    }
+}
