@@ -230,6 +230,28 @@ impl<'m> Motion<'m> {
         self.size
     }
 
+    /// Path parameter and poses of a node of the trace, with unwrapped body angles.
+    pub(crate) fn node(&self, index: usize) -> (f64, Vec<crate::pose::Pose<f64>>, Vec<f64>) {
+        let mut poses = vec![crate::pose::Pose::identity(); self.mechanism.bodies];
+        let mut near = vec![0.0; self.mechanism.bodies];
+        for (body, part) in self.nodes[index]
+            .z
+            .chunks_exact(3)
+            .enumerate()
+            .take(self.mechanism.bodies - 1)
+        {
+            poses[body + 1] =
+                crate::pose::Pose::from_angle(part[0] * self.size, part[1] * self.size, part[2]);
+            near[body + 1] = part[2];
+        }
+        (self.parameters[index], poses, near)
+    }
+
+    /// Path parameters of all nodes, rising.
+    pub fn node_parameters(&self) -> &[f64] {
+        &self.parameters
+    }
+
     /// How many nodes the trace needed.
     pub fn nodes(&self) -> usize {
         self.nodes.len()
