@@ -30,8 +30,10 @@ mod fit;
 mod furniture;
 mod hull;
 pub mod number_format;
+pub mod plot;
 #[cfg(feature = "raster")]
 pub mod raster;
+pub mod report;
 pub mod scene;
 mod stage;
 pub mod svg;

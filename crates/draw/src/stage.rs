@@ -74,7 +74,10 @@ impl<'a> Stage<'a> {
         let mut bounds = Bounds::EMPTY;
         match options.view_box {
             Some(corners) => corners.iter().for_each(|&p| bounds.add(p, 0.0)),
-            None => frames.iter().for_each(|frame| add_frame(&mut bounds, view, frame)),
+            None => {
+                frames.iter().for_each(|frame| add_frame(&mut bounds, view, frame));
+                view.joints.iter().for_each(|joint| add_rack(&mut bounds, frames, joint));
+            }
         }
         let top = if options.title { 10.0 } else { 0.0 };
         let bottom = if options.scale_bar || options.caption { 9.0 } else { 0.0 };
@@ -191,14 +194,29 @@ fn add_frame(bounds: &mut Bounds, view: &MechanismView, frame: &Frame) {
                     point(frame, wheel.center).into_iter().for_each(|p| bounds.add(p, wheel.radius.abs()));
                 }
             }
-            JointView::Rack { link, pinion, side } => {
-                if let (Some(p), Some(angle)) = (point(frame, pinion.center), link_angle(frame, *link)) {
-                    bounds.add(p, pinion.radius.abs());
-                    let ((s, c), r) = (sin_cos(angle), side * pinion.radius);
-                    bounds.add([p[0] + r * s, p[1] - r * c], 0.0);
-                }
+            JointView::Rack { pinion, .. } => {
+                point(frame, pinion.center).into_iter().for_each(|p| bounds.add(p, pinion.radius.abs()));
             }
             _ => {}
+        }
+    }
+}
+
+/// A rack is as long as its pinion's travel; both its ends belong on the sheet in every pose.
+fn add_rack(bounds: &mut Bounds, frames: &[Frame], joint: &JointView) {
+    let JointView::Rack { link, pinion, side } = joint else { return };
+    let placed = |frame: &Frame| Some((point(frame, pinion.center)?, *frame.links.get(*link)?));
+    let along = |(p, l): (Point, [f64; 3])| {
+        let (s, c) = sin_cos(l[2]);
+        (p[0] - l[0]) * c + (p[1] - l[1]) * s
+    };
+    let travel: Vec<f64> = frames.iter().filter_map(placed).map(along).filter(|s| s.is_finite()).collect();
+    let low = travel.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = travel.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    for (p, l) in frames.iter().filter_map(placed) {
+        let ((s, c), here, r) = (sin_cos(l[2]), along((p, l)), side * pinion.radius);
+        for end in [low - here, high - here] {
+            bounds.add([p[0] + r * s + end * c, p[1] - r * c + end * s], 0.0);
         }
     }
 }

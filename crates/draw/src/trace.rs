@@ -11,8 +11,6 @@ const REST: f64 = 0.4;
 
 /// The path of a point on paper.
 pub struct TracePath {
-    /// Whose it is.
-    pub label: String,
     /// Its colour.
     pub token: Token,
     /// Unbroken pieces: pose number and place.
@@ -36,7 +34,7 @@ impl TracePath {
             }
             pieces.retain(|piece| piece.len() > 1);
             let carrier = context.carriers(trace.point).last().copied().unwrap_or(1);
-            TracePath { label: trace.label.clone(), token: Token::Series(carrier.saturating_sub(1)), pieces }
+            TracePath { token: Token::Series(carrier.saturating_sub(1)), pieces }
         };
         context.view.traces.iter().map(path).collect()
     }

@@ -168,6 +168,7 @@ impl Diagnostic {
             .iter()
             .find(|l| l.primary)
             .or(self.labels.first());
+        let mut skip = 0;
         let mut shown: Option<(Option<&Source>, usize)> = None;
         for label in labels {
             let line = line_of(label, text);
@@ -177,24 +178,32 @@ impl Diagnostic {
                 let top_line = line_of(top, text);
                 out += &format!("{pad} ┌ {name}:{}:{}\n", top_line.number, top_line.column);
             }
+            let source = label.source.as_ref().map_or(text, |s| s.text.as_str());
             if shown != Some((label.source.as_ref(), line.number)) {
+                skip = if line.content.chars().count() > WIDE {
+                    line.column.saturating_sub(WIDE / 2)
+                } else {
+                    0
+                };
+                let shown: String = line.content.chars().skip(skip).take(WIDE).collect();
+                let dots = if skip > 0 { "…" } else { "" };
                 out += &format!(
-                    "{:>width$} │ {}\n",
+                    "{:>width$} │ {dots}{}\n",
                     line.number,
-                    line.content.replace('\t', " ")
+                    shown.replace('\t', " ")
                 );
             }
             shown = Some((label.source.as_ref(), line.number));
-            let source = label.source.as_ref().map_or(text, |s| s.text.as_str());
             let mark = if label.primary { "^" } else { "-" };
             let end = label.span.end.min(line.end).max(label.span.start);
             let count = source
                 .get(label.span.start..end)
                 .map_or(1, |s| s.chars().count())
-                .max(1);
+                .clamp(1, WIDE / 2);
+            let before = (line.column - 1).saturating_sub(skip) + usize::from(skip > 0);
             let caret = format!(
                 "{}{} {}",
-                " ".repeat(line.column - 1),
+                " ".repeat(before),
                 mark.repeat(count),
                 label.text
             );
@@ -209,6 +218,9 @@ impl Diagnostic {
         out
     }
 }
+
+/// A line with more characters than this is shown in part.
+const WIDE: usize = 140;
 
 /// The line of a label, in the file or in the text the label is about.
 fn line_of<'a>(label: &'a Label, text: &'a str) -> LinePlace<'a> {

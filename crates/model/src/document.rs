@@ -2,7 +2,7 @@
 
 use toml::de::{DeTable, DeValue};
 
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, line_at};
 use crate::model::Span;
 
 /// A value with its place (quotes and brackets included).
@@ -158,8 +158,15 @@ fn hex_width(digits: Option<&str>) -> usize {
 /// Reads a TOML text. What is wrong with its syntax goes to `diagnostics`; the tree is what could be read anyway.
 pub(crate) fn parse(text: &str, diagnostics: &mut Vec<Diagnostic>) -> Table {
     let (root, errors) = DeTable::parse_recoverable(text);
+    // one error to a line: the others of the line follow from it
+    let mut told = None;
     for error in errors.iter().take(MAX_SYNTAX_ERRORS) {
-        diagnostics.push(syntax_error(error, text));
+        let diagnostic = syntax_error(error, text);
+        let line = line_at(text, diagnostic.start()).number;
+        if diagnostic.code != "toml-syntax" || told != Some(line) {
+            diagnostics.push(diagnostic);
+        }
+        told = Some(line);
     }
     table(root.get_ref(), text)
 }

@@ -235,3 +235,134 @@ impl RiseLaw {
         RiseLaw::Polynomial4567,
     ];
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::spline::moments;
+    use kempe_number::Jet;
+    use kempe_units::Expr;
+
+    fn c(x: f64) -> Expr<crate::model::ParameterId> {
+        Expr::Const(x)
+    }
+
+    fn laws() -> Vec<Law> {
+        let rise = |by| LawPiece::Rise {
+            to: c(1.7),
+            duration: c(0.8),
+            by,
+        };
+        let times = vec![0.0, 0.3, 0.5, 1.1, 1.4];
+        let values = vec![0.5, 0.9, 0.2, 0.4, 1.0];
+        let moments = moments(&times, &values);
+        let mut laws: Vec<Law> = RiseLaw::ALL
+            .iter()
+            .map(|by| Law {
+                from: c(0.5),
+                pieces: vec![rise(*by)],
+            })
+            .collect();
+        laws.push(Law {
+            from: c(0.5),
+            pieces: vec![LawPiece::Table {
+                times,
+                values,
+                moments,
+            }],
+        });
+        laws.push(Law {
+            from: c(0.5),
+            pieces: vec![
+                LawPiece::Dwell { duration: c(0.2) },
+                rise(RiseLaw::Polynomial4567),
+                LawPiece::ConstantSpeed {
+                    to: c(-0.3),
+                    speed: c(4.0),
+                },
+                LawPiece::ConstantAcceleration {
+                    to: c(0.4),
+                    acceleration: c(2.0),
+                },
+            ],
+        });
+        laws
+    }
+
+    /// Source: central differences of fourth order; their error is far below the tolerance at this step.
+    #[test]
+    fn series_agree_with_differences() {
+        for law in laws() {
+            let breaks = law.breaks(&[]);
+            for w in breaks.windows(2) {
+                let (t, h) = (w[0] + 0.37 * (w[1] - w[0]), 1e-4);
+                let x: Jet<f64, 4> = law.at(Jet::variable(t), &[]);
+                let f = |k: f64| law.at(t + k * h, &[]);
+                let speed = (f(-2.0) - 8.0 * f(-1.0) + 8.0 * f(1.0) - f(2.0)) / (12.0 * h);
+                let acceleration = (f(-1.0) - 2.0 * f(0.0) + f(1.0)) / (h * h);
+                assert_eq!(x.value(), law.at(t, &[]));
+                assert!((x.derivative(1) - speed).abs() < 1e-9, "{law:?}");
+                assert!((x.derivative(2) - acceleration).abs() < 1e-4, "{law:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn standard_laws_start_and_end_at_rest() {
+        for law in laws().iter().take(4) {
+            let LawPiece::Rise { by, .. } = law.pieces[0] else {
+                panic!()
+            };
+            for (t, x) in [(0.0, 0.5), (0.8, 1.7)] {
+                let series: Jet<f64, 4> = law.at(Jet::variable(t), &[]);
+                assert!((series.value() - x).abs() < 1e-15);
+                assert!(series.derivative(1).abs() < 1e-12);
+                let smooth = by != RiseLaw::Harmonic;
+                assert_eq!(series.derivative(2).abs() < 1e-11, smooth, "{by:?}");
+                let calm = series.derivative(3).abs() < 1e-8;
+                assert_eq!(
+                    calm,
+                    matches!(by, RiseLaw::Polynomial4567 | RiseLaw::Harmonic),
+                    "{by:?}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn pieces_follow_each_other_and_the_law_stands_still_outside() {
+        let law = &laws()[5];
+        let breaks = law.breaks(&[]);
+        assert!(
+            (law.duration::<f64>(&[]) - (0.2 + 0.8 + 0.5 + (1.4f64 / 2.0).sqrt())).abs() < 1e-15
+        );
+        for t in &breaks[1..4] {
+            assert!((law.at(*t, &[]) - law.at(*t - 1e-12, &[])).abs() < 1e-10);
+        }
+        assert_eq!((law.at(-1.0, &[]), law.at(99.0, &[])), (0.5, 0.4));
+        assert_eq!(law.extent(&[]), (-0.3, 1.7));
+        let held = Law {
+            from: c(3.0),
+            pieces: vec![LawPiece::Dwell { duration: c(0.0) }],
+        };
+        assert_eq!(
+            (
+                held.duration::<f64>(&[]),
+                held.at(0.0, &[]),
+                held.at(5.0, &[])
+            ),
+            (0.0, 3.0, 3.0)
+        );
+    }
+
+    #[test]
+    fn first_time_finds_the_coordinate() {
+        for law in laws() {
+            for x in [0.5, 0.6, 0.999, 1.0] {
+                let t = law.first_time(x, &[]).unwrap();
+                assert!((law.at(t, &[]) - x).abs() < 1e-14, "{law:?} {x} {t}");
+            }
+            assert_eq!(law.first_time(9.0, &[]), None);
+        }
+    }
+}

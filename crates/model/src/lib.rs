@@ -1,18 +1,26 @@
 //! Kempe's model file and what it means.
 
+mod codes;
 mod diagnostic;
 mod document;
+mod edit;
 mod geometry;
 mod law;
 mod measure;
 mod model;
 mod read;
 mod registry;
+mod schema;
 mod spline;
+mod starter;
 
+pub use codes::{CODES, Code};
 pub use diagnostic::{Diagnostic, Label, Severity, Source};
+pub use edit::set_value;
 pub use geometry::value;
 pub use measure::{Leaf, Measure, PoseMeasure, Statistic};
 pub use model::*;
 pub use read::{Checked, MAX_FILE_BYTES};
 pub use registry::{MeasureEntry, Registry};
+pub use schema::schema;
+pub use starter::{STARTERS, Starter, starter};

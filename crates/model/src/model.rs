@@ -312,6 +312,18 @@ pub enum JointKind {
     },
 }
 
+impl JointKind {
+    /// The two links that the joint joins (of gears: without the arm).
+    pub fn links(&self) -> (LinkId, LinkId) {
+        match *self {
+            Self::Slider { at, on, .. } => (at.link, on.link),
+            Self::Slot { pin, on } => (pin.link, on.link),
+            Self::Weld { a, b, .. } | Self::Gears { a, b, .. } => (a, b),
+            Self::Rack { rack, pinion, .. } => (rack, pinion),
+        }
+    }
+}
+
 /// What is moved from outside.
 #[derive(Clone, Debug)]
 pub struct Drive {

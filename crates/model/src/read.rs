@@ -13,7 +13,7 @@ pub(crate) mod names;
 mod parameters;
 mod phrase;
 mod place;
-mod sections;
+pub(crate) mod sections;
 pub(crate) mod studies;
 mod value;
 

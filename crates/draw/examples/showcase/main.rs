@@ -1,6 +1,7 @@
 //! Draws a set of hand-made mechanisms in every format: `cargo run -p kempe-draw --example showcase -- OUT_DIR`.
 
 mod mechanisms;
+mod reports;
 
 use std::path::Path;
 
@@ -25,6 +26,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         write("ghosts.svg", svg::document(&ghosts.scene(pose), Theme::Light).as_bytes())?;
         write("gif", &animation::gif(&stage, &AnimationOptions::default())?)?;
         write("apng", &animation::apng(&stage, &AnimationOptions::default())?)?;
+    }
+    let report = reports::report(&mechanisms::all());
+    std::fs::write(out.join("report.html"), report.to_html())?;
+    for (number, plot) in report.motions[0].plots.iter().enumerate() {
+        let scene = plot.draw(150.0, 90.0).scene;
+        std::fs::write(out.join(format!("plot-{number}.svg")), svg::document(&scene, Theme::Light))?;
+        std::fs::write(out.join(format!("plot-{number}.png")), raster::png(&scene, Theme::Light, 110.0)?)?;
     }
     Ok(())
 }

@@ -233,21 +233,21 @@ pub fn quick_return() -> Case {
 pub fn rack() -> Case {
     let mut v = view(
         "Rack and pinion with spring, damper and weld",
-        &["W", "R", "S", "E", "F", "N", "G"],
-        &[("frame", "W E F N"), ("pinion", "W"), ("rack", "R S"), ("post", "S G")],
+        &["W", "R", "S", "E", "F", "N", "G", "M"],
+        &[("frame", "W E F N M"), ("pinion", "W"), ("rack", "R S"), ("post", "S G")],
     );
     v.joints = vec![
         JointView::Rack { link: 2, pinion: Wheel { link: 1, center: 0, radius: 15e-3, teeth: 18 }, side: 1.0 },
         JointView::Slider { block: 2, at: 1, guide: Guide { link: 0, from: 3, to: 4 } },
         JointView::Weld { at: 2, links: [2, 3] },
         JointView::Spring { a: 5, b: 6 },
-        JointView::Damper { a: 5, b: 2 },
+        JointView::Damper { a: 7, b: 6 },
     ];
     v.drives = vec![motor(1, 0)];
     case("rack", v, turn(60).into_iter().map(|t| t / 3.0).collect(), |t, label| {
-        let x = -20.0 + 15.0 * t;
-        let (r, s) = ([x, -15.0], [x + 30.0, -15.0]);
-        let points = [[0.0, 0.0], r, s, [-80.0, -15.0], [0.0, -15.0], [85.0, -15.0], [x + 30.0, 5.0]];
+        let x = -10.0 + 15.0 * t;
+        let (r, s) = ([x, -23.0], [x + 36.0, -23.0]);
+        let points = [[0.0, 0.0], r, s, [-80.0, -23.0], [0.0, -23.0], [85.0, 4.0], [x + 36.0, 0.0], [85.0, -10.0]];
         frame(label, &points, &[([0.0; 2], t), (r, 0.0), (s, PI / 2.0)])
     })
 }

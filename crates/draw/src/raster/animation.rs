@@ -55,7 +55,8 @@ struct Film {
 /// [`RasterError::NoFrames`] without a pose, [`RasterError::TooLarge`] above 400 million pixels in all.
 pub fn gif(stage: &Stage, options: &AnimationOptions) -> Result<Vec<u8>, RasterError> {
     let film = Film::new(stage, options)?;
-    let flat: Vec<u8> = film.colors.iter().flatten().copied().collect();
+    let mut flat: Vec<u8> = film.colors.iter().flatten().copied().collect();
+    flat.resize(3 * (usize::from(palette::UNCHANGED) + 1), 0);
     let (width, height) = (film.width.min(65_535) as u16, film.height.min(65_535) as u16);
     let encode = || -> Result<Vec<u8>, gif::EncodingError> {
         let mut bytes = Vec::new();
@@ -89,7 +90,7 @@ pub fn apng(stage: &Stage, options: &AnimationOptions) -> Result<Vec<u8>, Raster
     let film = Film::new(stage, options)?;
     let mut colors: Vec<u8> = film.colors.iter().flatten().copied().collect();
     let mut alpha = vec![255_u8; film.colors.len()];
-    while colors.len() < 3 * 256 {
+    while alpha.len() <= usize::from(palette::UNCHANGED) {
         colors.extend([0, 0, 0]);
         alpha.push(0);
     }

@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 
-/// Colours in a palette; one index stays free for "unchanged".
-pub(super) const MOST_COLORS: usize = 255;
+/// Colours in a palette; one index stays free for "unchanged". Few colours make small files.
+pub(super) const MOST_COLORS: usize = 63;
 /// The index that means "as before".
-pub(super) const UNCHANGED: u8 = 255;
+pub(super) const UNCHANGED: u8 = 63;
 
 /// A palette and the way from colours to it.
 pub(super) struct Palette {

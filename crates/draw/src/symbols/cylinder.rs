@@ -24,9 +24,11 @@ pub(super) fn cylinder(context: &Context, a: usize, b: usize) -> Vec<Part> {
 }
 
 pub(super) fn damper(context: &Context, a: usize, b: usize) -> Vec<Part> {
-    let Some((shortest, _)) = context.span(a, b) else { return Vec::new() };
+    let Some((shortest, longest)) = context.span(a, b) else { return Vec::new() };
     let line = Style::stroke(Token::Ink, LINE);
-    let (x0, x1, x2) = (shortest * 0.3, shortest * 0.55, shortest * 0.75);
+    let (x0, x2) = (shortest * 0.2, shortest * 0.9);
+    // the piston stays in the pot over the stroke where that is possible
+    let rod = (longest - 0.85 * shortest).clamp(0.15 * shortest, 0.75 * shortest);
     let pot = Path::polyline(&[[x2, 1.9], [x0, 1.9], [x0, -1.9], [x2, -1.9]]);
     let body = vec![
         Item::path(Path::rectangle([x0, -1.9], [x2, 1.9], 0.0), Style::fill(Token::Background)),
@@ -34,8 +36,8 @@ pub(super) fn damper(context: &Context, a: usize, b: usize) -> Vec<Part> {
         Item::path(Path::polyline(&[[0.0, 0.0], [x0, 0.0]]), line.clone()),
     ];
     let piston = vec![
-        Item::path(Path::polyline(&[[0.0, 0.0], [shortest - x1, 0.0]]), line.clone()),
-        Item::path(Path::polyline(&[[shortest - x1, -1.5], [shortest - x1, 1.5]]), Style::stroke(Token::Ink, 0.8)),
+        Item::path(Path::polyline(&[[0.0, 0.0], [rod, 0.0]]), line.clone()),
+        Item::path(Path::polyline(&[[rod, -1.5], [rod, 1.5]]), Style::stroke(Token::Ink, 0.8)),
     ];
     vec![Part::new(Layer::Body, Anchor::Toward(a, b), body), Part::new(Layer::Body, Anchor::Toward(b, a), piston)]
 }

@@ -172,9 +172,12 @@ impl<'a> Context<'a> {
     pub fn wrong_type(&mut self, node: &Node, place: &str, wanted: &str, example: &str) {
         let found = node.what();
         self.push(
-            Diagnostic::error("wrong-type", format!("{place} is {wanted}, found {found}"))
-                .at(node.span.clone(), format!("this is {found}"))
-                .help(format!("write it like {example}")),
+            Diagnostic::error(
+                "wrong-type",
+                format!("{place} must be {wanted}, found {found}"),
+            )
+            .at(node.span.clone(), format!("this is {found}"))
+            .help(format!("write it like {example}")),
         );
     }
 

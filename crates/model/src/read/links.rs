@@ -53,9 +53,9 @@ pub(crate) struct SideOf {
     pub span: Span,
 }
 
-/// Reads all links.
-pub(crate) fn read(cx: &mut Context<'_>, entries: &[&(Key, Node)]) {
-    if entries.first().is_none_or(|(key, _)| key.name != "frame") {
+/// Reads all links; without `whole` the section itself could not be read, and is not to be missed.
+pub(crate) fn read(cx: &mut Context<'_>, entries: &[&(Key, Node)], whole: bool) {
+    if whole && entries.first().is_none_or(|(key, _)| key.name != "frame") {
         let near = entries.iter().map(|(k, _)| k).find(|k| {
             ["ground", "base", "fixed", "chassis"].contains(&k.name.as_str())
                 || kempe_units::nearest(&k.name, ["frame"]).is_some()
@@ -90,7 +90,7 @@ fn read_link(cx: &mut Context<'_>, id: LinkId, key: &Key, node: &Node) {
         );
     }
     let points = place_points(cx, &draft, &place, &key.span);
-    let inertia = read_inertia(cx, table, &draft, &place, key);
+    let inertia = read_inertia(cx, table, &draft, &place);
     if let Some(link) = cx.model.links.get_mut(id.index()) {
         link.points = points;
         link.inertia = inertia;
@@ -199,7 +199,6 @@ fn read_inertia(
     table: &Table,
     draft: &Draft,
     place: &str,
-    key: &Key,
 ) -> Option<Inertia> {
     let scalar = |cx: &mut Context<'_>, name: &str, dimension: Dimension| {
         let node = table.get(name)?;
@@ -216,7 +215,6 @@ fn read_inertia(
             cx.push(
                 Diagnostic::warning("idle-key", format!("{place} has a center but no mass"))
                     .at(center.span.clone(), "means nothing without `mass`")
-                    .see(key.span.clone(), "")
                     .help("add mass = \"1 kg\" and inertia = \"1 kg m^2\", or leave center out"),
             );
         }

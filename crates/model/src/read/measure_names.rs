@@ -292,7 +292,19 @@ impl Measures<'_, '_> {
                 )
                 .with_label("not declared");
                 let near = nearest(name, self.0.points.keys().map(String::as_str));
-                issue.help = near.map(|near| format!("did you mean `{near}`?"));
+                issue.help = Some(match near {
+                    Some(near) => format!("did you mean `{near}`?"),
+                    None => format!(
+                        "the points are {}",
+                        self.0
+                            .points
+                            .keys()
+                            .take(20)
+                            .map(String::as_str)
+                            .collect::<Vec<_>>()
+                            .join(", ")
+                    ),
+                });
                 Err(vec![issue])
             }
         }
@@ -549,6 +561,9 @@ impl Measures<'_, '_> {
         if let [(_, a), (_, b)] = ends.as_slice() {
             return Ok((*a, *b));
         }
+        let end =
+            |i: usize, other: &'static str| ends.get(i).map_or(other, |(_, p)| cx.point_name(*p));
+        let (a, b) = (end(0, "P"), end(1, "Q"));
         let links: Vec<&str> = ends.iter().map(|(l, _)| cx.link_name(*l)).take(6).collect();
         let message = match links.as_slice() {
             [] => format!("{name} is no pin between two links that have other pins"),
@@ -557,7 +572,7 @@ impl Measures<'_, '_> {
         };
         Err(vec![
             Issue::new("ambiguous-transmission", node.span.clone(), message).with_help(format!(
-                "name the far ends of the two that pass the motion on: transmission_angle({name}, A, B) is the angle at {name} between A and B"
+                "name the far ends of the two that pass the motion on: transmission_angle({name}, {a}, {b}) is the angle at {name} between {a} and {b}"
             )),
         ])
     }

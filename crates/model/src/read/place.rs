@@ -260,10 +260,11 @@ impl Maker {
             return;
         }
         let show = |x: f64| cx.show(x, Dimension::LENGTH);
-        let (message, note) = if d == 0.0 {
+        let (message, note, help) = if d == 0.0 {
             (
                 format!("{what}: {a_name} and {b_name} are at one place"),
                 format!("two distances to one place do not say where {name} lies"),
+                "give one of them another place, or give the third point by coordinates",
             )
         } else {
             (
@@ -274,13 +275,14 @@ impl Maker {
                     show(rb),
                     show(d)
                 ),
+                "each side of a triangle is shorter than the other two together",
             )
         };
         cx.push(
             Diagnostic::error("triangle-open", message)
                 .at(first.span.clone(), show(ra))
                 .see(second.span.clone(), show(rb))
-                .help("each side of a triangle is shorter than the other two together")
+                .help(help)
                 .note(note),
         );
     }
@@ -333,7 +335,6 @@ impl Maker {
             cx.push(
                 Diagnostic::error("not-placed", format!("{what}: where is {name}? {found}"))
                     .at(span.clone(), "")
-                    .see(link.clone(), "")
                     .help(format!(
                         "a point is placed by coordinates, {name} = [10, 5], or by its distances to two points that are placed, and its side"
                     )),

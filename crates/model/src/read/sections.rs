@@ -3,8 +3,8 @@
 use kempe_units::{Dimension, Unit};
 
 use crate::diagnostic::Diagnostic;
-use crate::document::{Node, Table};
-use crate::model::UnitName;
+use crate::document::{Node, Table, Value};
+use crate::model::{FRAME, LinkId, UnitName};
 use crate::read::context::Context;
 use crate::read::{assembly, drives, joints, links, measures, names, parameters, studies};
 
@@ -64,10 +64,14 @@ pub(crate) fn read(
     }
     let sections = names::collect(cx, root);
     parameters::read(cx, &sections.parameters, overrides);
-    links::read(cx, &sections.links);
+    let whole = root
+        .get("links")
+        .is_none_or(|n| matches!(n.value, Value::Table(_)));
+    links::read(cx, &sections.links, whole);
     joints::read(cx, &sections.joints);
     drives::read(cx, &sections.drives);
     assembly::read(cx, &sections.assembly);
+    loose_links(cx);
     measures::read(cx, &sections.measures);
     studies::read(cx, &sections.studies);
     if broken_syntax {
@@ -77,6 +81,44 @@ pub(crate) fn read(
             i += 1;
             i <= own || !FOLLOWS_FROM_SYNTAX.contains(&d.code)
         });
+    }
+}
+
+/// Warns of links that nothing holds.
+fn loose_links(cx: &mut Context<'_>) {
+    let mut held = vec![false; cx.model.links.len()];
+    let mut hold = |link: LinkId| {
+        if let Some(flag) = held.get_mut(link.index()) {
+            *flag = true;
+        }
+    };
+    hold(FRAME);
+    for point in cx.model.points.iter().filter(|p| p.links.len() > 1) {
+        point.links.iter().for_each(|l| hold(*l));
+    }
+    for joint in &cx.model.joints {
+        let (a, b) = joint.kind.links();
+        hold(a);
+        hold(b);
+    }
+    // a broken joint may hold any of them
+    if cx.joints.iter().any(Option::is_none) {
+        return;
+    }
+    for (i, _) in held.iter().enumerate().filter(|(_, held)| !**held) {
+        let Some(link) = cx.model.links.get(i) else {
+            continue;
+        };
+        let warning = Diagnostic::warning(
+            "loose-link",
+            format!("nothing holds link `{}`", link.name),
+        )
+        .at(
+            link.span.clone(),
+            "no point of it is on another link, and no joint names it",
+        )
+        .help("a point named on two links is a pin between them; or add a joint under [joints]");
+        cx.push(warning);
     }
 }
 

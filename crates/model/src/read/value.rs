@@ -90,7 +90,18 @@ impl Context<'_> {
                     .and_then(|tree| check_as(&tree, &mut Parameters(self), expected, &unit));
                 match checked {
                     Ok((scalar, _)) => scalar,
-                    Err(issues) => {
+                    Err(mut issues) => {
+                        for issue in &mut issues {
+                            if issue.code == "unit-mismatch"
+                                && issue.help.is_none()
+                                && issue.message.ends_with("found a number")
+                            {
+                                issue.help = Some(format!(
+                                    "give it a unit, here or where its parameters are declared: {}",
+                                    self.example(expected)
+                                ));
+                            }
+                        }
                         self.issues(text, issues);
                         return None;
                     }
@@ -100,7 +111,7 @@ impl Context<'_> {
                 let example = self.example(expected);
                 self.wrong_type(
                     node,
-                    &format!("{} here", expected.with_article()),
+                    &format!("this {expected}"),
                     "a number or a string",
                     &example,
                 );
@@ -182,7 +193,10 @@ impl Context<'_> {
         self.push(
             Diagnostic::error("bad-size", format!("{what} {wanted}, found {found}"))
                 .at(node.span.clone(), format!("this is {found}"))
-                .help(format!("write it like {}", self.example(dimension))),
+                .help(format!(
+                    "give a positive value, such as {}",
+                    self.example(dimension)
+                )),
         );
         None
     }

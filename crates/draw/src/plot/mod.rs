@@ -1,0 +1,111 @@
+//! Plots of columns: own axes with round ticks, gaps where a row was not reached, markers at dead and change points.
+
+mod axis;
+mod draw;
+
+pub use axis::Scale;
+
+use crate::scene::Scene;
+
+/// A named axis with its unit.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Axis {
+    /// What is measured, such as `angle of rocker`.
+    pub label: String,
+    /// Its unit, such as `deg`; empty when it has none.
+    pub unit: String,
+    /// Logarithmic; values that are not positive are left out.
+    pub log: bool,
+    /// Shown range; all of the data when `None`.
+    pub limits: Option<[f64; 2]>,
+}
+
+impl Axis {
+    /// A linear axis over all of the data.
+    pub fn new(label: impl Into<String>, unit: impl Into<String>) -> Axis {
+        Axis { label: label.into(), unit: unit.into(), ..Axis::default() }
+    }
+
+    /// `label [unit]`, or the label alone.
+    pub fn title(&self) -> String {
+        match (self.label.is_empty(), self.unit.is_empty()) {
+            (_, true) => self.label.clone(),
+            (true, false) => format!("[{}]", self.unit),
+            (false, false) => format!("{} [{}]", self.label, self.unit),
+        }
+    }
+}
+
+/// A curve through pairs of values. Where one of a pair is not finite, the curve has a gap.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Curve {
+    /// Name in the legend.
+    pub label: String,
+    /// Abscissae, in the unit of the x axis.
+    pub x: Vec<f64>,
+    /// Ordinates, in the unit of the y axis.
+    pub y: Vec<f64>,
+    /// Dashed.
+    pub dashed: bool,
+}
+
+/// What a marker stands for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum MarkerKind {
+    /// A dead point of the drive.
+    DeadPoint,
+    /// A change point, where branches meet.
+    ChangePoint,
+    /// A limit of the motion.
+    Limit,
+    /// Anything else.
+    #[default]
+    Event,
+}
+
+/// A vertical line at a place on the x axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Marker {
+    /// Where, in the unit of the x axis.
+    pub at: f64,
+    /// What it says.
+    pub label: String,
+    /// What it stands for.
+    pub kind: MarkerKind,
+}
+
+/// A plot.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PlotSpec {
+    /// Title; may be empty.
+    pub title: String,
+    /// Abscissa.
+    pub x: Axis,
+    /// Ordinate.
+    pub y: Axis,
+    /// Curves, coloured in order.
+    pub curves: Vec<Curve>,
+    /// Vertical lines.
+    pub markers: Vec<Marker>,
+    /// One unit is as long on both axes, for paths in the plane.
+    pub equal_aspect: bool,
+}
+
+/// A plot laid out: the picture, and how values map to it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlotPicture {
+    /// The picture.
+    pub scene: Scene,
+    /// From values to mm from the left.
+    pub x: Scale,
+    /// From values to mm from the bottom.
+    pub y: Scale,
+}
+
+impl PlotSpec {
+    /// Draws the plot on a sheet of the given width and height, mm.
+    pub fn draw(&self, width: f64, height: f64) -> PlotPicture {
+        let side = |v: f64| if v.is_finite() { v.clamp(40.0, 2000.0) } else { 100.0 };
+        draw::draw(self, side(width), side(height))
+    }
+}

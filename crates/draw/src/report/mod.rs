@@ -1,0 +1,173 @@
+//! The report: one HTML file that needs nothing else. The mechanism moves in the page, its plots follow, and the check's
+//! findings and the evidence stand beside them.
+
+mod data;
+mod html;
+mod json;
+mod motion;
+mod sections;
+
+use crate::plot::{MarkerKind, PlotSpec};
+use crate::view::{Frame, MechanismView};
+
+/// Most poses and rows that a report carries of one motion; more are thinned out evenly.
+pub const MOST_ROWS: usize = 2000;
+
+/// Everything a report shows.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Report {
+    /// Title of the mechanism.
+    pub title: String,
+    /// The model file it comes from.
+    pub file_name: String,
+    /// Studies with a motion, in the order of the tabs.
+    pub motions: Vec<MotionReport>,
+    /// Findings, in order: mobility, groups, assemblies, warnings.
+    pub sections: Vec<Section>,
+    /// The program that wrote it, with its version, for the last line.
+    pub generator: String,
+}
+
+/// A motion with what was asked of it. All lists run by row; they may differ in length, the shortest counts.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MotionReport {
+    /// Name of the study.
+    pub name: String,
+    /// What it asks, in a sentence; may be empty.
+    pub summary: String,
+    /// The mechanism.
+    pub view: MechanismView,
+    /// Its pose at each row; NaN where it was not reached.
+    pub frames: Vec<Frame>,
+    /// Time at each row, s.
+    pub time: Vec<f64>,
+    /// The drive's coordinate at each row.
+    pub drive: Column,
+    /// Measures to read out.
+    pub columns: Vec<Column>,
+    /// Plots. Curves with one value a row follow the playhead.
+    pub plots: Vec<PlotSpec>,
+    /// Places worth knowing.
+    pub events: Vec<Event>,
+    /// How far the result can be trusted.
+    pub evidence: Evidence,
+}
+
+/// A measure over the rows.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Column {
+    /// Name.
+    pub name: String,
+    /// Unit in which the values are; empty when there is none.
+    pub unit: String,
+    /// One value a row; NaN where it was not reached.
+    pub values: Vec<f64>,
+}
+
+impl Column {
+    /// A column by name, unit and values.
+    pub fn new(name: impl Into<String>, unit: impl Into<String>, values: Vec<f64>) -> Column {
+        Column { name: name.into(), unit: unit.into(), values }
+    }
+
+    /// `name [unit]`, or the name alone.
+    pub fn head(&self) -> String {
+        if self.unit.is_empty() { self.name.clone() } else { format!("{} [{}]", self.name, self.unit) }
+    }
+}
+
+/// A place in a motion worth knowing: a dead point, a change point, a limit.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Event {
+    /// The row nearest to it.
+    pub row: usize,
+    /// Where it is exactly, such as `motor = 117.5122065166410849 deg`.
+    pub place: String,
+    /// What it is.
+    pub label: String,
+    /// Its kind.
+    pub kind: MarkerKind,
+}
+
+/// Rows that were not reached.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct NotReached {
+    /// First row.
+    pub first: usize,
+    /// Last row.
+    pub last: usize,
+    /// Why.
+    pub reason: String,
+}
+
+/// How far a result can be trusted.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Evidence {
+    /// Largest closure residual over all rows, and the limit it is held to, both relative to the mechanism's size.
+    pub residual: Option<(f64, f64)>,
+    /// Smallest singular value of the constraint Jacobian over all rows.
+    pub singular_value: Option<f64>,
+    /// How the Jacobian was scaled for that.
+    pub scaling: String,
+    /// Rows that were not reached.
+    pub not_reached: Vec<NotReached>,
+    /// Anything else, as name and value.
+    pub facts: Vec<(String, String)>,
+}
+
+/// A chapter of findings.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Section {
+    /// Heading.
+    pub title: String,
+    /// What it holds, in order.
+    pub blocks: Vec<Block>,
+}
+
+/// How serious a finding is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Level {
+    /// Good to know.
+    #[default]
+    Note,
+    /// A careful engineer would want to be told.
+    Warning,
+    /// Something failed.
+    Error,
+}
+
+/// A piece of a section.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Block {
+    /// A paragraph.
+    Paragraph(String),
+    /// A list.
+    List(Vec<String>),
+    /// Names with values.
+    Facts(Vec<(String, String)>),
+    /// A table.
+    Table {
+        /// Heads of the columns.
+        head: Vec<String>,
+        /// Rows of cells.
+        rows: Vec<Vec<String>>,
+    },
+    /// A warning or an error.
+    Finding {
+        /// How serious.
+        level: Level,
+        /// Stable code.
+        code: String,
+        /// What was found.
+        message: String,
+        /// What to do about it; may be empty.
+        help: String,
+    },
+}
+
+impl Report {
+    /// The whole report as HTML text. All texts are escaped; the same report gives the same bytes.
+    pub fn to_html(&self) -> String {
+        html::page(self)
+    }
+}

@@ -1,0 +1,122 @@
+//! A motion's part of the page: stage, controls, read-out, plots, evidence.
+
+use super::data::{self, Rows};
+use super::{MotionReport, sections};
+use crate::context::complete;
+use crate::number_format::{escape, significant};
+use crate::plot::PlotPicture;
+use crate::stage::{DrawOptions, Stage};
+use crate::svg;
+
+/// Width of the stage and size of a plot, mm; the page scales them.
+const STAGE: [f64; 2] = [170.0, 150.0];
+const PLOT: [f64; 2] = [130.0, 74.0];
+/// Height of a plot with equal axes, mm.
+const PATH_PLOT_HEIGHT: f64 = 100.0;
+
+pub(super) struct Built {
+    pub html: String,
+    pub json: String,
+}
+
+pub(super) fn build(motion: &MotionReport, index: usize) -> Built {
+    let rows = Rows::of(motion);
+    // the stage knows only the poses that the page carries
+    let frames: Vec<_> = rows.kept.iter().filter_map(|&row| motion.frames.get(row).cloned()).collect();
+    let options = DrawOptions {
+        width: STAGE[0],
+        max_height: STAGE[1],
+        title: false,
+        caption: false,
+        ..DrawOptions::default()
+    };
+    let stage = Stage::new(&motion.view, &frames, options);
+    let shown = frames.iter().position(|f| complete(&motion.view, f)).unwrap_or(0);
+    let shown_row = rows.kept.get(shown).copied().unwrap_or(0);
+    let pictures: Vec<PlotPicture> = motion.plots.iter().map(|plot| {
+        plot.draw(PLOT[0], if plot.equal_aspect { PATH_PLOT_HEIGHT } else { PLOT[1] })
+    }).collect();
+    let plots: String = pictures.iter().enumerate().map(|(number, picture)| plot_figure(picture, number)).collect();
+    let summary = if motion.summary.is_empty() { String::new() } else { format!("<p>{}</p>", escape(&motion.summary)) };
+    let html = format!(
+        "<section class=\"motion\" id=\"motion-{index}\" role=\"tabpanel\" aria-label=\"{name}\" data-motion=\"{index}\">\n\
+         <h2>{name}</h2>{summary}\n<div class=\"bench\">\n<div class=\"left\">\n<figure class=\"card stage\">\n{drawing}\
+         <figcaption class=\"status\" aria-live=\"polite\"></figcaption>\n{controls}</figure>\n{readout}</div>\n\
+         <div class=\"plots\">{plots}</div>\n</div>\n\
+         <div class=\"card evidence\"><h3>Evidence</h3>{evidence}</div>\n</section>\n",
+        name = escape(&motion.name),
+        drawing = svg::element(&stage.scene(shown), "class=\"drawing\""),
+        controls = controls(motion, &rows),
+        readout = readout(motion, shown_row),
+        evidence = sections::evidence(motion, rows.all),
+    );
+    Built { html, json: data::motion(motion, &rows, &stage, shown_row, &pictures) }
+}
+
+fn plot_figure(picture: &PlotPicture, number: usize) -> String {
+    format!(
+        "<figure class=\"card plot\" data-plot=\"{number}\">{}<div class=\"tip\" hidden></div>\
+         <details><summary>Values as a table</summary><div class=\"scroll\" tabindex=\"0\"></div></details></figure>\n",
+        svg::element(&picture.scene, "")
+    )
+}
+
+/// A button with an icon drawn in a 16 x 16 box.
+fn button(action: &str, label: &str, icon: &str) -> String {
+    format!(
+        "<button type=\"button\" data-do=\"{action}\" aria-label=\"{label}\" title=\"{label}\">\
+         <svg viewBox=\"0 0 16 16\" aria-hidden=\"true\"><path d=\"{icon}\"/></svg></button>"
+    )
+}
+
+fn controls(motion: &MotionReport, rows: &Rows) -> String {
+    let last = rows.kept.len().saturating_sub(1);
+    let mark = |event: &super::Event| {
+        let share = if last > 0 { rows.nearest(event.row) as f64 / last as f64 } else { 0.0 };
+        format!("<i style=\"left:{}%\" title=\"{}\"></i>", significant(100.0 * share, 5), escape(&event.label))
+    };
+    let marks: String = motion.events.iter().take(200).map(mark).collect();
+    let drive = escape(&motion.drive.name);
+    let unit = escape(&motion.drive.unit);
+    format!(
+        "<div class=\"controls\" role=\"group\" aria-label=\"Playback\">\n<div class=\"scrub\"><div class=\"marks\" aria-hidden=\"true\">{marks}</div>\
+         <input type=\"range\" min=\"0\" max=\"{last}\" value=\"0\" step=\"1\" data-in=\"row\" aria-label=\"Position in the motion\"></div>\n\
+         <div class=\"row\"><span class=\"buttons\">{}{}{}{}{}</span>\n\
+         <label>{drive} <input type=\"number\" step=\"any\" data-in=\"drive\"> {unit}</label>\n\
+         <label>time <input type=\"number\" step=\"any\" data-in=\"time\"> s</label></div>\n\
+         <div class=\"row\"><label>Speed <select data-in=\"speed\"><option value=\"0.1\">0.1×</option><option value=\"0.25\">0.25×</option>\
+         <option value=\"0.5\">0.5×</option><option value=\"1\" selected>1×</option><option value=\"2\">2×</option>\
+         <option value=\"4\">4×</option></select></label>\n\
+         <label>At the end <select data-in=\"mode\"><option value=\"loop\">start again</option><option value=\"pingpong\">go back</option>\
+         <option value=\"once\">stop</option></select></label>\n\
+         <label><input type=\"checkbox\" data-in=\"labels\" checked> Labels</label>\n\
+         <label><input type=\"checkbox\" data-in=\"traces\" checked> Traces</label></div>\n\
+         <p class=\"muted rate\"></p></div>\n",
+        button("first", "To the start", "M3 3h2v10H3zM13 3v10L6 8z"),
+        button("back", "One step back", "M11 3v10L4 8z"),
+        button("play", "Play or pause", "M4 2.5v11L13 8z"),
+        button("on", "One step on", "M5 3v10l7-5z"),
+        button("last", "To the end", "M11 3h2v10h-2zM3 3v10l7-5z"),
+    )
+}
+
+fn readout(motion: &MotionReport, row: usize) -> String {
+    let value = |values: &[f64]| significant(values.get(row).copied().unwrap_or(f64::NAN), 6);
+    let line = |name: &str, unit: &str, values: &[f64]| {
+        format!(
+            "<tr><th scope=\"row\">{}</th><td class=\"number\">{}</td><td>{}</td></tr>",
+            escape(name),
+            value(values),
+            escape(unit)
+        )
+    };
+    let mut lines = line(&motion.drive.name, &motion.drive.unit, &motion.drive.values);
+    lines.push_str(&line("time", "s", &motion.time));
+    for column in &motion.columns {
+        lines.push_str(&line(&column.name, &column.unit, &column.values));
+    }
+    format!(
+        "<div class=\"card readout\"><table><caption>Values at this row</caption><thead><tr><th scope=\"col\">Measure</th>\
+         <th scope=\"col\" class=\"number\">Value</th><th scope=\"col\">Unit</th></tr></thead><tbody>{lines}</tbody></table></div>\n"
+    )
+}

@@ -1,0 +1,151 @@
+// Playback: one clock per motion drives the drawing, the plots and the read-out.
+const PASS = 6; // seconds on screen for one pass at speed 1
+const still = matchMedia("(prefers-reduced-motion: reduce)");
+
+class Player {
+  constructor(motion, section) {
+    this.motion = motion;
+    this.section = section;
+    this.count = motion.row.length;
+    this.at = motion.row.indexOf(motion.shown);
+    if (this.at < 0) this.at = 0;
+    this.playing = false;
+    this.sense = 1;
+    this.drawing = new Drawing(motion, section.querySelector(".drawing"));
+    this.plots = [...section.querySelectorAll(".plot")].map((f) => new Plot(motion, motion.plots[+f.dataset.plot], f, (row) => this.seek(row)));
+    this.cells = [...section.querySelectorAll(".readout tbody td:nth-child(2)")];
+    this.status = section.querySelector(".status");
+    this.input = {};
+    for (const e of section.querySelectorAll("[data-in]")) this.input[e.dataset.in] = e;
+    const t = motion.time;
+    this.timed = this.count > 1 && t.every((v, k) => v != null && (k === 0 || v >= t[k - 1])) && t[this.count - 1] > t[0];
+    this.listen();
+    this.note();
+    this.show();
+  }
+
+  listen() {
+    const on = { first: () => this.seek(0), back: () => this.step(-1), play: () => this.toggle(), on: () => this.step(1), last: () => this.seek(this.count - 1) };
+    for (const b of this.section.querySelectorAll("[data-do]")) b.addEventListener("click", on[b.dataset.do]);
+    this.playButton = this.section.querySelector("[data-do=play]");
+    const { row, drive, time, labels, traces, speed, mode } = this.input;
+    row.addEventListener("input", () => this.seek(+row.value));
+    const nearest = (values, v) => values.reduce((best, x, k) => x != null && Math.abs(x - v) < Math.abs((values[best] ?? Infinity) - v) ? k : best, 0);
+    const typed = (input, values) => input.addEventListener("change", () => { if (input.value !== "") this.seek(nearest(values, +input.value)); });
+    typed(drive, this.motion.drive.v);
+    typed(time, this.motion.time);
+    labels.addEventListener("change", () => this.section.classList.toggle("no-labels", !labels.checked));
+    traces.addEventListener("change", () => this.section.classList.toggle("no-traces", !traces.checked));
+    speed.addEventListener("change", () => this.note());
+    // a motion that does not end where it began goes back by itself
+    const v = this.motion.links.map((l) => l.length > 3 ? Math.hypot(l[0] - l[l.length - 3], l[1] - l[l.length - 2]) + Math.abs(Math.sin((l[2] - l[l.length - 1]) / 2)) * 20 : 0);
+    if (v.some((far) => far > 1)) mode.value = "pingpong";
+  }
+
+  note() {
+    const t = this.motion.time, line = this.section.querySelector(".rate");
+    if (!this.timed) { line.textContent = "Played row by row"; return; }
+    const rate = (t[this.count - 1] - t[0]) / PASS * +this.input.speed.value;
+    line.textContent = `1 s on screen is ${Number(rate.toPrecision(3))} s of the motion`;
+  }
+
+  toggle(play = !this.playing) {
+    this.playing = play && this.count > 1;
+    if (this.playing && this.input.mode.value === "once" && this.at >= this.count - 1) this.at = 0;
+    this.playButton.setAttribute("aria-pressed", this.playing);
+    this.playButton.querySelector("path").setAttribute("d", this.playing ? "M4 3h3v10H4zM9 3h3v10H9z" : "M4 2.5v11L13 8z");
+    if (this.playing) { this.last = null; this.clock = this.toClock(this.at); requestAnimationFrame((now) => this.tick(now)); }
+    else { this.at = Math.round(this.at); this.show(); }
+  }
+
+  // Share of the pass at a row, and back; by time where there is one.
+  toClock(at) {
+    if (!this.timed) return at / (this.count - 1);
+    const t = this.motion.time, k = Math.min(Math.floor(at), this.count - 2);
+    return (t[k] + (at - k) * (t[k + 1] - t[k]) - t[0]) / (t[this.count - 1] - t[0]);
+  }
+  toRow(clock) {
+    if (!this.timed) return clock * (this.count - 1);
+    const t = this.motion.time, want = t[0] + clock * (t[this.count - 1] - t[0]);
+    let low = 0, high = this.count - 1;
+    while (high - low > 1) { const mid = (low + high) >> 1; if (t[mid] <= want) low = mid; else high = mid; }
+    return low + (t[high] > t[low] ? Math.min(1, (want - t[low]) / (t[high] - t[low])) : 0);
+  }
+
+  tick(now) {
+    if (!this.playing) return;
+    const passed = this.last == null ? 0 : Math.min(0.1, (now - this.last) / 1000);
+    this.last = now;
+    const mode = this.input.mode.value;
+    if (mode !== "pingpong") this.sense = 1;
+    this.clock += this.sense * passed * +this.input.speed.value / PASS;
+    if (this.clock > 1 || this.clock < 0) {
+      if (mode === "pingpong") { this.sense = this.clock > 1 ? -1 : 1; this.clock = Math.min(1, Math.max(0, this.clock)); }
+      else if (mode === "loop") this.clock -= Math.floor(this.clock);
+      else { this.at = this.count - 1; this.toggle(false); return; }
+    }
+    this.at = this.toRow(this.clock);
+    this.show();
+    requestAnimationFrame((n) => this.tick(n));
+  }
+
+  seek(row) {
+    if (row == null || !this.count) return;
+    this.at = Math.min(this.count - 1, Math.max(0, row));
+    if (this.playing) this.clock = this.toClock(this.at);
+    this.show();
+  }
+  step(by) { if (this.playing) this.toggle(false); this.seek(Math.round(this.at) + by); }
+
+  show() {
+    const motion = this.motion, row = Math.min(this.count - 1, Math.floor(this.at)), share = row < 0 ? 0 : this.at - row;
+    if (row < 0) { this.status.textContent = "No row was reached"; return; }
+    const reached = this.drawing.show(row, share);
+    for (const plot of this.plots) plot.show(row, share);
+    const near = Math.round(this.at);
+    this.input.row.value = near;
+    const drive = motion.drive.v[near], time = motion.time[near];
+    if (document.activeElement !== this.input.drive) this.input.drive.value = drive == null ? "" : Number(drive.toPrecision(6));
+    if (document.activeElement !== this.input.time) this.input.time.value = time == null ? "" : Number(time.toPrecision(5));
+    [motion.drive.v, motion.time, ...motion.cols.map((c) => c.v)].forEach((v, k) => { if (this.cells[k]) this.cells[k].textContent = text(v[near]); });
+    this.input.row.setAttribute("aria-valuetext", `${motion.drive.name} ${text(drive)} ${motion.drive.unit}, ${text(time)} s`);
+    const event = motion.events.find((e) => e.row === near);
+    const gap = motion.gaps.find(([a, b]) => motion.row[near] >= a && motion.row[near] <= b);
+    const bad = !reached || !!gap;
+    this.status.classList.toggle("bad", bad);
+    const said = bad ? `Row ${motion.row[near] + 1} was not reached${gap ? ": " + gap[2] : ""}` : event ? event.label : this.playing ? "" : `Row ${motion.row[near] + 1} of ${motion.all}`;
+    if (this.status.textContent !== said) this.status.textContent = said;
+  }
+}
+
+const data = JSON.parse(document.getElementById("data").textContent);
+const sections = [...document.querySelectorAll(".motion")];
+const players = sections.map((section, k) => new Player(data[k], section));
+const tabs = [...document.querySelectorAll("[role=tab]")];
+let current = 0;
+function select(index, focus) {
+  players.forEach((p) => p.toggle(false));
+  current = index;
+  sections.forEach((s, k) => s.classList.toggle("hidden", k !== index));
+  tabs.forEach((t, k) => { t.setAttribute("aria-selected", k === index); t.tabIndex = k === index ? 0 : -1; });
+  if (focus) tabs[index].focus();
+  if (players[index] && !still.matches) players[index].toggle(true);
+}
+tabs.forEach((tab, k) => {
+  tab.addEventListener("click", () => select(k));
+  tab.addEventListener("keydown", (event) => {
+    const by = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
+    if (by) { event.preventDefault(); event.stopPropagation(); select((k + by + tabs.length) % tabs.length, true); }
+  });
+});
+document.addEventListener("keydown", (event) => {
+  const player = players[current], tag = event.target.tagName;
+  if (!player || event.ctrlKey || event.metaKey || event.altKey) return;
+  if (tag === "SELECT" || (tag === "INPUT" && event.target.type === "number") || event.target.closest(".scroll")) return;
+  if (event.key === " " && (tag === "BUTTON" || tag === "SUMMARY" || event.target.type === "checkbox")) return;
+  const flip = (name) => { const box = player.input[name]; box.checked = !box.checked; box.dispatchEvent(new Event("change")); };
+  const by = event.shiftKey ? 10 : 1;
+  const act = { " ": () => player.toggle(), ArrowLeft: () => player.step(-by), ArrowRight: () => player.step(by), Home: () => player.seek(0), End: () => player.seek(player.count - 1), l: () => flip("labels"), t: () => flip("traces") }[event.key];
+  if (act) { event.preventDefault(); act(); }
+});
+if (players.length) select(0);

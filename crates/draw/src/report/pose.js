@@ -1,0 +1,78 @@
+// Poses: from the rows of a motion to the transforms of the drawing's parts. Paper millimetres, y up, as the data has them.
+const SVG = "http://www.w3.org/2000/svg";
+const round = (v) => Math.round(v * 1000) / 1000;
+
+// A link's place between two rows: x, y, angle; null where a row was not reached.
+function linkPose(motion, link, row, share) {
+  const v = motion.links[link], a = 3 * row;
+  if (!v || v[a] == null) return null;
+  if (share === 0 || v[a + 3] == null) return [v[a], v[a + 1], v[a + 2]];
+  const turn = v[a + 5] - v[a + 2];
+  const short = turn - 2 * Math.PI * Math.round(turn / (2 * Math.PI));
+  return [v[a] + share * (v[a + 3] - v[a]), v[a + 1] + share * (v[a + 4] - v[a + 1]), v[a + 2] + share * short];
+}
+
+function pointAt(motion, poses, index) {
+  const p = motion.points[index];
+  const pose = p && poses[p[0]];
+  if (!pose) return null;
+  const c = Math.cos(pose[2]), s = Math.sin(pose[2]);
+  return [pose[0] + c * p[1] - s * p[2], pose[1] + s * p[1] + c * p[2]];
+}
+
+function transform(motion, poses, anchor) {
+  const [kind, first, second, extra] = anchor;
+  const at = pointAt(motion, poses, first);
+  if (!at) return null;
+  let angle = 0, stretch = "";
+  if (kind === "o") {
+    if (!poses[second]) return null;
+    angle = poses[second][2] + extra;
+  } else if (kind !== "p") {
+    const to = pointAt(motion, poses, second);
+    if (!to) return null;
+    angle = Math.atan2(to[1] - at[1], to[0] - at[0]);
+    if (kind === "b") stretch = ` scale(${round(Math.hypot(to[0] - at[0], to[1] - at[1]) / (extra || 1))} 1)`;
+  }
+  const turn = angle ? ` rotate(${round(-angle * 180 / Math.PI)})` : "";
+  return `translate(${round(at[0])} ${round(motion.size[1] - at[1])})${turn}${stretch}`;
+}
+
+class Drawing {
+  constructor(motion, svg) {
+    this.motion = motion;
+    this.svg = svg;
+    this.parts = [...svg.querySelectorAll("[data-part]")].map((g) => [g, motion.anchors[+g.dataset.part]]);
+    svg.querySelectorAll(".trace-past").forEach((g) => g.remove());
+    const count = motion.row.length;
+    const before = svg.querySelector(".joint");
+    this.trails = motion.traces.map((trace) => {
+      const path = document.createElementNS(SVG, "path");
+      for (const [name, value] of Object.entries({ class: "trail", fill: "none", stroke: trace.c, "stroke-width": 0.55, "stroke-linecap": "round", "stroke-linejoin": "round" })) path.setAttribute(name, value);
+      svg.insertBefore(path, before);
+      const pieces = [];
+      let fresh = true;
+      for (let row = 0; row < count; row++) {
+        const p = pointAt(motion, motion.links.map((_, link) => linkPose(motion, link, row, 0)), trace.p);
+        pieces.push(p ? `${fresh ? "M" : "L"}${round(p[0])} ${round(motion.size[1] - p[1])}` : "");
+        fresh = !p;
+      }
+      return { path, pieces };
+    });
+  }
+
+  // Shows the pose at a row, or a share of the way to the next; false where it was not reached.
+  show(row, share) {
+    const motion = this.motion;
+    const poses = motion.links.map((_, link) => linkPose(motion, link, row, share));
+    let reached = motion.row.length > 0;
+    for (const [group, anchor] of this.parts) {
+      const t = anchor && transform(motion, poses, anchor);
+      if (t) group.setAttribute("transform", t);
+      else reached = false;
+    }
+    this.svg.classList.toggle("stale", !reached);
+    for (const { path, pieces } of this.trails) path.setAttribute("d", pieces.slice(0, row + 1).join(""));
+    return reached;
+  }
+}
