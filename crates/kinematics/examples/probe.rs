@@ -18,7 +18,10 @@ fn main() {
     let mechanism = Mechanism::new(&model);
     let plan = Plan::new(&mechanism);
     for step in &plan.steps {
-        println!("  {}", format!("{step:?}").chars().take(60).collect::<String>());
+        println!(
+            "  {}",
+            format!("{step:?}").chars().take(60).collect::<String>()
+        );
     }
     let parameters: Vec<f64> = model.parameter_values();
     let design = Design::new(&mechanism, &plan, &parameters);
@@ -26,13 +29,33 @@ fn main() {
     let motion = match Motion::new(&mechanism, &plan, &design, &parameters) {
         Ok(m) => m,
         Err(e) => {
-            println!("ERROR {}", format!("{e:?}").chars().take(600).collect::<String>());
+            println!(
+                "ERROR {}",
+                format!("{e:?}").chars().take(600).collect::<String>()
+            );
             return;
         }
     };
-    println!("motion {:?} nodes {} reached {:?} demanded {:?} ends {:?} assemblies {} (+{}) complete {} paths {:?}", t0.elapsed(), motion.nodes(), motion.reached(), motion.demanded, motion.ends, motion.assemblies.list.len(), motion.assemblies.rejected, motion.assemblies.complete, motion.assemblies.paths);
+    println!(
+        "motion {:?} nodes {} reached {:?} demanded {:?} ends {:?} assemblies {} (+{}) complete {} paths {:?}",
+        t0.elapsed(),
+        motion.nodes(),
+        motion.reached(),
+        motion.demanded,
+        motion.ends,
+        motion.assemblies.list.len(),
+        motion.assemblies.rejected,
+        motion.assemblies.complete,
+        motion.assemblies.paths
+    );
     for e in &motion.events {
-        println!("  event {:?} at {:.17} deg {:.16} steps {:?}", e.kind, e.at, e.at.to_degrees(), e.steps);
+        println!(
+            "  event {:?} at {:.17} deg {:.16} steps {:?}",
+            e.kind,
+            e.at,
+            e.at.to_degrees(),
+            e.steps
+        );
     }
     let measures: Vec<_> = model.measures.iter().map(|m| &m.measure).collect();
     let t0 = std::time::Instant::now();
@@ -50,10 +73,17 @@ fn main() {
             p = p.to_radians();
         }
         let s = sampler.at_parameter(p);
-        println!("p={v} t={} closure {:.1e} sigma {:.3e} {:?}", s.time, s.closure, s.smallest_singular_value, s.note);
+        println!(
+            "p={v} t={} closure {:.1e} sigma {:.3e} {:?}",
+            s.time, s.closure, s.smallest_singular_value, s.note
+        );
         for (m, x) in model.measures.iter().zip(&s.values) {
             let deg = m.dimension == kempe_units::Dimension::ANGLE;
-            println!("    {:8} {:.15}", m.name, if deg { x.to_degrees() } else { *x });
+            println!(
+                "    {:8} {:.15}",
+                m.name,
+                if deg { x.to_degrees() } else { *x }
+            );
         }
     }
 }

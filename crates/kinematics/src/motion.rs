@@ -13,6 +13,8 @@ use crate::trace::{Follower, Node, hermite};
 pub const STEP_LIMIT: usize = 200_000;
 /// A motion may end this close to a limit (in path scales) and still count as reaching it.
 pub const AT_LIMIT: f64 = 1e-12;
+/// Pivot ratio of the bordered Jacobian below which branches are taken to cross.
+pub const CROSSING: f64 = 1e-7;
 /// Where a motion starts at a singular pose, its branch is looked for at these parts of the range instead.
 const ANCHORS: [f64; 6] = [0.0, 0.0137, 0.0411, 0.1234, 0.3719, 0.7183];
 
@@ -261,7 +263,7 @@ impl<'m> Motion<'m> {
     pub fn bridge(&self, p: f64) -> Option<&Event> {
         self.events
             .iter()
-            .find(|e| e.kind == EventKind::ChangePoint && (p - e.at).abs() < 0.5 * e.bridge)
+            .find(|e| e.kind != EventKind::Limit && (p - e.at).abs() < 0.5 * e.bridge)
     }
 
     /// Fills the branch for a path parameter: modes, guesses and turn counts.
@@ -404,8 +406,15 @@ impl<'m> Motion<'m> {
                     continue;
                 }
                 last_s = s;
+                // Where redundant constraints keep the tangent determined nothing crosses.
+                let crossing = follower.tangent(&at.z, &at.tangent).is_none()
+                    || follower.conditioning() < CROSSING;
                 self.events.push(Event {
-                    kind: EventKind::ChangePoint,
+                    kind: if crossing {
+                        EventKind::ChangePoint
+                    } else {
+                        EventKind::ModeChange
+                    },
                     at: follower.parameter(&at.z),
                     steps: vec![step],
                     bridge: 0.15 * spacing,

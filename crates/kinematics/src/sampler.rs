@@ -5,6 +5,7 @@ use kempe_number::{Jet, Number};
 
 use crate::bridge::{SIDE_ORDER, join};
 use crate::drive_path::DrivePath;
+use crate::events::EventKind;
 use crate::evidence::{evidence, is_finite};
 use crate::measure::{Moment, ORDER, Series, order_of, plain_direction, visit_leaves};
 use crate::motion::{EndReason, Motion, Solver};
@@ -192,7 +193,17 @@ impl<'a> Sampler<'a> {
     /// The row at a path parameter: the first time the motion passes it.
     pub fn at_parameter(&mut self, p: f64) -> Sample {
         let time = match self.path_drive() {
-            Some(drive) => self.time_of(drive, p).unwrap_or(f64::NAN),
+            // The last coordinate of a law may be missed by a rounding error.
+            Some(drive) => self.time_of(drive, p).unwrap_or_else(|| {
+                let duration = self.duration();
+                let law = &self.motion.mechanism.model.drives[drive.index()].law;
+                let gap = (law.at(duration, &self.parameters) - p).abs();
+                if gap <= 1e-12 * p.abs().max(1e-3) {
+                    duration
+                } else {
+                    f64::NAN
+                }
+            }),
             None => p,
         };
         self.row(p, time)
@@ -433,7 +444,11 @@ impl<'a> Sampler<'a> {
     }
 
     fn note(&self, p: f64, sample: &Sample) -> Option<String> {
-        if let Some(event) = self.motion.bridge(p) {
+        if let Some(event) = self
+            .motion
+            .bridge(p)
+            .filter(|e| e.kind == EventKind::ChangePoint)
+        {
             return Some(format!(
                 "change point at {}: the motion goes on smoothly, interpolated from both sides",
                 event.at
