@@ -5,10 +5,12 @@ use kempe_number::math;
 
 use crate::blocks::Unknown;
 use crate::homotopy::{PathReport, Random, all_real_solutions};
-use crate::mechanism::{BodyId, Mechanism};
+use crate::mechanism::{BodyId, Constraint, Mechanism};
 use crate::newton::PlanNumber;
 use crate::plan::{NewtonBlock, Plan, Step};
 use crate::pose::{Pose, cross, sub};
+use crate::qr::Qr;
+use crate::solve::gear;
 use crate::state::{Branch, Design, State};
 
 /// Most assemblies that are listed; a file with many dyads and no hints can have more than anyone wants to see.
@@ -187,10 +189,18 @@ impl Search<'_> {
         step: usize,
         block: usize,
         state: State<f64>,
-        branch: Branch,
+        mut branch: Branch,
         wanted: bool,
     ) {
         let block = &self.plan.newton_blocks[block];
+        if let Some(poses) = self.gear_train(block, &state, &mut branch) {
+            branch.guess.clone_from(&poses);
+            let mut state = state;
+            if self.solve(step, 1.0, &mut state, &mut branch) {
+                self.descend(step + 1, state, branch, wanted);
+            }
+            return;
+        }
         let situation = state.situation(self.design, &branch);
         let candidates = match all_real_solutions(block, self.mechanism, &situation, self.size) {
             Some((poses, report)) => {
@@ -264,10 +274,11 @@ impl Search<'_> {
                 self.furthest = self.furthest.max(step);
                 return false;
             }
-            branch.near[body] = match self.plan.steps[step] {
-                Step::Newton { .. } => branch.near[body],
-                _ => pose.angle_near(0.0),
-            };
+            if matches!(unknown, Unknown::Angle(_))
+                && !matches!(self.plan.steps[step], Step::Newton { .. })
+            {
+                branch.near[body] = pose.angle_near(0.0);
+            }
             branch.guess[body] = pose;
         }
         if let Step::Turn {
@@ -284,7 +295,85 @@ impl Search<'_> {
             branch.near[body.index()] =
                 branch.near[from.index()] + if reversed { -turn } else { turn };
         }
+        if let Step::Gear { body, constraint } = self.plan.steps[step] {
+            let situation = state.situation(self.design, branch);
+            if let Some(angle) = gear(&situation, self.mechanism, body, constraint) {
+                branch.near[body.index()] = angle;
+            }
+        }
         true
+    }
+
+    /// Angles of a block of gears and angle drives alone: linear equations, one solution.
+    fn gear_train(
+        &self,
+        block: &NewtonBlock,
+        state: &State<f64>,
+        branch: &mut Branch,
+    ) -> Option<Vec<Pose<f64>>> {
+        let column = |body: BodyId| {
+            block
+                .unknowns
+                .iter()
+                .position(|u| *u == Unknown::Angle(body))
+        };
+        if block
+            .unknowns
+            .iter()
+            .any(|u| matches!(u, Unknown::Place(_)))
+            || block.rows.len() != block.size
+        {
+            return None;
+        }
+        let mut qr = Qr::with_capacity(block.size, block.size);
+        qr.reset(block.size, block.size);
+        let mut rhs = vec![0.0; block.size];
+        for (row, entry) in block.rows.iter().enumerate() {
+            let (terms, constant) = match self.mechanism.constraints[entry.constraint].0 {
+                Constraint::Gears {
+                    a,
+                    b,
+                    arm,
+                    constants,
+                } => {
+                    let k = &self.design.geometry.gears[constants as usize];
+                    (
+                        [(a, k.first), (b, k.second), (arm, -k.first - k.second)],
+                        k.constant,
+                    )
+                }
+                Constraint::Direction {
+                    a,
+                    b,
+                    offset,
+                    input,
+                } => {
+                    let by = self.design.geometry.angles[offset as usize];
+                    let drive = input.map_or(0.0, |d| state.inputs[d.index()].value);
+                    (
+                        [(a, 1.0), (b, -1.0), (b, 0.0)],
+                        math::atan2(by[1], by[0]) + drive,
+                    )
+                }
+                _ => return None,
+            };
+            rhs[row] = constant;
+            for (body, factor) in terms {
+                match column(body) {
+                    Some(column) => qr.add(row, column, factor),
+                    None => rhs[row] -= factor * branch.near[body.index()],
+                }
+            }
+        }
+        qr.factor();
+        qr.solve(&mut rhs);
+        let mut poses = state.poses.clone();
+        for (unknown, angle) in block.unknowns.iter().zip(&rhs) {
+            let body = unknown.body().index();
+            poses[body] = Pose::from_angle(poses[body].x, poses[body].y, *angle);
+            branch.near[body] = *angle;
+        }
+        rhs.iter().all(|a| a.is_finite()).then_some(poses)
     }
 
     fn closes(&self, block: &NewtonBlock, state: &State<f64>, branch: &Branch) -> bool {

@@ -222,8 +222,11 @@ pub fn decompose(mechanism: &Mechanism, with_drives: bool) -> Decomposition {
         for &node in &component {
             block_of[node] = blocks.len();
         }
+        // Angles before places, each in the order of the bodies.
+        let mut unknowns: Vec<Unknown> = component.into_iter().map(Unknown::from_node).collect();
+        unknowns.sort_unstable();
         blocks.push(Block {
-            unknowns: component.into_iter().map(Unknown::from_node).collect(),
+            unknowns,
             rows: block_rows.into_iter().map(|row| rows[row].0).collect(),
             surplus: Vec::new(),
         });

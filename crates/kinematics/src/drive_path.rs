@@ -116,6 +116,11 @@ impl DrivePath {
         }
     }
 
+    /// Whether the path parameter is an angle (then its scale is 1).
+    pub fn coordinates_are_angles(&self) -> bool {
+        matches!(self, Self::Coordinate { scale, .. } if *scale == 1.0)
+    }
+
     /// Drive coordinates at the path parameter, on any number.
     pub fn coordinates<T: Number>(&self, p: T, out: &mut [T]) {
         match self {

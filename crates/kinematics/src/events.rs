@@ -23,6 +23,8 @@ pub enum EventKind {
     Limit,
     /// Two branches cross; the motion went on smoothly.
     ChangePoint,
+    /// The assembly mode of a group changes sign where other (redundant) constraints keep the motion determined.
+    ModeChange,
 }
 
 /// The limit between two nodes whose parameter rates differ in sign: bisection on the rate with a secant speed-up

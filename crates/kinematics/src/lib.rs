@@ -2,27 +2,35 @@
 
 pub mod assemble;
 pub mod blocks;
+mod bridge;
 mod closed_form;
 mod complex_linear;
 pub mod constraint;
 pub mod drive_path;
 pub mod events;
+pub mod evidence;
 pub mod geometry;
 pub mod homotopy;
+pub mod measure;
 pub mod mechanism;
 pub mod motion;
 mod newton;
 pub mod plan;
 mod pose;
 mod qr;
+mod sampler;
 mod solve;
 mod state;
+mod statistics;
+mod swept;
 pub mod trace;
 
 pub use constraint::{Input, Situation};
 pub use geometry::Geometry;
 pub use mechanism::{BodyId, Mechanism};
+pub use motion::{EndReason, Motion, MotionError};
 pub use newton::PlanNumber;
 pub use plan::Plan;
 pub use pose::Pose;
+pub use sampler::{Sample, Sampler, Unmeasurable};
 pub use state::{Branch, Design, State};

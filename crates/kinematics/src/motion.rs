@@ -13,6 +13,8 @@ use crate::trace::{Follower, Node, hermite};
 pub const STEP_LIMIT: usize = 200_000;
 /// A motion may end this close to a limit (in path scales) and still count as reaching it.
 pub const AT_LIMIT: f64 = 1e-12;
+/// Pivot ratio of the bordered Jacobian below which branches are taken to cross.
+pub const CROSSING: f64 = 1e-7;
 /// Where a motion starts at a singular pose, its branch is looked for at these parts of the range instead.
 const ANCHORS: [f64; 6] = [0.0, 0.0137, 0.0411, 0.1234, 0.3719, 0.7183];
 
@@ -230,6 +232,28 @@ impl<'m> Motion<'m> {
         self.size
     }
 
+    /// Path parameter and poses of a node of the trace, with unwrapped body angles.
+    pub(crate) fn node(&self, index: usize) -> (f64, Vec<crate::pose::Pose<f64>>, Vec<f64>) {
+        let mut poses = vec![crate::pose::Pose::identity(); self.mechanism.bodies];
+        let mut near = vec![0.0; self.mechanism.bodies];
+        for (body, part) in self.nodes[index]
+            .z
+            .chunks_exact(3)
+            .enumerate()
+            .take(self.mechanism.bodies - 1)
+        {
+            poses[body + 1] =
+                crate::pose::Pose::from_angle(part[0] * self.size, part[1] * self.size, part[2]);
+            near[body + 1] = part[2];
+        }
+        (self.parameters[index], poses, near)
+    }
+
+    /// Path parameters of all nodes, rising.
+    pub fn node_parameters(&self) -> &[f64] {
+        &self.parameters
+    }
+
     /// How many nodes the trace needed.
     pub fn nodes(&self) -> usize {
         self.nodes.len()
@@ -239,7 +263,7 @@ impl<'m> Motion<'m> {
     pub fn bridge(&self, p: f64) -> Option<&Event> {
         self.events
             .iter()
-            .find(|e| e.kind == EventKind::ChangePoint && (p - e.at).abs() < 0.5 * e.bridge)
+            .find(|e| e.kind != EventKind::Limit && (p - e.at).abs() < 0.5 * e.bridge)
     }
 
     /// Fills the branch for a path parameter: modes, guesses and turn counts.
@@ -382,8 +406,15 @@ impl<'m> Motion<'m> {
                     continue;
                 }
                 last_s = s;
+                // Where redundant constraints keep the tangent determined nothing crosses.
+                let crossing = follower.tangent(&at.z, &at.tangent).is_none()
+                    || follower.conditioning() < CROSSING;
                 self.events.push(Event {
-                    kind: EventKind::ChangePoint,
+                    kind: if crossing {
+                        EventKind::ChangePoint
+                    } else {
+                        EventKind::ModeChange
+                    },
                     at: follower.parameter(&at.z),
                     steps: vec![step],
                     bridge: 0.15 * spacing,

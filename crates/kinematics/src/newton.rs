@@ -51,7 +51,7 @@ impl PlanNumber for f64 {
     }
 }
 
-impl<T: PlanNumber, const N: usize> PlanNumber for Jet<T, N> {
+impl<const N: usize> PlanNumber for Jet<f64, N> {
     fn solve_newton(
         block: &NewtonBlock,
         mechanism: &Mechanism,
@@ -59,12 +59,12 @@ impl<T: PlanNumber, const N: usize> PlanNumber for Jet<T, N> {
         branch: &Branch,
         state: &mut State<Self>,
     ) -> Self {
-        // Every pass makes one more coefficient exact; a nested dual needs one pass of its own.
+        // Every pass makes one more coefficient exact.
         carry_over(block, mechanism, design, branch, state, N)
     }
 }
 
-impl<T: PlanNumber, const K: usize> PlanNumber for Dual<T, K> {
+impl<const K: usize, const N: usize> PlanNumber for Jet<Dual<f64, K>, N> {
     fn solve_newton(
         block: &NewtonBlock,
         mechanism: &Mechanism,
@@ -72,7 +72,19 @@ impl<T: PlanNumber, const K: usize> PlanNumber for Dual<T, K> {
         branch: &Branch,
         state: &mut State<Self>,
     ) -> Self {
-        carry_over(block, mechanism, design, branch, state, 2)
+        carry_over(block, mechanism, design, branch, state, N + 1)
+    }
+}
+
+impl<const K: usize> PlanNumber for Dual<f64, K> {
+    fn solve_newton(
+        block: &NewtonBlock,
+        mechanism: &Mechanism,
+        design: &Design<Self>,
+        branch: &Branch,
+        state: &mut State<Self>,
+    ) -> Self {
+        carry_over(block, mechanism, design, branch, state, 1)
     }
 }
 

@@ -43,6 +43,15 @@ pub enum Condition {
         /// The drive.
         input: DriveId,
     },
+    /// A pinion whose centre is placed rolls on the body's pitch line, both angles known.
+    Roll {
+        /// The body's pitch line.
+        line: LineRef,
+        /// The pinion's centre.
+        center: Marker,
+        /// Index into the geometry's gear constants.
+        constants: u32,
+    },
     /// A point of the body is at the drive's distance from a placed point.
     Radius {
         /// The body's point.
@@ -440,6 +449,15 @@ fn condition_of(body: BodyId, constraint: &Constraint) -> Option<Condition> {
         Constraint::Travel { point, line, input } if line.body == body => {
             Some(Condition::TravelThrough { line, point, input })
         }
+        Constraint::Rack {
+            line,
+            center,
+            constants,
+        } if line.body == body => Some(Condition::Roll {
+            line,
+            center,
+            constants,
+        }),
         Constraint::Distance { a, b, input } if a.body == body => Some(Condition::Radius {
             own: a,
             center: b,
@@ -495,6 +513,8 @@ fn swing(body: BodyId, constraints: &[&Constraint]) -> Option<Step> {
             reach: Reach::Travel { line, input },
             partner: None,
         }),
+        // The travel depends on the angle sought.
+        Condition::Roll { .. } => None,
         condition @ (Condition::OnLine { own: tip, .. }
         | Condition::TravelOn { own: tip, .. }
         | Condition::Radius { own: tip, .. }) => Some(Step::Swing {

@@ -93,7 +93,15 @@ impl Plan {
                 tip,
                 condition,
                 partner,
-            } => swing(design, state, (own, at, tip), condition, partner, sign),
+            } => swing(
+                design,
+                branch,
+                state,
+                (own, at, tip),
+                condition,
+                partner,
+                sign,
+            ),
             Step::SwingLine {
                 own,
                 at,
@@ -105,7 +113,7 @@ impl Plan {
                 carriers,
                 conditions,
             } => {
-                let loci = [0, 1].map(|k| locus(design, state, carriers[k], conditions[k]));
+                let loci = [0, 1].map(|k| locus(design, branch, state, carriers[k], conditions[k]));
                 let (x, determinant) = meet(loci[0], loci[1], sign);
                 for carrier in carriers {
                     carry(design, state, carrier, x);
@@ -175,6 +183,7 @@ fn turned<T: Number>(
 #[inline(always)]
 fn locus<T: Number>(
     design: &Design<T>,
+    branch: &Branch,
     state: &State<T>,
     carrier: Carrier,
     condition: Condition,
@@ -208,6 +217,22 @@ fn locus<T: Number>(
                 }
                 _ => Locus::Line(left(along), dot(left(along), from)),
             }
+        }
+        Condition::Roll {
+            line,
+            center,
+            constants,
+        } => {
+            let local = geometry.line(line);
+            let along = pose.turn(local.direction);
+            let from = sub(
+                place(design, state, center),
+                pose.turn(sub(local.origin, pin)),
+            );
+            let k = &geometry.gears[constants as usize];
+            let situation = state.situation(design, branch);
+            let roll = k.second * (situation.angle(center.body) - situation.angle(line.body));
+            Locus::Line(along, dot(along, from) + roll - k.constant)
         }
         Condition::Radius { own, center, input } => {
             let center = sub(
@@ -248,6 +273,7 @@ fn carry<T: Number>(design: &Design<T>, state: &mut State<T>, carrier: Carrier, 
 #[inline(always)]
 fn swing<T: Number>(
     design: &Design<T>,
+    branch: &Branch,
     state: &mut State<T>,
     (own, at, tip): (Marker, Marker, Marker),
     condition: Condition,
@@ -260,7 +286,7 @@ fn swing<T: Number>(
     let square = dot(arm, arm);
     // On the body itself the condition acts at the tip, whatever the body's angle.
     let locus = match (partner, condition) {
-        (Some(carrier), _) => locus(design, state, carrier, condition),
+        (Some(carrier), _) => locus(design, branch, state, carrier, condition),
         (None, Condition::Radius { center, input, .. }) => Locus::Circle(
             place(design, state, center),
             state.inputs[input.index()].value,
@@ -276,7 +302,10 @@ fn swing<T: Number>(
             )
         }
         // Conditions with a line of the swinging body are `SwingLine`s.
-        (None, Condition::Through { .. } | Condition::TravelThrough { .. }) => {
+        (
+            None,
+            Condition::Through { .. } | Condition::TravelThrough { .. } | Condition::Roll { .. },
+        ) => {
             return T::from_f64(f64::NAN);
         }
     };
@@ -368,7 +397,7 @@ fn swing_line<T: Number>(
 
 /// Angle of a body from a gear pair or a rack; `None` when the constraint is of another kind.
 #[inline]
-fn gear<T: Number>(
+pub(crate) fn gear<T: Number>(
     situation: &Situation<'_, T>,
     mechanism: &Mechanism,
     body: crate::mechanism::BodyId,
