@@ -38,7 +38,11 @@ pub fn point(frame: &Frame, index: usize) -> Option<Point> {
 
 /// Direction of a link in a pose.
 pub fn link_angle(frame: &Frame, link: usize) -> Option<f64> {
-    frame.links.get(link).map(|l| l[2]).filter(|a| a.abs() < 1e9)
+    frame
+        .links
+        .get(link)
+        .map(|l| l[2])
+        .filter(|a| a.abs() < 1e9)
 }
 
 /// Whether every point and link of the mechanism can be drawn in a pose.
@@ -49,7 +53,10 @@ pub fn complete(view: &MechanismView, frame: &Frame) -> bool {
 
 /// The first complete pose, or the first of all.
 pub fn reference_frame<'a>(view: &MechanismView, frames: &'a [Frame]) -> Option<&'a Frame> {
-    frames.iter().find(|f| complete(view, f)).or_else(|| frames.first())
+    frames
+        .iter()
+        .find(|f| complete(view, f))
+        .or_else(|| frames.first())
 }
 
 impl Context<'_> {
@@ -66,7 +73,11 @@ impl Context<'_> {
             Anchor::On(p, link, offset) => place(p, link_angle(frame, link)? + offset, 1.0),
             Anchor::Toward(p, q) | Anchor::Between(p, q) => {
                 let (a, b) = (self.paper(frame, p)?, self.paper(frame, q)?);
-                let stretch = if matches!(anchor, Anchor::Between(..)) { distance(a, b) } else { 1.0 };
+                let stretch = if matches!(anchor, Anchor::Between(..)) {
+                    distance(a, b)
+                } else {
+                    1.0
+                };
                 place(p, atan2(b[1] - a[1], b[0] - a[0]), stretch)
             }
         }
@@ -100,7 +111,11 @@ impl Context<'_> {
 
     /// Smallest and largest distance of two points over all poses, mm.
     pub fn span(&self, a: usize, b: usize) -> Option<(f64, f64)> {
-        range(self.frames.iter().filter_map(|f| Some(distance(self.paper(f, a)?, self.paper(f, b)?))))
+        range(
+            self.frames
+                .iter()
+                .filter_map(|f| Some(distance(self.paper(f, a)?, self.paper(f, b)?))),
+        )
     }
 
     /// The links that carry a point.
@@ -110,25 +125,32 @@ impl Context<'_> {
 
     /// Whether a point belongs to the frame.
     pub fn grounded(&self, index: usize) -> bool {
-        self.view.links.first().is_some_and(|frame| frame.points.contains(&index))
+        self.view
+            .links
+            .first()
+            .is_some_and(|frame| frame.points.contains(&index))
     }
 
     /// Whether a point is part of a joint other than a pin.
     pub fn jointed(&self, index: usize) -> bool {
         self.view.joints.iter().any(|joint| match joint {
-            JointView::Slider { at: p, .. } | JointView::Slot { pin: p, .. } | JointView::Weld { at: p, .. } => *p == index,
+            JointView::Slider { at: p, .. }
+            | JointView::Slot { pin: p, .. }
+            | JointView::Weld { at: p, .. } => *p == index,
             JointView::Gears { a, b, .. } => a.center == index || b.center == index,
             JointView::Rack { pinion, .. } => pinion.center == index,
-            JointView::Cylinder { a, b } | JointView::Spring { a, b } | JointView::Damper { a, b } => {
-                *a == index || *b == index
-            }
+            JointView::Cylinder { a, b }
+            | JointView::Spring { a, b }
+            | JointView::Damper { a, b } => *a == index || *b == index,
         })
     }
 }
 
 /// The links of a mechanism that carry a point, each once.
 pub fn carriers(view: &MechanismView, index: usize) -> Vec<usize> {
-    (0..view.links.len()).filter(|&l| view.links[l].points.contains(&index)).collect()
+    (0..view.links.len())
+        .filter(|&l| view.links[l].points.contains(&index))
+        .collect()
 }
 
 fn range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {

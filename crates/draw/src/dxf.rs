@@ -17,19 +17,30 @@ const LONGEST_NAME: usize = 60;
 
 /// The DXF file of a pose, as text. Poses that cannot be drawn give a file without entities.
 pub fn document(stage: &Stage, index: usize) -> String {
-    let mut writer = Writer { stage, out: String::new(), handle: 0x100, layer: String::new() };
+    let mut writer = Writer {
+        stage,
+        out: String::new(),
+        handle: 0x100,
+        layer: String::new(),
+    };
     let view = stage.context.view;
     let mut layers: Vec<(String, u32)> = vec![("0".into(), Token::Ink.rgb(false))];
     for layer in ["GROUND", "JOINTS", "DRIVES", "TRACES", "LABELS"] {
         layers.push((layer.into(), Token::Ground.rgb(false)));
     }
     for link in 0..view.links.len() {
-        layers.push((writer.link_layer(link), crate::symbols::link_token(link).rgb(false)));
+        layers.push((
+            writer.link_layer(link),
+            crate::symbols::link_token(link).rgb(false),
+        ));
     }
     writer.header();
     writer.tables(&layers);
     writer.out.push_str("  0\nSECTION\n  2\nBLOCKS\n");
-    for (name, handles) in [("*Model_Space", ["1F", "20", "21"]), ("*Paper_Space", ["1B", "1C", "1D"])] {
+    for (name, handles) in [
+        ("*Model_Space", ["1F", "20", "21"]),
+        ("*Paper_Space", ["1B", "1C", "1D"]),
+    ] {
         let [record, begin, end] = handles;
         let _ = write!(
             writer.out,
@@ -38,14 +49,22 @@ pub fn document(stage: &Stage, index: usize) -> String {
              8\n0\n100\nAcDbBlockEnd\n"
         );
     }
-    writer.out.push_str("  0\nENDSEC\n  0\nSECTION\n  2\nENTITIES\n");
+    writer
+        .out
+        .push_str("  0\nENDSEC\n  0\nSECTION\n  2\nENTITIES\n");
     writer.skeleton(index);
     for group in &stage.scene(index).groups {
         writer.group(group);
     }
-    writer.out.push_str("  0\nENDSEC\n  0\nSECTION\n  2\nOBJECTS\n");
-    writer.out.push_str("  0\nDICTIONARY\n  5\nC\n330\n0\n100\nAcDbDictionary\n281\n1\n  3\nACAD_GROUP\n350\nD\n");
-    writer.out.push_str("  0\nDICTIONARY\n  5\nD\n330\nC\n100\nAcDbDictionary\n281\n1\n  0\nENDSEC\n  0\nEOF\n");
+    writer
+        .out
+        .push_str("  0\nENDSEC\n  0\nSECTION\n  2\nOBJECTS\n");
+    writer.out.push_str(
+        "  0\nDICTIONARY\n  5\nC\n330\n0\n100\nAcDbDictionary\n281\n1\n  3\nACAD_GROUP\n350\nD\n",
+    );
+    writer.out.push_str(
+        "  0\nDICTIONARY\n  5\nD\n330\nC\n100\nAcDbDictionary\n281\n1\n  0\nENDSEC\n  0\nEOF\n",
+    );
     writer.out
 }
 
@@ -73,8 +92,17 @@ impl Writer<'_> {
     }
 
     fn link_layer(&self, link: usize) -> String {
-        let name = self.stage.context.view.links.get(link).map_or("", |l| l.name.as_str());
-        format!("LINK_{link}_{}", plain(name).replace(' ', "_").trim_end_matches('_'))
+        let name = self
+            .stage
+            .context
+            .view
+            .links
+            .get(link)
+            .map_or("", |l| l.name.as_str());
+        format!(
+            "LINK_{link}_{}",
+            plain(name).replace(' ', "_").trim_end_matches('_')
+        )
     }
 
     fn pair(&mut self, code: u32, value: &str) {
@@ -83,18 +111,40 @@ impl Writer<'_> {
 
     fn number(&mut self, code: u32, value: f64) {
         let value = if value.is_finite() { value } else { 0.0 };
-        let text = if value == 0.0 { "0.0".into() } else { format!("{value:?}") };
+        let text = if value == 0.0 {
+            "0.0".into()
+        } else {
+            format!("{value:?}")
+        };
         self.pair(code, &text);
     }
 
     fn header(&mut self) {
         // $INSUNITS: the drawing's unit, 0 when CAD has no number for it
-        let units = [(1e-3, 4), (1e-2, 5), (1.0, 6), (1e3, 7), (0.0254, 1), (0.3048, 2), (1e-6, 13), (0.9144, 10)];
+        let units = [
+            (1e-3, 4),
+            (1e-2, 5),
+            (1.0, 6),
+            (1e3, 7),
+            (0.0254, 1),
+            (0.3048, 2),
+            (1e-6, 13),
+            (0.9144, 10),
+        ];
         let unit = self.unit();
-        let code = units.iter().find(|(size, _)| (size / unit - 1.0).abs() < 1e-9).map_or(0, |(_, code)| *code);
+        let code = units
+            .iter()
+            .find(|(size, _)| (size / unit - 1.0).abs() < 1e-9)
+            .map_or(0, |(_, code)| *code);
         let imperial = matches!(code, 1 | 2 | 10);
-        self.out.push_str("  0\nSECTION\n  2\nHEADER\n  9\n$ACADVER\n  1\nAC1015\n  9\n$HANDSEED\n  5\nFFFFFF\n");
-        let _ = write!(self.out, "  9\n$INSUNITS\n 70\n{code}\n  9\n$MEASUREMENT\n 70\n{}\n", u8::from(!imperial));
+        self.out.push_str(
+            "  0\nSECTION\n  2\nHEADER\n  9\n$ACADVER\n  1\nAC1015\n  9\n$HANDSEED\n  5\nFFFFFF\n",
+        );
+        let _ = write!(
+            self.out,
+            "  9\n$INSUNITS\n 70\n{code}\n  9\n$MEASUREMENT\n 70\n{}\n",
+            u8::from(!imperial)
+        );
         self.out.push_str("  0\nENDSEC\n");
     }
 
@@ -166,16 +216,33 @@ impl Writer<'_> {
 
     /// Exact lines between the points of each link, straight from the pose.
     fn skeleton(&mut self, index: usize) {
-        let Some(frame) = self.stage.context.frames.get(index) else { return };
+        let Some(frame) = self.stage.context.frames.get(index) else {
+            return;
+        };
         let unit = self.unit();
         for (number, link) in self.stage.context.view.links.iter().enumerate().skip(1) {
-            let points: Vec<Point> = link.points.iter().filter_map(|&p| point(frame, p)).collect();
-            let count = if points.len() > 2 { points.len() } else { points.len().saturating_sub(1) };
+            let points: Vec<Point> = link
+                .points
+                .iter()
+                .filter_map(|&p| point(frame, p))
+                .collect();
+            let count = if points.len() > 2 {
+                points.len()
+            } else {
+                points.len().saturating_sub(1)
+            };
             self.layer = self.link_layer(number);
             for k in 0..count {
                 let (a, b) = (points[k], points[(k + 1) % points.len()]);
                 self.entity("LINE", "AcDbLine");
-                self.numbers(&[(10, a[0] / unit), (20, a[1] / unit), (30, 0.0), (11, b[0] / unit), (21, b[1] / unit), (31, 0.0)]);
+                self.numbers(&[
+                    (10, a[0] / unit),
+                    (20, a[1] / unit),
+                    (30, 0.0),
+                    (11, b[0] / unit),
+                    (21, b[1] / unit),
+                    (31, 0.0),
+                ]);
             }
         }
     }
@@ -216,11 +283,26 @@ impl Writer<'_> {
     }
 
     fn path(&mut self, path: &Path, group: &Group) {
-        let points: Vec<Point> = path.vertices.iter().map(|v| self.at(group.place.apply(v.at))).collect();
-        match (path.closed, &points[..], path.vertices.first().map_or(0.0, |v| v.bulge)) {
+        let points: Vec<Point> = path
+            .vertices
+            .iter()
+            .map(|v| self.at(group.place.apply(v.at)))
+            .collect();
+        match (
+            path.closed,
+            &points[..],
+            path.vertices.first().map_or(0.0, |v| v.bulge),
+        ) {
             (_, [] | [_], _) => {}
             (false, [a, b], 0.0) => {
-                let pairs = [(10, a[0]), (20, a[1]), (30, 0.0), (11, b[0]), (21, b[1]), (31, 0.0)];
+                let pairs = [
+                    (10, a[0]),
+                    (20, a[1]),
+                    (30, 0.0),
+                    (11, b[0]),
+                    (21, b[1]),
+                    (31, 0.0),
+                ];
                 self.entity("LINE", "AcDbLine");
                 self.numbers(&pairs);
             }
@@ -241,10 +323,18 @@ impl Writer<'_> {
 
     fn arc(&mut self, a: Point, b: Point, bulge: f64) {
         let side = (1.0 - bulge * bulge) / (4.0 * bulge);
-        let center = [(a[0] + b[0]) / 2.0 - side * (b[1] - a[1]), (a[1] + b[1]) / 2.0 + side * (b[0] - a[0])];
+        let center = [
+            (a[0] + b[0]) / 2.0 - side * (b[1] - a[1]),
+            (a[1] + b[1]) / 2.0 + side * (b[0] - a[0]),
+        ];
         let radius = crate::scene::distance(center, a);
-        let angle = |p: Point| (atan2(p[1] - center[1], p[0] - center[0]).to_degrees() + 360.0) % 360.0;
-        let (start, end) = if bulge > 0.0 { (angle(a), angle(b)) } else { (angle(b), angle(a)) };
+        let angle =
+            |p: Point| (atan2(p[1] - center[1], p[0] - center[0]).to_degrees() + 360.0) % 360.0;
+        let (start, end) = if bulge > 0.0 {
+            (angle(a), angle(b))
+        } else {
+            (angle(b), angle(a))
+        };
         self.entity("ARC", "AcDbCircle");
         self.numbers(&[(10, center[0]), (20, center[1]), (30, 0.0), (40, radius)]);
         self.pair(100, "AcDbArc");
@@ -278,15 +368,36 @@ impl Writer<'_> {
 
 /// Text that any DXF reader takes: letters, digits and a few signs; everything else becomes `_`.
 fn plain(text: &str) -> String {
-    let safe = |c: char| if c.is_ascii_alphanumeric() || " _-.,()=+".contains(c) { c } else { '_' };
+    let safe = |c: char| {
+        if c.is_ascii_alphanumeric() || " _-.,()=+".contains(c) {
+            c
+        } else {
+            '_'
+        }
+    };
     text.chars().take(LONGEST_NAME).map(safe).collect()
 }
 
 /// The basic AutoCAD colour (1 to 9) nearest to a colour.
 fn nearest_index(rgb: u32) -> u8 {
-    let basic = [0xFF0000, 0xFFFF00, 0x00FF00, 0x00FFFF, 0x0000FF, 0xFF00FF, 0x000000, 0x808080, 0xC0C0C0_u32];
+    let basic = [
+        0xFF0000,
+        0xFFFF00,
+        0x00FF00,
+        0x00FFFF,
+        0x0000FF,
+        0xFF00FF,
+        0x000000,
+        0x808080,
+        0xC0C0C0_u32,
+    ];
     let channel = |v: u32, shift: u32| i64::from((v >> shift) & 255);
-    let far = |a: u32| [0, 8, 16].map(|s| (channel(a, s) - channel(rgb, s)).pow(2)).iter().sum::<i64>();
+    let far = |a: u32| {
+        [0, 8, 16]
+            .map(|s| (channel(a, s) - channel(rgb, s)).pow(2))
+            .iter()
+            .sum::<i64>()
+    };
     let nearest = (0..basic.len()).min_by_key(|&k| far(basic[k])).unwrap_or(6);
     nearest as u8 + 1
 }

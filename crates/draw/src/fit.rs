@@ -21,14 +21,17 @@ pub struct Bounds {
 
 impl Bounds {
     /// A box that holds nothing.
-    pub const EMPTY: Bounds = Bounds { low: [f64::INFINITY; 2], high: [f64::NEG_INFINITY; 2] };
+    pub const EMPTY: Bounds = Bounds {
+        low: [f64::INFINITY; 2],
+        high: [f64::NEG_INFINITY; 2],
+    };
 
     /// Takes in a disc of the given radius; what cannot be drawn is left out.
     pub fn add(&mut self, p: Point, radius: f64) {
         if drawable(p) && drawable([radius, 0.0]) {
-            for k in 0..2 {
-                self.low[k] = self.low[k].min(p[k] - radius);
-                self.high[k] = self.high[k].max(p[k] + radius);
+            for (k, v) in p.into_iter().enumerate() {
+                self.low[k] = self.low[k].min(v - radius);
+                self.high[k] = self.high[k].max(v + radius);
             }
         }
     }
@@ -64,21 +67,42 @@ impl Fit {
     /// A box without extent is drawn at `10 mm` per `unit` (m).
     pub fn new(bounds: Bounds, width: f64, heights: [f64; 2], margins: Margins, unit: f64) -> Fit {
         let [left, right, top, bottom] = margins.sides;
-        let bounds = if bounds.is_empty() { Bounds { low: [0.0; 2], high: [0.0; 2] } } else { bounds };
-        let extent = [bounds.high[0] - bounds.low[0], bounds.high[1] - bounds.low[1]];
-        let size = bounds.low.iter().chain(&bounds.high).fold(0.0_f64, |m, v| m.max(v.abs()));
-        let room = [(width - left - right).max(1.0), (heights[1] - top - bottom).max(1.0)];
+        let bounds = if bounds.is_empty() {
+            Bounds {
+                low: [0.0; 2],
+                high: [0.0; 2],
+            }
+        } else {
+            bounds
+        };
+        let extent = [
+            bounds.high[0] - bounds.low[0],
+            bounds.high[1] - bounds.low[1],
+        ];
+        let size = bounds
+            .low
+            .iter()
+            .chain(&bounds.high)
+            .fold(0.0_f64, |m, v| m.max(v.abs()));
+        let room = [
+            (width - left - right).max(1.0),
+            (heights[1] - top - bottom).max(1.0),
+        ];
         let scale = if extent[0].max(extent[1]) <= 1e-9 * size || extent[0].max(extent[1]) < 1e-12 {
             10.0 / unit
         } else {
             (room[0] / extent[0]).min(room[1] / extent[1])
         };
-        let height = (extent[1] * scale + top + bottom).clamp(heights[0].min(heights[1]), heights[1]);
+        let height =
+            (extent[1] * scale + top + bottom).clamp(heights[0].min(heights[1]), heights[1]);
         Fit {
             scale,
             width,
             height,
-            middle: [(bounds.low[0] + bounds.high[0]) / 2.0, (bounds.low[1] + bounds.high[1]) / 2.0],
+            middle: [
+                (bounds.low[0] + bounds.high[0]) / 2.0,
+                (bounds.low[1] + bounds.high[1]) / 2.0,
+            ],
             paper_middle: [left + room[0] / 2.0, bottom + (height - top - bottom) / 2.0],
         }
     }

@@ -19,14 +19,22 @@ pub(crate) fn groups(stage: &Stage, frame: Option<&Frame>) -> Vec<Group> {
     }
     if stage.options.title {
         let title = shortened(&stage.context.view.title, 4.6, width - 12.0);
-        caption.push(Item::Text(Text { bold: true, ..Text::new([6.0, height - 8.5], 4.6, title) }));
+        caption.push(Item::Text(Text {
+            bold: true,
+            ..Text::new([6.0, height - 8.5], 4.6, title)
+        }));
     }
     if let (true, Some(frame)) = (stage.options.caption, frame) {
         let label = shortened(&frame.label, 3.4, width * 0.6);
-        let text = Text::new([width - 6.0, 5.0], 3.4, label).aligned(Align::End).colored(Token::Muted);
+        let text = Text::new([width - 6.0, 5.0], 3.4, label)
+            .aligned(Align::End)
+            .colored(Token::Muted);
         caption.push(Item::Text(text));
     }
-    vec![Group::new(Layer::Furniture, furniture), Group::new(Layer::Caption, caption)]
+    vec![
+        Group::new(Layer::Furniture, furniture),
+        Group::new(Layer::Caption, caption),
+    ]
 }
 
 fn scale_bar(stage: &Stage) -> Vec<Item> {
@@ -37,7 +45,11 @@ fn scale_bar(stage: &Stage) -> Vec<Item> {
         return Vec::new();
     }
     let power = power_of_ten(decade(wanted));
-    let length = [5.0, 2.0, 1.0].into_iter().map(|m| m * power).find(|l| *l <= wanted * 1.0001).unwrap_or(power);
+    let length = [5.0, 2.0, 1.0]
+        .into_iter()
+        .map(|m| m * power)
+        .find(|l| *l <= wanted * 1.0001)
+        .unwrap_or(power);
     let (x0, y) = (6.0, 4.6);
     let x1 = x0 + length * per_unit;
     let ticks = [x0, (x0 + x1) / 2.0, x1].into_iter().zip([1.6, 1.0, 1.6]);
@@ -45,7 +57,10 @@ fn scale_bar(stage: &Stage) -> Vec<Item> {
     paths.extend(ticks.map(|(x, h)| Path::polyline(&[[x, y], [x, y + h]])));
     let label = format!("{} {}", significant(length, 3), unit.name);
     vec![
-        Item::Shape { paths, style: Style::stroke(Token::Muted, 0.3) },
+        Item::Shape {
+            paths,
+            style: Style::stroke(Token::Muted, 0.3),
+        },
         Item::Text(Text::new([x1 + 1.8, y], 3.2, label).colored(Token::Muted)),
     ]
 }

@@ -9,7 +9,11 @@ const SAME_PLACE: f64 = 1e-6;
 
 /// Convex hull, counter-clockwise, without points on its edges. One or two points when they are all on one spot or line.
 pub fn convex_hull(points: &[Point]) -> Vec<Point> {
-    let mut sorted: Vec<Point> = points.iter().copied().filter(|p| p[0].is_finite() && p[1].is_finite()).collect();
+    let mut sorted: Vec<Point> = points
+        .iter()
+        .copied()
+        .filter(|p| p[0].is_finite() && p[1].is_finite())
+        .collect();
     sorted.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
     sorted.dedup_by(|a, b| distance(*a, *b) < SAME_PLACE);
     if sorted.len() < 3 {
@@ -44,8 +48,20 @@ pub fn rounded_hull(points: &[Point], radius: f64) -> Option<Path> {
         0 => None,
         1 => {
             let ([x, y], r) = (hull[0], radius);
-            let vertices = vec![Vertex { at: [x + r, y], bulge: 1.0 }, Vertex { at: [x - r, y], bulge: 1.0 }];
-            Some(Path { vertices, closed: true })
+            let vertices = vec![
+                Vertex {
+                    at: [x + r, y],
+                    bulge: 1.0,
+                },
+                Vertex {
+                    at: [x - r, y],
+                    bulge: 1.0,
+                },
+            ];
+            Some(Path {
+                vertices,
+                closed: true,
+            })
         }
         _ => {
             let outward = |i: usize| {
@@ -58,13 +74,31 @@ pub fn rounded_hull(points: &[Point], radius: f64) -> Option<Path> {
                 let (before, after) = (outward(i + n - 1), outward(i));
                 let cross = before[0] * after[1] - before[1] * after[0];
                 let dot = before[0] * after[0] + before[1] * after[1];
-                let turn = if n == 2 { std::f64::consts::PI } else { atan2(cross, dot).abs() };
+                let turn = if n == 2 {
+                    std::f64::consts::PI
+                } else {
+                    atan2(cross, dot).abs()
+                };
                 let (s, c) = sin_cos(turn / 4.0);
-                let at = |normal: [f64; 2]| [corner[0] + radius * normal[0], corner[1] + radius * normal[1]];
-                vertices.push(Vertex { at: at(before), bulge: s / c });
-                vertices.push(Vertex { at: at(after), bulge: 0.0 });
+                let at = |normal: [f64; 2]| {
+                    [
+                        corner[0] + radius * normal[0],
+                        corner[1] + radius * normal[1],
+                    ]
+                };
+                vertices.push(Vertex {
+                    at: at(before),
+                    bulge: s / c,
+                });
+                vertices.push(Vertex {
+                    at: at(after),
+                    bulge: 0.0,
+                });
             }
-            Some(Path { vertices, closed: true })
+            Some(Path {
+                vertices,
+                closed: true,
+            })
         }
     }
 }
@@ -75,8 +109,18 @@ mod tests {
 
     #[test]
     fn a_point_inside_or_on_an_edge_is_no_corner() {
-        let triangle = [[0.0, 0.0], [10.0, 0.0], [0.0, 10.0], [2.0, 2.0], [5.0, 0.0], [0.0, 0.0]];
-        assert_eq!(convex_hull(&triangle), [[0.0, 0.0], [10.0, 0.0], [0.0, 10.0]]);
+        let triangle = [
+            [0.0, 0.0],
+            [10.0, 0.0],
+            [0.0, 10.0],
+            [2.0, 2.0],
+            [5.0, 0.0],
+            [0.0, 0.0],
+        ];
+        assert_eq!(
+            convex_hull(&triangle),
+            [[0.0, 0.0], [10.0, 0.0], [0.0, 10.0]]
+        );
         let line = [[0.0, 0.0], [1.0, 1.0], [2.0, 2.0], [7.0, 7.0]];
         assert_eq!(convex_hull(&line), [[0.0, 0.0], [7.0, 7.0]]);
         assert_eq!(convex_hull(&[[f64::NAN, 0.0]]), Vec::<Point>::new());
@@ -87,6 +131,10 @@ mod tests {
         let bar = rounded_hull(&[[0.0, 0.0], [10.0, 0.0]], 2.0).unwrap();
         assert_eq!(bar.vertices.len(), 4);
         assert!((bar.vertices[0].bulge - 1.0).abs() < 1e-15);
-        assert!(bar.vertices.iter().all(|v| (v.at[1].abs() - 2.0).abs() < 1e-12));
+        assert!(
+            bar.vertices
+                .iter()
+                .all(|v| (v.at[1].abs() - 2.0).abs() < 1e-12)
+        );
     }
 }

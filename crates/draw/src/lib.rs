@@ -47,5 +47,6 @@ pub use context::Anchor;
 pub use stage::{DrawOptions, Stage};
 pub use tokens::Theme;
 pub use view::{
-    DriveKind, DriveView, Frame, Guide, JointView, LengthUnit, LinkView, MechanismView, TraceView, Wheel,
+    DriveKind, DriveView, Frame, Guide, JointView, LengthUnit, LinkView, MechanismView, TraceView,
+    Wheel,
 };

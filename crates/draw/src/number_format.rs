@@ -29,7 +29,10 @@ pub fn significant(value: f64, digits: usize) -> String {
     let text = format!("{value:.*e}", digits.saturating_sub(1));
     match text.split_once('e') {
         Some((mantissa, power)) if mantissa.contains('.') => {
-            format!("{}e{power}", mantissa.trim_end_matches('0').trim_end_matches('.'))
+            format!(
+                "{}e{power}",
+                mantissa.trim_end_matches('0').trim_end_matches('.')
+            )
         }
         _ => text,
     }
@@ -40,7 +43,10 @@ pub fn decade(value: f64) -> i32 {
     if value == 0.0 || !value.is_finite() {
         return 0;
     }
-    format!("{value:e}").split_once('e').and_then(|(_, power)| power.parse().ok()).unwrap_or(0)
+    format!("{value:e}")
+        .split_once('e')
+        .and_then(|(_, power)| power.parse().ok())
+        .unwrap_or(0)
 }
 
 /// `10^power`, correctly rounded.

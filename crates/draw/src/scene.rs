@@ -40,12 +40,19 @@ pub struct Style {
 impl Style {
     /// Filled, without outline.
     pub fn fill(token: Token) -> Style {
-        Style { fill: Some(token.into()), ..Style::default() }
+        Style {
+            fill: Some(token.into()),
+            ..Style::default()
+        }
     }
 
     /// Outline of the given width in mm, not filled.
     pub fn stroke(token: Token, width: f64) -> Style {
-        Style { stroke: Some(token.into()), width, ..Style::default() }
+        Style {
+            stroke: Some(token.into()),
+            width,
+            ..Style::default()
+        }
     }
 
     /// The same with an opaque or translucent fill.
@@ -90,12 +97,18 @@ pub struct Path {
 impl Path {
     /// Straight lines through the points.
     pub fn polyline(points: &[Point]) -> Path {
-        Path { vertices: points.iter().map(|&at| Vertex { at, bulge: 0.0 }).collect(), closed: false }
+        Path {
+            vertices: points.iter().map(|&at| Vertex { at, bulge: 0.0 }).collect(),
+            closed: false,
+        }
     }
 
     /// Straight lines around the points.
     pub fn polygon(points: &[Point]) -> Path {
-        Path { closed: true, ..Path::polyline(points) }
+        Path {
+            closed: true,
+            ..Path::polyline(points)
+        }
     }
 
     /// A rectangle between two opposite corners, its own corners rounded.
@@ -117,7 +130,10 @@ impl Path {
             vertex(x0, y1 - r, 0.0),
             vertex(x0, y0 + r, corner),
         ];
-        Path { vertices, closed: true }
+        Path {
+            vertices,
+            closed: true,
+        }
     }
 
     /// An arc of a circle from the angle `start` over `sweep` rad, counter-clockwise when positive, short of a full turn.
@@ -127,16 +143,33 @@ impl Path {
             [center[0] + radius * c, center[1] + radius * s]
         };
         let (s, c) = sin_cos(sweep / 4.0);
-        let vertices =
-            vec![Vertex { at: on(start), bulge: s / c }, Vertex { at: on(start + sweep), bulge: 0.0 }];
-        Path { vertices, closed: false }
+        let vertices = vec![
+            Vertex {
+                at: on(start),
+                bulge: s / c,
+            },
+            Vertex {
+                at: on(start + sweep),
+                bulge: 0.0,
+            },
+        ];
+        Path {
+            vertices,
+            closed: false,
+        }
     }
 
     /// The pieces of the path: start, end, bulge.
     pub fn segments(&self) -> impl Iterator<Item = (Point, Point, f64)> + '_ {
         let n = self.vertices.len();
         let count = if self.closed { n } else { n.saturating_sub(1) };
-        (0..count).map(move |i| (self.vertices[i].at, self.vertices[(i + 1) % n].at, self.vertices[i].bulge))
+        (0..count).map(move |i| {
+            (
+                self.vertices[i].at,
+                self.vertices[(i + 1) % n].at,
+                self.vertices[i].bulge,
+            )
+        })
     }
 }
 
@@ -227,12 +260,19 @@ pub enum Item {
 impl Item {
     /// One path.
     pub fn path(path: Path, style: Style) -> Item {
-        Item::Shape { paths: vec![path], style }
+        Item::Shape {
+            paths: vec![path],
+            style,
+        }
     }
 
     /// A circle.
     pub fn circle(center: Point, radius: f64, style: Style) -> Item {
-        Item::Circle { center, radius, style }
+        Item::Circle {
+            center,
+            radius,
+            style,
+        }
     }
 }
 
@@ -301,7 +341,11 @@ pub struct Place {
 
 impl Place {
     /// On the paper as it is.
-    pub const PAPER: Place = Place { at: [0.0, 0.0], angle: 0.0, stretch: 1.0 };
+    pub const PAPER: Place = Place {
+        at: [0.0, 0.0],
+        angle: 0.0,
+        stretch: 1.0,
+    };
 
     /// From the group's coordinates to the paper's.
     pub fn apply(&self, p: Point) -> Point {
@@ -327,7 +371,12 @@ pub struct Group {
 impl Group {
     /// Items on the paper.
     pub fn new(layer: Layer, items: Vec<Item>) -> Group {
-        Group { layer, key: None, place: Place::PAPER, items }
+        Group {
+            layer,
+            key: None,
+            place: Place::PAPER,
+            items,
+        }
     }
 }
 

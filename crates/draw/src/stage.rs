@@ -67,27 +67,69 @@ impl<'a> Stage<'a> {
     /// Lays the mechanism out. Poses may be missing or not finite; what cannot be drawn is left out.
     pub fn new(view: &'a MechanismView, frames: &'a [Frame], options: DrawOptions) -> Stage<'a> {
         let options = DrawOptions {
-            width: if options.width.is_finite() { options.width.clamp(20.0, 5000.0) } else { 160.0 },
-            max_height: if options.max_height.is_finite() { options.max_height.clamp(20.0, 5000.0) } else { 130.0 },
+            width: if options.width.is_finite() {
+                options.width.clamp(20.0, 5000.0)
+            } else {
+                160.0
+            },
+            max_height: if options.max_height.is_finite() {
+                options.max_height.clamp(20.0, 5000.0)
+            } else {
+                130.0
+            },
             ..options
         };
         let mut bounds = Bounds::EMPTY;
         match options.view_box {
             Some(corners) => corners.iter().for_each(|&p| bounds.add(p, 0.0)),
             None => {
-                frames.iter().for_each(|frame| add_frame(&mut bounds, view, frame));
-                view.joints.iter().for_each(|joint| add_rack(&mut bounds, frames, joint));
+                frames
+                    .iter()
+                    .for_each(|frame| add_frame(&mut bounds, view, frame));
+                view.joints
+                    .iter()
+                    .for_each(|joint| add_rack(&mut bounds, frames, joint));
             }
         }
         let top = if options.title { 10.0 } else { 0.0 };
-        let bottom = if options.scale_bar || options.caption { 9.0 } else { 0.0 };
-        let margins = Margins { sides: [SYMBOL_ROOM, SYMBOL_ROOM, SYMBOL_ROOM + top, SYMBOL_ROOM + bottom] };
-        let fit =
-            Fit::new(bounds, options.width, [LEAST_HEIGHT, options.max_height], margins, view.length_unit.size());
-        let context = Context { view, frames, fit, reference: reference_frame(view, frames) };
+        let bottom = if options.scale_bar || options.caption {
+            9.0
+        } else {
+            0.0
+        };
+        let margins = Margins {
+            sides: [
+                SYMBOL_ROOM,
+                SYMBOL_ROOM,
+                SYMBOL_ROOM + top,
+                SYMBOL_ROOM + bottom,
+            ],
+        };
+        let fit = Fit::new(
+            bounds,
+            options.width,
+            [LEAST_HEIGHT, options.max_height],
+            margins,
+            view.length_unit.size(),
+        );
+        let context = Context {
+            view,
+            frames,
+            fit,
+            reference: reference_frame(view, frames),
+        };
         let parts = symbols::parts(&context, options.labels);
-        let traces = if options.traces { TracePath::all(&context) } else { Vec::new() };
-        Stage { context, options, parts, traces }
+        let traces = if options.traces {
+            TracePath::all(&context)
+        } else {
+            Vec::new()
+        };
+        Stage {
+            context,
+            options,
+            parts,
+            traces,
+        }
     }
 
     /// Number of poses.
@@ -130,25 +172,42 @@ impl<'a> Stage<'a> {
         if let Some(label) = frame.map(|f| f.label.as_str()).filter(|l| !l.is_empty()) {
             title = format!("{title}: {label}");
         }
-        Scene { width, height, title, groups }
+        Scene {
+            width,
+            height,
+            title,
+            groups,
+        }
     }
 
     /// The mechanism itself in a pose, each group with the number of its part as key.
     fn pose(&self, frame: &Frame) -> Vec<Group> {
         let group = |(number, part): (usize, &Part)| {
             let place = self.context.place(frame, part.anchor)?;
-            Some(Group { layer: part.layer, key: Some(number.to_string()), place, items: part.items.clone() })
+            Some(Group {
+                layer: part.layer,
+                key: Some(number.to_string()),
+                place,
+                items: part.items.clone(),
+            })
         };
         self.parts.iter().enumerate().filter_map(group).collect()
     }
 
     fn ghost(&self, index: usize) -> Vec<Group> {
-        let Some(frame) = self.context.frames.get(index) else { return Vec::new() };
+        let Some(frame) = self.context.frames.get(index) else {
+            return Vec::new();
+        };
         let solid = |part: &&Part| matches!(part.layer, Layer::Link(_) | Layer::Gear | Layer::Body);
         let group = |part: &Part| {
             let place = self.context.place(frame, part.anchor)?;
             let items = part.items.iter().map(symbols::ghost_item).collect();
-            Some(Group { layer: Layer::Ghost, key: None, place, items })
+            Some(Group {
+                layer: Layer::Ghost,
+                key: None,
+                place,
+                items,
+            })
         };
         self.parts.iter().filter(solid).filter_map(group).collect()
     }
@@ -176,7 +235,9 @@ impl<'a> Stage<'a> {
 
 fn add_frame(bounds: &mut Bounds, view: &MechanismView, frame: &Frame) {
     let guides_only = |index: usize| {
-        let used = |guide: &crate::view::Guide| guide.link == 0 && (guide.from == index || guide.to == index);
+        let used = |guide: &crate::view::Guide| {
+            guide.link == 0 && (guide.from == index || guide.to == index)
+        };
         view.joints.iter().any(|joint| match joint {
             JointView::Slider { guide, .. } | JointView::Slot { guide, .. } => used(guide),
             _ => false,
@@ -191,11 +252,15 @@ fn add_frame(bounds: &mut Bounds, view: &MechanismView, frame: &Frame) {
         match joint {
             JointView::Gears { a, b, .. } => {
                 for wheel in [a, b] {
-                    point(frame, wheel.center).into_iter().for_each(|p| bounds.add(p, wheel.radius.abs()));
+                    point(frame, wheel.center)
+                        .into_iter()
+                        .for_each(|p| bounds.add(p, wheel.radius.abs()));
                 }
             }
             JointView::Rack { pinion, .. } => {
-                point(frame, pinion.center).into_iter().for_each(|p| bounds.add(p, pinion.radius.abs()));
+                point(frame, pinion.center)
+                    .into_iter()
+                    .for_each(|p| bounds.add(p, pinion.radius.abs()));
             }
             _ => {}
         }
@@ -204,13 +269,20 @@ fn add_frame(bounds: &mut Bounds, view: &MechanismView, frame: &Frame) {
 
 /// A rack is as long as its pinion's travel; both its ends belong on the sheet in every pose.
 fn add_rack(bounds: &mut Bounds, frames: &[Frame], joint: &JointView) {
-    let JointView::Rack { link, pinion, side } = joint else { return };
+    let JointView::Rack { link, pinion, side } = joint else {
+        return;
+    };
     let placed = |frame: &Frame| Some((point(frame, pinion.center)?, *frame.links.get(*link)?));
     let along = |(p, l): (Point, [f64; 3])| {
         let (s, c) = sin_cos(l[2]);
         (p[0] - l[0]) * c + (p[1] - l[1]) * s
     };
-    let travel: Vec<f64> = frames.iter().filter_map(placed).map(along).filter(|s| s.is_finite()).collect();
+    let travel: Vec<f64> = frames
+        .iter()
+        .filter_map(placed)
+        .map(along)
+        .filter(|s| s.is_finite())
+        .collect();
     let low = travel.iter().copied().fold(f64::INFINITY, f64::min);
     let high = travel.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     for (p, l) in frames.iter().filter_map(placed) {

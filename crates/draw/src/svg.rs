@@ -7,7 +7,8 @@ use crate::scene::{Align, Group, Item, Paint, Path, Place, Point, Scene, Style, 
 use crate::tokens::{Theme, Token};
 
 /// Fonts to try, in order.
-const FONTS: &str = "system-ui, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, 'Liberation Sans', sans-serif";
+const FONTS: &str =
+    "system-ui, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, 'Liberation Sans', sans-serif";
 
 /// A whole SVG file: paper, title for readers who cannot see it, and the drawing.
 pub fn document(scene: &Scene, theme: Theme) -> String {
@@ -52,7 +53,12 @@ fn write_group(out: &mut String, group: &Group, height: f64, theme: Theme) {
     let moved = group.place != Place::PAPER;
     if moved {
         let [x, y] = group.place.at;
-        let _ = write!(out, " transform=\"translate({} {})", fixed(x, 3), fixed(height - y, 3));
+        let _ = write!(
+            out,
+            " transform=\"translate({} {})",
+            fixed(x, 3),
+            fixed(height - y, 3)
+        );
         let turn = fixed(-group.place.angle.to_degrees() % 360.0, 3);
         if turn != "0" {
             let _ = write!(out, " rotate({turn})");
@@ -61,7 +67,11 @@ fn write_group(out: &mut String, group: &Group, height: f64, theme: Theme) {
     }
     out.push_str(">\n");
     // inside a moved group, y counts from the group's own origin
-    let view = View { base: if moved { 0.0 } else { height }, stretch: group.place.stretch, theme };
+    let view = View {
+        base: if moved { 0.0 } else { height },
+        stretch: group.place.stretch,
+        theme,
+    };
     for item in &group.items {
         view.item(out, item);
     }
@@ -76,7 +86,11 @@ struct View {
 
 impl View {
     fn at(&self, p: Point) -> String {
-        format!("{} {}", fixed(p[0] * self.stretch, 3), fixed(self.base - p[1], 3))
+        format!(
+            "{} {}",
+            fixed(p[0] * self.stretch, 3),
+            fixed(self.base - p[1], 3)
+        )
     }
 
     fn item(&self, out: &mut String, item: &Item) {
@@ -87,8 +101,15 @@ impl View {
                     let _ = writeln!(out, "<path d=\"{data}\"{}/>", self.style(style));
                 }
             }
-            Item::Circle { center, radius, style } => {
-                let (x, y) = (fixed(center[0] * self.stretch, 3), fixed(self.base - center[1], 3));
+            Item::Circle {
+                center,
+                radius,
+                style,
+            } => {
+                let (x, y) = (
+                    fixed(center[0] * self.stretch, 3),
+                    fixed(self.base - center[1], 3),
+                );
                 let _ = writeln!(
                     out,
                     "<circle cx=\"{x}\" cy=\"{y}\" r=\"{}\"{}/>",
@@ -101,7 +122,9 @@ impl View {
     }
 
     fn path(&self, path: &Path) -> String {
-        let Some(first) = path.vertices.first() else { return String::new() };
+        let Some(first) = path.vertices.first() else {
+            return String::new();
+        };
         let mut data = format!("M{}", self.at(first.at));
         for (from, to, bulge) in path.segments() {
             let chord = distance(from, to);
@@ -143,14 +166,25 @@ impl View {
     fn paint(&self, attribute: &str, paint: Paint) -> String {
         let mut out = format!(" {attribute}=\"{}\"", paint.token.css(self.theme));
         if paint.alpha < 1.0 {
-            let _ = write!(out, " {attribute}-opacity=\"{}\"", fixed(paint.alpha.max(0.0), 3));
+            let _ = write!(
+                out,
+                " {attribute}-opacity=\"{}\"",
+                fixed(paint.alpha.max(0.0), 3)
+            );
         }
         out
     }
 
     fn text(&self, out: &mut String, text: &Text) {
-        let (x, y) = (fixed(text.at[0] * self.stretch, 3), fixed(self.base - text.at[1], 3));
-        let _ = write!(out, "<text x=\"{x}\" y=\"{y}\" font-size=\"{}\"", fixed(text.size, 3));
+        let (x, y) = (
+            fixed(text.at[0] * self.stretch, 3),
+            fixed(self.base - text.at[1], 3),
+        );
+        let _ = write!(
+            out,
+            "<text x=\"{x}\" y=\"{y}\" font-size=\"{}\"",
+            fixed(text.size, 3)
+        );
         out.push_str(match text.align {
             Align::Start => "",
             Align::Middle => " text-anchor=\"middle\"",

@@ -109,7 +109,8 @@ impl Token {
 /// All tokens as CSS custom properties, for `:root` of a page: light, or dark.
 pub fn css(dark: bool) -> String {
     let all = PLAIN.into_iter().chain((0..6).map(Token::Series));
-    all.map(|token| format!("--{}:#{:06x};", token.name(), token.rgb(dark))).collect()
+    all.map(|token| format!("--{}:#{:06x};", token.name(), token.rgb(dark)))
+        .collect()
 }
 
 #[cfg(test)]
@@ -119,7 +120,11 @@ mod tests {
     fn luminance(rgb: u32) -> f64 {
         let channel = |shift: u32| {
             let c = f64::from((rgb >> shift) & 255) / 255.0;
-            if c <= 0.03928 { c / 12.92 } else { kempe_number::math::exp(2.4 * kempe_number::math::ln((c + 0.055) / 1.055)) }
+            if c <= 0.03928 {
+                c / 12.92
+            } else {
+                kempe_number::math::exp(2.4 * kempe_number::math::ln((c + 0.055) / 1.055))
+            }
         };
         0.2126 * channel(16) + 0.7152 * channel(8) + 0.0722 * channel(0)
     }
@@ -128,7 +133,14 @@ mod tests {
     fn text_tokens_have_contrast_4_5_on_both_papers() {
         for dark in [false, true] {
             for paper in [Token::Background, Token::Panel] {
-                for text in [Token::Ink, Token::Muted, Token::Drive, Token::Error, Token::Warning, Token::Ground] {
+                for text in [
+                    Token::Ink,
+                    Token::Muted,
+                    Token::Drive,
+                    Token::Error,
+                    Token::Warning,
+                    Token::Ground,
+                ] {
                     let (a, b) = (luminance(text.rgb(dark)), luminance(paper.rgb(dark)));
                     let ratio = (a.max(b) + 0.05) / (a.min(b) + 0.05);
                     assert!(ratio >= 4.5, "{text:?} on {paper:?}: {ratio}");

@@ -25,7 +25,10 @@ impl TracePath {
             for (index, frame) in context.frames.iter().enumerate() {
                 match (context.paper(frame, trace.point), pieces.last_mut()) {
                     (Some(p), Some(piece)) => {
-                        if piece.last().is_none_or(|(_, last)| distance(*last, p) > FINEST) {
+                        if piece
+                            .last()
+                            .is_none_or(|(_, last)| distance(*last, p) > FINEST)
+                        {
                             piece.push((index, p));
                         }
                     }
@@ -34,7 +37,10 @@ impl TracePath {
             }
             pieces.retain(|piece| piece.len() > 1);
             let carrier = context.carriers(trace.point).last().copied().unwrap_or(1);
-            TracePath { token: Token::Series(carrier.saturating_sub(1)), pieces }
+            TracePath {
+                token: Token::Series(carrier.saturating_sub(1)),
+                pieces,
+            }
         };
         context.view.traces.iter().map(path).collect()
     }
@@ -42,7 +48,11 @@ impl TracePath {
     /// The pieces as paths, up to and with a pose.
     pub fn paths(&self, until: usize) -> Vec<Path> {
         let path = |piece: &Vec<(usize, Point)>| {
-            let points: Vec<Point> = piece.iter().filter(|(i, _)| *i <= until).map(|(_, p)| *p).collect();
+            let points: Vec<Point> = piece
+                .iter()
+                .filter(|(i, _)| *i <= until)
+                .map(|(_, p)| *p)
+                .collect();
             (points.len() > 1).then(|| Path::polyline(&points))
         };
         self.pieces.iter().filter_map(path).collect()

@@ -12,12 +12,19 @@ pub struct LengthUnit {
 impl LengthUnit {
     /// A unit by name and size in m.
     pub fn new(name: impl Into<String>, factor: f64) -> LengthUnit {
-        LengthUnit { name: name.into(), factor }
+        LengthUnit {
+            name: name.into(),
+            factor,
+        }
     }
 
     /// The size in m, or 1 when it is not a positive number.
     pub(crate) fn size(&self) -> f64 {
-        if self.factor.is_finite() && self.factor > 0.0 { self.factor } else { 1.0 }
+        if self.factor.is_finite() && self.factor > 0.0 {
+            self.factor
+        } else {
+            1.0
+        }
     }
 }
 

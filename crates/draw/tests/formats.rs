@@ -11,27 +11,64 @@ use kempe_draw::{DrawOptions, Stage, Theme, dxf, svg};
 #[test]
 fn poses_look_as_they_did() {
     for case in mechanisms::all() {
-        let stage = Stage::new(&case.view, &case.frames[..1], DrawOptions { width: 100.0, ..DrawOptions::default() });
-        insta::assert_snapshot!(format!("pose-{}", case.file), svg::document(&stage.scene(0), Theme::Light));
+        let stage = Stage::new(
+            &case.view,
+            &case.frames[..1],
+            DrawOptions {
+                width: 100.0,
+                ..DrawOptions::default()
+            },
+        );
+        insta::assert_snapshot!(
+            format!("pose-{}", case.file),
+            svg::document(&stage.scene(0), Theme::Light)
+        );
     }
 }
 
 #[test]
 fn a_plot_looks_as_it_did() {
     let x: Vec<f64> = (0..=36).map(|k| f64::from(k) * 10.0).collect();
-    let y = |scale: f64| x.iter().map(|v| if *v == 120.0 { f64::NAN } else { scale * v * (360.0 - v) }).collect();
+    let y = |scale: f64| {
+        x.iter()
+            .map(|v| {
+                if *v == 120.0 {
+                    f64::NAN
+                } else {
+                    scale * v * (360.0 - v)
+                }
+            })
+            .collect()
+    };
     let plot = PlotSpec {
         title: "Parabolas <with> a gap".into(),
         x: Axis::new("crank", "deg"),
         y: Axis::new("force", "N"),
         curves: vec![
-            Curve { label: "one".into(), x: x.clone(), y: y(1.0), dashed: false },
-            Curve { label: "two".into(), x: x.clone(), y: y(-2.5), dashed: true },
+            Curve {
+                label: "one".into(),
+                x: x.clone(),
+                y: y(1.0),
+                dashed: false,
+            },
+            Curve {
+                label: "two".into(),
+                x: x.clone(),
+                y: y(-2.5),
+                dashed: true,
+            },
         ],
-        markers: vec![Marker { at: 180.0, label: "dead point".into(), kind: MarkerKind::DeadPoint }],
+        markers: vec![Marker {
+            at: 180.0,
+            label: "dead point".into(),
+            kind: MarkerKind::DeadPoint,
+        }],
         equal_aspect: false,
     };
-    insta::assert_snapshot!("plot", svg::document(&plot.draw(120.0, 80.0).scene, Theme::Light));
+    insta::assert_snapshot!(
+        "plot",
+        svg::document(&plot.draw(120.0, 80.0).scene, Theme::Light)
+    );
 }
 
 #[test]
@@ -52,7 +89,13 @@ fn dxf_is_read_back_at_true_scale_with_a_layer_for_each_link() {
             assert!(drawing.layers().any(|l| l.name == layer), "{layer}");
         }
         // the first line is the first bar, in the mechanism's own unit
-        let bar = case.view.links.iter().skip(1).find(|l| l.points.len() > 1).unwrap();
+        let bar = case
+            .view
+            .links
+            .iter()
+            .skip(1)
+            .find(|l| l.points.len() > 1)
+            .unwrap();
         let [a, b] = [0, 1].map(|k| case.frames[3].points[bar.points[k]]);
         let unit = case.view.length_unit.factor;
         let line = drawing.entities().find_map(|e| match &e.specific {
@@ -60,10 +103,20 @@ fn dxf_is_read_back_at_true_scale_with_a_layer_for_each_link() {
             _ => None,
         });
         let line = line.unwrap();
-        for (ours, theirs) in [(a[0], line.p1.x), (a[1], line.p1.y), (b[0], line.p2.x), (b[1], line.p2.y)] {
-            assert!((ours / unit - theirs).abs() < 1e-12 * (1.0 + theirs.abs()), "{ours} {theirs}");
+        for (ours, theirs) in [
+            (a[0], line.p1.x),
+            (a[1], line.p1.y),
+            (b[0], line.p2.x),
+            (b[1], line.p2.y),
+        ] {
+            assert!(
+                (ours / unit - theirs).abs() < 1e-12 * (1.0 + theirs.abs()),
+                "{ours} {theirs}"
+            );
         }
-        let circles = drawing.entities().filter(|e| matches!(e.specific, ::dxf::entities::EntityType::Circle(_)));
+        let circles = drawing
+            .entities()
+            .filter(|e| matches!(e.specific, ::dxf::entities::EntityType::Circle(_)));
         assert!(circles.count() >= 2);
     }
 }
@@ -75,25 +128,42 @@ fn pictures_decode_to_the_size_asked_for() {
     let case = mechanisms::crank_rocker();
     let stage = Stage::new(&case.view, &case.frames, DrawOptions::default());
     let bytes = raster::png(&stage.scene(0), Theme::Dark, 50.8).unwrap();
-    let reader = png::Decoder::new(std::io::Cursor::new(&bytes)).read_info().unwrap();
+    let reader = png::Decoder::new(std::io::Cursor::new(&bytes))
+        .read_info()
+        .unwrap();
     assert_eq!(reader.info().width, 320);
-    let options = animation::AnimationOptions { width: 200, pictures: 9, ping_pong: true, ..Default::default() };
+    let options = animation::AnimationOptions {
+        width: 200,
+        pictures: 9,
+        ping_pong: true,
+        ..Default::default()
+    };
     let bytes = animation::gif(&stage, &options).unwrap();
-    let mut decoder = gif::DecodeOptions::new().read_info(bytes.as_slice()).unwrap();
+    let mut decoder = gif::DecodeOptions::new()
+        .read_info(bytes.as_slice())
+        .unwrap();
     let mut count = 0;
     while decoder.read_next_frame().unwrap().is_some() {
         count += 1;
     }
     assert_eq!((decoder.width(), count), (200, 8));
     let bytes = animation::apng(&stage, &options).unwrap();
-    let mut reader = png::Decoder::new(std::io::Cursor::new(&bytes)).read_info().unwrap();
-    assert_eq!(reader.info().animation_control().map(|a| a.num_frames), Some(8));
+    let mut reader = png::Decoder::new(std::io::Cursor::new(&bytes))
+        .read_info()
+        .unwrap();
+    assert_eq!(
+        reader.info().animation_control().map(|a| a.num_frames),
+        Some(8)
+    );
     let mut buffer = vec![0; reader.output_buffer_size().unwrap()];
     for _ in 0..8 {
         reader.next_frame(&mut buffer).unwrap();
     }
     let none = Stage::new(&case.view, &[], DrawOptions::default());
-    assert_eq!(animation::gif(&none, &options), Err(raster::RasterError::NoFrames));
+    assert_eq!(
+        animation::gif(&none, &options),
+        Err(raster::RasterError::NoFrames)
+    );
     let huge = raster::png(&stage.scene(0), Theme::Light, 1e6);
     assert!(matches!(huge, Err(raster::RasterError::TooLarge { .. })));
 }

@@ -20,10 +20,16 @@ fn evil_report() -> Report {
         (motion.name, motion.summary, motion.view.title) = (text(), text(), text());
         motion.view.points.iter_mut().for_each(|p| *p = text());
         motion.view.links.iter_mut().for_each(|l| l.name = text());
-        motion.columns.iter_mut().for_each(|c| (c.name, c.unit) = (text(), text()));
+        motion
+            .columns
+            .iter_mut()
+            .for_each(|c| (c.name, c.unit) = (text(), text()));
         (motion.drive.name, motion.drive.unit) = (text(), text());
         motion.view.length_unit.name = text();
-        motion.events.iter_mut().for_each(|e| (e.label, e.place) = (text(), text()));
+        motion
+            .events
+            .iter_mut()
+            .for_each(|e| (e.label, e.place) = (text(), text()));
         motion.evidence.facts.push((text(), text()));
         for plot in &mut motion.plots {
             (plot.title, plot.x.label, plot.y.unit) = (text(), text(), text());
@@ -53,7 +59,10 @@ fn no_text_gets_out_of_its_place() {
     let case = mechanisms::crank_rocker();
     let mut view = case.view.clone();
     view.title = EVIL.into();
-    let picture = svg::document(&Stage::new(&view, &case.frames, DrawOptions::default()).scene(0), Theme::Light);
+    let picture = svg::document(
+        &Stage::new(&view, &case.frames, DrawOptions::default()).scene(0),
+        Theme::Light,
+    );
     assert!(!picture.contains("<script") && !picture.contains("<img"));
 }
 
@@ -65,8 +74,12 @@ fn long_motions_are_thinned_and_the_ends_kept() {
     case.drive = (0..n).map(|k| k as f64 * 1e-3).collect();
     let html = reports::report(&[case]).to_html();
     let start = html.find("\"row\":[").unwrap() + 7;
-    let rows: Vec<&str> = html[start..start + html[start..].find(']').unwrap()].split(',').collect();
-    assert!(rows.len() <= MOST_ROWS + 1 && rows.first() == Some(&"0") && rows.last() == Some(&"25000"));
+    let rows: Vec<&str> = html[start..start + html[start..].find(']').unwrap()]
+        .split(',')
+        .collect();
+    assert!(
+        rows.len() <= MOST_ROWS + 1 && rows.first() == Some(&"0") && rows.last() == Some(&"25000")
+    );
     assert!(html.len() < 1_500_000, "{}", html.len());
 }
 
@@ -83,18 +96,41 @@ fn guide() -> impl Strategy<Value = Guide> {
 }
 
 fn wheel() -> impl Strategy<Value = Wheel> {
-    (0..6_usize, 0..6_usize, number(), prop::sample::select(vec![0, 1, 4, 5, 20, 399, u32::MAX]))
-        .prop_map(|(link, center, radius, teeth)| Wheel { link, center, radius, teeth })
+    (
+        0..6_usize,
+        0..6_usize,
+        number(),
+        prop::sample::select(vec![0, 1, 4, 5, 20, 399, u32::MAX]),
+    )
+        .prop_map(|(link, center, radius, teeth)| Wheel {
+            link,
+            center,
+            radius,
+            teeth,
+        })
 }
 
 fn joint() -> impl Strategy<Value = JointView> {
     let i = 0..6_usize;
     prop_oneof![
-        (i.clone(), i.clone(), guide()).prop_map(|(block, at, guide)| JointView::Slider { block, at, guide }),
+        (i.clone(), i.clone(), guide()).prop_map(|(block, at, guide)| JointView::Slider {
+            block,
+            at,
+            guide
+        }),
         (i.clone(), guide()).prop_map(|(pin, guide)| JointView::Slot { pin, guide }),
-        (i.clone(), i.clone(), i.clone()).prop_map(|(at, a, b)| JointView::Weld { at, links: [a, b] }),
-        (wheel(), wheel(), any::<bool>()).prop_map(|(a, b, internal)| JointView::Gears { a, b, internal }),
-        (i.clone(), wheel(), number()).prop_map(|(link, pinion, side)| JointView::Rack { link, pinion, side }),
+        (i.clone(), i.clone(), i.clone())
+            .prop_map(|(at, a, b)| JointView::Weld { at, links: [a, b] }),
+        (wheel(), wheel(), any::<bool>()).prop_map(|(a, b, internal)| JointView::Gears {
+            a,
+            b,
+            internal
+        }),
+        (i.clone(), wheel(), number()).prop_map(|(link, pinion, side)| JointView::Rack {
+            link,
+            pinion,
+            side
+        }),
         (i.clone(), i.clone()).prop_map(|(a, b)| JointView::Cylinder { a, b }),
         (i.clone(), i.clone()).prop_map(|(a, b)| JointView::Spring { a, b }),
         (i.clone(), i).prop_map(|(a, b)| JointView::Damper { a, b }),
@@ -108,7 +144,11 @@ fn drive() -> impl Strategy<Value = DriveView> {
         (i.clone(), guide()).prop_map(|(at, guide)| DriveKind::Slide { at, guide }),
         (i.clone(), i).prop_map(|(a, b)| DriveKind::Extend { a, b }),
     ];
-    (kind, any::<bool>()).prop_map(|(kind, forward)| DriveView { name: "m".into(), kind, forward })
+    (kind, any::<bool>()).prop_map(|(kind, forward)| DriveView {
+        name: "m".into(),
+        kind,
+        forward,
+    })
 }
 
 prop_compose! {

@@ -22,17 +22,39 @@ pub fn motion(case: &Case) -> MotionReport {
     let (point, link) = (case.view.points.len() - 1, case.view.links.len() - 1);
     let time: Vec<f64> = case.drive.iter().map(|d| d.abs()).collect();
     let degrees: Vec<f64> = case.drive.iter().map(|d| d.to_degrees()).collect();
-    let coordinate = |k: usize| -> Vec<f64> { case.frames.iter().map(|f| f.points[point][k] * 1e3).collect() };
+    let coordinate = |k: usize| -> Vec<f64> {
+        case.frames
+            .iter()
+            .map(|f| f.points[point][k] * 1e3)
+            .collect()
+    };
     let (x, y) = (coordinate(0), coordinate(1));
-    let angle: Vec<f64> = case.frames.iter().map(|f| f.links[link][2].to_degrees()).collect();
+    let angle: Vec<f64> = case
+        .frames
+        .iter()
+        .map(|f| f.links[link][2].to_degrees())
+        .collect();
     let (vx, vy) = (differences(&time, &x), differences(&time, &y));
     let speed: Vec<f64> = vx.iter().zip(&vy).map(|(a, b)| hypot(*a, *b)).collect();
     let (name, last) = (&case.view.points[point], &case.view.links[link].name);
     let drive_axis = Axis::new("motor", "deg");
-    let curve = |label: &str, y: &[f64]| Curve { label: label.into(), x: degrees.clone(), y: y.to_vec(), dashed: false };
+    let curve = |label: &str, y: &[f64]| Curve {
+        label: label.into(),
+        x: degrees.clone(),
+        y: y.to_vec(),
+        dashed: false,
+    };
     let markers = vec![
-        Marker { at: degrees[rows / 5], label: "dead point".into(), kind: MarkerKind::DeadPoint },
-        Marker { at: degrees[rows / 2], label: "change point".into(), kind: MarkerKind::ChangePoint },
+        Marker {
+            at: degrees[rows / 5],
+            label: "dead point".into(),
+            kind: MarkerKind::DeadPoint,
+        },
+        Marker {
+            at: degrees[rows / 2],
+            label: "change point".into(),
+            kind: MarkerKind::ChangePoint,
+        },
     ];
     let plots = vec![
         PlotSpec {
@@ -47,22 +69,39 @@ pub fn motion(case: &Case) -> MotionReport {
             title: format!("Velocity of {name}"),
             x: drive_axis.clone(),
             y: Axis::new("velocity", "mm/s"),
-            curves: vec![curve("speed", &speed), curve("along x", &vx), curve("along y", &vy)],
+            curves: vec![
+                curve("speed", &speed),
+                curve("along x", &vx),
+                curve("along y", &vy),
+            ],
             ..PlotSpec::default()
         },
         PlotSpec {
             title: format!("Path of {name}"),
             x: Axis::new("x", "mm"),
             y: Axis::new("y", "mm"),
-            curves: vec![Curve { label: String::new(), x: x.clone(), y: y.clone(), dashed: false }],
+            curves: vec![Curve {
+                label: String::new(),
+                x: x.clone(),
+                y: y.clone(),
+                dashed: false,
+            }],
             equal_aspect: true,
             ..PlotSpec::default()
         },
         PlotSpec {
             title: "Closure residual".into(),
             x: drive_axis,
-            y: Axis { log: true, ..Axis::new("residual", "") },
-            curves: vec![curve("", &(0..rows).map(|k| 1e-16 * (1.0 + (k % 17) as f64 * 9.0)).collect::<Vec<_>>())],
+            y: Axis {
+                log: true,
+                ..Axis::new("residual", "")
+            },
+            curves: vec![curve(
+                "",
+                &(0..rows)
+                    .map(|k| 1e-16 * (1.0 + (k % 17) as f64 * 9.0))
+                    .collect::<Vec<_>>(),
+            )],
             ..PlotSpec::default()
         },
     ];
@@ -81,8 +120,18 @@ pub fn motion(case: &Case) -> MotionReport {
         ],
         plots,
         events: vec![
-            Event { row: rows / 5, place: "motor = 72.0000 deg".into(), label: "Dead point of the rocker".into(), kind: MarkerKind::DeadPoint },
-            Event { row: rows / 2, place: "motor = 180.00 deg".into(), label: "Change point".into(), kind: MarkerKind::ChangePoint },
+            Event {
+                row: rows / 5,
+                place: "motor = 72.0000 deg".into(),
+                label: "Dead point of the rocker".into(),
+                kind: MarkerKind::DeadPoint,
+            },
+            Event {
+                row: rows / 2,
+                place: "motor = 180.00 deg".into(),
+                label: "Change point".into(),
+                kind: MarkerKind::ChangePoint,
+            },
         ],
         evidence: Evidence {
             residual: Some((3.1e-16, 1e-12)),
@@ -99,15 +148,27 @@ pub fn report(cases: &[Case]) -> Report {
     let mut motions: Vec<MotionReport> = cases.iter().map(motion).collect();
     if let Some(second) = motions.get_mut(1) {
         for row in 30..40 {
-            second.frames[row].points.iter_mut().for_each(|p| *p = [f64::NAN; 2]);
-            second.frames[row].links.iter_mut().for_each(|l| *l = [f64::NAN; 3]);
-            second.columns.iter_mut().for_each(|c| c.values[row] = f64::NAN);
+            second.frames[row]
+                .points
+                .iter_mut()
+                .for_each(|p| *p = [f64::NAN; 2]);
+            second.frames[row]
+                .links
+                .iter_mut()
+                .for_each(|l| *l = [f64::NAN; 3]);
+            second
+                .columns
+                .iter_mut()
+                .for_each(|c| c.values[row] = f64::NAN);
             for plot in &mut second.plots {
                 plot.curves.iter_mut().for_each(|c| c.y[row] = f64::NAN);
             }
         }
-        second.evidence.not_reached =
-            vec![NotReached { first: 30, last: 39, reason: "the loop A-B-C does not close: gap 1.3 mm".into() }];
+        second.evidence.not_reached = vec![NotReached {
+            first: 30,
+            last: 39,
+            reason: "the loop A-B-C does not close: gap 1.3 mm".into(),
+        }];
     }
     let text = String::from;
     Report {
@@ -123,19 +184,28 @@ pub fn report(cases: &[Case]) -> Report {
                         (text("By rank of the Jacobian"), text("1")),
                         (text("Grashof type"), text("crank-rocker")),
                     ]),
-                    Block::Paragraph(text("Both counts agree: the mechanism is neither overconstrained nor does it idle.")),
+                    Block::Paragraph(text(
+                        "Both counts agree: the mechanism is neither overconstrained nor does it idle.",
+                    )),
                 ],
             },
             Section {
                 title: "Assur groups".into(),
                 blocks: vec![Block::Table {
                     head: ["Group", "Class", "Links", "Solved by"].map(text).to_vec(),
-                    rows: vec![["C", "RRR dyad", "coupler, rocker", "closed form"].map(text).to_vec()],
+                    rows: vec![
+                        ["C", "RRR dyad", "coupler, rocker", "closed form"]
+                            .map(text)
+                            .to_vec(),
+                    ],
                 }],
             },
             Section {
                 title: "Assemblies".into(),
-                blocks: vec![Block::List(vec![text("C left of B -> D (chosen)"), text("C right of B -> D")])],
+                blocks: vec![Block::List(vec![
+                    text("C left of B -> D (chosen)"),
+                    text("C right of B -> D"),
+                ])],
             },
             Section {
                 title: "Warnings".into(),
@@ -143,7 +213,9 @@ pub fn report(cases: &[Case]) -> Report {
                     Block::Finding {
                         level: Level::Warning,
                         code: text("kin/low-transmission-angle"),
-                        message: text("The transmission angle at C falls to 22.3 deg at motor = 0 deg."),
+                        message: text(
+                            "The transmission angle at C falls to 22.3 deg at motor = 0 deg.",
+                        ),
                         help: text("Longer rocker or shorter crank: above 40 deg is usual."),
                     },
                     Block::Finding {

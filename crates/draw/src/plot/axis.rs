@@ -32,18 +32,26 @@ impl Scale {
         } else {
             (value - self.low) / (self.high - self.low)
         };
-        (usable(value, self.log) && share.abs() < 1e6).then(|| self.from + share * (self.to - self.from))
+        (usable(value, self.log) && share.abs() < 1e6)
+            .then_some(self.from + share * (self.to - self.from))
     }
 
     /// The range to show for some values, at least a little wide, with a margin as a share of it.
     pub fn range(values: impl Iterator<Item = f64>, log: bool, margin: f64) -> [f64; 2] {
         let usable_values = values.filter(|v| usable(*v, log));
-        let (mut low, mut high) = usable_values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+        let (mut low, mut high) = usable_values
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| {
+                (l.min(v), h.max(v))
+            });
         if low > high {
             (low, high) = if log { (1.0, 10.0) } else { (0.0, 1.0) };
         }
         if log {
-            return if high / low < 1.0001 { [low / 2.0, high * 2.0] } else { [low, high] };
+            return if high / low < 1.0001 {
+                [low / 2.0, high * 2.0]
+            } else {
+                [low, high]
+            };
         }
         let size = low.abs().max(high.abs());
         // a constant with rounding noise shows as a constant
@@ -77,7 +85,11 @@ impl Ticks {
         let step = step((scale.high - scale.low) / wanted.max(1.0), unit);
         let largest = scale.low.abs().max(scale.high.abs());
         let magnitude = decade(largest);
-        let power = if (-3..5).contains(&magnitude) { 0 } else { 3 * magnitude.div_euclid(3) };
+        let power = if (-3..5).contains(&magnitude) {
+            0
+        } else {
+            3 * magnitude.div_euclid(3)
+        };
         let decimals = (power - decade(step * 1.0000001)).max(0) as usize;
         let first = (scale.low / step - 1e-9).ceil();
         let count = ((scale.high / step + 1e-9).floor() - first).clamp(0.0, 50.0) as usize;
@@ -85,7 +97,10 @@ impl Ticks {
             let value = (first + k as f64) * step;
             (value, fixed(value / power_of_ten(power), decimals.min(12)))
         };
-        Ticks { marks: (0..=count).map(mark).collect(), power }
+        Ticks {
+            marks: (0..=count).map(mark).collect(),
+            power,
+        }
     }
 
     fn log(scale: &Scale, wanted: f64) -> Ticks {
@@ -97,8 +112,18 @@ impl Ticks {
                 let value = f64::from(digit) * power_of_ten(power);
                 let shown = (power - first) % every == 0
                     && (digit == 1 || last - first <= 1 && (digit == 2 || digit == 5));
-                if value >= scale.low * 0.9999 && value <= scale.high * 1.0001 && (shown || every == 1) {
-                    marks.push((value, if shown { significant(value, 3) } else { String::new() }));
+                if value >= scale.low * 0.9999
+                    && value <= scale.high * 1.0001
+                    && (shown || every == 1)
+                {
+                    marks.push((
+                        value,
+                        if shown {
+                            significant(value, 3)
+                        } else {
+                            String::new()
+                        },
+                    ));
                 }
             }
         }
@@ -115,7 +140,11 @@ fn step(raw: f64, unit: &str) -> f64 {
         return 1.0;
     }
     let power = power_of_ten(decade(raw));
-    [1.0, 2.0, 5.0, 10.0].into_iter().map(|m| m * power).find(|s| *s >= raw * 0.9999).unwrap_or(10.0 * power)
+    [1.0, 2.0, 5.0, 10.0]
+        .into_iter()
+        .map(|m| m * power)
+        .find(|s| *s >= raw * 0.9999)
+        .unwrap_or(10.0 * power)
 }
 
 /// ` × 10³` for an axis title; empty for 0.
@@ -131,7 +160,10 @@ pub(super) fn power_text(power: i32) -> String {
         '4'..='9' => char::from_u32('⁴' as u32 + c as u32 - '4' as u32).unwrap_or(c),
         _ => '⁰',
     };
-    format!(" × 10{}", power.to_string().chars().map(digit).collect::<String>())
+    format!(
+        " × 10{}",
+        power.to_string().chars().map(digit).collect::<String>()
+    )
 }
 
 #[cfg(test)]
@@ -139,15 +171,31 @@ mod tests {
     use super::*;
 
     fn texts(low: f64, high: f64, unit: &str) -> Vec<String> {
-        let scale = Scale { low, high, from: 0.0, to: 100.0, log: false };
-        Ticks::new(&scale, 6.0, unit).marks.into_iter().map(|(_, t)| t).collect()
+        let scale = Scale {
+            low,
+            high,
+            from: 0.0,
+            to: 100.0,
+            log: false,
+        };
+        Ticks::new(&scale, 6.0, unit)
+            .marks
+            .into_iter()
+            .map(|(_, t)| t)
+            .collect()
     }
 
     #[test]
     fn ticks_are_round() {
         assert_eq!(texts(0.0, 360.0, "deg"), ["0", "90", "180", "270", "360"]);
-        assert_eq!(texts(-0.13, 0.42, ""), ["-0.1", "0", "0.1", "0.2", "0.3", "0.4"]);
-        assert_eq!(texts(0.0, 1.2e6, "N"), ["0", "0.2", "0.4", "0.6", "0.8", "1", "1.2"]);
+        assert_eq!(
+            texts(-0.13, 0.42, ""),
+            ["-0.1", "0", "0.1", "0.2", "0.3", "0.4"]
+        );
+        assert_eq!(
+            texts(0.0, 1.2e6, "N"),
+            ["0", "0.2", "0.4", "0.6", "0.8", "1", "1.2"]
+        );
         assert_eq!(power_text(-12), " × 10⁻¹²");
     }
 }

@@ -13,60 +13,131 @@ const LARGE: f64 = 3.8;
 /// Samples closer than this on paper (mm) are drawn as one.
 const FINEST: f64 = 0.03;
 
+/// Curves with more rows than this are thinned to about so many.
+const MOST_ROWS: usize = 4000;
+
 /// The inside of the axes: left, bottom, right, top, mm.
 type Frame = [f64; 4];
 
 pub(super) fn draw(plot: &PlotSpec, width: f64, height: f64) -> PlotPicture {
-    let named: Vec<(usize, &Curve)> = plot.curves.iter().enumerate().filter(|(_, c)| !c.label.is_empty()).collect();
+    let named: Vec<(usize, &Curve)> = plot
+        .curves
+        .iter()
+        .enumerate()
+        .filter(|(_, c)| !c.label.is_empty())
+        .collect();
     let mut captions = Vec::new();
     let mut top = height - 3.0;
     if !plot.title.is_empty() {
         top -= LARGE;
         let title = shortened(&plot.title, LARGE, width - 8.0);
-        captions.push(Item::Text(Text { bold: true, ..Text::new([4.0, top], LARGE, title) }));
+        captions.push(Item::Text(Text {
+            bold: true,
+            ..Text::new([4.0, top], LARGE, title)
+        }));
         top -= 2.0;
     }
     if named.len() > 1 {
         top = legend(&named, width, top, height * 0.4, &mut captions);
     }
     let ranges = [(&plot.x, 0.0), (&plot.y, 0.05)].map(|(axis, margin)| {
-        let values = plot.curves.iter().flat_map(|c| if std::ptr::eq(axis, &plot.x) { &c.x } else { &c.y });
+        let values = plot.curves.iter().flat_map(|c| {
+            if std::ptr::eq(axis, &plot.x) {
+                &c.x
+            } else {
+                &c.y
+            }
+        });
         let margin = if plot.equal_aspect { 0.05 } else { margin };
-        let limits = axis.limits.filter(|[a, b]| a < b && b - a < 1e290 && (!axis.log || *a > 1e-290));
+        let limits = axis
+            .limits
+            .filter(|[a, b]| a < b && b - a < 1e290 && (!axis.log || *a > 1e-290));
         limits.unwrap_or_else(|| Scale::range(values.copied(), axis.log, margin))
     });
     let bottom = 12.0;
     let top = (top - 2.0).max(bottom + 10.0);
-    let mut y = Scale { low: ranges[1][0], high: ranges[1][1], from: bottom, to: top, log: plot.y.log };
+    let mut y = Scale {
+        low: ranges[1][0],
+        high: ranges[1][1],
+        from: bottom,
+        to: top,
+        log: plot.y.log,
+    };
     let y_ticks = Ticks::new(&y, ((top - bottom) / 9.0).clamp(2.0, 8.0), &plot.y.unit);
-    let widest = y_ticks.marks.iter().map(|(_, t)| text_width(t, SMALL)).fold(4.0, f64::max);
+    let widest = y_ticks
+        .marks
+        .iter()
+        .map(|(_, t)| text_width(t, SMALL))
+        .fold(4.0, f64::max);
     let left = (widest + 9.5).min(width * 0.4);
     let right = width - 5.0;
-    let mut x = Scale { low: ranges[0][0], high: ranges[0][1], from: left, to: right, log: plot.x.log };
+    let mut x = Scale {
+        low: ranges[0][0],
+        high: ranges[0][1],
+        from: left,
+        to: right,
+        log: plot.x.log,
+    };
     if plot.equal_aspect && !x.log && !y.log {
         equalize(&mut x, &mut y);
     }
     let x_ticks = Ticks::new(&x, ((right - left) / 17.0).clamp(2.0, 9.0), &plot.x.unit);
     let y_ticks = Ticks::new(&y, ((top - bottom) / 9.0).clamp(2.0, 8.0), &plot.y.unit);
     let frame = [left, bottom, right, top];
-    let mut groups = vec![Group::new(Layer::Furniture, furniture(frame, &x, &y, &x_ticks, &y_ticks))];
+    let mut groups = vec![Group::new(
+        Layer::Furniture,
+        furniture(frame, &x, &y, &x_ticks, &y_ticks),
+    )];
     groups.push(Group::new(Layer::Furniture, markers(plot, frame, &x)));
     for (index, curve) in plot.curves.iter().enumerate() {
         let paths = curve_paths(curve, frame, &x, &y);
         let style = Style::stroke(Token::Series(index), 0.55);
-        let style = if curve.dashed { style.dashed(&[1.8, 1.2]) } else { style };
-        groups.push(Group::new(Layer::Curve(index), vec![Item::Shape { paths, style }]));
+        let style = if curve.dashed {
+            style.dashed(&[1.8, 1.2])
+        } else {
+            style
+        };
+        groups.push(Group::new(
+            Layer::Curve(index),
+            vec![Item::Shape { paths, style }],
+        ));
     }
     let y_title = format!("{}{}", plot.y.title(), power_text(y_ticks.power));
     let x_title = format!("{}{}", plot.x.title(), power_text(x_ticks.power));
     let middle = [(left + right) / 2.0, (bottom + top) / 2.0];
-    let x_text = Text::new([middle[0], 2.4], MEDIUM, shortened(&x_title, MEDIUM, right - left)).aligned(Align::Middle);
-    let y_text = Text::new([4.6, middle[1]], MEDIUM, shortened(&y_title, MEDIUM, top - bottom)).aligned(Align::Middle);
+    let x_text = Text::new(
+        [middle[0], 2.4],
+        MEDIUM,
+        shortened(&x_title, MEDIUM, right - left),
+    )
+    .aligned(Align::Middle);
+    let y_text = Text::new(
+        [4.6, middle[1]],
+        MEDIUM,
+        shortened(&y_title, MEDIUM, top - bottom),
+    )
+    .aligned(Align::Middle);
     captions.push(Item::Text(x_text));
-    captions.push(Item::Text(Text { turn: 90.0, ..y_text }));
+    captions.push(Item::Text(Text {
+        turn: 90.0,
+        ..y_text
+    }));
     groups.push(Group::new(Layer::Caption, captions));
-    let title = if plot.title.is_empty() { format!("{} over {}", plot.y.title(), plot.x.title()) } else { plot.title.clone() };
-    PlotPicture { scene: Scene { width, height, title, groups }, x, y }
+    let title = if plot.title.is_empty() {
+        format!("{} over {}", plot.y.title(), plot.x.title())
+    } else {
+        plot.title.clone()
+    };
+    PlotPicture {
+        scene: Scene {
+            width,
+            height,
+            title,
+            groups,
+        },
+        x,
+        y,
+    }
 }
 
 /// Stretches one range so that a unit is as long on both axes.
@@ -74,13 +145,22 @@ fn equalize(x: &mut Scale, y: &mut Scale) {
     let per_mm = |s: &Scale| (s.high - s.low) / (s.to - s.from);
     let coarse = per_mm(x).max(per_mm(y));
     for scale in [x, y] {
-        let (middle, half) = ((scale.low + scale.high) / 2.0, coarse * (scale.to - scale.from) / 2.0);
+        let (middle, half) = (
+            (scale.low + scale.high) / 2.0,
+            coarse * (scale.to - scale.from) / 2.0,
+        );
         (scale.low, scale.high) = (middle - half, middle + half);
     }
 }
 
 /// Writes the legend in rows below `top`, at most so high; returns the height where it ends.
-fn legend(named: &[(usize, &Curve)], width: f64, top: f64, room: f64, items: &mut Vec<Item>) -> f64 {
+fn legend(
+    named: &[(usize, &Curve)],
+    width: f64,
+    top: f64,
+    room: f64,
+    items: &mut Vec<Item>,
+) -> f64 {
     let (mut x, mut y) = (4.0, top - SMALL);
     for (index, curve) in named {
         let label = shortened(&curve.label, SMALL, width - 20.0);
@@ -88,14 +168,23 @@ fn legend(named: &[(usize, &Curve)], width: f64, top: f64, room: f64, items: &mu
         if x + needed > width && x > 4.0 {
             (x, y) = (4.0, y - SMALL - 1.4);
             if top - y > room {
-                items.push(Item::Text(Text::new([x, y], SMALL, "…").colored(Token::Muted)));
+                items.push(Item::Text(
+                    Text::new([x, y], SMALL, "…").colored(Token::Muted),
+                ));
                 break;
             }
         }
         let style = Style::stroke(Token::Series(*index), 0.7);
-        let style = if curve.dashed { style.dashed(&[1.8, 1.2]) } else { style };
+        let style = if curve.dashed {
+            style.dashed(&[1.8, 1.2])
+        } else {
+            style
+        };
         let middle = y + SMALL * 0.33;
-        items.push(Item::path(Path::polyline(&[[x, middle], [x + 6.0, middle]]), style));
+        items.push(Item::path(
+            Path::polyline(&[[x, middle], [x + 6.0, middle]]),
+            style,
+        ));
         items.push(Item::Text(Text::new([x + 7.5, y], SMALL, label)));
         x += needed;
     }
@@ -109,18 +198,37 @@ fn furniture(frame: Frame, x: &Scale, y: &Scale, x_ticks: &Ticks, y_ticks: &Tick
     for (value, label) in &x_ticks.marks {
         let Some(px) = x.at(*value) else { continue };
         grid.push(Path::polyline(&[[px, bottom], [px, top]]));
-        texts.push(Text::new([px, bottom - SMALL - 1.0], SMALL, label.clone()).aligned(Align::Middle));
+        texts.push(
+            Text::new([px, bottom - SMALL - 1.0], SMALL, label.clone()).aligned(Align::Middle),
+        );
     }
     for (value, label) in &y_ticks.marks {
         let Some(py) = y.at(*value) else { continue };
         grid.push(Path::polyline(&[[left, py], [right, py]]));
-        texts.push(Text::new([left - 1.4, py - SMALL * 0.35], SMALL, label.clone()).aligned(Align::End));
+        texts.push(
+            Text::new([left - 1.4, py - SMALL * 0.35], SMALL, label.clone()).aligned(Align::End),
+        );
     }
-    let mut items = vec![Item::Shape { paths: grid, style: Style::stroke(Token::Grid, 0.2) }];
+    let mut items = vec![Item::Shape {
+        paths: grid,
+        style: Style::stroke(Token::Grid, 0.2),
+    }];
     let zero = y.at(0.0).filter(|p| !y.log && *p > bottom && *p < top);
-    items.extend(zero.map(|p| Item::path(Path::polyline(&[[left, p], [right, p]]), Style::stroke(Token::Muted, 0.25))));
-    items.push(Item::path(Path::polyline(&[[left, top], [left, bottom], [right, bottom]]), Style::stroke(Token::Muted, 0.35)));
-    items.extend(texts.into_iter().map(|t| Item::Text(t.colored(Token::Muted))));
+    items.extend(zero.map(|p| {
+        Item::path(
+            Path::polyline(&[[left, p], [right, p]]),
+            Style::stroke(Token::Muted, 0.25),
+        )
+    }));
+    items.push(Item::path(
+        Path::polyline(&[[left, top], [left, bottom], [right, bottom]]),
+        Style::stroke(Token::Muted, 0.35),
+    ));
+    items.extend(
+        texts
+            .into_iter()
+            .map(|t| Item::Text(t.colored(Token::Muted))),
+    );
     items
 }
 
@@ -129,14 +237,22 @@ fn markers(plot: &PlotSpec, frame: Frame, x: &Scale) -> Vec<Item> {
     let mut items = Vec::new();
     let mut free_from = f64::NEG_INFINITY;
     for marker in plot.markers.iter().take(200) {
-        let Some(px) = x.at(marker.at).filter(|p| *p >= left - 1e-6 && *p <= right + 1e-6) else { continue };
+        let Some(px) = x
+            .at(marker.at)
+            .filter(|p| *p >= left - 1e-6 && *p <= right + 1e-6)
+        else {
+            continue;
+        };
         let (token, dash): (Token, &[f64]) = match marker.kind {
             MarkerKind::DeadPoint => (Token::Error, &[1.6, 1.0]),
             MarkerKind::ChangePoint => (Token::Warning, &[0.5, 1.0]),
             MarkerKind::Limit => (Token::Error, &[]),
             MarkerKind::Event => (Token::Muted, &[0.5, 1.0]),
         };
-        items.push(Item::path(Path::polyline(&[[px, bottom], [px, top]]), Style::stroke(token, 0.35).dashed(dash)));
+        items.push(Item::path(
+            Path::polyline(&[[px, bottom], [px, top]]),
+            Style::stroke(token, 0.35).dashed(dash),
+        ));
         // names stand beside their lines, where they do not run into each other
         if px > free_from {
             let label = shortened(&marker.label, 2.5, top - bottom - 2.0);
@@ -144,7 +260,9 @@ fn markers(plot: &PlotSpec, frame: Frame, x: &Scale) -> Vec<Item> {
             items.push(Item::Text(Text {
                 turn: 90.0,
                 halo: true,
-                ..Text::new([at, top - 1.0], 2.5, label).aligned(Align::End).colored(token)
+                ..Text::new([at, top - 1.0], 2.5, label)
+                    .aligned(Align::End)
+                    .colored(token)
             }));
             free_from = px + 3.4;
         }
@@ -152,11 +270,37 @@ fn markers(plot: &PlotSpec, frame: Frame, x: &Scale) -> Vec<Item> {
     items
 }
 
+/// The rows to draw: all, or of each short run its ends, its extremes and its gaps, so that no peak is lost.
+fn thinned(curve: &Curve) -> Vec<usize> {
+    let rows = curve.x.len().min(curve.y.len());
+    if rows <= MOST_ROWS {
+        return (0..rows).collect();
+    }
+    let run = rows.div_ceil(MOST_ROWS / 4).max(5);
+    let mut kept = Vec::with_capacity(MOST_ROWS + 8);
+    for first in (0..rows).step_by(run) {
+        let last = (first + run).min(rows) - 1;
+        let finite = || (first..=last).filter(|&k| curve.y[k].is_finite());
+        let low = finite().min_by(|&a, &b| curve.y[a].total_cmp(&curve.y[b]));
+        let high = finite().max_by(|&a, &b| curve.y[a].total_cmp(&curve.y[b]));
+        let gap = (first..=last).find(|&k| !curve.y[k].is_finite());
+        let mut some: Vec<usize> = [Some(first), low, high, gap, Some(last)]
+            .into_iter()
+            .flatten()
+            .collect();
+        some.sort_unstable();
+        some.dedup();
+        kept.extend(some);
+    }
+    kept
+}
+
 /// The pieces of a curve that lie inside the axes.
 fn curve_paths(curve: &Curve, frame: Frame, x: &Scale, y: &Scale) -> Vec<Path> {
     let mut pieces: Vec<Vec<Point>> = vec![Vec::new()];
     let mut last: Option<Point> = None;
-    for (&vx, &vy) in curve.x.iter().zip(&curve.y) {
+    for row in thinned(curve) {
+        let (vx, vy) = (curve.x[row], curve.y[row]);
         let here = x.at(vx).zip(y.at(vy)).map(|(a, b)| [a, b]);
         if let (Some(a), Some(b)) = (last, here) {
             if distance(a, b) < FINEST {
@@ -164,11 +308,17 @@ fn curve_paths(curve: &Curve, frame: Frame, x: &Scale, y: &Scale) -> Vec<Path> {
             }
             match clip(a, b, frame) {
                 Some((p, q)) => {
-                    let joined = pieces.last().and_then(|piece| piece.last()).is_some_and(|end| *end == p);
+                    let joined = pieces
+                        .last()
+                        .and_then(|piece| piece.last())
+                        .is_some_and(|end| *end == p);
                     if !joined {
                         pieces.push(vec![p]);
                     }
-                    pieces.last_mut().into_iter().for_each(|piece| piece.push(q));
+                    pieces
+                        .last_mut()
+                        .into_iter()
+                        .for_each(|piece| piece.push(q));
                 }
                 None => pieces.push(Vec::new()),
             }
@@ -177,7 +327,11 @@ fn curve_paths(curve: &Curve, frame: Frame, x: &Scale, y: &Scale) -> Vec<Path> {
         }
         last = here;
     }
-    pieces.iter().filter(|piece| piece.len() > 1).map(|piece| Path::polyline(piece)).collect()
+    pieces
+        .iter()
+        .filter(|piece| piece.len() > 1)
+        .map(|piece| Path::polyline(piece))
+        .collect()
 }
 
 /// The part of a line inside the axes (Liang and Barsky 1984).
@@ -185,7 +339,10 @@ fn clip(a: Point, b: Point, frame: Frame) -> Option<(Point, Point)> {
     let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
     let delta = [b[0] - a[0], b[1] - a[1]];
     for k in 0..2 {
-        for (p, q) in [(-delta[k], a[k] - frame[k]), (delta[k], frame[k + 2] - a[k])] {
+        for (p, q) in [
+            (-delta[k], a[k] - frame[k]),
+            (delta[k], frame[k + 2] - a[k]),
+        ] {
             if p == 0.0 {
                 if q < 0.0 {
                     return None;

@@ -23,7 +23,11 @@ pub struct Axis {
 impl Axis {
     /// A linear axis over all of the data.
     pub fn new(label: impl Into<String>, unit: impl Into<String>) -> Axis {
-        Axis { label: label.into(), unit: unit.into(), ..Axis::default() }
+        Axis {
+            label: label.into(),
+            unit: unit.into(),
+            ..Axis::default()
+        }
     }
 
     /// `label [unit]`, or the label alone.
@@ -105,7 +109,13 @@ pub struct PlotPicture {
 impl PlotSpec {
     /// Draws the plot on a sheet of the given width and height, mm.
     pub fn draw(&self, width: f64, height: f64) -> PlotPicture {
-        let side = |v: f64| if v.is_finite() { v.clamp(40.0, 2000.0) } else { 100.0 };
+        let side = |v: f64| {
+            if v.is_finite() {
+                v.clamp(40.0, 2000.0)
+            } else {
+                100.0
+            }
+        };
         draw::draw(self, side(width), side(height))
     }
 }

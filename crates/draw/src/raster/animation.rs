@@ -27,7 +27,13 @@ pub struct AnimationOptions {
 impl Default for AnimationOptions {
     /// 640 pixels wide, 72 pictures in 3.6 s: 20 a second, which every viewer shows smoothly.
     fn default() -> Self {
-        AnimationOptions { width: 640, pictures: 72, period: 3.6, ping_pong: false, theme: Theme::Light }
+        AnimationOptions {
+            width: 640,
+            pictures: 72,
+            period: 3.6,
+            ping_pong: false,
+            theme: Theme::Light,
+        }
     }
 }
 
@@ -57,7 +63,10 @@ pub fn gif(stage: &Stage, options: &AnimationOptions) -> Result<Vec<u8>, RasterE
     let film = Film::new(stage, options)?;
     let mut flat: Vec<u8> = film.colors.iter().flatten().copied().collect();
     flat.resize(3 * (usize::from(palette::UNCHANGED) + 1), 0);
-    let (width, height) = (film.width.min(65_535) as u16, film.height.min(65_535) as u16);
+    let (width, height) = (
+        film.width.min(65_535) as u16,
+        film.height.min(65_535) as u16,
+    );
     let encode = || -> Result<Vec<u8>, gif::EncodingError> {
         let mut bytes = Vec::new();
         let mut encoder = gif::Encoder::new(&mut bytes, width, height, &flat)?;
@@ -131,7 +140,11 @@ impl Film {
         let each = (mm_wide * density).ceil() * (mm_high * density).ceil();
         if each * shown.len() as f64 > MOST_PIXELS as f64 {
             let height = (mm_high * density) as u64 * shown.len() as u64;
-            return Err(RasterError::TooLarge { width: u64::from(options.width), height, limit: MOST_PIXELS });
+            return Err(RasterError::TooLarge {
+                width: u64::from(options.width),
+                height,
+                limit: MOST_PIXELS,
+            });
         }
         let draw = |&index: &usize| Canvas::draw(&stage.scene(index), options.theme, density);
         let pictures: Vec<Canvas> = shown.iter().map(draw).collect::<Result<_, _>>()?;
@@ -145,18 +158,40 @@ impl Film {
             before = Some(indices);
         }
         let passes = if options.ping_pong { 2.0 } else { 1.0 };
-        let seconds = if options.period.is_finite() { options.period.clamp(0.1, 600.0) * passes } else { 3.6 };
-        let delay = (100.0 * seconds / shown.len() as f64).round().clamp(2.0, 60_000.0) as u16;
-        Ok(Film { width, height, colors: palette.colors, changes, delay })
+        let seconds = if options.period.is_finite() {
+            options.period.clamp(0.1, 600.0) * passes
+        } else {
+            3.6
+        };
+        let delay = (100.0 * seconds / shown.len() as f64)
+            .round()
+            .clamp(2.0, 60_000.0) as u16;
+        Ok(Film {
+            width,
+            height,
+            colors: palette.colors,
+            changes,
+            delay,
+        })
     }
 }
 
 /// The poses to show, in order.
 fn shown(frames: usize, options: &AnimationOptions) -> Vec<usize> {
     let limit = options.pictures.clamp(1, MOST_PICTURES);
-    let most = if options.ping_pong { limit / 2 + 1 } else { limit };
+    let most = if options.ping_pong {
+        limit / 2 + 1
+    } else {
+        limit
+    };
     let count = frames.min(most);
-    let spread = |k: usize| if count < 2 { 0 } else { (k * (frames - 1) + (count - 1) / 2) / (count - 1) };
+    let spread = |k: usize| {
+        if count < 2 {
+            0
+        } else {
+            (k * (frames - 1) + (count - 1) / 2) / (count - 1)
+        }
+    };
     let mut shown: Vec<usize> = (0..count).map(spread).collect();
     if options.ping_pong && count > 2 {
         shown.extend((1..count - 1).rev().map(spread));
@@ -167,11 +202,22 @@ fn shown(frames: usize, options: &AnimationOptions) -> Vec<usize> {
 /// The smallest rectangle that changed, with unchanged pixels marked; one pixel when nothing did.
 fn change(before: Option<&[u8]>, now: &[u8], width: u32, height: u32) -> Change {
     let Some(before) = before else {
-        return Change { left: 0, top: 0, width, height, indices: now.to_vec() };
+        return Change {
+            left: 0,
+            top: 0,
+            width,
+            height,
+            indices: now.to_vec(),
+        };
     };
     let w = width as usize;
     let (mut x0, mut x1, mut y0, mut y1) = (w, 0, height as usize, 0);
-    for (k, _) in now.iter().zip(before).enumerate().filter(|(_, (a, b))| a != b) {
+    for (k, _) in now
+        .iter()
+        .zip(before)
+        .enumerate()
+        .filter(|(_, (a, b))| a != b)
+    {
         let (x, y) = (k % w, k / w);
         (x0, x1) = (x0.min(x), x1.max(x));
         (y0, y1) = (y0.min(y), y1.max(y));
@@ -179,7 +225,21 @@ fn change(before: Option<&[u8]>, now: &[u8], width: u32, height: u32) -> Change 
     if x0 > x1 {
         (x0, x1, y0, y1) = (0, 0, 0, 0);
     }
-    let pixel = |k: usize| if now[k] == before[k] { palette::UNCHANGED } else { now[k] };
-    let indices = (y0..=y1).flat_map(|y| (x0..=x1).map(move |x| pixel(y * w + x))).collect();
-    Change { left: x0 as u32, top: y0 as u32, width: (x1 - x0 + 1) as u32, height: (y1 - y0 + 1) as u32, indices }
+    let pixel = |k: usize| {
+        if now[k] == before[k] {
+            palette::UNCHANGED
+        } else {
+            now[k]
+        }
+    };
+    let indices = (y0..=y1)
+        .flat_map(|y| (x0..=x1).map(move |x| pixel(y * w + x)))
+        .collect();
+    Change {
+        left: x0 as u32,
+        top: y0 as u32,
+        width: (x1 - x0 + 1) as u32,
+        height: (y1 - y0 + 1) as u32,
+        indices,
+    }
 }

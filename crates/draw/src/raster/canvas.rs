@@ -1,7 +1,8 @@
 //! A scene drawn into pixels.
 
 use tiny_skia::{
-    Color, FillRule, LineCap, LineJoin, Paint as Ink, Path as Outline, PathBuilder, Pixmap, Stroke, StrokeDash, Transform,
+    Color, FillRule, LineCap, LineJoin, Paint as Ink, Path as Outline, PathBuilder, Pixmap, Stroke,
+    StrokeDash, Transform,
 };
 
 use super::{RasterError, font};
@@ -29,19 +30,37 @@ impl Canvas {
     pub fn draw(scene: &Scene, theme: Theme, density: f64) -> Result<Canvas, RasterError> {
         let pixels = |mm: f64| (mm * density).round().max(1.0) as u64;
         let (width, height) = (pixels(scene.width), pixels(scene.height));
-        let too_large = RasterError::TooLarge { width, height, limit: MOST_PIXELS };
+        let too_large = RasterError::TooLarge {
+            width,
+            height,
+            limit: MOST_PIXELS,
+        };
         if width.saturating_mul(height) > MOST_PIXELS {
             return Err(too_large);
         }
         let mut pixmap = Pixmap::new(width as u32, height as u32).ok_or(too_large)?;
         let dark = theme == Theme::Dark;
         pixmap.fill(color(Token::Background.into(), dark));
-        let mut brush = Brush { pixmap: &mut pixmap, density, height: scene.height, dark, place: Place::PAPER };
+        let mut brush = Brush {
+            pixmap: &mut pixmap,
+            density,
+            height: scene.height,
+            dark,
+            place: Place::PAPER,
+        };
         for group in &scene.groups {
             brush.group(group);
         }
-        let rgb = pixmap.data().chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect();
-        Ok(Canvas { width: width as u32, height: height as u32, rgb })
+        let rgb = pixmap
+            .data()
+            .chunks_exact(4)
+            .flat_map(|p| [p[0], p[1], p[2]])
+            .collect();
+        Ok(Canvas {
+            width: width as u32,
+            height: height as u32,
+            rgb,
+        })
     }
 }
 
@@ -73,7 +92,11 @@ impl Brush<'_> {
                     }
                     self.shape(builder.finish(), style);
                 }
-                Item::Circle { center, radius, style } => {
+                Item::Circle {
+                    center,
+                    radius,
+                    style,
+                } => {
                     let ([x, y], r) = (self.pixel(*center), (radius * self.density) as f32);
                     self.shape(PathBuilder::from_circle(x, y, r), style);
                 }
@@ -84,11 +107,16 @@ impl Brush<'_> {
 
     fn pixel(&self, p: Point) -> [f32; 2] {
         let p = self.place.apply(p);
-        [(p[0] * self.density) as f32, ((self.height - p[1]) * self.density) as f32]
+        [
+            (p[0] * self.density) as f32,
+            ((self.height - p[1]) * self.density) as f32,
+        ]
     }
 
     fn add_path(&self, builder: &mut PathBuilder, path: &Path) {
-        let Some(first) = path.vertices.first() else { return };
+        let Some(first) = path.vertices.first() else {
+            return;
+        };
         let [x, y] = self.pixel(first.at);
         builder.move_to(x, y);
         for (from, to, bulge) in path.segments() {
@@ -103,7 +131,10 @@ impl Brush<'_> {
     }
 
     fn ink(&self, paint: Paint) -> Ink<'static> {
-        let mut ink = Ink { anti_alias: true, ..Ink::default() };
+        let mut ink = Ink {
+            anti_alias: true,
+            ..Ink::default()
+        };
         ink.set_color(color(paint, self.dark));
         ink
     }
@@ -112,10 +143,20 @@ impl Brush<'_> {
         let Some(outline) = outline else { return };
         if let Some(paint) = style.fill {
             let ink = self.ink(paint);
-            self.pixmap.fill_path(&outline, &ink, FillRule::EvenOdd, Transform::identity(), None);
+            self.pixmap.fill_path(
+                &outline,
+                &ink,
+                FillRule::EvenOdd,
+                Transform::identity(),
+                None,
+            );
         }
         if let Some(paint) = style.stroke {
-            let dash: Vec<f32> = style.dash.iter().map(|d| (d * self.density) as f32).collect();
+            let dash: Vec<f32> = style
+                .dash
+                .iter()
+                .map(|d| (d * self.density) as f32)
+                .collect();
             let stroke = Stroke {
                 width: (style.width * self.density) as f32,
                 line_cap: LineCap::Round,
@@ -124,12 +165,15 @@ impl Brush<'_> {
                 ..Stroke::default()
             };
             let ink = self.ink(paint);
-            self.pixmap.stroke_path(&outline, &ink, &stroke, Transform::identity(), None);
+            self.pixmap
+                .stroke_path(&outline, &ink, &stroke, Transform::identity(), None);
         }
     }
 
     fn text(&mut self, text: &Text) {
-        let Some((outline, width)) = font::outline(&text.content) else { return };
+        let Some((outline, width)) = font::outline(&text.content) else {
+            return;
+        };
         let size = (text.size * self.density) as f32;
         let shift = match text.align {
             Align::Start => 0.0,
@@ -143,14 +187,21 @@ impl Brush<'_> {
             .pre_scale(size, -size)
             .pre_translate(shift, 0.0);
         let ink = self.ink(text.paint);
-        let rim = |width: f32| Stroke { width, line_join: LineJoin::Round, ..Stroke::default() };
+        let rim = |width: f32| Stroke {
+            width,
+            line_join: LineJoin::Round,
+            ..Stroke::default()
+        };
         if text.halo {
             let paper = self.ink(Token::Background.into());
-            self.pixmap.stroke_path(&outline, &paper, &rim(0.28), transform, None);
+            self.pixmap
+                .stroke_path(&outline, &paper, &rim(0.28), transform, None);
         }
-        self.pixmap.fill_path(&outline, &ink, FillRule::Winding, transform, None);
+        self.pixmap
+            .fill_path(&outline, &ink, FillRule::Winding, transform, None);
         if text.bold {
-            self.pixmap.stroke_path(&outline, &ink, &rim(0.045), transform, None);
+            self.pixmap
+                .stroke_path(&outline, &ink, &rim(0.045), transform, None);
         }
     }
 }
@@ -164,7 +215,10 @@ pub(crate) fn arc_points(from: Point, to: Point, bulge: f64) -> Vec<Point> {
     // centre of the arc: beside the middle of the chord, on its left for a short counter-clockwise arc
     let side = (1.0 - bulge * bulge) / (4.0 * bulge);
     let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
-    let center = [(from[0] + to[0]) / 2.0 - side * dy, (from[1] + to[1]) / 2.0 + side * dx];
+    let center = [
+        (from[0] + to[0]) / 2.0 - side * dy,
+        (from[1] + to[1]) / 2.0 + side * dx,
+    ];
     let sweep = 4.0 * kempe_number::math::atan2(bulge, 1.0);
     let steps = (sweep.abs() / 0.12).ceil().clamp(1.0, 64.0) as usize;
     let turned = |k: usize| {

@@ -7,7 +7,8 @@ use ttf_parser::{Face, OutlineBuilder};
 
 fn face() -> Option<&'static Face<'static>> {
     static FACE: OnceLock<Option<Face<'static>>> = OnceLock::new();
-    FACE.get_or_init(|| Face::parse(dejavu::sans_condensed::regular(), 0).ok()).as_ref()
+    FACE.get_or_init(|| Face::parse(dejavu::sans_condensed::regular(), 0).ok())
+        .as_ref()
 }
 
 struct Pen<'a> {
@@ -26,7 +27,8 @@ impl OutlineBuilder for Pen<'_> {
         self.builder.quad_to(self.x + x1, y1, self.x + x, y);
     }
     fn curve_to(&mut self, x1: f32, y1: f32, x2: f32, y2: f32, x: f32, y: f32) {
-        self.builder.cubic_to(self.x + x1, y1, self.x + x2, y2, self.x + x, y);
+        self.builder
+            .cubic_to(self.x + x1, y1, self.x + x2, y2, self.x + x, y);
     }
     fn close(&mut self) {
         self.builder.close();
@@ -39,8 +41,16 @@ pub(super) fn outline(text: &str) -> Option<(Path, f32)> {
     let mut builder = PathBuilder::new();
     let mut x = 0.0_f32;
     for c in text.chars().take(1000) {
-        let Some(glyph) = face.glyph_index(c).or_else(|| face.glyph_index('\u{fffd}')) else { continue };
-        face.outline_glyph(glyph, &mut Pen { builder: &mut builder, x });
+        let Some(glyph) = face.glyph_index(c).or_else(|| face.glyph_index('\u{fffd}')) else {
+            continue;
+        };
+        face.outline_glyph(
+            glyph,
+            &mut Pen {
+                builder: &mut builder,
+                x,
+            },
+        );
         x += f32::from(face.glyph_hor_advance(glyph).unwrap_or(0));
     }
     let em = 1.0 / f32::from(face.units_per_em().max(1));

@@ -14,7 +14,9 @@ pub use canvas::Canvas;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum RasterError {
     /// The picture would have more pixels than are allowed.
-    #[error("a picture of {width} x {height} pixels is larger than the limit of {limit} pixels: lower the resolution")]
+    #[error(
+        "a picture of {width} x {height} pixels is larger than the limit of {limit} pixels: lower the resolution"
+    )]
     TooLarge {
         /// Width, pixels.
         width: u64,

@@ -29,8 +29,19 @@ impl Palette {
         let mut boxes: Vec<Vec<Count>> = vec![counts.into_iter().collect()];
         while boxes.len() < MOST_COLORS {
             // split the box whose spread costs most
-            let cost = |b: &Vec<Count>| if b.len() < 2 { 0 } else { widest(b).1 * spread_weight(b) };
-            let Some((index, worst)) = boxes.iter().enumerate().map(|(i, b)| (i, cost(b))).max_by_key(|(_, c)| *c) else {
+            let cost = |b: &Vec<Count>| {
+                if b.len() < 2 {
+                    0
+                } else {
+                    widest(b).1 * spread_weight(b)
+                }
+            };
+            let Some((index, worst)) = boxes
+                .iter()
+                .enumerate()
+                .map(|(i, b)| (i, cost(b)))
+                .max_by_key(|(_, c)| *c)
+            else {
                 break;
             };
             if worst == 0 {
@@ -48,13 +59,21 @@ impl Palette {
             let upper = whole.split_off(middle.unwrap_or(0).clamp(1, whole.len() - 1));
             boxes.extend([whole, upper]);
         }
-        let mut palette = Palette { colors: Vec::new(), lookup: BTreeMap::new() };
+        let mut palette = Palette {
+            colors: Vec::new(),
+            lookup: BTreeMap::new(),
+        };
         for members in boxes.iter().filter(|b| !b.is_empty()) {
             let index = palette.colors.len() as u8;
             // the commonest colour of a box stands for it, so that flat areas keep their exact colour
-            let best = members.iter().max_by_key(|(c, n)| (*n, *c)).map_or([0; 3], |(c, _)| *c);
+            let best = members
+                .iter()
+                .max_by_key(|(c, n)| (*n, *c))
+                .map_or([0; 3], |(c, _)| *c);
             palette.colors.push(best);
-            palette.lookup.extend(members.iter().map(|(c, _)| (*c, index)));
+            palette
+                .lookup
+                .extend(members.iter().map(|(c, _)| (*c, index)));
         }
         palette
     }
@@ -80,7 +99,10 @@ fn widest(members: &[Count]) -> (usize, u64) {
         let (low, high) = values.fold((255, 0), |(low, high), v| (low.min(v), high.max(v)));
         high.saturating_sub(low)
     };
-    (0..3).map(|k| (k, range(k))).max_by_key(|(_, r)| *r).unwrap_or((0, 0))
+    (0..3)
+        .map(|k| (k, range(k)))
+        .max_by_key(|(_, r)| *r)
+        .unwrap_or((0, 0))
 }
 
 /// Weight of a box by its pixels, growing slowly so that rare colours get their share.

@@ -6,7 +6,11 @@ use crate::tokens;
 
 const TEMPLATE: &str = include_str!("template.html");
 const STYLE: &str = include_str!("style.css");
-const SCRIPTS: [&str; 3] = [include_str!("pose.js"), include_str!("plots.js"), include_str!("player.js")];
+const SCRIPTS: [&str; 3] = [
+    include_str!("pose.js"),
+    include_str!("plots.js"),
+    include_str!("player.js"),
+];
 
 pub(super) fn page(report: &Report) -> String {
     let mut tabs = String::new();
@@ -28,9 +32,17 @@ pub(super) fn page(report: &Report) -> String {
     } else {
         tabs = format!("<div class=\"tabs\" role=\"tablist\" aria-label=\"Studies\">{tabs}</div>");
     }
-    let findings: String =
-        report.sections.iter().enumerate().map(|(i, s)| sections::section(s, &format!("section-{i}"))).collect();
-    let title = if report.title.is_empty() { &report.file_name } else { &report.title };
+    let findings: String = report
+        .sections
+        .iter()
+        .enumerate()
+        .map(|(i, s)| sections::section(s, &format!("section-{i}")))
+        .collect();
+    let title = if report.title.is_empty() {
+        &report.file_name
+    } else {
+        &report.title
+    };
     let value = |key: &str| match key {
         "title" => escape(title),
         "file" => escape(&report.file_name),
@@ -54,7 +66,9 @@ fn fill(template: &str, value: impl Fn(&str) -> String) -> String {
     let mut rest = template;
     while let Some((before, after)) = rest.split_once("{{") {
         out.push_str(before);
-        let Some((key, tail)) = after.split_once("}}") else { break };
+        let Some((key, tail)) = after.split_once("}}") else {
+            break;
+        };
         out.push_str(&value(key));
         rest = tail;
     }

@@ -9,7 +9,9 @@ pub(super) fn string(text: &str) -> String {
         match c {
             '"' => out.push_str("\\\""),
             '\\' => out.push_str("\\\\"),
-            '<' | '>' | '&' | '\'' | '\u{2028}' | '\u{2029}' => out.push_str(&format!("\\u{:04x}", c as u32)),
+            '<' | '>' | '&' | '\'' | '\u{2028}' | '\u{2029}' => {
+                out.push_str(&format!("\\u{:04x}", c as u32))
+            }
             c if c.is_control() => out.push_str(&format!("\\u{:04x}", c as u32)),
             c => out.push(c),
         }
@@ -25,16 +27,27 @@ pub(super) fn array(items: impl IntoIterator<Item = String>) -> String {
 
 /// A number with so many significant digits; `null` when it is not finite.
 pub(super) fn number(value: f64, digits: usize) -> String {
-    if value.is_finite() { significant(value, digits) } else { "null".into() }
+    if value.is_finite() {
+        significant(value, digits)
+    } else {
+        "null".into()
+    }
 }
 
 /// A number with at most so many decimals; `null` when it is not finite.
 pub(super) fn decimal(value: f64, decimals: usize) -> String {
-    if value.is_finite() { fixed(value, decimals) } else { "null".into() }
+    if value.is_finite() {
+        fixed(value, decimals)
+    } else {
+        "null".into()
+    }
 }
 
 /// An object of ready values.
 pub(super) fn object(fields: &[(&str, String)]) -> String {
     let field = |(name, value): &(&str, String)| format!("{}:{value}", string(name));
-    format!("{{{}}}", fields.iter().map(field).collect::<Vec<_>>().join(","))
+    format!(
+        "{{{}}}",
+        fields.iter().map(field).collect::<Vec<_>>().join(",")
+    )
 }

@@ -67,12 +67,20 @@ pub struct Column {
 impl Column {
     /// A column by name, unit and values.
     pub fn new(name: impl Into<String>, unit: impl Into<String>, values: Vec<f64>) -> Column {
-        Column { name: name.into(), unit: unit.into(), values }
+        Column {
+            name: name.into(),
+            unit: unit.into(),
+            values,
+        }
     }
 
     /// `name [unit]`, or the name alone.
     pub fn head(&self) -> String {
-        if self.unit.is_empty() { self.name.clone() } else { format!("{} [{}]", self.name, self.unit) }
+        if self.unit.is_empty() {
+            self.name.clone()
+        } else {
+            format!("{} [{}]", self.name, self.unit)
+        }
     }
 }
 

@@ -22,7 +22,11 @@ pub(super) struct Built {
 pub(super) fn build(motion: &MotionReport, index: usize) -> Built {
     let rows = Rows::of(motion);
     // the stage knows only the poses that the page carries
-    let frames: Vec<_> = rows.kept.iter().filter_map(|&row| motion.frames.get(row).cloned()).collect();
+    let frames: Vec<_> = rows
+        .kept
+        .iter()
+        .filter_map(|&row| motion.frames.get(row).cloned())
+        .collect();
     let options = DrawOptions {
         width: STAGE[0],
         max_height: STAGE[1],
@@ -31,13 +35,35 @@ pub(super) fn build(motion: &MotionReport, index: usize) -> Built {
         ..DrawOptions::default()
     };
     let stage = Stage::new(&motion.view, &frames, options);
-    let shown = frames.iter().position(|f| complete(&motion.view, f)).unwrap_or(0);
+    let shown = frames
+        .iter()
+        .position(|f| complete(&motion.view, f))
+        .unwrap_or(0);
     let shown_row = rows.kept.get(shown).copied().unwrap_or(0);
-    let pictures: Vec<PlotPicture> = motion.plots.iter().map(|plot| {
-        plot.draw(PLOT[0], if plot.equal_aspect { PATH_PLOT_HEIGHT } else { PLOT[1] })
-    }).collect();
-    let plots: String = pictures.iter().enumerate().map(|(number, picture)| plot_figure(picture, number)).collect();
-    let summary = if motion.summary.is_empty() { String::new() } else { format!("<p>{}</p>", escape(&motion.summary)) };
+    let pictures: Vec<PlotPicture> = motion
+        .plots
+        .iter()
+        .map(|plot| {
+            plot.draw(
+                PLOT[0],
+                if plot.equal_aspect {
+                    PATH_PLOT_HEIGHT
+                } else {
+                    PLOT[1]
+                },
+            )
+        })
+        .collect();
+    let plots: String = pictures
+        .iter()
+        .enumerate()
+        .map(|(number, picture)| plot_figure(picture, number))
+        .collect();
+    let summary = if motion.summary.is_empty() {
+        String::new()
+    } else {
+        format!("<p>{}</p>", escape(&motion.summary))
+    };
     let html = format!(
         "<section class=\"motion\" id=\"motion-{index}\" role=\"tabpanel\" aria-label=\"{name}\" data-motion=\"{index}\">\n\
          <h2>{name}</h2>{summary}\n<div class=\"bench\">\n<div class=\"left\">\n<figure class=\"card stage\">\n{drawing}\
@@ -50,7 +76,10 @@ pub(super) fn build(motion: &MotionReport, index: usize) -> Built {
         readout = readout(motion, shown_row),
         evidence = sections::evidence(motion, rows.all),
     );
-    Built { html, json: data::motion(motion, &rows, &stage, shown_row, &pictures) }
+    Built {
+        html,
+        json: data::motion(motion, &rows, &stage, shown_row, &pictures),
+    }
 }
 
 fn plot_figure(picture: &PlotPicture, number: usize) -> String {
@@ -72,8 +101,16 @@ fn button(action: &str, label: &str, icon: &str) -> String {
 fn controls(motion: &MotionReport, rows: &Rows) -> String {
     let last = rows.kept.len().saturating_sub(1);
     let mark = |event: &super::Event| {
-        let share = if last > 0 { rows.nearest(event.row) as f64 / last as f64 } else { 0.0 };
-        format!("<i style=\"left:{}%\" title=\"{}\"></i>", significant(100.0 * share, 5), escape(&event.label))
+        let share = if last > 0 {
+            rows.nearest(event.row) as f64 / last as f64
+        } else {
+            0.0
+        };
+        format!(
+            "<i style=\"left:{}%\" title=\"{}\"></i>",
+            significant(100.0 * share, 5),
+            escape(&event.label)
+        )
     };
     let marks: String = motion.events.iter().take(200).map(mark).collect();
     let drive = escape(&motion.drive.name);

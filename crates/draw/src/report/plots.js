@@ -25,7 +25,7 @@ class Plot {
     this.curves = spec.curves.map((c) => ({ label: c.label, color: c.c, x: named(c.x), y: named(c.y) })).filter((c) => c.x && c.y);
     // one abscissa for all curves that runs one way is a cursor line; a path in the plane has dots only
     const x = this.curves.length ? this.curves[0].x : null;
-    this.x = x && this.curves.every((c) => c.x === x) && monotone(x) ? x : null;
+    this.x = x && !spec.path && this.curves.every((c) => c.x === x) && monotone(x) ? x : null;
     const line = { y1: spec.h - spec.y[2], y2: spec.h - spec.y[3] };
     this.ghost = element("line", { class: "ghost-cursor", visibility: "hidden", ...line }, this.svg);
     this.cursor = element("line", { class: "cursor", visibility: "hidden", ...line }, this.svg);
@@ -114,11 +114,12 @@ class Plot {
 }
 
 function monotone(values) {
-  let up = true, down = true, last = null;
+  let up = true, down = true, first = null, last = null;
   for (const v of values) {
     if (v == null) continue;
+    if (first == null) first = v;
     if (last != null) { up = up && v >= last; down = down && v <= last; }
     last = v;
   }
-  return up || down;
+  return (up || down) && first !== last;
 }

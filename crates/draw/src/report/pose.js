@@ -4,7 +4,7 @@ const round = (v) => Math.round(v * 1000) / 1000;
 
 // A link's place between two rows: x, y, angle; null where a row was not reached.
 function linkPose(motion, link, row, share) {
-  const v = motion.links[link], a = 3 * row;
+  const v = motion.links[link], a = v && v.length === 3 ? 0 : 3 * row;
   if (!v || v[a] == null) return null;
   if (share === 0 || v[a + 3] == null) return [v[a], v[a + 1], v[a + 2]];
   const turn = v[a + 5] - v[a + 2];

@@ -9,45 +9,90 @@ const MOST_TABLE_ROWS: usize = 500;
 /// A section with its heading.
 pub(super) fn section(section: &Section, id: &str) -> String {
     let blocks: String = section.blocks.iter().map(block).collect();
-    format!("<section class=\"card\" id=\"{id}\"><h2>{}</h2>{blocks}</section>\n", escape(&section.title))
+    format!(
+        "<section class=\"card\" id=\"{id}\"><h2>{}</h2>{blocks}</section>\n",
+        escape(&section.title)
+    )
 }
 
 fn block(block: &Block) -> String {
     match block {
         Block::Paragraph(text) => format!("<p>{}</p>", escape(text)),
         Block::List(items) => {
-            format!("<ul>{}</ul>", items.iter().map(|i| format!("<li>{}</li>", escape(i))).collect::<String>())
+            format!(
+                "<ul>{}</ul>",
+                items
+                    .iter()
+                    .map(|i| format!("<li>{}</li>", escape(i)))
+                    .collect::<String>()
+            )
         }
         Block::Facts(facts) => self::facts(facts),
         Block::Table { head, rows } => table(head, rows),
-        Block::Finding { level, code, message, help } => {
+        Block::Finding {
+            level,
+            code,
+            message,
+            help,
+        } => {
             let (class, word) = match level {
                 Level::Note => ("note", "Note"),
                 Level::Warning => ("warning", "Warning"),
                 Level::Error => ("error", "Error"),
             };
-            let code = if code.is_empty() { String::new() } else { format!(" <code>{}</code>", escape(code)) };
-            let help = if help.is_empty() { String::new() } else { format!("<p>{}</p>", escape(help)) };
-            format!("<div class=\"finding {class}\"><p><strong>{word}</strong>{code} {}</p>{help}</div>", escape(message))
+            let code = if code.is_empty() {
+                String::new()
+            } else {
+                format!(" <code>{}</code>", escape(code))
+            };
+            let help = if help.is_empty() {
+                String::new()
+            } else {
+                format!("<p>{}</p>", escape(help))
+            };
+            format!(
+                "<div class=\"finding {class}\"><p><strong>{word}</strong>{code} {}</p>{help}</div>",
+                escape(message)
+            )
         }
     }
 }
 
 fn facts(facts: &[(String, String)]) -> String {
-    let fact = |(name, value): &(String, String)| format!("<div><dt>{}</dt><dd>{}</dd></div>", escape(name), escape(value));
-    format!("<dl class=\"facts\">{}</dl>", facts.iter().map(fact).collect::<String>())
+    let fact = |(name, value): &(String, String)| {
+        format!(
+            "<div><dt>{}</dt><dd>{}</dd></div>",
+            escape(name),
+            escape(value)
+        )
+    };
+    format!(
+        "<dl class=\"facts\">{}</dl>",
+        facts.iter().map(fact).collect::<String>()
+    )
 }
 
 fn table(head: &[String], rows: &[Vec<String>]) -> String {
-    let heads: String = head.iter().map(|h| format!("<th scope=\"col\">{}</th>", escape(h))).collect();
+    let heads: String = head
+        .iter()
+        .map(|h| format!("<th scope=\"col\">{}</th>", escape(h)))
+        .collect();
     let cell = |c: &String| {
-        let class = if c.parse::<f64>().is_ok() { " class=\"number\"" } else { "" };
+        let class = if c.parse::<f64>().is_ok() {
+            " class=\"number\""
+        } else {
+            ""
+        };
         format!("<td{class}>{}</td>", escape(c))
     };
     let row = |r: &Vec<String>| format!("<tr>{}</tr>", r.iter().map(cell).collect::<String>());
     let body: String = rows.iter().take(MOST_TABLE_ROWS).map(row).collect();
     let more = rows.len().saturating_sub(MOST_TABLE_ROWS);
-    let rest = if more > 0 { format!("<p class=\"muted\">{more} more rows are not shown</p>") } else { String::new() };
+    let rest = if more > 0 {
+        format!("<p class=\"muted\">{more} more rows are not shown</p>")
+    } else {
+        String::new()
+    };
     let table = format!("<table><thead><tr>{heads}</tr></thead><tbody>{body}</tbody></table>");
     format!("<div class=\"scroll\" tabindex=\"0\">{table}</div>{rest}")
 }
@@ -55,22 +100,39 @@ fn table(head: &[String], rows: &[Vec<String>]) -> String {
 /// The evidence of a motion.
 pub(super) fn evidence(motion: &MotionReport, rows: usize) -> String {
     let evidence = &motion.evidence;
-    let missing: usize = evidence.not_reached.iter().map(|g| (g.last + 1).saturating_sub(g.first)).sum();
-    let mut known = vec![("Rows".to_string(), format!("{rows}, of which {} reached", rows.saturating_sub(missing)))];
+    let missing: usize = evidence
+        .not_reached
+        .iter()
+        .map(|g| (g.last + 1).saturating_sub(g.first))
+        .sum();
+    let mut known = vec![(
+        "Rows".to_string(),
+        format!("{rows}, of which {} reached", rows.saturating_sub(missing)),
+    )];
     if let Some((residual, limit)) = evidence.residual {
         let sign = if residual <= limit { "≤" } else { "> limit" };
-        let text = format!("{} {sign} {}", significant(residual, 3), significant(limit, 3));
+        let text = format!(
+            "{} {sign} {}",
+            significant(residual, 3),
+            significant(limit, 3)
+        );
         known.push(("Largest closure residual".into(), text));
     }
     if let Some(value) = evidence.singular_value {
-        known.push(("Smallest singular value of the constraint Jacobian".into(), significant(value, 4)));
+        known.push((
+            "Smallest singular value of the constraint Jacobian".into(),
+            significant(value, 4),
+        ));
     }
     if !evidence.scaling.is_empty() {
         known.push(("Scaling of the Jacobian".into(), evidence.scaling.clone()));
     }
     known.extend(evidence.facts.iter().cloned());
     let mut out = facts(&known);
-    if evidence.residual.is_some_and(|(residual, limit)| !(residual <= limit)) {
+    if evidence
+        .residual
+        .is_some_and(|(residual, limit)| residual > limit || residual.is_nan())
+    {
         out.push_str(&block(&Block::Finding {
             level: Level::Error,
             code: String::new(),
@@ -80,9 +142,13 @@ pub(super) fn evidence(motion: &MotionReport, rows: usize) -> String {
     }
     if !motion.events.is_empty() {
         let head = ["Event", "Where", "Row"].map(String::from);
-        let row = |e: &super::Event| vec![e.label.clone(), e.place.clone(), (e.row + 1).to_string()];
+        let row =
+            |e: &super::Event| vec![e.label.clone(), e.place.clone(), (e.row + 1).to_string()];
         let rows: Vec<_> = motion.events.iter().map(row).collect();
-        out.push_str(&format!("<h4>Dead points, change points and limits</h4>{}", table(&head, &rows)));
+        out.push_str(&format!(
+            "<h4>Dead points, change points and limits</h4>{}",
+            table(&head, &rows)
+        ));
     }
     if !evidence.not_reached.is_empty() {
         let head = ["Rows", "Reason"].map(String::from);
@@ -90,7 +156,11 @@ pub(super) fn evidence(motion: &MotionReport, rows: usize) -> String {
             (a, b) if a == b => a.to_string(),
             (a, b) => format!("{a} to {b}"),
         };
-        let rows: Vec<_> = evidence.not_reached.iter().map(|g| vec![span(g), g.reason.clone()]).collect();
+        let rows: Vec<_> = evidence
+            .not_reached
+            .iter()
+            .map(|g| vec![span(g), g.reason.clone()])
+            .collect();
         out.push_str(&format!("<h4>Rows not reached</h4>{}", table(&head, &rows)));
     }
     out

@@ -29,23 +29,38 @@ pub(super) fn parts(context: &Context) -> Vec<Part> {
         match *joint {
             JointView::Gears { a, b, internal } => {
                 let ring_a = internal && a.radius.abs() > b.radius.abs();
-                let known = |wheel: Wheel, placed: &[Placed]| placed.iter().find(|p| same(&p.wheel, &wheel)).copied();
-                let (first, second) = if known(a, &placed).is_none() && known(b, &placed).is_some() {
+                let known = |wheel: Wheel, placed: &[Placed]| {
+                    placed.iter().find(|p| same(&p.wheel, &wheel)).copied()
+                };
+                let (first, second) = if known(a, &placed).is_none() && known(b, &placed).is_some()
+                {
                     ((b, internal && !ring_a), (a, ring_a))
                 } else {
                     ((a, ring_a), (b, internal && !ring_a))
                 };
-                let one = known(first.0, &placed).unwrap_or(Placed { wheel: first.0, ring: first.1, phase: 0.0 });
+                let one = known(first.0, &placed).unwrap_or(Placed {
+                    wheel: first.0,
+                    ring: first.1,
+                    phase: 0.0,
+                });
                 if known(first.0, &placed).is_none() {
                     placed.push(one);
                 }
                 if known(second.0, &placed).is_none() {
                     let phase = meshing_phase(context, &one, second.0, internal).unwrap_or(0.0);
-                    placed.push(Placed { wheel: second.0, ring: second.1, phase });
+                    placed.push(Placed {
+                        wheel: second.0,
+                        ring: second.1,
+                        phase,
+                    });
                 }
             }
             JointView::Rack { pinion, .. } if !placed.iter().any(|p| same(&p.wheel, &pinion)) => {
-                placed.push(Placed { wheel: pinion, ring: false, phase: 0.0 });
+                placed.push(Placed {
+                    wheel: pinion,
+                    ring: false,
+                    phase: 0.0,
+                });
             }
             _ => {}
         }
@@ -63,12 +78,22 @@ fn meshing_phase(context: &Context, one: &Placed, other: Wheel, internal: bool) 
         return None;
     }
     let frame = context.reference?;
-    let (a, b) = (context.paper(frame, one.wheel.center)?, context.paper(frame, other.center)?);
+    let (a, b) = (
+        context.paper(frame, one.wheel.center)?,
+        context.paper(frame, other.center)?,
+    );
     let between = atan2(b[1] - a[1], b[0] - a[0]);
     let pitch = |wheel: &Wheel| 2.0 * PI / f64::from(wheel.teeth);
-    let (angle_a, angle_b) = (link_angle(frame, one.wheel.link)?, link_angle(frame, other.link)?);
+    let (angle_a, angle_b) = (
+        link_angle(frame, one.wheel.link)?,
+        link_angle(frame, other.link)?,
+    );
     // how far the contact is past a tooth of the first wheel, in teeth
-    let contact = if internal && !one.ring { between + PI } else { between };
+    let contact = if internal && !one.ring {
+        between + PI
+    } else {
+        between
+    };
     let past = (contact - angle_a - one.phase) / pitch(&one.wheel);
     Some(if internal {
         contact - angle_b - past * pitch(&other)
@@ -87,7 +112,9 @@ fn toothed(radius: f64, teeth: u32, phase: f64) -> Path {
     };
     let (root, tip) = (radius - 1.2 * module, radius + module);
     let profile = [(-0.36, root), (-0.13, tip), (0.13, tip), (0.36, root)];
-    let points: Vec<Point> = (0..teeth).flat_map(|t| profile.map(|(at, r)| corner(t, at, r))).collect();
+    let points: Vec<Point> = (0..teeth)
+        .flat_map(|t| profile.map(|(at, r)| corner(t, at, r)))
+        .collect();
     Path::polygon(&points)
 }
 
@@ -102,13 +129,23 @@ fn draw(context: &Context, placed: &Placed) -> Option<Part> {
     let module = 2.0 * radius / f64::from(wheel.teeth.max(1));
     let has_teeth = (5..=MOST_TEETH).contains(&wheel.teeth) && module > FINEST_MODULE;
     let circle = |r: f64| crate::hull::rounded_hull(&[[0.0, 0.0]], r);
-    let mut paths = vec![if has_teeth { toothed(radius, wheel.teeth, phase) } else { circle(radius)? }];
+    let mut paths = vec![if has_teeth {
+        toothed(radius, wheel.teeth, phase)
+    } else {
+        circle(radius)?
+    }];
     if ring {
-        paths.push(circle(radius + if has_teeth { 1.2 * module } else { 0.0 } + 2.4)?);
+        paths.push(circle(
+            radius + if has_teeth { 1.2 * module } else { 0.0 } + 2.4,
+        )?);
     }
     let pitch_line = Style::stroke(token, 0.25).dashed(&[2.4, 0.7, 0.5, 0.7]);
     let (s, c) = sin_cos(phase);
-    let (from, to) = if ring { (radius + 0.4, radius + 2.2) } else { (radius * 0.35, radius * 0.78) };
+    let (from, to) = if ring {
+        (radius + 0.4, radius + 2.2)
+    } else {
+        (radius * 0.35, radius * 0.78)
+    };
     let mark = Path::polyline(&[[from * c, from * s], [to * c, to * s]]);
     let mut items = vec![Item::Shape { paths, style }];
     if has_teeth {
@@ -116,7 +153,15 @@ fn draw(context: &Context, placed: &Placed) -> Option<Part> {
     }
     items.push(Item::path(mark, Style::stroke(token, LINE * 2.0)));
     if !ring && radius > 6.0 {
-        items.push(Item::circle([0.0, 0.0], 2.4, Style::stroke(token, LINE).filled(Token::Background, 0.6)));
+        items.push(Item::circle(
+            [0.0, 0.0],
+            2.4,
+            Style::stroke(token, LINE).filled(Token::Background, 0.6),
+        ));
     }
-    Some(Part::new(Layer::Gear, Anchor::On(wheel.center, wheel.link, 0.0), items))
+    Some(Part::new(
+        Layer::Gear,
+        Anchor::On(wheel.center, wheel.link, 0.0),
+        items,
+    ))
 }

@@ -19,8 +19,14 @@ pub(super) fn hatched_line(x0: f64, x1: f64, y: f64, down: bool) -> Vec<Item> {
         Path::polyline(&[[x + 0.5, y], [x - 0.7, y + depth]])
     };
     vec![
-        Item::Shape { paths: (0..count).map(hatch).collect(), style: Style::stroke(Token::Ground, 0.22) },
-        Item::path(Path::polyline(&[[x0, y], [x1, y]]), Style::stroke(Token::Ground, LINE)),
+        Item::Shape {
+            paths: (0..count).map(hatch).collect(),
+            style: Style::stroke(Token::Ground, 0.22),
+        },
+        Item::path(
+            Path::polyline(&[[x0, y], [x1, y]]),
+            Style::stroke(Token::Ground, LINE),
+        ),
     ]
 }
 

@@ -10,13 +10,18 @@ use crate::view::JointView;
 const FILL: [f64; 2] = [0.32, 0.16];
 
 pub(super) fn parts(context: &Context) -> Vec<Part> {
-    (1..context.view.links.len()).filter_map(|link| body(context, link)).collect()
+    (1..context.view.links.len())
+        .filter_map(|link| body(context, link))
+        .collect()
 }
 
 fn body(context: &Context, link: usize) -> Option<Part> {
     let points = &context.view.links[link].points;
     let first = *points.first()?;
-    let local: Vec<Point> = points.iter().filter_map(|&p| context.local(link, first, p)).collect();
+    let local: Vec<Point> = points
+        .iter()
+        .filter_map(|&p| context.local(link, first, p))
+        .collect();
     let corners = convex_hull(&local).len();
     if corners < 2 && drawn_otherwise(context, link) {
         return None;
@@ -24,7 +29,11 @@ fn body(context: &Context, link: usize) -> Option<Part> {
     let outline = rounded_hull(&local, BAR)?;
     let token = link_token(link);
     let style = Style::stroke(token, 0.5).filled(token, FILL[usize::from(corners > 2)]);
-    Some(Part::new(Layer::Link(link), Anchor::On(first, link, 0.0), vec![Item::path(outline, style)]))
+    Some(Part::new(
+        Layer::Link(link),
+        Anchor::On(first, link, 0.0),
+        vec![Item::path(outline, style)],
+    ))
 }
 
 /// A link on one spot that is a slider's block, a gear or a rack has a body already.
@@ -32,7 +41,9 @@ fn drawn_otherwise(context: &Context, link: usize) -> bool {
     context.view.joints.iter().any(|joint| match joint {
         JointView::Slider { block, .. } => *block == link,
         JointView::Gears { a, b, .. } => a.link == link || b.link == link,
-        JointView::Rack { link: rack, pinion, .. } => *rack == link || pinion.link == link,
+        JointView::Rack {
+            link: rack, pinion, ..
+        } => *rack == link || pinion.link == link,
         _ => false,
     })
 }

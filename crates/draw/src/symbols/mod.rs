@@ -37,13 +37,21 @@ pub struct Part {
 
 impl Part {
     pub(crate) fn new(layer: Layer, anchor: Anchor, items: Vec<Item>) -> Part {
-        Part { layer, anchor, items }
+        Part {
+            layer,
+            anchor,
+            items,
+        }
     }
 }
 
 /// The colour of a link: the frame's own, or the next of the series.
 pub(crate) fn link_token(link: usize) -> Token {
-    if link == 0 { Token::Ground } else { Token::Series(link - 1) }
+    if link == 0 {
+        Token::Ground
+    } else {
+        Token::Series(link - 1)
+    }
 }
 
 /// All parts of a mechanism.
@@ -53,10 +61,14 @@ pub(crate) fn parts(context: &Context, labels: bool) -> Vec<Part> {
     parts.extend(link::parts(context));
     for joint in &context.view.joints {
         match *joint {
-            JointView::Slider { block, at, guide } => parts.extend(slider::slider(context, block, at, guide)),
+            JointView::Slider { block, at, guide } => {
+                parts.extend(slider::slider(context, block, at, guide))
+            }
             JointView::Slot { pin, guide } => parts.extend(slider::slot(context, pin, guide)),
             JointView::Weld { at, links } => parts.extend(weld::parts(context, at, links)),
-            JointView::Rack { link, pinion, side } => parts.extend(rack::parts(context, link, pinion, side)),
+            JointView::Rack { link, pinion, side } => {
+                parts.extend(rack::parts(context, link, pinion, side))
+            }
             JointView::Cylinder { a, b } => parts.extend(cylinder::cylinder(context, a, b)),
             JointView::Damper { a, b } => parts.extend(cylinder::damper(context, a, b)),
             JointView::Spring { a, b } => parts.extend(spring::parts(context, a, b)),
@@ -75,13 +87,30 @@ pub(crate) fn parts(context: &Context, labels: bool) -> Vec<Part> {
 pub(crate) fn ghost_item(item: &Item) -> Item {
     let faint = |style: &Style| Style {
         fill: None,
-        stroke: style.stroke.or(style.fill).map(|paint| crate::scene::Paint { alpha: 0.3, ..paint }),
+        stroke: style
+            .stroke
+            .or(style.fill)
+            .map(|paint| crate::scene::Paint {
+                alpha: 0.3,
+                ..paint
+            }),
         width: 0.3,
         dash: style.dash.clone(),
     };
     match item {
-        Item::Shape { paths, style } => Item::Shape { paths: paths.clone(), style: faint(style) },
-        Item::Circle { center, radius, style } => Item::Circle { center: *center, radius: *radius, style: faint(style) },
+        Item::Shape { paths, style } => Item::Shape {
+            paths: paths.clone(),
+            style: faint(style),
+        },
+        Item::Circle {
+            center,
+            radius,
+            style,
+        } => Item::Circle {
+            center: *center,
+            radius: *radius,
+            style: faint(style),
+        },
         Item::Text(text) => Item::Text(text.clone()),
     }
 }

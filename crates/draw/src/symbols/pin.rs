@@ -19,14 +19,19 @@ enum Look {
 }
 
 pub(super) fn parts(context: &Context) -> Vec<Part> {
-    (0..context.view.points.len()).flat_map(|index| point_parts(context, index)).collect()
+    (0..context.view.points.len())
+        .flat_map(|index| point_parts(context, index))
+        .collect()
 }
 
 fn look(context: &Context, index: usize) -> Look {
     let carriers = context.carriers(index);
     let ground = context.grounded(index);
     let joints = &context.view.joints;
-    let welded = joints.iter().filter(|j| matches!(j, JointView::Weld { at, .. } if *at == index)).count();
+    let welded = joints
+        .iter()
+        .filter(|j| matches!(j, JointView::Weld { at, .. } if *at == index))
+        .count();
     let bodies = carriers.len().saturating_sub(welded);
     let pinned = joints.iter().any(|joint| match *joint {
         JointView::Slot { pin, .. } => pin == index,
@@ -38,14 +43,23 @@ fn look(context: &Context, index: usize) -> Look {
         _ => false,
     });
     let guided = joints.iter().any(|joint| match joint {
-        JointView::Slider { guide, .. } | JointView::Slot { guide, .. } => guide.from == index || guide.to == index,
+        JointView::Slider { guide, .. } | JointView::Slot { guide, .. } => {
+            guide.from == index || guide.to == index
+        }
         _ => false,
     });
     match (bodies, pinned) {
         (0, _) => Look::Nothing,
-        (2.., _) => Look::Pin { rings: bodies - 2, ground },
+        (2.., _) => Look::Pin {
+            rings: bodies - 2,
+            ground,
+        },
         (1, true) => Look::Pin { rings: 0, ground },
-        _ if welded > 0 || joints.iter().any(|j| matches!(j, JointView::Slider { at, .. } if *at == index)) => {
+        _ if welded > 0
+            || joints
+                .iter()
+                .any(|j| matches!(j, JointView::Slider { at, .. } if *at == index)) =>
+        {
             Look::Nothing
         }
         _ if !ground => Look::Dot(carriers.first().copied().unwrap_or(1)),
@@ -63,14 +77,21 @@ fn point_parts(context: &Context, index: usize) -> Vec<Part> {
             vec![joint(vec![Item::circle([0.0, 0.0], 0.85, rim)])]
         }
         Look::Cross => {
-            let paths = vec![Path::polyline(&[[-1.2, 0.0], [1.2, 0.0]]), Path::polyline(&[[0.0, -1.2], [0.0, 1.2]])];
-            vec![joint(vec![Item::Shape { paths, style: Style::stroke(Token::Ground, LINE) }])]
+            let paths = vec![
+                Path::polyline(&[[-1.2, 0.0], [1.2, 0.0]]),
+                Path::polyline(&[[0.0, -1.2], [0.0, 1.2]]),
+            ];
+            vec![joint(vec![Item::Shape {
+                paths,
+                style: Style::stroke(Token::Ground, LINE),
+            }])]
         }
         Look::Pin { rings, ground } => {
             let style = Style::stroke(Token::Ink, 0.45).filled(Token::Pin, 1.0);
             let ring = |k: usize| Item::circle([0.0, 0.0], PIN + 0.8 * k as f64, style.clone());
             let pin = joint((0..=rings.min(4)).rev().map(ring).collect());
-            let foot = ground.then(|| Part::new(Layer::Ground, Anchor::Point(index), ground::pedestal()));
+            let foot =
+                ground.then(|| Part::new(Layer::Ground, Anchor::Point(index), ground::pedestal()));
             foot.into_iter().chain([pin]).collect()
         }
     }

@@ -20,8 +20,14 @@ pub(super) fn parts(context: &Context, link: usize, pinion: Wheel, side: f64) ->
     let center = local(context, frame, link, first, pinion.center)?;
     let side = if side < 0.0 { -1.0 } else { 1.0 };
     let radius = pinion.radius.abs() * context.fit.scale;
-    let along = context.frames.iter().filter_map(|f| local(context, f, link, first, pinion.center)).map(|p| p[0]);
-    let (low, high) = along.fold((center[0], center[0]), |(low, high), x| (low.min(x), high.max(x)));
+    let along = context
+        .frames
+        .iter()
+        .filter_map(|f| local(context, f, link, first, pinion.center))
+        .map(|p| p[0]);
+    let (low, high) = along.fold((center[0], center[0]), |(low, high), x| {
+        (low.min(x), high.max(x))
+    });
     let pitch = 2.0 * PI * radius / f64::from(pinion.teeth.max(1));
     let (x0, x1) = (low - 6.0 - pitch, high + 6.0 + pitch);
     let pitch_line = center[1] - side * radius;
@@ -30,29 +36,50 @@ pub(super) fn parts(context: &Context, link: usize, pinion: Wheel, side: f64) ->
     let mut points: Vec<Point> = vec![[x1, back], [x0, back]];
     let has_teeth = pinion.teeth >= 5 && module > 0.45 && (x1 - x0) / pitch < MOST_TEETH;
     if has_teeth {
+        let root = pitch_line - side * 1.2 * module;
+        points.push([x0, root]);
         // a tooth of the rack stands half a pitch beside the pinion's tooth nearest to the contact
         let contact = link_angle(frame, link)? - side * PI / 2.0;
-        let past = (contact - link_angle(frame, pinion.link)?) * f64::from(pinion.teeth) / (2.0 * PI);
+        let past =
+            (contact - link_angle(frame, pinion.link)?) * f64::from(pinion.teeth) / (2.0 * PI);
         let tooth = center[0] - side * (past - past.floor()) * pitch + pitch / 2.0;
         let first_tooth = ((x0 - tooth) / pitch).ceil() as i64;
         let last_tooth = ((x1 - tooth) / pitch).floor() as i64;
         for k in first_tooth..=last_tooth {
             let x = tooth + k as f64 * pitch;
             for (at, height) in [(-0.36, -1.2), (-0.13, 1.0), (0.13, 1.0), (0.36, -1.2)] {
-                points.push([(x + at * pitch).clamp(x0, x1), pitch_line + side * height * module]);
+                points.push([
+                    (x + at * pitch).clamp(x0, x1),
+                    pitch_line + side * height * module,
+                ]);
             }
         }
+        points.push([x1, root]);
     } else {
         points.extend([[x0, pitch_line], [x1, pitch_line]]);
     }
     let token = link_token(link);
     let style = Style::stroke(token, 0.45).filled(token, 0.16);
-    let layer = if link == 0 { Layer::Ground } else { Layer::Gear };
-    Some(Part::new(layer, Anchor::On(first, link, 0.0), vec![Item::path(Path::polygon(&points), style)]))
+    let layer = if link == 0 {
+        Layer::Ground
+    } else {
+        Layer::Gear
+    };
+    Some(Part::new(
+        layer,
+        Anchor::On(first, link, 0.0),
+        vec![Item::path(Path::polygon(&points), style)],
+    ))
 }
 
 /// A point in the axes of a link in a pose, mm from one of the link's points.
-fn local(context: &Context, frame: &Frame, link: usize, origin: usize, index: usize) -> Option<Point> {
+fn local(
+    context: &Context,
+    frame: &Frame,
+    link: usize,
+    origin: usize,
+    index: usize,
+) -> Option<Point> {
     let (a, b) = (context.paper(frame, origin)?, context.paper(frame, index)?);
     let (s, c) = sin_cos(link_angle(frame, link)?);
     let (x, y) = (b[0] - a[0], b[1] - a[1]);

@@ -15,9 +15,17 @@ pub(super) fn parts(context: &Context, at: usize, links: [usize; 2]) -> Vec<Part
     }
     let square = Path::rectangle([-HALF, -HALF], [HALF, HALF], 0.4);
     let style = Style::stroke(Token::Background, 0.25).filled(Token::Ink, 1.0);
-    let mut parts = vec![Part::new(Layer::Joint, Anchor::On(at, a.max(b), 0.0), vec![Item::path(square, style)])];
+    let mut parts = vec![Part::new(
+        Layer::Joint,
+        Anchor::On(at, a.max(b), 0.0),
+        vec![Item::path(square, style)],
+    )];
     if a == 0 || b == 0 {
-        parts.push(Part::new(Layer::Ground, Anchor::Point(at), ground::hatched_line(-3.7, 3.7, -HALF, true)));
+        parts.push(Part::new(
+            Layer::Ground,
+            Anchor::Point(at),
+            ground::hatched_line(-3.7, 3.7, -HALF, true),
+        ));
     }
     parts
 }
