@@ -77,6 +77,17 @@ fn main() {
             "p={v} t={} closure {:.1e} sigma {:.3e} {:?}",
             s.time, s.closure, s.smallest_singular_value, s.note
         );
+        if args.len() == 3 {
+            for (l, x) in model.links.iter().zip(&s.links) {
+                println!(
+                    "    link {:8} {:.6} {:.6} {:.6}",
+                    l.name,
+                    x[0],
+                    x[1],
+                    x[2].to_degrees()
+                );
+            }
+        }
         for (m, x) in model.measures.iter().zip(&s.values) {
             let deg = m.dimension == kempe_units::Dimension::ANGLE;
             println!(

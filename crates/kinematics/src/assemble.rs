@@ -4,6 +4,7 @@ use kempe_model::HintKind;
 use kempe_number::math;
 
 use crate::blocks::Unknown;
+use crate::evidence::closure;
 use crate::homotopy::{PathReport, Random, all_real_solutions};
 use crate::mechanism::{BodyId, Constraint, Mechanism};
 use crate::newton::PlanNumber;
@@ -21,6 +22,8 @@ const TRIAL_LIMIT: usize = 200_000;
 const SEARCH_STARTS: usize = 400;
 /// Two poses of a block closer than this (in sizes of the mechanism, and rad) are one.
 const SAME_POSE: f64 = 1e-7;
+/// Closure residual (in sizes of the mechanism, and rad) up to which an assembly with redundant constraints closes.
+pub const CLOSED: f64 = 1e-9;
 /// Side hints are not held against a point closer to the line than this, in sizes of the mechanism.
 const ON_THE_LINE: f64 = 1e-9;
 
@@ -147,6 +150,14 @@ impl Search<'_> {
             }
             wanted &= self.sides_hold(step, &state);
             step += 1;
+        }
+        // Redundant constraints are in no closed form: they hold here, or this is no assembly.
+        if !self.plan.decomposition.surplus.is_empty() {
+            let residual = closure(self.mechanism, self.design, &branch, &state, self.size);
+            if !(residual <= CLOSED) {
+                self.furthest = self.furthest.max(step.saturating_sub(1));
+                return;
+            }
         }
         if wanted {
             let distance = 0.0;
