@@ -17,7 +17,9 @@ pub(crate) mod sections;
 pub(crate) mod studies;
 mod value;
 
-use crate::diagnostic::{Diagnostic, Severity};
+use std::collections::BTreeSet;
+
+use crate::diagnostic::{Diagnostic, Severity, line_at};
 use crate::document;
 use crate::model::Model;
 use context::Context;
@@ -89,6 +91,16 @@ impl Model {
         let broken_syntax = cx.found.iter().any(|d| d.code == "toml-syntax");
         sections::read(&mut cx, &root, overrides, broken_syntax);
         let mut found = cx.found;
+        without_echoes(&mut found, text);
+        for label in found
+            .iter_mut()
+            .flat_map(|d| &mut d.labels)
+            .filter(|l| l.source.is_none())
+        {
+            // a string with a broken escape has no sure places
+            label.span =
+                text.floor_char_boundary(label.span.start)..text.ceil_char_boundary(label.span.end);
+        }
         found.sort_by_key(Diagnostic::start);
         found.dedup();
         if found.iter().any(|d| d.severity == Severity::Error) {
@@ -138,6 +150,21 @@ impl Model {
                 ])
             }
         }
+    }
+}
+
+/// Drops what is told of a line that is not TOML anyway.
+fn without_echoes(found: &mut Vec<Diagnostic>, text: &str) {
+    let line = |d: &Diagnostic| line_at(text, d.start()).number;
+    let broken: BTreeSet<usize> = found
+        .iter()
+        .filter(|d| d.code == "toml-syntax")
+        .map(line)
+        .collect();
+    if !broken.is_empty() {
+        found.retain(|d| {
+            d.code == "toml-syntax" || d.start() > text.len() || !broken.contains(&line(d))
+        });
     }
 }
 

@@ -125,6 +125,22 @@ impl<'a> Context<'a> {
         self.found.len() >= MAX_DIAGNOSTICS
     }
 
+    /// The first `most` entries of a section, and an error when there are more.
+    pub fn limited<'e, 'd>(
+        &mut self,
+        entries: &'e [&'d (Key, Node)],
+        most: usize,
+        what: &str,
+    ) -> &'e [&'d (Key, Node)] {
+        if let Some((key, _)) = entries.get(most) {
+            let error = Diagnostic::error("too-large", format!("{} {what}", entries.len()))
+                .at(key.span.clone(), "one too many")
+                .help(format!("a model has at most {most} {what}"));
+            self.push(error);
+        }
+        entries.get(..most).unwrap_or(entries)
+    }
+
     /// The value as a table, or an error that says what `place` is.
     pub fn table<'n>(&mut self, node: &'n Node, place: &str, example: &str) -> Option<&'n Table> {
         match &node.value {
@@ -184,7 +200,7 @@ impl<'a> Context<'a> {
     /// Reports keys of a table that are not among the known ones.
     pub fn unknown_keys(&mut self, table: &Table, place: &str, known: &[&str]) {
         for (key, _) in &table.entries {
-            if !known.contains(&key.name.as_str()) {
+            if !known.contains(&key.name.as_str()) && !self.full() {
                 self.unknown_key(key, place, known);
             }
         }

@@ -32,15 +32,7 @@ const MAX_DRIVES: usize = 1_000;
 
 /// Reads all drives.
 pub(crate) fn read(cx: &mut Context<'_>, entries: &[&(Key, Node)]) {
-    for (i, (key, node)) in entries.iter().enumerate() {
-        if i == MAX_DRIVES {
-            cx.push(
-                Diagnostic::error("too-large", format!("{} drives", entries.len()))
-                    .at(key.span.clone(), "one too many")
-                    .help(format!("a model has at most {MAX_DRIVES} drives")),
-            );
-            return;
-        }
+    for (key, node) in cx.limited(entries, MAX_DRIVES, "drives") {
         let drive = read_drive(cx, key, node);
         let id = DriveId(cx.model.drives.len() as u32);
         cx.drives.push(drive.is_some().then_some(id));

@@ -41,15 +41,7 @@ const MAX_JOINTS: usize = 10_000;
 
 /// Reads all joints.
 pub(crate) fn read(cx: &mut Context<'_>, entries: &[&(Key, Node)]) {
-    for (i, (key, node)) in entries.iter().enumerate() {
-        if i == MAX_JOINTS {
-            cx.push(
-                Diagnostic::error("too-large", format!("{} joints", entries.len()))
-                    .at(key.span.clone(), "one too many")
-                    .help(format!("a model has at most {MAX_JOINTS} joints")),
-            );
-            return;
-        }
+    for (key, node) in cx.limited(entries, MAX_JOINTS, "joints") {
         let kind = read_joint(cx, key, node);
         let id = JointId(cx.model.joints.len() as u32);
         cx.joints.push(kind.is_some().then_some(id));

@@ -10,7 +10,7 @@ use crate::measure::Measure;
 use crate::model::NamedMeasure;
 use crate::read::context::{Context, MeasureState};
 use crate::read::measure_names::{Measures, NOT_AVAILABLE};
-use crate::read::parameters::put_in_order;
+use crate::read::parameters::{chain, put_in_order};
 use crate::registry::Registry;
 
 /// A file has at most so many measures.
@@ -18,16 +18,7 @@ const MAX_MEASURES: usize = 10_000;
 
 /// Reads all named measures.
 pub(crate) fn read(cx: &mut Context<'_>, entries: &[&(Key, Node)]) {
-    if let Some((key, _)) = entries.get(MAX_MEASURES) {
-        cx.push(
-            Diagnostic::error("too-large", format!("{} measures", entries.len()))
-                .at(key.span.clone(), "one too many")
-                .help(format!("a model has at most {MAX_MEASURES} measures")),
-        );
-    }
-    let entries = entries
-        .get(..MAX_MEASURES.min(entries.len()))
-        .unwrap_or(&[]);
+    let entries = cx.limited(entries, MAX_MEASURES, "measures");
     let index: BTreeMap<&str, usize> = entries
         .iter()
         .enumerate()
@@ -150,7 +141,7 @@ fn tell_circle(cx: &mut Context<'_>, entries: &[&(Key, Node)], circle: &[usize])
         )
         .at(node.span.clone(), "")
         .help("a measure may use other measures, but not in a circle")
-        .note(format!("{} -> {first}", names.join(" -> "))),
+        .note(format!("{} -> {first}", chain(&names))),
     );
 }
 

@@ -85,15 +85,8 @@ pub(crate) fn collect<'d>(cx: &mut Context<'_>, root: &'d Table) -> Sections<'d>
     };
     // the frame is link 0 wherever it stands
     sections.links.sort_by_key(|(k, _)| k.name != "frame");
-    if sections.links.len() > MAX_LINKS {
-        let extra = &sections.links[MAX_LINKS].0;
-        cx.push(
-            Diagnostic::error("too-large", format!("{} links", sections.links.len()))
-                .at(extra.span.clone(), "one too many")
-                .help(format!("a model has at most {MAX_LINKS} links")),
-        );
-        sections.links.truncate(MAX_LINKS);
-    }
+    let kept = cx.limited(&sections.links, MAX_LINKS, "links").len();
+    sections.links.truncate(kept);
     // parameters get their numbers when they are put in order
     for (i, (key, _)) in sections.parameters.iter().enumerate() {
         declare(

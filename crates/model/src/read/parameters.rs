@@ -260,7 +260,7 @@ fn order(cx: &mut Context<'_>, drafts: &[Draft<'_>]) -> Vec<usize> {
         let first = names.first().copied().unwrap_or("");
         let mut d = Diagnostic::error("cyclic-parameter", format!("`{first}` depends on itself"))
             .help("give one of them a value of its own")
-            .note(format!("{} -> {first}", names.join(" -> ")));
+            .note(format!("{} -> {first}", chain(&names)));
         for (i, draft) in circle.iter().filter_map(draft).take(8).enumerate() {
             let next = names
                 .get((i + 1) % names.len().max(1))
@@ -276,6 +276,16 @@ fn order(cx: &mut Context<'_>, drafts: &[Draft<'_>]) -> Vec<usize> {
         cx.push(d);
     }
     order
+}
+
+/// Names with arrows between them; of very many only the first.
+pub(crate) fn chain(names: &[&str]) -> String {
+    let shown = names.get(..12).unwrap_or(names).join(" -> ");
+    if names.len() > 12 {
+        format!("{shown} -> …")
+    } else {
+        shown
+    }
 }
 
 /// An order in which each comes after what it needs, and the circles that prevent it. Without recursion, because a file may

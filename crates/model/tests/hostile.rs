@@ -1,0 +1,372 @@
+//! Hostile input: whatever the bytes, reading ends soon, in bounded memory, with a model or with diagnostics.
+#![allow(clippy::unwrap_used)]
+
+use std::fmt::Write as _;
+use std::time::{Duration, Instant};
+
+use kempe_model::{Checked, Diagnostic, Model, set_value};
+
+fn read(text: &str) -> Result<Checked, Vec<Diagnostic>> {
+    Model::from_toml(text, "hostile", &mut |_| {
+        Ok("t,angle\n0,0\n1,2\n".to_owned())
+    })
+}
+
+/// Reading takes no longer than this on a slow machine in a debug build.
+const PATIENCE: Duration = Duration::from_secs(20);
+
+fn refused(what: &str, text: &str, code: &str) {
+    let start = Instant::now();
+    let found = match read(text) {
+        Ok(checked) => checked.warnings,
+        Err(found) => found,
+    };
+    assert!(
+        start.elapsed() < PATIENCE,
+        "{what} took {:?}",
+        start.elapsed()
+    );
+    assert!(
+        found.iter().any(|d| d.code == code),
+        "{what}: {:?}",
+        found.iter().map(|d| d.code).collect::<Vec<_>>()
+    );
+    assert!(found.len() <= 300, "{what}: {} diagnostics", found.len());
+    for d in found.iter().take(20) {
+        assert!(
+            d.render_plain("hostile", text).len() < 100_000,
+            "{what}: {}",
+            d.code
+        );
+    }
+}
+
+fn many(count: usize, mut line: impl FnMut(usize) -> String) -> String {
+    let mut text = String::new();
+    for i in 0..count {
+        writeln!(text, "{}", line(i)).unwrap();
+    }
+    text
+}
+
+const FRAME: &str = "[links]\nframe = { A = [0, 0], D = [1, 0] }\ncrank = { A-B = 1 }\n";
+
+#[test]
+fn nesting() {
+    refused(
+        "arrays",
+        &format!("a = {}{}", "[".repeat(1_000_000), "]".repeat(1_000_000)),
+        "toml-syntax",
+    );
+    refused(
+        "tables",
+        &format!("a = {}{}", "{a=".repeat(300_000), "}".repeat(300_000)),
+        "toml-syntax",
+    );
+    refused(
+        "keys",
+        &format!("[{}a]\n", "a.".repeat(500_000)),
+        "toml-syntax",
+    );
+    refused(
+        "header",
+        &format!("{}\n", "[".repeat(1_000_000)),
+        "toml-syntax",
+    );
+    refused(
+        "brackets",
+        &format!("[parameters]\na = \"{}1\"\n{FRAME}", "(".repeat(3_000)),
+        "too-deep",
+    );
+    refused(
+        "signs",
+        &format!("[parameters]\na = \"{}1\"\n{FRAME}", "-".repeat(3_000)),
+        "too-deep",
+    );
+}
+
+#[test]
+fn sheer_size() {
+    refused("bytes", &"#".repeat(9 << 20), "too-large");
+    refused(
+        "links",
+        &format!(
+            "{FRAME}{}",
+            many(300_000, |i| format!("l{i} = {{ A-B = 1 }}"))
+        ),
+        "too-large",
+    );
+    refused(
+        "links by header",
+        &format!("{FRAME}{}", many(1_000_000, |i| format!("[a{i}]"))),
+        "too-large",
+    );
+    let points = many(200_000, |i| format!("P{i} = [{i}, 1]"));
+    refused("points", &format!("[links.frame]\n{points}"), "too-large");
+    refused(
+        "joints",
+        &format!(
+            "{FRAME}[joints]\n{}",
+            many(50_000, |i| format!(
+                "j{i} = {{ pin = \"B\", on = \"A -> D\" }}"
+            ))
+        ),
+        "too-large",
+    );
+    refused(
+        "drives",
+        &format!(
+            "{FRAME}[drives]\n{}",
+            many(50_000, |i| format!("j{i} = {{ turns = \"crank\" }}"))
+        ),
+        "too-large",
+    );
+    refused(
+        "measures",
+        &format!(
+            "{FRAME}[measures]\n{}",
+            many(200_000, |i| format!("m{i} = \"m{} + x(A)\"", i + 1))
+        ),
+        "too-large",
+    );
+    refused(
+        "unknown keys",
+        &format!("{FRAME}{}", many(300_000, |i| format!("[k{i}]"))),
+        "unknown-key",
+    );
+    refused(
+        "syntax errors",
+        &format!("{FRAME}{}", "= = =\n".repeat(500_000)),
+        "toml-syntax",
+    );
+    refused(
+        "names",
+        &format!("{FRAME}[measures]\na = \"{}\"\n", "x".repeat(4_000)),
+        "unknown-name",
+    );
+}
+
+#[test]
+fn long_chains() {
+    let parameters = many(60_000, |i| format!("p{i} = \"p{} + 1\"", i + 1));
+    refused(
+        "parameters that lead to nothing",
+        &format!("[parameters]\n{parameters}{FRAME}"),
+        "unknown-name",
+    );
+    let circle = many(60_000, |i| format!("p{i} = \"p{} + 1\"", (i + 1) % 60_000));
+    refused(
+        "a circle of parameters",
+        &format!("[parameters]\n{circle}{FRAME}"),
+        "cyclic-parameter",
+    );
+    // a chain of triangles, written backwards: each waits for the next
+    let n = 20_000;
+    let strip = many(n, |i| {
+        let k = n - i;
+        format!(
+            "P{} = \"left of P{} -> P{k}\"\nP{}-P{} = 1\nP{k}-P{} = 1",
+            k + 1,
+            k - 1,
+            k - 1,
+            k + 1,
+            k + 1
+        )
+    });
+    let text = format!("{FRAME}[links.strip]\nP0-P1 = 1\n{strip}loose = 1\n");
+    refused("a strip of triangles", &text, "unknown-key");
+    let star = many(9_000, |i| format!("l{i} = {{ A-B = 1 }}"));
+    let joints = many(9_000, |i| {
+        format!("j{i} = {{ slider = \"l{i}\", at = \"B\", on = \"A -> B\" }}")
+    });
+    refused(
+        "a star",
+        &format!("{FRAME}{star}[joints]\n{joints}[measures]\na = \"transmission_angle(A)\""),
+        "ambiguous-transmission",
+    );
+}
+
+#[test]
+fn numbers() {
+    refused(
+        "overflow",
+        &format!("{FRAME}[parameters]\na = \"1e308*10\"\n"),
+        "not-finite",
+    );
+    refused(
+        "infinite",
+        &FRAME.replace("A-B = 1", "A-B = inf"),
+        "not-finite",
+    );
+    refused("nan", &FRAME.replace("[1, 0]", "[nan, 0]"), "not-finite");
+    refused(
+        "huge integers",
+        &FRAME.replace("A-B = 1", &format!("A-B = 1{}", "0".repeat(400))),
+        "not-finite",
+    );
+    refused("zero", &FRAME.replace("A-B = 1", "A-B = 0"), "bad-size");
+    refused(
+        "negative",
+        &FRAME.replace("A-B = 1", "A-B = -1"),
+        "bad-size",
+    );
+    refused(
+        "step",
+        &format!(
+            "{FRAME}[drives]\nm = {{ turns = \"crank\", speed = 1, to = 1e300 }}\n[studies.a]\nkind = \"motion\"\nstep = 1e-300\n"
+        ),
+        "too-large",
+    );
+}
+
+#[test]
+fn bytes_that_are_no_text() {
+    let mut files = |_: &str| Err(String::new());
+    let found = Model::from_bytes(b"title = \"\xff\xfe\"", "x", &mut files, &[]).unwrap_err();
+    assert_eq!(
+        (found[0].code, found[0].labels[0].span.start),
+        ("not-utf8", 9)
+    );
+    let found = Model::from_bytes(b"\xef\xbb\xbf\0\0", "x", &mut files, &[]).unwrap_err();
+    assert!(!found.is_empty());
+}
+
+/// A small generator with a fixed seed (Marsaglia's xorshift): the same mutants in every run.
+struct Chance(u64);
+
+impl Chance {
+    fn below(&mut self, n: usize) -> usize {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 % n.max(1) as u64) as usize
+    }
+}
+
+const PIECES: &[&str] = &[
+    "\"",
+    "'",
+    "[",
+    "]",
+    "{",
+    "}",
+    "=",
+    ",",
+    ".",
+    "\n",
+    "#",
+    "\\",
+    "\\u",
+    "\"\"\"",
+    "->",
+    " of ",
+    "-",
+    "(",
+    ")",
+    "A",
+    "A-B",
+    "crank",
+    "1e308",
+    "nan",
+    "-0",
+    "0",
+    " mm",
+    " deg",
+    "*",
+    "/0",
+    "^",
+    "rate(",
+    "d(",
+    "at(",
+    "min(",
+    "angle(",
+    "frame",
+    "left of A -> B",
+    "near",
+    "é",
+    "\u{feff}",
+    "\r",
+    "\t",
+];
+
+fn mutate(text: &mut Vec<u8>, chance: &mut Chance) {
+    for _ in 0..=chance.below(4) {
+        let at = chance.below(text.len() + 1);
+        match chance.below(5) {
+            0 if at < text.len() => text[at] ^= 1 << chance.below(8),
+            1 => drop(text.drain(at..(at + chance.below(12)).min(text.len()))),
+            2 => {
+                let end = (at + chance.below(60)).min(text.len());
+                let copy = text[at..end].to_vec();
+                let to = chance.below(text.len() + 1);
+                drop(text.splice(to..to, copy));
+            }
+            _ => drop(text.splice(at..at, PIECES[chance.below(PIECES.len())].bytes())),
+        }
+    }
+}
+
+#[test]
+fn mutants_of_real_files_do_no_harm() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests");
+    let mut seeds: Vec<(std::path::PathBuf, Vec<u8>)> = ["good", "bad"]
+        .iter()
+        .flat_map(|f| std::fs::read_dir(format!("{folder}/{f}")).unwrap())
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.extension().is_some_and(|e| e == "toml"))
+        .map(|path| (path.clone(), std::fs::read(&path).unwrap()))
+        .collect();
+    seeds.sort();
+    // the good ones more often: their mutants get further
+    let good: Vec<_> = seeds
+        .iter()
+        .filter(|(path, _)| path.parent().is_some_and(|p| p.ends_with("good")))
+        .cloned()
+        .collect();
+    seeds.extend((0..10).flat_map(|_| good.clone()));
+    let mut chance = Chance(0x2545_f491_4f6c_dd1d);
+    let mut read_well = 0;
+    for round in 0..6_000 {
+        let mut text = seeds[round % seeds.len()].1.clone();
+        mutate(&mut text, &mut chance);
+        let files =
+            &mut |_: &str| Ok(String::from_utf8_lossy(&seeds[round % seeds.len()].1).into_owned());
+        let overrides = [("a".to_owned(), "25 mm".to_owned())];
+        let given = if round % 5 == 0 { &overrides[..] } else { &[] };
+        match Model::from_bytes(&text, "mutant", files, given) {
+            Ok(checked) => {
+                read_well += 1;
+                let values: Vec<f64> = checked.model.parameter_values();
+                for link in &checked.model.links {
+                    assert_eq!(link.evaluate(&values).len(), link.points.len());
+                }
+                for drive in &checked.model.drives {
+                    let end: f64 = drive.law.duration(&values);
+                    assert!(end.is_finite() && drive.law.at(end / 2.0, &values).is_finite());
+                }
+            }
+            Err(found) => {
+                assert!(!found.is_empty());
+                let text = String::from_utf8_lossy(&text);
+                for d in &found {
+                    let _ = d.render_plain("mutant", &text);
+                    for label in d
+                        .labels
+                        .iter()
+                        .filter(|l| l.source.is_none() && d.code != "not-utf8")
+                    {
+                        assert!(text.get(label.span.clone()).is_some(), "{d:?}");
+                    }
+                }
+            }
+        }
+        if let Ok(text) = std::str::from_utf8(&text) {
+            let _ = set_value(text, &["parameters", "a"], "\"1 mm\"");
+            let _ = set_value(text, &["links", "crank", "A-B"], "3");
+        }
+    }
+    assert!(
+        read_well > 60,
+        "the mutants are too wild to test much: {read_well}"
+    );
+}

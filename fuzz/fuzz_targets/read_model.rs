@@ -1,0 +1,27 @@
+//! Any bytes: a model that can be evaluated, or diagnostics whose places lie in the text.
+#![no_main]
+
+use kempe_model::Model;
+use libfuzzer_sys::fuzz_target;
+
+fuzz_target!(|data: &[u8]| {
+    let files = &mut |_: &str| Ok(String::from_utf8_lossy(data).into_owned());
+    let text = String::from_utf8_lossy(data);
+    match Model::from_bytes(data, "fuzz", files, &[("a".to_owned(), "25 mm".to_owned())]) {
+        Ok(checked) => {
+            let values: Vec<f64> = checked.model.parameter_values();
+            for link in &checked.model.links {
+                assert_eq!(link.evaluate(&values).len(), link.points.len());
+            }
+            for drive in &checked.model.drives {
+                assert!(drive.law.at(drive.law.duration(&values), &values).is_finite());
+            }
+        }
+        Err(found) => {
+            assert!(!found.is_empty());
+            for d in &found {
+                d.render_plain("fuzz", &text);
+            }
+        }
+    }
+});
