@@ -167,3 +167,50 @@ fn pictures_decode_to_the_size_asked_for() {
     let huge = raster::png(&stage.scene(0), Theme::Light, 1e6);
     assert!(matches!(huge, Err(raster::RasterError::TooLarge { .. })));
 }
+
+#[test]
+fn size_and_place_change_nothing_on_paper() {
+    for case in mechanisms::all() {
+        let options = DrawOptions {
+            width: 100.0,
+            ..DrawOptions::default()
+        };
+        let plain = svg::document(
+            &Stage::new(&case.view, &case.frames, options.clone()).scene(7),
+            Theme::Light,
+        );
+        for factor in [1e-6, 1e6] {
+            let (mut view, mut frames) = (case.view.clone(), case.frames.clone());
+            view.length_unit.factor *= factor;
+            for frame in &mut frames {
+                frame.points.iter_mut().flatten().for_each(|v| *v *= factor);
+                frame
+                    .links
+                    .iter_mut()
+                    .for_each(|l| (l[0], l[1]) = (l[0] * factor, l[1] * factor));
+            }
+            for joint in &mut view.joints {
+                match joint {
+                    kempe_draw::JointView::Gears { a, b, .. } => {
+                        (a.radius, b.radius) = (a.radius * factor, b.radius * factor);
+                    }
+                    kempe_draw::JointView::Rack { pinion, .. } => pinion.radius *= factor,
+                    _ => {}
+                }
+            }
+            let scaled = svg::document(
+                &Stage::new(&view, &frames, options.clone()).scene(7),
+                Theme::Light,
+            );
+            // rounding may move the third decimal of a coordinate: compare what is drawn, and the layout
+            let shape = |text: &str| {
+                text.chars()
+                    .filter(|c| c.is_alphabetic())
+                    .collect::<String>()
+            };
+            assert_eq!(shape(&plain), shape(&scaled), "{} x {factor}", case.file);
+            let first = |text: &str| text.split("</g>").nth(1).map(|g| g.len()).unwrap_or(0);
+            assert!(first(&plain).abs_diff(first(&scaled)) <= 8);
+        }
+    }
+}

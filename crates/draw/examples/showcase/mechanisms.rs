@@ -1,5 +1,5 @@
 //! Hand-made mechanisms with their motion, for looking at and for tests: plain arithmetic, no solver.
-#![allow(dead_code)]
+#![allow(dead_code, clippy::unwrap_used)]
 
 use std::f64::consts::PI;
 

@@ -1,8 +1,9 @@
 //! Layout of a plot.
 
 use super::axis::{Scale, Ticks, power_text};
+use super::curve::curve_paths;
 use super::{Curve, MarkerKind, PlotPicture, PlotSpec};
-use crate::scene::{Align, Group, Item, Layer, Path, Point, Scene, Style, Text, distance};
+use crate::scene::{Align, Group, Item, Layer, Path, Scene, Style, Text};
 use crate::text::{shortened, width as text_width};
 use crate::tokens::Token;
 
@@ -10,14 +11,9 @@ use crate::tokens::Token;
 const SMALL: f64 = 2.9;
 const MEDIUM: f64 = 3.2;
 const LARGE: f64 = 3.8;
-/// Samples closer than this on paper (mm) are drawn as one.
-const FINEST: f64 = 0.03;
-
-/// Curves with more rows than this are thinned to about so many.
-const MOST_ROWS: usize = 4000;
 
 /// The inside of the axes: left, bottom, right, top, mm.
-type Frame = [f64; 4];
+pub(super) type Frame = [f64; 4];
 
 pub(super) fn draw(plot: &PlotSpec, width: f64, height: f64) -> PlotPicture {
     let named: Vec<(usize, &Curve)> = plot
@@ -63,7 +59,7 @@ pub(super) fn draw(plot: &PlotSpec, width: f64, height: f64) -> PlotPicture {
         to: top,
         log: plot.y.log,
     };
-    let y_ticks = Ticks::new(&y, ((top - bottom) / 9.0).clamp(2.0, 8.0), &plot.y.unit);
+    let y_ticks = Ticks::new(&y, ((top - bottom) / 6.5).clamp(3.0, 8.0), &plot.y.unit);
     let widest = y_ticks
         .marks
         .iter()
@@ -82,7 +78,7 @@ pub(super) fn draw(plot: &PlotSpec, width: f64, height: f64) -> PlotPicture {
         equalize(&mut x, &mut y);
     }
     let x_ticks = Ticks::new(&x, ((right - left) / 17.0).clamp(2.0, 9.0), &plot.x.unit);
-    let y_ticks = Ticks::new(&y, ((top - bottom) / 9.0).clamp(2.0, 8.0), &plot.y.unit);
+    let y_ticks = Ticks::new(&y, ((top - bottom) / 6.5).clamp(3.0, 8.0), &plot.y.unit);
     let frame = [left, bottom, right, top];
     let mut groups = vec![Group::new(
         Layer::Furniture,
@@ -268,94 +264,4 @@ fn markers(plot: &PlotSpec, frame: Frame, x: &Scale) -> Vec<Item> {
         }
     }
     items
-}
-
-/// The rows to draw: all, or of each short run its ends, its extremes and its gaps, so that no peak is lost.
-fn thinned(curve: &Curve) -> Vec<usize> {
-    let rows = curve.x.len().min(curve.y.len());
-    if rows <= MOST_ROWS {
-        return (0..rows).collect();
-    }
-    let run = rows.div_ceil(MOST_ROWS / 4).max(5);
-    let mut kept = Vec::with_capacity(MOST_ROWS + 8);
-    for first in (0..rows).step_by(run) {
-        let last = (first + run).min(rows) - 1;
-        let finite = || (first..=last).filter(|&k| curve.y[k].is_finite());
-        let low = finite().min_by(|&a, &b| curve.y[a].total_cmp(&curve.y[b]));
-        let high = finite().max_by(|&a, &b| curve.y[a].total_cmp(&curve.y[b]));
-        let gap = (first..=last).find(|&k| !curve.y[k].is_finite());
-        let mut some: Vec<usize> = [Some(first), low, high, gap, Some(last)]
-            .into_iter()
-            .flatten()
-            .collect();
-        some.sort_unstable();
-        some.dedup();
-        kept.extend(some);
-    }
-    kept
-}
-
-/// The pieces of a curve that lie inside the axes.
-fn curve_paths(curve: &Curve, frame: Frame, x: &Scale, y: &Scale) -> Vec<Path> {
-    let mut pieces: Vec<Vec<Point>> = vec![Vec::new()];
-    let mut last: Option<Point> = None;
-    for row in thinned(curve) {
-        let (vx, vy) = (curve.x[row], curve.y[row]);
-        let here = x.at(vx).zip(y.at(vy)).map(|(a, b)| [a, b]);
-        if let (Some(a), Some(b)) = (last, here) {
-            if distance(a, b) < FINEST {
-                continue;
-            }
-            match clip(a, b, frame) {
-                Some((p, q)) => {
-                    let joined = pieces
-                        .last()
-                        .and_then(|piece| piece.last())
-                        .is_some_and(|end| *end == p);
-                    if !joined {
-                        pieces.push(vec![p]);
-                    }
-                    pieces
-                        .last_mut()
-                        .into_iter()
-                        .for_each(|piece| piece.push(q));
-                }
-                None => pieces.push(Vec::new()),
-            }
-        } else {
-            pieces.push(Vec::new());
-        }
-        last = here;
-    }
-    pieces
-        .iter()
-        .filter(|piece| piece.len() > 1)
-        .map(|piece| Path::polyline(piece))
-        .collect()
-}
-
-/// The part of a line inside the axes (Liang and Barsky 1984).
-fn clip(a: Point, b: Point, frame: Frame) -> Option<(Point, Point)> {
-    let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
-    let delta = [b[0] - a[0], b[1] - a[1]];
-    for k in 0..2 {
-        for (p, q) in [
-            (-delta[k], a[k] - frame[k]),
-            (delta[k], frame[k + 2] - a[k]),
-        ] {
-            if p == 0.0 {
-                if q < 0.0 {
-                    return None;
-                }
-            } else if p < 0.0 {
-                enter = enter.max(q / p);
-            } else {
-                leave = leave.min(q / p);
-            }
-        }
-    }
-    let at = |t: f64| [a[0] + t * delta[0], a[1] + t * delta[1]];
-    let start = if enter == 0.0 { a } else { at(enter) };
-    let end = if leave == 1.0 { b } else { at(leave) };
-    (enter <= leave).then_some((start, end))
 }

@@ -1,6 +1,7 @@
 //! Plots of columns: own axes with round ticks, gaps where a row was not reached, markers at dead and change points.
 
 mod axis;
+mod curve;
 mod draw;
 
 pub use axis::Scale;

@@ -94,7 +94,7 @@ pub fn gif(stage: &Stage, options: &AnimationOptions) -> Result<Vec<u8>, RasterE
 /// An animated PNG of the poses. Viewers that know no animation show the first.
 ///
 /// # Errors
-/// As [`gif`].
+/// As [`gif()`].
 pub fn apng(stage: &Stage, options: &AnimationOptions) -> Result<Vec<u8>, RasterError> {
     let film = Film::new(stage, options)?;
     let mut colors: Vec<u8> = film.colors.iter().flatten().copied().collect();
