@@ -78,7 +78,10 @@ pub struct Model {
     pub studies: Vec<Study>,
 }
 
-/// Units in which bare numbers of the file are read and results are shown.
+/// Units in which bare numbers of the file are read and results are shown: m and deg where the file names none.
+///
+/// Bare numbers of other dimensions are in the unit that results are shown in, made of these two with kg and s:
+/// a bare speed in a file in mm is in mm/s, a bare moment of inertia always in kg m^2.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FileUnits {
     /// Length unit, as written, such as `mm`.
