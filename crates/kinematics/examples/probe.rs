@@ -25,6 +25,33 @@ fn main() {
     }
     let parameters: Vec<f64> = model.parameter_values();
     let design = Design::new(&mechanism, &plan, &parameters);
+    let f = check(&mechanism, &plan, &design, &parameters);
+    println!("mobility {:?}", f.mobility);
+    for g in &f.groups {
+        println!(
+            "group {} {} {:?}",
+            g.class,
+            g.kind,
+            g.bodies
+                .iter()
+                .map(|b| mechanism.body_name(*b))
+                .collect::<Vec<_>>()
+        );
+    }
+    for b in &f.four_bars {
+        println!(
+            "fourbar {:?} {:?}",
+            b.bodies.map(|b| mechanism.body_name(b)),
+            b.kind
+        );
+    }
+    println!(
+        "reach {:?} idle {:?} redundant {:?}",
+        f.reach
+            .map(|r| (r.range, r.ends, r.full_turn, r.events.len())),
+        f.idle,
+        f.redundant
+    );
     let t0 = std::time::Instant::now();
     let motion = match Motion::new(&mechanism, &plan, &design, &parameters) {
         Ok(m) => m,

@@ -1,18 +1,22 @@
 //! Planar mechanisms in motion.
 
 pub mod assemble;
+pub mod assur;
 pub mod blocks;
 mod bridge;
+pub mod check;
 mod closed_form;
 mod complex_linear;
 pub mod constraint;
 pub mod drive_path;
 pub mod events;
 pub mod evidence;
+pub mod four_bar;
 pub mod geometry;
 pub mod homotopy;
 pub mod measure;
 pub mod mechanism;
+pub mod mobility;
 pub mod motion;
 mod newton;
 pub mod plan;
@@ -25,6 +29,7 @@ mod statistics;
 mod swept;
 pub mod trace;
 
+pub use check::{Findings, Reach, check};
 pub use constraint::{Input, Situation};
 pub use geometry::Geometry;
 pub use mechanism::{BodyId, Mechanism};
