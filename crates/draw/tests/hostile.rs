@@ -230,13 +230,24 @@ fn a_hundred_thousand_links_are_drawn_in_seconds() {
         title: "chain".into(),
         length_unit: LengthUnit::new("m", 1.0),
         points: (0..=n).map(|k| format!("P{k}")).collect(),
-        links: (0..n).map(|k| LinkView { name: format!("l{k}"), points: vec![k, k + 1] }).collect(),
-        joints: (0..n).map(|k| JointView::Spring { a: k, b: k + 1 }).collect(),
+        links: (0..n)
+            .map(|k| LinkView {
+                name: format!("l{k}"),
+                points: vec![k, k + 1],
+            })
+            .collect(),
+        joints: (0..n)
+            .map(|k| JointView::Spring { a: k, b: k + 1 })
+            .collect(),
         traces: vec![],
         drives: vec![],
     };
     let points = (0..=n).map(|k| [k as f64, (k % 7) as f64]).collect();
-    let frames = [Frame { points, links: vec![[0.0; 3]; n], label: String::new() }];
+    let frames = [Frame {
+        points,
+        links: vec![[0.0; 3]; n],
+        label: String::new(),
+    }];
     let start = std::time::Instant::now();
     let stage = Stage::new(&view, &frames, DrawOptions::default());
     assert!(svg::document(&stage.scene(0), Theme::Light).len() > n);
