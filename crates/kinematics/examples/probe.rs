@@ -84,6 +84,17 @@ fn main() {
             e.steps
         );
     }
+    if let Ok(c) = circuit::Circuit::new(&mechanism, &plan, &design, &parameters) {
+        println!(
+            "circuit closed {} length {:.4} stretches {:?}",
+            c.closed,
+            c.length,
+            c.stretches
+                .iter()
+                .map(|s| (s.motion.reached(), s.forward))
+                .collect::<Vec<_>>()
+        );
+    }
     let measures: Vec<_> = model.measures.iter().map(|m| &m.measure).collect();
     let t0 = std::time::Instant::now();
     let mut sampler = match Sampler::new(&motion, &measures) {

@@ -5,6 +5,7 @@ pub mod assur;
 pub mod blocks;
 mod bridge;
 pub mod check;
+pub mod circuit;
 mod closed_form;
 mod complex_linear;
 pub mod constraint;

@@ -136,6 +136,12 @@ impl<B: Number> Moment<'_, B> {
     /// A series along the path, along what is asked for.
     fn along_time(&self, series: Series<B>, along: Along) -> Series<B> {
         match along {
+            // Without time (on a circuit) only the value is known.
+            Along::Time if !self.clock.coefficient(1).value().is_finite() => {
+                let mut coefficients = [B::from_f64(f64::NAN); ORDER];
+                coefficients[0] = series.coefficient(0);
+                Series::from_coefficients(coefficients)
+            }
             Along::Time => series.compose(&self.clock),
             Along::Path | Along::Drive(_) => series,
         }

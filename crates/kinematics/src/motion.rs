@@ -178,24 +178,12 @@ impl<'m> Motion<'m> {
                 .rev()
                 .collect();
             nodes.extend(high);
-            let mut motion = Self {
-                mechanism,
-                plan,
-                design,
-                assemblies,
-                anchor,
-                start,
-                demanded,
-                ends: (end_low, end_high),
-                events: Vec::new(),
-                parameters: Vec::new(),
-                patches: Vec::new(),
-                signs: Vec::new(),
-                nodes,
-                scale,
-                size,
-                path: path.clone(),
-            };
+            let mut motion =
+                Self::of_nodes(mechanism, plan, design, path.clone(), assemblies, nodes);
+            motion.anchor = anchor;
+            motion.start = start;
+            motion.demanded = demanded;
+            motion.ends = (end_low, end_high);
             motion.find_events(&mut follower);
             return Ok(motion);
         }
@@ -205,6 +193,41 @@ impl<'m> Motion<'m> {
                 assemblies: Box::new(assemblies),
             }),
             None => Err(MotionError::Locked { at: start }),
+        }
+    }
+
+    /// A motion over given nodes, rising in the path parameter; it covers just them.
+    pub(crate) fn of_nodes(
+        mechanism: &'m Mechanism,
+        plan: &'m Plan,
+        design: &'m Design<f64>,
+        path: DrivePath,
+        assemblies: Assemblies,
+        nodes: Vec<Node>,
+    ) -> Self {
+        let scale = crate::trace::Path::scale(&path);
+        let at = |node: Option<&Node>| {
+            node.and_then(|n| n.z.last())
+                .map_or(f64::NAN, |z| z * scale)
+        };
+        let demanded = (at(nodes.first()), at(nodes.last()));
+        Self {
+            mechanism,
+            plan,
+            design,
+            assemblies,
+            anchor: demanded.0,
+            start: demanded.0,
+            demanded,
+            ends: (EndReason::Covered, EndReason::Covered),
+            events: Vec::new(),
+            parameters: Vec::new(),
+            patches: Vec::new(),
+            signs: Vec::new(),
+            nodes,
+            scale,
+            size: design.geometry.size(mechanism),
+            path,
         }
     }
 
@@ -340,7 +363,7 @@ impl<'m> Motion<'m> {
     }
 
     /// Finds where modes change between nodes, splits the motion there and records what was met.
-    fn find_events(&mut self, follower: &mut Follower<'_, DrivePath>) {
+    pub(crate) fn find_events(&mut self, follower: &mut Follower<'_, DrivePath>) {
         let modes: Vec<Vec<f64>> = self
             .nodes
             .iter()

@@ -218,6 +218,11 @@ impl<'a> Sampler<'a> {
         self.row(p, t)
     }
 
+    /// The row at a path parameter, without time: measures of speed are NaN.
+    pub fn without_time(&mut self, p: f64) -> Sample {
+        self.row(p, f64::NAN)
+    }
+
     fn row(&mut self, p: f64, time: f64) -> Sample {
         let motion = self.motion;
         let model = &motion.mechanism.model;
