@@ -56,6 +56,8 @@ pub struct Moment<'a, B> {
     pub directions: Vec<((PointId, PointId), f64)>,
     /// Lengths of path swept so far and since the start.
     pub swept: Vec<(PointId, f64)>,
+    /// Answers questions to the forces, where forces are computed.
+    pub forces: Option<&'a dyn Fn(&ForceMeasure) -> Series<B>>,
     /// Values of the statistics that occur, in SI.
     pub statistics: &'a [(Statistic, Measure, f64)],
 }
@@ -92,6 +94,10 @@ impl<B: Number> Moment<'_, B> {
                 Along::Time => Series::variable(B::from_f64(self.time)),
                 _ => Series::from_f64(self.time),
             },
+            // Forces are known to the crate that computes them; here they have no value.
+            Leaf::Force(measure) => self
+                .forces
+                .map_or(Series::from_f64(f64::NAN), |forces| forces(measure)),
             Leaf::Rate(measure, order) => (0..*order)
                 .fold(self.series(measure, Along::Time), |series, _| {
                     series.differentiate()
@@ -396,6 +402,10 @@ fn depth(mechanism: &Mechanism, measure: &Measure, in_coefficient: bool) -> Resu
     for leaf in measure.leaves() {
         let own = match leaf {
             Leaf::Parameter(_) | Leaf::Drive(_) | Leaf::Time => 0,
+            Leaf::Force(_) if in_coefficient => {
+                return Err("a force has no derivative to a drive".into());
+            }
+            Leaf::Force(_) => 2,
             Leaf::Named(index) => match mechanism.model.measures.get(*index) {
                 Some(named) => depth(mechanism, &named.measure, in_coefficient)?,
                 None => 0,

@@ -372,6 +372,7 @@ impl<'a> Sampler<'a> {
                 .iter()
                 .map(|s| (s.point(), s.at_time(motion, &self.parameters, time)))
                 .collect(),
+            forces: None,
             statistics: &self.statistics,
         }
     }
