@@ -5,7 +5,8 @@
 //! formula for its derivative.
 
 use kempe_model::{
-    DriveId, Leaf, Line, LinkId, LinkPointRef, Measure, PointId, PoseMeasure, Statistic,
+    DriveId, ForceMeasure, Leaf, Line, LinkId, LinkPointRef, Measure, PointId, PoseMeasure,
+    Statistic,
 };
 use kempe_number::{Jet, Number, math};
 
