@@ -135,7 +135,6 @@ impl<'m> Motion<'m> {
             bodies.dedup();
             return Err(MotionError::Undetermined { bodies });
         }
-        let size = design.geometry.size(mechanism);
         let scale = crate::trace::Path::scale(&path);
         let idle = plan.decomposition.idle.as_slice();
         let mut follower = Follower::new(mechanism, &design.geometry, &path, idle);
