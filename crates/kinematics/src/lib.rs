@@ -3,6 +3,7 @@
 pub mod assemble;
 pub mod blocks;
 mod bridge;
+pub mod certify;
 mod closed_form;
 mod complex_linear;
 pub mod constraint;
@@ -11,6 +12,7 @@ pub mod events;
 pub mod evidence;
 pub mod geometry;
 pub mod homotopy;
+mod krawczyk;
 pub mod measure;
 pub mod mechanism;
 pub mod motion;
@@ -25,6 +27,9 @@ mod statistics;
 mod swept;
 pub mod trace;
 
+pub use certify::{
+    Certificate, CertifiedMotion, Certifier, Subdivision, certify_motion, certify_pose,
+};
 pub use constraint::{Input, Situation};
 pub use geometry::Geometry;
 pub use mechanism::{BodyId, Mechanism};
