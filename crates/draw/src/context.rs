@@ -3,8 +3,9 @@
 use kempe_number::math::{atan2, sin_cos};
 
 use crate::fit::{Fit, drawable};
+use crate::roles::Roles;
 use crate::scene::{Place, Point, distance};
-use crate::view::{Frame, Guide, JointView, MechanismView};
+use crate::view::{Frame, Guide, MechanismView};
 
 /// To what a part of the drawing is fixed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,6 +28,8 @@ pub struct Context<'a> {
     pub frames: &'a [Frame],
     /// The paper.
     pub fit: Fit,
+    /// What its points and links take part in.
+    pub roles: Roles,
     /// The pose from which rigid shapes are taken.
     pub reference: Option<&'a Frame>,
 }
@@ -117,40 +120,6 @@ impl Context<'_> {
                 .filter_map(|f| Some(distance(self.paper(f, a)?, self.paper(f, b)?))),
         )
     }
-
-    /// The links that carry a point.
-    pub fn carriers(&self, index: usize) -> Vec<usize> {
-        carriers(self.view, index)
-    }
-
-    /// Whether a point belongs to the frame.
-    pub fn grounded(&self, index: usize) -> bool {
-        self.view
-            .links
-            .first()
-            .is_some_and(|frame| frame.points.contains(&index))
-    }
-
-    /// Whether a point is part of a joint other than a pin.
-    pub fn jointed(&self, index: usize) -> bool {
-        self.view.joints.iter().any(|joint| match joint {
-            JointView::Slider { at: p, .. }
-            | JointView::Slot { pin: p, .. }
-            | JointView::Weld { at: p, .. } => *p == index,
-            JointView::Gears { a, b, .. } => a.center == index || b.center == index,
-            JointView::Rack { pinion, .. } => pinion.center == index,
-            JointView::Cylinder { a, b }
-            | JointView::Spring { a, b }
-            | JointView::Damper { a, b } => *a == index || *b == index,
-        })
-    }
-}
-
-/// The links of a mechanism that carry a point, each once.
-pub fn carriers(view: &MechanismView, index: usize) -> Vec<usize> {
-    (0..view.links.len())
-        .filter(|&l| view.links[l].points.contains(&index))
-        .collect()
 }
 
 fn range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {

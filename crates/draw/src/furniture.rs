@@ -55,7 +55,11 @@ fn scale_bar(stage: &Stage) -> Vec<Item> {
     let ticks = [x0, (x0 + x1) / 2.0, x1].into_iter().zip([1.6, 1.0, 1.6]);
     let mut paths = vec![Path::polyline(&[[x0, y], [x1, y]])];
     paths.extend(ticks.map(|(x, h)| Path::polyline(&[[x, y], [x, y + h]])));
-    let label = format!("{} {}", significant(length, 3), unit.name);
+    let label = format!(
+        "{} {}",
+        significant(length, 3),
+        shortened(&unit.name, 3.2, 24.0)
+    );
     vec![
         Item::Shape {
             paths,

@@ -34,6 +34,7 @@ pub mod plot;
 #[cfg(feature = "raster")]
 pub mod raster;
 pub mod report;
+mod roles;
 pub mod scene;
 mod stage;
 pub mod svg;

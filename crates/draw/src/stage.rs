@@ -5,6 +5,7 @@ use kempe_number::math::sin_cos;
 use crate::context::{Anchor, Context, link_angle, point, reference_frame};
 use crate::fit::{Bounds, Fit, Margins};
 use crate::furniture;
+use crate::roles::Roles;
 use crate::scene::{Group, Layer, Point, Scene};
 use crate::symbols::{self, Part};
 use crate::trace::TracePath;
@@ -79,13 +80,14 @@ impl<'a> Stage<'a> {
             },
             ..options
         };
+        let roles = Roles::new(view);
         let mut bounds = Bounds::EMPTY;
         match options.view_box {
             Some(corners) => corners.iter().for_each(|&p| bounds.add(p, 0.0)),
             None => {
                 frames
                     .iter()
-                    .for_each(|frame| add_frame(&mut bounds, view, frame));
+                    .for_each(|frame| add_frame(&mut bounds, view, &roles, frame));
                 view.joints
                     .iter()
                     .for_each(|joint| add_rack(&mut bounds, frames, joint));
@@ -116,6 +118,7 @@ impl<'a> Stage<'a> {
             view,
             frames,
             fit,
+            roles,
             reference: reference_frame(view, frames),
         };
         let parts = symbols::parts(&context, options.labels);
@@ -227,24 +230,15 @@ impl<'a> Stage<'a> {
     /// For scripts that move the drawing: a point as the link that carries it and its place there from the link's first
     /// point, mm.
     pub fn point_on_link(&self, index: usize) -> Option<(usize, Point)> {
-        let link = *self.context.carriers(index).first()?;
+        let link = *self.context.roles.point(index).carriers.first()?;
         let first = *self.context.view.links[link].points.first()?;
         Some((link, self.context.local(link, first, index)?))
     }
 }
 
-fn add_frame(bounds: &mut Bounds, view: &MechanismView, frame: &Frame) {
-    let guides_only = |index: usize| {
-        let used = |guide: &crate::view::Guide| {
-            guide.link == 0 && (guide.from == index || guide.to == index)
-        };
-        view.joints.iter().any(|joint| match joint {
-            JointView::Slider { guide, .. } | JointView::Slot { guide, .. } => used(guide),
-            _ => false,
-        }) && crate::context::carriers(view, index) == [0]
-    };
+fn add_frame(bounds: &mut Bounds, view: &MechanismView, roles: &Roles, frame: &Frame) {
     for index in 0..view.points.len() {
-        if let (Some(p), false) = (point(frame, index), guides_only(index)) {
+        if let (Some(p), false) = (point(frame, index), roles.point(index).only_guides()) {
             bounds.add(p, 0.0);
         }
     }

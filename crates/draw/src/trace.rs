@@ -36,7 +36,13 @@ impl TracePath {
                 }
             }
             pieces.retain(|piece| piece.len() > 1);
-            let carrier = context.carriers(trace.point).last().copied().unwrap_or(1);
+            let carrier = context
+                .roles
+                .point(trace.point)
+                .carriers
+                .last()
+                .copied()
+                .unwrap_or(1);
             TracePath {
                 token: Token::Series(carrier.saturating_sub(1)),
                 pieces,

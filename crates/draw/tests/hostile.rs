@@ -222,3 +222,34 @@ proptest! {
         all_numbers_are_numbers(&svg::document(&plot.draw(100.0, 60.0).scene, Theme::Dark));
     }
 }
+
+#[test]
+fn a_hundred_thousand_links_are_drawn_in_seconds() {
+    let n = 100_000;
+    let view = MechanismView {
+        title: "chain".into(),
+        length_unit: LengthUnit::new("m", 1.0),
+        points: (0..=n).map(|k| format!("P{k}")).collect(),
+        links: (0..n)
+            .map(|k| LinkView {
+                name: format!("l{k}"),
+                points: vec![k, k + 1],
+            })
+            .collect(),
+        joints: (0..n)
+            .map(|k| JointView::Spring { a: k, b: k + 1 })
+            .collect(),
+        traces: vec![],
+        drives: vec![],
+    };
+    let points = (0..=n).map(|k| [k as f64, (k % 7) as f64]).collect();
+    let frames = [Frame {
+        points,
+        links: vec![[0.0; 3]; n],
+        label: String::new(),
+    }];
+    let start = std::time::Instant::now();
+    let stage = Stage::new(&view, &frames, DrawOptions::default());
+    assert!(svg::document(&stage.scene(0), Theme::Light).len() > n);
+    assert!(start.elapsed().as_secs() < 60, "{:?}", start.elapsed());
+}

@@ -288,7 +288,7 @@ fn match_rows(rows: &[(Row, Vec<usize>)], nodes: usize) -> Vec<Option<usize>> {
 }
 
 /// Strongly connected components, dependencies first (Tarjan 1972, without recursion).
-fn components(depends: &[Vec<usize>]) -> Vec<Vec<usize>> {
+pub(crate) fn components(depends: &[Vec<usize>]) -> Vec<Vec<usize>> {
     const UNSEEN: usize = usize::MAX;
     let n = depends.len();
     let (mut index, mut low) = (vec![UNSEEN; n], vec![0; n]);

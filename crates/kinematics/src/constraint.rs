@@ -90,6 +90,22 @@ impl<T: Number> Situation<'_, T> {
         }
     }
 
+    /// Whether a direction points the opposite way: the residual, a sine, does not tell.
+    pub fn is_reversed(&self, constraint: &Constraint) -> bool {
+        match *constraint {
+            Constraint::Direction {
+                a,
+                b,
+                offset,
+                input,
+            } => {
+                let pose = &self.poses[a.index()];
+                dot(self.wanted_direction(b, offset, input), [pose.c, pose.s]).value() < 0.0
+            }
+            _ => false,
+        }
+    }
+
     /// The residual rows of a constraint; only the first [`Constraint::rows`] count.
     #[inline]
     pub fn residual(&self, constraint: &Constraint) -> [T; 2] {

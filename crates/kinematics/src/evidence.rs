@@ -33,6 +33,9 @@ pub fn closure(
         } else {
             1.0
         };
+        if situation.is_reversed(constraint) {
+            largest = largest.max(2.0);
+        }
         for r in &residual[..constraint.rows()] {
             if r.is_nan() {
                 return f64::NAN;

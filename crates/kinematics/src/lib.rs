@@ -1,20 +1,25 @@
 //! Planar mechanisms in motion.
 
 pub mod assemble;
+pub mod assur;
 pub mod blocks;
 mod bridge;
 pub mod certify;
+pub mod check;
+pub mod circuit;
 mod closed_form;
 mod complex_linear;
 pub mod constraint;
 pub mod drive_path;
 pub mod events;
 pub mod evidence;
+pub mod four_bar;
 pub mod geometry;
 pub mod homotopy;
 mod krawczyk;
 pub mod measure;
 pub mod mechanism;
+pub mod mobility;
 pub mod motion;
 mod newton;
 pub mod plan;
@@ -30,6 +35,7 @@ pub mod trace;
 pub use certify::{
     Certificate, CertifiedMotion, Certifier, Subdivision, certify_motion, certify_pose,
 };
+pub use check::{Findings, Reach, check};
 pub use constraint::{Input, Situation};
 pub use geometry::Geometry;
 pub use mechanism::{BodyId, Mechanism};

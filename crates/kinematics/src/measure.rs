@@ -5,7 +5,8 @@
 //! formula for its derivative.
 
 use kempe_model::{
-    DriveId, Leaf, Line, LinkId, LinkPointRef, Measure, PointId, PoseMeasure, Statistic,
+    DriveId, ForceMeasure, Leaf, Line, LinkId, LinkPointRef, Measure, PointId, PoseMeasure,
+    Statistic,
 };
 use kempe_number::{Jet, Number, math};
 
@@ -56,6 +57,8 @@ pub struct Moment<'a, B> {
     pub directions: Vec<((PointId, PointId), f64)>,
     /// Lengths of path swept so far and since the start.
     pub swept: Vec<(PointId, B)>,
+    /// Answers questions to the forces, where forces are computed.
+    pub forces: Option<&'a dyn Fn(&ForceMeasure) -> Series<B>>,
     /// Values of the statistics that occur, in SI.
     pub statistics: &'a [(Statistic, Measure, B)],
 }
@@ -92,6 +95,10 @@ impl<B: Number> Moment<'_, B> {
                 Along::Time => Series::variable(self.time),
                 _ => Series::constant(self.time),
             },
+            // Forces are known to the crate that computes them; here they have no value.
+            Leaf::Force(measure) => self
+                .forces
+                .map_or(Series::from_f64(f64::NAN), |forces| forces(measure)),
             Leaf::Rate(measure, order) => (0..*order)
                 .fold(self.series(measure, Along::Time), |series, _| {
                     series.differentiate()
@@ -136,6 +143,12 @@ impl<B: Number> Moment<'_, B> {
     /// A series along the path, along what is asked for.
     fn along_time(&self, series: Series<B>, along: Along) -> Series<B> {
         match along {
+            // Without time (on a circuit) only the value is known.
+            Along::Time if !self.clock.coefficient(1).value().is_finite() => {
+                let mut coefficients = [B::from_f64(f64::NAN); ORDER];
+                coefficients[0] = series.coefficient(0);
+                Series::from_coefficients(coefficients)
+            }
             Along::Time => series.compose(&self.clock),
             Along::Path | Along::Drive(_) => series,
         }
@@ -390,6 +403,10 @@ fn depth(mechanism: &Mechanism, measure: &Measure, in_coefficient: bool) -> Resu
     for leaf in measure.leaves() {
         let own = match leaf {
             Leaf::Parameter(_) | Leaf::Drive(_) | Leaf::Time => 0,
+            Leaf::Force(_) if in_coefficient => {
+                return Err("a force has no derivative to a drive".into());
+            }
+            Leaf::Force(_) => 2,
             Leaf::Named(index) => match mechanism.model.measures.get(*index) {
                 Some(named) => depth(mechanism, &named.measure, in_coefficient)?,
                 None => 0,

@@ -218,6 +218,11 @@ impl<'a> Sampler<'a> {
         self.row(p, t)
     }
 
+    /// The row at a path parameter, without time: measures of speed are NaN.
+    pub fn without_time(&mut self, p: f64) -> Sample {
+        self.row(p, f64::NAN)
+    }
+
     fn row(&mut self, p: f64, time: f64) -> Sample {
         let motion = self.motion;
         let model = &motion.mechanism.model;
@@ -282,6 +287,10 @@ impl<'a> Sampler<'a> {
     /// Solves the series along the path at `p` and along the drives that measures ask for. False without a pose.
     fn solve(&mut self, p: f64) -> bool {
         let motion = self.motion;
+        if let Some(index) = motion.limit_at(p) {
+            self.solve_at_limit(p, index);
+            return true;
+        }
         match motion.bridge(p).map(|event| (event.at, event.bridge)) {
             Some((at, half)) => self.solve_across(p, at, half),
             None => motion.solve(&self.series_design, Series::variable(p), &mut self.series),
@@ -309,6 +318,32 @@ impl<'a> Sampler<'a> {
             self.drives[index] = Some(solver.state.poses);
         }
         true
+    }
+
+    /// Takes the pose of the trace at a limit of the drive; rates are infinite there, or not defined.
+    fn solve_at_limit(&mut self, p: f64, index: usize) {
+        let motion = self.motion;
+        let (_, poses, near) = motion.node(index);
+        let constant = |x: f64| {
+            let mut coefficients = [f64::NAN; ORDER];
+            coefficients[0] = x;
+            Series::from_coefficients(coefficients)
+        };
+        motion
+            .path
+            .coordinates(Series::variable(p), &mut self.series.coordinates);
+        for (series, pose) in self.series.state.poses.iter_mut().zip(&poses).skip(1) {
+            *series = Pose {
+                x: constant(pose.x),
+                y: constant(pose.y),
+                c: constant(pose.c),
+                s: constant(pose.s),
+            };
+        }
+        self.series.branch.near = near;
+        for drive in self.drives.iter_mut().flatten() {
+            drive.clone_from(&self.series.state.poses);
+        }
     }
 
     /// Joins the series on both sides of a change point.
@@ -367,6 +402,7 @@ impl<'a> Sampler<'a> {
                 .iter()
                 .map(|s| (s.point(), s.at_time(motion, &self.parameters, time)))
                 .collect(),
+            forces: None,
             statistics: &self.statistics,
         }
     }
@@ -439,6 +475,9 @@ impl<'a> Sampler<'a> {
             EndReason::Stuck => {
                 format!("not reached: the motion could not be followed beyond {at}")
             }
+            EndReason::Runaway => {
+                format!("not reached: a part runs away to infinity beyond {at}")
+            }
             EndReason::Covered => "not reached: outside the motion".into(),
         }
     }
@@ -460,7 +499,7 @@ impl<'a> Sampler<'a> {
                 sample.closure
             ));
         }
-        let singular = sample.smallest_singular_value < 1e-9;
+        let singular = self.motion.limit_at(p).is_some() || sample.smallest_singular_value < 1e-9;
         singular.then(|| "limit of the drive: rates are not defined here".into())
     }
 }

@@ -70,6 +70,8 @@ pub struct Model {
     pub joints: Vec<Joint>,
     /// Drives in file order.
     pub drives: Vec<Drive>,
+    /// What acts on it.
+    pub actions: crate::load::Actions,
     /// Which assembly is meant.
     pub assembly: Vec<AssemblyHint>,
     /// Named measures in file order; a measure may use earlier and later ones but not itself.
@@ -78,7 +80,10 @@ pub struct Model {
     pub studies: Vec<Study>,
 }
 
-/// Units in which bare numbers of the file are read and results are shown.
+/// Units in which bare numbers of the file are read and results are shown: m and deg where the file names none.
+///
+/// Bare numbers of other dimensions are in the unit that results are shown in, made of these two with kg and s:
+/// a bare speed in a file in mm is in mm/s, a bare moment of inertia always in kg m^2.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FileUnits {
     /// Length unit, as written, such as `mm`.
@@ -497,6 +502,8 @@ pub struct Study {
 pub enum StudyKind {
     /// The motion along the drives' laws.
     Motion(MotionStudy),
+    /// What drives the motion and what the joints carry along it. Rows, columns and plots as for a motion.
+    Forces(MotionStudy),
 }
 
 /// A motion study: rows along the drive or along time.

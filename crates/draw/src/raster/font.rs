@@ -1,4 +1,5 @@
-//! Outlines of letters from the font that the crate carries, so that no system font is asked for.
+//! Outlines of letters from the font that the crate carries, so that no system font is asked for:
+//! DejaVu Sans Condensed (licence of Bitstream Vera, changes in the public domain).
 
 use std::sync::OnceLock;
 

@@ -5,13 +5,13 @@ use crate::context::{Anchor, Context};
 use crate::scene::{Align, Item, Layer, Point, Text, distance};
 use crate::text::{shortened, width};
 use crate::tokens::Token;
-use crate::view::{Frame, JointView};
+use crate::view::Frame;
 
 /// Font size, mm.
 const SIZE: f64 = 3.6;
 /// Poses looked at.
 const SAMPLES: usize = 16;
-/// More points than this get their labels without a search.
+/// With more points or links than this, labels get their places without a search.
 const SEARCHED: usize = 120;
 /// Where a label may stand: direction of its middle from the point.
 const SIDES: [Point; 8] = [
@@ -29,15 +29,19 @@ pub(super) fn parts(context: &Context) -> Vec<Part> {
     let poses = sampled(context);
     let mut taken: Vec<Point> = Vec::new();
     let mut parts = Vec::new();
+    let searched = context.view.points.len() <= SEARCHED && context.view.links.len() <= SEARCHED;
     for (index, name) in context.view.points.iter().enumerate() {
-        if name.is_empty() || hidden(context, index) {
+        let role = context.roles.point(index);
+        if name.is_empty() || role.carriers.is_empty() || role.only_guides() {
             continue;
         }
         let name = shortened(name, SIZE, 30.0);
-        let reach = [width(&name, SIZE) / 2.0 + 1.9, SIZE / 2.0 + 2.3];
+        // a block is wider than a pin
+        let clear = if role.slides { [4.6, 3.4] } else { [1.9, 2.3] };
+        let reach = [width(&name, SIZE) / 2.0 + clear[0], SIZE / 2.0 + clear[1]];
         let middle = |side: Point| [side[0] * reach[0], side[1] * reach[1]];
         let cost = |side: &Point| {
-            let down = if context.grounded(index) && side[1] < 0.1 {
+            let down = if role.grounded() && side[1] < 0.1 {
                 40.0
             } else {
                 0.0
@@ -47,7 +51,7 @@ pub(super) fn parts(context: &Context) -> Vec<Part> {
                 .map(|pose| crowding(context, pose, index, middle(*side), &taken))
                 .sum::<f64>()
         };
-        let best = if context.view.points.len() > SEARCHED {
+        let best = if !searched {
             SIDES[0]
         } else {
             let mut best = (f64::INFINITY, SIDES[0]);
@@ -67,7 +71,7 @@ pub(super) fn parts(context: &Context) -> Vec<Part> {
             halo: true,
             ..Text::new([x, y - SIZE * 0.36], SIZE, name).aligned(Align::Middle)
         };
-        let text = if context.carriers(index) == [0] {
+        let text = if role.carriers == [0] {
             text.colored(Token::Muted)
         } else {
             text
@@ -84,20 +88,6 @@ pub(super) fn parts(context: &Context) -> Vec<Part> {
 fn sampled<'a>(context: &'a Context) -> Vec<&'a Frame> {
     let step = context.frames.len().div_ceil(SAMPLES).max(1);
     context.frames.iter().step_by(step).collect()
-}
-
-/// Points of the frame that only give a guide its direction have no symbol, so they get no label either.
-fn hidden(context: &Context, index: usize) -> bool {
-    let carriers = context.carriers(index);
-    carriers.is_empty()
-        || carriers == [0]
-            && !context.jointed(index)
-            && context.view.joints.iter().any(|joint| match joint {
-                JointView::Slider { guide, .. } | JointView::Slot { guide, .. } => {
-                    guide.from == index || guide.to == index
-                }
-                _ => false,
-            })
 }
 
 /// How much a label at this offset is in the way of bars, pins and earlier labels.

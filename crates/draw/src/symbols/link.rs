@@ -4,7 +4,6 @@ use super::{BAR, Part, link_token};
 use crate::context::{Anchor, Context};
 use crate::hull::{convex_hull, rounded_hull};
 use crate::scene::{Item, Layer, Point, Style};
-use crate::view::JointView;
 
 /// Opacity of a bar and of a plate.
 const FILL: [f64; 2] = [0.32, 0.16];
@@ -23,7 +22,7 @@ fn body(context: &Context, link: usize) -> Option<Part> {
         .filter_map(|&p| context.local(link, first, p))
         .collect();
     let corners = convex_hull(&local).len();
-    if corners < 2 && drawn_otherwise(context, link) {
+    if corners < 2 && context.roles.has_body(link) {
         return None;
     }
     let outline = rounded_hull(&local, BAR)?;
@@ -34,16 +33,4 @@ fn body(context: &Context, link: usize) -> Option<Part> {
         Anchor::On(first, link, 0.0),
         vec![Item::path(outline, style)],
     ))
-}
-
-/// A link on one spot that is a slider's block, a gear or a rack has a body already.
-fn drawn_otherwise(context: &Context, link: usize) -> bool {
-    context.view.joints.iter().any(|joint| match joint {
-        JointView::Slider { block, .. } => *block == link,
-        JointView::Gears { a, b, .. } => a.link == link || b.link == link,
-        JointView::Rack {
-            link: rack, pinion, ..
-        } => *rack == link || pinion.link == link,
-        _ => false,
-    })
 }

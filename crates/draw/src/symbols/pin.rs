@@ -4,7 +4,6 @@ use super::{LINE, PIN, Part, ground, link_token};
 use crate::context::{Anchor, Context};
 use crate::scene::{Item, Layer, Path, Style};
 use crate::tokens::Token;
-use crate::view::JointView;
 
 /// What a point is drawn as.
 enum Look {
@@ -25,45 +24,18 @@ pub(super) fn parts(context: &Context) -> Vec<Part> {
 }
 
 fn look(context: &Context, index: usize) -> Look {
-    let carriers = context.carriers(index);
-    let ground = context.grounded(index);
-    let joints = &context.view.joints;
-    let welded = joints
-        .iter()
-        .filter(|j| matches!(j, JointView::Weld { at, .. } if *at == index))
-        .count();
-    let bodies = carriers.len().saturating_sub(welded);
-    let pinned = joints.iter().any(|joint| match *joint {
-        JointView::Slot { pin, .. } => pin == index,
-        JointView::Cylinder { a, b } | JointView::Spring { a, b } | JointView::Damper { a, b } => {
-            a == index || b == index
-        }
-        JointView::Gears { a, b, .. } => a.center == index || b.center == index,
-        JointView::Rack { pinion, .. } => pinion.center == index,
-        _ => false,
-    });
-    let guided = joints.iter().any(|joint| match joint {
-        JointView::Slider { guide, .. } | JointView::Slot { guide, .. } => {
-            guide.from == index || guide.to == index
-        }
-        _ => false,
-    });
-    match (bodies, pinned) {
+    let role = context.roles.point(index);
+    let ground = role.grounded();
+    match (role.carriers.len().saturating_sub(role.welds), role.pinned) {
         (0, _) => Look::Nothing,
-        (2.., _) => Look::Pin {
+        (bodies @ 2.., _) => Look::Pin {
             rings: bodies - 2,
             ground,
         },
         (1, true) => Look::Pin { rings: 0, ground },
-        _ if welded > 0
-            || joints
-                .iter()
-                .any(|j| matches!(j, JointView::Slider { at, .. } if *at == index)) =>
-        {
-            Look::Nothing
-        }
-        _ if !ground => Look::Dot(carriers.first().copied().unwrap_or(1)),
-        _ if guided => Look::Nothing,
+        _ if role.welds > 0 || role.slides => Look::Nothing,
+        _ if !ground => Look::Dot(role.carriers[0]),
+        _ if role.guides => Look::Nothing,
         _ => Look::Cross,
     }
 }

@@ -4,7 +4,7 @@ use kempe_units::{Dimension, Unit};
 
 use crate::diagnostic::Diagnostic;
 use crate::document::{Node, Table, Value};
-use crate::model::{FRAME, LinkId, UnitName};
+use crate::model::{DriveKind, FRAME, LinkId, UnitName};
 use crate::read::context::Context;
 use crate::read::{assembly, drives, joints, links, measures, names, parameters, studies};
 
@@ -100,6 +100,12 @@ fn loose_links(cx: &mut Context<'_>) {
         let (a, b) = joint.kind.links();
         hold(a);
         hold(b);
+    }
+    for drive in &cx.model.drives {
+        if let DriveKind::Cylinder { a, b } = drive.kind {
+            hold(a.link);
+            hold(b.link);
+        }
     }
     // a broken joint may hold any of them
     if cx.joints.iter().any(Option::is_none) {

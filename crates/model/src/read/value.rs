@@ -249,11 +249,14 @@ impl Context<'_> {
         } else {
             "length"
         };
-        let swapped = a_is == Dimension::ANGLE && is_length(b_is);
-        let help = if swapped {
-            "polar coordinates are [radius, angle]: swap the two"
+        let help = if a_is == Dimension::ANGLE && is_length(b_is) {
+            format!(
+                "polar coordinates are [radius, angle]: write [{}, {}]",
+                as_written(second),
+                as_written(first)
+            )
         } else {
-            "a place is [x, y] in lengths, or [radius, angle]"
+            "a place is [x, y] in lengths, or [radius, angle]".to_owned()
         };
         self.push(
             Diagnostic::error(
@@ -267,5 +270,14 @@ impl Context<'_> {
             .help(help),
         );
         None
+    }
+}
+
+/// A number or a string as it would be written.
+fn as_written(node: &Node) -> String {
+    match &node.value {
+        Value::Text(text) => format!("{:?}", text.content),
+        Value::Number(x) => format!("{x}"),
+        _ => "…".to_owned(),
     }
 }

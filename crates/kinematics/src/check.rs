@@ -1,0 +1,141 @@
+//! Everything worth knowing about a mechanism before it moves.
+
+use crate::assemble::Assemblies;
+use crate::assur::{AssurGroup, assur_groups};
+use crate::drive_path::DrivePath;
+use crate::events::Event;
+use crate::four_bar::{FourBar, four_bars};
+use crate::mechanism::{BodyId, Mechanism, Source};
+use crate::mobility::{Mobility, mobility, state_at};
+use crate::motion::{EndReason, Motion, MotionError};
+use crate::plan::Plan;
+use crate::state::Design;
+
+/// A cylinder or slide is followed this many mechanism sizes from its start when its reach is asked for.
+const FAR: f64 = 20.0;
+/// Shortest length of a cylinder that is tried, in mechanism sizes.
+const SHORTEST: f64 = 1e-6;
+
+/// What a check found.
+#[derive(Clone, Debug)]
+pub struct Findings {
+    /// Freedoms, counted and measured.
+    pub mobility: Mobility,
+    /// How many drives there are.
+    pub drives: usize,
+    /// Assur groups in the order in which they are solved.
+    pub groups: Vec<AssurGroup>,
+    /// Four-bar loops.
+    pub four_bars: Vec<FourBar>,
+    /// Bodies with an idle freedom.
+    pub idle: Vec<BodyId>,
+    /// Joints with redundant constraints.
+    pub redundant: Vec<Source>,
+    /// All assemblies at the start.
+    pub assemblies: Assemblies,
+    /// How far the drive can go on this circuit.
+    pub reach: Option<Reach>,
+    /// Why there is no motion, if there is none.
+    pub problem: Option<MotionError>,
+}
+
+/// How far a drive can go.
+#[derive(Clone, Debug)]
+pub struct Reach {
+    /// Lowest and highest coordinate (or time), SI.
+    pub range: (f64, f64),
+    /// Why it ends there.
+    pub ends: (EndReason, EndReason),
+    /// The drive can turn on without end.
+    pub full_turn: bool,
+    /// Dead points and change points in that range.
+    pub events: Vec<Event>,
+}
+
+/// Checks a mechanism for the model's parameter values.
+pub fn check(
+    mechanism: &Mechanism,
+    plan: &Plan,
+    design: &Design<f64>,
+    parameters: &[f64],
+) -> Findings {
+    let mut findings = Findings {
+        mobility: mobility(mechanism, design, None),
+        drives: mechanism.model.drives.len(),
+        groups: assur_groups(mechanism, plan),
+        four_bars: four_bars(mechanism, &design.geometry),
+        idle: plan.decomposition.idle.clone(),
+        redundant: Vec::new(),
+        assemblies: Assemblies::default(),
+        reach: None,
+        problem: None,
+    };
+    for row in &plan.decomposition.surplus {
+        let source = mechanism.constraints[row.constraint].1;
+        if !findings.redundant.contains(&source) {
+            findings.redundant.push(source);
+        }
+    }
+    match Motion::new(mechanism, plan, design, parameters) {
+        Ok(motion) => {
+            if let Some(chosen) = motion.assemblies.list.first() {
+                let mut coordinates = vec![0.0; mechanism.model.drives.len()];
+                motion.path.coordinates(motion.anchor, &mut coordinates);
+                let state = state_at(mechanism, plan, &chosen.poses, &coordinates);
+                findings.mobility = mobility(mechanism, design, Some((&state, &chosen.branch)));
+            }
+            findings.reach = Some(reach(&motion));
+            findings.assemblies = motion.assemblies;
+        }
+        Err(problem) => {
+            if let MotionError::CannotAssemble { assemblies, .. } = &problem {
+                findings.assemblies = (**assemblies).clone();
+            }
+            findings.problem = Some(problem);
+        }
+    }
+    findings
+}
+
+/// How far the moving drive can go from its start, beyond what the file demands.
+fn reach(motion: &Motion<'_>) -> Reach {
+    let own = || Reach {
+        range: motion.reached(),
+        ends: motion.ends,
+        full_turn: false,
+        events: motion.events.clone(),
+    };
+    let DrivePath::Coordinate { drive, .. } = &motion.path else {
+        return own();
+    };
+    let Some(law) = motion.mechanism.model.drives.get(*drive) else {
+        return own();
+    };
+    let turning = matches!(law.kind, kempe_model::DriveKind::Turn { .. });
+    let far = if turning {
+        std::f64::consts::TAU
+    } else {
+        FAR * motion.size()
+    };
+    let mut demanded = (motion.anchor - far, motion.anchor + far);
+    if matches!(law.kind, kempe_model::DriveKind::Cylinder { .. }) {
+        demanded.0 = demanded.0.max(SHORTEST * motion.size());
+    }
+    let path = motion.path.clone();
+    match Motion::along(
+        motion.mechanism,
+        motion.plan,
+        motion.design,
+        path,
+        demanded,
+        motion.anchor,
+    ) {
+        Ok(wide) => Reach {
+            range: wide.reached(),
+            ends: wide.ends,
+            full_turn: turning && wide.ends == (EndReason::Covered, EndReason::Covered),
+            events: wide.events,
+        },
+        Err(_) => own(),
+    }
+}

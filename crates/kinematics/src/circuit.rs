@@ -1,0 +1,339 @@
+//! A whole circuit, past its dead points: the curve of poses followed by arc length until it closes or cannot go on.
+//!
+//! Between two dead points the drive's coordinate runs one way, so a circuit is a list of ordinary motions, travelled
+//! up and down in turn.
+
+use kempe_model::{DriveKind, Measure};
+
+use crate::assemble::{Assemblies, all_assemblies};
+use crate::drive_path::DrivePath;
+use crate::events::locate_limit;
+use crate::mechanism::Mechanism;
+use crate::motion::{EndReason, Motion, MotionError};
+use crate::plan::Plan;
+use crate::sampler::{Sample, Sampler, Unmeasurable};
+use crate::state::Design;
+use crate::trace::{Follower, Node, Path, hermite};
+
+/// Steps after which a circuit that has not closed is given up.
+pub const CIRCUIT_STEPS: usize = 50_000;
+/// A start this near a singular pose is moved along the drive by these parts of its range.
+const ANCHORS: [f64; 4] = [0.0, 0.0137, 0.1234, 0.3719];
+
+/// A stretch of a circuit on which the drive's coordinate runs one way.
+#[derive(Clone, Debug)]
+pub struct Stretch<'m> {
+    /// The motion, over rising coordinates.
+    pub motion: Motion<'m>,
+    /// Whether the circuit travels it upwards.
+    pub forward: bool,
+    /// Arc length (mechanism sizes and rad over all bodies) at every node, in the order of travel.
+    arcs: Vec<f64>,
+    /// The nodes in the order of travel.
+    nodes: Vec<Node>,
+}
+
+/// A circuit of a mechanism: everything that can be reached without taking it apart.
+#[derive(Clone, Debug)]
+pub struct Circuit<'m> {
+    /// Its stretches in the order of travel.
+    pub stretches: Vec<Stretch<'m>>,
+    /// Whether it came back to its start.
+    pub closed: bool,
+    /// Whole arc length, in mechanism sizes and rad over all bodies.
+    pub length: f64,
+    /// All assemblies at the start.
+    pub assemblies: Assemblies,
+    scale: f64,
+}
+
+impl<'m> Circuit<'m> {
+    /// Traces the circuit through the assembly meant by the file's hints at the drive's start.
+    ///
+    /// # Errors
+    /// When it cannot start; see [`Motion::new`].
+    pub fn new(
+        mechanism: &'m Mechanism,
+        plan: &'m Plan,
+        design: &'m Design<f64>,
+        parameters: &[f64],
+    ) -> Result<Self, MotionError> {
+        // The demanded motion finds the start, with all its checks.
+        let motion = Motion::new(mechanism, plan, design, parameters)?;
+        let path = motion.path.clone();
+        let (low, high) = motion.demanded;
+        let idle = plan.decomposition.idle.as_slice();
+        let mut follower = Follower::new(mechanism, &design.geometry, &path, idle);
+        let mut coordinates = vec![0.0; mechanism.model.drives.len()];
+        let far = if motion.start == low { high } else { low };
+        for part in ANCHORS {
+            let anchor = motion.anchor + part * (far - motion.anchor);
+            path.coordinates(anchor, &mut coordinates);
+            let assemblies = all_assemblies(mechanism, plan, design, &coordinates);
+            let Some(chosen) = assemblies.list.first() else {
+                continue;
+            };
+            let z = follower.scaled(&chosen.poses, &chosen.branch.near, anchor);
+            let direction = if far >= motion.start { 1.0 } else { -1.0 };
+            let Some(start) = follower.start(z, direction) else {
+                continue;
+            };
+            let (nodes, closed) = go_round(&mut follower, start, mechanism, &path, high);
+            return Ok(Self::of_nodes(
+                mechanism,
+                plan,
+                design,
+                &path,
+                assemblies,
+                nodes,
+                closed,
+                &mut follower,
+            ));
+        }
+        Err(MotionError::Locked { at: motion.start })
+    }
+
+    #[allow(
+        clippy::too_many_arguments,
+        reason = "the parts of a mechanism at work, named"
+    )]
+    fn of_nodes(
+        mechanism: &'m Mechanism,
+        plan: &'m Plan,
+        design: &'m Design<f64>,
+        path: &DrivePath,
+        assemblies: Assemblies,
+        nodes: Vec<Node>,
+        closed: bool,
+        follower: &mut Follower<'_, DrivePath>,
+    ) -> Self {
+        let mut stretches: Vec<Stretch<'m>> = Vec::new();
+        let mut arc = 0.0;
+        let mut current: Vec<Node> = Vec::new();
+        for node in nodes {
+            let at_limit = node.parameter_rate() == 0.0;
+            current.push(node.clone());
+            if at_limit && current.len() > 1 {
+                let done = std::mem::replace(&mut current, vec![node]);
+                push_stretch(
+                    &mut stretches,
+                    &mut arc,
+                    done,
+                    (mechanism, plan, design),
+                    path,
+                    &assemblies,
+                    follower,
+                );
+            }
+        }
+        if current.len() > 1 {
+            push_stretch(
+                &mut stretches,
+                &mut arc,
+                current,
+                (mechanism, plan, design),
+                path,
+                &assemblies,
+                follower,
+            );
+        }
+        Self {
+            stretches,
+            closed,
+            length: arc,
+            assemblies,
+            scale: path.scale(),
+        }
+    }
+
+    /// Which stretch an arc length lies on, and the path parameter there.
+    pub fn locate(&self, arc: f64) -> (usize, f64) {
+        let index = self
+            .stretches
+            .partition_point(|s| s.arcs.last().is_some_and(|end| *end < arc));
+        let index = index.min(self.stretches.len().saturating_sub(1));
+        let Some(stretch) = self.stretches.get(index) else {
+            return (0, f64::NAN);
+        };
+        let node = stretch
+            .arcs
+            .partition_point(|s| *s <= arc)
+            .clamp(1, stretch.arcs.len().max(2) - 1)
+            - 1;
+        let (Some(from), Some(to)) = (stretch.nodes.get(node), stretch.nodes.get(node + 1)) else {
+            return (index, f64::NAN);
+        };
+        let (a, b) = (stretch.arcs[node], stretch.arcs[node + 1]);
+        let z = hermite(from, to, ((arc - a) / (b - a)).clamp(0.0, 1.0));
+        (index, z[z.len() - 1] * self.scale)
+    }
+
+    /// Prepares measures for rows of the circuit.
+    ///
+    /// # Errors
+    /// All measures that cannot be evaluated.
+    pub fn samplers<'a>(
+        &'a self,
+        measures: &[&Measure],
+    ) -> Result<Vec<Sampler<'a>>, Vec<Unmeasurable>>
+    where
+        'm: 'a,
+    {
+        self.stretches
+            .iter()
+            .map(|s| Sampler::new(&s.motion, measures))
+            .collect()
+    }
+
+    /// The row at an arc length. Time does not run along a circuit: measures of speed are NaN.
+    pub fn row(&self, samplers: &mut [Sampler<'_>], arc: f64) -> Option<Sample> {
+        let (index, p) = self.locate(arc);
+        samplers
+            .get_mut(index)
+            .map(|sampler| sampler.without_time(p))
+    }
+}
+
+fn push_stretch<'m>(
+    stretches: &mut Vec<Stretch<'m>>,
+    arc: &mut f64,
+    nodes: Vec<Node>,
+    (mechanism, plan, design): (&'m Mechanism, &'m Plan, &'m Design<f64>),
+    path: &DrivePath,
+    assemblies: &Assemblies,
+    follower: &mut Follower<'_, DrivePath>,
+) {
+    let mut arcs = vec![*arc];
+    for pair in nodes.windows(2) {
+        *arc += pair[0]
+            .z
+            .iter()
+            .zip(&pair[1].z)
+            .map(|(a, b)| (b - a) * (b - a))
+            .sum::<f64>()
+            .sqrt();
+        arcs.push(*arc);
+    }
+    let last = nodes[0].z.len() - 1;
+    let forward = nodes[nodes.len() - 1].z[last] > nodes[0].z[last];
+    let mut rising = nodes.clone();
+    if !forward {
+        rising.reverse();
+        for node in &mut rising {
+            node.tangent.iter_mut().for_each(|t| *t = -*t);
+        }
+    }
+    let mut motion = Motion::of_nodes(
+        mechanism,
+        plan,
+        design,
+        path.clone(),
+        assemblies.clone(),
+        rising,
+    );
+    motion.ends = (EndReason::Limit, EndReason::Limit);
+    motion.find_events(follower);
+    stretches.push(Stretch {
+        motion,
+        forward,
+        arcs,
+        nodes,
+    });
+}
+
+/// Follows the curve until it is back at its start (angles of bodies and of a turning drive count modulo a turn). Along
+/// time, where nothing comes back, until the motion's `end`.
+fn go_round(
+    follower: &mut Follower<'_, DrivePath>,
+    start: Node,
+    mechanism: &Mechanism,
+    path: &DrivePath,
+    end: f64,
+) -> (Vec<Node>, bool) {
+    let turning = match path {
+        DrivePath::Coordinate { drive, .. } => {
+            matches!(
+                mechanism.model.drives.get(*drive).map(|d| &d.kind),
+                Some(DriveKind::Turn { .. })
+            )
+        }
+        DrivePath::Time { .. } => false,
+    };
+    let last = start.z.len() - 1;
+    let is_angle = |i: usize| (i < last && i % 3 == 2) || (i == last && turning);
+    // The start, seen whole turns away, nearest to a point.
+    let image = |z: &[f64]| -> Vec<f64> {
+        (0..=last)
+            .map(|i| {
+                let turns = if is_angle(i) {
+                    ((z[i] - start.z[i]) / std::f64::consts::TAU).round()
+                } else {
+                    0.0
+                };
+                start.z[i] + turns * std::f64::consts::TAU
+            })
+            .collect()
+    };
+    let gap = |a: &[f64], b: &[f64]| {
+        a.iter()
+            .zip(b)
+            .map(|(x, y)| (x - y) * (x - y))
+            .sum::<f64>()
+            .sqrt()
+    };
+    let mut nodes = vec![start.clone()];
+    let mut step = 0.02;
+    let mut travelled = 0.0;
+    for _ in 0..CIRCUIT_STEPS {
+        let from = nodes[nodes.len() - 1].clone();
+        let Some(next) = follower.advance(&from, &mut step) else {
+            return (nodes, false);
+        };
+        let h = gap(&from.z, &next.z);
+        travelled += h;
+        // Back at the start when it lies between the two nodes and the travel is the same way.
+        let home = image(&next.z);
+        let ahead: f64 = (home.iter().zip(&from.z))
+            .zip(&from.tangent)
+            .map(|((a, b), t)| (a - b) * t)
+            .sum();
+        let same_way: f64 = start
+            .tangent
+            .iter()
+            .zip(&from.tangent)
+            .map(|(a, b)| a * b)
+            .sum();
+        let reached = travelled > 2.0 * h && (0.0..=1.05 * h).contains(&ahead) && same_way > 0.9;
+        if reached && gap(&hermite_home(&from, &next, &home, h), &home) < 0.02 * h.max(1e-6) {
+            nodes.push(Node {
+                z: home,
+                tangent: start.tangent.clone(),
+            });
+            return (nodes, true);
+        }
+        if from.parameter_rate() * next.parameter_rate() < 0.0 {
+            nodes.push(locate_limit(follower, &from, &next));
+        }
+        let over = matches!(path, DrivePath::Time { .. }) && follower.parameter(&next.z) > end;
+        nodes.push(next);
+        if over {
+            break;
+        }
+    }
+    (nodes, false)
+}
+
+/// The point of the step's cubic that lies nearest to `home`, by its projection on the chord.
+fn hermite_home(from: &Node, next: &Node, home: &[f64], h: f64) -> Vec<f64> {
+    let mut s = 0.5;
+    for _ in 0..20 {
+        let z = hermite(from, next, s);
+        let miss: f64 = (home.iter().zip(&z))
+            .zip(from.z.iter().zip(&next.z))
+            .map(|((a, b), (p, q))| (a - b) * (q - p))
+            .sum();
+        s += miss / (h * h);
+        s = s.clamp(-0.1, 1.1);
+    }
+    hermite(from, next, s)
+}

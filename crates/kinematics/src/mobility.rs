@@ -1,0 +1,153 @@
+//! Freedoms counted and measured.
+
+use crate::evidence::is_finite;
+use crate::mechanism::{BodyId, Constraint, Mechanism};
+use crate::pose::Pose;
+use crate::state::{Branch, Design, State};
+use crate::trace::is_length;
+
+/// Pivots below this part of the largest count as zero when the rank is found.
+pub const RANK_TOLERANCE: f64 = 1e-9;
+
+/// Mobility two ways.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mobility {
+    /// Links, the frame included, welded links counted once; a cylinder counts as its barrel and rod.
+    pub links: usize,
+    /// Lower pairs (pins and sliders); a multiple joint of k links counts k - 1, a cylinder its two pins and its slide.
+    pub lower_pairs: usize,
+    /// Higher pairs (pins in slots, gears, racks).
+    pub higher_pairs: usize,
+    /// Chebyshev-Grübler: `3 (links - 1) - 2 lower_pairs - higher_pairs`.
+    pub count: i64,
+    /// Unknowns less the rank of the constraint Jacobian of the joints at the pose, when a pose is known.
+    pub by_rank: Option<usize>,
+    /// Rows of the joints' constraints beyond their rank at the pose.
+    pub redundant_rows: Option<usize>,
+}
+
+/// Counts and, with a pose, measures the mobility.
+pub fn mobility(
+    mechanism: &Mechanism,
+    design: &Design<f64>,
+    pose: Option<(&State<f64>, &Branch)>,
+) -> Mobility {
+    let mut it = Mobility {
+        links: mechanism.bodies,
+        lower_pairs: 0,
+        higher_pairs: 0,
+        count: 0,
+        by_rank: None,
+        redundant_rows: None,
+    };
+    for (constraint, _) in &mechanism.constraints[..mechanism.joint_constraints] {
+        match constraint {
+            Constraint::Coincide { .. } => it.lower_pairs += 1,
+            // A slider's direction belongs to its own line: together one lower pair.
+            Constraint::Direction { .. } => {
+                it.lower_pairs += 1;
+                it.higher_pairs = it.higher_pairs.wrapping_sub(1);
+            }
+            _ => it.higher_pairs = it.higher_pairs.wrapping_add(1),
+        }
+    }
+    let cylinders = mechanism
+        .constraints
+        .iter()
+        .filter(|(c, _)| matches!(c, Constraint::Distance { .. }))
+        .count();
+    it.links += 2 * cylinders;
+    it.lower_pairs += 3 * cylinders;
+    it.count = 3 * (it.links as i64 - 1) - 2 * it.lower_pairs as i64 - it.higher_pairs as i64;
+
+    if let Some((state, branch)) = pose.filter(|(s, _)| s.poses.iter().all(is_finite)) {
+        let rows: usize = mechanism.constraints[..mechanism.joint_constraints]
+            .iter()
+            .map(|(c, _)| c.rows())
+            .sum();
+        let rank = joint_rank(mechanism, design, branch, state);
+        it.by_rank = Some(3 * (mechanism.bodies - 1) - rank);
+        it.redundant_rows = Some(rows - rank);
+    }
+    it
+}
+
+/// Rank of the joints' scaled constraint Jacobian at a pose, by elimination with full pivoting.
+fn joint_rank(
+    mechanism: &Mechanism,
+    design: &Design<f64>,
+    branch: &Branch,
+    state: &State<f64>,
+) -> usize {
+    let size = design.geometry.size(mechanism);
+    let situation = state.situation(design, branch);
+    let columns = 3 * (mechanism.bodies - 1);
+    let mut rows: Vec<Vec<f64>> = Vec::new();
+    for (constraint, _) in &mechanism.constraints[..mechanism.joint_constraints] {
+        let unit = if is_length(constraint) {
+            1.0 / size
+        } else {
+            1.0
+        };
+        let first = rows.len();
+        rows.resize(first + constraint.rows(), vec![0.0; columns]);
+        situation.gradients(constraint, |g| {
+            if g.body != BodyId::GROUND {
+                let column = 3 * (g.body.index() - 1);
+                rows[first + g.row][column] += g.to[0] * size * unit;
+                rows[first + g.row][column + 1] += g.to[1] * size * unit;
+                rows[first + g.row][column + 2] += g.to[2] * unit;
+            }
+        });
+    }
+    rank(rows)
+}
+
+fn rank(mut rows: Vec<Vec<f64>>) -> usize {
+    let columns = rows.first().map_or(0, Vec::len);
+    let mut first_pivot = 0.0;
+    for k in 0..rows.len().min(columns) {
+        let mut best = (0.0, k, k);
+        for (i, row) in rows.iter().enumerate().skip(k) {
+            for (j, value) in row.iter().enumerate().skip(k) {
+                if value.abs() > best.0 {
+                    best = (value.abs(), i, j);
+                }
+            }
+        }
+        let (size, i, j) = best;
+        if k == 0 {
+            first_pivot = size;
+        }
+        if size <= RANK_TOLERANCE * first_pivot || size == 0.0 {
+            return k;
+        }
+        rows.swap(k, i);
+        for row in &mut rows {
+            row.swap(k, j);
+        }
+        let pivot = rows[k].clone();
+        for row in rows.iter_mut().skip(k + 1) {
+            let factor = row[k] / pivot[k];
+            if factor != 0.0 {
+                for (value, p) in row.iter_mut().zip(&pivot).skip(k) {
+                    *value -= factor * p;
+                }
+            }
+        }
+    }
+    rows.len().min(columns)
+}
+
+/// A state at given poses, ready for residuals and gradients.
+pub(crate) fn state_at(
+    mechanism: &Mechanism,
+    plan: &crate::plan::Plan,
+    poses: &[Pose<f64>],
+    coordinates: &[f64],
+) -> State<f64> {
+    let mut state = State::new(mechanism, plan);
+    state.poses.copy_from_slice(poses);
+    state.set_inputs(mechanism, coordinates);
+    state
+}

@@ -1,0 +1,92 @@
+//! The registry of measures against the reader: every example and every signature is understood.
+#![allow(clippy::unwrap_used)]
+
+use kempe_model::{Model, Registry};
+
+const FILE: &str = r#"
+[links]
+frame   = { A = [0, 0], D = [1, 0], E = [0, 0], F = [0, 1] }
+crank   = { A-B = 0.3 }
+coupler = { B-C = 0.9, P = [0.1, 0.1] }
+rocker  = { D-C = 0.7 }
+rod     = { B-Q = 1 }
+piston  = { Q = [0, 0] }
+arm     = { A-K = 1 }
+[joints]
+bore = { slider = "piston", at = "Q", on = "E -> F" }
+[drives]
+motor = { turns = "crank", speed = 1 }
+lift  = { cylinder = "D-K", from = 1, to = 2, speed = 1 }
+[measures]
+"#;
+
+fn dimension(measure: &str) -> Result<String, String> {
+    let text = format!("{FILE}asked = '{measure}'\n");
+    match Model::from_toml(&text, "x", &mut |_| Err(String::new())) {
+        Ok(checked) => Ok(checked.model.measures[0].dimension.to_string()),
+        Err(found) => Err(found.iter().map(|d| d.render_plain("x", &text)).collect()),
+    }
+}
+
+#[test]
+fn every_example_is_understood() {
+    for entry in Registry::all() {
+        if let Err(why) = dimension(entry.example) {
+            panic!("{}: {why}", entry.name);
+        }
+    }
+}
+
+#[test]
+fn every_signature_is_understood() {
+    for entry in Registry::all() {
+        for signature in entry.signatures {
+            let (name, arguments) = signature.trim_end_matches(')').split_once('(').unwrap();
+            assert_eq!(name, entry.name);
+            let arguments: Vec<&str> = arguments
+                .split(", ")
+                .map(|argument| match argument {
+                    "link" => "crank",
+                    "other" => "rocker",
+                    "slider" => "piston",
+                    "joint" => "bore",
+                    "drive" if name == "length" || name == "stroke" => "lift",
+                    "drive" => "motor",
+                    "measure" => "x(C)",
+                    "n" => "2",
+                    "value" if signature.contains("time") => "0.1 s",
+                    "value" => "3 deg",
+                    "P" if name == "transmission_angle" => "C",
+                    "A" if name == "transmission_angle" => "B",
+                    "B" if name == "transmission_angle" => "D",
+                    "C" => "D",
+                    points => points,
+                })
+                .collect();
+            let call = format!("{name}({})", arguments.join(", "));
+            if let Err(why) = dimension(&call) {
+                panic!("{signature}: {why}");
+            }
+        }
+    }
+}
+
+#[test]
+fn dimensions_follow_the_rules() {
+    for (measure, expected) in [
+        ("x(P)", "length"),
+        ("angle(rocker)", "angle"),
+        ("rate(angle(rocker), 2)", "angular acceleration"),
+        ("d(angle(rocker), motor)", "number"),
+        ("rate(y(C))", "speed"),
+        ("max(speed(C)) / mean(speed(C))", "number"),
+        ("time_ratio(angle(rocker))", "number"),
+        ("min(x(B), x(C))", "length"),
+        ("lift", "length"),
+        ("motor", "angle"),
+        ("time", "time"),
+        ("at(y(P), motor, 30)", "length"),
+    ] {
+        assert_eq!(dimension(measure).as_deref(), Ok(expected), "{measure}");
+    }
+}
