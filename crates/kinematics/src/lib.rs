@@ -4,6 +4,7 @@ pub mod assemble;
 pub mod assur;
 pub mod blocks;
 mod bridge;
+pub mod certify;
 pub mod check;
 pub mod circuit;
 mod closed_form;
@@ -16,6 +17,7 @@ pub mod force_source;
 pub mod four_bar;
 pub mod geometry;
 pub mod homotopy;
+mod krawczyk;
 pub mod measure;
 pub mod mechanism;
 pub mod mobility;
@@ -31,6 +33,9 @@ mod statistics;
 mod swept;
 pub mod trace;
 
+pub use certify::{
+    Certificate, CertifiedMotion, Certifier, Subdivision, certify_motion, certify_pose,
+};
 pub use check::{Findings, Reach, check};
 pub use constraint::{Input, Situation};
 pub use force_source::{ForceSource, NoForces};
