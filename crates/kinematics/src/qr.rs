@@ -89,6 +89,24 @@ impl Qr {
         }
     }
 
+    /// Solves the transposed system in place: `rhs` holds as many numbers as there are columns and receives as many as
+    /// there are rows (the solution of least length when there are more rows).
+    pub fn solve_transposed(&self, rhs: &mut [f64]) {
+        let (m, n) = (self.rows, self.columns);
+        for k in 0..n {
+            let sum: f64 = (0..k).map(|i| self.a[k * m + i] * rhs[i]).sum();
+            rhs[k] = (rhs[k] - sum) / self.diagonal[k];
+        }
+        rhs[n..].fill(0.0);
+        for k in (0..n).rev() {
+            let v = &self.a[k * m + k..(k + 1) * m];
+            let sum = v.iter().zip(&rhs[k..]).map(|(x, y)| x * y).sum::<f64>() * self.scale[k];
+            for (x, y) in v.iter().zip(&mut rhs[k..]) {
+                *y -= sum * x;
+            }
+        }
+    }
+
     /// Determinant of a square matrix (of R with the sign of the reflections).
     pub fn determinant(&self) -> f64 {
         // Every reflection that was made turns the sign.
@@ -97,47 +115,6 @@ impl Qr {
             .zip(&self.scale)
             .map(|(r, s)| if *s > 0.0 { -r } else { *r })
             .product()
-    }
-
-    /// The smallest singular value, by inverse iteration on R^T R from a fixed start.
-    pub fn smallest_singular_value(&self) -> f64 {
-        let (m, n) = (self.rows, self.columns);
-        if n == 0 {
-            return f64::INFINITY;
-        }
-        if self.diagonal.iter().any(|r| *r == 0.0) {
-            return 0.0;
-        }
-        let r = |i: usize, j: usize| {
-            if i == j {
-                self.diagonal[i]
-            } else {
-                self.a[j * m + i]
-            }
-        };
-        // Uneven entries, so that no singular vector is missed by symmetry.
-        let mut x: Vec<f64> = (0..n).map(|i| 1.0 + 0.37 * ((i * 7) % 11) as f64).collect();
-        let mut value = f64::INFINITY;
-        for _ in 0..60 {
-            let length = x.iter().map(|v| v * v).sum::<f64>().sqrt();
-            x.iter_mut().for_each(|v| *v /= length);
-            for i in 0..n {
-                let sum: f64 = (0..i).map(|k| r(k, i) * x[k]).sum();
-                x[i] = (x[i] - sum) / r(i, i);
-            }
-            // With y = R^-T x, |y| grows to 1 / sigma.
-            let next = 1.0 / x.iter().map(|v| v * v).sum::<f64>().sqrt();
-            for i in (0..n).rev() {
-                let sum: f64 = (i + 1..n).map(|k| r(i, k) * x[k]).sum();
-                x[i] = (x[i] - sum) / r(i, i);
-            }
-            let settled = (next - value).abs() <= 1e-9 * next;
-            value = next;
-            if settled {
-                break;
-            }
-        }
-        value
     }
 
     /// Smallest over largest diagonal entry of R: a cheap measure of how near the matrix is to losing rank.

@@ -69,7 +69,12 @@ fn check(made: &Made) -> Result<Outcome, String> {
         }
         if spec.hints {
             let first = &motion.assemblies.list[0];
-            let off = difference(&case.link_poses(&first.poses), &spec.poses(), size, &made.idle);
+            let off = difference(
+                &case.link_poses(&first.poses),
+                &spec.poses(),
+                size,
+                &made.idle,
+            );
             if !(off < 1e-9 / sigma.min(0.1)) && motion.anchor == motion.start {
                 return Err(format!("hints chose another assembly: {off:e}"));
             }
@@ -91,7 +96,10 @@ fn check(made: &Made) -> Result<Outcome, String> {
             let gap = spec.gap(&row.links, &row.coordinates);
             let marked = note.contains("limit of the drive") || note.contains("change point");
             if !marked || !(gap < 1e-8) {
-                return Err(format!("row at {p}: {note}, gap {gap:e}, ends {:?}", motion.ends));
+                return Err(format!(
+                    "row at {p}: {note}, gap {gap:e}, ends {:?}",
+                    motion.ends
+                ));
             }
             continue;
         }
@@ -103,7 +111,10 @@ fn check(made: &Made) -> Result<Outcome, String> {
         }
         let gap = spec.gap(&row.links, &row.coordinates);
         if !(gap < 2.0 * CLOSED) {
-            return Err(format!("row at {p}: gap {gap:e} but closure {:e}", row.closure));
+            return Err(format!(
+                "row at {p}: gap {gap:e} but closure {:e}",
+                row.closure
+            ));
         }
     }
     if start.elapsed() > 2 * PATIENCE {
@@ -121,8 +132,8 @@ fn unwrapped(case: &Case, assembly: &kempe_kinematics::assemble::Assembly) -> Ve
     let mut poses = case.link_poses(&assembly.poses);
     for (index, pose) in poses.iter_mut().enumerate() {
         let seat = &case.mechanism.seats[index];
-        let near = assembly.branch.near[seat.body.index()]
-            + case.design.geometry.seat_angles[index];
+        let near =
+            assembly.branch.near[seat.body.index()] + case.design.geometry.seat_angles[index];
         pose[2] = near + support::wrapped(pose[2] - near);
     }
     poses
@@ -151,7 +162,10 @@ fn hunt() {
             Ok(Ok(Outcome::NotRegular)) => other += 1,
             Ok(Err(text)) => {
                 failed += 1;
-                println!("{seed}: {text}\n    {:?} {:?} {took:?}", recipe.driver, recipe.groups);
+                println!(
+                    "{seed}: {text}\n    {:?} {:?} {took:?}",
+                    recipe.driver, recipe.groups
+                );
             }
             Err(_) => {
                 failed += 1;
@@ -159,7 +173,10 @@ fn hunt() {
             }
         }
         if took > Duration::from_secs(3) {
-            println!("{seed}: slow {took:?} {:?} {:?}", recipe.driver, recipe.groups);
+            println!(
+                "{seed}: slow {took:?} {:?} {:?}",
+                recipe.driver, recipe.groups
+            );
         }
     }
     println!("moved {moved}, not regular {other}, failed {failed}");
