@@ -89,22 +89,47 @@ impl Qr {
         }
     }
 
-    /// Solves the transposed system in place: `rhs` holds as many numbers as there are columns and receives as many as
-    /// there are rows (the solution of least length when there are more rows).
-    pub fn solve_transposed(&self, rhs: &mut [f64]) {
-        let (m, n) = (self.rows, self.columns);
-        for k in 0..n {
-            let sum: f64 = (0..k).map(|i| self.a[k * m + i] * rhs[i]).sum();
-            rhs[k] = (rhs[k] - sum) / self.diagonal[k];
+    /// Solves the transposed system `A^T x = rhs` in place, for `A` of full column rank: `rhs` holds `columns` numbers on
+    /// entry and `x`, `rows` numbers, on return; it must have room for both. Of many solutions the shortest is given.
+    pub fn solve_transposed<T: Number>(&self, rhs: &mut [T]) {
+        let m = self.rows;
+        // R^T w = rhs, then x = Q w.
+        for i in 0..self.columns {
+            let column = &self.a[i * m..i * m + i];
+            let mut sum = rhs[i];
+            for (r, w) in column.iter().zip(rhs.iter()) {
+                sum -= *w * *r;
+            }
+            rhs[i] = sum / self.diagonal[i];
         }
-        rhs[n..].fill(0.0);
-        for k in (0..n).rev() {
+        rhs[self.columns..m].fill(T::zero());
+        self.rotate(&mut rhs[..m]);
+    }
+
+    /// Multiplies a vector of `rows` numbers by Q.
+    pub fn rotate<T: Number>(&self, x: &mut [T]) {
+        let m = self.rows;
+        for k in (0..self.columns).rev() {
             let v = &self.a[k * m + k..(k + 1) * m];
-            let sum = v.iter().zip(&rhs[k..]).map(|(x, y)| x * y).sum::<f64>() * self.scale[k];
-            for (x, y) in v.iter().zip(&mut rhs[k..]) {
-                *y -= sum * x;
+            let mut sum = T::zero();
+            for (a, b) in v.iter().zip(&x[k..]) {
+                sum += *b * *a;
+            }
+            sum = sum * self.scale[k];
+            for (a, b) in v.iter().zip(&mut x[k..]) {
+                *b -= sum * *a;
             }
         }
+    }
+
+    /// Rows of the matrix.
+    pub fn rows(&self) -> usize {
+        self.rows
+    }
+
+    /// Columns of the matrix.
+    pub fn columns(&self) -> usize {
+        self.columns
     }
 
     /// Determinant of a square matrix (of R with the sign of the reflections).
@@ -160,5 +185,10 @@ mod tests {
         let mut rhs = [1.0, 3.0, 5.0];
         qr.solve(&mut rhs);
         assert!((rhs[0] - 1.0).abs() < 1e-14 && (rhs[1] - 2.0).abs() < 1e-14);
+
+        // x + y + z = 3, y + 2 z = 3: the shortest solution is (1, 1, 1).
+        let mut rhs = [3.0, 3.0, f64::NAN];
+        qr.solve_transposed(&mut rhs);
+        assert!(rhs.iter().all(|x| (x - 1.0).abs() < 1e-14), "{rhs:?}");
     }
 }
