@@ -162,7 +162,7 @@ fn everything_that_acts() {
         panic!()
     };
     assert_eq!(model.links[at.link.index()].name, "rocker");
-    near(constant(x), 50.0 * 30f64.to_radians().cos());
+    near(constant(x), 50.0 * 0.75f64.sqrt());
     near(constant(y), 25.0);
     let LoadKind::Force { axes, .. } = &acts.loads[2].kind else {
         panic!()
@@ -198,7 +198,7 @@ fn everything_that_acts() {
     else {
         panic!()
     };
-    near(value(factor, &p), 30f64.to_radians().cos());
+    near(value(factor, &p), 0.75f64.sqrt());
     assert!(matches!(
         acts.loads[6].kind,
         LoadKind::Torque {

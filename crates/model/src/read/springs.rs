@@ -154,7 +154,7 @@ fn stops(
     {
         entry.contradiction(
             cx,
-            ["stops", "stops"],
+            ["stops", ""],
             "the lower stop is not below the upper one",
             "the first stop is the lower one; where there is none, write \"none\"",
         );
