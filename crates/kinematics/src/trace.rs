@@ -14,6 +14,8 @@ use crate::qr::Qr;
 pub const MIDDLE_TOLERANCE: f64 = 1e-3;
 /// Smallest cosine between the tangents at the ends of a step.
 pub const TURN_LIMIT: f64 = 0.97;
+/// Part of a unit of travel that may be left over by the redundant constraints.
+const LOCKED: f64 = 1e-6;
 /// A correction below this (in mechanism sizes and rad) ends Newton's method.
 const CORRECTED: f64 = 1e-13;
 /// Corrections before a point is given up.
@@ -210,9 +212,11 @@ impl<'a, P: Path> Follower<'a, P> {
         self.rhs[last] = 1.0;
         let mut t = std::mem::take(&mut self.rhs);
         self.qr.solve(&mut t);
+        // With redundant constraints the least squares leave a rest where there is no way to move at all.
+        let rest = norm(&t[n..]);
         t.truncate(n);
         let length = norm(&t);
-        if !length.is_finite() || length == 0.0 {
+        if !length.is_finite() || length == 0.0 || rest > LOCKED {
             return None;
         }
         for value in &mut t {
