@@ -33,7 +33,8 @@ fn check(made: &Made) -> Result<Outcome, String> {
     }
     let case = Case::of(spec);
     let sigma = case.sigma(&spec.poses(), &spec.coordinates());
-    let regular = sigma > REGULAR;
+    // A floating drive may fall on two links that cannot move against each other.
+    let regular = sigma > REGULAR && case.plan.decomposition.surplus.is_empty();
     let start = Instant::now();
     let motion = case.motion();
     let took = start.elapsed();
@@ -53,7 +54,14 @@ fn check(made: &Made) -> Result<Outcome, String> {
         }
     };
     let size = spec.size();
-    if regular {
+    // Where gears close a loop the same teeth mesh after some turns: then there are more assemblies than are listed.
+    let by_teeth = spec.joints.iter().any(|j| {
+        matches!(
+            j,
+            support::SJoint::Gears { .. } | support::SJoint::Rack { .. }
+        )
+    }) && !case.plan.newton_blocks.is_empty();
+    if regular && !by_teeth {
         let near = motion
             .assemblies
             .list
@@ -67,9 +75,14 @@ fn check(made: &Made) -> Result<Outcome, String> {
                 motion.assemblies.complete
             ));
         }
-        if spec.hints {
+        if spec.hints && !by_teeth {
             let first = &motion.assemblies.list[0];
-            let off = difference(&case.link_poses(&first.poses), &spec.poses(), size, &made.idle);
+            let off = difference(
+                &case.link_poses(&first.poses),
+                &spec.poses(),
+                size,
+                &made.idle,
+            );
             if !(off < 1e-9 / sigma.min(0.1)) && motion.anchor == motion.start {
                 return Err(format!("hints chose another assembly: {off:e}"));
             }
@@ -91,19 +104,29 @@ fn check(made: &Made) -> Result<Outcome, String> {
             let gap = spec.gap(&row.links, &row.coordinates);
             let marked = note.contains("limit of the drive") || note.contains("change point");
             if !marked || !(gap < 1e-8) {
-                return Err(format!("row at {p}: {note}, gap {gap:e}, ends {:?}", motion.ends));
+                return Err(format!(
+                    "row at {p}: {note}, gap {gap:e}, ends {:?}",
+                    motion.ends
+                ));
             }
             continue;
         }
-        if !(row.closure < CLOSED) {
+        // Far out, all is counted from there.
+        let far = row.links.iter().fold(1.0_f64, |far, l| {
+            far.max(l[0].abs() / size).max(l[1].abs() / size)
+        });
+        if !(row.closure < CLOSED * far) {
             return Err(format!(
                 "row at {p}: closure {:e}, sigma {:e}",
                 row.closure, row.smallest_singular_value
             ));
         }
         let gap = spec.gap(&row.links, &row.coordinates);
-        if !(gap < 2.0 * CLOSED) {
-            return Err(format!("row at {p}: gap {gap:e} but closure {:e}", row.closure));
+        if !(gap < 2.0 * CLOSED * far * far) {
+            return Err(format!(
+                "row at {p}: gap {gap:e} but closure {:e}",
+                row.closure
+            ));
         }
     }
     if start.elapsed() > 2 * PATIENCE {
@@ -121,8 +144,8 @@ fn unwrapped(case: &Case, assembly: &kempe_kinematics::assemble::Assembly) -> Ve
     let mut poses = case.link_poses(&assembly.poses);
     for (index, pose) in poses.iter_mut().enumerate() {
         let seat = &case.mechanism.seats[index];
-        let near = assembly.branch.near[seat.body.index()]
-            + case.design.geometry.seat_angles[index];
+        let near =
+            assembly.branch.near[seat.body.index()] + case.design.geometry.seat_angles[index];
         pose[2] = near + support::wrapped(pose[2] - near);
     }
     poses
@@ -151,7 +174,10 @@ fn hunt() {
             Ok(Ok(Outcome::NotRegular)) => other += 1,
             Ok(Err(text)) => {
                 failed += 1;
-                println!("{seed}: {text}\n    {:?} {:?} {took:?}", recipe.driver, recipe.groups);
+                println!(
+                    "{seed}: {text}\n    {:?} {:?} {took:?}",
+                    recipe.driver, recipe.groups
+                );
             }
             Err(_) => {
                 failed += 1;
@@ -159,7 +185,10 @@ fn hunt() {
             }
         }
         if took > Duration::from_secs(3) {
-            println!("{seed}: slow {took:?} {:?} {:?}", recipe.driver, recipe.groups);
+            println!(
+                "{seed}: slow {took:?} {:?} {:?}",
+                recipe.driver, recipe.groups
+            );
         }
     }
     println!("moved {moved}, not regular {other}, failed {failed}");

@@ -154,7 +154,9 @@ impl Maker {
     fn bar(&mut self, a: &At, b: &At) -> usize {
         let v = sub(b.world, a.world);
         let link = self.link([a.world[0], a.world[1], v[1].atan2(v[0])]);
-        self.spec.links[link].points.push((a.name.clone(), [0.0, 0.0]));
+        self.spec.links[link]
+            .points
+            .push((a.name.clone(), [0.0, 0.0]));
         self.spec.links[link]
             .points
             .push((b.name.clone(), [norm(v), 0.0]));
@@ -223,9 +225,7 @@ impl Maker {
     fn clear_of(&mut self, others: &[V]) -> V {
         loop {
             let p = self.somewhere();
-            let apart = others
-                .iter()
-                .all(|q| norm(sub(p, *q)) > 0.2 * self.unit);
+            let apart = others.iter().all(|q| norm(sub(p, *q)) > 0.2 * self.unit);
             let bent = others.len() < 2 || {
                 let (u, v) = (sub(others[0], p), sub(others[1], p));
                 cross(u, v).abs() > 0.15 * norm(u) * norm(v)
@@ -562,6 +562,9 @@ impl Maker {
             }
             Group::Weld => {
                 let to = self.any_link();
+                if self.idle.contains(&to) {
+                    return;
+                }
                 let at = self.attach(to);
                 let other = self.plate(&[&at]);
                 let end = self.clear_of(&[at.world]);
@@ -581,9 +584,8 @@ impl Maker {
                 let third = loop {
                     let link = self.any_link();
                     let p = self.attach(link);
-                    let apart = |q: &At| {
-                        p.name != q.name && norm(sub(p.world, q.world)) > 0.2 * self.unit
-                    };
+                    let apart =
+                        |q: &At| p.name != q.name && norm(sub(p.world, q.world)) > 0.2 * self.unit;
                     if apart(&a) && apart(&b) {
                         break p;
                     }
@@ -792,8 +794,14 @@ pub fn recipe(seed: u64) -> Recipe {
     Recipe {
         seed,
         driver,
-        groups: (0..count).map(|_| GROUPS[rng.below(GROUPS.len())]).collect(),
-        decade: if rng.chance(0.5) { 0.0 } else { rng.range(-6.0, 6.0) },
+        groups: (0..count)
+            .map(|_| GROUPS[rng.below(GROUPS.len())])
+            .collect(),
+        decade: if rng.chance(0.5) {
+            0.0
+        } else {
+            rng.range(-6.0, 6.0)
+        },
         hints: rng.chance(0.8),
     }
 }

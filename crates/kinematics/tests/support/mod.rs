@@ -148,10 +148,18 @@ pub enum SJoint {
 
 #[derive(Clone, Debug)]
 pub enum SKind {
-    Turn { link: usize, relative_to: usize },
-    Cylinder { a: (usize, String), b: (usize, String) },
+    Turn {
+        link: usize,
+        relative_to: usize,
+    },
+    Cylinder {
+        a: (usize, String),
+        b: (usize, String),
+    },
     /// Travel of a slider or slot, by its index in the joints.
-    Slide { joint: usize },
+    Slide {
+        joint: usize,
+    },
 }
 
 #[derive(Clone, Debug)]
@@ -192,10 +200,7 @@ impl Spec {
             let mut rest = &link.points[..];
             let mut parts = Vec::new();
             if bar {
-                parts.push(format!(
-                    "{}-{} = {:e}",
-                    rest[0].0, rest[1].0, rest[1].1[0]
-                ));
+                parts.push(format!("{}-{} = {:e}", rest[0].0, rest[1].0, rest[1].1[0]));
                 rest = &rest[2..];
             }
             for (name, p) in rest {
@@ -390,7 +395,8 @@ impl Spec {
             {
                 let second = if *internal { -teeth[1] } else { teeth[1] };
                 let by = |l: usize| if l == 0 { 0.0 } else { angle };
-                *phase += (teeth[0] * (by(*a) - by(*arm)) + second * (by(*b) - by(*arm))) / teeth[0];
+                *phase +=
+                    (teeth[0] * (by(*a) - by(*arm)) + second * (by(*b) - by(*arm))) / teeth[0];
             }
         }
         for drive in &mut it.drives {
@@ -526,7 +532,11 @@ impl Spec {
                             link, at, on, line, ..
                         } => (link, at, on, line),
                         SJoint::Slot {
-                            link, pin, on, line, ..
+                            link,
+                            pin,
+                            on,
+                            line,
+                            ..
                         } => (link, pin, on, line),
                         _ => continue,
                     };
