@@ -499,8 +499,7 @@ impl<'a> Sampler<'a> {
                 sample.closure
             ));
         }
-        let singular =
-            self.motion.limit_at(p).is_some() || sample.smallest_singular_value < 1e-9;
+        let singular = self.motion.limit_at(p).is_some() || sample.smallest_singular_value < 1e-9;
         singular.then(|| "limit of the drive: rates are not defined here".into())
     }
 }

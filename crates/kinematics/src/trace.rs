@@ -335,7 +335,14 @@ impl<'a, P: Path> Follower<'a, P> {
 fn hides_limits(from: &Node, to: &Node) -> bool {
     let last = from.z.len() - 1;
     let (a, b) = (from.parameter_rate(), to.parameter_rate());
-    let h = norm(&from.z.iter().zip(&to.z).map(|(x, y)| y - x).collect::<Vec<_>>());
+    let h = norm(
+        &from
+            .z
+            .iter()
+            .zip(&to.z)
+            .map(|(x, y)| y - x)
+            .collect::<Vec<_>>(),
+    );
     let mean = (to.z[last] - from.z[last]) / h;
     a * b > 0.0 && (mean * a <= 0.0 || a.abs().max(b.abs()) > 3.0 * mean.abs())
 }
