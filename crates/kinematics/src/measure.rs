@@ -40,7 +40,7 @@ pub struct Moment<'a, B> {
     /// Parameter values.
     pub parameters: &'a [B],
     /// Time, s.
-    pub time: f64,
+    pub time: B,
     /// Poses along the path parameter.
     pub path: &'a [Pose<Series<B>>],
     /// The path parameter as a series in time.
@@ -56,11 +56,11 @@ pub struct Moment<'a, B> {
     /// Unwrapped values for directions between points of different bodies.
     pub directions: Vec<((PointId, PointId), f64)>,
     /// Lengths of path swept so far and since the start.
-    pub swept: Vec<(PointId, f64)>,
+    pub swept: Vec<(PointId, B)>,
     /// Answers questions to the forces, where forces are computed.
     pub forces: Option<&'a dyn Fn(&ForceMeasure) -> Series<B>>,
     /// Values of the statistics that occur, in SI.
-    pub statistics: &'a [(Statistic, Measure, f64)],
+    pub statistics: &'a [(Statistic, Measure, B)],
 }
 
 impl<B: Number> Moment<'_, B> {
@@ -92,8 +92,8 @@ impl<B: Number> Moment<'_, B> {
                 _ => self.along_time(self.coordinates[drive.index()], along),
             },
             Leaf::Time => match along {
-                Along::Time => Series::variable(B::from_f64(self.time)),
-                _ => Series::from_f64(self.time),
+                Along::Time => Series::variable(self.time),
+                _ => Series::constant(self.time),
             },
             // Forces are known to the crate that computes them; here they have no value.
             Leaf::Force(measure) => self
@@ -111,7 +111,7 @@ impl<B: Number> Moment<'_, B> {
                     .statistics
                     .iter()
                     .find(|(s, m, _)| s == statistic && m == &**measure);
-                Series::from_f64(known.map_or(f64::NAN, |(_, _, value)| *value))
+                Series::constant(known.map_or(B::from_f64(f64::NAN), |(_, _, value)| *value))
             }
             Leaf::Pose(measure) => self.pose_measure(measure, along),
         }
@@ -363,8 +363,8 @@ impl<B: Number> Moment<'_, B> {
                     .swept
                     .iter()
                     .find(|(q, _)| q == p)
-                    .map_or(f64::NAN, |(_, length)| *length);
-                dot(v, v).sqrt().integrate(B::from_f64(start))
+                    .map_or(B::from_f64(f64::NAN), |(_, length)| *length);
+                dot(v, v).sqrt().integrate(start)
             }
             _ => Series::from_f64(f64::NAN),
         }

@@ -89,6 +89,49 @@ impl Qr {
         }
     }
 
+    /// Solves the transposed system `A^T x = rhs` in place, for `A` of full column rank: `rhs` holds `columns` numbers on
+    /// entry and `x`, `rows` numbers, on return; it must have room for both. Of many solutions the shortest is given.
+    pub fn solve_transposed<T: Number>(&self, rhs: &mut [T]) {
+        let m = self.rows;
+        // R^T w = rhs, then x = Q w.
+        for i in 0..self.columns {
+            let column = &self.a[i * m..i * m + i];
+            let mut sum = rhs[i];
+            for (r, w) in column.iter().zip(rhs.iter()) {
+                sum -= *w * *r;
+            }
+            rhs[i] = sum / self.diagonal[i];
+        }
+        rhs[self.columns..m].fill(T::zero());
+        self.rotate(&mut rhs[..m]);
+    }
+
+    /// Multiplies a vector of `rows` numbers by Q.
+    pub fn rotate<T: Number>(&self, x: &mut [T]) {
+        let m = self.rows;
+        for k in (0..self.columns).rev() {
+            let v = &self.a[k * m + k..(k + 1) * m];
+            let mut sum = T::zero();
+            for (a, b) in v.iter().zip(&x[k..]) {
+                sum += *b * *a;
+            }
+            sum = sum * self.scale[k];
+            for (a, b) in v.iter().zip(&mut x[k..]) {
+                *b -= sum * *a;
+            }
+        }
+    }
+
+    /// Rows of the matrix.
+    pub fn rows(&self) -> usize {
+        self.rows
+    }
+
+    /// Columns of the matrix.
+    pub fn columns(&self) -> usize {
+        self.columns
+    }
+
     /// Determinant of a square matrix (of R with the sign of the reflections).
     pub fn determinant(&self) -> f64 {
         // Every reflection that was made turns the sign.
@@ -140,6 +183,16 @@ impl Qr {
         value
     }
 
+    /// The Frobenius norm: at least the largest singular value, at most that times the root of the rank.
+    pub fn norm(&self) -> f64 {
+        let m = self.rows;
+        let above = |k: usize| self.a[k * m..k * m + k].iter();
+        let sum: f64 = (0..self.columns)
+            .map(|k| self.diagonal[k].powi(2) + above(k).map(|x| x * x).sum::<f64>())
+            .sum();
+        sum.sqrt()
+    }
+
     /// Smallest over largest diagonal entry of R: a cheap measure of how near the matrix is to losing rank.
     pub fn smallest_pivot_ratio(&self) -> f64 {
         let (low, high) = self
@@ -183,5 +236,10 @@ mod tests {
         let mut rhs = [1.0, 3.0, 5.0];
         qr.solve(&mut rhs);
         assert!((rhs[0] - 1.0).abs() < 1e-14 && (rhs[1] - 2.0).abs() < 1e-14);
+
+        // x + y + z = 3, y + 2 z = 3: the shortest solution is (1, 1, 1).
+        let mut rhs = [3.0, 3.0, f64::NAN];
+        qr.solve_transposed(&mut rhs);
+        assert!(rhs.iter().all(|x| (x - 1.0).abs() < 1e-14), "{rhs:?}");
     }
 }
