@@ -3,6 +3,7 @@
 pub mod assemble;
 pub mod assur;
 pub mod blocks;
+pub mod bordered;
 mod bridge;
 pub mod certify;
 pub mod check;

@@ -3,6 +3,7 @@
 use kempe_model::{DriveId, Leaf, Measure, PointId, PoseMeasure, Statistic};
 use kempe_number::{Jet, Number};
 
+use crate::bordered::Bordered;
 use crate::bridge::{SIDE_ORDER, join};
 use crate::drive_path::DrivePath;
 use crate::events::EventKind;
@@ -11,7 +12,6 @@ use crate::force_source::{ForceSource, NoForces};
 use crate::measure::{Moment, ORDER, Series, order_of, plain_direction, visit_leaves};
 use crate::motion::{EndReason, Motion, Solver};
 use crate::pose::Pose;
-use crate::qr::Qr;
 use crate::state::Design;
 use crate::swept::Swept;
 
@@ -66,7 +66,7 @@ pub struct Sampler<'a, F = NoForces> {
     directions: Vec<((PointId, PointId), Vec<f64>)>,
     swept: Vec<Swept>,
     statistics: Vec<(Statistic, Measure, f64)>,
-    qr: Qr,
+    system: Bordered,
 }
 
 impl<'a> Sampler<'a> {
@@ -111,7 +111,7 @@ impl<'a, F: ForceSource> Sampler<'a, F> {
             directions: Vec::new(),
             swept: Vec::new(),
             statistics: Vec::new(),
-            qr: Qr::default(),
+            system: Bordered::new(motion.mechanism, motion.plan),
             parameters,
             measures: measures.iter().map(|m| (*m).clone()).collect(),
             motion,
@@ -299,12 +299,11 @@ impl<'a, F: ForceSource> Sampler<'a, F> {
         let (branch, state) = (&self.plain.branch, &self.plain.state);
         let found = evidence(
             motion.mechanism,
-            motion.plan,
             motion.design,
             branch,
             state,
             motion.size(),
-            &mut self.qr,
+            &mut self.system,
         );
         sample.closure = found.closure;
         sample.smallest_singular_value = found.smallest_singular_value;
