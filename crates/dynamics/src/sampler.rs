@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use kempe_kinematics::{BodyId, Mechanism, Motion, Sample, Sampler, Unmeasurable};
+use kempe_kinematics::{BodyId, Branch, Mechanism, Motion, Sample, Sampler, Unmeasurable};
 use kempe_model::{DriveId, Measure};
 
 use crate::equilibrium::FrictionOutcome;
@@ -249,8 +249,13 @@ impl<'a> ForceSampler<'a> {
         let mechanism = motion.mechanism;
         let parameters: Vec<Rates> = mechanism.model.parameter_values();
         let geometry = kempe_kinematics::Geometry::new(mechanism, &parameters);
-        let forces = Forces::new(mechanism, motion.plan, geometry, &parameters)
+        let mut forces = Forces::new(mechanism, motion.plan, geometry, &parameters)
             .map_err(ForceError::Problems)?;
+        let mut start = Branch::neutral(mechanism, motion.plan);
+        motion.branch_at(motion.start, &mut start);
+        for spring in &mut forces.acting.springs {
+            spring.align(&forces.geometry, &start.near);
+        }
         let sampler = Sampler::with_forces(motion, measures, Source::new(forces))
             .map_err(ForceError::Unmeasurable)?;
         Ok(Self { sampler })

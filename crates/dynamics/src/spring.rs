@@ -113,6 +113,8 @@ pub struct Spring<T> {
     pub ends: Ends,
     /// Its law.
     pub law: SpringLaw<T>,
+    /// Added to the angle of its links, rad: whole turns (see [`Spring::align`]).
+    pub turns: f64,
 }
 
 impl<T: Number> Spring<T> {
@@ -158,19 +160,40 @@ impl<T: Number> Spring<T> {
                     format!("the lower stop of the spring `{name}` lies above the upper one"),
                 ));
             }
-            list.push(Self { ends, law });
+            list.push(Self {
+                ends,
+                law,
+                turns: 0.0,
+            });
         }
         list
     }
 
+    /// Counts the turns of a torsion spring so that its angle is within half a turn of its free angle where the bodies
+    /// have these angles: at the start of a motion. Otherwise its torque would depend on how the frame is laid.
+    pub fn align(&mut self, geometry: &Geometry<T>, angles: &[f64]) {
+        if let Ends::Links([(link_a, a), (link_b, b)]) = self.ends {
+            let of = |link: kempe_model::LinkId, body: kempe_kinematics::BodyId| {
+                angles[body.index()] + geometry.seat_angles[link.index()].value()
+            };
+            let apart = self.law.free.value() - (of(link_b, b) - of(link_a, a));
+            self.turns = (apart / std::f64::consts::TAU).round() * std::f64::consts::TAU;
+        }
+    }
+
+    /// Its length (m) or angle (rad) at an instant.
+    pub fn length(&self, geometry: &Geometry<T>, at: &Instant<T>) -> T {
+        self.ends.stretch(geometry, at).length + self.turns
+    }
+
     /// Its tension at an instant, N or N m.
     pub fn tension(&self, geometry: &Geometry<T>, at: &Instant<T>) -> T {
-        self.law.tension(self.ends.stretch(geometry, at).length)
+        self.law.tension(self.length(geometry, at))
     }
 
     /// Its stored energy at an instant, J.
     pub fn energy(&self, geometry: &Geometry<T>, at: &Instant<T>) -> T {
-        self.law.energy(self.ends.stretch(geometry, at).length)
+        self.law.energy(self.length(geometry, at))
     }
 
     /// Adds what it does to the links.
@@ -178,7 +201,7 @@ impl<T: Number> Spring<T> {
         let stretch = self.ends.stretch(geometry, at);
         let pull = match self.ends {
             Ends::Points(_) => self.law.pull(stretch.length),
-            Ends::Links(_) => self.law.tension(stretch.length),
+            Ends::Links(_) => self.law.tension(stretch.length + self.turns),
         };
         self.ends.pull(geometry, at, &stretch, pull, on_links);
     }
