@@ -306,7 +306,14 @@ impl Search<'_> {
             branch.near[body.index()] =
                 branch.near[from.index()] + if reversed { -turn } else { turn };
         }
-        if let Step::Gear { body, constraint } = self.plan.steps[step] {
+        let geared = match self.plan.steps[step] {
+            Step::Gear { body, constraint } => Some((body, constraint)),
+            Step::Roll {
+                own, constraint, ..
+            } => Some((own.body, constraint)),
+            _ => None,
+        };
+        if let Some((body, constraint)) = geared {
             let situation = state.situation(self.design, branch);
             if let Some(angle) = gear(&situation, self.mechanism, body, constraint) {
                 branch.near[body.index()] = angle;
@@ -392,7 +399,9 @@ impl Search<'_> {
         block.rows.iter().all(|row| {
             let residual =
                 situation.residual(&self.mechanism.constraints[row.constraint].0)[row.row];
-            residual.abs() <= 1e-9 * self.size.max(f64::MIN_POSITIVE) || residual.abs() <= 1e-12
+            let constraint = &self.mechanism.constraints[row.constraint].0;
+            (residual.abs() <= 1e-9 * self.size.max(f64::MIN_POSITIVE) || residual.abs() <= 1e-12)
+                && !situation.is_reversed(constraint)
         })
     }
 

@@ -90,6 +90,22 @@ impl<T: Number> Situation<'_, T> {
         }
     }
 
+    /// Whether a direction points the opposite way: the residual, a sine, does not tell.
+    pub fn is_reversed(&self, constraint: &Constraint) -> bool {
+        match *constraint {
+            Constraint::Direction {
+                a,
+                b,
+                offset,
+                input,
+            } => {
+                let pose = &self.poses[a.index()];
+                dot(self.wanted_direction(b, offset, input), [pose.c, pose.s]).value() < 0.0
+            }
+            _ => false,
+        }
+    }
+
     /// The residual rows of a constraint; only the first [`Constraint::rows`] count.
     #[inline]
     pub fn residual(&self, constraint: &Constraint) -> [T; 2] {
@@ -146,54 +162,59 @@ impl<T: Number> Situation<'_, T> {
 
 /// One entry of the constraint Jacobian: the derivative of a row to a body's x, y and angle.
 #[derive(Clone, Copy, Debug)]
-pub struct Gradient {
+pub struct Gradient<T = f64> {
     /// Row of the constraint.
     pub row: usize,
     /// The body.
     pub body: BodyId,
     /// Derivatives to x, y (per m) and angle (per rad).
-    pub to: [f64; 3],
+    pub to: [T; 3],
 }
 
-impl Situation<'_, f64> {
+impl<T: Number> Situation<'_, T> {
     /// Hands the rows of the constraint Jacobian to `emit`, and returns the derivative of each row to the coordinate
-    /// of the constraint's drive (zero without one). These are the derivatives of [`Situation::residual`].
+    /// of the constraint's drive (zero without one). These are the derivatives of [`Situation::residual`] at any pose,
+    /// not only where the constraint holds.
     #[inline]
-    pub fn gradients(&self, constraint: &Constraint, mut emit: impl FnMut(Gradient)) -> f64 {
-        let arm = |body: BodyId, p: [f64; 2]| {
+    pub fn gradients(&self, constraint: &Constraint, mut emit: impl FnMut(Gradient<T>)) -> T {
+        let (zero, one) = (T::zero(), T::one());
+        // From the body's origin: to its own point (intervals stay narrow without the detour over the frame), to any.
+        let own_arm =
+            |marker: Marker| self.poses[marker.body.index()].turn(self.geometry.marker(marker));
+        let arm = |body: BodyId, p: [T; 2]| {
             let pose = &self.poses[body.index()];
             [p[0] - pose.x, p[1] - pose.y]
         };
         match *constraint {
             Constraint::Coincide { a, b } => {
                 for (marker, sign) in [(b, 1.0), (a, -1.0)] {
-                    let r = arm(marker.body, self.place(marker));
+                    let r = own_arm(marker);
                     emit(Gradient {
                         row: 0,
                         body: marker.body,
-                        to: [sign, 0.0, -sign * r[1]],
+                        to: [one * sign, zero, r[1] * -sign],
                     });
                     emit(Gradient {
                         row: 1,
                         body: marker.body,
-                        to: [0.0, sign, sign * r[0]],
+                        to: [zero, one * sign, r[0] * sign],
                     });
                 }
-                0.0
+                zero
             }
             Constraint::OnLine { point, line } => {
                 let (p, t) = (self.place(point), self.line(line).1);
                 emit(Gradient {
                     row: 0,
                     body: point.body,
-                    to: [-t[1], t[0], dot(t, arm(point.body, p))],
+                    to: [-t[1], t[0], dot(t, own_arm(point))],
                 });
                 emit(Gradient {
                     row: 0,
                     body: line.body,
                     to: [t[1], -t[0], -dot(t, arm(line.body, p))],
                 });
-                0.0
+                zero
             }
             Constraint::Direction {
                 a,
@@ -206,32 +227,31 @@ impl Situation<'_, f64> {
                 emit(Gradient {
                     row: 0,
                     body: a,
-                    to: [0.0, 0.0, cosine],
+                    to: [zero, zero, cosine],
                 });
                 emit(Gradient {
                     row: 0,
                     body: b,
-                    to: [0.0, 0.0, -cosine],
+                    to: [zero, zero, -cosine],
                 });
-                if input.is_some() { -cosine } else { 0.0 }
+                if input.is_some() { -cosine } else { zero }
             }
             Constraint::Distance { a, b, input } => {
-                let (pa, pb) = (self.place(a), self.place(b));
                 let length = self.inputs[input.index()].value;
-                let span = sub(pb, pa);
-                for (marker, p, sign) in [(b, pb, 1.0 / length), (a, pa, -1.0 / length)] {
-                    let turn = cross(arm(marker.body, p), span);
+                let span = sub(self.place(b), self.place(a));
+                for (marker, sign) in [(b, one / length), (a, -(one / length))] {
+                    let turn = cross(own_arm(marker), span);
                     emit(Gradient {
                         row: 0,
                         body: marker.body,
                         to: [span[0] * sign, span[1] * sign, turn * sign],
                     });
                 }
-                -0.5 * (dot(span, span) / (length * length) + 1.0)
+                (dot(span, span) / (length * length) + 1.0) * -0.5
             }
             Constraint::Travel { point, line, .. } => {
                 self.travel_gradients(point, line, &mut emit);
-                -1.0
+                -one
             }
             Constraint::Gears {
                 a,
@@ -245,10 +265,10 @@ impl Situation<'_, f64> {
                     emit(Gradient {
                         row: 0,
                         body,
-                        to: [0.0, 0.0, factor / size],
+                        to: [zero, zero, factor / size],
                     });
                 }
-                0.0
+                zero
             }
             Constraint::Rack {
                 line,
@@ -260,25 +280,23 @@ impl Situation<'_, f64> {
                 emit(Gradient {
                     row: 0,
                     body: center.body,
-                    to: [0.0, 0.0, k.second],
+                    to: [zero, zero, k.second],
                 });
                 emit(Gradient {
                     row: 0,
                     body: line.body,
-                    to: [0.0, 0.0, -k.second],
+                    to: [zero, zero, -k.second],
                 });
-                0.0
+                zero
             }
         }
     }
 
-    fn travel_gradients(&self, point: Marker, line: LineRef, emit: &mut impl FnMut(Gradient)) {
+    fn travel_gradients(&self, point: Marker, line: LineRef, emit: &mut impl FnMut(Gradient<T>)) {
         let (p, t) = (self.place(point), self.line(line).1);
-        let (own, guide) = (
-            &self.poses[point.body.index()],
-            &self.poses[line.body.index()],
-        );
-        let turn = cross([p[0] - own.x, p[1] - own.y], t);
+        let guide = &self.poses[line.body.index()];
+        let own = self.poses[point.body.index()].turn(self.geometry.marker(point));
+        let turn = cross(own, t);
         emit(Gradient {
             row: 0,
             body: point.body,

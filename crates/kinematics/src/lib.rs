@@ -3,7 +3,9 @@
 pub mod assemble;
 pub mod assur;
 pub mod blocks;
+pub mod bordered;
 mod bridge;
+pub mod certify;
 pub mod check;
 pub mod circuit;
 mod closed_form;
@@ -12,9 +14,11 @@ pub mod constraint;
 pub mod drive_path;
 pub mod events;
 pub mod evidence;
+pub mod force_source;
 pub mod four_bar;
 pub mod geometry;
 pub mod homotopy;
+mod krawczyk;
 pub mod measure;
 pub mod mechanism;
 pub mod mobility;
@@ -30,13 +34,18 @@ mod statistics;
 mod swept;
 pub mod trace;
 
+pub use certify::{
+    Certificate, CertifiedMotion, Certifier, Subdivision, certify_motion, certify_pose,
+};
 pub use check::{Findings, Reach, check};
 pub use constraint::{Input, Situation};
+pub use force_source::{ForceSource, NoForces};
 pub use geometry::Geometry;
 pub use mechanism::{BodyId, Mechanism};
 pub use motion::{EndReason, Motion, MotionError};
 pub use newton::PlanNumber;
 pub use plan::Plan;
 pub use pose::Pose;
+pub use qr::Qr;
 pub use sampler::{Sample, Sampler, Unmeasurable};
 pub use state::{Branch, Design, State};

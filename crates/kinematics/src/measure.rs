@@ -5,7 +5,8 @@
 //! formula for its derivative.
 
 use kempe_model::{
-    DriveId, Leaf, Line, LinkId, LinkPointRef, Measure, PointId, PoseMeasure, Statistic,
+    DriveId, ForceMeasure, Leaf, Line, LinkId, LinkPointRef, Measure, PointId, PoseMeasure,
+    Statistic,
 };
 use kempe_number::{Jet, Number, math};
 
@@ -39,7 +40,7 @@ pub struct Moment<'a, B> {
     /// Parameter values.
     pub parameters: &'a [B],
     /// Time, s.
-    pub time: f64,
+    pub time: B,
     /// Poses along the path parameter.
     pub path: &'a [Pose<Series<B>>],
     /// The path parameter as a series in time.
@@ -55,9 +56,11 @@ pub struct Moment<'a, B> {
     /// Unwrapped values for directions between points of different bodies.
     pub directions: Vec<((PointId, PointId), f64)>,
     /// Lengths of path swept so far and since the start.
-    pub swept: Vec<(PointId, f64)>,
+    pub swept: Vec<(PointId, B)>,
+    /// Answers questions to the forces, where forces are computed.
+    pub forces: Option<&'a dyn Fn(&ForceMeasure) -> Series<B>>,
     /// Values of the statistics that occur, in SI.
-    pub statistics: &'a [(Statistic, Measure, f64)],
+    pub statistics: &'a [(Statistic, Measure, B)],
 }
 
 impl<B: Number> Moment<'_, B> {
@@ -89,9 +92,13 @@ impl<B: Number> Moment<'_, B> {
                 _ => self.along_time(self.coordinates[drive.index()], along),
             },
             Leaf::Time => match along {
-                Along::Time => Series::variable(B::from_f64(self.time)),
-                _ => Series::from_f64(self.time),
+                Along::Time => Series::variable(self.time),
+                _ => Series::constant(self.time),
             },
+            // Forces are known to the crate that computes them; here they have no value.
+            Leaf::Force(measure) => self
+                .forces
+                .map_or(Series::from_f64(f64::NAN), |forces| forces(measure)),
             Leaf::Rate(measure, order) => (0..*order)
                 .fold(self.series(measure, Along::Time), |series, _| {
                     series.differentiate()
@@ -104,7 +111,7 @@ impl<B: Number> Moment<'_, B> {
                     .statistics
                     .iter()
                     .find(|(s, m, _)| s == statistic && m == &**measure);
-                Series::from_f64(known.map_or(f64::NAN, |(_, _, value)| *value))
+                Series::constant(known.map_or(B::from_f64(f64::NAN), |(_, _, value)| *value))
             }
             Leaf::Pose(measure) => self.pose_measure(measure, along),
         }
@@ -356,8 +363,8 @@ impl<B: Number> Moment<'_, B> {
                     .swept
                     .iter()
                     .find(|(q, _)| q == p)
-                    .map_or(f64::NAN, |(_, length)| *length);
-                dot(v, v).sqrt().integrate(B::from_f64(start))
+                    .map_or(B::from_f64(f64::NAN), |(_, length)| *length);
+                dot(v, v).sqrt().integrate(start)
             }
             _ => Series::from_f64(f64::NAN),
         }
@@ -396,6 +403,10 @@ fn depth(mechanism: &Mechanism, measure: &Measure, in_coefficient: bool) -> Resu
     for leaf in measure.leaves() {
         let own = match leaf {
             Leaf::Parameter(_) | Leaf::Drive(_) | Leaf::Time => 0,
+            Leaf::Force(_) if in_coefficient => {
+                return Err("a force has no derivative to a drive".into());
+            }
+            Leaf::Force(_) => 2,
             Leaf::Named(index) => match mechanism.model.measures.get(*index) {
                 Some(named) => depth(mechanism, &named.measure, in_coefficient)?,
                 None => 0,

@@ -13,6 +13,8 @@ use crate::trace::{Follower, Node, hermite};
 pub const STEP_LIMIT: usize = 200_000;
 /// A motion may end this close to a limit (in path scales) and still count as reaching it.
 pub const AT_LIMIT: f64 = 1e-12;
+/// A part this far out, in mechanism sizes, is taken to run away to infinity.
+pub const FAR: f64 = 1e3;
 /// Pivot ratio of the bordered Jacobian below which branches are taken to cross.
 pub const CROSSING: f64 = 1e-7;
 /// Where a motion starts at a singular pose, its branch is looked for at these parts of the range instead.
@@ -51,6 +53,8 @@ pub enum EndReason {
     Limit,
     /// The trace got stuck: no regular continuation was found.
     Stuck,
+    /// A part runs away to infinity as the drive nears a value, as where two crossing slots become parallel.
+    Runaway,
 }
 
 /// One stretch of the motion on which every assembly mode stays the same.
@@ -135,10 +139,8 @@ impl<'m> Motion<'m> {
             bodies.dedup();
             return Err(MotionError::Undetermined { bodies });
         }
-        let size = design.geometry.size(mechanism);
         let scale = crate::trace::Path::scale(&path);
-        let idle = plan.decomposition.idle.as_slice();
-        let mut follower = Follower::new(mechanism, &design.geometry, &path, idle);
+        let mut follower = Follower::new(mechanism, plan, &design.geometry, &path);
 
         let far = if (start - demanded.0).abs() > (demanded.1 - start).abs() {
             demanded.0
@@ -280,6 +282,20 @@ impl<'m> Motion<'m> {
     /// How many nodes the trace needed.
     pub fn nodes(&self) -> usize {
         self.nodes.len()
+    }
+
+    /// The node at a limit, when `p` is one to within [`AT_LIMIT`]. There the closed forms may miss the pose by a
+    /// rounding error; the trace does not.
+    pub(crate) fn limit_at(&self, p: f64) -> Option<usize> {
+        [0, self.nodes.len().saturating_sub(1)]
+            .into_iter()
+            .find(|&index| {
+                let (Some(node), Some(at)) = (self.nodes.get(index), self.parameters.get(index))
+                else {
+                    return false;
+                };
+                node.parameter_rate() == 0.0 && (p - at).abs() <= AT_LIMIT * self.scale
+            })
     }
 
     /// The change point within whose bridge `p` lies, if any.
@@ -565,7 +581,14 @@ fn follow(
                 },
             );
         }
+        let away = next.z[..last]
+            .chunks_exact(3)
+            .zip(nodes[0].z.chunks_exact(3))
+            .any(|(p, q)| (p[0] - q[0]).abs() > FAR || (p[1] - q[1]).abs() > FAR);
         nodes.push(next);
+        if away {
+            return (nodes, EndReason::Runaway);
+        }
     }
     (nodes, EndReason::Stuck)
 }

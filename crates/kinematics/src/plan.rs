@@ -95,6 +95,15 @@ pub enum Step {
         /// Index of the constraint.
         constraint: usize,
     },
+    /// A pinion pinned at its centre to a placed point, its angle from a rack that is placed.
+    Roll {
+        /// The pinion's centre.
+        own: Marker,
+        /// The placed point there.
+        at: Marker,
+        /// Index of the rack's constraint.
+        constraint: usize,
+    },
     /// An idle angle, kept at zero.
     Hold {
         /// The body.
@@ -364,7 +373,7 @@ fn recognise(mechanism: &Mechanism, block: &Block) -> Option<Step> {
         ([Unknown::Angle(body)], 0) => angle_alone(*body, block, constraints[0]),
         ([Unknown::Place(body)], 0) => place_alone(*body, &constraints),
         ([Unknown::Angle(body), Unknown::Place(_)], 0) if body.index() > 0 && one_body(block) => {
-            swing(*body, &constraints)
+            swing(*body, &constraints).or_else(|| pinion(*body, block, mechanism))
         }
         ([Unknown::Angle(body), Unknown::Place(_)], 1) if one_body(block) => {
             two_pins(*body, &constraints)
@@ -525,6 +534,25 @@ fn swing(body: BodyId, constraints: &[&Constraint]) -> Option<Step> {
             partner: None,
         }),
     }
+}
+
+/// A pinion pinned at its centre: the rack's travel is known before its angle.
+fn pinion(body: BodyId, block: &Block, mechanism: &Mechanism) -> Option<Step> {
+    let constraint = |row: &Row| mechanism.constraints[row.constraint].0;
+    let (own, at) = block
+        .rows
+        .iter()
+        .find_map(|row| pin_of(body, &constraint(row)))?;
+    block.rows.iter().find_map(|row| match constraint(row) {
+        Constraint::Rack { line, center, .. } if center == own && line.body != body => {
+            Some(Step::Roll {
+                own,
+                at,
+                constraint: row.constraint,
+            })
+        }
+        _ => None,
+    })
 }
 
 fn two_pins(body: BodyId, constraints: &[&Constraint]) -> Option<Step> {

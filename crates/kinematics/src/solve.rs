@@ -133,6 +133,22 @@ impl Plan {
                 (pose.c, pose.s) = (T::one(), T::zero());
                 T::one()
             }
+            Step::Roll {
+                own,
+                at,
+                constraint,
+            } => {
+                // The centre is in place whatever the angle.
+                let world = place(design, state, at);
+                let (body, pin) = (own.body, design.geometry.marker(own));
+                state.poses[body.index()] = Pose::pinned(T::one(), T::zero(), pin, world);
+                let situation = state.situation(design, branch);
+                if let Some(angle) = gear(&situation, mechanism, body, constraint) {
+                    let (s, c) = angle.sin_cos();
+                    state.poses[body.index()] = Pose::pinned(c, s, pin, world);
+                }
+                T::one()
+            }
             Step::Gear { body, constraint } => gear(
                 &state.situation(design, branch),
                 mechanism,

@@ -24,6 +24,8 @@ pub enum Leaf {
     Rate(Box<Measure>, u32),
     /// The n-th derivative of a measure to a drive's coordinate, the other drives at rest: a kinematic coefficient.
     Coefficient(Box<Measure>, DriveId, u32),
+    /// A question to the forces at one instant.
+    Force(ForceMeasure),
     /// One number over a whole motion.
     Over(Statistic, Box<Measure>),
 }
@@ -86,6 +88,59 @@ pub enum PoseMeasure {
     /// `mechanical_advantage(out, drive)`: the drive's speed over that of the output measure, as a ratio of
     /// virtual displacements: 1 / d(out, drive).
     MechanicalAdvantage(Box<Measure>, DriveId),
+}
+
+/// What may be asked of the forces at one instant of a motion.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ForceMeasure {
+    /// `torque(drive)`, `force(drive)`: what the drive must give, positive along its coordinate, N m or N.
+    Drive(DriveId),
+    /// `reaction(P)`, `reaction(P, link)`, `reaction(joint)`: size of the force a joint carries, N.
+    Reaction(JointRef),
+    /// `reaction_x(...)`: its component along the frame's x axis, N, on the later-named link of the joint, or on the
+    /// link given.
+    ReactionX(JointRef),
+    /// `reaction_y(...)`: along y.
+    ReactionY(JointRef),
+    /// `reaction_along(P, link)`: component along the x axis of that link, N.
+    ReactionAlong(JointRef),
+    /// `reaction_across(P, link)`: component along the y axis of that link, N.
+    ReactionAcross(JointRef),
+    /// `reaction_moment(joint)`: moment a slider or weld carries, N m.
+    ReactionMoment(JointRef),
+    /// `power(drive)`: W.
+    Power(DriveId),
+    /// `kinetic_energy`: J.
+    KineticEnergy,
+    /// `potential_energy`: of gravity and springs, J.
+    PotentialEnergy,
+    /// `shaking_force_x`: force of the moving links on the frame, N.
+    ShakingForceX,
+    /// `shaking_force_y`.
+    ShakingForceY,
+    /// `shaking_force`: its size.
+    ShakingForce,
+    /// `shaking_moment`: moment of the moving links on the frame about the origin, N m.
+    ShakingMoment,
+    /// `reduced_mass(drive)`: equivalent mass or inertia at a drive, kg or kg m^2.
+    ReducedMass(DriveId),
+    /// `reduced_load(drive)`: all loads, gravity and springs reduced to a drive, N or N m.
+    ReducedLoad(DriveId),
+    /// `pressure(drive)`: in the pushing chamber of a hydraulic cylinder, Pa.
+    Pressure(DriveId),
+    /// `capacity(drive)`: what a hydraulic cylinder can give at its supply or relief pressure along its coordinate, N.
+    Capacity(DriveId),
+    /// `spring_force(spring)`: tension, N or N m.
+    Spring(usize),
+}
+
+/// A joint whose reaction is asked for, and the body on which it acts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum JointRef {
+    /// A pin; on the later-named of its links unless a link is given.
+    Pin(PointId, Option<LinkId>),
+    /// A joint of the file; on its first-named link (the slider, the pin's link) unless a link is given.
+    Joint(crate::model::JointId, Option<LinkId>),
 }
 
 /// A number over a whole motion.

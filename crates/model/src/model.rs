@@ -70,6 +70,8 @@ pub struct Model {
     pub joints: Vec<Joint>,
     /// Drives in file order.
     pub drives: Vec<Drive>,
+    /// What acts on it.
+    pub actions: crate::load::Actions,
     /// Which assembly is meant.
     pub assembly: Vec<AssemblyHint>,
     /// Named measures in file order; a measure may use earlier and later ones but not itself.
@@ -500,6 +502,8 @@ pub struct Study {
 pub enum StudyKind {
     /// The motion along the drives' laws.
     Motion(MotionStudy),
+    /// What drives the motion and what the joints carry along it. Rows, columns and plots as for a motion.
+    Forces(MotionStudy),
 }
 
 /// A motion study: rows along the drive or along time.

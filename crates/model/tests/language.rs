@@ -31,7 +31,9 @@ fn crank_rocker() {
         model.links[2].evaluate(&values),
         [[0.0, 0.0], [0.05, 0.0], [0.025, 0.0]]
     );
-    let StudyKind::Motion(turn) = &model.studies[0].kind;
+    let StudyKind::Motion(turn) = &model.studies[0].kind else {
+        panic!("a motion study")
+    };
     assert!(matches!(&turn.rows, Rows::DriveStep(_)));
     assert_eq!(turn.plots.len(), 3);
     assert_eq!(model.drives[0].law.duration(&values), std::f64::consts::TAU);

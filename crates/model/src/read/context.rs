@@ -107,6 +107,7 @@ impl<'a> Context<'a> {
                 points: Vec::new(),
                 joints: Vec::new(),
                 drives: Vec::new(),
+                actions: Default::default(),
                 assembly: Vec::new(),
                 measures: Vec::new(),
                 studies: Vec::new(),

@@ -1,0 +1,226 @@
+//! What acts on a mechanism: gravity, loads, springs, dampers, friction, actuators. Plain data, SI.
+//!
+//! Values that may vary are measures: a number, an expression over parameters, or a function of any drive, of time or
+//! of any other measure of the mechanism.
+
+use kempe_units::Dimension;
+
+use crate::measure::Measure;
+use crate::model::{DriveId, JointId, LinkId, LinkPointRef, PointId, Scalar, Span};
+
+/// Everything that acts on the mechanism.
+#[derive(Clone, Debug, Default)]
+pub struct Actions {
+    /// Acceleration of gravity in the frame, m/s^2. `None`: 9.81 m/s^2 downwards (-y) wherever a mass is given.
+    pub gravity: Option<[Scalar; 2]>,
+    /// Forces and torques.
+    pub loads: Vec<Load>,
+    /// Point masses fixed to links: counterweights.
+    pub masses: Vec<PointMass>,
+    /// Springs.
+    pub springs: Vec<Spring>,
+    /// Dampers.
+    pub dampers: Vec<Damper>,
+    /// Friction at pins and sliders.
+    pub friction: Vec<Friction>,
+    /// Hydraulic cylinders behind cylinder drives.
+    pub cylinders: Vec<HydraulicCylinder>,
+    /// Motors behind turning drives.
+    pub motors: Vec<Motor>,
+}
+
+/// A force or a torque.
+#[derive(Clone, Debug)]
+pub struct Load {
+    /// Name.
+    pub name: String,
+    /// What it is.
+    pub kind: LoadKind,
+    /// Where it stands in the file.
+    pub span: Span,
+}
+
+/// The kinds of load.
+#[derive(Clone, Debug)]
+pub enum LoadKind {
+    /// A force on a link at one of its points.
+    Force {
+        /// Where it acts.
+        at: LinkPointRef,
+        /// Its components, N.
+        components: [Amount; 2],
+        /// The link in whose axes the components are; the frame unless said otherwise.
+        axes: LinkId,
+    },
+    /// A torque on a link, N m, counter-clockwise; its reaction acts on `against` (the frame unless said otherwise).
+    Torque {
+        /// The link.
+        on: LinkId,
+        /// The link that takes the reaction.
+        against: LinkId,
+        /// The torque.
+        amount: Amount,
+    },
+}
+
+/// A value that may vary along the motion.
+#[derive(Clone, Debug)]
+pub enum Amount {
+    /// An expression over parameters, drives, time and measures.
+    Measure(Measure),
+    /// A measured curve: the value over a measure, joined smoothly (monotone where the data is), SI.
+    Table {
+        /// What the table goes by.
+        over: Box<Measure>,
+        /// Dimension of that.
+        over_dimension: Dimension,
+        /// Abscissas, rising.
+        at: Vec<f64>,
+        /// Values.
+        values: Vec<f64>,
+        /// The abscissa repeats with this period (an engine's cycle), SI.
+        period: Option<f64>,
+        /// Factor on the values (a piston's area turns a pressure into a force).
+        factor: Scalar,
+    },
+}
+
+/// A mass at a point of a link, besides the link's own mass.
+#[derive(Clone, Debug)]
+pub struct PointMass {
+    /// Name.
+    pub name: String,
+    /// The link.
+    pub on: LinkId,
+    /// Where on the link, in its own frame.
+    pub place: crate::model::Place,
+    /// Mass, kg.
+    pub mass: Scalar,
+    /// Where it stands in the file.
+    pub span: Span,
+}
+
+/// A spring.
+#[derive(Clone, Debug)]
+pub struct Spring {
+    /// Name.
+    pub name: String,
+    /// Between what.
+    pub between: Between,
+    /// Stiffness, N/m or N m/rad.
+    pub stiffness: Scalar,
+    /// Length or angle without force, m or rad.
+    pub free: Scalar,
+    /// Force or torque at the free length (tension positive), N or N m.
+    pub preload: Scalar,
+    /// Length or angle below and above which a stop of this extra stiffness acts.
+    pub stops: [Option<Scalar>; 2],
+    /// Stiffness of the stops, N/m or N m/rad.
+    pub stop_stiffness: Option<Scalar>,
+    /// Acts only in tension (a rope) or only in compression (a push spring), or both.
+    pub acts: Acts,
+    /// Where it stands in the file.
+    pub span: Span,
+}
+
+/// In which sense a spring acts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Acts {
+    /// Both ways.
+    #[default]
+    Both,
+    /// Pulls only.
+    Tension,
+    /// Pushes only.
+    Compression,
+}
+
+/// The two ends of a spring or damper.
+#[derive(Clone, Debug)]
+pub enum Between {
+    /// Two points.
+    Points(LinkPointRef, LinkPointRef),
+    /// Two links: a torsion spring; its angle is that of the second link against the first.
+    Links(LinkId, LinkId),
+}
+
+/// A damper.
+#[derive(Clone, Debug)]
+pub struct Damper {
+    /// Name.
+    pub name: String,
+    /// Between what.
+    pub between: Between,
+    /// Damping when the ends part (the angle grows), N s/m or N m s/rad.
+    pub damping: Scalar,
+    /// Damping the other way; the same unless said otherwise.
+    pub closing: Option<Scalar>,
+    /// Where it stands in the file.
+    pub span: Span,
+}
+
+/// Friction at a joint.
+#[derive(Clone, Debug)]
+pub struct Friction {
+    /// Where.
+    pub at: FrictionAt,
+    /// Coulomb's coefficient, kinetic.
+    pub coefficient: Scalar,
+    /// Coefficient at rest (Stribeck), when it differs.
+    pub static_coefficient: Option<Scalar>,
+    /// Speed at which the coefficient falls from static to kinetic, m/s.
+    pub stribeck_speed: Option<Scalar>,
+    /// Viscous part, N m s/rad at pins, N s/m at sliders.
+    pub viscous: Option<Scalar>,
+    /// Radius of the pin, m; friction of a pin needs one.
+    pub radius: Option<Scalar>,
+    /// Where it stands in the file.
+    pub span: Span,
+}
+
+/// Where friction acts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FrictionAt {
+    /// At a pin (at every pair of a multiple joint).
+    Pin(PointId),
+    /// At a slider, slot, gear or rack.
+    Joint(JointId),
+    /// At every pin and slider that has none of its own.
+    All,
+}
+
+/// A hydraulic cylinder behind a cylinder drive.
+#[derive(Clone, Debug)]
+pub struct HydraulicCylinder {
+    /// The drive.
+    pub drive: DriveId,
+    /// Bore, m.
+    pub bore: Scalar,
+    /// Rod diameter, m.
+    pub rod: Scalar,
+    /// Supply pressure, Pa.
+    pub supply: Option<Scalar>,
+    /// Relief pressure, Pa.
+    pub relief: Option<Scalar>,
+    /// Return pressure on the side that drains, Pa.
+    pub back: Scalar,
+    /// Flow the pump gives, m^3/s.
+    pub flow: Option<Scalar>,
+    /// Seal friction, N.
+    pub friction: Scalar,
+    /// How many cylinders act side by side.
+    pub count: Scalar,
+    /// Where it stands in the file.
+    pub span: Span,
+}
+
+/// A motor behind a turning drive.
+#[derive(Clone, Debug)]
+pub struct Motor {
+    /// The drive.
+    pub drive: DriveId,
+    /// Torque over speed at the drive, as pairs (rad/s, N m) with rising speed, linear between them.
+    pub curve: Vec<(Scalar, Scalar)>,
+    /// Where it stands in the file.
+    pub span: Span,
+}
