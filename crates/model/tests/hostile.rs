@@ -129,6 +129,30 @@ fn sheer_size() {
         ),
         "too-large",
     );
+    for (section, line) in [
+        ("loads", "{ force = [0, 1], at = \"B\" }"),
+        ("masses", "{ at = \"B\", mass = 1 }"),
+        ("springs", "{ between = \"B-D\", stiffness = 1, free = 1 }"),
+        ("dampers", "{ between = \"B-D\", damping = 1 }"),
+        ("cylinders", "{ bore = 2, rod = 1 }"),
+        ("motors", "{ curve = [[0, 1], [1, 0]] }"),
+        ("friction", "{ coefficient = 1 }"),
+    ] {
+        let text = format!(
+            "{FRAME}[{section}]\n{}",
+            many(120_000, |i| format!("s{i} = {line}"))
+        );
+        refused(section, &text, "too-large");
+    }
+    let pairs = (0..100_000).map(|i| format!("[{i}, 1]"));
+    let curve = pairs.collect::<Vec<_>>().join(", ");
+    refused(
+        "a curve",
+        &format!(
+            "{FRAME}[drives]\nm = {{ turns = \"crank\" }}\n[motors]\nm = {{ curve = [{curve}] }}\n"
+        ),
+        "too-large",
+    );
     refused(
         "unknown keys",
         &format!("{FRAME}{}", many(300_000, |i| format!("[k{i}]"))),
@@ -204,6 +228,42 @@ fn numbers() {
         &FRAME.replace("A-B = 1", &format!("A-B = 1{}", "0".repeat(400))),
         "not-finite",
     );
+    refused(
+        "a motion that never ends",
+        &format!(
+            "{FRAME}[drives]\nm = {{ turns = \"crank\", speed = \"1e-308 rad/s\", to = 1e3 }}\n"
+        ),
+        "not-finite",
+    );
+    for (what, body, code) in [
+        (
+            "mass",
+            "[masses]\nm = { at = \"B\", mass = -1 }",
+            "bad-size",
+        ),
+        (
+            "load",
+            "[loads]\nm = { force = [nan, 1], at = \"B\" }",
+            "not-finite",
+        ),
+        (
+            "load of zero",
+            "[loads]\nm = { force = [\"1 N/0\", 1], at = \"B\" }",
+            "not-finite",
+        ),
+        (
+            "spring",
+            "[springs]\nm = { links = [\"frame\", \"crank\"], stiffness = 0, free = 0 }",
+            "bad-size",
+        ),
+        (
+            "stops",
+            "[springs]\nm = { links = [\"frame\", \"crank\"], stiffness = 1, free = 0, stops = [1e999, -1] }",
+            "not-finite",
+        ),
+    ] {
+        refused(what, &format!("{FRAME}{body}\n"), code);
+    }
     refused("zero", &FRAME.replace("A-B = 1", "A-B = 0"), "bad-size");
     refused(
         "negative",
@@ -282,6 +342,10 @@ const PIECES: &[&str] = &[
     "angle(",
     "frame",
     "left of A -> B",
+    "torque(",
+    "reaction(",
+    "none",
+    "all",
     "near",
     "é",
     "\u{feff}",
@@ -342,7 +406,12 @@ fn mutants_of_real_files_do_no_harm() {
                 }
                 for drive in &checked.model.drives {
                     let end: f64 = drive.law.duration(&values);
-                    assert!(end.is_finite() && drive.law.at(end / 2.0, &values).is_finite());
+                    assert!(
+                        end.is_finite() && drive.law.at(end / 2.0, &values).is_finite(),
+                        "drive `{}` lasts {end} s:\n{}",
+                        drive.name,
+                        String::from_utf8_lossy(&text)
+                    );
                 }
             }
             Err(found) => {
