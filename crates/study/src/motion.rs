@@ -29,6 +29,24 @@ pub fn run(
 ) -> Result<StudyResult, Vec<Diagnostic>> {
     match &study.kind {
         StudyKind::Motion(motion) => run_motion(model, &study.name, motion, progress),
+        StudyKind::Forces(_) => Err(vec![
+            Diagnostic::error(
+                "study-not-available",
+                format!(
+                    "study `{}` asks for forces, which this version cannot find",
+                    study.name
+                ),
+            )
+            .at(study.span.clone(), "")
+            .help("run the other studies by name: kempe run FILE STUDY"),
+        ]),
+    }
+}
+
+/// Rows, columns and plots of a study, whatever it asks.
+pub fn motion_of(study: &Study) -> &MotionStudy {
+    match &study.kind {
+        StudyKind::Motion(motion) | StudyKind::Forces(motion) => motion,
     }
 }
 

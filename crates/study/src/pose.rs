@@ -1,8 +1,10 @@
 //! One pose at given coordinates of the drives, reached from the start without leaving the branch.
 
-use kempe_model::{Diagnostic, Law, LawPiece, Model, MotionStudy, Rows};
-use kempe_units::{Dimension, Expr, Issue, Resolver, Span, Unit, check_as, nearest, parse};
+use kempe_kinematics::{Design, Mechanism, Motion, Plan, Sampler};
+use kempe_model::{Diagnostic, Law, LawPiece, Model, MotionStudy, RiseLaw, Rows};
+use kempe_units::{Dimension, Expr, Issue, Resolver, Span, check_as, nearest, parse};
 
+use crate::explain::cannot_move;
 use crate::motion::run_motion;
 use crate::progress::Silent;
 use crate::result::Frame;
@@ -115,6 +117,9 @@ pub fn pose_at(model: &Model, settings: &[Setting]) -> Result<(Frame, String), V
         circuit: false,
     };
     let time = settings.iter().rev().find(|s| s.name == "time");
+    if let (Some(time), true) = (time, settings.iter().all(|s| s.name == "time")) {
+        return pose_at_time(model, time.value);
+    }
     let mut label: Vec<String> = Vec::new();
     for drive in &mut moved.drives {
         let start = drive.law.at(time.map_or(0.0, |t| t.value), &parameters);
@@ -131,22 +136,16 @@ pub fn pose_at(model: &Model, settings: &[Setting]) -> Result<(Frame, String), V
                 duration: Expr::Const(1.0),
             }
         } else {
-            LawPiece::ConstantSpeed {
+            LawPiece::Rise {
                 to: Expr::Const(target),
-                speed: Expr::Const((target - from).abs()),
+                duration: Expr::Const(1.0),
+                by: RiseLaw::Polynomial345,
             }
         };
         drive.law = Law {
             pieces: vec![piece],
             from: Expr::Const(from),
         };
-    }
-    if let Some(time) = time {
-        let unit = Unit::parse("s").unwrap_or_else(|_| Unit::one());
-        label.insert(
-            0,
-            format!("time = {}", kempe_units::format_value(time.value, &unit)),
-        );
     }
     let result = run_motion(&moved, "pose", &study(Rows::Count(2)), &mut Silent)?;
     let last = result.frames.into_iter().next_back();
@@ -155,4 +154,31 @@ pub fn pose_at(model: &Model, settings: &[Setting]) -> Result<(Frame, String), V
         Some(frame) if reached => Ok((frame, label.join(", "))),
         _ => Err(result.warnings),
     }
+}
+
+/// The pose of the motion at a time, s.
+fn pose_at_time(model: &Model, time: f64) -> Result<(Frame, String), Vec<Diagnostic>> {
+    let mechanism = Mechanism::new(model);
+    let plan = Plan::new(&mechanism);
+    let parameters: Vec<f64> = model.parameter_values();
+    let design = Design::new(&mechanism, &plan, &parameters);
+    let motion = Motion::new(&mechanism, &plan, &design, &parameters)
+        .map_err(|error| vec![cannot_move(&mechanism, &plan, &design, &error)])?;
+    let label = format!("time = {}", Units::of(model).text(time, Dimension::TIME));
+    let mut sampler = Sampler::new(&motion, &[]).map_err(|_| Vec::new())?;
+    let sample = sampler.at_time(time);
+    if !sample.closure.is_finite() {
+        let reason = sample
+            .note
+            .unwrap_or_else(|| "no pose was found".to_owned());
+        return Err(vec![Diagnostic::error(
+            "not-reached",
+            format!("{label}: {reason}"),
+        )]);
+    }
+    let frame = Frame {
+        links: sample.links,
+        points: sample.points,
+    };
+    Ok((frame, label))
 }

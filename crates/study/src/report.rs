@@ -1,11 +1,14 @@
 //! Everything about a model and its studies as one HTML report.
 
-use kempe_draw::report::{Column as Shown, Event, Evidence, MotionReport, NotReached, Report};
-use kempe_model::{Diagnostic, Model, MotionStudy, Study, StudyKind};
+use kempe_draw::report::{
+    Block, Column as Shown, Event, Evidence, MotionReport, NotReached, Report, Section,
+};
+use kempe_model::{Diagnostic, Model, MotionStudy, Study};
 
 use crate::figures::{figures, marker_kind};
 use crate::findings::Report as CheckReport;
 use crate::findings_text::warnings_section;
+use crate::motion::motion_of;
 use crate::result::StudyResult;
 use crate::table::Column;
 use crate::view::{drawing_frames, mechanism_view};
@@ -31,7 +34,9 @@ pub fn report(
     check: &CheckReport,
     studies: &[StudyOutcome<'_>],
 ) -> Report {
-    let mut sections = check.sections();
+    let results = studies.iter().filter_map(|s| s.result.as_ref().ok());
+    let mut sections: Vec<Section> = results.filter_map(values_section).collect();
+    sections.extend(check.sections());
     let mut told: Vec<Diagnostic> = warnings.to_vec();
     let more = studies.iter().flat_map(|s| match &s.result {
         Ok(result) => result.warnings.iter(),
@@ -47,7 +52,7 @@ pub fn report(
     }
     sections.extend(warnings_section(&told));
     let motions = studies.iter().filter_map(|outcome| {
-        let StudyKind::Motion(study) = &outcome.study.kind;
+        let study = motion_of(outcome.study);
         outcome
             .result
             .as_ref()
@@ -61,6 +66,23 @@ pub fn report(
         sections,
         generator: generator.to_owned(),
     }
+}
+
+/// The numbers over the whole motion of a study, if it has any.
+fn values_section(result: &StudyResult) -> Option<Section> {
+    (!result.scalars.is_empty()).then(|| Section {
+        title: format!("Values over {}", result.name),
+        blocks: vec![Block::Facts(scalar_facts(result))],
+    })
+}
+
+fn scalar_facts(result: &StudyResult) -> Vec<(String, String)> {
+    let fact = |s: &crate::result::Scalar| {
+        let value = kempe_draw::number_format::significant(s.value, 12);
+        let text = format!("{value} {}", s.unit.text());
+        (s.name.clone(), text.trim_end().to_owned())
+    };
+    result.scalars.iter().map(fact).collect()
 }
 
 fn shown(column: &Column) -> Shown {
@@ -137,22 +159,11 @@ fn evidence(result: &StudyResult) -> Evidence {
         .noted()
         .into_iter()
         .filter(|(first, ..)| table.closure.get(*first).is_some_and(|c| !c.is_finite()));
-    let mut facts: Vec<(String, String)> = result
-        .scalars
-        .iter()
-        .map(|s| {
-            let value = kempe_draw::number_format::significant(s.value, 12);
-            (
-                s.name.clone(),
-                format!("{value} {}", s.unit.text()).trim_end().to_owned(),
-            )
-        })
-        .collect();
     let (matching, other) = result.assemblies;
-    facts.push((
+    let facts = vec![(
         "Assemblies at the start".to_owned(),
         format!("{matching} as the file says, {other} more"),
-    ));
+    )];
     Evidence {
         residual: table
             .worst_closure()

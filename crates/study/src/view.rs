@@ -5,9 +5,10 @@ use kempe_draw::{
     LinkView, MechanismView, TraceView, Wheel,
 };
 use kempe_model::{
-    DriveKind, FRAME, JointKind, Line, LinkId, Model, MotionStudy, Plot, PointId, StudyKind, value,
+    DriveKind, FRAME, JointKind, Line, LinkId, Model, MotionStudy, Plot, PointId, value,
 };
 
+use crate::motion::motion_of;
 use crate::result::{Frame, StudyResult};
 
 /// Points traced when no study names one: at most this many.
@@ -240,9 +241,7 @@ fn traced(model: &Model, study: Option<&MotionStudy>) -> Vec<PointId> {
     };
     match study {
         Some(study) => add(study),
-        None => model.studies.iter().for_each(|s| match &s.kind {
-            StudyKind::Motion(motion) => add(motion),
-        }),
+        None => model.studies.iter().for_each(|s| add(motion_of(s))),
     }
     if points.is_empty() {
         let guides: Vec<PointId> = model

@@ -3,8 +3,8 @@
 use kempe_draw::raster::animation::{self, AnimationOptions};
 use kempe_draw::raster::{self, RasterError};
 use kempe_draw::{DrawOptions, Frame, MechanismView, Stage, Theme, dxf, svg};
-use kempe_model::{Diagnostic, Model, StudyKind};
-use kempe_study::{Setting, drawing_frames, drawn, mechanism_view, pose_at};
+use kempe_model::{Diagnostic, Model, Study, StudyKind};
+use kempe_study::{Setting, drawing_frames, drawn, mechanism_view, motion_of, pose_at};
 
 use crate::arguments::Draw;
 use crate::exit::Exit;
@@ -146,9 +146,14 @@ fn picture(arguments: &Draw, kind: Kind, model: &Model) -> Result<Vec<u8>, Failu
     }
 }
 
+/// Whether a study is there to be looked at: forces are not needed for a picture.
+fn moves(study: &Study) -> bool {
+    matches!(study.kind, StudyKind::Motion(_))
+}
+
 /// All poses of the first study, and how long one pass should take on the screen, s.
 fn motion(model: &Model) -> Result<(MechanismView, Vec<Frame>, f64), Failure> {
-    let Some(study) = model.studies.first() else {
+    let Some(study) = model.studies.iter().find(|s| moves(s)) else {
         let told = Diagnostic::error(
             "no-drive",
             "nothing moves: the file has no study and no drive",
@@ -161,7 +166,6 @@ fn motion(model: &Model) -> Result<(MechanismView, Vec<Frame>, f64), Failure> {
     if result.interrupted() {
         return Err(Failure::Interrupted);
     }
-    let StudyKind::Motion(motion) = &study.kind;
     let real = result
         .table
         .column("time")
@@ -171,7 +175,7 @@ fn motion(model: &Model) -> Result<(MechanismView, Vec<Frame>, f64), Failure> {
         .filter(|t| (1.0..=20.0).contains(t))
         .unwrap_or(AnimationOptions::default().period);
     Ok((
-        mechanism_view(model, Some(motion)),
+        mechanism_view(model, Some(motion_of(study))),
         drawing_frames(&result),
         period,
     ))
@@ -188,9 +192,8 @@ fn pose(arguments: &Draw, model: &Model) -> Result<(MechanismView, Vec<Frame>, u
         pose_at(model, &settings.map_err(Failure::Usage)?).map_err(Failure::Unsolved)?;
     let mut frames = Vec::new();
     let mut study = None;
-    if let Some(first) = model.studies.first() {
-        let StudyKind::Motion(motion) = &first.kind;
-        study = Some(motion);
+    if let Some(first) = model.studies.iter().find(|s| moves(s)) {
+        study = Some(motion_of(first));
         if let Ok(result) = kempe_study::run(model, first, &mut kempe_study::Silent) {
             frames = drawing_frames(&result);
         }

@@ -3,8 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use kempe_draw::{DrawOptions, Stage, Theme, svg};
-use kempe_model::{Diagnostic, Model, Study, StudyKind};
-use kempe_study::{StudyOutcome, StudyResult, drawing_frames, encode, figures, mechanism_view};
+use kempe_model::{Diagnostic, Model, Study};
+use kempe_study::{
+    StudyOutcome, StudyResult, drawing_frames, encode, figures, mechanism_view, motion_of,
+};
 use kempe_units::nearest;
 use serde_json::{Value, json};
 
@@ -196,8 +198,7 @@ fn write(
 
 /// The mechanism at its first row that was reached.
 fn picture(model: &Model, study: &Study, result: &StudyResult) -> String {
-    let StudyKind::Motion(motion) = &study.kind;
-    let view = mechanism_view(model, Some(motion));
+    let view = mechanism_view(model, Some(motion_of(study)));
     let frames = drawing_frames(result);
     let row = result
         .table
