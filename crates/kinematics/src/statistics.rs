@@ -44,10 +44,10 @@ fn times(sampler: &Sampler<'_>) -> Vec<f64> {
     times
 }
 
-type At = (f64, f64);
+pub(crate) type At = (f64, f64);
 
 /// Smallest and largest value with their times: ends, breaks, and the zeros of the rate between grid points.
-fn extremes(sampler: &mut Sampler<'_>, measure: &Measure) -> Option<(At, At)> {
+pub(crate) fn extremes(sampler: &mut Sampler<'_>, measure: &Measure) -> Option<(At, At)> {
     let times = times(sampler);
     let mut low: At = (f64::NAN, f64::INFINITY);
     let mut high: At = (f64::NAN, f64::NEG_INFINITY);
