@@ -62,8 +62,7 @@ impl<'m> Circuit<'m> {
         let motion = Motion::new(mechanism, plan, design, parameters)?;
         let path = motion.path.clone();
         let (low, high) = motion.demanded;
-        let idle = plan.decomposition.idle.as_slice();
-        let mut follower = Follower::new(mechanism, &design.geometry, &path, idle);
+        let mut follower = Follower::new(mechanism, plan, &design.geometry, &path);
         let mut coordinates = vec![0.0; mechanism.model.drives.len()];
         let far = if motion.start == low { high } else { low };
         for part in ANCHORS {

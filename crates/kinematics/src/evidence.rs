@@ -1,9 +1,8 @@
 //! How far a pose can be trusted: closure residual and distance from singularity.
 
-use crate::blocks::Unknown;
-use crate::mechanism::{BodyId, Mechanism};
+use crate::bordered::Bordered;
+use crate::mechanism::Mechanism;
 use crate::pose::Pose;
-use crate::qr::Qr;
 use crate::state::{Branch, Design, State};
 use crate::trace::is_length;
 
@@ -46,65 +45,14 @@ pub fn closure(
     largest
 }
 
-/// Fills and factors the scaled constraint Jacobian of the given constraints at a pose.
-pub(crate) fn factor_jacobian(
-    mechanism: &Mechanism,
-    design: &Design<f64>,
-    branch: &Branch,
-    state: &State<f64>,
-    size: f64,
-    constraints: std::ops::Range<usize>,
-    held: &[Unknown],
-    qr: &mut Qr,
-) {
-    let situation = state.situation(design, branch);
-    let columns = 3 * (mechanism.bodies - 1);
-    let rows: usize = mechanism.constraints[constraints.clone()]
-        .iter()
-        .map(|(c, _)| c.rows())
-        .sum::<usize>()
-        + held.iter().map(|u| u.size()).sum::<usize>();
-    qr.reset(rows.max(columns), columns);
-    let mut row = 0;
-    for (constraint, _) in &mechanism.constraints[constraints] {
-        let unit = if is_length(constraint) {
-            1.0 / size
-        } else {
-            1.0
-        };
-        situation.gradients(constraint, |g| {
-            if g.body != BodyId::GROUND {
-                let column = 3 * (g.body.index() - 1);
-                qr.add(row + g.row, column, g.to[0] * size * unit);
-                qr.add(row + g.row, column + 1, g.to[1] * size * unit);
-                qr.add(row + g.row, column + 2, g.to[2] * unit);
-            }
-        });
-        row += constraint.rows();
-    }
-    for unknown in held {
-        let column = 3 * (unknown.body().index() - 1);
-        match unknown {
-            Unknown::Angle(_) => qr.add(row, column + 2, 1.0),
-            Unknown::Place(_) => {
-                qr.add(row, column, 1.0);
-                qr.add(row + 1, column + 1, 1.0);
-            }
-        }
-        row += unknown.size();
-    }
-    qr.factor();
-}
-
-/// The evidence of a pose.
+/// The evidence of a pose; `system` is storage that is reused from pose to pose.
 pub fn evidence(
     mechanism: &Mechanism,
-    plan: &crate::plan::Plan,
     design: &Design<f64>,
     branch: &Branch,
     state: &State<f64>,
     size: f64,
-    qr: &mut Qr,
+    system: &mut Bordered,
 ) -> Evidence {
     let closure = closure(mechanism, design, branch, state, size);
     if !closure.is_finite() {
@@ -113,25 +61,11 @@ pub fn evidence(
             smallest_singular_value: f64::NAN,
         };
     }
-    let held: Vec<Unknown> = plan
-        .decomposition
-        .idle
-        .iter()
-        .map(|b| Unknown::Angle(*b))
-        .collect();
-    factor_jacobian(
-        mechanism,
-        design,
-        branch,
-        state,
-        size,
-        0..mechanism.constraints.len(),
-        &held,
-        qr,
-    );
+    let rates = vec![0.0; mechanism.model.drives.len()];
+    system.fill(mechanism, &state.situation(design, branch), size, &rates);
     Evidence {
         closure,
-        smallest_singular_value: qr.smallest_singular_value(),
+        smallest_singular_value: system.smallest_singular_value(),
     }
 }
 

@@ -132,6 +132,15 @@ impl Constraint {
         }
     }
 
+    /// The drive whose coordinate it holds.
+    pub fn drive(&self) -> Option<DriveId> {
+        match self {
+            Constraint::Direction { input, .. } => *input,
+            Constraint::Distance { input, .. } | Constraint::Travel { input, .. } => Some(*input),
+            _ => None,
+        }
+    }
+
     /// The bodies it ties.
     pub fn bodies(&self) -> impl Iterator<Item = BodyId> {
         let list = match *self {

@@ -140,8 +140,7 @@ impl<'m> Motion<'m> {
             return Err(MotionError::Undetermined { bodies });
         }
         let scale = crate::trace::Path::scale(&path);
-        let idle = plan.decomposition.idle.as_slice();
-        let mut follower = Follower::new(mechanism, &design.geometry, &path, idle);
+        let mut follower = Follower::new(mechanism, plan, &design.geometry, &path);
 
         let far = if (start - demanded.0).abs() > (demanded.1 - start).abs() {
             demanded.0

@@ -89,6 +89,49 @@ impl Qr {
         }
     }
 
+    /// Solves the transposed system `A^T x = rhs` in place, for `A` of full column rank: `rhs` holds `columns` numbers on
+    /// entry and `x`, `rows` numbers, on return; it must have room for both. Of many solutions the shortest is given.
+    pub fn solve_transposed<T: Number>(&self, rhs: &mut [T]) {
+        let m = self.rows;
+        // R^T w = rhs, then x = Q w.
+        for i in 0..self.columns {
+            let column = &self.a[i * m..i * m + i];
+            let mut sum = rhs[i];
+            for (r, w) in column.iter().zip(rhs.iter()) {
+                sum -= *w * *r;
+            }
+            rhs[i] = sum / self.diagonal[i];
+        }
+        rhs[self.columns..m].fill(T::zero());
+        self.rotate(&mut rhs[..m]);
+    }
+
+    /// Multiplies a vector of `rows` numbers by Q.
+    pub fn rotate<T: Number>(&self, x: &mut [T]) {
+        let m = self.rows;
+        for k in (0..self.columns).rev() {
+            let v = &self.a[k * m + k..(k + 1) * m];
+            let mut sum = T::zero();
+            for (a, b) in v.iter().zip(&x[k..]) {
+                sum += *b * *a;
+            }
+            sum = sum * self.scale[k];
+            for (a, b) in v.iter().zip(&mut x[k..]) {
+                *b -= sum * *a;
+            }
+        }
+    }
+
+    /// Rows of the matrix.
+    pub fn rows(&self) -> usize {
+        self.rows
+    }
+
+    /// Columns of the matrix.
+    pub fn columns(&self) -> usize {
+        self.columns
+    }
+
     /// Determinant of a square matrix (of R with the sign of the reflections).
     pub fn determinant(&self) -> f64 {
         // Every reflection that was made turns the sign.
@@ -97,47 +140,6 @@ impl Qr {
             .zip(&self.scale)
             .map(|(r, s)| if *s > 0.0 { -r } else { *r })
             .product()
-    }
-
-    /// The smallest singular value, by inverse iteration on R^T R from a fixed start.
-    pub fn smallest_singular_value(&self) -> f64 {
-        let (m, n) = (self.rows, self.columns);
-        if n == 0 {
-            return f64::INFINITY;
-        }
-        if self.diagonal.iter().any(|r| *r == 0.0) {
-            return 0.0;
-        }
-        let r = |i: usize, j: usize| {
-            if i == j {
-                self.diagonal[i]
-            } else {
-                self.a[j * m + i]
-            }
-        };
-        // Uneven entries, so that no singular vector is missed by symmetry.
-        let mut x: Vec<f64> = (0..n).map(|i| 1.0 + 0.37 * ((i * 7) % 11) as f64).collect();
-        let mut value = f64::INFINITY;
-        for _ in 0..60 {
-            let length = x.iter().map(|v| v * v).sum::<f64>().sqrt();
-            x.iter_mut().for_each(|v| *v /= length);
-            for i in 0..n {
-                let sum: f64 = (0..i).map(|k| r(k, i) * x[k]).sum();
-                x[i] = (x[i] - sum) / r(i, i);
-            }
-            // With y = R^-T x, |y| grows to 1 / sigma.
-            let next = 1.0 / x.iter().map(|v| v * v).sum::<f64>().sqrt();
-            for i in (0..n).rev() {
-                let sum: f64 = (i + 1..n).map(|k| r(i, k) * x[k]).sum();
-                x[i] = (x[i] - sum) / r(i, i);
-            }
-            let settled = (next - value).abs() <= 1e-9 * next;
-            value = next;
-            if settled {
-                break;
-            }
-        }
-        value
     }
 
     /// Smallest over largest diagonal entry of R: a cheap measure of how near the matrix is to losing rank.
@@ -183,5 +185,10 @@ mod tests {
         let mut rhs = [1.0, 3.0, 5.0];
         qr.solve(&mut rhs);
         assert!((rhs[0] - 1.0).abs() < 1e-14 && (rhs[1] - 2.0).abs() < 1e-14);
+
+        // x + y + z = 3, y + 2 z = 3: the shortest solution is (1, 1, 1).
+        let mut rhs = [3.0, 3.0, f64::NAN];
+        qr.solve_transposed(&mut rhs);
+        assert!(rhs.iter().all(|x| (x - 1.0).abs() < 1e-14), "{rhs:?}");
     }
 }

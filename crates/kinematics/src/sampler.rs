@@ -3,14 +3,15 @@
 use kempe_model::{DriveId, Leaf, Measure, PointId, PoseMeasure, Statistic};
 use kempe_number::{Jet, Number};
 
+use crate::bordered::Bordered;
 use crate::bridge::{SIDE_ORDER, join};
 use crate::drive_path::DrivePath;
 use crate::events::EventKind;
 use crate::evidence::{evidence, is_finite};
+use crate::force_source::{ForceSource, NoForces};
 use crate::measure::{Moment, ORDER, Series, order_of, plain_direction, visit_leaves};
 use crate::motion::{EndReason, Motion, Solver};
 use crate::pose::Pose;
-use crate::qr::Qr;
 use crate::state::Design;
 use crate::swept::Swept;
 
@@ -49,9 +50,11 @@ pub struct Unmeasurable {
     pub reason: String,
 }
 
-/// Evaluates measures along a motion.
-pub struct Sampler<'a> {
+/// Evaluates measures along a motion; those of forces too where it is given their source.
+pub struct Sampler<'a, F = NoForces> {
     motion: &'a Motion<'a>,
+    /// Only ever `None` while its own questions are answered.
+    forces: Option<F>,
     measures: Vec<Measure>,
     parameters: Vec<f64>,
     series_design: Design<Series<f64>>,
@@ -63,7 +66,7 @@ pub struct Sampler<'a> {
     directions: Vec<((PointId, PointId), Vec<f64>)>,
     swept: Vec<Swept>,
     statistics: Vec<(Statistic, Measure, f64)>,
-    qr: Qr,
+    system: Bordered,
 }
 
 impl<'a> Sampler<'a> {
@@ -72,6 +75,20 @@ impl<'a> Sampler<'a> {
     /// # Errors
     /// All measures that cannot be evaluated, each with its reason.
     pub fn new(motion: &'a Motion<'a>, measures: &[&Measure]) -> Result<Self, Vec<Unmeasurable>> {
+        Self::with_forces(motion, measures, NoForces)
+    }
+}
+
+impl<'a, F: ForceSource> Sampler<'a, F> {
+    /// As [`Sampler::new`], with a source of forces.
+    ///
+    /// # Errors
+    /// All measures that cannot be evaluated, each with its reason.
+    pub fn with_forces(
+        motion: &'a Motion<'a>,
+        measures: &[&Measure],
+        forces: F,
+    ) -> Result<Self, Vec<Unmeasurable>> {
         let mechanism = motion.mechanism;
         let problems: Vec<Unmeasurable> = (measures.iter().enumerate())
             .filter_map(|(index, m)| {
@@ -94,13 +111,19 @@ impl<'a> Sampler<'a> {
             directions: Vec::new(),
             swept: Vec::new(),
             statistics: Vec::new(),
-            qr: Qr::default(),
+            system: Bordered::new(motion.mechanism, motion.plan),
             parameters,
             measures: measures.iter().map(|m| (*m).clone()).collect(),
             motion,
+            forces: Some(forces),
         };
         it.prepare();
         Ok(it)
+    }
+
+    /// The source of forces, as it stands after the row last asked for.
+    pub fn forces(&self) -> Option<&F> {
+        self.forces.as_ref()
     }
 
     /// Finds out what the measures need beyond the poses along the path.
@@ -110,7 +133,9 @@ impl<'a> Sampler<'a> {
         let mut swept: Vec<PointId> = Vec::new();
         let mut drives: Vec<DriveId> = Vec::new();
         let motion = self.motion;
-        for measure in &self.measures {
+        // What the forces ask for comes last, so that its statistics are found first.
+        let inputs = self.forces.as_ref().map_or(&[][..], F::measures);
+        for measure in self.measures.iter().chain(inputs) {
             visit_leaves(motion.mechanism, measure, &mut |leaf| match leaf {
                 Leaf::Over(statistic, inner) => {
                     let entry = (*statistic, (**inner).clone());
@@ -128,6 +153,9 @@ impl<'a> Sampler<'a> {
                 }
                 _ => {}
             });
+        }
+        if self.forces.as_ref().is_some_and(F::needs_drives) {
+            drives.extend((0..self.drives.len()).map(|d| DriveId(d as u32)));
         }
         for drive in drives {
             if Some(drive) != self.path_drive() {
@@ -253,10 +281,11 @@ impl<'a> Sampler<'a> {
             return sample;
         }
         let measures = std::mem::take(&mut self.measures);
-        let moment = self.moment(p, time);
-        for (value, measure) in sample.values.iter_mut().zip(&measures) {
-            *value = moment.value(measure);
-        }
+        self.with_moment(p, time, true, |moment| {
+            for (value, measure) in sample.values.iter_mut().zip(&measures) {
+                *value = moment.value(measure);
+            }
+        });
         self.measures = measures;
 
         for (pose, plain) in self
@@ -276,12 +305,11 @@ impl<'a> Sampler<'a> {
         let (branch, state) = (&self.plain.branch, &self.plain.state);
         let found = evidence(
             motion.mechanism,
-            motion.plan,
             motion.design,
             branch,
             state,
             motion.size(),
-            &mut self.qr,
+            &mut self.system,
         );
         sample.closure = found.closure;
         sample.smallest_singular_value = found.smallest_singular_value;
@@ -376,7 +404,32 @@ impl<'a> Sampler<'a> {
         }
     }
 
-    /// The moment last solved.
+    /// Hands the moment last solved to `ask`, with its forces where they are wanted.
+    fn with_moment<R>(
+        &mut self,
+        p: f64,
+        time: f64,
+        with_forces: bool,
+        ask: impl FnOnce(&Moment<'_, f64>) -> R,
+    ) -> R {
+        let mut forces = self.forces.take();
+        let moment = self.moment(p, time);
+        if let Some(source) = forces.as_mut().filter(|_| with_forces) {
+            source.solve(&moment);
+        }
+        let answer = |measure: &_| match &forces {
+            Some(source) => source.answer(measure),
+            None => Series::from_f64(f64::NAN),
+        };
+        let result = ask(&Moment {
+            forces: with_forces.then_some(&answer as &dyn Fn(&_) -> _),
+            ..moment
+        });
+        self.forces = forces;
+        result
+    }
+
+    /// The moment last solved, without forces.
     fn moment(&self, p: f64, time: f64) -> Moment<'_, f64> {
         let motion = self.motion;
         let clock = if time.is_finite() {
@@ -422,9 +475,13 @@ impl<'a> Sampler<'a> {
         if !self.motion.reaches(p) || !self.solve(p) {
             return [f64::NAN; 2];
         }
-        let series = self
-            .moment(p, time)
-            .series(measure, crate::measure::Along::Time);
+        let mut asks_forces = false;
+        visit_leaves(self.motion.mechanism, measure, &mut |leaf| {
+            asks_forces |= matches!(leaf, Leaf::Force(_));
+        });
+        let series = self.with_moment(p, time, asks_forces, |moment| {
+            moment.series(measure, crate::measure::Along::Time)
+        });
         [series.derivative(0), series.derivative(1)]
     }
 

@@ -129,14 +129,17 @@ struct Varied<'s, 'a> {
 impl<'s, 'a> Varied<'s, 'a> {
     fn new(motion: &'a Motion<'a>, sampler: &'s mut Sampler<'a>, chunk: &[ParameterId]) -> Self {
         let model = &motion.mechanism.model;
-        let plain = model.parameter_values::<f64>();
-        let parameters: Vec<Base> = model.parameter_values_with(&mut |id| {
-            let eps = std::array::from_fn(|k| f64::from(u8::from(chunk.get(k) == Some(&id))));
-            chunk.contains(&id).then_some(Base {
-                re: *plain.get(id.index())?,
-                eps,
-            })
-        });
+        // A varied parameter still follows those it is built on: d/d(each) is the same whatever else is asked for.
+        let mut parameters: Vec<Base> = Vec::with_capacity(model.parameters.len());
+        for (index, parameter) in model.parameters.iter().enumerate() {
+            let mut value = kempe_model::value(&parameter.value, &parameters);
+            for (eps, id) in value.eps.iter_mut().zip(chunk) {
+                if id.index() == index {
+                    *eps += 1.0;
+                }
+            }
+            parameters.push(value);
+        }
         let rich: Vec<Series<Base>> = parameters.iter().map(|x| Series::constant(*x)).collect();
         Self {
             design: Design::new(motion.mechanism, motion.plan, &rich),

@@ -2,6 +2,7 @@
 
 use kempe_model::{Measure, Statistic};
 
+use crate::force_source::ForceSource;
 use crate::sampler::Sampler;
 use crate::swept::GAUSS;
 
@@ -9,7 +10,11 @@ use crate::swept::GAUSS;
 const GRID: usize = 360;
 
 /// Evaluates a statistic of a measure over the motion, SI. NaN where the motion does not reach.
-pub(crate) fn over(sampler: &mut Sampler<'_>, statistic: Statistic, measure: &Measure) -> f64 {
+pub(crate) fn over<F: ForceSource>(
+    sampler: &mut Sampler<'_, F>,
+    statistic: Statistic,
+    measure: &Measure,
+) -> f64 {
     match statistic {
         Statistic::At { drive, value } => {
             let time = match drive {
@@ -33,7 +38,7 @@ pub(crate) fn over(sampler: &mut Sampler<'_>, statistic: Statistic, measure: &Me
 }
 
 /// Times that matter: the breaks of the laws and an even grid.
-fn times(sampler: &Sampler<'_>) -> Vec<f64> {
+fn times<F: ForceSource>(sampler: &Sampler<'_, F>) -> Vec<f64> {
     let duration = sampler.duration();
     let mut times: Vec<f64> = (0..=GRID)
         .map(|k| duration * k as f64 / GRID as f64)
@@ -47,7 +52,10 @@ fn times(sampler: &Sampler<'_>) -> Vec<f64> {
 pub(crate) type At = (f64, f64);
 
 /// Smallest and largest value with their times: ends, breaks, and the zeros of the rate between grid points.
-pub(crate) fn extremes(sampler: &mut Sampler<'_>, measure: &Measure) -> Option<(At, At)> {
+pub(crate) fn extremes<F: ForceSource>(
+    sampler: &mut Sampler<'_, F>,
+    measure: &Measure,
+) -> Option<(At, At)> {
     let times = times(sampler);
     let mut low: At = (f64::NAN, f64::INFINITY);
     let mut high: At = (f64::NAN, f64::NEG_INFINITY);
@@ -91,7 +99,7 @@ pub(crate) fn extremes(sampler: &mut Sampler<'_>, measure: &Measure) -> Option<(
 }
 
 /// Mean over time by Gauss quadrature between the times that matter.
-fn mean(sampler: &mut Sampler<'_>, measure: &Measure) -> f64 {
+fn mean<F: ForceSource>(sampler: &mut Sampler<'_, F>, measure: &Measure) -> f64 {
     let times = times(sampler);
     let duration = sampler.duration();
     if duration <= 0.0 {

@@ -4,11 +4,12 @@
 //! depend on them either. Every step is accepted only if the cubic through its ends, with their tangents, agrees with a
 //! corrected point in the middle: a jump to another branch would show there.
 
+use crate::bordered::Bordered;
 use crate::constraint::{Input, Situation};
 use crate::geometry::Geometry;
-use crate::mechanism::{BodyId, Constraint, Mechanism};
+use crate::mechanism::{Constraint, Mechanism};
+use crate::plan::Plan;
 use crate::pose::Pose;
-use crate::qr::Qr;
 
 /// How far the corrected middle of a step may lie from the cubic through its ends, as a part of the step.
 pub const MIDDLE_TOLERANCE: f64 = 1e-3;
@@ -55,10 +56,8 @@ pub struct Follower<'a, P> {
     path: &'a P,
     /// Mechanism size, m.
     pub size: f64,
-    idle: &'a [BodyId],
-    rows: usize,
-    qr: Qr,
-    rhs: Vec<f64>,
+    system: Bordered,
+    step: Vec<f64>,
     poses: Vec<Pose<f64>>,
     near: Vec<f64>,
     inputs: Vec<Input<f64>>,
@@ -67,31 +66,21 @@ pub struct Follower<'a, P> {
 }
 
 impl<'a, P: Path> Follower<'a, P> {
-    /// A follower for a design; `idle` angles are held.
+    /// A follower for a design.
     pub fn new(
         mechanism: &'a Mechanism,
+        plan: &Plan,
         geometry: &'a Geometry<f64>,
         path: &'a P,
-        idle: &'a [BodyId],
     ) -> Self {
-        let rows: usize = mechanism
-            .constraints
-            .iter()
-            .map(|(c, _)| c.rows())
-            .sum::<usize>()
-            + idle.len()
-            + 1;
-        let unknowns = 3 * (mechanism.bodies - 1) + 1;
         let drives = mechanism.model.drives.len();
         Self {
             mechanism,
             geometry,
             path,
             size: geometry.size(mechanism),
-            idle,
-            rows: rows.max(unknowns),
-            qr: Qr::with_capacity(rows.max(unknowns), unknowns),
-            rhs: Vec::new(),
+            system: Bordered::new(mechanism, plan),
+            step: Vec::new(),
             poses: vec![Pose::identity(); mechanism.bodies],
             near: vec![0.0; mechanism.bodies],
             inputs: vec![Input::length(0.0); drives],
@@ -136,9 +125,8 @@ impl<'a, P: Path> Follower<'a, P> {
         }
     }
 
-    /// Fills residuals and the bordered Jacobian (last row: `border`) and factors it.
-    fn linearise(&mut self, z: &[f64], border: &[f64]) {
-        let n = self.unknowns();
+    /// Fills and factors the Jacobian and residuals at a point.
+    fn linearise(&mut self, z: &[f64]) {
         let p = self.parameter(z);
         let (mut poses, mut near) = (
             std::mem::take(&mut self.poses),
@@ -154,63 +142,24 @@ impl<'a, P: Path> Follower<'a, P> {
         {
             *input = crate::state::input_of(drive, value);
         }
+        let scale = self.path.scale();
+        self.rates.iter_mut().for_each(|rate| *rate *= scale);
         let situation = Situation {
             geometry: self.geometry,
             inputs: &self.inputs,
             poses: &poses,
             near: &near,
         };
-        self.qr.reset(self.rows, n);
-        self.rhs.clear();
-        self.rhs.resize(self.rows, 0.0);
-        let (size, scale) = (self.size, self.path.scale());
-        let mut row = 0;
-        for (constraint, _) in &self.mechanism.constraints {
-            // Lengths count in mechanism sizes, directions and gear angles as they are.
-            let unit = if is_length(constraint) {
-                1.0 / size
-            } else {
-                1.0
-            };
-            let residual = situation.residual(constraint);
-            for k in 0..constraint.rows() {
-                self.rhs[row + k] = residual[k] * unit;
-            }
-            let qr = &mut self.qr;
-            let to_drive = situation.gradients(constraint, |g| {
-                if g.body != BodyId::GROUND {
-                    let column = 3 * (g.body.index() - 1);
-                    qr.add(row + g.row, column, g.to[0] * size * unit);
-                    qr.add(row + g.row, column + 1, g.to[1] * size * unit);
-                    qr.add(row + g.row, column + 2, g.to[2] * unit);
-                }
-            });
-            if let Some(drive) = drive_of(constraint) {
-                qr.add(row, n - 1, to_drive * self.rates[drive] * scale * unit);
-            }
-            row += constraint.rows();
-        }
-        for body in self.idle {
-            self.qr.add(row, 3 * (body.index() - 1) + 2, 1.0);
-            row += 1;
-        }
-        for (column, value) in border.iter().enumerate() {
-            self.qr.add(row, column, *value);
-        }
-        self.qr.factor();
+        self.system
+            .fill(self.mechanism, &situation, self.size, &self.rates);
         (self.poses, self.near) = (poses, near);
     }
 
     /// The unit tangent at a point, on the side of `toward`. `None` where it is not unique.
     pub fn tangent(&mut self, z: &[f64], toward: &[f64]) -> Option<Vec<f64>> {
-        self.linearise(z, toward);
-        let n = self.unknowns();
-        let last = self.border_row();
-        self.rhs.fill(0.0);
-        self.rhs[last] = 1.0;
-        let mut t = std::mem::take(&mut self.rhs);
-        self.qr.solve(&mut t);
-        t.truncate(n);
+        self.linearise(z);
+        let mut t = Vec::new();
+        self.system.solve(false, toward, 1.0, &mut t);
         let length = norm(&t);
         if !length.is_finite() || length == 0.0 {
             return None;
@@ -221,19 +170,10 @@ impl<'a, P: Path> Follower<'a, P> {
         Some(t)
     }
 
-    fn border_row(&self) -> usize {
-        self.mechanism
-            .constraints
-            .iter()
-            .map(|(c, _)| c.rows())
-            .sum::<usize>()
-            + self.idle.len()
-    }
-
     /// Smallest over largest pivot of the bordered Jacobian at the point last linearised: how well the tangent is
     /// determined.
     pub fn conditioning(&self) -> f64 {
-        self.qr.smallest_pivot_ratio()
+        self.system.conditioning()
     }
 
     /// Corrects a point within the hyperplane across `border` through it. Returns the length of the first correction.
@@ -241,14 +181,14 @@ impl<'a, P: Path> Follower<'a, P> {
         let mut first = None;
         let mut last = f64::INFINITY;
         for _ in 0..CORRECTIONS {
-            self.linearise(z, border);
-            let mut step = std::mem::take(&mut self.rhs);
-            self.qr.solve(&mut step);
-            let length = norm(&step[..z.len()]);
+            self.linearise(z);
+            let mut step = std::mem::take(&mut self.step);
+            self.system.solve(true, border, 0.0, &mut step);
+            let length = norm(&step);
             for (z, d) in z.iter_mut().zip(&step) {
                 *z -= d;
             }
-            self.rhs = step;
+            self.step = step;
             if !length.is_finite() || (length > 0.5 * last && length > 1e-10) {
                 return None;
             }
@@ -324,16 +264,6 @@ pub(crate) fn is_length(constraint: &Constraint) -> bool {
         constraint,
         Constraint::Direction { .. } | Constraint::Gears { .. }
     )
-}
-
-fn drive_of(constraint: &Constraint) -> Option<usize> {
-    match constraint {
-        Constraint::Direction { input, .. } => input.map(|d| d.index()),
-        Constraint::Distance { input, .. } | Constraint::Travel { input, .. } => {
-            Some(input.index())
-        }
-        _ => None,
-    }
 }
 
 /// The cubic through two nodes with their tangents, at a part `s` of the step.

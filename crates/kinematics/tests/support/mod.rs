@@ -637,15 +637,14 @@ impl Case {
             }
         }
         let size = self.design.geometry.size(&self.mechanism);
-        let mut qr = Default::default();
+        let mut system = kempe_kinematics::bordered::Bordered::new(&self.mechanism, &self.plan);
         kempe_kinematics::evidence::evidence(
             &self.mechanism,
-            &self.plan,
             &self.design,
             &branch,
             &state,
             size,
-            &mut qr,
+            &mut system,
         )
         .smallest_singular_value
     }

@@ -1,0 +1,421 @@
+//! The linear systems of the continuation, solved block by block.
+//!
+//! With the plan's blocks in order the constraint Jacobian is block lower triangular, so a system costs time in
+//! proportion to the mechanism. One block may be singular without harm, the one where a limit or a crossing of
+//! branches lies: its unknowns and the path parameter are kept together and solved last, with the border row.
+
+use crate::blocks::{Row, Unknown};
+use crate::constraint::Situation;
+use crate::mechanism::{BodyId, Mechanism};
+use crate::plan::Plan;
+use crate::qr::Qr;
+use crate::trace::is_length;
+
+/// Where an unknown number of a body stands: block and first column in it.
+type Seat = Option<(u32, u32)>;
+
+/// One block of the layout.
+#[derive(Clone, Debug)]
+struct Block {
+    /// First row (and column, where the system is square) in the whole system.
+    first: usize,
+    /// How many columns.
+    size: usize,
+    /// How many rows; more than columns in an overconstrained block.
+    rows: usize,
+    /// The constraints with the places of their rows in the block.
+    constraints: Vec<(usize, [Option<usize>; 2])>,
+    /// Idle angles held here: (column, row).
+    held: Option<(usize, usize)>,
+}
+
+/// Which rows and unknowns belong to which block.
+#[derive(Clone, Debug)]
+pub struct Layout {
+    blocks: Vec<Block>,
+    angle: Vec<Seat>,
+    place: Vec<Seat>,
+    rows: usize,
+    columns: usize,
+    drive_of: Vec<Option<usize>>,
+}
+
+impl Layout {
+    /// The blocks of a plan. An overconstrained mechanism is one block: what is redundant in one place keeps another
+    /// regular.
+    pub fn new(mechanism: &Mechanism, plan: &Plan) -> Self {
+        let mut blocks: Vec<(Vec<Unknown>, Vec<Row>)> = plan
+            .blocks
+            .iter()
+            .map(|b| (b.unknowns.clone(), b.rows.clone()))
+            .collect();
+        if !plan.decomposition.surplus.is_empty() {
+            let unknowns = blocks.iter().flat_map(|(u, _)| u.iter().copied()).collect();
+            let mut rows: Vec<Row> = blocks.iter().flat_map(|(_, r)| r.iter().copied()).collect();
+            rows.extend(&plan.decomposition.surplus);
+            blocks = vec![(unknowns, rows)];
+        }
+        let mut it = Self {
+            blocks: Vec::with_capacity(blocks.len()),
+            angle: vec![None; mechanism.bodies],
+            place: vec![None; mechanism.bodies],
+            rows: 0,
+            columns: 0,
+            drive_of: mechanism
+                .constraints
+                .iter()
+                .map(|(c, _)| c.drive().map(|d| d.index()))
+                .collect(),
+        };
+        for (index, (unknowns, rows)) in blocks.into_iter().enumerate() {
+            let mut size = 0;
+            let mut idle = None;
+            for unknown in &unknowns {
+                let seat = Some((index as u32, size as u32));
+                match unknown {
+                    Unknown::Angle(body) => {
+                        it.angle[body.index()] = seat;
+                        if plan.decomposition.idle.contains(body) {
+                            idle = Some(size);
+                        }
+                    }
+                    Unknown::Place(body) => it.place[body.index()] = seat,
+                }
+                size += unknown.size();
+            }
+            let mut constraints: Vec<(usize, [Option<usize>; 2])> = Vec::new();
+            for (place, row) in rows.iter().enumerate() {
+                match constraints.iter_mut().find(|(c, _)| *c == row.constraint) {
+                    Some((_, at)) => at[row.row] = Some(place),
+                    None => {
+                        let mut at = [None; 2];
+                        at[row.row] = Some(place);
+                        constraints.push((row.constraint, at));
+                    }
+                }
+            }
+            let height = rows.len() + usize::from(idle.is_some());
+            let held = idle.map(|column| (column, rows.len()));
+            it.blocks.push(Block {
+                first: it.rows,
+                size,
+                rows: height.max(size),
+                constraints,
+                held,
+            });
+            it.rows += height.max(size);
+            it.columns += size;
+        }
+        it
+    }
+
+    /// Place of a body's x (y follows) and angle among the scaled unknowns of a trace.
+    fn column_in_z(unknown: Unknown) -> usize {
+        3 * (unknown.body().index() - 1) + usize::from(matches!(unknown, Unknown::Angle(_))) * 2
+    }
+}
+
+/// An entry of the Jacobian outside the diagonal blocks.
+#[derive(Clone, Copy, Debug)]
+struct Coupling {
+    row: u32,
+    /// Block and column of the unknown.
+    block: u32,
+    column: u32,
+    value: f64,
+}
+
+/// A bordered system ready to be solved.
+#[derive(Clone, Debug)]
+pub struct Bordered {
+    layout: Layout,
+    /// Column of every block's unknowns in `z`, block after block.
+    columns_in_z: Vec<Vec<usize>>,
+    diagonal: Vec<Qr>,
+    /// Entries of the singular candidate's own block, kept unfactored: row-major.
+    plain: Vec<Vec<f64>>,
+    couplings: Vec<Vec<Coupling>>,
+    to_parameter: Vec<f64>,
+    residual: Vec<f64>,
+    worst: usize,
+    last: Qr,
+    rhs: Vec<f64>,
+}
+
+impl Bordered {
+    /// Storage for a mechanism's systems.
+    pub fn new(mechanism: &Mechanism, plan: &Plan) -> Self {
+        let layout = Layout::new(mechanism, plan);
+        let count = layout.blocks.len();
+        let mut columns_in_z: Vec<Vec<usize>> =
+            layout.blocks.iter().map(|b| vec![0; b.size]).collect();
+        for body in (1..mechanism.bodies).map(|b| BodyId(b as u32)) {
+            if let Some((block, column)) = layout.angle[body.index()] {
+                columns_in_z[block as usize][column as usize] =
+                    Layout::column_in_z(Unknown::Angle(body));
+            }
+            if let Some((block, column)) = layout.place[body.index()] {
+                let z = Layout::column_in_z(Unknown::Place(body));
+                columns_in_z[block as usize][column as usize] = z;
+                columns_in_z[block as usize][column as usize + 1] = z + 1;
+            }
+        }
+        Self {
+            columns_in_z,
+            diagonal: vec![Qr::default(); count],
+            plain: vec![Vec::new(); count],
+            couplings: vec![Vec::new(); count],
+            to_parameter: vec![0.0; layout.rows],
+            residual: vec![0.0; layout.rows],
+            worst: 0,
+            last: Qr::default(),
+            rhs: Vec::new(),
+            layout,
+        }
+    }
+
+    /// Fills the scaled Jacobian and residuals at a situation. `rates` are the drives' rates along the scaled path
+    /// parameter.
+    pub fn fill(
+        &mut self,
+        mechanism: &Mechanism,
+        situation: &Situation<'_, f64>,
+        size: f64,
+        rates: &[f64],
+    ) {
+        let layout = &self.layout;
+        for (index, block) in layout.blocks.iter().enumerate() {
+            let couplings = &mut self.couplings[index];
+            let plain = &mut self.plain[index];
+            couplings.clear();
+            plain.clear();
+            plain.resize(block.rows * block.size, 0.0);
+            self.to_parameter[block.first..block.first + block.rows].fill(0.0);
+            self.residual[block.first..block.first + block.rows].fill(0.0);
+            for (constraint, at) in &block.constraints {
+                let kind = &mechanism.constraints[*constraint].0;
+                // Lengths count in mechanism sizes, directions and gear angles as they are.
+                let unit = if is_length(kind) { 1.0 / size } else { 1.0 };
+                let value = situation.residual(kind);
+                let to_drive = situation.gradients(kind, |g| {
+                    let Some(row) = at[g.row] else { return };
+                    let mut put = |seat: Seat, offset: usize, value: f64| {
+                        // A row that does not feel an unknown says so with a zero.
+                        let Some((home, column)) = seat.filter(|_| value != 0.0) else {
+                            return;
+                        };
+                        let column = column as usize + offset;
+                        if home as usize == index {
+                            plain[row * block.size + column] += value;
+                        } else {
+                            couplings.push(Coupling {
+                                row: row as u32,
+                                block: home,
+                                column: column as u32,
+                                value,
+                            });
+                        }
+                    };
+                    let body = g.body.index();
+                    put(layout.place[body], 0, g.to[0] * size * unit);
+                    put(layout.place[body], 1, g.to[1] * size * unit);
+                    put(layout.angle[body], 0, g.to[2] * unit);
+                });
+                for k in 0..2 {
+                    let Some(row) = at[k] else { continue };
+                    self.residual[block.first + row] = value[k] * unit;
+                    if let Some(drive) = layout.drive_of[*constraint] {
+                        self.to_parameter[block.first + row] = to_drive * rates[drive] * unit;
+                    }
+                }
+            }
+            if let Some((column, row)) = block.held {
+                plain[row * block.size + column] = 1.0;
+            }
+        }
+        self.factor();
+    }
+
+    fn factor(&mut self) {
+        let mut worst = (f64::INFINITY, 0);
+        for (index, block) in self.layout.blocks.iter().enumerate() {
+            let qr = &mut self.diagonal[index];
+            qr.reset(block.rows, block.size);
+            for row in 0..block.rows {
+                for column in 0..block.size {
+                    qr.add(row, column, self.plain[index][row * block.size + column]);
+                }
+            }
+            qr.factor();
+            let ratio = qr.smallest_pivot_ratio();
+            if ratio < worst.0 {
+                worst = (ratio, index);
+            }
+        }
+        self.worst = worst.1;
+    }
+
+    /// Solves `[J J_p; border] d = [rhs; border_rhs]`, where `rhs` is the residual or zero, into `d` (in the order of
+    /// `z`, the path parameter last).
+    pub fn solve(
+        &mut self,
+        with_residual: bool,
+        border: &[f64],
+        border_rhs: f64,
+        d: &mut Vec<f64>,
+    ) {
+        let layout = &self.layout;
+        let kept = layout.blocks.get(self.worst).map_or(0, |b| b.size);
+        let width = kept + 1;
+        // Every block's unknowns as a constant and a matrix on the kept ones: column 0, then 1..=width.
+        let mut affine: Vec<Vec<f64>> = Vec::with_capacity(layout.blocks.len());
+        let kept_rows = layout.blocks.get(self.worst).map_or(0, |b| b.rows);
+        self.last.reset(kept_rows + 1, width);
+        let mut last_rhs = vec![0.0; kept_rows + 1];
+        for (index, block) in layout.blocks.iter().enumerate() {
+            let mut known = vec![0.0; block.rows * (width + 1)];
+            for row in 0..block.rows {
+                if with_residual {
+                    known[row] = self.residual[block.first + row];
+                }
+                known[width * block.rows + row] = -self.to_parameter[block.first + row];
+            }
+            for c in &self.couplings[index] {
+                let (home, column) = (c.block as usize, c.column as usize);
+                let size = layout.blocks[home].size;
+                for k in 0..=width {
+                    known[k * block.rows + c.row as usize] -=
+                        c.value * affine[home][k * size + column];
+                }
+            }
+            if index == self.worst {
+                for row in 0..block.rows {
+                    last_rhs[row] = known[row];
+                    for column in 0..block.size {
+                        self.last
+                            .add(row, column, self.plain[index][row * block.size + column]);
+                    }
+                    self.last.add(row, kept, -known[width * block.rows + row]);
+                }
+                let mut own = vec![0.0; block.size * (width + 1)];
+                for column in 0..block.size {
+                    own[(column + 1) * block.size + column] = 1.0;
+                }
+                affine.push(own);
+                continue;
+            }
+            let mut own = Vec::with_capacity(block.size * (width + 1));
+            for k in 0..=width {
+                self.rhs.clear();
+                self.rhs
+                    .extend_from_slice(&known[k * block.rows..(k + 1) * block.rows]);
+                if self.rhs.iter().any(|v| *v != 0.0) {
+                    self.diagonal[index].solve(&mut self.rhs);
+                }
+                own.extend_from_slice(&self.rhs[..block.size]);
+            }
+            affine.push(own);
+        }
+        let mut constant = 0.0;
+        let p = border.len() - 1;
+        let mut row = vec![0.0; width];
+        for (index, block) in layout.blocks.iter().enumerate() {
+            for (column, &z) in self.columns_in_z[index].iter().enumerate() {
+                constant += border[z] * affine[index][column];
+                for (k, value) in row.iter_mut().enumerate() {
+                    *value += border[z] * affine[index][(k + 1) * block.size + column];
+                }
+            }
+        }
+        row[kept] += border[p];
+        for (k, value) in row.iter().enumerate() {
+            self.last.add(kept_rows, k, *value);
+        }
+        last_rhs[kept_rows] = border_rhs - constant;
+        self.last.factor();
+        self.last.solve(&mut last_rhs);
+        d.clear();
+        d.resize(border.len(), 0.0);
+        for (index, block) in layout.blocks.iter().enumerate() {
+            for (column, &z) in self.columns_in_z[index].iter().enumerate() {
+                let linear: f64 = (0..width)
+                    .map(|k| affine[index][(k + 1) * block.size + column] * last_rhs[k])
+                    .sum();
+                d[z] = affine[index][column] + linear;
+            }
+        }
+        d[p] = last_rhs[kept];
+    }
+
+    /// Smallest pivot ratio of the systems last solved: how well the tangent is determined.
+    pub fn conditioning(&self) -> f64 {
+        let others = self
+            .diagonal
+            .iter()
+            .enumerate()
+            .filter(|(index, _)| *index != self.worst);
+        others
+            .map(|(_, qr)| qr.smallest_pivot_ratio())
+            .fold(self.last.smallest_pivot_ratio(), f64::min)
+    }
+
+    /// The smallest singular value of the Jacobian without its parameter column, by inverse iteration.
+    pub fn smallest_singular_value(&mut self) -> f64 {
+        let layout = &self.layout;
+        if self
+            .diagonal
+            .iter()
+            .any(|qr| qr.smallest_pivot_ratio() == 0.0)
+        {
+            return 0.0;
+        }
+        let at: Vec<usize> = layout
+            .blocks
+            .iter()
+            .scan(0, |sum, b| {
+                let first = *sum;
+                *sum += b.size;
+                Some(first)
+            })
+            .collect();
+        // Uneven entries, so that no singular vector is missed by symmetry.
+        let mut x: Vec<f64> = (0..layout.columns)
+            .map(|i| 1.0 + 0.37 * ((i * 7) % 11) as f64)
+            .collect();
+        let mut value = f64::INFINITY;
+        for _ in 0..60 {
+            let length = x.iter().map(|v| v * v).sum::<f64>().sqrt();
+            x.iter_mut().for_each(|v| *v /= length);
+            // y = J^-T x, last block first.
+            let mut y: Vec<f64> = vec![0.0; layout.rows];
+            for (index, block) in layout.blocks.iter().enumerate().rev() {
+                let own = &mut y[block.first..block.first + block.rows];
+                own[..block.size].copy_from_slice(&x[at[index]..at[index] + block.size]);
+                self.diagonal[index].solve_transposed(own);
+                for c in &self.couplings[index] {
+                    x[at[c.block as usize] + c.column as usize] -=
+                        c.value * y[block.first + c.row as usize];
+                }
+            }
+            let next = 1.0 / y.iter().map(|v| v * v).sum::<f64>().sqrt();
+            // x = J^-1 y, first block first.
+            for (index, block) in layout.blocks.iter().enumerate() {
+                self.rhs.clear();
+                self.rhs
+                    .extend_from_slice(&y[block.first..block.first + block.rows]);
+                for c in &self.couplings[index] {
+                    self.rhs[c.row as usize] -=
+                        c.value * x[at[c.block as usize] + c.column as usize];
+                }
+                self.diagonal[index].solve(&mut self.rhs);
+                x[at[index]..at[index] + block.size].copy_from_slice(&self.rhs[..block.size]);
+            }
+            let settled = (next - value).abs() <= 1e-9 * next;
+            value = next;
+            if settled || !value.is_finite() {
+                break;
+            }
+        }
+        value
+    }
+}
