@@ -99,7 +99,10 @@ pub fn sensitivities(
         };
         for (index, result) in results.iter().enumerate() {
             it.values[index] = result.re;
-            it.derivatives[index].extend(&result.eps[..chunk.len()]);
+            // What has no value has no derivatives either.
+            let slopes = result.eps.iter().take(chunk.len());
+            it.derivatives[index]
+                .extend(slopes.map(|d| if result.re.is_nan() { f64::NAN } else { *d }));
         }
     }
     Ok(it)
