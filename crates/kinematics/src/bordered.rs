@@ -139,6 +139,7 @@ pub struct Bordered {
     residual: Vec<f64>,
     worst: usize,
     last: Qr,
+    rest: f64,
     rhs: Vec<f64>,
 }
 
@@ -169,6 +170,7 @@ impl Bordered {
             residual: vec![0.0; layout.rows],
             worst: 0,
             last: Qr::default(),
+            rest: 0.0,
             rhs: Vec::new(),
             layout,
         }
@@ -334,6 +336,7 @@ impl Bordered {
         last_rhs[kept_rows] = border_rhs - constant;
         self.last.factor();
         self.last.solve(&mut last_rhs);
+        self.rest = last_rhs[width..].iter().map(|v| v * v).sum::<f64>().sqrt();
         d.clear();
         d.resize(border.len(), 0.0);
         for (index, block) in layout.blocks.iter().enumerate() {
@@ -345,6 +348,11 @@ impl Bordered {
             }
         }
         d[p] = last_rhs[kept];
+    }
+
+    /// What redundant rows left over of the system last solved in the least-squares sense.
+    pub fn rest(&self) -> f64 {
+        self.rest
     }
 
     /// Smallest pivot ratio of the systems last solved: how well the tangent is determined.

@@ -15,10 +15,14 @@ use crate::pose::Pose;
 pub const MIDDLE_TOLERANCE: f64 = 1e-3;
 /// Smallest cosine between the tangents at the ends of a step.
 pub const TURN_LIMIT: f64 = 0.97;
+/// Part of a unit of travel that may be left over by the redundant constraints.
+const LOCKED: f64 = 1e-6;
 /// A correction below this (in mechanism sizes and rad) ends Newton's method.
 const CORRECTED: f64 = 1e-13;
 /// Corrections before a point is given up.
 const CORRECTIONS: usize = 8;
+/// Steps shorter than this are not held to a path parameter that runs one way: rounding would decide.
+const WIGGLE: f64 = 1e-6;
 /// Longest step, in mechanism sizes and rad over all bodies (root of the sum of squares).
 const LONGEST_STEP: f64 = 0.5;
 /// Shortest step: below it the motion is stuck.
@@ -160,8 +164,10 @@ impl<'a, P: Path> Follower<'a, P> {
         self.linearise(z);
         let mut t = Vec::new();
         self.system.solve(false, toward, 1.0, &mut t);
+        // With redundant constraints the least squares leave a rest where there is no way to move at all.
+        let rest = self.system.rest();
         let length = norm(&t);
-        if !length.is_finite() || length == 0.0 {
+        if !length.is_finite() || length == 0.0 || rest > LOCKED {
             return None;
         }
         for value in &mut t {
@@ -189,11 +195,13 @@ impl<'a, P: Path> Follower<'a, P> {
                 *z -= d;
             }
             self.step = step;
-            if !length.is_finite() || (length > 0.5 * last && length > 1e-10) {
+            // What rounding leaves over, and more of it near singular poses.
+            let floor = (1e-15 / self.conditioning()).clamp(1e-11, 1e-8);
+            if !length.is_finite() || (length > 0.5 * last && length > 10.0 * floor) {
                 return None;
             }
             first.get_or_insert(length);
-            if length <= CORRECTED || (length > 0.1 * last && length < 1e-11) {
+            if length <= CORRECTED || (length > 0.1 * last && length < floor) {
                 return first;
             }
             last = length;
@@ -241,6 +249,10 @@ impl<'a, P: Path> Follower<'a, P> {
                 continue;
             };
             let to = Node { z, tangent };
+            if hides_limits(from, &to) && h > WIGGLE {
+                *step = 0.5 * h;
+                continue;
+            }
             let mut middle = hermite(from, &to, 0.5);
             let chord = chord(from, &to);
             let gap = self.correct(&mut middle, &chord);
@@ -256,6 +268,23 @@ impl<'a, P: Path> Follower<'a, P> {
         }
         None
     }
+}
+
+/// Whether the path parameter cannot run one way all along a step that leaves and arrives the same way (the condition
+/// of Fritsch and Carlson 1980 for a monotonic cubic): two limits lie in between.
+fn hides_limits(from: &Node, to: &Node) -> bool {
+    let last = from.z.len() - 1;
+    let (a, b) = (from.parameter_rate(), to.parameter_rate());
+    let h = norm(
+        &from
+            .z
+            .iter()
+            .zip(&to.z)
+            .map(|(x, y)| y - x)
+            .collect::<Vec<_>>(),
+    );
+    let mean = (to.z[last] - from.z[last]) / h;
+    a * b > 0.0 && (mean * a <= 0.0 || a.abs().max(b.abs()) > 3.0 * mean.abs())
 }
 
 /// Rows of a constraint that are lengths.

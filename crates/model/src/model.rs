@@ -482,6 +482,8 @@ pub struct NamedMeasure {
     pub measure: Measure,
     /// Dimension.
     pub dimension: Dimension,
+    /// It asks for forces, itself or by another measure: only a study of forces knows it.
+    pub needs_forces: bool,
     /// Where it stands in the file.
     pub span: Span,
 }
@@ -511,7 +513,7 @@ pub enum StudyKind {
 pub struct MotionStudy {
     /// Where rows stand.
     pub rows: Rows,
-    /// Columns; empty means all named measures of the model.
+    /// Columns; empty means all named measures of the model (of a motion: those that need no forces).
     pub columns: Vec<Column>,
     /// Plots: each entry is a column or a path.
     pub plots: Vec<Plot>,

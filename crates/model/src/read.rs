@@ -1,19 +1,28 @@
 //! From the text of a model file to a [`Model`], with everything that is to be said about it.
 
+pub(crate) mod actuators;
 mod assembly;
 pub(crate) mod context;
+mod csv;
 pub(crate) mod drives;
+mod entry;
+mod force_names;
+pub(crate) mod friction;
 pub(crate) mod joints;
 pub(crate) mod law_table;
 pub(crate) mod laws;
 pub(crate) mod links;
+pub(crate) mod loads;
+pub(crate) mod masses;
 mod measure_names;
 mod measures;
 pub(crate) mod names;
+mod nature;
 mod parameters;
 mod phrase;
 mod place;
 pub(crate) mod sections;
+pub(crate) mod springs;
 pub(crate) mod studies;
 mod value;
 

@@ -31,26 +31,7 @@ impl Registry {
     pub fn find(name: &str) -> Option<&'static MeasureEntry> {
         MEASURES.iter().find(|m| m.name == name)
     }
-
-    /// Measures that the language has and this version has not: a file may name them, and what does is left out with a warning.
-    pub fn announced() -> &'static [&'static str] {
-        ANNOUNCED
-    }
 }
-
-/// See [`Registry::announced`].
-const ANNOUNCED: &[&str] = &[
-    "force",
-    "force_x",
-    "force_y",
-    "torque",
-    "power",
-    "energy",
-    "shaking_force",
-    "shaking_moment",
-    "reduced_mass",
-    "reduced_inertia",
-];
 
 const fn row(
     name: &'static str,
@@ -106,6 +87,46 @@ const MEASURES: &[MeasureEntry] = &[
         "length of path swept since the start of the motion", "path_length(P)"),
     row("mechanical_advantage", &["mechanical_advantage(measure, drive)"], "drive/measure",
         "the drive's speed over that of the measure: force out over force in without friction", "mechanical_advantage(y(P), motor)"),
+    row("torque", &["torque(drive)"], "torque",
+        "that a turning drive must give, positive along its angle", "torque(motor)"),
+    row("force", &["force(drive)"], "force",
+        "that a cylinder or a sliding drive must give, positive along its coordinate: a cylinder that pushes", "force(lift)"),
+    row("power", &["power(drive)"], "power",
+        "that a drive gives", "power(motor)"),
+    row("reaction", &["reaction(P)", "reaction(P, link)", "reaction(joint)", "reaction(joint, link)"], "force",
+        "size of the force that a pin or a joint carries", "reaction(B)"),
+    row("reaction_x", &["reaction_x(P)", "reaction_x(P, link)", "reaction_x(joint)", "reaction_x(joint, link)"], "force",
+        "its component along the frame's x axis, on the link named; else on the later-named link of a pin, the slider or the first link of a joint", "reaction_x(B, crank)"),
+    row("reaction_y", &["reaction_y(P)", "reaction_y(P, link)", "reaction_y(joint)", "reaction_y(joint, link)"], "force",
+        "its component along the frame's y axis, on the link named; else on the later-named link of a pin, the slider or the first link of a joint", "reaction_y(B, crank)"),
+    row("reaction_along", &["reaction_along(P, link)", "reaction_along(joint, link)"], "force",
+        "the component on a link along the link's own x axis", "reaction_along(B, coupler)"),
+    row("reaction_across", &["reaction_across(P, link)", "reaction_across(joint, link)"], "force",
+        "the component on a link along the link's own y axis", "reaction_across(B, coupler)"),
+    row("reaction_moment", &["reaction_moment(joint)", "reaction_moment(joint, link)"], "torque",
+        "the moment that a slider or a weld carries", "reaction_moment(bore)"),
+    row("spring_force", &["spring_force(spring)"], "force; torque of a torsion spring",
+        "the tension of a spring", "spring_force(return)"),
+    row("pressure", &["pressure(drive)"], "pressure",
+        "in the chamber of a hydraulic cylinder that drives", "pressure(lift)"),
+    row("capacity", &["capacity(drive)"], "force",
+        "the most that a hydraulic cylinder can give along its coordinate at its supply or relief pressure", "capacity(lift)"),
+    row("reduced_mass", &["reduced_mass(drive)"], "mass; moment of inertia of a turning drive",
+        "of all links, as the drive feels them: twice the kinetic energy over the drive's speed squared", "reduced_mass(lift)"),
+    row("reduced_load", &["reduced_load(drive)"], "force; torque of a turning drive",
+        "of all loads, gravity and springs, as the drive feels them", "reduced_load(lift)"),
+    row("kinetic_energy", &["kinetic_energy"], "energy",
+        "of all links", "kinetic_energy"),
+    row("potential_energy", &["potential_energy"], "energy",
+        "of gravity and springs", "potential_energy"),
+    row("shaking_force", &["shaking_force"], "force",
+        "size of the force of the moving links on the frame", "shaking_force"),
+    row("shaking_force_x", &["shaking_force_x"], "force",
+        "its component along the frame's x axis", "shaking_force_x"),
+    row("shaking_force_y", &["shaking_force_y"], "force",
+        "its component along the frame's y axis", "shaking_force_y"),
+    row("shaking_moment", &["shaking_moment"], "torque",
+        "moment of the moving links on the frame, about its origin", "shaking_moment"),
     row("rate", &["rate(measure)", "rate(measure, n)"], "measure/time^n",
         "n-th time derivative (first unless said otherwise)", "rate(y(C), 2)"),
     row("d", &["d(measure, drive)", "d(measure, drive, n)"], "measure/drive^n",

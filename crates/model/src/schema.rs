@@ -3,13 +3,18 @@
 use serde_json::{Map, Value, json};
 
 use crate::model::RiseLaw;
+use crate::read::actuators::{CYLINDER_KEYS, MOTOR_KEYS};
 use crate::read::drives::DRIVE_KINDS;
+use crate::read::friction::FRICTION_KEYS;
 use crate::read::joints::JOINT_KEYS;
 use crate::read::law_table::TABLE_KEYS;
 use crate::read::laws::{LAW_KEYS, PIECE_KEYS};
 use crate::read::links::LINK_KEYS;
+use crate::read::loads::{FORCE_KEYS, LOAD_TABLE_KEYS, TORQUE_KEYS};
+use crate::read::masses::{BAR_KEYS, MASS_KEYS};
 use crate::read::sections::{ANNOUNCED_SECTIONS, FILE_KEYS, UNIT_KEYS};
-use crate::read::studies::{ANNOUNCED_KINDS, MOTION_KEYS};
+use crate::read::springs::{ACTS, DAMPER_KEYS, SPRING_KEYS};
+use crate::read::studies::{ANNOUNCED_KINDS, FORCES_KEYS, MOTION_KEYS};
 
 /// The JSON schema (draft-07) of the model file.
 ///
@@ -50,6 +55,33 @@ pub fn schema() -> Value {
                 "additionalProperties": false,
                 "properties": keyed(PIECE_KEYS, &|key| if key == "by" { reference("law") } else { reference("scalar") })
             },
+            "amount": amount(),
+            "load": load(),
+            "mass": table(MASS_KEYS, &["at", "mass"], &|key| match key {
+                "on" => text(),
+                "at" => json!({ "anyOf": [reference("pair"), text()] }),
+                _ => reference("scalar"),
+            }),
+            "spring": table(SPRING_KEYS, &["stiffness"], &|key| match key {
+                "between" => text(),
+                "links" => two(text()),
+                "acts" => json!({ "enum": ACTS.iter().map(|(word, _)| *word).collect::<Vec<_>>() }),
+                "stops" => two(reference("scalar")),
+                _ => reference("scalar"),
+            }),
+            "damper": table(DAMPER_KEYS, &["damping"], &|key| match key {
+                "between" => text(),
+                "links" => two(text()),
+                _ => reference("scalar"),
+            }),
+            "friction": table(FRICTION_KEYS, &[], &|_| reference("scalar")),
+            "cylinder": table(CYLINDER_KEYS, &["bore", "rod"], &|_| reference("scalar")),
+            "motor": table(MOTOR_KEYS, MOTOR_KEYS, &|_| json!({
+                "description": "Pairs of speed and torque.",
+                "type": "array",
+                "items": reference("pair"),
+                "minItems": 2
+            })),
             "study": study()
         }
     })
@@ -65,6 +97,55 @@ fn keyed(keys: &[&str], of: &dyn Fn(&str) -> Value) -> Value {
             .map(|key| ((*key).to_owned(), of(key)))
             .collect::<Map<String, Value>>(),
     )
+}
+
+fn text() -> Value {
+    json!({ "type": "string" })
+}
+
+fn two(item: Value) -> Value {
+    json!({ "type": "array", "items": item, "minItems": 2, "maxItems": 2 })
+}
+
+/// A table with these keys alone.
+fn table(keys: &[&str], required: &[&str], of: &dyn Fn(&str) -> Value) -> Value {
+    json!({
+        "type": "object",
+        "additionalProperties": false,
+        "required": required,
+        "properties": keyed(keys, of)
+    })
+}
+
+fn amount() -> Value {
+    json!({
+        "description": "A value, a measure of the motion, or a table from a file.",
+        "anyOf": [
+            reference("scalar"),
+            table(LOAD_TABLE_KEYS, &["table", "over"], &|key| match key {
+                "factor" | "period" => reference("scalar"),
+                _ => text(),
+            })
+        ]
+    })
+}
+
+fn load() -> Value {
+    let of = |key: &str| match key {
+        "force" => json!({
+            "description": "[x, y], or [size, direction] when the second is an angle.",
+            "type": "array",
+            "items": reference("amount"),
+            "minItems": 2,
+            "maxItems": 2
+        }),
+        "torque" => reference("amount"),
+        _ => text(),
+    };
+    json!({ "anyOf": [
+        table(FORCE_KEYS, &["force", "at"], &of),
+        table(TORQUE_KEYS, &["torque", "on"], &of)
+    ] })
 }
 
 /// A table whose small-letter names are the user's.
@@ -103,6 +184,23 @@ fn file_key(key: &str) -> Value {
             "Named measures: expressions over what may be asked of the mechanism.",
             json!({ "type": "string" }),
         ),
+        "gravity" => json!({
+            "description": "Acceleration of gravity: [x, y], or its size along -y; 9.81 m/s^2 along -y unless said otherwise.",
+            "anyOf": [reference("scalar"), reference("pair")]
+        }),
+        "loads" => named("Forces and torques from outside.", reference("load")),
+        "masses" => named("Point masses on links: counterweights.", reference("mass")),
+        "springs" => named("Springs.", reference("spring")),
+        "dampers" => named("Dampers.", reference("damper")),
+        "friction" => named(
+            "Friction, by the point of a pin, by the name of a joint, or for `all`.",
+            reference("friction"),
+        ),
+        "cylinders" => named(
+            "Hydraulic cylinders, by the name of their drive.",
+            reference("cylinder"),
+        ),
+        "motors" => named("Motors, by the name of their drive.", reference("motor")),
         "studies" => named("What is asked of the model.", reference("study")),
         key if ANNOUNCED_SECTIONS.contains(&key) => {
             json!({ "description": "Read by later versions.", "type": "object" })
@@ -119,6 +217,7 @@ fn link() -> Value {
         "properties": keyed(LINK_KEYS, &|key| match key {
             "center" => json!({ "description": "\"centroid\", a point of the link, or a place on it.",
                 "anyOf": [{ "type": "string" }, reference("pair")] }),
+            "bar" => table(BAR_KEYS, BAR_KEYS, &|_| reference("scalar")),
             _ => reference("scalar"),
         }),
         "patternProperties": {
@@ -136,7 +235,6 @@ fn joint(kind: &str, keys: &[&str]) -> Value {
         "gears" => &["gears", "teeth"],
         _ => &["rack", "pinion", "radius"],
     };
-    let two = |item: Value| json!({ "type": "array", "items": item, "minItems": 2, "maxItems": 2 });
     json!({
         "type": "object",
         "additionalProperties": false,
@@ -183,20 +281,24 @@ fn drive(kind: &str) -> Value {
 
 fn study() -> Value {
     let texts = json!({ "anyOf": [{ "type": "string" }, { "type": "array", "items": { "type": "string" } }] });
+    let along = |kind: &str, keys: &[&str], description: &str| {
+        let mut study = table(keys, &["kind"], &|key| match key {
+            "kind" => json!({ "const": kind }),
+            "step" => reference("scalar"),
+            "rows" => {
+                json!({ "type": "integer", "minimum": 1, "maximum": crate::read::studies::MAX_ROWS })
+            }
+            "circuit" => json!({ "type": "boolean" }),
+            _ => texts.clone(),
+        });
+        if let Some(study) = study.as_object_mut() {
+            study.insert("description".to_owned(), json!(description));
+        }
+        study
+    };
     json!({ "anyOf": [
-        {
-            "description": "The motion along the drives' laws.",
-            "type": "object",
-            "additionalProperties": false,
-            "required": ["kind"],
-            "properties": keyed(MOTION_KEYS, &|key| match key {
-                "kind" => json!({ "const": "motion" }),
-                "step" => reference("scalar"),
-                "rows" => json!({ "type": "integer", "minimum": 1, "maximum": crate::read::studies::MAX_ROWS }),
-                "circuit" => json!({ "type": "boolean" }),
-                _ => texts.clone(),
-            })
-        },
+        along("motion", MOTION_KEYS, "The motion along the drives' laws."),
+        along("forces", FORCES_KEYS, "What drives the motion and what the joints carry along it."),
         {
             "description": "Read by later versions.",
             "type": "object",

@@ -4,7 +4,7 @@
 use std::fmt::Write as _;
 use std::time::{Duration, Instant};
 
-use kempe_model::{Checked, Diagnostic, Model, set_value};
+use kempe_model::{Amount, Checked, Diagnostic, LoadKind, Model, set_value, value};
 
 fn read(text: &str) -> Result<Checked, Vec<Diagnostic>> {
     Model::from_toml(text, "hostile", &mut |_| {
@@ -129,6 +129,30 @@ fn sheer_size() {
         ),
         "too-large",
     );
+    for (section, line) in [
+        ("loads", "{ force = [0, 1], at = \"B\" }"),
+        ("masses", "{ at = \"B\", mass = 1 }"),
+        ("springs", "{ between = \"B-D\", stiffness = 1, free = 1 }"),
+        ("dampers", "{ between = \"B-D\", damping = 1 }"),
+        ("cylinders", "{ bore = 2, rod = 1 }"),
+        ("motors", "{ curve = [[0, 1], [1, 0]] }"),
+        ("friction", "{ coefficient = 1 }"),
+    ] {
+        let text = format!(
+            "{FRAME}[{section}]\n{}",
+            many(120_000, |i| format!("s{i} = {line}"))
+        );
+        refused(section, &text, "too-large");
+    }
+    let pairs = (0..100_000).map(|i| format!("[{i}, 1]"));
+    let curve = pairs.collect::<Vec<_>>().join(", ");
+    refused(
+        "a curve",
+        &format!(
+            "{FRAME}[drives]\nm = {{ turns = \"crank\" }}\n[motors]\nm = {{ curve = [{curve}] }}\n"
+        ),
+        "too-large",
+    );
     refused(
         "unknown keys",
         &format!("{FRAME}{}", many(300_000, |i| format!("[k{i}]"))),
@@ -204,6 +228,42 @@ fn numbers() {
         &FRAME.replace("A-B = 1", &format!("A-B = 1{}", "0".repeat(400))),
         "not-finite",
     );
+    refused(
+        "a motion that never ends",
+        &format!(
+            "{FRAME}[drives]\nm = {{ turns = \"crank\", speed = \"1e-308 rad/s\", to = 1e3 }}\n"
+        ),
+        "not-finite",
+    );
+    for (what, body, code) in [
+        (
+            "mass",
+            "[masses]\nm = { at = \"B\", mass = -1 }",
+            "bad-size",
+        ),
+        (
+            "load",
+            "[loads]\nm = { force = [nan, 1], at = \"B\" }",
+            "not-finite",
+        ),
+        (
+            "load of zero",
+            "[loads]\nm = { force = [\"1 N/0\", 1], at = \"B\" }",
+            "not-finite",
+        ),
+        (
+            "spring",
+            "[springs]\nm = { links = [\"frame\", \"crank\"], stiffness = 0, free = 0 }",
+            "bad-size",
+        ),
+        (
+            "stops",
+            "[springs]\nm = { links = [\"frame\", \"crank\"], stiffness = 1, free = 0, stops = [1e999, -1] }",
+            "not-finite",
+        ),
+    ] {
+        refused(what, &format!("{FRAME}{body}\n"), code);
+    }
     refused("zero", &FRAME.replace("A-B = 1", "A-B = 0"), "bad-size");
     refused(
         "negative",
@@ -282,6 +342,10 @@ const PIECES: &[&str] = &[
     "angle(",
     "frame",
     "left of A -> B",
+    "torque(",
+    "reaction(",
+    "none",
+    "all",
     "near",
     "é",
     "\u{feff}",
@@ -302,6 +366,40 @@ fn mutate(text: &mut Vec<u8>, chance: &mut Chance) {
                 drop(text.splice(to..to, copy));
             }
             _ => drop(text.splice(at..at, PIECES[chance.below(PIECES.len())].bytes())),
+        }
+    }
+}
+
+/// What acts is sound: finite values, tables that rise, names that are there.
+fn acting(model: &Model, values: &[f64]) {
+    let acts = &model.actions;
+    let finite = |scalar: &kempe_model::Scalar| assert!(value(scalar, values).is_finite());
+    for inertia in model.links.iter().filter_map(|l| l.inertia.as_ref()) {
+        inertia.mass.iter().for_each(finite);
+        inertia.moment.iter().for_each(finite);
+    }
+    acts.gravity.iter().flatten().for_each(finite);
+    acts.masses.iter().for_each(|m| finite(&m.mass));
+    for spring in &acts.springs {
+        finite(&spring.stiffness);
+        finite(&spring.free);
+        spring.stops.iter().flatten().for_each(finite);
+    }
+    for cylinder in &acts.cylinders {
+        assert!(value(&cylinder.rod, values) < value(&cylinder.bore, values));
+    }
+    for load in &acts.loads {
+        let amounts = match &load.kind {
+            LoadKind::Force { components, .. } => components.to_vec(),
+            LoadKind::Torque { amount, .. } => vec![amount.clone()],
+        };
+        for amount in amounts {
+            match amount {
+                Amount::Measure(measure) => assert!(!model.needs_forces(&measure)),
+                Amount::Table { at, values, .. } => {
+                    assert!(at.len() == values.len() && at.windows(2).all(|w| w[0] < w[1]));
+                }
+            }
         }
     }
 }
@@ -340,9 +438,15 @@ fn mutants_of_real_files_do_no_harm() {
                 for link in &checked.model.links {
                     assert_eq!(link.evaluate(&values).len(), link.points.len());
                 }
+                acting(&checked.model, &values);
                 for drive in &checked.model.drives {
                     let end: f64 = drive.law.duration(&values);
-                    assert!(end.is_finite() && drive.law.at(end / 2.0, &values).is_finite());
+                    assert!(
+                        end.is_finite() && drive.law.at(end / 2.0, &values).is_finite(),
+                        "drive `{}` lasts {end} s:\n{}",
+                        drive.name,
+                        String::from_utf8_lossy(&text)
+                    );
                 }
             }
             Err(found) => {

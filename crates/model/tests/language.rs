@@ -1,13 +1,18 @@
 //! The language as its reference shows it: whole files become models.
 #![allow(clippy::unwrap_used)]
 
-use kempe_model::{Checked, Diagnostic, DriveKind, LawPiece, Leaf, Model, Place, Rows, StudyKind};
+use kempe_model::{
+    Acts, Amount, Between, Center, Checked, Diagnostic, DriveKind, ForceMeasure, FrictionAt,
+    LawPiece, Leaf, LoadKind, Measure, Model, Place, Rows, StudyKind, value,
+};
 
 fn read(name: &str) -> Checked {
     let path = format!("{}/tests/good/{name}.toml", env!("CARGO_MANIFEST_DIR"));
     let text = std::fs::read_to_string(path).unwrap();
     let mut files = |name: &str| match name {
         "measured.csv" => Ok("t [s];angle\n0;10\n0.5;20\n1;25\n2;20\n".to_owned()),
+        "card.csv" => Ok("p [bar],phi [deg]\n1,0\n50,360\n2,400\n1,719\n".to_owned()),
+        "plain.csv" => Ok("time,force\n0,10\n1,20\n".to_owned()),
         _ => Err("no such file".to_owned()),
     };
     Model::from_toml(&text, name, &mut files)
@@ -56,11 +61,7 @@ fn door_lock() {
     let codes: Vec<&str> = warnings.iter().map(|d| d.code).collect();
     assert_eq!(
         codes,
-        [
-            "section-not-available",
-            "study-not-available",
-            "study-not-available"
-        ]
+        ["no-inertia", "section-not-available", "study-not-available"]
     );
     assert!(matches!(model.drives[0].kind, DriveKind::Turn { .. }));
     assert!(matches!(
@@ -74,15 +75,15 @@ fn door_lock() {
 #[test]
 fn tractor_hitch() {
     let Checked { model, warnings } = read("tractor-hitch");
-    assert_eq!(warnings.len(), 3, "{warnings:#?}");
-    assert_eq!(model.measures.len(), 4);
+    assert_eq!(warnings.len(), 1, "{warnings:#?}");
+    assert_eq!(model.measures.len(), 6);
     let inertia = model.links[4].inertia.clone().unwrap();
     assert_eq!(inertia.mass.unwrap().eval(&mut |_| 0.0), 1000.0);
     let kempe_model::Measure::Leaf(Leaf::Pose(kempe_model::PoseMeasure::TransmissionAngle {
         a,
         b,
         ..
-    })) = &model.measures[3].measure
+    })) = &model.measures[5].measure
     else {
         panic!()
     };
@@ -108,4 +109,139 @@ fn every_joint_and_every_law() {
         LawPiece::Table { .. }
     ));
     assert!((model.drives[2].law.duration::<f64>(&[]) - 2.0).abs() < 1e-15);
+}
+
+#[test]
+fn everything_that_acts() {
+    let Checked { model, warnings } = read("forces");
+    assert!(warnings.is_empty(), "{}", all(&warnings, "forces", ""));
+    let p: Vec<f64> = model.parameter_values();
+    let near = |a: f64, b: f64| assert!((a - b).abs() <= 1e-12 * b.abs().max(1.0), "{a} != {b}");
+    let acts = &model.actions;
+    let [gx, gy] = acts.gravity.as_ref().unwrap();
+    near(value(gx, &p), 0.0);
+    near(value(gy, &p), -9.81);
+
+    let bar = model.links[1].inertia.as_ref().unwrap();
+    let mass = 7850.0 * 0.02 * 0.005 * 0.02;
+    near(value(bar.mass.as_ref().unwrap(), &p), mass);
+    near(
+        value(bar.moment.as_ref().unwrap(), &p),
+        mass * (0.02f64.powi(2) + 0.02f64.powi(2)) / 12.0,
+    );
+    assert_eq!(model.links[1].center_of_mass(&p), Some([0.01, 0.0]));
+    let rod = model.links[2].inertia.as_ref().unwrap();
+    near(
+        value(rod.moment.as_ref().unwrap(), &p),
+        0.05f64.powi(3) / 12.0,
+    );
+    assert!(matches!(
+        model.links[3].inertia.as_ref().unwrap().center,
+        Center::Point(_)
+    ));
+
+    assert_eq!(
+        (
+            acts.loads.len(),
+            acts.masses.len(),
+            acts.springs.len(),
+            acts.dampers.len()
+        ),
+        (7, 3, 4, 2)
+    );
+    let constant = |amount: &Amount| match amount {
+        Amount::Measure(measure) => measure.as_constant().unwrap(),
+        Amount::Table { .. } => panic!(),
+    };
+    let LoadKind::Force {
+        at,
+        components: [x, y],
+        ..
+    } = &acts.loads[1].kind
+    else {
+        panic!()
+    };
+    assert_eq!(model.links[at.link.index()].name, "rocker");
+    near(constant(x), 50.0 * 0.75f64.sqrt());
+    near(constant(y), 25.0);
+    let LoadKind::Force { axes, .. } = &acts.loads[2].kind else {
+        panic!()
+    };
+    assert_eq!(model.links[axes.index()].name, "coupler");
+    let LoadKind::Force {
+        at: hinge,
+        components:
+            [
+                _,
+                Amount::Table {
+                    at,
+                    values,
+                    period,
+                    factor,
+                    ..
+                },
+            ],
+        ..
+    } = &acts.loads[4].kind
+    else {
+        panic!()
+    };
+    assert_eq!(model.links[hinge.link.index()].name, "rod");
+    near(at[1], std::f64::consts::TAU);
+    near(values[1], 5e6);
+    near(period.unwrap(), 2.0 * std::f64::consts::TAU);
+    near(value(factor, &p), -std::f64::consts::PI * 0.04 * 0.04);
+    let LoadKind::Force {
+        components: [Amount::Table { factor, .. }, _],
+        ..
+    } = &acts.loads[5].kind
+    else {
+        panic!()
+    };
+    near(value(factor, &p), 0.75f64.sqrt());
+    assert!(matches!(
+        acts.loads[6].kind,
+        LoadKind::Torque {
+            amount: Amount::Table { .. },
+            ..
+        }
+    ));
+
+    let pull = &acts.springs[0];
+    assert_eq!(pull.acts, Acts::Tension);
+    near(value(&pull.stiffness, &p), 2000.0);
+    near(value(pull.stops[1].as_ref().unwrap(), &p), 0.12);
+    let door = &acts.springs[3];
+    assert!(matches!(door.between, Between::Links(..)) && door.stops[0].is_none());
+    near(
+        value(door.stop_stiffness.as_ref().unwrap(), &p),
+        180.0 / std::f64::consts::PI,
+    );
+
+    assert!(matches!(acts.friction[2].at, FrictionAt::All));
+    near(
+        value(acts.friction[0].stribeck_speed.as_ref().unwrap(), &p),
+        1e-3,
+    );
+    near(
+        value(acts.cylinders[0].flow.as_ref().unwrap(), &p),
+        20e-3 / 60.0,
+    );
+    near(
+        value(&acts.motors[0].curve[1].0, &p),
+        100.0 * std::f64::consts::PI,
+    );
+
+    let forces: Vec<bool> = model.measures.iter().map(|m| m.needs_forces).collect();
+    assert_eq!(forces, [true, true, true, true, false]);
+    assert!(matches!(&model.studies[0].kind, StudyKind::Motion(_)));
+    let StudyKind::Forces(study) = &model.studies[1].kind else {
+        panic!()
+    };
+    assert_eq!(study.columns.len(), 7);
+    assert_eq!(
+        study.columns[5].measure,
+        Measure::Leaf(Leaf::Force(ForceMeasure::Spring(3)))
+    );
+    assert!(model.needs_forces(&study.columns[0].measure));
 }

@@ -17,6 +17,10 @@ bore = { slider = "piston", at = "Q", on = "E -> F" }
 [drives]
 motor = { turns = "crank", speed = 1 }
 lift  = { cylinder = "D-K", from = 1, to = 2, speed = 1 }
+[springs]
+return = { between = "A-C", stiffness = 100, free = 1 }
+[cylinders]
+lift = { bore = 0.08, rod = 0.04, supply = "180 bar" }
 [measures]
 "#;
 
@@ -41,16 +45,29 @@ fn every_example_is_understood() {
 fn every_signature_is_understood() {
     for entry in Registry::all() {
         for signature in entry.signatures {
-            let (name, arguments) = signature.trim_end_matches(')').split_once('(').unwrap();
+            let Some((name, arguments)) = signature.trim_end_matches(')').split_once('(') else {
+                assert_eq!(*signature, entry.name);
+                dimension(signature).unwrap();
+                continue;
+            };
             assert_eq!(name, entry.name);
             let arguments: Vec<&str> = arguments
                 .split(", ")
                 .map(|argument| match argument {
+                    "link" if signature.contains("joint") => "piston",
+                    "link" if name.starts_with("reaction") => "coupler",
                     "link" => "crank",
                     "other" => "rocker",
                     "slider" => "piston",
                     "joint" => "bore",
-                    "drive" if name == "length" || name == "stroke" => "lift",
+                    "drive"
+                        if ["length", "stroke", "force", "pressure", "capacity"]
+                            .contains(&name) =>
+                    {
+                        "lift"
+                    }
+                    "P" if name.starts_with("reaction") => "B",
+                    "spring" => "return",
                     "drive" => "motor",
                     "measure" => "x(C)",
                     "n" => "2",
@@ -86,6 +103,16 @@ fn dimensions_follow_the_rules() {
         ("motor", "angle"),
         ("time", "time"),
         ("at(y(P), motor, 30)", "length"),
+        (
+            "torque(motor) * angular_speed(crank) - power(motor)",
+            "power",
+        ),
+        ("reduced_mass(lift)", "mass"),
+        ("reduced_mass(motor)", "moment of inertia"),
+        ("reduced_load(motor)", "torque"),
+        ("spring_force(return) + shaking_force", "force"),
+        ("kinetic_energy + potential_energy", "torque"),
+        ("pressure(lift)", "pressure"),
     ] {
         assert_eq!(dimension(measure).as_deref(), Ok(expected), "{measure}");
     }

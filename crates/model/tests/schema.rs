@@ -90,6 +90,7 @@ fn files_that_read_are_valid() {
         "door-lock",
         "tractor-hitch",
         "joints",
+        "forces",
     ] {
         let path = format!("{}/tests/good/{name}.toml", env!("CARGO_MANIFEST_DIR"));
         assert!(check(&std::fs::read_to_string(path).unwrap()), "{name}");
@@ -104,6 +105,7 @@ fn files_of_the_wrong_shape_are_not() {
         "missing-key",
         "bad-name",
         "unknown-study",
+        "bad-choice",
     ] {
         let path = format!("{}/tests/bad/{name}.toml", env!("CARGO_MANIFEST_DIR"));
         assert!(!check(&std::fs::read_to_string(path).unwrap()), "{name}");
@@ -159,8 +161,34 @@ fn the_reader_knows_every_key_of_the_schema() {
     text += &format!(
         "e = {{ turns = \"frame\", law = [ {{ {piece} }} ] }}\nf = {{ turns = \"frame\", law = {{ {of_table} }} }}\n"
     );
+    for (section, definition) in [
+        ("masses", "mass"),
+        ("springs", "spring"),
+        ("dampers", "damper"),
+        ("friction", "friction"),
+        ("cylinders", "cylinder"),
+        ("motors", "motor"),
+        ("loads", "load/anyOf/0"),
+    ] {
+        let name = match section {
+            "friction" => "A",
+            "cylinders" => "cyl",
+            _ => "a",
+        };
+        text += &format!(
+            "[{section}]\n{name} = {{ {} }}\n",
+            table(keys(&format!("/definitions/{definition}/properties")))
+        );
+    }
+    let of_load = table(keys("/definitions/amount/anyOf/1/properties"));
+    let of_torque = table(keys("/definitions/load/anyOf/1/properties"))
+        .replace("torque = 1", &format!("torque = {{ {of_load} }}"));
+    text += &format!("t = {{ {of_torque} }}\n[studies.f]\nkind = \"forces\"\n");
+    text += &table(keys("/definitions/study/anyOf/1/properties"))
+        .replace("kind = 1, ", "")
+        .replace(", ", "\n");
     text += &format!(
-        "[studies.s]\n{}\n",
+        "\n[studies.s]\n{}\n",
         table(keys("/definitions/study/anyOf/0/properties")).replace(", ", "\n")
     );
     text = text.replace("kind = 1", "kind = \"motion\"");

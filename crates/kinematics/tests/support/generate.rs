@@ -562,6 +562,9 @@ impl Maker {
             }
             Group::Weld => {
                 let to = self.any_link();
+                if self.idle.contains(&to) {
+                    return;
+                }
                 let at = self.attach(to);
                 let other = self.plate(&[&at]);
                 let end = self.clear_of(&[at.world]);

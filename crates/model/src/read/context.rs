@@ -1,6 +1,6 @@
 //! What the reader knows while it reads, and the small questions every section asks.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use kempe_units::{Unit, nearest};
 
@@ -9,6 +9,7 @@ use crate::document::{Key, Node, Table, Text, Value};
 use crate::model::{
     DriveId, FRAME, FileUnits, JointId, LinkId, Model, ParameterId, PointId, Span, UnitName,
 };
+use crate::read::nature::Nature;
 
 /// Asks for a file beside the model file by its name as written.
 pub(crate) type Files<'a> = &'a mut dyn FnMut(&str) -> Result<String, String>;
@@ -58,8 +59,16 @@ pub(crate) struct Context<'a> {
     pub joints: Vec<Option<JointId>>,
     /// Drives in file order: their place in the model, when they are sound.
     pub drives: Vec<Option<DriveId>>,
+    /// Springs by name: their place in the model and what they give, when they are sound.
+    pub springs: BTreeMap<String, Option<(usize, kempe_units::Dimension)>>,
+    /// Entries of `[cylinders]` that are not sound.
+    pub broken_cylinders: BTreeSet<String>,
+    /// Rows of tables read so far.
+    pub table_rows: usize,
     /// Measures in file order.
     pub measures: Vec<MeasureState>,
+    /// What they ask for, in the order of the model.
+    pub natures: Vec<Nature>,
     /// The model as far as it is read.
     pub model: Model,
 }
@@ -71,8 +80,6 @@ pub(crate) enum MeasureState {
     Sound(usize, kempe_units::Dimension),
     /// It has an error of its own, already told.
     Broken,
-    /// It asks for something this version has not got, already told.
-    NotAvailable,
 }
 
 impl<'a> Context<'a> {
@@ -98,7 +105,11 @@ impl<'a> Context<'a> {
             values: Vec::new(),
             joints: Vec::new(),
             drives: Vec::new(),
+            springs: BTreeMap::new(),
+            broken_cylinders: BTreeSet::new(),
+            table_rows: 0,
             measures: Vec::new(),
+            natures: Vec::new(),
             model: Model {
                 title: name.to_owned(),
                 units,

@@ -8,7 +8,7 @@ use crate::model::{
     Drive, DriveId, DriveKind, FRAME, JointId, JointKind, LinkId, LinkPointRef, PointId,
 };
 use crate::read::context::{Context, Meaning};
-use crate::read::joints::link_of;
+use crate::read::entry::link_of;
 use crate::read::laws::{LAW_KEYS, read_law};
 
 /// What a drive may move.
@@ -101,6 +101,14 @@ fn read_drive(cx: &mut Context<'_>, key: &Key, node: &Node) -> Option<Drive> {
         Dimension::LENGTH
     };
     let law = read_law(cx, table, &place, &key.span, dimension, kind);
+    let lasts: Option<f64> = law.as_ref().map(|law| law.duration(&cx.values));
+    if lasts.is_some_and(|t| !t.is_finite()) {
+        cx.push(
+            Diagnostic::error("not-finite", format!("{place} never comes to its end"))
+                .at(key.span.clone(), "lasts beyond all numbers")
+                .help("give it a larger speed or acceleration"),
+        );
+    }
     Some(Drive {
         name: key.name.clone(),
         kind: kind_read?,

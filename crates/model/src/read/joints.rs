@@ -3,9 +3,10 @@
 use kempe_units::{Dimension, Expr};
 
 use crate::diagnostic::Diagnostic;
-use crate::document::{Key, Node, Table};
+use crate::document::{Key, Node};
 use crate::model::{FRAME, Joint, JointId, JointKind, LinkId, LinkPointRef, PointId, Side};
 use crate::read::context::Context;
+use crate::read::entry::{Entry, link_of, on_link};
 
 /// What makes a table a joint of a kind, with the keys that go with it.
 pub(crate) const JOINT_KEYS: &[(&str, &[&str], &str)] = &[
@@ -55,14 +56,6 @@ pub(crate) fn read(cx: &mut Context<'_>, entries: &[&(Key, Node)]) {
     }
 }
 
-/// A joint's table with what messages need.
-struct Entry<'d> {
-    key: &'d Key,
-    table: &'d Table,
-    place: String,
-    example: &'static str,
-}
-
 fn read_joint(cx: &mut Context<'_>, key: &Key, node: &Node) -> Option<JointKind> {
     let place = format!("joint `{}`", key.name);
     let table = cx.table(node, &place, JOINT_KEYS[0].2)?;
@@ -106,47 +99,10 @@ fn read_joint(cx: &mut Context<'_>, key: &Key, node: &Node) -> Option<JointKind>
     }
 }
 
-impl<'d> Entry<'d> {
-    fn required(&self, cx: &mut Context<'_>, key: &str) -> Option<&'d Node> {
-        cx.required(
-            self.table,
-            key,
-            &self.place,
-            &self.key.span,
-            &format!("… as in {}", self.example),
-        )
-    }
-
-    fn link(&self, cx: &mut Context<'_>, key: &str) -> Option<LinkId> {
-        let node = self.required(cx, key)?;
-        link_of(cx, node, &format!("`{key}` of {}", self.place))
-    }
-
+impl Entry<'_> {
     fn angle(&self, cx: &mut Context<'_>, key: &str) -> Option<crate::model::Scalar> {
-        match self.table.get(key) {
-            Some(node) => cx.scalar(node, Dimension::ANGLE),
-            None => Some(Expr::Const(0.0)),
-        }
-    }
-
-    fn pair(&self, cx: &mut Context<'_>, key: &str) -> Option<(&'d Node, &'d Node)> {
-        let node = self.required(cx, key)?;
-        let place = format!("`{key}` of {}", self.place);
-        match cx.array(node, &place, self.example)? {
-            [a, b] => Some((a, b)),
-            items => {
-                let count = items.len();
-                cx.push(
-                    Diagnostic::error(
-                        "wrong-type",
-                        format!("{place} has two entries, found {count}"),
-                    )
-                    .at(node.span.clone(), "")
-                    .help(format!("write it like {}", self.example)),
-                );
-                None
-            }
-        }
+        self.scalar(cx, key, Dimension::ANGLE)
+            .map(|angle| angle.unwrap_or(Expr::Const(0.0)))
     }
 
     fn different(&self, cx: &mut Context<'_>, a: LinkId, b: LinkId) -> Option<()> {
@@ -164,41 +120,6 @@ impl<'d> Entry<'d> {
         );
         None
     }
-}
-
-/// A link by its name in a string.
-pub(crate) fn link_of(cx: &mut Context<'_>, node: &Node, place: &str) -> Option<LinkId> {
-    let text = cx.text(node, place, "\"crank\"")?;
-    let span = text.span(0..text.content.len());
-    let name = text.content.clone();
-    cx.link(name.trim(), span)
-}
-
-/// Checks that a point is on a link.
-fn on_link(
-    cx: &mut Context<'_>,
-    point: PointId,
-    link: LinkId,
-    node: &Node,
-) -> Option<LinkPointRef> {
-    if cx.carriers(point).binary_search(&link).is_ok() {
-        return Some(LinkPointRef { link, point });
-    }
-    let (name, link_name) = (
-        cx.point_name(point).to_owned(),
-        cx.link_name(link).to_owned(),
-    );
-    cx.push(
-        Diagnostic::error(
-            "point-not-on-link",
-            format!("{name} is not a point of link `{link_name}`"),
-        )
-        .at(node.span.clone(), "")
-        .help(format!(
-            "give it a place there: {link_name} = {{ {name} = [0, 0] }}"
-        )),
-    );
-    None
 }
 
 fn slider(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<JointKind> {

@@ -5,14 +5,15 @@ use std::collections::BTreeSet;
 use kempe_units::Dimension;
 
 use crate::diagnostic::Diagnostic;
-use crate::document::{Key, Node, Table, Value};
-use crate::model::{Center, Inertia, LinkId, Place, PointId, Scalar, Side, Span};
+use crate::document::{Key, Node, Value};
+use crate::model::{Center, LinkId, Place, PointId, Scalar, Side, Span};
 use crate::read::context::Context;
+use crate::read::masses::read_inertia;
 use crate::read::names::{is_point_name, pair_of};
 use crate::read::place::place_points;
 
 /// Keys of a link that are not points.
-pub(crate) const LINK_KEYS: &[&str] = &["mass", "inertia", "center"];
+pub(crate) const LINK_KEYS: &[&str] = &["mass", "inertia", "center", "bar", "linear_density"];
 
 /// What a link's table says about its points.
 #[derive(Default)]
@@ -90,7 +91,9 @@ fn read_link(cx: &mut Context<'_>, id: LinkId, key: &Key, node: &Node) {
         );
     }
     let points = place_points(cx, &draft, &place, &key.span);
-    let inertia = read_inertia(cx, table, &draft, &place);
+    let inertia = read_inertia(cx, table, (&draft, &points), &place, |cx, node| {
+        read_center(cx, node, &draft, &place)
+    });
     if let Some(link) = cx.model.links.get_mut(id.index()) {
         link.points = points;
         link.inertia = inertia;
@@ -192,39 +195,6 @@ fn note_point(draft: &mut Draft, point: PointId, span: &Span) {
     if draft.known.insert(point) {
         draft.points.push((point, span.clone()));
     }
-}
-
-fn read_inertia(
-    cx: &mut Context<'_>,
-    table: &Table,
-    draft: &Draft,
-    place: &str,
-) -> Option<Inertia> {
-    let scalar = |cx: &mut Context<'_>, name: &str, dimension: Dimension| {
-        let node = table.get(name)?;
-        cx.positive(node, dimension, &format!("the {name} of {place}"), true)
-    };
-    let mass = scalar(cx, "mass", Dimension::MASS);
-    let moment = scalar(cx, "inertia", Dimension::INERTIA);
-    let center = match table.entry("center") {
-        None => Center::Centroid,
-        Some((_, node)) => read_center(cx, node, draft, place)?,
-    };
-    if table.get("mass").is_none() && table.get("inertia").is_none() {
-        if let Some((center, _)) = table.entry("center") {
-            cx.push(
-                Diagnostic::warning("idle-key", format!("{place} has a center but no mass"))
-                    .at(center.span.clone(), "means nothing without `mass`")
-                    .help("add mass = \"1 kg\" and inertia = \"1 kg m^2\", or leave center out"),
-            );
-        }
-        return None;
-    }
-    Some(Inertia {
-        mass,
-        moment,
-        center,
-    })
 }
 
 fn read_center(cx: &mut Context<'_>, node: &Node, draft: &Draft, place: &str) -> Option<Center> {

@@ -7,29 +7,31 @@ use crate::model::{
     DriveId, DriveKind, FRAME, JointKind, Line, LinkId, LinkPointRef, PointId, Span,
 };
 use crate::read::context::{Context, Meaning, MeasureState};
+use crate::read::force_names::{bare, bare_names};
 use crate::read::laws::rate;
+use crate::read::nature::nature;
 use crate::read::value::ALREADY_TOLD;
 use crate::registry::Registry;
-
-/// The code of an issue about a measure that this version has not got.
-pub(crate) const NOT_AVAILABLE: &str = "measure-not-available";
 
 /// Names of a measure.
 pub(crate) struct Measures<'c, 'a>(pub &'c Context<'a>);
 
-type Found<T> = Result<T, Vec<Issue>>;
+pub(crate) type Found<T> = Result<T, Vec<Issue>>;
 
 /// A call that is being resolved.
-struct Call<'n> {
-    function: &'n str,
-    arguments: &'n [Node],
-    span: Span,
+pub(crate) struct Call<'n> {
+    pub function: &'n str,
+    pub arguments: &'n [Node],
+    pub span: Span,
 }
 
 impl Resolver<Leaf> for Measures<'_, '_> {
     fn name(&mut self, name: &str, span: Span) -> Result<(Leaf, Dimension), Issue> {
         if name == "time" {
             return Ok((Leaf::Time, Dimension::TIME));
+        }
+        if let Some(found) = bare(name) {
+            return Ok(found);
         }
         let cx = self.0;
         let wrong = |what: &str, help: String| {
@@ -52,11 +54,6 @@ impl Resolver<Leaf> for Measures<'_, '_> {
                 Some(MeasureState::Sound(place, dimension)) => {
                     Ok((Leaf::Named(*place), *dimension))
                 }
-                Some(MeasureState::NotAvailable) => Err(Issue::new(
-                    NOT_AVAILABLE,
-                    span,
-                    format!("measure `{name}` is not in this version"),
-                )),
                 _ => Err(Issue::new(ALREADY_TOLD, span, "")),
             },
             Some(Meaning::Link(_)) => {
@@ -73,7 +70,10 @@ impl Resolver<Leaf> for Measures<'_, '_> {
                 Err(Issue::unknown_name(
                     name,
                     span,
-                    values.map(|(n, _)| n.as_str()).chain(["time"]),
+                    values
+                        .map(|(n, _)| n.as_str())
+                        .chain(["time"])
+                        .chain(bare_names()),
                 ))
             }
         }
@@ -85,10 +85,6 @@ impl Resolver<Leaf> for Measures<'_, '_> {
         arguments: &[Node],
         span: Span,
     ) -> Option<Result<(Leaf, Dimension), Vec<Issue>>> {
-        if Registry::announced().contains(&function) {
-            let message = format!("measure `{function}` is not in this version");
-            return Some(Err(vec![Issue::new(NOT_AVAILABLE, span, message)]));
-        }
         let entry = Registry::find(function)?;
         // `min(a, b)` is the smaller of two, not a question about the motion
         if matches!(function, "min" | "max") && arguments.len() > 1 {
@@ -122,6 +118,9 @@ impl Measures<'_, '_> {
 
     fn resolve(&mut self, call: &Call<'_>) -> Found<(Leaf, Dimension)> {
         use PoseMeasure as P;
+        if let Some(found) = self.force(call) {
+            return found;
+        }
         let a = call.arguments;
         let pose = |measure: P, dimension: Dimension| Ok((Leaf::Pose(measure), dimension));
         let (length, angle) = (Dimension::LENGTH, Dimension::ANGLE);
@@ -216,6 +215,7 @@ impl Measures<'_, '_> {
             ("path_length", [p]) => pose(P::PathLength(self.point(p)?), length),
             ("mechanical_advantage", [m, drive]) => {
                 let (measure, of) = check(m, self)?;
+                self.of_the_pose(&measure, m)?;
                 let (drive, per) = self.drive(drive)?;
                 pose(P::MechanicalAdvantage(Box::new(measure), drive), per / of)
             }
@@ -226,6 +226,7 @@ impl Measures<'_, '_> {
             }
             ("d", [m, drive, rest @ ..]) if rest.len() < 2 => {
                 let (measure, of) = check(m, self)?;
+                self.of_the_pose(&measure, m)?;
                 let (drive, per) = self.drive(drive)?;
                 let order = self.order(rest)?;
                 let per = per.powi(order as i32).unwrap_or(per);
@@ -248,8 +249,24 @@ impl Measures<'_, '_> {
         }
     }
 
+    /// Whether a measure has a derivative to a drive.
+    fn of_the_pose(&self, measure: &Measure, node: &Node) -> Found<()> {
+        if !nature(measure, &self.0.natures).forces {
+            return Ok(());
+        }
+        Err(vec![
+            Issue::new(
+                "no-derivative",
+                node.span.clone(),
+                "a force has no derivative to a drive",
+            )
+            .with_label("asks for a force")
+            .with_help("its derivative in time is rate(…)"),
+        ])
+    }
+
     /// The function is known and called in a way it is not.
-    fn wrong<T>(&self, call: &Call<'_>) -> Found<T> {
+    pub(crate) fn wrong<T>(&self, call: &Call<'_>) -> Found<T> {
         let signatures = Registry::find(call.function).map_or(&[] as &[&str], |m| m.signatures);
         let count = call.arguments.len();
         let plural = if count == 1 { "argument" } else { "arguments" };
@@ -263,7 +280,7 @@ impl Measures<'_, '_> {
         ])
     }
 
-    fn argument<T>(&self, node: &Node, wanted: &str, help: String) -> Found<T> {
+    pub(crate) fn argument<T>(&self, node: &Node, wanted: &str, help: String) -> Found<T> {
         Err(vec![
             Issue::new(
                 "wrong-arguments",
@@ -274,7 +291,7 @@ impl Measures<'_, '_> {
         ])
     }
 
-    fn point(&self, node: &Node) -> Found<PointId> {
+    pub(crate) fn point(&self, node: &Node) -> Found<PointId> {
         let Some(name) = node.as_point() else {
             return self.argument(
                 node,
@@ -310,7 +327,7 @@ impl Measures<'_, '_> {
         }
     }
 
-    fn link(&self, node: &Node) -> Found<LinkId> {
+    pub(crate) fn link(&self, node: &Node) -> Found<LinkId> {
         let cx = self.0;
         let Some(name) = node.as_name() else {
             return self.argument(node, "a link", "name a link of the file".to_owned());
@@ -379,7 +396,7 @@ impl Measures<'_, '_> {
         }
     }
 
-    fn drive(&self, node: &Node) -> Found<(DriveId, Dimension)> {
+    pub(crate) fn drive(&self, node: &Node) -> Found<(DriveId, Dimension)> {
         let cx = self.0;
         let Some(name) = node.as_name() else {
             return self.argument(node, "a drive", "name a drive of the file".to_owned());

@@ -2,16 +2,16 @@
 
 use std::collections::BTreeMap;
 
-use kempe_units::{Dimension, Issue, check, parse};
+use kempe_units::{Dimension, check, parse};
 
 use crate::diagnostic::Diagnostic;
 use crate::document::{Key, Node, Text};
 use crate::measure::Measure;
 use crate::model::NamedMeasure;
 use crate::read::context::{Context, MeasureState};
-use crate::read::measure_names::{Measures, NOT_AVAILABLE};
+use crate::read::measure_names::Measures;
+use crate::read::nature::{Nature, nature};
 use crate::read::parameters::{chain, put_in_order};
-use crate::registry::Registry;
 
 /// A file has at most so many measures.
 const MAX_MEASURES: usize = 10_000;
@@ -25,6 +25,7 @@ pub(crate) fn read(cx: &mut Context<'_>, entries: &[&(Key, Node)]) {
         .map(|(i, (k, _))| (k.name.as_str(), i))
         .collect();
     cx.measures = vec![MeasureState::Broken; entries.len()];
+    cx.natures = vec![Nature::default(); entries.len()];
     let mut texts: Vec<Option<(&Text, kempe_units::Node)>> = Vec::with_capacity(entries.len());
     for (key, node) in entries {
         let text = cx.text(
@@ -55,63 +56,22 @@ pub(crate) fn read(cx: &mut Context<'_>, entries: &[&(Key, Node)]) {
     for circle in &circles {
         tell_circle(cx, entries, circle);
     }
-    // what this version has not got is left out, and so is what builds on it
-    let mut left_out = vec![false; entries.len()];
-    for i in &order {
-        let announced = texts
-            .get(*i)
-            .and_then(Option::as_ref)
-            .and_then(|(_, tree)| announced(tree));
-        let follows = needs
-            .get(*i)
-            .is_some_and(|n| n.iter().any(|j| left_out.get(*j) == Some(&true)));
-        if announced.is_none() && !follows {
-            continue;
-        }
-        if let (Some(flag), Some(state), Some((key, _))) = (
-            left_out.get_mut(*i),
-            cx.measures.get_mut(*i),
-            entries.get(*i),
-        ) {
-            *flag = true;
-            *state = MeasureState::NotAvailable;
-            let because = announced
-                .map_or("it builds on a measure that is left out".to_owned(), |f| {
-                    format!("this version does not compute `{f}`")
-                });
-            cx.push(
-                Diagnostic::warning(
-                    "measure-not-available",
-                    format!("measure `{}` is left out", key.name),
-                )
-                .at(key.span.clone(), because)
-                .help("the rest of the file works without it"),
-            );
-        }
-    }
-    // places in the model: file order, without those left out
-    let mut place = 0;
-    let places: Vec<usize> = left_out
-        .iter()
-        .map(|left_out| {
-            let mine = place;
-            place += usize::from(!left_out);
-            mine
-        })
-        .collect();
     let mut read: Vec<Option<NamedMeasure>> = (0..entries.len()).map(|_| None).collect();
     for i in order {
         let (Some(Some((text, tree))), Some((key, _))) = (texts.get(i), entries.get(i)) else {
             continue;
         };
-        if left_out.get(i) == Some(&true) {
-            continue;
-        }
         match check(tree, &mut Measures(cx)) {
             Ok((measure, dimension)) => {
+                let nature = nature(&measure, &cx.natures);
+                if let Some(slot) = cx.natures.get_mut(i) {
+                    *slot = nature;
+                }
                 if let (Some(state), Some(slot)) = (cx.measures.get_mut(i), read.get_mut(i)) {
-                    *state = MeasureState::Sound(places.get(i).copied().unwrap_or(0), dimension);
+                    // with a broken one among them there is no model: places are those of the file
+                    *state = MeasureState::Sound(i, dimension);
                     *slot = Some(NamedMeasure {
+                        needs_forces: nature.forces,
                         name: key.name.clone(),
                         measure,
                         dimension,
@@ -145,37 +105,12 @@ fn tell_circle(cx: &mut Context<'_>, entries: &[&(Key, Node)], circle: &[usize])
     );
 }
 
-/// The first function of a tree that this version has not got.
-fn announced(tree: &kempe_units::Node) -> Option<&'static str> {
-    let mut found = None;
-    tree.visit(&mut |node| {
-        if let kempe_units::Kind::Call { function, .. } = &node.kind {
-            found = found.or(Registry::announced()
-                .iter()
-                .find(|f| *f == function)
-                .copied());
-        }
-    });
-    found
-}
-
-/// A measure written in a study: the name of one, or an expression. `None` when it is broken or left out.
+/// A measure written in a study: the name of one, or an expression. `None` when it is broken.
 pub(crate) fn measure_text(cx: &mut Context<'_>, text: &Text) -> Option<(Measure, Dimension)> {
     match parse(&text.content).and_then(|tree| check(&tree, &mut Measures(cx))) {
         Ok(found) => Some(found),
         Err(issues) => {
-            let (left_out, wrong): (Vec<Issue>, Vec<Issue>) =
-                issues.into_iter().partition(|i| i.code == NOT_AVAILABLE);
-            if let Some(issue) = left_out.into_iter().next()
-                && wrong.is_empty()
-            {
-                cx.push(
-                    Diagnostic::warning(NOT_AVAILABLE, issue.message)
-                        .at(text.span(issue.span), "left out of the study")
-                        .help("the rest of the study works without it"),
-                );
-            }
-            cx.issues(text, wrong);
+            cx.issues(text, issues);
             None
         }
     }

@@ -20,6 +20,13 @@ pub(crate) struct Sections<'d> {
     pub measures: Vec<&'d (Key, Node)>,
     pub assembly: Vec<&'d (Key, Node)>,
     pub studies: Vec<&'d (Key, Node)>,
+    pub loads: Vec<&'d (Key, Node)>,
+    pub masses: Vec<&'d (Key, Node)>,
+    pub springs: Vec<&'d (Key, Node)>,
+    pub dampers: Vec<&'d (Key, Node)>,
+    pub friction: Vec<&'d (Key, Node)>,
+    pub cylinders: Vec<&'d (Key, Node)>,
+    pub motors: Vec<&'d (Key, Node)>,
 }
 
 /// Whether a name is a point's: it starts with a capital letter.
@@ -30,7 +37,7 @@ pub(crate) fn is_point_name(name: &str) -> bool {
 }
 
 /// Whether a name may stand in an expression for something that is not a point.
-fn is_small_name(name: &str) -> bool {
+pub(crate) fn is_small_name(name: &str) -> bool {
     let mut letters = name.chars();
     letters
         .next()
@@ -82,6 +89,34 @@ pub(crate) fn collect<'d>(cx: &mut Context<'_>, root: &'d Table) -> Sections<'d>
             "[assembly] with lines such as C = \"left of B -> D\"",
         ),
         studies: section("studies", "[studies.turn] with the line kind = \"motion\""),
+        loads: section(
+            "loads",
+            "[loads] with lines such as hook = { force = [0, \"-100 N\"], at = \"E\" }",
+        ),
+        masses: section(
+            "masses",
+            "[masses] with lines such as weight = { on = \"crank\", at = [-20, 0], mass = \"2 kg\" }",
+        ),
+        springs: section(
+            "springs",
+            "[springs] with lines such as return = { between = \"A-B\", stiffness = \"2 N/mm\", free = \"80 mm\" }",
+        ),
+        dampers: section(
+            "dampers",
+            "[dampers] with lines such as closer = { between = \"A-B\", damping = \"50 N s/m\" }",
+        ),
+        friction: section(
+            "friction",
+            "[friction] with lines such as B = { coefficient = 0.1, radius = \"10 mm\" }",
+        ),
+        cylinders: section(
+            "cylinders",
+            "[cylinders] with lines such as lift = { bore = \"80 mm\", rod = \"40 mm\" }",
+        ),
+        motors: section(
+            "motors",
+            "[motors] with lines such as motor = { curve = [[\"0 rpm\", \"12 N m\"], [\"3000 rpm\", \"0 N m\"]] }",
+        ),
     };
     // the frame is link 0 wherever it stands
     sections.links.sort_by_key(|(k, _)| k.name != "frame");
@@ -118,7 +153,16 @@ pub(crate) fn collect<'d>(cx: &mut Context<'_>, root: &'d Table) -> Sections<'d>
 }
 
 /// Names the language keeps for itself.
-const RESERVED: &[&str] = &["time", "pi"];
+const RESERVED: &[&str] = &[
+    "time",
+    "pi",
+    "kinetic_energy",
+    "potential_energy",
+    "shaking_force",
+    "shaking_force_x",
+    "shaking_force_y",
+    "shaking_moment",
+];
 
 fn declare(cx: &mut Context<'_>, key: &Key, meaning: Meaning) {
     let name = key.name.as_str();
@@ -153,7 +197,7 @@ fn declare(cx: &mut Context<'_>, key: &Key, meaning: Meaning) {
                 key.span.clone(),
                 format!("`{name}` already means something in every file"),
             )
-            .help("choose another name"),
+            .help("ask for it by this name, or choose another one"),
         );
     }
     if let Some((other, place)) = cx.names.get(name).cloned() {

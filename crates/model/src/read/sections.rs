@@ -6,27 +6,35 @@ use crate::diagnostic::Diagnostic;
 use crate::document::{Node, Table, Value};
 use crate::model::{DriveKind, FRAME, LinkId, UnitName};
 use crate::read::context::Context;
-use crate::read::{assembly, drives, joints, links, measures, names, parameters, studies};
+use crate::read::{
+    actuators, assembly, drives, friction, joints, links, loads, masses, measures, names,
+    parameters, springs, studies,
+};
 
 /// Keys of a file.
 pub(crate) const FILE_KEYS: &[&str] = &[
     "title",
     "units",
+    "gravity",
     "parameters",
     "links",
     "joints",
     "drives",
     "assembly",
     "loads",
+    "masses",
     "springs",
     "dampers",
+    "friction",
+    "cylinders",
+    "motors",
     "clearance",
     "measures",
     "studies",
 ];
 
 /// Sections of the language that this version has not got.
-pub(crate) const ANNOUNCED_SECTIONS: &[&str] = &["loads", "springs", "dampers", "clearance"];
+pub(crate) const ANNOUNCED_SECTIONS: &[&str] = &["clearance"];
 
 /// Reads the whole file.
 pub(crate) fn read(
@@ -72,7 +80,18 @@ pub(crate) fn read(
     drives::read(cx, &sections.drives);
     assembly::read(cx, &sections.assembly);
     loose_links(cx);
+    if let Some(node) = root.get("gravity") {
+        masses::read_gravity(cx, node);
+    }
+    masses::read(cx, &sections.masses);
+    masses::without_inertia(cx);
+    springs::read_springs(cx, &sections.springs);
+    springs::read_dampers(cx, &sections.dampers);
+    friction::read(cx, &sections.friction);
+    actuators::read_cylinders(cx, &sections.cylinders);
+    actuators::read_motors(cx, &sections.motors);
     measures::read(cx, &sections.measures);
+    loads::read(cx, &sections.loads);
     studies::read(cx, &sections.studies);
     if broken_syntax {
         // a line that could not be read may have held the name or the key that is missed elsewhere
@@ -140,6 +159,7 @@ const FOLLOWS_FROM_SYNTAX: &[&str] = &[
     "no-common-link",
     "no-common-point",
     "no-drive",
+    "not-a-pin",
 ];
 
 /// Keys of `units`.

@@ -7,13 +7,16 @@ use crate::document::{Key, Node, Table, Value};
 use crate::model::{Column, LawPiece, Model, MotionStudy, Plot, Rows, Scalar, Study, StudyKind};
 use crate::read::context::Context;
 use crate::read::measures::measure_text;
+use crate::read::nature::nature;
 
 /// Keys of a motion study.
 pub(crate) const MOTION_KEYS: &[&str] = &["kind", "step", "rows", "columns", "plot", "circuit"];
 
+/// Keys of a study of forces.
+pub(crate) const FORCES_KEYS: &[&str] = &["kind", "step", "rows", "columns", "plot"];
+
 /// Kinds of study of the language that this version has not got.
 pub(crate) const ANNOUNCED_KINDS: &[&str] = &[
-    "forces",
     "simulate",
     "clearance",
     "sweep",
@@ -88,11 +91,11 @@ fn read_study(cx: &mut Context<'_>, key: &Key, node: &Node) -> Option<StudyKind>
         );
         return None;
     }
-    if name != "motion" {
-        let known = ANNOUNCED_KINDS.iter().copied().chain(["motion"]);
+    if !["motion", "forces"].contains(&name) {
+        let known = ANNOUNCED_KINDS.iter().copied().chain(["motion", "forces"]);
         let help = match kempe_units::nearest(name, known) {
             Some(near) => format!("did you mean `{near}`?"),
-            None => "write kind = \"motion\"".to_owned(),
+            None => "write kind = \"motion\" or kind = \"forces\"".to_owned(),
         };
         cx.push(
             Diagnostic::error(
@@ -104,7 +107,9 @@ fn read_study(cx: &mut Context<'_>, key: &Key, node: &Node) -> Option<StudyKind>
         );
         return None;
     }
-    cx.unknown_keys(table, &place, MOTION_KEYS);
+    let forces = name == "forces";
+    let keys = if forces { FORCES_KEYS } else { MOTION_KEYS };
+    cx.unknown_keys(table, &place, keys);
     if cx.drives.is_empty() {
         cx.push(
             Diagnostic::error("no-drive", format!("{place} has nothing that moves"))
@@ -117,23 +122,28 @@ fn read_study(cx: &mut Context<'_>, key: &Key, node: &Node) -> Option<StudyKind>
     let columns = entries(cx, table, "columns", "[\"swing\", \"rate(swing)\"]");
     let columns = columns
         .into_iter()
-        .filter_map(|node| column(cx, node))
+        .filter_map(|node| column(cx, node, forces))
         .collect();
     let plots = entries(cx, table, "plot", "[\"swing\", \"path(P)\"]");
     let plots = plots
         .into_iter()
-        .filter_map(|node| plot(cx, node))
+        .filter_map(|node| plot(cx, node, forces))
         .collect();
     let circuit = match table.get("circuit") {
-        Some(node) => cx.flag(node, "`circuit`")?,
-        None => false,
+        Some(node) if !forces => cx.flag(node, "`circuit`")?,
+        _ => false,
     };
-    Some(StudyKind::Motion(MotionStudy {
+    let study = MotionStudy {
         rows: rows?,
         columns,
         plots,
         circuit,
-    }))
+    };
+    Some(if forces {
+        StudyKind::Forces(study)
+    } else {
+        StudyKind::Motion(study)
+    })
 }
 
 fn entries<'n>(cx: &mut Context<'_>, table: &'n Table, key: &str, example: &str) -> Vec<&'n Node> {
@@ -152,10 +162,18 @@ fn entries<'n>(cx: &mut Context<'_>, table: &'n Table, key: &str, example: &str)
     }
 }
 
-fn column(cx: &mut Context<'_>, node: &Node) -> Option<Column> {
+fn column(cx: &mut Context<'_>, node: &Node, forces: bool) -> Option<Column> {
     let text = cx.text(node, "a column", "\"angle(rocker)\"")?;
     let name = text.content.trim().to_owned();
     let (measure, dimension) = measure_text(cx, text)?;
+    if !forces && nature(&measure, &cx.natures).forces {
+        cx.push(
+            Diagnostic::error("needs-forces-study", format!("a motion study does not know `{name}`"))
+                .at(node.span.clone(), "asks for a force")
+                .help("forces belong to a study of their own: kind = \"forces\"; or leave it out of this one"),
+        );
+        return None;
+    }
     Some(Column {
         name,
         measure,
@@ -163,7 +181,7 @@ fn column(cx: &mut Context<'_>, node: &Node) -> Option<Column> {
     })
 }
 
-fn plot(cx: &mut Context<'_>, node: &Node) -> Option<Plot> {
+fn plot(cx: &mut Context<'_>, node: &Node, forces: bool) -> Option<Plot> {
     let text = cx.text(node, "a plot", "\"angle(rocker)\" or \"path(P)\"")?;
     if let Ok(tree) = parse(&text.content)
         && let kempe_units::Kind::Call {
@@ -187,7 +205,7 @@ fn plot(cx: &mut Context<'_>, node: &Node) -> Option<Plot> {
         );
         return None;
     }
-    column(cx, node).map(Plot::Column)
+    column(cx, node, forces).map(Plot::Column)
 }
 
 /// Where the rows stand: `step` or `rows`, or the default.

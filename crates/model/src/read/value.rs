@@ -149,7 +149,7 @@ impl Context<'_> {
     }
 
     /// The value, or an error when it is not finite.
-    fn finite(&mut self, scalar: &Scalar, span: &Span) -> Option<f64> {
+    pub fn finite(&mut self, scalar: &Scalar, span: &Span) -> Option<f64> {
         let x = self.number(scalar);
         if x.is_finite() {
             return Some(x);

@@ -1,0 +1,235 @@
+//! Tables from files beside the model: two columns of a CSV file, the first of them rising.
+
+use kempe_units::{Dimension, Unit, nearest};
+
+use crate::diagnostic::Diagnostic;
+use crate::document::Node;
+use crate::model::Span;
+use crate::read::context::Context;
+
+/// A table has at most so many rows.
+const MAX_ROWS: usize = 1_000_000;
+
+/// All tables of a model together have at most so many rows.
+const MAX_ALL_ROWS: usize = 8_000_000;
+
+/// Which column is meant.
+pub(crate) enum Pick {
+    /// By its head.
+    Name(String),
+    /// By its place.
+    Number(usize),
+}
+
+/// A column that is asked for.
+pub(crate) struct Ask {
+    pub pick: Pick,
+    /// Where it is asked for.
+    pub span: Span,
+    pub dimension: Dimension,
+}
+
+/// What is said of rows that do not fit.
+pub(crate) struct Words {
+    /// The first column does not rise.
+    pub not_rising: &'static str,
+    /// What rows are.
+    pub order: &'static str,
+    /// There are fewer than two.
+    pub few: &'static str,
+}
+
+/// Two columns of the file that `file` names, in SI; the first one rises. Columns are parted by a semicolon, a tabulator or a
+/// comma; a head may name its unit in brackets, `p [bar]`.
+pub(crate) fn columns(
+    cx: &mut Context<'_>,
+    file: &Node,
+    [first, second]: [&Ask; 2],
+    words: &Words,
+) -> Option<(Vec<f64>, Vec<f64>)> {
+    let name = cx
+        .text(file, "`table`", "\"measured.csv\"")?
+        .content
+        .clone();
+    let content = match (cx.files)(&name) {
+        Ok(content) => content,
+        Err(reason) => {
+            cx.push(
+                Diagnostic::error(
+                    "table-unreadable",
+                    format!("cannot read `{name}`: {reason}"),
+                )
+                .at(file.span.clone(), "")
+                .help("the name counts from the folder of the model file"),
+            );
+            return None;
+        }
+    };
+    let mut lines = content
+        .lines()
+        .enumerate()
+        .filter(|(_, l)| !l.trim().is_empty() && !l.starts_with('#'));
+    let header = lines
+        .next()
+        .map_or("", |(_, line)| line.trim_start_matches('\u{feff}'));
+    let separator = [';', '\t', ',']
+        .into_iter()
+        .find(|c| header.contains(*c))
+        .unwrap_or(',');
+    let heads: Vec<&str> = header.split(separator).map(unquoted).collect();
+    if heads.iter().all(|head| head.parse::<f64>().is_ok()) {
+        cx.push(
+            Diagnostic::error(
+                "table-column",
+                format!("the columns of `{name}` have no heads"),
+            )
+            .at(file.span.clone(), "its first line is all numbers")
+            .help("name the columns in the first line, with their units: angle [deg], force [N]"),
+        );
+        return None;
+    }
+    let first = find_column(cx, &heads, &name, first);
+    let second = find_column(cx, &heads, &name, second);
+    let ((first, first_unit), (second, second_unit)) = (first?, second?);
+    let (mut abscissas, mut values) = (Vec::new(), Vec::new());
+    for (number, line) in lines {
+        let cells: Vec<&str> = line.split(separator).map(unquoted).collect();
+        let cell = |i: usize| {
+            cells
+                .get(i)
+                .and_then(|c| c.parse::<f64>().ok())
+                .filter(|x| x.is_finite())
+        };
+        let room = abscissas.len() < MAX_ROWS && cx.table_rows < MAX_ALL_ROWS;
+        let trouble = match (cell(first), cell(second)) {
+            (Some(t), Some(x)) => {
+                let t = first_unit.to_si(t);
+                if abscissas.last().is_none_or(|last| t > *last) && room {
+                    abscissas.push(t);
+                    values.push(second_unit.to_si(x));
+                    cx.table_rows += 1;
+                    continue;
+                }
+                if room {
+                    words.not_rising
+                } else {
+                    "one row too many"
+                }
+            }
+            _ => "a cell is not a number",
+        };
+        cx.push(
+            Diagnostic::error(
+                "table-values",
+                format!("`{name}`, line {}: {trouble}", number + 1),
+            )
+            .at(file.span.clone(), "")
+            .note(format!(
+                "the line is: {}",
+                line.chars().take(80).collect::<String>()
+            ))
+            .help(format!("{}, at most {MAX_ROWS} of them", words.order)),
+        );
+        return None;
+    }
+    if abscissas.len() < 2 {
+        cx.push(
+            Diagnostic::error(
+                "table-values",
+                format!("`{name}` has {} rows of data", abscissas.len()),
+            )
+            .at(file.span.clone(), "")
+            .help(words.few),
+        );
+        return None;
+    }
+    Some((abscissas, values))
+}
+
+fn unquoted(cell: &str) -> &str {
+    let cell = cell.trim();
+    cell.strip_prefix('"')
+        .and_then(|c| c.strip_suffix('"'))
+        .unwrap_or(cell)
+        .trim()
+}
+
+/// The column that is meant, with the unit in its head: `angle [deg]`, or the file's unit.
+fn find_column(
+    cx: &mut Context<'_>,
+    heads: &[&str],
+    file: &str,
+    ask: &Ask,
+) -> Option<(usize, Unit)> {
+    let (dimension, span) = (ask.dimension, ask.span.clone());
+    let split = |head: &str| match head.split_once('[') {
+        Some((name, unit)) => (
+            name.trim().to_owned(),
+            Some(unit.trim_end_matches(']').trim().to_owned()),
+        ),
+        None => (head.trim().to_owned(), None),
+    };
+    let names: Vec<(String, Option<String>)> = heads.iter().map(|h| split(h)).collect();
+    let place = match &ask.pick {
+        Pick::Name(name) => heads
+            .iter()
+            .position(|h| *h == name)
+            .or(names.iter().position(|(n, _)| n == name)),
+        Pick::Number(i) => (*i < heads.len()).then_some(*i),
+    };
+    let name = match &ask.pick {
+        Pick::Name(name) => name.as_str(),
+        Pick::Number(i) => names.get(*i).map_or("2", |(name, _)| name.as_str()),
+    };
+    let Some(i) = place else {
+        let help = match nearest(name, names.iter().map(|(n, _)| n.as_str())) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => format!(
+                "its columns are {}",
+                names
+                    .iter()
+                    .take(12)
+                    .map(|(n, _)| n.as_str())
+                    .collect::<Vec<_>>()
+                    .join(", ")
+            ),
+        };
+        cx.push(
+            Diagnostic::error("table-column", format!("`{file}` has no column `{name}`"))
+                .at(span, "")
+                .help(help),
+        );
+        return None;
+    };
+    let Some(text) = names.get(i).and_then(|(_, unit)| unit.clone()) else {
+        return Some((i, cx.bare_unit(dimension)));
+    };
+    match Unit::parse(&text) {
+        Ok(unit) if unit.dimension() == dimension => Some((i, unit)),
+        Ok(unit) => {
+            cx.push(
+                Diagnostic::error(
+                    "unit-mismatch",
+                    format!(
+                        "column `{name}` of `{file}`: {dimension} expected, found {}",
+                        unit.dimension().with_article()
+                    ),
+                )
+                .at(span, format!("its head says [{text}]"))
+                .help(format!("name a column of {}", dimension.with_article())),
+            );
+            None
+        }
+        Err(issue) => {
+            cx.push(
+                Diagnostic::error(
+                    "unknown-unit",
+                    format!("column `{name}` of `{file}`: {}", issue.message),
+                )
+                .at(span, format!("its head says [{text}]"))
+                .maybe_help(issue.help),
+            );
+            None
+        }
+    }
+}

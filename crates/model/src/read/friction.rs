@@ -1,0 +1,188 @@
+//! `[friction]`: at pins by the name of the point, at sliders, slots, gears and racks by the name of the joint, and for `all`.
+//!
+//! ```toml
+//! [friction]
+//! B    = { coefficient = 0.1, radius = "10 mm" }
+//! bore = { coefficient = 0.08, static = 0.12, stribeck = "1 mm/s", viscous = "50 N s/m" }
+//! all  = { coefficient = 0.1, radius = "8 mm" }         # every pin and slider that has no entry of its own
+//! ```
+//!
+//! `coefficient` is Coulomb's, at speed; `static` the one at rest, from which it falls over the speed `stribeck`. A viscous
+//! part is told of a pin or a slider, not of all, because it measures something else at each.
+
+use kempe_units::{Dimension, Expr};
+
+use crate::diagnostic::Diagnostic;
+use crate::document::{Key, Node};
+use crate::load::{Friction, FrictionAt};
+use crate::model::{JointKind, PointId};
+use crate::read::context::{Context, Meaning};
+use crate::read::entry::Entry;
+use crate::read::names::is_point_name;
+
+/// Keys of friction at a pin or joint.
+pub(crate) const FRICTION_KEYS: &[&str] =
+    &["coefficient", "static", "stribeck", "viscous", "radius"];
+
+/// Keys of friction for all.
+const ALL_KEYS: &[&str] = &["coefficient", "static", "stribeck", "radius"];
+
+/// Keys of friction where nothing turns about a pin.
+const JOINT_KEYS: &[&str] = &["coefficient", "static", "stribeck", "viscous"];
+
+const EXAMPLE: &str = "B = { coefficient = 0.1, radius = \"10 mm\" }";
+
+/// A file has at most so many.
+const MAX: usize = 100_000;
+
+/// Reads all friction.
+pub(crate) fn read(cx: &mut Context<'_>, entries: &[&(Key, Node)]) {
+    for entry in cx.limited(entries, MAX, "entries of friction") {
+        let friction = read_one(cx, entry, entries);
+        cx.model.actions.friction.extend(friction);
+    }
+}
+
+fn read_one(
+    cx: &mut Context<'_>,
+    entry: &(Key, Node),
+    entries: &[&(Key, Node)],
+) -> Option<Friction> {
+    let at = place(cx, &entry.0)?;
+    let known = match at {
+        FrictionAt::Pin(_) => FRICTION_KEYS,
+        FrictionAt::Joint(_) => JOINT_KEYS,
+        FrictionAt::All => ALL_KEYS,
+    };
+    let entry = Entry::new(cx, entry, "friction of", EXAMPLE, known)?;
+    let viscous_per = match at {
+        FrictionAt::Pin(_) => Dimension::TORSIONAL_DAMPING,
+        _ => Dimension::DAMPING,
+    };
+    let viscous = match at {
+        FrictionAt::All => Some(None),
+        _ => entry.positive(cx, "viscous", viscous_per, true),
+    };
+    let only_viscous =
+        entry.table.get("viscous").is_some() && entry.table.get("coefficient").is_none();
+    let coefficient = if only_viscous {
+        Some(Expr::Const(0.0))
+    } else {
+        entry.required_positive(cx, "coefficient", Dimension::NONE, true)
+    };
+    let at_rest = entry.positive(cx, "static", Dimension::NONE, true);
+    let stribeck = entry.positive(cx, "stribeck", Dimension::SPEED, false);
+    entry.idle(cx, &["stribeck"], "static");
+    let radius = match at {
+        FrictionAt::Joint(_) => Some(None),
+        _ => entry.positive(cx, "radius", Dimension::LENGTH, false),
+    };
+    let dry = coefficient.as_ref().is_some_and(|c| cx.number(c) > 0.0)
+        || entry.table.get("static").is_some();
+    if dry && entry.table.get("radius").is_none() && needs_radius(cx, at, entries) {
+        let (place, span) = (&entry.place, &entry.key.span);
+        cx.required(
+            entry.table,
+            "radius",
+            place,
+            span,
+            "\"10 mm\", that of the pin",
+        )?;
+    }
+    let (coefficient, at_rest) = (coefficient?, at_rest?);
+    if let Some(rest) = &at_rest
+        && cx.number(rest) < cx.number(&coefficient)
+    {
+        entry.contradiction(
+            cx,
+            ["static", "coefficient"],
+            "the coefficient at rest is below that at speed",
+            "`static` is the coefficient at rest, the larger one",
+        );
+        return None;
+    }
+    Some(Friction {
+        at,
+        coefficient,
+        static_coefficient: at_rest,
+        stribeck_speed: stribeck?,
+        viscous: viscous?,
+        radius: radius?,
+        span: entry.key.span.clone(),
+    })
+}
+
+/// Whether there is a pin to which the entry applies.
+fn needs_radius(cx: &Context<'_>, at: FrictionAt, entries: &[&(Key, Node)]) -> bool {
+    match at {
+        FrictionAt::Pin(_) => true,
+        FrictionAt::Joint(_) => false,
+        FrictionAt::All => {
+            let own: std::collections::BTreeSet<&str> =
+                entries.iter().map(|(k, _)| k.name.as_str()).collect();
+            cx.model
+                .points
+                .iter()
+                .any(|p| p.links.len() > 1 && !own.contains(p.name.as_str()))
+        }
+    }
+}
+
+fn place(cx: &mut Context<'_>, key: &Key) -> Option<FrictionAt> {
+    let name = key.name.as_str();
+    if name == "all" {
+        return Some(FrictionAt::All);
+    }
+    if is_point_name(name) {
+        let point = cx.point(name, key.span.clone())?;
+        return pin(cx, point, key);
+    }
+    if let Some((Meaning::Joint(i), _)) = cx.names.get(name) {
+        let id = cx.joints.get(*i).copied().flatten()?;
+        if let Some(JointKind::Weld { .. }) = cx.model.joints.get(id.index()).map(|j| &j.kind) {
+            cx.push(
+                Diagnostic::error(
+                    "not-a-slider",
+                    format!("`{name}` is a weld: nothing rubs there"),
+                )
+                .at(key.span.clone(), "")
+                .help("friction acts at pins, sliders, slots, gears and racks"),
+            );
+            return None;
+        }
+        return Some(FrictionAt::Joint(id));
+    }
+    let known: Vec<String> = cx
+        .names
+        .iter()
+        .filter(|(_, (m, _))| matches!(m, Meaning::Joint(_)))
+        .map(|(n, _)| n.clone())
+        .chain(["all".to_owned()])
+        .collect();
+    let mut d = cx.no_such(
+        "joint",
+        name,
+        key.span.clone(),
+        known.iter().map(String::as_str),
+    );
+    if let Some((meaning, declared)) = cx.names.get(name) {
+        d = d.see(declared.clone(), format!("`{name}` is {}", meaning.what()));
+    }
+    cx.push(
+        d.note("friction is told of pins by their point, of sliders by their joint, and of `all`"),
+    );
+    None
+}
+
+fn pin(cx: &mut Context<'_>, point: PointId, key: &Key) -> Option<FrictionAt> {
+    if cx.carriers(point).len() > 1 {
+        return Some(FrictionAt::Pin(point));
+    }
+    let name = key.name.as_str();
+    cx.push(
+        Diagnostic::error("not-a-pin", format!("{name} is no pin"))
+            .at(key.span.clone(), "only one link carries it")
+            .help("a point that two links carry is a pin; of a slider or a pin in a slot, name the joint"),
+    );
+    None
+}

@@ -1,0 +1,374 @@
+//! `[loads]`: forces and torques from outside.
+//!
+//! ```toml
+//! [loads]
+//! hook  = { force = [0, "-100 kN"], at = "E" }
+//! wind  = { force = ["50 N", "30 deg"], at = "E", on = "jib" }          # size and direction
+//! tool  = { force = ["-20 N * sign", 0], at = "T", axes = "ram" }       # along the axes of a link
+//! brake = { torque = "-0.2 N m s * angular_speed(drum)", on = "drum", against = "arm" }
+//! gas   = { force = [0, { table = "card.csv", over = "angle(crank)", value = "p", factor = "-area", period = "720 deg" }], at = "C" }
+//! ```
+//!
+//! An entry is a value, a measure of the motion (of a drive, of time, of any pose or speed), or a table beside the model. A
+//! table goes by the measure `over`; its columns are the first and second, or those that `argument` and `value` name; their
+//! heads may hold units; `factor` turns its values into forces. With `period` it repeats.
+//!
+//! A force acts on the link `on`; without it, on the first-named moving link that carries the point.
+
+use kempe_units::{Builtin, Dimension, Expr, Issue, check, check_as, parse};
+
+use crate::diagnostic::Diagnostic;
+use crate::document::{Key, Node, Table, Value};
+use crate::load::{Amount, Load, LoadKind};
+use crate::measure::{Leaf, Measure};
+use crate::model::{FRAME, Span};
+use crate::read::context::Context;
+use crate::read::csv::{Ask, Pick, Words, columns};
+use crate::read::entry::{Entry, link_of, moving_carrier, on_link};
+use crate::read::law_table::column_name;
+use crate::read::masses::on_the_frame;
+use crate::read::measure_names::Measures;
+use crate::read::nature::{as_scalar, nature};
+use crate::read::springs::plain_name;
+
+/// Keys of a force.
+pub(crate) const FORCE_KEYS: &[&str] = &["force", "at", "on", "axes"];
+
+/// Keys of a torque.
+pub(crate) const TORQUE_KEYS: &[&str] = &["torque", "on", "against"];
+
+/// Keys of a table of loads.
+pub(crate) const LOAD_TABLE_KEYS: &[&str] =
+    &["table", "over", "argument", "value", "factor", "period"];
+
+const FORCE: &str = "hook = { force = [0, \"-100 N\"], at = \"E\" }";
+const TORQUE: &str = "brake = { torque = \"-20 N m\", on = \"drum\" }";
+const TABLE: &str = "{ table = \"card.csv\", over = \"angle(crank)\", factor = \"-area\" }";
+
+const WORDS: Words = Words {
+    not_rising: "its argument is not larger than that of the row before",
+    order: "rows are numbers in order of increasing argument",
+    few: "a curve needs at least two rows",
+};
+
+/// A file has at most so many loads.
+const MAX: usize = 10_000;
+
+/// Reads all loads.
+pub(crate) fn read(cx: &mut Context<'_>, entries: &[&(Key, Node)]) {
+    for entry in cx.limited(entries, MAX, "loads") {
+        plain_name(cx, &entry.0, "a load");
+        let kind = read_load(cx, entry);
+        cx.model.actions.loads.extend(kind.map(|kind| Load {
+            name: entry.0.name.clone(),
+            kind,
+            span: entry.0.span.clone(),
+        }));
+    }
+}
+
+fn read_load(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<LoadKind> {
+    let place = format!("load `{}`", entry.0.name);
+    let table = cx.table(&entry.1, &place, FORCE)?;
+    match (table.get("force"), table.entry("torque")) {
+        (Some(_), Some((key, _))) => {
+            cx.push(
+                Diagnostic::error(
+                    "over-specified",
+                    format!("{place} has both `force` and `torque`"),
+                )
+                .at(key.span.clone(), "")
+                .help("make two loads of it"),
+            );
+            None
+        }
+        (None, None) => {
+            let near = table
+                .entries
+                .iter()
+                .find_map(|(k, _)| kempe_units::nearest(&k.name, ["force", "torque"]));
+            let help = match near {
+                Some(near) => format!("did you mean `{near}`?"),
+                None => format!("a load is a force or a torque: {FORCE} or {TORQUE}"),
+            };
+            cx.push(
+                Diagnostic::error("missing-key", format!("{place}: what kind of load is it?"))
+                    .at(entry.0.span.clone(), "")
+                    .help(help),
+            );
+            None
+        }
+        (Some(node), None) => {
+            let entry = Entry::new(cx, entry, "load", FORCE, FORCE_KEYS)?;
+            force(cx, &entry, node)
+        }
+        (None, Some((_, node))) => {
+            let entry = Entry::new(cx, entry, "load", TORQUE, TORQUE_KEYS)?;
+            torque(cx, &entry, node)
+        }
+    }
+}
+
+fn force<'d>(cx: &mut Context<'_>, entry: &Entry<'d>, node: &'d Node) -> Option<LoadKind> {
+    let components = components(cx, entry, node);
+    let axes = match entry.table.get("axes") {
+        None => Some(FRAME),
+        Some(node) => link_of(cx, node, &format!("`axes` of {}", entry.place)),
+    };
+    let at = entry.required(cx, "at")?;
+    let text = cx.text(at, &format!("`at` of {}", entry.place), "\"E\"")?;
+    let point = cx.point_text(text)?;
+    let on = match entry.table.get("on") {
+        Some(_) => entry.link(cx, "on")?,
+        None => moving_carrier(cx, point)?,
+    };
+    let at = on_link(cx, point, on, at)?;
+    on_the_frame(cx, on, &entry.place, &entry.key.span);
+    Some(LoadKind::Force {
+        at,
+        components: components?,
+        axes: axes?,
+    })
+}
+
+fn torque(cx: &mut Context<'_>, entry: &Entry<'_>, node: &Node) -> Option<LoadKind> {
+    let amount = amount(cx, entry, node, Dimension::TORQUE);
+    let on = entry.link(cx, "on");
+    let against = match entry.table.get("against") {
+        None => Some(FRAME),
+        Some(node) => link_of(cx, node, &format!("`against` of {}", entry.place)),
+    };
+    let (on, against) = (on?, against?);
+    if on == against && on == FRAME {
+        on_the_frame(cx, on, &entry.place, &entry.key.span);
+    } else if on == against {
+        let name = cx.link_name(on).to_owned();
+        cx.push(
+            Diagnostic::error(
+                "same-link",
+                format!("{} turns `{name}` against itself", entry.place),
+            )
+            .at(entry.key.span.clone(), "")
+            .help("`against` names the link that takes the reaction: another one"),
+        );
+        return None;
+    }
+    Some(LoadKind::Torque {
+        on,
+        against,
+        amount: amount?,
+    })
+}
+
+/// `[x, y]`, or `[size, direction]` when the second is an angle.
+fn components<'d>(cx: &mut Context<'_>, entry: &Entry<'d>, node: &'d Node) -> Option<[Amount; 2]> {
+    let (first, second) = entry.two(cx, node, "force")?;
+    if let Some(direction) = direction(cx, second)? {
+        let size = amount(cx, entry, first, Dimension::FORCE)?;
+        return polar(cx, size, &direction, second);
+    }
+    let x = amount(cx, entry, first, Dimension::FORCE);
+    let y = amount(cx, entry, second, Dimension::FORCE);
+    Some([x?, y?])
+}
+
+/// The direction of a force, when the second value of its pair is an angle.
+fn direction(cx: &mut Context<'_>, node: &Node) -> Option<Option<Measure>> {
+    let Value::Text(text) = &node.value else {
+        return Some(None);
+    };
+    // what is wrong with it is told where it is read as a force
+    let Ok(tree) = parse(&text.content) else {
+        return Some(None);
+    };
+    match check(&tree, &mut Measures(cx)) {
+        Ok((angle, Dimension::ANGLE)) => {
+            instant(cx, &angle, &node.span)?;
+            Some(Some(angle))
+        }
+        _ => Some(None),
+    }
+}
+
+fn polar(
+    cx: &mut Context<'_>,
+    size: Amount,
+    direction: &Measure,
+    node: &Node,
+) -> Option<[Amount; 2]> {
+    let part = |function: Builtin| Expr::Call(function, vec![direction.clone()]);
+    match size {
+        Amount::Measure(size) => {
+            let times = |function| {
+                Amount::Measure(Expr::Mul(Box::new(size.clone()), Box::new(part(function))))
+            };
+            Some([times(Builtin::Cos), times(Builtin::Sin)])
+        }
+        table @ Amount::Table { .. } => {
+            let Some(direction) = as_scalar(direction) else {
+                cx.push(
+                    Diagnostic::error(
+                        "bad-choice",
+                        "the direction of a table's force cannot move",
+                    )
+                    .at(node.span.clone(), "")
+                    .help("give the components along the axes of the link that it turns with: axes = \"rod\""),
+                );
+                return None;
+            };
+            let scaled = |function| {
+                let mut table = table.clone();
+                if let Amount::Table { factor, .. } = &mut table {
+                    let part = Expr::Call(function, vec![direction.clone()]);
+                    *factor = Expr::Mul(Box::new(factor.clone()), Box::new(part));
+                }
+                table
+            };
+            Some([scaled(Builtin::Cos), scaled(Builtin::Sin)])
+        }
+    }
+}
+
+/// A value, a measure or a table.
+fn amount(
+    cx: &mut Context<'_>,
+    entry: &Entry<'_>,
+    node: &Node,
+    dimension: Dimension,
+) -> Option<Amount> {
+    match &node.value {
+        Value::Table(table) => card(cx, entry, node, table, dimension),
+        Value::Text(text) => {
+            let unit = cx.bare_unit(dimension);
+            let checked = parse(&text.content)
+                .and_then(|tree| check_as(&tree, &mut Measures(cx), dimension, &unit));
+            match checked {
+                Ok((measure, _)) => {
+                    instant(cx, &measure, &node.span)?;
+                    if let Some(scalar) = as_scalar(&measure) {
+                        cx.finite(&scalar, &node.span)?;
+                    }
+                    Some(Amount::Measure(measure))
+                }
+                Err(issues) => {
+                    cx.issues(text, issues);
+                    None
+                }
+            }
+        }
+        _ => {
+            let scalar = cx.scalar(node, dimension)?;
+            Some(Amount::Measure(
+                scalar.map_leaves(&mut |id| Leaf::Parameter(*id)),
+            ))
+        }
+    }
+}
+
+/// Whether a measure is known at every instant, before the forces are.
+fn instant(cx: &mut Context<'_>, measure: &Measure, span: &Span) -> Option<()> {
+    let asks = nature(measure, &cx.natures);
+    let d = if asks.forces {
+        Diagnostic::error(
+            "force-depends-on-force",
+            "a load cannot depend on a force that depends on it",
+        )
+        .at(span.clone(), "asks for a force")
+        .help("let it depend on the motion, or write what rubs under [friction] and what yields under [springs]")
+    } else if asks.motion {
+        Diagnostic::error(
+            "not-at-one-instant",
+            "a load is a value at every instant, not one over the whole motion",
+        )
+        .at(span.clone(), "a number over the whole motion")
+        .help("min, max, mean, range, stroke, at and time_ratio of a motion have no place here")
+    } else {
+        return Some(());
+    };
+    cx.push(d);
+    None
+}
+
+/// A table from a file beside the model.
+fn card(
+    cx: &mut Context<'_>,
+    entry: &Entry<'_>,
+    node: &Node,
+    table: &Table,
+    dimension: Dimension,
+) -> Option<Amount> {
+    let place = format!("the table of {}", entry.place);
+    cx.unknown_keys(table, &place, LOAD_TABLE_KEYS);
+    let file = cx.required(table, "table", &place, &node.span, "\"card.csv\"");
+    let over = cx
+        .required(table, "over", &place, &node.span, "\"angle(crank)\"")
+        .and_then(|node| over(cx, node));
+    let (factor, factor_is) = match table.get("factor") {
+        None => (Expr::Const(1.0), Dimension::NONE),
+        Some(node) => cx.inferred(node, Dimension::NONE)?,
+    };
+    let (file, (over, over_dimension)) = (file?, over?);
+    let period = match table.get("period") {
+        None => None,
+        Some(node) => {
+            let period = cx.positive(node, over_dimension, "the period", false)?;
+            Some((cx.number(&period), node))
+        }
+    };
+    let mut ask = |key: &str, number: usize, dimension: Dimension| {
+        let (pick, span) = column_name(cx, table, key)?
+            .unwrap_or_else(|| (Pick::Number(number), file.span.clone()));
+        Some(Ask {
+            pick,
+            span,
+            dimension,
+        })
+    };
+    let argument = ask("argument", 0, over_dimension);
+    let value = ask("value", 1, (dimension / factor_is).without_idle_angle());
+    let (at, values) = columns(cx, file, [&argument?, &value?], &WORDS)?;
+    let span = at.last().unwrap_or(&0.0) - at.first().unwrap_or(&0.0);
+    if let Some((period, node)) = period
+        && span > period * (1.0 + 1e-9)
+    {
+        let (span, period) = (
+            cx.show(span, over_dimension),
+            cx.show(period, over_dimension),
+        );
+        cx.push(
+            Diagnostic::error(
+                "contradictory-values",
+                format!("{place} is longer than its period"),
+            )
+            .at(node.span.clone(), format!("a period of {period}"))
+            .see(file.span.clone(), format!("goes over {span}"))
+            .help("the table holds one period: leave the rest out, or give the longer period"),
+        );
+        return None;
+    }
+    Some(Amount::Table {
+        over: Box::new(over),
+        over_dimension,
+        at,
+        values,
+        period: period.map(|(period, _)| period),
+        factor,
+    })
+}
+
+/// What a table goes by.
+fn over(cx: &mut Context<'_>, node: &Node) -> Option<(Measure, Dimension)> {
+    let text = cx.text(node, "`over`", &format!("\"angle(crank)\", as in {TABLE}"))?;
+    let checked: Result<_, Vec<Issue>> =
+        parse(&text.content).and_then(|tree| check(&tree, &mut Measures(cx)));
+    match checked {
+        Ok((measure, dimension)) => {
+            instant(cx, &measure, &node.span)?;
+            Some((measure, dimension))
+        }
+        Err(issues) => {
+            cx.issues(text, issues);
+            None
+        }
+    }
+}

@@ -1,0 +1,354 @@
+//! What is heavy: `gravity`, `[masses]`, and the mass of links by their shape.
+//!
+//! ```toml
+//! gravity = [0, "-9.81 m/s^2"]        # the default; a single value acts along -y: "1.62 m/s^2", or 0 for none
+//! [links]
+//! crank = { A-B = 20, bar = { width = "20 mm", thickness = "5 mm", density = "7850 kg/m^3" } }
+//! rod   = { B-C = 50, linear_density = "1 kg/m" }
+//! [masses]
+//! weight = { on = "crank", at = [-20, 0], mass = "2 kg" }
+//! ```
+//!
+//! A bar runs between the two points of the link's first distance, or else between its first two points, and ends there;
+//! its width lies in the plane. A rod is one without width. Mass, moment of inertia and centre follow the parameters.
+
+use kempe_units::{Builtin, Dimension, Expr};
+
+use crate::diagnostic::Diagnostic;
+use crate::document::{Key, Node, Table, Value};
+use crate::load::PointMass;
+use crate::model::{
+    Center, FRAME, Inertia, JointKind, LinkId, LinkPoint, Place, PointId, Scalar, Span,
+};
+use crate::read::context::Context;
+use crate::read::entry::{Entry, moving_carrier, on_link};
+use crate::read::links::Draft;
+use crate::read::names::is_point_name;
+use crate::read::springs::plain_name;
+
+/// Keys of a point mass.
+pub(crate) const MASS_KEYS: &[&str] = &["on", "at", "mass"];
+
+/// Keys of a link's bar.
+pub(crate) const BAR_KEYS: &[&str] = &["width", "thickness", "density"];
+
+const MASS: &str = "weight = { on = \"crank\", at = [-20, 0], mass = \"2 kg\" }";
+const BAR: &str = "bar = { width = \"20 mm\", thickness = \"5 mm\", density = \"7850 kg/m^3\" }";
+
+/// A file has at most so many point masses.
+const MAX: usize = 10_000;
+
+/// Gravity outside these limits, m/s^2, is more likely a slip of units than another planet.
+const LIKELY: [f64; 2] = [0.1, 100.0];
+
+/// Reads the file's gravity.
+pub(crate) fn read_gravity(cx: &mut Context<'_>, node: &Node) {
+    let gravity = match &node.value {
+        Value::Array(items) => match items.as_slice() {
+            [x, y] => gravity_pair(cx, x, y),
+            _ => {
+                cx.wrong_type(node, "`gravity`", "a pair [x, y]", "[0, \"-9.81 m/s^2\"]");
+                None
+            }
+        },
+        _ => cx
+            .positive(node, Dimension::ACCELERATION, "`gravity`", true)
+            .map(|size| [Expr::Const(0.0), Expr::Neg(Box::new(size))]),
+    };
+    let Some([x, y]) = gravity else { return };
+    let size = kempe_number::math::hypot(cx.number(&x), cx.number(&y));
+    if size > 0.0 && !(LIKELY[0]..=LIKELY[1]).contains(&size) {
+        let shown = kempe_units::format_digits(
+            size,
+            &kempe_units::Unit::parse("m/s^2").unwrap_or_else(|_| kempe_units::Unit::one()),
+            6,
+        );
+        let unit = cx.bare_unit(Dimension::ACCELERATION).text().to_owned();
+        cx.push(
+            Diagnostic::warning("unlikely-size", format!("gravity of {shown}"))
+                .at(
+                    node.span.clone(),
+                    format!("a bare number here is in {unit}"),
+                )
+                .help("give it a unit: gravity = [0, \"-9.81 m/s^2\"]; for none, gravity = 0"),
+        );
+    }
+    cx.model.actions.gravity = Some([x, y]);
+}
+
+fn gravity_pair(cx: &mut Context<'_>, x: &Node, y: &Node) -> Option<[Scalar; 2]> {
+    let first = cx.scalar(x, Dimension::ACCELERATION);
+    let second = cx.inferred(y, Dimension::ACCELERATION);
+    let (first, (second, is)) = (first?, second?);
+    if is == Dimension::ANGLE {
+        let part = |function| {
+            let direction = Expr::Call(function, vec![second.clone()]);
+            Expr::Mul(Box::new(first.clone()), Box::new(direction))
+        };
+        return Some([part(Builtin::Cos), part(Builtin::Sin)]);
+    }
+    if is.compatible(Dimension::ACCELERATION) {
+        return Some([first, second]);
+    }
+    cx.push(
+        Diagnostic::error(
+            "unit-mismatch",
+            format!(
+                "acceleration or angle expected, found {}",
+                is.with_article()
+            ),
+        )
+        .at(y.span.clone(), format!("this is {}", is.with_article()))
+        .help("gravity is [x, y], or [size, direction]"),
+    );
+    None
+}
+
+/// Reads all point masses.
+pub(crate) fn read(cx: &mut Context<'_>, entries: &[&(Key, Node)]) {
+    for entry in cx.limited(entries, MAX, "masses") {
+        plain_name(cx, &entry.0, "a mass");
+        let mass = read_mass(cx, entry);
+        cx.model.actions.masses.extend(mass);
+    }
+}
+
+fn read_mass(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<PointMass> {
+    let entry = Entry::new(cx, entry, "mass", MASS, MASS_KEYS)?;
+    let mass = entry.required_positive(cx, "mass", Dimension::MASS, false);
+    let at = entry.required(cx, "at")?;
+    let (on, place) = match &at.value {
+        Value::Text(text) if is_point_name(text.content.trim()) => {
+            let point = cx.point_text(text)?;
+            let on = match entry.table.get("on") {
+                Some(_) => entry.link(cx, "on"),
+                None => moving_carrier(cx, point),
+            }?;
+            on_link(cx, point, on, at)?;
+            let place = cx
+                .model
+                .links
+                .get(on.index())
+                .and_then(|l| l.points.iter().find(|p| p.point == point))
+                .map(|p| p.place.clone());
+            (on, place)
+        }
+        Value::Text(_) => {
+            cx.wrong_type(
+                at,
+                &format!("`at` of {}", entry.place),
+                "a point or a place",
+                "at = \"B\" or at = [-20, 0]",
+            );
+            return None;
+        }
+        _ => {
+            let on = entry.link(cx, "on");
+            let place = cx.place(at, &format!("`at` of {}", entry.place));
+            (on?, place)
+        }
+    };
+    on_the_frame(cx, on, &entry.place, &entry.key.span);
+    Some(PointMass {
+        name: entry.key.name.clone(),
+        on,
+        place: place?,
+        mass: mass?,
+        span: entry.key.span.clone(),
+    })
+}
+
+/// Warns of what acts on the frame alone.
+pub(crate) fn on_the_frame(cx: &mut Context<'_>, on: LinkId, place: &str, span: &Span) {
+    if on != FRAME {
+        return;
+    }
+    cx.push(
+        Diagnostic::warning(
+            "idle-load",
+            format!("{place} is on the frame, which stands still"),
+        )
+        .at(span.clone(), "moves nothing")
+        .help("say on which moving link it is: on = \"crank\""),
+    );
+}
+
+/// The mass properties of a link.
+pub(crate) fn read_inertia(
+    cx: &mut Context<'_>,
+    table: &Table,
+    (draft, points): (&Draft, &[LinkPoint]),
+    place: &str,
+    center: impl FnOnce(&mut Context<'_>, &Node) -> Option<Center>,
+) -> Option<Inertia> {
+    let shape = ["bar", "linear_density"]
+        .iter()
+        .find_map(|key| table.entry(key));
+    if let Some((key, node)) = shape {
+        let others = ["mass", "inertia", "center", "linear_density"];
+        if let Some((other, _)) = others
+            .iter()
+            .filter_map(|k| table.entry(k))
+            .find(|(k, _)| k.name != key.name)
+        {
+            cx.push(
+                Diagnostic::error(
+                    "over-specified",
+                    format!("{place} has both `{}` and `{}`", key.name, other.name),
+                )
+                .at(other.span.clone(), "one thing too many")
+                .see(key.span.clone(), "says mass, inertia and center")
+                .help("leave one of the two out"),
+            );
+            return None;
+        }
+        return shaped(cx, (key, node), (draft, points), place);
+    }
+    let scalar = |cx: &mut Context<'_>, name: &str, dimension: Dimension| {
+        let node = table.get(name)?;
+        cx.positive(node, dimension, &format!("the {name} of {place}"), true)
+    };
+    let mass = scalar(cx, "mass", Dimension::MASS);
+    let moment = scalar(cx, "inertia", Dimension::INERTIA);
+    let center = match table.entry("center") {
+        None => Center::Centroid,
+        Some((_, node)) => center(cx, node)?,
+    };
+    if table.get("mass").is_none() && table.get("inertia").is_none() {
+        if let Some((center, _)) = table.entry("center") {
+            cx.push(
+                Diagnostic::warning("idle-key", format!("{place} has a center but no mass"))
+                    .at(center.span.clone(), "means nothing without `mass`")
+                    .help("add mass = \"1 kg\" and inertia = \"1 kg m^2\", or leave center out"),
+            );
+        }
+        return None;
+    }
+    Some(Inertia {
+        mass,
+        moment,
+        center,
+    })
+}
+
+/// Mass properties of a bar or rod.
+fn shaped(
+    cx: &mut Context<'_>,
+    (key, node): (&Key, &Node),
+    (draft, points): (&Draft, &[LinkPoint]),
+    place: &str,
+) -> Option<Inertia> {
+    let what = format!("`{}` of {place}", key.name);
+    let (per_length, width) = if key.name == "bar" {
+        let table = cx.table(node, &what, BAR)?;
+        cx.unknown_keys(table, &what, BAR_KEYS);
+        let mut side = |key: &str, dimension: Dimension| {
+            let node = cx.required(table, key, &what, &node.span, &format!("… as in {BAR}"))?;
+            cx.positive(node, dimension, &format!("the {key} of {what}"), false)
+        };
+        let width = side("width", Dimension::LENGTH);
+        let thickness = side("thickness", Dimension::LENGTH);
+        let density = side("density", Dimension::DENSITY);
+        let width = width?;
+        (times(times(density?, width.clone()), thickness?), width)
+    } else {
+        let dimension = Dimension::MASS / Dimension::LENGTH;
+        (
+            cx.positive(node, dimension, &what, false)?,
+            Expr::Const(0.0),
+        )
+    };
+    let Some(([ax, ay], [bx, by])) = ends(draft, points) else {
+        // points without a place have been told
+        if !draft.broken && points.len() == draft.points.len() {
+            cx.push(
+                Diagnostic::error("not-placed", format!("{what}: from where to where?"))
+                    .at(key.span.clone(), "")
+                    .help("a bar runs between the link's first two points: give their distance, A-B = 20, or their coordinates; for other shapes write mass, inertia and center"),
+            );
+        }
+        return None;
+    };
+    let minus = |a: &Scalar, b: &Scalar| Expr::Sub(Box::new(b.clone()), Box::new(a.clone()));
+    let length = Expr::Call(Builtin::Hypot, vec![minus(&ax, &bx), minus(&ay, &by)]).fold();
+    let mass = times(per_length, length.clone());
+    let squares = Expr::Add(
+        Box::new(Expr::Powi(Box::new(length), 2)),
+        Box::new(Expr::Powi(Box::new(width), 2)),
+    );
+    let moment = over(times(mass.clone(), squares), 12.0);
+    cx.finite(&mass, &node.span)?;
+    cx.finite(&moment, &node.span)?;
+    let middle = |a: Scalar, b: Scalar| over(Expr::Add(Box::new(a), Box::new(b)), 2.0).fold();
+    Some(Inertia {
+        mass: Some(mass.fold()),
+        moment: Some(moment.fold()),
+        center: Center::Place(Place::Cartesian {
+            x: middle(ax, bx),
+            y: middle(ay, by),
+        }),
+    })
+}
+
+fn times(a: Scalar, b: Scalar) -> Scalar {
+    Expr::Mul(Box::new(a), Box::new(b))
+}
+
+fn over(a: Scalar, by: f64) -> Scalar {
+    Expr::Div(Box::new(a), Box::new(Expr::Const(by)))
+}
+
+/// Where a bar starts and ends: the points of the first distance, or else the first two points.
+fn ends(draft: &Draft, points: &[LinkPoint]) -> Option<([Scalar; 2], [Scalar; 2])> {
+    let named = draft.distances.first().map(|d| (d.a, d.b));
+    let mut first = draft.points.iter().map(|(point, _)| *point);
+    let (a, b) = match named {
+        Some(pair) => pair,
+        None => (first.next()?, first.next()?),
+    };
+    let coordinates = |point: PointId| match &points.iter().find(|p| p.point == point)?.place {
+        Place::Cartesian { x, y } => Some([x.clone(), y.clone()]),
+        Place::Polar { radius, angle } => {
+            let part = |function| times(radius.clone(), Expr::Call(function, vec![angle.clone()]));
+            Some([part(Builtin::Cos), part(Builtin::Sin)])
+        }
+        Place::Triangle { .. } => None,
+    };
+    Some((coordinates(a)?, coordinates(b)?))
+}
+
+/// Warns of links that turn and have a mass but no moment of inertia.
+pub(crate) fn without_inertia(cx: &mut Context<'_>) {
+    if cx.joints.iter().any(Option::is_none) {
+        return;
+    }
+    let slides_on_frame = |link: LinkId| {
+        cx.model.joints.iter().any(
+            |j| matches!(j.kind, JointKind::Slider { at, on, .. } if at.link == link && on.link == FRAME),
+        )
+    };
+    let mut told = Vec::new();
+    for (i, link) in cx.model.links.iter().enumerate().skip(1) {
+        let Some(Inertia {
+            mass: Some(mass),
+            moment: None,
+            ..
+        }) = &link.inertia
+        else {
+            continue;
+        };
+        if cx.number(mass) > 0.0 && !slides_on_frame(LinkId(i as u32)) {
+            told.push((link.name.clone(), link.span.clone()));
+        }
+    }
+    for (name, span) in told {
+        cx.push(
+            Diagnostic::warning(
+                "no-inertia",
+                format!("link `{name}` has a mass but no moment of inertia"),
+            )
+            .at(span, "counts as a point mass at its center")
+            .help("add inertia = \"0.01 kg m^2\" about the center of mass; inertia = 0 says that it is a point mass"),
+        );
+    }
+}
