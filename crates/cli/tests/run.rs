@@ -68,9 +68,9 @@ fn a_run_leaves_tables_figures_and_a_report_and_the_same_bytes_again() {
     assert_eq!(csv.lines().count(), 38);
     assert!(csv.starts_with("time [s],motor [deg],swing [deg],rate(swing) [rad/s],closure [1],smallest_singular_value [1],note\n"));
     let html = fs::read_to_string(at.join("one/report.html")).expect("text");
-    let outside = html
-        .match_indices("://")
-        .filter(|(i, _)| !html[..*i].ends_with("http") || !html[*i..].starts_with("://www.w3.org/"));
+    let outside = html.match_indices("://").filter(|(i, _)| {
+        !html[..*i].ends_with("http") || !html[*i..].starts_with("://www.w3.org/")
+    });
     assert_eq!(outside.count(), 0, "nothing is fetched");
 }
 
