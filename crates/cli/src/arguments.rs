@@ -81,8 +81,8 @@ pub struct Check {
 #[command(
     after_help = "Examples:\n  kempe run hitch.toml --out results\n  kempe run hitch.toml lifting --out results --set k=450mm\n  \
                         kempe run hitch.toml --json --quiet | jq .studies[0].values\n\n\
-                        Writes STUDY.csv, STUDY.parquet, STUDY-*.svg and report.html. All files appear at the end, each whole;\n\
-                        a run that fails leaves an earlier result as it was. Ctrl-C keeps the rows that are finished."
+                        Writes STUDY.csv, STUDY.parquet, STUDY-*.svg and report.html. All appear at the end, each whole;\n\
+                        a run that fails leaves an earlier result as it was. Ctrl-C keeps finished rows."
 )]
 pub struct Run {
     #[command(flatten)]

@@ -66,7 +66,7 @@ impl Report {
         };
         let mut facts = vec![(
             "Assemblies".to_owned(),
-            format!("{} as the file says{others} ({complete})", self.assemblies),
+            format!("{} fit the file{others} ({complete})", self.assemblies),
         )];
         if let Some(reach) = &self.reach {
             facts.push(("Reach".to_owned(), reach.clone()));

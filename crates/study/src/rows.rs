@@ -63,7 +63,7 @@ pub(crate) fn places(
 fn steps(from: f64, to: f64, step: f64, unit: &Unit) -> Vec<f64> {
     let step = step.abs();
     let count = (to - from).abs() / step;
-    if !(step > 0.0) || !count.is_finite() {
+    if step.is_nan() || step <= 0.0 || !count.is_finite() {
         return vec![from];
     }
     let whole = (count + SAME_PLACE).floor();

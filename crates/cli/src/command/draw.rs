@@ -196,6 +196,8 @@ fn pose(arguments: &Draw, model: &Model) -> Result<(MechanismView, Vec<Frame>, u
         study = Some(motion_of(first));
         if let Ok(result) = kempe_study::run(model, first, &mut kempe_study::Silent) {
             frames = drawing_frames(&result);
+            // A pose that is nowhere: the paths do not run on to the pose asked for.
+            frames.push(Frame::default());
         }
     }
     let pose = drawn(&frame, label);
