@@ -384,6 +384,16 @@ impl Spec {
         }
         for joint in &mut it.joints {
             // Angles against the frame's own axis, which stays.
+            if let SJoint::Weld {
+                a, b, angle: fixed, ..
+            } = joint
+            {
+                *fixed += match (*a, *b) {
+                    (0, _) => angle,
+                    (_, 0) => -angle,
+                    _ => 0.0,
+                };
+            }
             if let SJoint::Gears {
                 a,
                 b,
