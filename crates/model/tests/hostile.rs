@@ -4,7 +4,7 @@
 use std::fmt::Write as _;
 use std::time::{Duration, Instant};
 
-use kempe_model::{Checked, Diagnostic, Model, set_value};
+use kempe_model::{Amount, Checked, Diagnostic, LoadKind, Model, set_value, value};
 
 fn read(text: &str) -> Result<Checked, Vec<Diagnostic>> {
     Model::from_toml(text, "hostile", &mut |_| {
@@ -370,6 +370,40 @@ fn mutate(text: &mut Vec<u8>, chance: &mut Chance) {
     }
 }
 
+/// What acts is sound: finite values, tables that rise, names that are there.
+fn acting(model: &Model, values: &[f64]) {
+    let acts = &model.actions;
+    let finite = |scalar: &kempe_model::Scalar| assert!(value(scalar, values).is_finite());
+    for inertia in model.links.iter().filter_map(|l| l.inertia.as_ref()) {
+        inertia.mass.iter().for_each(finite);
+        inertia.moment.iter().for_each(finite);
+    }
+    acts.gravity.iter().flatten().for_each(finite);
+    acts.masses.iter().for_each(|m| finite(&m.mass));
+    for spring in &acts.springs {
+        finite(&spring.stiffness);
+        finite(&spring.free);
+        spring.stops.iter().flatten().for_each(finite);
+    }
+    for cylinder in &acts.cylinders {
+        assert!(value(&cylinder.rod, values) < value(&cylinder.bore, values));
+    }
+    for load in &acts.loads {
+        let amounts = match &load.kind {
+            LoadKind::Force { components, .. } => components.to_vec(),
+            LoadKind::Torque { amount, .. } => vec![amount.clone()],
+        };
+        for amount in amounts {
+            match amount {
+                Amount::Measure(measure) => assert!(!model.needs_forces(&measure)),
+                Amount::Table { at, values, .. } => {
+                    assert!(at.len() == values.len() && at.windows(2).all(|w| w[0] < w[1]));
+                }
+            }
+        }
+    }
+}
+
 #[test]
 fn mutants_of_real_files_do_no_harm() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests");
@@ -404,6 +438,7 @@ fn mutants_of_real_files_do_no_harm() {
                 for link in &checked.model.links {
                     assert_eq!(link.evaluate(&values).len(), link.points.len());
                 }
+                acting(&checked.model, &values);
                 for drive in &checked.model.drives {
                     let end: f64 = drive.law.duration(&values);
                     assert!(

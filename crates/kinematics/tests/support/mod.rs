@@ -603,12 +603,20 @@ impl Case {
                 panic!("{}\n{text}", all.join("\n"));
             }
         };
+        Self {
+            text: text.to_owned(),
+            ..Self::from_model(model)
+        }
+    }
+
+    /// Compiles a model that was not read from one text.
+    pub fn from_model(model: Model) -> Self {
         let mechanism = Mechanism::new(&model);
         let plan = Plan::new(&mechanism);
         let parameters: Vec<f64> = model.parameter_values();
         let design = Design::new(&mechanism, &plan, &parameters);
         Self {
-            text: text.to_owned(),
+            text: String::new(),
             model,
             mechanism,
             plan,

@@ -199,7 +199,11 @@ fn read_motor(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<Motor> {
                 } else {
                     "too-large"
                 },
-                format!("the curve of {} has {count} pairs", entry.place),
+                format!(
+                    "the curve of {} has too {} pairs",
+                    entry.place,
+                    if count < 2 { "few" } else { "many" }
+                ),
             )
             .at(node.span.clone(), "")
             .help(format!(

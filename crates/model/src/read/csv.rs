@@ -77,6 +77,17 @@ pub(crate) fn columns(
         .find(|c| header.contains(*c))
         .unwrap_or(',');
     let heads: Vec<&str> = header.split(separator).map(unquoted).collect();
+    if heads.iter().all(|head| head.parse::<f64>().is_ok()) {
+        cx.push(
+            Diagnostic::error(
+                "table-column",
+                format!("the columns of `{name}` have no heads"),
+            )
+            .at(file.span.clone(), "its first line is all numbers")
+            .help("name the columns in the first line, with their units: angle [deg], force [N]"),
+        );
+        return None;
+    }
     let first = find_column(cx, &heads, &name, first);
     let second = find_column(cx, &heads, &name, second);
     let ((first, first_unit), (second, second_unit)) = (first?, second?);

@@ -80,7 +80,14 @@ fn read_one(
     let dry = coefficient.as_ref().is_some_and(|c| cx.number(c) > 0.0)
         || entry.table.get("static").is_some();
     if dry && entry.table.get("radius").is_none() && needs_radius(cx, at, entries) {
-        entry.required(cx, "radius")?;
+        let (place, span) = (&entry.place, &entry.key.span);
+        cx.required(
+            entry.table,
+            "radius",
+            place,
+            span,
+            "\"10 mm\", that of the pin",
+        )?;
     }
     let (coefficient, at_rest) = (coefficient?, at_rest?);
     if let Some(rest) = &at_rest

@@ -277,6 +277,8 @@ fn shaped(
         Box::new(Expr::Powi(Box::new(width), 2)),
     );
     let moment = over(times(mass.clone(), squares), 12.0);
+    cx.finite(&mass, &node.span)?;
+    cx.finite(&moment, &node.span)?;
     let middle = |a: Scalar, b: Scalar| over(Expr::Add(Box::new(a), Box::new(b)), 2.0).fold();
     Some(Inertia {
         mass: Some(mass.fold()),

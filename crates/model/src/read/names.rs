@@ -197,7 +197,7 @@ fn declare(cx: &mut Context<'_>, key: &Key, meaning: Meaning) {
                 key.span.clone(),
                 format!("`{name}` already means something in every file"),
             )
-            .help("choose another name"),
+            .help("ask for it by this name, or choose another one"),
         );
     }
     if let Some((other, place)) = cx.names.get(name).cloned() {

@@ -159,6 +159,7 @@ const FOLLOWS_FROM_SYNTAX: &[&str] = &[
     "no-common-link",
     "no-common-point",
     "no-drive",
+    "not-a-pin",
 ];
 
 /// Keys of `units`.

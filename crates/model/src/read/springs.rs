@@ -119,7 +119,8 @@ fn read_spring(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<Spring> {
     let stop_stiffness = entry.positive(cx, "stop_stiffness", per, false);
     entry.idle(cx, &["stop_stiffness"], "stops");
     if entry.table.get("stops").is_some() {
-        entry.required(cx, "stop_stiffness")?;
+        let (place, span) = (&entry.place, &entry.key.span);
+        cx.required(entry.table, "stop_stiffness", place, span, "\"500 N/mm\"")?;
     }
     Some(Spring {
         name: entry.key.name.clone(),
