@@ -1,2 +1,42 @@
-//! Kempe developer tasks.
-fn main() {}
+//! Developer tasks: `cargo xtask test`, what people and CI run before a change goes in.
+
+mod shell;
+mod tasks;
+
+use std::process::ExitCode;
+
+const HELP: &str = "\
+Developer tasks.
+
+  cargo xtask test         format, lints, docs, all tests and doctests; installs cargo-nextest where it can
+  cargo xtask test --fast  the same without lints and docs
+  cargo xtask bench        all benchmarks, ratios printed
+  cargo xtask fuzz [SECS]  every fuzz target for SECS seconds (30); needs a nightly toolchain and cargo-fuzz
+";
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let done = match arguments.as_slice() {
+        ["test"] => tasks::test(false),
+        ["test", "--fast"] => tasks::test(true),
+        ["bench", rest @ ..] => tasks::bench(rest),
+        ["fuzz"] => tasks::fuzz(30),
+        ["fuzz", seconds] => match seconds.parse() {
+            Ok(seconds) => tasks::fuzz(seconds),
+            Err(_) => Err(format!("`{seconds}` is no number of seconds")),
+        },
+        [] | ["help" | "--help" | "-h"] => {
+            print!("{HELP}");
+            return ExitCode::SUCCESS;
+        }
+        other => Err(format!("there is no task `{}`\n\n{HELP}", other.join(" "))),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(message) => {
+            eprintln!("xtask: {message}");
+            ExitCode::FAILURE
+        }
+    }
+}

@@ -22,14 +22,14 @@ pub struct Input<T> {
 
 impl<T: Number> Input<T> {
     /// A turning drive at `value` rad.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn turn(value: T) -> Self {
         let (s, c) = value.sin_cos();
         Self { value, c, s }
     }
 
     /// A drive along a length, at `value` m.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn length(value: T) -> Self {
         Self {
             value,
@@ -53,13 +53,13 @@ pub struct Situation<'a, T> {
 
 impl<T: Number> Situation<'_, T> {
     /// A marker in the frame.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn place(&self, marker: Marker) -> [T; 2] {
         self.poses[marker.body.index()].place(self.geometry.marker(marker))
     }
 
     /// Origin and unit direction of a line in the frame.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn line(&self, line: LineRef) -> ([T; 2], [T; 2]) {
         let local = self.geometry.line(line);
         let pose = &self.poses[line.body.index()];
@@ -73,7 +73,7 @@ impl<T: Number> Situation<'_, T> {
     }
 
     /// The wanted direction of body `a` of a [`Constraint::Direction`], as a unit vector.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn wanted_direction(
         &self,
         b: BodyId,

@@ -128,13 +128,13 @@ impl<T: Number> Geometry<T> {
     }
 
     /// Local coordinates of a marker.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn marker(&self, marker: Marker) -> [T; 2] {
         self.markers[marker.index as usize]
     }
 
     /// A line in its body.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn line(&self, line: LineRef) -> LocalLine<T> {
         self.lines[line.index as usize]
     }

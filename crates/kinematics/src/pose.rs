@@ -17,7 +17,7 @@ pub struct Pose<T> {
 
 impl<T: Number> Pose<T> {
     /// The frame's own pose.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn identity() -> Self {
         Self {
             x: T::zero(),
@@ -35,26 +35,26 @@ impl<T: Number> Pose<T> {
     }
 
     /// A vector of the body seen from the frame.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn turn(&self, v: [T; 2]) -> [T; 2] {
         [self.c * v[0] - self.s * v[1], self.s * v[0] + self.c * v[1]]
     }
 
     /// A vector of the frame seen from the body.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn unturn(&self, v: [T; 2]) -> [T; 2] {
         [self.c * v[0] + self.s * v[1], self.c * v[1] - self.s * v[0]]
     }
 
     /// A point of the body seen from the frame.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn place(&self, p: [T; 2]) -> [T; 2] {
         let v = self.turn(p);
         [self.x + v[0], self.y + v[1]]
     }
 
     /// This pose with its origin moved so that the body's point `p` lies at `world`.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn pinned(c: T, s: T, p: [T; 2], world: [T; 2]) -> Self {
         Self {
             x: world[0] - (c * p[0] - s * p[1]),
@@ -96,25 +96,25 @@ impl<T: Number> Pose<T> {
 }
 
 /// Dot product.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn dot<T: Number>(a: [T; 2], b: [T; 2]) -> T {
     a[0] * b[0] + a[1] * b[1]
 }
 
 /// Cross product: positive when `b` lies counter-clockwise of `a`.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn cross<T: Number>(a: [T; 2], b: [T; 2]) -> T {
     a[0] * b[1] - a[1] * b[0]
 }
 
 /// Difference of two vectors.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn sub<T: Number>(a: [T; 2], b: [T; 2]) -> [T; 2] {
     [a[0] - b[0], a[1] - b[1]]
 }
 
 /// Quarter turn to the left.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn left<T: Number>(a: [T; 2]) -> [T; 2] {
     [-a[1], a[0]]
 }

@@ -220,7 +220,12 @@ impl<'a, F: ForceSource> Sampler<'a, F> {
 
     /// The row at a path parameter: the first time the motion passes it.
     pub fn at_parameter(&mut self, p: f64) -> Sample {
-        let time = match self.path_drive() {
+        self.row(p, self.time_at(p))
+    }
+
+    /// The first time at which the motion passes a path parameter, s; NaN when it never does.
+    pub(crate) fn time_at(&self, p: f64) -> f64 {
+        match self.path_drive() {
             // The last coordinate of a law may be missed by a rounding error.
             Some(drive) => self.time_of(drive, p).unwrap_or_else(|| {
                 let duration = self.duration();
@@ -233,17 +238,18 @@ impl<'a, F: ForceSource> Sampler<'a, F> {
                 }
             }),
             None => p,
-        };
-        self.row(p, time)
+        }
     }
 
     /// The row at a time, s.
     pub fn at_time(&mut self, t: f64) -> Sample {
-        let p = self
-            .motion
-            .path
-            .parameter_at(&self.motion.mechanism.model, t, &self.parameters);
-        self.row(p, t)
+        self.row(self.parameter_at(t), t)
+    }
+
+    /// The path parameter at a time, s.
+    pub(crate) fn parameter_at(&self, t: f64) -> f64 {
+        let model = &self.motion.mechanism.model;
+        self.motion.path.parameter_at(model, t, &self.parameters)
     }
 
     /// The row at a path parameter, without time: measures of speed are NaN.
@@ -479,7 +485,8 @@ impl<'a, F: ForceSource> Sampler<'a, F> {
         [series.derivative(0), series.derivative(1)]
     }
 
-    fn directions_near(&self, p: f64) -> Vec<((PointId, PointId), f64)> {
+    /// Unwrapped directions near a path parameter.
+    pub(crate) fn directions_near(&self, p: f64) -> Vec<((PointId, PointId), f64)> {
         let parameters = self.motion.node_parameters();
         let node = parameters
             .partition_point(|&q| q <= p)

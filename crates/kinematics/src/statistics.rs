@@ -49,10 +49,13 @@ fn times<F: ForceSource>(sampler: &Sampler<'_, F>) -> Vec<f64> {
     times
 }
 
-type At = (f64, f64);
+pub(crate) type At = (f64, f64);
 
 /// Smallest and largest value with their times: ends, breaks, and the zeros of the rate between grid points.
-fn extremes<F: ForceSource>(sampler: &mut Sampler<'_, F>, measure: &Measure) -> Option<(At, At)> {
+pub(crate) fn extremes<F: ForceSource>(
+    sampler: &mut Sampler<'_, F>,
+    measure: &Measure,
+) -> Option<(At, At)> {
     let times = times(sampler);
     let mut low: At = (f64::NAN, f64::INFINITY);
     let mut high: At = (f64::NAN, f64::NEG_INFINITY);

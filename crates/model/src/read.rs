@@ -24,6 +24,7 @@ mod place;
 pub(crate) mod sections;
 pub(crate) mod springs;
 pub(crate) mod studies;
+mod transmission;
 mod value;
 
 use std::collections::BTreeSet;

@@ -35,7 +35,7 @@ impl<T: Number, const K: usize> Dual<T, K> {
     ///
     /// # Panics
     /// When `i >= K`.
-    #[inline(always)]
+    #[inline]
     pub fn variable(x: T, i: usize) -> Self {
         let mut d = Self::constant(x);
         d.eps[i] = T::one();
@@ -43,7 +43,7 @@ impl<T: Number, const K: usize> Dual<T, K> {
     }
 
     /// A constant: no derivative to any parameter.
-    #[inline(always)]
+    #[inline]
     pub fn constant(x: T) -> Self {
         Self {
             re: x,
@@ -52,7 +52,7 @@ impl<T: Number, const K: usize> Dual<T, K> {
     }
 
     /// The chain rule for f(self): value `re`, slope f'(self.re).
-    #[inline(always)]
+    #[inline]
     fn chain(self, re: T, slope: T) -> Self {
         Self {
             re,
@@ -61,7 +61,7 @@ impl<T: Number, const K: usize> Dual<T, K> {
     }
 
     /// Combines both derivatives direction by direction.
-    #[inline(always)]
+    #[inline]
     fn combine(self, other: Self, re: T, f: impl Fn(T, T) -> T) -> Self {
         Self {
             re,
@@ -72,7 +72,7 @@ impl<T: Number, const K: usize> Dual<T, K> {
 
 impl<T: Number, const K: usize> Add for Dual<T, K> {
     type Output = Self;
-    #[inline(always)]
+    #[inline]
     fn add(self, other: Self) -> Self {
         self.combine(other, self.re + other.re, |a, b| a + b)
     }
@@ -80,7 +80,7 @@ impl<T: Number, const K: usize> Add for Dual<T, K> {
 
 impl<T: Number, const K: usize> Sub for Dual<T, K> {
     type Output = Self;
-    #[inline(always)]
+    #[inline]
     fn sub(self, other: Self) -> Self {
         self.combine(other, self.re - other.re, |a, b| a - b)
     }
@@ -88,7 +88,7 @@ impl<T: Number, const K: usize> Sub for Dual<T, K> {
 
 impl<T: Number, const K: usize> Mul for Dual<T, K> {
     type Output = Self;
-    #[inline(always)]
+    #[inline]
     fn mul(self, other: Self) -> Self {
         self.combine(other, self.re * other.re, |a, b| a * other.re + self.re * b)
     }
@@ -96,7 +96,7 @@ impl<T: Number, const K: usize> Mul for Dual<T, K> {
 
 impl<T: Number, const K: usize> Div for Dual<T, K> {
     type Output = Self;
-    #[inline(always)]
+    #[inline]
     fn div(self, other: Self) -> Self {
         let quotient = self.re / other.re;
         self.combine(other, quotient, |a, b| (a - quotient * b) / other.re)
@@ -105,7 +105,7 @@ impl<T: Number, const K: usize> Div for Dual<T, K> {
 
 impl<T: Number, const K: usize> Neg for Dual<T, K> {
     type Output = Self;
-    #[inline(always)]
+    #[inline]
     fn neg(self) -> Self {
         Self {
             re: -self.re,
@@ -116,7 +116,7 @@ impl<T: Number, const K: usize> Neg for Dual<T, K> {
 
 impl<T: Number, const K: usize> Add<f64> for Dual<T, K> {
     type Output = Self;
-    #[inline(always)]
+    #[inline]
     fn add(self, other: f64) -> Self {
         Self {
             re: self.re + other,
@@ -127,7 +127,7 @@ impl<T: Number, const K: usize> Add<f64> for Dual<T, K> {
 
 impl<T: Number, const K: usize> Mul<f64> for Dual<T, K> {
     type Output = Self;
-    #[inline(always)]
+    #[inline]
     fn mul(self, other: f64) -> Self {
         Self {
             re: self.re * other,
@@ -138,7 +138,7 @@ impl<T: Number, const K: usize> Mul<f64> for Dual<T, K> {
 
 impl<T: Number, const K: usize> Div<f64> for Dual<T, K> {
     type Output = Self;
-    #[inline(always)]
+    #[inline]
     fn div(self, other: f64) -> Self {
         Self {
             re: self.re / other,
@@ -150,18 +150,18 @@ impl<T: Number, const K: usize> Div<f64> for Dual<T, K> {
 assigning_operators!([T: Number, const K: usize] Dual<T, K>);
 
 impl<T: Number, const K: usize> Number for Dual<T, K> {
-    #[inline(always)]
+    #[inline]
     fn from_f64(x: f64) -> Self {
         Self::constant(T::from_f64(x))
     }
 
-    #[inline(always)]
+    #[inline]
     fn value(self) -> f64 {
         self.re.value()
     }
 
     /// The derivatives at zero are not finite.
-    #[inline(always)]
+    #[inline]
     fn sqrt(self) -> Self {
         let root = self.re.sqrt();
         let twice = root * 2.0;
@@ -171,27 +171,27 @@ impl<T: Number, const K: usize> Number for Dual<T, K> {
         }
     }
 
-    #[inline(always)]
+    #[inline]
     fn sin_cos(self) -> (Self, Self) {
         let (sin, cos) = self.re.sin_cos();
         (self.chain(sin, cos), self.chain(cos, -sin))
     }
 
     /// d theta = (x dy - y dx) / (x^2 + y^2).
-    #[inline(always)]
+    #[inline]
     fn atan2(self, x: Self) -> Self {
         let norm = x.re.square() + self.re.square();
         let angle = self.re.atan2(x.re);
         self.combine(x, angle, |dy, dx| (x.re * dy - self.re * dx) / norm)
     }
 
-    #[inline(always)]
+    #[inline]
     fn exp(self) -> Self {
         let value = self.re.exp();
         self.chain(value, value)
     }
 
-    #[inline(always)]
+    #[inline]
     fn ln(self) -> Self {
         Self {
             re: self.re.ln(),
@@ -199,7 +199,7 @@ impl<T: Number, const K: usize> Number for Dual<T, K> {
         }
     }
 
-    #[inline(always)]
+    #[inline]
     fn abs(self) -> Self {
         Self {
             re: self.re.abs(),
@@ -207,7 +207,7 @@ impl<T: Number, const K: usize> Number for Dual<T, K> {
         }
     }
 
-    #[inline(always)]
+    #[inline]
     fn min(self, other: Self) -> Self {
         Self {
             re: self.re.min(other.re),
@@ -215,7 +215,7 @@ impl<T: Number, const K: usize> Number for Dual<T, K> {
         }
     }
 
-    #[inline(always)]
+    #[inline]
     fn max(self, other: Self) -> Self {
         Self {
             re: self.re.max(other.re),
@@ -223,18 +223,18 @@ impl<T: Number, const K: usize> Number for Dual<T, K> {
         }
     }
 
-    #[inline(always)]
+    #[inline]
     fn choose(self, nonnegative: Self, negative: Self) -> Self {
         let re = self.re.choose(nonnegative.re, negative.re);
         nonnegative.combine(negative, re, |a, b| self.re.choose(a, b))
     }
 
-    #[inline(always)]
+    #[inline]
     fn is_finite(self) -> bool {
         self.re.is_finite() && self.eps.iter().all(|e| e.is_finite())
     }
 
-    #[inline(always)]
+    #[inline]
     fn square(self) -> Self {
         self.chain(self.re.square(), self.re * 2.0)
     }

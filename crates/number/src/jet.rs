@@ -27,7 +27,7 @@ pub struct Jet<T, const N: usize>([T; N]);
 
 impl<T: Number, const N: usize> Jet<T, N> {
     /// The series of the independent variable at `x0`: c0 = `x0`, c1 = 1.
-    #[inline(always)]
+    #[inline]
     pub fn variable(x0: T) -> Self {
         let mut c = Self::constant(x0).0;
         if N > 1 {
@@ -37,7 +37,7 @@ impl<T: Number, const N: usize> Jet<T, N> {
     }
 
     /// A constant: every derivative zero.
-    #[inline(always)]
+    #[inline]
     pub fn constant(x: T) -> Self {
         let mut c = [T::zero(); N];
         c[0] = x;
@@ -45,13 +45,13 @@ impl<T: Number, const N: usize> Jet<T, N> {
     }
 
     /// The series with these coefficients (derivative k over k!).
-    #[inline(always)]
+    #[inline]
     pub const fn from_coefficients(coefficients: [T; N]) -> Self {
         Self(coefficients)
     }
 
     /// The series whose k-th derivative is `derivatives[k]`, e.g. `[q, qd, qdd]` of a drive.
-    #[inline(always)]
+    #[inline]
     pub fn from_derivatives(derivatives: [T; N]) -> Self {
         let mut c = derivatives;
         let mut factorial = 1.0;
@@ -63,7 +63,7 @@ impl<T: Number, const N: usize> Jet<T, N> {
     }
 
     /// All coefficients, constant term first.
-    #[inline(always)]
+    #[inline]
     pub const fn coefficients(&self) -> &[T; N] {
         &self.0
     }
@@ -72,7 +72,7 @@ impl<T: Number, const N: usize> Jet<T, N> {
     ///
     /// # Panics
     /// When `k >= N`.
-    #[inline(always)]
+    #[inline]
     pub fn coefficient(&self, k: usize) -> T {
         self.0[k]
     }
@@ -81,14 +81,14 @@ impl<T: Number, const N: usize> Jet<T, N> {
     ///
     /// # Panics
     /// When `k >= N`.
-    #[inline(always)]
+    #[inline]
     pub fn derivative(&self, k: usize) -> T {
         let factorial: f64 = (1..=k).map(|i| i as f64).product();
         self.0[k] * factorial
     }
 
     /// The series of the derivative. Its last coefficient is not known from this series and set to zero.
-    #[inline(always)]
+    #[inline]
     pub fn differentiate(&self) -> Self {
         let mut c = [T::zero(); N];
         for k in 1..N {
@@ -98,7 +98,7 @@ impl<T: Number, const N: usize> Jet<T, N> {
     }
 
     /// The series of the antiderivative with this value at the expansion point; the last coefficient is lost.
-    #[inline(always)]
+    #[inline]
     pub fn integrate(&self, value: T) -> Self {
         let mut c = [T::zero(); N];
         c[0] = value;
@@ -111,7 +111,7 @@ impl<T: Number, const N: usize> Jet<T, N> {
     /// Substitutes a series into this one: `self` is a series in q - q0, `inner` is q(t), the result is in t.
     ///
     /// The constant term of `inner` must be q0; it is not looked at.
-    #[inline(always)]
+    #[inline]
     pub fn compose(&self, inner: &Self) -> Self {
         let mut step = *inner;
         step.0[0] = T::zero();
@@ -124,7 +124,7 @@ impl<T: Number, const N: usize> Jet<T, N> {
     }
 
     /// The value of the truncated polynomial a step `h` away from the expansion point.
-    #[inline(always)]
+    #[inline]
     pub fn evaluate(&self, h: T) -> T {
         let mut sum = self.0[N - 1];
         for k in (0..N - 1).rev() {
@@ -134,13 +134,13 @@ impl<T: Number, const N: usize> Jet<T, N> {
     }
 
     /// Applies `f` to every coefficient.
-    #[inline(always)]
+    #[inline]
     fn each(self, f: impl Fn(T) -> T) -> Self {
         Self(self.0.map(f))
     }
 
     /// Applies `f` to the coefficients of both series in pairs.
-    #[inline(always)]
+    #[inline]
     fn pairwise(self, other: Self, f: impl Fn(T, T) -> T) -> Self {
         Self(std::array::from_fn(|k| f(self.0[k], other.0[k])))
     }
@@ -148,7 +148,7 @@ impl<T: Number, const N: usize> Jet<T, N> {
 
 impl<T: Number, const N: usize> Add for Jet<T, N> {
     type Output = Self;
-    #[inline(always)]
+    #[inline]
     fn add(self, other: Self) -> Self {
         self.pairwise(other, |a, b| a + b)
     }
@@ -156,7 +156,7 @@ impl<T: Number, const N: usize> Add for Jet<T, N> {
 
 impl<T: Number, const N: usize> Sub for Jet<T, N> {
     type Output = Self;
-    #[inline(always)]
+    #[inline]
     fn sub(self, other: Self) -> Self {
         self.pairwise(other, |a, b| a - b)
     }
@@ -164,7 +164,7 @@ impl<T: Number, const N: usize> Sub for Jet<T, N> {
 
 impl<T: Number, const N: usize> Mul for Jet<T, N> {
     type Output = Self;
-    #[inline(always)]
+    #[inline]
     fn mul(self, other: Self) -> Self {
         let mut c = self.0;
         for k in 0..N {
@@ -179,7 +179,7 @@ impl<T: Number, const N: usize> Mul for Jet<T, N> {
 
 impl<T: Number, const N: usize> Div for Jet<T, N> {
     type Output = Self;
-    #[inline(always)]
+    #[inline]
     fn div(self, other: Self) -> Self {
         let mut q = self.0;
         for k in 0..N {
@@ -194,7 +194,7 @@ impl<T: Number, const N: usize> Div for Jet<T, N> {
 
 impl<T: Number, const N: usize> Neg for Jet<T, N> {
     type Output = Self;
-    #[inline(always)]
+    #[inline]
     fn neg(self) -> Self {
         self.each(|a| -a)
     }
@@ -202,7 +202,7 @@ impl<T: Number, const N: usize> Neg for Jet<T, N> {
 
 impl<T: Number, const N: usize> Add<f64> for Jet<T, N> {
     type Output = Self;
-    #[inline(always)]
+    #[inline]
     fn add(mut self, other: f64) -> Self {
         self.0[0] = self.0[0] + other;
         self
@@ -211,7 +211,7 @@ impl<T: Number, const N: usize> Add<f64> for Jet<T, N> {
 
 impl<T: Number, const N: usize> Mul<f64> for Jet<T, N> {
     type Output = Self;
-    #[inline(always)]
+    #[inline]
     fn mul(self, other: f64) -> Self {
         self.each(|a| a * other)
     }
@@ -219,7 +219,7 @@ impl<T: Number, const N: usize> Mul<f64> for Jet<T, N> {
 
 impl<T: Number, const N: usize> Div<f64> for Jet<T, N> {
     type Output = Self;
-    #[inline(always)]
+    #[inline]
     fn div(self, other: f64) -> Self {
         self.each(|a| a / other)
     }
@@ -228,18 +228,18 @@ impl<T: Number, const N: usize> Div<f64> for Jet<T, N> {
 assigning_operators!([T: Number, const N: usize] Jet<T, N>);
 
 impl<T: Number, const N: usize> Number for Jet<T, N> {
-    #[inline(always)]
+    #[inline]
     fn from_f64(x: f64) -> Self {
         Self::constant(T::from_f64(x))
     }
 
-    #[inline(always)]
+    #[inline]
     fn value(self) -> f64 {
         self.0[0].value()
     }
 
     /// s s = a gives s_k = (a_k - sum of s_i s_(k-i), 0 < i < k) / (2 s_0). Derivatives at zero are not finite.
-    #[inline(always)]
+    #[inline]
     fn sqrt(self) -> Self {
         let mut s = self.0;
         s[0] = self.0[0].sqrt();
@@ -254,7 +254,7 @@ impl<T: Number, const N: usize> Number for Jet<T, N> {
     }
 
     /// s' = c a' and c' = -s a'.
-    #[inline(always)]
+    #[inline]
     fn sin_cos(self) -> (Self, Self) {
         let (sin, cos) = self.0[0].sin_cos();
         let (mut s, mut c) = (Self::constant(sin).0, Self::constant(cos).0);
@@ -272,7 +272,7 @@ impl<T: Number, const N: usize> Number for Jet<T, N> {
     }
 
     /// theta' = (x y' - y x') / (x^2 + y^2), integrated from the angle of the constant terms.
-    #[inline(always)]
+    #[inline]
     fn atan2(self, x: Self) -> Self {
         let angle = self.0[0].atan2(x.0[0]);
         if N == 1 {
@@ -284,7 +284,7 @@ impl<T: Number, const N: usize> Number for Jet<T, N> {
     }
 
     /// e' = e a'.
-    #[inline(always)]
+    #[inline]
     fn exp(self) -> Self {
         let mut e = Self::constant(self.0[0].exp()).0;
         let slope = self.differentiate().0;
@@ -299,44 +299,44 @@ impl<T: Number, const N: usize> Number for Jet<T, N> {
     }
 
     /// l' = a' / a, integrated from the logarithm of the constant term.
-    #[inline(always)]
+    #[inline]
     fn ln(self) -> Self {
         (self.differentiate() / self).integrate(self.0[0].ln())
     }
 
-    #[inline(always)]
+    #[inline]
     fn abs(self) -> Self {
         let mut r = self.choose(self, -self);
         r.0[0] = self.0[0].abs();
         r
     }
 
-    #[inline(always)]
+    #[inline]
     fn min(self, other: Self) -> Self {
         let mut r = (other - self).choose(self, other);
         r.0[0] = self.0[0].min(other.0[0]);
         r
     }
 
-    #[inline(always)]
+    #[inline]
     fn max(self, other: Self) -> Self {
         let mut r = (self - other).choose(self, other);
         r.0[0] = self.0[0].max(other.0[0]);
         r
     }
 
-    #[inline(always)]
+    #[inline]
     fn choose(self, nonnegative: Self, negative: Self) -> Self {
         nonnegative.pairwise(negative, |a, b| self.0[0].choose(a, b))
     }
 
-    #[inline(always)]
+    #[inline]
     fn is_finite(self) -> bool {
         self.0.iter().all(|c| c.is_finite())
     }
 
     /// Symmetric products are formed once, and the constant term uses the tighter square of `T`.
-    #[inline(always)]
+    #[inline]
     fn square(self) -> Self {
         let mut c = self.0;
         for k in 0..N {

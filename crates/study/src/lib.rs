@@ -1,1 +1,62 @@
-//! Kempe.
+//! Runs the studies of a model: a pure function from a model to tables with their evidence.
+//!
+//! Nothing here touches files, clocks, threads or the terminal: a [`Progress`] hears how far a study has come and may
+//! stop it, and the writers return bytes. The same model gives the same bytes.
+//!
+//! ```
+//! use kempe_model::Model;
+//! use kempe_study::{Silent, encode, run};
+//!
+//! let text = r#"
+//!     units = { length = "mm", angle = "deg" }
+//!     [links]
+//!     frame   = { A = [0, 0], D = [60, 0] }
+//!     crank   = { A-B = 20 }
+//!     coupler = { B-C = 50 }
+//!     rocker  = { D-C = 40 }
+//!     [drives]
+//!     motor = { turns = "crank", from = 0, to = 360, speed = "1 rad/s" }
+//!     [assembly]
+//!     C = "left of B -> D"
+//!     [measures]
+//!     swing = "angle(rocker)"
+//! "#;
+//! let model = Model::from_toml(text, "four-bar", &mut |_| Err("no files".into())).unwrap().model;
+//! let result = run(&model, &model.studies[0], &mut Silent).unwrap();
+//! let swing = result.table.column("swing").unwrap();
+//! assert_eq!(swing.head(), "swing [deg]");
+//! // Crank-rocker 20, 50, 40, 60 mm at 0 deg: cos(180 deg - swing) = (40^2 + 40^2 - 50^2) / (2 * 40 * 40).
+//! assert!((swing.values[0] - 102.635_625_093_02).abs() < 1e-10);
+//! assert!(encode::csv(&result.table).starts_with("time [s],motor [deg],swing [deg],closure [1]"));
+//! ```
+
+mod circuit;
+mod columns;
+pub mod encode;
+mod explain;
+mod figures;
+mod findings;
+mod findings_text;
+mod motion;
+mod pose;
+mod progress;
+mod report;
+mod result;
+mod rows;
+mod sink;
+mod table;
+mod unit;
+pub mod verify;
+mod view;
+
+pub use explain::{cannot_move, reach_text};
+pub use figures::figures;
+pub use findings::{Grashof, Group, Report as CheckReport, check};
+pub use motion::{motion_of, run, run_motion};
+pub use pose::{Setting, pose_at};
+pub use progress::{Flow, Progress, Silent};
+pub use report::{StudyOutcome, report};
+pub use result::{Event, Figure, Frame, Scalar, StudyResult};
+pub use table::{Column, Table};
+pub use unit::{Units, shown};
+pub use view::{drawing_frames, drawn, mechanism_view};

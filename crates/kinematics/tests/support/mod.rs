@@ -384,6 +384,16 @@ impl Spec {
         }
         for joint in &mut it.joints {
             // Angles against the frame's own axis, which stays.
+            if let SJoint::Weld {
+                a, b, angle: fixed, ..
+            } = joint
+            {
+                *fixed += match (*a, *b) {
+                    (0, _) => angle,
+                    (_, 0) => -angle,
+                    _ => 0.0,
+                };
+            }
             if let SJoint::Gears {
                 a,
                 b,
@@ -440,6 +450,11 @@ impl Spec {
     /// Largest error of any joint or drive when the links are at `poses` (x, y, unwrapped angle): lengths in sizes of
     /// the mechanism, directions in rad. Written from the model language's page, not from the product.
     pub fn gap(&self, poses: &[[f64; 3]], coordinates: &[f64]) -> f64 {
+        self.errors(poses, coordinates).into_iter().fold(0.0, worse)
+    }
+
+    /// The errors of all joints and drives, each smooth in the poses.
+    pub fn errors(&self, poses: &[[f64; 3]], coordinates: &[f64]) -> Vec<f64> {
         let size = self.size();
         let world = |l: usize, p: V| {
             let q = poses[l];
@@ -448,13 +463,15 @@ impl Spec {
         let point = |l: usize, name: &str| {
             world(l, self.links[l].point(name).expect("a point of the link"))
         };
-        let mut worst = 0.0_f64;
-        let mut see = |x: f64| worst = worse(worst, x);
+        let mut all = Vec::new();
+        let mut see = |x: f64| all.push(x);
         for (l, link) in self.links.iter().enumerate() {
             for (name, p) in &link.points {
                 for (m, other) in self.links.iter().enumerate().skip(l + 1) {
                     if let Some(q) = other.point(name) {
-                        see(norm(sub(world(l, *p), world(m, q))) / size);
+                        let apart = sub(world(l, *p), world(m, q));
+                        see(apart[0] / size);
+                        see(apart[1] / size);
                     }
                 }
             }
@@ -545,7 +562,7 @@ impl Spec {
                 }
             }
         }
-        worst
+        all
     }
 
     /// Poses of the links at the start.
@@ -586,12 +603,20 @@ impl Case {
                 panic!("{}\n{text}", all.join("\n"));
             }
         };
+        Self {
+            text: text.to_owned(),
+            ..Self::from_model(model)
+        }
+    }
+
+    /// Compiles a model that was not read from one text.
+    pub fn from_model(model: Model) -> Self {
         let mechanism = Mechanism::new(&model);
         let plan = Plan::new(&mechanism);
         let parameters: Vec<f64> = model.parameter_values();
         let design = Design::new(&mechanism, &plan, &parameters);
         Self {
-            text: text.to_owned(),
+            text: String::new(),
             model,
             mechanism,
             plan,

@@ -258,7 +258,7 @@ impl Measures<'_, '_> {
             Issue::new(
                 "no-derivative",
                 node.span.clone(),
-                "a force has no derivative to a drive",
+                "a force or an energy has no derivative to a drive",
             )
             .with_label("asks for a force")
             .with_help("its derivative in time is rate(…)"),
@@ -561,55 +561,6 @@ impl Measures<'_, '_> {
             Leaf::Over(Statistic::At { drive, value }, Box::new(measure)),
             dimension,
         ))
-    }
-
-    /// The far ends of the two links whose angle at `at` is the transmission angle.
-    ///
-    /// A link counts when it has another pin; its end is its pin on the frame (the pivot it swings about), or else the first
-    /// other pin in the order of its points.
-    fn transmission(&self, at: PointId, node: &Node) -> Found<(PointId, PointId)> {
-        let cx = self.0;
-        let name = cx.point_name(at);
-        let ends: Vec<(LinkId, PointId)> = cx
-            .carriers(at)
-            .iter()
-            .filter_map(|link| Some((*link, self.far_pin(*link, at)?)))
-            .collect();
-        if let [(_, a), (_, b)] = ends.as_slice() {
-            return Ok((*a, *b));
-        }
-        let end =
-            |i: usize, other: &'static str| ends.get(i).map_or(other, |(_, p)| cx.point_name(*p));
-        let (a, b) = (end(0, "P"), end(1, "Q"));
-        let links: Vec<&str> = ends.iter().map(|(l, _)| cx.link_name(*l)).take(6).collect();
-        let message = match links.as_slice() {
-            [] => format!("{name} is no pin between two links that have other pins"),
-            [one] => format!("of the links at {name} only `{one}` has another pin"),
-            many => format!("{} links meet at {name}: {}", ends.len(), many.join(", ")),
-        };
-        Err(vec![
-            Issue::new("ambiguous-transmission", node.span.clone(), message).with_help(format!(
-                "name the far ends of the two that pass the motion on: transmission_angle({name}, {a}, {b}) is the angle at {name} between {a} and {b}"
-            )),
-        ])
-    }
-
-    fn far_pin(&self, link: LinkId, at: PointId) -> Option<PointId> {
-        let cx = self.0;
-        let is_end = |p: PointId| {
-            cx.carriers(p).len() > 1
-                || cx.model.drives.iter().any(|d| matches!(d.kind, DriveKind::Cylinder { a, b } if a.point == p || b.point == p))
-        };
-        let points = &cx.model.links.get(link.index())?.points;
-        let pins = || {
-            points
-                .iter()
-                .map(|p| p.point)
-                .filter(|p| *p != at && is_end(*p))
-        };
-        pins()
-            .find(|p| link != FRAME && cx.carriers(*p).first() == Some(&FRAME))
-            .or_else(|| pins().next())
     }
 }
 

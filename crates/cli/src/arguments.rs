@@ -1,0 +1,194 @@
+//! The command line's grammar and its help.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand};
+
+/// A workbench for planar linkages: one short model file becomes motion, numbers and pictures.
+#[derive(Debug, Parser)]
+#[command(
+    name = "kempe",
+    version,
+    propagate_version = true,
+    after_help = "Start here:\n  kempe new my-linkage.toml\n  kempe run my-linkage.toml --out results\n\n\
+                  Exit codes:\n  0    all is well\n  1    something was found: a warning of check, a miss of verify, rows that were not reached\n  \
+                  2    the command line or the model file is wrong, or a file cannot be read or written\n  \
+                  3    the mechanism cannot be assembled or moved as asked\n  130  stopped by Ctrl-C; finished rows are kept"
+)]
+pub struct Arguments {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// The verbs.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Tell mobility, Assur groups, Grashof types, assemblies and reach of a mechanism
+    Check(Check),
+    /// Run the studies of a model: tables, figures and one HTML report
+    Run(Run),
+    /// Draw a mechanism at one pose, or move it: SVG, PNG, DXF, GIF, APNG
+    Draw(Draw),
+    /// Write a commented starter file
+    New(New),
+    /// Print the JSON schema of the model file, for editors
+    Schema,
+    /// List what may be measured
+    Measures(Measures),
+    /// Re-run the published reference cases: ours, theirs, the difference
+    Verify(Verify),
+    /// Print a completion script for a shell
+    Completions(Completions),
+}
+
+/// The model file with its overrides: what every verb that reads a model takes.
+#[derive(Debug, Args)]
+pub struct ModelFile {
+    /// Model file
+    #[arg(value_name = "FILE")]
+    pub file: PathBuf,
+    /// Set a parameter, as in --set a=25mm; may be repeated
+    #[arg(long = "set", value_name = "NAME=VALUE", value_parser = name_and_value)]
+    pub set: Vec<(String, String)>,
+}
+
+fn name_and_value(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((name, value)) if !name.trim().is_empty() && !value.trim().is_empty() => {
+            Ok((name.trim().to_owned(), value.trim().to_owned()))
+        }
+        _ => Err("write a name and a value, such as a=25mm".to_owned()),
+    }
+}
+
+/// `kempe check`
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Examples:\n  kempe check hitch.toml\n  kempe check hitch.toml --set k=450mm --json\n\n\
+                        Exit codes: 0 nothing to say, 1 warnings, 2 bad file, 3 the mechanism cannot move as asked."
+)]
+pub struct Check {
+    #[command(flatten)]
+    pub model: ModelFile,
+    /// Print one JSON object instead of text
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `kempe run`
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Examples:\n  kempe run hitch.toml --out results\n  kempe run hitch.toml lifting --out results --set k=450mm\n  \
+                        kempe run hitch.toml --json --quiet | jq .studies[0].values\n\n\
+                        Writes STUDY.csv, STUDY.parquet, STUDY-*.svg and report.html. All appear at the end, each whole;\n\
+                        a run that fails leaves an earlier result as it was. Ctrl-C keeps finished rows."
+)]
+pub struct Run {
+    #[command(flatten)]
+    pub model: ModelFile,
+    /// Studies to run; all of the file unless named
+    #[arg(value_name = "STUDY")]
+    pub studies: Vec<String>,
+    /// Folder for the results; without it, only the summary is printed
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Print one JSON object instead of text
+    #[arg(long)]
+    pub json: bool,
+    /// Print nothing but errors (and JSON, if asked for)
+    #[arg(long, short)]
+    pub quiet: bool,
+}
+
+/// `kempe draw`
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Examples:\n  kempe draw crank.toml -o crank.svg\n  kempe draw crank.toml --at motor=30deg -o pose.dxf\n  \
+                        kempe draw crank.toml -o crank.gif --width 800\n\n\
+                        GIF and APNG move through the first study of the file. SVG, PNG and DXF show one pose."
+)]
+pub struct Draw {
+    #[command(flatten)]
+    pub model: ModelFile,
+    /// Where the drives stand, as in --at motor=30deg or --at time=2s; may be repeated
+    #[arg(long, value_name = "DRIVE=VALUE")]
+    pub at: Vec<String>,
+    /// Picture to write: .svg, .png, .dxf, .gif or .apng
+    #[arg(long, short, value_name = "FILE")]
+    pub output: PathBuf,
+    /// Width of PNG, GIF and APNG in pixels
+    #[arg(long, value_name = "PIXELS", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(64..=8000))]
+    pub width: u32,
+    /// Light drawing on a dark ground
+    #[arg(long)]
+    pub dark: bool,
+    /// Leave out the names of the points
+    #[arg(long)]
+    pub no_labels: bool,
+}
+
+/// `kempe new`
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Examples:\n  kempe new\n  kempe new press.toml --kind slider-crank\n\nAn existing file is never overwritten."
+)]
+pub struct New {
+    /// File to write; KIND.toml unless named
+    #[arg(value_name = "NAME")]
+    pub name: Option<PathBuf>,
+    /// What to start from
+    #[arg(long, default_value = kempe_model::STARTERS[0].name, value_parser = kinds())]
+    pub kind: String,
+}
+
+fn kinds() -> clap::builder::PossibleValuesParser {
+    let kinds = kempe_model::STARTERS.iter();
+    kinds
+        .map(|s| clap::builder::PossibleValue::new(s.name).help(s.doc))
+        .collect::<Vec<_>>()
+        .into()
+}
+
+/// `kempe measures`
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Examples:\n  kempe measures\n  kempe measures angle\n  kempe measures --json"
+)]
+pub struct Measures {
+    /// Only this measure
+    #[arg(value_name = "NAME")]
+    pub name: Option<String>,
+    /// Print a JSON array instead of text
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `kempe verify`
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Examples:\n  kempe verify\n  kempe verify validation/door-lock.toml\n  kempe verify --all\n\n\
+                        Without a path the cases that came with this program are run. Exit code 1 on a miss."
+)]
+pub struct Verify {
+    /// Case files, or folders of them
+    #[arg(value_name = "PATH")]
+    pub paths: Vec<PathBuf>,
+    /// Print every comparison, not only one line a case and the misses
+    #[arg(long)]
+    pub all: bool,
+    /// Print one JSON object instead of text
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `kempe completions`
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Example:\n  kempe completions bash > ~/.local/share/bash-completion/completions/kempe"
+)]
+pub struct Completions {
+    /// Shell
+    #[arg(value_name = "SHELL")]
+    pub shell: clap_complete::Shell,
+}

@@ -1,0 +1,230 @@
+//! `kempe draw`: pictures of one pose, or of the motion.
+
+use kempe_draw::raster::animation::{self, AnimationOptions};
+use kempe_draw::raster::{self, RasterError};
+use kempe_draw::{DrawOptions, Frame, MechanismView, Stage, Theme, dxf, svg};
+use kempe_model::{Diagnostic, Model, Study, StudyKind};
+use kempe_study::{Setting, drawing_frames, drawn, mechanism_view, motion_of, pose_at};
+
+use crate::arguments::Draw;
+use crate::exit::Exit;
+use crate::files::{load, plain};
+use crate::interrupt;
+use crate::output::Batch;
+use crate::progress::Bar;
+use crate::say::Speaker;
+
+/// The kinds of picture, by the ending of the file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    Svg,
+    Png,
+    Dxf,
+    Gif,
+    Apng,
+}
+
+/// Why there is no picture.
+enum Failure {
+    Usage(Diagnostic),
+    Unsolved(Vec<Diagnostic>),
+    Interrupted,
+}
+
+/// Runs `kempe draw`.
+pub fn draw(arguments: &Draw) -> Exit {
+    let mut speaker = Speaker::new(false, false);
+    let kind = match kind(arguments) {
+        Ok(kind) => kind,
+        Err(told) => {
+            speaker.tell(&[*told]);
+            return Exit::Usage;
+        }
+    };
+    let loaded = match load(&arguments.model, &mut speaker) {
+        Ok(loaded) => loaded,
+        Err(exit) => return exit,
+    };
+    match picture(arguments, kind, &loaded.checked.model) {
+        Ok(bytes) => {
+            let mut batch = Batch::new();
+            let written = batch.add(&arguments.output, &bytes);
+            match written.and_then(|()| batch.publish()) {
+                Ok(_) => Exit::Ok,
+                Err(error) => {
+                    let message = format!(
+                        "{} cannot be written: {}",
+                        arguments.output.display(),
+                        plain(&error)
+                    );
+                    speaker.tell(&[Diagnostic::error("cannot-write", message)]);
+                    Exit::Usage
+                }
+            }
+        }
+        Err(Failure::Usage(told)) => {
+            speaker.tell(&[told]);
+            Exit::Usage
+        }
+        Err(Failure::Unsolved(told)) => {
+            speaker.tell(&told);
+            Exit::CannotSolve
+        }
+        Err(Failure::Interrupted) => Exit::Interrupted,
+    }
+}
+
+fn kind(arguments: &Draw) -> Result<Kind, Box<Diagnostic>> {
+    let ending = arguments
+        .output
+        .extension()
+        .map(|e| e.to_string_lossy().to_lowercase());
+    Ok(match ending.as_deref() {
+        Some("svg") => Kind::Svg,
+        Some("png") => Kind::Png,
+        Some("dxf") => Kind::Dxf,
+        Some("gif") => Kind::Gif,
+        Some("apng") => Kind::Apng,
+        _ => {
+            let message = format!("{} is no kind of picture", arguments.output.display());
+            let told = Diagnostic::error("unknown-picture", message);
+            return Err(Box::new(
+                told.help("its name ends in .svg, .png, .dxf, .gif or .apng"),
+            ));
+        }
+    })
+}
+
+fn picture(arguments: &Draw, kind: Kind, model: &Model) -> Result<Vec<u8>, Failure> {
+    let theme = if arguments.dark {
+        Theme::Dark
+    } else {
+        Theme::Light
+    };
+    let options = DrawOptions {
+        labels: !arguments.no_labels,
+        ..DrawOptions::default()
+    };
+    let failed =
+        |error: RasterError| Failure::Usage(Diagnostic::error("cannot-draw", error.to_string()));
+    let moving = matches!(kind, Kind::Gif | Kind::Apng);
+    if moving && !arguments.at.is_empty() {
+        let told = Diagnostic::error("cannot-draw", "--at shows one pose, GIF and APNG move");
+        return Err(Failure::Usage(
+            told.help("leave out --at, or write .svg, .png or .dxf"),
+        ));
+    }
+    if moving {
+        let (view, frames, period) = motion(model)?;
+        let stage = Stage::new(&view, &frames, options);
+        let film = AnimationOptions {
+            width: arguments.width,
+            period,
+            theme,
+            ..AnimationOptions::default()
+        };
+        return match kind {
+            Kind::Gif => animation::gif(&stage, &film),
+            _ => animation::apng(&stage, &film),
+        }
+        .map_err(failed);
+    }
+    let (view, frames, shown) = pose(arguments, model)?;
+    let stage = Stage::new(&view, &frames, options);
+    match kind {
+        Kind::Dxf => Ok(dxf::document(&stage, shown).into_bytes()),
+        Kind::Png => {
+            let [width, _] = stage.size();
+            raster::png(
+                &stage.scene(shown),
+                theme,
+                f64::from(arguments.width) / width * 25.4,
+            )
+            .map_err(failed)
+        }
+        _ => Ok(svg::document(&stage.scene(shown), theme).into_bytes()),
+    }
+}
+
+/// Whether a study is there to be looked at: forces are not needed for a picture.
+fn moves(study: &Study) -> bool {
+    matches!(study.kind, StudyKind::Motion(_))
+}
+
+/// All poses of the first study, and how long one pass should take on the screen, s.
+fn motion(model: &Model) -> Result<(MechanismView, Vec<Frame>, f64), Failure> {
+    let Some(study) = model.studies.iter().find(|s| moves(s)) else {
+        let told = Diagnostic::error(
+            "no-drive",
+            "nothing moves: the file has no study and no drive",
+        );
+        return Err(Failure::Usage(told));
+    };
+    interrupt::listen();
+    let result = kempe_study::run(model, study, &mut Bar::new(&study.name, false))
+        .map_err(Failure::Unsolved)?;
+    if result.interrupted() {
+        return Err(Failure::Interrupted);
+    }
+    let real = result
+        .table
+        .column("time")
+        .and_then(|c| c.values.last().copied());
+    // Real time where that can be watched.
+    let period = real
+        .filter(|t| (1.0..=20.0).contains(t))
+        .unwrap_or(AnimationOptions::default().period);
+    Ok((
+        mechanism_view(model, Some(motion_of(study))),
+        drawing_frames(&result),
+        period,
+    ))
+}
+
+/// The pose asked for, in front of the paths of the first study where that runs.
+fn pose(arguments: &Draw, model: &Model) -> Result<(MechanismView, Vec<Frame>, usize), Failure> {
+    let settings: Result<Vec<Setting>, Diagnostic> = arguments
+        .at
+        .iter()
+        .map(|text| Setting::parse(model, text))
+        .collect();
+    let (frame, label) =
+        pose_at(model, &settings.map_err(Failure::Usage)?).map_err(Failure::Unsolved)?;
+    let mut frames = Vec::new();
+    let mut study = None;
+    if let Some(first) = model.studies.iter().find(|s| moves(s)) {
+        study = Some(motion_of(first));
+        if let Ok(result) = kempe_study::run(model, first, &mut kempe_study::Silent) {
+            frames = drawing_frames(&result);
+            // A pose that is nowhere: the paths do not run on to the pose asked for.
+            frames.push(Frame::default());
+        }
+    }
+    let pose = drawn(&frame, label);
+    let shown = place_among(&frames, &pose);
+    frames.insert(shown, pose);
+    Ok((mechanism_view(model, study), frames, shown))
+}
+
+/// Where in a motion a pose belongs: where it makes the smallest detour, so that the paths do not jump to it.
+fn place_among(frames: &[Frame], pose: &Frame) -> usize {
+    let apart = |a: &Frame, b: &Frame| -> f64 {
+        let pairs = a.points.iter().zip(&b.points);
+        pairs
+            .map(|(p, q)| (p[0] - q[0]).abs() + (p[1] - q[1]).abs())
+            .sum()
+    };
+    let detour = |at: usize| match (
+        at.checked_sub(1).and_then(|i| frames.get(i)),
+        frames.get(at),
+    ) {
+        (Some(before), Some(after)) => {
+            apart(before, pose) + apart(pose, after) - apart(before, after)
+        }
+        (Some(only), None) | (None, Some(only)) => 2.0 * apart(only, pose),
+        (None, None) => 0.0,
+    };
+    (0..=frames.len())
+        .min_by(|a, b| detour(*a).total_cmp(&detour(*b)))
+        .unwrap_or(0)
+}

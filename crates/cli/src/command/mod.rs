@@ -1,0 +1,8 @@
+//! The verbs, one a file.
+
+pub mod check;
+pub mod draw;
+pub mod lists;
+pub mod new;
+pub mod run;
+pub mod verify;

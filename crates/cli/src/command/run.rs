@@ -1,0 +1,290 @@
+//! `kempe run`: the studies of a model, as tables, figures and a report.
+
+use std::path::{Path, PathBuf};
+
+use kempe_draw::{DrawOptions, Stage, Theme, svg};
+use kempe_model::{Diagnostic, Model, Study};
+use kempe_study::{
+    StudyOutcome, StudyResult, drawing_frames, encode, figures, mechanism_view, motion_of,
+};
+use kempe_units::nearest;
+use serde_json::{Value, json};
+
+use crate::arguments::Run;
+use crate::exit::Exit;
+use crate::files::{Loaded, load, plain};
+use crate::interrupt;
+use crate::output::Batch;
+use crate::progress::Bar;
+use crate::say::{Speaker, print_json, put};
+
+/// Width and height of a plot, mm.
+const PLOT: [f64; 2] = [160.0, 100.0];
+
+/// Runs `kempe run`.
+pub fn run(arguments: &Run) -> Exit {
+    let mut speaker = Speaker::new(arguments.json, arguments.quiet);
+    let loaded = match load(&arguments.model, &mut speaker) {
+        Ok(loaded) => loaded,
+        Err(exit) => return failed(&speaker, exit),
+    };
+    let model = &loaded.checked.model;
+    let studies = match chosen(model, &arguments.studies) {
+        Ok(studies) => studies,
+        Err(told) => {
+            speaker.tell(&[*told]);
+            return failed(&speaker, Exit::Usage);
+        }
+    };
+    interrupt::listen();
+    let mut outcomes: Vec<StudyOutcome<'_>> = Vec::new();
+    for study in studies {
+        let mut bar = Bar::new(&study.name, arguments.quiet || arguments.json);
+        let result = kempe_study::run(model, study, &mut bar);
+        drop(bar);
+        match &result {
+            Ok(result) => speaker.tell(&result.warnings),
+            Err(errors) => speaker.tell(errors),
+        }
+        outcomes.push(StudyOutcome { study, result });
+        if interrupt::stopped() {
+            break;
+        }
+    }
+    let mut files = Vec::new();
+    let any = outcomes.iter().any(|o| o.result.is_ok());
+    if let (Some(folder), true) = (&arguments.out, any) {
+        match write(&loaded, folder, &outcomes) {
+            Ok(written) => files = written,
+            Err(told) => {
+                speaker.tell(&[*told]);
+                return failed(&speaker, Exit::Usage);
+            }
+        }
+    }
+    if arguments.json {
+        print_json(&summary_json(
+            &loaded,
+            &outcomes,
+            &files,
+            arguments.out.is_none(),
+            &speaker,
+        ));
+    } else if !arguments.quiet {
+        put(&summary(&outcomes, arguments.out.as_deref(), &files));
+    }
+    exit_of(&outcomes)
+}
+
+fn failed(speaker: &Speaker, exit: Exit) -> Exit {
+    speaker.print_failure();
+    exit
+}
+
+/// The worst of all studies.
+fn exit_of(outcomes: &[StudyOutcome<'_>]) -> Exit {
+    if interrupt::stopped() {
+        return Exit::Interrupted;
+    }
+    let one = |outcome: &StudyOutcome<'_>| match &outcome.result {
+        Err(_) => Exit::CannotSolve,
+        Ok(result) if result.table.unreached() > 0 => Exit::Finding,
+        Ok(_) => Exit::Ok,
+    };
+    outcomes.iter().map(one).max().unwrap_or(Exit::Ok)
+}
+
+/// The studies named on the command line, or all.
+fn chosen<'m>(model: &'m Model, names: &[String]) -> Result<Vec<&'m Study>, Box<Diagnostic>> {
+    if model.studies.is_empty() {
+        let told = Diagnostic::error(
+            "no-drive",
+            "there is nothing to run: the file has no study and no drive",
+        );
+        return Err(Box::new(told.help(
+            "say what moves: [drives] motor = { turns = \"crank\", from = 0, to = 360, speed = \"1 rad/s\" }",
+        )));
+    }
+    if names.is_empty() {
+        return Ok(model.studies.iter().collect());
+    }
+    let find = |name: &String| {
+        model
+            .studies
+            .iter()
+            .find(|s| s.name == *name)
+            .ok_or_else(|| {
+                let known: Vec<&str> = model.studies.iter().map(|s| s.name.as_str()).collect();
+                let help = match nearest(name, known.iter().copied()) {
+                    Some(near) => format!("did you mean `{near}`?"),
+                    None => format!("the file has: {}", known.join(", ")),
+                };
+                Box::new(
+                    Diagnostic::error("unknown-study", format!("there is no study `{name}`"))
+                        .help(help),
+                )
+            })
+    };
+    names.iter().map(find).collect()
+}
+
+/// Writes all files of a run, each whole or none.
+fn write(
+    loaded: &Loaded,
+    folder: &Path,
+    outcomes: &[StudyOutcome<'_>],
+) -> Result<Vec<PathBuf>, Box<Diagnostic>> {
+    let told = |path: &Path, reason: &str| {
+        let message = format!("{} cannot be written: {reason}", path.display());
+        Box::new(
+            Diagnostic::error("cannot-write", message).note("earlier results are as they were"),
+        )
+    };
+    let mut batch = Batch::in_folder(folder).map_err(|e| told(folder, &plain(&e)))?;
+    let mut add = |name: String, bytes: &[u8]| {
+        let path = folder.join(name);
+        batch.add(&path, bytes).map_err(|e| told(&path, &plain(&e)))
+    };
+    let model = &loaded.checked.model;
+    let origin = vec![
+        ("program".to_owned(), generator()),
+        ("model".to_owned(), loaded.name.clone()),
+        (
+            "model_hash".to_owned(),
+            format!("fnv1a64:{:016x}", hash(loaded.text.as_bytes())),
+        ),
+        ("length_unit".to_owned(), model.units.length.name.clone()),
+        ("angle_unit".to_owned(), model.units.angle.name.clone()),
+    ];
+    for outcome in outcomes {
+        let Ok(result) = &outcome.result else {
+            continue;
+        };
+        let name = &result.name;
+        add(format!("{name}.csv"), encode::csv(&result.table).as_bytes())?;
+        let bytes = encode::parquet(&result.table, &origin);
+        let bytes =
+            bytes.map_err(|e| told(&folder.join(format!("{name}.parquet")), &e.to_string()))?;
+        add(format!("{name}.parquet"), &bytes)?;
+        add(
+            format!("{name}-mechanism.svg"),
+            picture(model, outcome.study, result).as_bytes(),
+        )?;
+        for (plot, spec) in figures(model, result) {
+            let height = if spec.equal_aspect {
+                PLOT[0] * 0.8
+            } else {
+                PLOT[1]
+            };
+            let scene = spec.draw(PLOT[0], height).scene;
+            add(
+                format!("{name}-{plot}.svg"),
+                svg::document(&scene, Theme::Light).as_bytes(),
+            )?;
+        }
+    }
+    let check = kempe_study::check(model);
+    let report = kempe_study::report(
+        model,
+        &loaded.name,
+        &generator(),
+        &loaded.checked.warnings,
+        &check,
+        outcomes,
+    );
+    add("report.html".to_owned(), report.to_html().as_bytes())?;
+    batch.publish().map_err(|e| told(folder, &plain(&e)))
+}
+
+/// The mechanism at its first row that was reached.
+fn picture(model: &Model, study: &Study, result: &StudyResult) -> String {
+    let view = mechanism_view(model, Some(motion_of(study)));
+    let frames = drawing_frames(result);
+    let row = result
+        .table
+        .closure
+        .iter()
+        .position(|c| c.is_finite())
+        .unwrap_or(0);
+    let stage = Stage::new(&view, &frames, DrawOptions::default());
+    svg::document(&stage.scene(row), Theme::Light)
+}
+
+/// The program's name and version, for files that say where they come from.
+fn generator() -> String {
+    format!("kempe {}", env!("CARGO_PKG_VERSION"))
+}
+
+/// FNV-1a of a model's text: tells whether a table belongs to a file.
+fn hash(bytes: &[u8]) -> u64 {
+    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
+        (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3)
+    })
+}
+
+fn summary(outcomes: &[StudyOutcome<'_>], folder: Option<&Path>, files: &[PathBuf]) -> String {
+    let mut out = String::new();
+    for outcome in outcomes {
+        let Ok(result) = &outcome.result else {
+            out.push_str(&format!("{}: not run\n", outcome.study.name));
+            continue;
+        };
+        let table = &result.table;
+        out.push_str(&format!("{}: {} rows", result.name, table.rows()));
+        if result.interrupted() {
+            out.push_str(&format!(" of {}, stopped", result.demanded_rows));
+        }
+        if table.unreached() > 0 {
+            out.push_str(&format!(", {} not reached", table.unreached()));
+        }
+        out.push_str(&format!(
+            ", loops closed to {:.1e} of the mechanism's size\n",
+            table.worst_closure()
+        ));
+        let width = result
+            .scalars
+            .iter()
+            .map(|s| s.name.chars().count())
+            .max()
+            .unwrap_or(0);
+        for scalar in &result.scalars {
+            let value = kempe_draw::number_format::significant(scalar.value, 12);
+            out.push_str(
+                format!("  {:width$}  {value} {}", scalar.name, scalar.unit.text()).trim_end(),
+            );
+            out.push('\n');
+        }
+        for event in &result.events {
+            out.push_str(&format!("  {}: {}\n", event.place, event.label));
+        }
+    }
+    if let (Some(folder), false) = (folder, files.is_empty()) {
+        out.push_str(&format!(
+            "{} files in {}: open ",
+            files.len(),
+            folder.display()
+        ));
+        out.push_str(&format!("{}\n", folder.join("report.html").display()));
+    }
+    out
+}
+
+fn summary_json(
+    loaded: &Loaded,
+    outcomes: &[StudyOutcome<'_>],
+    files: &[PathBuf],
+    with_tables: bool,
+    speaker: &Speaker,
+) -> Value {
+    let studies = outcomes.iter().map(|outcome| match &outcome.result {
+        Ok(result) => encode::result(result, with_tables),
+        Err(_) => json!({ "study": outcome.study.name, "failed": true }),
+    });
+    json!({
+        "file": loaded.name,
+        "title": loaded.checked.model.title,
+        "studies": studies.collect::<Vec<_>>(),
+        "files": files.iter().map(|f| f.display().to_string()).collect::<Vec<_>>(),
+        "diagnostics": speaker.told(),
+    })
+}

@@ -1,0 +1,23 @@
+//! Ctrl-C: the first asks to stop at the next row, the second ends the program at once.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+static STOP: AtomicBool = AtomicBool::new(false);
+
+/// Listens for Ctrl-C from now on. Where that is not possible, Ctrl-C ends the program as usual.
+pub fn listen() {
+    let heard = || {
+        if STOP.swap(true, Ordering::SeqCst) {
+            std::process::exit(130);
+        }
+        eprintln!("stopping: finished rows are kept; Ctrl-C again to end at once");
+    };
+    if let Err(error) = ctrlc::set_handler(heard) {
+        eprintln!("Ctrl-C will end the program at once: {error}");
+    }
+}
+
+/// Whether to stop.
+pub fn stopped() -> bool {
+    STOP.load(Ordering::SeqCst)
+}

@@ -1,0 +1,144 @@
+//! What is said to people: diagnostics on the error stream, in colour on terminals, or kept for the JSON output.
+
+use std::io::IsTerminal;
+
+use annotate_snippets::renderer::DecorStyle;
+use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
+use kempe_model::{Diagnostic, Severity};
+use serde_json::Value;
+
+/// Says diagnostics about one file.
+pub struct Speaker {
+    json: bool,
+    quiet: bool,
+    file: String,
+    text: String,
+    told: Vec<Value>,
+}
+
+impl Speaker {
+    /// A speaker that keeps what is said for JSON, or that leaves out warnings when quiet.
+    pub fn new(json: bool, quiet: bool) -> Self {
+        Self {
+            json,
+            quiet,
+            file: String::new(),
+            text: String::new(),
+            told: Vec::new(),
+        }
+    }
+
+    /// The file that diagnostics are about from now on.
+    pub fn name_file(&mut self, name: &str, text: &str) {
+        name.clone_into(&mut self.file);
+        text.clone_into(&mut self.text);
+    }
+
+    /// Says diagnostics.
+    pub fn tell(&mut self, diagnostics: &[Diagnostic]) {
+        for diagnostic in diagnostics {
+            if self.json {
+                self.told.push(kempe_study::encode::diagnostic(diagnostic));
+            } else if !self.quiet || diagnostic.severity == Severity::Error {
+                eprintln!("{}\n", rendered(diagnostic, &self.file, &self.text));
+            }
+        }
+    }
+
+    /// What was said, for the JSON output.
+    pub fn told(&self) -> Value {
+        Value::Array(self.told.clone())
+    }
+
+    /// Prints the JSON object of a command that could not be finished.
+    pub fn print_failure(&self) {
+        if self.json {
+            print_json(&serde_json::json!({ "diagnostics": self.told() }));
+        }
+    }
+}
+
+/// Prints JSON on the standard output.
+pub fn print_json(value: &Value) {
+    put(&format!(
+        "{}\n",
+        serde_json::to_string_pretty(value).unwrap_or_default()
+    ));
+}
+
+/// Prints text on the standard output; a reader that went away is no error.
+pub fn put(text: &str) {
+    use std::io::Write;
+    let mut out = std::io::stdout().lock();
+    let _ = out.write_all(text.as_bytes()).and_then(|()| out.flush());
+}
+
+/// Whether the error stream is a terminal that takes colours.
+fn colours() -> bool {
+    std::io::stderr().is_terminal()
+        && std::env::var_os("NO_COLOR").is_none_or(|v| v.is_empty())
+        && std::env::var_os("TERM").is_none_or(|t| t != "dumb")
+}
+
+/// A diagnostic as text over its file.
+fn rendered(diagnostic: &Diagnostic, file: &str, text: &str) -> String {
+    let level = match diagnostic.severity {
+        Severity::Error => Level::ERROR,
+        Severity::Warning => Level::WARNING,
+    };
+    let mut group = Group::with_title(level.primary_title(&diagnostic.message).id(diagnostic.code));
+    // One snippet for each text that labels point into, that of the primary label first.
+    let mut sources: Vec<(&str, &str)> = Vec::new();
+    let source_of = |label: &'_ kempe_model::Label| -> (String, String) {
+        match &label.source {
+            Some(source) => (source.name.clone(), source.text.clone()),
+            None => (file.to_owned(), text.to_owned()),
+        }
+    };
+    let owned: Vec<(String, String)> = diagnostic.labels.iter().map(source_of).collect();
+    for (label, (name, content)) in diagnostic.labels.iter().zip(&owned) {
+        let entry = (name.as_str(), content.as_str());
+        if !sources.contains(&entry) {
+            if label.primary {
+                sources.insert(0, entry);
+            } else {
+                sources.push(entry);
+            }
+        }
+    }
+    for (name, content) in sources {
+        let mut snippet = Snippet::source(content).path(name).fold(true);
+        for (label, source) in diagnostic.labels.iter().zip(&owned) {
+            if (source.0.as_str(), source.1.as_str()) != (name, content) {
+                continue;
+            }
+            let kind = if label.primary {
+                AnnotationKind::Primary
+            } else {
+                AnnotationKind::Context
+            };
+            let start = content.floor_char_boundary(label.span.start.min(content.len()));
+            let end = content
+                .ceil_char_boundary(label.span.end.min(content.len()))
+                .max(start);
+            let mut annotation = kind.span(start..end);
+            if !label.text.is_empty() {
+                annotation = annotation.label(label.text.as_str());
+            }
+            snippet = snippet.annotation(annotation);
+        }
+        group = group.element(snippet);
+    }
+    for note in &diagnostic.notes {
+        group = group.element(Level::NOTE.message(note));
+    }
+    if let Some(help) = &diagnostic.help {
+        group = group.element(Level::HELP.message(help));
+    }
+    let renderer = if colours() {
+        Renderer::styled()
+    } else {
+        Renderer::plain()
+    };
+    renderer.decor_style(DecorStyle::Ascii).render(&[group])
+}

@@ -1,0 +1,242 @@
+//! What `kempe run`, `draw` and `new` leave in the file system.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+const MODEL: &str = include_str!("cmd/run.in/four-bar.toml");
+
+fn kempe(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_kempe"))
+        .args(arguments)
+        .current_dir(folder)
+        .output()
+        .expect("kempe runs")
+}
+
+fn names(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).expect("a folder");
+    let mut names: Vec<String> = entries
+        .map(|e| {
+            e.expect("an entry")
+                .file_name()
+                .into_string()
+                .expect("text")
+        })
+        .collect();
+    names.sort();
+    names
+}
+
+fn folder() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::write(folder.path().join("m.toml"), MODEL).expect("written");
+    folder
+}
+
+#[test]
+fn a_run_leaves_tables_figures_and_a_report_and_the_same_bytes_again() {
+    let folder = folder();
+    let at = folder.path();
+    assert!(
+        kempe(at, &["run", "m.toml", "--out", "one"])
+            .status
+            .success()
+    );
+    assert!(
+        kempe(at, &["run", "m.toml", "--out", "two"])
+            .status
+            .success()
+    );
+    let files = [
+        "report.html",
+        "turn-mechanism.svg",
+        "turn-path-P.svg",
+        "turn-swing.svg",
+        "turn.csv",
+        "turn.parquet",
+    ];
+    assert_eq!(names(&at.join("one")), files);
+    for file in files {
+        let (one, two) = (
+            fs::read(at.join("one").join(file)),
+            fs::read(at.join("two").join(file)),
+        );
+        assert_eq!(one.expect("a file"), two.expect("a file"), "{file}");
+    }
+    let csv = fs::read_to_string(at.join("one/turn.csv")).expect("text");
+    assert_eq!(csv.lines().count(), 38);
+    assert!(csv.starts_with("time [s],motor [deg],swing [deg],rate(swing) [rad/s],closure [1],smallest_singular_value [1],note\n"));
+    let html = fs::read_to_string(at.join("one/report.html")).expect("text");
+    let outside = html.match_indices("://").filter(|(i, _)| {
+        !html[..*i].ends_with("http") || !html[*i..].starts_with("://www.w3.org/")
+    });
+    assert_eq!(outside.count(), 0, "nothing is fetched");
+}
+
+#[test]
+fn a_failed_run_leaves_the_earlier_result_as_it_was() {
+    let folder = folder();
+    let at = folder.path();
+    assert!(
+        kempe(at, &["run", "m.toml", "--out", "out"])
+            .status
+            .success()
+    );
+    let before: Vec<Vec<u8>> = names(&at.join("out"))
+        .iter()
+        .map(|n| fs::read(at.join("out").join(n)).expect("a file"))
+        .collect();
+    let same = || {
+        let now = names(&at.join("out"));
+        let now: Vec<Vec<u8>> = now
+            .iter()
+            .map(|n| fs::read(at.join("out").join(n)).expect("a file"))
+            .collect();
+        assert!(now == before);
+    };
+    // It cannot be assembled.
+    assert_eq!(
+        kempe(at, &["run", "m.toml", "--out", "out", "--set", "a=300mm"])
+            .status
+            .code(),
+        Some(3)
+    );
+    same();
+    // One of its files cannot be written: a folder is in its way.
+    fs::remove_file(at.join("out/turn-swing.svg")).expect("removed");
+    fs::create_dir(at.join("out/turn-swing.svg")).expect("made");
+    let blocked = kempe(at, &["run", "m.toml", "--out", "out", "--set", "a=19mm"]);
+    assert_eq!(blocked.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&blocked.stderr).contains("turn-swing.svg is a folder"));
+    fs::remove_dir(at.join("out/turn-swing.svg")).expect("removed");
+    fs::write(at.join("out/turn-swing.svg"), &before[3]).expect("written");
+    same();
+    // The folder itself cannot be made.
+    fs::write(at.join("file"), "").expect("written");
+    assert_eq!(
+        kempe(at, &["run", "m.toml", "--out", "file/out"])
+            .status
+            .code(),
+        Some(2)
+    );
+}
+
+#[test]
+fn json_is_one_object_on_the_standard_output() {
+    let folder = folder();
+    let output = kempe(folder.path(), &["run", "m.toml", "--json"]);
+    let value: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let study = &value["studies"][0];
+    assert_eq!(
+        (&study["study"], &study["rows"]),
+        (&"turn".into(), &37.into())
+    );
+    let play = study["values"][0]["value"].as_f64().expect("a number");
+    assert!((play - 60.032_348_552_12).abs() < 1e-9);
+    assert_eq!(study["table"]["columns"][2]["unit"], "deg");
+    assert!(output.stderr.is_empty(), "quiet when piped");
+}
+
+#[test]
+fn pictures_of_every_kind() {
+    let folder = folder();
+    let at = folder.path();
+    for (name, start) in [
+        ("a.svg", &b"<svg"[..]),
+        ("a.png", b"\x89PNG"),
+        ("a.dxf", b"  0\nSECTION"),
+        ("a.gif", b"GIF89a"),
+        ("a.apng", b"\x89PNG"),
+    ] {
+        let output = kempe(at, &["draw", "m.toml", "-o", name, "--width", "200"]);
+        assert!(
+            output.status.success(),
+            "{name}: {}",
+            String::from_utf8_lossy(&output.stderr)
+        );
+        assert!(
+            fs::read(at.join(name)).expect("a file").starts_with(start),
+            "{name}"
+        );
+    }
+    assert!(
+        kempe(
+            at,
+            &["draw", "m.toml", "-o", "b.svg", "--at", "motor=30deg"]
+        )
+        .status
+        .success()
+    );
+    assert_ne!(
+        fs::read(at.join("a.svg")).ok(),
+        fs::read(at.join("b.svg")).ok()
+    );
+    for wrong in [
+        ["--at", "motr=30deg"],
+        ["--at", "motor=30mm"],
+        ["--at", "motor"],
+    ] {
+        let output = kempe(at, &["draw", "m.toml", "-o", "c.svg", wrong[0], wrong[1]]);
+        assert_eq!(output.status.code(), Some(2), "{wrong:?}");
+    }
+    assert!(!at.join("c.svg").exists());
+}
+
+#[test]
+fn every_starter_checks_and_runs() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = folder.path();
+    for starter in kempe_model::STARTERS {
+        let made = kempe(at, &["new", "--kind", starter.name]);
+        assert!(made.status.success());
+        let file = format!("{}.toml", starter.name);
+        let check = kempe(at, &["check", &file]);
+        assert!(
+            check.status.success(),
+            "{}",
+            String::from_utf8_lossy(&check.stderr)
+        );
+        let run = kempe(at, &["run", &file, "--out", starter.name]);
+        assert!(
+            run.status.success(),
+            "{}",
+            String::from_utf8_lossy(&run.stderr)
+        );
+        assert_eq!(
+            kempe(at, &["new", &file]).status.code(),
+            Some(2),
+            "never overwritten"
+        );
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_keeps_the_finished_rows() {
+    let folder = folder();
+    let at = folder.path();
+    let long = MODEL.replace("step = 10", "rows = 400000");
+    fs::write(at.join("long.toml"), long).expect("written");
+    let child = Command::new(env!("CARGO_BIN_EXE_kempe"))
+        .args(["run", "long.toml", "--out", "out"])
+        .current_dir(at)
+        .stdout(std::process::Stdio::piped())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .expect("kempe runs");
+    std::thread::sleep(std::time::Duration::from_millis(1500));
+    let signalled = Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status();
+    assert!(signalled.expect("kill runs").success());
+    let output = child.wait_with_output().expect("it ends");
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert_eq!(output.status.code(), Some(130), "{said}");
+    assert!(said.contains("of 400000, stopped"), "{said}");
+    let rows = fs::read_to_string(at.join("out/turn.csv"))
+        .expect("a table")
+        .lines()
+        .count();
+    assert!(rows > 1 && rows < 400_001, "{rows}");
+}

@@ -1,0 +1,229 @@
+//! A model with the text it came from, and the questions most people ask.
+
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+
+use kempe_model::Diagnostic;
+use kempe_study::{CheckReport, Progress, Setting, Silent, StudyResult};
+
+use crate::Error;
+
+/// A mechanism read from a model file, checked and ready to run.
+#[derive(Clone, Debug)]
+pub struct Model {
+    name: String,
+    text: String,
+    folder: Option<PathBuf>,
+    set: Vec<(String, String)>,
+    inner: kempe_model::Model,
+    warnings: Vec<Diagnostic>,
+}
+
+impl Model {
+    /// Reads a model file. Tables that it names are read from its folder.
+    ///
+    /// # Errors
+    ///
+    /// `no-file` when it cannot be read; everything that is wrong with it.
+    ///
+    /// # Example
+    ///
+    /// ```
+    /// # fn main() -> Result<(), kempe::Error> {
+    /// # let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/seeds");
+    /// # std::env::set_current_dir(folder).unwrap();
+    /// let hitch = kempe::Model::from_path("tractor-hitch.toml")?;
+    /// let lifting = hitch.run("lifting")?;
+    /// // Rise of the hitch axis, from the closed form of the eight-bar.
+    /// let rise = lifting.scalars.iter().find(|s| s.name == "rise").unwrap();
+    /// assert!((rise.value - 0.480_653_495).abs() < 1e-9);
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub fn from_path(path: impl AsRef<Path>) -> Result<Self, Error> {
+        let path = path.as_ref();
+        let name = path.display().to_string();
+        let bytes = std::fs::read(path).map_err(|error| Error {
+            diagnostics: vec![Diagnostic::error(
+                "no-file",
+                format!("{name} cannot be read: {error}"),
+            )],
+            name: name.clone(),
+            text: String::new(),
+        })?;
+        let folder = path.parent().map(Path::to_owned);
+        Self::read(&bytes, name, folder, Vec::new())
+    }
+
+    fn read(
+        bytes: &[u8],
+        name: String,
+        folder: Option<PathBuf>,
+        set: Vec<(String, String)>,
+    ) -> Result<Self, Error> {
+        let text = String::from_utf8_lossy(bytes).into_owned();
+        let title = Path::new(&name)
+            .file_stem()
+            .map_or(name.clone(), |s| s.to_string_lossy().into_owned());
+        let mut files = |wanted: &str| match &folder {
+            Some(folder) => std::fs::read_to_string(folder.join(wanted)).map_err(|e| e.to_string()),
+            None => Err("a model that is no file can name none".to_owned()),
+        };
+        match kempe_model::Model::from_bytes(bytes, &title, &mut files, &set) {
+            Ok(checked) => Ok(Self {
+                name,
+                text,
+                folder,
+                set,
+                inner: checked.model,
+                warnings: checked.warnings,
+            }),
+            Err(diagnostics) => Err(Error {
+                name,
+                text,
+                diagnostics,
+            }),
+        }
+    }
+
+    /// The model with a parameter set to another value, such as `"25 mm"`.
+    ///
+    /// # Errors
+    ///
+    /// `unknown-name` when there is no such parameter, and what is wrong with the value.
+    pub fn with(&self, parameter: &str, value: &str) -> Result<Self, Error> {
+        let mut set = self.set.clone();
+        set.push((parameter.to_owned(), value.to_owned()));
+        Self::read(
+            self.text.as_bytes(),
+            self.name.clone(),
+            self.folder.clone(),
+            set,
+        )
+    }
+
+    /// What a careful engineer would want to be told about the file.
+    pub fn warnings(&self) -> &[Diagnostic] {
+        &self.warnings
+    }
+
+    /// The model as plain data.
+    pub fn data(&self) -> &kempe_model::Model {
+        &self.inner
+    }
+
+    /// The names of its studies.
+    pub fn studies(&self) -> impl Iterator<Item = &str> {
+        self.inner.studies.iter().map(|s| s.name.as_str())
+    }
+
+    /// Mobility two ways, Assur groups, Grashof types, assemblies, reach.
+    ///
+    /// # Example
+    ///
+    /// ```
+    /// # let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/gallery/three-crank.toml");
+    /// let check = kempe::Model::from_path(path).unwrap().check();
+    /// // Three parallel cranks: overconstrained, yet they turn.
+    /// assert_eq!((check.mobility_count, check.mobility_rank), (0, Some(1)));
+    /// ```
+    pub fn check(&self) -> CheckReport {
+        kempe_study::check(&self.inner)
+    }
+
+    /// Runs the first study of the file; a file without studies moves its drives through their laws.
+    ///
+    /// # Errors
+    ///
+    /// Why it cannot start: `no-drive`, `cannot-assemble`, `range-beyond-limit`, …
+    pub fn motion(&self) -> Result<StudyResult, Error> {
+        match self.inner.studies.first() {
+            Some(study) => self.run(&study.name),
+            None => Err(self.error(vec![Diagnostic::error(
+                "no-drive",
+                "nothing moves the mechanism",
+            )])),
+        }
+    }
+
+    /// Runs a study.
+    ///
+    /// # Errors
+    ///
+    /// `unknown-study`, and why it cannot start.
+    pub fn run(&self, study: &str) -> Result<StudyResult, Error> {
+        self.run_with(study, &mut Silent)
+    }
+
+    /// Runs a study that tells how far it has come, and that may be stopped.
+    ///
+    /// # Errors
+    ///
+    /// See [`run`](Self::run).
+    pub fn run_with(&self, study: &str, progress: &mut dyn Progress) -> Result<StudyResult, Error> {
+        let Some(found) = self.inner.studies.iter().find(|s| s.name == study) else {
+            let known: Vec<&str> = self.studies().collect();
+            let told = Diagnostic::error("unknown-study", format!("there is no study `{study}`"));
+            return Err(self.error(vec![
+                told.help(format!("the file has: {}", known.join(", "))),
+            ]));
+        };
+        kempe_study::run(&self.inner, found, progress).map_err(|found| self.error(found))
+    }
+
+    /// The pose where drives stand as in `"motor = 30 deg"` (several between commas); the others at their start.
+    ///
+    /// # Errors
+    ///
+    /// `unknown-name`, and why the place cannot be reached.
+    pub fn pose(&self, place: &str) -> Result<Pose<'_>, Error> {
+        let parts = place.split(',').filter(|part| !part.trim().is_empty());
+        let settings: Result<Vec<Setting>, Diagnostic> = parts
+            .map(|part| Setting::parse(&self.inner, part))
+            .collect();
+        let settings = settings.map_err(|told| self.error(vec![told]))?;
+        let (frame, _) =
+            kempe_study::pose_at(&self.inner, &settings).map_err(|found| self.error(found))?;
+        Ok(Pose {
+            model: &self.inner,
+            frame,
+        })
+    }
+
+    fn error(&self, diagnostics: Vec<Diagnostic>) -> Error {
+        Error {
+            name: self.name.clone(),
+            text: self.text.clone(),
+            diagnostics,
+        }
+    }
+}
+
+/// Reads a model from its text.
+impl FromStr for Model {
+    type Err = Error;
+    fn from_str(text: &str) -> Result<Self, Error> {
+        Self::read(text.as_bytes(), "model".to_owned(), None, Vec::new())
+    }
+}
+
+/// Where everything is, SI.
+#[derive(Clone, Debug)]
+pub struct Pose<'m> {
+    model: &'m kempe_model::Model,
+    frame: kempe_study::Frame,
+}
+
+impl Pose<'_> {
+    /// x and y of a point, m.
+    pub fn point(&self, name: &str) -> Option<[f64; 2]> {
+        let index = self.model.points.iter().position(|p| p.name == name)?;
+        self.frame.points.get(index).copied()
+    }
+
+    /// The angle of a link from the frame's x axis, rad, unwrapped along the motion.
+    pub fn angle(&self, link: &str) -> Option<f64> {
+        let index = self.model.links.iter().position(|l| l.name == link)?;
+        self.frame.links.get(index).map(|l| l[2])
+    }
+}

@@ -1,0 +1,11 @@
+//! Tables as bytes: CSV, Parquet, JSON. The same table gives the same bytes.
+
+mod csv;
+mod json;
+#[cfg(feature = "parquet")]
+mod parquet;
+
+pub use csv::csv;
+pub use json::{diagnostic, result, table};
+#[cfg(feature = "parquet")]
+pub use parquet::{ParquetError, parquet};

@@ -1,0 +1,379 @@
+//! Why there is no motion, or less than was asked for, in the words of the file.
+
+use kempe_kinematics::drive_path::DrivePath;
+use kempe_kinematics::mechanism::Marker;
+use kempe_kinematics::plan::{Condition, Step};
+use kempe_kinematics::{Branch, Design, EndReason, Mechanism, Motion, MotionError, Plan, State};
+use kempe_model::{Diagnostic, Model};
+use kempe_number::math::hypot;
+use kempe_units::Dimension;
+
+use crate::unit::{Units, shown};
+
+/// A motion that does not start, as a diagnostic over the model file.
+pub fn cannot_move(
+    mechanism: &Mechanism,
+    plan: &Plan,
+    design: &Design<f64>,
+    error: &MotionError,
+) -> Diagnostic {
+    let model = &mechanism.model;
+    match error {
+        MotionError::NoDrive => Diagnostic::error("no-drive", "nothing moves the mechanism")
+            .help("say what moves: [drives] motor = { turns = \"crank\", from = 0, to = 360, speed = \"1 rad/s\" }"),
+        MotionError::Undetermined { bodies } => {
+            let names: Vec<String> = bodies.iter().map(|b| format!("`{}`", mechanism.body_name(*b))).collect();
+            let mut told = Diagnostic::error(
+                "undetermined",
+                format!("no drive determines where {} {}", list(&names), if names.len() == 1 { "is" } else { "are" }),
+            )
+            .help("every freedom needs a drive: add one, or a joint that holds the links");
+            for link in model.links.iter().zip(&mechanism.seats).filter(|(_, seat)| bodies.contains(&seat.body)) {
+                told = told.at(link.0.span.clone(), "free");
+            }
+            told
+        }
+        MotionError::CannotAssemble { at, assemblies } => {
+            let place = start_text(mechanism, *at);
+            if assemblies.rejected > 0 {
+                let told = Diagnostic::error(
+                    "cannot-assemble",
+                    format!(
+                        "{place} no assembly agrees with [assembly], though there {}",
+                        match assemblies.rejected { 1 => "is one without it".to_owned(), n => format!("are {n} without it") }
+                    ),
+                )
+                .help("change a side, or leave the sides out to see what `kempe check` finds");
+                return model.assembly.iter().fold(told, |d, hint| d.at(hint.span.clone(), ""));
+            }
+            let step = assemblies.open_step.unwrap_or(0);
+            let gap = gap(mechanism, plan, design, *at, step);
+            let links = gap.links;
+            let mut told = Diagnostic::error(
+                "cannot-assemble",
+                format!("{place} the mechanism cannot be assembled: {}", gap.message),
+            )
+            .help("change a length, or start the drive where the loop closes");
+            for link in links {
+                if let Some(link) = model.links.iter().find(|l| l.name == link) {
+                    told = told.at(link.span.clone(), "");
+                }
+            }
+            model.drives.iter().fold(told, |d, drive| d.see(drive.span.clone(), "where it starts"))
+        }
+        MotionError::Locked { at } => {
+            let told = Diagnostic::error(
+                "locked",
+                format!("{} the mechanism is locked: the drive cannot move it in any direction", start_text(mechanism, *at)),
+            )
+            .help("start the drive elsewhere: here it stands at a dead point");
+            model.drives.iter().fold(told, |d, drive| d.at(drive.span.clone(), ""))
+        }
+    }
+}
+
+/// `at motor = 0 deg`, or where it starts.
+fn start_text(mechanism: &Mechanism, at: f64) -> String {
+    let model = &mechanism.model;
+    match model.drives.as_slice() {
+        [drive] => format!(
+            "at {} = {}",
+            drive.name,
+            Units::of(model).text(at, drive.dimension)
+        ),
+        _ => "where the drives start".to_owned(),
+    }
+}
+
+/// `a`, `b` and `c`.
+pub(crate) fn list(names: &[String]) -> String {
+    match names {
+        [] => String::new(),
+        [one] => one.clone(),
+        [first @ .., last] => format!("{} and {last}", first.join(", ")),
+    }
+}
+
+struct Gap {
+    message: String,
+    links: Vec<String>,
+}
+
+/// What does not meet in a step of the plan.
+fn gap(mechanism: &Mechanism, plan: &Plan, design: &Design<f64>, at: f64, step: usize) -> Gap {
+    let parameters: Vec<f64> = mechanism.model.parameter_values();
+    let size = design.geometry.size(mechanism);
+    let mut coordinates = vec![0.0; mechanism.model.drives.len()];
+    DrivePath::new(&mechanism.model, &parameters, size).coordinates(at, &mut coordinates);
+    let mut state = State::new(mechanism, plan);
+    state.set_inputs(mechanism, &coordinates);
+    let mut branch = Branch::neutral(mechanism, plan);
+    // Modes before the open step are free: those under which all points before it are placed are right enough.
+    for trial in 0..64_usize {
+        let mut bit = 0;
+        for (sign, kind) in branch.signs.iter_mut().zip(&plan.steps) {
+            *sign = if kind.has_modes() && bit < 6 {
+                bit += 1;
+                if trial >> (bit - 1) & 1 == 0 {
+                    1.0
+                } else {
+                    -1.0
+                }
+            } else {
+                1.0
+            };
+        }
+        plan.solve(mechanism, design, &branch, &mut state);
+        if let Some(found) = plan
+            .steps
+            .get(step)
+            .and_then(|s| measured(mechanism, design, &state, &coordinates, s))
+        {
+            return found;
+        }
+    }
+    let bodies = plan.blocks.get(step).map(|b| {
+        let mut bodies: Vec<_> = b.unknowns.iter().map(|u| u.body()).collect();
+        bodies.dedup();
+        bodies
+    });
+    let links: Vec<String> = bodies
+        .unwrap_or_default()
+        .iter()
+        .map(|b| mechanism.body_name(*b))
+        .collect();
+    let quoted: Vec<String> = links.iter().map(|l| format!("`{l}`")).collect();
+    Gap {
+        message: match quoted.len() {
+            0 => "a loop does not close".to_owned(),
+            1 => format!("{} cannot be put in its place", quoted[0]),
+            _ => format!("the group of {} does not close", list(&quoted)),
+        },
+        links,
+    }
+}
+
+/// The distances that contradict each other, where the step is of a kind that has them.
+fn measured(
+    mechanism: &Mechanism,
+    design: &Design<f64>,
+    state: &State<f64>,
+    coordinates: &[f64],
+    step: &Step,
+) -> Option<Gap> {
+    let units = Units::of(&mechanism.model);
+    let text = |m: f64| units.text(m, Dimension::LENGTH);
+    let world = |m: Marker| {
+        let p = state
+            .poses
+            .get(m.body.index())?
+            .place(design.geometry.marker(m));
+        (p[0].is_finite() && p[1].is_finite()).then_some(p)
+    };
+    let apart = |a: [f64; 2], b: [f64; 2]| hypot(a[0] - b[0], a[1] - b[1]);
+    let own = |a: Marker, b: Marker| apart(design.geometry.marker(a), design.geometry.marker(b));
+    let point = |m: Marker| {
+        let at = mechanism.markers.get(m.index as usize)?;
+        mechanism
+            .model
+            .points
+            .get(at.point.index())
+            .map(|p| p.name.clone())
+    };
+    let link = |m: Marker| {
+        let at = mechanism.markers.get(m.index as usize)?;
+        mechanism
+            .model
+            .links
+            .get(at.link.index())
+            .map(|l| l.name.clone())
+    };
+    let (a, b, first, second, names, links) = match *step {
+        Step::Dyad {
+            outer_a,
+            at_a,
+            inner_a,
+            outer_b,
+            at_b,
+            inner_b,
+            ..
+        } => {
+            let links = vec![link(inner_a)?, link(inner_b)?];
+            let names = [format!("`{}`", links[0]), format!("`{}`", links[1])];
+            (
+                (world(at_a)?, point(at_a)?),
+                (world(at_b)?, point(at_b)?),
+                own(outer_a, inner_a),
+                own(outer_b, inner_b),
+                names,
+                links,
+            )
+        }
+        Step::Swing {
+            own: pin,
+            at,
+            tip,
+            condition: Condition::Radius { center, input, .. },
+            partner: None,
+        } => {
+            let links = vec![link(pin)?];
+            let drive = mechanism.model.drives.get(input.index())?;
+            let names = [
+                format!("`{}`", links[0]),
+                format!("the cylinder `{}`", drive.name),
+            ];
+            let reach = *coordinates.get(input.index())?;
+            (
+                (world(at)?, point(at)?),
+                (world(center)?, point(center)?),
+                own(pin, tip),
+                reach,
+                names,
+                links,
+            )
+        }
+        _ => return None,
+    };
+    let distance = apart(a.0, b.0);
+    let between = format!(
+        "{} and {} are {} apart, but {} and {}",
+        a.1,
+        b.1,
+        text(distance),
+        names[0],
+        names[1]
+    );
+    let message = if distance > first + second {
+        format!("{between} reach only {}", text(first + second))
+    } else if distance < (first - second).abs() {
+        format!("{between} differ by {}", text((first - second).abs()))
+    } else {
+        return None;
+    };
+    Some(Gap { message, links })
+}
+
+/// A demanded range that is not covered. `missed` are the ends that are not reached, with the reason.
+pub(crate) fn beyond_limit(motion: &Motion<'_>, missed: &[(EndReason, f64)]) -> Diagnostic {
+    let model = &motion.mechanism.model;
+    let units = Units::of(model);
+    let (low, high) = motion.reached();
+    let (name, dimension, span) = match motion.path {
+        DrivePath::Coordinate { drive, .. } => match model.drives.get(drive) {
+            Some(d) => (
+                format!("drive `{}`", d.name),
+                d.dimension,
+                Some(d.span.clone()),
+            ),
+            None => ("the motion".to_owned(), Dimension::TIME, None),
+        },
+        DrivePath::Time { .. } => ("the motion".to_owned(), Dimension::TIME, None),
+    };
+    let text = |x: f64| units.text(x, dimension);
+    let ends: Vec<String> = missed
+        .iter()
+        .map(|(_, at)| {
+            let limit = if *at > high { high } else { low };
+            format!("{} is beyond {}", text(*at), text(limit))
+        })
+        .collect();
+    let stuck = missed.iter().all(|(r, _)| *r == EndReason::Stuck);
+    let (code, message) = if stuck {
+        (
+            "motion-stuck",
+            format!(
+                "{name} could not be followed over its whole range: {}",
+                list(&ends)
+            ),
+        )
+    } else {
+        (
+            "range-beyond-limit",
+            format!("{name} cannot cover its range: {}, its limit", list(&ends)),
+        )
+    };
+    let mut told = Diagnostic::error(code, message).note(format!(
+        "from {} to {} can be reached, on the circuit of this assembly",
+        text(low),
+        text(high)
+    ));
+    if let Some(group) = limiting_group(
+        motion,
+        if missed.iter().any(|(_, at)| *at > high) {
+            high
+        } else {
+            low
+        },
+    ) {
+        told = told.note(format!("at the limit {group}"));
+    }
+    if let Some(span) = span {
+        told = told.at(span, "the demanded range goes further than the mechanism");
+        if !stuck {
+            let unit = units.unit(dimension);
+            let [a, b, low, high] =
+                [motion.demanded.0, motion.demanded.1, low, high].map(|x| shown(x, &unit));
+            let text = |x: f64| units.text(unit.to_si(x), dimension);
+            told = told.help(format!(
+                "ask for no more than \"{}\" to \"{}\"",
+                text(inside(a, low, high, true)),
+                text(inside(b, low, high, false))
+            ));
+        }
+    } else {
+        told = told.help("the rows beyond carry the reason in their note; change the drives' laws or the lengths");
+    }
+    told
+}
+
+/// A demanded end (in the unit shown), or where it is not reached a round place a little inside the limit.
+fn inside(demanded: f64, low: f64, high: f64, lower: bool) -> f64 {
+    let margin = 1e-2 * (high - low).abs();
+    let step = if margin > 0.0 {
+        10f64.powi(kempe_number::math::log10(margin).floor() as i32)
+    } else {
+        return demanded;
+    };
+    let round = |x: f64| crate::unit::rounded(x * step);
+    if lower && demanded < low {
+        round((low / step).ceil())
+    } else if !lower && demanded > high {
+        round((high / step).floor())
+    } else {
+        demanded
+    }
+}
+
+/// Which links stand in line at a limit.
+fn limiting_group(motion: &Motion<'_>, at: f64) -> Option<String> {
+    let near = |x: f64| (x - at).abs() <= 1e-9 * at.abs().max(1.0);
+    let event = motion
+        .events
+        .iter()
+        .find(|e| near(e.at) && !e.steps.is_empty())?;
+    let block = motion.plan.blocks.get(*event.steps.first()?)?;
+    let mut bodies: Vec<_> = block.unknowns.iter().map(|u| u.body()).collect();
+    bodies.dedup();
+    bodies.sort_unstable();
+    bodies.dedup();
+    let names: Vec<String> = bodies
+        .iter()
+        .map(|b| format!("`{}`", motion.mechanism.body_name(*b)))
+        .collect();
+    match (motion.plan.steps.get(*event.steps.first()?)?, names.len()) {
+        (Step::Dyad { .. }, 2) => Some(format!("{} stand in line", list(&names))),
+        (_, 0) => None,
+        (_, 1) => Some(format!("{} cannot be placed any further", names[0])),
+        _ => Some(format!("the group of {} reaches its end", list(&names))),
+    }
+}
+
+/// A range with its unit: `0 deg to 117.279612741 deg`.
+pub fn reach_text(model: &Model, range: (f64, f64), dimension: Dimension) -> String {
+    let units = Units::of(model);
+    format!(
+        "{} to {}",
+        units.text(range.0, dimension),
+        units.text(range.1, dimension)
+    )
+}

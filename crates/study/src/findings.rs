@@ -1,0 +1,340 @@
+//! What is to be known of a mechanism before it moves, in the names and units of its file.
+
+use kempe_kinematics::events::EventKind;
+use kempe_kinematics::mechanism::{BodyId, Source};
+use kempe_kinematics::{Design, EndReason, Findings, Mechanism, Plan};
+use kempe_model::{Diagnostic, Model};
+use kempe_units::Dimension;
+use serde::Serialize;
+
+use crate::explain::{cannot_move, list};
+use crate::unit::Units;
+
+/// The answer of `check`.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// Title of the mechanism.
+    pub title: String,
+    /// Links, the frame included.
+    pub links: usize,
+    /// Lower pairs; a multiple joint of k links counts k - 1.
+    pub lower_pairs: usize,
+    /// Higher pairs.
+    pub higher_pairs: usize,
+    /// Mobility by Chebyshev and Grübler.
+    pub mobility_count: i64,
+    /// Mobility by the rank of the constraint Jacobian at the start, when there is a pose.
+    pub mobility_rank: Option<usize>,
+    /// Constraints that say nothing new at the start.
+    pub redundant: Option<usize>,
+    /// Joints whose constraints are redundant whatever the dimensions.
+    pub redundant_joints: Vec<String>,
+    /// Links that turn without anything else moving.
+    pub idle: Vec<String>,
+    /// Drives.
+    pub drives: Vec<String>,
+    /// Assur groups in the order in which they are solved.
+    pub groups: Vec<Group>,
+    /// Four-bar loops.
+    pub four_bars: Vec<Grashof>,
+    /// Assemblies at the start that agree with the file.
+    pub assemblies: usize,
+    /// Assemblies that the file's sides reject.
+    pub assemblies_rejected: usize,
+    /// Whether all assemblies were found by complete methods.
+    pub assemblies_complete: bool,
+    /// How far the drive can go on its circuit, in words.
+    pub reach: Option<String>,
+    /// The same in SI: lowest and highest coordinate.
+    pub reach_si: Option<(f64, f64)>,
+    /// Dead points and change points, in words.
+    pub events: Vec<String>,
+    /// What is assumed where the file says nothing.
+    pub assumptions: Vec<String>,
+    /// What a careful engineer would want to be told, and what is wrong.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+/// A group of links that are solved together.
+#[derive(Clone, Debug, Serialize)]
+pub struct Group {
+    /// Its links.
+    pub links: Vec<String>,
+    /// Its class.
+    pub class: u32,
+    /// Its kind.
+    pub kind: String,
+    /// Whether it is solved in closed form.
+    pub closed_form: bool,
+}
+
+/// A four-bar loop.
+#[derive(Clone, Debug, Serialize)]
+pub struct Grashof {
+    /// Its links, the frame first.
+    pub links: Vec<String>,
+    /// Its pins.
+    pub pins: Vec<String>,
+    /// Distances between the pins of each link, with units.
+    pub lengths: Vec<String>,
+    /// Its type.
+    pub kind: String,
+}
+
+/// Checks a model: mobility two ways, groups, assemblies, reach.
+pub fn check(model: &Model) -> Report {
+    let mechanism = Mechanism::new(model);
+    let plan = Plan::new(&mechanism);
+    let parameters: Vec<f64> = model.parameter_values();
+    let design = Design::new(&mechanism, &plan, &parameters);
+    let found = kempe_kinematics::check(&mechanism, &plan, &design, &parameters);
+    let units = Units::of(model);
+    let bodies = |list: &[BodyId]| {
+        list.iter()
+            .map(|b| mechanism.body_name(*b))
+            .collect::<Vec<_>>()
+    };
+    let point = |index: usize| {
+        model
+            .points
+            .get(index)
+            .map_or(String::new(), |p| p.name.clone())
+    };
+    let single = (model.drives.len() == 1).then(|| &model.drives[0]);
+    let mut report = Report {
+        title: model.title.clone(),
+        links: found.mobility.links,
+        lower_pairs: found.mobility.lower_pairs,
+        higher_pairs: found.mobility.higher_pairs,
+        mobility_count: found.mobility.count,
+        mobility_rank: found.mobility.by_rank,
+        redundant: found.mobility.redundant_rows,
+        redundant_joints: found
+            .redundant
+            .iter()
+            .map(|s| source_name(model, *s))
+            .collect(),
+        idle: bodies(&found.idle),
+        drives: model.drives.iter().map(|d| d.name.clone()).collect(),
+        groups: found
+            .groups
+            .iter()
+            .map(|g| Group {
+                links: bodies(&g.bodies),
+                class: g.class,
+                kind: g.kind.clone(),
+                closed_form: g.closed_form,
+            })
+            .collect(),
+        four_bars: found
+            .four_bars
+            .iter()
+            .map(|f| Grashof {
+                links: bodies(&f.bodies),
+                pins: f.pins.iter().map(|p| point(p.index())).collect(),
+                lengths: f
+                    .lengths
+                    .iter()
+                    .map(|l| units.text(*l, Dimension::LENGTH))
+                    .collect(),
+                kind: f.kind.name().to_owned(),
+            })
+            .collect(),
+        assemblies: found.assemblies.list.len(),
+        assemblies_rejected: found.assemblies.rejected,
+        assemblies_complete: found.assemblies.complete,
+        reach: None,
+        reach_si: found.reach.as_ref().map(|r| r.range),
+        events: Vec::new(),
+        assumptions: assumptions(model, &units),
+        diagnostics: Vec::new(),
+    };
+    if let Some(reach) = &found.reach {
+        let (name, dimension) = single.map_or(("time", Dimension::TIME), |d| {
+            (d.name.as_str(), d.dimension)
+        });
+        report.reach = Some(if reach.full_turn {
+            format!("{name} turns fully")
+        } else {
+            let range = crate::explain::reach_text(model, reach.range, dimension);
+            let why = match reach.ends {
+                (EndReason::Limit, EndReason::Limit) => ", limits on both sides",
+                (EndReason::Limit, _) => ", a limit at the low end",
+                (_, EndReason::Limit) => ", a limit at the high end",
+                _ => "",
+            };
+            format!("{name} {range}{why}")
+        });
+        for event in reach
+            .events
+            .iter()
+            .filter(|e| e.kind != EventKind::ModeChange)
+        {
+            let what = match event.kind {
+                EventKind::Limit => "limit of the drive",
+                _ => "change point",
+            };
+            report.events.push(format!(
+                "{what} at {name} = {}",
+                units.exact_text(event.at, dimension)
+            ));
+        }
+    }
+    report.diagnostics = diagnostics(model, &mechanism, &plan, &design, &found, &units);
+    report
+}
+
+fn source_name(model: &Model, source: Source) -> String {
+    match source {
+        Source::Pin { point, .. } => model
+            .points
+            .get(point.index())
+            .map_or(String::new(), |p| format!("pin {}", p.name)),
+        Source::Joint(joint) => model
+            .joints
+            .get(joint.index())
+            .map_or(String::new(), |j| j.name.clone()),
+        Source::Drive(drive) => model
+            .drives
+            .get(drive.index())
+            .map_or(String::new(), |d| d.name.clone()),
+    }
+}
+
+/// What Kempe takes for granted where the file is silent.
+fn assumptions(model: &Model, units: &Units) -> Vec<String> {
+    let parameters: Vec<f64> = model.parameter_values();
+    let mut told = vec![format!(
+        "bare numbers: lengths in {}, angles in {}",
+        model.units.length.name, model.units.angle.name
+    )];
+    for drive in &model.drives {
+        let law = &drive.law;
+        let (low, high) = law.extent(&parameters);
+        told.push(format!(
+            "drive {}: {} to {} in {}",
+            drive.name,
+            units.text(low, drive.dimension),
+            units.text(high, drive.dimension),
+            units.text(law.duration(&parameters), Dimension::TIME)
+        ));
+    }
+    if model.assembly.is_empty() {
+        told.push("assembly: the first found, as the file names none".to_owned());
+    }
+    told
+}
+
+fn diagnostics(
+    model: &Model,
+    mechanism: &Mechanism,
+    plan: &Plan,
+    design: &Design<f64>,
+    found: &Findings,
+    units: &Units,
+) -> Vec<Diagnostic> {
+    let mut told = Vec::new();
+    if let Some(problem) = &found.problem {
+        told.push(cannot_move(mechanism, plan, design, problem));
+    }
+    if let (Some(rank), None) = (found.mobility.by_rank, &found.problem) {
+        let free = rank.saturating_sub(found.idle.len());
+        if free < found.drives {
+            told.push(
+                Diagnostic::warning(
+                    "overdriven",
+                    format!("{} drives move {free} freedoms at the start", found.drives),
+                )
+                .help("drives that depend on each other must agree exactly: leave one out"),
+            );
+        }
+        if found.mobility.count != rank as i64 {
+            let redundant = found.mobility.redundant_rows.unwrap_or(0);
+            told.push(
+                Diagnostic::warning(
+                    "overconstrained",
+                    format!(
+                        "by count the mobility is {}, by the rank of its constraints {rank}: {redundant} of them repeat others",
+                        found.mobility.count
+                    ),
+                )
+                .note("it moves because of its special dimensions; real links of other lengths would jam"),
+            );
+        }
+    }
+    if !found.idle.is_empty() {
+        let names: Vec<String> = found
+            .idle
+            .iter()
+            .map(|b| format!("`{}`", mechanism.body_name(*b)))
+            .collect();
+        told.push(Diagnostic::warning(
+            "idle-freedom",
+            format!(
+                "{} can turn by itself without moving anything else",
+                list(&names)
+            ),
+        ));
+    }
+    if found.assemblies.list.len() > 1 {
+        let near = found.assemblies.list.first().map(|a| a.distance);
+        let decided = match near {
+            Some(distance)
+                if model
+                    .assembly
+                    .iter()
+                    .any(|h| !matches!(h.kind, kempe_model::HintKind::Side { .. })) =>
+            {
+                format!(
+                    "the one nearest to [assembly] was chosen, {} from it",
+                    units.text(distance, Dimension::LENGTH)
+                )
+            }
+            _ => "the first was chosen".to_owned(),
+        };
+        let told_now = Diagnostic::warning(
+            "several-assemblies",
+            format!(
+                "{} assemblies agree with the file: {decided}",
+                found.assemblies.list.len()
+            ),
+        );
+        // A place near which things are is an answer; nothing said is a question.
+        if model.assembly.is_empty() {
+            told.push(told_now.help(
+                "say which is meant: [assembly] C = \"left of B -> D\", or C = { near = [x, y] }",
+            ));
+        }
+    }
+    if !found.assemblies.complete && found.problem.is_none() {
+        told.push(Diagnostic::warning(
+            "assemblies-incomplete",
+            "some assemblies may be missing: a group was searched by trial",
+        ));
+    }
+    if let Some(reach) = &found.reach {
+        let parameters: Vec<f64> = model.parameter_values();
+        if let [drive] = model.drives.as_slice() {
+            let (low, high) = drive.law.extent(&parameters);
+            let slack = 1e-12 * (high - low).abs().max(reach.range.1 - reach.range.0);
+            if !reach.full_turn && (low < reach.range.0 - slack || high > reach.range.1 + slack) {
+                told.push(
+                    Diagnostic::error(
+                        "range-beyond-limit",
+                        format!(
+                            "drive `{}` is asked for {}, but can only go {}",
+                            drive.name,
+                            crate::explain::reach_text(model, (low, high), drive.dimension),
+                            crate::explain::reach_text(model, reach.range, drive.dimension)
+                        ),
+                    )
+                    .at(
+                        drive.span.clone(),
+                        "the demanded range goes further than the mechanism",
+                    ),
+                );
+            }
+        }
+    }
+    told
+}

@@ -1,0 +1,219 @@
+//! Motion studies: a row for every place along the drives' laws.
+
+use kempe_kinematics::drive_path::DrivePath;
+use kempe_kinematics::events::EventKind;
+use kempe_kinematics::{Design, EndReason, Mechanism, Motion, Plan, Sampler, Unmeasurable};
+use kempe_model::{Diagnostic, Model, MotionStudy, Study, StudyKind};
+use kempe_units::Dimension;
+
+use crate::circuit::run_circuit;
+use crate::columns::{Asked, Quantity};
+use crate::explain::{beyond_limit, cannot_move};
+use crate::progress::{Flow, Progress};
+use crate::result::{Event, StudyResult};
+use crate::rows::{RowPlace, places};
+use crate::sink::RowSink;
+use crate::table::{Column, Table};
+use crate::unit::Units;
+
+/// Runs a study of a model.
+///
+/// # Errors
+///
+/// What keeps the study from starting, as diagnostics over the model file: `cannot-assemble`, `range-beyond-limit`,
+/// `undetermined`, `locked`, `not-measurable`. A row that cannot be reached is no error: it carries its reason.
+pub fn run(
+    model: &Model,
+    study: &Study,
+    progress: &mut dyn Progress,
+) -> Result<StudyResult, Vec<Diagnostic>> {
+    match &study.kind {
+        StudyKind::Motion(motion) => run_motion(model, &study.name, motion, progress),
+        StudyKind::Forces(_) => Err(vec![
+            Diagnostic::error(
+                "study-not-available",
+                format!(
+                    "study `{}` asks for forces, which this version cannot find",
+                    study.name
+                ),
+            )
+            .at(study.span.clone(), "")
+            .help("run the other studies by name: kempe run FILE STUDY"),
+        ]),
+    }
+}
+
+/// Rows, columns and plots of a study, whatever it asks.
+pub fn motion_of(study: &Study) -> &MotionStudy {
+    match &study.kind {
+        StudyKind::Motion(motion) | StudyKind::Forces(motion) => motion,
+    }
+}
+
+/// Runs a motion study called `name`.
+///
+/// # Errors
+///
+/// See [`run`].
+pub fn run_motion(
+    model: &Model,
+    name: &str,
+    study: &MotionStudy,
+    progress: &mut dyn Progress,
+) -> Result<StudyResult, Vec<Diagnostic>> {
+    if study.circuit {
+        return run_circuit(model, name, study, progress);
+    }
+    let mechanism = Mechanism::new(model);
+    let plan = Plan::new(&mechanism);
+    let parameters: Vec<f64> = model.parameter_values();
+    let design = Design::new(&mechanism, &plan, &parameters);
+    let motion = Motion::new(&mechanism, &plan, &design, &parameters)
+        .map_err(|error| vec![cannot_move(&mechanism, &plan, &design, &error)])?;
+    let mut warnings = range_warnings(&motion)?;
+    let asked = Asked::of(model, study);
+    let quantities: Vec<&Quantity> = asked.all().collect();
+    let measures: Vec<_> = quantities.iter().map(|q| &q.measure).collect();
+    let mut sampler = Sampler::new(&motion, &measures)
+        .map_err(|problems| not_measurable(model, &quantities, &problems))?;
+    let path_drive = match motion.path {
+        DrivePath::Coordinate { drive, .. } => drive,
+        DrivePath::Time { .. } => 0,
+    };
+    let places = places(model, &study.rows, &parameters, path_drive);
+    let units = Units::of(model);
+    let mut rows = RowSink::new(
+        name,
+        model,
+        &units,
+        &asked,
+        Column::new("time", units.unit(Dimension::TIME)),
+    );
+    let mut frames = Vec::with_capacity(places.len());
+    let mut parameters_met = Vec::with_capacity(places.len());
+    for (done, place) in places.iter().enumerate() {
+        let sample = match *place {
+            RowPlace::Drive(p) => sampler.at_parameter(p),
+            RowPlace::Time(t) => sampler.at_time(t),
+        };
+        parameters_met.push(sample.parameter);
+        frames.push(rows.push(sample.time, sample));
+        if progress.tick(done + 1, places.len()) == Flow::Stop {
+            break;
+        }
+    }
+    let by_drive = matches!(motion.path, DrivePath::Coordinate { .. }) && !model.drives.is_empty();
+    let along = if by_drive { 1 + path_drive } else { 0 };
+    if rows.table.unreached() > 0 {
+        warnings.push(unreached_warning(name, &rows.table));
+    }
+    Ok(StudyResult {
+        name: name.to_owned(),
+        events: events(&motion, &units, &parameters_met),
+        scalars: rows.scalars.clone(),
+        figures: rows.figures(&study.plots),
+        table: rows.table,
+        frames,
+        along,
+        assemblies: (motion.assemblies.list.len(), motion.assemblies.rejected),
+        warnings,
+        demanded_rows: places.len(),
+    })
+}
+
+/// Measures that the mechanism cannot answer, as diagnostics over the model file.
+pub(crate) fn not_measurable(
+    model: &Model,
+    quantities: &[&Quantity],
+    problems: &[Unmeasurable],
+) -> Vec<Diagnostic> {
+    let told = problems.iter().map(|problem| {
+        let name = quantities.get(problem.index).map_or("", |q| &q.name);
+        let what = Diagnostic::error(
+            "not-measurable",
+            format!("`{name}` cannot be evaluated: {}", problem.reason),
+        );
+        match model.measures.iter().find(|m| m.name == name) {
+            Some(named) => what.at(named.span.clone(), ""),
+            None => what,
+        }
+    });
+    told.collect()
+}
+
+/// Nothing, where the demanded range is covered. An error where one drive alone is asked to go beyond its limit; a warning
+/// where several drives meet a limit on their way, or the motion could not be followed.
+fn range_warnings(motion: &Motion<'_>) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> {
+    let missed = [
+        (motion.ends.0, motion.demanded.0),
+        (motion.ends.1, motion.demanded.1),
+    ];
+    let missed: Vec<_> = missed
+        .into_iter()
+        .filter(|(reason, at)| *reason != EndReason::Covered && !motion.reaches(*at))
+        .collect();
+    if missed.is_empty() {
+        return Ok(Vec::new());
+    }
+    let told = beyond_limit(motion, &missed);
+    let one_drive = matches!(motion.path, DrivePath::Coordinate { .. });
+    if one_drive && missed.iter().any(|(r, _)| *r == EndReason::Limit) {
+        return Err(vec![told]);
+    }
+    Ok(vec![Diagnostic {
+        severity: kempe_model::Severity::Warning,
+        ..told
+    }])
+}
+
+pub(crate) fn unreached_warning(name: &str, table: &Table) -> Diagnostic {
+    let reason = table.notes.iter().zip(&table.closure);
+    let reason = reason
+        .filter(|(_, closure)| !closure.is_finite())
+        .find_map(|(note, _)| note.as_deref())
+        .unwrap_or("no pose was found");
+    Diagnostic::warning(
+        "rows-not-reached",
+        format!(
+            "{} of {} rows of study `{name}` could not be reached: {reason}",
+            table.unreached(),
+            table.rows()
+        ),
+    )
+    .help("the column `note` says why, row by row")
+}
+
+/// What the motion met, with the row nearest to each place.
+pub(crate) fn events(motion: &Motion<'_>, units: &Units, parameters: &[f64]) -> Vec<Event> {
+    let model = &motion.mechanism.model;
+    let (name, dimension) = match motion.path {
+        DrivePath::Coordinate { drive, .. } => model
+            .drives
+            .get(drive)
+            .map_or(("time", Dimension::TIME), |d| {
+                (d.name.as_str(), d.dimension)
+            }),
+        DrivePath::Time { .. } => ("time", Dimension::TIME),
+    };
+    let nearest = |at: f64| {
+        let gap = |row: &usize| (parameters[*row] - at).abs();
+        (0..parameters.len())
+            .min_by(|a, b| gap(a).total_cmp(&gap(b)))
+            .unwrap_or(0)
+    };
+    let told = motion
+        .events
+        .iter()
+        .filter(|e| e.kind != EventKind::ModeChange);
+    told.map(|event| Event {
+        kind: event.kind,
+        at: event.at,
+        place: format!("{name} = {}", units.exact_text(event.at, dimension)),
+        label: match event.kind {
+            EventKind::Limit => "limit of the drive".to_owned(),
+            _ => "change point: branches cross, the motion goes on smoothly".to_owned(),
+        },
+        row: nearest(event.at),
+    })
+    .collect()
+}

@@ -1,0 +1,186 @@
+//! Everything about a model and its studies as one HTML report.
+
+use kempe_draw::report::{
+    Block, Column as Shown, Event, Evidence, MotionReport, NotReached, Report, Section,
+};
+use kempe_model::{Diagnostic, Model, MotionStudy, Study};
+
+use crate::figures::{figures, marker_kind};
+use crate::findings::Report as CheckReport;
+use crate::findings_text::warnings_section;
+use crate::motion::motion_of;
+use crate::result::StudyResult;
+use crate::table::Column;
+use crate::view::{drawing_frames, mechanism_view};
+
+/// A closure residual, in mechanism sizes, above which a row is not trusted: the one the sampler marks rows by.
+const CLOSURE_LIMIT: f64 = 1e-9;
+
+/// A study with what became of it.
+#[derive(Clone, Debug)]
+pub struct StudyOutcome<'a> {
+    /// The study.
+    pub study: &'a Study,
+    /// Its result, or why there is none.
+    pub result: Result<StudyResult, Vec<Diagnostic>>,
+}
+
+/// The report of a model. `warnings` are those of reading the file; `generator` is the program's name and version.
+pub fn report(
+    model: &Model,
+    file_name: &str,
+    generator: &str,
+    warnings: &[Diagnostic],
+    check: &CheckReport,
+    studies: &[StudyOutcome<'_>],
+) -> Report {
+    let results = studies.iter().filter_map(|s| s.result.as_ref().ok());
+    let mut sections: Vec<Section> = results.filter_map(values_section).collect();
+    sections.extend(check.sections());
+    let mut told: Vec<Diagnostic> = warnings.to_vec();
+    let more = studies.iter().flat_map(|s| match &s.result {
+        Ok(result) => result.warnings.iter(),
+        Err(errors) => errors.iter(),
+    });
+    for diagnostic in check.diagnostics.iter().chain(more) {
+        if told
+            .iter()
+            .all(|d| d.code != diagnostic.code || d.message != diagnostic.message)
+        {
+            told.push(diagnostic.clone());
+        }
+    }
+    sections.extend(warnings_section(&told));
+    let motions = studies.iter().filter_map(|outcome| {
+        let study = motion_of(outcome.study);
+        outcome
+            .result
+            .as_ref()
+            .ok()
+            .map(|result| motion(model, study, result))
+    });
+    Report {
+        title: model.title.clone(),
+        file_name: file_name.to_owned(),
+        motions: motions.collect(),
+        sections,
+        generator: generator.to_owned(),
+    }
+}
+
+/// The numbers over the whole motion of a study, if it has any.
+fn values_section(result: &StudyResult) -> Option<Section> {
+    (!result.scalars.is_empty()).then(|| Section {
+        title: format!("Values over {}", result.name),
+        blocks: vec![Block::Facts(scalar_facts(result))],
+    })
+}
+
+fn scalar_facts(result: &StudyResult) -> Vec<(String, String)> {
+    let fact = |s: &crate::result::Scalar| {
+        let value = kempe_draw::number_format::significant(s.value, 12);
+        let text = format!("{value} {}", s.unit.text());
+        (s.name.clone(), text.trim_end().to_owned())
+    };
+    result.scalars.iter().map(fact).collect()
+}
+
+fn shown(column: &Column) -> Shown {
+    Shown::new(
+        column.name.clone(),
+        column.unit.text(),
+        column.values.clone(),
+    )
+}
+
+fn motion(model: &Model, study: &MotionStudy, result: &StudyResult) -> MotionReport {
+    let table = &result.table;
+    let first = table
+        .columns
+        .first()
+        .map(|c| c.values.clone())
+        .unwrap_or_default();
+    let skipped = 1 + model.drives.len();
+    MotionReport {
+        name: result.name.clone(),
+        summary: summary(result),
+        view: mechanism_view(model, Some(study)),
+        frames: drawing_frames(result),
+        time: first,
+        drive: result.abscissa().map(shown).unwrap_or_default(),
+        columns: table.columns.iter().skip(skipped).map(shown).collect(),
+        plots: figures(model, result)
+            .into_iter()
+            .map(|(_, plot)| plot)
+            .collect(),
+        events: result
+            .events
+            .iter()
+            .map(|e| Event {
+                row: e.row,
+                place: e.place.clone(),
+                label: e.label.clone(),
+                kind: marker_kind(e.kind),
+            })
+            .collect(),
+        evidence: evidence(result),
+    }
+}
+
+fn summary(result: &StudyResult) -> String {
+    let mut text = match result.abscissa() {
+        Some(x) => match (x.values.first(), x.values.last()) {
+            (Some(a), Some(b)) => format!(
+                "{} rows, {} from {} to {} {}",
+                result.table.rows(),
+                x.name,
+                kempe_draw::number_format::significant(*a, 8),
+                kempe_draw::number_format::significant(*b, 8),
+                x.unit.text()
+            ),
+            _ => String::new(),
+        },
+        None => String::new(),
+    };
+    text = text.trim_end().to_owned();
+    text.push('.');
+    if result.interrupted() {
+        text.push_str(&format!(
+            " Stopped early: {} rows were asked for.",
+            result.demanded_rows
+        ));
+    }
+    text
+}
+
+fn evidence(result: &StudyResult) -> Evidence {
+    let table = &result.table;
+    let unreached = table
+        .noted()
+        .into_iter()
+        .filter(|(first, ..)| table.closure.get(*first).is_some_and(|c| !c.is_finite()));
+    let (matching, other) = result.assemblies;
+    let facts = vec![(
+        "Assemblies at the start".to_owned(),
+        format!("{matching} as the file says, {other} more"),
+    )];
+    Evidence {
+        residual: table
+            .worst_closure()
+            .is_finite()
+            .then(|| (table.worst_closure(), CLOSURE_LIMIT)),
+        singular_value: table
+            .least_singular_value()
+            .is_finite()
+            .then(|| table.least_singular_value()),
+        scaling: "lengths counted in mechanism sizes, angles in rad".to_owned(),
+        not_reached: unreached
+            .map(|(first, last, reason)| NotReached {
+                first,
+                last,
+                reason: reason.to_owned(),
+            })
+            .collect(),
+        facts,
+    }
+}

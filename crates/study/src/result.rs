@@ -1,0 +1,88 @@
+//! What a study returns.
+
+use kempe_kinematics::events::EventKind;
+use kempe_model::{Diagnostic, PointId};
+use kempe_units::Unit;
+
+use crate::table::{Column, Table};
+
+/// The answer of a motion study, with its evidence.
+#[derive(Clone, Debug)]
+pub struct StudyResult {
+    /// Name of the study.
+    pub name: String,
+    /// The rows.
+    pub table: Table,
+    /// Measures that are one number over the whole motion, such as `range(angle(rocker))`.
+    pub scalars: Vec<Scalar>,
+    /// What the study asks to plot.
+    pub figures: Vec<Figure>,
+    /// The pose at each row.
+    pub frames: Vec<Frame>,
+    /// Limits and change points met.
+    pub events: Vec<Event>,
+    /// Index into the columns of the quantity the rows run along: a drive, or time.
+    pub along: usize,
+    /// How many assemblies agree with the file's hints at the start, and how many do not.
+    pub assemblies: (usize, usize),
+    /// What a careful engineer would want to be told.
+    pub warnings: Vec<Diagnostic>,
+    /// Rows that were asked for; the table has fewer when the study was stopped.
+    pub demanded_rows: usize,
+}
+
+impl StudyResult {
+    /// Whether the study was stopped before its last row.
+    pub fn interrupted(&self) -> bool {
+        self.table.rows() < self.demanded_rows
+    }
+
+    /// The column that the rows run along.
+    pub fn abscissa(&self) -> Option<&Column> {
+        self.table.columns.get(self.along)
+    }
+}
+
+/// One number with a name.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scalar {
+    /// Name.
+    pub name: String,
+    /// Unit of the value.
+    pub unit: Unit,
+    /// Value in the unit.
+    pub value: f64,
+}
+
+/// A plot that a study asks for.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Figure {
+    /// A quantity along the motion.
+    Curve(Column),
+    /// The path of a point.
+    Path(PointId),
+}
+
+/// Where everything is in one row, SI.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Frame {
+    /// x, y (m) and angle (rad) of every link.
+    pub links: Vec<[f64; 3]>,
+    /// Places of the points, m.
+    pub points: Vec<[f64; 2]>,
+}
+
+/// A place worth knowing.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Event {
+    /// What it is.
+    pub kind: EventKind,
+    /// Where, SI: the coordinate of the drive, or time.
+    pub at: f64,
+    /// Where, in words: `lock = 117.51220651664109 deg`.
+    pub place: String,
+    /// What it is, in words.
+    pub label: String,
+    /// The row nearest to it.
+    pub row: usize,
+}

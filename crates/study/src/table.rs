@@ -1,0 +1,115 @@
+//! Tables: column blocks with units, and the evidence for every row.
+
+use kempe_units::Unit;
+
+/// A table of results. All columns are equally long.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Table {
+    /// Name of the study it answers.
+    pub name: String,
+    /// Columns in order.
+    pub columns: Vec<Column>,
+    /// Largest closure residual of each row, relative to the mechanism's size (directions in rad); NaN where the row was
+    /// not reached.
+    pub closure: Vec<f64>,
+    /// Smallest singular value of each row's constraint Jacobian, lengths scaled by the mechanism's size.
+    pub smallest_singular_value: Vec<f64>,
+    /// What is to be said about each row, such as why it was not reached.
+    pub notes: Vec<Option<String>>,
+}
+
+/// A quantity over the rows of a table.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Column {
+    /// Name: a named measure, or the measure as written.
+    pub name: String,
+    /// The unit of the values.
+    pub unit: Unit,
+    /// One value a row, in the unit; NaN where it was not reached.
+    pub values: Vec<f64>,
+}
+
+impl Column {
+    /// A column without rows.
+    pub fn new(name: impl Into<String>, unit: Unit) -> Self {
+        Self {
+            name: name.into(),
+            unit,
+            values: Vec::new(),
+        }
+    }
+
+    /// `name [unit]`; the unit of plain numbers is written 1.
+    pub fn head(&self) -> String {
+        let unit = match self.unit.text() {
+            "" => "1",
+            text => text,
+        };
+        format!("{} [{unit}]", self.name)
+    }
+
+    /// The values in SI.
+    pub fn si(&self) -> Vec<f64> {
+        self.values.iter().map(|v| self.unit.to_si(*v)).collect()
+    }
+}
+
+impl Table {
+    /// How many rows there are.
+    pub fn rows(&self) -> usize {
+        self.notes.len()
+    }
+
+    /// The column of a name.
+    pub fn column(&self, name: &str) -> Option<&Column> {
+        self.columns.iter().find(|c| c.name == name)
+    }
+
+    /// All columns of numbers: the quantities, then the evidence.
+    pub fn with_evidence(&self) -> Vec<Column> {
+        let evidence = |name: &str, values: &[f64]| Column {
+            values: values.to_vec(),
+            ..Column::new(name, Unit::one())
+        };
+        let mut all = self.columns.clone();
+        all.push(evidence("closure", &self.closure));
+        all.push(evidence(
+            "smallest_singular_value",
+            &self.smallest_singular_value,
+        ));
+        all
+    }
+
+    /// Stretches of rows with one note: first row, last row, note.
+    pub fn noted(&self) -> Vec<(usize, usize, &str)> {
+        let mut stretches: Vec<(usize, usize, &str)> = Vec::new();
+        for (row, note) in self.notes.iter().enumerate() {
+            let Some(note) = note.as_deref() else {
+                continue;
+            };
+            match stretches.last_mut() {
+                Some((_, last, text)) if *last + 1 == row && *text == note => *last = row,
+                _ => stretches.push((row, row, note)),
+            }
+        }
+        stretches
+    }
+
+    /// Largest closure residual over the rows that were reached; NaN when there is none.
+    pub fn worst_closure(&self) -> f64 {
+        self.closure.iter().copied().fold(f64::NAN, f64::max)
+    }
+
+    /// Smallest singular value over the rows that were reached; NaN when there is none.
+    pub fn least_singular_value(&self) -> f64 {
+        self.smallest_singular_value
+            .iter()
+            .copied()
+            .fold(f64::NAN, f64::min)
+    }
+
+    /// Rows that were not reached.
+    pub fn unreached(&self) -> usize {
+        self.closure.iter().filter(|c| !c.is_finite()).count()
+    }
+}

@@ -1,0 +1,143 @@
+//! The units results are shown in: lengths and angles in the file's, angular rates in radians.
+
+use kempe_model::Model;
+use kempe_units::{Dimension, Unit, format_digits};
+
+/// Chooses units for results.
+#[derive(Clone, Debug)]
+pub struct Units {
+    length: Unit,
+    angle: Unit,
+    preferred: [Unit; 2],
+}
+
+impl Units {
+    /// The units of a model's results.
+    pub fn of(model: &Model) -> Self {
+        let parse = |name: &str, or: &str| {
+            Unit::parse(name)
+                .or_else(|_| Unit::parse(or))
+                .unwrap_or_else(|_| Unit::one())
+        };
+        let length = parse(&model.units.length.name, "m");
+        let angle = parse(&model.units.angle.name, "rad");
+        let rad = parse("rad", "rad");
+        Self {
+            preferred: [length.clone(), rad],
+            length,
+            angle,
+        }
+    }
+
+    /// The unit of a dimension: lengths and angles in the file's units; rates of angles and derivatives to angles in
+    /// radians (`rad/s`, `mm/rad`); force-like quantities in SI.
+    pub fn unit(&self, dimension: Dimension) -> Unit {
+        if dimension == Dimension::ANGLE {
+            return self.angle.clone();
+        }
+        if dimension == Dimension::LENGTH {
+            return self.length.clone();
+        }
+        // A derivative to an angle, or of an angle to a length, keeps its radian in sight.
+        let derivative = dimension.mass == 0
+            && dimension.angle != 0
+            && (dimension.angle < 0 || dimension.length <= 0)
+            && dimension.angle % 6 == 0
+            && dimension.length % 6 == 0
+            && dimension.time % 6 == 0;
+        if derivative {
+            let text = [
+                (self.length.text(), dimension.length),
+                ("rad", dimension.angle),
+                ("s", dimension.time),
+            ]
+            .iter()
+            .filter(|(_, sixths)| *sixths != 0)
+            .map(|(unit, sixths)| format!("{unit}^{}", sixths / 6))
+            .collect::<Vec<_>>()
+            .join(" ");
+            if let Ok(unit) = Unit::parse(&text) {
+                return unit;
+            }
+        }
+        Unit::for_display(dimension, &self.preferred)
+    }
+
+    /// A value with its unit, to 12 digits: `117.512206517 deg`.
+    pub fn text(&self, si: f64, dimension: Dimension) -> String {
+        format_digits(si, &self.unit(dimension), 12)
+    }
+
+    /// A value with its unit, to all its digits.
+    pub fn exact_text(&self, si: f64, dimension: Dimension) -> String {
+        format_digits(si, &self.unit(dimension), 17)
+    }
+}
+
+/// The value of `si` in `unit`, where rounding it to 15 digits loses nothing the rounded one: 30 for 30 degrees given in
+/// radians, not 29.999999999999996.
+pub fn shown(si: f64, unit: &Unit) -> f64 {
+    let plain = unit.from_si(si);
+    let round = rounded(plain);
+    if (unit.to_si(round) - si).abs() <= 4.0 * f64::EPSILON * si.abs() {
+        round
+    } else {
+        plain
+    }
+}
+
+/// A number rounded to 15 significant digits.
+pub(crate) fn rounded(value: f64) -> f64 {
+    format!("{value:.14e}").parse().unwrap_or(value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn units(length: &str, angle: &str) -> Units {
+        let text = format!(
+            "units = {{ length = \"{length}\", angle = \"{angle}\" }}\n[links]\nframe = {{ A = [0, 0] }}\ncrank = {{ A-B = 1 }}\n"
+        );
+        let model = Model::from_toml(&text, "x", &mut |_| Err(String::new())).unwrap();
+        Units::of(&model.model)
+    }
+
+    #[test]
+    fn columns_are_in_the_units_of_the_file_and_angular_rates_in_radians() {
+        let mm = units("mm", "deg");
+        let name = |d: Dimension| mm.unit(d).text().to_owned();
+        let per_rad = |d: Dimension| d / Dimension::ANGLE;
+        assert_eq!(name(Dimension::LENGTH), "mm");
+        assert_eq!(name(Dimension::SPEED), "mm/s");
+        assert_eq!(name(Dimension::ACCELERATION), "mm/s^2");
+        assert_eq!(name(Dimension::ANGLE), "deg");
+        assert_eq!(name(Dimension::ANGULAR_SPEED), "rad/s");
+        assert_eq!(name(Dimension::ANGULAR_ACCELERATION), "rad/s^2");
+        assert_eq!(name(per_rad(Dimension::LENGTH)), "mm/rad");
+        assert_eq!(name(per_rad(per_rad(Dimension::LENGTH))), "mm/rad^2");
+        assert_eq!(name(Dimension::ANGLE / Dimension::LENGTH), "rad/mm");
+        assert_eq!(name(Dimension::CURVATURE), "mm^-1");
+        assert_eq!(name(Dimension::NONE), "");
+        assert_eq!(name(Dimension::FORCE), "N");
+        assert_eq!(name(Dimension::TORQUE), "N m");
+        assert_eq!(name(Dimension::TIME), "s");
+        assert_eq!(
+            name(Dimension::ANGULAR_SPEED * Dimension::LENGTH),
+            "mm/s",
+            "a speed, whatever it is made of"
+        );
+    }
+
+    #[test]
+    fn round_values_are_shown_round() {
+        let deg = Unit::parse("deg").unwrap();
+        for k in 0..=3600 {
+            let value = rounded(f64::from(k) * 0.1);
+            assert_eq!(shown(deg.to_si(value), &deg), value);
+        }
+        let odd = deg.to_si(117.512_206_516_641_08);
+        assert!((shown(odd, &deg) - 117.512_206_516_641_08).abs() < 1e-13);
+        assert!(shown(f64::NAN, &deg).is_nan());
+    }
+}

@@ -1,0 +1,271 @@
+//! Running validation cases.
+
+use kempe_kinematics::events::EventKind;
+use kempe_kinematics::{Design, Mechanism, Motion, Plan, Sampler};
+use kempe_model::{Diagnostic, Model, set_value};
+use kempe_units::{Dimension, Unit};
+use serde::Serialize;
+
+use super::case::{Case, Expected, Target};
+use crate::explain::cannot_move;
+use crate::findings::check;
+use crate::pose::Setting;
+
+/// Ours and the reference, side by side.
+#[derive(Clone, Debug, Serialize)]
+pub struct Comparison {
+    /// The case.
+    pub case: String,
+    /// What is compared: a measure, an event, a number of the check.
+    pub what: String,
+    /// Where; empty over the whole motion.
+    pub place: String,
+    /// Ours, in the reference's unit; NaN (null in JSON) when there is none.
+    pub ours: f64,
+    /// The reference as written.
+    pub reference: String,
+    /// The unit of both.
+    pub unit: String,
+    /// Ours less the reference.
+    pub difference: f64,
+    /// The difference that passes.
+    pub allowed: f64,
+    /// Whether it passes.
+    pub passed: bool,
+    /// Why there is no value of ours.
+    pub problem: Option<String>,
+    /// Where the reference comes from.
+    pub source: String,
+}
+
+/// What a case needs of its model.
+struct Subject<'m> {
+    model: &'m Model,
+    sampler: Sampler<'m>,
+    motion: &'m Motion<'m>,
+    /// Measures asked for, in the order of the sampler's.
+    measures: Vec<String>,
+}
+
+/// Compares a case with its model, whose file says `text`. `files` gives the files that the model names.
+///
+/// # Errors
+///
+/// Diagnostics over the model file when the case cannot be run at all.
+pub fn compare(
+    case: &Case,
+    text: &str,
+    files: &mut dyn FnMut(&str) -> Result<String, String>,
+) -> Result<Vec<Comparison>, Vec<Diagnostic>> {
+    let mut measures: Vec<String> = Vec::new();
+    for expected in &case.expected {
+        if let Target::Measure { measure, .. } = &expected.target
+            && !measures.contains(measure)
+        {
+            measures.push(measure.clone());
+        }
+    }
+    let mut text = text.to_owned();
+    for (index, measure) in measures.iter().enumerate() {
+        text = with_measure(&text, &format!("{PREFIX}{index}"), measure);
+    }
+    let model = Model::from_toml_with(&text, &case.title, files, &case.set)?.model;
+    let mechanism = Mechanism::new(&model);
+    let plan = Plan::new(&mechanism);
+    let parameters: Vec<f64> = model.parameter_values();
+    let design = Design::new(&mechanism, &plan, &parameters);
+    let motion = Motion::new(&mechanism, &plan, &design, &parameters)
+        .map_err(|error| vec![cannot_move(&mechanism, &plan, &design, &error)])?;
+    let named: Vec<_> = (0..measures.len())
+        .filter_map(|index| {
+            model
+                .measures
+                .iter()
+                .find(|m| m.name == format!("{PREFIX}{index}"))
+        })
+        .collect();
+    let asked: Vec<_> = named.iter().map(|m| &m.measure).collect();
+    let sampler = Sampler::new(&motion, &asked).map_err(|problems| {
+        let told = problems.iter().map(|p| {
+            let name = measures.get(p.index).map_or("", String::as_str);
+            Diagnostic::error(
+                "not-measurable",
+                format!("`{name}` cannot be evaluated: {}", p.reason),
+            )
+        });
+        told.collect::<Vec<_>>()
+    })?;
+    let mut subject = Subject {
+        model: &model,
+        sampler,
+        motion: &motion,
+        measures,
+    };
+    let mut last: Option<(String, Vec<f64>)> = None;
+    Ok(case
+        .expected
+        .iter()
+        .map(|expected| compare_one(case, expected, &mut subject, &named, &mut last))
+        .collect())
+}
+
+/// Names of the measures that are added to the model: no user would choose them.
+const PREFIX: &str = "kempe_verify_";
+
+/// The model's text with one measure more.
+fn with_measure(text: &str, name: &str, measure: &str) -> String {
+    let quoted = serde_json::Value::from(measure).to_string();
+    set_value(text, &["measures", name], &quoted)
+        .unwrap_or_else(|_| format!("{text}\n[measures]\n{name} = {quoted}\n"))
+}
+
+fn compare_one(
+    case: &Case,
+    expected: &Expected,
+    subject: &mut Subject<'_>,
+    named: &[&kempe_model::NamedMeasure],
+    last: &mut Option<(String, Vec<f64>)>,
+) -> Comparison {
+    let reference = &expected.reference;
+    let (what, place) = match &expected.target {
+        Target::Measure { at, measure } => (measure.clone(), at.clone().unwrap_or_default()),
+        Target::Event(kind) => (kind.clone(), String::new()),
+        Target::Check(field) => (format!("check: {field}"), String::new()),
+    };
+    let found = match &expected.target {
+        Target::Measure { measure, .. } => {
+            let index = subject.measures.iter().position(|m| m == measure);
+            match index.and_then(|i| Some((i, *named.get(i)?))) {
+                Some((index, named)) => dimension_fits(named.dimension, &reference.unit)
+                    .and_then(|()| measured(subject, &place, last))
+                    .map(|values| {
+                        let si = values.get(index).copied().unwrap_or(f64::NAN);
+                        (reference.unit.from_si(si), named.dimension)
+                    }),
+                None => Err("the measure was not read".to_owned()),
+            }
+        }
+        Target::Event(kind) => nearest_event(subject, kind, expected),
+        Target::Check(field) => check_number(subject.model, field).map(|x| (x, Dimension::NONE)),
+    };
+    let (ours, problem, turning) = match found {
+        Ok((value, dimension)) => (value, None, dimension == Dimension::ANGLE),
+        Err(why) => (f64::NAN, Some(why), false),
+    };
+    let turn = std::f64::consts::TAU / reference.unit.factor();
+    let mut difference = ours - reference.value;
+    if turning {
+        difference -= (difference / turn).round() * turn;
+    }
+    Comparison {
+        case: case.title.clone(),
+        what,
+        place,
+        ours,
+        reference: reference.text.clone(),
+        unit: reference.unit.text().to_owned(),
+        difference,
+        allowed: expected.allowed,
+        passed: difference.abs() <= expected.allowed,
+        problem,
+        source: expected.source.clone(),
+    }
+}
+
+fn dimension_fits(dimension: Dimension, unit: &Unit) -> Result<(), String> {
+    // Derivatives to angles and angular rates may be given with or without the radian.
+    let bare = |d: Dimension| Dimension { angle: 0, ..d };
+    let same = if dimension == Dimension::ANGLE || unit.dimension() == Dimension::ANGLE {
+        dimension == unit.dimension()
+    } else {
+        bare(dimension) == bare(unit.dimension())
+    };
+    same.then_some(()).ok_or_else(|| {
+        format!(
+            "ours is {}, the reference {}",
+            dimension.with_article(),
+            unit.dimension().with_article()
+        )
+    })
+}
+
+/// All measures at a place.
+fn measured(
+    subject: &mut Subject<'_>,
+    place: &str,
+    last: &mut Option<(String, Vec<f64>)>,
+) -> Result<Vec<f64>, String> {
+    if let Some((at, values)) = last
+        && at == place
+    {
+        return Ok(values.clone());
+    }
+    let sample = if place.is_empty() {
+        subject.sampler.at_time(0.0)
+    } else {
+        let setting = Setting::parse(subject.model, place).map_err(|d| d.message)?;
+        if setting.name == "time" {
+            subject.sampler.at_time(setting.value)
+        } else {
+            let drive = subject.sampler.path_drive();
+            let moving = drive.and_then(|d| subject.model.drives.get(d.index()));
+            if moving.is_none_or(|d| d.name != setting.name) {
+                return Err(format!(
+                    "`{}` is not the only drive that moves",
+                    setting.name
+                ));
+            }
+            subject.sampler.at_parameter(setting.value)
+        }
+    };
+    if !sample.closure.is_finite() {
+        return Err(sample.note.unwrap_or_else(|| "not reached".to_owned()));
+    }
+    *last = Some((place.to_owned(), sample.values.clone()));
+    Ok(sample.values)
+}
+
+fn nearest_event(
+    subject: &Subject<'_>,
+    kind: &str,
+    expected: &Expected,
+) -> Result<(f64, Dimension), String> {
+    let wanted = if kind == "limit" {
+        EventKind::Limit
+    } else {
+        EventKind::ChangePoint
+    };
+    let unit = &expected.reference.unit;
+    let mut at: Vec<f64> = subject
+        .motion
+        .events
+        .iter()
+        .filter(|e| e.kind == wanted)
+        .map(|e| unit.from_si(e.at))
+        .collect();
+    if at.is_empty() {
+        // A limit may lie beyond what the file demands.
+        let report = check(subject.model);
+        if let (EventKind::Limit, Some((low, high))) = (wanted, report.reach_si) {
+            at = vec![unit.from_si(low), unit.from_si(high)];
+        }
+    }
+    let gap = |x: &f64| (x - expected.reference.value).abs();
+    at.into_iter()
+        .min_by(|a, b| gap(a).total_cmp(&gap(b)))
+        .map(|x| (x, Dimension::NONE))
+        .ok_or_else(|| format!("the motion meets no {kind}"))
+}
+
+fn check_number(model: &Model, field: &str) -> Result<f64, String> {
+    let report = serde_json::to_value(check(model)).unwrap_or_default();
+    let value = report
+        .get(field)
+        .ok_or_else(|| format!("the check has no `{field}`"))?;
+    match value {
+        serde_json::Value::Array(list) => Ok(list.len() as f64),
+        value => value
+            .as_f64()
+            .ok_or_else(|| format!("`{field}` is no number")),
+    }
+}

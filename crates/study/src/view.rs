@@ -1,0 +1,298 @@
+//! From a model and its poses to what the drawings need.
+
+use kempe_draw::{
+    DriveKind as DrivenPart, DriveView, Frame as DrawnFrame, Guide, JointView, LengthUnit,
+    LinkView, MechanismView, TraceView, Wheel,
+};
+use kempe_model::{
+    DriveKind, FRAME, JointKind, Line, LinkId, Model, MotionStudy, Plot, PointId, value,
+};
+
+use crate::motion::motion_of;
+use crate::result::{Frame, StudyResult};
+
+/// Points traced when no study names one: at most this many.
+const MOST_TRACES: usize = 3;
+
+/// What is to be drawn of a model. Traced are the points that `study` plots the path of, or else the coupler points: those
+/// that one moving link alone carries.
+pub fn mechanism_view(model: &Model, study: Option<&MotionStudy>) -> MechanismView {
+    let parameters: Vec<f64> = model.parameter_values();
+    let length = &model.units.length;
+    let index = |point: &PointId| point.index();
+    let mut joints: Vec<JointView> = model
+        .joints
+        .iter()
+        .filter_map(|joint| joint_view(model, &joint.kind, &parameters))
+        .collect();
+    for drive in &model.drives {
+        if let DriveKind::Cylinder { a, b } = drive.kind {
+            joints.push(JointView::Cylinder {
+                a: a.point.index(),
+                b: b.point.index(),
+            });
+        }
+    }
+    MechanismView {
+        title: model.title.clone(),
+        length_unit: LengthUnit::new(length.name.clone(), length.factor),
+        points: model.points.iter().map(|p| p.name.clone()).collect(),
+        links: model
+            .links
+            .iter()
+            .map(|link| LinkView {
+                name: link.name.clone(),
+                points: link.points.iter().map(|p| index(&p.point)).collect(),
+            })
+            .collect(),
+        joints,
+        traces: traced(model, study)
+            .into_iter()
+            .map(|point| TraceView {
+                label: format!("path of {}", model.points[point.index()].name),
+                point: point.index(),
+            })
+            .collect(),
+        drives: drives(model, &parameters),
+    }
+}
+
+fn guide(line: Line) -> Guide {
+    Guide {
+        link: line.link.index(),
+        from: line.from.index(),
+        to: line.to.index(),
+    }
+}
+
+fn joint_view(model: &Model, kind: &JointKind, parameters: &[f64]) -> Option<JointView> {
+    Some(match kind {
+        JointKind::Slider { at, on, .. } => JointView::Slider {
+            block: at.link.index(),
+            at: at.point.index(),
+            guide: guide(*on),
+        },
+        JointKind::Slot { pin, on } => JointView::Slot {
+            pin: pin.point.index(),
+            guide: guide(*on),
+        },
+        JointKind::Weld { a, b, at, .. } => JointView::Weld {
+            at: at.index(),
+            links: [a.index(), b.index()],
+        },
+        JointKind::Gears {
+            a,
+            b,
+            arm,
+            teeth_a,
+            teeth_b,
+            internal,
+            ..
+        } => {
+            let (center_a, center_b) = (shared(model, *a, *arm)?, shared(model, *b, *arm)?);
+            let teeth = (value(teeth_a, parameters), value(teeth_b, parameters));
+            let apart = distance_on(model, *arm, center_a, center_b, parameters)?;
+            let (size_a, size_b): (f64, f64) = (teeth.0.abs(), teeth.1.abs());
+            let ratio = apart
+                / if *internal {
+                    (size_a - size_b).abs()
+                } else {
+                    size_a + size_b
+                };
+            let wheel = |link: LinkId, center: PointId, size: f64| Wheel {
+                link: link.index(),
+                center: center.index(),
+                radius: size * ratio,
+                teeth: whole_teeth(size),
+            };
+            JointView::Gears {
+                a: wheel(*a, center_a, size_a),
+                b: wheel(*b, center_b, size_b),
+                internal: *internal,
+            }
+        }
+        JointKind::Rack {
+            rack,
+            pinion,
+            center,
+            radius,
+            side,
+            ..
+        } => JointView::Rack {
+            link: rack.index(),
+            pinion: Wheel {
+                link: pinion.index(),
+                center: center.index(),
+                radius: value(radius, parameters),
+                teeth: 0,
+            },
+            side: side.sign(),
+        },
+    })
+}
+
+/// Teeth of a wheel; none where the ratio is given by radii.
+fn whole_teeth(count: f64) -> u32 {
+    let teeth = count.round();
+    if teeth == count && (4.0..=400.0).contains(&teeth) {
+        teeth as u32
+    } else {
+        0
+    }
+}
+
+/// A point that two links share.
+fn shared(model: &Model, a: LinkId, b: LinkId) -> Option<PointId> {
+    let found = model
+        .points
+        .iter()
+        .position(|p| p.links.contains(&a) && p.links.contains(&b))?;
+    Some(PointId(found as u32))
+}
+
+/// Distance of two points of a link, m.
+fn distance_on(
+    model: &Model,
+    link: LinkId,
+    a: PointId,
+    b: PointId,
+    parameters: &[f64],
+) -> Option<f64> {
+    let link = model.links.get(link.index())?;
+    let places: Vec<[f64; 2]> = link.evaluate(parameters);
+    let at = |point: PointId| {
+        let index = link.points.iter().position(|p| p.point == point)?;
+        places.get(index).copied()
+    };
+    let (a, b) = (at(a)?, at(b)?);
+    Some(kempe_number::math::hypot(a[0] - b[0], a[1] - b[1]))
+}
+
+fn drives(model: &Model, parameters: &[f64]) -> Vec<DriveView> {
+    let view = |drive: &kempe_model::Drive| {
+        let kind = match drive.kind {
+            DriveKind::Turn { link, relative_to } => DrivenPart::Turn {
+                link: link.index(),
+                about: pivot(model, link, relative_to)?.index(),
+            },
+            DriveKind::Cylinder { a, b } => DrivenPart::Extend {
+                a: a.point.index(),
+                b: b.point.index(),
+            },
+            DriveKind::Slide { joint } => match model.joints.get(joint.index())?.kind {
+                JointKind::Slider { at, on, .. } => DrivenPart::Slide {
+                    at: at.point.index(),
+                    guide: guide(on),
+                },
+                JointKind::Slot { pin, on } => DrivenPart::Slide {
+                    at: pin.point.index(),
+                    guide: guide(on),
+                },
+                _ => return None,
+            },
+        };
+        let (from, duration) = (
+            drive.law.at(0.0, parameters),
+            drive.law.duration::<f64>(parameters),
+        );
+        // The first way the drive goes counts.
+        let steps = 64;
+        let way = (1..=steps)
+            .map(|k| {
+                drive
+                    .law
+                    .at(duration * f64::from(k) / f64::from(steps), parameters)
+                    - from
+            })
+            .find(|way| *way != 0.0);
+        Some(DriveView {
+            name: drive.name.clone(),
+            kind,
+            forward: way.unwrap_or(1.0) >= 0.0,
+        })
+    };
+    model.drives.iter().filter_map(view).collect()
+}
+
+/// The point about which a link visibly turns: its pin on the other link, on the frame, or its first pin, or its first point.
+fn pivot(model: &Model, link: LinkId, relative_to: LinkId) -> Option<PointId> {
+    let own = &model.links.get(link.index())?.points;
+    let first_pin = own
+        .iter()
+        .map(|p| p.point)
+        .find(|p| model.points[p.index()].links.len() > 1);
+    shared(model, link, relative_to)
+        .or_else(|| shared(model, link, FRAME))
+        .or(first_pin)
+        .or_else(|| own.first().map(|p| p.point))
+}
+
+/// The points whose paths are drawn.
+fn traced(model: &Model, study: Option<&MotionStudy>) -> Vec<PointId> {
+    let mut points: Vec<PointId> = Vec::new();
+    let mut add = |study: &MotionStudy| {
+        for plot in &study.plots {
+            if let Plot::Path(point) = plot
+                && !points.contains(point)
+            {
+                points.push(*point);
+            }
+        }
+    };
+    match study {
+        Some(study) => add(study),
+        None => model.studies.iter().for_each(|s| add(motion_of(s))),
+    }
+    if points.is_empty() {
+        let guides: Vec<PointId> = model
+            .joints
+            .iter()
+            .flat_map(|j| match j.kind {
+                JointKind::Slider { on, .. } | JointKind::Slot { on, .. } => vec![on.from, on.to],
+                _ => Vec::new(),
+            })
+            .collect();
+        let free = model.points.iter().enumerate().filter(|(index, p)| {
+            matches!(p.links.as_slice(), [link] if *link != FRAME)
+                && !guides.contains(&PointId(*index as u32))
+                && !on_ground_bar(model, p.links.first().copied())
+        });
+        points = free
+            .take(MOST_TRACES)
+            .map(|(index, _)| PointId(index as u32))
+            .collect();
+    }
+    points
+}
+
+/// Whether a link is pinned to the frame, so that its points only draw arcs.
+fn on_ground_bar(model: &Model, link: Option<LinkId>) -> bool {
+    link.is_some_and(|link| shared(model, link, FRAME).is_some())
+}
+
+/// The poses of a study for drawing, each labelled with where it is.
+pub fn drawing_frames(result: &StudyResult) -> Vec<DrawnFrame> {
+    let abscissa = result.abscissa();
+    result
+        .frames
+        .iter()
+        .enumerate()
+        .map(|(row, frame)| {
+            let label = abscissa.map(|column| {
+                let at = column.values.get(row).copied().unwrap_or(f64::NAN);
+                let digits = kempe_draw::number_format::significant(at, 6);
+                format!("{} = {digits} {}", column.name, column.unit.text())
+            });
+            drawn(frame, label.unwrap_or_default().trim_end().to_owned())
+        })
+        .collect()
+}
+
+/// A pose for drawing.
+pub fn drawn(frame: &Frame, label: String) -> DrawnFrame {
+    DrawnFrame {
+        points: frame.points.clone(),
+        links: frame.links.clone(),
+        label,
+    }
+}

@@ -1,0 +1,275 @@
+//! Motion studies against known numbers, and what is said when they cannot run.
+
+use kempe_model::{Diagnostic, Model};
+use kempe_study::{Flow, Setting, Silent, StudyResult, check, encode, pose_at, run};
+
+const FOUR_BAR: &str = r#"
+units = { length = "mm", angle = "deg" }
+[parameters]
+a = "20 mm"
+[links]
+frame   = { A = [0, 0], D = [60, 0] }
+crank   = { A-B = "a" }
+coupler = { B-C = 50, P = [25, 0] }
+rocker  = { D-C = 40 }
+[drives]
+motor = { turns = "crank", from = 0, to = 360, speed = "1 rad/s" }
+[assembly]
+C = "left of B -> D"
+[measures]
+swing = "angle(rocker)"
+play  = "range(swing)"
+gain  = "d(y(P), motor)"
+[studies.turn]
+kind = "motion"
+step = 1
+columns = ["swing", "rate(swing)", "rate(swing, 2)", "x(P)", "gain", "rate(x(P))"]
+plot = ["swing", "path(P)"]
+"#;
+
+fn model(text: &str) -> Model {
+    match Model::from_toml(text, "test", &mut |_| Err("no files".into())) {
+        Ok(checked) => checked.model,
+        Err(found) => panic!("{}", told(&found, text)),
+    }
+}
+
+fn told(found: &[Diagnostic], text: &str) -> String {
+    found
+        .iter()
+        .map(|d| d.render_plain("test.toml", text))
+        .collect()
+}
+
+fn ran(text: &str) -> StudyResult {
+    let model = model(text);
+    match run(&model, &model.studies[0], &mut Silent) {
+        Ok(result) => result,
+        Err(found) => panic!("{}", told(&found, text)),
+    }
+}
+
+fn fails(text: &str) -> (Vec<Diagnostic>, String) {
+    let model = model(text);
+    let found = run(&model, &model.studies[0], &mut Silent).expect_err("it cannot run");
+    let text = told(&found, text);
+    (found, text)
+}
+
+#[test]
+fn a_crank_rocker_gives_the_reference_rows_in_the_units_of_the_file() {
+    let result = ran(FOUR_BAR);
+    let table = &result.table;
+    assert_eq!(table.rows(), 361);
+    let heads: Vec<String> = table
+        .columns
+        .iter()
+        .map(kempe_study::Column::head)
+        .collect();
+    assert_eq!(
+        heads,
+        [
+            "time [s]",
+            "motor [deg]",
+            "swing [deg]",
+            "rate(swing) [rad/s]",
+            "rate(swing, 2) [rad/s^2]",
+            "x(P) [mm]",
+            "gain [mm/rad]",
+            "rate(x(P)) [mm/s]"
+        ]
+    );
+    // Closed form of the four-bar 20, 50, 40, 60: rows 60 and 90 of the reference table (S2).
+    let at = |row: usize| -> Vec<f64> { table.columns.iter().map(|c| c.values[row]).collect() };
+    let close = |ours: &[f64], theirs: &[f64]| {
+        for (a, b) in ours.iter().zip(theirs) {
+            assert!(
+                (a - b).abs() <= 1e-10 * b.abs().max(1.0),
+                "{ours:?} {theirs:?}"
+            );
+        }
+    };
+    close(
+        &at(60)[1..6],
+        &[
+            60.0,
+            97.562_217_639_34,
+            0.291_595_776_15,
+            0.499_673_893_21,
+            32.367_945_446_74,
+        ],
+    );
+    close(&at(90)[6..], &[-3.098_679_459_15, -18.824_038_904_98]);
+    assert_eq!(
+        table.columns[1].values,
+        (0..=360).map(f64::from).collect::<Vec<_>>(),
+        "whole degrees, exactly"
+    );
+    assert!(table.worst_closure() < 1e-12 && table.unreached() == 0);
+    let [play] = result.scalars.as_slice() else {
+        panic!("{:?}", result.scalars)
+    };
+    close(&[play.value], &[60.032_348_552_120]);
+    assert_eq!((play.name.as_str(), play.unit.text()), ("play", "deg"));
+}
+
+#[test]
+fn the_same_model_gives_the_same_bytes() {
+    let (one, two) = (ran(FOUR_BAR), ran(FOUR_BAR));
+    assert_eq!(encode::csv(&one.table), encode::csv(&two.table));
+    assert_eq!(
+        encode::result(&one, true).to_string(),
+        encode::result(&two, true).to_string()
+    );
+}
+
+#[test]
+fn without_measures_the_table_says_where_everything_is() {
+    let text = FOUR_BAR.split("[measures]").next().unwrap_or("");
+    let result = ran(text);
+    let heads: Vec<String> = result
+        .table
+        .columns
+        .iter()
+        .map(kempe_study::Column::head)
+        .collect();
+    assert_eq!(
+        heads[2..],
+        [
+            "x(B) [mm]",
+            "y(B) [mm]",
+            "x(C) [mm]",
+            "y(C) [mm]",
+            "x(P) [mm]",
+            "y(P) [mm]",
+            "angle(crank) [deg]",
+            "angle(coupler) [deg]",
+            "angle(rocker) [deg]"
+        ]
+    );
+}
+
+#[test]
+fn stopping_keeps_the_finished_rows_and_says_so() {
+    let model = model(FOUR_BAR);
+    let mut stop = |done: usize, _total: usize| {
+        if done == 100 {
+            Flow::Stop
+        } else {
+            Flow::Continue
+        }
+    };
+    let result = run(&model, &model.studies[0], &mut stop).unwrap();
+    assert!(result.interrupted());
+    assert_eq!((result.table.rows(), result.demanded_rows), (100, 361));
+    let whole = ran(FOUR_BAR);
+    for (part, all) in result.table.columns.iter().zip(&whole.table.columns) {
+        assert_eq!(part.values, all.values[..100]);
+    }
+}
+
+#[test]
+fn a_range_beyond_the_limit_is_an_error_with_the_limit_in_it() {
+    // 20, 50, 40, 100 mm: the crank turns to acos((20^2 + 100^2 - 90^2) / (2 20 100)) = 54.9003678046 deg at most.
+    let text = FOUR_BAR.replace("D = [60, 0]", "D = [100, 0]");
+    let (found, text) = fails(&text);
+    assert_eq!(found[0].code, "range-beyond-limit");
+    assert!(text.contains("360 deg is beyond 54.9003678046"), "{text}");
+    assert!(text.contains("motor = {"), "points at the drive: {text}");
+    assert!(
+        text.contains("ask for no more than \"0 deg\" to \"54.9 deg\""),
+        "{text}"
+    );
+    assert!(
+        text.contains("`coupler` and `rocker` stand in line"),
+        "{text}"
+    );
+}
+
+#[test]
+fn a_loop_that_cannot_close_names_its_links_and_distances() {
+    let text = FOUR_BAR.replace("D = [60, 0]", "D = [125, 0]");
+    let (found, text) = fails(&text);
+    assert_eq!(found[0].code, "cannot-assemble");
+    assert!(
+        text.contains("B and D are 105 mm apart, but `coupler` and `rocker` reach only 90 mm"),
+        "{text}"
+    );
+    let text = FOUR_BAR.replace("B-C = 50", "B-C = 95");
+    let (_, text) = fails(&text);
+    assert!(
+        text.contains("B and D are 40 mm apart, but `coupler` and `rocker` differ by 55 mm"),
+        "{text}"
+    );
+}
+
+#[test]
+fn sides_that_contradict_each_other_are_told() {
+    let text = FOUR_BAR.replace(
+        "C = \"left of B -> D\"",
+        "C = \"left of B -> D\"\nP = \"right of B -> D\"",
+    );
+    let (found, text) = fails(&text);
+    assert_eq!(found[0].code, "cannot-assemble");
+    assert!(
+        text.contains("no assembly agrees with [assembly]"),
+        "{text}"
+    );
+}
+
+#[test]
+fn a_pose_is_found_where_it_is_asked_for() {
+    let model = model(FOUR_BAR);
+    let setting = Setting::parse(&model, "motor = 60deg").unwrap();
+    let (frame, label) = pose_at(&model, &[setting]).unwrap();
+    let p = frame.points[model.points.iter().position(|p| p.name == "P").unwrap()];
+    assert!(
+        (p[0] - 0.032_367_945_446_74).abs() < 1e-14 && (p[1] - 0.028_486_304_800_13).abs() < 1e-14
+    );
+    assert_eq!(label, "motor = 60 deg");
+    let (start, _) = pose_at(&model, &[]).unwrap();
+    assert!((start.points[0][0]).abs() < 1e-15);
+    for (text, code) in [
+        ("motr=3", "unknown-name"),
+        ("motor", "syntax"),
+        ("motor=3 mm", "unit-mismatch"),
+        ("motor=x", "unknown-name"),
+    ] {
+        assert_eq!(
+            Setting::parse(&model, text).unwrap_err().code,
+            code,
+            "{text}"
+        );
+    }
+}
+
+#[test]
+fn check_tells_mobility_groups_and_reach() {
+    let report = check(&model(FOUR_BAR));
+    assert_eq!((report.mobility_count, report.mobility_rank), (1, Some(1)));
+    assert_eq!(report.four_bars[0].kind, "crank-rocker");
+    assert_eq!(report.reach.as_deref(), Some("motor turns fully"));
+    assert_eq!((report.assemblies, report.assemblies_rejected), (1, 1));
+    assert!(!report.has_findings(), "{:?}", report.diagnostics);
+    let text = report.to_text();
+    assert!(text.contains("RRR dyad, class II, closed form"), "{text}");
+}
+
+#[test]
+fn a_circuit_goes_past_its_dead_points() {
+    let text = FOUR_BAR
+        .replace("D = [60, 0]", "D = [100, 0]")
+        .replace("step = 1", "rows = 181\ncircuit = true");
+    let result = ran(&text);
+    assert_eq!(result.table.rows(), 181);
+    assert_eq!(result.table.columns[0].head(), "arc [1]");
+    let motor = &result.table.columns[1].values;
+    let (low, high) = motor
+        .iter()
+        .fold((0.0, 0.0), |(l, h): (f64, f64), v| (l.min(*v), h.max(*v)));
+    assert!(
+        (-54.91..-54.0).contains(&low) && (54.0..54.91).contains(&high),
+        "{low} {high}"
+    );
+    assert_eq!(result.events.len(), 2, "{:?}", result.events);
+}
