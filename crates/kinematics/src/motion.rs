@@ -15,6 +15,10 @@ pub const STEP_LIMIT: usize = 200_000;
 pub const AT_LIMIT: f64 = 1e-12;
 /// A part this far out, in mechanism sizes, is taken to run away to infinity.
 pub const FAR: f64 = 1e3;
+/// A body that turns on by this much, rad, while the drive all but stands still is taken to run away too.
+pub const WHIRLING: f64 = 300.0;
+/// Rate of the scaled path parameter along the arc below which the drive all but stands still.
+const STANDING: f64 = 1e-4;
 /// Pivot ratio of the bordered Jacobian below which branches are taken to cross.
 pub const CROSSING: f64 = 1e-7;
 /// Where a motion starts at a singular pose, its branch is looked for at these parts of the range instead.
@@ -581,10 +585,15 @@ fn follow(
                 },
             );
         }
+        let standing = next.parameter_rate().abs() < STANDING;
         let away = next.z[..last]
             .chunks_exact(3)
             .zip(nodes[0].z.chunks_exact(3))
-            .any(|(p, q)| (p[0] - q[0]).abs() > FAR || (p[1] - q[1]).abs() > FAR);
+            .any(|(p, q)| {
+                (p[0] - q[0]).abs() > FAR
+                    || (p[1] - q[1]).abs() > FAR
+                    || (standing && (p[2] - q[2]).abs() > WHIRLING)
+            });
         nodes.push(next);
         if away {
             return (nodes, EndReason::Runaway);

@@ -200,7 +200,31 @@ fn pose(arguments: &Draw, model: &Model) -> Result<(MechanismView, Vec<Frame>, u
             frames.push(Frame::default());
         }
     }
-    frames.push(drawn(&frame, label));
-    let shown = frames.len() - 1;
+    let pose = drawn(&frame, label);
+    let shown = place_among(&frames, &pose);
+    frames.insert(shown, pose);
     Ok((mechanism_view(model, study), frames, shown))
+}
+
+/// Where in a motion a pose belongs: where it makes the smallest detour, so that the paths do not jump to it.
+fn place_among(frames: &[Frame], pose: &Frame) -> usize {
+    let apart = |a: &Frame, b: &Frame| -> f64 {
+        let pairs = a.points.iter().zip(&b.points);
+        pairs
+            .map(|(p, q)| (p[0] - q[0]).abs() + (p[1] - q[1]).abs())
+            .sum()
+    };
+    let detour = |at: usize| match (
+        at.checked_sub(1).and_then(|i| frames.get(i)),
+        frames.get(at),
+    ) {
+        (Some(before), Some(after)) => {
+            apart(before, pose) + apart(pose, after) - apart(before, after)
+        }
+        (Some(only), None) | (None, Some(only)) => 2.0 * apart(only, pose),
+        (None, None) => 0.0,
+    };
+    (0..=frames.len())
+        .min_by(|a, b| detour(*a).total_cmp(&detour(*b)))
+        .unwrap_or(0)
 }

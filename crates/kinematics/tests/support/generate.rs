@@ -778,6 +778,47 @@ pub fn make(recipe: &Recipe) -> Made {
     }
 }
 
+/// Any recipe; shrinks by leaving groups out.
+pub fn recipes(hints: f64) -> impl proptest::strategy::Strategy<Value = Recipe> {
+    use proptest::prelude::*;
+    let drivers = [
+        Driver::Turn,
+        Driver::Turn,
+        Driver::Cylinder,
+        Driver::Slide,
+        Driver::Floating,
+    ];
+    (
+        any::<u64>(),
+        proptest::sample::select(drivers.to_vec()),
+        proptest::collection::vec(proptest::sample::select(GROUPS.to_vec()), 1..=6),
+        prop_oneof![Just(0.0), -6.0..6.0_f64],
+        proptest::bool::weighted(hints),
+    )
+        .prop_map(|(seed, driver, groups, decade, hints)| Recipe {
+            seed,
+            driver,
+            groups,
+            decade,
+            hints,
+        })
+}
+
+/// How property tests run: always the same cases (others with `KEMPE_SEED`), failures kept beside the test.
+pub fn config(cases: u32) -> proptest::test_runner::Config {
+    let seed = std::env::var("KEMPE_SEED").ok();
+    proptest::test_runner::Config {
+        cases,
+        rng_seed: proptest::test_runner::RngSeed::Fixed(
+            seed.and_then(|s| s.parse().ok()).unwrap_or(7),
+        ),
+        failure_persistence: Some(Box::new(
+            proptest::test_runner::FileFailurePersistence::WithSource("regressions"),
+        )),
+        ..Default::default()
+    }
+}
+
 /// A recipe from a seed alone.
 pub fn recipe(seed: u64) -> Recipe {
     let mut rng = Rng(seed ^ 0x5eed);

@@ -384,6 +384,16 @@ impl Spec {
         }
         for joint in &mut it.joints {
             // Angles against the frame's own axis, which stays.
+            if let SJoint::Weld {
+                a, b, angle: fixed, ..
+            } = joint
+            {
+                *fixed += match (*a, *b) {
+                    (0, _) => angle,
+                    (_, 0) => -angle,
+                    _ => 0.0,
+                };
+            }
             if let SJoint::Gears {
                 a,
                 b,
@@ -440,6 +450,11 @@ impl Spec {
     /// Largest error of any joint or drive when the links are at `poses` (x, y, unwrapped angle): lengths in sizes of
     /// the mechanism, directions in rad. Written from the model language's page, not from the product.
     pub fn gap(&self, poses: &[[f64; 3]], coordinates: &[f64]) -> f64 {
+        self.errors(poses, coordinates).into_iter().fold(0.0, worse)
+    }
+
+    /// The errors of all joints and drives, each smooth in the poses.
+    pub fn errors(&self, poses: &[[f64; 3]], coordinates: &[f64]) -> Vec<f64> {
         let size = self.size();
         let world = |l: usize, p: V| {
             let q = poses[l];
@@ -448,13 +463,15 @@ impl Spec {
         let point = |l: usize, name: &str| {
             world(l, self.links[l].point(name).expect("a point of the link"))
         };
-        let mut worst = 0.0_f64;
-        let mut see = |x: f64| worst = worse(worst, x);
+        let mut all = Vec::new();
+        let mut see = |x: f64| all.push(x);
         for (l, link) in self.links.iter().enumerate() {
             for (name, p) in &link.points {
                 for (m, other) in self.links.iter().enumerate().skip(l + 1) {
                     if let Some(q) = other.point(name) {
-                        see(norm(sub(world(l, *p), world(m, q))) / size);
+                        let apart = sub(world(l, *p), world(m, q));
+                        see(apart[0] / size);
+                        see(apart[1] / size);
                     }
                 }
             }
@@ -545,7 +562,7 @@ impl Spec {
                 }
             }
         }
-        worst
+        all
     }
 
     /// Poses of the links at the start.
