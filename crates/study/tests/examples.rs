@@ -53,10 +53,8 @@ fn every_example_runs() {
             match &result {
                 Ok(result) => {
                     let table = &result.table;
-                    if table.unreached() > 0
-                        || table.rows() == 0
-                        || !(table.worst_closure() < 1e-10)
-                    {
+                    let closed = table.worst_closure() < 1e-10;
+                    if table.unreached() > 0 || table.rows() == 0 || !closed {
                         told.push(format!("{name}: {:?}", table.noted().first()));
                     }
                     assert_eq!(
