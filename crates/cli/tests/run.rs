@@ -211,6 +211,33 @@ fn every_starter_checks_and_runs() {
     }
 }
 
+#[test]
+fn verify_meets_every_reference_and_fails_on_a_miss() {
+    let folder = folder();
+    let at = folder.path();
+    let all = kempe(at, &["verify", "--json"]);
+    let value: serde_json::Value = serde_json::from_slice(&all.stdout).expect("JSON");
+    assert!(value["compared"].as_u64().expect("a count") > 300);
+    assert_eq!(
+        value["missed"],
+        0,
+        "{}",
+        String::from_utf8_lossy(&all.stdout)
+    );
+    assert!(all.status.success());
+    let case = "model = \"m.toml\"\nsource = \"wrong on purpose\"\n[[value]]\nmeasure = \"range(swing)\"\nexpect = \"61.5 deg\"\n";
+    fs::write(at.join("case.toml"), case).expect("written");
+    let missed = kempe(at, &["verify", "case.toml"]);
+    assert_eq!(missed.status.code(), Some(1));
+    let said = String::from_utf8_lossy(&missed.stdout).into_owned();
+    assert!(
+        said.contains("MISSED range(swing)") && said.contains("wrong on purpose"),
+        "{said}"
+    );
+    fs::write(at.join("case.toml"), "modle = 3").expect("written");
+    assert_eq!(kempe(at, &["verify", "case.toml"]).status.code(), Some(2));
+}
+
 #[cfg(unix)]
 #[test]
 fn ctrl_c_keeps_the_finished_rows() {

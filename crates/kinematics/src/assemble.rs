@@ -213,24 +213,30 @@ impl Search<'_> {
             return;
         }
         let situation = state.situation(self.design, &branch);
-        let candidates = match all_real_solutions(block, self.mechanism, &situation, self.size) {
+        // The pose that the file tells is tried as well: no path may lose it.
+        let (hinted, hinted_angles) = self.hinted_start(&state);
+        let mut meant = vec![0.0; self.mechanism.bodies];
+        let mut candidates = vec![hinted];
+        match all_real_solutions(block, self.mechanism, &situation, self.size) {
             Some((poses, report)) => {
                 self.complete &= report.lost == 0;
                 self.paths.push(report);
-                poses
+                candidates.extend(poses);
             }
             None => {
                 self.complete = false;
-                self.random_starts(block, &state)
+                // Gears count turns: from where the file says that a link is.
+                meant = hinted_angles;
+                candidates.extend(self.random_starts(block, &state));
             }
-        };
+        }
         let mut found: Vec<(State<f64>, Branch)> = Vec::new();
         for candidate in candidates {
             let (mut state, mut branch) = (state.clone(), branch.clone());
             branch.guess.clone_from(&candidate);
             for unknown in &block.unknowns {
                 let body = unknown.body().index();
-                branch.near[body] = candidate[body].angle_near(0.0);
+                branch.near[body] = candidate[body].angle_near(meant[body]);
             }
             if self.solve(step, 1.0, &mut state, &mut branch)
                 && self.closes(block, &state, &branch)
@@ -425,6 +431,40 @@ impl Search<'_> {
             let angle = (a.c - b.c).abs().max((a.s - b.s).abs());
             length <= SAME_POSE * self.size && angle <= SAME_POSE
         })
+    }
+
+    /// The pose that the file's `near` hints tell, and the angles of the bodies there; what they leave open stays.
+    fn hinted_start(&self, state: &State<f64>) -> (Vec<Pose<f64>>, Vec<f64>) {
+        let (mechanism, geometry) = (self.mechanism, &self.design.geometry);
+        let parameters = mechanism.model.parameter_values::<f64>();
+        let value = |expr: &kempe_model::Scalar| expr.eval(&mut |id| parameters[id.index()]);
+        let mut poses = state.poses.clone();
+        let mut near = vec![0.0; mechanism.bodies];
+        for hint in &mechanism.model.assembly {
+            if let HintKind::NearAngle { link, angle } = &hint.kind {
+                let body = mechanism.body_of(*link).index();
+                near[body] = value(angle) - geometry.seat_angles[link.index()];
+                let pose = &mut poses[body];
+                *pose = Pose::from_angle(pose.x, pose.y, near[body]);
+            }
+        }
+        for hint in &mechanism.model.assembly {
+            let HintKind::NearPlace { point, x, y } = &hint.kind else {
+                continue;
+            };
+            for &link in &mechanism.model.points[point.index()].links {
+                let at = kempe_model::LinkPointRef {
+                    link,
+                    point: *point,
+                };
+                if let Some(marker) = mechanism.marker(at) {
+                    let pose = &mut poses[marker.body.index()];
+                    let world = [value(x), value(y)];
+                    *pose = Pose::pinned(pose.c, pose.s, geometry.marker(marker), world);
+                }
+            }
+        }
+        (poses, near)
     }
 
     /// Starts spread over the mechanism's surroundings, for blocks with gears or too many paths.

@@ -160,7 +160,7 @@ impl<'m> Motion<'m> {
             let Some(chosen) = assemblies.list.first() else {
                 nothing.get_or_insert(assemblies);
                 // A start right at a limit may miss closure by a rounding error: look a little inside.
-                if part > 0.0 && part > ANCHORS[1] {
+                if part > ANCHORS[1] {
                     break;
                 } else {
                     continue;

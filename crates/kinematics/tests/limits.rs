@@ -1,5 +1,9 @@
 //! Limits, dead points and change points of four-bars and slider-cranks, against their formulas.
 #![allow(clippy::unwrap_used, clippy::disallowed_methods)]
+#![allow(
+    clippy::neg_cmp_op_on_partial_ord,
+    reason = "not a number must fail too"
+)]
 
 mod support;
 
@@ -468,5 +472,45 @@ fn unwrapped_angles_have_no_jumps_over_many_turns() {
             (row.links[3][2] - first.links[3][2]).abs() < 1e-9,
             "the rocker swings"
         );
+    }
+}
+
+#[test]
+fn parallelograms_in_a_row_change_together_and_stay_parallel() {
+    let case = Case::read(
+        "units = { length = \"mm\", angle = \"deg\" }
+[links]
+frame = { A = [0, 0], D = [100, 0], F = [170, 0] }
+crank = { A-B = 40 }
+coupler = { B-C = 100 }
+rocker = { D-C = 40 }
+coupler_2 = { C-E = 70 }
+rocker_2 = { F-E = 40 }
+[drives]
+motor = { turns = \"crank\", from = 30, to = 390, speed = \"1 rad/s\" }
+[assembly]
+C = { near = [134.64, 20] }
+E = { near = [204.64, 20] }
+",
+        "row.toml",
+    );
+    let motion = case.must_move();
+    let met: Vec<f64> = motion.events.iter().map(|e| e.at).collect();
+    assert_eq!(met.len(), 2, "{:?}", motion.events);
+    assert!(
+        (met[0] - PI).abs() < 1e-12 && (met[1] - TAU).abs() < 1e-12,
+        "{met:?}"
+    );
+    let mut sampler = Sampler::new(&motion, &[]).unwrap();
+    for k in 0..=360 {
+        let p = f64::from(30 + k).to_radians();
+        let row = sampler.at_parameter(p.min(motion.reached().1));
+        for link in [1, 3, 5] {
+            assert!(
+                (row.links[link][2] - p).abs() < 1e-12,
+                "{k}: {:?}",
+                row.links[link]
+            );
+        }
     }
 }

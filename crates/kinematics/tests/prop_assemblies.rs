@@ -1,5 +1,6 @@
 //! All assemblies: the complete method against a dense search that shares nothing with it.
 #![allow(clippy::unwrap_used, clippy::disallowed_methods)]
+#![allow(clippy::needless_range_loop, reason = "matrices by their indices")]
 
 mod support;
 

@@ -159,8 +159,8 @@ pub fn check(model: &Model) -> Report {
             let range = crate::explain::reach_text(model, reach.range, dimension);
             let why = match reach.ends {
                 (EndReason::Limit, EndReason::Limit) => ", limits on both sides",
-                (EndReason::Limit, _) => ", a limit at the low end",
-                (_, EndReason::Limit) => ", a limit at the high end",
+                (EndReason::Limit, _) => " and more, a limit at the low end",
+                (_, EndReason::Limit) => " and less, a limit at the high end",
                 _ => "",
             };
             format!("{name} {range}{why}")
@@ -317,7 +317,10 @@ fn diagnostics(
         if let [drive] = model.drives.as_slice() {
             let (low, high) = drive.law.extent(&parameters);
             let slack = 1e-12 * (high - low).abs().max(reach.range.1 - reach.range.0);
-            if !reach.full_turn && (low < reach.range.0 - slack || high > reach.range.1 + slack) {
+            let [below, above] = [reach.ends.0, reach.ends.1].map(|end| end == EndReason::Limit);
+            let beyond =
+                (below && low < reach.range.0 - slack) || (above && high > reach.range.1 + slack);
+            if beyond {
                 told.push(
                     Diagnostic::error(
                         "range-beyond-limit",

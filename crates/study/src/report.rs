@@ -100,15 +100,18 @@ fn motion(model: &Model, study: &MotionStudy, result: &StudyResult) -> MotionRep
         .first()
         .map(|c| c.values.clone())
         .unwrap_or_default();
-    let skipped = 1 + model.drives.len();
+    // The drive that is moved by hand in the page; where several move, the first. All others are read out.
+    let drive = result.along.max(1);
+    let others = table.columns.iter().enumerate().skip(1);
+    let others = others.filter(|(index, _)| *index != drive);
     MotionReport {
         name: result.name.clone(),
         summary: summary(result),
         view: mechanism_view(model, Some(study)),
         frames: drawing_frames(result),
         time: first,
-        drive: result.abscissa().map(shown).unwrap_or_default(),
-        columns: table.columns.iter().skip(skipped).map(shown).collect(),
+        drive: table.columns.get(drive).map(shown).unwrap_or_default(),
+        columns: others.map(|(_, column)| shown(column)).collect(),
         plots: figures(model, result)
             .into_iter()
             .map(|(_, plot)| plot)

@@ -196,35 +196,35 @@ fn pose(arguments: &Draw, model: &Model) -> Result<(MechanismView, Vec<Frame>, u
         study = Some(motion_of(first));
         if let Ok(result) = kempe_study::run(model, first, &mut kempe_study::Silent) {
             frames = drawing_frames(&result);
-            // A pose that is nowhere: the paths do not run on to the pose asked for.
-            frames.push(Frame::default());
         }
     }
     let pose = drawn(&frame, label);
-    let shown = place_among(&frames, &pose);
+    let shown = place_among(&frames, &pose).unwrap_or_else(|| {
+        // Off the motion. Behind a pose that is nowhere, so that no path runs on to it.
+        frames.push(Frame::default());
+        frames.len()
+    });
     frames.insert(shown, pose);
     Ok((mechanism_view(model, study), frames, shown))
 }
 
-/// Where in a motion a pose belongs: where it makes the smallest detour, so that the paths do not jump to it.
-fn place_among(frames: &[Frame], pose: &Frame) -> usize {
+/// Where in a motion a pose belongs: between the two poses where it is no detour. Nowhere when it is not on the motion.
+fn place_among(frames: &[Frame], pose: &Frame) -> Option<usize> {
     let apart = |a: &Frame, b: &Frame| -> f64 {
         let pairs = a.points.iter().zip(&b.points);
         pairs
             .map(|(p, q)| (p[0] - q[0]).abs() + (p[1] - q[1]).abs())
             .sum()
     };
-    let detour = |at: usize| match (
-        at.checked_sub(1).and_then(|i| frames.get(i)),
-        frames.get(at),
-    ) {
-        (Some(before), Some(after)) => {
-            apart(before, pose) + apart(pose, after) - apart(before, after)
-        }
-        (Some(only), None) | (None, Some(only)) => 2.0 * apart(only, pose),
-        (None, None) => 0.0,
+    let detour = |pair: &[Frame]| match pair {
+        [before, after] => apart(before, pose) + apart(pose, after) - apart(before, after),
+        _ => f64::INFINITY,
     };
-    (0..=frames.len())
-        .min_by(|a, b| detour(*a).total_cmp(&detour(*b)))
-        .unwrap_or(0)
+    let (at, pair) =
+        (frames.windows(2).enumerate()).min_by(|a, b| detour(a.1).total_cmp(&detour(b.1)))?;
+    let step = match pair {
+        [before, after] => apart(before, after),
+        _ => return None,
+    };
+    (detour(pair) <= step).then_some(at + 1)
 }
