@@ -5,7 +5,7 @@
 
 use kempe_number::Number;
 
-use crate::pose::{Pose, cross, dot, left, sub};
+use crate::pose::{cross, dot, left, sub};
 
 /// How many constants a dyad prepares per design.
 pub const DYAD_CONSTANTS: usize = 7;
@@ -122,20 +122,10 @@ pub(crate) fn dyad_constants<T: Number>(
     ]
 }
 
-/// The RRR dyad: both bodies' poses from the two placed pins `wa`, `wb`. The inner pin lies left of `wa -> wb` for
-/// `sign` > 0.
+/// The vectors from the placed pins of an RRR dyad to its inner pin, `v` joining the placed pins, and the determinant. The
+/// inner pin lies left of `v` for `sign` > 0.
 #[inline(always)]
-pub(crate) fn dyad<T: Number>(
-    constants: &[T],
-    outer: ([T; 2], [T; 2]),
-    placed: ([T; 2], [T; 2]),
-    sign: f64,
-) -> (Pose<T>, Pose<T>, T) {
-    let v = sub(placed.1, placed.0);
+pub(crate) fn dyad<T: Number>(constants: &[T], v: [T; 2], sign: f64) -> ([T; 2], [T; 2], T) {
     let (da, h) = circle_circle(v, constants[4], constants[5], constants[6], sign);
-    let db = sub(da, v);
-    let (ka, kb) = ([constants[0], constants[1]], [constants[2], constants[3]]);
-    let a = Pose::pinned(dot(ka, da), cross(ka, da), outer.0, placed.0);
-    let b = Pose::pinned(dot(kb, db), cross(kb, db), outer.1, placed.1);
-    (a, b, h)
+    (da, sub(da, v), h)
 }
