@@ -142,6 +142,59 @@ impl Qr {
             .product()
     }
 
+    /// The Frobenius norm: at least the largest singular value, at most that times the root of the rank.
+    pub fn norm(&self) -> f64 {
+        let m = self.rows;
+        let above = |k: usize| self.a[k * m..k * m + k].iter();
+        let sum: f64 = (0..self.columns)
+            .map(|k| self.diagonal[k].powi(2) + above(k).map(|x| x * x).sum::<f64>())
+            .sum();
+        sum.sqrt()
+    }
+
+    /// The smallest singular value, by inverse iteration on R^T R from a fixed start.
+    pub fn smallest_singular_value(&self) -> f64 {
+        let (m, n) = (self.rows, self.columns);
+        if n == 0 {
+            return f64::INFINITY;
+        }
+        if self.diagonal.contains(&0.0) {
+            return 0.0;
+        }
+        let r = |i: usize, j: usize| {
+            if i == j {
+                self.diagonal[i]
+            } else {
+                self.a[j * m + i]
+            }
+        };
+        // Uneven entries, so that no singular vector is missed by symmetry.
+        let mut x: Vec<f64> = (0..n)
+            .map(|i| 1.0 + 0.37 * ((i * 7) % 11) as f64)
+            .collect();
+        let mut value = f64::INFINITY;
+        for _ in 0..60 {
+            let length = x.iter().map(|v| v * v).sum::<f64>().sqrt();
+            x.iter_mut().for_each(|v| *v /= length);
+            for i in 0..n {
+                let sum: f64 = (0..i).map(|k| r(k, i) * x[k]).sum();
+                x[i] = (x[i] - sum) / r(i, i);
+            }
+            // With y = R^-T x, |y| grows to 1 / sigma.
+            let next = 1.0 / x.iter().map(|v| v * v).sum::<f64>().sqrt();
+            for i in (0..n).rev() {
+                let sum: f64 = (i + 1..n).map(|k| r(i, k) * x[k]).sum();
+                x[i] = (x[i] - sum) / r(i, i);
+            }
+            let settled = (next - value).abs() <= 1e-9 * next;
+            value = next;
+            if settled {
+                break;
+            }
+        }
+        value
+    }
+
     /// Smallest over largest diagonal entry of R: a cheap measure of how near the matrix is to losing rank.
     pub fn smallest_pivot_ratio(&self) -> f64 {
         let (low, high) = self

@@ -53,6 +53,11 @@ impl Link {
         placed
     }
 
+    /// A place on the link, in the link's own frame, m.
+    pub fn locate<T: Number>(&self, at: &Place, parameters: &[T]) -> [T; 2] {
+        place(at, &self.evaluate(parameters), parameters)
+    }
+
     /// The centre of mass in the link's own frame, m; `None` when the link has no mass properties.
     pub fn center_of_mass<T: Number>(&self, parameters: &[T]) -> Option<[T; 2]> {
         let inertia = self.inertia.as_ref()?;

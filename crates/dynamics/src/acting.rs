@@ -1,0 +1,121 @@
+//! Everything that acts on a mechanism, evaluated for one design.
+
+use kempe_kinematics::{Geometry, Mechanism};
+use kempe_model as model;
+use kempe_number::Number;
+
+use crate::amount::Amount;
+use crate::cylinder::Cylinder;
+use crate::damper::Damper;
+use crate::friction::Friction;
+use crate::inertia::Mass;
+use crate::instant::Instant;
+use crate::load::Load;
+use crate::motor::Motor;
+use crate::problem::Problem;
+use crate::spring::Spring;
+use crate::wrench::{self, Wrench};
+
+/// Acceleration of gravity where the file gives none, m/s^2, along -y.
+pub const GRAVITY: f64 = 9.81;
+
+/// What acts on a mechanism, for one design.
+#[derive(Clone, Debug)]
+pub struct Acting<T> {
+    /// Acceleration of gravity, m/s^2.
+    pub gravity: [T; 2],
+    /// Masses that move.
+    pub masses: Vec<Mass<T>>,
+    /// Loads.
+    pub loads: Vec<Load>,
+    /// What the loads vary with.
+    pub amounts: Vec<Amount>,
+    /// Springs, in the model's order.
+    pub springs: Vec<Spring<T>>,
+    /// Dampers.
+    pub dampers: Vec<Damper<T>>,
+    /// Friction.
+    pub friction: Vec<Friction<T>>,
+    /// Hydraulic cylinders.
+    pub cylinders: Vec<Cylinder<T>>,
+    /// Motors.
+    pub motors: Vec<Motor<T>>,
+}
+
+impl<T: Number> Acting<T> {
+    /// Evaluates what acts for parameter values (SI, in the model's order).
+    ///
+    /// # Errors
+    /// Everything that makes forces meaningless: negative masses, springs between a point and itself, loads that depend
+    /// on forces, contradictory pressures, and the like.
+    pub fn new(
+        mechanism: &Mechanism,
+        geometry: &Geometry<T>,
+        parameters: &[T],
+    ) -> Result<Self, Vec<Problem>> {
+        let actions = &mechanism.model.actions;
+        let plain: Vec<f64> = parameters.iter().map(|p| p.value()).collect();
+        let plain_geometry = geometry.value();
+        let mut problems = Vec::new();
+        let mut amounts = Vec::new();
+        let loads = Load::all(mechanism, &plain, &mut amounts, &mut problems);
+        let gravity = match &actions.gravity {
+            Some(g) => [&g[0], &g[1]].map(|scalar| model::value(scalar, parameters)),
+            None => [T::zero(), T::from_f64(-GRAVITY)],
+        };
+        let cylinders: Vec<Cylinder<T>> = (actions.cylinders.iter())
+            .map(|c| {
+                let cylinder = Cylinder::new(c, parameters);
+                cylinder.check(c, &mut problems);
+                cylinder
+            })
+            .collect();
+        let it = Self {
+            gravity,
+            masses: Mass::all(mechanism, geometry, parameters, &mut problems),
+            springs: Spring::all(mechanism, &plain_geometry, parameters, &mut problems),
+            dampers: Damper::all(mechanism, &plain_geometry, parameters, &mut problems),
+            friction: Friction::all(mechanism, parameters, &mut problems),
+            motors: (actions.motors.iter())
+                .map(|m| Motor::new(m, parameters, &mut problems))
+                .collect(),
+            loads,
+            amounts,
+            cylinders,
+        };
+        if problems.is_empty() {
+            Ok(it)
+        } else {
+            Err(problems)
+        }
+    }
+
+    /// Fills what acts on every link (weights, loads, springs, dampers) and `m a`, `J alpha` of every link.
+    pub(crate) fn evaluate(
+        &self,
+        mechanism: &Mechanism,
+        geometry: &Geometry<T>,
+        at: &Instant<T>,
+        applied: &mut [Wrench<T>],
+        inertial: &mut [Wrench<T>],
+    ) {
+        applied.fill([T::zero(); 3]);
+        inertial.fill([T::zero(); 3]);
+        for mass in &self.masses {
+            wrench::add(
+                &mut applied[mass.link.index()],
+                mass.weight(at, self.gravity),
+            );
+            wrench::add(&mut inertial[mass.link.index()], mass.inertial(at));
+        }
+        for load in &self.loads {
+            load.act(mechanism, geometry, at, applied);
+        }
+        for spring in &self.springs {
+            spring.act(geometry, at, applied);
+        }
+        for damper in &self.dampers {
+            damper.act(geometry, at, applied);
+        }
+    }
+}

@@ -1,0 +1,74 @@
+//! Force measures evaluated.
+
+use kempe_model::{DriveId, ForceMeasure, JointRef};
+
+use crate::cylinder::Cylinder;
+use crate::energy;
+use crate::forces::Forces;
+use crate::instant::Instant;
+use crate::number::ForceNumber;
+use crate::reaction::Reaction;
+use crate::reduced;
+use crate::shaking::shaking;
+use crate::vector::{length, sign};
+
+impl<T: ForceNumber> Forces<'_, T> {
+    /// The value of a force measure at the instant last solved, SI. NaN where it has none.
+    pub fn answer(&self, at: &Instant<T>, measure: &ForceMeasure) -> T {
+        let nothing = T::from_f64(f64::NAN);
+        let reaction = |joint: &JointRef| self.reaction(at, *joint);
+        let along = |joint: &JointRef, axis: usize| {
+            reaction(joint).map(|r| self.in_axes_of(at, r.link, r.force)[axis])
+        };
+        let drive = |drive: &DriveId| self.drives.get(drive.index());
+        let found = match measure {
+            ForceMeasure::Drive(d) => drive(d).map(|f| f.value),
+            ForceMeasure::Reaction(joint) => reaction(joint).map(|r| Reaction::size(&r)),
+            ForceMeasure::ReactionX(joint) => reaction(joint).map(|r| r.force[0]),
+            ForceMeasure::ReactionY(joint) => reaction(joint).map(|r| r.force[1]),
+            ForceMeasure::ReactionAlong(joint) => along(joint, 0),
+            ForceMeasure::ReactionAcross(joint) => along(joint, 1),
+            ForceMeasure::ReactionMoment(joint) => reaction(joint).map(|r| r.moment),
+            ForceMeasure::Power(d) => drive(d).map(|f| f.value * at.drive_speeds[d.index()]),
+            ForceMeasure::KineticEnergy => Some(energy::kinetic(&self.acting, at)),
+            ForceMeasure::PotentialEnergy => {
+                Some(energy::potential(&self.acting, &self.geometry, at))
+            }
+            ForceMeasure::ShakingForceX => Some(shaking(&self.acting, at)[0]),
+            ForceMeasure::ShakingForceY => Some(shaking(&self.acting, at)[1]),
+            ForceMeasure::ShakingForce => {
+                let [x, y, _] = shaking(&self.acting, at);
+                Some(length([x, y]))
+            }
+            ForceMeasure::ShakingMoment => Some(shaking(&self.acting, at)[2]),
+            ForceMeasure::ReducedMass(d) => {
+                drive(d).map(|_| reduced::mass(&self.acting, at, d.index())[0])
+            }
+            ForceMeasure::ReducedLoad(d) => {
+                drive(d).map(|_| reduced::load(&self.applied_on_bodies, at, d.index()))
+            }
+            ForceMeasure::Pressure(d) => self.cylinder(*d).and_then(|c| {
+                let force = drive(d)?.value;
+                Some(c.pressure(force, self.drive_direction(at, *d)))
+            }),
+            ForceMeasure::Capacity(d) => self.cylinder(*d).and_then(|c| {
+                let force = drive(d)?.value;
+                c.capacity(force, self.drive_direction(at, *d))
+            }),
+            ForceMeasure::Spring(index) => {
+                (self.acting.springs.get(*index)).map(|s| s.tension(&self.geometry, at))
+            }
+        };
+        found.unwrap_or(nothing)
+    }
+
+    /// The hydraulic cylinder behind a drive.
+    pub fn cylinder(&self, drive: DriveId) -> Option<&Cylinder<T>> {
+        self.acting.cylinders.iter().find(|c| c.drive == drive)
+    }
+
+    /// The sense in which a drive moves: -1, 0 or 1.
+    pub fn drive_direction(&self, at: &Instant<T>, drive: DriveId) -> f64 {
+        sign(at.drive_speeds[drive.index()].value())
+    }
+}

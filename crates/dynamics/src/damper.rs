@@ -1,0 +1,94 @@
+//! Dampers: a force against the speed at which two points part, a torque against the relative turning of two links.
+
+use kempe_kinematics::{Geometry, Mechanism};
+use kempe_model as model;
+use kempe_number::Number;
+
+use crate::ends::{Ends, Stretch};
+use crate::instant::Instant;
+use crate::problem::Problem;
+use crate::wrench::Wrench;
+
+/// A damper in a mechanism.
+#[derive(Clone, Debug)]
+pub struct Damper<T> {
+    /// Its ends.
+    pub ends: Ends,
+    /// Damping when the ends part or the angle grows, N s/m or N m s/rad.
+    pub parting: T,
+    /// Damping the other way.
+    pub closing: T,
+}
+
+impl<T: Number> Damper<T> {
+    /// Compiles the model's dampers.
+    pub(crate) fn all(
+        mechanism: &Mechanism,
+        geometry: &Geometry<f64>,
+        parameters: &[T],
+        problems: &mut Vec<Problem>,
+    ) -> Vec<Self> {
+        let mut list = Vec::new();
+        for damper in &mechanism.model.actions.dampers {
+            let name = &damper.name;
+            let Some(ends) = Ends::new(mechanism, &damper.between) else {
+                problems.push(Problem::new(
+                    "damper-ends",
+                    &damper.span,
+                    format!("an end of the damper `{name}` is on no link"),
+                ));
+                continue;
+            };
+            if ends.is_idle(geometry) {
+                problems.push(Problem::new(
+                    "damper-idle",
+                    &damper.span,
+                    format!("the damper `{name}` is between a point and itself, or between links that are one body"),
+                ));
+            }
+            let parting = model::value(&damper.damping, parameters);
+            let closing = (damper.closing.as_ref())
+                .map_or(parting, |scalar| model::value(scalar, parameters));
+            if parting.value() < 0.0 || closing.value() < 0.0 {
+                problems.push(Problem::new(
+                    "negative-damping",
+                    &damper.span,
+                    format!("the damping of `{name}` is negative: it would add energy"),
+                ));
+            }
+            list.push(Self {
+                ends,
+                parting,
+                closing,
+            });
+        }
+        list
+    }
+
+    fn tension(&self, stretch: &Stretch<T>) -> T {
+        let damping = if stretch.rate.value() < 0.0 {
+            self.closing
+        } else {
+            self.parting
+        };
+        damping * stretch.rate
+    }
+
+    /// Power it takes from the mechanism at an instant, W, never negative.
+    pub fn dissipation(&self, geometry: &Geometry<T>, at: &Instant<T>) -> T {
+        let stretch = self.ends.stretch(geometry, at);
+        self.tension(&stretch) * stretch.rate
+    }
+
+    /// Adds what it does to the links.
+    pub(crate) fn act(&self, geometry: &Geometry<T>, at: &Instant<T>, on_links: &mut [Wrench<T>]) {
+        let stretch = self.ends.stretch(geometry, at);
+        let tension = self.tension(&stretch);
+        let pull = match self.ends {
+            Ends::Links(_) => tension,
+            Ends::Points(_) if stretch.length.value() == 0.0 => T::zero(),
+            Ends::Points(_) => tension / stretch.length,
+        };
+        self.ends.pull(geometry, at, &stretch, pull, on_links);
+    }
+}

@@ -1,0 +1,265 @@
+//! Forces of one instant, by both routes.
+
+use kempe_kinematics::mechanism::{Constraint, LineSource, Source};
+use kempe_kinematics::{BodyId, Geometry, Mechanism, Plan};
+use kempe_model::{DriveId, LinkId};
+
+use crate::acting::Acting;
+use crate::equilibrium::Equilibrium;
+pub use crate::equilibrium::FrictionOutcome;
+use crate::instant::Instant;
+use crate::number::ForceNumber;
+use crate::problem::Problem;
+use crate::virtual_power::{self, ByPower};
+use crate::weld::Weld;
+use crate::wrench::{self, Wrench};
+
+/// Part of the largest load in which the difference of both routes is counted at least.
+pub const FLOOR: f64 = 1e-3;
+
+/// What a joint or drive does to one of its links.
+#[derive(Clone, Copy, Debug)]
+pub struct Side<T> {
+    /// The link.
+    pub link: LinkId,
+    /// Its body.
+    pub body: BodyId,
+    /// Force and moment about the body's origin, friction included.
+    pub wrench: Wrench<T>,
+}
+
+/// What a drive gives, both ways.
+#[derive(Clone, Copy, Debug)]
+pub struct DriveForce<T> {
+    /// By virtual power.
+    pub by_power: ByPower<T>,
+    /// By equilibrium.
+    pub by_equilibrium: T,
+    /// The answer: by virtual power; rates that it does not know by equilibrium.
+    pub value: T,
+    /// What it would give without friction.
+    pub frictionless: f64,
+}
+
+/// Forces of a mechanism at one instant, with storage that is reused from instant to instant: [`Forces::solve`]
+/// allocates nothing.
+#[derive(Clone, Debug)]
+pub struct Forces<'m, T> {
+    /// The mechanism.
+    pub mechanism: &'m Mechanism,
+    /// Its dimensions.
+    pub geometry: Geometry<T>,
+    /// What acts on it.
+    pub acting: Acting<T>,
+    /// Equilibrium of all bodies.
+    pub equilibrium: Equilibrium<T>,
+    /// Welds whose loads can be told.
+    pub welds: Vec<Weld>,
+    /// What every constraint does to its links.
+    pub sides: Vec<Vec<Side<T>>>,
+    /// What every drive gives.
+    pub drives: Vec<DriveForce<T>>,
+    /// Weights, loads, springs and dampers on every link, about its body's origin.
+    pub applied: Vec<Wrench<T>>,
+    /// `m a` and `J alpha` of every link, about its body's origin.
+    pub inertial: Vec<Wrench<T>>,
+    /// Weights, loads, springs and dampers on every body.
+    pub applied_on_bodies: Vec<Wrench<T>>,
+    /// `m a` less what is applied, friction included after a solve, of every body.
+    needed: Vec<Wrench<T>>,
+    /// Constraint of every drive.
+    drive_constraints: Vec<Option<usize>>,
+}
+
+impl<'m, T: ForceNumber> Forces<'m, T> {
+    /// Prepares the forces of a design.
+    ///
+    /// # Errors
+    /// All problems of what acts on the mechanism.
+    pub fn new(
+        mechanism: &'m Mechanism,
+        plan: &Plan,
+        geometry: Geometry<T>,
+        parameters: &[T],
+    ) -> Result<Self, Vec<Problem>> {
+        let acting = Acting::new(mechanism, &geometry, parameters)?;
+        let size = geometry.value().size(mechanism);
+        let zero = [T::zero(); 3];
+        let (links, bodies) = (mechanism.model.links.len(), mechanism.bodies);
+        let sides = (mechanism.constraints.iter())
+            .map(|(constraint, _)| {
+                (links_of(mechanism, constraint).into_iter())
+                    .map(|link| Side {
+                        link,
+                        body: mechanism.body_of(link),
+                        wrench: zero,
+                    })
+                    .collect()
+            })
+            .collect();
+        let drives = mechanism.model.drives.len();
+        let nothing = DriveForce {
+            by_power: ByPower {
+                value: T::zero(),
+                scale: 0.0,
+            },
+            by_equilibrium: T::zero(),
+            value: T::zero(),
+            frictionless: 0.0,
+        };
+        Ok(Self {
+            equilibrium: Equilibrium::new(mechanism, plan, size, acting.friction.len()),
+            welds: Weld::all(mechanism),
+            sides,
+            drives: vec![nothing; drives],
+            applied: vec![zero; links],
+            inertial: vec![zero; links],
+            applied_on_bodies: vec![zero; bodies],
+            needed: vec![zero; bodies],
+            drive_constraints: (0..drives)
+                .map(|d| {
+                    let source = Source::Drive(DriveId(d as u32));
+                    mechanism.constraints.iter().position(|c| c.1 == source)
+                })
+                .collect(),
+            mechanism,
+            geometry,
+            acting,
+        })
+    }
+
+    /// Finds all forces of an instant.
+    pub fn solve(&mut self, at: &Instant<T>) {
+        self.acting.evaluate(
+            self.mechanism,
+            &self.geometry,
+            at,
+            &mut self.applied,
+            &mut self.inertial,
+        );
+        self.applied_on_bodies.fill([T::zero(); 3]);
+        self.needed.fill([T::zero(); 3]);
+        for (index, seat) in self.mechanism.seats.iter().enumerate() {
+            let body = seat.body.index();
+            let (applied, inertial) = (self.applied[index], self.inertial[index]);
+            wrench::add(&mut self.applied_on_bodies[body], applied);
+            wrench::add(&mut self.needed[body], inertial);
+            wrench::add(&mut self.needed[body], wrench::opposite(applied));
+        }
+        self.equilibrium.solve(
+            self.mechanism,
+            &self.geometry,
+            &self.acting.friction,
+            at,
+            &self.needed,
+        );
+        self.share_out();
+        for (index, (drive, constraint)) in self
+            .drives
+            .iter_mut()
+            .zip(&self.drive_constraints)
+            .enumerate()
+        {
+            let by_power = virtual_power::project(&self.needed, &at.coefficients[index]);
+            let row = constraint.map(|c| self.equilibrium.row(c));
+            let by_equilibrium =
+                row.map_or(T::from_f64(f64::NAN), |row| self.equilibrium.lambda[row]);
+            *drive = DriveForce {
+                by_power,
+                by_equilibrium,
+                value: by_power.value.completed(by_equilibrium),
+                frictionless: row.map_or(f64::NAN, |row| self.equilibrium.frictionless[row]),
+            };
+        }
+    }
+
+    /// Gives every side of every joint its part, and takes friction off what the bodies need.
+    fn share_out(&mut self) {
+        let zero = [T::zero(); 3];
+        for side in self.sides.iter_mut().flatten() {
+            side.wrench = zero;
+        }
+        let (sides, needed) = (&mut self.sides, &mut self.needed);
+        let mut give = |constraint: usize, body: BodyId, w: Wrench<T>| {
+            if let Some(side) = sides[constraint].iter_mut().find(|s| s.body == body) {
+                wrench::add(&mut side.wrench, w);
+            }
+        };
+        self.equilibrium.each_reaction(&mut give);
+        let frictions = &self.acting.friction;
+        self.equilibrium
+            .each_friction(frictions, |constraint, body, w| {
+                give(constraint, body, w);
+                wrench::add(&mut needed[body.index()], wrench::opposite(w));
+            });
+    }
+
+    /// The largest difference of both routes over all drives, in parts of the terms that make up each drive's force (at
+    /// least of [`FLOOR`] of the largest load anywhere, so that a drive that gives nothing is not counted in rounding).
+    pub fn route_difference(&self) -> f64 {
+        let mut largest = 0.0_f64;
+        for (drive, constraint) in self.drives.iter().zip(&self.drive_constraints) {
+            let (a, b) = (drive.by_power.value.value(), drive.by_equilibrium.value());
+            let floor = constraint.map_or(0.0, |c| FLOOR * self.equilibrium.largest_at(c));
+            let scale = drive.by_power.scale.max(a.abs()).max(floor);
+            let difference = (a - b).abs();
+            let relative = if difference == 0.0 {
+                0.0
+            } else {
+                difference / scale
+            };
+            if relative.is_nan() {
+                return f64::NAN;
+            }
+            largest = largest.max(relative);
+        }
+        largest
+    }
+
+    /// Everything that joints, drives and friction do to a link, about its body's origin.
+    pub fn joints_on(&self, link: LinkId) -> Wrench<T> {
+        let mut sum = [T::zero(); 3];
+        for side in self.sides.iter().flatten().filter(|s| s.link == link) {
+            wrench::add(&mut sum, side.wrench);
+        }
+        sum
+    }
+
+    /// What a weld does to the link that hangs on it, about the body's origin: the equilibrium of everything that hangs.
+    pub fn weld_on_child(&self, weld: &Weld) -> Wrench<T> {
+        let mut sum = [T::zero(); 3];
+        for link in &weld.part {
+            wrench::add(&mut sum, self.inertial[link.index()]);
+            wrench::add(&mut sum, wrench::opposite(self.applied[link.index()]));
+            wrench::add(&mut sum, wrench::opposite(self.joints_on(*link)));
+        }
+        sum
+    }
+}
+
+/// The links that a constraint acts on, one for each of its bodies.
+fn links_of(mechanism: &Mechanism, constraint: &Constraint) -> Vec<LinkId> {
+    let marker = |m: kempe_kinematics::mechanism::Marker| mechanism.markers[m.index as usize].link;
+    let line = |l: kempe_kinematics::mechanism::LineRef| match mechanism.lines[l.index as usize] {
+        LineSource::Points(from, _) => marker(from),
+        LineSource::AxisOf(link) => link,
+    };
+    match *constraint {
+        Constraint::Coincide { a, b } => vec![marker(b), marker(a)],
+        Constraint::Distance { a, b, .. } => vec![marker(b), marker(a)],
+        Constraint::OnLine { point, line: on }
+        | Constraint::Travel {
+            point, line: on, ..
+        } => {
+            vec![marker(point), line(on)]
+        }
+        Constraint::Direction { offset, .. } => {
+            let source = &mechanism.angles[offset as usize];
+            vec![source.a, source.b]
+        }
+        Constraint::Gears { constants, .. } => mechanism.gears[constants as usize].links.to_vec(),
+        Constraint::Rack {
+            line: on, center, ..
+        } => vec![marker(center), line(on)],
+    }
+}

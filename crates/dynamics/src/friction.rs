@@ -1,0 +1,187 @@
+//! Friction at pins and sliders: Coulomb's, with Stribeck's falling coefficient and a viscous part.
+
+use kempe_kinematics::Mechanism;
+use kempe_kinematics::mechanism::{Constraint, Source};
+use kempe_model::{self as model, FrictionAt, JointId, JointKind, PointId};
+use kempe_number::Number;
+
+use crate::problem::Problem;
+use crate::vector::sign;
+
+/// A friction law: resistance over sliding speed and load.
+#[derive(Clone, Copy, Debug)]
+pub struct FrictionLaw<T> {
+    /// Kinetic coefficient.
+    pub kinetic: T,
+    /// Coefficient at rest.
+    pub at_rest: T,
+    /// Speed at which the coefficient has fallen to the e-th part of the way, m/s.
+    pub stribeck_speed: Option<T>,
+    /// Viscous part, N m s/rad at pins, N s/m at sliders.
+    pub viscous: T,
+}
+
+impl<T: Number> FrictionLaw<T> {
+    fn new(friction: &model::Friction, parameters: &[T]) -> Self {
+        let of = |scalar: &model::Scalar| model::value(scalar, parameters);
+        let kinetic = of(&friction.coefficient);
+        Self {
+            kinetic,
+            at_rest: friction.static_coefficient.as_ref().map_or(kinetic, of),
+            stribeck_speed: friction.stribeck_speed.as_ref().map(of),
+            viscous: friction.viscous.as_ref().map_or(T::zero(), of),
+        }
+    }
+
+    /// The coefficient at a sliding speed: `k + (s - k) exp(-(v / v_s)^2)`.
+    pub fn coefficient(&self, speed: T) -> T {
+        match self.stribeck_speed {
+            Some(scale) if scale.value() > 0.0 => {
+                let part = (-(speed / scale).square()).exp();
+                self.kinetic + (self.at_rest - self.kinetic) * part
+            }
+            _ => self.kinetic,
+        }
+    }
+}
+
+/// The joint row at which friction acts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// A pin: two rows, whose size is the load.
+    Pin,
+    /// A point on a line: one row, the normal force.
+    Line,
+}
+
+/// Friction at one joint of a mechanism.
+#[derive(Clone, Copy, Debug)]
+pub struct Friction<T> {
+    /// Index of the joint's constraint.
+    pub constraint: usize,
+    /// What kind of joint it is.
+    pub place: Place,
+    /// Radius of the pin, m; 1 on lines.
+    pub radius: T,
+    /// The law.
+    pub law: FrictionLaw<T>,
+}
+
+impl<T: Number> Friction<T> {
+    /// Compiles the model's friction: what is said of one joint goes before what is said of all.
+    pub(crate) fn all(
+        mechanism: &Mechanism,
+        parameters: &[T],
+        problems: &mut Vec<Problem>,
+    ) -> Vec<Self> {
+        let given = &mechanism.model.actions.friction;
+        for friction in given {
+            Self::check(mechanism, friction, parameters, problems);
+        }
+        let mut list = Vec::new();
+        for (index, (constraint, source)) in mechanism.constraints.iter().enumerate() {
+            let (place, own) = match (constraint, source) {
+                (Constraint::Coincide { .. }, Source::Pin { point, .. }) => {
+                    (Place::Pin, FrictionAt::Pin(*point))
+                }
+                (Constraint::OnLine { .. }, Source::Joint(joint)) => {
+                    (Place::Line, FrictionAt::Joint(*joint))
+                }
+                _ => continue,
+            };
+            let of_own = given.iter().rev().find(|f| f.at == own);
+            let Some(friction) =
+                of_own.or_else(|| given.iter().rev().find(|f| f.at == FrictionAt::All))
+            else {
+                continue;
+            };
+            let radius = match (place, &friction.radius) {
+                (Place::Line, _) => T::one(),
+                (Place::Pin, Some(radius)) => model::value(radius, parameters),
+                (Place::Pin, None) => T::zero(),
+            };
+            list.push(Self {
+                constraint: index,
+                place,
+                radius,
+                law: FrictionLaw::new(friction, parameters),
+            });
+        }
+        list
+    }
+
+    fn check(
+        mechanism: &Mechanism,
+        friction: &model::Friction,
+        parameters: &[T],
+        problems: &mut Vec<Problem>,
+    ) {
+        let mut add = |code, message: String| {
+            problems.push(Problem::new(code, &friction.span, message));
+        };
+        let law = FrictionLaw::new(friction, parameters);
+        if law.kinetic.value() < 0.0 || law.at_rest.value() < 0.0 || law.viscous.value() < 0.0 {
+            add(
+                "negative-friction",
+                "friction is never negative: it would add energy".into(),
+            );
+        }
+        let radius =
+            (friction.radius.as_ref()).map(|scalar| model::value(scalar, parameters).value());
+        if radius.is_some_and(|r| r < 0.0) {
+            add("negative-radius", "the radius of a pin is negative".into());
+        }
+        match friction.at {
+            FrictionAt::Pin(point) if radius.is_none() && law.kinetic.value() > 0.0 => {
+                let name = point_name(mechanism, point);
+                add(
+                    "friction-radius",
+                    format!("friction at the pin {name} needs the pin's radius"),
+                );
+            }
+            FrictionAt::Joint(joint) if !slides(mechanism, joint) => add(
+                "friction-place",
+                "friction acts at pins, sliders and slots; gears, racks and welds have none here"
+                    .into(),
+            ),
+            _ => {}
+        }
+    }
+
+    /// Resistance (N m at a pin, N on a line) to a relative speed (rad/s or m/s) under a load (N), with the sign of
+    /// `direction`; what it does is the opposite of its sign. Viscous resistance included.
+    #[inline]
+    pub fn resistance(&self, speed: T, direction: f64, load: T) -> T {
+        let sliding = speed.abs() * self.radius;
+        self.law.coefficient(sliding) * self.radius * load * direction + self.law.viscous * speed
+    }
+
+    /// Derivative of the resistance to the load.
+    #[inline]
+    pub(crate) fn slope(&self, speed: f64, direction: f64) -> f64 {
+        let sliding = T::from_f64(speed.abs()) * self.radius;
+        (self.law.coefficient(sliding) * self.radius).value() * direction
+    }
+}
+
+/// The sense in which a joint slides: that of its speed, or at rest that in which it starts; 0 when it stays at rest.
+/// Speeds below `still` count as rest.
+pub fn direction(speed: f64, acceleration: f64, still: f64) -> f64 {
+    if speed.abs() > still {
+        sign(speed)
+    } else {
+        sign(acceleration)
+    }
+}
+
+fn slides(mechanism: &Mechanism, joint: JointId) -> bool {
+    mechanism
+        .model
+        .joints
+        .get(joint.index())
+        .is_some_and(|j| matches!(j.kind, JointKind::Slider { .. } | JointKind::Slot { .. }))
+}
+
+fn point_name(mechanism: &Mechanism, point: PointId) -> &str {
+    (mechanism.model.points.get(point.index())).map_or("?", |p| p.name.as_str())
+}

@@ -1,0 +1,279 @@
+//! One instant of a motion, as the forces need it.
+
+use kempe_kinematics::constraint::Input;
+use kempe_kinematics::measure::{Moment, Series};
+use kempe_kinematics::{BodyId, Mechanism, Pose, State};
+use kempe_model::{DriveId, DriveKind};
+use kempe_number::{Jet, Number};
+
+use crate::vector::{add, left, times};
+
+/// Series in time of force quantities: value, rate and second derivative are what the series of the poses leave exact.
+pub type Rates = Jet<f64, 3>;
+
+/// Where everything is, how it moves, and how each drive alone would move it.
+#[derive(Clone, Debug)]
+pub struct Instant<T> {
+    /// Poses of the bodies.
+    pub poses: Vec<Pose<T>>,
+    /// Unwrapped angles of the bodies, rad.
+    pub angles: Vec<T>,
+    /// Velocity of the bodies' origins (m/s) and angular speed (rad/s).
+    pub velocities: Vec<[T; 3]>,
+    /// Acceleration of the bodies' origins (m/s^2) and angular acceleration (rad/s^2).
+    pub accelerations: Vec<[T; 3]>,
+    /// For every drive and body the kinematic coefficients: derivatives of x, y and angle to the drive's coordinate.
+    pub coefficients: Vec<Vec<[T; 3]>>,
+    /// Derivatives of the coefficients of each drive to its own coordinate.
+    pub coefficient_rates: Vec<Vec<[T; 3]>>,
+    /// Drive coordinates.
+    pub inputs: Vec<Input<T>>,
+    /// Speeds of the drives' coordinates.
+    pub drive_speeds: Vec<T>,
+    /// Angles of the bodies to within half a turn, rad.
+    pub near: Vec<f64>,
+    /// Values of everything that varies: see [`crate::amount`].
+    pub amounts: Vec<T>,
+}
+
+impl<T: Number> Instant<T> {
+    /// Storage for a mechanism with so many varying amounts; everything at rest.
+    pub fn new(mechanism: &Mechanism, amounts: usize) -> Self {
+        let (bodies, drives) = (mechanism.bodies, mechanism.model.drives.len());
+        let zero = [T::zero(); 3];
+        Self {
+            poses: vec![Pose::identity(); bodies],
+            angles: vec![T::zero(); bodies],
+            velocities: vec![zero; bodies],
+            accelerations: vec![zero; bodies],
+            coefficients: vec![vec![zero; bodies]; drives],
+            coefficient_rates: vec![vec![zero; bodies]; drives],
+            inputs: vec![Input::length(T::zero()); drives],
+            drive_speeds: vec![T::zero(); drives],
+            near: vec![0.0; bodies],
+            amounts: vec![T::zero(); amounts],
+        }
+    }
+
+    /// From a body's origin to a point given in the body's coordinates, along the frame's axes.
+    #[inline(always)]
+    pub fn arm(&self, body: BodyId, local: [T; 2]) -> [T; 2] {
+        self.poses[body.index()].turn(local)
+    }
+
+    /// Place of a point at `arm` from a body's origin.
+    #[inline(always)]
+    pub fn place(&self, body: BodyId, arm: [T; 2]) -> [T; 2] {
+        let pose = &self.poses[body.index()];
+        add([pose.x, pose.y], arm)
+    }
+
+    /// Velocity of a point at `arm` from a body's origin.
+    #[inline(always)]
+    pub fn velocity(&self, body: BodyId, arm: [T; 2]) -> [T; 2] {
+        let v = self.velocities[body.index()];
+        add([v[0], v[1]], times(left(arm), v[2]))
+    }
+
+    /// Acceleration of a point at `arm` from a body's origin.
+    #[inline(always)]
+    pub fn acceleration(&self, body: BodyId, arm: [T; 2]) -> [T; 2] {
+        let (w, a) = (
+            self.velocities[body.index()][2],
+            self.accelerations[body.index()],
+        );
+        add(
+            add([a[0], a[1]], times(left(arm), a[2])),
+            times(arm, -(w * w)),
+        )
+    }
+}
+
+/// Angular part of a series of poses: `c s' - s c'`.
+#[inline(always)]
+fn turning<B: Number, const N: usize>(pose: &Pose<Jet<B, N>>) -> Jet<B, N> {
+    pose.c * pose.s.differentiate() - pose.s * pose.c.differentiate()
+}
+
+#[inline(always)]
+fn slopes<B: Number, const N: usize>(pose: &Pose<Jet<B, N>>) -> [Jet<B, N>; 3] {
+    [
+        pose.x.differentiate(),
+        pose.y.differentiate(),
+        turning(pose),
+    ]
+}
+
+fn cut(series: Series<f64>) -> Rates {
+    Rates::from_coefficients([0, 1, 2].map(|k| series.coefficient(k)))
+}
+
+fn input<T: Number>(kind: &DriveKind, value: T) -> Input<T> {
+    match kind {
+        DriveKind::Turn { .. } => Input::turn(value),
+        DriveKind::Cylinder { .. } | DriveKind::Slide { .. } => Input::length(value),
+    }
+}
+
+impl Instant<Rates> {
+    /// Takes everything but the amounts from a moment of a motion. Coefficients of drives other than the one along
+    /// which the path runs are known at the instant only: their rates are NaN.
+    pub fn set(&mut self, moment: &Moment<'_, f64>) {
+        let clock = &moment.clock;
+        let composed = |pose: &Pose<Series<f64>>| Pose {
+            x: pose.x.compose(clock),
+            y: pose.y.compose(clock),
+            c: pose.c.compose(clock),
+            s: pose.s.compose(clock),
+        };
+        for (body, path) in moment.path.iter().enumerate() {
+            let pose = composed(path);
+            let velocity = slopes(&pose);
+            self.poses[body] = Pose {
+                x: cut(pose.x),
+                y: cut(pose.y),
+                c: cut(pose.c),
+                s: cut(pose.s),
+            };
+            self.angles[body] = self.poses[body].angle_near(moment.near[body]);
+            self.velocities[body] = velocity.map(cut);
+            self.accelerations[body] = velocity.map(|v| cut(v.differentiate()));
+        }
+        self.near.copy_from_slice(moment.near);
+        for (index, drive) in moment.mechanism.model.drives.iter().enumerate() {
+            let coordinate = moment.coordinates[index].compose(clock);
+            self.inputs[index] = input(&drive.kind, cut(coordinate));
+            self.drive_speeds[index] = cut(coordinate.differentiate());
+            let along_path = moment.path_drive == Some(DriveId(index as u32));
+            let poses = match (along_path, moment.drives.get(index)) {
+                (true, _) => Some(moment.path),
+                (false, Some(Some(poses))) => Some(poses.as_slice()),
+                (false, _) => None,
+            };
+            for body in 0..self.poses.len() {
+                let (first, second) = match poses {
+                    None => (
+                        [Rates::from_f64(f64::NAN); 3],
+                        [Rates::from_f64(f64::NAN); 3],
+                    ),
+                    Some(poses) => {
+                        let first = slopes(&poses[body]);
+                        let second = first.map(|s| s.differentiate());
+                        let in_time = |s: Series<f64>| {
+                            if along_path {
+                                cut(s.compose(clock))
+                            } else {
+                                Rates::from_coefficients([s.coefficient(0), f64::NAN, f64::NAN])
+                            }
+                        };
+                        (first.map(in_time), second.map(in_time))
+                    }
+                };
+                self.coefficients[index][body] = first;
+                self.coefficient_rates[index][body] = second;
+            }
+        }
+    }
+
+    /// The plain values.
+    pub fn value_into(&self, out: &mut Instant<f64>) {
+        let three = |from: &[[Rates; 3]], to: &mut [[f64; 3]]| {
+            for (from, to) in from.iter().zip(to) {
+                *to = from.map(Number::value);
+            }
+        };
+        for (from, to) in self.poses.iter().zip(&mut out.poses) {
+            *to = from.value();
+        }
+        for (from, to) in self.angles.iter().zip(&mut out.angles) {
+            *to = from.value();
+        }
+        three(&self.velocities, &mut out.velocities);
+        three(&self.accelerations, &mut out.accelerations);
+        for (from, to) in self.coefficients.iter().zip(&mut out.coefficients) {
+            three(from, to);
+        }
+        for (from, to) in self
+            .coefficient_rates
+            .iter()
+            .zip(&mut out.coefficient_rates)
+        {
+            three(from, to);
+        }
+        for (from, to) in self.inputs.iter().zip(&mut out.inputs) {
+            *to = Input {
+                value: from.value.value(),
+                c: from.c.value(),
+                s: from.s.value(),
+            };
+        }
+        for (from, to) in self.drive_speeds.iter().zip(&mut out.drive_speeds) {
+            *to = from.value();
+        }
+        out.near.copy_from_slice(&self.near);
+        for (from, to) in self.amounts.iter().zip(&mut out.amounts) {
+            *to = from.value();
+        }
+    }
+}
+
+impl Instant<f64> {
+    /// Takes a state that was solved as a series in the coordinate of one drive, which moves with this speed and
+    /// acceleration while the others stand still. Allocates nothing. `near` are the bodies' angles to within half a turn.
+    pub fn set_along(
+        &mut self,
+        mechanism: &Mechanism,
+        state: &State<Rates>,
+        near: &[f64],
+        drive: DriveId,
+        [speed, acceleration]: [f64; 2],
+    ) {
+        for (index, ((input_out, input_in), kind)) in self
+            .inputs
+            .iter_mut()
+            .zip(&state.inputs)
+            .zip(mechanism.model.drives.iter().map(|d| &d.kind))
+            .enumerate()
+        {
+            *input_out = match kind {
+                DriveKind::Turn { .. } => Input {
+                    value: input_in.value.value(),
+                    c: input_in.c.value(),
+                    s: input_in.s.value(),
+                },
+                _ => Input::length(input_in.value.value()),
+            };
+            self.drive_speeds[index] = if index == drive.index() { speed } else { 0.0 };
+        }
+        let square = speed * speed;
+        let (first_out, second_out) = (
+            &mut self.coefficients[drive.index()],
+            &mut self.coefficient_rates[drive.index()],
+        );
+        for (body, pose) in state.poses.iter().enumerate().skip(1) {
+            let (first, second);
+            {
+                let (c, s) = (pose.c.coefficients(), pose.s.coefficients());
+                first = [
+                    pose.x.coefficient(1),
+                    pose.y.coefficient(1),
+                    c[0] * s[1] - s[0] * c[1],
+                ];
+                second = [
+                    2.0 * pose.x.coefficient(2),
+                    2.0 * pose.y.coefficient(2),
+                    2.0 * (c[0] * s[2] - s[0] * c[2]),
+                ];
+            }
+            self.poses[body] = pose.value();
+            self.angles[body] = self.poses[body].angle_near(near[body]);
+            for k in 0..3 {
+                self.velocities[body][k] = first[k] * speed;
+                self.accelerations[body][k] = first[k] * acceleration + second[k] * square;
+            }
+            first_out[body] = first;
+            second_out[body] = second;
+        }
+        self.near.copy_from_slice(near);
+    }
+}

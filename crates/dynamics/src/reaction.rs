@@ -1,0 +1,259 @@
+//! What joints carry, as vectors on a named link.
+
+use kempe_kinematics::mechanism::Source;
+use kempe_model::{
+    DriveId, DriveKind, JointId, JointKind, JointRef, LinkId, LinkPointRef, PointId,
+};
+use kempe_number::Number;
+
+use crate::forces::Forces;
+use crate::instant::Instant;
+use crate::number::ForceNumber;
+use crate::vector::{dot, length, sub};
+use crate::wrench::{self, Wrench};
+
+/// A joint's load on one link.
+#[derive(Clone, Copy, Debug)]
+pub struct Reaction<T> {
+    /// The link that feels it.
+    pub link: LinkId,
+    /// Where it acts in the frame, m.
+    pub place: [T; 2],
+    /// Force along the frame's axes, N.
+    pub force: [T; 2],
+    /// Moment about that place, N m.
+    pub moment: T,
+}
+
+impl<T: Number> Reaction<T> {
+    /// Size of the force, N.
+    pub fn size(&self) -> T {
+        length(self.force)
+    }
+}
+
+/// Which joint or drive.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Carrier {
+    /// A pin between links.
+    Pin(PointId),
+    /// A joint of the file.
+    Joint(JointId),
+    /// A drive.
+    Drive(DriveId),
+}
+
+/// A joint's load in plain numbers, for arrows and reports.
+#[derive(Clone, Debug)]
+pub struct JointLoad {
+    /// Which joint or drive.
+    pub carrier: Carrier,
+    /// The link that feels it; the joint's other link feels the opposite.
+    pub link: LinkId,
+    /// Where it acts in the frame, m.
+    pub place: [f64; 2],
+    /// Force along the frame's axes, N.
+    pub force: [f64; 2],
+    /// Moment about that place, N m.
+    pub moment: f64,
+    /// Whether equilibrium determines it.
+    pub unique: bool,
+}
+
+impl<T: ForceNumber> Forces<'_, T> {
+    /// The load of a joint on the link asked for, or on the one that the sign convention names. `None` when the joint
+    /// has no load on that link.
+    pub fn reaction(&self, at: &Instant<T>, joint: JointRef) -> Option<Reaction<T>> {
+        match joint {
+            JointRef::Pin(point, link) => {
+                let model = &self.mechanism.model;
+                let link =
+                    link.or_else(|| model.points.get(point.index())?.links.last().copied())?;
+                let is_pin =
+                    |source: &Source| matches!(source, Source::Pin { point: p, .. } if *p == point);
+                let w = self.on_body_of(link, is_pin)?;
+                let marker = (self.mechanism.marker(LinkPointRef { link, point }))
+                    .or_else(|| self.mechanism.any_marker(point))?;
+                let place = at.place(
+                    marker.body,
+                    at.arm(marker.body, self.geometry.marker(marker)),
+                );
+                Some(self.about(at, link, place, w))
+            }
+            JointRef::Joint(id, link) => self.joint_reaction(at, id, link),
+        }
+    }
+
+    fn joint_reaction(
+        &self,
+        at: &Instant<T>,
+        id: JointId,
+        link: Option<LinkId>,
+    ) -> Option<Reaction<T>> {
+        let joint = self.mechanism.model.joints.get(id.index())?;
+        let link = link.unwrap_or(joint.kind.links().0);
+        if let JointKind::Weld { .. } = joint.kind {
+            let weld = self.welds.iter().find(|w| w.joint == id)?;
+            let on_child = self.weld_on_child(weld);
+            let arm = at.arm(weld.at.body, self.geometry.marker(weld.at));
+            let place = at.place(weld.at.body, arm);
+            let w = if link == weld.child {
+                on_child
+            } else if link == weld.parent {
+                wrench::opposite(on_child)
+            } else {
+                return None;
+            };
+            return Some(self.about(at, link, place, w));
+        }
+        let w = self.on_body_of(link, |source| *source == Source::Joint(id))?;
+        Some(self.about(at, link, self.joint_place(at, id, link)?, w))
+    }
+
+    /// Where a joint's load is counted: the slider's point or pin, the centre of a gear or pinion.
+    fn joint_place(&self, at: &Instant<T>, id: JointId, link: LinkId) -> Option<[T; 2]> {
+        let marker = match self.mechanism.model.joints.get(id.index())?.kind {
+            JointKind::Slider { at, .. } | JointKind::Slot { pin: at, .. } => {
+                self.mechanism.marker(at)?
+            }
+            JointKind::Rack { pinion, center, .. } => self.mechanism.marker(LinkPointRef {
+                link: pinion,
+                point: center,
+            })?,
+            JointKind::Gears { .. } => {
+                let constraint =
+                    (self.mechanism.constraints.iter()).position(|c| c.1 == Source::Joint(id))?;
+                let mesh = crate::gear_mesh::GearMesh::new(
+                    self.mechanism,
+                    &self.mechanism.constraints[constraint].0,
+                );
+                let body = self.mechanism.body_of(link);
+                match mesh {
+                    Some(mesh) if mesh.a.body == body => mesh.a,
+                    Some(mesh) => mesh.b,
+                    None => {
+                        let pose = &at.poses[body.index()];
+                        return Some([pose.x, pose.y]);
+                    }
+                }
+            }
+            JointKind::Weld { a, at, .. } => {
+                self.mechanism.marker(LinkPointRef { link: a, point: at })?
+            }
+        };
+        Some(at.place(
+            marker.body,
+            at.arm(marker.body, self.geometry.marker(marker)),
+        ))
+    }
+
+    /// Everything that constraints from one source do to a link's body.
+    fn on_body_of(&self, link: LinkId, from: impl Fn(&Source) -> bool) -> Option<Wrench<T>> {
+        let body = self.mechanism.body_of(link);
+        let mut sum: Option<Wrench<T>> = None;
+        for ((_, source), sides) in self.mechanism.constraints.iter().zip(&self.sides) {
+            if !from(source) {
+                continue;
+            }
+            for side in sides.iter().filter(|s| s.body == body) {
+                wrench::add(sum.get_or_insert([T::zero(); 3]), side.wrench);
+            }
+        }
+        sum
+    }
+
+    fn about(&self, at: &Instant<T>, link: LinkId, place: [T; 2], w: Wrench<T>) -> Reaction<T> {
+        let pose = &at.poses[self.mechanism.body_of(link).index()];
+        Reaction {
+            link,
+            place,
+            force: [w[0], w[1]],
+            moment: wrench::moment_at(w, sub(place, [pose.x, pose.y])),
+        }
+    }
+
+    /// Force along a link's x axis and along its y axis, N.
+    pub fn in_axes_of(&self, at: &Instant<T>, link: LinkId, force: [T; 2]) -> [T; 2] {
+        let seat = &self.geometry.seats[link.index()];
+        let body = &at.poses[self.mechanism.body_of(link).index()];
+        let x = body.turn([seat.c, seat.s]);
+        [dot(x, force), dot([-x[1], x[0]], force)]
+    }
+
+    /// The loads of all joints and drives in plain numbers: pins on every later link, joints on their first-named link,
+    /// drives on the link they move (the eye of a cylinder).
+    pub fn joint_loads(&self, at: &Instant<T>) -> Vec<JointLoad> {
+        let loose = self.equilibrium.not_unique();
+        let mut list: Vec<JointLoad> = Vec::new();
+        let model = &self.mechanism.model;
+        for (index, (_, source)) in self.mechanism.constraints.iter().enumerate() {
+            let (carrier, reaction) = match *source {
+                Source::Pin { point, link } => (
+                    Carrier::Pin(point),
+                    self.reaction(at, JointRef::Pin(point, Some(link))),
+                ),
+                Source::Joint(id) => (Carrier::Joint(id), self.joint_reaction(at, id, None)),
+                Source::Drive(id) => (Carrier::Drive(id), self.drive_reaction(at, index, id)),
+            };
+            // A slider has two constraints and one load.
+            if let Carrier::Joint(_) = carrier
+                && let Some(known) = list.iter_mut().find(|l| l.carrier == carrier)
+            {
+                known.unique &= !loose.contains(&index);
+                continue;
+            }
+            list.extend(reaction.map(|r| plain(carrier, &r, !loose.contains(&index))));
+        }
+        for (index, joint) in model.joints.iter().enumerate() {
+            let id = JointId(index as u32);
+            if let JointKind::Weld { .. } = joint.kind {
+                let reaction = self.joint_reaction(at, id, None);
+                list.extend(reaction.map(|r| plain(Carrier::Joint(id), &r, true)));
+            }
+        }
+        list
+    }
+
+    fn drive_reaction(
+        &self,
+        at: &Instant<T>,
+        constraint: usize,
+        id: DriveId,
+    ) -> Option<Reaction<T>> {
+        let side = self.sides.get(constraint)?.first()?;
+        let marker = match &self.mechanism.model.drives.get(id.index())?.kind {
+            DriveKind::Cylinder { b, .. } => self.mechanism.marker(*b),
+            DriveKind::Slide { joint } => match self.mechanism.model.joints[joint.index()].kind {
+                JointKind::Slider { at, .. } | JointKind::Slot { pin: at, .. } => {
+                    self.mechanism.marker(at)
+                }
+                _ => None,
+            },
+            DriveKind::Turn { link, .. } => {
+                let first = self.mechanism.model.links[link.index()].points.first();
+                first.and_then(|p| {
+                    self.mechanism.marker(LinkPointRef {
+                        link: *link,
+                        point: p.point,
+                    })
+                })
+            }
+        }?;
+        let place = at.place(
+            marker.body,
+            at.arm(marker.body, self.geometry.marker(marker)),
+        );
+        Some(self.about(at, side.link, place, side.wrench))
+    }
+}
+
+fn plain<T: Number>(carrier: Carrier, r: &Reaction<T>, unique: bool) -> JointLoad {
+    JointLoad {
+        carrier,
+        link: r.link,
+        place: r.place.map(Number::value),
+        force: r.force.map(Number::value),
+        moment: r.moment.value(),
+        unique,
+    }
+}

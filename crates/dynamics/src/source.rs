@@ -1,0 +1,58 @@
+//! Forces along a motion, for the sampler of `kempe-kinematics`.
+
+use kempe_kinematics::ForceSource;
+use kempe_kinematics::measure::{Moment, Series};
+use kempe_model::{ForceMeasure, Measure};
+
+use crate::forces::Forces;
+use crate::instant::{Instant, Rates};
+
+/// The forces of the moment last solved, as series in time.
+pub(crate) struct Source<'m> {
+    pub forces: Forces<'m, Rates>,
+    pub instant: Instant<Rates>,
+    measures: Vec<Measure>,
+}
+
+impl<'m> Source<'m> {
+    pub fn new(forces: Forces<'m, Rates>) -> Self {
+        let measures: Vec<Measure> = (forces.acting.amounts.iter())
+            .map(|a| a.measure.clone())
+            .collect();
+        Self {
+            instant: Instant::new(forces.mechanism, measures.len()),
+            measures,
+            forces,
+        }
+    }
+}
+
+impl ForceSource for Source<'_> {
+    fn measures(&self) -> &[Measure] {
+        &self.measures
+    }
+
+    fn solve(&mut self, moment: &Moment<'_, f64>) {
+        self.instant.set(moment);
+        for (value, amount) in self
+            .instant
+            .amounts
+            .iter_mut()
+            .zip(&self.forces.acting.amounts)
+        {
+            *value = amount.rates(moment);
+        }
+        self.forces.solve(&self.instant);
+    }
+
+    fn answer(&self, measure: &ForceMeasure) -> Series<f64> {
+        let rates = self.forces.answer(&self.instant, measure);
+        Series::from_coefficients(std::array::from_fn(|k| {
+            if k < 3 {
+                rates.coefficient(k)
+            } else {
+                f64::NAN
+            }
+        }))
+    }
+}

@@ -1,0 +1,58 @@
+//! Vectors of the plane.
+
+use kempe_number::Number;
+
+#[inline(always)]
+pub(crate) fn dot<T: Number>(a: [T; 2], b: [T; 2]) -> T {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+/// Positive when `b` lies counter-clockwise of `a`.
+#[inline(always)]
+pub(crate) fn cross<T: Number>(a: [T; 2], b: [T; 2]) -> T {
+    a[0] * b[1] - a[1] * b[0]
+}
+
+#[inline(always)]
+pub(crate) fn add<T: Number>(a: [T; 2], b: [T; 2]) -> [T; 2] {
+    [a[0] + b[0], a[1] + b[1]]
+}
+
+#[inline(always)]
+pub(crate) fn sub<T: Number>(a: [T; 2], b: [T; 2]) -> [T; 2] {
+    [a[0] - b[0], a[1] - b[1]]
+}
+
+#[inline(always)]
+pub(crate) fn times<T: Number>(a: [T; 2], k: T) -> [T; 2] {
+    [a[0] * k, a[1] * k]
+}
+
+/// Quarter turn to the left.
+#[inline(always)]
+pub(crate) fn left<T: Number>(a: [T; 2]) -> [T; 2] {
+    [-a[1], a[0]]
+}
+
+/// The length of a vector. Its derivatives are zero, not NaN, where it vanishes in all parts.
+#[inline(always)]
+pub(crate) fn length<T: Number>(a: [T; 2]) -> T {
+    let square = dot(a, a);
+    if square.value() == 0.0 {
+        T::zero()
+    } else {
+        square.sqrt()
+    }
+}
+
+/// The sign of the plain value: -1, 0 or 1.
+#[inline(always)]
+pub(crate) fn sign(x: f64) -> f64 {
+    if x > 0.0 {
+        1.0
+    } else if x < 0.0 {
+        -1.0
+    } else {
+        0.0
+    }
+}
