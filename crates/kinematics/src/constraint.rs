@@ -12,12 +12,12 @@ use crate::pose::{Pose, cross, dot, sub};
 /// A drive's coordinate, with the unit vector of that angle for drives that turn.
 #[derive(Clone, Copy, Debug)]
 pub struct Input<T> {
-    /// The coordinate, SI.
-    pub value: T,
     /// Cosine (only meaningful for turning drives).
     pub c: T,
     /// Sine.
     pub s: T,
+    /// The coordinate, SI.
+    pub value: T,
 }
 
 impl<T: Number> Input<T> {

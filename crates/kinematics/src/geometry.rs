@@ -45,49 +45,42 @@ pub struct Geometry<T> {
 impl<T: Number> Geometry<T> {
     /// Evaluates a mechanism's dimensions for parameter values (SI, in the model's order).
     pub fn new(mechanism: &Mechanism, parameters: &[T]) -> Self {
-        let model = &mechanism.model;
-        let scalar = |expr: &kempe_model::Scalar| expr.eval(&mut |id| parameters[id.index()]);
-        let local: Vec<Vec<[T; 2]>> = model
-            .links
-            .iter()
-            .map(|link| link.evaluate(parameters))
-            .collect();
-
-        let count = model.links.len();
-        let mut seats: Vec<Option<(Pose<T>, T)>> = vec![None; count];
-        for link in 0..count {
-            seat(mechanism, &local, &scalar, link, &mut seats);
-        }
-        let seats: Vec<(Pose<T>, T)> = seats
-            .into_iter()
-            .map(|s| s.unwrap_or((Pose::identity(), T::zero())))
-            .collect();
-
-        let mut it = Self {
-            markers: (mechanism.markers.iter())
-                .map(|at| {
-                    let link = &model.links[at.link.index()];
-                    let place = link
-                        .points
-                        .iter()
-                        .position(|p| p.point == at.point)
-                        .unwrap_or(0);
-                    seats[at.link.index()]
-                        .0
-                        .place(local[at.link.index()][place])
-                })
-                .collect(),
-            seat_angles: seats.iter().map(|s| s.1).collect(),
-            seats: seats.into_iter().map(|s| s.0).collect(),
-            lines: Vec::new(),
-            angles: Vec::new(),
-            gears: Vec::new(),
+        let zero = T::zero();
+        let along = LocalLine {
+            origin: [zero; 2],
+            direction: [zero; 2],
         };
-        for line in &mechanism.lines {
-            let line = match *line {
+        let gear = GearConstants {
+            first: zero,
+            second: zero,
+            constant: zero,
+        };
+        let mut it = Self {
+            seats: vec![Pose::identity(); mechanism.model.links.len()],
+            seat_angles: vec![zero; mechanism.model.links.len()],
+            markers: vec![[zero; 2]; mechanism.markers.len()],
+            lines: vec![along; mechanism.lines.len()],
+            angles: vec![[zero; 2]; mechanism.angles.len()],
+            gears: vec![gear; mechanism.gears.len()],
+        };
+        it.update(mechanism, parameters);
+        it
+    }
+
+    /// Evaluates the dimensions anew, in the same storage.
+    pub(crate) fn update(&mut self, mechanism: &Mechanism, parameters: &[T]) {
+        let scalar = |expr: &kempe_model::Scalar| kempe_model::value(expr, parameters);
+        for (index, link) in mechanism.model.links.iter().enumerate() {
+            link.evaluate_into(parameters, &mut self.markers[mechanism.markers_of(index)]);
+        }
+        if mechanism.seats.iter().any(|seat| seat.weld.is_some()) {
+            self.seat_links(mechanism, &scalar);
+        }
+        for (index, line) in mechanism.lines.iter().enumerate() {
+            self.lines[index] = match *line {
                 LineSource::Points(from, to) => {
-                    let origin = it.marker(from);
-                    let span = sub(it.marker(to), origin);
+                    let origin = self.marker(from);
+                    let span = sub(self.marker(to), origin);
                     let length = (span[0].square() + span[1].square()).sqrt();
                     LocalLine {
                         origin,
@@ -95,36 +88,54 @@ impl<T: Number> Geometry<T> {
                     }
                 }
                 LineSource::AxisOf(link) => {
-                    let seat = it.seats[link.index()];
+                    let seat = self.seats[link.index()];
                     LocalLine {
                         origin: [seat.x, seat.y],
                         direction: [seat.c, seat.s],
                     }
                 }
             };
-            it.lines.push(line);
         }
-        for angle in &mechanism.angles {
-            let value = Pose::from_angle(T::zero(), T::zero(), scalar(&angle.value));
-            let base = match angle.along {
-                Some(line) => it.line(line).direction,
-                None => [it.seats[angle.b.index()].c, it.seats[angle.b.index()].s],
+        for (index, angle) in mechanism.angles.iter().enumerate() {
+            let value = match angle.value {
+                kempe_units::Expr::Const(0.0) => Pose::identity(),
+                _ => Pose::from_angle(T::zero(), T::zero(), scalar(&angle.value)),
             };
-            it.angles
-                .push(it.seats[angle.a.index()].unturn(value.turn(base)));
+            let base = match angle.along {
+                Some(line) => self.line(line).direction,
+                None => [self.seats[angle.b.index()].c, self.seats[angle.b.index()].s],
+            };
+            self.angles[index] = self.seats[angle.a.index()].unturn(value.turn(base));
         }
-        for gear in &mechanism.gears {
+        for (index, gear) in mechanism.gears.iter().enumerate() {
             let (first, second) = (scalar(&gear.first), scalar(&gear.second));
-            let seat = gear.links.map(|link| it.seat_angles[link.index()]);
+            let seat = gear.links.map(|link| self.seat_angles[link.index()]);
             let constant =
                 scalar(&gear.constant) - first * (seat[0] - seat[2]) - second * (seat[1] - seat[2]);
-            it.gears.push(GearConstants {
+            self.gears[index] = GearConstants {
                 first,
                 second,
                 constant,
-            });
+            };
         }
-        it
+    }
+
+    /// Places welded links in their bodies, and their markers with them.
+    fn seat_links(&mut self, mechanism: &Mechanism, scalar: &impl Fn(&kempe_model::Scalar) -> T) {
+        let count = mechanism.model.links.len();
+        let mut seats: Vec<Option<(Pose<T>, T)>> = vec![None; count];
+        for link in 0..count {
+            seat(mechanism, &self.markers, scalar, link, &mut seats);
+        }
+        for (link, seat) in seats.into_iter().enumerate() {
+            let (Some((pose, angle)), true) = (seat, mechanism.seats[link].weld.is_some()) else {
+                continue;
+            };
+            (self.seats[link], self.seat_angles[link]) = (pose, angle);
+            for marker in &mut self.markers[mechanism.markers_of(link)] {
+                *marker = pose.place(*marker);
+            }
+        }
     }
 
     /// Local coordinates of a marker.
@@ -141,10 +152,22 @@ impl<T: Number> Geometry<T> {
 
     /// The plain values.
     pub fn value(&self) -> Geometry<f64> {
-        let pair = |v: &[T; 2]| [v[0].value(), v[1].value()];
+        self.map(T::value)
+    }
+
+    /// Every dimension through `f`.
+    pub(crate) fn map<U>(&self, f: impl Fn(T) -> U) -> Geometry<U> {
+        let pair = |v: &[T; 2]| [f(v[0]), f(v[1])];
         Geometry {
-            seats: self.seats.iter().map(Pose::value).collect(),
-            seat_angles: self.seat_angles.iter().map(|a| a.value()).collect(),
+            seats: (self.seats.iter())
+                .map(|p| Pose {
+                    x: f(p.x),
+                    y: f(p.y),
+                    c: f(p.c),
+                    s: f(p.s),
+                })
+                .collect(),
+            seat_angles: self.seat_angles.iter().map(|a| f(*a)).collect(),
             markers: self.markers.iter().map(pair).collect(),
             lines: (self.lines.iter())
                 .map(|l| LocalLine {
@@ -155,9 +178,9 @@ impl<T: Number> Geometry<T> {
             angles: self.angles.iter().map(pair).collect(),
             gears: (self.gears.iter())
                 .map(|g| GearConstants {
-                    first: g.first.value(),
-                    second: g.second.value(),
-                    constant: g.constant.value(),
+                    first: f(g.first),
+                    second: f(g.second),
+                    constant: f(g.constant),
                 })
                 .collect(),
         }
@@ -191,7 +214,7 @@ impl Geometry<f64> {
 /// Places a link in its body: welded links hang on the link they are welded to.
 fn seat<T: Number>(
     mechanism: &Mechanism,
-    local: &[Vec<[T; 2]>],
+    local: &[[T; 2]],
     scalar: &impl Fn(&kempe_model::Scalar) -> T,
     link: usize,
     seats: &mut Vec<Option<(Pose<T>, T)>>,
@@ -208,7 +231,7 @@ fn seat<T: Number>(
                 points
                     .iter()
                     .position(|p| p.point == *point)
-                    .map_or([T::zero(); 2], |i| local[l][i])
+                    .map_or([T::zero(); 2], |i| local[mechanism.markers_of(l)][i])
             };
             let angle = scalar(angle);
             let turn = Pose::from_angle(T::zero(), T::zero(), angle);

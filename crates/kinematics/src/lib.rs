@@ -2,6 +2,7 @@
 
 pub mod assemble;
 pub mod assur;
+pub mod batch;
 pub mod blocks;
 pub mod bordered;
 mod bridge;
@@ -35,6 +36,7 @@ mod statistics;
 mod swept;
 pub mod trace;
 
+pub use batch::{Batch, BatchError, Designs, sweep_states};
 pub use certify::{
     Certificate, CertifiedMotion, Certifier, Subdivision, certify_motion, certify_pose,
 };

@@ -28,6 +28,21 @@ pub struct Marker {
     pub body: BodyId,
     /// Index of its local coordinates in the geometry.
     pub index: u32,
+    /// What is known of its place whatever the dimensions: saves work in every pose.
+    pub spot: Spot,
+}
+
+/// What is known of a marker's place in its body whatever the dimensions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Spot {
+    /// On the frame: its place in the body is its place in the frame.
+    Frame,
+    /// At the body's origin.
+    Origin,
+    /// On the body's x axis.
+    Axis,
+    /// Anywhere.
+    Anywhere,
 }
 
 /// A directed line of a body: an index into the geometry's lines.
@@ -275,13 +290,28 @@ impl Mechanism {
         self.seats[link.index()].body
     }
 
+    /// Markers of a link: one for each of its points, in order.
+    pub(crate) fn markers_of(&self, link: usize) -> std::ops::Range<usize> {
+        let first = self.first_marker[link] as usize;
+        first..first + self.model.links[link].points.len()
+    }
+
     /// The marker of a point on a link.
     pub fn marker(&self, at: LinkPointRef) -> Option<Marker> {
         let link = self.model.links.get(at.link.index())?;
         let place = link.points.iter().position(|p| p.point == at.point)?;
+        let body = self.body_of(at.link);
+        let spot = match &link.points[place].place {
+            _ if body == BodyId::GROUND => Spot::Frame,
+            _ if self.seats[at.link.index()].weld.is_some() => Spot::Anywhere,
+            Place::Cartesian { x, y } if *x == ZERO && *y == ZERO => Spot::Origin,
+            Place::Cartesian { y, .. } if *y == ZERO => Spot::Axis,
+            _ => Spot::Anywhere,
+        };
         Some(Marker {
-            body: self.body_of(at.link),
+            body,
             index: self.first_marker[at.link.index()] + place as u32,
+            spot,
         })
     }
 

@@ -7,7 +7,7 @@ use crate::mechanism::Mechanism;
 use crate::newton::PlanNumber;
 use crate::plan::{Plan, Step};
 use crate::state::{Branch, Design, State};
-use crate::trace::{Follower, Node, hermite};
+use crate::trace::{Cubic, Follower, Node};
 
 /// Steps after which a trace is given up.
 pub const STEP_LIMIT: usize = 200_000;
@@ -247,9 +247,14 @@ impl<'m> Motion<'m> {
         (self.demanded.0.max(first), self.demanded.1.min(last))
     }
 
+    /// How far beyond its ends the motion still counts as reaching.
+    pub(crate) fn margin(&self) -> f64 {
+        AT_LIMIT * self.scale
+    }
+
     /// Whether a path parameter lies on the motion.
     pub fn reaches(&self, p: f64) -> bool {
-        let tolerance = AT_LIMIT * self.scale;
+        let tolerance = self.margin();
         let (Some(first), Some(last)) = (self.parameters.first(), self.parameters.last()) else {
             return false;
         };
@@ -354,16 +359,22 @@ impl<'m> Motion<'m> {
                 high = middle
             }
         }
-        let z = hermite(from, to, 0.5 * (low + high));
-        for (body, part) in z
-            .chunks_exact(3)
-            .enumerate()
-            .take(self.mechanism.bodies - 1)
-        {
-            branch.guess[body + 1] =
-                crate::pose::Pose::from_angle(part[0] * self.size, part[1] * self.size, part[2]);
-            branch.near[body + 1] = part[2];
+        let cubic = Cubic::new(from, to, 0.5 * (low + high));
+        for body in 1..self.mechanism.bodies {
+            let [x, y, angle] = [0, 1, 2].map(|k| cubic.part(3 * (body - 1) + k));
+            branch.guess[body] = crate::pose::Pose::from_angle(x * self.size, y * self.size, angle);
+            branch.near[body] = angle;
         }
+    }
+
+    /// The stretches on which every assembly mode stays the same: where each begins, and the modes; rising.
+    pub(crate) fn stretches(&self) -> impl Iterator<Item = (f64, &[f64])> {
+        (self.patches.iter()).map(|patch| {
+            (
+                self.parameters[patch.from],
+                self.signs[patch.signs].as_slice(),
+            )
+        })
     }
 
     /// Storage for solving poses of this motion on the number `T`.

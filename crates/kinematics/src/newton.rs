@@ -97,48 +97,123 @@ impl<const W: usize> PlanNumber for Lanes<W> {
         state: &mut State<Self>,
     ) -> Self {
         let mut determinant = [f64::NAN; W];
-        for lane in 0..W {
-            let State {
-                inputs,
-                poses,
-                scratch,
-                ..
-            } = state;
-            for (plain, wide) in scratch.poses.iter_mut().zip(poses.iter()) {
-                *plain = Pose {
-                    x: wide.x.0[lane],
-                    y: wide.y.0[lane],
-                    c: wide.c.0[lane],
-                    s: wide.s.0[lane],
-                };
-            }
-            for (plain, wide) in scratch.inputs.iter_mut().zip(inputs.iter()) {
-                (plain.value, plain.c, plain.s) =
-                    (wide.value.0[lane], wide.c.0[lane], wide.s.0[lane]);
-            }
-            let geometry = &design.plain[lane.min(design.plain.len() - 1)];
-            start(block, branch, &mut scratch.poses);
-            determinant[lane] = plain_newton(
-                block,
-                mechanism,
-                geometry,
-                &scratch.inputs,
-                branch,
-                &mut scratch.poses,
-                &mut scratch.qr,
-                &mut scratch.rhs,
-            );
+        for (lane, determinant) in determinant.iter_mut().enumerate() {
+            *determinant =
+                lane_newton(block, mechanism, design, branch, state, |x| x.0[lane], lane);
+            let State { poses, scratch, .. } = state;
             for unknown in &block.unknowns {
-                let (wide, plain) = (
-                    &mut poses[unknown.body().index()],
-                    &scratch.poses[unknown.body().index()],
-                );
+                let body = unknown.body().index();
+                let (wide, plain) = (&mut poses[body], &scratch.poses[body]);
                 (wide.x.0[lane], wide.y.0[lane]) = (plain.x, plain.y);
                 (wide.c.0[lane], wide.s.0[lane]) = (plain.c, plain.s);
             }
         }
         Lanes(determinant)
     }
+}
+
+impl<const W: usize, const N: usize> PlanNumber for Jet<Lanes<W>, N> {
+    fn solve_newton(
+        block: &NewtonBlock,
+        mechanism: &Mechanism,
+        design: &Design<Self>,
+        branch: &Branch,
+        state: &mut State<Self>,
+    ) -> Self {
+        let mut determinant = Lanes([f64::NAN; W]);
+        for lane in 0..W {
+            let part = |x: Self| x.coefficient(0).0[lane];
+            determinant.0[lane] = lane_newton(block, mechanism, design, branch, state, part, lane);
+            let State {
+                inputs,
+                poses,
+                scratch,
+                ..
+            } = state;
+            let put = |to: &mut Self, from: f64| {
+                *to = Self::from_coefficients(std::array::from_fn(|k| {
+                    let mut lanes = to.coefficient(k);
+                    lanes.0[lane] = if k == 0 { from } else { 0.0 };
+                    lanes
+                }));
+            };
+            for unknown in &block.unknowns {
+                let body = unknown.body().index();
+                let (wide, plain) = (&mut poses[body], &scratch.poses[body]);
+                match unknown {
+                    Unknown::Angle(_) => {
+                        put(&mut wide.c, plain.c);
+                        put(&mut wide.s, plain.s);
+                    }
+                    Unknown::Place(_) => {
+                        put(&mut wide.x, plain.x);
+                        put(&mut wide.y, plain.y);
+                    }
+                }
+            }
+            // As in `carry_over`, with this lane's Jacobian; the other lanes stay where they are.
+            let rhs = &mut scratch.wide_rhs[..block.rows.len()];
+            for _ in 0..N {
+                let situation = Situation {
+                    geometry: &design.geometry,
+                    inputs,
+                    poses,
+                    near: &branch.near,
+                };
+                fill_residuals(block, mechanism, &situation, rhs);
+                for row in rhs.iter_mut() {
+                    *row = Self::from_coefficients(std::array::from_fn(|k| {
+                        let mut own = Lanes([0.0; W]);
+                        own.0[lane] = row.coefficient(k).0[lane];
+                        own
+                    }));
+                }
+                scratch.qr.solve(rhs);
+                apply_step(block, poses, &rhs[..block.size]);
+            }
+        }
+        Self::constant(determinant)
+    }
+}
+
+/// Solves one lane, whose plain value `part` takes out, into the plain poses of the scratch; returns the determinant.
+fn lane_newton<T: Number>(
+    block: &NewtonBlock,
+    mechanism: &Mechanism,
+    design: &Design<T>,
+    branch: &Branch,
+    state: &mut State<T>,
+    part: impl Fn(T) -> f64,
+    lane: usize,
+) -> f64 {
+    let State {
+        inputs,
+        poses,
+        scratch,
+        ..
+    } = state;
+    for (plain, wide) in scratch.poses.iter_mut().zip(poses.iter()) {
+        *plain = Pose {
+            x: part(wide.x),
+            y: part(wide.y),
+            c: part(wide.c),
+            s: part(wide.s),
+        };
+    }
+    for (plain, wide) in scratch.inputs.iter_mut().zip(inputs.iter()) {
+        (plain.value, plain.c, plain.s) = (part(wide.value), part(wide.c), part(wide.s));
+    }
+    start(block, branch, &mut scratch.poses);
+    plain_newton(
+        block,
+        mechanism,
+        &design.plain[lane.min(design.plain.len() - 1)],
+        &scratch.inputs,
+        branch,
+        &mut scratch.poses,
+        &mut scratch.qr,
+        &mut scratch.rhs,
+    )
 }
 
 fn start(block: &NewtonBlock, branch: &Branch, poses: &mut [Pose<f64>]) {

@@ -269,6 +269,17 @@ impl Step {
             _ => false,
         }
     }
+
+    /// Whether the step looks at the branch's guesses or turn counts: Newton blocks, gears and racks.
+    pub fn needs_guess(&self) -> bool {
+        let rolls = |condition: &Condition| matches!(condition, Condition::Roll { .. });
+        match self {
+            Step::Newton { .. } | Step::Gear { .. } | Step::Roll { .. } => true,
+            Step::Cross { conditions, .. } => conditions.iter().any(rolls),
+            Step::Swing { condition, .. } => rolls(condition),
+            _ => false,
+        }
+    }
 }
 
 impl Plan {

@@ -49,16 +49,17 @@ impl Qr {
         for k in 0..self.columns {
             let (head, tail) = self.a.split_at_mut((k + 1) * m);
             let v = &mut head[k * m + k..];
-            let norm = v.iter().map(|x| x * x).sum::<f64>().sqrt();
+            let norm = dot(v, v).sqrt();
             let alpha = if v[0] > 0.0 { -norm } else { norm };
+            // Half of v.v after the next line.
+            let half = norm * (norm + v[0].abs());
             v[0] -= alpha;
-            let size = v.iter().map(|x| x * x).sum::<f64>();
-            let scale = if size > 0.0 { 2.0 / size } else { 0.0 };
+            let scale = if half > 0.0 { 1.0 / half } else { 0.0 };
             self.diagonal.push(alpha);
             self.scale.push(scale);
             for column in tail.chunks_exact_mut(m) {
                 let w = &mut column[k..];
-                let sum = v.iter().zip(w.iter()).map(|(x, y)| x * y).sum::<f64>() * scale;
+                let sum = dot(v, w) * scale;
                 for (x, y) in v.iter().zip(w) {
                     *y -= sum * x;
                 }
@@ -169,9 +170,7 @@ impl Qr {
             }
         };
         // Uneven entries, so that no singular vector is missed by symmetry.
-        let mut x: Vec<f64> = (0..n)
-            .map(|i| 1.0 + 0.37 * ((i * 7) % 11) as f64)
-            .collect();
+        let mut x: Vec<f64> = (0..n).map(|i| 1.0 + 0.37 * ((i * 7) % 11) as f64).collect();
         let mut value = f64::INFINITY;
         for _ in 0..60 {
             let length = x.iter().map(|v| v * v).sum::<f64>().sqrt();
@@ -205,6 +204,20 @@ impl Qr {
             });
         if high > 0.0 { low / high } else { 0.0 }
     }
+}
+
+/// Dot product in four partial sums, which the compiler can keep side by side.
+#[inline(always)]
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let ((a, a_rest), (b, b_rest)) = (a.as_chunks::<4>(), b.as_chunks::<4>());
+    let mut sums = [0.0; 4];
+    for (a, b) in a.iter().zip(b) {
+        for k in 0..4 {
+            sums[k] += a[k] * b[k];
+        }
+    }
+    let rest: f64 = a_rest.iter().zip(b_rest).map(|(a, b)| a * b).sum();
+    (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
 }
 
 #[cfg(test)]

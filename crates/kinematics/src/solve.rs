@@ -3,9 +3,10 @@
 use kempe_model::DriveId;
 use kempe_number::Number;
 
-use crate::closed_form::{Locus, direction, dyad, meet, reach_locus};
+use crate::closed_form::{DYAD_CONSTANTS, Locus, direction, dyad, meet, reach_locus};
 use crate::constraint::Situation;
-use crate::mechanism::{Constraint, Marker, Mechanism};
+use crate::geometry::Geometry;
+use crate::mechanism::{BodyId, Constraint, LineRef, Marker, Mechanism, Spot};
 use crate::newton::PlanNumber;
 use crate::plan::{Carrier, Condition, Plan, Reach, Sliding, Step};
 use crate::pose::{Pose, cross, dot, left, sub};
@@ -16,7 +17,7 @@ impl Plan {
     /// `state.determinants`. Where the mechanism cannot be assembled the poses become NaN (empty for intervals).
     ///
     /// Allocates nothing.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn solve<T: PlanNumber>(
         &self,
         mechanism: &Mechanism,
@@ -30,7 +31,7 @@ impl Plan {
     }
 
     /// Solves one step with the given assembly mode; the steps before it must have been solved.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub(crate) fn solve_step<T: PlanNumber>(
         &self,
         index: usize,
@@ -48,14 +49,11 @@ impl Plan {
                 input,
                 reversed,
             } => {
-                let [c, s] = turned(
-                    design,
-                    state,
-                    state.poses[from.index()],
-                    offset,
-                    input,
-                    reversed,
-                );
+                let by = turn_by(design, state, offset, input, reversed);
+                let [c, s] = match from {
+                    BodyId::GROUND => by,
+                    _ => state.poses[from.index()].turn(by),
+                };
                 let pose = &mut state.poses[body.index()];
                 (pose.c, pose.s) = (c, s);
                 T::one()
@@ -63,7 +61,7 @@ impl Plan {
             Step::Pin { own, at } => {
                 let world = place(design, state, at);
                 let pose = &mut state.poses[own.body.index()];
-                *pose = Pose::pinned(pose.c, pose.s, design.geometry.marker(own), world);
+                *pose = pinned(design, own, [pose.c, pose.s], world);
                 T::one()
             }
             Step::Dyad {
@@ -75,16 +73,13 @@ impl Plan {
                 inner_b,
                 constants,
             } => {
-                let placed = (place(design, state, at_a), place(design, state, at_b));
-                let outer = (
-                    design.geometry.marker(outer_a),
-                    design.geometry.marker(outer_b),
-                );
-                let constants =
-                    &design.constants[constants..constants + crate::closed_form::DYAD_CONSTANTS];
-                let (a, b, h) = dyad(constants, outer, placed, sign);
-                state.poses[inner_a.body.index()] = a;
-                state.poses[inner_b.body.index()] = b;
+                let (wa, wb) = (place(design, state, at_a), place(design, state, at_b));
+                let k = &design.constants[constants..constants + DYAD_CONSTANTS];
+                let (da, db, h) = dyad(k, sub(wb, wa), sign);
+                let a = direction_by([k[0], k[1]], da, (outer_a, inner_a));
+                let b = direction_by([k[2], k[3]], db, (outer_b, inner_b));
+                state.poses[inner_a.body.index()] = pinned(design, outer_a, a, wa);
+                state.poses[inner_b.body.index()] = pinned(design, outer_b, b, wb);
                 h
             }
             Step::Swing {
@@ -169,17 +164,70 @@ impl Plan {
     }
 }
 
-#[inline(always)]
+/// A marker in the frame.
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn place<T: Number>(design: &Design<T>, state: &State<T>, marker: Marker) -> [T; 2] {
-    state.poses[marker.body.index()].place(design.geometry.marker(marker))
+    place_in(&design.geometry, &state.poses, marker)
 }
 
-/// Direction of a body that is turned by an angle constant and a drive against another.
-#[inline(always)]
-fn turned<T: Number>(
+/// A marker in the frame, with what is known of its place taken into account.
+#[cfg_attr(not(debug_assertions), inline(always))]
+pub(crate) fn place_in<T: Number>(
+    geometry: &Geometry<T>,
+    poses: &[Pose<T>],
+    marker: Marker,
+) -> [T; 2] {
+    let p = geometry.marker(marker);
+    if marker.spot == Spot::Frame {
+        return p;
+    }
+    let pose = &poses[marker.body.index()];
+    match marker.spot {
+        Spot::Origin => [pose.x, pose.y],
+        Spot::Axis => [pose.x + pose.c * p[0], pose.y + pose.s * p[0]],
+        Spot::Frame | Spot::Anywhere => pose.place(p),
+    }
+}
+
+/// The pose of a body with this direction whose marker `own` lies at `world`.
+#[cfg_attr(not(debug_assertions), inline(always))]
+fn pinned<T: Number>(design: &Design<T>, own: Marker, [c, s]: [T; 2], world: [T; 2]) -> Pose<T> {
+    let p = design.geometry.marker(own);
+    let [x, y] = match own.spot {
+        Spot::Origin => world,
+        Spot::Axis => [world[0] - c * p[0], world[1] - s * p[0]],
+        Spot::Frame | Spot::Anywhere => return Pose::pinned(c, s, p, world),
+    };
+    Pose { x, y, c, s }
+}
+
+/// Direction of a body whose vector between two markers is seen as `seen`; `k` is that vector over its square.
+#[cfg_attr(not(debug_assertions), inline(always))]
+fn direction_by<T: Number>(k: [T; 2], seen: [T; 2], (from, to): (Marker, Marker)) -> [T; 2] {
+    let on_axis = |m: Marker| matches!(m.spot, Spot::Origin | Spot::Axis);
+    if on_axis(from) && on_axis(to) {
+        [k[0] * seen[0], k[0] * seen[1]]
+    } else {
+        [dot(k, seen), cross(k, seen)]
+    }
+}
+
+/// Origin and unit direction of a line in the frame.
+#[cfg_attr(not(debug_assertions), inline(always))]
+fn placed_line<T: Number>(design: &Design<T>, state: &State<T>, line: LineRef) -> ([T; 2], [T; 2]) {
+    let local = design.geometry.line(line);
+    if line.body == BodyId::GROUND {
+        return (local.origin, local.direction);
+    }
+    let pose = &state.poses[line.body.index()];
+    (pose.place(local.origin), pose.turn(local.direction))
+}
+
+/// The turn by an angle constant and a drive, as a unit vector.
+#[cfg_attr(not(debug_assertions), inline(always))]
+fn turn_by<T: Number>(
     design: &Design<T>,
     state: &State<T>,
-    from: Pose<T>,
     offset: u32,
     input: Option<DriveId>,
     reversed: bool,
@@ -192,11 +240,11 @@ fn turned<T: Number>(
     if reversed {
         by[1] = -by[1];
     }
-    from.turn(by)
+    by
 }
 
 /// What a condition says about the point its carrier holds. The carrier's angle must be known.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn locus<T: Number>(
     design: &Design<T>,
     branch: &Branch,
@@ -211,13 +259,8 @@ fn locus<T: Number>(
         .map_or([T::zero(); 2], |pin| geometry.marker(pin));
     match condition {
         Condition::OnLine { own, line } | Condition::TravelOn { own, line, .. } => {
-            let local = geometry.line(line);
-            let guide = &state.poses[line.body.index()];
-            let along = guide.turn(local.direction);
-            let from = sub(
-                guide.place(local.origin),
-                pose.turn(sub(geometry.marker(own), pin)),
-            );
+            let (origin, along) = placed_line(design, state, line);
+            let from = sub(origin, pose.turn(sub(geometry.marker(own), pin)));
             on_line(state, condition, along, from)
         }
         Condition::Through { line, point } | Condition::TravelThrough { line, point, .. } => {
@@ -261,7 +304,7 @@ fn locus<T: Number>(
 }
 
 /// A point on the line through `from` along `along`, or with the drive's coordinate along it.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn on_line<T: Number>(
     state: &State<T>,
     condition: Condition,
@@ -277,7 +320,7 @@ fn on_line<T: Number>(
 }
 
 /// Places a translating body by the point it carries.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn carry<T: Number>(design: &Design<T>, state: &mut State<T>, carrier: Carrier, x: [T; 2]) {
     let pin = carrier
         .pin
@@ -286,7 +329,7 @@ fn carry<T: Number>(design: &Design<T>, state: &mut State<T>, carrier: Carrier, 
     *pose = Pose::pinned(pose.c, pose.s, pin, x);
 }
 
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn swing<T: Number>(
     design: &Design<T>,
     branch: &Branch,
@@ -308,14 +351,8 @@ fn swing<T: Number>(
             state.inputs[input.index()].value,
         ),
         (None, Condition::OnLine { line, .. } | Condition::TravelOn { line, .. }) => {
-            let local = design.geometry.line(line);
-            let guide = &state.poses[line.body.index()];
-            on_line(
-                state,
-                condition,
-                guide.turn(local.direction),
-                guide.place(local.origin),
-            )
+            let (origin, along) = placed_line(design, state, line);
+            on_line(state, condition, along, origin)
         }
         // Conditions with a line of the swinging body are `SwingLine`s.
         (
@@ -327,7 +364,7 @@ fn swing<T: Number>(
     };
     let (reach, h) = reach_locus(center, square.sqrt(), locus, sign);
     let [c, s] = direction(arm, reach, square);
-    state.poses[own.body.index()] = Pose::pinned(c, s, pin, center);
+    state.poses[own.body.index()] = pinned(design, own, [c, s], center);
     if let Some(carrier) = partner {
         carry(
             design,
@@ -339,7 +376,7 @@ fn swing<T: Number>(
     h
 }
 
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn swing_line<T: Number>(
     design: &Design<T>,
     state: &mut State<T>,
@@ -354,14 +391,7 @@ fn swing_line<T: Number>(
     let v = sub(far, center);
     // Turn of the partner against the body, as a unit vector.
     let relative = partner.map(|p| {
-        let mut by = geometry.angles[p.offset as usize];
-        if let Some(drive) = p.input {
-            let q = &state.inputs[drive.index()];
-            by = [by[0] * q.c - by[1] * q.s, by[1] * q.c + by[0] * q.s];
-        }
-        if p.reversed {
-            by[1] = -by[1];
-        }
+        let by = turn_by(design, state, p.offset, p.input, p.reversed);
         Pose {
             x: T::zero(),
             y: T::zero(),

@@ -6,7 +6,7 @@ use kempe_number::Number;
 use crate::closed_form::dyad_constants;
 use crate::constraint::{Input, Situation};
 use crate::geometry::Geometry;
-use crate::mechanism::Mechanism;
+use crate::mechanism::{Marker, Mechanism};
 use crate::plan::{Plan, Step};
 use crate::pose::Pose;
 use crate::qr::Qr;
@@ -35,7 +35,24 @@ impl<T: Number> Design<T> {
         geometry: Geometry<T>,
         plain: Vec<Geometry<f64>>,
     ) -> Self {
-        let mut constants = vec![T::zero(); plan.constants];
+        let mut it = Self {
+            geometry,
+            constants: vec![T::zero(); plan.constants],
+            plain,
+        };
+        it.prepare(plan);
+        it
+    }
+
+    /// Evaluates the dimensions anew for other parameter values, in the same storage; not the plain ones.
+    pub(crate) fn update(&mut self, mechanism: &Mechanism, plan: &Plan, parameters: &[T]) {
+        self.geometry.update(mechanism, parameters);
+        self.prepare(plan);
+    }
+
+    /// Fills the closed forms' constants from the geometry.
+    fn prepare(&mut self, plan: &Plan) {
+        let geometry = &self.geometry;
         for step in &plan.steps {
             if let Step::Dyad {
                 outer_a,
@@ -49,13 +66,19 @@ impl<T: Number> Design<T> {
                 let a = (geometry.marker(outer_a), geometry.marker(inner_a));
                 let b = (geometry.marker(outer_b), geometry.marker(inner_b));
                 let values = dyad_constants(a, b);
-                constants[at..at + values.len()].copy_from_slice(&values);
+                self.constants[at..at + values.len()].copy_from_slice(&values);
             }
         }
-        Self {
-            geometry,
-            constants,
-            plain,
+    }
+}
+
+impl Design<f64> {
+    /// The same design as constants of a richer number.
+    pub fn lift<T: Number>(&self) -> Design<T> {
+        Design {
+            geometry: self.geometry.map(T::from_f64),
+            constants: self.constants.iter().map(|c| T::from_f64(*c)).collect(),
+            plain: vec![self.geometry.clone()],
         }
     }
 }
@@ -140,6 +163,12 @@ impl<T: Number> State<T> {
         {
             *input = input_of(drive, value);
         }
+    }
+
+    /// A marker in the frame, m.
+    #[inline(always)]
+    pub fn place(&self, design: &Design<T>, marker: Marker) -> [T; 2] {
+        crate::solve::place_in(&design.geometry, &self.poses, marker)
     }
 
     /// What the constraints see of this state.

@@ -295,23 +295,43 @@ pub(crate) fn is_length(constraint: &Constraint) -> bool {
     )
 }
 
+/// The cubic through two nodes with their tangents, at one place.
+pub(crate) struct Cubic<'a> {
+    from: &'a Node,
+    to: &'a Node,
+    weights: [f64; 4],
+}
+
+impl<'a> Cubic<'a> {
+    /// The cubic from one node to another at a part `s` of the step.
+    pub fn new(from: &'a Node, to: &'a Node, s: f64) -> Self {
+        let h = from
+            .z
+            .iter()
+            .zip(&to.z)
+            .map(|(a, b)| (b - a) * (b - a))
+            .sum::<f64>()
+            .sqrt();
+        let weights = [
+            (1.0 + 2.0 * s) * (1.0 - s) * (1.0 - s),
+            s * s * (3.0 - 2.0 * s),
+            s * (1.0 - s) * (1.0 - s) * h,
+            s * s * (s - 1.0) * h,
+        ];
+        Self { from, to, weights }
+    }
+
+    /// The `i`-th unknown there.
+    pub fn part(&self, i: usize) -> f64 {
+        let ([a, b, c, d], from, to) = (self.weights, self.from, self.to);
+        a * from.z[i] + b * to.z[i] + c * from.tangent[i] + d * to.tangent[i]
+    }
+}
+
 /// The cubic through two nodes with their tangents, at a part `s` of the step.
 pub fn hermite(from: &Node, to: &Node, s: f64) -> Vec<f64> {
-    let h = from
-        .z
-        .iter()
-        .zip(&to.z)
-        .map(|(a, b)| (b - a) * (b - a))
-        .sum::<f64>()
-        .sqrt();
-    let (a, b) = (
-        (1.0 + 2.0 * s) * (1.0 - s) * (1.0 - s),
-        s * s * (3.0 - 2.0 * s),
-    );
-    let (c, d) = (s * (1.0 - s) * (1.0 - s) * h, s * s * (s - 1.0) * h);
-    (0..from.z.len())
-        .map(|i| a * from.z[i] + b * to.z[i] + c * from.tangent[i] + d * to.tangent[i])
-        .collect()
+    let cubic = Cubic::new(from, to, s);
+    (0..from.z.len()).map(|i| cubic.part(i)).collect()
 }
 
 /// Unit vector from one node to the next.

@@ -45,17 +45,21 @@ impl Link {
     ///
     /// Coordinates of a triangle that cannot close lie on the line of its other two points.
     pub fn evaluate<T: Number>(&self, parameters: &[T]) -> Vec<[T; 2]> {
-        let mut placed: Vec<[T; 2]> = Vec::with_capacity(self.points.len());
-        for point in &self.points {
-            let next = place(&point.place, &placed, parameters);
-            placed.push(next);
-        }
+        let mut placed = vec![[T::zero(); 2]; self.points.len()];
+        self.evaluate_into(parameters, &mut placed);
         placed
     }
 
     /// A place on the link, in the link's own frame, m.
     pub fn locate<T: Number>(&self, at: &Place, parameters: &[T]) -> [T; 2] {
         place(at, &self.evaluate(parameters), parameters)
+    }
+
+    /// [`Link::evaluate`] into storage with room for every point.
+    pub fn evaluate_into<T: Number>(&self, parameters: &[T], out: &mut [[T; 2]]) {
+        for (index, point) in self.points.iter().enumerate().take(out.len()) {
+            out[index] = place(&point.place, &out[..index], parameters);
+        }
     }
 
     /// The centre of mass in the link's own frame, m; `None` when the link has no mass properties.
