@@ -243,6 +243,22 @@ struct Row {
 
 /// Rows of a loaded model; `None` where the mechanism has no regular motion.
 fn rows(model: &Model, measures: &[Measure], parts: usize) -> Option<Vec<Row>> {
+    rows_from_start(model, measures, &offsets(model, parts)?)
+}
+
+/// Evenly spread places inside what a model's motion reaches, from its start.
+fn offsets(model: &Model, parts: usize) -> Option<Vec<f64>> {
+    let mechanism = Mechanism::new(model);
+    let plan = Plan::new(&mechanism);
+    let parameters: Vec<f64> = model.parameter_values();
+    let design = Design::new(&mechanism, &plan, &parameters);
+    let motion = Motion::new(&mechanism, &plan, &design, &parameters).ok()?;
+    let inside = spread(&motion, parts + 2).into_iter().skip(1).take(parts);
+    Some(inside.map(|p| p - motion.start).collect())
+}
+
+/// Rows at places counted from the start of the motion: two motions that end at a limit end at slightly different places.
+fn rows_from_start(model: &Model, measures: &[Measure], offsets: &[f64]) -> Option<Vec<Row>> {
     let mechanism = Mechanism::new(model);
     let plan = Plan::new(&mechanism);
     let parameters: Vec<f64> = model.parameter_values();
@@ -254,8 +270,8 @@ fn rows(model: &Model, measures: &[Measure], parts: usize) -> Option<Vec<Row>> {
         Err(error) => panic!("{error}"),
     };
     let mut rows = Vec::new();
-    for p in spread(&motion, parts + 2).into_iter().skip(1).take(parts) {
-        let row = sampler.at_parameter(p);
+    for offset in offsets {
+        let row = sampler.at_parameter(motion.start + offset);
         let Some(evidence) = row.evidence else {
             continue;
         };
@@ -365,15 +381,22 @@ proptest! {
         let mut grown = Case::of(&spec.scaled(length)).model;
         load(&mut plain, seed, size, PLAIN);
         load(&mut grown, seed, size, Units { length, mass, ..PLAIN });
-        let of = |model: &Model| {
+        let Some(offsets) = offsets(&plain, 3) else { return Ok(()) };
+        let moving: Vec<&kempe_model::Drive> = (plain.drives.iter())
+            .filter(|d| d.law.extent(&[]).0 < d.law.extent(&[]).1)
+            .collect();
+        let along_length = matches!(moving[..], [d] if d.dimension != kempe_units::Dimension::ANGLE);
+        let of = |model: &Model, factor: f64| {
             let mut measures = drive_forces(model);
             measures.extend(pins(model));
-            rows(model, &measures, 3)
+            let offsets: Vec<f64> = offsets.iter().map(|p| p * factor).collect();
+            rows_from_start(model, &measures, &offsets)
         };
+        let grow = if along_length { length } else { 1.0 };
         let drives: Vec<bool> = (plain.drives.iter())
             .map(|d| d.dimension == kempe_units::Dimension::ANGLE)
             .collect();
-        let (Some(a), Some(b)) = (of(&plain), of(&grown)) else { return Ok(()) };
+        let (Some(a), Some(b)) = (of(&plain, 1.0), of(&grown, grow)) else { return Ok(()) };
         if a.len() != b.len() { return Ok(()) }
         for (a, b) in a.iter().zip(&b) {
             let largest = (a.values.iter().enumerate())
@@ -409,10 +432,11 @@ proptest! {
                 Between::Points(..) => true,
             });
         }
+        let Some(offsets) = offsets(&plain, 3) else { return Ok(()) };
         let of = |model: &Model| {
             let mut measures = drive_forces(model);
             measures.extend(pins(model));
-            rows(model, &measures, 3)
+            rows_from_start(model, &measures, &offsets)
         };
         let (Some(a), Some(b)) = (of(&plain), of(&moved)) else { return Ok(()) };
         if a.len() != b.len() { return Ok(()) }
