@@ -310,7 +310,11 @@ fn sets() -> Vec<InstructionSet> {
 }
 
 /// Scalar, rates and lanes sweeps of one mechanism against its kernel on every number.
-#[allow(clippy::too_many_arguments, reason = "one kernel on every number")]
+#[allow(
+    clippy::too_many_arguments,
+    clippy::type_complexity,
+    reason = "one kernel on every number"
+)]
 fn single_design(
     title: &str,
     file: &str,

@@ -43,7 +43,7 @@ impl Unknown {
 
     fn from_node(node: usize) -> Self {
         let body = BodyId((node / 2 + 1) as u32);
-        if node % 2 == 0 {
+        if node.is_multiple_of(2) {
             Unknown::Angle(body)
         } else {
             Unknown::Place(body)

@@ -21,7 +21,7 @@ pub(crate) enum Locus<T> {
 
 /// The vector of squared length `square` whose projection on the unit vector `n` is `k`; `sign` > 0 puts it on the side
 /// that `n` turned left by 90 degrees and reversed points to (ahead along a line whose left normal is `n`).
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn with_projection<T: Number>(n: [T; 2], k: T, square: T, sign: f64) -> ([T; 2], T) {
     let h = (square - k.square()).sqrt() * sign;
     let along = [n[1], -n[0]];
@@ -32,7 +32,7 @@ pub(crate) fn with_projection<T: Number>(n: [T; 2], k: T, square: T, sign: f64) 
 /// |v|^2, `difference` = r1^2 - r2^2, `outer` = (r1 + r2)^2, `inner` = (r1 - r2)^2. `sign` > 0 puts it left of `v`.
 ///
 /// The height comes from Heron's product, which keeps full accuracy near the dead points.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn circle_circle<T: Number>(
     v: [T; 2],
     difference: T,
@@ -55,7 +55,7 @@ pub(crate) fn circle_circle<T: Number>(
 }
 
 /// The meeting point of a locus with a circle of squared radius `square` (radius `radius`) about `center`, from there.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn reach_locus<T: Number>(
     center: [T; 2],
     radius: T,
@@ -79,7 +79,7 @@ pub(crate) fn reach_locus<T: Number>(
 }
 
 /// The meeting point of two loci.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn meet<T: Number>(a: Locus<T>, b: Locus<T>, sign: f64) -> ([T; 2], T) {
     match (a, b) {
         (Locus::Line(n, k), Locus::Line(m, l)) => {
@@ -98,7 +98,7 @@ pub(crate) fn meet<T: Number>(a: Locus<T>, b: Locus<T>, sign: f64) -> ([T; 2], T
 
 /// Direction of a body from one of its vectors seen in the body (`own`) and in the frame (`seen`), of the same length:
 /// (cosine, sine). `square` is that length squared.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn direction<T: Number>(own: [T; 2], seen: [T; 2], square: T) -> [T; 2] {
     [dot(own, seen) / square, cross(own, seen) / square]
 }
@@ -124,7 +124,7 @@ pub(crate) fn dyad_constants<T: Number>(
 
 /// The vectors from the placed pins of an RRR dyad to its inner pin, `v` joining the placed pins, and the determinant. The
 /// inner pin lies left of `v` for `sign` > 0.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn dyad<T: Number>(constants: &[T], v: [T; 2], sign: f64) -> ([T; 2], [T; 2], T) {
     let (da, h) = circle_circle(v, constants[4], constants[5], constants[6], sign);
     (da, sub(da, v), h)

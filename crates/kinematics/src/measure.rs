@@ -31,6 +31,9 @@ pub enum Along {
     Drive(DriveId),
 }
 
+/// Answers questions to the forces.
+pub type Forces<'a, B> = &'a dyn Fn(&ForceMeasure) -> Series<B>;
+
 /// A pose with its series along one variable, and all that is needed to measure it.
 pub struct Moment<'a, B> {
     /// The mechanism.
@@ -58,7 +61,7 @@ pub struct Moment<'a, B> {
     /// Lengths of path swept so far and since the start.
     pub swept: Vec<(PointId, B)>,
     /// Answers questions to the forces, where forces are computed.
-    pub forces: Option<&'a dyn Fn(&ForceMeasure) -> Series<B>>,
+    pub forces: Option<Forces<'a, B>>,
     /// Values of the statistics that occur, in SI.
     pub statistics: &'a [(Statistic, Measure, B)],
 }

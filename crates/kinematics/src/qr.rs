@@ -170,9 +170,7 @@ impl Qr {
             }
         };
         // Uneven entries, so that no singular vector is missed by symmetry.
-        let mut x: Vec<f64> = (0..n)
-            .map(|i| 1.0 + 0.37 * ((i * 7) % 11) as f64)
-            .collect();
+        let mut x: Vec<f64> = (0..n).map(|i| 1.0 + 0.37 * ((i * 7) % 11) as f64).collect();
         let mut value = f64::INFINITY;
         for _ in 0..60 {
             let length = x.iter().map(|v| v * v).sum::<f64>().sqrt();

@@ -17,7 +17,7 @@ impl Plan {
     /// `state.determinants`. Where the mechanism cannot be assembled the poses become NaN (empty for intervals).
     ///
     /// Allocates nothing.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn solve<T: PlanNumber>(
         &self,
         mechanism: &Mechanism,
@@ -31,7 +31,7 @@ impl Plan {
     }
 
     /// Solves one step with the given assembly mode; the steps before it must have been solved.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub(crate) fn solve_step<T: PlanNumber>(
         &self,
         index: usize,
@@ -165,13 +165,13 @@ impl Plan {
 }
 
 /// A marker in the frame.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn place<T: Number>(design: &Design<T>, state: &State<T>, marker: Marker) -> [T; 2] {
     place_in(&design.geometry, &state.poses, marker)
 }
 
 /// A marker in the frame, with what is known of its place taken into account.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn place_in<T: Number>(
     geometry: &Geometry<T>,
     poses: &[Pose<T>],
@@ -190,7 +190,7 @@ pub(crate) fn place_in<T: Number>(
 }
 
 /// The pose of a body with this direction whose marker `own` lies at `world`.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn pinned<T: Number>(design: &Design<T>, own: Marker, [c, s]: [T; 2], world: [T; 2]) -> Pose<T> {
     let p = design.geometry.marker(own);
     let [x, y] = match own.spot {
@@ -202,7 +202,7 @@ fn pinned<T: Number>(design: &Design<T>, own: Marker, [c, s]: [T; 2], world: [T;
 }
 
 /// Direction of a body whose vector between two markers is seen as `seen`; `k` is that vector over its square.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn direction_by<T: Number>(k: [T; 2], seen: [T; 2], (from, to): (Marker, Marker)) -> [T; 2] {
     let on_axis = |m: Marker| matches!(m.spot, Spot::Origin | Spot::Axis);
     if on_axis(from) && on_axis(to) {
@@ -213,7 +213,7 @@ fn direction_by<T: Number>(k: [T; 2], seen: [T; 2], (from, to): (Marker, Marker)
 }
 
 /// Origin and unit direction of a line in the frame.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn placed_line<T: Number>(design: &Design<T>, state: &State<T>, line: LineRef) -> ([T; 2], [T; 2]) {
     let local = design.geometry.line(line);
     if line.body == BodyId::GROUND {
@@ -224,7 +224,7 @@ fn placed_line<T: Number>(design: &Design<T>, state: &State<T>, line: LineRef) -
 }
 
 /// The turn by an angle constant and a drive, as a unit vector.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn turn_by<T: Number>(
     design: &Design<T>,
     state: &State<T>,
@@ -244,7 +244,7 @@ fn turn_by<T: Number>(
 }
 
 /// What a condition says about the point its carrier holds. The carrier's angle must be known.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn locus<T: Number>(
     design: &Design<T>,
     branch: &Branch,
@@ -304,7 +304,7 @@ fn locus<T: Number>(
 }
 
 /// A point on the line through `from` along `along`, or with the drive's coordinate along it.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn on_line<T: Number>(
     state: &State<T>,
     condition: Condition,
@@ -320,7 +320,7 @@ fn on_line<T: Number>(
 }
 
 /// Places a translating body by the point it carries.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn carry<T: Number>(design: &Design<T>, state: &mut State<T>, carrier: Carrier, x: [T; 2]) {
     let pin = carrier
         .pin
@@ -329,7 +329,7 @@ fn carry<T: Number>(design: &Design<T>, state: &mut State<T>, carrier: Carrier, 
     *pose = Pose::pinned(pose.c, pose.s, pin, x);
 }
 
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn swing<T: Number>(
     design: &Design<T>,
     branch: &Branch,
@@ -376,7 +376,7 @@ fn swing<T: Number>(
     h
 }
 
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn swing_line<T: Number>(
     design: &Design<T>,
     state: &mut State<T>,

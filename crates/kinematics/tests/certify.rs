@@ -1,4 +1,5 @@
 //! Proofs about poses and motions: what is proved holds the truth, and what is not true is not proved.
+#![allow(clippy::excessive_precision, reason = "all digits of the reference")]
 #![allow(clippy::unwrap_used)]
 
 mod support;
