@@ -117,7 +117,11 @@ fn reach(motion: &Motion<'_>) -> Reach {
     } else {
         FAR * motion.size()
     };
-    let mut demanded = (motion.anchor - far, motion.anchor + far);
+    // At least what the file demands.
+    let mut demanded = (
+        (motion.anchor - far).min(motion.demanded.0),
+        (motion.anchor + far).max(motion.demanded.1),
+    );
     if matches!(law.kind, kempe_model::DriveKind::Cylinder { .. }) {
         demanded.0 = demanded.0.max(SHORTEST * motion.size());
     }

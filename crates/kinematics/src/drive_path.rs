@@ -179,6 +179,21 @@ impl Path for DrivePath {
         }
     }
 
+    fn breaks(&self) -> Vec<f64> {
+        match self {
+            Self::Coordinate { .. } => Vec::new(),
+            Self::Time {
+                laws, parameters, ..
+            } => {
+                let mut breaks: Vec<f64> =
+                    laws.iter().flat_map(|law| law.breaks(parameters)).collect();
+                breaks.sort_by(f64::total_cmp);
+                breaks.dedup();
+                breaks
+            }
+        }
+    }
+
     fn scale(&self) -> f64 {
         match self {
             Self::Coordinate { scale, .. } | Self::Time { scale, .. } => *scale,

@@ -21,6 +21,8 @@ pub const WHIRLING: f64 = 300.0;
 const STANDING: f64 = 1e-4;
 /// Pivot ratio of the bordered Jacobian below which branches are taken to cross.
 pub const CROSSING: f64 = 1e-7;
+/// Width, as a part of the whole time, between the near and the far side of a place where the drives' rates jump.
+const SIDES: f64 = 1e-12;
 /// Where a motion starts at a singular pose, its branch is looked for at these parts of the range instead.
 const ANCHORS: [f64; 6] = [0.0, 0.0137, 0.0411, 0.1234, 0.3719, 0.7183];
 
@@ -574,11 +576,32 @@ fn follow(
     let direction = start.tangent[last].signum();
     let mut nodes = vec![start];
     let mut step = 0.02;
+    let stops = stops(follower, direction, nodes[0].z[last], target);
+    let mut stops = stops.iter().peekable();
     for _ in 0..STEP_LIMIT {
         let from = &nodes[nodes.len() - 1];
         // A margin beyond the target, so that it lies inside a patch and not at the rim.
         if (from.z[last] - target) * direction > 1e-9 {
             return (nodes, EndReason::Covered);
+        }
+        // Where the drives' rates jump the trace stops on the near side and goes on from the far side.
+        if let Some((near, far)) = stops.peek()
+            && (from.z[last] + 1.5 * step * from.tangent[last] - near) * direction >= 0.0
+        {
+            let far_side = *far;
+            if let Some(on) = follower.land_smoothly(from, *near, &mut step) {
+                let Some(over) = follower.land(&on, far_side) else {
+                    return (nodes, EndReason::Stuck);
+                };
+                nodes.push(on);
+                nodes.push(over);
+                stops.next();
+                step = 0.02;
+                if (far_side - target) * direction >= 0.0 {
+                    return (nodes, EndReason::Covered);
+                }
+                continue;
+            }
         }
         let Some(next) = follower.advance(from, &mut step) else {
             return (nodes, EndReason::Stuck);
@@ -611,6 +634,29 @@ fn follow(
         }
     }
     (nodes, EndReason::Stuck)
+}
+
+/// The places ahead where the drives' rates jump, as near and far sides in scaled parameters. Between the two lies less
+/// than any row can tell apart.
+fn stops(
+    follower: &Follower<'_, DrivePath>,
+    direction: f64,
+    start: f64,
+    target: f64,
+) -> Vec<(f64, f64)> {
+    let (breaks, scale) = follower.breaks();
+    let width = breaks.last().map_or(0.0, |end| SIDES * end / scale);
+    let mut stops: Vec<(f64, f64)> = breaks
+        .iter()
+        .map(|b| b / scale)
+        // A trace that starts on a break is on its far side already.
+        .filter(|b| (b - start) * direction > width && (b - target) * direction <= 2.0 * width)
+        .map(|b| (b - width * direction, b + width * direction))
+        .collect();
+    if direction < 0.0 {
+        stops.reverse();
+    }
+    stops
 }
 
 /// Storage for solving poses of a motion, reused from row to row.

@@ -34,6 +34,10 @@ pub trait Path {
     fn at(&self, p: f64, coordinates: &mut [f64], rates: &mut [f64]);
     /// Size of a typical change of the parameter: 1 for an angle, a mechanism size for a length.
     fn scale(&self) -> f64;
+    /// Where the drives' rates jump, rising; the rates at such a place are those behind it.
+    fn breaks(&self) -> Vec<f64> {
+        Vec::new()
+    }
 }
 
 /// A point of the motion: scaled unknowns (x and y over the mechanism's size, angle, for every body; last the path
@@ -96,6 +100,11 @@ impl<'a, P: Path> Follower<'a, P> {
     /// How many unknowns, the path parameter included.
     pub fn unknowns(&self) -> usize {
         3 * (self.mechanism.bodies - 1) + 1
+    }
+
+    /// Where the drives' rates jump, and the scale of the path parameter.
+    pub fn breaks(&self) -> (Vec<f64>, f64) {
+        (self.path.breaks(), self.path.scale())
     }
 
     /// Path parameter at scaled unknowns.
@@ -218,6 +227,45 @@ impl<'a, P: Path> Follower<'a, P> {
         self.correct(&mut z, &border)?;
         let tangent = self.tangent(&z, &border)?;
         (self.conditioning() > 1e-9 && tangent[last].abs() > 1e-7).then_some(Node { z, tangent })
+    }
+
+    /// The node at a scaled path parameter, reached from `from` at fixed parameter: how a trace gets on a place where the
+    /// drives' rates jump, and over it. `None` when it is too far for one step.
+    pub fn land(&mut self, from: &Node, target: f64) -> Option<Node> {
+        let last = from.z.len() - 1;
+        let rate = from.tangent[last];
+        let far = (target - from.z[last]) / rate;
+        let mut z: Vec<f64> = from
+            .z
+            .iter()
+            .zip(&from.tangent)
+            .map(|(z, t)| z + far * t)
+            .collect();
+        z[last] = target;
+        let mut border = vec![0.0; z.len()];
+        border[last] = rate.signum();
+        let gap = self.correct(&mut z, &border)?;
+        let tangent = self.tangent(&z, &border)?;
+        (far >= 0.0 && gap <= 0.3 * far.max(SHORTEST_STEP)).then_some(Node { z, tangent })
+    }
+
+    /// Like [`Follower::land`], but only as far as the step's cubic holds; shortens `step` otherwise.
+    pub fn land_smoothly(&mut self, from: &Node, target: f64, step: &mut f64) -> Option<Node> {
+        let last = from.z.len() - 1;
+        let far = (target - from.z[last]) / from.tangent[last];
+        let smooth = self.land(from, target).filter(|to| {
+            let middle = hermite(from, to, 0.5);
+            let mut corrected = middle.clone();
+            let across = chord(from, to);
+            dot(&to.tangent, &from.tangent) >= TURN_LIMIT
+                && self
+                    .correct(&mut corrected, &across)
+                    .is_some_and(|gap| gap <= MIDDLE_TOLERANCE * far)
+        });
+        if smooth.is_none() {
+            *step = step.min(0.5 * far);
+        }
+        smooth
     }
 
     /// One step along the arc; `step` is the length to try and is adapted for the next. `None` when stuck.

@@ -279,3 +279,36 @@ C = \"left of B -> D\"
     }
     assert!(open > 5 && turning > 2, "{open} {turning}");
 }
+
+/// Drives at constant speed start and stop with a jump of their rates; the motion goes on over every one of them.
+#[test]
+fn follows_drives_whose_rates_jump() {
+    let text = r#"
+        units = { length = "mm", angle = "deg" }
+        [links]
+        frame = { A = [0, 0], D = [100, 0] }
+        left = { A-B = 30 }
+        right = { D-C = 40 }
+        lb = { B-P = 80 }
+        rb = { C-P = 80 }
+        [drives]
+        one = { turns = "left", from = 0, to = 360, speed = "60 deg/s" }
+        two = { turns = "right", from = 0, law = [ { dwell = "1 s" }, { to = "180 deg", speed = "90 deg/s" }, { dwell = "0.5 s" }, { to = "0 deg", speed = "60 deg/s" } ] }
+        [assembly]
+        P = "left of B -> C"
+    "#;
+    let checked = kempe_model::Model::from_toml(text, "jumps", &mut |_| Err("no files".into()))
+        .expect("a model");
+    let mechanism = kempe_kinematics::Mechanism::new(&checked.model);
+    let plan = kempe_kinematics::Plan::new(&mechanism);
+    let parameters: Vec<f64> = checked.model.parameter_values();
+    let design = kempe_kinematics::Design::new(&mechanism, &plan, &parameters);
+    let motion =
+        kempe_kinematics::Motion::new(&mechanism, &plan, &design, &parameters).expect("a motion");
+    assert_eq!(motion.reached(), (0.0, 6.5));
+    let mut sampler = kempe_kinematics::Sampler::new(&motion, &[]).expect("a sampler");
+    for k in 0..=130 {
+        let row = sampler.at_time(0.05 * f64::from(k));
+        assert!(row.closure < 1e-12, "at {} s: {:?}", row.time, row.note);
+    }
+}
