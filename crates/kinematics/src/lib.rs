@@ -50,6 +50,6 @@ pub use newton::PlanNumber;
 pub use plan::Plan;
 pub use pose::Pose;
 pub use qr::Qr;
-pub use sampler::{Sample, Sampler, Unmeasurable};
+pub use sampler::{CLOSURE_LIMIT, Sample, Sampler, Unmeasurable};
 pub use sensitivity::{Held, Sensitivities, sensitivities};
 pub use state::{Branch, Design, State};

@@ -134,6 +134,7 @@ fn gap(mechanism: &Mechanism, plan: &Plan, design: &Design<f64>, at: f64, step: 
     }
     let bodies = plan.blocks.get(step).map(|b| {
         let mut bodies: Vec<_> = b.unknowns.iter().map(|u| u.body()).collect();
+        bodies.sort_unstable();
         bodies.dedup();
         bodies
     });

@@ -3,6 +3,7 @@
 use kempe_draw::report::{
     Block, Column as Shown, Event, Evidence, MotionReport, NotReached, Report, Section,
 };
+use kempe_kinematics::CLOSURE_LIMIT;
 use kempe_model::{Diagnostic, Model, MotionStudy, Study};
 
 use crate::figures::{figures, marker_kind};
@@ -12,9 +13,6 @@ use crate::motion::motion_of;
 use crate::result::StudyResult;
 use crate::table::Column;
 use crate::view::{drawing_frames, mechanism_view};
-
-/// A closure residual, in mechanism sizes, above which a row is not trusted: the one the sampler marks rows by.
-const CLOSURE_LIMIT: f64 = 1e-9;
 
 /// A study with what became of it.
 #[derive(Clone, Debug)]
