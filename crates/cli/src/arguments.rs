@@ -13,7 +13,7 @@ use clap::{Args, Parser, Subcommand};
     after_help = "Start here:\n  kempe new my-linkage.toml\n  kempe run my-linkage.toml --out results\n\n\
                   Exit codes:\n  0    all is well\n  1    something was found: a warning of check, a miss of verify, rows that were not reached\n  \
                   2    the command line or the model file is wrong, or a file cannot be read or written\n  \
-                  3    the mechanism cannot be assembled or moved as asked\n  130  stopped by Ctrl-C; finished rows are kept"
+                  3    the mechanism cannot be assembled or moved as asked\n  130  stopped by Ctrl-C: finished rows and studies are kept, a check tells what it found"
 )]
 pub struct Arguments {
     /// What to do.
@@ -66,7 +66,8 @@ fn name_and_value(text: &str) -> Result<(String, String), String> {
 #[derive(Debug, Args)]
 #[command(
     after_help = "Examples:\n  kempe check hitch.toml\n  kempe check hitch.toml --set k=450mm --json\n\n\
-                        Exit codes: 0 nothing to say, 1 warnings, 2 bad file, 3 the mechanism cannot move as asked."
+                        Exit codes: 0 nothing to say, 1 warnings, 2 bad file, 3 the mechanism cannot move as asked,\n\
+                        130 stopped by Ctrl-C (what was found until then is told)."
 )]
 pub struct Check {
     #[command(flatten)]

@@ -267,3 +267,41 @@ fn ctrl_c_keeps_the_finished_rows() {
         .count();
     assert!(rows > 1 && rows < 400_001, "{rows}");
 }
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_stops_a_check_that_follows_a_long_motion() {
+    let folder = folder();
+    let at = folder.path();
+    // A million turns: the trace would take far longer than this test.
+    let long = MODEL
+        .replace("to = 360", "to = 3.6e8")
+        .replace("step = 10", "rows = 2");
+    assert_ne!(long, MODEL);
+    fs::write(at.join("long.toml"), long).expect("written");
+    for verb in [
+        &["check", "long.toml"][..],
+        &["run", "long.toml", "--out", "out"],
+    ] {
+        let child = Command::new(env!("CARGO_BIN_EXE_kempe"))
+            .args(verb)
+            .current_dir(at)
+            .stdout(std::process::Stdio::piped())
+            .stderr(std::process::Stdio::piped())
+            .spawn()
+            .expect("kempe runs");
+        std::thread::sleep(std::time::Duration::from_millis(700));
+        let signalled = Command::new("kill")
+            .args(["-INT", &child.id().to_string()])
+            .status();
+        assert!(signalled.expect("kill runs").success());
+        let output = child.wait_with_output().expect("it ends");
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(130), "{said}");
+        assert!(
+            said.contains("stopped while following the motion"),
+            "{said}"
+        );
+    }
+    assert!(!at.join("out").exists(), "nothing was finished");
+}

@@ -1,11 +1,13 @@
 //! All assemblies of a mechanism at given drive coordinates, and the one that the user means.
 
+use std::ops::ControlFlow;
+
 use kempe_model::HintKind;
 use kempe_number::math;
 
 use crate::blocks::Unknown;
 use crate::evidence::closure;
-use crate::homotopy::{PathReport, Random, all_real_solutions};
+use crate::homotopy::{PathReport, Random, Solutions, all_real_solutions};
 use crate::mechanism::{BodyId, Constraint, Mechanism};
 use crate::newton::PlanNumber;
 use crate::plan::{NewtonBlock, Plan, Step};
@@ -13,6 +15,7 @@ use crate::pose::{Pose, cross, sub};
 use crate::qr::Qr;
 use crate::solve::gear;
 use crate::state::{Branch, Design, State};
+use crate::watch::{Stage, Unwatched, Watch};
 
 /// Most assemblies that are listed; a file with many dyads and no hints can have more than anyone wants to see.
 pub const ASSEMBLY_LIMIT: usize = 512;
@@ -74,6 +77,8 @@ struct Search<'a> {
     complete: bool,
     paths: Vec<PathReport>,
     furthest: usize,
+    watch: &'a mut dyn Watch,
+    stopped: bool,
 }
 
 /// Finds all assemblies at the drive coordinates (SI).
@@ -83,6 +88,19 @@ pub fn all_assemblies(
     design: &Design<f64>,
     coordinates: &[f64],
 ) -> Assemblies {
+    // Unwatched, it is never stopped.
+    find_assemblies(mechanism, plan, design, coordinates, &mut Unwatched).unwrap_or_default()
+}
+
+/// As [`all_assemblies`]; `watch` hears how far it has come. `None` when it stops the search: a part of the list could
+/// lack the assembly that is meant.
+pub fn find_assemblies(
+    mechanism: &Mechanism,
+    plan: &Plan,
+    design: &Design<f64>,
+    coordinates: &[f64],
+    watch: &mut dyn Watch,
+) -> Option<Assemblies> {
     let size = design.geometry.size(mechanism);
     let mut search = Search {
         mechanism,
@@ -96,11 +114,16 @@ pub fn all_assemblies(
         complete: true,
         paths: Vec::new(),
         furthest: 0,
+        watch,
+        stopped: false,
     };
     let mut state = State::new(mechanism, plan);
     state.set_inputs(mechanism, coordinates);
     let branch = Branch::neutral(mechanism, plan);
     search.descend(0, state, branch, true);
+    if search.stopped {
+        return None;
+    }
 
     for assembly in &mut search.found {
         assembly.distance = hint_distance(mechanism, design, assembly, size);
@@ -110,13 +133,13 @@ pub fn all_assemblies(
         .found
         .sort_by(|a, b| a.distance.total_cmp(&b.distance));
     let open_step = search.found.is_empty().then_some(search.furthest);
-    Assemblies {
+    Some(Assemblies {
         list: search.found,
         rejected: search.rejected,
         complete: search.complete,
         paths: search.paths,
         open_step,
-    }
+    })
 }
 
 impl Search<'_> {
@@ -134,6 +157,9 @@ impl Search<'_> {
             self.trials += 1;
             if self.found.len() >= ASSEMBLY_LIMIT || self.trials > TRIAL_LIMIT {
                 self.complete = false;
+                return;
+            }
+            if self.stopped || self.told(None).is_break() {
                 return;
             }
             let Some(kind) = self.plan.steps.get(step) else {
@@ -169,6 +195,13 @@ impl Search<'_> {
         } else {
             self.rejected += 1;
         }
+    }
+
+    /// Says how far the search has come; how many branches there are to try is not known beforehand.
+    fn told(&mut self, part: Option<f64>) -> ControlFlow<()> {
+        let flow = self.watch.reached(Stage::Assembling, part);
+        self.stopped |= flow.is_break();
+        flow
     }
 
     fn descend_modes(&mut self, step: usize, state: State<f64>, branch: Branch, wanted: bool) {
@@ -217,13 +250,16 @@ impl Search<'_> {
         let (hinted, hinted_angles) = self.hinted_start(&state);
         let mut meant = vec![0.0; self.mechanism.bodies];
         let mut candidates = vec![hinted];
-        match all_real_solutions(block, self.mechanism, &situation, self.size) {
-            Some((poses, report)) => {
+        let (mechanism, size) = (self.mechanism, self.size);
+        let told = &mut |part| self.told(Some(part));
+        match all_real_solutions(block, mechanism, &situation, size, told) {
+            Solutions::Stopped => return,
+            Solutions::Found(poses, report) => {
                 self.complete &= report.lost == 0;
                 self.paths.push(report);
                 candidates.extend(poses);
             }
-            None => {
+            Solutions::NotAlgebraic => {
                 self.complete = false;
                 // Gears count turns: from where the file says that a link is.
                 meant = hinted_angles;

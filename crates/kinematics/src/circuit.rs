@@ -5,15 +5,17 @@
 
 use kempe_model::{DriveKind, Measure};
 
-use crate::assemble::{Assemblies, all_assemblies};
+use crate::assemble::{Assemblies, find_assemblies};
 use crate::drive_path::DrivePath;
 use crate::events::locate_limit;
+use crate::force_source::NoForces;
 use crate::mechanism::Mechanism;
 use crate::motion::{EndReason, Motion, MotionError};
 use crate::plan::Plan;
-use crate::sampler::{Sample, Sampler, Unmeasurable};
+use crate::sampler::{Sample, Sampler, Unprepared};
 use crate::state::Design;
 use crate::trace::{Follower, Node, Path, hermite};
+use crate::watch::{Stage, Unwatched, Watch};
 
 /// Steps after which a circuit that has not closed is given up.
 pub const CIRCUIT_STEPS: usize = 50_000;
@@ -58,8 +60,23 @@ impl<'m> Circuit<'m> {
         design: &'m Design<f64>,
         parameters: &[f64],
     ) -> Result<Self, MotionError> {
+        Self::watched(mechanism, plan, design, parameters, &mut Unwatched)
+    }
+
+    /// As [`Circuit::new`]; `watch` hears how far it has come and may stop it.
+    ///
+    /// # Errors
+    /// As [`Circuit::new`], and [`MotionError::Stopped`].
+    pub fn watched(
+        mechanism: &'m Mechanism,
+        plan: &'m Plan,
+        design: &'m Design<f64>,
+        parameters: &[f64],
+        watch: &mut dyn Watch,
+    ) -> Result<Self, MotionError> {
+        let stopped = |stage| move || MotionError::Stopped { stage };
         // The demanded motion finds the start, with all its checks.
-        let motion = Motion::new(mechanism, plan, design, parameters)?;
+        let mut motion = Motion::watched(mechanism, plan, design, parameters, watch)?;
         let path = motion.path.clone();
         let (low, high) = motion.demanded;
         let mut follower = Follower::new(mechanism, plan, &design.geometry, &path);
@@ -68,7 +85,12 @@ impl<'m> Circuit<'m> {
         for part in ANCHORS {
             let anchor = motion.anchor + part * (far - motion.anchor);
             path.coordinates(anchor, &mut coordinates);
-            let assemblies = all_assemblies(mechanism, plan, design, &coordinates);
+            let assemblies = if anchor == motion.anchor {
+                std::mem::take(&mut motion.assemblies)
+            } else {
+                find_assemblies(mechanism, plan, design, &coordinates, watch)
+                    .ok_or_else(stopped(Stage::Assembling))?
+            };
             let Some(chosen) = assemblies.list.first() else {
                 continue;
             };
@@ -77,8 +99,9 @@ impl<'m> Circuit<'m> {
             let Some(start) = follower.start(z, direction) else {
                 continue;
             };
-            let (nodes, closed) = go_round(&mut follower, start, mechanism, &path, high);
-            return Ok(Self::of_nodes(
+            let (nodes, closed) = go_round(&mut follower, start, mechanism, &path, high, watch)
+                .ok_or_else(stopped(Stage::Following))?;
+            return Self::of_nodes(
                 mechanism,
                 plan,
                 design,
@@ -87,7 +110,9 @@ impl<'m> Circuit<'m> {
                 nodes,
                 closed,
                 &mut follower,
-            ));
+                watch,
+            )
+            .ok_or_else(stopped(Stage::Locating));
         }
         Err(MotionError::Locked { at: motion.start })
     }
@@ -105,7 +130,8 @@ impl<'m> Circuit<'m> {
         nodes: Vec<Node>,
         closed: bool,
         follower: &mut Follower<'_, DrivePath>,
-    ) -> Self {
+        watch: &mut dyn Watch,
+    ) -> Option<Self> {
         let mut stretches: Vec<Stretch<'m>> = Vec::new();
         let mut arc = 0.0;
         let mut current: Vec<Node> = Vec::new();
@@ -121,8 +147,8 @@ impl<'m> Circuit<'m> {
                     (mechanism, plan, design),
                     path,
                     &assemblies,
-                    follower,
-                );
+                    (follower, watch),
+                )?;
             }
         }
         if current.len() > 1 {
@@ -133,16 +159,16 @@ impl<'m> Circuit<'m> {
                 (mechanism, plan, design),
                 path,
                 &assemblies,
-                follower,
-            );
+                (follower, watch),
+            )?;
         }
-        Self {
+        Some(Self {
             stretches,
             closed,
             length: arc,
             assemblies,
             scale: path.scale(),
-        }
+        })
     }
 
     /// Which stretch an arc length lies on, and the path parameter there.
@@ -170,17 +196,18 @@ impl<'m> Circuit<'m> {
     /// Prepares measures for rows of the circuit.
     ///
     /// # Errors
-    /// All measures that cannot be evaluated.
+    /// All measures that cannot be evaluated, or that `watch` stopped it.
     pub fn samplers<'a>(
         &'a self,
         measures: &[&Measure],
-    ) -> Result<Vec<Sampler<'a>>, Vec<Unmeasurable>>
+        watch: &mut dyn Watch,
+    ) -> Result<Vec<Sampler<'a>>, Unprepared>
     where
         'm: 'a,
     {
         self.stretches
             .iter()
-            .map(|s| Sampler::new(&s.motion, measures))
+            .map(|s| Sampler::watched(&s.motion, measures, NoForces, watch))
             .collect()
     }
 
@@ -200,8 +227,8 @@ fn push_stretch<'m>(
     (mechanism, plan, design): (&'m Mechanism, &'m Plan, &'m Design<f64>),
     path: &DrivePath,
     assemblies: &Assemblies,
-    follower: &mut Follower<'_, DrivePath>,
-) {
+    (follower, watch): (&mut Follower<'_, DrivePath>, &mut dyn Watch),
+) -> Option<()> {
     let mut arcs = vec![*arc];
     for pair in nodes.windows(2) {
         *arc += pair[0]
@@ -231,24 +258,26 @@ fn push_stretch<'m>(
         rising,
     );
     motion.ends = (EndReason::Limit, EndReason::Limit);
-    motion.find_events(follower);
+    motion.find_events(follower, watch)?;
     stretches.push(Stretch {
         motion,
         forward,
         arcs,
         nodes,
     });
+    Some(())
 }
 
 /// Follows the curve until it is back at its start (angles of bodies and of a turning drive count modulo a turn). Along
-/// time, where nothing comes back, until the motion's `end`.
+/// time, where nothing comes back, until the motion's `end`. `None` when stopped.
 fn go_round(
     follower: &mut Follower<'_, DrivePath>,
     start: Node,
     mechanism: &Mechanism,
     path: &DrivePath,
     end: f64,
-) -> (Vec<Node>, bool) {
+    watch: &mut dyn Watch,
+) -> Option<(Vec<Node>, bool)> {
     let turning = match path {
         DrivePath::Coordinate { drive, .. } => {
             matches!(
@@ -284,9 +313,10 @@ fn go_round(
     let mut step = 0.02;
     let mut travelled = 0.0;
     for _ in 0..CIRCUIT_STEPS {
+        watch.reached(Stage::Following, None).continue_value()?;
         let from = nodes[nodes.len() - 1].clone();
         let Some(next) = follower.advance(&from, &mut step) else {
-            return (nodes, false);
+            return Some((nodes, false));
         };
         let h = gap(&from.z, &next.z);
         travelled += h;
@@ -308,7 +338,7 @@ fn go_round(
                 z: home,
                 tangent: start.tangent.clone(),
             });
-            return (nodes, true);
+            return Some((nodes, true));
         }
         if from.parameter_rate() * next.parameter_rate() < 0.0 {
             nodes.push(locate_limit(follower, &from, &next));
@@ -319,7 +349,7 @@ fn go_round(
             break;
         }
     }
-    (nodes, false)
+    Some((nodes, false))
 }
 
 /// The point of the step's cubic that lies nearest to `home`, by its projection on the chord.

@@ -7,6 +7,8 @@
 //! the two-homogeneous Bezout number. All of them are reached by as many paths from a product start system; for the
 //! Assur group of class III with revolute joints that is 6, its exact number of assemblies.
 
+use std::ops::ControlFlow;
+
 use kempe_number::{Complex, math};
 
 use crate::blocks::Unknown;
@@ -205,14 +207,25 @@ fn equations(b: &Builder<'_>) -> Option<(Vec<Affine>, Vec<Bilinear>)> {
     Some((linear, bilinear))
 }
 
-/// Poses of the block's bodies for every real solution, not yet polished; bodies outside the block keep their poses.
-/// `None` when the method does not apply: a gear or rack inside the block, or too many paths.
+/// What the complete method came to.
+#[derive(Clone, Debug)]
+pub enum Solutions {
+    /// Poses of the block's bodies for every real solution, not yet polished; bodies outside the block keep theirs.
+    Found(Vec<Vec<Pose<f64>>>, PathReport),
+    /// It does not apply: a gear or rack inside the block, or too many paths.
+    NotAlgebraic,
+    /// It was stopped on the way.
+    Stopped,
+}
+
+/// All real solutions of a block. `told` hears the finished part of the paths and may stop the work.
 pub fn all_real_solutions(
     block: &NewtonBlock,
     mechanism: &Mechanism,
     known: &Situation<'_, f64>,
     scale: f64,
-) -> Option<(Vec<Vec<Pose<f64>>>, PathReport)> {
+    told: &mut dyn FnMut(f64) -> ControlFlow<()>,
+) -> Solutions {
     let builder = Builder {
         block,
         mechanism,
@@ -220,13 +233,15 @@ pub fn all_real_solutions(
         scale,
         variables: block.unknowns.len(),
     };
-    let (linear, bilinear) = equations(&builder)?;
+    let Some((linear, bilinear)) = equations(&builder) else {
+        return Solutions::NotAlgebraic;
+    };
     let Some(solved) = eliminate(&linear, builder.variables) else {
-        return Some((Vec::new(), PathReport::default()));
+        return Solutions::Found(Vec::new(), PathReport::default());
     };
     let d = solved.first().map_or(0, |f| f.0.len() - 1);
     if bilinear.len() != 2 * d || choose(2 * d, d) > PATH_LIMIT {
-        return None;
+        return Solutions::NotAlgebraic;
     }
     let conjugate: Vec<Affine> = solved.iter().map(Affine::conj).collect();
     let system = System {
@@ -248,7 +263,10 @@ pub fn all_real_solutions(
     let mut found: Vec<Vec<C>> = Vec::new();
     for seed in 0..2 {
         let mut this = PathReport::default();
-        for end in system.follow_all(seed, &mut this) {
+        let Some(ends) = system.follow_all(seed, &mut this, told) else {
+            return Solutions::Stopped;
+        };
+        for end in ends {
             let is_new = |x: &Vec<C>| {
                 let gap = x
                     .iter()
@@ -295,7 +313,7 @@ pub fn all_real_solutions(
         }
         poses.push(pose);
     }
-    Some((poses, report))
+    Solutions::Found(poses, report)
 }
 
 fn choose(n: usize, k: usize) -> usize {
@@ -316,8 +334,13 @@ struct Start {
 }
 
 impl System {
-    /// Follows every path of one start system and returns the distinct regular end points.
-    fn follow_all(&self, seed: u64, report: &mut PathReport) -> Vec<Vec<C>> {
+    /// Follows every path of one start system and returns the distinct regular end points; `None` when stopped.
+    fn follow_all(
+        &self,
+        seed: u64,
+        report: &mut PathReport,
+        told: &mut dyn FnMut(f64) -> ControlFlow<()>,
+    ) -> Option<Vec<Vec<C>>> {
         let d = self.d;
         let n = 2 * d;
         let mut random =
@@ -329,9 +352,11 @@ impl System {
             gamma: random.unit(),
         };
         let mut ends: Vec<Vec<C>> = Vec::new();
-        for subset in subsets(n, d) {
+        let subsets = subsets(n, d);
+        for subset in &subsets {
+            told(report.paths as f64 / subsets.len() as f64).continue_value()?;
             report.paths += 1;
-            let Some(x) = self.start_point(&start, &subset) else {
+            let Some(x) = self.start_point(&start, subset) else {
                 report.lost += 1;
                 continue;
             };
@@ -354,7 +379,7 @@ impl System {
                 End::Lost => report.lost += 1,
             }
         }
-        ends
+        Some(ends)
     }
 
     fn start_point(&self, start: &Start, subset: &[bool]) -> Option<Vec<C>> {

@@ -7,8 +7,8 @@ use kempe_units::Unit;
 
 use crate::columns::{Asked, Quantity};
 use crate::explain::cannot_move;
-use crate::motion::{events, not_measurable, unreached_warning};
-use crate::progress::{Flow, Progress};
+use crate::motion::{events, unprepared, unreached_warning};
+use crate::progress::{Ear, Flow, Progress};
 use crate::result::{Event, StudyResult};
 use crate::sink::RowSink;
 use crate::table::Column;
@@ -28,14 +28,14 @@ pub(crate) fn run_circuit(
     let plan = Plan::new(&mechanism);
     let parameters: Vec<f64> = model.parameter_values();
     let design = Design::new(&mechanism, &plan, &parameters);
-    let circuit = Circuit::new(&mechanism, &plan, &design, &parameters)
+    let circuit = Circuit::watched(&mechanism, &plan, &design, &parameters, &mut Ear(progress))
         .map_err(|error| vec![cannot_move(&mechanism, &plan, &design, &error)])?;
     let asked = Asked::of(model, study);
     let quantities: Vec<&Quantity> = asked.all().collect();
     let measures: Vec<_> = quantities.iter().map(|q| &q.measure).collect();
     let mut samplers = circuit
-        .samplers(&measures)
-        .map_err(|problems| not_measurable(model, &quantities, &problems))?;
+        .samplers(&measures, &mut Ear(progress))
+        .map_err(|problem| unprepared(model, &quantities, problem))?;
 
     let count = match study.rows {
         Rows::Count(count) => count.max(2),

@@ -3,7 +3,9 @@
 use kempe_kinematics::drive_path::DrivePath;
 use kempe_kinematics::mechanism::Marker;
 use kempe_kinematics::plan::{Condition, Step};
-use kempe_kinematics::{Branch, Design, EndReason, Mechanism, Motion, MotionError, Plan, State};
+use kempe_kinematics::{
+    Branch, Design, EndReason, Mechanism, Motion, MotionError, Plan, Stage, State,
+};
 use kempe_model::{Diagnostic, Model};
 use kempe_number::math::hypot;
 use kempe_units::Dimension;
@@ -61,6 +63,7 @@ pub fn cannot_move(
             }
             model.drives.iter().fold(told, |d, drive| d.see(drive.span.clone(), "where it starts"))
         }
+        MotionError::Stopped { stage } => stopped(*stage),
         MotionError::Locked { at } => {
             let told = Diagnostic::error(
                 "locked",
@@ -70,6 +73,14 @@ pub fn cannot_move(
             model.drives.iter().fold(told, |d, drive| d.at(drive.span.clone(), ""))
         }
     }
+}
+
+/// Work that was stopped before its first row.
+pub(crate) fn stopped(stage: Stage) -> Diagnostic {
+    Diagnostic::error(
+        "stopped",
+        format!("stopped while {}: there are no rows yet", stage.text()),
+    )
 }
 
 /// `at motor = 0 deg`, or where it starts.

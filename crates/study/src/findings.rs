@@ -8,6 +8,7 @@ use kempe_units::Dimension;
 use serde::Serialize;
 
 use crate::explain::{cannot_move, list};
+use crate::progress::{Ear, Progress, Silent};
 use crate::unit::Units;
 
 /// The answer of `check`.
@@ -83,11 +84,23 @@ pub struct Grashof {
 
 /// Checks a model: mobility two ways, groups, assemblies, reach.
 pub fn check(model: &Model) -> Report {
+    check_watched(model, &mut Silent)
+}
+
+/// As [`check`]; `progress` hears how far it has come (no rows). Stopped, it tells what it found until then, with the
+/// diagnostic `stopped`.
+pub fn check_watched(model: &Model, progress: &mut dyn Progress) -> Report {
     let mechanism = Mechanism::new(model);
     let plan = Plan::new(&mechanism);
     let parameters: Vec<f64> = model.parameter_values();
     let design = Design::new(&mechanism, &plan, &parameters);
-    let found = kempe_kinematics::check(&mechanism, &plan, &design, &parameters);
+    let found = kempe_kinematics::check_watched(
+        &mechanism,
+        &plan,
+        &design,
+        &parameters,
+        &mut Ear(progress),
+    );
     let units = Units::of(model);
     let bodies = |list: &[BodyId]| {
         list.iter()

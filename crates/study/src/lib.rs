@@ -51,7 +51,8 @@ mod view;
 
 pub use explain::{cannot_move, reach_text};
 pub use figures::figures;
-pub use findings::{Grashof, Group, Report as CheckReport, check};
+pub use findings::{Grashof, Group, Report as CheckReport, check, check_watched};
+pub use kempe_kinematics::Stage;
 pub use motion::{motion_of, run, run_motion};
 pub use pose::{Setting, pose_at};
 pub use progress::{Flow, Progress, Silent};

@@ -2,14 +2,17 @@
 
 use kempe_kinematics::drive_path::DrivePath;
 use kempe_kinematics::events::EventKind;
-use kempe_kinematics::{Design, EndReason, Mechanism, Motion, Plan, Sampler, Unmeasurable};
+use kempe_kinematics::force_source::NoForces;
+use kempe_kinematics::{
+    Design, EndReason, Mechanism, Motion, Plan, Sampler, Stage, Unmeasurable, Unprepared,
+};
 use kempe_model::{Diagnostic, Model, MotionStudy, Study, StudyKind};
 use kempe_units::Dimension;
 
 use crate::circuit::run_circuit;
 use crate::columns::{Asked, Quantity};
-use crate::explain::{beyond_limit, cannot_move};
-use crate::progress::{Flow, Progress};
+use crate::explain::{beyond_limit, cannot_move, stopped};
+use crate::progress::{Ear, Flow, Progress};
 use crate::result::{Event, StudyResult};
 use crate::rows::{RowPlace, places};
 use crate::sink::RowSink;
@@ -21,7 +24,7 @@ use crate::unit::Units;
 /// # Errors
 ///
 /// What keeps the study from starting, as diagnostics over the model file: `cannot-assemble`, `range-beyond-limit`,
-/// `undetermined`, `locked`, `not-measurable`. A row that cannot be reached is no error: it carries its reason.
+/// `undetermined`, `locked`, `not-measurable`, `stopped`. A row that cannot be reached is no error: it carries its reason.
 pub fn run(
     model: &Model,
     study: &Study,
@@ -68,14 +71,14 @@ pub fn run_motion(
     let plan = Plan::new(&mechanism);
     let parameters: Vec<f64> = model.parameter_values();
     let design = Design::new(&mechanism, &plan, &parameters);
-    let motion = Motion::new(&mechanism, &plan, &design, &parameters)
+    let motion = Motion::watched(&mechanism, &plan, &design, &parameters, &mut Ear(progress))
         .map_err(|error| vec![cannot_move(&mechanism, &plan, &design, &error)])?;
     let mut warnings = range_warnings(&motion)?;
     let asked = Asked::of(model, study);
     let quantities: Vec<&Quantity> = asked.all().collect();
     let measures: Vec<_> = quantities.iter().map(|q| &q.measure).collect();
-    let mut sampler = Sampler::new(&motion, &measures)
-        .map_err(|problems| not_measurable(model, &quantities, &problems))?;
+    let mut sampler = Sampler::watched(&motion, &measures, NoForces, &mut Ear(progress))
+        .map_err(|problem| unprepared(model, &quantities, problem))?;
     let path_drive = match motion.path {
         DrivePath::Coordinate { drive, .. } => drive,
         DrivePath::Time { .. } => 0,
@@ -119,6 +122,18 @@ pub fn run_motion(
         warnings,
         demanded_rows: places.len(),
     })
+}
+
+/// Why there are no rows, as diagnostics over the model file.
+pub(crate) fn unprepared(
+    model: &Model,
+    quantities: &[&Quantity],
+    problem: Unprepared,
+) -> Vec<Diagnostic> {
+    match problem {
+        Unprepared::Unmeasurable(problems) => not_measurable(model, quantities, &problems),
+        Unprepared::Stopped => vec![stopped(Stage::Measuring)],
+    }
 }
 
 /// Measures that the mechanism cannot answer, as diagnostics over the model file.

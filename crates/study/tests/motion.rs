@@ -273,3 +273,34 @@ fn a_circuit_goes_past_its_dead_points() {
     );
     assert_eq!(result.events.len(), 2, "{:?}", result.events);
 }
+
+/// Stops in the first stage before the rows that it hears of.
+struct Impatient;
+
+impl kempe_study::Progress for Impatient {
+    fn tick(&mut self, _: usize, _: usize) -> Flow {
+        Flow::Continue
+    }
+
+    fn stage(&mut self, _: kempe_study::Stage, _: Option<f64>) -> Flow {
+        Flow::Stop
+    }
+}
+
+#[test]
+fn what_comes_before_the_rows_can_be_stopped() {
+    let model = model(FOUR_BAR);
+    let told = run(&model, &model.studies[0], &mut Impatient).unwrap_err();
+    assert_eq!(told[0].code, "stopped");
+    assert_eq!(
+        told[0].message,
+        "stopped while finding assemblies: there are no rows yet"
+    );
+    let report = kempe_study::check_watched(&model, &mut Impatient);
+    assert_eq!(report.diagnostics[0].code, "stopped");
+    assert_eq!(
+        report.four_bars.len(),
+        1,
+        "what was found until then is told"
+    );
+}

@@ -5,6 +5,8 @@ use serde_json::json;
 use crate::arguments::Check;
 use crate::exit::Exit;
 use crate::files::load;
+use crate::interrupt;
+use crate::progress::Bar;
 use crate::say::{Speaker, print_json, put};
 
 /// Runs `kempe check`.
@@ -17,7 +19,10 @@ pub fn check(arguments: &Check) -> Exit {
             return exit;
         }
     };
-    let report = kempe_study::check(&loaded.checked.model);
+    interrupt::listen();
+    let mut bar = Bar::new("check", arguments.json);
+    let report = kempe_study::check_watched(&loaded.checked.model, &mut bar);
+    drop(bar);
     if arguments.json {
         speaker.tell(&report.diagnostics);
         let mut value = serde_json::to_value(&report).unwrap_or_default();
@@ -31,7 +36,9 @@ pub fn check(arguments: &Check) -> Exit {
         }
         speaker.tell(&report.diagnostics);
     }
-    if report.has_errors() {
+    if interrupt::stopped() {
+        Exit::Interrupted
+    } else if report.has_errors() {
         Exit::CannotSolve
     } else if report.has_findings() || !loaded.checked.warnings.is_empty() {
         Exit::Finding
