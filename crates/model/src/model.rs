@@ -515,7 +515,7 @@ pub struct MotionStudy {
     pub rows: Rows,
     /// Columns; empty means all named measures of the model (of a motion: those that need no forces).
     pub columns: Vec<Column>,
-    /// Plots: each entry is a column or a path.
+    /// Plots: each entry is one picture.
     pub plots: Vec<Plot>,
     /// Trace the whole circuit past dead points, by arc length, instead of the demanded range.
     pub circuit: bool,
@@ -546,8 +546,19 @@ pub struct Column {
 /// A plot asked for.
 #[derive(Clone, Debug)]
 pub enum Plot {
-    /// A measure along the motion.
-    Column(Column),
+    /// Measures of one dimension along the motion, in one picture.
+    Curves(Vec<Column>),
     /// The path of a point in the plane.
     Path(PointId),
+    /// The force of a joint as an arrow from one origin, all along the motion.
+    Hodograph(Hodograph),
+}
+
+/// A joint's force over a motion, as the curve of its arrow's tip.
+#[derive(Clone, Debug)]
+pub struct Hodograph {
+    /// As written: `hodograph(B, coupler)`.
+    pub name: String,
+    /// The joint, and the link that feels the force.
+    pub joint: crate::measure::JointRef,
 }

@@ -21,6 +21,7 @@ mod nature;
 mod parameters;
 mod phrase;
 mod place;
+mod plots;
 pub(crate) mod sections;
 pub(crate) mod springs;
 pub(crate) mod studies;

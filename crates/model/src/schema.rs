@@ -289,6 +289,10 @@ fn study() -> Value {
                 json!({ "type": "integer", "minimum": 1, "maximum": crate::read::studies::MAX_ROWS })
             }
             "circuit" => json!({ "type": "boolean" }),
+            "plot" => json!({
+                "description": "Measures, path(P), of forces also hodograph(B, link); in brackets measures that share a picture.",
+                "anyOf": [{ "type": "string" }, { "type": "array", "items": texts }]
+            }),
             _ => texts.clone(),
         });
         if let Some(study) = study.as_object_mut() {

@@ -30,6 +30,7 @@
 //! assert!(encode::csv(&result.table).starts_with("time [s],motor [deg],swing [deg],closure [1]"));
 //! ```
 
+mod along;
 mod circuit;
 mod columns;
 pub mod encode;
@@ -37,6 +38,8 @@ mod explain;
 mod figures;
 mod findings;
 mod findings_text;
+mod force_columns;
+mod force_notes;
 mod motion;
 mod pose;
 mod progress;
@@ -58,6 +61,6 @@ pub use pose::{Setting, pose_at};
 pub use progress::{Flow, Progress, Silent};
 pub use report::{StudyOutcome, report};
 pub use result::{Event, Figure, Frame, Scalar, StudyResult};
-pub use table::{Column, Table};
+pub use table::{Column, ForceColumns, Table};
 pub use unit::{Units, shown};
 pub use view::{drawing_frames, drawn, mechanism_view};

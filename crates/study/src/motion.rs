@@ -2,19 +2,19 @@
 
 use kempe_kinematics::drive_path::DrivePath;
 use kempe_kinematics::events::EventKind;
-use kempe_kinematics::force_source::NoForces;
 use kempe_kinematics::{
-    Design, EndReason, Mechanism, Motion, Plan, Sampler, Stage, Unmeasurable, Unprepared,
+    Design, EndReason, Mechanism, Motion, Plan, Stage, Unmeasurable, Unprepared,
 };
 use kempe_model::{Diagnostic, Model, MotionStudy, Study, StudyKind};
 use kempe_units::Dimension;
 
+use crate::along::Along;
 use crate::circuit::run_circuit;
 use crate::columns::{Asked, Quantity};
 use crate::explain::{beyond_limit, cannot_move, stopped};
 use crate::progress::{Ear, Flow, Progress};
 use crate::result::{Event, StudyResult};
-use crate::rows::{RowPlace, places};
+use crate::rows::places;
 use crate::sink::RowSink;
 use crate::table::{Column, Table};
 use crate::unit::Units;
@@ -32,17 +32,7 @@ pub fn run(
 ) -> Result<StudyResult, Vec<Diagnostic>> {
     match &study.kind {
         StudyKind::Motion(motion) => run_motion(model, &study.name, motion, progress),
-        StudyKind::Forces(_) => Err(vec![
-            Diagnostic::error(
-                "study-not-available",
-                format!(
-                    "study `{}` asks for forces, which this version cannot find",
-                    study.name
-                ),
-            )
-            .at(study.span.clone(), "")
-            .help("run the other studies by name: kempe run FILE STUDY"),
-        ]),
+        StudyKind::Forces(forces) => run_along(model, &study.name, forces, true, progress),
     }
 }
 
@@ -67,6 +57,17 @@ pub fn run_motion(
     if study.circuit {
         return run_circuit(model, name, study, progress);
     }
+    run_along(model, name, study, false, progress)
+}
+
+/// Rows along the drives' laws, with forces or without.
+fn run_along(
+    model: &Model,
+    name: &str,
+    study: &MotionStudy,
+    forces: bool,
+    progress: &mut dyn Progress,
+) -> Result<StudyResult, Vec<Diagnostic>> {
     let mechanism = Mechanism::new(model);
     let plan = Plan::new(&mechanism);
     let parameters: Vec<f64> = model.parameter_values();
@@ -74,11 +75,13 @@ pub fn run_motion(
     let motion = Motion::watched(&mechanism, &plan, &design, &parameters, &mut Ear(progress))
         .map_err(|error| vec![cannot_move(&mechanism, &plan, &design, &error)])?;
     let mut warnings = range_warnings(&motion)?;
-    let asked = Asked::of(model, study);
+    let asked = if forces {
+        Asked::of_forces(&mechanism, study)
+    } else {
+        Asked::of_motion(model, study)
+    };
     let quantities: Vec<&Quantity> = asked.all().collect();
-    let measures: Vec<_> = quantities.iter().map(|q| &q.measure).collect();
-    let mut sampler = Sampler::watched(&motion, &measures, NoForces, &mut Ear(progress))
-        .map_err(|problem| unprepared(model, &quantities, problem))?;
+    let mut sampler = Along::new(model, &motion, &quantities, forces, &mut Ear(progress))?;
     let path_drive = match motion.path {
         DrivePath::Coordinate { drive, .. } => drive,
         DrivePath::Time { .. } => 0,
@@ -95,12 +98,9 @@ pub fn run_motion(
     let mut frames = Vec::with_capacity(places.len());
     let mut parameters_met = Vec::with_capacity(places.len());
     for (done, place) in places.iter().enumerate() {
-        let sample = match *place {
-            RowPlace::Drive(p) => sampler.at_parameter(p),
-            RowPlace::Time(t) => sampler.at_time(t),
-        };
-        parameters_met.push(sample.parameter);
-        frames.push(rows.push(sample.time, sample));
+        let row = sampler.row(*place);
+        parameters_met.push(row.sample.parameter);
+        frames.push(rows.push(&mechanism, row.sample.time, row));
         if progress.tick(done + 1, places.len()) == Flow::Stop {
             break;
         }
@@ -110,6 +110,7 @@ pub fn run_motion(
     if rows.table.unreached() > 0 {
         warnings.push(unreached_warning(name, &rows.table));
     }
+    warnings.extend(rows.force_warnings(&mechanism, along));
     Ok(StudyResult {
         name: name.to_owned(),
         events: events(&motion, &units, &parameters_met),

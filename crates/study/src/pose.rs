@@ -179,6 +179,7 @@ fn pose_at_time(model: &Model, time: f64) -> Result<(Frame, String), Vec<Diagnos
     let frame = Frame {
         links: sample.links,
         points: sample.points,
+        arrows: Vec::new(),
     };
     Ok((frame, label))
 }

@@ -1,5 +1,6 @@
 //! What a study returns.
 
+use kempe_dynamics::ForceArrow;
 use kempe_kinematics::events::EventKind;
 use kempe_model::{Diagnostic, PointId};
 use kempe_units::Unit;
@@ -57,10 +58,12 @@ pub struct Scalar {
 /// A plot that a study asks for.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Figure {
-    /// A quantity along the motion.
-    Curve(Column),
+    /// Quantities of one dimension along the motion.
+    Curves(Vec<Column>),
     /// The path of a point.
     Path(PointId),
+    /// The force of a joint: name, x and y.
+    Hodograph(String, [Column; 2]),
 }
 
 /// Where everything is in one row, SI.
@@ -70,6 +73,8 @@ pub struct Frame {
     pub links: Vec<[f64; 3]>,
     /// Places of the points, m.
     pub points: Vec<[f64; 2]>,
+    /// What acts on the links, where forces were asked for.
+    pub arrows: Vec<ForceArrow>,
 }
 
 /// A place worth knowing.

@@ -1,13 +1,14 @@
 //! `[studies.NAME]`: what is asked of the model.
 
-use kempe_units::{Builtin, Dimension, Expr, parse};
+use kempe_units::{Builtin, Dimension, Expr};
 
 use crate::diagnostic::Diagnostic;
 use crate::document::{Key, Node, Table, Value};
-use crate::model::{Column, LawPiece, Model, MotionStudy, Plot, Rows, Scalar, Study, StudyKind};
+use crate::model::{Column, LawPiece, Model, MotionStudy, Rows, Scalar, Study, StudyKind};
 use crate::read::context::Context;
 use crate::read::measures::measure_text;
 use crate::read::nature::nature;
+use crate::read::plots;
 
 /// Keys of a motion study.
 pub(crate) const MOTION_KEYS: &[&str] = &["kind", "step", "rows", "columns", "plot", "circuit"];
@@ -127,7 +128,7 @@ fn read_study(cx: &mut Context<'_>, key: &Key, node: &Node) -> Option<StudyKind>
     let plots = entries(cx, table, "plot", "[\"swing\", \"path(P)\"]");
     let plots = plots
         .into_iter()
-        .filter_map(|node| plot(cx, node, forces))
+        .filter_map(|node| plots::plot(cx, node, forces))
         .collect();
     let circuit = match table.get("circuit") {
         Some(node) if !forces => cx.flag(node, "`circuit`")?,
@@ -162,7 +163,7 @@ fn entries<'n>(cx: &mut Context<'_>, table: &'n Table, key: &str, example: &str)
     }
 }
 
-fn column(cx: &mut Context<'_>, node: &Node, forces: bool) -> Option<Column> {
+pub(crate) fn column(cx: &mut Context<'_>, node: &Node, forces: bool) -> Option<Column> {
     let text = cx.text(node, "a column", "\"angle(rocker)\"")?;
     let name = text.content.trim().to_owned();
     let (measure, dimension) = measure_text(cx, text)?;
@@ -179,33 +180,6 @@ fn column(cx: &mut Context<'_>, node: &Node, forces: bool) -> Option<Column> {
         measure,
         dimension,
     })
-}
-
-fn plot(cx: &mut Context<'_>, node: &Node, forces: bool) -> Option<Plot> {
-    let text = cx.text(node, "a plot", "\"angle(rocker)\" or \"path(P)\"")?;
-    if let Ok(tree) = parse(&text.content)
-        && let kempe_units::Kind::Call {
-            function,
-            arguments,
-            ..
-        } = &tree.kind
-        && function == "path"
-    {
-        if let [point] = arguments.as_slice()
-            && let Some(name) = point.as_point()
-        {
-            return cx
-                .point(name, text.span(point.span.clone()))
-                .map(Plot::Path);
-        }
-        cx.push(
-            Diagnostic::error("wrong-arguments", "`path` draws the path of one point")
-                .at(text.span(tree.span.clone()), "")
-                .help("write path(P)"),
-        );
-        return None;
-    }
-    column(cx, node, forces).map(Plot::Column)
 }
 
 /// Where the rows stand: `step` or `rows`, or the default.
