@@ -96,7 +96,13 @@ pub fn compare(
         .collect();
     let quantities: Vec<&Quantity> = quantities.iter().collect();
     let forces = named.iter().any(|m| m.needs_forces);
-    let sampler = Along::new(&model, &motion, &quantities, forces)?;
+    let sampler = Along::new(
+        &model,
+        &motion,
+        &quantities,
+        forces,
+        &mut kempe_kinematics::Unwatched,
+    )?;
     let mut subject = Subject {
         model: &model,
         sampler,
