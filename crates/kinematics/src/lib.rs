@@ -28,6 +28,7 @@ mod newton;
 pub mod plan;
 mod pose;
 mod qr;
+mod rank;
 mod sampler;
 pub mod sensitivity;
 mod solve;
