@@ -10,6 +10,7 @@ use crate::evidence::closure;
 use crate::homotopy::{PathReport, Random, Solutions, WORK_LIMIT, all_real_solutions};
 use crate::mechanism::{BodyId, Constraint, Mechanism};
 use crate::newton::PlanNumber;
+use crate::open_loop;
 use crate::plan::{NewtonBlock, Plan, Step};
 use crate::pose::{Pose, cross, sub};
 use crate::qr::Qr;
@@ -25,6 +26,10 @@ const TRIAL_LIMIT: usize = 200_000;
 const SEARCH_STARTS: usize = 400;
 /// Two poses of a block closer than this (in sizes of the mechanism, and rad) are one.
 const SAME_POSE: f64 = 1e-7;
+/// A wheel may stand this far, rad, beyond half a turn from where its angle is counted: rounding decides no assembly.
+const HALF_TURN: f64 = 1e-9;
+/// A pose read off a trace may miss the bodies placed before by this much (in sizes of the mechanism, and rad).
+const SAME_BEFORE: f64 = 1e-2;
 /// Closure residual (in sizes of the mechanism, and rad) up to which an assembly with redundant constraints closes.
 pub const CLOSED: f64 = 1e-9;
 /// Side hints are not held against a point closer to the line than this, in sizes of the mechanism.
@@ -47,6 +52,8 @@ pub struct Assembly {
 pub enum Shortfall {
     /// A block was searched from random starts: the complete method does not apply to it.
     Searched,
+    /// A block with a gear or rack was cut open there, and its curves were followed: one between two cuts can be missed.
+    Scanned,
     /// The complete method lost a path: two assemblies meet, or all but.
     LostPath,
     /// The complete method has more to do than [`WORK_LIMIT`] allows.
@@ -95,6 +102,11 @@ struct Search<'a> {
     watch: &'a mut dyn Watch,
     stopped: bool,
     work: f64,
+    coordinates: &'a [f64],
+    /// Angles of the bodies by the file's hints, zero without: angles count within half a turn of these.
+    meant: Vec<f64>,
+    /// What was found by cutting the mechanism open at a gear (its constraint): the same for every branch before it.
+    opened: Vec<(usize, Vec<Vec<Pose<f64>>>)>,
 }
 
 /// Finds all assemblies at the drive coordinates (SI).
@@ -133,6 +145,9 @@ pub fn find_assemblies(
         watch,
         stopped: false,
         work: WORK_LIMIT,
+        coordinates,
+        meant: meant_angles(mechanism, design),
+        opened: Vec::new(),
     };
     let mut state = State::new(mechanism, plan);
     state.set_inputs(mechanism, coordinates);
@@ -265,8 +280,8 @@ impl Search<'_> {
         }
         let situation = state.situation(self.design, &branch);
         // The pose that the file tells is tried as well: no path may lose it.
-        let (hinted, hinted_angles) = self.hinted_start(&state);
-        let mut meant = vec![0.0; self.mechanism.bodies];
+        let hinted = self.hinted_start(&state);
+        let meant = self.meant.clone();
         let mut candidates = vec![hinted];
         let (mechanism, size) = (self.mechanism, self.size);
         let mut work = self.work;
@@ -285,10 +300,19 @@ impl Search<'_> {
                 candidates.extend(poses);
             }
             Solutions::NotAlgebraic => {
-                self.shortfall.get_or_insert(Shortfall::Searched);
-                // Gears count turns: from where the file says that a link is.
-                meant = hinted_angles;
-                candidates.extend(self.random_starts(block, &state));
+                let Some(opened) = self.opened_at_gear(block, step, &state, &meant) else {
+                    self.stopped = true;
+                    return;
+                };
+                self.shortfall.get_or_insert(if opened.is_empty() {
+                    Shortfall::Searched
+                } else {
+                    Shortfall::Scanned
+                });
+                if opened.is_empty() {
+                    candidates.extend(self.random_starts(block, &state));
+                }
+                candidates.extend(opened);
             }
         }
         let mut found: Vec<(State<f64>, Branch)> = Vec::new();
@@ -301,6 +325,7 @@ impl Search<'_> {
             }
             if self.solve(step, 1.0, &mut state, &mut branch)
                 && self.closes(block, &state, &branch)
+                && self.counts_from(block, &state, &branch, &meant)
                 && found
                     .iter()
                     .all(|(other, _)| !self.same(&other.poses, &state.poses))
@@ -355,7 +380,7 @@ impl Search<'_> {
             if matches!(unknown, Unknown::Angle(_))
                 && !matches!(self.plan.steps[step], Step::Newton { .. })
             {
-                branch.near[body] = pose.angle_near(0.0);
+                branch.near[body] = pose.angle_near(self.meant[body]);
             }
             branch.guess[body] = pose;
         }
@@ -472,6 +497,28 @@ impl Search<'_> {
         })
     }
 
+    /// Whether the wheels of the block's gears and racks stand within half a turn of the angles they are counted from.
+    fn counts_from(
+        &self,
+        block: &NewtonBlock,
+        state: &State<f64>,
+        branch: &Branch,
+        meant: &[f64],
+    ) -> bool {
+        let constraints = block
+            .rows
+            .iter()
+            .map(|row| &self.mechanism.constraints[row.constraint].0);
+        constraints
+            .filter(|c| is_gear(c))
+            .flat_map(Constraint::bodies)
+            .all(|body| {
+                let index = body.index();
+                let angle = state.poses[index].angle_near(branch.near[index]);
+                (angle - meant[index]).abs() <= std::f64::consts::PI + HALF_TURN
+            })
+    }
+
     fn sides_hold(&self, step: usize, state: &State<f64>) -> bool {
         self.checks
             .iter()
@@ -494,19 +541,17 @@ impl Search<'_> {
         })
     }
 
-    /// The pose that the file's `near` hints tell, and the angles of the bodies there; what they leave open stays.
-    fn hinted_start(&self, state: &State<f64>) -> (Vec<Pose<f64>>, Vec<f64>) {
+    /// The pose that the file's `near` hints tell; what they leave open stays.
+    fn hinted_start(&self, state: &State<f64>) -> Vec<Pose<f64>> {
         let (mechanism, geometry) = (self.mechanism, &self.design.geometry);
         let parameters = mechanism.model.parameter_values::<f64>();
         let value = |expr: &kempe_model::Scalar| expr.eval(&mut |id| parameters[id.index()]);
         let mut poses = state.poses.clone();
-        let mut near = vec![0.0; mechanism.bodies];
         for hint in &mechanism.model.assembly {
-            if let HintKind::NearAngle { link, angle } = &hint.kind {
+            if let HintKind::NearAngle { link, .. } = &hint.kind {
                 let body = mechanism.body_of(*link).index();
-                near[body] = value(angle) - geometry.seat_angles[link.index()];
                 let pose = &mut poses[body];
-                *pose = Pose::from_angle(pose.x, pose.y, near[body]);
+                *pose = Pose::from_angle(pose.x, pose.y, self.meant[body]);
             }
         }
         for hint in &mechanism.model.assembly {
@@ -525,7 +570,55 @@ impl Search<'_> {
                 }
             }
         }
-        (poses, near)
+        poses
+    }
+
+    /// Poses near those of a block that holds one gear pair or rack, for the poses found so far; none where it holds
+    /// more, or cannot be opened. `None` when stopped.
+    fn opened_at_gear(
+        &mut self,
+        block: &NewtonBlock,
+        step: usize,
+        state: &State<f64>,
+        meant: &[f64],
+    ) -> Option<Vec<Vec<Pose<f64>>>> {
+        let mut gears = (block.rows.iter().map(|row| row.constraint))
+            .filter(|index| is_gear(&self.mechanism.constraints[*index].0));
+        let (Some(gear), None) = (gears.next(), gears.next()) else {
+            return Some(Vec::new());
+        };
+        if self.opened.iter().all(|(index, _)| *index != gear) {
+            let found = open_loop::candidates(
+                self.mechanism,
+                self.plan,
+                self.design,
+                self.coordinates,
+                (gear, meant),
+                self.watch,
+            )?;
+            self.opened.push((gear, found));
+        }
+        let before = &self.plan.blocks[..step];
+        let fits = |poses: &Vec<Pose<f64>>| {
+            before.iter().flat_map(|b| &b.unknowns).all(|unknown| {
+                let body = unknown.body().index();
+                let (a, b) = (&poses[body], &state.poses[body]);
+                match unknown {
+                    Unknown::Angle(_) => (a.c - b.c).abs().max((a.s - b.s).abs()) <= SAME_BEFORE,
+                    Unknown::Place(_) => {
+                        (a.x - b.x).abs().max((a.y - b.y).abs()) <= SAME_BEFORE * self.size
+                    }
+                }
+            })
+        };
+        let found = self.opened.iter().filter(|(index, _)| *index == gear);
+        Some(
+            found
+                .flat_map(|(_, list)| list)
+                .filter(|p| fits(p))
+                .cloned()
+                .collect(),
+        )
     }
 
     /// Starts spread over the mechanism's surroundings, for blocks with gears or too many paths.
@@ -551,6 +644,27 @@ impl Search<'_> {
         }
         starts
     }
+}
+
+/// Angles of the bodies by the file's hints; zero where there is none.
+fn meant_angles(mechanism: &Mechanism, design: &Design<f64>) -> Vec<f64> {
+    let parameters = mechanism.model.parameter_values::<f64>();
+    let mut meant = vec![0.0; mechanism.bodies];
+    for hint in &mechanism.model.assembly {
+        if let HintKind::NearAngle { link, angle } = &hint.kind {
+            let value = angle.eval(&mut |id| parameters[id.index()]);
+            meant[mechanism.body_of(*link).index()] =
+                value - design.geometry.seat_angles[link.index()];
+        }
+    }
+    meant
+}
+
+fn is_gear(constraint: &Constraint) -> bool {
+    matches!(
+        constraint,
+        Constraint::Gears { .. } | Constraint::Rack { .. }
+    )
 }
 
 fn side_checks(mechanism: &Mechanism, plan: &Plan) -> Vec<SideCheck> {

@@ -10,7 +10,7 @@ use crate::drive_path::DrivePath;
 use crate::events::locate_limit;
 use crate::force_source::NoForces;
 use crate::mechanism::Mechanism;
-use crate::motion::{EndReason, Motion, MotionError};
+use crate::motion::{EndReason, FAR, Motion, MotionError};
 use crate::plan::Plan;
 use crate::sampler::{Sample, Sampler, Unprepared};
 use crate::state::Design;
@@ -269,8 +269,9 @@ fn push_stretch<'m>(
 }
 
 /// Follows the curve until it is back at its start (angles of bodies and of a turning drive count modulo a turn). Along
-/// time, where nothing comes back, until the motion's `end`. `None` when stopped.
-fn go_round(
+/// time, where nothing comes back, until the motion's `end`; and no further than to where a part runs away. `None` when
+/// stopped.
+pub(crate) fn go_round(
     follower: &mut Follower<'_, DrivePath>,
     start: Node,
     mechanism: &Mechanism,
@@ -344,8 +345,11 @@ fn go_round(
             nodes.push(locate_limit(follower, &from, &next));
         }
         let over = matches!(path, DrivePath::Time { .. }) && follower.parameter(&next.z) > end;
+        let away = (next.z[..last].chunks_exact(3))
+            .zip(start.z.chunks_exact(3))
+            .any(|(p, q)| (p[0] - q[0]).abs() > FAR || (p[1] - q[1]).abs() > FAR);
         nodes.push(next);
-        if over {
+        if over || away {
             break;
         }
     }

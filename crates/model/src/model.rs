@@ -283,6 +283,11 @@ pub enum JointKind {
     },
     /// Two gears in mesh, their axes on the arm.
     /// External: `teeth_a (angle_a - angle_arm) + teeth_b (angle_b - angle_arm) = teeth_a phase`; internal: minus.
+    ///
+    /// A gear counts turns, so it matters from where. Where the motion starts a driven link's angle is what its drive
+    /// says, and that of any other link is the one within half a turn of its `near` hint, or of zero without one. The
+    /// equation holds for these angles there, and on from there with all turns counted. Other meshings of the same
+    /// wheels, a tooth further, are other phases.
     Gears {
         /// First gear.
         a: LinkId,
@@ -300,7 +305,8 @@ pub enum JointKind {
         phase: Scalar,
     },
     /// A pinion rolling on a rack. With `s` the pinion centre's coordinate along the rack's x axis and `side` the
-    /// side of the rack on which the pinion lies: `s + side radius (angle_pinion - angle_rack) = offset`.
+    /// side of the rack on which the pinion lies: `s + side radius (angle_pinion - angle_rack) = offset`. Angles count
+    /// as those of [`JointKind::Gears`] do.
     Rack {
         /// The link that carries the rack; its pitch line is parallel to its x axis.
         rack: LinkId,

@@ -323,6 +323,9 @@ fn diagnostics(
     if let (Some(shortfall), None) = (found.assemblies.shortfall, &found.problem) {
         let why = match shortfall {
             Shortfall::Searched => "a group was searched by trial",
+            Shortfall::Scanned => {
+                "a group with a gear or rack was followed along its curves, and a short one can be overlooked"
+            }
             Shortfall::LostPath => "two assemblies of a group meet here, or all but",
             Shortfall::Exhausted => "a group has more of them than could be followed",
             Shortfall::TooMany => "there are too many to list",
