@@ -37,6 +37,7 @@ pub mod encode;
 mod explain;
 mod figures;
 mod findings;
+mod findings_forces;
 mod findings_text;
 mod force_columns;
 mod force_notes;
