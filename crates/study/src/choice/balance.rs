@@ -8,7 +8,7 @@ use kempe_model::{
 use kempe_number::math;
 use kempe_units::Dimension;
 
-use super::{bare, constant, effort, force, root_mean_square, set_beside, shown_by, values};
+use super::{bare, constant, effort, force, set_beside, shown_by, values, weights};
 use crate::columns::Quantity;
 use crate::motion::run_along;
 use crate::progress::Progress;
@@ -17,6 +17,8 @@ use crate::unit::Units;
 
 /// A mass below this part of all masses on the links is none.
 const NO_MASS: f64 = 1e-12;
+/// Places are told to this part of a metre.
+const FINEST: f64 = 1e-12;
 /// Harmonics of the shaking force that are listed.
 const HARMONICS: usize = 6;
 
@@ -163,12 +165,20 @@ fn only_weights(model: &Model) -> Model {
     heavy
 }
 
+/// All values in one list, each with the root of its row's weight.
 fn in_one(lists: &[Vec<f64>]) -> Vec<f64> {
-    // Rows that were not reached say nothing.
-    let numbers = lists.iter().flatten();
-    numbers
-        .map(|v| if v.is_finite() { *v } else { 0.0 })
-        .collect()
+    let weights = weights(lists.first().map_or(0, Vec::len));
+    let weighted = lists.iter().flat_map(|list| {
+        list.iter().zip(&weights).map(|(value, weight)| {
+            // Rows that were not reached say nothing.
+            if value.is_finite() {
+                value * weight.sqrt()
+            } else {
+                0.0
+            }
+        })
+    });
+    weighted.collect()
 }
 
 /// A mass on a link at a distance from its pivot.
@@ -228,13 +238,7 @@ fn left_over(
     after: &[Vec<f64>],
 ) -> Vec<Scalar> {
     let units = Units::of(model);
-    let rms = |lists: &[Vec<f64>]| {
-        lists
-            .iter()
-            .map(|l| root_mean_square(l.iter()).powi(2))
-            .sum::<f64>()
-            .sqrt()
-    };
+    let rms = |lists: &[Vec<f64>]| in_one(lists).iter().map(|v| v * v).sum::<f64>().sqrt();
     let (what, dimension) = match goal {
         BalanceGoal::ShakingForce => ("shaking force", Dimension::FORCE),
         BalanceGoal::Statics => ("load of gravity", effort(model, DriveId(0)).dimension),
@@ -259,7 +263,11 @@ fn advice(model: &Model, weights: &[PointMass]) -> Listing {
         let Place::Cartesian { x, y } = &w.place else {
             return None;
         };
-        let length = |s| units.text(value(s, &parameters), Dimension::LENGTH);
+        let length = |s| {
+            // Rounding of a direction along an axis is no place.
+            let si = (value(s, &parameters) / FINEST).round() * FINEST;
+            units.text(si, Dimension::LENGTH)
+        };
         Some(vec![format!(
             "{} = {{ on = \"{}\", at = [\"{}\", \"{}\"], mass = \"{}\" }}",
             w.name,

@@ -129,14 +129,14 @@ fn set_beside(result: &mut StudyResult, quantities: &[Quantity], before: &[Vec<f
     }
 }
 
-/// Root of the mean square of what is a number.
-fn root_mean_square<'v>(values: impl Iterator<Item = &'v f64>) -> f64 {
-    let (mut sum, mut count) = (0.0, 0usize);
-    for value in values.filter(|v| v.is_finite()) {
-        sum += value * value;
-        count += 1;
-    }
-    (sum / count.max(1) as f64).sqrt()
+/// Weights of rows in a sum of squares, 1 in all: the first and the last count half, so that the rows of a full turn
+/// count evenly.
+fn weights(rows: usize) -> Vec<f64> {
+    let whole = 1.0 / rows.saturating_sub(1).max(1) as f64;
+    let end = |row: usize| rows > 1 && (row == 0 || row + 1 == rows);
+    (0..rows)
+        .map(|row| if end(row) { whole / 2.0 } else { whole })
+        .collect()
 }
 
 /// A constant in the model.
