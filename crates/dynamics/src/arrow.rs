@@ -9,7 +9,7 @@ use crate::instant::Instant;
 use crate::load::Load;
 use crate::number::ForceNumber;
 use crate::reaction::Carrier;
-use crate::vector::sub;
+use crate::vector::{length, sub};
 
 /// Where a force comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -154,7 +154,7 @@ impl<T: ForceNumber> Forces<'_, T> {
             Ends::Points([(link_a, a), (link_b, b)]) => {
                 let (a, b) = (self.place_of(at, *a), self.place_of(at, *b));
                 let span = sub(b, a);
-                let length = span[0].hypot(span[1]);
+                let length = length(span);
                 if length > 0.0 {
                     let pull = span.map(|x| x / length * tension);
                     add(*link_a, a, pull, 0.0);

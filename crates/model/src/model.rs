@@ -512,6 +512,60 @@ pub enum StudyKind {
     Motion(MotionStudy),
     /// What drives the motion and what the joints carry along it. Rows, columns and plots as for a motion.
     Forces(MotionStudy),
+    /// The counterweights that make it run quietly or hang in balance.
+    Balance(BalanceStudy),
+    /// The spring that leaves a wanted effort to a drive.
+    Spring(SpringStudy),
+}
+
+/// Which counterweights a mechanism needs.
+#[derive(Clone, Debug)]
+pub struct BalanceStudy {
+    /// Where rows stand.
+    pub along: MotionStudy,
+    /// What is to vanish.
+    pub goal: BalanceGoal,
+    /// The links that may carry one, each with its pin on the frame.
+    pub on: Vec<(LinkId, PointId)>,
+    /// Their distance from these pins, m.
+    pub radius: Scalar,
+}
+
+/// What counterweights are for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BalanceGoal {
+    /// The force of the moving links on the frame.
+    ShakingForce,
+    /// What gravity asks of the drive.
+    Statics,
+}
+
+/// Which spring leaves a wanted effort to a drive: its stiffness and preload are chosen.
+#[derive(Clone, Debug)]
+pub struct SpringStudy {
+    /// Where rows stand.
+    pub along: MotionStudy,
+    /// The spring, by its place in the model's actions: its ends and free length count.
+    pub spring: usize,
+    /// The drive that it helps.
+    pub drive: DriveId,
+    /// What the drive is to give, N m or N.
+    pub wanted: Measure,
+    /// Least and largest stiffness, N/m or N m/rad; `None` for no bound.
+    pub stiffness: [Option<Scalar>; 2],
+    /// Least and largest tension at the free length, N or N m.
+    pub preload: [Option<Scalar>; 2],
+}
+
+impl StudyKind {
+    /// Rows, columns and plots of a study, whatever it asks.
+    pub fn along(&self) -> &MotionStudy {
+        match self {
+            Self::Motion(along) | Self::Forces(along) => along,
+            Self::Balance(study) => &study.along,
+            Self::Spring(study) => &study.along,
+        }
+    }
 }
 
 /// A motion study: rows along the drive or along time.

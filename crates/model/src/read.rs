@@ -2,6 +2,7 @@
 
 pub(crate) mod actuators;
 mod assembly;
+pub(crate) mod choices;
 pub(crate) mod context;
 mod csv;
 pub(crate) mod drives;

@@ -2,7 +2,7 @@
 
 use kempe_dynamics::{ForceArrow, ForceError, ForceEvidence, ForceNote, ForceSampler};
 use kempe_kinematics::force_source::NoForces;
-use kempe_kinematics::{Motion, Sample, Sampler, Watch};
+use kempe_kinematics::{Motion, Sample, Sampler, Unwatched, Watch};
 use kempe_model::{Diagnostic, DriveId, Model};
 
 use crate::columns::Quantity;
@@ -32,6 +32,16 @@ pub(crate) struct RowForces {
 impl<'a> Along<'a> {
     /// Prepares quantities for evaluation.
     pub fn new(
+        model: &Model,
+        motion: &'a Motion<'a>,
+        quantities: &[&Quantity],
+        forces: bool,
+    ) -> Result<Self, Vec<Diagnostic>> {
+        Self::watched(model, motion, quantities, forces, &mut Unwatched)
+    }
+
+    /// As [`Along::new`]; `watch` hears how far the statistics have come and may stop them.
+    pub fn watched(
         model: &Model,
         motion: &'a Motion<'a>,
         quantities: &[&Quantity],

@@ -96,6 +96,7 @@ pub(crate) fn run_circuit(
         figures: rows.figures(&study.plots),
         table: rows.table,
         frames,
+        listings: Vec::new(),
         along: 0,
         assemblies: (circuit.assemblies.list.len(), circuit.assemblies.rejected),
         warnings,

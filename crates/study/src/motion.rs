@@ -9,12 +9,13 @@ use kempe_model::{Diagnostic, Model, MotionStudy, Study, StudyKind};
 use kempe_units::Dimension;
 
 use crate::along::Along;
+use crate::choice::{balance, spring};
 use crate::circuit::run_circuit;
 use crate::columns::{Asked, Quantity};
 use crate::explain::{beyond_limit, cannot_move, stopped};
 use crate::progress::{Ear, Flow, Progress};
 use crate::result::{Event, StudyResult};
-use crate::rows::places;
+use crate::rows::{path_drive, places_along};
 use crate::sink::RowSink;
 use crate::table::{Column, Table};
 use crate::unit::Units;
@@ -33,13 +34,8 @@ pub fn run(
     match &study.kind {
         StudyKind::Motion(motion) => run_motion(model, &study.name, motion, progress),
         StudyKind::Forces(forces) => run_along(model, &study.name, forces, true, progress),
-    }
-}
-
-/// Rows, columns and plots of a study, whatever it asks.
-pub fn motion_of(study: &Study) -> &MotionStudy {
-    match &study.kind {
-        StudyKind::Motion(motion) | StudyKind::Forces(motion) => motion,
+        StudyKind::Balance(choice) => balance(model, &study.name, choice, progress),
+        StudyKind::Spring(choice) => spring(model, &study.name, choice, progress),
     }
 }
 
@@ -61,7 +57,7 @@ pub fn run_motion(
 }
 
 /// Rows along the drives' laws, with forces or without.
-fn run_along(
+pub(crate) fn run_along(
     model: &Model,
     name: &str,
     study: &MotionStudy,
@@ -81,12 +77,8 @@ fn run_along(
         Asked::of_motion(model, study)
     };
     let quantities: Vec<&Quantity> = asked.all().collect();
-    let mut sampler = Along::new(model, &motion, &quantities, forces, &mut Ear(progress))?;
-    let path_drive = match motion.path {
-        DrivePath::Coordinate { drive, .. } => drive,
-        DrivePath::Time { .. } => 0,
-    };
-    let places = places(model, &study.rows, &parameters, path_drive);
+    let mut sampler = Along::watched(model, &motion, &quantities, forces, &mut Ear(progress))?;
+    let places = places_along(&motion, study, &parameters);
     let units = Units::of(model);
     let mut rows = RowSink::new(
         name,
@@ -106,7 +98,7 @@ fn run_along(
         }
     }
     let by_drive = matches!(motion.path, DrivePath::Coordinate { .. }) && !model.drives.is_empty();
-    let along = if by_drive { 1 + path_drive } else { 0 };
+    let along = if by_drive { 1 + path_drive(&motion) } else { 0 };
     if rows.table.unreached() > 0 {
         warnings.push(unreached_warning(name, &rows.table));
     }
@@ -118,6 +110,7 @@ fn run_along(
         figures: rows.figures(&study.plots),
         table: rows.table,
         frames,
+        listings: Vec::new(),
         along,
         assemblies: (motion.assemblies.list.len(), motion.assemblies.rejected),
         warnings,

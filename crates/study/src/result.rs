@@ -18,6 +18,8 @@ pub struct StudyResult {
     pub scalars: Vec<Scalar>,
     /// What the study asks to plot.
     pub figures: Vec<Figure>,
+    /// What is told besides, in words.
+    pub listings: Vec<Listing>,
     /// The pose at each row.
     pub frames: Vec<Frame>,
     /// Limits and change points met.
@@ -53,6 +55,17 @@ pub struct Scalar {
     pub unit: Unit,
     /// Value in the unit.
     pub value: f64,
+}
+
+/// A small table of words.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Listing {
+    /// What it is.
+    pub title: String,
+    /// Heads of its columns; none for plain lines.
+    pub head: Vec<String>,
+    /// Its rows.
+    pub rows: Vec<Vec<String>>,
 }
 
 /// A plot that a study asks for.

@@ -96,13 +96,7 @@ pub fn compare(
         .collect();
     let quantities: Vec<&Quantity> = quantities.iter().collect();
     let forces = named.iter().any(|m| m.needs_forces);
-    let sampler = Along::new(
-        &model,
-        &motion,
-        &quantities,
-        forces,
-        &mut kempe_kinematics::Unwatched,
-    )?;
+    let sampler = Along::new(&model, &motion, &quantities, forces)?;
     let mut subject = Subject {
         model: &model,
         sampler,
