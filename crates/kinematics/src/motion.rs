@@ -12,6 +12,8 @@ use crate::state::{Branch, Design, State};
 use crate::trace::{Cubic, Follower, Node};
 use crate::watch::{Stage, Unwatched, Watch};
 
+/// Sizes of mechanisms, m, whose lengths can be squared and multiplied with room to spare.
+pub const SIZES: (f64, f64) = (1e-100, 1e100);
 /// Steps after which a trace is given up.
 pub const STEP_LIMIT: usize = 200_000;
 /// A motion may end this close to a limit (in path scales) and still count as reaching it.
@@ -50,6 +52,11 @@ pub enum MotionError {
     Locked {
         /// Path parameter of the start.
         at: f64,
+    },
+    /// The mechanism is too large or too small for numbers: squares of its lengths would overflow or vanish.
+    Scale {
+        /// Its size, m.
+        size: f64,
     },
     /// It was told to stop before the motion was known.
     Stopped {
@@ -190,6 +197,10 @@ impl<'m> Motion<'m> {
                 .collect();
             bodies.dedup();
             return Err(MotionError::Undetermined { bodies });
+        }
+        let size = design.geometry.size(mechanism);
+        if !(SIZES.0..=SIZES.1).contains(&size) {
+            return Err(MotionError::Scale { size });
         }
         let scale = crate::trace::Path::scale(&path);
         let mut follower = Follower::new(mechanism, plan, &design.geometry, &path);

@@ -2,6 +2,7 @@
 
 use kempe_model::{DriveId, Leaf, Measure, PointId, PoseMeasure, Statistic};
 use kempe_number::{Jet, Number};
+use kempe_units::{Dimension, Unit, format_digits};
 
 use crate::bordered::Bordered;
 use crate::bridge::{SIDE_ORDER, join};
@@ -18,6 +19,9 @@ use crate::watch::{Unwatched, Watch};
 
 /// A closure residual (in mechanism sizes) above which a row is marked.
 pub const CLOSURE_LIMIT: f64 = 1e-9;
+
+/// Digits of a place in a note.
+const NOTE_DIGITS: usize = 12;
 
 /// One row of a motion.
 #[derive(Clone, Debug)]
@@ -554,6 +558,25 @@ impl<'a, F: ForceSource> Sampler<'a, F> {
         }
     }
 
+    /// A path parameter with its unit, as the file would say it.
+    fn place_text(&self, p: f64) -> String {
+        let model = &self.motion.mechanism.model;
+        let dimension = match self.path_drive() {
+            Some(drive) => model.drives.get(drive.index()).map(|d| d.dimension),
+            None => None,
+        };
+        let unit = match dimension {
+            Some(Dimension::ANGLE) => Unit::parse(&model.units.angle.name),
+            Some(_) => Unit::parse(&model.units.length.name),
+            None => Unit::parse("s"),
+        };
+        match unit {
+            Ok(unit) => format_digits(p, &unit, NOTE_DIGITS),
+            // A file's unit is one that was read; in SI at the worst.
+            Err(_) => format!("{p} in SI"),
+        }
+    }
+
     fn why_unreached(&self, p: f64) -> String {
         let motion = self.motion;
         let (low, high) = motion.reached();
@@ -562,6 +585,7 @@ impl<'a, F: ForceSource> Sampler<'a, F> {
         } else {
             (motion.ends.0, low)
         };
+        let at = self.place_text(at);
         match reason {
             EndReason::Limit => format!("not reached: the drive's limit is at {at}"),
             EndReason::Stuck => {
@@ -582,7 +606,7 @@ impl<'a, F: ForceSource> Sampler<'a, F> {
         {
             return Some(format!(
                 "change point at {}: the motion goes on smoothly, interpolated from both sides",
-                event.at
+                self.place_text(event.at)
             ));
         }
         if !(sample.closure <= CLOSURE_LIMIT) {

@@ -584,11 +584,12 @@ pub struct MotionStudy {
 /// Where the rows of a motion table stand.
 #[derive(Clone, Debug)]
 pub enum Rows {
-    /// Every `step` of the (single) drive's coordinate, from its start, and at its end.
+    /// Every `step` of the (single) drive's coordinate, from its start, and at its end; along a circuit at its dead points
+    /// too.
     DriveStep(Scalar),
     /// Every `step` seconds.
     TimeStep(Scalar),
-    /// So many rows, evenly in time over the whole motion, both ends included.
+    /// So many rows, evenly in time over the whole motion (along a circuit: in arc length), both ends included.
     Count(usize),
 }
 

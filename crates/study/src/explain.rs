@@ -64,6 +64,15 @@ pub fn cannot_move(
             model.drives.iter().fold(told, |d, drive| d.see(drive.span.clone(), "where it starts"))
         }
         MotionError::Stopped { stage } => stopped(*stage),
+        MotionError::Scale { size } => Diagnostic::error(
+            "scale",
+            format!("the mechanism measures {size:.1e} m: lengths of this size cannot be computed with"),
+        )
+        .note("squares of lengths must neither overflow nor vanish: from 1e-100 m to 1e100 m there is room")
+        .help(format!(
+            "check the units: a bare length is in {}",
+            model.units.length.name
+        )),
         MotionError::Locked { at } => {
             let told = Diagnostic::error(
                 "locked",
@@ -290,7 +299,16 @@ pub(crate) fn beyond_limit(motion: &Motion<'_>, missed: &[(EndReason, f64)]) -> 
         })
         .collect();
     let stuck = missed.iter().all(|(r, _)| *r == EndReason::Stuck);
-    let (code, message) = if stuck {
+    let limited = missed.iter().any(|(r, _)| *r == EndReason::Limit);
+    let (code, message) = if !stuck && !limited {
+        (
+            "motion-runs-away",
+            format!(
+                "{name} cannot cover its range, as a part runs away to infinity on the way: {}",
+                list(&ends)
+            ),
+        )
+    } else if stuck {
         (
             "motion-stuck",
             format!(
@@ -309,14 +327,16 @@ pub(crate) fn beyond_limit(motion: &Motion<'_>, missed: &[(EndReason, f64)]) -> 
         text(low),
         text(high)
     ));
-    if let Some(group) = limiting_group(
-        motion,
-        if missed.iter().any(|(_, at)| *at > high) {
-            high
-        } else {
-            low
-        },
-    ) {
+    if limited
+        && let Some(group) = limiting_group(
+            motion,
+            if missed.iter().any(|(_, at)| *at > high) {
+                high
+            } else {
+                low
+            },
+        )
+    {
         told = told.note(format!("at the limit {group}"));
     }
     if let Some(span) = span {

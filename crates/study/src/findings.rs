@@ -8,6 +8,7 @@ use kempe_model::{Diagnostic, Model};
 use kempe_units::Dimension;
 use serde::Serialize;
 
+use crate::alternatives::hints;
 use crate::explain::{cannot_move, list};
 use crate::progress::{Ear, Progress, Silent};
 use crate::unit::Units;
@@ -175,6 +176,12 @@ pub fn check_watched(model: &Model, progress: &mut dyn Progress) -> Report {
                 (EndReason::Limit, EndReason::Limit) => ", limits on both sides",
                 (EndReason::Limit, _) => " and more, a limit at the low end",
                 (_, EndReason::Limit) => " and less, a limit at the high end",
+                (EndReason::Runaway, _) | (_, EndReason::Runaway) => {
+                    ", where a part runs away to infinity"
+                }
+                (EndReason::Stuck, _) | (_, EndReason::Stuck) => {
+                    ", where it could be followed no further"
+                }
                 _ => "",
             };
             format!("{name} {range}{why}")
@@ -219,7 +226,7 @@ fn source_name(model: &Model, source: Source) -> String {
 fn assumptions(model: &Model, units: &Units) -> Vec<String> {
     let parameters: Vec<f64> = model.parameter_values();
     let mut told = vec![format!(
-        "bare numbers: lengths in {}, angles in {}",
+        "bare numbers: lengths in {0}, angles in {1}, speeds in {0}/s and {1}/s",
         model.units.length.name, model.units.angle.name
     )];
     for drive in &model.drives {
@@ -316,9 +323,19 @@ fn diagnostics(
         );
         // A place near which things are is an answer; nothing said is a question.
         if model.assembly.is_empty() {
-            told.push(told_now.help(
-                "say which is meant: [assembly] C = \"left of B -> D\", or C = { near = [x, y] }",
-            ));
+            let lines = hints(mechanism, plan, design, &found.assemblies.list);
+            let help = match lines.is_empty() {
+                true => {
+                    "say under [assembly] near which angle a link is meant: rocker = { near = \"30 deg\" }"
+                }
+                false => "write the line of the one that is meant under [assembly]",
+            };
+            let lines = lines.into_iter().enumerate();
+            let told_now = lines.fold(told_now, |told, (k, line)| match k {
+                0 => told.note(format!("the first: {line}")),
+                _ => told.note(format!("number {}: {line}", k + 1)),
+            });
+            told.push(told_now.help(help));
         }
     }
     if let (Some(shortfall), None) = (found.assemblies.shortfall, &found.problem) {

@@ -31,6 +31,7 @@
 //! ```
 
 mod along;
+mod alternatives;
 mod choice;
 mod circuit;
 mod columns;
