@@ -22,15 +22,25 @@ pub fn check(arguments: &Check) -> Exit {
     interrupt::listen();
     let mut bar = Bar::new("check", arguments.json);
     let report = kempe_study::check_watched(&loaded.checked.model, &mut bar);
+    // A mechanism that cannot move is told so above; there is no motion to prove.
+    let proof = (arguments.certify && !report.has_errors() && !interrupt::stopped())
+        .then(|| kempe_study::prove(&loaded.checked.model, &mut bar).ok())
+        .flatten();
     drop(bar);
     if arguments.json {
         speaker.tell(&report.diagnostics);
         let mut value = serde_json::to_value(&report).unwrap_or_default();
         value["file"] = json!(loaded.name);
         value["diagnostics"] = speaker.told();
+        if let Some(proof) = &proof {
+            value["proof"] = serde_json::to_value(proof).unwrap_or_default();
+        }
         print_json(&value);
     } else {
         put(&report.to_text());
+        if let Some(proof) = &proof {
+            put(&proof.to_text());
+        }
         if report.has_findings() {
             eprintln!();
         }
@@ -40,7 +50,10 @@ pub fn check(arguments: &Check) -> Exit {
         Exit::Interrupted
     } else if report.has_errors() {
         Exit::CannotSolve
-    } else if report.has_findings() || !loaded.checked.warnings.is_empty() {
+    } else if proof.is_some_and(|proof| !proof.is_whole())
+        || report.has_findings()
+        || !loaded.checked.warnings.is_empty()
+    {
         Exit::Finding
     } else {
         Exit::Ok
