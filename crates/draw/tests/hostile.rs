@@ -151,6 +151,21 @@ fn drive() -> impl Strategy<Value = DriveView> {
     })
 }
 
+fn load() -> impl Strategy<Value = LoadView> {
+    let role = prop::sample::select(LoadRole::ALL.to_vec());
+    let label = prop::sample::select(vec![String::new(), "a".into(), EVIL.into()]);
+    let plane = || [number(), number()];
+    (plane(), plane(), number(), role, label).prop_map(|(at, vector, moment, role, label)| {
+        LoadView {
+            at,
+            vector,
+            moment,
+            role,
+            label,
+        }
+    })
+}
+
 prop_compose! {
     fn mechanism()(
         links in prop::collection::vec(prop::collection::vec(0..6_usize, 0..5), 0..5),
@@ -158,7 +173,8 @@ prop_compose! {
         drives in prop::collection::vec(drive(), 0..3),
         points in 0..6_usize,
         frames in prop::collection::vec(
-            (prop::collection::vec([number(), number()], 0..7), prop::collection::vec([number(), number(), number()], 0..6)), 0..5),
+            (prop::collection::vec([number(), number()], 0..7), prop::collection::vec([number(), number(), number()], 0..6),
+             prop::collection::vec(load(), 0..4)), 0..5),
         size in prop::sample::select(vec![1e-6, 1.0, 1e6]),
         factor in number(),
     ) -> (MechanismView, Vec<Frame>) {
@@ -171,8 +187,8 @@ prop_compose! {
             traces: vec![TraceView { label: "t".into(), point: 2 }],
             drives,
         };
-        let frames = frames.into_iter().map(|(points, links)| Frame {
-            points: points.into_iter().map(|p| p.map(|v| v * size)).collect(), links, label: "f".into() }).collect();
+        let frames = frames.into_iter().map(|(points, links, loads)| Frame {
+            points: points.into_iter().map(|p| p.map(|v| v * size)).collect(), links, label: "f".into(), loads }).collect();
         (view, frames)
     }
 }
@@ -246,7 +262,7 @@ fn a_hundred_thousand_links_are_drawn_in_seconds() {
     let frames = [Frame {
         points,
         links: vec![[0.0; 3]; n],
-        label: String::new(),
+        ..Frame::default()
     }];
     let start = std::time::Instant::now();
     let stage = Stage::new(&view, &frames, DrawOptions::default());

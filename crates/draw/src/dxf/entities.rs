@@ -66,6 +66,8 @@ impl Writer<'_> {
             Layer::Joint | Layer::Body | Layer::Gear => "JOINTS".into(),
             Layer::Drive => "DRIVES".into(),
             Layer::Label => "LABELS".into(),
+            Layer::Load(role) | Layer::LoadLabel(role) => super::load_layer(role),
+            Layer::LoadLegend => super::LEGEND_LAYER.into(),
             Layer::Link(link) => self.link_layer(link),
         };
         for item in &group.items {
