@@ -5,7 +5,7 @@ mod mechanisms;
 #[path = "../examples/showcase/reports.rs"]
 mod reports;
 
-use kempe_draw::plot::{Axis, Curve, PlotSpec};
+use kempe_draw::plot::{Axis, Curve, Hodograph, Limit, PlotSpec};
 use kempe_draw::report::{Block, MOST_ROWS, Report};
 use kempe_draw::*;
 use proptest::prelude::*;
@@ -228,11 +228,14 @@ proptest! {
     #[test]
     fn any_plot_is_drawn(
         x in prop::collection::vec(number(), 0..20), y in prop::collection::vec(number(), 0..20),
-        logs in any::<[bool; 2]>(), equal_aspect in any::<bool>(), limits in prop::option::of([number(), number()]),
+        logs in any::<[bool; 2]>(), equal_aspect in any::<bool>(), hodograph in any::<bool>(), limit in number(), limits in prop::option::of([number(), number()]),
     ) {
         let axis = |log| Axis { log, limits, ..Axis::new("a", "deg") };
         let curve = Curve { label: "c".into(), x, y, dashed: true };
+        let along = Limit::along("l", curve.y.clone(), curve.x.clone());
+        let hodograph = hodograph.then(|| Hodograph { drive: curve.y.clone(), unit: "deg".into() });
         let plot = PlotSpec {
+            limits: vec![Limit::above("a", limit), Limit::below("b", -limit), along], hodograph,
             x: axis(logs[0]), y: axis(logs[1]), curves: vec![curve.clone(), curve], equal_aspect, ..PlotSpec::default()
         };
         all_numbers_are_numbers(&svg::document(&plot.draw(100.0, 60.0).scene, Theme::Dark));

@@ -59,7 +59,8 @@ impl Writer<'_> {
 
     pub(super) fn group(&mut self, group: &Group) {
         self.layer = match group.layer {
-            Layer::Furniture | Layer::Caption | Layer::Curve(_) | Layer::TracePast => return,
+            Layer::Furniture | Layer::Caption | Layer::TracePast => return,
+            Layer::Curve(_) | Layer::Limit | Layer::Vector => return,
             Layer::Ghost => "0".into(),
             Layer::TraceRest => "TRACES".into(),
             Layer::Ground => "GROUND".into(),

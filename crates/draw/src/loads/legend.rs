@@ -147,7 +147,7 @@ impl Entry {
     }
 
     fn width(&self, sheet: f64) -> f64 {
-        (self.sample() + text_width(self.text(), SIZE)).min(sheet - 2.0 * EDGE)
+        (self.sample() + 1.1 * text_width(self.text(), SIZE)).min(sheet - 2.0 * EDGE)
     }
 
     fn items(&self, x: f64, y: f64, sheet: f64) -> Vec<Item> {

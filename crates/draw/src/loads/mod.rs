@@ -7,9 +7,11 @@ mod scale;
 mod sheet;
 mod track;
 
-pub(crate) use arrow::Shape;
+pub(crate) use arrow::{BREAK, HALF_HEAD, HEAD, RIM, Shape, Stroke, moment_radius};
+pub(crate) use label::{SIDES, SIZE as LABEL_SIZE};
 pub(crate) use scale::Quantity;
 pub(crate) use sheet::LoadSheet;
+pub(crate) use track::Track;
 
 /// What a force comes from; each has its own colour, line and head.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]

@@ -4,6 +4,7 @@
 mod data;
 mod html;
 mod json;
+mod loads;
 mod motion;
 mod sections;
 

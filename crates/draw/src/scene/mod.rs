@@ -94,6 +94,10 @@ pub enum Layer {
     LoadLegend,
     /// Curves of a plot.
     Curve(usize),
+    /// Lines that curves should not cross.
+    Limit,
+    /// A vector of a hodograph.
+    Vector,
     /// Title and caption.
     Caption,
 }
@@ -117,6 +121,8 @@ impl Layer {
             Layer::LoadLabel(role) => format!("load label load-{}", role.name()),
             Layer::LoadLegend => "load-legend".into(),
             Layer::Curve(index) => format!("curve-{index}"),
+            Layer::Limit => "limit".into(),
+            Layer::Vector => "vector".into(),
             Layer::Caption => "caption".into(),
         }
     }
