@@ -6,7 +6,7 @@ mod mechanisms;
 mod reports;
 
 use kempe_draw::plot::{Axis, Curve, Hodograph, Limit, PlotSpec};
-use kempe_draw::report::{Block, MOST_ROWS, Report};
+use kempe_draw::report::{Block, Check, MOST_ROWS, Report};
 use kempe_draw::*;
 use proptest::prelude::*;
 
@@ -31,6 +31,11 @@ fn evil_report() -> Report {
             .iter_mut()
             .for_each(|e| (e.label, e.place) = (text(), text()));
         motion.evidence.facts.push((text(), text()));
+        motion.evidence.checks = vec![Check::new(text(), text(), text(), text())];
+        for frame in &mut motion.frames {
+            let push = LoadView::force(LoadRole::Friction, text(), [0.0; 2], [1.0, 2.0]);
+            frame.loads = vec![push];
+        }
         for plot in &mut motion.plots {
             (plot.title, plot.x.label, plot.y.unit) = (text(), text(), text());
             plot.curves.iter_mut().for_each(|c| c.label = text());

@@ -142,6 +142,12 @@ pub fn motion(case: &Case) -> MotionReport {
             singular_value: Some(0.08231),
             scaling: "lengths by the mechanism's size, angles in rad".into(),
             not_reached: vec![],
+            checks: vec![Check::new(
+                "Two routes to the reactions",
+                "3.1e-13 ≤ 1e-9",
+                "motor = 117.5 deg",
+                "Newton-Euler and virtual work agree, relative to the largest force",
+            )],
             facts: vec![("Mobility".into(), "1 by count, 1 by rank".into())],
         },
     }
