@@ -198,7 +198,7 @@ fn pictures_hold_several_curves_and_hodographs() {
     ));
     assert_eq!(result.figures.len(), 4);
     assert!(
-        matches!(&result.figures[0], Figure::Curves(both) if both.len() == 2 && both[1].values.len() == 5)
+        matches!(&result.figures[0], Figure::Curves { curves: both, .. } if both.len() == 2 && both[1].values.len() == 5)
     );
     let Figure::Hodograph(name, [x, y]) = &result.figures[1] else {
         panic!("{:?}", result.figures[1]);
