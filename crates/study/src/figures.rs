@@ -111,12 +111,11 @@ fn hodograph(name: &str, [x, y]: &[Column; 2], along: &Column) -> PlotSpec {
 
 fn curves_plot(x: &Column, columns: &[Column], result: &StudyResult) -> PlotSpec {
     let marker = |event: &Event| {
-        // Events stand where the rows do: at a coordinate of the drive, or at a time.
-        let at = x.unit.from_si(event.at);
-        let at = if result.along == 0 && x.name != "time" {
+        // An event stands at a coordinate of the drive; along time or an arc it is where its row is.
+        let at = if result.along == 0 {
             x.values.get(event.row).copied().unwrap_or(f64::NAN)
         } else {
-            at
+            x.unit.from_si(event.at)
         };
         Marker {
             at,

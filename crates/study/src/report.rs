@@ -10,8 +10,8 @@ use kempe_model::{Diagnostic, Model, MotionStudy, Study};
 use crate::figures::{figures, marker_kind};
 use crate::findings::Report as CheckReport;
 use crate::findings_text::warnings_section;
-use crate::result::StudyResult;
 use crate::force_notes::place;
+use crate::result::StudyResult;
 use crate::table::{Column, largest};
 use crate::view::{drawing_frames, mechanism_view};
 

@@ -142,9 +142,8 @@ impl RowSink {
 
 /// A picture of columns: what a cylinder or motor can give is a limit of what it gives.
 fn curves_of(asked: &[kempe_model::Column], columns: Vec<Column>) -> Figure {
-    let is_limit = |measure: &Measure| {
-        matches!(measure, Expr::Leaf(Leaf::Force(ForceMeasure::Capacity(_))))
-    };
+    let is_limit =
+        |measure: &Measure| matches!(measure, Expr::Leaf(Leaf::Force(ForceMeasure::Capacity(_))));
     let (mut curves, mut limits) = (Vec::new(), Vec::new());
     for (asked, column) in asked.iter().zip(columns) {
         if is_limit(&asked.measure) {

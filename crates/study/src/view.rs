@@ -65,9 +65,13 @@ fn springs_and_dampers(model: &Model) -> Vec<JointView> {
         Between::Links(..) => None,
     };
     let springs = model.actions.springs.iter();
-    let springs = springs.filter_map(|s| ends(&s.between)).map(|(a, b)| JointView::Spring { a, b });
+    let springs = springs
+        .filter_map(|s| ends(&s.between))
+        .map(|(a, b)| JointView::Spring { a, b });
     let dampers = model.actions.dampers.iter();
-    let dampers = dampers.filter_map(|d| ends(&d.between)).map(|(a, b)| JointView::Damper { a, b });
+    let dampers = dampers
+        .filter_map(|d| ends(&d.between))
+        .map(|(a, b)| JointView::Damper { a, b });
     springs.chain(dampers).collect()
 }
 
@@ -297,7 +301,11 @@ pub fn drawing_frames(model: &Model, result: &StudyResult) -> Vec<DrawnFrame> {
                 let digits = kempe_draw::number_format::significant(at, 6);
                 format!("{} = {digits} {}", column.name, column.unit.text())
             });
-            drawn(model, frame, label.unwrap_or_default().trim_end().to_owned())
+            drawn(
+                model,
+                frame,
+                label.unwrap_or_default().trim_end().to_owned(),
+            )
         })
         .collect()
 }
@@ -315,7 +323,8 @@ pub fn drawn(model: &Model, frame: &Frame, label: String) -> DrawnFrame {
 
 /// An arrow: of a joint it names the link that feels it, otherwise what it comes from.
 fn load_view(model: &Model, arrow: &ForceArrow) -> LoadView {
-    let link = || (model.links.get(arrow.link.index())).map_or_else(String::new, |l| l.name.clone());
+    let link =
+        || (model.links.get(arrow.link.index())).map_or_else(String::new, |l| l.name.clone());
     let (role, label) = match arrow.origin {
         Origin::Joint => (LoadRole::Reaction, format!("on {}", link())),
         Origin::Drive => (LoadRole::Drive, arrow.name.clone()),

@@ -207,7 +207,9 @@ fn pictures_hold_several_curves_and_hodographs() {
         (name.as_str(), x.values.len(), y.values.len()),
         ("hodograph(B)", 5, 5)
     );
-    assert!(matches!(&result.figures[3], Figure::Curves(one) if one[0].name == "effort"));
+    assert!(
+        matches!(&result.figures[3], Figure::Curves { curves: one, .. } if one[0].name == "effort")
+    );
     assert_eq!(result.table.columns.len(), 3);
 }
 
