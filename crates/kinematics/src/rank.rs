@@ -155,7 +155,8 @@ fn combined(row: &SparseRow, pivot: &SparseRow, factor: f64, without: usize) -> 
         let entry = match (a.peek(), b.peek()) {
             (Some((i, x)), Some((j, y))) if i == j => {
                 let entry = (*i, x - factor * y);
-                (a.next(), b.next());
+                a.next();
+                b.next();
                 entry
             }
             (Some((i, x)), Some((j, _))) if i < j => {

@@ -110,9 +110,11 @@ pub fn verify(arguments: &Verify) -> Exit {
 /// The cases at the paths, or those that came with the program.
 fn gather(paths: &[PathBuf]) -> Result<Vec<Found>, Box<Diagnostic>> {
     if paths.is_empty() {
-        let cases = EMBEDDED
-            .iter()
-            .filter(|(path, _)| path.starts_with("validation/") && path.ends_with(".toml"));
+        let cases = EMBEDDED.iter().filter(|(path, _)| {
+            path.strip_prefix("validation/")
+                .is_some_and(|rest| !rest.contains('/'))
+                && path.ends_with(".toml")
+        });
         return Ok(cases
             .map(|(path, text)| Found {
                 name: (*path).to_owned(),
