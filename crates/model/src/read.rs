@@ -19,6 +19,7 @@ mod measure_names;
 mod measures;
 pub(crate) mod names;
 mod nature;
+mod one_measure;
 mod parameters;
 mod phrase;
 mod place;

@@ -45,3 +45,58 @@ fn every_example_reads() {
     }
     assert!(wrong.is_empty(), "{wrong}");
 }
+
+/// A measure asked of a model that is read already means what it means in the file.
+#[test]
+fn every_measure_of_the_examples_is_read_alone_as_in_its_file() {
+    let mut compared = 0;
+    for path in examples() {
+        let text = std::fs::read_to_string(&path).unwrap();
+        let folder = path.parent().unwrap();
+        let mut files =
+            |name: &str| std::fs::read_to_string(folder.join(name)).map_err(|e| e.to_string());
+        let model = Model::from_toml(&text, "", &mut files).unwrap().model;
+        for named in &model.measures {
+            let rest = &text[named.span.end..];
+            let (_, value) = rest.split_once('=').unwrap();
+            let quote = match value.trim_start().starts_with("\"\"\"") {
+                true => "\"\"\"",
+                false => "\"",
+            };
+            // In several lines a backslash joins them.
+            let written = value.split(quote).nth(1).unwrap().replace("\\\n", "");
+            let written = written.trim_start();
+            let alone = model.measure(written).unwrap();
+            assert_eq!(
+                alone.measure,
+                named.measure,
+                "{}: {written}",
+                path.display()
+            );
+            assert_eq!(
+                (alone.dimension, alone.needs_forces),
+                (named.dimension, named.needs_forces)
+            );
+            let by_name = model.measure(&named.name).unwrap();
+            assert_eq!(
+                (by_name.dimension, by_name.needs_forces),
+                (named.dimension, named.needs_forces)
+            );
+            compared += 1;
+        }
+    }
+    assert!(compared > 60, "{compared}");
+}
+
+#[test]
+fn a_measure_that_does_not_fit_the_model_is_told_in_its_own_text() {
+    let file = "[links]\nframe = { A = [0, 0] }\ncrank = { A-B = 1 }\n";
+    let model = Model::from_toml(file, "", &mut |_| Err(String::new()))
+        .unwrap()
+        .model;
+    let told = model.measure("2 * x(C)").unwrap_err();
+    assert_eq!(told[0].code, "unknown-name");
+    let label = &told[0].labels[0];
+    let source = label.source.as_ref().unwrap();
+    assert_eq!(&source.text[label.span.clone()], "C");
+}

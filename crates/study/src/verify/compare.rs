@@ -2,7 +2,7 @@
 
 use kempe_kinematics::events::EventKind;
 use kempe_kinematics::{Design, Mechanism, Motion, Plan};
-use kempe_model::{Diagnostic, Model, set_value};
+use kempe_model::{Diagnostic, Model, NamedMeasure};
 use kempe_units::{Dimension, Unit};
 use serde::Serialize;
 
@@ -68,25 +68,17 @@ pub fn compare(
             measures.push(measure.clone());
         }
     }
-    let mut text = text.to_owned();
-    for (index, measure) in measures.iter().enumerate() {
-        text = with_measure(&text, &format!("{PREFIX}{index}"), measure);
-    }
-    let model = Model::from_toml_with(&text, &case.title, files, &case.set)?.model;
+    let model = Model::from_toml_with(text, &case.title, files, &case.set)?.model;
     let mechanism = Mechanism::new(&model);
     let plan = Plan::new(&mechanism);
     let parameters: Vec<f64> = model.parameter_values();
     let design = Design::new(&mechanism, &plan, &parameters);
     let motion = Motion::new(&mechanism, &plan, &design, &parameters)
         .map_err(|error| vec![cannot_move(&mechanism, &plan, &design, &error)])?;
-    let named: Vec<_> = (0..measures.len())
-        .filter_map(|index| {
-            model
-                .measures
-                .iter()
-                .find(|m| m.name == format!("{PREFIX}{index}"))
-        })
-        .collect();
+    let named: Vec<NamedMeasure> = (measures.iter())
+        .map(|text| model.measure(text))
+        .collect::<Result<_, _>>()?;
+    let named: Vec<&NamedMeasure> = named.iter().collect();
     let quantities: Vec<Quantity> = (named.iter().zip(&measures))
         .map(|(m, text)| Quantity {
             name: text.clone(),
@@ -111,21 +103,11 @@ pub fn compare(
         .collect())
 }
 
-/// Names of the measures that are added to the model: no user would choose them.
-const PREFIX: &str = "kempe_verify_";
-
-/// The model's text with one measure more.
-fn with_measure(text: &str, name: &str, measure: &str) -> String {
-    let quoted = serde_json::Value::from(measure).to_string();
-    set_value(text, &["measures", name], &quoted)
-        .unwrap_or_else(|_| format!("{text}\n[measures]\n{name} = {quoted}\n"))
-}
-
 fn compare_one(
     case: &Case,
     expected: &Expected,
     subject: &mut Subject<'_>,
-    named: &[&kempe_model::NamedMeasure],
+    named: &[&NamedMeasure],
     last: &mut Option<(String, Vec<f64>)>,
 ) -> Comparison {
     let reference = &expected.reference;

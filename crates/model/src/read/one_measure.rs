@@ -1,0 +1,125 @@
+//! One measure more, asked of a model that is read already.
+
+use kempe_units::{check, parse};
+
+use crate::diagnostic::{Diagnostic, Label, Source};
+use crate::load::Between;
+use crate::model::{DriveId, JointId, LinkId, Model, NamedMeasure, ParameterId, PointId};
+use crate::read::context::{Context, Meaning, MeasureState};
+use crate::read::measure_names::Measures;
+use crate::read::nature::{Nature, nature};
+
+impl Model {
+    /// Reads a measure, the name of one or an expression such as `range(angle(rocker))`, as if it stood in the file. Its
+    /// name is its text.
+    ///
+    /// # Errors
+    ///
+    /// What is wrong with it, labelled in `text`.
+    ///
+    /// # Example
+    ///
+    /// ```
+    /// # let file = "[links]\nframe = { A = [0, 0] }\ncrank = { A-B = 1 }\n";
+    /// # let model = kempe_model::Model::from_toml(file, "", &mut |_| Err(String::new())).unwrap().model;
+    /// assert_eq!(model.measure("2 * x(B)").unwrap().dimension, kempe_units::Dimension::LENGTH);
+    /// assert_eq!(model.measure("x(C)").unwrap_err()[0].code, "unknown-name");
+    /// ```
+    pub fn measure(&self, text: &str) -> Result<NamedMeasure, Vec<Diagnostic>> {
+        let mut files = |_: &str| Err(String::new());
+        let cx = Context::of(self, &mut files);
+        match parse(text).and_then(|tree| check(&tree, &mut Measures(&cx))) {
+            Ok((measure, dimension)) => Ok(NamedMeasure {
+                needs_forces: nature(&measure, &cx.natures).forces,
+                name: text.trim().to_owned(),
+                measure,
+                dimension,
+                span: 0..text.len(),
+            }),
+            Err(issues) => Err(issues
+                .into_iter()
+                .map(|issue| {
+                    let mut told =
+                        Diagnostic::error(issue.code, issue.message).maybe_help(issue.help);
+                    told.labels.push(Label {
+                        span: issue.span,
+                        text: issue.label,
+                        primary: true,
+                        source: Some(Source {
+                            name: "measure".to_owned(),
+                            text: text.to_owned(),
+                        }),
+                    });
+                    told
+                })
+                .collect()),
+        }
+    }
+}
+
+impl<'a> Context<'a> {
+    /// What the reader knew of names when it had read `model`.
+    fn of(model: &Model, files: crate::read::context::Files<'a>) -> Self {
+        let mut cx = Self::new(&model.title, files);
+        let unit = |name: &str, or: &kempe_units::Unit| {
+            kempe_units::Unit::parse(name).unwrap_or_else(|_| or.clone())
+        };
+        cx.preferred = [
+            unit(&model.units.length.name, &cx.preferred[0]),
+            unit(&model.units.angle.name, &cx.preferred[1]),
+        ];
+        let parameters = (model.parameters.iter().enumerate())
+            .map(|(i, p)| (&p.name, Meaning::Parameter(ParameterId(i as u32)), &p.span));
+        let links = (model.links.iter().enumerate())
+            .map(|(i, l)| (&l.name, Meaning::Link(LinkId(i as u32)), &l.span));
+        let joints =
+            (model.joints.iter().enumerate()).map(|(i, j)| (&j.name, Meaning::Joint(i), &j.span));
+        let drives =
+            (model.drives.iter().enumerate()).map(|(i, d)| (&d.name, Meaning::Drive(i), &d.span));
+        let measures = (model.measures.iter().enumerate())
+            .map(|(i, m)| (&m.name, Meaning::Measure(i), &m.span));
+        let names = parameters
+            .chain(links)
+            .chain(joints)
+            .chain(drives)
+            .chain(measures);
+        cx.names = names
+            .map(|(name, meaning, span)| (name.clone(), (meaning, span.clone())))
+            .collect();
+        cx.points = (model.points.iter().enumerate())
+            .map(|(i, p)| (p.name.clone(), PointId(i as u32)))
+            .collect();
+        cx.sound = vec![true; model.parameters.len()];
+        cx.values = model.parameter_values();
+        cx.joints = (0..model.joints.len())
+            .map(|i| Some(JointId(i as u32)))
+            .collect();
+        cx.drives = (0..model.drives.len())
+            .map(|i| Some(DriveId(i as u32)))
+            .collect();
+        cx.springs = (model.actions.springs.iter().enumerate())
+            .map(|(i, spring)| {
+                let dimension = match spring.between {
+                    Between::Points(..) => kempe_units::Dimension::FORCE,
+                    Between::Links(..) => kempe_units::Dimension::TORQUE,
+                };
+                (spring.name.clone(), Some((i, dimension)))
+            })
+            .collect();
+        cx.measures = (model.measures.iter().enumerate())
+            .map(|(i, m)| MeasureState::Sound(i, m.dimension))
+            .collect();
+        // Measures may name later ones: what they ask for settles after as many rounds as they are deep.
+        cx.natures = vec![Nature::default(); model.measures.len()];
+        loop {
+            let of = |m: &NamedMeasure| -> Nature { nature(&m.measure, &cx.natures) };
+            let next: Vec<Nature> = model.measures.iter().map(of).collect();
+            if next == cx.natures {
+                break;
+            }
+            cx.natures = next;
+        }
+        cx.model = model.clone();
+        cx
+    }
+}
