@@ -225,6 +225,12 @@ multiversion! {
     fn hand_four_bar(set: InstructionSet, k: &FourBar<f64>, angles: &[f64], out: &mut [f64]) = four_bar_lanes;
 }
 multiversion! {
+    fn hand_four_bar_rates(set: InstructionSet, k: &FourBar<f64>, angles: &[f64], out: &mut [f64]) = four_bar_rates;
+}
+multiversion! {
+    fn hand_jansen_rates(set: InstructionSet, k: &Jansen<f64>, angles: &[f64], out: &mut [f64]) = jansen_rates;
+}
+multiversion! {
     fn hand_designs(set: InstructionSet, columns: &[f64], directions: &[(f64, f64)], out: &mut [f64]) = four_bar_designs;
 }
 multiversion! {
@@ -322,7 +328,7 @@ fn single_design(
     scalar: &dyn Fn(&[f64], &mut [f64]),
     rates: &dyn Fn(&[f64], &mut [[Rates; 2]]),
     lanes: &dyn Fn(InstructionSet, &[f64], &mut [f64]),
-    lane_rates: &dyn Fn(&[f64], &mut [f64]),
+    lane_rates: &dyn Fn(InstructionSet, &[f64], &mut [f64]),
 ) {
     let loaded = Loaded::new(file);
     let design = loaded.design::<f64>();
@@ -413,19 +419,27 @@ fn single_design(
         report(&format!("{title}, in lanes, {set:?}"), best[0], best[1]);
     }
     let (mut general, mut hand) = (vec![0.0; 6 * ROWS], vec![0.0; 6 * ROWS]);
-    let batch = Batch::new(&motion, &[point]).expect("a point");
-    let best = compare(
-        ROWS,
-        vec![
-            Box::new(|| {
-                let closed = batch.sweep_rates(black_box(&angles), black_box(&mut general));
-                assert_eq!(closed, Ok(ROWS));
-            }),
-            Box::new(|| lane_rates(black_box(&angles), black_box(&mut hand))),
-        ],
-    );
-    same(&general, &hand);
-    report(&format!("{title}, v and a, in lanes"), best[0], best[1]);
+    for set in sets() {
+        let batch = Batch::new(&motion, &[point])
+            .expect("a point")
+            .with_instructions(set);
+        let best = compare(
+            ROWS,
+            vec![
+                Box::new(|| {
+                    let closed = batch.sweep_rates(black_box(&angles), black_box(&mut general));
+                    assert_eq!(closed, Ok(ROWS));
+                }),
+                Box::new(|| lane_rates(set, black_box(&angles), black_box(&mut hand))),
+            ],
+        );
+        same(&general, &hand);
+        report(
+            &format!("{title}, v and a, in lanes, {set:?}"),
+            best[0],
+            best[1],
+        );
+    }
 }
 
 fn many_designs() {
@@ -581,7 +595,7 @@ fn main() {
             }
         },
         &|set, angles, out| hand_four_bar(set, &k, angles, out),
-        &|angles, out| four_bar_rates(&k, angles, out),
+        &|set, angles, out| hand_four_bar_rates(set, &k, angles, out),
     );
     let k = Jansen::new();
     let rich = k.lift::<Rates>();
@@ -601,7 +615,7 @@ fn main() {
             }
         },
         &|set, angles, out| hand_jansen(set, &k, angles, out),
-        &|angles, out| jansen_rates(&k, angles, out),
+        &|set, angles, out| hand_jansen_rates(set, &k, angles, out),
     );
     many_designs();
     if !std::env::args().any(|a| a == "closed-forms") {

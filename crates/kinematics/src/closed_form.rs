@@ -104,6 +104,7 @@ pub(crate) fn direction<T: Number>(own: [T; 2], seen: [T; 2], square: T) -> [T; 
 }
 
 /// Constants of a dyad for its two bodies' outer and inner pins in body coordinates.
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn dyad_constants<T: Number>(
     a: ([T; 2], [T; 2]),
     b: ([T; 2], [T; 2]),

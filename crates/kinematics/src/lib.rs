@@ -28,12 +28,14 @@ mod newton;
 pub mod plan;
 mod pose;
 mod qr;
+mod recognise;
 mod sampler;
 pub mod sensitivity;
 mod solve;
 mod state;
 mod statistics;
 mod swept;
+mod swing;
 pub mod trace;
 
 pub use batch::{Batch, BatchError, Designs, sweep_states};

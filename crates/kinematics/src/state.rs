@@ -7,7 +7,7 @@ use crate::closed_form::dyad_constants;
 use crate::constraint::{Input, Situation};
 use crate::geometry::Geometry;
 use crate::mechanism::{Marker, Mechanism};
-use crate::plan::{Plan, Step};
+use crate::plan::{DyadBody, Plan, Step};
 use crate::pose::Pose;
 use crate::qr::Qr;
 
@@ -54,19 +54,12 @@ impl<T: Number> Design<T> {
     fn prepare(&mut self, plan: &Plan) {
         let geometry = &self.geometry;
         for step in &plan.steps {
-            if let Step::Dyad {
-                outer_a,
-                inner_a,
-                outer_b,
-                inner_b,
-                constants: at,
-                ..
-            } = *step
-            {
-                let a = (geometry.marker(outer_a), geometry.marker(inner_a));
-                let b = (geometry.marker(outer_b), geometry.marker(inner_b));
-                let values = dyad_constants(a, b);
-                self.constants[at..at + values.len()].copy_from_slice(&values);
+            if let Step::Dyad(dyad) = step {
+                let own =
+                    |body: DyadBody| (geometry.marker(body.outer), geometry.marker(body.inner));
+                let values = dyad_constants(own(dyad.a), own(dyad.b));
+                let constants = &mut self.constants[dyad.constants..];
+                constants[..values.len()].copy_from_slice(&values);
             }
         }
     }
