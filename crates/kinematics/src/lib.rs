@@ -19,6 +19,7 @@ pub mod force_source;
 pub mod four_bar;
 pub mod geometry;
 pub mod homotopy;
+mod known;
 mod krawczyk;
 pub mod measure;
 pub mod mechanism;

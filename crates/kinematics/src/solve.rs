@@ -3,13 +3,13 @@
 use kempe_model::DriveId;
 use kempe_number::Number;
 
-use crate::closed_form::{DYAD_CONSTANTS, direction, dyad};
+use crate::closed_form::direction;
 use crate::constraint::Situation;
-use crate::geometry::Geometry;
-use crate::mechanism::{BodyId, Constraint, LineRef, Marker, Mechanism, Spot};
+use crate::known::{DyadOf, Known};
+use crate::mechanism::{BodyId, Constraint, LineRef, Marker, Mechanism};
 use crate::newton::PlanNumber;
-use crate::plan::{Dyad, Plan, Step};
-use crate::pose::{Pose, cross, dot, sub};
+use crate::plan::{Plan, Step};
+use crate::pose::{Pose, dot, sub};
 use crate::state::{Branch, Design, State};
 use crate::swing::{cross_loci, swing, swing_line};
 
@@ -86,21 +86,36 @@ impl Plan {
                 offset,
                 input,
                 reversed,
-            } => for_each!(states, index, |state| {
-                let by = turn_by(design, state, offset, input, reversed);
-                let direction = match from {
-                    BodyId::GROUND => by,
-                    _ => state.poses[from.index()].turn(by),
-                };
-                point(state, body, direction)
-            }),
-            &Step::Pin { own, at } => for_each!(states, index, |state| {
-                let world = place(design, state, at);
-                let pose = &mut state.poses[own.body.index()];
-                *pose = pinned(design, own, [pose.c, pose.s], world);
-                T::one()
-            }),
-            Step::Dyad(step) => for_each!(states, index, |state| step.solve(design, state, sign)),
+            } => {
+                let no_offset = mechanism.angles[offset as usize].is_zero(mechanism);
+                for_each!(states, index, |state| {
+                    let by = match input {
+                        Some(drive) if no_offset => {
+                            let q = &state.inputs[drive.index()];
+                            [q.c, if reversed { -q.s } else { q.s }]
+                        }
+                        _ => turn_by(design, state, offset, input, reversed),
+                    };
+                    let direction = match from {
+                        BodyId::GROUND => by,
+                        _ => state.poses[from.index()].turn(by),
+                    };
+                    point(state, body, direction)
+                });
+            }
+            &Step::Pin { own, at } => {
+                let (pin, at) = (Known::new(design, own), Known::new(design, at));
+                for_each!(states, index, |state| {
+                    let world = at.place(&state.poses);
+                    let pose = &mut state.poses[own.body.index()];
+                    *pose = pin.pinned([pose.c, pose.s], world);
+                    T::one()
+                });
+            }
+            Step::Dyad(step) => {
+                let step = DyadOf::new(design, step);
+                for_each!(states, index, |state| step.solve(state, sign));
+            }
             Step::Swing(step) => {
                 for_each!(states, index, |state| swing(
                     design, branch, state, step, sign
@@ -116,7 +131,7 @@ impl Plan {
                 cross_loci(design, branch, state, (carriers, conditions), sign)
             }),
             &Step::TwoPins { a, at_a, b, at_b } => for_each!(states, index, |state| {
-                let (wa, wb) = (place(design, state, at_a), place(design, state, at_b));
+                let (wa, wb) = (state.place(design, at_a), state.place(design, at_b));
                 let seen = sub(wb, wa);
                 let own = sub(design.geometry.marker(b), design.geometry.marker(a));
                 let [c, s] = direction(own, seen, (dot(own, own) * dot(seen, seen)).sqrt());
@@ -144,21 +159,6 @@ impl Plan {
     }
 }
 
-impl Dyad {
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    fn solve<T: Number>(&self, design: &Design<T>, state: &mut State<T>, sign: f64) -> T {
-        let (a, b) = (&self.a, &self.b);
-        let (wa, wb) = (place(design, state, a.at), place(design, state, b.at));
-        let k = &design.constants[self.constants..self.constants + DYAD_CONSTANTS];
-        let (da, db, h) = dyad(k, sub(wb, wa), sign);
-        let direction_a = direction_by([k[0], k[1]], da, (a.outer, a.inner));
-        let direction_b = direction_by([k[2], k[3]], db, (b.outer, b.inner));
-        state.poses[a.inner.body.index()] = pinned(design, a.outer, direction_a, wa);
-        state.poses[b.inner.body.index()] = pinned(design, b.outer, direction_b, wb);
-        h
-    }
-}
-
 /// Turns a body into a direction; its determinant is one.
 #[cfg_attr(not(debug_assertions), inline(always))]
 fn point<T: Number>(state: &mut State<T>, body: BodyId, [c, s]: [T; 2]) -> T {
@@ -177,7 +177,7 @@ fn roll<T: Number>(
     (own, at, constraint): (Marker, Marker, usize),
 ) -> T {
     // The centre is in place whatever the angle.
-    let world = place(design, state, at);
+    let world = state.place(design, at);
     let (body, pin) = (own.body, design.geometry.marker(own));
     state.poses[body.index()] = Pose::pinned(T::one(), T::zero(), pin, world);
     let situation = state.situation(design, branch);
@@ -203,54 +203,6 @@ fn turn_gear<T: Number>(
         point(state, body, [c, s]);
     }
     T::one()
-}
-
-/// A marker in the frame.
-#[cfg_attr(not(debug_assertions), inline(always))]
-fn place<T: Number>(design: &Design<T>, state: &State<T>, marker: Marker) -> [T; 2] {
-    place_in(&design.geometry, &state.poses, marker)
-}
-
-/// A marker in the frame, with what is known of its place taken into account.
-#[cfg_attr(not(debug_assertions), inline(always))]
-pub(crate) fn place_in<T: Number>(
-    geometry: &Geometry<T>,
-    poses: &[Pose<T>],
-    marker: Marker,
-) -> [T; 2] {
-    let p = geometry.marker(marker);
-    if marker.spot == Spot::Frame {
-        return p;
-    }
-    let pose = &poses[marker.body.index()];
-    match marker.spot {
-        Spot::Origin => [pose.x, pose.y],
-        Spot::Axis => [pose.x + pose.c * p[0], pose.y + pose.s * p[0]],
-        Spot::Frame | Spot::Anywhere => pose.place(p),
-    }
-}
-
-/// The pose of a body with this direction whose marker `own` lies at `world`.
-#[cfg_attr(not(debug_assertions), inline(always))]
-fn pinned<T: Number>(design: &Design<T>, own: Marker, [c, s]: [T; 2], world: [T; 2]) -> Pose<T> {
-    let p = design.geometry.marker(own);
-    let [x, y] = match own.spot {
-        Spot::Origin => world,
-        Spot::Axis => [world[0] - c * p[0], world[1] - s * p[0]],
-        Spot::Frame | Spot::Anywhere => return Pose::pinned(c, s, p, world),
-    };
-    Pose { x, y, c, s }
-}
-
-/// Direction of a body whose vector between two markers is seen as `seen`; `k` is that vector over its square.
-#[cfg_attr(not(debug_assertions), inline(always))]
-fn direction_by<T: Number>(k: [T; 2], seen: [T; 2], (from, to): (Marker, Marker)) -> [T; 2] {
-    let on_axis = |m: Marker| matches!(m.spot, Spot::Origin | Spot::Axis);
-    if on_axis(from) && on_axis(to) {
-        [k[0] * seen[0], k[0] * seen[1]]
-    } else {
-        [dot(k, seen), cross(k, seen)]
-    }
 }
 
 /// Origin and unit direction of a line in the frame.

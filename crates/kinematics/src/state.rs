@@ -6,6 +6,7 @@ use kempe_number::Number;
 use crate::closed_form::dyad_constants;
 use crate::constraint::{Input, Situation};
 use crate::geometry::Geometry;
+use crate::known::Known;
 use crate::mechanism::{Marker, Mechanism};
 use crate::plan::{DyadBody, Plan, Step};
 use crate::pose::Pose;
@@ -161,7 +162,7 @@ impl<T: Number> State<T> {
     /// A marker in the frame, m.
     #[inline(always)]
     pub fn place(&self, design: &Design<T>, marker: Marker) -> [T; 2] {
-        crate::solve::place_in(&design.geometry, &self.poses, marker)
+        Known::new(design, marker).place(&self.poses)
     }
 
     /// What the constraints see of this state.

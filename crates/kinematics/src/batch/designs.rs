@@ -10,10 +10,10 @@ use crate::batch::stretch::nearest_stretch;
 use crate::constraint::Input;
 use crate::state::{Branch, State, input_of};
 
-/// How many designs run side by side: one of the widest registers.
-const WIDTH: usize = 8;
+/// How many designs run side by side: two of the widest registers.
+const WIDTH: usize = 16;
 /// How many places of a motion take every step of the plan together.
-const STATES: usize = 8;
+const STATES: usize = 4;
 
 /// Parameter values of many designs (SI, all of the model's parameters in its order).
 #[derive(Clone, Copy, Debug)]
@@ -36,14 +36,24 @@ pub enum Layout {
 }
 
 impl Designs<'_> {
-    /// A parameter of a design.
+    /// One parameter of the designs from `first` on, the last one of the range repeated.
     #[cfg_attr(not(debug_assertions), inline(always))]
-    fn value(&self, design: usize, parameter: usize) -> f64 {
-        let parameters = self.values.len() / self.count;
-        match self.layout {
-            Layout::ByDesign => self.values[design * parameters + parameter],
-            Layout::ByParameter => self.values[parameter * self.count + design],
+    fn lanes<const W: usize>(
+        &self,
+        parameter: usize,
+        first: usize,
+        range: &Range<usize>,
+    ) -> Lanes<W> {
+        let (start, stride) = match self.layout {
+            Layout::ByDesign => (parameter, self.values.len() / self.count),
+            Layout::ByParameter => (parameter * self.count, 1),
+        };
+        if let (1, Some(whole)) = (stride, self.values[start + first..].first_chunk())
+            && first + W <= range.end
+        {
+            return Lanes(*whole);
         }
+        Lanes::from_fn(|lane| self.values[start + stride * (first + lane).min(range.end - 1)])
     }
 }
 
@@ -146,7 +156,7 @@ fn in_lanes(
     for row in (0..range.len()).step_by(WIDTH) {
         let first = range.start + row;
         for (k, parameter) in parameters.iter_mut().enumerate() {
-            *parameter = Lanes::from_fn(|lane| designs.value((first + lane).min(range.end - 1), k));
+            *parameter = designs.lanes(k, first, &range);
         }
         design.update(mechanism, plan, &parameters);
         if batch.needs_guess {

@@ -13,12 +13,12 @@ use crate::newton::PlanNumber;
 use crate::plan::Step;
 use crate::state::{Branch, Design, State, input_of};
 
-/// How many positions run side by side: one of the widest registers.
-const WIDTH: usize = 8;
+/// How many positions run side by side: two of the widest registers.
+const WIDTH: usize = 16;
 /// How many poses with derivatives run side by side.
 const RATES_WIDTH: usize = 8;
 /// How many states, each with all its lanes, take every step of the plan together: few enough for the nearest cache.
-const STATES: usize = 8;
+const STATES: usize = 4;
 /// The same with derivatives.
 const RATES_STATES: usize = 4;
 /// How many plain states take every step of the plan together.
