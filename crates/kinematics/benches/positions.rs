@@ -516,14 +516,11 @@ fn single_design(
     }
 }
 
+/// A kernel for columns of parameters and the drive's directions.
+type DesignsKernel = fn(InstructionSet, &[f64], &[(f64, f64)], &mut [f64]);
+
 /// Many designs, their parameters within `spread` of the file's, against a kernel.
-fn many_designs(
-    title: &str,
-    loaded: &Loaded,
-    point: &str,
-    spread: f64,
-    kernel: &dyn Fn(InstructionSet, &[f64], &[(f64, f64)], &mut [f64]),
-) {
+fn many_designs(title: &str, loaded: &Loaded, point: &str, spread: f64, kernel: DesignsKernel) {
     let design = loaded.design::<f64>();
     let motion = loaded.motion(&design);
     let at: Vec<f64> = (0..PLACES)
@@ -696,9 +693,9 @@ fn main() {
         &|set, angles, out| hand_jansen_rates(set, &k, angles, out),
     );
     let loaded = Loaded::new("seeds/crank-rocker");
-    many_designs("four-bar", &loaded, "P", 0.05, &four_bar_designs);
+    many_designs("four-bar", &loaded, "P", 0.05, four_bar_designs);
     let loaded = Loaded::from_text("jansen", &jansen_with_parameters());
-    many_designs("eight-bar", &loaded, "F", 0.004, &jansen_designs);
+    many_designs("eight-bar", &loaded, "F", 0.004, jansen_designs);
     if !std::env::args().any(|a| a == "closed-forms") {
         newton();
         motions();

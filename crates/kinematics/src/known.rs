@@ -10,19 +10,19 @@ use crate::state::{Design, State};
 
 /// A marker with its coordinates in its body.
 #[derive(Clone, Copy)]
-pub(crate) struct Known<T> {
+pub(crate) struct Known<'d, T> {
     body: usize,
     spot: Spot,
-    p: [T; 2],
+    p: &'d [T; 2],
 }
 
-impl<T: Number> Known<T> {
+impl<'d, T: Number> Known<'d, T> {
     #[cfg_attr(not(debug_assertions), inline(always))]
-    pub(crate) fn new(design: &Design<T>, marker: Marker) -> Self {
+    pub(crate) fn new(design: &'d Design<T>, marker: Marker) -> Self {
         Self {
             body: marker.body.index(),
             spot: marker.spot,
-            p: design.geometry.marker(marker),
+            p: &design.geometry.markers[marker.index as usize],
         }
     }
 
@@ -30,13 +30,13 @@ impl<T: Number> Known<T> {
     #[cfg_attr(not(debug_assertions), inline(always))]
     pub(crate) fn place(&self, poses: &[Pose<T>]) -> [T; 2] {
         if self.spot == Spot::Frame {
-            return self.p;
+            return *self.p;
         }
         let (pose, p) = (&poses[self.body], self.p);
         match self.spot {
             Spot::Origin => [pose.x, pose.y],
             Spot::Axis => [pose.x + pose.c * p[0], pose.y + pose.s * p[0]],
-            Spot::Frame | Spot::Anywhere => pose.place(p),
+            Spot::Frame | Spot::Anywhere => pose.place(*p),
         }
     }
 
@@ -47,7 +47,7 @@ impl<T: Number> Known<T> {
         let [x, y] = match self.spot {
             Spot::Origin => world,
             Spot::Axis => [world[0] - c * p[0], world[1] - s * p[0]],
-            Spot::Frame | Spot::Anywhere => return Pose::pinned(c, s, p, world),
+            Spot::Frame | Spot::Anywhere => return Pose::pinned(c, s, *p, world),
         };
         Pose { x, y, c, s }
     }
@@ -58,19 +58,17 @@ impl<T: Number> Known<T> {
 }
 
 /// One body of a dyad in a design.
-struct Side<T> {
+struct Side<'d, T> {
     body: usize,
-    outer: Known<T>,
-    at: Known<T>,
-    /// Its vector from the outer to the inner pin over its square.
-    own: [T; 2],
-    /// That vector lies on the body's x axis.
+    outer: Known<'d, T>,
+    at: Known<'d, T>,
+    /// Both pins lie on the body's x axis.
     on_axis: bool,
 }
 
-impl<T: Number> Side<T> {
+impl<'d, T: Number> Side<'d, T> {
     #[cfg_attr(not(debug_assertions), inline(always))]
-    fn new(design: &Design<T>, body: &DyadBody, own: [T; 2]) -> Self {
+    fn new(design: &'d Design<T>, body: &DyadBody) -> Self {
         let (outer, inner) = (
             Known::new(design, body.outer),
             Known::new(design, body.inner),
@@ -79,50 +77,48 @@ impl<T: Number> Side<T> {
             body: inner.body,
             outer,
             at: Known::new(design, body.at),
-            own,
             on_axis: outer.on_axis() && inner.on_axis(),
         }
     }
 
-    /// The pose when the vector between the pins is seen as `seen` and the outer pin is at `world`.
+    /// The pose when the vector between the pins is seen as `seen` and the outer pin is at `world`; `own` is the
+    /// vector in the body over its square.
     #[cfg_attr(not(debug_assertions), inline(always))]
-    fn pose(&self, seen: [T; 2], world: [T; 2]) -> Pose<T> {
+    fn pose(&self, own: [T; 2], seen: [T; 2], world: [T; 2]) -> Pose<T> {
         let direction = match self.on_axis {
-            true => [self.own[0] * seen[0], self.own[0] * seen[1]],
-            false => [dot(self.own, seen), cross(self.own, seen)],
+            true => [own[0] * seen[0], own[0] * seen[1]],
+            false => [dot(own, seen), cross(own, seen)],
         };
         self.outer.pinned(direction, world)
     }
 }
 
 /// An RRR dyad in a design.
-pub(crate) struct DyadOf<T> {
-    a: Side<T>,
-    b: Side<T>,
-    constants: [T; DYAD_CONSTANTS],
+pub(crate) struct DyadOf<'d, T> {
+    a: Side<'d, T>,
+    b: Side<'d, T>,
+    constants: &'d [T; DYAD_CONSTANTS],
 }
 
-impl<T: Number> DyadOf<T> {
+impl<'d, T: Number> DyadOf<'d, T> {
     #[cfg_attr(not(debug_assertions), inline(always))]
-    pub(crate) fn new(design: &Design<T>, step: &Dyad) -> Self {
-        let mut k = [T::zero(); DYAD_CONSTANTS];
-        k.copy_from_slice(&design.constants[step.constants..step.constants + DYAD_CONSTANTS]);
+    pub(crate) fn new(design: &'d Design<T>, step: &Dyad) -> Self {
         Self {
-            a: Side::new(design, &step.a, [k[0], k[1]]),
-            b: Side::new(design, &step.b, [k[2], k[3]]),
-            constants: k,
+            a: Side::new(design, &step.a),
+            b: Side::new(design, &step.b),
+            constants: &design.constants[step.constants],
         }
     }
 
     /// Places both bodies; returns the determinant.
     #[cfg_attr(not(debug_assertions), inline(always))]
     pub(crate) fn solve(&self, state: &mut State<T>, sign: f64) -> T {
-        let Self { a, b, constants } = self;
+        let Self { a, b, constants: k } = self;
         let poses = &mut state.poses[..];
         let (wa, wb) = (a.at.place(poses), b.at.place(poses));
-        let (da, db, h) = dyad(constants, sub(wb, wa), sign);
-        poses[a.body] = a.pose(da, wa);
-        poses[b.body] = b.pose(db, wb);
+        let (da, db, h) = dyad(k, sub(wb, wa), sign);
+        poses[a.body] = a.pose([k[0], k[1]], da, wa);
+        poses[b.body] = b.pose([k[2], k[3]], db, wb);
         h
     }
 }

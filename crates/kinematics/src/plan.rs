@@ -6,7 +6,6 @@
 use kempe_model::DriveId;
 
 use crate::blocks::{Block, Decomposition, Row, Unknown, decompose};
-use crate::closed_form::DYAD_CONSTANTS;
 use crate::mechanism::{BodyId, LineRef, Marker, Mechanism};
 use crate::recognise::recognise;
 
@@ -198,7 +197,7 @@ pub struct Dyad {
     pub a: DyadBody,
     /// The second body.
     pub b: DyadBody,
-    /// First of its constants in the design.
+    /// Index of its constants in the design.
     pub constants: usize,
 }
 
@@ -268,8 +267,8 @@ pub struct Plan {
     pub blocks: Vec<Block>,
     /// Blocks left to Newton's method.
     pub newton_blocks: Vec<NewtonBlock>,
-    /// How many constants a design prepares.
-    pub constants: usize,
+    /// How many dyads a design prepares constants for.
+    pub dyads: usize,
     /// The decomposition it was made from.
     pub decomposition: Decomposition,
 }
@@ -307,7 +306,7 @@ impl Plan {
             steps: Vec::new(),
             blocks: Vec::new(),
             newton_blocks: Vec::new(),
-            constants: 0,
+            dyads: 0,
             decomposition: decomposition.clone(),
         };
         for &body in &decomposition.idle {
@@ -322,7 +321,7 @@ impl Plan {
             if block.rows.is_empty() {
                 continue;
             }
-            let step = match recognise(mechanism, block, plan.constants) {
+            let step = match recognise(mechanism, block, plan.dyads) {
                 Some(step) => step,
                 None => {
                     plan.newton_blocks.push(newton_block(block));
@@ -332,7 +331,7 @@ impl Plan {
                 }
             };
             if let Step::Dyad(_) = step {
-                plan.constants += DYAD_CONSTANTS;
+                plan.dyads += 1;
             }
             plan.steps.push(step);
             plan.blocks.push(block.clone());

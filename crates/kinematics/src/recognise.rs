@@ -21,8 +21,8 @@ fn constraints_of<'m>(mechanism: &'m Mechanism, rows: &[Row]) -> Option<Vec<&'m 
         .collect()
 }
 
-/// Finds the closed form of a block, if there is one; `constants` is where a design keeps its constants next.
-pub(crate) fn recognise(mechanism: &Mechanism, block: &Block, constants: usize) -> Option<Step> {
+/// Finds the closed form of a block, if there is one; `dyads` are known already.
+pub(crate) fn recognise(mechanism: &Mechanism, block: &Block, dyads: usize) -> Option<Step> {
     let rows: Vec<Row> = block.rows.iter().chain(&block.surplus).copied().collect();
     let constraints = constraints_of(mechanism, &rows)?;
     match (block.unknowns.as_slice(), block.surplus.len()) {
@@ -36,9 +36,8 @@ pub(crate) fn recognise(mechanism: &Mechanism, block: &Block, constants: usize) 
         }
         ([Unknown::Place(i), Unknown::Place(j)], 0) => prp(*i, *j, &constraints),
         ([_, _, _], 0) => rrp(block, &constraints),
-        ([_, _, _, _], 0) => two_bodies(block).and_then(|(i, j)| {
-            rrr(i, j, &constraints, constants).or_else(|| rpr(i, j, &constraints))
-        }),
+        ([_, _, _, _], 0) => two_bodies(block)
+            .and_then(|(i, j)| rrr(i, j, &constraints, dyads).or_else(|| rpr(i, j, &constraints))),
         _ => None,
     }
 }
@@ -311,7 +310,7 @@ fn rrp(block: &Block, constraints: &[&Constraint]) -> Option<Step> {
     }))
 }
 
-fn rrr(i: BodyId, j: BodyId, constraints: &[&Constraint], first: usize) -> Option<Step> {
+fn rrr(i: BodyId, j: BodyId, constraints: &[&Constraint], constants: usize) -> Option<Step> {
     if constraints.len() != 3 {
         return None;
     }
@@ -321,7 +320,7 @@ fn rrr(i: BodyId, j: BodyId, constraints: &[&Constraint], first: usize) -> Optio
     Some(Step::Dyad(Dyad {
         a: body(outer_i, inner.0),
         b: body(outer_j, inner.1),
-        constants: first,
+        constants,
     }))
 }
 

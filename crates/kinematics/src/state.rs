@@ -3,7 +3,7 @@
 use kempe_model::DriveKind;
 use kempe_number::Number;
 
-use crate::closed_form::dyad_constants;
+use crate::closed_form::{DYAD_CONSTANTS, dyad_constants};
 use crate::constraint::{Input, Situation};
 use crate::geometry::Geometry;
 use crate::known::Known;
@@ -17,8 +17,8 @@ use crate::qr::Qr;
 pub struct Design<T> {
     /// Dimensions.
     pub geometry: Geometry<T>,
-    /// Constants of the dyads.
-    pub constants: Vec<T>,
+    /// Constants of every dyad.
+    pub constants: Vec<[T; DYAD_CONSTANTS]>,
     /// Plain dimensions behind `geometry`, one per lane: where Newton's method starts.
     pub plain: Vec<Geometry<f64>>,
 }
@@ -38,7 +38,7 @@ impl<T: Number> Design<T> {
     ) -> Self {
         let mut it = Self {
             geometry,
-            constants: vec![T::zero(); plan.constants],
+            constants: vec![[T::zero(); DYAD_CONSTANTS]; plan.dyads],
             plain,
         };
         it.prepare(plan);
@@ -58,9 +58,7 @@ impl<T: Number> Design<T> {
             if let Step::Dyad(dyad) = step {
                 let own =
                     |body: DyadBody| (geometry.marker(body.outer), geometry.marker(body.inner));
-                let values = dyad_constants(own(dyad.a), own(dyad.b));
-                let constants = &mut self.constants[dyad.constants..];
-                constants[..values.len()].copy_from_slice(&values);
+                self.constants[dyad.constants] = dyad_constants(own(dyad.a), own(dyad.b));
             }
         }
     }
@@ -71,7 +69,7 @@ impl Design<f64> {
     pub fn lift<T: Number>(&self) -> Design<T> {
         Design {
             geometry: self.geometry.map(T::from_f64),
-            constants: self.constants.iter().map(|c| T::from_f64(*c)).collect(),
+            constants: self.constants.iter().map(|c| c.map(T::from_f64)).collect(),
             plain: vec![self.geometry.clone()],
         }
     }

@@ -92,57 +92,51 @@ fn sweep_lanes<T: Wide<W>, const W: usize, const M: usize>(
                 path => set_at_times(path, mechanism, at, state),
             }
         }
-        let mut targets = [Target::default(); M];
-        for (m, target) in targets.iter_mut().enumerate().take(states.len()) {
+        let mut wanted = [Target::default(); M];
+        for (m, target) in wanted.iter_mut().enumerate().take(states.len()) {
             target.row = (block * M + m) * W;
             target.wanted = all_lanes(W.min(parameters.len() - target.row));
         }
-        // Nearly always one stretch holds them all.
-        if find_stretch(&batch.stretches, part[0], &mut cursor)
-            && batch.stretches[cursor].holds_all(part)
-        {
+        while let Some(targets) = next_stretch(batch, at, &mut wanted, &mut cursor, columns) {
             let branch = &batch.stretches[cursor].branch;
             (motion.plan).solve_all(mechanism, design, branch, states);
             closed += write_places(batch, design, states, &targets, columns);
-        } else {
-            closed += sweep_apart(batch, design, states, (at, targets), columns);
         }
     }
     closed
 }
 
-/// Solves every stretch that is touched in turn, and writes the lanes that lie in it; NaN where none does.
-#[cold]
+/// Finds a stretch for `cursor` in which wanted lanes lie, and takes them from those wanted; lanes that lie in none
+/// become NaN. Nearly always one stretch holds them all.
 #[inline(never)]
-fn sweep_apart<T: Wide<W>, const W: usize, const M: usize>(
+fn next_stretch<const W: usize, const M: usize>(
     batch: &Batch<'_>,
-    design: &Design<T>,
-    states: &mut [State<T>],
-    (at, mut targets): (&[[f64; W]], [Target; M]),
+    at: &[[f64; W]],
+    wanted: &mut [Target; M],
+    cursor: &mut usize,
     columns: &mut [&mut [f64]],
-) -> usize {
-    let motion = batch.motion;
-    let (mut cursor, mut closed) = (0, 0);
-    while let Some(m) = targets.iter().position(|target| target.wanted != 0) {
-        let lane = targets[m].wanted.trailing_zeros() as usize;
-        if !find_stretch(&batch.stretches, at[m][lane], &mut cursor) {
-            let row = targets[m].row + lane;
+) -> Option<[Target; M]> {
+    while let Some(m) = wanted.iter().position(|target| target.wanted != 0) {
+        let lane = wanted[m].wanted.trailing_zeros() as usize;
+        if !find_stretch(&batch.stretches, at[m][lane], cursor) {
+            let row = wanted[m].row + lane;
             columns.iter_mut().for_each(|c| c[row] = f64::NAN);
-            targets[m].wanted &= !(1 << lane);
+            wanted[m].wanted &= !(1 << lane);
             continue;
         }
-        let stretch = &batch.stretches[cursor];
-        let mut mine = targets;
-        for ((mine, rest), at) in mine.iter_mut().zip(&mut targets).zip(at) {
-            mine.wanted &= stretch.lanes(at);
+        let stretch = &batch.stretches[*cursor];
+        let mut mine = *wanted;
+        if !stretch.holds_all(at.as_flattened()) {
+            for (mine, at) in mine.iter_mut().zip(at) {
+                mine.wanted &= stretch.lanes(at);
+            }
+        }
+        for (rest, mine) in wanted.iter_mut().zip(&mine) {
             rest.wanted &= !mine.wanted;
         }
-        for state in states.iter_mut() {
-            (motion.plan).solve(motion.mechanism, design, &stretch.branch, state);
-        }
-        closed += write_places(batch, design, states, &mine, columns);
+        return Some(mine);
     }
-    closed
+    None
 }
 
 /// Mechanisms whose branch is more than signs: one pose after the other.
