@@ -26,6 +26,9 @@ impl<T: ForceNumber> Forces<'_, T> {
             ForceMeasure::Reaction(joint) => reaction(joint).map(|r| Reaction::size(&r)),
             ForceMeasure::ReactionX(joint) => reaction(joint).map(|r| r.force[0]),
             ForceMeasure::ReactionY(joint) => reaction(joint).map(|r| r.force[1]),
+            ForceMeasure::ReactionAngle(joint) => {
+                reaction(joint).map(|r| r.force[1].atan2(r.force[0]))
+            }
             ForceMeasure::ReactionAlong(joint) => along(joint, 0),
             ForceMeasure::ReactionAcross(joint) => along(joint, 1),
             ForceMeasure::ReactionMoment(joint) => reaction(joint).map(|r| r.moment),

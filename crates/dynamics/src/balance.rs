@@ -4,7 +4,6 @@ use kempe_number::math;
 
 use crate::acting::Acting;
 use crate::instant::Instant;
-use crate::vector::cross;
 
 /// A counterweight: its first moment about the pivot of its link, in the link's coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -85,87 +84,63 @@ pub fn crank_counterweight(samples: &[[f64; 2]], start: f64, speed: f64) -> Coun
     }
 }
 
-/// The counterweight on a link turning about a fixed pivot that leaves the least shaking force over a motion, in the
-/// sense of least squares. Each sample is the shaking force with the link's angle, angular speed and acceleration: a
-/// first moment `u` adds `-u (i alpha - w^2) e^{i theta}`.
-pub fn least_shaking(samples: &[([f64; 2], [f64; 3])]) -> Counterweight {
-    let (mut diagonal, mut right, mut before) = (0.0, [0.0; 2], 0.0);
-    let factor = |[angle, speed, acceleration]: [f64; 3]| {
-        // -(i alpha - w^2) e^{i theta}
-        let (s, c) = math::sin_cos(angle);
-        let (re, im) = (speed * speed, -acceleration);
-        [re * c - im * s, re * s + im * c]
-    };
-    for (force, motion) in samples {
-        let z = factor(*motion);
-        diagonal += z[0] * z[0] + z[1] * z[1];
-        // conj(z) force
-        right[0] -= z[0] * force[0] + z[1] * force[1];
-        right[1] -= cross(z, *force);
-        before += force[0] * force[0] + force[1] * force[1];
-    }
-    let u = right.map(|r| if diagonal > 0.0 { r / diagonal } else { 0.0 });
-    let after: f64 = (samples.iter())
-        .map(|(force, motion)| {
-            let z = factor(*motion);
-            (force[0] + u[0] * z[0] - u[1] * z[1]).powi(2)
-                + (force[1] + u[0] * z[1] + u[1] * z[0]).powi(2)
-        })
-        .sum();
-    Counterweight {
-        first_moment: u,
-        left: ratio(after, before),
-    }
+/// A column whose part that no earlier column explains is this small, over the column itself, explains nothing more.
+const DEPENDENT: f64 = 1e-9;
+
+/// The first moments (kg m, along the axes of their links) of counterweights on links that turn about fixed pivots,
+/// chosen together: what is left of a quantity over a motion is least in the sense of least squares.
+///
+/// `before` is the quantity at all places of the motion, such as both components of the shaking force; `units` holds for
+/// each link what a first moment of 1 kg m along its x axis and along its y axis adds to it. The quantity must be linear
+/// in the first moments, as shaking force and the reduced load of gravity are. Where several choices are equally good,
+/// the links that help most get the weight and the others none.
+pub fn counterweights(before: &[f64], units: &[[Vec<f64>; 2]]) -> Vec<[f64; 2]> {
+    let columns: Vec<&[f64]> = units.iter().flatten().map(Vec::as_slice).collect();
+    let found = least_squares(&columns, before);
+    found.chunks_exact(2).map(|u| [-u[0], -u[1]]).collect()
 }
 
-/// The counterweight on a link turning about a fixed pivot that holds the weights best: the reduced load of gravity at
-/// every sample is least in the sense of least squares, and zero where that can be.
-///
-/// Each sample is the drive's reduced load of gravity with the link's angle and its kinematic coefficient
-/// `dtheta/dq`. A first moment `u` under gravity `g` adds `dtheta/dq (i u e^{i theta}) . g`.
-pub fn static_counterweight(samples: &[(f64, [f64; 2])], gravity: [f64; 2]) -> Counterweight {
-    let (mut a, mut right, mut before) = ([[0.0; 2]; 2], [0.0; 2], 0.0);
-    let row = |[angle, coefficient]: [f64; 2]| {
-        let (s, c) = math::sin_cos(angle);
-        // i e^{i theta} = (-s, c); i * i e^{i theta} = (-c, -s)
-        [
-            coefficient * (-s * gravity[0] + c * gravity[1]),
-            coefficient * (-c * gravity[0] - s * gravity[1]),
-        ]
-    };
-    for (load, motion) in samples {
-        let z = row(*motion);
-        for i in 0..2 {
-            for j in 0..2 {
-                a[i][j] += z[i] * z[j];
-            }
-            right[i] -= z[i] * load;
+/// Factors of the columns whose sum is nearest to `target`: Gram and Schmidt with pivoting, each column cleaned twice.
+/// Columns that others explain get the factor 0.
+fn least_squares(columns: &[&[f64]], target: &[f64]) -> Vec<f64> {
+    let n = columns.len();
+    let sum = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
+    let mut rest: Vec<Vec<f64>> = columns.iter().map(|c| c.to_vec()).collect();
+    let sizes: Vec<f64> = columns.iter().map(|c| sum(c, c).sqrt()).collect();
+    let mut order: Vec<usize> = Vec::with_capacity(n);
+    let mut basis: Vec<Vec<f64>> = Vec::with_capacity(n);
+    loop {
+        let open = (0..n).filter(|k| !order.contains(k));
+        let part = |k: usize| sum(&rest[k], &rest[k]).sqrt();
+        let Some(next) = open.max_by(|a, b| part(*a).total_cmp(&part(*b))) else {
+            break;
+        };
+        let norm = part(next);
+        if !(norm > DEPENDENT * sizes[next]) {
+            break;
         }
-        before += load * load;
+        let q: Vec<f64> = rest[next].iter().map(|x| x / norm).collect();
+        order.push(next);
+        for k in (0..n).filter(|k| !order.contains(k)) {
+            for _ in 0..2 {
+                let along = sum(&q, &rest[k]);
+                for (x, y) in rest[k].iter_mut().zip(&q) {
+                    *x -= along * y;
+                }
+            }
+        }
+        basis.push(q);
     }
-    let determinant = a[0][0] * a[1][1] - a[0][1] * a[1][0];
-    let scale = a[0][0] + a[1][1];
-    let u = if determinant > 1e-12 * scale * scale {
-        [
-            (right[0] * a[1][1] - right[1] * a[0][1]) / determinant,
-            (right[1] * a[0][0] - right[0] * a[1][0]) / determinant,
-        ]
-    } else if scale > 0.0 {
-        // One pose only: the shortest first moment that holds it.
-        right.map(|r| r / scale)
-    } else {
-        [0.0; 2]
-    };
-    let after: f64 = (samples.iter())
-        .map(|(load, motion)| {
-            let z = row(*motion);
-            (load + u[0] * z[0] + u[1] * z[1]).powi(2)
-        })
-        .sum();
-    Counterweight {
-        first_moment: u,
-        left: ratio(after, before),
+    // R x = Q^T target, from the last column back.
+    let mut factors = vec![0.0; n];
+    for (place, column) in order.iter().enumerate().rev() {
+        let q = &basis[place];
+        let later: f64 = (order[place + 1..].iter())
+            .map(|k| factors[*k] * sum(q, columns[*k]))
+            .sum();
+        factors[*column] = (sum(q, target) - later) / sum(q, columns[*column]);
     }
+    factors
 }
 
 /// The total mass (kg) and the common centre of all moving masses (m): a mechanism whose centre stands still has no
@@ -220,41 +195,62 @@ mod tests {
         assert!(found.forward[1][0].abs() < 1e-14);
     }
 
+    /// What a first moment along x and along y on a crank at constant speed shakes with.
+    fn on_crank(angles: &[f64], speed: f64) -> [Vec<f64>; 2] {
+        let turned = |ahead: f64| {
+            let both = angles.iter().flat_map(|q| {
+                let (s, c) = math::sin_cos(q + ahead);
+                [c * speed * speed, s * speed * speed]
+            });
+            both.collect()
+        };
+        [turned(0.0), turned(std::f64::consts::FRAC_PI_2)]
+    }
+
     #[test]
     fn least_squares_agree_with_harmonics_at_constant_speed() {
         let n = 36;
-        let at = |k: usize| std::f64::consts::TAU * k as f64 / n as f64;
-        let forces: Vec<[f64; 2]> = (0..n)
-            .map(|k| {
+        let angles: Vec<f64> = (0..n)
+            .map(|k| std::f64::consts::TAU * f64::from(k) / f64::from(n))
+            .collect();
+        let forces: Vec<[f64; 2]> = angles
+            .iter()
+            .map(|q| {
                 [
-                    math::cos(at(k)) + 0.3 * math::cos(2.0 * at(k)),
-                    0.4 * math::sin(at(k)),
+                    math::cos(*q) + 0.3 * math::cos(2.0 * q),
+                    0.4 * math::sin(*q),
                 ]
             })
             .collect();
-        let by_harmonics = crank_counterweight(&forces, 0.0, 3.0);
-        let samples: Vec<_> = (0..n).map(|k| (forces[k], [at(k), 3.0, 0.0])).collect();
-        let by_squares = least_shaking(&samples);
+        let by_harmonics = crank_counterweight(&forces, 0.0, 3.0).first_moment;
+        let before: Vec<f64> = forces.iter().flatten().copied().collect();
+        let unit = on_crank(&angles, 3.0);
+        // A second crank in step with the first can do no more, and gets nothing.
+        let by_squares = counterweights(&before, &[unit.clone(), unit]);
         for k in 0..2 {
-            let difference = by_harmonics.first_moment[k] - by_squares.first_moment[k];
-            assert!(difference.abs() < 1e-14);
+            assert!((by_harmonics[k] - by_squares[0][k] - by_squares[1][k]).abs() < 1e-14);
+            assert!(by_squares[0][k] == 0.0 || by_squares[1][k] == 0.0);
         }
     }
 
     #[test]
-    fn a_hanging_beam_is_held_at_every_pose() {
-        let gravity = [0.0, -9.81];
-        // First moment (0.7, 0.2) kg m on the driven link itself.
-        let samples: Vec<(f64, [f64; 2])> = (0..9)
-            .map(|k| {
-                let angle = 0.3 * f64::from(k);
-                let (s, c) = math::sin_cos(angle);
-                (-9.81 * (0.7 * c - 0.2 * s), [angle, 1.0])
+    fn two_cranks_are_balanced_together() {
+        let angles: Vec<f64> = (0..24).map(|k| 0.25 * f64::from(k)).collect();
+        let (first, second) = (
+            on_crank(&angles, 3.0),
+            on_crank(&angles.iter().map(|q| -2.0 * q).collect::<Vec<_>>(), 6.0),
+        );
+        let wanted = [[0.3, -0.1], [-0.02, 0.05]];
+        let before: Vec<f64> = (0..48)
+            .map(|i| {
+                let part =
+                    |unit: &[Vec<f64>; 2], u: [f64; 2]| unit[0][i] * u[0] + unit[1][i] * u[1];
+                -part(&first, wanted[0]) - part(&second, wanted[1])
             })
             .collect();
-        let weight = static_counterweight(&samples, gravity);
-        assert!((weight.first_moment[0] + 0.7).abs() < 1e-13);
-        assert!((weight.first_moment[1] + 0.2).abs() < 1e-13);
-        assert!(weight.left < 1e-13);
+        let found = counterweights(&before, &[first, second]);
+        for (found, wanted) in found.iter().flatten().zip(wanted.iter().flatten()) {
+            assert!((found - wanted).abs() < 1e-14, "{found} {wanted}");
+        }
     }
 }

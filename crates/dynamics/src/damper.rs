@@ -74,6 +74,11 @@ impl<T: Number> Damper<T> {
         damping * stretch.rate
     }
 
+    /// Its tension at an instant, N or N m.
+    pub fn tension_at(&self, geometry: &Geometry<T>, at: &Instant<T>) -> T {
+        self.tension(&self.ends.stretch(geometry, at))
+    }
+
     /// Power it takes from the mechanism at an instant, W, never negative.
     pub fn dissipation(&self, geometry: &Geometry<T>, at: &Instant<T>) -> T {
         let stretch = self.ends.stretch(geometry, at);

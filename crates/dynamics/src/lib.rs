@@ -28,6 +28,7 @@
 pub mod acting;
 pub mod amount;
 pub mod answer;
+pub mod arrow;
 pub mod balance;
 pub mod cylinder;
 pub mod damper;
@@ -41,6 +42,7 @@ pub mod inertia;
 pub mod instant;
 pub mod load;
 pub mod motor;
+pub mod note;
 mod number;
 pub mod problem;
 pub mod reaction;
@@ -57,9 +59,11 @@ pub mod weld;
 pub mod wrench;
 
 pub use acting::Acting;
+pub use arrow::{ForceArrow, Origin};
 pub use forces::{Forces, FrictionOutcome};
 pub use instant::Instant;
+pub use note::ForceNote;
 pub use number::ForceNumber;
 pub use problem::Problem;
 pub use reaction::{Carrier, JointLoad, Reaction};
-pub use sampler::{ForceError, ForceEvidence, ForceNote, ForceSample, ForceSampler};
+pub use sampler::{ForceError, ForceEvidence, ForceSample, ForceSampler};

@@ -1,5 +1,6 @@
 //! What joints carry, as vectors on a named link.
 
+use kempe_kinematics::Mechanism;
 use kempe_kinematics::mechanism::Source;
 use kempe_model::{
     DriveId, DriveKind, JointId, JointKind, JointRef, LinkId, LinkPointRef, PointId,
@@ -41,6 +42,28 @@ pub enum Carrier {
     Joint(JointId),
     /// A drive.
     Drive(DriveId),
+}
+
+impl Carrier {
+    /// Whose constraint it is.
+    pub(crate) fn of(source: &Source) -> Self {
+        match *source {
+            Source::Pin { point, .. } => Self::Pin(point),
+            Source::Joint(id) => Self::Joint(id),
+            Source::Drive(id) => Self::Drive(id),
+        }
+    }
+
+    /// The joint's or drive's name in the file.
+    pub fn name(&self, mechanism: &Mechanism) -> String {
+        let model = &mechanism.model;
+        let name = match self {
+            Self::Pin(p) => model.points.get(p.index()).map(|p| &p.name),
+            Self::Joint(j) => model.joints.get(j.index()).map(|j| &j.name),
+            Self::Drive(d) => model.drives.get(d.index()).map(|d| &d.name),
+        };
+        name.cloned().unwrap_or_default()
+    }
 }
 
 /// A joint's load in plain numbers, for arrows and reports.
@@ -229,15 +252,7 @@ impl<T: ForceNumber> Forces<'_, T> {
                 }
                 _ => None,
             },
-            DriveKind::Turn { link, .. } => {
-                let first = self.mechanism.model.links[link.index()].points.first();
-                first.and_then(|p| {
-                    self.mechanism.marker(LinkPointRef {
-                        link: *link,
-                        point: p.point,
-                    })
-                })
-            }
+            DriveKind::Turn { link, relative_to } => self.pivot_marker(*link, *relative_to),
         }?;
         let place = at.place(
             marker.body,

@@ -3,17 +3,17 @@
 //! A spring's part in a drive's effort is linear in its stiffness and its preload: with length `L`, free length `L0` and
 //! `L' = dL/dq`, the drive must give `(preload + stiffness (L - L0)) L'` more than without it.
 
-/// What a spring would see at one place of the motion, and what is wanted there.
+/// What a spring would do at one place of the motion, and what is wanted there.
 #[derive(Clone, Copy, Debug)]
 pub struct EffortSample {
     /// What the drive gives without the spring, N m or N.
     pub without: f64,
     /// What it is to give.
     pub wanted: f64,
-    /// Length of the spring (m), or angle of a torsion spring (rad).
-    pub length: f64,
-    /// Derivative of that to the drive's coordinate.
-    pub slope: f64,
+    /// What a stiffness of 1 N/m (or N m/rad) adds, without preload: `(L - L0) L'`.
+    pub by_stiffness: f64,
+    /// What a preload of 1 N (or N m) adds, without stiffness: `L'`.
+    pub by_preload: f64,
 }
 
 /// A chosen spring.
@@ -29,16 +29,14 @@ pub struct ChosenSpring {
     pub without: f64,
 }
 
-/// Chooses stiffness and preload of a spring of free length `free` for the wanted efforts, in the sense of least
-/// squares. The least value on each side of every bound is compared, so the best within the bounds is found.
+/// Chooses stiffness and preload of a spring for the wanted efforts, in the sense of least squares. The least value on each side of every bound is compared, so the best within the bounds is found.
 pub fn choose_spring(
     samples: &[EffortSample],
-    free: f64,
     stiffness: (f64, f64),
     preload: (f64, f64),
 ) -> ChosenSpring {
     let rows: Vec<[f64; 3]> = (samples.iter())
-        .map(|s| [s.slope * (s.length - free), s.slope, s.wanted - s.without])
+        .map(|s| [s.by_stiffness, s.by_preload, s.wanted - s.without])
         .collect();
     let sum = |f: &dyn Fn(&[f64; 3]) -> f64| rows.iter().map(f).sum::<f64>();
     let (a, b, c) = (
@@ -105,8 +103,8 @@ mod tests {
                 EffortSample {
                     without: 5.0,
                     wanted: 5.0 + (p + k * (length - 0.15)) * slope,
-                    length,
-                    slope,
+                    by_stiffness: (length - 0.15) * slope,
+                    by_preload: slope,
                 }
             })
             .collect()
@@ -114,7 +112,7 @@ mod tests {
 
     #[test]
     fn finds_the_spring_that_was_used() {
-        let chosen = choose_spring(&samples(800.0, -12.0), 0.15, (0.0, 1e6), (-1e3, 1e3));
+        let chosen = choose_spring(&samples(800.0, -12.0), (0.0, 1e6), (-1e3, 1e3));
         assert!((chosen.stiffness - 800.0).abs() < 1e-8, "{chosen:?}");
         assert!((chosen.preload + 12.0).abs() < 1e-8 && chosen.left < 1e-10);
     }
@@ -122,13 +120,12 @@ mod tests {
     #[test]
     fn keeps_to_its_bounds() {
         let list = samples(800.0, -12.0);
-        let chosen = choose_spring(&list, 0.15, (0.0, 1e6), (0.0, 1e3));
+        let chosen = choose_spring(&list, (0.0, 1e6), (0.0, 1e3));
         assert_eq!(chosen.preload, 0.0);
         // No neighbour within the bounds is better.
         for k in [0.99, 1.01] {
             let other = choose_spring(
                 &list,
-                0.15,
                 (chosen.stiffness * k, chosen.stiffness * k),
                 (0.0, 0.0),
             );

@@ -1,4 +1,7 @@
-//! Dense least squares by Householder reflections, with storage that is reused from solve to solve.
+//! Least squares by Householder reflections, with storage that is reused from solve to solve.
+//!
+//! Zeros below the last entry of a column are left out of its reflection and of all that it acts on, so a matrix whose
+//! rows and columns are in the order of its blocks costs little more than its blocks.
 
 use kempe_number::Number;
 
@@ -13,6 +16,8 @@ pub struct Qr {
     diagonal: Vec<f64>,
     /// Reflector scale, 2 / v.v.
     scale: Vec<f64>,
+    /// Row behind the last entry of every column: of its reflector.
+    end: Vec<usize>,
 }
 
 impl Qr {
@@ -24,6 +29,7 @@ impl Qr {
             a: Vec::with_capacity(rows * columns),
             diagonal: Vec::with_capacity(columns),
             scale: Vec::with_capacity(columns),
+            end: Vec::with_capacity(columns),
         }
     }
 
@@ -46,9 +52,16 @@ impl Qr {
         let m = self.rows;
         self.diagonal.clear();
         self.scale.clear();
+        self.end.clear();
         for k in 0..self.columns {
+            let column = &self.a[k * m..(k + 1) * m];
+            let last = column.iter().rposition(|x| *x != 0.0);
+            self.end.push(last.map_or(0, |row| row + 1).max(k + 1));
+        }
+        for k in 0..self.columns {
+            let end = self.end[k];
             let (head, tail) = self.a.split_at_mut((k + 1) * m);
-            let v = &mut head[k * m + k..];
+            let v = &mut head[k * m + k..k * m + end];
             let norm = dot(v, v).sqrt();
             let alpha = if v[0] > 0.0 { -norm } else { norm };
             // Half of v.v after the next line.
@@ -57,11 +70,14 @@ impl Qr {
             let scale = if half > 0.0 { 1.0 / half } else { 0.0 };
             self.diagonal.push(alpha);
             self.scale.push(scale);
-            for column in tail.chunks_exact_mut(m) {
-                let w = &mut column[k..];
-                let sum = dot(v, w) * scale;
-                for (x, y) in v.iter().zip(w) {
-                    *y -= sum * x;
+            for (column, below) in tail.chunks_exact_mut(m).zip(&mut self.end[k + 1..]) {
+                let shared = end.min(*below).max(k);
+                let sum = dot(&v[..shared - k], &column[k..shared]) * scale;
+                if sum != 0.0 {
+                    for (x, y) in v.iter().zip(&mut column[k..end]) {
+                        *y -= sum * x;
+                    }
+                    *below = end.max(*below);
                 }
             }
         }
@@ -71,7 +87,7 @@ impl Qr {
     pub fn solve<T: Number>(&self, rhs: &mut [T]) {
         let m = self.rows;
         for k in 0..self.columns {
-            let v = &self.a[k * m + k..(k + 1) * m];
+            let v = &self.a[k * m + k..k * m + self.end[k]];
             let mut sum = T::zero();
             for (x, y) in v.iter().zip(&rhs[k..]) {
                 sum += *y * *x;
@@ -111,7 +127,7 @@ impl Qr {
     pub fn rotate<T: Number>(&self, x: &mut [T]) {
         let m = self.rows;
         for k in (0..self.columns).rev() {
-            let v = &self.a[k * m + k..(k + 1) * m];
+            let v = &self.a[k * m + k..k * m + self.end[k]];
             let mut sum = T::zero();
             for (a, b) in v.iter().zip(&x[k..]) {
                 sum += *b * *a;

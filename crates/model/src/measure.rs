@@ -102,6 +102,8 @@ pub enum ForceMeasure {
     ReactionX(JointRef),
     /// `reaction_y(...)`: along y.
     ReactionY(JointRef),
+    /// `reaction_angle(...)`: its direction on that link, from the frame's x axis, rad in (-pi, pi].
+    ReactionAngle(JointRef),
     /// `reaction_along(P, link)`: component along the x axis of that link, N.
     ReactionAlong(JointRef),
     /// `reaction_across(P, link)`: component along the y axis of that link, N.

@@ -2,6 +2,7 @@
 
 pub(crate) mod actuators;
 mod assembly;
+pub(crate) mod choices;
 pub(crate) mod context;
 mod csv;
 pub(crate) mod drives;
@@ -21,6 +22,7 @@ mod nature;
 mod parameters;
 mod phrase;
 mod place;
+mod plots;
 pub(crate) mod sections;
 pub(crate) mod springs;
 pub(crate) mod studies;

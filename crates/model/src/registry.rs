@@ -99,6 +99,8 @@ const MEASURES: &[MeasureEntry] = &[
         "its component along the frame's x axis, on the link named; else on the later-named link of a pin, the slider or the first link of a joint", "reaction_x(B, crank)"),
     row("reaction_y", &["reaction_y(P)", "reaction_y(P, link)", "reaction_y(joint)", "reaction_y(joint, link)"], "force",
         "its component along the frame's y axis, on the link named; else on the later-named link of a pin, the slider or the first link of a joint", "reaction_y(B, crank)"),
+    row("reaction_angle", &["reaction_angle(P)", "reaction_angle(P, link)", "reaction_angle(joint)", "reaction_angle(joint, link)"], "angle",
+        "its direction, from the frame's x axis, above -180 deg and up to 180 deg, on the link named; else as reaction_x", "reaction_angle(B, crank)"),
     row("reaction_along", &["reaction_along(P, link)", "reaction_along(joint, link)"], "force",
         "the component on a link along the link's own x axis", "reaction_along(B, coupler)"),
     row("reaction_across", &["reaction_across(P, link)", "reaction_across(joint, link)"], "force",

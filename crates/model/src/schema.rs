@@ -4,6 +4,7 @@ use serde_json::{Map, Value, json};
 
 use crate::model::RiseLaw;
 use crate::read::actuators::{CYLINDER_KEYS, MOTOR_KEYS};
+use crate::read::choices;
 use crate::read::drives::DRIVE_KINDS;
 use crate::read::friction::FRICTION_KEYS;
 use crate::read::joints::JOINT_KEYS;
@@ -289,6 +290,15 @@ fn study() -> Value {
                 json!({ "type": "integer", "minimum": 1, "maximum": crate::read::studies::MAX_ROWS })
             }
             "circuit" => json!({ "type": "boolean" }),
+            "goal" => json!({ "enum": choices::GOALS.iter().map(|g| g.0).collect::<Vec<_>>() }),
+            "on" => json!({ "type": "array", "items": { "type": "string" }, "minItems": 1 }),
+            "radius" | "wanted" => reference("scalar"),
+            "stiffness" | "preload" => two(reference("scalar")),
+            "spring" | "drive" => json!({ "type": "string" }),
+            "plot" => json!({
+                "description": "Measures, path(P), of forces also hodograph(B, link); in brackets measures that share a picture.",
+                "anyOf": [{ "type": "string" }, { "type": "array", "items": texts }]
+            }),
             _ => texts.clone(),
         });
         if let Some(study) = study.as_object_mut() {
@@ -299,6 +309,8 @@ fn study() -> Value {
     json!({ "anyOf": [
         along("motion", MOTION_KEYS, "The motion along the drives' laws."),
         along("forces", FORCES_KEYS, "What drives the motion and what the joints carry along it."),
+        along("balance", choices::BALANCE_KEYS, "The counterweights that make it run quietly or hang in balance."),
+        along("spring", choices::SPRING_KEYS, "The spring that leaves a wanted effort to a drive."),
         {
             "description": "Read by later versions.",
             "type": "object",

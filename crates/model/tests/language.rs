@@ -3,7 +3,7 @@
 
 use kempe_model::{
     Acts, Amount, Between, Center, Checked, Diagnostic, DriveKind, ForceMeasure, FrictionAt,
-    LawPiece, Leaf, LoadKind, Measure, Model, Place, Rows, StudyKind, value,
+    LawPiece, Leaf, LoadKind, Measure, Model, Place, Plot, Rows, StudyKind, value,
 };
 
 fn read(name: &str) -> Checked {
@@ -244,4 +244,7 @@ fn everything_that_acts() {
         Measure::Leaf(Leaf::Force(ForceMeasure::Spring(3)))
     );
     assert!(model.needs_forces(&study.columns[0].measure));
+    assert!(matches!(&study.plots[1], Plot::Path(_)));
+    assert!(matches!(&study.plots[2], Plot::Hodograph(h) if h.name == "hodograph(C, coupler)"));
+    assert!(matches!(&study.plots[3], Plot::Curves(both) if both.len() == 2));
 }

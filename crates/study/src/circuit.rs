@@ -5,6 +5,7 @@ use kempe_kinematics::{Design, Mechanism, Plan};
 use kempe_model::{Diagnostic, Model, MotionStudy, Rows};
 use kempe_units::Unit;
 
+use crate::along::Row;
 use crate::columns::{Asked, Quantity};
 use crate::explain::cannot_move;
 use crate::motion::{events, not_measurable, unreached_warning};
@@ -30,7 +31,7 @@ pub(crate) fn run_circuit(
     let design = Design::new(&mechanism, &plan, &parameters);
     let circuit = Circuit::new(&mechanism, &plan, &design, &parameters)
         .map_err(|error| vec![cannot_move(&mechanism, &plan, &design, &error)])?;
-    let asked = Asked::of(model, study);
+    let asked = Asked::of_motion(model, study);
     let quantities: Vec<&Quantity> = asked.all().collect();
     let measures: Vec<_> = quantities.iter().map(|q| &q.measure).collect();
     let mut samplers = circuit
@@ -52,7 +53,11 @@ pub(crate) fn run_circuit(
             break;
         };
         stretch_of.push((circuit.locate(arc).0, sample.parameter));
-        frames.push(rows.push(arc, sample));
+        let row = Row {
+            sample,
+            forces: None,
+        };
+        frames.push(rows.push(&mechanism, arc, row));
         if progress.tick(done + 1, count) == Flow::Stop {
             break;
         }
@@ -91,6 +96,7 @@ pub(crate) fn run_circuit(
         figures: rows.figures(&study.plots),
         table: rows.table,
         frames,
+        listings: Vec::new(),
         along: 0,
         assemblies: (circuit.assemblies.list.len(), circuit.assemblies.rejected),
         warnings,

@@ -1,7 +1,14 @@
 //! Which quantities a motion study reports.
 
-use kempe_model::{FRAME, Leaf, LinkId, Measure, Model, MotionStudy, Plot, PointId, PoseMeasure};
-use kempe_units::{Dimension, Expr};
+use kempe_kinematics::Mechanism;
+use kempe_model::{
+    FRAME, ForceMeasure, Hodograph, Leaf, LinkId, Measure, Model, MotionStudy, Plot, PointId,
+    PoseMeasure,
+};
+use kempe_units::{Dimension, Expr, Unit};
+
+use crate::force_columns::standard;
+use crate::unit::Units;
 
 /// A quantity to evaluate.
 #[derive(Clone, Debug)]
@@ -9,6 +16,18 @@ pub(crate) struct Quantity {
     pub name: String,
     pub measure: Measure,
     pub dimension: Dimension,
+}
+
+impl Quantity {
+    /// The unit it is shown in. An energy and a torque have one dimension and two units.
+    pub fn unit(&self, units: &Units) -> Unit {
+        match self.measure {
+            Expr::Leaf(Leaf::Force(
+                ForceMeasure::KineticEnergy | ForceMeasure::PotentialEnergy,
+            )) => Unit::parse("J").unwrap_or_else(|_| units.unit(self.dimension)),
+            _ => units.unit(self.dimension),
+        }
+    }
 }
 
 /// Everything to evaluate for a study, each measure once.
@@ -20,10 +39,30 @@ pub(crate) struct Asked {
 }
 
 impl Asked {
-    /// What a study asks for; without columns of its own, all named measures; without those, where everything is.
-    pub fn of(model: &Model, study: &MotionStudy) -> Self {
+    /// What a study of motion asks for; without columns of its own, all named measures that need no forces; without
+    /// measures, where everything is.
+    pub fn of_motion(model: &Model, study: &MotionStudy) -> Self {
+        let mut asked = Self::of(model, study, false);
+        if asked.columns.is_empty() && model.measures.is_empty() {
+            places(model).into_iter().for_each(|q| asked.add(q));
+        }
+        asked
+    }
+
+    /// What a study of forces asks for; without columns of its own, all named measures and everything that drives and
+    /// joints carry.
+    pub fn of_forces(mechanism: &Mechanism, study: &MotionStudy) -> Self {
+        let mut asked = Self::of(&mechanism.model, study, true);
+        if study.columns.is_empty() {
+            standard(mechanism).into_iter().for_each(|q| asked.add(q));
+        }
+        asked
+    }
+
+    fn of(model: &Model, study: &MotionStudy, forces: bool) -> Self {
         let named = || {
-            model.measures.iter().map(|m| Quantity {
+            let known = model.measures.iter().filter(|m| forces || !m.needs_forces);
+            known.map(|m| Quantity {
                 name: m.name.clone(),
                 measure: m.measure.clone(),
                 dimension: m.dimension,
@@ -45,16 +84,17 @@ impl Asked {
                 .filter(|q| !is_constant(model, &q.measure))
                 .for_each(|q| asked.add(q));
         }
-        if asked.columns.is_empty() && model.measures.is_empty() {
-            places(model).into_iter().for_each(|q| asked.add(q));
-        }
         for plot in &study.plots {
-            if let Plot::Column(column) = plot {
-                asked.curves.push(Quantity {
-                    name: column.name.clone(),
-                    measure: column.measure.clone(),
-                    dimension: column.dimension,
-                });
+            match plot {
+                Plot::Curves(columns) => asked.curves.extend(columns.iter().map(|c| Quantity {
+                    name: c.name.clone(),
+                    measure: c.measure.clone(),
+                    dimension: c.dimension,
+                })),
+                Plot::Hodograph(hodograph) => {
+                    asked.curves.extend(hodograph_axes(hodograph));
+                }
+                Plot::Path(_) => {}
             }
         }
         asked
@@ -70,6 +110,19 @@ impl Asked {
     pub fn all(&self) -> impl Iterator<Item = &Quantity> {
         self.columns.iter().chain(&self.curves).chain(&self.scalars)
     }
+}
+
+/// The components of a joint's force.
+fn hodograph_axes(hodograph: &Hodograph) -> [Quantity; 2] {
+    let axis = |measure: ForceMeasure| Quantity {
+        name: hodograph.name.clone(),
+        measure: Expr::Leaf(Leaf::Force(measure)),
+        dimension: Dimension::FORCE,
+    };
+    [
+        axis(ForceMeasure::ReactionX(hodograph.joint)),
+        axis(ForceMeasure::ReactionY(hodograph.joint)),
+    ]
 }
 
 /// Whether a measure is one number over the whole motion.

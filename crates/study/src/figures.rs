@@ -27,12 +27,14 @@ pub fn figures(model: &Model, result: &StudyResult) -> Vec<(String, PlotSpec)> {
     let mut chosen: Vec<Figure> = result.figures.clone();
     if chosen.is_empty() {
         let own = result.table.columns.iter().skip(drives);
-        chosen = own.take(MOST_DEFAULT).cloned().map(Figure::Curve).collect();
+        let own = own.take(MOST_DEFAULT).cloned();
+        chosen = own.map(|c| Figure::Curves(vec![c])).collect();
     }
     let mut plots: Vec<(String, PlotSpec)> = Vec::new();
     for figure in &chosen {
         let (name, plot) = match figure {
-            Figure::Curve(column) => (column.name.clone(), curve(x, column, result)),
+            Figure::Curves(columns) => (names(columns), curves(x, columns, result)),
+            Figure::Hodograph(name, axes) => (name.clone(), hodograph(name, axes)),
             Figure::Path(point) => {
                 let name = model.points.get(point.index()).map_or("", |p| &p.name);
                 (
@@ -70,7 +72,28 @@ fn file_name(name: &str) -> String {
     joined.chars().take(60).collect()
 }
 
-fn curve(x: &Column, y: &Column, result: &StudyResult) -> PlotSpec {
+fn names(columns: &[Column]) -> String {
+    let all: Vec<&str> = columns.iter().map(|c| c.name.as_str()).collect();
+    all.join(", ")
+}
+
+fn hodograph(name: &str, [x, y]: &[Column; 2]) -> PlotSpec {
+    PlotSpec {
+        title: name.to_owned(),
+        x: Axis::new("x", x.unit.text()),
+        y: Axis::new("y", y.unit.text()),
+        curves: vec![Curve {
+            label: String::new(),
+            x: x.values.clone(),
+            y: y.values.clone(),
+            dashed: false,
+        }],
+        equal_aspect: true,
+        ..PlotSpec::default()
+    }
+}
+
+fn curves(x: &Column, columns: &[Column], result: &StudyResult) -> PlotSpec {
     let marker = |event: &Event| {
         // Events stand where the rows do: at a coordinate of the drive, or at a time.
         let at = x.unit.from_si(event.at);
@@ -91,13 +114,24 @@ fn curve(x: &Column, y: &Column, result: &StudyResult) -> PlotSpec {
     PlotSpec {
         title: String::new(),
         x: Axis::new(x.name.clone(), x.unit.text()),
-        y: Axis::new(y.name.clone(), y.unit.text()),
-        curves: vec![Curve {
-            label: String::new(),
-            x: x.values.clone(),
-            y: y.values.clone(),
-            dashed: false,
-        }],
+        y: Axis::new(
+            names(columns),
+            columns.first().map_or("", |c| c.unit.text()),
+        ),
+        curves: columns
+            .iter()
+            .enumerate()
+            .map(|(index, y)| Curve {
+                label: if columns.len() > 1 {
+                    y.name.clone()
+                } else {
+                    String::new()
+                },
+                x: x.values.clone(),
+                y: y.values.clone(),
+                dashed: index > 0,
+            })
+            .collect(),
         markers: result.events.iter().map(marker).collect(),
         equal_aspect: false,
     }

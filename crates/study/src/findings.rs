@@ -219,6 +219,7 @@ fn assumptions(model: &Model, units: &Units) -> Vec<String> {
             units.text(law.duration(&parameters), Dimension::TIME)
         ));
     }
+    told.extend(crate::findings_forces::assumptions(model, units));
     if model.assembly.is_empty() {
         told.push("assembly: the first found, as the file names none".to_owned());
     }
@@ -233,7 +234,7 @@ fn diagnostics(
     found: &Findings,
     units: &Units,
 ) -> Vec<Diagnostic> {
-    let mut told = Vec::new();
+    let mut told = crate::findings_forces::problems(mechanism, design);
     if let Some(problem) = &found.problem {
         told.push(cannot_move(mechanism, plan, design, problem));
     }

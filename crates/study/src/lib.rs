@@ -30,13 +30,18 @@
 //! assert!(encode::csv(&result.table).starts_with("time [s],motor [deg],swing [deg],closure [1]"));
 //! ```
 
+mod along;
+mod choice;
 mod circuit;
 mod columns;
 pub mod encode;
 mod explain;
 mod figures;
 mod findings;
+mod findings_forces;
 mod findings_text;
+mod force_columns;
+mod force_notes;
 mod motion;
 mod pose;
 mod progress;
@@ -52,11 +57,11 @@ mod view;
 pub use explain::{cannot_move, reach_text};
 pub use figures::figures;
 pub use findings::{Grashof, Group, Report as CheckReport, check};
-pub use motion::{motion_of, run, run_motion};
-pub use pose::{Setting, pose_at};
+pub use motion::{run, run_motion};
+pub use pose::{Loaded, Setting, loaded_at, pose_at};
 pub use progress::{Flow, Progress, Silent};
 pub use report::{StudyOutcome, report};
-pub use result::{Event, Figure, Frame, Scalar, StudyResult};
-pub use table::{Column, Table};
+pub use result::{Event, Figure, Frame, Listing, Scalar, StudyResult};
+pub use table::{Column, ForceColumns, Table};
 pub use unit::{Units, shown};
 pub use view::{drawing_frames, drawn, mechanism_view};

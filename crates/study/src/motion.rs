@@ -2,16 +2,18 @@
 
 use kempe_kinematics::drive_path::DrivePath;
 use kempe_kinematics::events::EventKind;
-use kempe_kinematics::{Design, EndReason, Mechanism, Motion, Plan, Sampler, Unmeasurable};
+use kempe_kinematics::{Design, EndReason, Mechanism, Motion, Plan, Unmeasurable};
 use kempe_model::{Diagnostic, Model, MotionStudy, Study, StudyKind};
 use kempe_units::Dimension;
 
+use crate::along::Along;
+use crate::choice::{balance, spring};
 use crate::circuit::run_circuit;
 use crate::columns::{Asked, Quantity};
 use crate::explain::{beyond_limit, cannot_move};
 use crate::progress::{Flow, Progress};
 use crate::result::{Event, StudyResult};
-use crate::rows::{RowPlace, places};
+use crate::rows::{path_drive, places_along};
 use crate::sink::RowSink;
 use crate::table::{Column, Table};
 use crate::unit::Units;
@@ -29,24 +31,9 @@ pub fn run(
 ) -> Result<StudyResult, Vec<Diagnostic>> {
     match &study.kind {
         StudyKind::Motion(motion) => run_motion(model, &study.name, motion, progress),
-        StudyKind::Forces(_) => Err(vec![
-            Diagnostic::error(
-                "study-not-available",
-                format!(
-                    "study `{}` asks for forces, which this version cannot find",
-                    study.name
-                ),
-            )
-            .at(study.span.clone(), "")
-            .help("run the other studies by name: kempe run FILE STUDY"),
-        ]),
-    }
-}
-
-/// Rows, columns and plots of a study, whatever it asks.
-pub fn motion_of(study: &Study) -> &MotionStudy {
-    match &study.kind {
-        StudyKind::Motion(motion) | StudyKind::Forces(motion) => motion,
+        StudyKind::Forces(forces) => run_along(model, &study.name, forces, true, progress),
+        StudyKind::Balance(choice) => balance(model, &study.name, choice, progress),
+        StudyKind::Spring(choice) => spring(model, &study.name, choice, progress),
     }
 }
 
@@ -64,6 +51,17 @@ pub fn run_motion(
     if study.circuit {
         return run_circuit(model, name, study, progress);
     }
+    run_along(model, name, study, false, progress)
+}
+
+/// Rows along the drives' laws, with forces or without.
+pub(crate) fn run_along(
+    model: &Model,
+    name: &str,
+    study: &MotionStudy,
+    forces: bool,
+    progress: &mut dyn Progress,
+) -> Result<StudyResult, Vec<Diagnostic>> {
     let mechanism = Mechanism::new(model);
     let plan = Plan::new(&mechanism);
     let parameters: Vec<f64> = model.parameter_values();
@@ -71,16 +69,14 @@ pub fn run_motion(
     let motion = Motion::new(&mechanism, &plan, &design, &parameters)
         .map_err(|error| vec![cannot_move(&mechanism, &plan, &design, &error)])?;
     let mut warnings = range_warnings(&motion)?;
-    let asked = Asked::of(model, study);
-    let quantities: Vec<&Quantity> = asked.all().collect();
-    let measures: Vec<_> = quantities.iter().map(|q| &q.measure).collect();
-    let mut sampler = Sampler::new(&motion, &measures)
-        .map_err(|problems| not_measurable(model, &quantities, &problems))?;
-    let path_drive = match motion.path {
-        DrivePath::Coordinate { drive, .. } => drive,
-        DrivePath::Time { .. } => 0,
+    let asked = if forces {
+        Asked::of_forces(&mechanism, study)
+    } else {
+        Asked::of_motion(model, study)
     };
-    let places = places(model, &study.rows, &parameters, path_drive);
+    let quantities: Vec<&Quantity> = asked.all().collect();
+    let mut sampler = Along::new(model, &motion, &quantities, forces)?;
+    let places = places_along(&motion, study, &parameters);
     let units = Units::of(model);
     let mut rows = RowSink::new(
         name,
@@ -92,21 +88,19 @@ pub fn run_motion(
     let mut frames = Vec::with_capacity(places.len());
     let mut parameters_met = Vec::with_capacity(places.len());
     for (done, place) in places.iter().enumerate() {
-        let sample = match *place {
-            RowPlace::Drive(p) => sampler.at_parameter(p),
-            RowPlace::Time(t) => sampler.at_time(t),
-        };
-        parameters_met.push(sample.parameter);
-        frames.push(rows.push(sample.time, sample));
+        let row = sampler.row(*place);
+        parameters_met.push(row.sample.parameter);
+        frames.push(rows.push(&mechanism, row.sample.time, row));
         if progress.tick(done + 1, places.len()) == Flow::Stop {
             break;
         }
     }
     let by_drive = matches!(motion.path, DrivePath::Coordinate { .. }) && !model.drives.is_empty();
-    let along = if by_drive { 1 + path_drive } else { 0 };
+    let along = if by_drive { 1 + path_drive(&motion) } else { 0 };
     if rows.table.unreached() > 0 {
         warnings.push(unreached_warning(name, &rows.table));
     }
+    warnings.extend(rows.force_warnings(&mechanism, along));
     Ok(StudyResult {
         name: name.to_owned(),
         events: events(&motion, &units, &parameters_met),
@@ -114,6 +108,7 @@ pub fn run_motion(
         figures: rows.figures(&study.plots),
         table: rows.table,
         frames,
+        listings: Vec::new(),
         along,
         assemblies: (motion.assemblies.list.len(), motion.assemblies.rejected),
         warnings,

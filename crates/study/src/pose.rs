@@ -1,13 +1,15 @@
 //! One pose at given coordinates of the drives, reached from the start without leaving the branch.
 
-use kempe_kinematics::{Design, Mechanism, Motion, Plan, Sampler};
+use kempe_kinematics::{Design, Mechanism, Motion, Plan};
 use kempe_model::{Diagnostic, Law, LawPiece, Model, MotionStudy, RiseLaw, Rows};
 use kempe_units::{Dimension, Expr, Issue, Resolver, Span, check_as, nearest, parse};
 
+use crate::along::{Along, Row};
 use crate::explain::cannot_move;
 use crate::motion::run_motion;
 use crate::progress::Silent;
 use crate::result::Frame;
+use crate::rows::RowPlace;
 use crate::unit::Units;
 
 /// Where to look: a drive's coordinate, or a time.
@@ -158,15 +160,82 @@ pub fn pose_at(model: &Model, settings: &[Setting]) -> Result<(Frame, String), V
 
 /// The pose of the motion at a time, s.
 fn pose_at_time(model: &Model, time: f64) -> Result<(Frame, String), Vec<Diagnostic>> {
+    let label = format!("time = {}", Units::of(model).text(time, Dimension::TIME));
+    let on_motion = on_motion(model, &|_| Ok(RowPlace::Time(time)), false, &label)?;
+    Ok((on_motion.frame, label))
+}
+
+/// A row of the motion with its forces.
+#[derive(Clone, Debug)]
+pub struct Loaded {
+    /// The pose and what acts in it.
+    pub frame: Frame,
+    /// Where it is.
+    pub label: String,
+    /// What is to be told about the forces there.
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// The forces of the motion at a coordinate of the drive that moves, or at a time; at the start when nothing is said.
+///
+/// Forces depend on speeds, so only places of the motion have them: the first time that it passes.
+///
+/// # Errors
+///
+/// Those of [`run`](crate::run); `not-reached` and `not-on-the-motion` when the motion does not come there.
+pub fn loaded_at(model: &Model, settings: &[Setting]) -> Result<Loaded, Vec<Diagnostic>> {
+    let units = Units::of(model);
+    let label = match settings {
+        [] => "start".to_owned(),
+        [one] => {
+            let drive = model.drives.iter().find(|d| d.name == one.name);
+            let dimension = drive.map_or(Dimension::TIME, |d| d.dimension);
+            format!("{} = {}", one.name, units.text(one.value, dimension))
+        }
+        _ => return Err(vec![not_on_motion(model)]),
+    };
+    let place = |along: &Along<'_>| match settings {
+        [one] if one.name != "time" => {
+            let moving = along.path_drive().and_then(|d| model.drives.get(d.index()));
+            if moving.is_some_and(|d| d.name == one.name) {
+                Ok(RowPlace::Drive(one.value))
+            } else {
+                Err(vec![not_on_motion(model)])
+            }
+        }
+        [one] => Ok(RowPlace::Time(one.value)),
+        _ => Ok(RowPlace::Time(0.0)),
+    };
+    on_motion(model, &place, true, &label)
+}
+
+fn not_on_motion(model: &Model) -> Diagnostic {
+    Diagnostic::error(
+        "not-on-the-motion",
+        "forces depend on speeds: they are known on the motion, not at any setting of the drives",
+    )
+    .help(match model.drives.as_slice() {
+        [one] => format!("give a place of `{}`, or a time: --at time=0.5s", one.name),
+        _ => "several drives move: give a time, --at time=0.5s".to_owned(),
+    })
+}
+
+/// A row of the motion.
+fn on_motion(
+    model: &Model,
+    place: &dyn Fn(&Along<'_>) -> Result<RowPlace, Vec<Diagnostic>>,
+    forces: bool,
+    label: &str,
+) -> Result<Loaded, Vec<Diagnostic>> {
     let mechanism = Mechanism::new(model);
     let plan = Plan::new(&mechanism);
     let parameters: Vec<f64> = model.parameter_values();
     let design = Design::new(&mechanism, &plan, &parameters);
     let motion = Motion::new(&mechanism, &plan, &design, &parameters)
         .map_err(|error| vec![cannot_move(&mechanism, &plan, &design, &error)])?;
-    let label = format!("time = {}", Units::of(model).text(time, Dimension::TIME));
-    let mut sampler = Sampler::new(&motion, &[]).map_err(|_| Vec::new())?;
-    let sample = sampler.at_time(time);
+    let mut along = Along::new(model, &motion, &[], forces)?;
+    let at = place(&along)?;
+    let Row { sample, forces } = along.row(at);
     if !sample.closure.is_finite() {
         let reason = sample
             .note
@@ -176,9 +245,17 @@ fn pose_at_time(model: &Model, time: f64) -> Result<(Frame, String), Vec<Diagnos
             format!("{label}: {reason}"),
         )]);
     }
-    let frame = Frame {
-        links: sample.links,
-        points: sample.points,
-    };
-    Ok((frame, label))
+    let (arrows, notes) = forces.map_or_else(Default::default, |f| (f.arrows, f.notes));
+    let warnings = notes
+        .iter()
+        .map(|n| Diagnostic::warning(n.code(), format!("{label}: {}", n.text(&mechanism))));
+    Ok(Loaded {
+        frame: Frame {
+            links: sample.links,
+            points: sample.points,
+            arrows,
+        },
+        label: label.to_owned(),
+        warnings: warnings.collect(),
+    })
 }

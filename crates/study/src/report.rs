@@ -9,7 +9,6 @@ use kempe_model::{Diagnostic, Model, MotionStudy, Study};
 use crate::figures::{figures, marker_kind};
 use crate::findings::Report as CheckReport;
 use crate::findings_text::warnings_section;
-use crate::motion::motion_of;
 use crate::result::StudyResult;
 use crate::table::Column;
 use crate::view::{drawing_frames, mechanism_view};
@@ -33,7 +32,9 @@ pub fn report(
     studies: &[StudyOutcome<'_>],
 ) -> Report {
     let results = studies.iter().filter_map(|s| s.result.as_ref().ok());
-    let mut sections: Vec<Section> = results.filter_map(values_section).collect();
+    let mut sections: Vec<Section> = results
+        .flat_map(|r| values_section(r).into_iter().chain(listings(r)))
+        .collect();
     sections.extend(check.sections());
     let mut told: Vec<Diagnostic> = warnings.to_vec();
     let more = studies.iter().flat_map(|s| match &s.result {
@@ -50,7 +51,7 @@ pub fn report(
     }
     sections.extend(warnings_section(&told));
     let motions = studies.iter().filter_map(|outcome| {
-        let study = motion_of(outcome.study);
+        let study = outcome.study.kind.along();
         outcome
             .result
             .as_ref()
@@ -71,6 +72,21 @@ fn values_section(result: &StudyResult) -> Option<Section> {
     (!result.scalars.is_empty()).then(|| Section {
         title: format!("Values over {}", result.name),
         blocks: vec![Block::Facts(scalar_facts(result))],
+    })
+}
+
+/// What a study tells in words.
+fn listings(result: &StudyResult) -> impl Iterator<Item = Section> + '_ {
+    result.listings.iter().map(|listing| Section {
+        title: format!("{}: {}", result.name, listing.title),
+        blocks: vec![if listing.head.is_empty() {
+            Block::List(listing.rows.iter().map(|r| r.join("  ")).collect())
+        } else {
+            Block::Table {
+                head: listing.head.clone(),
+                rows: listing.rows.clone(),
+            }
+        }],
     })
 }
 

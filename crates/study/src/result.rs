@@ -1,5 +1,6 @@
 //! What a study returns.
 
+use kempe_dynamics::ForceArrow;
 use kempe_kinematics::events::EventKind;
 use kempe_model::{Diagnostic, PointId};
 use kempe_units::Unit;
@@ -17,6 +18,8 @@ pub struct StudyResult {
     pub scalars: Vec<Scalar>,
     /// What the study asks to plot.
     pub figures: Vec<Figure>,
+    /// What is told besides, in words.
+    pub listings: Vec<Listing>,
     /// The pose at each row.
     pub frames: Vec<Frame>,
     /// Limits and change points met.
@@ -54,13 +57,26 @@ pub struct Scalar {
     pub value: f64,
 }
 
+/// A small table of words.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Listing {
+    /// What it is.
+    pub title: String,
+    /// Heads of its columns; none for plain lines.
+    pub head: Vec<String>,
+    /// Its rows.
+    pub rows: Vec<Vec<String>>,
+}
+
 /// A plot that a study asks for.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Figure {
-    /// A quantity along the motion.
-    Curve(Column),
+    /// Quantities of one dimension along the motion.
+    Curves(Vec<Column>),
     /// The path of a point.
     Path(PointId),
+    /// The force of a joint: name, x and y.
+    Hodograph(String, [Column; 2]),
 }
 
 /// Where everything is in one row, SI.
@@ -70,6 +86,8 @@ pub struct Frame {
     pub links: Vec<[f64; 3]>,
     /// Places of the points, m.
     pub points: Vec<[f64; 2]>,
+    /// What acts on the links, where forces were asked for.
+    pub arrows: Vec<ForceArrow>,
 }
 
 /// A place worth knowing.

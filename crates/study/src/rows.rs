@@ -1,6 +1,8 @@
 //! Where the rows of a table stand.
 
-use kempe_model::{Model, Rows, value};
+use kempe_kinematics::Motion;
+use kempe_kinematics::drive_path::DrivePath;
+use kempe_model::{Model, MotionStudy, Rows, value};
 use kempe_units::{Dimension, Unit};
 
 use crate::unit::{Units, rounded};
@@ -17,13 +19,26 @@ pub enum RowPlace {
 /// How far beyond the last step the end may lie and still be that step.
 const SAME_PLACE: f64 = 1e-9;
 
-/// The places of all rows. `drive` is the drive that a step of the drive means.
-pub(crate) fn places(
-    model: &Model,
-    rows: &Rows,
+/// The drive that a step of the drive means.
+pub(crate) fn path_drive(motion: &Motion<'_>) -> usize {
+    match motion.path {
+        DrivePath::Coordinate { drive, .. } => drive,
+        DrivePath::Time { .. } => 0,
+    }
+}
+
+/// The places of all rows of a study along a motion.
+pub(crate) fn places_along(
+    motion: &Motion<'_>,
+    study: &MotionStudy,
     parameters: &[f64],
-    drive: usize,
 ) -> Vec<RowPlace> {
+    let model = &motion.mechanism.model;
+    places(model, &study.rows, parameters, path_drive(motion))
+}
+
+/// The places of all rows. `drive` is the drive that a step of the drive means.
+fn places(model: &Model, rows: &Rows, parameters: &[f64], drive: usize) -> Vec<RowPlace> {
     let duration = model
         .drives
         .iter()

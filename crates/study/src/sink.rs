@@ -1,10 +1,13 @@
 //! Collects the rows of a study into columns.
 
-use kempe_kinematics::Sample;
-use kempe_model::{Model, Plot};
+use kempe_dynamics::ForceEvidence;
+use kempe_kinematics::Mechanism;
+use kempe_model::{Diagnostic, Model, Plot};
 use kempe_units::Unit;
 
+use crate::along::Row;
 use crate::columns::{Asked, Quantity};
+use crate::force_notes::ForceNotes;
 use crate::result::{Figure, Frame, Scalar};
 use crate::table::{Column, Table};
 use crate::unit::{Units, shown};
@@ -15,13 +18,14 @@ pub(crate) struct RowSink {
     drives: Vec<Unit>,
     columns: usize,
     curves: Vec<Column>,
+    told: ForceNotes,
     pub scalars: Vec<Scalar>,
 }
 
 impl RowSink {
     /// Columns for what is asked, behind `first`: time, or the arc length of a circuit.
     pub fn new(name: &str, model: &Model, units: &Units, asked: &Asked, first: Column) -> Self {
-        let column = |q: &Quantity| Column::new(q.name.clone(), units.unit(q.dimension));
+        let column = |q: &Quantity| Column::new(q.name.clone(), q.unit(units));
         let mut columns = vec![first];
         let drives: Vec<Unit> = model
             .drives
@@ -38,7 +42,7 @@ impl RowSink {
         columns.extend(asked.columns.iter().map(column));
         let scalars = asked.scalars.iter().map(|q| Scalar {
             name: q.name.clone(),
-            unit: units.unit(q.dimension),
+            unit: q.unit(units),
             value: f64::NAN,
         });
         Self {
@@ -47,8 +51,10 @@ impl RowSink {
                 columns,
                 closure: Vec::new(),
                 smallest_singular_value: Vec::new(),
+                forces: None,
                 notes: Vec::new(),
             },
+            told: ForceNotes::default(),
             drives,
             columns: asked.columns.len(),
             curves: asked.curves.iter().map(column).collect(),
@@ -57,7 +63,8 @@ impl RowSink {
     }
 
     /// Adds a row; `first` is its value in the first column.
-    pub fn push(&mut self, first: f64, sample: Sample) -> Frame {
+    pub fn push(&mut self, mechanism: &Mechanism, first: f64, row: Row) -> Frame {
+        let Row { sample, forces } = row;
         let drives = sample.coordinates.iter().zip(&self.drives);
         let places = drives.map(|(si, unit)| shown(*si, unit));
         let values = sample.values.iter();
@@ -84,10 +91,27 @@ impl RowSink {
         self.table
             .smallest_singular_value
             .push(sample.smallest_singular_value);
-        self.table.notes.push(sample.note);
+        let mut note = sample.note;
+        let mut arrows = Vec::new();
+        if let Some(forces) = forces {
+            let at = self.table.notes.len();
+            let columns = self.table.forces.get_or_insert_default();
+            let of = |f: fn(&ForceEvidence) -> f64| forces.evidence.as_ref().map_or(f64::NAN, f);
+            columns.route_difference.push(of(|e| e.route_difference));
+            columns.residual.push(of(|e| e.residual));
+            columns.condition.push(of(|e| e.condition));
+            for told in &forces.notes {
+                let text = told.text(mechanism);
+                note = Some(note.map_or_else(|| text.clone(), |all| format!("{all}; {text}")));
+            }
+            self.told.add(at, forces.notes);
+            arrows = forces.arrows;
+        }
+        self.table.notes.push(note);
         Frame {
             links: sample.links,
             points: sample.points,
+            arrows,
         }
     }
 
@@ -97,9 +121,21 @@ impl RowSink {
         plots
             .iter()
             .filter_map(|plot| match plot {
-                Plot::Column(_) => curves.next().cloned().map(Figure::Curve),
+                Plot::Curves(columns) => {
+                    let own: Vec<Column> = curves.by_ref().take(columns.len()).cloned().collect();
+                    (own.len() == columns.len()).then_some(Figure::Curves(own))
+                }
                 Plot::Path(point) => Some(Figure::Path(*point)),
+                Plot::Hodograph(it) => {
+                    let axes = [curves.next()?.clone(), curves.next()?.clone()];
+                    Some(Figure::Hodograph(it.name.clone(), axes))
+                }
             })
             .collect()
+    }
+
+    /// What was noted about the forces, as warnings.
+    pub fn force_warnings(&self, mechanism: &Mechanism, along: usize) -> Vec<Diagnostic> {
+        self.told.warnings(mechanism, &self.table, along)
     }
 }

@@ -14,8 +14,21 @@ pub struct Table {
     pub closure: Vec<f64>,
     /// Smallest singular value of each row's constraint Jacobian, lengths scaled by the mechanism's size.
     pub smallest_singular_value: Vec<f64>,
+    /// How far the forces of each row can be trusted; `None` where none were asked for.
+    pub forces: Option<ForceColumns>,
     /// What is to be said about each row, such as why it was not reached.
     pub notes: Vec<Option<String>>,
+}
+
+/// Evidence of the forces of all rows, NaN where a row was not reached.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ForceColumns {
+    /// Difference of virtual power and of equilibrium in what the drives give, in parts of the terms it is made of.
+    pub route_difference: Vec<f64>,
+    /// What is left of the worst body's equilibrium, over its largest term.
+    pub residual: Vec<f64>,
+    /// Condition of the scaled equations of equilibrium.
+    pub condition: Vec<f64>,
 }
 
 /// A quantity over the rows of a table.
@@ -77,6 +90,11 @@ impl Table {
             "smallest_singular_value",
             &self.smallest_singular_value,
         ));
+        if let Some(forces) = &self.forces {
+            all.push(evidence("route_difference", &forces.route_difference));
+            all.push(evidence("equilibrium_residual", &forces.residual));
+            all.push(evidence("condition", &forces.condition));
+        }
         all
     }
 
@@ -108,8 +126,30 @@ impl Table {
             .fold(f64::NAN, f64::min)
     }
 
+    /// Largest difference of the two routes to the forces over the rows that were reached, with its row.
+    pub fn worst_route_difference(&self) -> Option<(usize, f64)> {
+        self.forces
+            .as_ref()
+            .and_then(|f| largest(&f.route_difference))
+    }
+
+    /// Largest condition of the equations of equilibrium over the rows that were reached, with its row.
+    pub fn worst_condition(&self) -> Option<(usize, f64)> {
+        self.forces.as_ref().and_then(|f| largest(&f.condition))
+    }
+
     /// Rows that were not reached.
     pub fn unreached(&self) -> usize {
         self.closure.iter().filter(|c| !c.is_finite()).count()
     }
+}
+
+/// The largest of what is a number, with its row.
+fn largest(values: &[f64]) -> Option<(usize, f64)> {
+    let numbers = values
+        .iter()
+        .copied()
+        .enumerate()
+        .filter(|(_, v)| !v.is_nan());
+    numbers.max_by(|a, b| a.1.total_cmp(&b.1))
 }

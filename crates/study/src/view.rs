@@ -8,7 +8,6 @@ use kempe_model::{
     DriveKind, FRAME, JointKind, Line, LinkId, Model, MotionStudy, Plot, PointId, value,
 };
 
-use crate::motion::motion_of;
 use crate::result::{Frame, StudyResult};
 
 /// Points traced when no study names one: at most this many.
@@ -241,7 +240,7 @@ fn traced(model: &Model, study: Option<&MotionStudy>) -> Vec<PointId> {
     };
     match study {
         Some(study) => add(study),
-        None => model.studies.iter().for_each(|s| add(motion_of(s))),
+        None => model.studies.iter().for_each(|s| add(s.kind.along())),
     }
     if points.is_empty() {
         let guides: Vec<PointId> = model

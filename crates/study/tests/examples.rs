@@ -3,8 +3,11 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use kempe_model::{Model, Severity, StudyKind};
+use kempe_model::{Model, Severity};
 use kempe_study::{Silent, StudyOutcome, check, encode, report, run};
+
+/// Difference of virtual power and equilibrium that no example exceeds.
+const ROUTES_AGREE: f64 = 1e-9;
 
 fn examples() -> Vec<PathBuf> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
@@ -44,11 +47,7 @@ fn every_example_runs() {
             .filter(|d| d.severity == Severity::Error);
         told.extend(errors.map(|d| d.render_plain(&name, &text)));
         let mut outcomes = Vec::new();
-        let studies = model
-            .studies
-            .iter()
-            .filter(|s| matches!(s.kind, StudyKind::Motion(_)));
-        for study in studies {
+        for study in &model.studies {
             let result = run(&model, study, &mut Silent);
             match &result {
                 Ok(result) => {
@@ -56,6 +55,13 @@ fn every_example_runs() {
                     let closed = table.worst_closure() < 1e-10;
                     if table.unreached() > 0 || table.rows() == 0 || !closed {
                         told.push(format!("{name}: {:?}", table.noted().first()));
+                    }
+                    if let Some((row, difference)) = table.worst_route_difference()
+                        && !(difference < ROUTES_AGREE)
+                    {
+                        told.push(format!(
+                            "{name}: routes differ by {difference:.1e} in row {row}"
+                        ));
                     }
                     assert_eq!(
                         encode::csv(table).lines().count(),

@@ -4,7 +4,7 @@ use kempe_draw::raster::animation::{self, AnimationOptions};
 use kempe_draw::raster::{self, RasterError};
 use kempe_draw::{DrawOptions, Frame, MechanismView, Stage, Theme, dxf, svg};
 use kempe_model::{Diagnostic, Model, Study, StudyKind};
-use kempe_study::{Setting, drawing_frames, drawn, mechanism_view, motion_of, pose_at};
+use kempe_study::{Setting, drawing_frames, drawn, mechanism_view, pose_at};
 
 use crate::arguments::Draw;
 use crate::exit::Exit;
@@ -175,7 +175,7 @@ fn motion(model: &Model) -> Result<(MechanismView, Vec<Frame>, f64), Failure> {
         .filter(|t| (1.0..=20.0).contains(t))
         .unwrap_or(AnimationOptions::default().period);
     Ok((
-        mechanism_view(model, Some(motion_of(study))),
+        mechanism_view(model, Some(study.kind.along())),
         drawing_frames(&result),
         period,
     ))
@@ -193,7 +193,7 @@ fn pose(arguments: &Draw, model: &Model) -> Result<(MechanismView, Vec<Frame>, u
     let mut frames = Vec::new();
     let mut study = None;
     if let Some(first) = model.studies.iter().find(|s| moves(s)) {
-        study = Some(motion_of(first));
+        study = Some(first.kind.along());
         if let Ok(result) = kempe_study::run(model, first, &mut kempe_study::Silent) {
             frames = drawing_frames(&result);
         }

@@ -4,9 +4,7 @@ use std::path::{Path, PathBuf};
 
 use kempe_draw::{DrawOptions, Stage, Theme, svg};
 use kempe_model::{Diagnostic, Model, Study};
-use kempe_study::{
-    StudyOutcome, StudyResult, drawing_frames, encode, figures, mechanism_view, motion_of,
-};
+use kempe_study::{StudyOutcome, StudyResult, drawing_frames, encode, figures, mechanism_view};
 use kempe_units::nearest;
 use serde_json::{Value, json};
 
@@ -198,7 +196,7 @@ fn write(
 
 /// The mechanism at its first row that was reached.
 fn picture(model: &Model, study: &Study, result: &StudyResult) -> String {
-    let view = mechanism_view(model, Some(motion_of(study)));
+    let view = mechanism_view(model, Some(study.kind.along()));
     let frames = drawing_frames(result);
     let row = result
         .table
@@ -238,9 +236,15 @@ fn summary(outcomes: &[StudyOutcome<'_>], folder: Option<&Path>, files: &[PathBu
             out.push_str(&format!(", {} not reached", table.unreached()));
         }
         out.push_str(&format!(
-            ", loops closed to {:.1e} of the mechanism's size\n",
+            ", loops closed to {:.1e} of the mechanism's size",
             table.worst_closure()
         ));
+        if let Some((_, difference)) = table.worst_route_difference() {
+            out.push_str(&format!(
+                ", virtual power and Newton-Euler agree to {difference:.1e}"
+            ));
+        }
+        out.push('\n');
         let width = result
             .scalars
             .iter()
@@ -253,6 +257,11 @@ fn summary(outcomes: &[StudyOutcome<'_>], folder: Option<&Path>, files: &[PathBu
                 format!("  {:width$}  {value} {}", scalar.name, scalar.unit.text()).trim_end(),
             );
             out.push('\n');
+        }
+        for listing in &result.listings {
+            out.push_str(&format!("  {}\n", listing.title));
+            let rows = std::iter::once(&listing.head).chain(&listing.rows);
+            out.push_str(&aligned(rows.filter(|r| !r.is_empty()), 4));
         }
         for event in &result.events {
             out.push_str(&format!("  {}: {}\n", event.place, event.label));
@@ -267,6 +276,28 @@ fn summary(outcomes: &[StudyOutcome<'_>], folder: Option<&Path>, files: &[PathBu
         out.push_str(&format!("{}\n", folder.join("report.html").display()));
     }
     out
+}
+
+/// Rows of words with their columns below each other.
+fn aligned<'r>(rows: impl Iterator<Item = &'r Vec<String>>, indent: usize) -> String {
+    let rows: Vec<&Vec<String>> = rows.collect();
+    let columns = rows.iter().map(|r| r.len()).max().unwrap_or(0);
+    let width = |k: usize| {
+        rows.iter()
+            .filter_map(|r| r.get(k))
+            .map(|c| c.chars().count())
+            .max()
+    };
+    let widths: Vec<usize> = (0..columns).map(|k| width(k).unwrap_or(0)).collect();
+    let line = |row: &Vec<String>| {
+        let cells = row
+            .iter()
+            .zip(&widths)
+            .map(|(cell, w)| format!("{cell:w$}"));
+        let text = cells.collect::<Vec<_>>().join("  ");
+        format!("{:indent$}{}\n", "", text.trim_end())
+    };
+    rows.into_iter().map(line).collect()
 }
 
 fn summary_json(

@@ -69,6 +69,7 @@ impl Measures<'_, '_> {
             "reaction" => of(joint(false).map(F::Reaction), force),
             "reaction_x" => of(joint(false).map(F::ReactionX), force),
             "reaction_y" => of(joint(false).map(F::ReactionY), force),
+            "reaction_angle" => of(joint(false).map(F::ReactionAngle), Dimension::ANGLE),
             "reaction_along" => of(joint(true).map(F::ReactionAlong), force),
             "reaction_across" => of(joint(true).map(F::ReactionAcross), force),
             "reaction_moment" => of(self.moment(call).map(F::ReactionMoment), torque),
@@ -171,7 +172,7 @@ impl Measures<'_, '_> {
     }
 
     /// A joint and the link on which its reaction acts; with `own` the link must be named.
-    fn joint(&self, call: &Call<'_>, own: bool) -> Found<JointRef> {
+    pub(crate) fn joint(&self, call: &Call<'_>, own: bool) -> Found<JointRef> {
         let cx = self.0;
         let (node, link) = match call.arguments {
             [node] if !own => (node, None),

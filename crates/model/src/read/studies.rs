@@ -1,19 +1,40 @@
 //! `[studies.NAME]`: what is asked of the model.
 
-use kempe_units::{Builtin, Dimension, Expr, parse};
+use kempe_units::{Builtin, Dimension, Expr};
 
 use crate::diagnostic::Diagnostic;
 use crate::document::{Key, Node, Table, Value};
-use crate::model::{Column, LawPiece, Model, MotionStudy, Plot, Rows, Scalar, Study, StudyKind};
+use crate::model::{Column, LawPiece, Model, MotionStudy, Rows, Scalar, Study, StudyKind};
+use crate::read::choices;
 use crate::read::context::Context;
+use crate::read::entry::Entry;
 use crate::read::measures::measure_text;
 use crate::read::nature::nature;
+use crate::read::plots;
 
 /// Keys of a motion study.
 pub(crate) const MOTION_KEYS: &[&str] = &["kind", "step", "rows", "columns", "plot", "circuit"];
 
 /// Keys of a study of forces.
 pub(crate) const FORCES_KEYS: &[&str] = &["kind", "step", "rows", "columns", "plot"];
+
+/// Kinds of study with their keys and a whole one.
+pub(crate) const KINDS: &[(&str, &[&str], &str)] = &[
+    ("motion", MOTION_KEYS, EXAMPLE),
+    ("forces", FORCES_KEYS, "kind = \"forces\""),
+    (
+        "balance",
+        choices::BALANCE_KEYS,
+        "kind = \"balance\", on = [\"crank\"], radius = \"60 mm\"",
+    ),
+    (
+        "spring",
+        choices::SPRING_KEYS,
+        "kind = \"spring\", spring = \"back\", drive = \"motor\"",
+    ),
+];
+
+const EXAMPLE: &str = "[studies.turn] with the line kind = \"motion\"";
 
 /// Kinds of study of the language that this version has not got.
 pub(crate) const ANNOUNCED_KINDS: &[&str] = &[
@@ -34,8 +55,9 @@ pub(crate) const MAX_ROWS: usize = 10_000_000;
 
 /// Reads all studies; without any, there is one motion study called `motion`.
 pub(crate) fn read(cx: &mut Context<'_>, entries: &[&(Key, Node)]) {
-    for (key, node) in entries {
-        if let Some(kind) = read_study(cx, key, node) {
+    for entry in entries {
+        let (key, _) = entry;
+        if let Some(kind) = read_study(cx, entry) {
             cx.model.studies.push(Study {
                 name: key.name.clone(),
                 kind,
@@ -58,7 +80,8 @@ pub(crate) fn read(cx: &mut Context<'_>, entries: &[&(Key, Node)]) {
     }
 }
 
-fn read_study(cx: &mut Context<'_>, key: &Key, node: &Node) -> Option<StudyKind> {
+fn read_study(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<StudyKind> {
+    let (key, node) = entry;
     let place = format!("study `{}`", key.name);
     if key.name.is_empty()
         || !key
@@ -72,11 +95,7 @@ fn read_study(cx: &mut Context<'_>, key: &Key, node: &Node) -> Option<StudyKind>
                 .help("its name becomes a file's name: letters, digits, _ and -"),
         );
     }
-    let table = cx.table(
-        node,
-        &place,
-        "[studies.turn] with the line kind = \"motion\"",
-    )?;
+    let table = cx.table(node, &place, EXAMPLE)?;
     let kind = cx.required(table, "kind", &place, &key.span, "\"motion\"")?;
     let text = cx.text(kind, "`kind`", "\"motion\"")?;
     let name = text.content.trim();
@@ -91,9 +110,9 @@ fn read_study(cx: &mut Context<'_>, key: &Key, node: &Node) -> Option<StudyKind>
         );
         return None;
     }
-    if !["motion", "forces"].contains(&name) {
-        let known = ANNOUNCED_KINDS.iter().copied().chain(["motion", "forces"]);
-        let help = match kempe_units::nearest(name, known) {
+    let Some((_, keys, example)) = KINDS.iter().find(|(known, ..)| *known == name) else {
+        let known = KINDS.iter().map(|(known, ..)| *known);
+        let help = match kempe_units::nearest(name, known.chain(ANNOUNCED_KINDS.iter().copied())) {
             Some(near) => format!("did you mean `{near}`?"),
             None => "write kind = \"motion\" or kind = \"forces\"".to_owned(),
         };
@@ -106,10 +125,7 @@ fn read_study(cx: &mut Context<'_>, key: &Key, node: &Node) -> Option<StudyKind>
             .help(help),
         );
         return None;
-    }
-    let forces = name == "forces";
-    let keys = if forces { FORCES_KEYS } else { MOTION_KEYS };
-    cx.unknown_keys(table, &place, keys);
+    };
     if cx.drives.is_empty() {
         cx.push(
             Diagnostic::error("no-drive", format!("{place} has nothing that moves"))
@@ -118,7 +134,9 @@ fn read_study(cx: &mut Context<'_>, key: &Key, node: &Node) -> Option<StudyKind>
         );
         return None;
     }
+    let entry = Entry::new(cx, entry, "study", example, keys)?;
     let rows = rows(cx, table, &place);
+    let forces = name != "motion";
     let columns = entries(cx, table, "columns", "[\"swing\", \"rate(swing)\"]");
     let columns = columns
         .into_iter()
@@ -127,23 +145,24 @@ fn read_study(cx: &mut Context<'_>, key: &Key, node: &Node) -> Option<StudyKind>
     let plots = entries(cx, table, "plot", "[\"swing\", \"path(P)\"]");
     let plots = plots
         .into_iter()
-        .filter_map(|node| plot(cx, node, forces))
+        .filter_map(|node| plots::plot(cx, node, forces))
         .collect();
     let circuit = match table.get("circuit") {
         Some(node) if !forces => cx.flag(node, "`circuit`")?,
         _ => false,
     };
-    let study = MotionStudy {
+    let along = MotionStudy {
         rows: rows?,
         columns,
         plots,
         circuit,
     };
-    Some(if forces {
-        StudyKind::Forces(study)
-    } else {
-        StudyKind::Motion(study)
-    })
+    match name {
+        "motion" => Some(StudyKind::Motion(along)),
+        "forces" => Some(StudyKind::Forces(along)),
+        "balance" => choices::balance(cx, &entry, along),
+        _ => choices::spring(cx, &entry, along),
+    }
 }
 
 fn entries<'n>(cx: &mut Context<'_>, table: &'n Table, key: &str, example: &str) -> Vec<&'n Node> {
@@ -162,7 +181,7 @@ fn entries<'n>(cx: &mut Context<'_>, table: &'n Table, key: &str, example: &str)
     }
 }
 
-fn column(cx: &mut Context<'_>, node: &Node, forces: bool) -> Option<Column> {
+pub(crate) fn column(cx: &mut Context<'_>, node: &Node, forces: bool) -> Option<Column> {
     let text = cx.text(node, "a column", "\"angle(rocker)\"")?;
     let name = text.content.trim().to_owned();
     let (measure, dimension) = measure_text(cx, text)?;
@@ -179,33 +198,6 @@ fn column(cx: &mut Context<'_>, node: &Node, forces: bool) -> Option<Column> {
         measure,
         dimension,
     })
-}
-
-fn plot(cx: &mut Context<'_>, node: &Node, forces: bool) -> Option<Plot> {
-    let text = cx.text(node, "a plot", "\"angle(rocker)\" or \"path(P)\"")?;
-    if let Ok(tree) = parse(&text.content)
-        && let kempe_units::Kind::Call {
-            function,
-            arguments,
-            ..
-        } = &tree.kind
-        && function == "path"
-    {
-        if let [point] = arguments.as_slice()
-            && let Some(name) = point.as_point()
-        {
-            return cx
-                .point(name, text.span(point.span.clone()))
-                .map(Plot::Path);
-        }
-        cx.push(
-            Diagnostic::error("wrong-arguments", "`path` draws the path of one point")
-                .at(text.span(tree.span.clone()), "")
-                .help("write path(P)"),
-        );
-        return None;
-    }
-    column(cx, node, forces).map(Plot::Column)
 }
 
 /// Where the rows stand: `step` or `rows`, or the default.

@@ -70,6 +70,7 @@ mod tests {
         Table {
             name: "t".into(),
             closure: vec![0.0; values.len()],
+            forces: None,
             smallest_singular_value: vec![f64::NAN; values.len()],
             notes: vec![None; values.len()],
             columns: vec![Column {

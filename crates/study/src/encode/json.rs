@@ -30,10 +30,13 @@ pub fn result(result: &StudyResult, with_table: bool) -> Value {
         "rows_not_reached": result.table.unreached(),
         "interrupted": result.interrupted(),
         "values": scalars.collect::<Vec<_>>(),
+        "listings": result.listings.iter().map(|l| json!({ "title": l.title, "head": l.head, "rows": l.rows })).collect::<Vec<_>>(),
         "events": result.events.iter().map(event).collect::<Vec<_>>(),
         "assemblies": { "matching": result.assemblies.0, "other": result.assemblies.1 },
         "worst_closure": result.table.worst_closure(),
         "least_singular_value": result.table.least_singular_value(),
+        "worst_route_difference": result.table.worst_route_difference().map(|(_, d)| d),
+        "worst_condition": result.table.worst_condition().map(|(_, c)| c),
         "warnings": result.warnings.iter().map(diagnostic).collect::<Vec<_>>(),
     });
     if with_table {

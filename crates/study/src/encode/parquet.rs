@@ -103,6 +103,7 @@ mod tests {
                 ..Column::new("swing", Unit::parse("deg").unwrap())
             }],
             closure: vec![1e-16, f64::NAN, 0.0],
+            forces: None,
             smallest_singular_value: vec![0.5; 3],
             notes: vec![None, Some("not reached, é".into()), None],
         };
@@ -139,6 +140,7 @@ mod tests {
             name: "none".into(),
             columns: vec![],
             closure: vec![],
+            forces: None,
             smallest_singular_value: vec![],
             notes: vec![],
         };

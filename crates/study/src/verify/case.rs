@@ -5,7 +5,7 @@ use toml::Value;
 
 use super::quantity::Reference;
 
-/// Relative difference that passes whatever the digits of the reference.
+/// Relative difference that passes besides what the reference's last digit leaves open.
 const TOLERANCE: f64 = 1e-12;
 
 /// Why a case cannot be run, in a sentence.
@@ -160,7 +160,7 @@ impl Case {
                 number_of(value, "tolerance")?.unwrap_or(tolerance) * reference.value.abs();
             case.expected.push(Expected {
                 target,
-                allowed: relative.max(reference.half_digit),
+                allowed: relative + reference.half_digit,
                 reference,
                 source: text_of(value, "source")?.unwrap_or_else(|| source.clone()),
             });
@@ -201,7 +201,7 @@ impl Case {
                         at: Some(at),
                         measure: measure.clone(),
                     },
-                    allowed: (tolerance * largest).max(reference.half_digit),
+                    allowed: tolerance * largest + reference.half_digit,
                     reference,
                     source: source.to_owned(),
                 });

@@ -1,15 +1,18 @@
 //! Running validation cases.
 
 use kempe_kinematics::events::EventKind;
-use kempe_kinematics::{Design, Mechanism, Motion, Plan, Sampler};
+use kempe_kinematics::{Design, Mechanism, Motion, Plan};
 use kempe_model::{Diagnostic, Model, set_value};
 use kempe_units::{Dimension, Unit};
 use serde::Serialize;
 
 use super::case::{Case, Expected, Target};
+use crate::along::{Along, Row};
+use crate::columns::Quantity;
 use crate::explain::cannot_move;
 use crate::findings::check;
 use crate::pose::Setting;
+use crate::rows::RowPlace;
 
 /// Ours and the reference, side by side.
 #[derive(Clone, Debug, Serialize)]
@@ -41,7 +44,7 @@ pub struct Comparison {
 /// What a case needs of its model.
 struct Subject<'m> {
     model: &'m Model,
-    sampler: Sampler<'m>,
+    sampler: Along<'m>,
     motion: &'m Motion<'m>,
     /// Measures asked for, in the order of the sampler's.
     measures: Vec<String>,
@@ -84,17 +87,16 @@ pub fn compare(
                 .find(|m| m.name == format!("{PREFIX}{index}"))
         })
         .collect();
-    let asked: Vec<_> = named.iter().map(|m| &m.measure).collect();
-    let sampler = Sampler::new(&motion, &asked).map_err(|problems| {
-        let told = problems.iter().map(|p| {
-            let name = measures.get(p.index).map_or("", String::as_str);
-            Diagnostic::error(
-                "not-measurable",
-                format!("`{name}` cannot be evaluated: {}", p.reason),
-            )
-        });
-        told.collect::<Vec<_>>()
-    })?;
+    let quantities: Vec<Quantity> = (named.iter().zip(&measures))
+        .map(|(m, text)| Quantity {
+            name: text.clone(),
+            measure: m.measure.clone(),
+            dimension: m.dimension,
+        })
+        .collect();
+    let quantities: Vec<&Quantity> = quantities.iter().collect();
+    let forces = named.iter().any(|m| m.needs_forces);
+    let sampler = Along::new(&model, &motion, &quantities, forces)?;
     let mut subject = Subject {
         model: &model,
         sampler,
@@ -200,12 +202,12 @@ fn measured(
     {
         return Ok(values.clone());
     }
-    let sample = if place.is_empty() {
-        subject.sampler.at_time(0.0)
+    let place_of_row = if place.is_empty() {
+        RowPlace::Time(0.0)
     } else {
         let setting = Setting::parse(subject.model, place).map_err(|d| d.message)?;
         if setting.name == "time" {
-            subject.sampler.at_time(setting.value)
+            RowPlace::Time(setting.value)
         } else {
             let drive = subject.sampler.path_drive();
             let moving = drive.and_then(|d| subject.model.drives.get(d.index()));
@@ -215,9 +217,10 @@ fn measured(
                     setting.name
                 ));
             }
-            subject.sampler.at_parameter(setting.value)
+            RowPlace::Drive(setting.value)
         }
     };
+    let Row { sample, .. } = subject.sampler.row(place_of_row);
     if !sample.closure.is_finite() {
         return Err(sample.note.unwrap_or_else(|| "not reached".to_owned()));
     }

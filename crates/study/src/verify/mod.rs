@@ -32,8 +32,9 @@
 //!
 //! The first column of a table is a drive or `time`; the others are measures. A reference written with a decimal point is
 //! as good as its digits; one without is exact. A value passes when it differs by no more than half a unit of the last
-//! digit written, or by `tolerance` (relative, 1e-12 unless said otherwise; for tables relative to the largest value of
-//! the column, since a zero crossing has no relative error). Angles are compared modulo whole turns.
+//! digit written, which is the reference's rounding, and `tolerance` besides, which is ours (relative, 1e-12 unless said
+//! otherwise; for tables relative to the largest value of the column, since a zero crossing has no relative error).
+//! Angles are compared modulo whole turns.
 
 mod case;
 mod compare;

@@ -9,11 +9,14 @@
 //! With more rows than unknowns the loads of some joints are not determined by equilibrium; the shortest solution is
 //! given (moments counted over the mechanism's size) and those joints are named.
 
+mod order;
+
 use kempe_kinematics::constraint::Situation;
 use kempe_kinematics::mechanism::Constraint;
 use kempe_kinematics::{BodyId, Geometry, Mechanism, Plan, Qr};
 use kempe_number::Number;
 
+use self::order::Order;
 use crate::friction::{Friction, Place, direction};
 use crate::gear_mesh::GearMesh;
 use crate::instant::Instant;
@@ -82,6 +85,8 @@ pub enum FrictionOutcome {
 pub struct Equilibrium<T> {
     /// First row of every constraint.
     first_row: Vec<usize>,
+    /// Where rows and columns stand in the factored matrix.
+    order: Order,
     meshes: Vec<Option<GearMesh>>,
     idle: Vec<BodyId>,
     rows: usize,
@@ -93,6 +98,7 @@ pub struct Equilibrium<T> {
     rubbing: Vec<Rubbing<T>>,
     qr: Qr,
     right: Vec<f64>,
+    wide_plain: Vec<f64>,
     wide: Vec<T>,
     rest: Vec<T>,
     plain: Vec<f64>,
@@ -130,6 +136,7 @@ impl<T: ForceNumber> Equilibrium<T> {
         let (rows, columns) = (unit.len(), 3 * (mechanism.bodies - 1));
         let longest = rows.max(columns);
         Self {
+            order: Order::new(mechanism, plan, &first_row, rows),
             first_row,
             meshes,
             idle,
@@ -140,7 +147,8 @@ impl<T: ForceNumber> Equilibrium<T> {
             entries: Vec::with_capacity(4 * rows),
             rubbing: Vec::with_capacity(frictions),
             qr: Qr::with_capacity(rows, columns),
-            right: vec![0.0; longest],
+            right: vec![0.0; columns],
+            wide_plain: vec![0.0; longest],
             wide: vec![T::zero(); longest],
             rest: vec![T::zero(); columns],
             plain: vec![0.0; rows],
@@ -194,7 +202,8 @@ impl<T: ForceNumber> Equilibrium<T> {
             for (constraint, row) in self.first_row.iter().enumerate() {
                 let end = self.first_row.get(constraint + 1).copied();
                 let end = end.unwrap_or(self.rows - self.idle.len());
-                if vector[*row..end].iter().any(|x| x.abs() > UNIQUE) {
+                let own = &self.order.rows[*row..end];
+                if own.iter().any(|place| vector[*place].abs() > UNIQUE) {
                     list.push(constraint);
                 }
             }
@@ -355,6 +364,7 @@ impl<T: ForceNumber> Equilibrium<T> {
             unit,
             size,
             rubbing,
+            order,
             ..
         } = self;
         let column_scale = [*size, *size, 1.0];
@@ -363,7 +373,7 @@ impl<T: ForceNumber> Equilibrium<T> {
             let column = 3 * (entry.body.index() - 1);
             for k in 0..3 {
                 let value = entry.to[k].value() * unit[entry.row] * column_scale[k];
-                qr.add(entry.row, column + k, value);
+                qr.add(order.rows[entry.row], order.columns[column + k], value);
             }
         }
         if let Some((lambda, share)) = friction_at {
@@ -385,8 +395,8 @@ impl<T: ForceNumber> Equilibrium<T> {
                         for j in 0..3 {
                             let value = unit_wrench[j].value() * slope * part;
                             qr.add(
-                                rub.row + k,
-                                column + j,
+                                order.rows[rub.row + k],
+                                order.columns[column + j],
                                 value * unit[rub.row + k] * column_scale[j],
                             );
                         }
@@ -424,14 +434,16 @@ impl<T: ForceNumber> Equilibrium<T> {
                 }
             }
         }
-        for (k, value) in right[..self.columns].iter_mut().enumerate() {
-            if k % 3 < 2 {
-                *value *= self.size;
-            }
+        let wide = &mut self.wide_plain;
+        for (k, value) in right[..self.columns].iter().enumerate() {
+            let scale = if k % 3 < 2 { self.size } else { 1.0 };
+            wide[self.order.columns[k]] = value * scale;
         }
-        self.qr.solve_transposed(right);
+        self.qr.solve_transposed(wide);
         let (mut largest, mut step) = (0.0_f64, 0.0_f64);
-        for ((lambda, delta), unit) in self.plain.iter_mut().zip(right.iter()).zip(&self.unit) {
+        let places = self.order.rows.iter().zip(&self.unit);
+        for (lambda, (place, unit)) in self.plain.iter_mut().zip(places) {
+            let delta = wide[*place];
             *lambda += delta * unit;
             largest = largest.max((*lambda / unit).abs());
             step = step.max(delta.abs());
@@ -514,12 +526,13 @@ impl<T: ForceNumber> Equilibrium<T> {
     fn refine(&mut self, frictions: &[Friction<T>], needed: &[Wrench<T>]) {
         for _ in 0..T::PASSES {
             self.fill_rest(frictions, needed);
-            for (k, (wide, rest)) in self.wide.iter_mut().zip(&self.rest).enumerate() {
-                *wide = if k % 3 < 2 { *rest * self.size } else { *rest };
+            for (k, (place, rest)) in self.order.columns.iter().zip(&self.rest).enumerate() {
+                self.wide[*place] = if k % 3 < 2 { *rest * self.size } else { *rest };
             }
             self.qr.solve_transposed(&mut self.wide);
-            for ((lambda, delta), unit) in self.lambda.iter_mut().zip(&self.wide).zip(&self.unit) {
-                *lambda += *delta * *unit;
+            let places = self.order.rows.iter().zip(&self.unit);
+            for (lambda, (place, unit)) in self.lambda.iter_mut().zip(places) {
+                *lambda += self.wide[*place] * *unit;
             }
         }
     }

@@ -1,0 +1,328 @@
+//! What is to be told about the forces of a row.
+
+use kempe_kinematics::{BodyId, Mechanism};
+use kempe_model::DriveId;
+
+use crate::equilibrium::FrictionOutcome;
+use crate::forces::Forces;
+use crate::instant::{Instant, Rates};
+use crate::reaction::Carrier;
+
+/// A difference of the two routes, in parts of the terms of a drive's force, above which a row is marked.
+pub const ROUTES_AGREE: f64 = 1e-9;
+/// A condition of the equations above which a row is marked: from here on half of the digits are lost.
+pub const ILL_CONDITIONED: f64 = 1e8;
+/// A residual of the equilibrium, over its largest term, above which a row is marked.
+pub const EQUILIBRIUM_LIMIT: f64 = 1e-9;
+/// A torque that holds an idle body, over the largest torque of a drive, above which a row is marked.
+pub const IDLE_LIMIT: f64 = 1e-9;
+
+/// What a careful engineer would want to be told about the forces of a row.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ForceNote {
+    /// The pose is singular: joint loads are not defined here.
+    Singular,
+    /// The pose is near a singular one.
+    IllConditioned {
+        /// Condition of the equations.
+        condition: f64,
+    },
+    /// Equilibrium does not determine the loads of these joints.
+    NotUnique(Vec<Carrier>),
+    /// The two routes do not agree.
+    RoutesDiffer {
+        /// By how much, relative.
+        difference: f64,
+    },
+    /// The equations were not solved to their rounding.
+    Unbalanced {
+        /// What is left, relative.
+        residual: f64,
+    },
+    /// No finite force moves the mechanism against its friction.
+    Jammed {
+        /// Part of the friction at which it jams.
+        part: f64,
+    },
+    /// Loads and friction did not become consistent.
+    FrictionNotConverged {
+        /// Last relative step.
+        step: f64,
+    },
+    /// The load does not move this drive: friction holds it, and it must be driven both ways.
+    SelfLocking(DriveId),
+    /// Nothing moves at a joint with friction: its friction is not determined and counted as none.
+    AtRest,
+    /// Something would turn a body whose angle nothing determines.
+    IdleBodyDriven {
+        /// The body.
+        body: BodyId,
+        /// The torque that would turn it, N m.
+        torque: f64,
+    },
+    /// The motor is too weak here.
+    MotorTooWeak {
+        /// The drive.
+        drive: DriveId,
+        /// What it lacks, N m.
+        lacks: f64,
+    },
+    /// The cylinder cannot give this at its pressure.
+    CylinderTooWeak {
+        /// The drive.
+        drive: DriveId,
+        /// Pressure needed, Pa.
+        pressure: f64,
+        /// Pressure there is, Pa.
+        highest: f64,
+    },
+    /// The pump does not move the cylinder this fast.
+    FlowTooSmall {
+        /// The drive.
+        drive: DriveId,
+        /// Flow needed, m^3/s.
+        flow: f64,
+        /// Flow there is, m^3/s.
+        given: f64,
+    },
+    /// Without time there are no speeds and no forces.
+    NoTime,
+}
+
+impl ForceNote {
+    /// A stable code.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::Singular => "singular-pose",
+            Self::IllConditioned { .. } => "nearly-singular",
+            Self::NotUnique(_) => "reactions-not-unique",
+            Self::RoutesDiffer { .. } => "routes-differ",
+            Self::Unbalanced { .. } => "not-balanced",
+            Self::Jammed { .. } => "jammed",
+            Self::FrictionNotConverged { .. } => "friction-not-converged",
+            Self::SelfLocking(_) => "self-locking",
+            Self::AtRest => "friction-at-rest",
+            Self::IdleBodyDriven { .. } => "idle-body-driven",
+            Self::MotorTooWeak { .. } => "motor-too-weak",
+            Self::CylinderTooWeak { .. } => "cylinder-too-weak",
+            Self::FlowTooSmall { .. } => "flow-too-small",
+            Self::NoTime => "no-time",
+        }
+    }
+
+    /// How bad it is among notes of its code; 0 where there is no more or less.
+    pub fn severity(&self) -> f64 {
+        match self {
+            Self::IllConditioned { condition } => *condition,
+            Self::RoutesDiffer { difference } => *difference,
+            Self::Unbalanced { residual } => *residual,
+            Self::Jammed { part } => -part,
+            Self::FrictionNotConverged { step } => *step,
+            Self::IdleBodyDriven { torque, .. } => torque.abs(),
+            Self::MotorTooWeak { lacks, .. } => *lacks,
+            Self::CylinderTooWeak { pressure, .. } => *pressure,
+            Self::FlowTooSmall { flow, .. } => *flow,
+            Self::Singular
+            | Self::NotUnique(_)
+            | Self::SelfLocking(_)
+            | Self::AtRest
+            | Self::NoTime => 0.0,
+        }
+    }
+
+    /// The drive that it is about, where it is about one.
+    pub fn drive(&self) -> Option<DriveId> {
+        match *self {
+            Self::SelfLocking(drive)
+            | Self::MotorTooWeak { drive, .. }
+            | Self::CylinderTooWeak { drive, .. }
+            | Self::FlowTooSmall { drive, .. } => Some(drive),
+            _ => None,
+        }
+    }
+
+    /// The note as a sentence.
+    pub fn text(&self, mechanism: &Mechanism) -> String {
+        let model = &mechanism.model;
+        let drive = |d: &DriveId| {
+            (model.drives.get(d.index())).map_or_else(String::new, |d| d.name.clone())
+        };
+        match self {
+            Self::Singular => "singular pose: joint loads are not defined here".into(),
+            Self::IllConditioned { condition } => {
+                format!(
+                    "near a singular pose: condition {condition:.1e}; joint loads grow without bound towards it"
+                )
+            }
+            Self::NotUnique(carriers) => {
+                let names: Vec<String> = carriers.iter().map(|c| c.name(mechanism)).collect();
+                format!(
+                    "overconstrained: equilibrium does not determine the loads of {}; the smallest are given",
+                    names.join(", ")
+                )
+            }
+            Self::RoutesDiffer { difference } => {
+                format!("virtual power and equilibrium differ by {difference:.1e}")
+            }
+            Self::Unbalanced { residual } => {
+                format!("equilibrium is not met: {residual:.1e} of the largest term is left")
+            }
+            Self::Jammed { part } => format!(
+                "jammed: no finite force moves it; it jams already with {:.1} % of the friction",
+                100.0 * part
+            ),
+            Self::FrictionNotConverged { step } => {
+                format!("loads and friction did not become consistent: last step {step:.1e}")
+            }
+            Self::SelfLocking(d) => {
+                format!("self-locking: friction holds {} against its load", drive(d))
+            }
+            Self::AtRest => "at rest: friction is not determined and counted as none".into(),
+            Self::IdleBodyDriven { body, torque } => format!(
+                "{} turns freely, and a torque of {torque:.3e} N m would turn it; it is held here",
+                mechanism.body_name(*body)
+            ),
+            Self::MotorTooWeak { drive: d, lacks } => {
+                format!("the motor of {} lacks {lacks:.4e} N m", drive(d))
+            }
+            Self::CylinderTooWeak {
+                drive: d,
+                pressure,
+                highest,
+            } => format!(
+                "{} needs {:.2} bar and has {:.2} bar",
+                drive(d),
+                pressure * 1e-5,
+                highest * 1e-5
+            ),
+            Self::FlowTooSmall {
+                drive: d,
+                flow,
+                given,
+            } => format!(
+                "{} needs {:.2} l/min and the pump gives {:.2} l/min",
+                drive(d),
+                flow * 6e4,
+                given * 6e4
+            ),
+            Self::NoTime => "no forces without time".into(),
+        }
+    }
+}
+
+/// What is to be told about the forces of an instant.
+pub(crate) fn notes(forces: &Forces<'_, Rates>, at: &Instant<Rates>) -> Vec<ForceNote> {
+    use kempe_number::Number as _;
+    let equilibrium = &forces.equilibrium;
+    let mut notes = Vec::new();
+    let condition = equilibrium.condition();
+    if equilibrium.singular {
+        notes.push(ForceNote::Singular);
+        return notes;
+    }
+    if !(condition <= ILL_CONDITIONED) {
+        notes.push(ForceNote::IllConditioned { condition });
+    }
+    match equilibrium.friction {
+        FrictionOutcome::Jammed { part } => {
+            notes.push(ForceNote::Jammed { part });
+            return notes;
+        }
+        FrictionOutcome::NotConverged { step } => {
+            notes.push(ForceNote::FrictionNotConverged { step });
+            return notes;
+        }
+        FrictionOutcome::None | FrictionOutcome::Consistent { .. } => {}
+    }
+    let difference = forces.route_difference();
+    if !(difference <= ROUTES_AGREE) {
+        notes.push(ForceNote::RoutesDiffer { difference });
+    }
+    if !(equilibrium.residual <= EQUILIBRIUM_LIMIT) {
+        notes.push(ForceNote::Unbalanced {
+            residual: equilibrium.residual,
+        });
+    }
+    if equilibrium.rests(&forces.acting.friction) {
+        notes.push(ForceNote::AtRest);
+    }
+    for (index, drive) in forces.drives.iter().enumerate() {
+        let speed = at.drive_speeds[index].value();
+        if drive.frictionless * speed < 0.0 && drive.value.value() * speed > 0.0 {
+            notes.push(ForceNote::SelfLocking(DriveId(index as u32)));
+        }
+    }
+    let largest = (forces.drives.iter())
+        .map(|d| d.by_power.scale)
+        .fold(0.0, f64::max);
+    for (torque, body) in (equilibrium.holding_torques().iter()).zip(equilibrium.idle_bodies()) {
+        if torque.value().abs() > IDLE_LIMIT * largest {
+            notes.push(ForceNote::IdleBodyDriven {
+                body: *body,
+                torque: torque.value(),
+            });
+        }
+    }
+    actuator_notes(forces, at, &mut notes);
+    notes.extend(not_unique_note(forces));
+    notes
+}
+
+fn actuator_notes(forces: &Forces<'_, Rates>, at: &Instant<Rates>, notes: &mut Vec<ForceNote>) {
+    use kempe_number::Number as _;
+    for motor in &forces.acting.motors {
+        let Some(drive) = forces.drives.get(motor.drive.index()) else {
+            continue;
+        };
+        let speed = at.drive_speeds[motor.drive.index()];
+        let margin = motor.margin(drive.value, speed).value();
+        if margin < 0.0 {
+            notes.push(ForceNote::MotorTooWeak {
+                drive: motor.drive,
+                lacks: -margin,
+            });
+        }
+    }
+    for cylinder in &forces.acting.cylinders {
+        let id = cylinder.drive;
+        let Some(drive) = forces.drives.get(id.index()) else {
+            continue;
+        };
+        let direction = forces.drive_direction(at, id);
+        let pressure = cylinder.pressure(drive.value, direction).value();
+        if let Some(highest) = cylinder.highest.map(|p| p.value())
+            && pressure > highest
+        {
+            notes.push(ForceNote::CylinderTooWeak {
+                drive: id,
+                pressure,
+                highest,
+            });
+        }
+        let flow = cylinder.flow_at(at.drive_speeds[id.index()]).value();
+        if let Some(given) = cylinder.flow.map(|q| q.value())
+            && flow > given * (1.0 + 1e-9)
+        {
+            notes.push(ForceNote::FlowTooSmall {
+                drive: id,
+                flow,
+                given,
+            });
+        }
+    }
+}
+
+/// Which joints' loads are not unique; asked of the row at hand, as it may change along the motion.
+fn not_unique_note(forces: &Forces<'_, Rates>) -> Option<ForceNote> {
+    if forces.equilibrium.redundant_rows() == 0 {
+        return None;
+    }
+    let mut carriers: Vec<Carrier> = Vec::new();
+    for constraint in forces.equilibrium.not_unique() {
+        let carrier = Carrier::of(&forces.mechanism.constraints[constraint].1);
+        if !carriers.contains(&carrier) {
+            carriers.push(carrier);
+        }
+    }
+    (!carriers.is_empty()).then_some(ForceNote::NotUnique(carriers))
+}

@@ -1,0 +1,97 @@
+//! What is evaluated along a motion: the motion alone, or its forces too.
+
+use kempe_dynamics::{ForceArrow, ForceError, ForceEvidence, ForceNote, ForceSampler};
+use kempe_kinematics::{Motion, Sample, Sampler};
+use kempe_model::{Diagnostic, DriveId, Model};
+
+use crate::columns::Quantity;
+use crate::motion::not_measurable;
+use crate::rows::RowPlace;
+
+/// Evaluates quantities along a motion.
+pub(crate) enum Along<'a> {
+    Motion(Box<Sampler<'a>>),
+    Forces(Box<ForceSampler<'a>>),
+}
+
+/// A row with the forces in it, where they were asked for.
+pub(crate) struct Row {
+    pub sample: Sample,
+    pub forces: Option<RowForces>,
+}
+
+/// Forces of a row.
+pub(crate) struct RowForces {
+    /// `None` where no pose was reached.
+    pub evidence: Option<ForceEvidence>,
+    pub notes: Vec<ForceNote>,
+    pub arrows: Vec<ForceArrow>,
+}
+
+impl<'a> Along<'a> {
+    /// Prepares quantities for evaluation.
+    pub fn new(
+        model: &Model,
+        motion: &'a Motion<'a>,
+        quantities: &[&Quantity],
+        forces: bool,
+    ) -> Result<Self, Vec<Diagnostic>> {
+        let measures: Vec<_> = quantities.iter().map(|q| &q.measure).collect();
+        if !forces {
+            return match Sampler::new(motion, &measures) {
+                Ok(sampler) => Ok(Self::Motion(Box::new(sampler))),
+                Err(problems) => Err(not_measurable(model, quantities, &problems)),
+            };
+        }
+        ForceSampler::new(motion, &measures)
+            .map(|sampler| Self::Forces(Box::new(sampler)))
+            .map_err(|error| match error {
+                ForceError::Unmeasurable(problems) => not_measurable(model, quantities, &problems),
+                ForceError::Problems(problems) => {
+                    let told = problems
+                        .into_iter()
+                        .map(|p| Diagnostic::error(p.code, p.message).at(p.span, ""));
+                    told.collect()
+                }
+            })
+    }
+
+    /// The row at a place.
+    pub fn row(&mut self, place: RowPlace) -> Row {
+        match self {
+            Self::Motion(sampler) => Row {
+                sample: match place {
+                    RowPlace::Drive(p) => sampler.at_parameter(p),
+                    RowPlace::Time(t) => sampler.at_time(t),
+                },
+                forces: None,
+            },
+            Self::Forces(sampler) => {
+                let found = match place {
+                    RowPlace::Drive(p) => sampler.at_parameter(p),
+                    RowPlace::Time(t) => sampler.at_time(t),
+                };
+                let arrows = match found.evidence {
+                    Some(_) => sampler.arrows(),
+                    None => Vec::new(),
+                };
+                Row {
+                    sample: found.sample,
+                    forces: Some(RowForces {
+                        evidence: found.evidence,
+                        notes: found.notes,
+                        arrows,
+                    }),
+                }
+            }
+        }
+    }
+
+    /// The drive that the rows go by; none where several move.
+    pub fn path_drive(&self) -> Option<DriveId> {
+        match self {
+            Self::Motion(sampler) => sampler.path_drive(),
+            Self::Forces(sampler) => sampler.path_drive(),
+        }
+    }
+}

@@ -1,0 +1,150 @@
+//! Studies that choose something that acts on the mechanism, and show the motion with it.
+//!
+//! What one unit of a counterweight or of a spring does along the motion is asked of the same force sampler that shows
+//! the result, on the bare mechanism with nothing else on it; both are linear, so a least-squares choice is exact.
+
+mod balance;
+mod spring;
+
+pub(crate) use balance::balance;
+pub(crate) use spring::spring;
+
+use kempe_kinematics::{Design, Mechanism, Motion, Plan};
+use kempe_model::{
+    Actions, Column as Asked, Diagnostic, DriveId, DriveKind, ForceMeasure, Leaf, Measure, Model,
+    MotionStudy,
+};
+use kempe_units::{Dimension, Expr};
+
+use crate::along::Along;
+use crate::columns::Quantity;
+use crate::explain::cannot_move;
+use crate::result::{Figure, StudyResult};
+use crate::rows::{RowPlace, places_along};
+use crate::table::Column;
+
+/// The mechanism with nothing on it but gravity.
+fn bare(model: &Model) -> Model {
+    let mut bare = model.clone();
+    for link in &mut bare.links {
+        link.inertia = None;
+    }
+    bare.actions = Actions {
+        gravity: model.actions.gravity.clone(),
+        ..Actions::default()
+    };
+    bare
+}
+
+/// A measure that is asked for.
+fn force(name: &str, measure: ForceMeasure, dimension: Dimension) -> Quantity {
+    Quantity {
+        name: name.to_owned(),
+        measure: Expr::Leaf(Leaf::Force(measure)),
+        dimension,
+    }
+}
+
+/// What a drive must give.
+fn effort(model: &Model, drive: DriveId) -> Quantity {
+    let known = model.drives.get(drive.index());
+    let name = known.map_or("", |d| d.name.as_str());
+    match known.map(|d| &d.kind) {
+        Some(DriveKind::Turn { .. }) => force(
+            &format!("torque({name})"),
+            ForceMeasure::Drive(drive),
+            Dimension::TORQUE,
+        ),
+        _ => force(
+            &format!("force({name})"),
+            ForceMeasure::Drive(drive),
+            Dimension::FORCE,
+        ),
+    }
+}
+
+/// Values of quantities (SI) at the rows of a study: one list for each quantity.
+fn values(
+    model: &Model,
+    study: &MotionStudy,
+    quantities: &[Quantity],
+) -> Result<Vec<Vec<f64>>, Vec<Diagnostic>> {
+    let mechanism = Mechanism::new(model);
+    let plan = Plan::new(&mechanism);
+    let parameters: Vec<f64> = model.parameter_values();
+    let design = Design::new(&mechanism, &plan, &parameters);
+    let motion = Motion::new(&mechanism, &plan, &design, &parameters)
+        .map_err(|error| vec![cannot_move(&mechanism, &plan, &design, &error)])?;
+    let asked: Vec<&Quantity> = quantities.iter().collect();
+    let mut along = Along::new(model, &motion, &asked, true)?;
+    let places: Vec<RowPlace> = places_along(&motion, study, &parameters);
+    let mut lists = vec![Vec::with_capacity(places.len()); quantities.len()];
+    for place in places {
+        let row = along.row(place);
+        for (list, value) in lists.iter_mut().zip(row.sample.values) {
+            list.push(value);
+        }
+    }
+    Ok(lists)
+}
+
+/// The study that shows what was chosen: each quantity as a column called `NAME after`.
+fn shown_by(study: &MotionStudy, quantities: &[Quantity]) -> MotionStudy {
+    let columns = quantities.iter().map(|q| Asked {
+        name: after(&q.name),
+        measure: q.measure.clone(),
+        dimension: q.dimension,
+    });
+    MotionStudy {
+        rows: study.rows.clone(),
+        columns: columns.collect(),
+        plots: Vec::new(),
+        circuit: false,
+    }
+}
+
+fn after(name: &str) -> String {
+    format!("{name} after")
+}
+
+/// Puts the values from before in front of those from after, with a picture of both (and of `wanted`).
+fn set_beside(result: &mut StudyResult, quantities: &[Quantity], before: &[Vec<f64>]) {
+    for (quantity, values) in quantities.iter().zip(before) {
+        let columns = &mut result.table.columns;
+        let Some(place) = columns.iter().position(|c| c.name == after(&quantity.name)) else {
+            continue;
+        };
+        let Some(now) = columns.get(place).cloned() else {
+            continue;
+        };
+        let rows = now.values.len();
+        let mut old = Column::new(format!("{} before", quantity.name), now.unit.clone());
+        old.values = values
+            .iter()
+            .take(rows)
+            .map(|v| old.unit.from_si(*v))
+            .collect();
+        columns.insert(place, old.clone());
+        result.figures.push(Figure::Curves(vec![old, now]));
+    }
+}
+
+/// Weights of rows in a sum of squares, 1 in all: the first and the last count half, so that the rows of a full turn
+/// count evenly.
+fn weights(rows: usize) -> Vec<f64> {
+    let whole = 1.0 / rows.saturating_sub(1).max(1) as f64;
+    let end = |row: usize| rows > 1 && (row == 0 || row + 1 == rows);
+    (0..rows)
+        .map(|row| if end(row) { whole / 2.0 } else { whole })
+        .collect()
+}
+
+/// A constant in the model.
+fn constant<L>(value: f64) -> Expr<L> {
+    Expr::Const(value)
+}
+
+/// A measure that is the same everywhere.
+fn is_zero(measure: &Measure) -> bool {
+    matches!(measure, Expr::Const(x) if *x == 0.0)
+}

@@ -1,0 +1,148 @@
+//! What a study of forces reports where it names no columns: everything that drives and joints carry.
+
+use kempe_kinematics::Mechanism;
+use kempe_model::{DriveId, DriveKind, ForceMeasure, JointId, JointKind, JointRef, Leaf, PointId};
+use kempe_units::{Dimension, Expr};
+
+use crate::columns::Quantity;
+
+/// Efforts and powers of all drives, the loads of all joints, shaking force and energies, named as a file would ask for
+/// them.
+pub(crate) fn standard(mechanism: &Mechanism) -> Vec<Quantity> {
+    let model = &mechanism.model;
+    let mut list = Vec::new();
+    for (index, drive) in model.drives.iter().enumerate() {
+        let (id, name) = (DriveId(index as u32), &drive.name);
+        list.push(match drive.kind {
+            DriveKind::Turn { .. } => force(
+                format!("torque({name})"),
+                ForceMeasure::Drive(id),
+                Dimension::TORQUE,
+            ),
+            _ => force(
+                format!("force({name})"),
+                ForceMeasure::Drive(id),
+                Dimension::FORCE,
+            ),
+        });
+        list.push(force(
+            format!("power({name})"),
+            ForceMeasure::Power(id),
+            Dimension::POWER,
+        ));
+        if let Some(cylinder) = model.actions.cylinders.iter().find(|c| c.drive == id) {
+            list.push(force(
+                format!("pressure({name})"),
+                ForceMeasure::Pressure(id),
+                Dimension::PRESSURE,
+            ));
+            if cylinder.supply.is_some() || cylinder.relief.is_some() {
+                list.push(force(
+                    format!("capacity({name})"),
+                    ForceMeasure::Capacity(id),
+                    Dimension::FORCE,
+                ));
+            }
+        }
+    }
+    for (joint, text, moment) in joints(mechanism) {
+        let size = ForceMeasure::Reaction(joint);
+        list.push(force(format!("reaction({text})"), size, Dimension::FORCE));
+        let x = ForceMeasure::ReactionX(joint);
+        list.push(force(format!("reaction_x({text})"), x, Dimension::FORCE));
+        let y = ForceMeasure::ReactionY(joint);
+        list.push(force(format!("reaction_y({text})"), y, Dimension::FORCE));
+        let angle = ForceMeasure::ReactionAngle(joint);
+        list.push(force(
+            format!("reaction_angle({text})"),
+            angle,
+            Dimension::ANGLE,
+        ));
+        if moment {
+            let moment = ForceMeasure::ReactionMoment(joint);
+            list.push(force(
+                format!("reaction_moment({text})"),
+                moment,
+                Dimension::TORQUE,
+            ));
+        }
+    }
+    let whole = [
+        (
+            "shaking_force",
+            ForceMeasure::ShakingForce,
+            Dimension::FORCE,
+        ),
+        (
+            "shaking_force_x",
+            ForceMeasure::ShakingForceX,
+            Dimension::FORCE,
+        ),
+        (
+            "shaking_force_y",
+            ForceMeasure::ShakingForceY,
+            Dimension::FORCE,
+        ),
+        (
+            "shaking_moment",
+            ForceMeasure::ShakingMoment,
+            Dimension::TORQUE,
+        ),
+        (
+            "kinetic_energy",
+            ForceMeasure::KineticEnergy,
+            Dimension::ENERGY,
+        ),
+        (
+            "potential_energy",
+            ForceMeasure::PotentialEnergy,
+            Dimension::ENERGY,
+        ),
+    ];
+    list.extend(whole.map(|(name, measure, dimension)| force(name.to_owned(), measure, dimension)));
+    list
+}
+
+/// All joints with a load of their own: each with the link that feels it, how a file writes that, and whether it carries
+/// a moment. A pin of many links is there once for every later one.
+pub(crate) fn joints(mechanism: &Mechanism) -> Vec<(JointRef, String, bool)> {
+    let model = &mechanism.model;
+    let link = |id: kempe_model::LinkId| model.links.get(id.index()).map_or("", |l| &l.name);
+    let mut list = Vec::new();
+    for (index, point) in model.points.iter().enumerate() {
+        for (place, later) in point.links.iter().enumerate().skip(1) {
+            // Links that are welded there are one body: the weld carries that load.
+            let body = mechanism.body_of(*later);
+            let mut before = point.links.iter().take(place);
+            if before.any(|l| mechanism.body_of(*l) == body) {
+                continue;
+            }
+            list.push((
+                JointRef::Pin(PointId(index as u32), Some(*later)),
+                format!("{}, {}", point.name, link(*later)),
+                false,
+            ));
+        }
+    }
+    for (index, joint) in model.joints.iter().enumerate() {
+        let first = joint.kind.links().0;
+        let moment = matches!(
+            joint.kind,
+            JointKind::Slider { .. } | JointKind::Weld { .. }
+        );
+        list.push((
+            JointRef::Joint(JointId(index as u32), Some(first)),
+            format!("{}, {}", joint.name, link(first)),
+            moment,
+        ));
+    }
+    list
+}
+
+fn force(name: String, measure: ForceMeasure, dimension: Dimension) -> Quantity {
+    Quantity {
+        name,
+        measure: Expr::Leaf(Leaf::Force(measure)),
+        dimension,
+    }
+}

@@ -1,0 +1,101 @@
+//! What the rows of a study note about their forces, gathered into warnings: one for each kind, with where it is worst.
+
+use kempe_dynamics::ForceNote;
+use kempe_kinematics::Mechanism;
+use kempe_model::{Diagnostic, DriveId};
+
+use crate::table::Table;
+
+/// Notes of all rows, one entry for each kind and drive.
+#[derive(Debug, Default)]
+pub(crate) struct ForceNotes {
+    kinds: Vec<Kind>,
+}
+
+#[derive(Debug)]
+struct Kind {
+    code: &'static str,
+    drive: Option<DriveId>,
+    first: usize,
+    last: usize,
+    count: usize,
+    worst: (usize, ForceNote),
+}
+
+impl ForceNotes {
+    /// Adds the notes of a row.
+    pub fn add(&mut self, row: usize, notes: Vec<ForceNote>) {
+        for note in notes {
+            // A drive that starts or stops is at rest for one row: no news.
+            if note == ForceNote::AtRest {
+                continue;
+            }
+            let (code, drive) = (note.code(), note.drive());
+            let known = self.kinds.iter_mut();
+            match known
+                .into_iter()
+                .find(|k| k.code == code && k.drive == drive)
+            {
+                Some(kind) => {
+                    kind.last = row;
+                    kind.count += 1;
+                    if note.severity() > kind.worst.1.severity() {
+                        kind.worst = (row, note);
+                    }
+                }
+                None => self.kinds.push(Kind {
+                    code,
+                    drive,
+                    first: row,
+                    last: row,
+                    count: 1,
+                    worst: (row, note),
+                }),
+            }
+        }
+    }
+
+    /// A warning for each kind; rows are told by their value in the column `along`.
+    pub fn warnings(&self, mechanism: &Mechanism, table: &Table, along: usize) -> Vec<Diagnostic> {
+        let told = self.kinds.iter().map(|kind| {
+            let text = kind.worst.1.text(mechanism);
+            let everywhere = kind.count == table.rows();
+            let message = if everywhere && kind.worst.1.severity() == 0.0 {
+                format!("study `{}`: {text}", table.name)
+            } else {
+                format!(
+                    "study `{}`: {text}, at {}",
+                    table.name,
+                    place(table, along, kind.worst.0)
+                )
+            };
+            let warning = Diagnostic::warning(kind.code, message);
+            if kind.count == 1 {
+                warning
+            } else if everywhere {
+                warning.note("in all rows")
+            } else {
+                warning.note(format!(
+                    "in {} of {} rows, from {} to {}",
+                    kind.count,
+                    table.rows(),
+                    place(table, along, kind.first),
+                    place(table, along, kind.last)
+                ))
+            }
+        });
+        told.collect()
+    }
+}
+
+/// Where a row stands: `lift = 0.42 m`.
+pub(crate) fn place(table: &Table, along: usize, row: usize) -> String {
+    let Some(column) = table.columns.get(along) else {
+        return format!("row {row}");
+    };
+    let at = column.values.get(row).copied().unwrap_or(f64::NAN);
+    let digits = kempe_draw::number_format::significant(at, 8);
+    format!("{} = {digits} {}", column.name, column.unit.text())
+        .trim_end()
+        .to_owned()
+}

@@ -1,0 +1,360 @@
+//! Studies of forces, from the text of a file to the rows of a table.
+#![allow(
+    clippy::disallowed_methods,
+    reason = "numbers found by hand beside ours, not reproducible ones"
+)]
+
+use kempe_model::{Diagnostic, Model};
+use kempe_study::{Figure, Silent, StudyResult, encode, run};
+
+/// A crank-rocker of steel bars, upright, with a spring to the frame.
+const FOUR_BAR: &str = r#"
+units = { length = "mm", angle = "deg" }
+gravity = "9.81 m/s^2"
+[links]
+frame   = { A = [0, 0], D = [60, 0], S = [-30, 40] }
+crank   = { A-B = 20, mass = "0.2 kg", inertia = "8 kg mm^2", center = "centroid" }
+coupler = { B-C = 50, P = [25, 10], mass = "0.5 kg", inertia = "110 kg mm^2", center = "P" }
+rocker  = { D-C = 40, mass = "0.4 kg", inertia = "60 kg mm^2", center = [15, 3] }
+[drives]
+motor = { turns = "crank", from = 0, to = 360, speed = "20 rad/s" }
+[assembly]
+C = "left of B -> D"
+[springs]
+back = { between = "S-P", stiffness = "0.4 N/mm", free = "30 mm" }
+[measures]
+swing  = "angle(rocker)"
+effort = "torque(motor)"
+gap    = "power(motor) - rate(kinetic_energy + potential_energy)"
+heavy  = "max(reaction(B))"
+"#;
+
+fn model(text: &str) -> Model {
+    match Model::from_toml(text, "test", &mut |_| Err("no files".into())) {
+        Ok(checked) => checked.model,
+        Err(found) => panic!("{}", told(&found, text)),
+    }
+}
+
+fn told(found: &[Diagnostic], text: &str) -> String {
+    let lines = found.iter().map(|d| d.render_plain("test.toml", text));
+    lines.collect()
+}
+
+fn ran(text: &str) -> StudyResult {
+    let model = model(text);
+    match run(&model, &model.studies[0], &mut Silent) {
+        Ok(result) => result,
+        Err(found) => panic!("{}", told(&found, text)),
+    }
+}
+
+fn column(result: &StudyResult, name: &str) -> Vec<f64> {
+    match result.table.column(name) {
+        Some(column) => column.values.clone(),
+        None => panic!(
+            "no column {name} among {:?}",
+            result
+                .table
+                .columns
+                .iter()
+                .map(|c| c.head())
+                .collect::<Vec<_>>()
+        ),
+    }
+}
+
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |a, b| a.max(b.abs()))
+}
+
+#[test]
+fn without_columns_everything_that_joints_and_drives_carry_is_there() {
+    let result = ran(&format!(
+        "{FOUR_BAR}[studies.loads]\nkind = \"forces\"\nstep = 2\n"
+    ));
+    for name in [
+        "effort",
+        "torque(motor)",
+        "power(motor)",
+        "reaction(A, crank)",
+        "reaction_x(B, coupler)",
+        "reaction_y(C, rocker)",
+        "reaction_angle(D, rocker)",
+        "shaking_force",
+        "shaking_moment",
+    ] {
+        assert!(
+            column(&result, name).iter().all(|v| v.is_finite()),
+            "{name}"
+        );
+    }
+    let head = |name: &str| result.table.column(name).map(|c| c.head());
+    assert_eq!(head("kinetic_energy"), Some("kinetic_energy [J]".into()));
+    assert_eq!(head("torque(motor)"), Some("torque(motor) [N m]".into()));
+    // Both routes, and the power of the motor against what the energies gain.
+    assert!(
+        result
+            .table
+            .worst_route_difference()
+            .is_some_and(|(_, d)| d < 1e-12)
+    );
+    let gap = largest(&column(&result, "gap"));
+    assert!(
+        gap < 1e-11 * largest(&column(&result, "power(motor)")),
+        "{gap}"
+    );
+    // Size and direction are those of the components.
+    let polar = |name: &str| {
+        let size = column(&result, &format!("reaction({name})"));
+        let angle = column(&result, &format!("reaction_angle({name})"));
+        let x = column(&result, &format!("reaction_x({name})"));
+        let y = column(&result, &format!("reaction_y({name})"));
+        for (((r, a), x), y) in size.iter().zip(&angle).zip(&x).zip(&y) {
+            let (sin, cos) = a.to_radians().sin_cos();
+            assert!((r * cos - x).abs() < 1e-12 * r && (r * sin - y).abs() < 1e-12 * r);
+        }
+    };
+    polar("B, coupler");
+    polar("D, rocker");
+    // Largest over the motion, between rows: no less than in any row, and hardly more.
+    let rows = largest(&column(&result, "reaction(B, coupler)"));
+    let heavy = result
+        .scalars
+        .iter()
+        .find(|s| s.name == "heavy")
+        .map_or(f64::NAN, |s| s.value);
+    assert!(heavy >= rows && heavy < 1.001 * rows, "{heavy} {rows}");
+    let csv = encode::csv(&result.table);
+    let head = csv.lines().next().unwrap_or("");
+    assert!(
+        head.ends_with("closure [1],smallest_singular_value [1],route_difference [1],equilibrium_residual [1],condition [1],note"),
+        "{head}"
+    );
+    assert!(result.warnings.is_empty(), "{:?}", result.warnings);
+}
+
+/// What acts on every body of every row adds up to `m a`: arrows, weights and springs against the table's accelerations.
+#[test]
+fn arrows_are_in_equilibrium_with_the_motion() {
+    let text = FOUR_BAR.replace(
+        "[measures]",
+        "[measures]\nax = \"rate(x(P), 2)\"\nay = \"rate(y(P), 2)\"",
+    );
+    let text = format!("{text}[studies.loads]\nkind = \"forces\"\nrows = 7\n");
+    let model = model(&text);
+    let result = ran(&text);
+    let coupler = model
+        .links
+        .iter()
+        .position(|l| l.name == "coupler")
+        .unwrap_or(0);
+    let (ax, ay) = (
+        result.table.column("ax").unwrap().si(),
+        result.table.column("ay").unwrap().si(),
+    );
+    for (row, frame) in result.frames.iter().enumerate() {
+        let mut sum = [0.0, 0.0];
+        let mut size = 0.0_f64;
+        for arrow in &frame.arrows {
+            // The pin at C is told on the rocker, its later link: the coupler feels the opposite.
+            let sign = match arrow.name.as_str() {
+                "C" => -1.0,
+                _ if arrow.link.index() == coupler => 1.0,
+                _ => continue,
+            };
+            size = size.max(arrow.force[0].hypot(arrow.force[1]));
+            sum = [
+                sum[0] + sign * arrow.force[0],
+                sum[1] + sign * arrow.force[1],
+            ];
+        }
+        let rest = [sum[0] - 0.5 * ax[row], sum[1] - 0.5 * ay[row]];
+        assert!(
+            rest[0].hypot(rest[1]) < 1e-12 * size,
+            "row {row}: {rest:?} of {size}"
+        );
+    }
+}
+
+#[test]
+fn a_motion_leaves_out_what_needs_forces() {
+    let result = ran(FOUR_BAR);
+    let heads: Vec<String> = result
+        .table
+        .columns
+        .iter()
+        .map(|c| c.name.clone())
+        .collect();
+    assert_eq!(heads, ["time", "motor", "swing"]);
+    assert!(result.scalars.is_empty() && result.table.forces.is_none());
+}
+
+#[test]
+fn pictures_hold_several_curves_and_hodographs() {
+    let plots = "plot = [[\"kinetic_energy\", \"potential_energy\"], \"hodograph(B)\", \"path(P)\", \"effort\"]";
+    let result = ran(&format!(
+        "{FOUR_BAR}[studies.loads]\nkind = \"forces\"\nrows = 5\ncolumns = \"effort\"\n{plots}\n"
+    ));
+    assert_eq!(result.figures.len(), 4);
+    assert!(
+        matches!(&result.figures[0], Figure::Curves(both) if both.len() == 2 && both[1].values.len() == 5)
+    );
+    let Figure::Hodograph(name, [x, y]) = &result.figures[1] else {
+        panic!("{:?}", result.figures[1]);
+    };
+    assert_eq!(
+        (name.as_str(), x.values.len(), y.values.len()),
+        ("hodograph(B)", 5, 5)
+    );
+    assert!(matches!(&result.figures[3], Figure::Curves(one) if one[0].name == "effort"));
+    assert_eq!(result.table.columns.len(), 3);
+}
+
+const LIFT: &str = r#"
+[links]
+frame = { A = [0, 0], F = [0.5, -0.4] }
+boom  = { A-T = 2, B = [0.8, 0], mass = "200 kg", inertia = "70 kg m^2", center = "centroid" }
+[drives]
+lift = { cylinder = "F-B", from = "0.45 m", to = "0.95 m", speed = "20 mm/s" }
+[assembly]
+T = { near = [2, 0] }
+[loads]
+hook = { force = [0, "-26 kN"], at = "T" }
+[cylinders]
+lift = { bore = "80 mm", rod = "50 mm", supply = "160 bar" }
+[studies.loads]
+kind = "forces"
+"#;
+
+#[test]
+fn a_cylinder_that_is_too_weak_is_told_once_with_the_worst_place() {
+    let result = ran(LIFT);
+    let weak: Vec<_> = result
+        .warnings
+        .iter()
+        .filter(|d| d.code == "cylinder-too-weak")
+        .collect();
+    assert_eq!(weak.len(), 1, "{:?}", result.warnings);
+    let force = column(&result, "force(lift)");
+    let capacity = column(&result, "capacity(lift)");
+    let pressure = column(&result, "pressure(lift)");
+    let worst = (0..force.len())
+        .max_by(|a, b| pressure[*a].total_cmp(&pressure[*b]))
+        .unwrap_or(0);
+    let at = column(&result, "lift")[worst];
+    assert!(
+        weak[0].message.contains("lift needs") && weak[0].message.contains("has 160"),
+        "{}",
+        weak[0].message
+    );
+    assert!(
+        weak[0].message.contains(&format!("lift = {at:.8}")),
+        "{} {at}",
+        weak[0].message
+    );
+    let rows = force.iter().zip(&capacity).filter(|(f, c)| f > c).count();
+    assert!(
+        weak[0].notes[0].contains(&format!("in {rows} of")),
+        "{:?}",
+        weak[0].notes
+    );
+    // A boom that hardly moves: moments about its pivot.
+    for (force, expected) in force.iter().zip(moments_about_the_pivot()) {
+        assert!(
+            (force - expected).abs() < 2e-3 * expected.abs(),
+            "{force} {expected}"
+        );
+    }
+}
+
+/// The boom's cylinder force at rest by hand, row by row.
+fn moments_about_the_pivot() -> Vec<f64> {
+    let (fx, fy, ab) = (0.5_f64, -0.4_f64, 0.8_f64);
+    let af = fx.hypot(fy);
+    let foot = fy.atan2(fx);
+    (0..=180)
+        .map(|k| {
+            let length = 0.45 + 0.5 * f64::from(k) / 180.0;
+            let at_a = ((af * af + ab * ab - length * length) / (2.0 * af * ab)).acos();
+            let boom = foot + at_a;
+            // Lever of the cylinder's line about A.
+            let lever = af * ab * at_a.sin() / length;
+            // The centroid of A, T and B.
+            let center = (2.0 + 0.8) / 3.0;
+            (26e3 * 2.0 + 200.0 * 9.81 * center) * boom.cos() / lever
+        })
+        .collect()
+}
+
+#[test]
+fn loads_that_equilibrium_does_not_determine_are_named() {
+    let text = r#"
+[links]
+frame = { A = [0, 0], D = [2, 0], G = [1, 0] }
+left  = { A-B = 0.5 }
+bar   = { B = [0, 0], C = [2, 0], H = [1, 0], mass = "10 kg", inertia = "3 kg m^2", center = "H" }
+right = { D-C = 0.5 }
+mid   = { G-H = 0.5 }
+[drives]
+motor = { turns = "left", from = "20 deg", to = "160 deg", speed = "1 rad/s" }
+[assembly]
+C = { near = [2.4, 0.2] }
+[studies.loads]
+kind = "forces"
+"#;
+    let result = ran(text);
+    let loose: Vec<_> = result
+        .warnings
+        .iter()
+        .filter(|d| d.code == "reactions-not-unique")
+        .collect();
+    assert_eq!(loose.len(), 1, "{:?}", result.warnings);
+    assert!(
+        loose[0].message.contains("overconstrained") && loose[0].message.contains('H'),
+        "{}",
+        loose[0].message
+    );
+    // The torque is unique all the same.
+    assert!(
+        result
+            .table
+            .worst_route_difference()
+            .is_some_and(|(_, d)| d < 1e-10)
+    );
+}
+
+#[test]
+fn at_a_change_point_the_torque_is_finite_and_the_rows_say_why_joints_are_not() {
+    let path = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../examples/seeds/door-lock.toml"
+    );
+    let text = std::fs::read_to_string(path).expect("the lock");
+    let text = text.replace(
+        "kind = \"forces\"\nstep = 1",
+        "kind = \"forces\"\nstep = 167.5122065166411",
+    );
+    let model = model(&text);
+    let study = model
+        .studies
+        .iter()
+        .find(|s| s.name == "ideal")
+        .expect("forces");
+    let result = run(&model, study, &mut Silent).expect("rows");
+    assert!(
+        column(&result, "torque(lock)")
+            .iter()
+            .all(|v| v.is_finite())
+    );
+    let first = result.table.notes[1].as_deref().unwrap_or("");
+    assert!(first.contains("singular"), "{first}");
+    assert!(
+        result
+            .warnings
+            .iter()
+            .any(|d| d.code == "singular-pose" || d.code == "nearly-singular"),
+        "{:?}",
+        result.warnings
+    );
+}
