@@ -1,5 +1,7 @@
 //! Time per position of the general plan, beside kernels written by hand for one mechanism with the same formula, in the
-//! same run: `cargo bench -p kempe-kinematics` (with `-- closed-forms` not the Newton groups). The ratios count; the nanoseconds depend on the machine.
+//! same run: `cargo bench -p kempe-kinematics` (with `-- closed-forms` not the Newton groups). The ratios count; the
+//! nanoseconds depend on the machine. A four-bar and an eight-bar: one design over a sweep, pose by pose and in lanes,
+//! with and without rates; many designs in lanes.
 //!
 //! Every measurement runs over a table of inputs into a table of outputs (no result feeds the next input), is repeated
 //! in turn with the one that it is compared with, and the fastest repeat counts. Before anything is timed, the plan and

@@ -1,4 +1,4 @@
-//! The class II groups with sliders, slots and cylinders: where a point meets two loci, and which way a body then points.
+//! The class II groups with sliders, slots and cylinders: where two loci meet, and which way a body then points.
 
 use kempe_number::Number;
 

@@ -100,6 +100,7 @@ impl Places {
         }
         it
     }
+
     /// Runs of places on one branch, not too long to be solved together.
     fn runs<'b>(&'b self, batch: &'b Batch<'_>) -> Vec<Vec<Place<'b>>> {
         let drives = batch.motion.mechanism.model.drives.len();
