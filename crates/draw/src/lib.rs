@@ -17,7 +17,7 @@
 //!     traces: vec![],
 //!     drives: vec![],
 //! };
-//! let pose = Frame { points: vec![[0.0, 0.0], [0.0, 0.05]], links: vec![[0.0; 3], [0.0; 3]], label: String::new() };
+//! let pose = Frame { points: vec![[0.0, 0.0], [0.0, 0.05]], links: vec![[0.0; 3], [0.0; 3]], ..Frame::default() };
 //! let poses = [pose];
 //! let stage = Stage::new(&view, &poses, DrawOptions::default());
 //! let picture = svg::document(&stage.scene(0), Theme::Light);
@@ -29,6 +29,7 @@ pub mod dxf;
 mod fit;
 mod furniture;
 mod hull;
+mod loads;
 pub mod number_format;
 pub mod plot;
 #[cfg(feature = "raster")]
@@ -45,6 +46,7 @@ mod trace;
 mod view;
 
 pub use context::Anchor;
+pub use loads::{LoadRole, LoadView};
 pub use stage::{DrawOptions, Stage};
 pub use tokens::Theme;
 pub use view::{

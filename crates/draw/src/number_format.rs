@@ -49,6 +49,38 @@ pub fn decade(value: f64) -> i32 {
         .unwrap_or(0)
 }
 
+/// `value` in a unit with the SI prefix that leaves one to three digits before the point: `2.5 kN`, `20 mN m`. Beyond
+/// the prefixes, with an exponent.
+pub fn with_prefix(value: f64, unit: &str, digits: usize) -> String {
+    let prefixes = [
+        (-9, "n"),
+        (-6, "µ"),
+        (-3, "m"),
+        (0, ""),
+        (3, "k"),
+        (6, "M"),
+        (9, "G"),
+        (12, "T"),
+    ];
+    // rounding may lead into the next decade
+    let shown: f64 = format!("{value:.*e}", digits.saturating_sub(1))
+        .parse()
+        .unwrap_or(value);
+    let thousands = 3 * decade(shown).div_euclid(3);
+    match prefixes.iter().find(|(power, _)| *power == thousands) {
+        Some((power, prefix)) => {
+            let scaled = format!("{shown:e}");
+            let (mantissa, exponent) = scaled.split_once('e').unwrap_or((&scaled, "0"));
+            let exponent: i32 = exponent.parse().unwrap_or(0);
+            let text: f64 = format!("{mantissa}e{}", exponent - power)
+                .parse()
+                .unwrap_or(shown);
+            format!("{} {prefix}{unit}", significant(text, digits))
+        }
+        None => format!("{} {unit}", significant(shown, digits)),
+    }
+}
+
 /// `10^power`, correctly rounded.
 pub fn power_of_ten(power: i32) -> f64 {
     format!("1e{power}").parse().unwrap_or(f64::INFINITY)
@@ -89,5 +121,11 @@ mod tests {
         assert_eq!(significant(f64::INFINITY, 4), "n/a");
         assert_eq!((decade(999.0), decade(1e-3), decade(0.0)), (2, -3, 0));
         assert_eq!(power_of_ten(-7), 1e-7);
+        assert_eq!(with_prefix(500.0, "N", 3), "500 N");
+        assert_eq!(with_prefix(2500.0, "N", 3), "2.5 kN");
+        assert_eq!(with_prefix(0.02, "N m", 3), "20 mN m");
+        assert_eq!(with_prefix(999.96, "N", 3), "1 kN");
+        assert_eq!(with_prefix(1e20, "N", 3), "1e20 N");
+        assert_eq!(with_prefix(0.0, "N", 3), "0 N");
     }
 }

@@ -5,6 +5,7 @@ use kempe_number::math::sin_cos;
 use crate::context::{Anchor, Context, link_angle, point, reference_frame};
 use crate::fit::{Bounds, Fit, Margins};
 use crate::furniture;
+use crate::loads::LoadSheet;
 use crate::roles::Roles;
 use crate::scene::{Group, Layer, Point, Scene};
 use crate::symbols::{self, Part};
@@ -57,6 +58,7 @@ pub struct Stage<'a> {
     pub(crate) options: DrawOptions,
     pub(crate) parts: Vec<Part>,
     pub(crate) traces: Vec<TracePath>,
+    pub(crate) loads: Option<LoadSheet>,
 }
 
 /// Room around the mechanism for the paper-sized symbols, mm.
@@ -99,21 +101,26 @@ impl<'a> Stage<'a> {
         } else {
             0.0
         };
+        let sheet = [options.width, options.max_height];
+        let mut loads = LoadSheet::new(view, frames, sheet, options.labels);
+        let legend = loads.as_ref().map_or(0.0, |l| l.legend.height());
         let margins = Margins {
             sides: [
                 SYMBOL_ROOM,
                 SYMBOL_ROOM,
                 SYMBOL_ROOM + top,
-                SYMBOL_ROOM + bottom,
+                SYMBOL_ROOM + bottom + legend,
             ],
         };
-        let fit = Fit::new(
-            bounds,
-            options.width,
-            [LEAST_HEIGHT, options.max_height],
-            margins,
-            view.length_unit.size(),
-        );
+        let fitted = |bounds| {
+            let heights = [LEAST_HEIGHT + legend, options.max_height];
+            let unit = view.length_unit.size();
+            Fit::new(bounds, options.width, heights, margins, unit)
+        };
+        let mut fit = fitted(bounds);
+        if let (Some(loads), None) = (&loads, options.view_box) {
+            fit = loads.fit(frames, bounds, fit, fitted);
+        }
         let context = Context {
             view,
             frames,
@@ -122,6 +129,9 @@ impl<'a> Stage<'a> {
             reference: reference_frame(view, frames),
         };
         let parts = symbols::parts(&context, options.labels);
+        if let Some(loads) = &mut loads {
+            loads.place_labels(&context, &parts);
+        }
         let traces = if options.traces {
             TracePath::all(&context)
         } else {
@@ -132,6 +142,7 @@ impl<'a> Stage<'a> {
             options,
             parts,
             traces,
+            loads,
         }
     }
 
@@ -169,6 +180,11 @@ impl<'a> Stage<'a> {
             groups.extend(self.pose(frame));
         }
         groups.extend(furniture::groups(self, frame));
+        if let Some(loads) = &self.loads {
+            groups.extend(loads.groups(&self.context, index));
+            let furniture = self.options.scale_bar || self.options.caption;
+            groups.push(loads.legend.group(if furniture { 9.5 } else { 2.0 }));
+        }
         groups.sort_by_key(|group| group.layer);
         let [width, height] = self.size();
         let mut title = self.context.view.title.clone();

@@ -1,6 +1,8 @@
 //! Colour tokens: the one place where colours are written. Okabe-Ito for links, so that they stay apart for
 //! colour-blind readers; light and dark values for every token.
 
+use crate::loads::LoadRole;
+
 /// A colour by its meaning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Token {
@@ -22,6 +24,8 @@ pub enum Token {
     Series(usize),
     /// What is moved from outside.
     Drive,
+    /// A force or a moment by what it comes from.
+    Load(LoadRole),
     /// Something wrong: a gap, a row not reached.
     Error,
     /// Something to look at: a dead point, a change point.
@@ -44,6 +48,16 @@ pub enum Theme {
 
 const SERIES_LIGHT: [u32; 6] = [0x0072B2, 0xE69F00, 0x009E73, 0xCC79A7, 0x56B4E9, 0xD55E00];
 const SERIES_DARK: [u32; 6] = [0x4BA3E3, 0xF0B429, 0x2FC49A, 0xE29AC4, 0x8CCDF5, 0xF07B3A];
+
+/// Light and dark, in the order of [`LoadRole::ALL`].
+const LOADS: [(u32, u32); 6] = [
+    (0xB3202A, 0xFF8A8A),
+    (0x1F55B5, 0x86B4FF),
+    (0x6B4E16, 0xDDBB74),
+    (0xC2410C, 0xFF9A5C),
+    (0x17703A, 0x62D494),
+    (0x7B3FA0, 0xD5A8F2),
+];
 
 const PLAIN: [Token; 11] = [
     Token::Background,
@@ -72,6 +86,7 @@ impl Token {
             Token::Pin => (0xFFFFFF, 0x12161B),
             Token::Series(index) => (SERIES_LIGHT[index % 6], SERIES_DARK[index % 6]),
             Token::Drive => (0xC2410C, 0xFF9A5C),
+            Token::Load(role) => LOADS[role.index()],
             Token::Error => (0xC92A2A, 0xFF8787),
             Token::Warning => (0x9A5B00, 0xF2C14E),
             Token::Accent => (0x1F6FEB, 0x6CA8FF),
@@ -91,6 +106,7 @@ impl Token {
             Token::Ground => "ground".into(),
             Token::Pin => "pin".into(),
             Token::Drive => "drive".into(),
+            Token::Load(role) => format!("load-{}", role.name()),
             Token::Error => "error".into(),
             Token::Warning => "warning".into(),
             Token::Accent => "accent".into(),
@@ -109,6 +125,7 @@ impl Token {
 /// All tokens as CSS custom properties, for `:root` of a page: light, or dark.
 pub fn css(dark: bool) -> String {
     let all = PLAIN.into_iter().chain((0..6).map(Token::Series));
+    let all = all.chain(LoadRole::ALL.into_iter().map(Token::Load));
     all.map(|token| format!("--{}:#{:06x};", token.name(), token.rgb(dark)))
         .collect()
 }
@@ -133,14 +150,16 @@ mod tests {
     fn text_tokens_have_contrast_4_5_on_both_papers() {
         for dark in [false, true] {
             for paper in [Token::Background, Token::Panel] {
-                for text in [
+                let plain = [
                     Token::Ink,
                     Token::Muted,
                     Token::Drive,
                     Token::Error,
                     Token::Warning,
                     Token::Ground,
-                ] {
+                ];
+                let loads = LoadRole::ALL.map(Token::Load);
+                for text in plain.into_iter().chain(loads) {
                     let (a, b) = (luminance(text.rgb(dark)), luminance(paper.rgb(dark)));
                     let ratio = (a.max(b) + 0.05) / (a.min(b) + 0.05);
                     assert!(ratio >= 4.5, "{text:?} on {paper:?}: {ratio}");

@@ -1,5 +1,7 @@
 //! What to draw: a mechanism and its poses as plain data. SI units: lengths m, angles rad counter-clockwise from +x.
 
+use crate::loads::LoadView;
+
 /// A unit in which lengths are shown.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LengthUnit {
@@ -203,4 +205,14 @@ pub struct Frame {
     pub links: Vec<[f64; 3]>,
     /// What distinguishes the pose, such as `motor = 30 deg`.
     pub label: String,
+    /// Forces and moments to draw, each with the same role and label from pose to pose; none when empty.
+    pub loads: Vec<LoadView>,
+}
+
+impl Frame {
+    /// The same pose with forces and moments.
+    pub fn with_loads(mut self, loads: Vec<LoadView>) -> Frame {
+        self.loads = loads;
+        self
+    }
 }

@@ -63,7 +63,7 @@ fn a_plot_looks_as_it_did() {
             label: "dead point".into(),
             kind: MarkerKind::DeadPoint,
         }],
-        equal_aspect: false,
+        ..PlotSpec::default()
     };
     insta::assert_snapshot!(
         "plot",

@@ -5,8 +5,8 @@ mod mechanisms;
 #[path = "../examples/showcase/reports.rs"]
 mod reports;
 
-use kempe_draw::plot::{Axis, Curve, PlotSpec};
-use kempe_draw::report::{Block, MOST_ROWS, Report};
+use kempe_draw::plot::{Axis, Curve, Hodograph, Limit, PlotSpec};
+use kempe_draw::report::{Block, Check, MOST_ROWS, Report};
 use kempe_draw::*;
 use proptest::prelude::*;
 
@@ -31,6 +31,11 @@ fn evil_report() -> Report {
             .iter_mut()
             .for_each(|e| (e.label, e.place) = (text(), text()));
         motion.evidence.facts.push((text(), text()));
+        motion.evidence.checks = vec![Check::new(text(), text(), text(), text())];
+        for frame in &mut motion.frames {
+            let push = LoadView::force(LoadRole::Friction, text(), [0.0; 2], [1.0, 2.0]);
+            frame.loads = vec![push];
+        }
         for plot in &mut motion.plots {
             (plot.title, plot.x.label, plot.y.unit) = (text(), text(), text());
             plot.curves.iter_mut().for_each(|c| c.label = text());
@@ -151,6 +156,21 @@ fn drive() -> impl Strategy<Value = DriveView> {
     })
 }
 
+fn load() -> impl Strategy<Value = LoadView> {
+    let role = prop::sample::select(LoadRole::ALL.to_vec());
+    let label = prop::sample::select(vec![String::new(), "a".into(), EVIL.into()]);
+    let plane = || [number(), number()];
+    (plane(), plane(), number(), role, label).prop_map(|(at, vector, moment, role, label)| {
+        LoadView {
+            at,
+            vector,
+            moment,
+            role,
+            label,
+        }
+    })
+}
+
 prop_compose! {
     fn mechanism()(
         links in prop::collection::vec(prop::collection::vec(0..6_usize, 0..5), 0..5),
@@ -158,7 +178,8 @@ prop_compose! {
         drives in prop::collection::vec(drive(), 0..3),
         points in 0..6_usize,
         frames in prop::collection::vec(
-            (prop::collection::vec([number(), number()], 0..7), prop::collection::vec([number(), number(), number()], 0..6)), 0..5),
+            (prop::collection::vec([number(), number()], 0..7), prop::collection::vec([number(), number(), number()], 0..6),
+             prop::collection::vec(load(), 0..4)), 0..5),
         size in prop::sample::select(vec![1e-6, 1.0, 1e6]),
         factor in number(),
     ) -> (MechanismView, Vec<Frame>) {
@@ -171,8 +192,8 @@ prop_compose! {
             traces: vec![TraceView { label: "t".into(), point: 2 }],
             drives,
         };
-        let frames = frames.into_iter().map(|(points, links)| Frame {
-            points: points.into_iter().map(|p| p.map(|v| v * size)).collect(), links, label: "f".into() }).collect();
+        let frames = frames.into_iter().map(|(points, links, loads)| Frame {
+            points: points.into_iter().map(|p| p.map(|v| v * size)).collect(), links, label: "f".into(), loads }).collect();
         (view, frames)
     }
 }
@@ -212,11 +233,14 @@ proptest! {
     #[test]
     fn any_plot_is_drawn(
         x in prop::collection::vec(number(), 0..20), y in prop::collection::vec(number(), 0..20),
-        logs in any::<[bool; 2]>(), equal_aspect in any::<bool>(), limits in prop::option::of([number(), number()]),
+        logs in any::<[bool; 2]>(), equal_aspect in any::<bool>(), hodograph in any::<bool>(), limit in number(), limits in prop::option::of([number(), number()]),
     ) {
         let axis = |log| Axis { log, limits, ..Axis::new("a", "deg") };
         let curve = Curve { label: "c".into(), x, y, dashed: true };
+        let along = Limit::along("l", curve.y.clone(), curve.x.clone());
+        let hodograph = hodograph.then(|| Hodograph { drive: curve.y.clone(), unit: "deg".into() });
         let plot = PlotSpec {
+            limits: vec![Limit::above("a", limit), Limit::below("b", -limit), along], hodograph,
             x: axis(logs[0]), y: axis(logs[1]), curves: vec![curve.clone(), curve], equal_aspect, ..PlotSpec::default()
         };
         all_numbers_are_numbers(&svg::document(&plot.draw(100.0, 60.0).scene, Theme::Dark));
@@ -246,7 +270,7 @@ fn a_hundred_thousand_links_are_drawn_in_seconds() {
     let frames = [Frame {
         points,
         links: vec![[0.0; 3]; n],
-        label: String::new(),
+        ..Frame::default()
     }];
     let start = std::time::Instant::now();
     let stage = Stage::new(&view, &frames, DrawOptions::default());

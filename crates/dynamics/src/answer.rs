@@ -4,6 +4,7 @@ use kempe_model::{DriveId, ForceMeasure, JointRef};
 
 use crate::cylinder::Cylinder;
 use crate::energy;
+use crate::equilibrium::STILL;
 use crate::forces::Forces;
 use crate::instant::Instant;
 use crate::number::ForceNumber;
@@ -72,6 +73,12 @@ impl<T: ForceNumber> Forces<'_, T> {
 
     /// The sense in which a drive moves: -1, 0 or 1.
     pub fn drive_direction(&self, at: &Instant<T>, drive: DriveId) -> f64 {
-        sign(at.drive_speeds[drive.index()].value())
+        let speed = at.drive_speeds[drive.index()].value();
+        let usual = self.equilibrium.pace.speeds.get(drive.index());
+        if speed.abs() <= STILL * usual.copied().unwrap_or(0.0) {
+            0.0
+        } else {
+            sign(speed)
+        }
     }
 }

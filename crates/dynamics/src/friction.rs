@@ -152,25 +152,35 @@ impl<T: Number> Friction<T> {
     /// `direction`; what it does is the opposite of its sign. Viscous resistance included.
     #[inline]
     pub fn resistance(&self, speed: T, direction: f64, load: T) -> T {
-        let sliding = speed.abs() * self.radius;
-        self.law.coefficient(sliding) * self.radius * load * direction + self.law.viscous * speed
+        self.per_load(speed) * load * direction + self.law.viscous * speed
+    }
+
+    /// Resistance over load. The load of a line is its normal force; that of a pin is its whole force, friction included,
+    /// which passes the pin's centre on the friction circle: at `r sin(atan(mu))`.
+    fn per_load(&self, speed: T) -> T {
+        let coefficient = self.law.coefficient(speed.abs() * self.radius);
+        match self.place {
+            Place::Line => coefficient,
+            Place::Pin => coefficient * self.radius / (coefficient.square() + 1.0).sqrt(),
+        }
     }
 
     /// Derivative of the resistance to the load.
     #[inline]
     pub(crate) fn slope(&self, speed: f64, direction: f64) -> f64 {
-        let sliding = T::from_f64(speed.abs()) * self.radius;
-        (self.law.coefficient(sliding) * self.radius).value() * direction
+        self.per_load(T::from_f64(speed)).value() * direction
     }
 }
 
 /// The sense in which a joint slides: that of its speed, or at rest that in which it starts; 0 when it stays at rest.
-/// Speeds below `still` count as rest.
-pub fn direction(speed: f64, acceleration: f64, still: f64) -> f64 {
-    if speed.abs() > still {
+/// Speeds and accelerations that are no larger than those of `still` count as none.
+pub fn direction(speed: f64, acceleration: f64, still: [f64; 2]) -> f64 {
+    if speed.abs() > still[0] {
         sign(speed)
-    } else {
+    } else if acceleration.abs() > still[1] {
         sign(acceleration)
+    } else {
+        0.0
     }
 }
 

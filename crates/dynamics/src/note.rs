@@ -183,7 +183,11 @@ impl ForceNote {
                 mechanism.body_name(*body)
             ),
             Self::MotorTooWeak { drive: d, lacks } => {
-                format!("the motor of {} lacks {lacks:.4e} N m", drive(d))
+                format!(
+                    "{} needs {} N m more than its motor gives",
+                    drive(d),
+                    short(*lacks)
+                )
             }
             Self::CylinderTooWeak {
                 drive: d,
@@ -208,6 +212,17 @@ impl ForceNote {
             Self::NoTime => "no forces without time".into(),
         }
     }
+}
+
+/// A number to four digits, in plain notation where that is readable.
+fn short(x: f64) -> String {
+    let size = x.abs();
+    if !(1e-3..1e6).contains(&size) {
+        return format!("{x:.3e}");
+    }
+    let whole = kempe_number::math::log10(size).floor() as i32;
+    let decimals = usize::try_from(3 - whole).unwrap_or(0);
+    format!("{x:.decimals$}")
 }
 
 /// What is to be told about the forces of an instant.

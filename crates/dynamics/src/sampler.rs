@@ -3,9 +3,9 @@
 use std::fmt;
 
 use kempe_kinematics::{Branch, Motion, Sample, Sampler, Unmeasurable};
-use kempe_model::{DriveId, Measure};
+use kempe_model::{DriveId, Measure, Model};
 
-use crate::equilibrium::FrictionOutcome;
+use crate::equilibrium::{FrictionOutcome, Pace};
 use crate::forces::Forces;
 use crate::instant::{Instant, Rates};
 use crate::note::{ForceNote, notes};
@@ -93,6 +93,7 @@ impl<'a> ForceSampler<'a> {
         for spring in &mut forces.acting.springs {
             spring.align(&forces.geometry, &start.near);
         }
+        forces.equilibrium.pace = pace(&mechanism.model);
         let sampler = Sampler::with_forces(motion, measures, Source::new(forces))
             .map_err(ForceError::Unmeasurable)?;
         Ok(Self { sampler })
@@ -167,6 +168,24 @@ impl<'a> ForceSampler<'a> {
             evidence,
             notes,
         }
+    }
+}
+
+/// Mean speeds of the drives over their laws.
+fn pace(model: &Model) -> Pace {
+    let parameters: Vec<f64> = model.parameter_values();
+    let durations = model.drives.iter().map(|d| d.law.duration(&parameters));
+    let longest = durations.fold(0.0, f64::max);
+    if !(longest > 0.0) {
+        return Pace::default();
+    }
+    let speed = |drive: &kempe_model::Drive| {
+        let (low, high) = drive.law.extent(&parameters);
+        (high - low) / longest
+    };
+    Pace {
+        speeds: model.drives.iter().map(speed).collect(),
+        frequency: 1.0 / longest,
     }
 }
 

@@ -331,7 +331,8 @@ motor = { turns = "arm", from = "0 deg", to = "-60 deg", speed = "1 rad/s" }
     close(
         "torque",
         rows[0].sample.values[0],
-        50.0 * 0.1 * c - 0.3 * 0.2 * 50.0,
+        // The load passes on the friction circle.
+        50.0 * 0.1 * c - 50.0 * 0.2 * 0.3 / 1.09_f64.sqrt(),
         1e-12,
     );
     assert!(
@@ -346,7 +347,7 @@ motor = { turns = "arm", from = "0 deg", to = "-60 deg", speed = "1 rad/s" }
     close(
         "torque",
         rows[0].sample.values[0],
-        50.0 * 0.1 * c - 0.6 * 0.2 * 50.0,
+        50.0 * 0.1 * c - 50.0 * 0.2 * 0.6 / 1.36_f64.sqrt(),
         1e-12,
     );
     assert!(

@@ -358,3 +358,62 @@ fn at_a_change_point_the_torque_is_finite_and_the_rows_say_why_joints_are_not() 
         result.warnings
     );
 }
+
+/// A law that comes to rest ends at rest, whatever rounding leaves of its speed: friction is not counted there.
+#[test]
+fn friction_is_not_counted_where_the_motion_comes_to_rest() {
+    let text = r#"
+[links]
+frame = { A = [0, 0], P = [3.2, -0.7] }
+body  = { A = [0, 0], Q = [3.6, 0.1], G = [2.1, 0.8], mass = "15000 kg", inertia = "1 kg m^2", center = "G" }
+[drives]
+lift = { cylinder = "P-Q", from = 0.9, to = 3.65, law = "3-4-5", in = "15 s" }
+[assembly]
+Q = "right of P -> A"
+[studies.t]
+kind = "forces"
+rows = 4
+columns = "force(lift)"
+"#;
+    let free = column(&ran(text), "force(lift)");
+    let rubbed = text.replace(
+        "[assembly]",
+        "[friction]\nall = { coefficient = 0.1, radius = \"50 mm\" }\n[assembly]",
+    );
+    let result = ran(&rubbed);
+    let rubbed = column(&result, "force(lift)");
+    for row in [0, 3] {
+        assert!(
+            (free[row] - rubbed[row]).abs() < 1e-9 * free[row].abs(),
+            "{free:?} {rubbed:?}"
+        );
+        let note = result.table.notes[row].as_deref().unwrap_or("");
+        assert!(note.contains("at rest"), "{note}");
+    }
+    assert!((free[1] - rubbed[1]).abs() > 1e-4 * free[1].abs());
+}
+
+/// A weight on a pivot whose pin rubs: the support's force passes on the friction circle, beside the centre.
+#[test]
+fn a_pin_rubs_on_the_friction_circle() {
+    let text = r#"
+[links]
+frame = { A = [0, 0] }
+body  = { A = [0, 0], G = [1, 0], mass = "100 kg", inertia = 0, center = "G" }
+[friction]
+A = { coefficient = 0.3, radius = "50 mm" }
+[drives]
+m = { turns = "body", from = "0 deg", to = "90 deg", speed = "1e-6 rad/s" }
+[studies.t]
+kind = "forces"
+rows = 2
+columns = "torque(m)"
+"#;
+    let torque = column(&ran(text), "torque(m)");
+    let circle = 0.05 * 0.3_f64.atan().sin();
+    assert!(
+        (torque[0] - 981.0 * (1.0 + circle)).abs() < 1e-6,
+        "{torque:?}"
+    );
+    assert!((torque[1] - 981.0 * circle).abs() < 1e-6, "{torque:?}");
+}

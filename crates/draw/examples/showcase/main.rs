@@ -1,5 +1,6 @@
 //! Draws a set of hand-made mechanisms in every format: `cargo run -p kempe-draw --example showcase -- OUT_DIR`.
 
+mod forces;
 mod mechanisms;
 mod reports;
 
@@ -14,7 +15,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         .unwrap_or_else(|| "out/showcase".into());
     let out = Path::new(&out);
     std::fs::create_dir_all(out)?;
-    for case in mechanisms::all() {
+    for case in mechanisms::all().into_iter().chain(forces::all()) {
         let pose = case.frames.len() / 8;
         let stage = Stage::new(&case.view, &case.frames, DrawOptions::default());
         let scene = stage.scene(pose);
@@ -43,7 +44,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             &animation::apng(&stage, &AnimationOptions::default())?,
         )?;
     }
-    let report = reports::report(&mechanisms::all());
+    let report = reports::report(&[forces::all(), mechanisms::all()].concat());
     std::fs::write(out.join("report.html"), report.to_html())?;
     for (number, plot) in report.motions[0].plots.iter().enumerate() {
         let scene = plot.draw(150.0, 90.0).scene;

@@ -9,6 +9,7 @@ use kempe_number::math::{atan2, hypot, sin_cos};
 pub type P = [f64; 2];
 
 /// A mechanism with its poses, and the drive's angle at each.
+#[derive(Clone)]
 pub struct Case {
     pub file: &'static str,
     pub view: MechanismView,
@@ -68,6 +69,7 @@ fn frame(label: String, points: &[P], links: &[(P, f64)]) -> Frame {
         points: points.iter().map(mm).collect(),
         links: poses,
         label,
+        ..Frame::default()
     }
 }
 

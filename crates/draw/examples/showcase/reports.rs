@@ -1,7 +1,8 @@
 //! A report over the hand-made mechanisms, with measures from differences of their poses.
 #![allow(dead_code)]
 
-use kempe_draw::plot::{Axis, Curve, Marker, MarkerKind, PlotSpec};
+use kempe_draw::LoadRole;
+use kempe_draw::plot::{Axis, Curve, Limit, Marker, MarkerKind, PlotSpec};
 use kempe_draw::report::*;
 use kempe_number::math::hypot;
 
@@ -56,7 +57,7 @@ pub fn motion(case: &Case) -> MotionReport {
             kind: MarkerKind::ChangePoint,
         },
     ];
-    let plots = vec![
+    let mut plots = vec![
         PlotSpec {
             title: format!("Angle of {last}"),
             x: drive_axis.clone(),
@@ -105,6 +106,9 @@ pub fn motion(case: &Case) -> MotionReport {
             ..PlotSpec::default()
         },
     ];
+    if case.frames.iter().any(|f| !f.loads.is_empty()) {
+        plots.splice(0..0, force_plots(case, &degrees));
+    }
     MotionReport {
         name: case.file.into(),
         summary: format!("{} over one turn of its motor.", case.view.title),
@@ -138,9 +142,52 @@ pub fn motion(case: &Case) -> MotionReport {
             singular_value: Some(0.08231),
             scaling: "lengths by the mechanism's size, angles in rad".into(),
             not_reached: vec![],
+            checks: vec![Check::new(
+                "Two routes to the reactions",
+                "3.1e-13 ≤ 1e-9",
+                "motor = 117.5 deg",
+                "Newton-Euler and virtual work agree, relative to the largest force",
+            )],
             facts: vec![("Mobility".into(), "1 by count, 1 by rank".into())],
         },
     }
+}
+
+/// The first reaction as a vector, and its size against a capacity.
+fn force_plots(case: &Case, degrees: &[f64]) -> Vec<PlotSpec> {
+    let reaction = |f: &kempe_draw::Frame| {
+        let load = f.loads.iter().find(|l| l.role == LoadRole::Reaction);
+        load.map_or([f64::NAN; 2], |l| l.vector)
+    };
+    let forces: Vec<[f64; 2]> = case.frames.iter().map(reaction).collect();
+    let along = |k: usize| -> Vec<f64> { forces.iter().map(|f| f[k]).collect() };
+    let size: Vec<f64> = forces.iter().map(|f| hypot(f[0], f[1])).collect();
+    let curve = |x: Vec<f64>, y: Vec<f64>| Curve {
+        x,
+        y,
+        ..Curve::default()
+    };
+    let vector = PlotSpec {
+        title: "Force on the coupler at B".into(),
+        x: Axis::new("along x", "N"),
+        y: Axis::new("along y", "N"),
+        curves: vec![curve(along(0), along(1))],
+        ..PlotSpec::default()
+    };
+    let capacity: Vec<f64> = degrees.iter().map(|d| 900.0 + 1.5 * d).collect();
+    let size = PlotSpec {
+        title: "Force at B against its capacity".into(),
+        x: Axis::new("motor", "deg"),
+        y: Axis::new("force", "N"),
+        curves: vec![curve(degrees.to_vec(), size)],
+        ..PlotSpec::default()
+    };
+    vec![
+        vector.as_hodograph(degrees.to_vec(), "deg"),
+        size.clone().with_limit(Limit::above("rated", 1100.0)),
+        size.with_limit(Limit::along("when warm", degrees.to_vec(), capacity))
+            .with_limit(Limit::below("least for contact", 500.0)),
+    ]
 }
 
 /// A report over some mechanisms; the second has a gap.

@@ -59,13 +59,16 @@ impl Writer<'_> {
 
     pub(super) fn group(&mut self, group: &Group) {
         self.layer = match group.layer {
-            Layer::Furniture | Layer::Caption | Layer::Curve(_) | Layer::TracePast => return,
+            Layer::Furniture | Layer::Caption | Layer::TracePast => return,
+            Layer::Curve(_) | Layer::Limit | Layer::Vector => return,
             Layer::Ghost => "0".into(),
             Layer::TraceRest => "TRACES".into(),
             Layer::Ground => "GROUND".into(),
             Layer::Joint | Layer::Body | Layer::Gear => "JOINTS".into(),
             Layer::Drive => "DRIVES".into(),
             Layer::Label => "LABELS".into(),
+            Layer::Load(role) | Layer::LoadLabel(role) => super::load_layer(role),
+            Layer::LoadLegend => super::LEGEND_LAYER.into(),
             Layer::Link(link) => self.link_layer(link),
         };
         for item in &group.items {

@@ -1,4 +1,5 @@
-//! A pose as DXF (AC1015, "R2000") for CAD: true scale in the mechanism's length unit, one layer per link.
+//! A pose as DXF (AC1015, "R2000") for CAD: true scale in the mechanism's length unit, one layer per link, and one
+//! per role of forces where there are some, with their legend.
 //!
 //! Entities: LINE between a link's points (exact), CIRCLE, ARC, LWPOLYLINE with bulges for outlines and symbols, TEXT.
 //! Symbols have the size that they have on paper.
@@ -8,12 +9,21 @@ mod tables;
 
 use std::fmt::Write as _;
 
+use crate::loads::LoadRole;
 use crate::scene::Point;
 use crate::stage::Stage;
 use crate::tokens::Token;
 
 /// Longest layer name.
 const LONGEST_NAME: usize = 60;
+
+/// The layer of what the arrows of forces mean.
+const LEGEND_LAYER: &str = "FORCES_LEGEND";
+
+/// The layer of the forces of a role.
+fn load_layer(role: LoadRole) -> String {
+    format!("FORCES_{}", role.name().to_uppercase())
+}
 
 /// The DXF file of a pose, as text. Poses that cannot be drawn give a file without entities.
 pub fn document(stage: &Stage, index: usize) -> String {
@@ -33,6 +43,11 @@ pub fn document(stage: &Stage, index: usize) -> String {
             writer.link_layer(link),
             crate::symbols::link_token(link).rgb(false),
         ));
+    }
+    if let Some(loads) = &stage.loads {
+        layers.push((LEGEND_LAYER.into(), Token::Ink.rgb(false)));
+        let layer = |role: &LoadRole| (load_layer(*role), Token::Load(*role).rgb(false));
+        layers.extend(loads.roles.iter().map(layer));
     }
     writer.header();
     writer.tables(&layers);

@@ -2,7 +2,7 @@
 
 use super::axis::{Scale, Ticks, power_text};
 use super::curve::curve_paths;
-use super::{Curve, MarkerKind, PlotPicture, PlotSpec};
+use super::{Curve, Limit, MarkerKind, PlotPicture, PlotSpec, hodograph};
 use crate::scene::{Align, Group, Item, Layer, Path, Scene, Style, Text};
 use crate::text::{shortened, width as text_width};
 use crate::tokens::Token;
@@ -36,15 +36,30 @@ pub(super) fn draw(plot: &PlotSpec, width: f64, height: f64) -> PlotPicture {
     if named.len() > 1 {
         top = legend(&named, width, top, height * 0.4, &mut captions);
     }
-    let ranges = [(&plot.x, 0.0), (&plot.y, 0.05)].map(|(axis, margin)| {
-        let values = plot.curves.iter().flat_map(|c| {
-            if std::ptr::eq(axis, &plot.x) {
-                &c.x
-            } else {
-                &c.y
-            }
-        });
-        let margin = if plot.equal_aspect { 0.05 } else { margin };
+    let (vectors, largest) = match plot.hodograph {
+        Some(_) => plot.vectors(),
+        None => ([Vec::new(), Vec::new()], None),
+    };
+    let ranges = [(&plot.x, 0.0, 0), (&plot.y, 0.05, 1)].map(|(axis, margin, k)| {
+        let values = plot
+            .curves
+            .iter()
+            .flat_map(|c| if k == 0 { &c.x } else { &c.y });
+        let limits = plot
+            .limits
+            .iter()
+            .filter(|_| k == 1)
+            .flat_map(Limit::values);
+        let values: Box<dyn Iterator<Item = &f64>> = match plot.hodograph {
+            Some(_) => Box::new(vectors[k].iter()),
+            None => Box::new(values.chain(limits)),
+        };
+        let margin = if plot.is_plane() { 0.05 } else { margin };
+        let margin = if plot.hodograph.is_some() {
+            0.12
+        } else {
+            margin
+        };
         let limits = axis
             .limits
             .filter(|[a, b]| a < b && b - a < 1e290 && (!axis.log || *a > 1e-290));
@@ -74,7 +89,7 @@ pub(super) fn draw(plot: &PlotSpec, width: f64, height: f64) -> PlotPicture {
         to: right,
         log: plot.x.log,
     };
-    if plot.equal_aspect && !x.log && !y.log {
+    if plot.is_plane() && !x.log && !y.log {
         equalize(&mut x, &mut y);
     }
     let x_ticks = Ticks::new(&x, ((right - left) / 17.0).clamp(2.0, 9.0), &plot.x.unit);
@@ -85,6 +100,13 @@ pub(super) fn draw(plot: &PlotSpec, width: f64, height: f64) -> PlotPicture {
         furniture(frame, &x, &y, &x_ticks, &y_ticks),
     )];
     groups.push(Group::new(Layer::Furniture, markers(plot, frame, &x)));
+    let shading = |limit: &Limit| limit.shading(&plot.curves, frame, &x, &y);
+    groups.extend(plot.limits.iter().map(shading));
+    let [cross, vector, tips] = match &plot.hodograph {
+        Some(hodograph) => hodograph::groups(plot, hodograph, largest, frame, &x, &y).map(Some),
+        None => [None, None, None],
+    };
+    groups.extend(cross);
     for (index, curve) in plot.curves.iter().enumerate() {
         let paths = curve_paths(curve, frame, &x, &y);
         let style = Style::stroke(Token::Series(index), 0.55);
@@ -98,6 +120,9 @@ pub(super) fn draw(plot: &PlotSpec, width: f64, height: f64) -> PlotPicture {
             vec![Item::Shape { paths, style }],
         ));
     }
+    let limit = |limit: &Limit| limit.group(&plot.curves, frame, &x, &y);
+    groups.extend(plot.limits.iter().map(limit));
+    groups.extend(vector.into_iter().chain(tips));
     let y_title = format!("{}{}", plot.y.title(), power_text(y_ticks.power));
     let x_title = format!("{}{}", plot.x.title(), power_text(x_ticks.power));
     let middle = [(left + right) / 2.0, (bottom + top) / 2.0];

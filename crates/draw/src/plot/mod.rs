@@ -3,8 +3,12 @@
 mod axis;
 mod curve;
 mod draw;
+mod hodograph;
+mod limit;
 
 pub use axis::Scale;
+pub use hodograph::Hodograph;
+pub use limit::{Beyond, Limit, LimitLine};
 
 use crate::scene::Scene;
 
@@ -94,6 +98,10 @@ pub struct PlotSpec {
     pub markers: Vec<Marker>,
     /// One unit is as long on both axes, for paths in the plane.
     pub equal_aspect: bool,
+    /// Lines that the curves should not cross.
+    pub limits: Vec<Limit>,
+    /// The curves are the tips of vectors from the origin; the aspect is equal then.
+    pub hodograph: Option<Hodograph>,
 }
 
 /// A plot laid out: the picture, and how values map to it.
@@ -108,6 +116,24 @@ pub struct PlotPicture {
 }
 
 impl PlotSpec {
+    /// The same with a line that the curves should not cross.
+    pub fn with_limit(mut self, limit: Limit) -> PlotSpec {
+        self.limits.push(limit);
+        self
+    }
+
+    /// The same as vectors from the origin over a drive's coordinate in its unit.
+    pub fn as_hodograph(mut self, drive: Vec<f64>, unit: impl Into<String>) -> PlotSpec {
+        let unit = unit.into();
+        self.hodograph = Some(Hodograph { drive, unit });
+        self
+    }
+
+    /// Whether it shows a plane rather than curves over an abscissa.
+    pub(crate) fn is_plane(&self) -> bool {
+        self.equal_aspect || self.hodograph.is_some()
+    }
+
     /// Draws the plot on a sheet of the given width and height, mm.
     pub fn draw(&self, width: f64, height: f64) -> PlotPicture {
         let side = |v: f64| {

@@ -118,6 +118,7 @@ pub(super) fn motion(
             ),
         ),
         ("traces", json::array(traces)),
+        ("loads", super::loads::loads(stage)),
         ("plots", json::array(pictures)),
         (
             "events",
@@ -268,6 +269,7 @@ fn plot(motion: &MotionReport, rows: &Rows, spec: &PlotSpec, picture: &PlotPictu
             "curves",
             json::array(spec.curves.iter().enumerate().map(curve)),
         ),
-        ("path", spec.equal_aspect.to_string()),
+        ("path", spec.is_plane().to_string()),
+        ("vector", spec.hodograph.is_some().to_string()),
     ])
 }

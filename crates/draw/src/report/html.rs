@@ -6,7 +6,8 @@ use crate::tokens;
 
 const TEMPLATE: &str = include_str!("template.html");
 const STYLE: &str = include_str!("style.css");
-const SCRIPTS: [&str; 3] = [
+const SCRIPTS: [&str; 4] = [
+    include_str!("loads.js"),
     include_str!("pose.js"),
     include_str!("plots.js"),
     include_str!("player.js"),

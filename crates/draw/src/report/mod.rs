@@ -4,6 +4,7 @@
 mod data;
 mod html;
 mod json;
+mod loads;
 mod motion;
 mod sections;
 
@@ -119,8 +120,40 @@ pub struct Evidence {
     pub scaling: String,
     /// Rows that were not reached.
     pub not_reached: Vec<NotReached>,
+    /// Other checks, each with its worst value over the rows.
+    pub checks: Vec<Check>,
     /// Anything else, as name and value.
     pub facts: Vec<(String, String)>,
+}
+
+/// A check that ran over all rows.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Check {
+    /// What was checked, such as `Two routes to the reactions`.
+    pub name: String,
+    /// The worst value, with its limit where it has one: `3e-13 ≤ 1e-9`.
+    pub worst: String,
+    /// Where it was found, such as `crank = 117.5 deg`; may be empty.
+    pub place: String,
+    /// What it says about the result.
+    pub meaning: String,
+}
+
+impl Check {
+    /// A check by name, worst value, place and meaning.
+    pub fn new(
+        name: impl Into<String>,
+        worst: impl Into<String>,
+        place: impl Into<String>,
+        meaning: impl Into<String>,
+    ) -> Check {
+        Check {
+            name: name.into(),
+            worst: worst.into(),
+            place: place.into(),
+            meaning: meaning.into(),
+        }
+    }
 }
 
 /// A chapter of findings.

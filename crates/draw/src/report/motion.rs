@@ -1,7 +1,7 @@
 //! A motion's part of the page: stage, controls, read-out, plots, evidence.
 
 use super::data::{self, Rows};
-use super::{MotionReport, sections};
+use super::{MotionReport, loads, sections};
 use crate::context::complete;
 use crate::number_format::{escape, significant};
 use crate::plot::PlotPicture;
@@ -46,7 +46,7 @@ pub(super) fn build(motion: &MotionReport, index: usize) -> Built {
         .map(|plot| {
             plot.draw(
                 PLOT[0],
-                if plot.equal_aspect {
+                if plot.is_plane() {
                     PATH_PLOT_HEIGHT
                 } else {
                     PLOT[1]
@@ -72,7 +72,7 @@ pub(super) fn build(motion: &MotionReport, index: usize) -> Built {
          <div class=\"card evidence\"><h3>Evidence</h3>{evidence}</div>\n</section>\n",
         name = escape(&motion.name),
         drawing = svg::element(&stage.scene(shown), "class=\"drawing\""),
-        controls = controls(motion, &rows),
+        controls = controls(motion, &rows, &loads::switches(&stage)),
         readout = readout(motion, shown_row),
         evidence = sections::evidence(motion, rows.all),
     );
@@ -98,7 +98,7 @@ fn button(action: &str, label: &str, icon: &str) -> String {
     )
 }
 
-fn controls(motion: &MotionReport, rows: &Rows) -> String {
+fn controls(motion: &MotionReport, rows: &Rows, roles: &str) -> String {
     let last = rows.kept.len().saturating_sub(1);
     let mark = |event: &super::Event| {
         let share = if last > 0 {
@@ -127,7 +127,7 @@ fn controls(motion: &MotionReport, rows: &Rows) -> String {
          <label>At the end <select data-in=\"mode\"><option value=\"loop\">start again</option><option value=\"pingpong\">go back</option>\
          <option value=\"once\">stop</option></select></label>\n\
          <label><input type=\"checkbox\" data-in=\"labels\" checked> Labels</label>\n\
-         <label><input type=\"checkbox\" data-in=\"traces\" checked> Traces</label></div>\n\
+         <label><input type=\"checkbox\" data-in=\"traces\" checked> Traces</label></div>\n{roles}\
          <p class=\"muted rate\"></p></div>\n",
         button("first", "To the start", "M3 3h2v10H3zM13 3v10L6 8z"),
         button("back", "One step back", "M11 3v10L4 8z"),

@@ -11,7 +11,7 @@ class Player {
     if (this.at < 0) this.at = 0;
     this.playing = false;
     this.sense = 1;
-    this.drawing = new Drawing(motion, section.querySelector(".drawing"));
+    this.drawing = new Drawing(motion, section.querySelector(".drawing"), section);
     this.plots = [...section.querySelectorAll(".plot")].map((f) => new Plot(motion, motion.plots[+f.dataset.plot], f, (row) => this.seek(row)));
     this.cells = [...section.querySelectorAll(".readout tbody td:nth-child(2)")];
     this.status = section.querySelector(".status");

@@ -29,6 +29,9 @@ class Plot {
     const line = { y1: spec.h - spec.y[2], y2: spec.h - spec.y[3] };
     this.ghost = element("line", { class: "ghost-cursor", visibility: "hidden", ...line }, this.svg);
     this.cursor = element("line", { class: "cursor", visibility: "hidden", ...line }, this.svg);
+    // the vector to the tip takes the place of the one that is drawn
+    if (spec.vector) this.svg.querySelectorAll(".vector").forEach((g) => g.remove());
+    this.arrows = spec.vector ? this.curves.map((c) => ["path", "path"].map((name, k) => element(name, k ? { fill: c.color } : { stroke: c.color, "stroke-width": 0.6 }, this.svg))) : [];
     this.dots = this.curves.map((c) => element("circle", { class: "dot", r: 1.1, fill: c.color, visibility: "hidden" }, this.svg));
     let down = false;
     const row = (event) => this.nearest(event);
@@ -76,6 +79,7 @@ class Plot {
 
   // Moves the cursor to a row, or a share of the way to the next.
   show(row, share) {
+    const spec = this.spec;
     const at = (values) => {
       const a = values[row], b = values[row + 1];
       return a == null || share === 0 || b == null ? a : a + share * (b - a);
@@ -85,9 +89,19 @@ class Plot {
     if (x != null) { this.cursor.setAttribute("x1", x); this.cursor.setAttribute("x2", x); }
     this.curves.forEach((c, k) => {
       const px = place(this.spec.x, at(c.x)), py = place(this.spec.y, at(c.y));
-      this.dots[k].setAttribute("visibility", px == null || py == null ? "hidden" : "visible");
+      this.dots[k].setAttribute("visibility", spec.vector || px == null || py == null ? "hidden" : "visible");
       if (px != null && py != null) { this.dots[k].setAttribute("cx", px); this.dots[k].setAttribute("cy", this.spec.h - py); }
+      if (this.arrows[k]) this.vector(this.arrows[k], px, py);
     });
+  }
+
+  // An arrow from the origin to a tip.
+  vector([shaft, head], px, py) {
+    const x = place(this.spec.x, 0), y = place(this.spec.y, 0), long = px == null || py == null ? 0 : Math.hypot(px - x, py - y);
+    const c = (px - x) / long, s = (py - y) / long;
+    const at = (a, b) => `${round(px + c * a - s * b)} ${round(this.spec.h - (py + s * a + c * b))}`;
+    shaft.setAttribute("d", long > 2.4 ? `M${round(x)} ${round(this.spec.h - y)}L${at(-1.9, 0)}` : "");
+    head.setAttribute("d", long > 2.4 ? `M${at(0, 0)}L${at(-2.4, 0.95)}L${at(-2.4, -0.95)}Z` : "");
   }
 
   table(holder) {

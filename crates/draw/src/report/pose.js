@@ -39,11 +39,12 @@ function transform(motion, poses, anchor) {
 }
 
 class Drawing {
-  constructor(motion, svg) {
+  constructor(motion, svg, section) {
     this.motion = motion;
     this.svg = svg;
     this.parts = [...svg.querySelectorAll("[data-part]")].map((g) => [g, motion.anchors[+g.dataset.part]]);
     svg.querySelectorAll(".trace-past").forEach((g) => g.remove());
+    this.loads = new Loads(motion, svg, section);
     const count = motion.row.length;
     const before = svg.querySelector(".joint");
     this.trails = motion.traces.map((trace) => {
@@ -72,6 +73,7 @@ class Drawing {
       else reached = false;
     }
     this.svg.classList.toggle("stale", !reached);
+    this.loads.show(row, share);
     for (const { path, pieces } of this.trails) path.setAttribute("d", pieces.slice(0, row + 1).join(""));
     return reached;
   }

@@ -1,6 +1,6 @@
 //! Findings and evidence as HTML.
 
-use super::{Block, Level, MotionReport, Section};
+use super::{Block, Check, Evidence, Level, MotionReport, Section};
 use crate::number_format::{escape, significant};
 
 /// Most rows of a table that are written out.
@@ -97,6 +97,43 @@ fn table(head: &[String], rows: &[Vec<String>]) -> String {
     format!("<div class=\"scroll\" tabindex=\"0\">{table}</div>{rest}")
 }
 
+/// Closure, distance from singular poses, and the caller's checks in one table.
+fn checks(evidence: &Evidence) -> String {
+    let mut all = Vec::new();
+    if let Some((residual, limit)) = evidence.residual {
+        let sign = if residual <= limit { "≤" } else { "> limit" };
+        let worst = format!(
+            "{} {sign} {}",
+            significant(residual, 3),
+            significant(limit, 3)
+        );
+        let meaning = "the loops close, relative to the mechanism's size";
+        all.push(Check::new("Largest closure residual", worst, "", meaning));
+    }
+    if let Some(value) = evidence.singular_value {
+        let name = "Smallest singular value of the constraint Jacobian";
+        let meaning = "distance from a singular pose; 0 at one";
+        all.push(Check::new(name, significant(value, 4), "", meaning));
+    }
+    all.extend(evidence.checks.iter().cloned());
+    if all.is_empty() {
+        return String::new();
+    }
+    let placed = all.iter().any(|c| !c.place.is_empty());
+    let mut head = vec!["Check", "Worst value", "Where", "Meaning"];
+    let row = |c: &Check| {
+        let cells = [&c.name, &c.worst, &c.place, &c.meaning];
+        cells.map(String::clone).to_vec()
+    };
+    let mut rows: Vec<Vec<String>> = all.iter().map(row).collect();
+    if !placed {
+        head.remove(2);
+        rows.iter_mut().for_each(|row| drop(row.remove(2)));
+    }
+    let head: Vec<String> = head.into_iter().map(String::from).collect();
+    table(&head, &rows)
+}
+
 /// The evidence of a motion.
 pub(super) fn evidence(motion: &MotionReport, rows: usize) -> String {
     let evidence = &motion.evidence;
@@ -109,26 +146,12 @@ pub(super) fn evidence(motion: &MotionReport, rows: usize) -> String {
         "Rows".to_string(),
         format!("{rows}, of which {} reached", rows.saturating_sub(missing)),
     )];
-    if let Some((residual, limit)) = evidence.residual {
-        let sign = if residual <= limit { "≤" } else { "> limit" };
-        let text = format!(
-            "{} {sign} {}",
-            significant(residual, 3),
-            significant(limit, 3)
-        );
-        known.push(("Largest closure residual".into(), text));
-    }
-    if let Some(value) = evidence.singular_value {
-        known.push((
-            "Smallest singular value of the constraint Jacobian".into(),
-            significant(value, 4),
-        ));
-    }
     if !evidence.scaling.is_empty() {
         known.push(("Scaling of the Jacobian".into(), evidence.scaling.clone()));
     }
     known.extend(evidence.facts.iter().cloned());
     let mut out = facts(&known);
+    out.push_str(&checks(evidence));
     if evidence
         .residual
         .is_some_and(|(residual, limit)| residual > limit || residual.is_nan())

@@ -14,6 +14,8 @@ pub(crate) use path::distance;
 
 use kempe_number::math::sin_cos;
 
+use crate::loads::LoadRole;
+
 /// A point on paper, mm, y up.
 pub type Point = [f64; 2];
 
@@ -78,20 +80,30 @@ pub enum Layer {
     Body,
     /// The travelled path of a point.
     TracePast,
+    /// Arrows of the loads of a role.
+    Load(LoadRole),
     /// Pins and welds.
     Joint,
     /// Arrows of the drives.
     Drive,
     /// Names of points.
     Label,
+    /// Names at the arrows of the loads of a role.
+    LoadLabel(LoadRole),
+    /// What the arrows of loads mean.
+    LoadLegend,
     /// Curves of a plot.
     Curve(usize),
+    /// Lines that curves should not cross.
+    Limit,
+    /// A vector of a hodograph.
+    Vector,
     /// Title and caption.
     Caption,
 }
 
 impl Layer {
-    /// A stable name for classes and CAD layers.
+    /// A stable name for classes.
     pub fn name(self) -> String {
         match self {
             Layer::Furniture => "furniture".into(),
@@ -105,7 +117,12 @@ impl Layer {
             Layer::Joint => "joint".into(),
             Layer::Drive => "drive".into(),
             Layer::Label => "label".into(),
+            Layer::Load(role) => format!("load load-{}", role.name()),
+            Layer::LoadLabel(role) => format!("load label load-{}", role.name()),
+            Layer::LoadLegend => "load-legend".into(),
             Layer::Curve(index) => format!("curve-{index}"),
+            Layer::Limit => "limit".into(),
+            Layer::Vector => "vector".into(),
             Layer::Caption => "caption".into(),
         }
     }

@@ -30,6 +30,8 @@ pub const SINGULAR: f64 = 1e-12;
 pub const UNIQUE: f64 = 1e-9;
 /// Speeds below this part of the fastest count as rest where friction is concerned.
 pub const STILL: f64 = 1e-12;
+/// Accelerations below this part of those that the fastest speed would have over the whole motion count as none.
+pub const UNMOVED: f64 = 1e-9;
 /// Newton steps of the friction loop before it is given up.
 pub const FRICTION_STEPS: usize = 60;
 /// A step of the friction loop below this part of the largest multiplier ends it.
@@ -41,6 +43,15 @@ struct Entry<T> {
     row: usize,
     body: BodyId,
     to: [T; 3],
+}
+
+/// How fast a motion usually is, so that rest can be told from a slow moment.
+#[derive(Clone, Debug, Default)]
+pub struct Pace {
+    /// Mean speed of every drive, rad/s or m/s.
+    pub speeds: Vec<f64>,
+    /// How often the motion would fit into a second, 1/s.
+    pub frequency: f64,
 }
 
 /// Friction at one joint at an instant.
@@ -92,6 +103,8 @@ pub struct Equilibrium<T> {
     rows: usize,
     columns: usize,
     size: f64,
+    /// What counts as moving.
+    pub pace: Pace,
     /// Scale of every row.
     unit: Vec<f64>,
     entries: Vec<Entry<T>>,
@@ -143,6 +156,7 @@ impl<T: ForceNumber> Equilibrium<T> {
             rows,
             columns,
             size,
+            pace: Pace::default(),
             unit,
             entries: Vec::with_capacity(4 * rows),
             rubbing: Vec::with_capacity(frictions),
@@ -302,13 +316,9 @@ impl<T: ForceNumber> Equilibrium<T> {
         if frictions.is_empty() {
             return;
         }
-        let fastest = (at.velocities.iter())
-            .map(|v| {
-                let v = v.map(|x| x.value().abs());
-                v[2].max(v[0] / self.size).max(v[1] / self.size)
-            })
-            .fold(0.0, f64::max);
-        let still = STILL * fastest;
+        let fastest = self.fastest(at);
+        let still = [STILL * fastest, UNMOVED * fastest * self.pace.frequency];
+        let still_sliding = still.map(|s| s * self.size);
         for (index, friction) in frictions.iter().enumerate() {
             let row = self.first_row[friction.constraint];
             let one = T::one();
@@ -347,13 +357,23 @@ impl<T: ForceNumber> Equilibrium<T> {
                         friction: index,
                         row,
                         speed,
-                        direction: direction(speed.value(), gain, still * self.size),
+                        direction: direction(speed.value(), gain, still_sliding),
                         unit: [(point.body, own), (line.body, other)],
                     });
                 }
                 _ => {}
             }
         }
+    }
+
+    /// The fastest that any body moves now, or would move at the usual speeds of the drives, 1/s.
+    fn fastest(&self, at: &Instant<T>) -> f64 {
+        let in_sizes = |v: [f64; 3]| v[2].max(v[0] / self.size).max(v[1] / self.size);
+        let now = (at.velocities.iter()).map(|v| in_sizes(v.map(|x| x.value().abs())));
+        let usual = (at.coefficients.iter().zip(&self.pace.speeds))
+            .flat_map(|(bodies, speed)| bodies.iter().map(move |c| (c, *speed)))
+            .map(|(c, speed)| in_sizes(c.map(|x| (x.value() * speed).abs())));
+        now.chain(usual).fold(0.0, f64::max)
     }
 
     /// Factors the scaled matrix; with multipliers, friction's derivatives at them and its share are added.
