@@ -123,6 +123,9 @@ pub struct Draw {
     /// Light drawing on a dark ground
     #[arg(long)]
     pub dark: bool,
+    /// Show what acts on the links: joint reactions, loads, weights, drives, springs
+    #[arg(long)]
+    pub forces: bool,
     /// Leave out the names of the points
     #[arg(long)]
     pub no_labels: bool,

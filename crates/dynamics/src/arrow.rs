@@ -1,7 +1,7 @@
 //! Everything that acts on the links of one instant as arrows to be drawn.
 
 use kempe_kinematics::mechanism::Marker;
-use kempe_model::{DriveKind, FRAME, LinkId, LinkPointRef};
+use kempe_model::{DriveKind, FRAME, Joint, JointKind, LinkId, LinkPointRef};
 
 use crate::ends::Ends;
 use crate::forces::Forces;
@@ -63,7 +63,13 @@ impl<T: ForceNumber> Forces<'_, T> {
                     Carrier::Drive(id) if is_turn(model.drives.get(id.index())) => [0.0; 2],
                     _ => load.force,
                 },
-                moment: load.moment,
+                // Pins, slots and cylinders carry none: what is there is rounding.
+                moment: match load.carrier {
+                    Carrier::Drive(id) if !is_turn(model.drives.get(id.index())) => 0.0,
+                    Carrier::Pin(_) => 0.0,
+                    Carrier::Joint(id) if !holds_angle(model.joints.get(id.index())) => 0.0,
+                    _ => load.moment,
+                },
             })
             .collect();
         for (load, named) in self.acting.loads.iter().zip(&model.actions.loads) {
@@ -189,6 +195,11 @@ impl<T: ForceNumber> Forces<'_, T> {
             point: shared.or(own.first())?.point,
         })
     }
+}
+
+/// Whether a joint carries a moment.
+fn holds_angle(joint: Option<&Joint>) -> bool {
+    joint.is_some_and(|j| matches!(j.kind, JointKind::Slider { .. } | JointKind::Weld { .. }))
 }
 
 fn is_turn(drive: Option<&kempe_model::Drive>) -> bool {

@@ -1,6 +1,6 @@
 //! The plots a study asks for.
 
-use kempe_draw::plot::{Axis, Curve, Marker, MarkerKind, PlotSpec};
+use kempe_draw::plot::{Axis, Curve, Limit, Marker, MarkerKind, PlotSpec};
 use kempe_kinematics::events::EventKind;
 use kempe_model::Model;
 
@@ -28,13 +28,28 @@ pub fn figures(model: &Model, result: &StudyResult) -> Vec<(String, PlotSpec)> {
     if chosen.is_empty() {
         let own = result.table.columns.iter().skip(drives);
         let own = own.take(MOST_DEFAULT).cloned();
-        chosen = own.map(|c| Figure::Curves(vec![c])).collect();
+        chosen = own
+            .map(|c| Figure::Curves {
+                curves: vec![c],
+                limits: Vec::new(),
+            })
+            .collect();
     }
     let mut plots: Vec<(String, PlotSpec)> = Vec::new();
     for figure in &chosen {
         let (name, plot) = match figure {
-            Figure::Curves(columns) => (names(columns), curves(x, columns, result)),
-            Figure::Hodograph(name, axes) => (name.clone(), hodograph(name, axes)),
+            Figure::Curves { curves, limits } => {
+                let spec = curves_plot(x, curves, result);
+                let limited = limits.iter().fold(spec, |spec, limit| {
+                    spec.with_limit(Limit::along(
+                        limit.name.clone(),
+                        x.values.clone(),
+                        limit.values.clone(),
+                    ))
+                });
+                (names(curves), limited)
+            }
+            Figure::Hodograph(name, axes) => (name.clone(), hodograph(name, axes, x)),
             Figure::Path(point) => {
                 let name = model.points.get(point.index()).map_or("", |p| &p.name);
                 (
@@ -77,7 +92,7 @@ fn names(columns: &[Column]) -> String {
     all.join(", ")
 }
 
-fn hodograph(name: &str, [x, y]: &[Column; 2]) -> PlotSpec {
+fn hodograph(name: &str, [x, y]: &[Column; 2], along: &Column) -> PlotSpec {
     PlotSpec {
         title: name.to_owned(),
         x: Axis::new("x", x.unit.text()),
@@ -91,16 +106,16 @@ fn hodograph(name: &str, [x, y]: &[Column; 2]) -> PlotSpec {
         equal_aspect: true,
         ..PlotSpec::default()
     }
+    .as_hodograph(along.values.clone(), along.unit.text())
 }
 
-fn curves(x: &Column, columns: &[Column], result: &StudyResult) -> PlotSpec {
+fn curves_plot(x: &Column, columns: &[Column], result: &StudyResult) -> PlotSpec {
     let marker = |event: &Event| {
-        // Events stand where the rows do: at a coordinate of the drive, or at a time.
-        let at = x.unit.from_si(event.at);
-        let at = if result.along == 0 && x.name != "time" {
+        // An event stands at a coordinate of the drive; along time or an arc it is where its row is.
+        let at = if result.along == 0 {
             x.values.get(event.row).copied().unwrap_or(f64::NAN)
         } else {
-            at
+            x.unit.from_si(event.at)
         };
         Marker {
             at,
@@ -114,8 +129,12 @@ fn curves(x: &Column, columns: &[Column], result: &StudyResult) -> PlotSpec {
     PlotSpec {
         title: String::new(),
         x: Axis::new(x.name.clone(), x.unit.text()),
+        // Several curves have a legend.
         y: Axis::new(
-            names(columns),
+            match columns {
+                [one] => one.name.clone(),
+                _ => String::new(),
+            },
             columns.first().map_or("", |c| c.unit.text()),
         ),
         curves: columns
@@ -133,7 +152,7 @@ fn curves(x: &Column, columns: &[Column], result: &StudyResult) -> PlotSpec {
             })
             .collect(),
         markers: result.events.iter().map(marker).collect(),
-        equal_aspect: false,
+        ..PlotSpec::default()
     }
 }
 

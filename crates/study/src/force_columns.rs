@@ -1,7 +1,10 @@
 //! What a study of forces reports where it names no columns: everything that drives and joints carry.
 
 use kempe_kinematics::Mechanism;
-use kempe_model::{DriveId, DriveKind, ForceMeasure, JointId, JointKind, JointRef, Leaf, PointId};
+use kempe_model::{
+    Column, DriveId, DriveKind, ForceMeasure, Hodograph, JointId, JointKind, JointRef, Leaf, Plot,
+    PointId,
+};
 use kempe_units::{Dimension, Expr};
 
 use crate::columns::Quantity;
@@ -101,6 +104,42 @@ pub(crate) fn standard(mechanism: &Mechanism) -> Vec<Quantity> {
     ];
     list.extend(whole.map(|(name, measure, dimension)| force(name.to_owned(), measure, dimension)));
     list
+}
+
+/// Joints whose force is drawn as a hodograph where a study of forces names no plot: at most this many.
+const MOST_HODOGRAPHS: usize = 4;
+
+/// The plots of a study of forces that names none: what the drives give, beside what they can give, and the forces of the
+/// first joints.
+pub(crate) fn standard_plots(mechanism: &Mechanism) -> Vec<Plot> {
+    let quantities = standard(mechanism);
+    let column = |quantity: &Quantity| Column {
+        name: quantity.name.clone(),
+        measure: quantity.measure.clone(),
+        dimension: quantity.dimension,
+    };
+    let capacity = |id: DriveId| {
+        let mut found = quantities.iter();
+        found.find(|q| q.measure == Expr::Leaf(Leaf::Force(ForceMeasure::Capacity(id))))
+    };
+    let of_drives = quantities.iter().filter_map(|q| match &q.measure {
+        Expr::Leaf(Leaf::Force(ForceMeasure::Drive(id))) => {
+            let both = std::iter::once(q).chain(capacity(*id));
+            Some(Plot::Curves(both.map(column).collect()))
+        }
+        Expr::Leaf(Leaf::Force(ForceMeasure::Power(_) | ForceMeasure::Pressure(_))) => {
+            Some(Plot::Curves(vec![column(q)]))
+        }
+        _ => None,
+    });
+    let of_joints = joints(mechanism).into_iter().take(MOST_HODOGRAPHS);
+    let of_joints = of_joints.map(|(joint, text, _)| {
+        Plot::Hodograph(Hodograph {
+            name: format!("hodograph({text})"),
+            joint,
+        })
+    });
+    of_drives.chain(of_joints).collect()
 }
 
 /// All joints with a load of their own: each with the link that feels it, how a file writes that, and whether it carries

@@ -3,7 +3,7 @@
 use kempe_kinematics::drive_path::DrivePath;
 use kempe_kinematics::events::EventKind;
 use kempe_kinematics::{Design, EndReason, Mechanism, Motion, Plan, Unmeasurable};
-use kempe_model::{Diagnostic, Model, MotionStudy, Study, StudyKind};
+use kempe_model::{Diagnostic, LawPiece, Model, MotionStudy, Study, StudyKind};
 use kempe_units::Dimension;
 
 use crate::along::Along;
@@ -11,9 +11,10 @@ use crate::choice::{balance, spring};
 use crate::circuit::run_circuit;
 use crate::columns::{Asked, Quantity};
 use crate::explain::{beyond_limit, cannot_move};
+use crate::force_columns::standard_plots;
 use crate::progress::{Flow, Progress};
 use crate::result::{Event, StudyResult};
-use crate::rows::{path_drive, places_along};
+use crate::rows::places_along;
 use crate::sink::RowSink;
 use crate::table::{Column, Table};
 use crate::unit::Units;
@@ -69,14 +70,18 @@ pub(crate) fn run_along(
     let motion = Motion::new(&mechanism, &plan, &design, &parameters)
         .map_err(|error| vec![cannot_move(&mechanism, &plan, &design, &error)])?;
     let mut warnings = range_warnings(&motion)?;
+    let mut study = study.clone();
+    if forces && study.plots.is_empty() {
+        study.plots = standard_plots(&mechanism);
+    }
     let asked = if forces {
-        Asked::of_forces(&mechanism, study)
+        Asked::of_forces(&mechanism, &study)
     } else {
-        Asked::of_motion(model, study)
+        Asked::of_motion(model, &study)
     };
     let quantities: Vec<&Quantity> = asked.all().collect();
     let mut sampler = Along::new(model, &motion, &quantities, forces)?;
-    let places = places_along(&motion, study, &parameters);
+    let places = places_along(&motion, &study, &parameters);
     let units = Units::of(model);
     let mut rows = RowSink::new(
         name,
@@ -95,8 +100,7 @@ pub(crate) fn run_along(
             break;
         }
     }
-    let by_drive = matches!(motion.path, DrivePath::Coordinate { .. }) && !model.drives.is_empty();
-    let along = if by_drive { 1 + path_drive(&motion) } else { 0 };
+    let along = abscissa(&motion, &parameters);
     if rows.table.unreached() > 0 {
         warnings.push(unreached_warning(name, &rows.table));
     }
@@ -114,6 +118,23 @@ pub(crate) fn run_along(
         warnings,
         demanded_rows: places.len(),
     })
+}
+
+/// The column that rows run along: the drive that goes one way through the whole motion, or else time.
+fn abscissa(motion: &Motion<'_>, parameters: &[f64]) -> usize {
+    let model = &motion.mechanism.model;
+    let DrivePath::Coordinate { drive, .. } = motion.path else {
+        return 0;
+    };
+    let goes_one_way = model.drives.get(drive).is_some_and(|d| {
+        let ends = [0.0, d.law.duration(parameters)].map(|t: f64| d.law.at(t, parameters));
+        let (low, high) = d.law.extent(parameters);
+        let dwells = |p: &LawPiece| matches!(p, LawPiece::Dwell { .. });
+        let alone = d.law.pieces.len() == 1;
+        let covers = ends[0].min(ends[1]) <= low && ends[0].max(ends[1]) >= high;
+        covers && (alone || !d.law.pieces.iter().any(dwells))
+    });
+    if goes_one_way { 1 + drive } else { 0 }
 }
 
 /// Measures that the mechanism cannot answer, as diagnostics over the model file.

@@ -1,16 +1,18 @@
 //! Everything about a model and its studies as one HTML report.
 
 use kempe_draw::report::{
-    Block, Column as Shown, Event, Evidence, MotionReport, NotReached, Report, Section,
+    Block, Check, Column as Shown, Event, Evidence, MotionReport, NotReached, Report, Section,
 };
+use kempe_dynamics::note::{EQUILIBRIUM_LIMIT, ILL_CONDITIONED, ROUTES_AGREE};
 use kempe_kinematics::CLOSURE_LIMIT;
 use kempe_model::{Diagnostic, Model, MotionStudy, Study};
 
 use crate::figures::{figures, marker_kind};
 use crate::findings::Report as CheckReport;
 use crate::findings_text::warnings_section;
+use crate::force_notes::place;
 use crate::result::StudyResult;
-use crate::table::Column;
+use crate::table::{Column, largest};
 use crate::view::{drawing_frames, mechanism_view};
 
 /// A study with what became of it.
@@ -122,7 +124,7 @@ fn motion(model: &Model, study: &MotionStudy, result: &StudyResult) -> MotionRep
         name: result.name.clone(),
         summary: summary(result),
         view: mechanism_view(model, Some(study)),
-        frames: drawing_frames(result),
+        frames: drawing_frames(model, result),
         time: first,
         drive: table.columns.get(drive).map(shown).unwrap_or_default(),
         columns: others.map(|(_, column)| shown(column)).collect(),
@@ -199,5 +201,45 @@ fn evidence(result: &StudyResult) -> Evidence {
             })
             .collect(),
         facts,
+        checks: force_checks(result),
     }
+}
+
+/// What the forces were held against.
+fn force_checks(result: &StudyResult) -> Vec<Check> {
+    let table = &result.table;
+    let Some(forces) = &table.forces else {
+        return Vec::new();
+    };
+    let check = |name: &str, values: &[f64], limit: f64, meaning: &str| {
+        let (row, worst) = largest(values)?;
+        let compared = if worst <= limit { "≤" } else { ">" };
+        Some(Check::new(
+            name,
+            format!("{worst:.1e} {compared} {limit:.0e}"),
+            place(table, result.along, row),
+            meaning,
+        ))
+    };
+    let checks = [
+        check(
+            "Two routes to the drives' forces",
+            &forces.route_difference,
+            ROUTES_AGREE,
+            "virtual power and Newton-Euler, which share no formula, agree to this part of the terms",
+        ),
+        check(
+            "Equilibrium of every body",
+            &forces.residual,
+            EQUILIBRIUM_LIMIT,
+            "what is left of the worst body's equilibrium, in parts of its largest term",
+        ),
+        check(
+            "Condition of the equations",
+            &forces.condition,
+            ILL_CONDITIONED,
+            "how much rounding may grow; beyond the limit the pose is nearly singular and joint loads grow without bound",
+        ),
+    ];
+    checks.into_iter().flatten().collect()
 }

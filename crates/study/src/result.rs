@@ -71,8 +71,13 @@ pub struct Listing {
 /// A plot that a study asks for.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Figure {
-    /// Quantities of one dimension along the motion.
-    Curves(Vec<Column>),
+    /// Quantities of one dimension along the motion, and what they should stay below.
+    Curves {
+        /// The quantities.
+        curves: Vec<Column>,
+        /// Their limits.
+        limits: Vec<Column>,
+    },
     /// The path of a point.
     Path(PointId),
     /// The force of a joint: name, x and y.

@@ -2,8 +2,8 @@
 
 use kempe_dynamics::ForceEvidence;
 use kempe_kinematics::Mechanism;
-use kempe_model::{Diagnostic, Model, Plot};
-use kempe_units::Unit;
+use kempe_model::{Diagnostic, ForceMeasure, Leaf, Measure, Model, Plot};
+use kempe_units::{Expr, Unit};
 
 use crate::along::Row;
 use crate::columns::{Asked, Quantity};
@@ -123,7 +123,7 @@ impl RowSink {
             .filter_map(|plot| match plot {
                 Plot::Curves(columns) => {
                     let own: Vec<Column> = curves.by_ref().take(columns.len()).cloned().collect();
-                    (own.len() == columns.len()).then_some(Figure::Curves(own))
+                    (own.len() == columns.len()).then(|| curves_of(columns, own))
                 }
                 Plot::Path(point) => Some(Figure::Path(*point)),
                 Plot::Hodograph(it) => {
@@ -138,4 +138,22 @@ impl RowSink {
     pub fn force_warnings(&self, mechanism: &Mechanism, along: usize) -> Vec<Diagnostic> {
         self.told.warnings(mechanism, &self.table, along)
     }
+}
+
+/// A picture of columns: what a cylinder or motor can give is a limit of what it gives.
+fn curves_of(asked: &[kempe_model::Column], columns: Vec<Column>) -> Figure {
+    let is_limit =
+        |measure: &Measure| matches!(measure, Expr::Leaf(Leaf::Force(ForceMeasure::Capacity(_))));
+    let (mut curves, mut limits) = (Vec::new(), Vec::new());
+    for (asked, column) in asked.iter().zip(columns) {
+        if is_limit(&asked.measure) {
+            limits.push(column);
+        } else {
+            curves.push(column);
+        }
+    }
+    if curves.is_empty() {
+        std::mem::swap(&mut curves, &mut limits);
+    }
+    Figure::Curves { curves, limits }
 }

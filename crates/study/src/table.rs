@@ -145,7 +145,7 @@ impl Table {
 }
 
 /// The largest of what is a number, with its row.
-fn largest(values: &[f64]) -> Option<(usize, f64)> {
+pub(crate) fn largest(values: &[f64]) -> Option<(usize, f64)> {
     let numbers = values
         .iter()
         .copied()

@@ -2,10 +2,11 @@
 
 use kempe_draw::{
     DriveKind as DrivenPart, DriveView, Frame as DrawnFrame, Guide, JointView, LengthUnit,
-    LinkView, MechanismView, TraceView, Wheel,
+    LinkView, LoadRole, LoadView, MechanismView, TraceView, Wheel,
 };
+use kempe_dynamics::{ForceArrow, Origin};
 use kempe_model::{
-    DriveKind, FRAME, JointKind, Line, LinkId, Model, MotionStudy, Plot, PointId, value,
+    Between, DriveKind, FRAME, JointKind, Line, LinkId, Model, MotionStudy, Plot, PointId, value,
 };
 
 use crate::result::{Frame, StudyResult};
@@ -32,6 +33,7 @@ pub fn mechanism_view(model: &Model, study: Option<&MotionStudy>) -> MechanismVi
             });
         }
     }
+    joints.extend(springs_and_dampers(model));
     MechanismView {
         title: model.title.clone(),
         length_unit: LengthUnit::new(length.name.clone(), length.factor),
@@ -54,6 +56,23 @@ pub fn mechanism_view(model: &Model, study: Option<&MotionStudy>) -> MechanismVi
             .collect(),
         drives: drives(model, &parameters),
     }
+}
+
+/// Springs and dampers between points; those between links are not drawn.
+fn springs_and_dampers(model: &Model) -> Vec<JointView> {
+    let ends = |between: &Between| match between {
+        Between::Points(a, b) => Some((a.point.index(), b.point.index())),
+        Between::Links(..) => None,
+    };
+    let springs = model.actions.springs.iter();
+    let springs = springs
+        .filter_map(|s| ends(&s.between))
+        .map(|(a, b)| JointView::Spring { a, b });
+    let dampers = model.actions.dampers.iter();
+    let dampers = dampers
+        .filter_map(|d| ends(&d.between))
+        .map(|(a, b)| JointView::Damper { a, b });
+    springs.chain(dampers).collect()
 }
 
 fn guide(line: Line) -> Guide {
@@ -269,8 +288,8 @@ fn on_ground_bar(model: &Model, link: Option<LinkId>) -> bool {
     link.is_some_and(|link| shared(model, link, FRAME).is_some())
 }
 
-/// The poses of a study for drawing, each labelled with where it is.
-pub fn drawing_frames(result: &StudyResult) -> Vec<DrawnFrame> {
+/// The poses of a study for drawing, each labelled with where it is; with what acts on them where forces were asked for.
+pub fn drawing_frames(model: &Model, result: &StudyResult) -> Vec<DrawnFrame> {
     let abscissa = result.abscissa();
     result
         .frames
@@ -282,16 +301,42 @@ pub fn drawing_frames(result: &StudyResult) -> Vec<DrawnFrame> {
                 let digits = kempe_draw::number_format::significant(at, 6);
                 format!("{} = {digits} {}", column.name, column.unit.text())
             });
-            drawn(frame, label.unwrap_or_default().trim_end().to_owned())
+            drawn(
+                model,
+                frame,
+                label.unwrap_or_default().trim_end().to_owned(),
+            )
         })
         .collect()
 }
 
-/// A pose for drawing.
-pub fn drawn(frame: &Frame, label: String) -> DrawnFrame {
-    DrawnFrame {
+/// A pose for drawing, with what acts in it.
+pub fn drawn(model: &Model, frame: &Frame, label: String) -> DrawnFrame {
+    let pose = DrawnFrame {
         points: frame.points.clone(),
         links: frame.links.clone(),
+        label,
+        ..DrawnFrame::default()
+    };
+    pose.with_loads(frame.arrows.iter().map(|a| load_view(model, a)).collect())
+}
+
+/// An arrow: of a joint it names the link that feels it, otherwise what it comes from.
+fn load_view(model: &Model, arrow: &ForceArrow) -> LoadView {
+    let link =
+        || (model.links.get(arrow.link.index())).map_or_else(String::new, |l| l.name.clone());
+    let (role, label) = match arrow.origin {
+        Origin::Joint => (LoadRole::Reaction, format!("on {}", link())),
+        Origin::Drive => (LoadRole::Drive, arrow.name.clone()),
+        Origin::Load => (LoadRole::Load, arrow.name.clone()),
+        Origin::Weight => (LoadRole::Weight, String::new()),
+        Origin::Spring | Origin::Damper => (LoadRole::Spring, arrow.name.clone()),
+    };
+    LoadView {
+        at: arrow.place,
+        vector: arrow.force,
+        moment: arrow.moment,
+        role,
         label,
     }
 }

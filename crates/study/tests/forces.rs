@@ -198,7 +198,7 @@ fn pictures_hold_several_curves_and_hodographs() {
     ));
     assert_eq!(result.figures.len(), 4);
     assert!(
-        matches!(&result.figures[0], Figure::Curves(both) if both.len() == 2 && both[1].values.len() == 5)
+        matches!(&result.figures[0], Figure::Curves { curves: both, .. } if both.len() == 2 && both[1].values.len() == 5)
     );
     let Figure::Hodograph(name, [x, y]) = &result.figures[1] else {
         panic!("{:?}", result.figures[1]);
@@ -207,7 +207,9 @@ fn pictures_hold_several_curves_and_hodographs() {
         (name.as_str(), x.values.len(), y.values.len()),
         ("hodograph(B)", 5, 5)
     );
-    assert!(matches!(&result.figures[3], Figure::Curves(one) if one[0].name == "effort"));
+    assert!(
+        matches!(&result.figures[3], Figure::Curves { curves: one, .. } if one[0].name == "effort")
+    );
     assert_eq!(result.table.columns.len(), 3);
 }
 

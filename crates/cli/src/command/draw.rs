@@ -3,8 +3,8 @@
 use kempe_draw::raster::animation::{self, AnimationOptions};
 use kempe_draw::raster::{self, RasterError};
 use kempe_draw::{DrawOptions, Frame, MechanismView, Stage, Theme, dxf, svg};
-use kempe_model::{Diagnostic, Model, Study, StudyKind};
-use kempe_study::{Setting, drawing_frames, drawn, mechanism_view, pose_at};
+use kempe_model::{Diagnostic, Model, MotionStudy, Study, StudyKind};
+use kempe_study::{Setting, drawing_frames, drawn, loaded_at, mechanism_view, pose_at};
 
 use crate::arguments::Draw;
 use crate::exit::Exit;
@@ -45,7 +45,7 @@ pub fn draw(arguments: &Draw) -> Exit {
         Ok(loaded) => loaded,
         Err(exit) => return exit,
     };
-    match picture(arguments, kind, &loaded.checked.model) {
+    match picture(arguments, kind, &loaded.checked.model, &mut speaker) {
         Ok(bytes) => {
             let mut batch = Batch::new();
             let written = batch.add(&arguments.output, &bytes);
@@ -95,7 +95,12 @@ fn kind(arguments: &Draw) -> Result<Kind, Box<Diagnostic>> {
     })
 }
 
-fn picture(arguments: &Draw, kind: Kind, model: &Model) -> Result<Vec<u8>, Failure> {
+fn picture(
+    arguments: &Draw,
+    kind: Kind,
+    model: &Model,
+    speaker: &mut Speaker,
+) -> Result<Vec<u8>, Failure> {
     let theme = if arguments.dark {
         Theme::Dark
     } else {
@@ -115,7 +120,7 @@ fn picture(arguments: &Draw, kind: Kind, model: &Model) -> Result<Vec<u8>, Failu
         ));
     }
     if moving {
-        let (view, frames, period) = motion(model)?;
+        let (view, frames, period) = motion(model, arguments.forces)?;
         let stage = Stage::new(&view, &frames, options);
         let film = AnimationOptions {
             width: arguments.width,
@@ -129,7 +134,7 @@ fn picture(arguments: &Draw, kind: Kind, model: &Model) -> Result<Vec<u8>, Failu
         }
         .map_err(failed);
     }
-    let (view, frames, shown) = pose(arguments, model)?;
+    let (view, frames, shown) = pose(arguments, model, speaker)?;
     let stage = Stage::new(&view, &frames, options);
     match kind {
         Kind::Dxf => Ok(dxf::document(&stage, shown).into_bytes()),
@@ -146,14 +151,37 @@ fn picture(arguments: &Draw, kind: Kind, model: &Model) -> Result<Vec<u8>, Failu
     }
 }
 
-/// Whether a study is there to be looked at: forces are not needed for a picture.
-fn moves(study: &Study) -> bool {
-    matches!(study.kind, StudyKind::Motion(_))
+/// The first study of motion, or with `forces` of forces; where there is none, what the drives do on the way of any study.
+fn first_study(model: &Model, forces: bool) -> Option<Study> {
+    let wanted = |study: &&Study| {
+        matches!(
+            (&study.kind, forces),
+            (StudyKind::Motion(_), false) | (StudyKind::Forces(_), true)
+        )
+    };
+    if let Some(study) = model.studies.iter().find(wanted) {
+        return Some(study.clone());
+    }
+    let any = model.studies.first()?;
+    let along = MotionStudy {
+        columns: Vec::new(),
+        plots: Vec::new(),
+        circuit: false,
+        ..any.kind.along().clone()
+    };
+    Some(Study {
+        kind: if forces {
+            StudyKind::Forces(along)
+        } else {
+            StudyKind::Motion(along)
+        },
+        ..any.clone()
+    })
 }
 
 /// All poses of the first study, and how long one pass should take on the screen, s.
-fn motion(model: &Model) -> Result<(MechanismView, Vec<Frame>, f64), Failure> {
-    let Some(study) = model.studies.iter().find(|s| moves(s)) else {
+fn motion(model: &Model, forces: bool) -> Result<(MechanismView, Vec<Frame>, f64), Failure> {
+    let Some(study) = first_study(model, forces) else {
         let told = Diagnostic::error(
             "no-drive",
             "nothing moves: the file has no study and no drive",
@@ -161,7 +189,7 @@ fn motion(model: &Model) -> Result<(MechanismView, Vec<Frame>, f64), Failure> {
         return Err(Failure::Usage(told));
     };
     interrupt::listen();
-    let result = kempe_study::run(model, study, &mut Bar::new(&study.name, false))
+    let result = kempe_study::run(model, &study, &mut Bar::new(&study.name, false))
         .map_err(Failure::Unsolved)?;
     if result.interrupted() {
         return Err(Failure::Interrupted);
@@ -176,36 +204,46 @@ fn motion(model: &Model) -> Result<(MechanismView, Vec<Frame>, f64), Failure> {
         .unwrap_or(AnimationOptions::default().period);
     Ok((
         mechanism_view(model, Some(study.kind.along())),
-        drawing_frames(&result),
+        drawing_frames(model, &result),
         period,
     ))
 }
 
 /// The pose asked for, in front of the paths of the first study where that runs.
-fn pose(arguments: &Draw, model: &Model) -> Result<(MechanismView, Vec<Frame>, usize), Failure> {
+fn pose(
+    arguments: &Draw,
+    model: &Model,
+    speaker: &mut Speaker,
+) -> Result<(MechanismView, Vec<Frame>, usize), Failure> {
     let settings: Result<Vec<Setting>, Diagnostic> = arguments
         .at
         .iter()
         .map(|text| Setting::parse(model, text))
         .collect();
-    let (frame, label) =
-        pose_at(model, &settings.map_err(Failure::Usage)?).map_err(Failure::Unsolved)?;
+    let settings = settings.map_err(Failure::Usage)?;
+    let (frame, label) = if arguments.forces {
+        let loaded = loaded_at(model, &settings).map_err(Failure::Unsolved)?;
+        speaker.tell(&loaded.warnings);
+        (loaded.frame, loaded.label)
+    } else {
+        pose_at(model, &settings).map_err(Failure::Unsolved)?
+    };
     let mut frames = Vec::new();
-    let mut study = None;
-    if let Some(first) = model.studies.iter().find(|s| moves(s)) {
-        study = Some(first.kind.along());
-        if let Ok(result) = kempe_study::run(model, first, &mut kempe_study::Silent) {
-            frames = drawing_frames(&result);
-        }
+    let study = first_study(model, arguments.forces);
+    if let Some(study) = &study
+        && let Ok(result) = kempe_study::run(model, study, &mut kempe_study::Silent)
+    {
+        frames = drawing_frames(model, &result);
     }
-    let pose = drawn(&frame, label);
+    let pose = drawn(model, &frame, label);
     let shown = place_among(&frames, &pose).unwrap_or_else(|| {
         // Off the motion. Behind a pose that is nowhere, so that no path runs on to it.
         frames.push(Frame::default());
         frames.len()
     });
     frames.insert(shown, pose);
-    Ok((mechanism_view(model, study), frames, shown))
+    let along = study.as_ref().map(|s| s.kind.along());
+    Ok((mechanism_view(model, along), frames, shown))
 }
 
 /// Where in a motion a pose belongs: between the two poses where it is no detour. Nowhere when it is not on the motion.

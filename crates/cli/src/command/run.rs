@@ -197,7 +197,7 @@ fn write(
 /// The mechanism at its first row that was reached.
 fn picture(model: &Model, study: &Study, result: &StudyResult) -> String {
     let view = mechanism_view(model, Some(study.kind.along()));
-    let frames = drawing_frames(result);
+    let frames = drawing_frames(model, result);
     let row = result
         .table
         .closure

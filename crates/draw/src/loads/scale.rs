@@ -1,7 +1,7 @@
 //! One scale for a whole motion, which a single outlier does not shrink.
 
 /// What is larger than so many times the [`SHARE`] quantile of the poses' largest values is off the scale.
-const FAR: f64 = 3.0;
+const FAR: f64 = 10.0;
 /// The share of the poses whose largest values set what is usual in a motion.
 const SHARE: f64 = 0.75;
 

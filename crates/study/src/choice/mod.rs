@@ -109,6 +109,7 @@ fn after(name: &str) -> String {
 
 /// Puts the values from before in front of those from after, with a picture of both (and of `wanted`).
 fn set_beside(result: &mut StudyResult, quantities: &[Quantity], before: &[Vec<f64>]) {
+    result.figures.clear();
     for (quantity, values) in quantities.iter().zip(before) {
         let columns = &mut result.table.columns;
         let Some(place) = columns.iter().position(|c| c.name == after(&quantity.name)) else {
@@ -125,7 +126,10 @@ fn set_beside(result: &mut StudyResult, quantities: &[Quantity], before: &[Vec<f
             .map(|v| old.unit.from_si(*v))
             .collect();
         columns.insert(place, old.clone());
-        result.figures.push(Figure::Curves(vec![old, now]));
+        result.figures.push(Figure::Curves {
+            curves: vec![old, now],
+            limits: Vec::new(),
+        });
     }
 }
 

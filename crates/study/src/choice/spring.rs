@@ -110,7 +110,7 @@ fn bounds([low, high]: &[Option<Expression>; 2], parameters: &[f64]) -> (f64, f6
 }
 
 fn add_wanted(result: &mut StudyResult, wanted: &[Vec<f64>]) {
-    let Some(Figure::Curves(curves)) = result.figures.first_mut() else {
+    let Some(Figure::Curves { curves, .. }) = result.figures.first_mut() else {
         return;
     };
     let Some(unit) = curves.first().map(|c| c.unit.clone()) else {
