@@ -7,11 +7,27 @@ use crate::energy;
 use crate::equilibrium::STILL;
 use crate::forces::Forces;
 use crate::instant::Instant;
+use crate::load::Load;
 use crate::number::ForceNumber;
 use crate::reaction::Reaction;
 use crate::reduced;
 use crate::shaking::shaking;
 use crate::vector::{length, sign};
+
+/// A load at an instant: a force along the frame's axes, N, or a torque, N m.
+enum LoadValue<T> {
+    Force([T; 2]),
+    Torque(T),
+}
+
+impl<T: Copy> LoadValue<T> {
+    fn component(&self, axis: usize) -> Option<T> {
+        match self {
+            Self::Force(force) => force.get(axis).copied(),
+            Self::Torque(_) => None,
+        }
+    }
+}
 
 impl<T: ForceNumber> Forces<'_, T> {
     /// The value of a force measure at the instant last solved, SI. NaN where it has none.
@@ -55,15 +71,41 @@ impl<T: ForceNumber> Forces<'_, T> {
                 let force = drive(d)?.value;
                 Some(c.pressure(force, self.drive_direction(at, *d)))
             }),
-            ForceMeasure::Capacity(d) => self.cylinder(*d).and_then(|c| {
-                let force = drive(d)?.value;
-                c.capacity(force, self.drive_direction(at, *d))
-            }),
+            ForceMeasure::Capacity(d) => match self.acting.motors.iter().find(|m| m.drive == *d) {
+                Some(motor) => {
+                    let speed = at.drive_speeds[d.index()];
+                    let torque = motor.torque(speed);
+                    Some(if speed.value() < 0.0 { -torque } else { torque })
+                }
+                None => self.cylinder(*d).and_then(|c| {
+                    let force = drive(d)?.value;
+                    c.capacity(force, self.drive_direction(at, *d))
+                }),
+            },
             ForceMeasure::Spring(index) => {
                 (self.acting.springs.get(*index)).map(|s| s.tension(&self.geometry, at))
             }
+            ForceMeasure::Damper(index) => {
+                (self.acting.dampers.get(*index)).map(|d| d.tension_at(&self.geometry, at))
+            }
+            ForceMeasure::Load(index) => self.load(at, *index).map(|load| match load {
+                LoadValue::Force(force) => length(force),
+                LoadValue::Torque(torque) => torque,
+            }),
+            ForceMeasure::LoadX(index) => self.load(at, *index).and_then(|load| load.component(0)),
+            ForceMeasure::LoadY(index) => self.load(at, *index).and_then(|load| load.component(1)),
         };
         found.unwrap_or(nothing)
+    }
+
+    fn load(&self, at: &Instant<T>, index: usize) -> Option<LoadValue<T>> {
+        let load = self.acting.loads.get(index)?;
+        Some(match *load {
+            Load::Torque { amount, .. } => LoadValue::Torque(at.amounts[amount]),
+            Load::Force { .. } => {
+                LoadValue::Force(load.force(self.mechanism, &self.geometry, at)?)
+            }
+        })
     }
 
     /// The hydraulic cylinder behind a drive.

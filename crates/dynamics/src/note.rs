@@ -204,7 +204,7 @@ impl ForceNote {
                 flow,
                 given,
             } => format!(
-                "{} needs {:.2} l/min and the pump gives {:.2} l/min",
+                "{} needs {:.2} L/min and the pump gives {:.2} L/min",
                 drive(d),
                 flow * 6e4,
                 given * 6e4

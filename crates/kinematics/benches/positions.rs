@@ -1,5 +1,7 @@
 //! Time per position of the general plan, beside kernels written by hand for one mechanism with the same formula, in the
-//! same run: `cargo bench -p kempe-kinematics` (with `-- closed-forms` not the Newton groups). The ratios count; the nanoseconds depend on the machine.
+//! same run: `cargo bench -p kempe-kinematics` (with `-- closed-forms` not the Newton groups). The ratios count; the
+//! nanoseconds depend on the machine. A four-bar and an eight-bar: one design over a sweep, pose by pose and in lanes,
+//! with and without rates; many designs in lanes.
 //!
 //! Every measurement runs over a table of inputs into a table of outputs (no result feeds the next input), is repeated
 //! in turn with the one that it is compared with, and the fastest repeat counts. Before anything is timed, the plan and
@@ -112,16 +114,52 @@ fn write_rates(place: [LaneRates; 2], block: usize, out: &mut [f64]) {
     }
 }
 
+/// A kernel for many designs with `P` parameters each.
+trait Kernel<const P: usize> {
+    fn new(parameters: [Lanes8; P]) -> Self;
+    fn place(&self, direction: (Lanes8, Lanes8)) -> [Lanes8; 2];
+}
+
+impl Kernel<4> for FourBar<Lanes8> {
+    #[inline(always)]
+    fn new(parameters: [Lanes8; 4]) -> Self {
+        Self::new(parameters)
+    }
+
+    #[inline(always)]
+    fn place(&self, direction: (Lanes8, Lanes8)) -> [Lanes8; 2] {
+        self.coupler_point(direction)
+    }
+}
+
+impl Kernel<11> for Jansen<Lanes8> {
+    #[inline(always)]
+    fn new(parameters: [Lanes8; 11]) -> Self {
+        Self::new(parameters)
+    }
+
+    #[inline(always)]
+    fn place(&self, direction: (Lanes8, Lanes8)) -> [Lanes8; 2] {
+        self.foot(direction)
+    }
+}
+
 #[inline(always)]
-fn four_bar_designs(columns: &[f64], directions: &[(f64, f64)], out: &mut [f64]) {
-    let count = columns.len() / 4;
+fn designs<K: Kernel<P>, const P: usize>(
+    columns: &[f64],
+    directions: &[(f64, f64)],
+    out: &mut [f64],
+) {
+    let count = columns.len() / P;
     for first in (0..count).step_by(8) {
-        let k = FourBar::new([0, 1, 2, 3].map(|k| {
+        let mut parameters = [Lanes8::zero(); P];
+        for (k, parameter) in parameters.iter_mut().enumerate() {
             let column = &columns[k * count + first..];
-            column.first_chunk().map_or(Lanes8::zero(), |x| Lanes(*x))
-        }));
+            *parameter = column.first_chunk().map_or(Lanes8::zero(), |x| Lanes(*x));
+        }
+        let kernel = K::new(parameters);
         for (at, (s, c)) in directions.iter().enumerate() {
-            let place = k.coupler_point((Lanes8::from_f64(*s), Lanes8::from_f64(*c)));
+            let place = kernel.place((Lanes8::from_f64(*s), Lanes8::from_f64(*c)));
             for axis in 0..2 {
                 let column = (2 * at + axis) * count + first;
                 out[column..column + 8].copy_from_slice(&place[axis].0);
@@ -144,25 +182,33 @@ struct Jansen<T> {
 }
 
 /// The third corner of a triangle over its base, in base lengths.
-fn corner(base: f64, from: f64, to: f64) -> [f64; 2] {
-    let x = (base * base + from * from - to * to) / (2.0 * base);
+#[inline(always)]
+fn corner<T: Number>(base: T, from: T, to: T) -> [T; 2] {
+    let x = (base * base + from * from - to * to) / (base * 2.0);
     [x / base, (from * from - x * x).sqrt() / base]
 }
 
-impl Jansen<f64> {
-    fn new() -> Self {
-        let cm = 0.01;
+/// Crank, B-C, B-E, Z-E, D-G, Z-C, Z-D, C-D, E-G, E-F, G-F of Jansen's leg, in cm.
+const JANSEN: [f64; 11] = [
+    15.0, 50.0, 61.9, 39.3, 39.4, 41.5, 40.1, 55.8, 36.7, 49.0, 65.7,
+];
+
+impl<T: Number> Jansen<T> {
+    #[inline(always)]
+    fn new([crank, bc, be, ze, dg, zc, zd, cd, eg, ef, gf]: [T; 11]) -> Self {
         Self {
-            crank: 15.0 * cm,
-            z: [-38.0 * cm, -7.8 * cm],
-            bz_c: circles(50.0 * cm, 41.5 * cm),
-            bz_e: circles(61.9 * cm, 39.3 * cm),
-            de_g: circles(39.4 * cm, 36.7 * cm),
-            d: corner(41.5, 40.1, 55.8),
-            f: corner(36.7, 49.0, 65.7),
+            crank,
+            z: [T::from_f64(-0.380), T::from_f64(-0.078)],
+            bz_c: circles(bc, zc),
+            bz_e: circles(be, ze),
+            de_g: circles(dg, eg),
+            d: corner(zc, zd, cd),
+            f: corner(eg, ef, gf),
         }
     }
+}
 
+impl Jansen<f64> {
     /// The same on a richer number.
     #[inline(always)]
     fn lift<T: Number>(&self) -> Jansen<T> {
@@ -180,8 +226,7 @@ impl Jansen<f64> {
 
 impl<T: Number> Jansen<T> {
     #[inline(always)]
-    fn foot(&self, angle: T) -> [T; 2] {
-        let (s, c) = angle.sin_cos();
+    fn foot(&self, (s, c): (T, T)) -> [T; 2] {
         let b = [self.crank * c, self.crank * s];
         let bz = [self.z[0] - b[0], self.z[1] - b[1]];
         let bc = meet(bz, self.bz_c, -1.0);
@@ -208,7 +253,7 @@ fn jansen_lanes(k: &Jansen<f64>, angles: &[f64], out: &mut [f64]) {
     let (xs, ys) = out.split_at_mut(angles.len());
     let columns = (xs.as_chunks_mut::<8>().0.iter_mut()).zip(ys.as_chunks_mut::<8>().0);
     for (angles, (xs, ys)) in angles.as_chunks::<8>().0.iter().zip(columns) {
-        let [x, y] = k.foot(Lanes(*angles));
+        let [x, y] = k.foot(Lanes(*angles).sin_cos());
         (*xs, *ys) = (x.0, y.0);
     }
 }
@@ -217,7 +262,11 @@ fn jansen_lanes(k: &Jansen<f64>, angles: &[f64], out: &mut [f64]) {
 fn jansen_rates(k: &Jansen<f64>, angles: &[f64], out: &mut [f64]) {
     let k = k.lift::<LaneRates>();
     for (block, angles) in angles.as_chunks::<8>().0.iter().enumerate() {
-        write_rates(k.foot(LaneRates::variable(Lanes(*angles))), block, out);
+        write_rates(
+            k.foot(LaneRates::variable(Lanes(*angles)).sin_cos()),
+            block,
+            out,
+        );
     }
 }
 
@@ -225,7 +274,18 @@ multiversion! {
     fn hand_four_bar(set: InstructionSet, k: &FourBar<f64>, angles: &[f64], out: &mut [f64]) = four_bar_lanes;
 }
 multiversion! {
-    fn hand_designs(set: InstructionSet, columns: &[f64], directions: &[(f64, f64)], out: &mut [f64]) = four_bar_designs;
+    fn hand_four_bar_rates(set: InstructionSet, k: &FourBar<f64>, angles: &[f64], out: &mut [f64]) = four_bar_rates;
+}
+multiversion! {
+    fn hand_jansen_rates(set: InstructionSet, k: &Jansen<f64>, angles: &[f64], out: &mut [f64]) = jansen_rates;
+}
+multiversion! {
+    fn four_bar_designs(set: InstructionSet, columns: &[f64], directions: &[(f64, f64)], out: &mut [f64])
+        = designs::<FourBar<Lanes8>, 4>;
+}
+multiversion! {
+    fn jansen_designs(set: InstructionSet, columns: &[f64], directions: &[(f64, f64)], out: &mut [f64])
+        = designs::<Jansen<Lanes8>, 11>;
 }
 multiversion! {
     fn hand_jansen(set: InstructionSet, k: &Jansen<f64>, angles: &[f64], out: &mut [f64]) = jansen_lanes;
@@ -238,11 +298,33 @@ struct Loaded {
     parameters: Vec<f64>,
 }
 
+/// The text of an example file.
+fn example(name: &str) -> String {
+    let path = format!("{}/../../examples/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    std::fs::read_to_string(path).expect("an example file")
+}
+
+/// Jansen's leg with its lengths as parameters.
+fn jansen_with_parameters() -> String {
+    let names = [
+        "O-B", "B-C", "B-E", "Z-E", "D-G", "Z-C", "Z-D", "C-D", "E-G", "E-F", "G-F",
+    ];
+    let mut text = example("gallery/jansen");
+    let mut table = String::from("[parameters]\n");
+    for (k, (name, length)) in names.iter().zip(JANSEN).enumerate() {
+        text = text.replace(&format!("{name} = {length}"), &format!("{name} = \"p{k}\""));
+        table += &format!("p{k} = \"{length} cm\"\n");
+    }
+    text.replacen("[links]", &format!("{table}\n[links]"), 1)
+}
+
 impl Loaded {
     fn new(name: &str) -> Self {
-        let path = format!("{}/../../examples/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-        let text = std::fs::read_to_string(&path).expect("an example file");
-        let model = Model::from_toml(&text, &path, &mut |_| Err("no tables".into()))
+        Self::from_text(name, &example(name))
+    }
+
+    fn from_text(name: &str, text: &str) -> Self {
+        let model = Model::from_toml(text, name, &mut |_| Err("no tables".into()))
             .expect("a valid example")
             .model;
         let mechanism = Mechanism::new(&model);
@@ -322,7 +404,7 @@ fn single_design(
     scalar: &dyn Fn(&[f64], &mut [f64]),
     rates: &dyn Fn(&[f64], &mut [[Rates; 2]]),
     lanes: &dyn Fn(InstructionSet, &[f64], &mut [f64]),
-    lane_rates: &dyn Fn(&[f64], &mut [f64]),
+    lane_rates: &dyn Fn(InstructionSet, &[f64], &mut [f64]),
 ) {
     let loaded = Loaded::new(file);
     let design = loaded.design::<f64>();
@@ -413,38 +495,49 @@ fn single_design(
         report(&format!("{title}, in lanes, {set:?}"), best[0], best[1]);
     }
     let (mut general, mut hand) = (vec![0.0; 6 * ROWS], vec![0.0; 6 * ROWS]);
-    let batch = Batch::new(&motion, &[point]).expect("a point");
-    let best = compare(
-        ROWS,
-        vec![
-            Box::new(|| {
-                let closed = batch.sweep_rates(black_box(&angles), black_box(&mut general));
-                assert_eq!(closed, Ok(ROWS));
-            }),
-            Box::new(|| lane_rates(black_box(&angles), black_box(&mut hand))),
-        ],
-    );
-    same(&general, &hand);
-    report(&format!("{title}, v and a, in lanes"), best[0], best[1]);
+    for set in sets() {
+        let batch = Batch::new(&motion, &[point])
+            .expect("a point")
+            .with_instructions(set);
+        let best = compare(
+            ROWS,
+            vec![
+                Box::new(|| {
+                    let closed = batch.sweep_rates(black_box(&angles), black_box(&mut general));
+                    assert_eq!(closed, Ok(ROWS));
+                }),
+                Box::new(|| lane_rates(set, black_box(&angles), black_box(&mut hand))),
+            ],
+        );
+        same(&general, &hand);
+        report(
+            &format!("{title}, v and a, in lanes, {set:?}"),
+            best[0],
+            best[1],
+        );
+    }
 }
 
-fn many_designs() {
-    let loaded = Loaded::new("seeds/crank-rocker");
+/// A kernel for columns of parameters and the drive's directions.
+type DesignsKernel = fn(InstructionSet, &[f64], &[(f64, f64)], &mut [f64]);
+
+/// Many designs, their parameters within `spread` of the file's, against a kernel.
+fn many_designs(title: &str, loaded: &Loaded, point: &str, spread: f64, kernel: DesignsKernel) {
     let design = loaded.design::<f64>();
     let motion = loaded.motion(&design);
     let at: Vec<f64> = (0..PLACES)
         .map(|i| 0.01 + 6.2 * i as f64 / PLACES as f64)
         .collect();
     let directions: Vec<(f64, f64)> = at.iter().map(|q| Number::sin_cos(*q)).collect();
-    // Lengths within 5 % of the file's, from a fixed sequence.
+    // From a fixed sequence.
     let mut seed = 1_u64;
-    let mut columns = vec![0.0; 4 * DESIGNS];
+    let mut columns = vec![0.0; loaded.parameters.len() * DESIGNS];
     for (i, value) in columns.iter_mut().enumerate() {
         seed = seed
             .wrapping_mul(6364136223846793005)
             .wrapping_add(1442695040888963407);
         let unit = (seed >> 11) as f64 / (1_u64 << 53) as f64;
-        *value = loaded.parameters[i / DESIGNS] * (0.95 + 0.1 * unit);
+        *value = loaded.parameters[i / DESIGNS] * (1.0 + spread * (2.0 * unit - 1.0));
     }
     let designs = Designs {
         values: &columns,
@@ -454,7 +547,7 @@ fn many_designs() {
     let rows = DESIGNS * PLACES;
     let (mut general, mut hand) = (vec![0.0; 2 * rows], vec![0.0; 2 * rows]);
     for set in sets() {
-        let batch = Batch::new(&motion, &[loaded.point("P")])
+        let batch = Batch::new(&motion, &[loaded.point(point)])
             .expect("a point")
             .with_instructions(set);
         let best = compare(
@@ -464,13 +557,11 @@ fn many_designs() {
                     let closed = batch.designs(black_box(designs), &at, black_box(&mut general));
                     assert_eq!(closed, Ok(rows));
                 }),
-                Box::new(|| {
-                    hand_designs(set, black_box(&columns), &directions, black_box(&mut hand))
-                }),
+                Box::new(|| kernel(set, black_box(&columns), &directions, black_box(&mut hand))),
             ],
         );
         same(&general, &hand);
-        let title = format!("four-bar, {DESIGNS} designs at {PLACES} places, {set:?}");
+        let title = format!("{title}, {DESIGNS} designs at {PLACES} places, {set:?}");
         report(&title, best[0], best[1]);
     }
 }
@@ -581,9 +672,9 @@ fn main() {
             }
         },
         &|set, angles, out| hand_four_bar(set, &k, angles, out),
-        &|angles, out| four_bar_rates(&k, angles, out),
+        &|set, angles, out| hand_four_bar_rates(set, &k, angles, out),
     );
-    let k = Jansen::new();
+    let k = Jansen::new(JANSEN.map(|cm| 0.01 * cm));
     let rich = k.lift::<Rates>();
     single_design(
         "eight-bar (Jansen), foot",
@@ -592,18 +683,21 @@ fn main() {
         &|angles, out| {
             let (xs, ys) = out.split_at_mut(angles.len());
             for (q, (x, y)) in angles.iter().zip(xs.iter_mut().zip(ys)) {
-                [*x, *y] = k.foot(*q);
+                [*x, *y] = k.foot(Number::sin_cos(*q));
             }
         },
         &|angles, out| {
             for (q, out) in angles.iter().zip(out) {
-                *out = rich.foot(Rates::variable(*q));
+                *out = rich.foot(Rates::variable(*q).sin_cos());
             }
         },
         &|set, angles, out| hand_jansen(set, &k, angles, out),
-        &|angles, out| jansen_rates(&k, angles, out),
+        &|set, angles, out| hand_jansen_rates(set, &k, angles, out),
     );
-    many_designs();
+    let loaded = Loaded::new("seeds/crank-rocker");
+    many_designs("four-bar", &loaded, "P", 0.05, four_bar_designs);
+    let loaded = Loaded::from_text("jansen", &jansen_with_parameters());
+    many_designs("eight-bar", &loaded, "F", 0.004, jansen_designs);
     if !std::env::args().any(|a| a == "closed-forms") {
         newton();
         motions();

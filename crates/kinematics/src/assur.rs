@@ -1,7 +1,7 @@
 //! Assur groups: what the plan's blocks mean in the language of the field.
 
 use crate::mechanism::{BodyId, Constraint, Mechanism};
-use crate::plan::{Condition, Plan, Step};
+use crate::plan::{Condition, Plan, Step, Swing};
 
 /// A group of bodies that are determined together.
 #[derive(Clone, Debug, PartialEq)]
@@ -108,14 +108,14 @@ fn describe(
             None => (1, driven("link")),
             Some(Step::Gear { .. }) => (1, "gear".into()),
             Some(Step::TwoPins { .. }) => (2, "bar between two placed pins (redundant)".into()),
-            Some(Step::Swing {
+            Some(Step::Swing(Swing {
                 condition: Condition::Radius { .. },
                 ..
-            }) => (2, driven("RRR dyad of link and cylinder")),
-            Some(Step::Swing {
+            })) => (2, driven("RRR dyad of link and cylinder")),
+            Some(Step::Swing(Swing {
                 condition: Condition::OnLine { .. },
                 ..
-            }) => (2, "RRP dyad of link and slot".into()),
+            })) => (2, "RRP dyad of link and slot".into()),
             Some(Step::SwingLine { .. }) => (2, driven("RPR dyad of link and slot")),
             Some(Step::Swing { .. }) => (2, driven("link")),
             Some(Step::Cross { .. }) => (1, driven("slider")),
@@ -124,25 +124,10 @@ fn describe(
         2 => {
             let kind = if kinds.iter().any(|s| matches!(s, Step::Dyad { .. })) {
                 "RRR dyad"
-            } else if kinds.iter().any(|s| {
-                matches!(
-                    s,
-                    Step::Swing {
-                        partner: Some(_),
-                        ..
-                    }
-                )
-            }) {
+            } else if (kinds.iter()).any(|s| matches!(s, Step::Swing(s) if s.partner.is_some())) {
                 "RRP dyad"
-            } else if kinds.iter().any(|s| {
-                matches!(
-                    s,
-                    Step::SwingLine {
-                        partner: Some(_),
-                        ..
-                    }
-                )
-            }) {
+            } else if (kinds.iter()).any(|s| matches!(s, Step::SwingLine(s) if s.partner.is_some()))
+            {
                 "RPR dyad"
             } else if kinds
                 .iter()

@@ -104,6 +104,7 @@ pub(crate) fn direction<T: Number>(own: [T; 2], seen: [T; 2], square: T) -> [T; 
 }
 
 /// Constants of a dyad for its two bodies' outer and inner pins in body coordinates.
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn dyad_constants<T: Number>(
     a: ([T; 2], [T; 2]),
     b: ([T; 2], [T; 2]),
@@ -125,7 +126,11 @@ pub(crate) fn dyad_constants<T: Number>(
 /// The vectors from the placed pins of an RRR dyad to its inner pin, `v` joining the placed pins, and the determinant. The
 /// inner pin lies left of `v` for `sign` > 0.
 #[cfg_attr(not(debug_assertions), inline(always))]
-pub(crate) fn dyad<T: Number>(constants: &[T], v: [T; 2], sign: f64) -> ([T; 2], [T; 2], T) {
+pub(crate) fn dyad<T: Number>(
+    constants: &[T; DYAD_CONSTANTS],
+    v: [T; 2],
+    sign: f64,
+) -> ([T; 2], [T; 2], T) {
     let (da, h) = circle_circle(v, constants[4], constants[5], constants[6], sign);
     (da, sub(da, v), h)
 }

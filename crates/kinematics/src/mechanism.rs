@@ -204,6 +204,14 @@ pub struct AngleSource {
     pub b: LinkId,
 }
 
+impl AngleSource {
+    /// Whether it is zero whatever the dimensions.
+    pub(crate) fn is_zero(&self, mechanism: &Mechanism) -> bool {
+        let is_free = |link: LinkId| mechanism.seats[link.index()].weld.is_none();
+        self.value == ZERO && self.along.is_none() && is_free(self.a) && is_free(self.b)
+    }
+}
+
 /// Constants of a gear pair or of a rack.
 #[derive(Clone, Debug)]
 pub struct GearSource {

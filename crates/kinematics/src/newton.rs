@@ -51,129 +51,134 @@ impl PlanNumber for f64 {
     }
 }
 
-impl<const N: usize> PlanNumber for Jet<f64, N> {
-    fn solve_newton(
-        block: &NewtonBlock,
-        mechanism: &Mechanism,
-        design: &Design<Self>,
-        branch: &Branch,
-        state: &mut State<Self>,
-    ) -> Self {
-        // Every pass makes one more coefficient exact.
-        carry_over(block, mechanism, design, branch, state, N)
-    }
-}
-
-impl<const K: usize, const N: usize> PlanNumber for Jet<Dual<f64, K>, N> {
-    fn solve_newton(
-        block: &NewtonBlock,
-        mechanism: &Mechanism,
-        design: &Design<Self>,
-        branch: &Branch,
-        state: &mut State<Self>,
-    ) -> Self {
-        carry_over(block, mechanism, design, branch, state, N + 1)
-    }
-}
-
-impl<const K: usize> PlanNumber for Dual<f64, K> {
-    fn solve_newton(
-        block: &NewtonBlock,
-        mechanism: &Mechanism,
-        design: &Design<Self>,
-        branch: &Branch,
-        state: &mut State<Self>,
-    ) -> Self {
-        carry_over(block, mechanism, design, branch, state, 1)
-    }
-}
-
-impl<const W: usize> PlanNumber for Lanes<W> {
-    fn solve_newton(
-        block: &NewtonBlock,
-        mechanism: &Mechanism,
-        design: &Design<Self>,
-        branch: &Branch,
-        state: &mut State<Self>,
-    ) -> Self {
-        let mut determinant = [f64::NAN; W];
-        for (lane, determinant) in determinant.iter_mut().enumerate() {
-            *determinant =
-                lane_newton(block, mechanism, design, branch, state, |x| x.0[lane], lane);
-            let State { poses, scratch, .. } = state;
-            for unknown in &block.unknowns {
-                let body = unknown.body().index();
-                let (wide, plain) = (&mut poses[body], &scratch.poses[body]);
-                (wide.x.0[lane], wide.y.0[lane]) = (plain.x, plain.y);
-                (wide.c.0[lane], wide.s.0[lane]) = (plain.c, plain.s);
+/// Numbers whose block is solved elsewhere: `passes` more after the plain solve, or lane by lane.
+macro_rules! plan_number {
+    ($([$($generics:tt)*] $type:ty = $solve:ident($($more:expr),*);)*) => {$(
+        impl<$($generics)*> PlanNumber for $type {
+            fn solve_newton(
+                block: &NewtonBlock,
+                mechanism: &Mechanism,
+                design: &Design<Self>,
+                branch: &Branch,
+                state: &mut State<Self>,
+            ) -> Self {
+                $solve(block, mechanism, design, branch, state, $($more),*)
             }
         }
-        Lanes(determinant)
+    )*};
+}
+
+// Every pass makes one more coefficient exact.
+plan_number! {
+    [const N: usize] Jet<f64, N> = carry_over(N);
+    [const K: usize, const N: usize] Jet<Dual<f64, K>, N> = carry_over(N + 1);
+    [const K: usize] Dual<f64, K> = carry_over(1);
+    [const W: usize] Lanes<W> = lane_by_lane(0);
+    [const W: usize, const N: usize] Jet<Lanes<W>, N> = lane_by_lane(N);
+}
+
+/// A number whose parts are lanes, so that one lane can be looked at alone.
+trait Laned<const W: usize>: Number {
+    /// The plain value in a lane.
+    fn plain(self, lane: usize) -> f64;
+
+    /// The same with a plain constant in one lane.
+    fn with_plain(self, lane: usize, value: f64) -> Self;
+
+    /// Zero but for one lane.
+    fn only(self, lane: usize) -> Self;
+}
+
+impl<const W: usize> Laned<W> for Lanes<W> {
+    fn plain(self, lane: usize) -> f64 {
+        self.0[lane]
+    }
+
+    fn with_plain(mut self, lane: usize, value: f64) -> Self {
+        self.0[lane] = value;
+        self
+    }
+
+    fn only(self, lane: usize) -> Self {
+        Self::zero().with_plain(lane, self.0[lane])
     }
 }
 
-impl<const W: usize, const N: usize> PlanNumber for Jet<Lanes<W>, N> {
-    fn solve_newton(
-        block: &NewtonBlock,
-        mechanism: &Mechanism,
-        design: &Design<Self>,
-        branch: &Branch,
-        state: &mut State<Self>,
-    ) -> Self {
-        let mut determinant = Lanes([f64::NAN; W]);
-        for lane in 0..W {
-            let part = |x: Self| x.coefficient(0).0[lane];
-            determinant.0[lane] = lane_newton(block, mechanism, design, branch, state, part, lane);
-            let State {
+impl<const W: usize, const N: usize> Laned<W> for Jet<Lanes<W>, N> {
+    fn plain(self, lane: usize) -> f64 {
+        self.coefficient(0).0[lane]
+    }
+
+    fn with_plain(self, lane: usize, value: f64) -> Self {
+        let part = |k| if k == 0 { value } else { 0.0 };
+        Self::from_coefficients(std::array::from_fn(|k| {
+            self.coefficient(k).with_plain(lane, part(k))
+        }))
+    }
+
+    fn only(self, lane: usize) -> Self {
+        Self::from_coefficients(std::array::from_fn(|k| self.coefficient(k).only(lane)))
+    }
+}
+
+/// Solves one lane after the other, each with as many passes for its higher parts.
+fn lane_by_lane<T: Laned<W>, const W: usize>(
+    block: &NewtonBlock,
+    mechanism: &Mechanism,
+    design: &Design<T>,
+    branch: &Branch,
+    state: &mut State<T>,
+    passes: usize,
+) -> T {
+    let mut determinant = T::from_f64(f64::NAN);
+    for lane in 0..W {
+        let plain = lane_newton(
+            block,
+            mechanism,
+            design,
+            branch,
+            state,
+            |x| x.plain(lane),
+            lane,
+        );
+        determinant = determinant.with_plain(lane, plain);
+        let State {
+            inputs,
+            poses,
+            scratch,
+            ..
+        } = state;
+        let put = |to: &mut T, from: f64| *to = to.with_plain(lane, from);
+        for unknown in &block.unknowns {
+            let body = unknown.body().index();
+            let (wide, plain) = (&mut poses[body], &scratch.poses[body]);
+            match unknown {
+                Unknown::Angle(_) => {
+                    put(&mut wide.c, plain.c);
+                    put(&mut wide.s, plain.s);
+                }
+                Unknown::Place(_) => {
+                    put(&mut wide.x, plain.x);
+                    put(&mut wide.y, plain.y);
+                }
+            }
+        }
+        // As in `carry_over`, with this lane's Jacobian; the other lanes stay where they are.
+        let rhs = &mut scratch.wide_rhs[..block.rows.len()];
+        for _ in 0..passes {
+            let situation = Situation {
+                geometry: &design.geometry,
                 inputs,
                 poses,
-                scratch,
-                ..
-            } = state;
-            let put = |to: &mut Self, from: f64| {
-                *to = Self::from_coefficients(std::array::from_fn(|k| {
-                    let mut lanes = to.coefficient(k);
-                    lanes.0[lane] = if k == 0 { from } else { 0.0 };
-                    lanes
-                }));
+                near: &branch.near,
             };
-            for unknown in &block.unknowns {
-                let body = unknown.body().index();
-                let (wide, plain) = (&mut poses[body], &scratch.poses[body]);
-                match unknown {
-                    Unknown::Angle(_) => {
-                        put(&mut wide.c, plain.c);
-                        put(&mut wide.s, plain.s);
-                    }
-                    Unknown::Place(_) => {
-                        put(&mut wide.x, plain.x);
-                        put(&mut wide.y, plain.y);
-                    }
-                }
-            }
-            // As in `carry_over`, with this lane's Jacobian; the other lanes stay where they are.
-            let rhs = &mut scratch.wide_rhs[..block.rows.len()];
-            for _ in 0..N {
-                let situation = Situation {
-                    geometry: &design.geometry,
-                    inputs,
-                    poses,
-                    near: &branch.near,
-                };
-                fill_residuals(block, mechanism, &situation, rhs);
-                for row in rhs.iter_mut() {
-                    *row = Self::from_coefficients(std::array::from_fn(|k| {
-                        let mut own = Lanes([0.0; W]);
-                        own.0[lane] = row.coefficient(k).0[lane];
-                        own
-                    }));
-                }
-                scratch.qr.solve(rhs);
-                apply_step(block, poses, &rhs[..block.size]);
-            }
+            fill_residuals(block, mechanism, &situation, rhs);
+            rhs.iter_mut().for_each(|row| *row = row.only(lane));
+            scratch.qr.solve(rhs);
+            apply_step(block, poses, &rhs[..block.size]);
         }
-        Self::constant(determinant)
     }
+    determinant
 }
 
 /// Solves one lane, whose plain value `part` takes out, into the plain poses of the scratch; returns the determinant.

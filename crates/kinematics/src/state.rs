@@ -3,11 +3,12 @@
 use kempe_model::DriveKind;
 use kempe_number::Number;
 
-use crate::closed_form::dyad_constants;
+use crate::closed_form::{DYAD_CONSTANTS, dyad_constants};
 use crate::constraint::{Input, Situation};
 use crate::geometry::Geometry;
+use crate::known::Known;
 use crate::mechanism::{Marker, Mechanism};
-use crate::plan::{Plan, Step};
+use crate::plan::{DyadBody, Plan, Step};
 use crate::pose::Pose;
 use crate::qr::Qr;
 
@@ -16,8 +17,8 @@ use crate::qr::Qr;
 pub struct Design<T> {
     /// Dimensions.
     pub geometry: Geometry<T>,
-    /// Constants of the dyads.
-    pub constants: Vec<T>,
+    /// Constants of every dyad.
+    pub constants: Vec<[T; DYAD_CONSTANTS]>,
     /// Plain dimensions behind `geometry`, one per lane: where Newton's method starts.
     pub plain: Vec<Geometry<f64>>,
 }
@@ -37,7 +38,7 @@ impl<T: Number> Design<T> {
     ) -> Self {
         let mut it = Self {
             geometry,
-            constants: vec![T::zero(); plan.constants],
+            constants: vec![[T::zero(); DYAD_CONSTANTS]; plan.dyads],
             plain,
         };
         it.prepare(plan);
@@ -54,19 +55,10 @@ impl<T: Number> Design<T> {
     fn prepare(&mut self, plan: &Plan) {
         let geometry = &self.geometry;
         for step in &plan.steps {
-            if let Step::Dyad {
-                outer_a,
-                inner_a,
-                outer_b,
-                inner_b,
-                constants: at,
-                ..
-            } = *step
-            {
-                let a = (geometry.marker(outer_a), geometry.marker(inner_a));
-                let b = (geometry.marker(outer_b), geometry.marker(inner_b));
-                let values = dyad_constants(a, b);
-                self.constants[at..at + values.len()].copy_from_slice(&values);
+            if let Step::Dyad(dyad) = step {
+                let own =
+                    |body: DyadBody| (geometry.marker(body.outer), geometry.marker(body.inner));
+                self.constants[dyad.constants] = dyad_constants(own(dyad.a), own(dyad.b));
             }
         }
     }
@@ -77,7 +69,7 @@ impl Design<f64> {
     pub fn lift<T: Number>(&self) -> Design<T> {
         Design {
             geometry: self.geometry.map(T::from_f64),
-            constants: self.constants.iter().map(|c| T::from_f64(*c)).collect(),
+            constants: self.constants.iter().map(|c| c.map(T::from_f64)).collect(),
             plain: vec![self.geometry.clone()],
         }
     }
@@ -168,7 +160,7 @@ impl<T: Number> State<T> {
     /// A marker in the frame, m.
     #[inline(always)]
     pub fn place(&self, design: &Design<T>, marker: Marker) -> [T; 2] {
-        crate::solve::place_in(&design.geometry, &self.poses, marker)
+        Known::new(design, marker).place(&self.poses)
     }
 
     /// What the constraints see of this state.

@@ -130,10 +130,19 @@ pub enum ForceMeasure {
     ReducedLoad(DriveId),
     /// `pressure(drive)`: in the pushing chamber of a hydraulic cylinder, Pa.
     Pressure(DriveId),
-    /// `capacity(drive)`: what a hydraulic cylinder can give at its supply or relief pressure along its coordinate, N.
+    /// `capacity(drive)`: what a hydraulic cylinder can give at its supply or relief pressure along its coordinate, N; what
+    /// a motor can give at its speed, N m.
     Capacity(DriveId),
     /// `spring_force(spring)`: tension, N or N m.
     Spring(usize),
+    /// `damper_force(damper)`: tension, N or N m.
+    Damper(usize),
+    /// `load(load)`: size of a force, N; a torque with its sign, N m.
+    Load(usize),
+    /// `load_x(load)`: its component along the frame's x axis, N.
+    LoadX(usize),
+    /// `load_y(load)`: along y.
+    LoadY(usize),
 }
 
 /// A joint whose reaction is asked for, and the body on which it acts.

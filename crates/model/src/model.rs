@@ -90,6 +90,8 @@ pub struct FileUnits {
     pub length: UnitName,
     /// Angle unit, as written, such as `deg`.
     pub angle: UnitName,
+    /// Units of force, torque, pressure, power and mass, where the file names them.
+    pub more: Vec<UnitName>,
 }
 
 /// A unit by the name the user wrote, with its size in SI.

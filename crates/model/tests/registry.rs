@@ -19,6 +19,10 @@ motor = { turns = "crank", speed = 1 }
 lift  = { cylinder = "D-K", from = 1, to = 2, speed = 1 }
 [springs]
 return = { between = "A-C", stiffness = 100, free = 1 }
+[dampers]
+oil = { between = "A-C", damping = 10 }
+[loads]
+hook = { force = [0, -1], at = "P" }
 [cylinders]
 lift = { bore = 0.08, rod = 0.04, supply = "180 bar" }
 [measures]
@@ -68,6 +72,8 @@ fn every_signature_is_understood() {
                     }
                     "P" if name.starts_with("reaction") => "B",
                     "spring" => "return",
+                    "damper" => "oil",
+                    "load" => "hook",
                     "drive" => "motor",
                     "measure" => "x(C)",
                     "n" => "2",

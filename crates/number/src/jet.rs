@@ -27,7 +27,7 @@ pub struct Jet<T, const N: usize>([T; N]);
 
 impl<T: Number, const N: usize> Jet<T, N> {
     /// The series of the independent variable at `x0`: c0 = `x0`, c1 = 1.
-    #[inline]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn variable(x0: T) -> Self {
         let mut c = Self::constant(x0).0;
         if N > 1 {
@@ -37,7 +37,7 @@ impl<T: Number, const N: usize> Jet<T, N> {
     }
 
     /// A constant: every derivative zero.
-    #[inline]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn constant(x: T) -> Self {
         let mut c = [T::zero(); N];
         c[0] = x;
@@ -45,7 +45,7 @@ impl<T: Number, const N: usize> Jet<T, N> {
     }
 
     /// The series with these coefficients (derivative k over k!).
-    #[inline]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub const fn from_coefficients(coefficients: [T; N]) -> Self {
         Self(coefficients)
     }
@@ -63,7 +63,7 @@ impl<T: Number, const N: usize> Jet<T, N> {
     }
 
     /// All coefficients, constant term first.
-    #[inline]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub const fn coefficients(&self) -> &[T; N] {
         &self.0
     }
@@ -72,7 +72,7 @@ impl<T: Number, const N: usize> Jet<T, N> {
     ///
     /// # Panics
     /// When `k >= N`.
-    #[inline]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn coefficient(&self, k: usize) -> T {
         self.0[k]
     }
@@ -81,14 +81,14 @@ impl<T: Number, const N: usize> Jet<T, N> {
     ///
     /// # Panics
     /// When `k >= N`.
-    #[inline]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn derivative(&self, k: usize) -> T {
         let factorial: f64 = (1..=k).map(|i| i as f64).product();
         self.0[k] * factorial
     }
 
     /// The series of the derivative. Its last coefficient is not known from this series and set to zero.
-    #[inline]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn differentiate(&self) -> Self {
         let mut c = [T::zero(); N];
         for k in 1..N {
@@ -134,39 +134,12 @@ impl<T: Number, const N: usize> Jet<T, N> {
         sum
     }
 
-    /// Applies `f` to every coefficient.
-    #[inline]
-    fn each(self, f: impl Fn(T) -> T) -> Self {
-        Self(self.0.map(f))
-    }
+    /// Whether products and the like are compiled into their caller: always for numbers in lanes, which need the vector
+    /// instructions that the caller is compiled for, and for short series; longer ones are called.
+    const IN_PLACE: bool = T::IN_LANES || N <= 3 && size_of::<T>() == size_of::<f64>();
 
-    /// Applies `f` to the coefficients of both series in pairs.
-    #[inline]
-    fn pairwise(self, other: Self, f: impl Fn(T, T) -> T) -> Self {
-        Self(std::array::from_fn(|k| f(self.0[k], other.0[k])))
-    }
-}
-
-impl<T: Number, const N: usize> Add for Jet<T, N> {
-    type Output = Self;
-    #[inline]
-    fn add(self, other: Self) -> Self {
-        self.pairwise(other, |a, b| a + b)
-    }
-}
-
-impl<T: Number, const N: usize> Sub for Jet<T, N> {
-    type Output = Self;
-    #[inline]
-    fn sub(self, other: Self) -> Self {
-        self.pairwise(other, |a, b| a - b)
-    }
-}
-
-impl<T: Number, const N: usize> Mul for Jet<T, N> {
-    type Output = Self;
-    #[inline]
-    fn mul(self, other: Self) -> Self {
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn product(self, other: Self) -> Self {
         let mut c = self.0;
         for k in 0..N {
             c[k] = self.0[0] * other.0[k];
@@ -176,12 +149,14 @@ impl<T: Number, const N: usize> Mul for Jet<T, N> {
         }
         Self(c)
     }
-}
 
-impl<T: Number, const N: usize> Div for Jet<T, N> {
-    type Output = Self;
     #[inline]
-    fn div(self, other: Self) -> Self {
+    fn product_called(self, other: Self) -> Self {
+        self.product(other)
+    }
+
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn quotient(self, other: Self) -> Self {
         let mut q = self.0;
         for k in 0..N {
             for i in 0..k {
@@ -191,57 +166,15 @@ impl<T: Number, const N: usize> Div for Jet<T, N> {
         }
         Self(q)
     }
-}
-
-impl<T: Number, const N: usize> Neg for Jet<T, N> {
-    type Output = Self;
-    #[inline]
-    fn neg(self) -> Self {
-        self.each(|a| -a)
-    }
-}
-
-impl<T: Number, const N: usize> Add<f64> for Jet<T, N> {
-    type Output = Self;
-    #[inline]
-    fn add(mut self, other: f64) -> Self {
-        self.0[0] = self.0[0] + other;
-        self
-    }
-}
-
-impl<T: Number, const N: usize> Mul<f64> for Jet<T, N> {
-    type Output = Self;
-    #[inline]
-    fn mul(self, other: f64) -> Self {
-        self.each(|a| a * other)
-    }
-}
-
-impl<T: Number, const N: usize> Div<f64> for Jet<T, N> {
-    type Output = Self;
-    #[inline]
-    fn div(self, other: f64) -> Self {
-        self.each(|a| a / other)
-    }
-}
-
-assigning_operators!([T: Number, const N: usize] Jet<T, N>);
-
-impl<T: Number, const N: usize> Number for Jet<T, N> {
-    #[inline]
-    fn from_f64(x: f64) -> Self {
-        Self::constant(T::from_f64(x))
-    }
 
     #[inline]
-    fn value(self) -> f64 {
-        self.0[0].value()
+    fn quotient_called(self, other: Self) -> Self {
+        self.quotient(other)
     }
 
     /// s s = a gives s_k = (a_k - sum of s_i s_(k-i), 0 < i < k) / (2 s_0). Derivatives at zero are not finite.
-    #[inline]
-    fn sqrt(self) -> Self {
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn root(self) -> Self {
         let mut s = self.0;
         s[0] = self.0[0].sqrt();
         let twice = s[0] * 2.0;
@@ -254,9 +187,14 @@ impl<T: Number, const N: usize> Number for Jet<T, N> {
         Self(s)
     }
 
-    /// s' = c a' and c' = -s a'.
     #[inline]
-    fn sin_cos(self) -> (Self, Self) {
+    fn root_called(self) -> Self {
+        self.root()
+    }
+
+    /// s' = c a' and c' = -s a'.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn sine_cosine(self) -> (Self, Self) {
         let (sin, cos) = self.0[0].sin_cos();
         let (mut s, mut c) = (Self::constant(sin).0, Self::constant(cos).0);
         let slope = self.differentiate().0;
@@ -270,6 +208,148 @@ impl<T: Number, const N: usize> Number for Jet<T, N> {
             c[k] = -(sum_c / k as f64);
         }
         (Self(s), Self(c))
+    }
+
+    #[inline]
+    fn sine_cosine_called(self) -> (Self, Self) {
+        self.sine_cosine()
+    }
+
+    /// Symmetric products are formed once, and the constant term uses the tighter square of `T`.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn own_product(self) -> Self {
+        let mut c = self.0;
+        for k in 0..N {
+            let mut sum = T::zero();
+            for i in 0..k.div_ceil(2) {
+                sum += self.0[i] * self.0[k - i];
+            }
+            c[k] = sum * 2.0;
+            if k % 2 == 0 {
+                c[k] += self.0[k / 2].square();
+            }
+        }
+        Self(c)
+    }
+
+    #[inline]
+    fn own_product_called(self) -> Self {
+        self.own_product()
+    }
+
+    /// Applies `f` to every coefficient.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn each(self, f: impl Fn(T) -> T) -> Self {
+        Self(self.0.map(f))
+    }
+
+    /// Applies `f` to the coefficients of both series in pairs.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn pairwise(self, other: Self, f: impl Fn(T, T) -> T) -> Self {
+        Self(std::array::from_fn(|k| f(self.0[k], other.0[k])))
+    }
+}
+
+impl<T: Number, const N: usize> Add for Jet<T, N> {
+    type Output = Self;
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn add(self, other: Self) -> Self {
+        self.pairwise(other, |a, b| a + b)
+    }
+}
+
+impl<T: Number, const N: usize> Sub for Jet<T, N> {
+    type Output = Self;
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn sub(self, other: Self) -> Self {
+        self.pairwise(other, |a, b| a - b)
+    }
+}
+
+impl<T: Number, const N: usize> Mul for Jet<T, N> {
+    type Output = Self;
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn mul(self, other: Self) -> Self {
+        match Self::IN_PLACE {
+            true => self.product(other),
+            false => self.product_called(other),
+        }
+    }
+}
+
+impl<T: Number, const N: usize> Div for Jet<T, N> {
+    type Output = Self;
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn div(self, other: Self) -> Self {
+        match Self::IN_PLACE {
+            true => self.quotient(other),
+            false => self.quotient_called(other),
+        }
+    }
+}
+
+impl<T: Number, const N: usize> Neg for Jet<T, N> {
+    type Output = Self;
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn neg(self) -> Self {
+        self.each(|a| -a)
+    }
+}
+
+impl<T: Number, const N: usize> Add<f64> for Jet<T, N> {
+    type Output = Self;
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn add(mut self, other: f64) -> Self {
+        self.0[0] = self.0[0] + other;
+        self
+    }
+}
+
+impl<T: Number, const N: usize> Mul<f64> for Jet<T, N> {
+    type Output = Self;
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn mul(self, other: f64) -> Self {
+        self.each(|a| a * other)
+    }
+}
+
+impl<T: Number, const N: usize> Div<f64> for Jet<T, N> {
+    type Output = Self;
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn div(self, other: f64) -> Self {
+        self.each(|a| a / other)
+    }
+}
+
+assigning_operators!([T: Number, const N: usize] Jet<T, N>);
+
+impl<T: Number, const N: usize> Number for Jet<T, N> {
+    const IN_LANES: bool = T::IN_LANES;
+
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn from_f64(x: f64) -> Self {
+        Self::constant(T::from_f64(x))
+    }
+
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn value(self) -> f64 {
+        self.0[0].value()
+    }
+
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn sqrt(self) -> Self {
+        match Self::IN_PLACE {
+            true => self.root(),
+            false => self.root_called(),
+        }
+    }
+
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn sin_cos(self) -> (Self, Self) {
+        match Self::IN_PLACE {
+            true => self.sine_cosine(),
+            false => self.sine_cosine_called(),
+        }
     }
 
     /// theta' = (x y' - y x') / (x^2 + y^2), integrated from the angle of the constant terms.
@@ -336,20 +416,11 @@ impl<T: Number, const N: usize> Number for Jet<T, N> {
         self.0.iter().all(|c| c.is_finite())
     }
 
-    /// Symmetric products are formed once, and the constant term uses the tighter square of `T`.
-    #[inline]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn square(self) -> Self {
-        let mut c = self.0;
-        for k in 0..N {
-            let mut sum = T::zero();
-            for i in 0..k.div_ceil(2) {
-                sum += self.0[i] * self.0[k - i];
-            }
-            c[k] = sum * 2.0;
-            if k % 2 == 0 {
-                c[k] += self.0[k / 2].square();
-            }
+        match Self::IN_PLACE {
+            true => self.own_product(),
+            false => self.own_product_called(),
         }
-        Self(c)
     }
 }

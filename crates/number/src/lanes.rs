@@ -111,6 +111,8 @@ impl<const W: usize> Neg for Lanes<W> {
 assigning_operators!([const W: usize] Lanes<W>);
 
 impl<const W: usize> Number for Lanes<W> {
+    const IN_LANES: bool = true;
+
     #[inline(always)]
     fn from_f64(x: f64) -> Self {
         Self([x; W])

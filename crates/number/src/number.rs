@@ -31,6 +31,10 @@ pub trait Number:
     + SubAssign
     + MulAssign
 {
+    /// Whether it holds lanes, so that its operations have to be compiled into their caller for the caller's vector
+    /// instructions.
+    const IN_LANES: bool = false;
+
     /// The constant `x`: no derivatives, the same in every lane, a degenerate interval.
     fn from_f64(x: f64) -> Self;
 

@@ -52,15 +52,10 @@ fn sides(
     };
     let mut lines = vec![String::new(); assemblies.len()];
     for step in &plan.steps {
-        let Step::Dyad {
-            at_a,
-            inner_a,
-            at_b,
-            ..
-        } = *step
-        else {
+        let Step::Dyad(dyad) = step else {
             continue;
         };
+        let (at_a, inner_a, at_b) = (dyad.a.at, dyad.a.inner, dyad.b.at);
         let left: Option<Vec<bool>> = assemblies
             .iter()
             .map(|assembly| {

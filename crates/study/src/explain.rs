@@ -2,7 +2,7 @@
 
 use kempe_kinematics::drive_path::DrivePath;
 use kempe_kinematics::mechanism::Marker;
-use kempe_kinematics::plan::{Condition, Step};
+use kempe_kinematics::plan::{Condition, Dyad, Step, Swing};
 use kempe_kinematics::{
     Branch, Design, EndReason, Mechanism, Motion, MotionError, Plan, Stage, State,
 };
@@ -210,33 +210,25 @@ fn measured(
             .map(|l| l.name.clone())
     };
     let (a, b, first, second, names, links) = match *step {
-        Step::Dyad {
-            outer_a,
-            at_a,
-            inner_a,
-            outer_b,
-            at_b,
-            inner_b,
-            ..
-        } => {
-            let links = vec![link(inner_a)?, link(inner_b)?];
+        Step::Dyad(Dyad { a, b, .. }) => {
+            let links = vec![link(a.inner)?, link(b.inner)?];
             let names = [format!("`{}`", links[0]), format!("`{}`", links[1])];
             (
-                (world(at_a)?, point(at_a)?),
-                (world(at_b)?, point(at_b)?),
-                own(outer_a, inner_a),
-                own(outer_b, inner_b),
+                (world(a.at)?, point(a.at)?),
+                (world(b.at)?, point(b.at)?),
+                own(a.outer, a.inner),
+                own(b.outer, b.inner),
                 names,
                 links,
             )
         }
-        Step::Swing {
+        Step::Swing(Swing {
             own: pin,
             at,
             tip,
             condition: Condition::Radius { center, input, .. },
             partner: None,
-        } => {
+        }) => {
             let links = vec![link(pin)?];
             let drive = mechanism.model.drives.get(input.index())?;
             let names = [

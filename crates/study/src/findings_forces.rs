@@ -3,16 +3,17 @@
 use kempe_dynamics::Acting;
 use kempe_dynamics::acting::GRAVITY;
 use kempe_kinematics::{Design, Mechanism};
-use kempe_model::{Center, Diagnostic, Model, value};
+use kempe_model::{Center, Diagnostic, Model, Study, StudyKind, value};
 use kempe_units::Dimension;
 
 use crate::explain::list;
 use crate::unit::Units;
 
-/// What is taken for granted about masses and gravity; nothing of a mechanism without masses.
+/// What acts, and what is taken for granted about masses and gravity.
 pub(crate) fn assumptions(model: &Model, units: &Units) -> Vec<String> {
     let parameters: Vec<f64> = model.parameter_values();
     let actions = &model.actions;
+    let mut told = acting(model);
     let own = model
         .links
         .iter()
@@ -20,25 +21,20 @@ pub(crate) fn assumptions(model: &Model, units: &Units) -> Vec<String> {
     let masses = own.chain(actions.masses.iter().map(|m| &m.mass));
     let total: f64 = masses.map(|m| value(m, &parameters)).sum();
     if total == 0.0 {
-        return Vec::new();
+        return told;
     }
-    let mut told = vec![format!(
+    told.push(format!(
         "mass: {} in all",
         units.text(total, Dimension::MASS)
-    )];
-    told.push(match &actions.gravity {
-        None => format!(
-            "gravity: {} along -y",
-            units.text(GRAVITY, Dimension::ACCELERATION)
-        ),
-        Some([x, y]) => {
-            let [x, y] = [x, y].map(|g| value(g, &parameters));
-            format!(
-                "gravity: [{}, {}]",
-                units.text(x, Dimension::ACCELERATION),
-                units.text(y, Dimension::ACCELERATION)
-            )
-        }
+    ));
+    let gravity = match &actions.gravity {
+        None => [0.0, -GRAVITY],
+        Some(g) => [&g[0], &g[1]].map(|g| value(g, &parameters)),
+    };
+    told.push(match gravity {
+        [0.0, 0.0] => "gravity: none".to_owned(),
+        [0.0, y] if y < 0.0 => format!("gravity: {} m/s^2 along -y", -y),
+        [x, y] => format!("gravity: [{x}, {y}] m/s^2"),
     });
     let named = |test: &dyn Fn(&kempe_model::Link) -> bool| {
         let links = model.links.iter().skip(1).filter(|l| test(l));
@@ -57,6 +53,36 @@ pub(crate) fn assumptions(model: &Model, units: &Units) -> Vec<String> {
     let massless = named(&|l| l.inertia.as_ref().is_none_or(|i| i.mass.is_none()));
     if !massless.is_empty() {
         told.push(format!("without mass: {}", list(&massless)));
+    }
+    told
+}
+
+/// What acts besides weights, and that no study asks for it.
+fn acting(model: &Model) -> Vec<String> {
+    let actions = &model.actions;
+    let mut told = Vec::new();
+    let mut add = |what: &str, names: Vec<&str>| {
+        if !names.is_empty() {
+            told.push(format!("{what}: {}", names.join(", ")));
+        }
+    };
+    add(
+        "loads",
+        actions.loads.iter().map(|l| l.name.as_str()).collect(),
+    );
+    add(
+        "springs",
+        actions.springs.iter().map(|s| s.name.as_str()).collect(),
+    );
+    add(
+        "dampers",
+        actions.dampers.iter().map(|d| d.name.as_str()).collect(),
+    );
+    let asks = |s: &Study| !matches!(s.kind, StudyKind::Motion(_));
+    if !told.is_empty() && !model.studies.iter().any(asks) {
+        told.push(
+            "forces: no study asks for them; add [studies.loads] kind = \"forces\"".to_owned(),
+        );
     }
     told
 }

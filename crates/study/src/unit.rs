@@ -8,7 +8,7 @@ use kempe_units::{Dimension, Unit, format_digits};
 pub struct Units {
     length: Unit,
     angle: Unit,
-    preferred: [Unit; 2],
+    preferred: Vec<Unit>,
 }
 
 impl Units {
@@ -22,15 +22,18 @@ impl Units {
         let length = parse(&model.units.length.name, "m");
         let angle = parse(&model.units.angle.name, "rad");
         let rad = parse("rad", "rad");
+        let mut preferred = vec![length.clone(), rad];
+        let more = model.units.more.iter();
+        preferred.extend(more.filter_map(|unit| Unit::parse(&unit.name).ok()));
         Self {
-            preferred: [length.clone(), rad],
+            preferred,
             length,
             angle,
         }
     }
 
     /// The unit of a dimension: lengths and angles in the file's units; rates of angles and derivatives to angles in
-    /// radians (`rad/s`, `mm/rad`); force-like quantities in SI.
+    /// radians (`rad/s`, `mm/rad`); force-like quantities in the file's units for them, or in SI.
     pub fn unit(&self, dimension: Dimension) -> Unit {
         if dimension == Dimension::ANGLE {
             return self.angle.clone();

@@ -419,3 +419,58 @@ columns = "torque(m)"
     );
     assert!((torque[1] - 981.0 * circle).abs() < 1e-6, "{torque:?}");
 }
+
+/// Loads, dampers and motors are asked for by name; results are shown in the units that the file names.
+#[test]
+fn what_acts_is_measured_in_the_units_of_the_file() {
+    let text = r#"
+units = { length = "mm", angle = "deg", force = "kN", torque = "kN m", mass = "t" }
+[links]
+frame = { A = [0, 0], S = [0, 500] }
+arm   = { A-B = 400, mass = 0.002, inertia = "0.1 kg m^2", center = [200, 0] }
+[drives]
+motor = { turns = "arm", from = 0, to = 90, speed = "2 rad/s" }
+[loads]
+hook  = { force = [0.3, -0.4], at = "B" }
+brake = { torque = "-20 N m * cos(motor)", on = "arm" }
+[dampers]
+oil = { between = "S-B", damping = "50 N s/m" }
+[motors]
+motor = { curve = [["0 rad/s", "300 N m"], ["4 rad/s", "100 N m"]] }
+[measures]
+pull = "load(hook)"
+side = "load_x(hook)"
+stop = "load(brake)"
+oily = "damper_force(oil)"
+can  = "capacity(motor)"
+rest = "torque(motor) - reduced_mass(motor) * rate(motor, 2) + reduced_load(motor)"
+[studies.t]
+kind = "forces"
+rows = 4
+columns = ["pull", "side", "load_y(hook)", "stop", "oily", "can", "torque(motor)", "reaction(A)", "rate(distance(S, B))", "rest"]
+"#;
+    let result = ran(text);
+    let heads: Vec<String> = result.table.columns.iter().map(|c| c.head()).collect();
+    assert!(
+        heads.contains(&"pull [kN]".to_owned()) && heads.contains(&"can [kN m]".to_owned()),
+        "{heads:?}"
+    );
+    let near = |name: &str, expected: &dyn Fn(usize) -> f64| {
+        for (row, value) in column(&result, name).iter().enumerate() {
+            assert!(
+                (value - expected(row)).abs() < 1e-12,
+                "{name} {row}: {value} {}",
+                expected(row)
+            );
+        }
+    };
+    near("pull", &|_| 0.5);
+    near("side", &|_| 0.3);
+    near("load_y(hook)", &|_| -0.4);
+    let angle = column(&result, "motor");
+    near("stop", &|row| -0.02 * angle[row].to_radians().cos());
+    let parting = column(&result, "rate(distance(S, B))");
+    near("oily", &|row| 50.0 * parting[row] * 1e-3 * 1e-3);
+    near("can", &|_| 0.2);
+    near("rest", &|_| 0.0);
+}

@@ -85,6 +85,8 @@ impl Dimension {
     pub const MOMENTUM: Self = Self::new(1, 1, -1, 0);
     /// Flow, volume/time.
     pub const FLOW: Self = Self::new(3, 0, -1, 0);
+    /// Mass per length.
+    pub const LINEAR_DENSITY: Self = Self::new(-1, 1, 0, 0);
     /// Density.
     pub const DENSITY: Self = Self::new(-3, 1, 0, 0);
 

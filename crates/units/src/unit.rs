@@ -178,6 +178,7 @@ const MECHANICS: &[(Dimension, &str)] = &[
     (Dimension::TORSIONAL_DAMPING, "N m s/rad"),
     (Dimension::MOMENTUM, "N s"),
     (Dimension::DENSITY, "kg/m^3"),
+    (Dimension::LINEAR_DENSITY, "kg/m"),
     (Dimension::FREQUENCY, "Hz"),
 ];
 

@@ -72,6 +72,7 @@ pub fn verify(arguments: &Verify) -> Exit {
     let mut all: Vec<Comparison> = Vec::new();
     let mut worst = Exit::Ok;
     let mut out = String::new();
+    let mut not_run = 0;
     for found in &cases {
         match run_case(found, &mut speaker) {
             Ok(comparisons) => {
@@ -80,6 +81,7 @@ pub fn verify(arguments: &Verify) -> Exit {
             }
             Err(exit) => {
                 out.push_str(&format!("{}: not run\n", found.name));
+                not_run += 1;
                 worst = worst.max(exit);
             }
         }
@@ -88,6 +90,7 @@ pub fn verify(arguments: &Verify) -> Exit {
     if arguments.json {
         print_json(&json!({
             "cases": cases.len(),
+            "not_run": not_run,
             "compared": all.len(),
             "missed": missed,
             "comparisons": all,
@@ -95,9 +98,13 @@ pub fn verify(arguments: &Verify) -> Exit {
         }));
     } else {
         put(&format!(
-            "{out}{} values in {} cases compared, {missed} missed\n",
+            "{out}{} values in {} cases compared, {missed} missed{}\n",
             all.len(),
-            cases.len()
+            cases.len() - not_run,
+            match not_run {
+                0 => String::new(),
+                n => format!("; {n} cases not run"),
+            }
         ));
     }
     if missed > 0 {

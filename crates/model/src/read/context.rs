@@ -45,8 +45,8 @@ pub(crate) struct Context<'a> {
     pub files: Files<'a>,
     /// All that is to be said so far.
     pub found: Vec<Diagnostic>,
-    /// The file's units of length and angle.
-    pub preferred: [Unit; 2],
+    /// The file's units: of length, of angle, and those it names besides.
+    pub preferred: Vec<Unit>,
     /// Small-letter names: what they mean and where they are declared.
     pub names: BTreeMap<String, (Meaning, Span)>,
     /// Points by name.
@@ -61,6 +61,10 @@ pub(crate) struct Context<'a> {
     pub drives: Vec<Option<DriveId>>,
     /// Springs by name: their place in the model and what they give, when they are sound.
     pub springs: BTreeMap<String, Option<(usize, kempe_units::Dimension)>>,
+    /// Dampers by name, likewise.
+    pub dampers: BTreeMap<String, Option<(usize, kempe_units::Dimension)>>,
+    /// Loads by name and whether they are forces or torques; they are read after the measures that they may follow.
+    pub loads: BTreeMap<String, Option<(usize, kempe_units::Dimension)>>,
     /// Entries of `[cylinders]` that are not sound.
     pub broken_cylinders: BTreeSet<String>,
     /// Rows of tables read so far.
@@ -93,12 +97,13 @@ impl<'a> Context<'a> {
                 name: "deg".into(),
                 factor: 1.0f64.to_radians(),
             },
+            more: Vec::new(),
         };
         let unit = |name: &str| Unit::parse(name).unwrap_or_else(|_| Unit::one());
         Self {
             files,
             found: Vec::new(),
-            preferred: [unit("m"), unit("deg")],
+            preferred: vec![unit("m"), unit("deg")],
             names: BTreeMap::new(),
             points: BTreeMap::new(),
             sound: Vec::new(),
@@ -106,6 +111,8 @@ impl<'a> Context<'a> {
             joints: Vec::new(),
             drives: Vec::new(),
             springs: BTreeMap::new(),
+            dampers: BTreeMap::new(),
+            loads: BTreeMap::new(),
             broken_cylinders: BTreeSet::new(),
             table_rows: 0,
             measures: Vec::new(),

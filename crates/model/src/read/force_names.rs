@@ -97,8 +97,12 @@ impl Measures<'_, '_> {
                 self.hydraulic(call, false).map(F::Pressure),
                 Dimension::PRESSURE,
             ),
-            "capacity" => of(self.hydraulic(call, true).map(F::Capacity), force),
-            "spring_force" => Some(self.spring(call)),
+            "capacity" => Some(self.capacity(call)),
+            "spring_force" => Some(self.acting(call, "spring", &self.0.springs, F::Spring)),
+            "damper_force" => Some(self.acting(call, "damper", &self.0.dampers, F::Damper)),
+            "load" => Some(self.acting(call, "load", &self.0.loads, F::Load)),
+            "load_x" => Some(self.component(call, F::LoadX)),
+            "load_y" => Some(self.component(call, F::LoadY)),
             name if bare(name).is_some() => Some(Err(vec![
                 Issue::new(
                     "wrong-arguments",
@@ -199,12 +203,15 @@ impl Measures<'_, '_> {
             let links = cx.carriers(point);
             let name = cx.point_name(point);
             if links.len() < 2 {
-                let help = match self.joint_at(point) {
-                    Some(joint) => format!(
+                let help = match (self.joint_at(point), self.cylinder_at(point)) {
+                    (Some(joint), _) => format!(
                         "the reaction there is that of the joint: {}({joint})",
                         call.function
                     ),
-                    None => {
+                    (None, Some(drive)) => format!(
+                        "it is an end of the cylinder `{drive}`, which pushes there with force({drive})"
+                    ),
+                    (None, None) => {
                         "a point that two links carry is a pin; of another joint, name the joint"
                             .to_owned()
                     }
@@ -270,6 +277,15 @@ impl Measures<'_, '_> {
             JointKind::Slider { at, .. } => at.point == point,
             JointKind::Slot { pin, .. } => pin.point == point,
             _ => false,
+        })?;
+        Some(&found.name)
+    }
+
+    /// The cylinder that ends at a point.
+    fn cylinder_at(&self, point: crate::model::PointId) -> Option<&str> {
+        let mut drives = self.0.model.drives.iter();
+        let found = drives.find(|d| {
+            matches!(d.kind, DriveKind::Cylinder { a, b } if a.point == point || b.point == point)
         })?;
         Some(&found.name)
     }
@@ -346,39 +362,73 @@ impl Measures<'_, '_> {
         Ok(id)
     }
 
-    fn spring(&self, call: &Call<'_>) -> Found<(Leaf, Dimension)> {
+    /// What a cylinder or a motor can give.
+    fn capacity(&self, call: &Call<'_>) -> Found<(Leaf, Dimension)> {
+        let (id, _) = self.only_drive(call)?;
+        let motors = &self.0.model.actions.motors;
+        if motors.iter().any(|m| m.drive == id) {
+            return Ok((Leaf::Force(ForceMeasure::Capacity(id)), Dimension::TORQUE));
+        }
+        let id = self.hydraulic(call, true)?;
+        Ok((Leaf::Force(ForceMeasure::Capacity(id)), Dimension::FORCE))
+    }
+
+    /// A spring, a damper or a load, by its name.
+    fn acting(
+        &self,
+        call: &Call<'_>,
+        what: &str,
+        declared: &std::collections::BTreeMap<String, Option<(usize, Dimension)>>,
+        measure: impl Fn(usize) -> ForceMeasure,
+    ) -> Found<(Leaf, Dimension)> {
         let [node] = call.arguments else {
             return self.wrong(call);
         };
         let Some(name) = node.as_name() else {
-            return self.argument(node, "a spring", "name a spring of [springs]".to_owned());
+            return self.argument(
+                node,
+                &format!("a {what}"),
+                format!("name a {what} of [{what}s]"),
+            );
         };
-        match self.0.springs.get(name) {
-            Some(Some((i, dimension))) => Ok((Leaf::Force(ForceMeasure::Spring(*i)), *dimension)),
+        match declared.get(name) {
+            Some(Some((i, dimension))) => Ok((Leaf::Force(measure(*i)), *dimension)),
             Some(None) => Err(vec![Issue::new(ALREADY_TOLD, node.span.clone(), "")]),
             None => {
                 let mut issue = Issue::new(
                     "unknown-name",
                     node.span.clone(),
-                    format!("there is no spring `{name}`"),
+                    format!("there is no {what} `{name}`"),
                 )
                 .with_label("not declared");
-                let springs: Vec<&str> = self.0.springs.keys().map(String::as_str).collect();
-                issue.help = Some(match nearest(name, springs.iter().copied()) {
+                let known: Vec<&str> = declared.keys().map(String::as_str).collect();
+                issue.help = Some(match nearest(name, known.iter().copied()) {
                     Some(near) => format!("did you mean `{near}`?"),
-                    None if springs.is_empty() => "the file has no springs".to_owned(),
-                    None => format!(
-                        "the springs are {}",
-                        springs
-                            .iter()
-                            .take(12)
-                            .copied()
-                            .collect::<Vec<_>>()
-                            .join(", ")
-                    ),
+                    None if known.is_empty() => format!("the file has no {what}s"),
+                    None => {
+                        let first: Vec<&str> = known.iter().take(12).copied().collect();
+                        format!("the {what}s are {}", first.join(", "))
+                    }
                 });
                 Err(vec![issue])
             }
         }
+    }
+
+    /// A component of a force load.
+    fn component(
+        &self,
+        call: &Call<'_>,
+        measure: impl Fn(usize) -> ForceMeasure,
+    ) -> Found<(Leaf, Dimension)> {
+        let found = self.acting(call, "load", &self.0.loads, measure)?;
+        if found.1 != Dimension::FORCE {
+            let help = "a torque has one value: load(…)".to_owned();
+            return match call.arguments {
+                [node] => self.argument(node, "a force", help),
+                _ => self.wrong(call),
+            };
+        }
+        Ok(found)
     }
 }

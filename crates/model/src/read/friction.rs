@@ -1,4 +1,4 @@
-//! `[friction]`: at pins by the name of the point, at sliders, slots, gears and racks by the name of the joint, and for `all`.
+//! `[friction]`: at pins by the name of the point, at sliders and slots by the name of the joint, and for `all`.
 //!
 //! ```toml
 //! [friction]
@@ -73,6 +73,7 @@ fn read_one(
     let at_rest = entry.positive(cx, "static", Dimension::NONE, true);
     let stribeck = entry.positive(cx, "stribeck", Dimension::SPEED, false);
     entry.idle(cx, &["stribeck"], "static");
+    entry.idle(cx, &["static"], "stribeck");
     let radius = match at {
         FrictionAt::Joint(_) => Some(None),
         _ => entry.positive(cx, "radius", Dimension::LENGTH, false),
@@ -139,14 +140,21 @@ fn place(cx: &mut Context<'_>, key: &Key) -> Option<FrictionAt> {
     }
     if let Some((Meaning::Joint(i), _)) = cx.names.get(name) {
         let id = cx.joints.get(*i).copied().flatten()?;
-        if let Some(JointKind::Weld { .. }) = cx.model.joints.get(id.index()).map(|j| &j.kind) {
+        let what = match cx.model.joints.get(id.index()).map(|j| &j.kind) {
+            Some(JointKind::Weld { .. }) => Some("a weld: nothing rubs there"),
+            Some(JointKind::Gears { .. }) => {
+                Some("a gear pair, whose friction this version does not know")
+            }
+            Some(JointKind::Rack { .. }) => {
+                Some("a rack, whose friction this version does not know")
+            }
+            _ => None,
+        };
+        if let Some(what) = what {
             cx.push(
-                Diagnostic::error(
-                    "not-a-slider",
-                    format!("`{name}` is a weld: nothing rubs there"),
-                )
-                .at(key.span.clone(), "")
-                .help("friction acts at pins, sliders, slots, gears and racks"),
+                Diagnostic::error("not-a-slider", format!("`{name}` is {what}"))
+                    .at(key.span.clone(), "")
+                    .help("friction acts at pins, sliders and slots"),
             );
             return None;
         }

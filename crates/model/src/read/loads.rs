@@ -54,6 +54,19 @@ const WORDS: Words = Words {
 /// A file has at most so many loads.
 const MAX: usize = 10_000;
 
+/// Makes the loads known to measures, before they are read.
+pub(crate) fn declare(cx: &mut Context<'_>, entries: &[&(Key, Node)]) {
+    for (index, (key, node)) in entries.iter().enumerate() {
+        let torque = matches!(&node.value, Value::Table(t) if t.get("torque").is_some());
+        let dimension = if torque {
+            Dimension::TORQUE
+        } else {
+            Dimension::FORCE
+        };
+        cx.loads.insert(key.name.clone(), Some((index, dimension)));
+    }
+}
+
 /// Reads all loads.
 pub(crate) fn read(cx: &mut Context<'_>, entries: &[&(Key, Node)]) {
     for entry in cx.limited(entries, MAX, "loads") {

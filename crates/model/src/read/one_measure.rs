@@ -64,10 +64,13 @@ impl<'a> Context<'a> {
         let unit = |name: &str, or: &kempe_units::Unit| {
             kempe_units::Unit::parse(name).unwrap_or_else(|_| or.clone())
         };
-        cx.preferred = [
+        cx.preferred = vec![
             unit(&model.units.length.name, &cx.preferred[0]),
             unit(&model.units.angle.name, &cx.preferred[1]),
         ];
+        let more = model.units.more.iter();
+        let more = more.filter_map(|unit| kempe_units::Unit::parse(&unit.name).ok());
+        cx.preferred.extend(more);
         let parameters = (model.parameters.iter().enumerate())
             .map(|(i, p)| (&p.name, Meaning::Parameter(ParameterId(i as u32)), &p.span));
         let links = (model.links.iter().enumerate())

@@ -90,6 +90,7 @@ pub(crate) fn read(
     friction::read(cx, &sections.friction);
     actuators::read_cylinders(cx, &sections.cylinders);
     actuators::read_motors(cx, &sections.motors);
+    loads::declare(cx, &sections.loads);
     measures::read(cx, &sections.measures);
     loads::read(cx, &sections.loads);
     studies::read(cx, &sections.studies);
@@ -163,7 +164,18 @@ const FOLLOWS_FROM_SYNTAX: &[&str] = &[
 ];
 
 /// Keys of `units`.
-pub(crate) const UNIT_KEYS: &[&str] = &["length", "angle"];
+pub(crate) const UNIT_KEYS: &[&str] = &[
+    "length", "angle", "force", "torque", "pressure", "power", "mass",
+];
+
+/// Units besides those of length and angle, with an example each.
+const MORE_UNITS: &[(&str, Dimension, &str)] = &[
+    ("force", Dimension::FORCE, "\"kN\""),
+    ("torque", Dimension::TORQUE, "\"kN m\""),
+    ("pressure", Dimension::PRESSURE, "\"bar\""),
+    ("power", Dimension::POWER, "\"kW\""),
+    ("mass", Dimension::MASS, "\"t\""),
+];
 
 fn units(cx: &mut Context<'_>, node: &Node) {
     let Some(table) = cx.table(
@@ -174,39 +186,55 @@ fn units(cx: &mut Context<'_>, node: &Node) {
         return;
     };
     cx.unknown_keys(table, "`units`", UNIT_KEYS);
-    for (i, (key, dimension)) in [("length", Dimension::LENGTH), ("angle", Dimension::ANGLE)]
-        .into_iter()
-        .enumerate()
-    {
-        let Some(node) = table.get(key) else { continue };
-        let example = if key == "length" { "\"mm\"" } else { "\"deg\"" };
-        let Some(text) = cx.text(node, &format!("the unit of {key}"), example) else {
-            continue;
-        };
-        match Unit::parse(&text.content) {
-            Err(issue) => cx.issues(text, vec![issue]),
-            Ok(unit) if unit.dimension() != dimension => cx.push(
+    if let Some(unit) = unit_of(cx, table, "length", Dimension::LENGTH, "\"mm\"") {
+        cx.model.units.length = unit_name(&unit);
+        cx.preferred[0] = unit;
+    }
+    if let Some(unit) = unit_of(cx, table, "angle", Dimension::ANGLE, "\"deg\"") {
+        cx.model.units.angle = unit_name(&unit);
+        cx.preferred[1] = unit;
+    }
+    for (key, dimension, example) in MORE_UNITS {
+        if let Some(unit) = unit_of(cx, table, key, *dimension, example) {
+            cx.model.units.more.push(unit_name(&unit));
+            cx.preferred.push(unit);
+        }
+    }
+}
+
+fn unit_name(unit: &Unit) -> UnitName {
+    UnitName {
+        name: unit.text().to_owned(),
+        factor: unit.factor(),
+    }
+}
+
+/// A unit of the file, when it is given and sound.
+fn unit_of(
+    cx: &mut Context<'_>,
+    table: &Table,
+    key: &str,
+    dimension: Dimension,
+    example: &str,
+) -> Option<Unit> {
+    let node = table.get(key)?;
+    let text = cx.text(node, &format!("the unit of {key}"), example)?;
+    match Unit::parse(&text.content) {
+        Err(issue) => {
+            cx.issues(text, vec![issue]);
+            None
+        }
+        Ok(unit) if unit.dimension() != dimension => {
+            cx.push(
                 Diagnostic::error("unit-mismatch", format!("a unit of {key} expected"))
                     .at(
                         node.span.clone(),
                         format!("this is a unit of {}", unit.dimension()),
                     )
                     .help(format!("write {key} = {example}")),
-            ),
-            Ok(unit) => {
-                let name = UnitName {
-                    name: text.content.trim().to_owned(),
-                    factor: unit.factor(),
-                };
-                if i == 0 {
-                    cx.model.units.length = name
-                } else {
-                    cx.model.units.angle = name
-                }
-                if let Some(preferred) = cx.preferred.get_mut(i) {
-                    *preferred = unit;
-                }
-            }
+            );
+            None
         }
+        Ok(unit) => Some(unit),
     }
 }

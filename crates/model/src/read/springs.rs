@@ -56,13 +56,9 @@ pub(crate) fn read_springs(cx: &mut Context<'_>, entries: &[&(Key, Node)]) {
     for entry in cx.limited(entries, MAX, "springs") {
         plain_name(cx, &entry.0, "a spring");
         let spring = read_spring(cx, entry);
-        let place = spring.as_ref().map(|spring| {
-            let dimension = match spring.between {
-                Between::Points(..) => Dimension::FORCE,
-                Between::Links(..) => Dimension::TORQUE,
-            };
-            (cx.model.actions.springs.len(), dimension)
-        });
+        let place = spring
+            .as_ref()
+            .map(|spring| (cx.model.actions.springs.len(), tension(&spring.between)));
         cx.springs.insert(entry.0.name.clone(), place);
         cx.model.actions.springs.extend(spring);
     }
@@ -73,7 +69,18 @@ pub(crate) fn read_dampers(cx: &mut Context<'_>, entries: &[&(Key, Node)]) {
     for entry in cx.limited(entries, MAX, "dampers") {
         plain_name(cx, &entry.0, "a damper");
         let damper = read_damper(cx, entry);
+        let place =
+            (damper.as_ref()).map(|d| (cx.model.actions.dampers.len(), tension(&d.between)));
+        cx.dampers.insert(entry.0.name.clone(), place);
         cx.model.actions.dampers.extend(damper);
+    }
+}
+
+/// What something between two ends gives.
+fn tension(between: &Between) -> Dimension {
+    match between {
+        Between::Points(..) => Dimension::FORCE,
+        Between::Links(..) => Dimension::TORQUE,
     }
 }
 

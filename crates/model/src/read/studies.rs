@@ -116,7 +116,10 @@ fn read_study(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<StudyKind> {
         let known = KINDS.iter().map(|(known, ..)| *known);
         let help = match kempe_units::nearest(name, known.chain(ANNOUNCED_KINDS.iter().copied())) {
             Some(near) => format!("did you mean `{near}`?"),
-            None => "write kind = \"motion\" or kind = \"forces\"".to_owned(),
+            None => {
+                let kinds: Vec<&str> = KINDS.iter().map(|(known, ..)| *known).collect();
+                format!("the kinds are {}", kinds.join(", "))
+            }
         };
         cx.push(
             Diagnostic::error(
