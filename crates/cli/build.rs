@@ -8,7 +8,12 @@ fn main() {
     let mut list =
         String::from("/// Files that came with the program, by their path in the repository.\n");
     list.push_str("const EMBEDDED: &[(&str, &str)] = &[\n");
-    for folder in ["examples/gallery", "examples/seeds", "validation"] {
+    for folder in [
+        "examples/gallery",
+        "examples/seeds",
+        "validation",
+        "validation/models",
+    ] {
         println!("cargo::rerun-if-changed={}", root.join(folder).display());
         for file in files(&root.join(folder)) {
             let name = file

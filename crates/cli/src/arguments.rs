@@ -13,7 +13,7 @@ use clap::{Args, Parser, Subcommand};
     after_help = "Start here:\n  kempe new my-linkage.toml\n  kempe run my-linkage.toml --out results\n\n\
                   Exit codes:\n  0    all is well\n  1    something was found: a warning of check, a miss of verify, rows that were not reached\n  \
                   2    the command line or the model file is wrong, or a file cannot be read or written\n  \
-                  3    the mechanism cannot be assembled or moved as asked\n  130  stopped by Ctrl-C; finished rows are kept"
+                  3    the mechanism cannot be assembled or moved as asked\n  130  stopped by Ctrl-C: finished rows and studies are kept, a check tells what it found"
 )]
 pub struct Arguments {
     /// What to do.
@@ -28,6 +28,8 @@ pub enum Command {
     Check(Check),
     /// Run the studies of a model: tables, figures and one HTML report
     Run(Run),
+    /// Tell how every measure changes with every parameter at one place
+    Sensitivities(Sensitivities),
     /// Draw a mechanism at one pose, or move it: SVG, PNG, DXF, GIF, APNG
     Draw(Draw),
     /// Write a commented starter file
@@ -65,12 +67,33 @@ fn name_and_value(text: &str) -> Result<(String, String), String> {
 /// `kempe check`
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Examples:\n  kempe check hitch.toml\n  kempe check hitch.toml --set k=450mm --json\n\n\
-                        Exit codes: 0 nothing to say, 1 warnings, 2 bad file, 3 the mechanism cannot move as asked."
+    after_help = "Examples:\n  kempe check hitch.toml\n  kempe check hitch.toml --set k=450mm --json\n  kempe check hitch.toml --certify\n\n\
+                        Exit codes: 0 nothing to say, 1 warnings or a gap in the proof, 2 bad file,\n3 the mechanism cannot move as asked, \
+                        130 stopped by Ctrl-C (what was found until then is told)."
 )]
 pub struct Check {
     #[command(flatten)]
     pub model: ModelFile,
+    /// Prove the motion by interval arithmetic: how much of it is certain, and where it is not
+    #[arg(long)]
+    pub certify: bool,
+    /// Print one JSON object instead of text
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `kempe sensitivities`
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Examples:\n  kempe sensitivities crank.toml --at motor=30deg\n  kempe sensitivities crank.toml --set a=25mm --json\n\n\
+                        Derivatives of [measures] to [parameters], the drive's place held; without --at at its start."
+)]
+pub struct Sensitivities {
+    #[command(flatten)]
+    pub model: ModelFile,
+    /// Where the drive stands, as in --at motor=30deg or --at time=2s
+    #[arg(long, value_name = "DRIVE=VALUE")]
+    pub at: Option<String>,
     /// Print one JSON object instead of text
     #[arg(long)]
     pub json: bool,

@@ -1,4 +1,4 @@
-//! Ctrl-C: the first asks to stop at the next row, the second ends the program at once.
+//! Ctrl-C: the first asks to stop at the next row (before the first row: soon), the second ends the program at once.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -10,7 +10,7 @@ pub fn listen() {
         if STOP.swap(true, Ordering::SeqCst) {
             std::process::exit(130);
         }
-        eprintln!("stopping: finished rows are kept; Ctrl-C again to end at once");
+        eprintln!("stopping: what is finished is kept; Ctrl-C again to end at once");
     };
     if let Err(error) = ctrlc::set_handler(heard) {
         eprintln!("Ctrl-C will end the program at once: {error}");

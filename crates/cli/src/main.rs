@@ -20,6 +20,7 @@ fn main() -> ExitCode {
     let exit = match &arguments.command {
         Command::Check(check) => command::check::check(check),
         Command::Run(run) => command::run::run(run),
+        Command::Sensitivities(asked) => command::sensitivities::sensitivities(asked),
         Command::Draw(draw) => command::draw::draw(draw),
         Command::New(new) => command::new::new(new),
         Command::Schema => command::lists::schema(),

@@ -4,18 +4,22 @@ use std::io::IsTerminal;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
-use kempe_study::{Flow, Progress};
+use kempe_study::{Flow, Progress, Stage};
 
 use crate::interrupt;
 
 /// Work shorter than this shows no bar.
 const PATIENCE: Duration = Duration::from_millis(400);
 
+/// Steps of the bar for what is done before the first row.
+const STEPS: u64 = 1000;
+
 /// Shows how far a study has come, and stops it on Ctrl-C.
 pub struct Bar {
     name: String,
     since: Instant,
     bar: Option<ProgressBar>,
+    stage: Option<Stage>,
     wanted: bool,
 }
 
@@ -26,33 +30,67 @@ impl Bar {
             name: name.to_owned(),
             since: Instant::now(),
             bar: None,
+            stage: None,
             wanted: !quiet && std::io::stderr().is_terminal(),
         }
+    }
+
+    /// The bar, once the work is long; a new one for every stage.
+    fn bar(&mut self, stage: Option<Stage>, length: u64, template: &str) -> Option<&ProgressBar> {
+        if !self.wanted || self.since.elapsed() <= PATIENCE {
+            return None;
+        }
+        if self.stage != stage || self.bar.is_none() {
+            if let Some(old) = self.bar.take() {
+                old.finish_and_clear();
+            }
+            let bar = ProgressBar::new(length);
+            if let Ok(style) = ProgressStyle::with_template(template) {
+                bar.set_style(style);
+            }
+            bar.set_message(match stage {
+                Some(stage) => format!("{}: {}", self.name, stage.text()),
+                None => self.name.clone(),
+            });
+            (self.bar, self.stage) = (Some(bar), stage);
+        }
+        self.bar.as_ref()
+    }
+}
+
+/// Stops on Ctrl-C.
+fn flow() -> Flow {
+    if interrupt::stopped() {
+        Flow::Stop
+    } else {
+        Flow::Continue
     }
 }
 
 impl Progress for Bar {
     fn tick(&mut self, done: usize, total: usize) -> Flow {
-        if self.wanted && self.bar.is_none() && self.since.elapsed() > PATIENCE {
-            let style = ProgressStyle::with_template("{msg} {bar:40} {pos}/{len} rows, {eta} left");
-            let bar = ProgressBar::new(total as u64);
-            if let Ok(style) = style {
-                bar.set_style(style);
-            }
-            bar.set_message(self.name.clone());
-            self.bar = Some(bar);
-        }
-        if let Some(bar) = &self.bar {
+        let rows = "{msg} {bar:40} {pos}/{len} rows, {eta} left";
+        if let Some(bar) = self.bar(None, total as u64, rows) {
             bar.set_position(done as u64);
             if done == total {
                 bar.finish_and_clear();
             }
         }
-        if interrupt::stopped() {
-            Flow::Stop
-        } else {
-            Flow::Continue
+        flow()
+    }
+
+    fn stage(&mut self, stage: Stage, part: Option<f64>) -> Flow {
+        let template = match part {
+            Some(_) => "{msg} {bar:40} {percent} %",
+            None => "{msg}, {elapsed}",
+        };
+        if let Some(bar) = self.bar(Some(stage), STEPS, template) {
+            match part {
+                Some(part) => bar.set_position((part.clamp(0.0, 1.0) * STEPS as f64) as u64),
+                None => bar.tick(),
+            }
         }
+        flow()
     }
 }
 

@@ -267,3 +267,103 @@ fn ctrl_c_keeps_the_finished_rows() {
         .count();
     assert!(rows > 1 && rows < 400_001, "{rows}");
 }
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_stops_a_check_that_follows_a_long_motion() {
+    let folder = folder();
+    let at = folder.path();
+    // A million turns: the trace would take far longer than this test.
+    let long = MODEL
+        .replace("to = 360", "to = 3.6e8")
+        .replace("step = 10", "rows = 2");
+    assert_ne!(long, MODEL);
+    fs::write(at.join("long.toml"), long).expect("written");
+    for verb in [
+        &["check", "long.toml"][..],
+        &["run", "long.toml", "--out", "out"],
+    ] {
+        let child = Command::new(env!("CARGO_BIN_EXE_kempe"))
+            .args(verb)
+            .current_dir(at)
+            .stdout(std::process::Stdio::piped())
+            .stderr(std::process::Stdio::piped())
+            .spawn()
+            .expect("kempe runs");
+        std::thread::sleep(std::time::Duration::from_millis(700));
+        let signalled = Command::new("kill")
+            .args(["-INT", &child.id().to_string()])
+            .status();
+        assert!(signalled.expect("kill runs").success());
+        let output = child.wait_with_output().expect("it ends");
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(130), "{said}");
+        assert!(
+            said.contains("stopped while following the motion"),
+            "{said}"
+        );
+    }
+    assert!(!at.join("out").exists(), "nothing was finished");
+}
+
+#[test]
+fn check_proves_a_motion_and_says_where_it_cannot() {
+    let folder = folder();
+    let at = folder.path();
+    let whole = kempe(at, &["check", "m.toml", "--certify", "--json"]);
+    let value: serde_json::Value = serde_json::from_slice(&whole.stdout).expect("JSON");
+    assert_eq!(value["proof"]["fraction"], 1.0);
+    assert_eq!(value["proof"]["runs"].as_array().map(Vec::len), Some(1));
+    let text = kempe(at, &["check", "m.toml", "--certify"]);
+    let said = String::from_utf8_lossy(&text.stdout).into_owned();
+    assert!(
+        said.contains("Proved    100 % of motor 0 deg to 360 deg"),
+        "{said}"
+    );
+    // A parallelogram collapses twice in a turn: change points, where nothing is proved.
+    let parallel = include_str!("../../../examples/gallery/parallelogram.toml");
+    fs::write(at.join("p.toml"), parallel).expect("written");
+    let text = kempe(at, &["check", "p.toml", "--certify"]);
+    let said = String::from_utf8_lossy(&text.stdout).into_owned();
+    assert!(said.contains("at a change point"), "{said}");
+}
+
+#[test]
+fn sensitivities_are_those_of_differences() {
+    let folder = folder();
+    let at = folder.path();
+    let value_of = |arguments: &[&str]| -> serde_json::Value {
+        let output = kempe(
+            at,
+            &[&["sensitivities", "m.toml", "--json"], arguments].concat(),
+        );
+        assert!(
+            output.status.success(),
+            "{}",
+            String::from_utf8_lossy(&output.stderr)
+        );
+        serde_json::from_slice(&output.stdout).expect("JSON")
+    };
+    let here = value_of(&["--at", "motor=30deg"]);
+    assert_eq!(here["place"], "motor = 30 deg");
+    let measure = &here["measures"][0];
+    let slope = &measure["derivatives"][0];
+    let parameter = slope["parameter"].as_str().expect("a name").to_owned();
+    let base = 20.0;
+    let value = |a: f64| -> f64 {
+        let set = format!("{parameter}={a}mm");
+        value_of(&["--at", "motor=30deg", "--set", &set])["measures"][0]["value"]
+            .as_f64()
+            .expect("a number")
+    };
+    let h = 1e-3;
+    let difference = (value(base + h) - value(base - h)) / (2.0 * h);
+    let exact = slope["value"].as_f64().expect("a number");
+    assert!(
+        (difference - exact).abs() < 1e-6 * exact.abs().max(1.0),
+        "{exact} {difference}"
+    );
+    assert_eq!(slope["unit"], "deg/mm");
+    let wrong = kempe(at, &["sensitivities", "m.toml", "--at", "moter=30deg"]);
+    assert_eq!(wrong.status.code(), Some(2));
+}

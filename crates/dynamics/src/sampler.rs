@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use kempe_kinematics::{Branch, Motion, Sample, Sampler, Unmeasurable};
+use kempe_kinematics::{Branch, Motion, Sample, Sampler, Unprepared, Unwatched, Watch};
 use kempe_model::{DriveId, Measure, Model};
 
 use crate::equilibrium::{FrictionOutcome, Pace};
@@ -18,8 +18,8 @@ use crate::source::Source;
 pub enum ForceError {
     /// What acts on the mechanism makes no sense.
     Problems(Vec<Problem>),
-    /// Measures that cannot be evaluated.
-    Unmeasurable(Vec<Unmeasurable>),
+    /// Measures that cannot be evaluated, or work that was stopped.
+    Unprepared(Unprepared),
 }
 
 /// How far the forces of a row can be trusted.
@@ -65,7 +65,8 @@ impl fmt::Display for ForceError {
                     writeln!(f, "{problem}")?;
                 }
             }
-            Self::Unmeasurable(list) => {
+            Self::Unprepared(Unprepared::Stopped) => writeln!(f, "stopped")?,
+            Self::Unprepared(Unprepared::Unmeasurable(list)) => {
                 for it in list {
                     writeln!(f, "measure {}: {}", it.index, it.reason)?;
                 }
@@ -83,6 +84,18 @@ impl<'a> ForceSampler<'a> {
     /// # Errors
     /// Problems of what acts on the mechanism, or measures that cannot be evaluated.
     pub fn new(motion: &'a Motion<'a>, measures: &[&Measure]) -> Result<Self, ForceError> {
+        Self::watched(motion, measures, &mut Unwatched)
+    }
+
+    /// As [`ForceSampler::new`]; `watch` hears how far the statistics over the motion have come and may stop them.
+    ///
+    /// # Errors
+    /// As [`ForceSampler::new`], and that it was stopped.
+    pub fn watched(
+        motion: &'a Motion<'a>,
+        measures: &[&Measure],
+        watch: &mut dyn Watch,
+    ) -> Result<Self, ForceError> {
         let mechanism = motion.mechanism;
         let parameters: Vec<Rates> = mechanism.model.parameter_values();
         let geometry = kempe_kinematics::Geometry::new(mechanism, &parameters);
@@ -94,8 +107,8 @@ impl<'a> ForceSampler<'a> {
             spring.align(&forces.geometry, &start.near);
         }
         forces.equilibrium.pace = pace(&mechanism.model);
-        let sampler = Sampler::with_forces(motion, measures, Source::new(forces))
-            .map_err(ForceError::Unmeasurable)?;
+        let sampler = Sampler::watched(motion, measures, Source::new(forces), watch)
+            .map_err(ForceError::Unprepared)?;
         Ok(Self { sampler })
     }
 

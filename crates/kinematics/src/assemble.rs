@@ -1,18 +1,22 @@
 //! All assemblies of a mechanism at given drive coordinates, and the one that the user means.
 
+use std::ops::ControlFlow;
+
 use kempe_model::HintKind;
 use kempe_number::math;
 
 use crate::blocks::Unknown;
 use crate::evidence::closure;
-use crate::homotopy::{PathReport, Random, all_real_solutions};
+use crate::homotopy::{PathReport, Random, Solutions, WORK_LIMIT, all_real_solutions};
 use crate::mechanism::{BodyId, Constraint, Mechanism};
 use crate::newton::PlanNumber;
+use crate::open_loop;
 use crate::plan::{NewtonBlock, Plan, Step};
 use crate::pose::{Pose, cross, sub};
 use crate::qr::Qr;
 use crate::solve::gear;
 use crate::state::{Branch, Design, State};
+use crate::watch::{Stage, Unwatched, Watch};
 
 /// Most assemblies that are listed; a file with many dyads and no hints can have more than anyone wants to see.
 pub const ASSEMBLY_LIMIT: usize = 512;
@@ -22,6 +26,10 @@ const TRIAL_LIMIT: usize = 200_000;
 const SEARCH_STARTS: usize = 400;
 /// Two poses of a block closer than this (in sizes of the mechanism, and rad) are one.
 const SAME_POSE: f64 = 1e-7;
+/// A wheel may stand this far, rad, beyond half a turn from where its angle is counted: rounding decides no assembly.
+const HALF_TURN: f64 = 1e-9;
+/// A pose read off a trace may miss the bodies placed before by this much (in sizes of the mechanism, and rad).
+const SAME_BEFORE: f64 = 1e-2;
 /// Closure residual (in sizes of the mechanism, and rad) up to which an assembly with redundant constraints closes.
 pub const CLOSED: f64 = 1e-9;
 /// Side hints are not held against a point closer to the line than this, in sizes of the mechanism.
@@ -39,6 +47,21 @@ pub struct Assembly {
     pub distance: f64,
 }
 
+/// Why assemblies may be missing from a list.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shortfall {
+    /// A block was searched from random starts: the complete method does not apply to it.
+    Searched,
+    /// A block with a gear or rack was cut open there, and its curves were followed: one between two cuts can be missed.
+    Scanned,
+    /// The complete method lost a path: two assemblies meet, or all but.
+    LostPath,
+    /// The complete method has more to do than [`WORK_LIMIT`] allows.
+    Exhausted,
+    /// There are more than [`ASSEMBLY_LIMIT`], or too many ways to try.
+    TooMany,
+}
+
 /// All ways to put the mechanism together, the one meant first.
 #[derive(Clone, Debug, Default)]
 pub struct Assemblies {
@@ -49,6 +72,8 @@ pub struct Assemblies {
     /// Whether every assembly was found: all blocks were solved in closed form or by the complete method, no path was
     /// lost and no limit was met.
     pub complete: bool,
+    /// Why it is not known that every assembly was found; the first reason met.
+    pub shortfall: Option<Shortfall>,
     /// What the homotopies did, one entry for each block solved.
     pub paths: Vec<PathReport>,
     /// The step that could not be closed when there is no assembly at all.
@@ -71,9 +96,17 @@ struct Search<'a> {
     found: Vec<Assembly>,
     rejected: usize,
     trials: usize,
-    complete: bool,
+    shortfall: Option<Shortfall>,
     paths: Vec<PathReport>,
     furthest: usize,
+    watch: &'a mut dyn Watch,
+    stopped: bool,
+    work: f64,
+    coordinates: &'a [f64],
+    /// Angles of the bodies by the file's hints, zero without: angles count within half a turn of these.
+    meant: Vec<f64>,
+    /// What was found by cutting the mechanism open at a gear (its constraint): the same for every branch before it.
+    opened: Vec<(usize, Vec<Vec<Pose<f64>>>)>,
 }
 
 /// Finds all assemblies at the drive coordinates (SI).
@@ -83,6 +116,19 @@ pub fn all_assemblies(
     design: &Design<f64>,
     coordinates: &[f64],
 ) -> Assemblies {
+    // Unwatched, it is never stopped.
+    find_assemblies(mechanism, plan, design, coordinates, &mut Unwatched).unwrap_or_default()
+}
+
+/// As [`all_assemblies`]; `watch` hears how far it has come. `None` when it stops the search: a part of the list could
+/// lack the assembly that is meant.
+pub fn find_assemblies(
+    mechanism: &Mechanism,
+    plan: &Plan,
+    design: &Design<f64>,
+    coordinates: &[f64],
+    watch: &mut dyn Watch,
+) -> Option<Assemblies> {
     let size = design.geometry.size(mechanism);
     let mut search = Search {
         mechanism,
@@ -93,14 +139,23 @@ pub fn all_assemblies(
         found: Vec::new(),
         rejected: 0,
         trials: 0,
-        complete: true,
+        shortfall: None,
         paths: Vec::new(),
         furthest: 0,
+        watch,
+        stopped: false,
+        work: WORK_LIMIT,
+        coordinates,
+        meant: meant_angles(mechanism, design),
+        opened: Vec::new(),
     };
     let mut state = State::new(mechanism, plan);
     state.set_inputs(mechanism, coordinates);
     let branch = Branch::neutral(mechanism, plan);
     search.descend(0, state, branch, true);
+    if search.stopped {
+        return None;
+    }
 
     for assembly in &mut search.found {
         assembly.distance = hint_distance(mechanism, design, assembly, size);
@@ -110,13 +165,14 @@ pub fn all_assemblies(
         .found
         .sort_by(|a, b| a.distance.total_cmp(&b.distance));
     let open_step = search.found.is_empty().then_some(search.furthest);
-    Assemblies {
+    Some(Assemblies {
         list: search.found,
         rejected: search.rejected,
-        complete: search.complete,
+        complete: search.shortfall.is_none(),
+        shortfall: search.shortfall,
         paths: search.paths,
         open_step,
-    }
+    })
 }
 
 impl Search<'_> {
@@ -133,7 +189,10 @@ impl Search<'_> {
         loop {
             self.trials += 1;
             if self.found.len() >= ASSEMBLY_LIMIT || self.trials > TRIAL_LIMIT {
-                self.complete = false;
+                self.shortfall.get_or_insert(Shortfall::TooMany);
+                return;
+            }
+            if self.stopped || self.told(None).is_break() {
                 return;
             }
             let Some(kind) = self.plan.steps.get(step) else {
@@ -171,6 +230,13 @@ impl Search<'_> {
         }
     }
 
+    /// Says how far the search has come; how many branches there are to try is not known beforehand.
+    fn told(&mut self, part: Option<f64>) -> ControlFlow<()> {
+        let flow = self.watch.reached(Stage::Assembling, part);
+        self.stopped |= flow.is_break();
+        flow
+    }
+
     fn descend_modes(&mut self, step: usize, state: State<f64>, branch: Branch, wanted: bool) {
         let mut first: Option<Vec<Pose<f64>>> = None;
         for sign in [1.0, -1.0] {
@@ -188,7 +254,7 @@ impl Search<'_> {
             first = Some(state.poses.clone());
             let wanted = wanted && self.sides_hold(step, &state);
             if !wanted && self.rejected >= ASSEMBLY_LIMIT {
-                self.complete = false;
+                self.shortfall.get_or_insert(Shortfall::TooMany);
                 continue;
             }
             self.descend(step + 1, state, branch, wanted);
@@ -214,20 +280,39 @@ impl Search<'_> {
         }
         let situation = state.situation(self.design, &branch);
         // The pose that the file tells is tried as well: no path may lose it.
-        let (hinted, hinted_angles) = self.hinted_start(&state);
-        let mut meant = vec![0.0; self.mechanism.bodies];
+        let hinted = self.hinted_start(&state);
+        let meant = self.meant.clone();
         let mut candidates = vec![hinted];
-        match all_real_solutions(block, self.mechanism, &situation, self.size) {
-            Some((poses, report)) => {
-                self.complete &= report.lost == 0;
+        let (mechanism, size) = (self.mechanism, self.size);
+        let mut work = self.work;
+        let told = &mut |part| self.told(Some(part));
+        let solutions = all_real_solutions(block, mechanism, &situation, size, &mut work, told);
+        self.work = work;
+        match solutions {
+            Solutions::Stopped => return,
+            Solutions::Found(poses, report) => {
+                if report.exhausted {
+                    self.shortfall.get_or_insert(Shortfall::Exhausted);
+                } else if report.lost > 0 {
+                    self.shortfall.get_or_insert(Shortfall::LostPath);
+                }
                 self.paths.push(report);
                 candidates.extend(poses);
             }
-            None => {
-                self.complete = false;
-                // Gears count turns: from where the file says that a link is.
-                meant = hinted_angles;
-                candidates.extend(self.random_starts(block, &state));
+            Solutions::NotAlgebraic => {
+                let Some(opened) = self.opened_at_gear(block, step, &state, &meant) else {
+                    self.stopped = true;
+                    return;
+                };
+                self.shortfall.get_or_insert(if opened.is_empty() {
+                    Shortfall::Searched
+                } else {
+                    Shortfall::Scanned
+                });
+                if opened.is_empty() {
+                    candidates.extend(self.random_starts(block, &state));
+                }
+                candidates.extend(opened);
             }
         }
         let mut found: Vec<(State<f64>, Branch)> = Vec::new();
@@ -240,6 +325,7 @@ impl Search<'_> {
             }
             if self.solve(step, 1.0, &mut state, &mut branch)
                 && self.closes(block, &state, &branch)
+                && self.counts_from(block, &state, &branch, &meant)
                 && found
                     .iter()
                     .all(|(other, _)| !self.same(&other.poses, &state.poses))
@@ -294,7 +380,7 @@ impl Search<'_> {
             if matches!(unknown, Unknown::Angle(_))
                 && !matches!(self.plan.steps[step], Step::Newton { .. })
             {
-                branch.near[body] = pose.angle_near(0.0);
+                branch.near[body] = pose.angle_near(self.meant[body]);
             }
             branch.guess[body] = pose;
         }
@@ -411,6 +497,28 @@ impl Search<'_> {
         })
     }
 
+    /// Whether the wheels of the block's gears and racks stand within half a turn of the angles they are counted from.
+    fn counts_from(
+        &self,
+        block: &NewtonBlock,
+        state: &State<f64>,
+        branch: &Branch,
+        meant: &[f64],
+    ) -> bool {
+        let constraints = block
+            .rows
+            .iter()
+            .map(|row| &self.mechanism.constraints[row.constraint].0);
+        constraints
+            .filter(|c| is_gear(c))
+            .flat_map(Constraint::bodies)
+            .all(|body| {
+                let index = body.index();
+                let angle = state.poses[index].angle_near(branch.near[index]);
+                (angle - meant[index]).abs() <= std::f64::consts::PI + HALF_TURN
+            })
+    }
+
     fn sides_hold(&self, step: usize, state: &State<f64>) -> bool {
         self.checks
             .iter()
@@ -433,19 +541,17 @@ impl Search<'_> {
         })
     }
 
-    /// The pose that the file's `near` hints tell, and the angles of the bodies there; what they leave open stays.
-    fn hinted_start(&self, state: &State<f64>) -> (Vec<Pose<f64>>, Vec<f64>) {
+    /// The pose that the file's `near` hints tell; what they leave open stays.
+    fn hinted_start(&self, state: &State<f64>) -> Vec<Pose<f64>> {
         let (mechanism, geometry) = (self.mechanism, &self.design.geometry);
         let parameters = mechanism.model.parameter_values::<f64>();
         let value = |expr: &kempe_model::Scalar| expr.eval(&mut |id| parameters[id.index()]);
         let mut poses = state.poses.clone();
-        let mut near = vec![0.0; mechanism.bodies];
         for hint in &mechanism.model.assembly {
-            if let HintKind::NearAngle { link, angle } = &hint.kind {
+            if let HintKind::NearAngle { link, .. } = &hint.kind {
                 let body = mechanism.body_of(*link).index();
-                near[body] = value(angle) - geometry.seat_angles[link.index()];
                 let pose = &mut poses[body];
-                *pose = Pose::from_angle(pose.x, pose.y, near[body]);
+                *pose = Pose::from_angle(pose.x, pose.y, self.meant[body]);
             }
         }
         for hint in &mechanism.model.assembly {
@@ -464,7 +570,55 @@ impl Search<'_> {
                 }
             }
         }
-        (poses, near)
+        poses
+    }
+
+    /// Poses near those of a block that holds one gear pair or rack, for the poses found so far; none where it holds
+    /// more, or cannot be opened. `None` when stopped.
+    fn opened_at_gear(
+        &mut self,
+        block: &NewtonBlock,
+        step: usize,
+        state: &State<f64>,
+        meant: &[f64],
+    ) -> Option<Vec<Vec<Pose<f64>>>> {
+        let mut gears = (block.rows.iter().map(|row| row.constraint))
+            .filter(|index| is_gear(&self.mechanism.constraints[*index].0));
+        let (Some(gear), None) = (gears.next(), gears.next()) else {
+            return Some(Vec::new());
+        };
+        if self.opened.iter().all(|(index, _)| *index != gear) {
+            let found = open_loop::candidates(
+                self.mechanism,
+                self.plan,
+                self.design,
+                self.coordinates,
+                (gear, meant),
+                self.watch,
+            )?;
+            self.opened.push((gear, found));
+        }
+        let before = &self.plan.blocks[..step];
+        let fits = |poses: &Vec<Pose<f64>>| {
+            before.iter().flat_map(|b| &b.unknowns).all(|unknown| {
+                let body = unknown.body().index();
+                let (a, b) = (&poses[body], &state.poses[body]);
+                match unknown {
+                    Unknown::Angle(_) => (a.c - b.c).abs().max((a.s - b.s).abs()) <= SAME_BEFORE,
+                    Unknown::Place(_) => {
+                        (a.x - b.x).abs().max((a.y - b.y).abs()) <= SAME_BEFORE * self.size
+                    }
+                }
+            })
+        };
+        let found = self.opened.iter().filter(|(index, _)| *index == gear);
+        Some(
+            found
+                .flat_map(|(_, list)| list)
+                .filter(|p| fits(p))
+                .cloned()
+                .collect(),
+        )
     }
 
     /// Starts spread over the mechanism's surroundings, for blocks with gears or too many paths.
@@ -490,6 +644,27 @@ impl Search<'_> {
         }
         starts
     }
+}
+
+/// Angles of the bodies by the file's hints; zero where there is none.
+fn meant_angles(mechanism: &Mechanism, design: &Design<f64>) -> Vec<f64> {
+    let parameters = mechanism.model.parameter_values::<f64>();
+    let mut meant = vec![0.0; mechanism.bodies];
+    for hint in &mechanism.model.assembly {
+        if let HintKind::NearAngle { link, angle } = &hint.kind {
+            let value = angle.eval(&mut |id| parameters[id.index()]);
+            meant[mechanism.body_of(*link).index()] =
+                value - design.geometry.seat_angles[link.index()];
+        }
+    }
+    meant
+}
+
+fn is_gear(constraint: &Constraint) -> bool {
+    matches!(
+        constraint,
+        Constraint::Gears { .. } | Constraint::Rack { .. }
+    )
 }
 
 fn side_checks(mechanism: &Mechanism, plan: &Plan) -> Vec<SideCheck> {

@@ -427,3 +427,96 @@ impl Bordered {
         value
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::state::{Branch, Design, State};
+
+    /// Two parallelograms on one crank: at zero all their links lie in one line.
+    const TWINS: &str = r#"
+units = { length = "m", angle = "rad" }
+[links]
+frame = { A = [0, 0], D = [60, 0], E = [50, 0] }
+crank = { A-B = 30, F = [20, 0] }
+c1 = { B-C = 60 }
+r1 = { D-C = 30 }
+c2 = { F-G = 50 }
+r2 = { E-G = 20 }
+[drives]
+motor = { turns = "crank", from = 0.3, to = 1, speed = "1 rad/s" }
+"#;
+
+    /// Where two blocks are nearly singular at once, one border cannot keep the system regular: digits are lost to its
+    /// condition, and going block by block loses no more.
+    #[test]
+    fn with_two_nearly_singular_blocks_no_more_is_lost_than_the_condition_takes() {
+        let model = kempe_model::Model::from_toml(TWINS, "twins", &mut |_| Err(String::new()));
+        let mechanism = Mechanism::new(&model.unwrap().model);
+        let plan = Plan::new(&mechanism);
+        let design = Design::new(&mechanism, &plan, &[]);
+        let size = design.geometry.size(&mechanism);
+        for back in [1e-2, 1e-4, 1e-6, 1e-8, 1e-10] {
+            let mut state: State<f64> = State::new(&mechanism, &plan);
+            state.set_inputs(&mechanism, &[back]);
+            let mut branch = Branch::neutral(&mechanism, &plan);
+            for sign in &mut branch.signs {
+                *sign = -1.0;
+            }
+            plan.solve(&mechanism, &design, &branch, &mut state);
+            for link in 1..mechanism.bodies {
+                // Cranks and rockers stand like the crank, couplers like the frame.
+                let angle = if link == 2 || link == 4 { 0.0 } else { back };
+                let pose = &mut state.poses[link];
+                *pose = crate::pose::Pose::from_angle(pose.x, pose.y, angle);
+            }
+            let mut system = Bordered::new(&mechanism, &plan);
+            system.fill(&mechanism, &state.situation(&design, &branch), size, &[1.0]);
+            let unknowns = 3 * (mechanism.bodies - 1) + 1;
+            // A border that leaves the tangent well determined: the first dyad's travel.
+            let border: Vec<f64> = (0..unknowns).map(|k| 1.0 + 0.1 * k as f64).collect();
+            let mut d = Vec::new();
+            system.solve(false, &border, 1.0, &mut d);
+            // The same system without blocks.
+            let mut whole = Qr::default();
+            whole.reset(unknowns, unknowns);
+            for (index, block) in system.layout.blocks.iter().enumerate() {
+                for row in 0..block.rows {
+                    let at = block.first + row;
+                    for column in 0..block.size {
+                        let value = system.plain[index][row * block.size + column];
+                        whole.add(at, system.columns_in_z[index][column], value);
+                    }
+                    for c in system.couplings[index]
+                        .iter()
+                        .filter(|c| c.row as usize == row)
+                    {
+                        let column = system.columns_in_z[c.block as usize][c.column as usize];
+                        whole.add(at, column, c.value);
+                    }
+                    whole.add(at, unknowns - 1, system.to_parameter[at]);
+                }
+            }
+            for (column, value) in border.iter().enumerate() {
+                whole.add(unknowns - 1, column, *value);
+            }
+            whole.factor();
+            let mut e = vec![0.0; unknowns];
+            e[unknowns - 1] = 1.0;
+            whole.solve(&mut e);
+            let length = e.iter().map(|x| x * x).sum::<f64>().sqrt();
+            let gap = e
+                .iter()
+                .zip(&d)
+                .map(|(a, b)| (a - b) * (a - b))
+                .sum::<f64>()
+                .sqrt();
+            let inherent = f64::EPSILON / system.conditioning();
+            assert!(
+                gap <= 20.0 * inherent * length,
+                "{back:e}: {:e}",
+                gap / length
+            );
+        }
+    }
+}

@@ -7,9 +7,10 @@ use crate::events::Event;
 use crate::four_bar::{FourBar, four_bars};
 use crate::mechanism::{BodyId, Mechanism, Source};
 use crate::mobility::{Mobility, mobility, state_at};
-use crate::motion::{EndReason, Motion, MotionError};
+use crate::motion::{Demand, EndReason, Motion, MotionError};
 use crate::plan::Plan;
 use crate::state::Design;
+use crate::watch::{Unwatched, Watch};
 
 /// A cylinder or slide is followed this many mechanism sizes from its start when its reach is asked for.
 const FAR: f64 = 20.0;
@@ -59,6 +60,18 @@ pub fn check(
     design: &Design<f64>,
     parameters: &[f64],
 ) -> Findings {
+    check_watched(mechanism, plan, design, parameters, &mut Unwatched)
+}
+
+/// As [`check`]; `watch` hears how far it has come. Stopped, it returns what it found until then, with
+/// [`MotionError::Stopped`] as the problem.
+pub fn check_watched(
+    mechanism: &Mechanism,
+    plan: &Plan,
+    design: &Design<f64>,
+    parameters: &[f64],
+    watch: &mut dyn Watch,
+) -> Findings {
     let mut findings = Findings {
         mobility: mobility(mechanism, design, None),
         drives: mechanism.model.drives.len(),
@@ -76,7 +89,7 @@ pub fn check(
             findings.redundant.push(source);
         }
     }
-    match Motion::new(mechanism, plan, design, parameters) {
+    match Motion::watched(mechanism, plan, design, parameters, watch) {
         Ok(motion) => {
             if let Some(chosen) = motion.assemblies.list.first() {
                 let mut coordinates = vec![0.0; mechanism.model.drives.len()];
@@ -84,7 +97,10 @@ pub fn check(
                 let state = state_at(mechanism, plan, &chosen.poses, &coordinates);
                 findings.mobility = mobility(mechanism, design, Some((&state, &chosen.branch)));
             }
-            findings.reach = Some(reach(&motion));
+            match reach(&motion, watch) {
+                Ok(reach) => findings.reach = Some(reach),
+                Err(stopped) => findings.problem = Some(stopped),
+            }
             findings.assemblies = motion.assemblies;
         }
         Err(problem) => {
@@ -98,7 +114,7 @@ pub fn check(
 }
 
 /// How far the moving drive can go from its start, beyond what the file demands.
-fn reach(motion: &Motion<'_>) -> Reach {
+fn reach(motion: &Motion<'_>, watch: &mut dyn Watch) -> Result<Reach, MotionError> {
     let own = || Reach {
         range: motion.reached(),
         ends: motion.ends,
@@ -106,10 +122,10 @@ fn reach(motion: &Motion<'_>) -> Reach {
         events: motion.events.clone(),
     };
     let DrivePath::Coordinate { drive, .. } = &motion.path else {
-        return own();
+        return Ok(own());
     };
     let Some(law) = motion.mechanism.model.drives.get(*drive) else {
-        return own();
+        return Ok(own());
     };
     let turning = matches!(law.kind, kempe_model::DriveKind::Turn { .. });
     let far = if turning {
@@ -125,21 +141,21 @@ fn reach(motion: &Motion<'_>) -> Reach {
     if matches!(law.kind, kempe_model::DriveKind::Cylinder { .. }) {
         demanded.0 = demanded.0.max(SHORTEST * motion.size());
     }
-    let path = motion.path.clone();
-    match Motion::along(
-        motion.mechanism,
-        motion.plan,
-        motion.design,
-        path,
-        demanded,
-        motion.anchor,
-    ) {
-        Ok(wide) => Reach {
+    let demand = Demand {
+        path: motion.path.clone(),
+        range: demanded,
+        start: motion.anchor,
+        assemblies: Some(motion.assemblies.clone()),
+    };
+    let (mechanism, plan, design) = (motion.mechanism, motion.plan, motion.design);
+    match Motion::along(mechanism, plan, design, demand, watch) {
+        Ok(wide) => Ok(Reach {
             range: wide.reached(),
             ends: wide.ends,
             full_turn: turning && wide.ends == (EndReason::Covered, EndReason::Covered),
             events: wide.events,
-        },
-        Err(_) => own(),
+        }),
+        Err(stopped @ MotionError::Stopped { .. }) => Err(stopped),
+        Err(_) => Ok(own()),
     }
 }

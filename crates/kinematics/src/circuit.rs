@@ -5,18 +5,24 @@
 
 use kempe_model::{DriveKind, Measure};
 
-use crate::assemble::{Assemblies, all_assemblies};
+use crate::assemble::{Assemblies, find_assemblies};
 use crate::drive_path::DrivePath;
 use crate::events::locate_limit;
+use crate::force_source::NoForces;
 use crate::mechanism::Mechanism;
-use crate::motion::{EndReason, Motion, MotionError};
+use crate::motion::{EndReason, FAR, Motion, MotionError};
 use crate::plan::Plan;
-use crate::sampler::{Sample, Sampler, Unmeasurable};
+use crate::sampler::{Sample, Sampler, Unprepared};
 use crate::state::Design;
 use crate::trace::{Follower, Node, Path, hermite};
+use crate::watch::{Stage, Unwatched, Watch};
 
 /// Steps after which a circuit that has not closed is given up.
 pub const CIRCUIT_STEPS: usize = 50_000;
+/// A multiple of a step this near (in steps) to a place is that place.
+const ON_STEP: f64 = 1e-9;
+/// Arc lengths this near (mechanism sizes and rad) are one row.
+const SAME_ARC: f64 = 1e-9;
 /// A start this near a singular pose is moved along the drive by these parts of its range.
 const ANCHORS: [f64; 4] = [0.0, 0.0137, 0.1234, 0.3719];
 
@@ -31,6 +37,34 @@ pub struct Stretch<'m> {
     arcs: Vec<f64>,
     /// The nodes in the order of travel.
     nodes: Vec<Node>,
+}
+
+impl Stretch<'_> {
+    /// Path parameter at a node, in the order of travel.
+    fn parameter_at(&self, node: usize, scale: f64) -> Option<f64> {
+        self.nodes
+            .get(node)
+            .and_then(|n| n.z.last())
+            .map(|z| z * scale)
+    }
+
+    /// Arc length between the nodes `index - 1` and `index` where the path parameter is `p`.
+    fn arc_where(&self, index: usize, p: f64, scale: f64) -> f64 {
+        let (from, to) = (&self.nodes[index - 1], &self.nodes[index]);
+        let at = |s: f64| hermite(from, to, s).last().map_or(f64::NAN, |z| z * scale);
+        let rising = at(1.0) > at(0.0);
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..52 {
+            let middle = 0.5 * (low + high);
+            if (at(middle) < p) == rising {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        let (a, b) = (self.arcs[index - 1], self.arcs[index]);
+        a + 0.5 * (low + high) * (b - a)
+    }
 }
 
 /// A circuit of a mechanism: everything that can be reached without taking it apart.
@@ -58,8 +92,23 @@ impl<'m> Circuit<'m> {
         design: &'m Design<f64>,
         parameters: &[f64],
     ) -> Result<Self, MotionError> {
+        Self::watched(mechanism, plan, design, parameters, &mut Unwatched)
+    }
+
+    /// As [`Circuit::new`]; `watch` hears how far it has come and may stop it.
+    ///
+    /// # Errors
+    /// As [`Circuit::new`], and [`MotionError::Stopped`].
+    pub fn watched(
+        mechanism: &'m Mechanism,
+        plan: &'m Plan,
+        design: &'m Design<f64>,
+        parameters: &[f64],
+        watch: &mut dyn Watch,
+    ) -> Result<Self, MotionError> {
+        let stopped = |stage| move || MotionError::Stopped { stage };
         // The demanded motion finds the start, with all its checks.
-        let motion = Motion::new(mechanism, plan, design, parameters)?;
+        let mut motion = Motion::watched(mechanism, plan, design, parameters, watch)?;
         let path = motion.path.clone();
         let (low, high) = motion.demanded;
         let mut follower = Follower::new(mechanism, plan, &design.geometry, &path);
@@ -68,7 +117,12 @@ impl<'m> Circuit<'m> {
         for part in ANCHORS {
             let anchor = motion.anchor + part * (far - motion.anchor);
             path.coordinates(anchor, &mut coordinates);
-            let assemblies = all_assemblies(mechanism, plan, design, &coordinates);
+            let assemblies = if anchor == motion.anchor {
+                std::mem::take(&mut motion.assemblies)
+            } else {
+                find_assemblies(mechanism, plan, design, &coordinates, watch)
+                    .ok_or_else(stopped(Stage::Assembling))?
+            };
             let Some(chosen) = assemblies.list.first() else {
                 continue;
             };
@@ -77,8 +131,9 @@ impl<'m> Circuit<'m> {
             let Some(start) = follower.start(z, direction) else {
                 continue;
             };
-            let (nodes, closed) = go_round(&mut follower, start, mechanism, &path, high);
-            return Ok(Self::of_nodes(
+            let (nodes, closed) = go_round(&mut follower, start, mechanism, &path, high, watch)
+                .ok_or_else(stopped(Stage::Following))?;
+            return Self::of_nodes(
                 mechanism,
                 plan,
                 design,
@@ -87,7 +142,9 @@ impl<'m> Circuit<'m> {
                 nodes,
                 closed,
                 &mut follower,
-            ));
+                watch,
+            )
+            .ok_or_else(stopped(Stage::Locating));
         }
         Err(MotionError::Locked { at: motion.start })
     }
@@ -105,7 +162,8 @@ impl<'m> Circuit<'m> {
         nodes: Vec<Node>,
         closed: bool,
         follower: &mut Follower<'_, DrivePath>,
-    ) -> Self {
+        watch: &mut dyn Watch,
+    ) -> Option<Self> {
         let mut stretches: Vec<Stretch<'m>> = Vec::new();
         let mut arc = 0.0;
         let mut current: Vec<Node> = Vec::new();
@@ -121,8 +179,8 @@ impl<'m> Circuit<'m> {
                     (mechanism, plan, design),
                     path,
                     &assemblies,
-                    follower,
-                );
+                    (follower, watch),
+                )?;
             }
         }
         if current.len() > 1 {
@@ -133,16 +191,21 @@ impl<'m> Circuit<'m> {
                 (mechanism, plan, design),
                 path,
                 &assemblies,
-                follower,
-            );
+                (follower, watch),
+            )?;
         }
-        Self {
+        Some(Self {
             stretches,
             closed,
             length: arc,
             assemblies,
             scale: path.scale(),
-        }
+        })
+    }
+
+    /// Size of a typical change of the path parameter: a radian, or the mechanism's size.
+    pub fn scale(&self) -> f64 {
+        self.scale
     }
 
     /// Which stretch an arc length lies on, and the path parameter there.
@@ -167,20 +230,61 @@ impl<'m> Circuit<'m> {
         (index, z[z.len() - 1] * self.scale)
     }
 
+    /// Arc lengths, rising, at the start, at every multiple of `step` (SI) of the path parameter from there on as it runs
+    /// up and down, at every dead point, and at the end.
+    pub fn arcs_by_step(&self, step: f64) -> Vec<f64> {
+        let mut arcs = vec![0.0];
+        let Some(origin) = (self.stretches.first()).and_then(|s| s.parameter_at(0, self.scale))
+        else {
+            return arcs;
+        };
+        for stretch in &self.stretches {
+            for index in 1..stretch.nodes.len() {
+                let ends = [index - 1, index].map(|k| stretch.parameter_at(k, self.scale));
+                let [Some(from), Some(to)] = ends else {
+                    continue;
+                };
+                // A node on a multiple belongs to the step before it.
+                let (from, to) = ((from - origin) / step, (to - origin) / step);
+                let multiples: Vec<i64> = if to > from {
+                    ((from + ON_STEP).floor() as i64 + 1..=(to + ON_STEP).floor() as i64).collect()
+                } else {
+                    ((to - ON_STEP).ceil() as i64..(from - ON_STEP).ceil() as i64)
+                        .rev()
+                        .collect()
+                };
+                for multiple in multiples {
+                    arcs.push(stretch.arc_where(
+                        index,
+                        origin + multiple as f64 * step,
+                        self.scale,
+                    ));
+                }
+            }
+            if let Some(end) = stretch.arcs.last() {
+                arcs.push(*end);
+            }
+        }
+        // A multiple at a dead point or at the end is one row.
+        arcs.dedup_by(|b, a| (*b - *a).abs() <= SAME_ARC);
+        arcs
+    }
+
     /// Prepares measures for rows of the circuit.
     ///
     /// # Errors
-    /// All measures that cannot be evaluated.
+    /// All measures that cannot be evaluated, or that `watch` stopped it.
     pub fn samplers<'a>(
         &'a self,
         measures: &[&Measure],
-    ) -> Result<Vec<Sampler<'a>>, Vec<Unmeasurable>>
+        watch: &mut dyn Watch,
+    ) -> Result<Vec<Sampler<'a>>, Unprepared>
     where
         'm: 'a,
     {
         self.stretches
             .iter()
-            .map(|s| Sampler::new(&s.motion, measures))
+            .map(|s| Sampler::watched(&s.motion, measures, NoForces, watch))
             .collect()
     }
 
@@ -200,8 +304,8 @@ fn push_stretch<'m>(
     (mechanism, plan, design): (&'m Mechanism, &'m Plan, &'m Design<f64>),
     path: &DrivePath,
     assemblies: &Assemblies,
-    follower: &mut Follower<'_, DrivePath>,
-) {
+    (follower, watch): (&mut Follower<'_, DrivePath>, &mut dyn Watch),
+) -> Option<()> {
     let mut arcs = vec![*arc];
     for pair in nodes.windows(2) {
         *arc += pair[0]
@@ -231,24 +335,27 @@ fn push_stretch<'m>(
         rising,
     );
     motion.ends = (EndReason::Limit, EndReason::Limit);
-    motion.find_events(follower);
+    motion.find_events(follower, watch)?;
     stretches.push(Stretch {
         motion,
         forward,
         arcs,
         nodes,
     });
+    Some(())
 }
 
 /// Follows the curve until it is back at its start (angles of bodies and of a turning drive count modulo a turn). Along
-/// time, where nothing comes back, until the motion's `end`.
-fn go_round(
+/// time, where nothing comes back, until the motion's `end`; and no further than to where a part runs away. `None` when
+/// stopped.
+pub(crate) fn go_round(
     follower: &mut Follower<'_, DrivePath>,
     start: Node,
     mechanism: &Mechanism,
     path: &DrivePath,
     end: f64,
-) -> (Vec<Node>, bool) {
+    watch: &mut dyn Watch,
+) -> Option<(Vec<Node>, bool)> {
     let turning = match path {
         DrivePath::Coordinate { drive, .. } => {
             matches!(
@@ -284,9 +391,10 @@ fn go_round(
     let mut step = 0.02;
     let mut travelled = 0.0;
     for _ in 0..CIRCUIT_STEPS {
+        watch.reached(Stage::Following, None).continue_value()?;
         let from = nodes[nodes.len() - 1].clone();
         let Some(next) = follower.advance(&from, &mut step) else {
-            return (nodes, false);
+            return Some((nodes, false));
         };
         let h = gap(&from.z, &next.z);
         travelled += h;
@@ -308,18 +416,21 @@ fn go_round(
                 z: home,
                 tangent: start.tangent.clone(),
             });
-            return (nodes, true);
+            return Some((nodes, true));
         }
         if from.parameter_rate() * next.parameter_rate() < 0.0 {
             nodes.push(locate_limit(follower, &from, &next));
         }
         let over = matches!(path, DrivePath::Time { .. }) && follower.parameter(&next.z) > end;
+        let away = (next.z[..last].chunks_exact(3))
+            .zip(start.z.chunks_exact(3))
+            .any(|(p, q)| (p[0] - q[0]).abs() > FAR || (p[1] - q[1]).abs() > FAR);
         nodes.push(next);
-        if over {
+        if over || away {
             break;
         }
     }
-    (nodes, false)
+    Some((nodes, false))
 }
 
 /// The point of the step's cubic that lies nearest to `home`, by its projection on the chord.

@@ -4,6 +4,9 @@ use kempe_number::Complex;
 
 pub(crate) type C = Complex<f64>;
 
+/// Coefficients below this part of the largest are what rounding left of a zero.
+const ROUNDING: f64 = 1e-14;
+
 /// Solves `a x = b` in place by Gaussian elimination with partial pivoting; `a` is row-major, `n` by `n`. Returns
 /// false when a pivot vanishes.
 pub(crate) fn solve(a: &mut [C], b: &mut [C], n: usize) -> bool {
@@ -69,6 +72,17 @@ impl Affine {
 
     pub fn minus(&self, other: &Self) -> Self {
         Self(self.0.iter().zip(&other.0).map(|(a, b)| *a - *b).collect())
+    }
+
+    /// The function without what rounding left of coefficients that cancelled.
+    pub fn cleaned(mut self) -> Self {
+        let largest = self.0.iter().map(|c| c.norm_sqr()).fold(0.0, f64::max);
+        for c in &mut self.0 {
+            if c.norm_sqr() <= ROUNDING * ROUNDING * largest {
+                *c = C::zero();
+            }
+        }
+        self
     }
 
     /// The same function of conjugate variables: coefficients conjugated.

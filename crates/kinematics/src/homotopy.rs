@@ -4,8 +4,14 @@
 //! joint of Kempe is linear or *bilinear*: linear in the plain coordinates and linear in the conjugate ones (Wampler,
 //! "Solving the kinematics of planar mechanisms", J. Mech. Design 1999). After the linear equations are eliminated a
 //! block has d plain and d conjugate unknowns and 2 d bilinear equations, hence at most C(2d, d) isolated solutions:
-//! the two-homogeneous Bezout number. All of them are reached by as many paths from a product start system; for the
-//! Assur group of class III with revolute joints that is 6, its exact number of assemblies.
+//! the two-homogeneous Bezout number; for the Assur group of class III with revolute joints that is 6, its exact number
+//! of assemblies. Large blocks are loops that share few links, so that most equations feel few of the unknowns. All
+//! isolated solutions are reached from a start system of products of linear functions in just these unknowns (Verschelde
+//! and Haegemans, "The GBQ-algorithm for constructing start systems of homotopies for polynomial systems", SIAM J.
+//! Numer. Anal. 1993), which has a start point, and a path, for every choice of factors that the unknowns can be matched
+//! to.
+
+use std::ops::ControlFlow;
 
 use kempe_number::{Complex, math};
 
@@ -18,6 +24,15 @@ use crate::pose::Pose;
 
 /// Largest number of paths followed; a block that needs more is searched from many starts instead.
 pub const PATH_LIMIT: usize = 3432;
+/// Most plain unknowns of a block for which paths are counted.
+const LARGEST: usize = 8;
+/// Complex products that the paths of one search for assemblies may cost in all, some ten seconds of them: the bound
+/// is not a time, so that the result is the same everywhere. Paths left over then count as lost.
+pub const WORK_LIMIT: f64 = 3e9;
+/// Most swaps of dependent and free unknowns.
+const SWAPS: usize = 8;
+/// Smallest coefficient (lengths in mechanism sizes) by which a dependent unknown is swapped for a free one.
+const SWAP_PIVOT: f64 = 0.02;
 /// Size of the unknowns (in units of the mechanism) beyond which a path counts as gone to infinity.
 const INFINITY: f64 = 1e7;
 /// Imaginary part below which an end point counts as real.
@@ -34,6 +49,8 @@ pub struct PathReport {
     pub infinite: usize,
     /// How many could not be followed to the end.
     pub lost: usize,
+    /// Whether some of these were not followed because [`WORK_LIMIT`] was reached.
+    pub exhausted: bool,
 }
 
 /// A bilinear equation: the sum of products of a plain and a conjugate affine function.
@@ -205,14 +222,26 @@ fn equations(b: &Builder<'_>) -> Option<(Vec<Affine>, Vec<Bilinear>)> {
     Some((linear, bilinear))
 }
 
-/// Poses of the block's bodies for every real solution, not yet polished; bodies outside the block keep their poses.
-/// `None` when the method does not apply: a gear or rack inside the block, or too many paths.
+/// What the complete method came to.
+#[derive(Clone, Debug)]
+pub enum Solutions {
+    /// Poses of the block's bodies for every real solution, not yet polished; bodies outside the block keep theirs.
+    Found(Vec<Vec<Pose<f64>>>, PathReport),
+    /// It does not apply: a gear or rack inside the block, or too many paths.
+    NotAlgebraic,
+    /// It was stopped on the way.
+    Stopped,
+}
+
+/// All real solutions of a block. `work` is what is left of [`WORK_LIMIT`]; `told` hears the finished part of the paths and may stop the work.
 pub fn all_real_solutions(
     block: &NewtonBlock,
     mechanism: &Mechanism,
     known: &Situation<'_, f64>,
     scale: f64,
-) -> Option<(Vec<Vec<Pose<f64>>>, PathReport)> {
+    work: &mut f64,
+    told: &mut dyn FnMut(f64) -> ControlFlow<()>,
+) -> Solutions {
     let builder = Builder {
         block,
         mechanism,
@@ -220,56 +249,24 @@ pub fn all_real_solutions(
         scale,
         variables: block.unknowns.len(),
     };
-    let (linear, bilinear) = equations(&builder)?;
+    let Some((linear, bilinear)) = equations(&builder) else {
+        return Solutions::NotAlgebraic;
+    };
     let Some(solved) = eliminate(&linear, builder.variables) else {
-        return Some((Vec::new(), PathReport::default()));
+        return Solutions::Found(Vec::new(), PathReport::default());
     };
     let d = solved.first().map_or(0, |f| f.0.len() - 1);
-    if bilinear.len() != 2 * d || choose(2 * d, d) > PATH_LIMIT {
-        return None;
+    if bilinear.len() != 2 * d || d > LARGEST {
+        return Solutions::NotAlgebraic;
     }
-    let conjugate: Vec<Affine> = solved.iter().map(Affine::conj).collect();
-    let system = System {
-        d,
-        target: (bilinear.into_iter())
-            .map(|e| {
-                let terms = e.0.into_iter();
-                Bilinear(
-                    terms
-                        .map(|(l, r)| (l.substitute(&solved), r.substitute(&conjugate)))
-                        .collect(),
-                )
-            })
-            .collect(),
-    };
+    let (solved, system, count) = sparsest(solved, &bilinear, d);
+    if count > PATH_LIMIT {
+        return Solutions::NotAlgebraic;
+    }
 
-    // Two different start systems: a path that one loses the other usually finds, and agreement is evidence.
-    let mut report = PathReport::default();
-    let mut found: Vec<Vec<C>> = Vec::new();
-    for seed in 0..2 {
-        let mut this = PathReport::default();
-        for end in system.follow_all(seed, &mut this) {
-            let is_new = |x: &Vec<C>| {
-                let gap = x
-                    .iter()
-                    .zip(&end)
-                    .map(|(a, b)| (*a - *b).norm_sqr())
-                    .fold(0.0, f64::max);
-                gap > 1e-12
-            };
-            if found.iter().all(is_new) {
-                found.push(end);
-            }
-        }
-        let better = seed == 0 || this.lost < report.lost;
-        if better {
-            report = this;
-        }
-        if report.lost == 0 && found.len() == report.finite {
-            break;
-        }
-    }
-    report.finite = found.len();
+    let Some((found, report)) = system.follow_all(work, told) else {
+        return Solutions::Stopped;
+    };
 
     let mut poses = Vec::new();
     for x in &found {
@@ -295,66 +292,253 @@ pub fn all_real_solutions(
         }
         poses.push(pose);
     }
-    Some((poses, report))
+    Solutions::Found(poses, report)
 }
 
-fn choose(n: usize, k: usize) -> usize {
-    (0..k).fold(1_usize, |c, i| c.saturating_mul(n - i) / (i + 1))
+/// The system in the free variables that need the fewest paths, with their number. Which variables are eliminated is
+/// a matter of choice: a link's unit length feels only the free links of its own loops, so a good choice leaves most
+/// equations with few variables. Dependent and free variables are swapped while that saves paths.
+fn sparsest(solved: Vec<Affine>, bilinear: &[Bilinear], d: usize) -> (Vec<Affine>, System, usize) {
+    let mut best_solved = solved;
+    let mut best = System::new(&best_solved, bilinear, d);
+    let mut fewest = best.paths();
+    for _ in 0..SWAPS {
+        let mut better: Option<(Vec<Affine>, System, usize)> = None;
+        for dependent in 0..best_solved.len() {
+            for free in 0..d {
+                let Some(swapped) = swap(&best_solved, dependent, free) else {
+                    continue;
+                };
+                let system = System::new(&swapped, bilinear, d);
+                let now = better.as_ref().map_or(fewest, |b| b.2);
+                // Cheap to see: fewer entries are a precondition in practice.
+                if system.entries() > best.entries() {
+                    continue;
+                }
+                let count = system.paths();
+                if count < now {
+                    better = Some((swapped, system, count));
+                }
+            }
+        }
+        match better {
+            Some((solved, system, count)) => (best_solved, best, fewest) = (solved, system, count),
+            None => break,
+        }
+    }
+    (best_solved, best, fewest)
+}
+
+/// Makes variable `dependent` the free variable number `free`; `None` where it is free already or hardly depends on it.
+fn swap(solved: &[Affine], dependent: usize, free: usize) -> Option<Vec<Affine>> {
+    let d = solved[dependent].0.len() - 1;
+    let row = &solved[dependent].0;
+    let is_free =
+        row[d] == C::zero() && row[..d].iter().filter(|c| c.norm_sqr() > 0.0).count() == 1;
+    let pivot = row[free];
+    if is_free || pivot.norm_sqr() < SWAP_PIVOT * SWAP_PIVOT {
+        return None;
+    }
+    // dependent = sum a_j y_j + c  =>  y_free = (dependent - sum of the others - c) / a_free.
+    let inverse = pivot.recip();
+    let mut y: Vec<Affine> = (0..d)
+        .map(|j| {
+            let mut f = Affine::constant(d, C::zero());
+            f.add(j, C::one());
+            f
+        })
+        .collect();
+    y[free] = Affine(
+        (row.iter().enumerate())
+            .map(|(j, c)| if j == free { inverse } else { -(*c * inverse) })
+            .collect(),
+    );
+    Some(solved.iter().map(|f| f.substitute(&y).cleaned()).collect())
 }
 
 /// 2 d bilinear equations in d plain and d conjugate unknowns.
 struct System {
     d: usize,
     target: Vec<Bilinear>,
+    /// Bits of the unknowns that the plain and the conjugate factors of every equation feel.
+    supports: Vec<[u32; 2]>,
 }
 
-/// The product start system, one pair of linear factors per equation.
+/// The product start system, one pair of linear factors per equation, each in the unknowns that the equation feels.
 struct Start {
     gamma: C,
     plain: Vec<Affine>,
     conjugate: Vec<Affine>,
 }
 
+/// How carefully a path is followed.
+#[derive(Clone, Copy)]
+struct Care {
+    /// Largest first correction, as a part of the unknowns' size: beyond it another path may be near.
+    correction: f64,
+    /// Largest growth of a step.
+    growth: f64,
+}
+
+/// Points passed that the predictor looks back to.
+const MEMORY: usize = 3;
+/// Steps after which a path is given up.
+const STEPS: usize = 20_000;
+/// First correction aimed at, as a part of the largest.
+const AIM: f64 = 0.2;
+
+/// The usual care, and that for paths that were lost or met another.
+const CARES: [Care; 2] = [
+    Care {
+        correction: 1e-4,
+        growth: 2.0,
+    },
+    Care {
+        correction: 1e-7,
+        growth: 1.2,
+    },
+];
+
 impl System {
-    /// Follows every path of one start system and returns the distinct regular end points.
-    fn follow_all(&self, seed: u64, report: &mut PathReport) -> Vec<Vec<C>> {
+    fn new(solved: &[Affine], bilinear: &[Bilinear], d: usize) -> Self {
+        let conjugate: Vec<Affine> = solved.iter().map(Affine::conj).collect();
+        let target: Vec<Bilinear> = bilinear
+            .iter()
+            .map(|e| {
+                let terms = e.0.iter().map(|(l, r)| {
+                    (
+                        l.substitute(solved).cleaned(),
+                        r.substitute(&conjugate).cleaned(),
+                    )
+                });
+                Bilinear(terms.collect())
+            })
+            .collect();
+        let bits = |f: &Affine| {
+            let felt = f.0[..d]
+                .iter()
+                .enumerate()
+                .filter(|(_, c)| c.norm_sqr() > 0.0);
+            felt.fold(0_u32, |bits, (j, _)| bits | 1 << j)
+        };
+        let supports = target
+            .iter()
+            .map(|e| {
+                (e.0.iter()).fold([0, 0], |[l, r], (left, right)| {
+                    [l | bits(left), r | bits(right)]
+                })
+            })
+            .collect();
+        Self {
+            d,
+            target,
+            supports,
+        }
+    }
+
+    fn entries(&self) -> u32 {
+        self.supports
+            .iter()
+            .map(|[l, r]| l.count_ones() + r.count_ones())
+            .sum()
+    }
+
+    /// How many start points there are.
+    fn paths(&self) -> usize {
+        subsets(2 * self.d, self.d)
+            .iter()
+            .filter(|s| self.is_start(s))
+            .count()
+    }
+
+    /// Whether the factors chosen by a subset of the equations have a common zero: with random coefficients, if the
+    /// unknowns can be matched to them.
+    fn is_start(&self, subset: &[bool]) -> bool {
+        [(0, true), (1, false)].into_iter().all(|(group, wanted)| {
+            let chosen = self
+                .supports
+                .iter()
+                .zip(subset)
+                .filter(|(_, s)| **s == wanted);
+            matches_all(chosen.map(|(support, _)| support[group]), self.d)
+        })
+    }
+
+    /// Follows every path and returns the distinct regular end points with what the paths did; `None` when stopped.
+    fn follow_all(
+        &self,
+        work: &mut f64,
+        told: &mut dyn FnMut(f64) -> ControlFlow<()>,
+    ) -> Option<(Vec<Vec<C>>, PathReport)> {
         let d = self.d;
         let n = 2 * d;
-        let mut random =
-            Random(0x9e37_79b9_7f4a_7c15 ^ (seed + 1).wrapping_mul(0xd134_2543_de82_ef95));
-        let mut factor = || Affine((0..=d).map(|_| random.unit()).collect());
+        let mut random = Random(0xd134_2543_de82_ef95);
+        let mut factor = |support: u32| {
+            let mut f = Affine((0..=d).map(|_| random.unit()).collect());
+            for (j, c) in f.0[..d].iter_mut().enumerate() {
+                if support >> j & 1 == 0 {
+                    *c = C::zero();
+                }
+            }
+            f
+        };
         let start = Start {
-            plain: (0..n).map(|_| factor()).collect(),
-            conjugate: (0..n).map(|_| factor()).collect(),
+            plain: self.supports.iter().map(|s| factor(s[0])).collect(),
+            conjugate: self.supports.iter().map(|s| factor(s[1])).collect(),
             gamma: random.unit(),
         };
-        let mut ends: Vec<Vec<C>> = Vec::new();
-        for subset in subsets(n, d) {
-            report.paths += 1;
-            let Some(x) = self.start_point(&start, &subset) else {
-                report.lost += 1;
-                continue;
-            };
-            match self.follow(&start, x) {
-                End::Finite(x) => {
-                    let same = |y: &Vec<C>| {
-                        y.iter()
-                            .zip(&x)
-                            .all(|(a, b)| (*a - *b).norm() < 1e-6 * (1.0 + a.norm()))
-                    };
-                    if ends.iter().any(same) {
-                        // Two paths at one point: a multiple solution, or a path that jumped.
-                        report.lost += 1;
-                    } else {
-                        report.finite += 1;
-                        ends.push(x);
-                    }
+        let subsets: Vec<Vec<bool>> = subsets(n, d)
+            .into_iter()
+            .filter(|s| self.is_start(s))
+            .collect();
+        let mut tracker = Tracker::new(self, &start);
+        let mut ends: Vec<End> = Vec::with_capacity(subsets.len());
+        let follow = |tracker: &mut Tracker, subset: &[bool], care: Care, work: &mut f64| {
+            match self.start_point(&start, subset) {
+                Some(x) if *work > 0.0 => {
+                    let before = tracker.solves;
+                    let end = tracker.follow(x, care);
+                    // A solve costs about n^3 / 3 products.
+                    *work -= (tracker.solves - before) as f64 * (n * n * n) as f64 / 3.0;
+                    end
                 }
+                _ => End::Lost,
+            }
+        };
+        for (done, subset) in subsets.iter().enumerate() {
+            told(done as f64 / subsets.len() as f64).continue_value()?;
+            ends.push(follow(&mut tracker, subset, CARES[0], work));
+        }
+        // Paths that were lost, and all that ended at one point, are followed again with more care.
+        let again: Vec<usize> = (0..ends.len())
+            .filter(|&i| match &ends[i] {
+                End::Lost => true,
+                End::Infinite => false,
+                End::Finite(x) => (0..ends.len())
+                    .any(|j| j != i && matches!(&ends[j], End::Finite(y) if is_same(x, y))),
+            })
+            .collect();
+        for i in again {
+            told(1.0).continue_value()?;
+            ends[i] = follow(&mut tracker, &subsets[i], CARES[1], work);
+        }
+        let mut report = PathReport {
+            paths: subsets.len(),
+            exhausted: *work <= 0.0,
+            ..PathReport::default()
+        };
+        let mut found: Vec<Vec<C>> = Vec::new();
+        for end in ends {
+            match end {
                 End::Infinite => report.infinite += 1,
                 End::Lost => report.lost += 1,
+                // Two paths at one point: a multiple solution, or a path that jumped.
+                End::Finite(x) if found.iter().any(|y| is_same(&x, y)) => report.lost += 1,
+                End::Finite(x) => found.push(x),
             }
         }
-        ends
+        report.finite = found.len();
+        Some((found, report))
     }
 
     fn start_point(&self, start: &Start, subset: &[bool]) -> Option<Vec<C>> {
@@ -379,135 +563,289 @@ impl System {
         }
         Some(x)
     }
+}
 
-    /// Value, Jacobian (row-major) and derivative to t of H = (1 - t) gamma G + t F.
-    fn evaluate(
-        &self,
-        start: &Start,
-        x: &[C],
-        t: f64,
-        h: &mut [C],
-        jacobian: &mut [C],
-        to_t: &mut [C],
-    ) {
-        let d = self.d;
-        let n = 2 * d;
-        let (y, hat) = x.split_at(d);
+/// Whether `d` unknowns can be matched one to one to functions that feel the unknowns of their bits.
+fn matches_all(supports: impl Iterator<Item = u32>, d: usize) -> bool {
+    fn place(
+        row: usize,
+        rows: &[u32; LARGEST],
+        owner: &mut [usize; LARGEST],
+        seen: &mut u32,
+    ) -> bool {
+        let mut open = rows[row] & !*seen;
+        while open != 0 {
+            let column = open.trailing_zeros() as usize;
+            *seen |= 1 << column;
+            if owner[column] == usize::MAX || place(owner[column], rows, owner, seen) {
+                owner[column] = row;
+                return true;
+            }
+            open = rows[row] & !*seen;
+        }
+        false
+    }
+    let mut rows = [0; LARGEST];
+    let mut count = 0;
+    for support in supports {
+        rows[count] = support;
+        count += 1;
+    }
+    let mut owner = [usize::MAX; LARGEST];
+    count == d && (0..count).all(|row| place(row, &rows, &mut owner, &mut 0))
+}
+
+fn is_same(x: &[C], y: &[C]) -> bool {
+    (x.iter().zip(y)).all(|(a, b)| (*a - *b).norm() < 1e-6 * (1.0 + a.norm()))
+}
+
+/// An affine function by its entries that are not zero.
+struct Sparse {
+    entries: Vec<(usize, C)>,
+    constant: C,
+}
+
+impl Sparse {
+    fn of(f: &Affine, shift: usize) -> Self {
+        let n = f.0.len() - 1;
+        let entries = f.0[..n]
+            .iter()
+            .enumerate()
+            .filter(|(_, c)| c.norm_sqr() > 0.0);
+        Self {
+            entries: entries.map(|(j, c)| (j + shift, *c)).collect(),
+            constant: f.0[n],
+        }
+    }
+
+    fn value(&self, x: &[C]) -> C {
+        (self.entries.iter()).fold(self.constant, |sum, (j, c)| sum + *c * x[*j])
+    }
+}
+
+/// Follows the paths of H = (1 - t) gamma G + t F.
+struct Tracker {
+    n: usize,
+    start: Vec<(Sparse, Sparse)>,
+    target: Vec<Vec<(Sparse, Sparse)>>,
+    gamma: C,
+    h: Vec<C>,
+    jacobian: Vec<C>,
+    to_t: Vec<C>,
+    solves: usize,
+}
+
+impl Tracker {
+    fn new(system: &System, start: &Start) -> Self {
+        let (d, n) = (system.d, 2 * system.d);
+        let pair = |l: &Affine, r: &Affine| (Sparse::of(l, 0), Sparse::of(r, d));
+        Self {
+            n,
+            start: (start.plain.iter().zip(&start.conjugate))
+                .map(|(l, r)| pair(l, r))
+                .collect(),
+            target: (system.target.iter())
+                .map(|e| e.0.iter().map(|(l, r)| pair(l, r)).collect())
+                .collect(),
+            gamma: start.gamma,
+            h: vec![C::zero(); n],
+            jacobian: vec![C::zero(); n * n],
+            to_t: vec![C::zero(); n],
+            solves: 0,
+        }
+    }
+
+    /// Value, Jacobian (row-major) and derivative to t.
+    fn evaluate(&mut self, x: &[C], t: f64) {
+        let n = self.n;
+        self.jacobian.fill(C::zero());
+        let weight = self.gamma * (1.0 - t);
         for k in 0..n {
-            let row = &mut jacobian[k * n..(k + 1) * n];
-            row.fill(C::zero());
-            let (p, q) = (start.plain[k].value(y), start.conjugate[k].value(hat));
-            let g = start.gamma * p * q;
-            let weight = start.gamma * (1.0 - t);
-            for j in 0..d {
-                row[j] += weight * q * start.plain[k].0[j];
-                row[d + j] += weight * p * start.conjugate[k].0[j];
+            let row = &mut self.jacobian[k * n..(k + 1) * n];
+            let (left, right) = &self.start[k];
+            let (p, q) = (left.value(x), right.value(x));
+            let g = self.gamma * p * q;
+            for (j, c) in &left.entries {
+                row[*j] += weight * q * *c;
+            }
+            for (j, c) in &right.entries {
+                row[*j] += weight * p * *c;
             }
             let mut f = C::zero();
-            for (left, right) in &self.target[k].0 {
-                let (l, r) = (left.value(y), right.value(hat));
+            for (left, right) in &self.target[k] {
+                let (l, r) = (left.value(x), right.value(x));
                 f += l * r;
-                for j in 0..d {
-                    row[j] += r * left.0[j] * t;
-                    row[d + j] += l * right.0[j] * t;
+                for (j, c) in &left.entries {
+                    row[*j] += r * *c * t;
+                }
+                for (j, c) in &right.entries {
+                    row[*j] += l * *c * t;
                 }
             }
-            h[k] = g * (1.0 - t) + f * t;
-            to_t[k] = f - g;
+            self.h[k] = g * (1.0 - t) + f * t;
+            self.to_t[k] = f - g;
         }
     }
 
-    /// Follows one path from t = 0 to 1 with an adaptive fourth-order predictor and Newton's corrector.
-    fn follow(&self, start: &Start, mut x: Vec<C>) -> End {
-        const CORRECTIONS: usize = 3;
-        let n = 2 * self.d;
-        let (mut h, mut jacobian, mut to_t) = (
-            vec![C::zero(); n],
-            vec![C::zero(); n * n],
-            vec![C::zero(); n],
-        );
-        let size = |v: &[C]| v.iter().map(|c| c.norm_sqr()).fold(0.0, f64::max).sqrt();
-        let (mut t, mut step) = (0.0, 0.02_f64);
-        let mut tangent = |x: &[C], t: f64| {
-            self.evaluate(start, x, t, &mut h, &mut jacobian, &mut to_t);
-            let mut rhs: Vec<C> = to_t.iter().map(|c| -*c).collect();
-            solve(&mut jacobian, &mut rhs, n).then_some(rhs)
-        };
-        let (mut h2, mut jacobian2, mut unused) = (
-            vec![C::zero(); n],
-            vec![C::zero(); n * n],
-            vec![C::zero(); n],
-        );
-        for _ in 0..20_000 {
-            if t >= 1.0 {
-                break;
-            }
-            let now = step.min(1.0 - t);
-            let ahead = |x: &[C], k: &[C], f: f64| -> Vec<C> {
-                x.iter().zip(k).map(|(a, b)| *a + *b * (now * f)).collect()
-            };
-            let predicted = (|| {
-                let k1 = tangent(&x, t)?;
-                let k2 = tangent(&ahead(&x, &k1, 0.5), t + 0.5 * now)?;
-                let k3 = tangent(&ahead(&x, &k2, 0.5), t + 0.5 * now)?;
-                let k4 = tangent(&ahead(&x, &k3, 1.0), t + now)?;
-                Some(
-                    (0..n)
-                        .map(|i| x[i] + (k1[i] + (k2[i] + k3[i]) * 2.0 + k4[i]) * (now / 6.0))
-                        .collect::<Vec<C>>(),
-                )
-            })();
-            let mut good = false;
-            if let Some(mut next) = predicted {
-                let target = t + now;
-                let mut last = f64::INFINITY;
-                for round in 0..CORRECTIONS {
-                    self.evaluate(start, &next, target, &mut h2, &mut jacobian2, &mut unused);
-                    if !solve(&mut jacobian2, &mut h2, n) {
-                        break;
-                    }
-                    for (a, b) in next.iter_mut().zip(&h2) {
-                        *a -= *b;
-                    }
-                    let change = size(&h2) / (1.0 + size(&next));
-                    // The first correction must be small, or the path may have been left for another.
-                    if !change.is_finite()
-                        || (round == 0 && change > 1e-4)
-                        || (round > 0 && change > last)
-                    {
-                        break;
-                    }
-                    last = change;
-                    if change < 1e-10 {
-                        good = true;
-                        break;
-                    }
-                }
-                if good {
-                    x = next;
-                    t = target;
-                    step = now * 1.6;
-                    if size(&x) > INFINITY {
-                        return End::Infinite;
-                    }
-                    continue;
-                }
-            }
-            step = now * 0.4;
-            if step < 1e-12 {
-                break;
-            }
-        }
-        if t < 1.0 {
-            // A path that runs away slows down as it grows.
-            return if size(&x) > 1e3 {
-                End::Infinite
-            } else {
-                End::Lost
-            };
-        }
-        End::Finite(x)
+    fn tangent(&mut self, x: &[C], t: f64) -> Option<Vec<C>> {
+        self.evaluate(x, t);
+        self.solves += 1;
+        let mut rhs: Vec<C> = self.to_t.iter().map(|c| -*c).collect();
+        solve(&mut self.jacobian, &mut rhs, self.n).then_some(rhs)
     }
+
+    /// A step of the classical fourth-order rule: how a path begins.
+    fn runge_kutta(&mut self, x: &[C], k1: &[C], t: f64, step: f64) -> Option<Vec<C>> {
+        let ahead = |k: &[C], f: f64| -> Vec<C> {
+            x.iter().zip(k).map(|(a, b)| *a + *b * (step * f)).collect()
+        };
+        let k2 = self.tangent(&ahead(k1, 0.5), t + 0.5 * step)?;
+        let k3 = self.tangent(&ahead(&k2, 0.5), t + 0.5 * step)?;
+        let k4 = self.tangent(&ahead(&k3, 1.0), t + step)?;
+        Some(
+            (0..self.n)
+                .map(|i| x[i] + (k1[i] + (k2[i] + k3[i]) * 2.0 + k4[i]) * (step / 6.0))
+                .collect(),
+        )
+    }
+
+    /// Newton's method at fixed t; the first correction. `None` when it is too large (the path may have been left for
+    /// another) or the corrections do not shrink.
+    fn correct(&mut self, x: &mut [C], t: f64, care: Care) -> Option<f64> {
+        const CORRECTIONS: usize = 3;
+        let (mut first, mut last) = (0.0, f64::INFINITY);
+        for round in 0..CORRECTIONS {
+            self.evaluate(x, t);
+            self.solves += 1;
+            if !solve(&mut self.jacobian, &mut self.h, self.n) {
+                return None;
+            }
+            for (a, b) in x.iter_mut().zip(&self.h) {
+                *a -= *b;
+            }
+            let change = largest(&self.h) / (1.0 + largest(x));
+            if !change.is_finite()
+                || (round == 0 && change > care.correction)
+                || (round > 0 && change > last)
+            {
+                return None;
+            }
+            if round == 0 {
+                first = change;
+            }
+            last = change;
+            if change < 1e-10 {
+                return Some(first);
+            }
+        }
+        None
+    }
+
+    /// Follows one path from t = 0 to 1.
+    fn follow(&mut self, start: Vec<C>, care: Care) -> End {
+        let mut step = 0.02_f64;
+        let Some(slope) = self.tangent(&start, 0.0) else {
+            return End::Lost;
+        };
+        let mut passed = vec![Passed {
+            t: 0.0,
+            x: start,
+            slope,
+        }];
+        for _ in 0..STEPS {
+            let Some(here) = passed.last() else { break };
+            let t = here.t;
+            let now = step.min(1.0 - t);
+            let predicted = match passed.as_slice() {
+                [first] => self.runge_kutta(&first.x, &first.slope, t, now),
+                several => Some(extrapolate(several, t + now)),
+            };
+            let corrected = predicted.and_then(|mut next| {
+                let first = self.correct(&mut next, t + now, care)?;
+                Some((next, first))
+            });
+            let Some((x, first)) = corrected else {
+                step = now * 0.4;
+                // What lies far back does not help where the path bends.
+                passed.drain(..passed.len().saturating_sub(2));
+                if step < 1e-12 {
+                    break;
+                }
+                continue;
+            };
+            if largest(&x) > INFINITY {
+                return End::Infinite;
+            }
+            // The last step may end short of 1 by a rounding error.
+            if (1.0 - (t + now)).abs() < f64::EPSILON {
+                return End::Finite(x);
+            }
+            // The predictor's error goes with the power of the step that the points passed give.
+            let order = 1.0 / (2 * passed.len().max(2)) as f64;
+            let room = AIM * care.correction / first.max(f64::MIN_POSITIVE);
+            step = now * math::exp(order * math::ln(room)).clamp(0.3, care.growth);
+            let Some(slope) = self.tangent(&x, t + now) else {
+                break;
+            };
+            if passed.len() == MEMORY {
+                passed.remove(0);
+            }
+            passed.push(Passed {
+                t: t + now,
+                x,
+                slope,
+            });
+        }
+        // A path that runs away slows down as it grows.
+        if passed.last().is_some_and(|here| largest(&here.x) > 1e3) {
+            End::Infinite
+        } else {
+            End::Lost
+        }
+    }
+}
+
+fn largest(v: &[C]) -> f64 {
+    v.iter().map(|c| c.norm_sqr()).fold(0.0, f64::max).sqrt()
+}
+
+/// A point of a path with its tangent.
+struct Passed {
+    t: f64,
+    x: Vec<C>,
+    slope: Vec<C>,
+}
+
+/// The polynomial through the points passed with their tangents (Hermite, by divided differences), a step further.
+fn extrapolate(passed: &[Passed], t: f64) -> Vec<C> {
+    let count = 2 * passed.len();
+    let at = |i: usize| passed[i / 2].t;
+    // Products (t - t_0)(t - t_0)(t - t_1)... in front of the differences.
+    let mut factors = [1.0; 2 * MEMORY];
+    for i in 1..count {
+        factors[i] = factors[i - 1] * (t - at(i - 1));
+    }
+    let width = passed.first().map_or(0, |p| p.x.len());
+    (0..width)
+        .map(|k| {
+            let mut table = [C::zero(); 2 * MEMORY];
+            for (i, entry) in table[..count].iter_mut().enumerate() {
+                *entry = passed[i / 2].x[k];
+            }
+            let mut sum = table[0];
+            for order in 1..count {
+                for i in 0..count - order {
+                    table[i] = if order == 1 && i % 2 == 0 {
+                        passed[i / 2].slope[k]
+                    } else {
+                        (table[i + 1] - table[i]) * (1.0 / (at(i + order) - at(i)))
+                    };
+                }
+                sum += table[0] * factors[order];
+            }
+            sum
+        })
+        .collect()
 }
 
 enum End {

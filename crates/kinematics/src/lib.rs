@@ -26,9 +26,11 @@ pub mod mechanism;
 pub mod mobility;
 pub mod motion;
 mod newton;
+mod open_loop;
 pub mod plan;
 mod pose;
 mod qr;
+mod rank;
 mod recognise;
 mod sampler;
 pub mod sensitivity;
@@ -38,21 +40,23 @@ mod statistics;
 mod swept;
 mod swing;
 pub mod trace;
+pub mod watch;
 
 pub use batch::{Batch, BatchError, Designs, sweep_states};
 pub use certify::{
     Certificate, CertifiedMotion, Certifier, Subdivision, certify_motion, certify_pose,
 };
-pub use check::{Findings, Reach, check};
+pub use check::{Findings, Reach, check, check_watched};
 pub use constraint::{Input, Situation};
 pub use force_source::{ForceSource, NoForces};
 pub use geometry::Geometry;
 pub use mechanism::{BodyId, Mechanism};
-pub use motion::{EndReason, Motion, MotionError};
+pub use motion::{Demand, EndReason, Motion, MotionError};
 pub use newton::PlanNumber;
 pub use plan::Plan;
 pub use pose::Pose;
 pub use qr::Qr;
-pub use sampler::{CLOSURE_LIMIT, Sample, Sampler, Unmeasurable};
+pub use sampler::{CLOSURE_LIMIT, Sample, Sampler, Unmeasurable, Unprepared};
 pub use sensitivity::{Held, Sensitivities, sensitivities};
 pub use state::{Branch, Design, State};
+pub use watch::{Stage, Unwatched, Watch};

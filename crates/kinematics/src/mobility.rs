@@ -3,11 +3,9 @@
 use crate::evidence::is_finite;
 use crate::mechanism::{BodyId, Constraint, Mechanism};
 use crate::pose::Pose;
+use crate::rank::{SparseRow, rank};
 use crate::state::{Branch, Design, State};
 use crate::trace::is_length;
-
-/// Pivots below this part of the largest count as zero when the rank is found.
-pub const RANK_TOLERANCE: f64 = 1e-9;
 
 /// Mobility two ways.
 #[derive(Clone, Debug, PartialEq)]
@@ -72,7 +70,7 @@ pub fn mobility(
     it
 }
 
-/// Rank of the joints' scaled constraint Jacobian at a pose, by elimination with full pivoting.
+/// Rank of the joints' scaled constraint Jacobian at a pose.
 fn joint_rank(
     mechanism: &Mechanism,
     design: &Design<f64>,
@@ -82,7 +80,7 @@ fn joint_rank(
     let size = design.geometry.size(mechanism);
     let situation = state.situation(design, branch);
     let columns = 3 * (mechanism.bodies - 1);
-    let mut rows: Vec<Vec<f64>> = Vec::new();
+    let mut rows: Vec<SparseRow> = Vec::new();
     for (constraint, _) in &mechanism.constraints[..mechanism.joint_constraints] {
         let unit = if is_length(constraint) {
             1.0 / size
@@ -90,53 +88,28 @@ fn joint_rank(
             1.0
         };
         let first = rows.len();
-        rows.resize(first + constraint.rows(), vec![0.0; columns]);
+        rows.resize(first + constraint.rows(), Vec::with_capacity(6));
         situation.gradients(constraint, |g| {
             if g.body != BodyId::GROUND {
                 let column = 3 * (g.body.index() - 1);
-                rows[first + g.row][column] += g.to[0] * size * unit;
-                rows[first + g.row][column + 1] += g.to[1] * size * unit;
-                rows[first + g.row][column + 2] += g.to[2] * unit;
+                let row = &mut rows[first + g.row];
+                for (k, value) in [g.to[0] * size * unit, g.to[1] * size * unit, g.to[2] * unit]
+                    .into_iter()
+                    .enumerate()
+                {
+                    match row.iter_mut().find(|(c, _)| *c == column + k) {
+                        Some((_, sum)) => *sum += value,
+                        None if value != 0.0 => row.push((column + k, value)),
+                        None => {}
+                    }
+                }
             }
         });
     }
-    rank(rows)
-}
-
-fn rank(mut rows: Vec<Vec<f64>>) -> usize {
-    let columns = rows.first().map_or(0, Vec::len);
-    let mut first_pivot = 0.0;
-    for k in 0..rows.len().min(columns) {
-        let mut best = (0.0, k, k);
-        for (i, row) in rows.iter().enumerate().skip(k) {
-            for (j, value) in row.iter().enumerate().skip(k) {
-                if value.abs() > best.0 {
-                    best = (value.abs(), i, j);
-                }
-            }
-        }
-        let (size, i, j) = best;
-        if k == 0 {
-            first_pivot = size;
-        }
-        if size <= RANK_TOLERANCE * first_pivot || size == 0.0 {
-            return k;
-        }
-        rows.swap(k, i);
-        for row in &mut rows {
-            row.swap(k, j);
-        }
-        let pivot = rows[k].clone();
-        for row in rows.iter_mut().skip(k + 1) {
-            let factor = row[k] / pivot[k];
-            if factor != 0.0 {
-                for (value, p) in row.iter_mut().zip(&pivot).skip(k) {
-                    *value -= factor * p;
-                }
-            }
-        }
+    for row in &mut rows {
+        row.sort_unstable_by_key(|(column, _)| *column);
     }
-    rows.len().min(columns)
+    rank(rows, columns)
 }
 
 /// A state at given poses, ready for residuals and gradients.

@@ -1,6 +1,8 @@
 //! A motion: the branch through the chosen assembly, known all along the drives' path.
 
-use crate::assemble::{Assemblies, all_assemblies};
+use std::ops::ControlFlow;
+
+use crate::assemble::{Assemblies, find_assemblies};
 use crate::drive_path::DrivePath;
 use crate::events::{Event, EventKind, locate_change_point, locate_limit};
 use crate::mechanism::Mechanism;
@@ -8,7 +10,10 @@ use crate::newton::PlanNumber;
 use crate::plan::{Plan, Step};
 use crate::state::{Branch, Design, State};
 use crate::trace::{Cubic, Follower, Node};
+use crate::watch::{Stage, Unwatched, Watch};
 
+/// Sizes of mechanisms, m, whose lengths can be squared and multiplied with room to spare.
+pub const SIZES: (f64, f64) = (1e-100, 1e100);
 /// Steps after which a trace is given up.
 pub const STEP_LIMIT: usize = 200_000;
 /// A motion may end this close to a limit (in path scales) and still count as reaching it.
@@ -48,6 +53,16 @@ pub enum MotionError {
         /// Path parameter of the start.
         at: f64,
     },
+    /// The mechanism is too large or too small for numbers: squares of its lengths would overflow or vanish.
+    Scale {
+        /// Its size, m.
+        size: f64,
+    },
+    /// It was told to stop before the motion was known.
+    Stopped {
+        /// What it was at.
+        stage: Stage,
+    },
 }
 
 /// Why the motion ends before the demanded range does.
@@ -61,6 +76,19 @@ pub enum EndReason {
     Stuck,
     /// A part runs away to infinity as the drive nears a value, as where two crossing slots become parallel.
     Runaway,
+}
+
+/// What is asked of a motion.
+#[derive(Clone, Debug)]
+pub struct Demand {
+    /// The drives' path.
+    pub path: DrivePath,
+    /// Range of the path parameter to cover.
+    pub range: (f64, f64),
+    /// Where it starts.
+    pub start: f64,
+    /// All assemblies at the start, where they are known already: finding them can take long.
+    pub assemblies: Option<Assemblies>,
 }
 
 /// One stretch of the motion on which every assembly mode stays the same.
@@ -112,26 +140,51 @@ impl<'m> Motion<'m> {
         design: &'m Design<f64>,
         parameters: &[f64],
     ) -> Result<Self, MotionError> {
+        Self::watched(mechanism, plan, design, parameters, &mut Unwatched)
+    }
+
+    /// As [`Motion::new`]; `watch` hears how far it has come and may stop it.
+    ///
+    /// # Errors
+    /// As [`Motion::new`], and [`MotionError::Stopped`].
+    pub fn watched(
+        mechanism: &'m Mechanism,
+        plan: &'m Plan,
+        design: &'m Design<f64>,
+        parameters: &[f64],
+        watch: &mut dyn Watch,
+    ) -> Result<Self, MotionError> {
         let size = design.geometry.size(mechanism);
         let model = &mechanism.model;
         let path = DrivePath::new(model, parameters, size);
         let demanded = path.range(model, parameters);
         let start = path.start(model, parameters);
-        Self::along(mechanism, plan, design, path, demanded, start)
+        let stretch = Demand {
+            path,
+            range: demanded,
+            start,
+            assemblies: None,
+        };
+        Self::along(mechanism, plan, design, stretch, watch)
     }
 
-    /// Follows the branch through the assembly meant by the file's hints over `demanded`, starting at `start`.
+    /// Follows the branch through the assembly meant by the file's hints over a demanded range.
     ///
     /// # Errors
-    /// As [`Motion::new`].
+    /// As [`Motion::watched`].
     pub fn along(
         mechanism: &'m Mechanism,
         plan: &'m Plan,
         design: &'m Design<f64>,
-        path: DrivePath,
-        demanded: (f64, f64),
-        start: f64,
+        demand: Demand,
+        watch: &mut dyn Watch,
     ) -> Result<Self, MotionError> {
+        let Demand {
+            path,
+            range: demanded,
+            start,
+            assemblies: mut known,
+        } = demand;
         if mechanism.model.drives.is_empty() {
             return Err(MotionError::NoDrive);
         }
@@ -144,6 +197,10 @@ impl<'m> Motion<'m> {
                 .collect();
             bodies.dedup();
             return Err(MotionError::Undetermined { bodies });
+        }
+        let size = design.geometry.size(mechanism);
+        if !(SIZES.0..=SIZES.1).contains(&size) {
+            return Err(MotionError::Scale { size });
         }
         let scale = crate::trace::Path::scale(&path);
         let mut follower = Follower::new(mechanism, plan, &design.geometry, &path);
@@ -158,7 +215,14 @@ impl<'m> Motion<'m> {
         for part in ANCHORS {
             let anchor = start + part * (far - start);
             path.coordinates(anchor, &mut coordinates);
-            let assemblies = all_assemblies(mechanism, plan, design, &coordinates);
+            let assemblies = match known.take().filter(|_| anchor == start) {
+                Some(known) => known,
+                None => find_assemblies(mechanism, plan, design, &coordinates, watch).ok_or(
+                    MotionError::Stopped {
+                        stage: Stage::Assembling,
+                    },
+                )?,
+            };
             let Some(chosen) = assemblies.list.first() else {
                 nothing.get_or_insert(assemblies);
                 // A start right at a limit may miss closure by a rounding error: look a little inside.
@@ -173,8 +237,25 @@ impl<'m> Motion<'m> {
             else {
                 continue;
             };
-            let (high, end_high) = follow(&mut follower, up, demanded.1 / scale);
-            let (low, end_low) = follow(&mut follower, down, demanded.0 / scale);
+            // The finished part of the whole range, of which the upper part is followed first.
+            let whole = (demanded.1 - demanded.0).max(f64::MIN_POSITIVE);
+            let share = ((demanded.1 - anchor) / whole).clamp(0.0, 1.0);
+            let mut told = |before: f64, part: f64| {
+                watch.reached(Stage::Following, Some((before + part).clamp(0.0, 1.0)))
+            };
+            let following = |()| MotionError::Stopped {
+                stage: Stage::Following,
+            };
+            let (high, end_high) = follow(&mut follower, up, demanded.1 / scale, &mut |part| {
+                told(0.0, part * share)
+            })
+            .ok_or(())
+            .map_err(following)?;
+            let (low, end_low) = follow(&mut follower, down, demanded.0 / scale, &mut |part| {
+                told(share, part * (1.0 - share))
+            })
+            .ok_or(())
+            .map_err(following)?;
             // From the low end to the high one; the tangents of the lower half turned round.
             let mut nodes: Vec<Node> = low
                 .into_iter()
@@ -192,7 +273,11 @@ impl<'m> Motion<'m> {
             motion.start = start;
             motion.demanded = demanded;
             motion.ends = (end_low, end_high);
-            motion.find_events(&mut follower);
+            motion
+                .find_events(&mut follower, watch)
+                .ok_or(MotionError::Stopped {
+                    stage: Stage::Locating,
+                })?;
             return Ok(motion);
         }
         match nothing {
@@ -395,13 +480,20 @@ impl<'m> Motion<'m> {
         solver.run(self, design);
     }
 
-    /// Finds where modes change between nodes, splits the motion there and records what was met.
-    pub(crate) fn find_events(&mut self, follower: &mut Follower<'_, DrivePath>) {
-        let modes: Vec<Vec<f64>> = self
-            .nodes
-            .iter()
-            .map(|node| self.determinants(follower, node))
-            .collect();
+    /// Finds where modes change between nodes, splits the motion there and records what was met. `None` when stopped.
+    pub(crate) fn find_events(
+        &mut self,
+        follower: &mut Follower<'_, DrivePath>,
+        watch: &mut dyn Watch,
+    ) -> Option<()> {
+        let mut modes: Vec<Vec<f64>> = Vec::with_capacity(self.nodes.len());
+        for (done, node) in self.nodes.iter().enumerate() {
+            let part = done as f64 / self.nodes.len() as f64;
+            watch
+                .reached(Stage::Locating, Some(part))
+                .continue_value()?;
+            modes.push(self.determinants(follower, node));
+        }
         let mut nodes: Vec<Node> = Vec::with_capacity(self.nodes.len());
         let mut signs: Vec<Vec<f64>> = Vec::new();
         let old = std::mem::take(&mut self.nodes);
@@ -494,6 +586,7 @@ impl<'m> Motion<'m> {
                 });
             }
         }
+        Some(())
     }
 
     /// The determinant of every step at a node, with the sign of its assembly mode.
@@ -566,12 +659,14 @@ fn vanishing(at: &[f64], regular: Option<&Vec<f64>>) -> Vec<usize> {
         .collect()
 }
 
-/// Follows one direction until the scaled parameter `target` is passed, a limit is met, or the trace is stuck.
+/// Follows one direction until the scaled parameter `target` is passed, a limit is met, or the trace is stuck. `told`
+/// hears the finished part; `None` when it stops the work.
 fn follow(
     follower: &mut Follower<'_, DrivePath>,
     start: Node,
     target: f64,
-) -> (Vec<Node>, EndReason) {
+    told: &mut dyn FnMut(f64) -> ControlFlow<()>,
+) -> Option<(Vec<Node>, EndReason)> {
     let last = start.z.len() - 1;
     let direction = start.tangent[last].signum();
     let mut nodes = vec![start];
@@ -580,9 +675,11 @@ fn follow(
     let mut stops = stops.iter().peekable();
     for _ in 0..STEP_LIMIT {
         let from = &nodes[nodes.len() - 1];
+        let whole = (target - nodes[0].z[last]).abs().max(f64::MIN_POSITIVE);
+        told((from.z[last] - nodes[0].z[last]).abs() / whole).continue_value()?;
         // A margin beyond the target, so that it lies inside a patch and not at the rim.
         if (from.z[last] - target) * direction > 1e-9 {
-            return (nodes, EndReason::Covered);
+            return Some((nodes, EndReason::Covered));
         }
         // Where the drives' rates jump the trace stops on the near side and goes on from the far side.
         if let Some((near, far)) = stops.peek()
@@ -591,33 +688,31 @@ fn follow(
             let far_side = *far;
             if let Some(on) = follower.land_smoothly(from, *near, &mut step) {
                 let Some(over) = follower.land(&on, far_side) else {
-                    return (nodes, EndReason::Stuck);
+                    return Some((nodes, EndReason::Stuck));
                 };
                 nodes.push(on);
                 nodes.push(over);
                 stops.next();
                 step = 0.02;
                 if (far_side - target) * direction >= 0.0 {
-                    return (nodes, EndReason::Covered);
+                    return Some((nodes, EndReason::Covered));
                 }
                 continue;
             }
         }
         let Some(next) = follower.advance(from, &mut step) else {
-            return (nodes, EndReason::Stuck);
+            return Some((nodes, EndReason::Stuck));
         };
         if next.parameter_rate() * direction <= 0.0 {
             let limit = locate_limit(follower, from, &next);
             let covered = (limit.z[last] - target) * direction > 0.0;
             nodes.push(limit);
-            return (
-                nodes,
-                if covered {
-                    EndReason::Covered
-                } else {
-                    EndReason::Limit
-                },
-            );
+            let end = if covered {
+                EndReason::Covered
+            } else {
+                EndReason::Limit
+            };
+            return Some((nodes, end));
         }
         let standing = next.parameter_rate().abs() < STANDING;
         let away = next.z[..last]
@@ -630,10 +725,10 @@ fn follow(
             });
         nodes.push(next);
         if away {
-            return (nodes, EndReason::Runaway);
+            return Some((nodes, EndReason::Runaway));
         }
     }
-    (nodes, EndReason::Stuck)
+    Some((nodes, EndReason::Stuck))
 }
 
 /// The places ahead where the drives' rates jump, as near and far sides in scaled parameters. Between the two lies less

@@ -2,6 +2,7 @@
 
 use kempe_model::{DriveId, Leaf, Measure, PointId, PoseMeasure, Statistic};
 use kempe_number::{Jet, Number};
+use kempe_units::{Dimension, Unit, format_digits};
 
 use crate::bordered::Bordered;
 use crate::bridge::{SIDE_ORDER, join};
@@ -14,9 +15,13 @@ use crate::motion::{EndReason, Motion, Solver};
 use crate::pose::Pose;
 use crate::state::Design;
 use crate::swept::Swept;
+use crate::watch::{Unwatched, Watch};
 
 /// A closure residual (in mechanism sizes) above which a row is marked.
 pub const CLOSURE_LIMIT: f64 = 1e-9;
+
+/// Digits of a place in a note.
+const NOTE_DIGITS: usize = 12;
 
 /// One row of a motion.
 #[derive(Clone, Debug)]
@@ -48,6 +53,15 @@ pub struct Unmeasurable {
     pub index: usize,
     /// Why.
     pub reason: String,
+}
+
+/// Why a sampler is not ready.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Unprepared {
+    /// Measures that cannot be evaluated.
+    Unmeasurable(Vec<Unmeasurable>),
+    /// It was told to stop.
+    Stopped,
 }
 
 /// Evaluates measures along a motion; those of forces too where it is given their source.
@@ -89,6 +103,23 @@ impl<'a, F: ForceSource> Sampler<'a, F> {
         measures: &[&Measure],
         forces: F,
     ) -> Result<Self, Vec<Unmeasurable>> {
+        Self::watched(motion, measures, forces, &mut Unwatched).map_err(|problem| match problem {
+            Unprepared::Unmeasurable(list) => list,
+            // Unwatched, it is never stopped.
+            Unprepared::Stopped => Vec::new(),
+        })
+    }
+
+    /// As [`Sampler::with_forces`]; `watch` hears how far the statistics over the motion have come.
+    ///
+    /// # Errors
+    /// As [`Sampler::with_forces`], and [`Unprepared::Stopped`].
+    pub fn watched(
+        motion: &'a Motion<'a>,
+        measures: &[&Measure],
+        forces: F,
+        watch: &mut dyn Watch,
+    ) -> Result<Self, Unprepared> {
         let mechanism = motion.mechanism;
         let problems: Vec<Unmeasurable> = (measures.iter().enumerate())
             .filter_map(|(index, m)| {
@@ -98,7 +129,7 @@ impl<'a, F: ForceSource> Sampler<'a, F> {
             })
             .collect();
         if !problems.is_empty() {
-            return Err(problems);
+            return Err(Unprepared::Unmeasurable(problems));
         }
         let parameters = mechanism.model.parameter_values::<f64>();
         let mut it = Self {
@@ -117,7 +148,7 @@ impl<'a, F: ForceSource> Sampler<'a, F> {
             motion,
             forces: Some(forces),
         };
-        it.prepare();
+        it.prepare(watch).ok_or(Unprepared::Stopped)?;
         Ok(it)
     }
 
@@ -126,8 +157,8 @@ impl<'a, F: ForceSource> Sampler<'a, F> {
         self.forces.as_ref()
     }
 
-    /// Finds out what the measures need beyond the poses along the path.
-    fn prepare(&mut self) {
+    /// Finds out what the measures need beyond the poses along the path. `None` when stopped.
+    fn prepare(&mut self, watch: &mut dyn Watch) -> Option<()> {
         let mut statistics: Vec<(Statistic, Measure)> = Vec::new();
         let mut directions: Vec<(PointId, PointId)> = Vec::new();
         let mut swept: Vec<PointId> = Vec::new();
@@ -167,13 +198,14 @@ impl<'a, F: ForceSource> Sampler<'a, F> {
             self.directions.push((pair, nodes));
         }
         for point in swept {
-            self.swept.push(Swept::new(motion, point));
+            self.swept.push(Swept::watched(motion, point, watch)?);
         }
         // Inner statistics first: a measure that contains another is found before it.
         for (statistic, measure) in statistics.into_iter().rev() {
-            let value = crate::statistics::over(self, statistic, &measure);
+            let value = crate::statistics::over(self, statistic, &measure, watch)?;
             self.statistics.push((statistic, measure, value));
         }
+        Some(())
     }
 
     /// The motion.
@@ -526,6 +558,25 @@ impl<'a, F: ForceSource> Sampler<'a, F> {
         }
     }
 
+    /// A path parameter with its unit, as the file would say it.
+    fn place_text(&self, p: f64) -> String {
+        let model = &self.motion.mechanism.model;
+        let dimension = match self.path_drive() {
+            Some(drive) => model.drives.get(drive.index()).map(|d| d.dimension),
+            None => None,
+        };
+        let unit = match dimension {
+            Some(Dimension::ANGLE) => Unit::parse(&model.units.angle.name),
+            Some(_) => Unit::parse(&model.units.length.name),
+            None => Unit::parse("s"),
+        };
+        match unit {
+            Ok(unit) => format_digits(p, &unit, NOTE_DIGITS),
+            // A file's unit is one that was read; in SI at the worst.
+            Err(_) => format!("{p} in SI"),
+        }
+    }
+
     fn why_unreached(&self, p: f64) -> String {
         let motion = self.motion;
         let (low, high) = motion.reached();
@@ -534,6 +585,7 @@ impl<'a, F: ForceSource> Sampler<'a, F> {
         } else {
             (motion.ends.0, low)
         };
+        let at = self.place_text(at);
         match reason {
             EndReason::Limit => format!("not reached: the drive's limit is at {at}"),
             EndReason::Stuck => {
@@ -554,7 +606,7 @@ impl<'a, F: ForceSource> Sampler<'a, F> {
         {
             return Some(format!(
                 "change point at {}: the motion goes on smoothly, interpolated from both sides",
-                event.at
+                self.place_text(event.at)
             ));
         }
         if !(sample.closure <= CLOSURE_LIMIT) {

@@ -400,7 +400,12 @@ impl<'s, 'a> Varied<'s, 'a> {
                 sum / duration
             }
             Statistic::Min | Statistic::Max | Statistic::Range | Statistic::TimeRatio => {
-                let Some((low, high)) = crate::statistics::extremes(self.sampler, measure) else {
+                let Some((low, high)) = crate::statistics::extremes(
+                    self.sampler,
+                    measure,
+                    &mut crate::watch::Unwatched,
+                )
+                .flatten() else {
                     return nothing;
                 };
                 let (low, high) = (self.extreme(measure, low.0), self.extreme(measure, high.0));

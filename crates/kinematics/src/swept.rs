@@ -4,6 +4,7 @@ use kempe_model::PointId;
 use kempe_number::{Jet, Number};
 
 use crate::motion::Motion;
+use crate::watch::{Stage, Watch};
 
 /// Gauss-Legendre points and weights on [-1, 1] (8 points).
 pub(crate) const GAUSS: [(f64, f64); 8] = [
@@ -29,8 +30,8 @@ pub struct Swept {
 }
 
 impl Swept {
-    /// Integrates over a motion.
-    pub fn new(motion: &Motion<'_>, point: PointId) -> Self {
+    /// Integrates over a motion; `None` when stopped.
+    pub fn watched(motion: &Motion<'_>, point: PointId, watch: &mut dyn Watch) -> Option<Self> {
         let nodes = motion.node_parameters();
         let mut it = Self {
             point,
@@ -38,10 +39,14 @@ impl Swept {
             turns: turns(motion),
         };
         for index in 1..nodes.len() {
+            let part = index as f64 / nodes.len() as f64;
+            watch
+                .reached(Stage::Measuring, Some(part))
+                .continue_value()?;
             let length = it.stretch(motion, index - 1, nodes[index - 1], nodes[index]);
             it.cumulated[index] = it.cumulated[index - 1] + length;
         }
-        it
+        Some(it)
     }
 
     /// The point.

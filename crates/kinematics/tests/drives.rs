@@ -263,7 +263,9 @@ C = \"left of B -> D\"
                 assert_eq!(s.motion.ends, (EndReason::Limit, EndReason::Limit));
             }
         }
-        let mut samplers = circuit.samplers(&[]).unwrap();
+        let mut samplers = circuit
+            .samplers(&[], &mut kempe_kinematics::Unwatched)
+            .unwrap();
         for k in 0..=40 {
             let row = circuit
                 .row(&mut samplers, circuit.length * f64::from(k) / 40.0)

@@ -514,3 +514,36 @@ E = { near = [204.64, 20] }
         }
     }
 }
+
+/// Close to a limit a link turns with the root of the drive's way, so an extreme can lie between the last place of the
+/// search's grid and the limit, where there is no rate that could tell.
+#[test]
+fn an_extreme_just_before_a_limit_is_found() {
+    let [a, b, c, d] = [50.0_f64, 40.0, 30.0, 60.0];
+    // The crank's limit: coupler and rocker in line.
+    let limit = ((a * a + d * d - (b + c) * (b + c)) / (2.0 * a * d)).acos();
+    let shape = [a, b, c, d];
+    let height = |crank: f64| {
+        let v = sub([d, 0.0], polar(a, crank));
+        let square = v[0] * v[0] + v[1] * v[1];
+        let area = square * b * b - 0.25 * (square + b * b - c * c).powi(2);
+        joint(shape, crank, area.max(0.0).sqrt())[1]
+    };
+    for back in [1e-3, 1e-4, 1e-6] {
+        let wanted = height(limit - back);
+        let case = Case::read(
+            &four_bar(shape, 0.2, limit, "C = \"left of B -> D\"")
+                .text
+                .replace(
+                    "[assembly]",
+                    &format!("[measures]\nm = \"min((y(C) - {wanted:e} mm)^2)\"\n[assembly]"),
+                ),
+            "four-bar.toml",
+        );
+        let motion = case.must_move();
+        assert_eq!(motion.ends.1, EndReason::Limit);
+        let mut sampler = Sampler::new(&motion, &[&case.model.measures[0].measure]).unwrap();
+        let found = sampler.at_parameter(0.5).values[0];
+        assert!(found <= 1e-18, "{back:e}: {found:e} m^2");
+    }
+}

@@ -285,6 +285,11 @@ pub enum JointKind {
     },
     /// Two gears in mesh, their axes on the arm.
     /// External: `teeth_a (angle_a - angle_arm) + teeth_b (angle_b - angle_arm) = teeth_a phase`; internal: minus.
+    ///
+    /// A gear counts turns, so it matters from where. Where the motion starts a driven link's angle is what its drive
+    /// says, and that of any other link is the one within half a turn of its `near` hint, or of zero without one. The
+    /// equation holds for these angles there, and on from there with all turns counted. Other meshings of the same
+    /// wheels, a tooth further, are other phases.
     Gears {
         /// First gear.
         a: LinkId,
@@ -302,7 +307,8 @@ pub enum JointKind {
         phase: Scalar,
     },
     /// A pinion rolling on a rack. With `s` the pinion centre's coordinate along the rack's x axis and `side` the
-    /// side of the rack on which the pinion lies: `s + side radius (angle_pinion - angle_rack) = offset`.
+    /// side of the rack on which the pinion lies: `s + side radius (angle_pinion - angle_rack) = offset`. Angles count
+    /// as those of [`JointKind::Gears`] do.
     Rack {
         /// The link that carries the rack; its pitch line is parallel to its x axis.
         rack: LinkId,
@@ -580,11 +586,12 @@ pub struct MotionStudy {
 /// Where the rows of a motion table stand.
 #[derive(Clone, Debug)]
 pub enum Rows {
-    /// Every `step` of the (single) drive's coordinate, from its start, and at its end.
+    /// Every `step` of the (single) drive's coordinate, from its start, and at its end; along a circuit at its dead points
+    /// too.
     DriveStep(Scalar),
     /// Every `step` seconds.
     TimeStep(Scalar),
-    /// So many rows, evenly in time over the whole motion, both ends included.
+    /// So many rows, evenly in time over the whole motion (along a circuit: in arc length), both ends included.
     Count(usize),
 }
 

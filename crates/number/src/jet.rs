@@ -117,8 +117,9 @@ impl<T: Number, const N: usize> Jet<T, N> {
         step.0[0] = T::zero();
         let mut sum = Self::constant(self.0[N - 1]);
         for k in (0..N - 1).rev() {
+            // The product starts with zero, whatever higher coefficients are not known.
             sum *= step;
-            sum.0[0] += self.0[k];
+            sum.0[0] = self.0[k];
         }
         sum
     }

@@ -212,3 +212,13 @@ fn a_half_turn_keeps_the_derivatives_across_the_cut() {
     assert!(near(angle.derivative(0), PI, 1e-15) && near(angle.derivative(1), 1.0, 1e-15));
     assert!((2..8).all(|k| angle.coefficient(k).abs() < 1e-14));
 }
+
+/// At a limit of a motion the value is known and the rates are not.
+#[test]
+fn composition_keeps_a_known_value_beside_unknown_rates() {
+    let outer = Jet::<f64, 3>::from_coefficients([2.5, f64::NAN, f64::NAN]);
+    let inner = Jet::<f64, 3>::variable(1.0);
+    let composed = outer.compose(&inner);
+    assert_eq!(composed.coefficient(0), 2.5);
+    assert!(composed.coefficient(1).is_nan());
+}

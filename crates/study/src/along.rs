@@ -1,11 +1,12 @@
 //! What is evaluated along a motion: the motion alone, or its forces too.
 
 use kempe_dynamics::{ForceArrow, ForceError, ForceEvidence, ForceNote, ForceSampler};
-use kempe_kinematics::{Motion, Sample, Sampler};
+use kempe_kinematics::force_source::NoForces;
+use kempe_kinematics::{Motion, Sample, Sampler, Unwatched, Watch};
 use kempe_model::{Diagnostic, DriveId, Model};
 
 use crate::columns::Quantity;
-use crate::motion::not_measurable;
+use crate::motion::unprepared;
 use crate::rows::RowPlace;
 
 /// Evaluates quantities along a motion.
@@ -36,17 +37,28 @@ impl<'a> Along<'a> {
         quantities: &[&Quantity],
         forces: bool,
     ) -> Result<Self, Vec<Diagnostic>> {
+        Self::watched(model, motion, quantities, forces, &mut Unwatched)
+    }
+
+    /// As [`Along::new`]; `watch` hears how far the statistics have come and may stop them.
+    pub fn watched(
+        model: &Model,
+        motion: &'a Motion<'a>,
+        quantities: &[&Quantity],
+        forces: bool,
+        watch: &mut dyn Watch,
+    ) -> Result<Self, Vec<Diagnostic>> {
         let measures: Vec<_> = quantities.iter().map(|q| &q.measure).collect();
         if !forces {
-            return match Sampler::new(motion, &measures) {
+            return match Sampler::watched(motion, &measures, NoForces, watch) {
                 Ok(sampler) => Ok(Self::Motion(Box::new(sampler))),
-                Err(problems) => Err(not_measurable(model, quantities, &problems)),
+                Err(problem) => Err(unprepared(model, quantities, problem)),
             };
         }
-        ForceSampler::new(motion, &measures)
+        ForceSampler::watched(motion, &measures, watch)
             .map(|sampler| Self::Forces(Box::new(sampler)))
             .map_err(|error| match error {
-                ForceError::Unmeasurable(problems) => not_measurable(model, quantities, &problems),
+                ForceError::Unprepared(problem) => unprepared(model, quantities, problem),
                 ForceError::Problems(problems) => {
                     let told = problems
                         .into_iter()

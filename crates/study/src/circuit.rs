@@ -8,8 +8,8 @@ use kempe_units::Unit;
 use crate::along::Row;
 use crate::columns::{Asked, Quantity};
 use crate::explain::cannot_move;
-use crate::motion::{events, not_measurable, unreached_warning};
-use crate::progress::{Flow, Progress};
+use crate::motion::{events, unprepared, unreached_warning};
+use crate::progress::{Ear, Flow, Progress};
 use crate::result::{Event, StudyResult};
 use crate::sink::RowSink;
 use crate::table::Column;
@@ -17,8 +17,11 @@ use crate::unit::Units;
 
 /// Rows of a circuit when the study does not say how many.
 const DEFAULT_ROWS: usize = 361;
+/// Most rows that a step of the drive may make.
+const MOST_ROWS: usize = 10_000_000;
 
-/// Runs a study that traces a whole circuit. Rows stand evenly along the arc; time does not run.
+/// Runs a study that traces a whole circuit. Rows stand evenly along the arc, or at steps of
+/// the drive; time does not run.
 pub(crate) fn run_circuit(
     model: &Model,
     name: &str,
@@ -29,26 +32,50 @@ pub(crate) fn run_circuit(
     let plan = Plan::new(&mechanism);
     let parameters: Vec<f64> = model.parameter_values();
     let design = Design::new(&mechanism, &plan, &parameters);
-    let circuit = Circuit::new(&mechanism, &plan, &design, &parameters)
+    let circuit = Circuit::watched(&mechanism, &plan, &design, &parameters, &mut Ear(progress))
         .map_err(|error| vec![cannot_move(&mechanism, &plan, &design, &error)])?;
     let asked = Asked::of_motion(model, study);
     let quantities: Vec<&Quantity> = asked.all().collect();
     let measures: Vec<_> = quantities.iter().map(|q| &q.measure).collect();
     let mut samplers = circuit
-        .samplers(&measures)
-        .map_err(|problems| not_measurable(model, &quantities, &problems))?;
+        .samplers(&measures, &mut Ear(progress))
+        .map_err(|problem| unprepared(model, &quantities, problem))?;
 
-    let count = match study.rows {
-        Rows::Count(count) => count.max(2),
-        _ => DEFAULT_ROWS,
+    let mut warnings = Vec::new();
+    let evenly = |count: usize| -> Vec<f64> {
+        (0..count)
+            .map(|k| circuit.length * (k as f64 / (count - 1) as f64))
+            .collect()
     };
+    let arcs = match &study.rows {
+        Rows::Count(count) => evenly((*count).max(2)),
+        Rows::DriveStep(step) => {
+            let step = kempe_model::value(step, &parameters).abs();
+            let travel = circuit.length * circuit.scale();
+            if step > 0.0 && travel / step <= MOST_ROWS as f64 {
+                circuit.arcs_by_step(step)
+            } else {
+                evenly(DEFAULT_ROWS)
+            }
+        }
+        Rows::TimeStep(_) => {
+            warnings.push(
+                Diagnostic::warning(
+                    "circuit-without-time",
+                    format!("study `{name}` asks for steps of time, but time does not run along a circuit"),
+                )
+                .help("give the step in the drive's unit, or say how many rows: rows = 361"),
+            );
+            evenly(DEFAULT_ROWS)
+        }
+    };
+    let count = arcs.len();
     let units = Units::of(model);
     let arc = Column::new("arc", Unit::one());
     let mut rows = RowSink::new(name, model, &units, &asked, arc);
     let mut frames = Vec::with_capacity(count);
     let mut stretch_of: Vec<(usize, f64)> = Vec::with_capacity(count);
-    for done in 0..count {
-        let arc = circuit.length * (done as f64 / (count - 1) as f64);
+    for (done, arc) in arcs.into_iter().enumerate() {
         let Some(sample) = circuit.row(&mut samplers, arc) else {
             break;
         };
@@ -62,7 +89,6 @@ pub(crate) fn run_circuit(
             break;
         }
     }
-    let mut warnings = Vec::new();
     if rows.table.unreached() > 0 {
         warnings.push(unreached_warning(name, &rows.table));
     }

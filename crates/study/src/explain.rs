@@ -3,7 +3,9 @@
 use kempe_kinematics::drive_path::DrivePath;
 use kempe_kinematics::mechanism::Marker;
 use kempe_kinematics::plan::{Condition, Dyad, Step, Swing};
-use kempe_kinematics::{Branch, Design, EndReason, Mechanism, Motion, MotionError, Plan, State};
+use kempe_kinematics::{
+    Branch, Design, EndReason, Mechanism, Motion, MotionError, Plan, Stage, State,
+};
 use kempe_model::{Diagnostic, Model};
 use kempe_number::math::hypot;
 use kempe_units::Dimension;
@@ -61,6 +63,16 @@ pub fn cannot_move(
             }
             model.drives.iter().fold(told, |d, drive| d.see(drive.span.clone(), "where it starts"))
         }
+        MotionError::Stopped { stage } => stopped(*stage),
+        MotionError::Scale { size } => Diagnostic::error(
+            "scale",
+            format!("the mechanism measures {size:.1e} m: lengths of this size cannot be computed with"),
+        )
+        .note("squares of lengths must neither overflow nor vanish: from 1e-100 m to 1e100 m there is room")
+        .help(format!(
+            "check the units: a bare length is in {}",
+            model.units.length.name
+        )),
         MotionError::Locked { at } => {
             let told = Diagnostic::error(
                 "locked",
@@ -70,6 +82,14 @@ pub fn cannot_move(
             model.drives.iter().fold(told, |d, drive| d.at(drive.span.clone(), ""))
         }
     }
+}
+
+/// Work that was stopped before its first row.
+pub(crate) fn stopped(stage: Stage) -> Diagnostic {
+    Diagnostic::error(
+        "stopped",
+        format!("stopped while {}: there are no rows yet", stage.text()),
+    )
 }
 
 /// `at motor = 0 deg`, or where it starts.
@@ -271,7 +291,16 @@ pub(crate) fn beyond_limit(motion: &Motion<'_>, missed: &[(EndReason, f64)]) -> 
         })
         .collect();
     let stuck = missed.iter().all(|(r, _)| *r == EndReason::Stuck);
-    let (code, message) = if stuck {
+    let limited = missed.iter().any(|(r, _)| *r == EndReason::Limit);
+    let (code, message) = if !stuck && !limited {
+        (
+            "motion-runs-away",
+            format!(
+                "{name} cannot cover its range, as a part runs away to infinity on the way: {}",
+                list(&ends)
+            ),
+        )
+    } else if stuck {
         (
             "motion-stuck",
             format!(
@@ -290,14 +319,16 @@ pub(crate) fn beyond_limit(motion: &Motion<'_>, missed: &[(EndReason, f64)]) -> 
         text(low),
         text(high)
     ));
-    if let Some(group) = limiting_group(
-        motion,
-        if missed.iter().any(|(_, at)| *at > high) {
-            high
-        } else {
-            low
-        },
-    ) {
+    if limited
+        && let Some(group) = limiting_group(
+            motion,
+            if missed.iter().any(|(_, at)| *at > high) {
+                high
+            } else {
+                low
+            },
+        )
+    {
         told = told.note(format!("at the limit {group}"));
     }
     if let Some(span) = span {

@@ -1,5 +1,6 @@
 //! What is to be known of a mechanism before it moves, in the names and units of its file.
 
+use kempe_kinematics::assemble::Shortfall;
 use kempe_kinematics::events::EventKind;
 use kempe_kinematics::mechanism::{BodyId, Source};
 use kempe_kinematics::{Design, EndReason, Findings, Mechanism, Plan};
@@ -7,7 +8,9 @@ use kempe_model::{Diagnostic, Model};
 use kempe_units::Dimension;
 use serde::Serialize;
 
+use crate::alternatives::hints;
 use crate::explain::{cannot_move, list};
+use crate::progress::{Ear, Progress, Silent};
 use crate::unit::Units;
 
 /// The answer of `check`.
@@ -83,11 +86,23 @@ pub struct Grashof {
 
 /// Checks a model: mobility two ways, groups, assemblies, reach.
 pub fn check(model: &Model) -> Report {
+    check_watched(model, &mut Silent)
+}
+
+/// As [`check`]; `progress` hears how far it has come (no rows). Stopped, it tells what it found until then, with the
+/// diagnostic `stopped`.
+pub fn check_watched(model: &Model, progress: &mut dyn Progress) -> Report {
     let mechanism = Mechanism::new(model);
     let plan = Plan::new(&mechanism);
     let parameters: Vec<f64> = model.parameter_values();
     let design = Design::new(&mechanism, &plan, &parameters);
-    let found = kempe_kinematics::check(&mechanism, &plan, &design, &parameters);
+    let found = kempe_kinematics::check_watched(
+        &mechanism,
+        &plan,
+        &design,
+        &parameters,
+        &mut Ear(progress),
+    );
     let units = Units::of(model);
     let bodies = |list: &[BodyId]| {
         list.iter()
@@ -161,6 +176,12 @@ pub fn check(model: &Model) -> Report {
                 (EndReason::Limit, EndReason::Limit) => ", limits on both sides",
                 (EndReason::Limit, _) => " and more, a limit at the low end",
                 (_, EndReason::Limit) => " and less, a limit at the high end",
+                (EndReason::Runaway, _) | (_, EndReason::Runaway) => {
+                    ", where a part runs away to infinity"
+                }
+                (EndReason::Stuck, _) | (_, EndReason::Stuck) => {
+                    ", where it could be followed no further"
+                }
                 _ => "",
             };
             format!("{name} {range}{why}")
@@ -205,7 +226,7 @@ fn source_name(model: &Model, source: Source) -> String {
 fn assumptions(model: &Model, units: &Units) -> Vec<String> {
     let parameters: Vec<f64> = model.parameter_values();
     let mut told = vec![format!(
-        "bare numbers: lengths in {}, angles in {}",
+        "bare numbers: lengths in {0}, angles in {1}, speeds in {0}/s and {1}/s",
         model.units.length.name, model.units.angle.name
     )];
     for drive in &model.drives {
@@ -302,16 +323,38 @@ fn diagnostics(
         );
         // A place near which things are is an answer; nothing said is a question.
         if model.assembly.is_empty() {
-            told.push(told_now.help(
-                "say which is meant: [assembly] C = \"left of B -> D\", or C = { near = [x, y] }",
-            ));
+            let lines = hints(mechanism, plan, design, &found.assemblies.list);
+            let help = match lines.is_empty() {
+                true => {
+                    "say under [assembly] near which angle a link is meant: rocker = { near = \"30 deg\" }"
+                }
+                false => "write the line of the one that is meant under [assembly]",
+            };
+            let lines = lines.into_iter().enumerate();
+            let told_now = lines.fold(told_now, |told, (k, line)| match k {
+                0 => told.note(format!("the first: {line}")),
+                _ => told.note(format!("number {}: {line}", k + 1)),
+            });
+            told.push(told_now.help(help));
         }
     }
-    if !found.assemblies.complete && found.problem.is_none() {
-        told.push(Diagnostic::warning(
-            "assemblies-incomplete",
-            "some assemblies may be missing: a group was searched by trial",
-        ));
+    if let (Some(shortfall), None) = (found.assemblies.shortfall, &found.problem) {
+        let why = match shortfall {
+            Shortfall::Searched => "a group was searched by trial",
+            Shortfall::Scanned => {
+                "a group with a gear or rack was followed along its curves, and a short one can be overlooked"
+            }
+            Shortfall::LostPath => "two assemblies of a group meet here, or all but",
+            Shortfall::Exhausted => "a group has more of them than could be followed",
+            Shortfall::TooMany => "there are too many to list",
+        };
+        told.push(
+            Diagnostic::warning(
+                "assemblies-incomplete",
+                format!("some assemblies may be missing: {why}"),
+            )
+            .help("where the one that is meant is not found, say where its points are: [assembly] C = { near = [x, y] }"),
+        );
     }
     if let Some(reach) = &found.reach {
         let parameters: Vec<f64> = model.parameter_values();

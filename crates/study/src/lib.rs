@@ -31,6 +31,7 @@
 //! ```
 
 mod along;
+mod alternatives;
 mod choice;
 mod circuit;
 mod columns;
@@ -45,9 +46,11 @@ mod force_notes;
 mod motion;
 mod pose;
 mod progress;
+mod proof;
 mod report;
 mod result;
 mod rows;
+mod sensitivities;
 mod sink;
 mod table;
 mod unit;
@@ -56,12 +59,15 @@ mod view;
 
 pub use explain::{cannot_move, reach_text};
 pub use figures::figures;
-pub use findings::{Grashof, Group, Report as CheckReport, check};
+pub use findings::{Grashof, Group, Report as CheckReport, check, check_watched};
+pub use kempe_kinematics::Stage;
 pub use motion::{run, run_motion};
 pub use pose::{Loaded, Setting, loaded_at, pose_at};
 pub use progress::{Flow, Progress, Silent};
+pub use proof::{Proof, Unproved, prove};
 pub use report::{StudyOutcome, report};
 pub use result::{Event, Figure, Frame, Listing, Scalar, StudyResult};
+pub use sensitivities::{Derivative, MeasureSensitivity, Sensitivities, sensitivities};
 pub use table::{Column, ForceColumns, Table};
 pub use unit::{Units, shown};
 pub use view::{drawing_frames, drawn, mechanism_view};

@@ -2,7 +2,9 @@
 
 use kempe_kinematics::drive_path::DrivePath;
 use kempe_kinematics::events::EventKind;
-use kempe_kinematics::{Design, EndReason, Mechanism, Motion, Plan, Unmeasurable};
+use kempe_kinematics::{
+    Design, EndReason, Mechanism, Motion, Plan, Stage, Unmeasurable, Unprepared,
+};
 use kempe_model::{Diagnostic, LawPiece, Model, MotionStudy, Study, StudyKind};
 use kempe_units::Dimension;
 
@@ -10,9 +12,9 @@ use crate::along::Along;
 use crate::choice::{balance, spring};
 use crate::circuit::run_circuit;
 use crate::columns::{Asked, Quantity};
-use crate::explain::{beyond_limit, cannot_move};
+use crate::explain::{beyond_limit, cannot_move, stopped};
 use crate::force_columns::standard_plots;
-use crate::progress::{Flow, Progress};
+use crate::progress::{Ear, Flow, Progress};
 use crate::result::{Event, StudyResult};
 use crate::rows::places_along;
 use crate::sink::RowSink;
@@ -24,7 +26,7 @@ use crate::unit::Units;
 /// # Errors
 ///
 /// What keeps the study from starting, as diagnostics over the model file: `cannot-assemble`, `range-beyond-limit`,
-/// `undetermined`, `locked`, `not-measurable`. A row that cannot be reached is no error: it carries its reason.
+/// `undetermined`, `locked`, `not-measurable`, `stopped`. A row that cannot be reached is no error: it carries its reason.
 pub fn run(
     model: &Model,
     study: &Study,
@@ -67,7 +69,7 @@ pub(crate) fn run_along(
     let plan = Plan::new(&mechanism);
     let parameters: Vec<f64> = model.parameter_values();
     let design = Design::new(&mechanism, &plan, &parameters);
-    let motion = Motion::new(&mechanism, &plan, &design, &parameters)
+    let motion = Motion::watched(&mechanism, &plan, &design, &parameters, &mut Ear(progress))
         .map_err(|error| vec![cannot_move(&mechanism, &plan, &design, &error)])?;
     let mut warnings = range_warnings(&motion)?;
     let mut study = study.clone();
@@ -80,7 +82,7 @@ pub(crate) fn run_along(
         Asked::of_motion(model, &study)
     };
     let quantities: Vec<&Quantity> = asked.all().collect();
-    let mut sampler = Along::new(model, &motion, &quantities, forces)?;
+    let mut sampler = Along::watched(model, &motion, &quantities, forces, &mut Ear(progress))?;
     let places = places_along(&motion, &study, &parameters);
     let units = Units::of(model);
     let mut rows = RowSink::new(
@@ -118,6 +120,18 @@ pub(crate) fn run_along(
         warnings,
         demanded_rows: places.len(),
     })
+}
+
+/// Why there are no rows, as diagnostics over the model file.
+pub(crate) fn unprepared(
+    model: &Model,
+    quantities: &[&Quantity],
+    problem: Unprepared,
+) -> Vec<Diagnostic> {
+    match problem {
+        Unprepared::Unmeasurable(problems) => not_measurable(model, quantities, &problems),
+        Unprepared::Stopped => vec![stopped(Stage::Measuring)],
+    }
 }
 
 /// The column that rows run along: the drive that goes one way through the whole motion, or else time.

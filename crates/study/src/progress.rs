@@ -1,11 +1,15 @@
 //! How a study tells how far it has come, and how it is stopped.
 
+use std::ops::ControlFlow;
+
+use kempe_kinematics::{Stage, Watch};
+
 /// Whether to go on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Flow {
     /// Go on.
     Continue,
-    /// Stop after this row; what is finished is kept.
+    /// Stop here; finished rows are kept.
     Stop,
 }
 
@@ -13,6 +17,24 @@ pub enum Flow {
 pub trait Progress {
     /// `done` of `total` rows are finished. Called after every row.
     fn tick(&mut self, done: usize, total: usize) -> Flow;
+
+    /// What is done before the first row, and the finished part of it where that is known. Called often.
+    fn stage(&mut self, stage: Stage, part: Option<f64>) -> Flow {
+        let _ = (stage, part);
+        Flow::Continue
+    }
+}
+
+/// Passes on to a study's progress what the kinematics tell.
+pub(crate) struct Ear<'a>(pub &'a mut dyn Progress);
+
+impl Watch for Ear<'_> {
+    fn reached(&mut self, stage: Stage, part: Option<f64>) -> ControlFlow<()> {
+        match self.0.stage(stage, part) {
+            Flow::Continue => ControlFlow::Continue(()),
+            Flow::Stop => ControlFlow::Break(()),
+        }
+    }
 }
 
 /// Hears nothing and never stops.

@@ -273,3 +273,217 @@ fn a_circuit_goes_past_its_dead_points() {
     );
     assert_eq!(result.events.len(), 2, "{:?}", result.events);
 }
+
+/// Stops in the first stage before the rows that it hears of.
+struct Impatient;
+
+impl kempe_study::Progress for Impatient {
+    fn tick(&mut self, _: usize, _: usize) -> Flow {
+        Flow::Continue
+    }
+
+    fn stage(&mut self, _: kempe_study::Stage, _: Option<f64>) -> Flow {
+        Flow::Stop
+    }
+}
+
+#[test]
+fn what_comes_before_the_rows_can_be_stopped() {
+    let model = model(FOUR_BAR);
+    let told = run(&model, &model.studies[0], &mut Impatient).unwrap_err();
+    assert_eq!(told[0].code, "stopped");
+    assert_eq!(
+        told[0].message,
+        "stopped while finding assemblies: there are no rows yet"
+    );
+    let report = kempe_study::check_watched(&model, &mut Impatient);
+    assert_eq!(report.diagnostics[0].code, "stopped");
+    assert_eq!(
+        report.four_bars.len(),
+        1,
+        "what was found until then is told"
+    );
+}
+
+/// A rocker-driven four-bar whose drive turns back at both ends.
+const ROCKER_DRIVEN: &str = r#"
+units = { length = "mm", angle = "deg" }
+[links]
+frame   = { A = [0, 0], D = [60, 0] }
+crank   = { A-B = 20 }
+coupler = { B-C = 50 }
+rocker  = { D-C = 40 }
+[drives]
+motor = { turns = "rocker", from = 110, to = 130, speed = 10 }
+[assembly]
+C = "right of D -> B"
+[measures]
+turn = "angle(crank)"
+[studies.round]
+kind = "motion"
+circuit = true
+step = 5
+"#;
+
+#[test]
+fn a_circuit_has_rows_at_the_steps_of_its_drive() {
+    let result = run_ok(ROCKER_DRIVEN);
+    let motor = &result.table.column("motor").unwrap().values;
+    // Both dead points, where a multiple of the step need not lie.
+    let ends = |x: f64| {
+        result
+            .events
+            .iter()
+            .any(|e| (e.at.to_degrees() - x).abs() < 1e-6)
+    };
+    let odd: Vec<f64> = (motor.iter().copied())
+        .filter(|x| (x / 5.0 - (x / 5.0).round()).abs() > 1e-7)
+        .collect();
+    assert_eq!(odd.len(), 2, "{motor:?}");
+    assert!(odd.iter().all(|x| ends(*x)), "{odd:?}");
+    assert!(
+        motor.windows(2).all(|p| (p[1] - p[0]).abs() < 5.0 + 1e-6),
+        "{motor:?}"
+    );
+    assert_eq!(result.table.unreached(), 0);
+    // A step of time means nothing here, and that is told.
+    let timed = run_ok(&ROCKER_DRIVEN.replace("step = 5", "step = \"0.1 s\""));
+    assert_eq!(timed.warnings[0].code, "circuit-without-time");
+    let plain = run_ok(&ROCKER_DRIVEN.replace("step = 5", ""));
+    assert_eq!(plain.table.rows(), 361);
+}
+
+fn run_ok(text: &str) -> StudyResult {
+    let model = model(text);
+    match run(&model, &model.studies[0], &mut Silent) {
+        Ok(result) => result,
+        Err(found) => panic!("{}", told(&found, text)),
+    }
+}
+
+#[test]
+fn several_assemblies_are_told_apart_in_the_words_of_the_file() {
+    let open = FOUR_BAR.replace("[assembly]\nC = \"left of B -> D\"\n", "");
+    assert_ne!(open, FOUR_BAR);
+    let lines = |text: &str| -> Vec<String> {
+        let report = check(&model(text));
+        let told = report
+            .diagnostics
+            .iter()
+            .find(|d| d.code == "several-assemblies");
+        let notes = &told.expect("it asks which is meant").notes;
+        notes
+            .iter()
+            .map(|n| n.split_once(": ").unwrap().1.to_owned())
+            .collect()
+    };
+    assert_eq!(
+        lines(&open),
+        ["C = \"left of B -> D\"", "C = \"right of B -> D\""]
+    );
+    // No dyad: a slot in a slot, and the lines are taken at their word.
+    let slots = r#"
+units = { length = "mm", angle = "deg" }
+[links]
+frame = { A = [0, 0], D = [60, 0] }
+crank = { A-B = 80 }
+rod   = { B-C = 90 }
+block = { C = [0, 0] }
+[joints]
+bore = { slider = "block", at = "C", on = "A -> D" }
+[drives]
+motor = { turns = "crank", from = 60, to = 61, speed = 10 }
+"#;
+    let told = lines(slots);
+    assert_eq!(told.len(), 2, "{told:?}");
+    let mut chosen = Vec::new();
+    for line in &told {
+        assert!(line.contains("= { near = ["), "{line}");
+        let text = format!("{slots}\n[assembly]\n{line}\n");
+        let one = model(&text);
+        let pose = pose_at(&one, &[]).unwrap();
+        let index = one.points.iter().position(|p| p.name == "C").unwrap();
+        let near: f64 = line
+            .split(['[', ','])
+            .nth(1)
+            .unwrap()
+            .trim()
+            .parse()
+            .unwrap();
+        let x = pose.0.points[index][0] * 1e3;
+        assert!((x - near).abs() < 1.0, "{line}: {x}");
+        chosen.push(x);
+    }
+    assert!((chosen[0] - chosen[1]).abs() > 10.0);
+}
+
+#[test]
+fn lengths_beyond_numbers_are_told_as_such() {
+    for length in ["1e200", "1e-200"] {
+        let text = FOUR_BAR
+            .replace("a = \"20 mm\"", &format!("a = \"0.2 * {length} mm\""))
+            .replace("D = [60, 0]", &format!("D = [\"0.6 * {length} mm\", 0]"))
+            .replace(
+                "B-C = 50, P = [25, 0]",
+                &format!("B-C = \"0.5 * {length} mm\", P = [0, 0]"),
+            )
+            .replace("D-C = 40", &format!("D-C = \"0.4 * {length} mm\""));
+        let model = model(&text);
+        let told = run(&model, &model.studies[0], &mut Silent).unwrap_err();
+        assert_eq!(told[0].code, "scale", "{}", told[0].message);
+        assert!(told[0].help.as_ref().unwrap().contains("mm"));
+    }
+}
+
+#[test]
+fn places_in_notes_and_warnings_have_the_units_of_the_file() {
+    // Two drives, so that rows beyond the limit are marked and the rest is kept.
+    let text = ROCKER_DRIVEN
+        .replace(
+            "from = 110, to = 130, speed = 10",
+            "from = 110, to = 200, speed = 10",
+        )
+        .replace("circuit = true\n", "");
+    let model_ = model(&text);
+    let told = run(&model_, &model_.studies[0], &mut Silent).unwrap_err();
+    assert_eq!(told[0].code, "range-beyond-limit");
+    let report = check(&model_);
+    assert!(
+        report.assumptions[0].contains("speeds in mm/s and deg/s"),
+        "{:?}",
+        report.assumptions
+    );
+    assert!(
+        report.assumptions[1].ends_with("in 9 s"),
+        "10 is 10 deg/s: {:?}",
+        report.assumptions
+    );
+}
+
+/// Two slots that become parallel: the pin in both runs away. That is no limit of the drive.
+#[test]
+fn a_part_that_runs_away_is_not_called_a_limit() {
+    let text = r#"
+units = { length = "mm", angle = "deg" }
+[links]
+frame = { A = [0, 0], E = [0, 40], F = [60, 40] }
+crank = { A-B = 20 }
+block = { P = [0, 0] }
+[joints]
+first = { pin = "P", on = "A -> B" }
+second = { pin = "P", on = "E -> F" }
+[drives]
+motor = { turns = "crank", from = 60, to = -20, speed = 10 }
+[studies.s]
+kind = "motion"
+step = 10
+"#;
+    let model = model(text);
+    let result = run(&model, &model.studies[0], &mut Silent).unwrap();
+    assert_eq!(result.warnings[0].code, "motion-runs-away");
+    let note = result.table.notes.iter().flatten().next().unwrap();
+    assert!(
+        note.contains("runs away to infinity beyond") && note.ends_with(" deg"),
+        "{note}"
+    );
+}

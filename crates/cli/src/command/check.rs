@@ -5,6 +5,8 @@ use serde_json::json;
 use crate::arguments::Check;
 use crate::exit::Exit;
 use crate::files::load;
+use crate::interrupt;
+use crate::progress::Bar;
 use crate::say::{Speaker, print_json, put};
 
 /// Runs `kempe check`.
@@ -17,23 +19,41 @@ pub fn check(arguments: &Check) -> Exit {
             return exit;
         }
     };
-    let report = kempe_study::check(&loaded.checked.model);
+    interrupt::listen();
+    let mut bar = Bar::new("check", arguments.json);
+    let report = kempe_study::check_watched(&loaded.checked.model, &mut bar);
+    // A mechanism that cannot move is told so above; there is no motion to prove.
+    let proof = (arguments.certify && !report.has_errors() && !interrupt::stopped())
+        .then(|| kempe_study::prove(&loaded.checked.model, &mut bar).ok())
+        .flatten();
+    drop(bar);
     if arguments.json {
         speaker.tell(&report.diagnostics);
         let mut value = serde_json::to_value(&report).unwrap_or_default();
         value["file"] = json!(loaded.name);
         value["diagnostics"] = speaker.told();
+        if let Some(proof) = &proof {
+            value["proof"] = serde_json::to_value(proof).unwrap_or_default();
+        }
         print_json(&value);
     } else {
         put(&report.to_text());
+        if let Some(proof) = &proof {
+            put(&proof.to_text());
+        }
         if report.has_findings() {
             eprintln!();
         }
         speaker.tell(&report.diagnostics);
     }
-    if report.has_errors() {
+    if interrupt::stopped() {
+        Exit::Interrupted
+    } else if report.has_errors() {
         Exit::CannotSolve
-    } else if report.has_findings() || !loaded.checked.warnings.is_empty() {
+    } else if proof.is_some_and(|proof| !proof.is_whole())
+        || report.has_findings()
+        || !loaded.checked.warnings.is_empty()
+    {
         Exit::Finding
     } else {
         Exit::Ok

@@ -5,4 +5,5 @@ pub mod draw;
 pub mod lists;
 pub mod new;
 pub mod run;
+pub mod sensitivities;
 pub mod verify;

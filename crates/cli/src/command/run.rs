@@ -52,7 +52,12 @@ pub fn run(arguments: &Run) -> Exit {
     let mut files = Vec::new();
     let any = outcomes.iter().any(|o| o.result.is_ok());
     if let (Some(folder), true) = (&arguments.out, any) {
-        match write(&loaded, folder, &outcomes) {
+        match write(
+            &loaded,
+            folder,
+            &outcomes,
+            arguments.quiet || arguments.json,
+        ) {
             Ok(written) => files = written,
             Err(told) => {
                 speaker.tell(&[*told]);
@@ -131,6 +136,7 @@ fn write(
     loaded: &Loaded,
     folder: &Path,
     outcomes: &[StudyOutcome<'_>],
+    quiet: bool,
 ) -> Result<Vec<PathBuf>, Box<Diagnostic>> {
     let told = |path: &Path, reason: &str| {
         let message = format!("{} cannot be written: {reason}", path.display());
@@ -181,7 +187,8 @@ fn write(
             )?;
         }
     }
-    let check = kempe_study::check(model);
+    // Stopped, it is not begun anew: the report says so.
+    let check = kempe_study::check_watched(model, &mut Bar::new("check", quiet));
     let report = kempe_study::report(
         model,
         &loaded.name,

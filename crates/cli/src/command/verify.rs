@@ -119,7 +119,11 @@ fn gather(paths: &[PathBuf]) -> Result<Vec<Found>, Box<Diagnostic>> {
     if paths.is_empty() {
         let cases = EMBEDDED
             .iter()
-            .filter(|(path, _)| path.starts_with("validation/") && path.ends_with(".toml"));
+            // Models of cases stand in a folder below.
+            .filter(|(path, _)| {
+                let case = path.strip_prefix("validation/");
+                case.is_some_and(|name| name.ends_with(".toml") && !name.contains('/'))
+            });
         return Ok(cases
             .map(|(path, text)| Found {
                 name: (*path).to_owned(),

@@ -49,6 +49,8 @@ pub(crate) const ANNOUNCED_KINDS: &[&str] = &[
 
 /// Rows of a table by default, when a step is not the thing to say.
 const DEFAULT_ROWS: usize = 181;
+/// Rows along a circuit when the file does not say.
+const CIRCUIT_ROWS: usize = 361;
 
 /// Rows a table may have.
 pub(crate) const MAX_ROWS: usize = 10_000_000;
@@ -154,8 +156,15 @@ fn read_study(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<StudyKind> {
         Some(node) if !forces => cx.flag(node, "`circuit`")?,
         _ => false,
     };
+    // Along a circuit the drive turns back: rows stand evenly along the arc unless a step is asked for.
+    let rows = match rows? {
+        _ if circuit && table.get("step").is_none() && table.get("rows").is_none() => {
+            Rows::Count(CIRCUIT_ROWS)
+        }
+        rows => rows,
+    };
     let along = MotionStudy {
-        rows: rows?,
+        rows,
         columns,
         plots,
         circuit,

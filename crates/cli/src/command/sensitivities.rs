@@ -1,0 +1,63 @@
+//! `kempe sensitivities`: how the measures change with the parameters.
+
+use kempe_study::Setting;
+use serde_json::json;
+
+use crate::arguments::Sensitivities;
+use crate::exit::Exit;
+use crate::files::load;
+use crate::interrupt;
+use crate::progress::Bar;
+use crate::say::{Speaker, print_json, put};
+
+/// Runs `kempe sensitivities`.
+pub fn sensitivities(arguments: &Sensitivities) -> Exit {
+    let mut speaker = Speaker::new(arguments.json, false);
+    let fail = |speaker: &Speaker, exit| {
+        speaker.print_failure();
+        exit
+    };
+    let loaded = match load(&arguments.model, &mut speaker) {
+        Ok(loaded) => loaded,
+        Err(exit) => return fail(&speaker, exit),
+    };
+    let model = &loaded.checked.model;
+    let setting = match arguments
+        .at
+        .as_deref()
+        .map(|text| Setting::parse(model, text))
+    {
+        Some(Err(told)) => {
+            speaker.tell(&[told]);
+            return fail(&speaker, Exit::Usage);
+        }
+        Some(Ok(setting)) => Some(setting),
+        None => None,
+    };
+    interrupt::listen();
+    let mut bar = Bar::new("sensitivities", arguments.json);
+    let found = kempe_study::sensitivities(model, setting.as_ref(), &mut bar);
+    drop(bar);
+    match found {
+        Ok(found) if arguments.json => {
+            let mut value = serde_json::to_value(&found).unwrap_or_default();
+            value["file"] = json!(loaded.name);
+            value["diagnostics"] = speaker.told();
+            print_json(&value);
+            Exit::Ok
+        }
+        Ok(found) => {
+            put(&found.to_text());
+            Exit::Ok
+        }
+        Err(told) => {
+            speaker.tell(&told);
+            let exit = if interrupt::stopped() {
+                Exit::Interrupted
+            } else {
+                Exit::CannotSolve
+            };
+            fail(&speaker, exit)
+        }
+    }
+}

@@ -1,0 +1,231 @@
+//! Assemblies of a block that holds a gear pair or a rack.
+//!
+//! A gear ties angles in the ratio of its teeth, which no polynomial of small degree says. Without it the block has one
+//! freedom, and its poses form curves. They are cut at some angles of the gear, where every pose is found as that of a
+//! mechanism in which the gear is driven; each curve is followed through these all the way round, past its dead points,
+//! and the gear's equation is one function along it whose zeros are the assemblies.
+//!
+//! What can be missed is a curve that lies between two neighbouring cuts.
+
+use std::ops::ControlFlow;
+
+use kempe_model::{Drive, DriveKind, JointKind, Law, LinkId};
+use kempe_units::{Dimension, Expr};
+
+use crate::assemble::find_assemblies;
+use crate::circuit::go_round;
+use crate::constraint::Situation;
+use crate::drive_path::DrivePath;
+use crate::mechanism::{Mechanism, Source};
+use crate::plan::Plan;
+use crate::pose::Pose;
+use crate::state::Design;
+use crate::trace::{Follower, Node, hermite};
+use crate::watch::{Stage, Watch};
+
+/// Angles of the gear at which the curves are cut.
+pub const CUTS: usize = 12;
+/// The first cut, as a part of the way to the next: special poses tend to lie at special angles.
+const OFFSET: f64 = 0.37;
+/// Two points on a cut closer than this (mechanism sizes and rad) lie on one curve; a trace is this good between nodes.
+const SAME_CURVE: f64 = 1e-3;
+/// Places within a step of the trace at which the gear's equation is evaluated.
+const SAMPLES: usize = 12;
+
+/// The mechanism with the gear's constraint replaced by a drive that turns it.
+struct Opened {
+    mechanism: Mechanism,
+    plan: Plan,
+    design: Design<f64>,
+}
+
+/// Poses in whose neighbourhood the constraint number `gear` may hold, with `meant` the angles near which angles are
+/// counted. `None` when stopped; nothing where the gear cannot be opened.
+pub(crate) fn candidates(
+    mechanism: &Mechanism,
+    plan: &Plan,
+    design: &Design<f64>,
+    coordinates: &[f64],
+    (gear, meant): (usize, &[f64]),
+    watch: &mut dyn Watch,
+) -> Option<Vec<Vec<Pose<f64>>>> {
+    let Some(opened) = open(mechanism, plan, design, gear) else {
+        return Some(Vec::new());
+    };
+    let drive = mechanism.model.drives.len();
+    let mut held = coordinates.to_vec();
+    held.push(0.0);
+    let path = DrivePath::Coordinate {
+        drive,
+        held: held.clone(),
+        scale: 1.0,
+    };
+    let mut follower = Follower::new(
+        &opened.mechanism,
+        &opened.plan,
+        &opened.design.geometry,
+        &path,
+    );
+    let mut curves: Vec<Vec<Node>> = Vec::new();
+    for cut in 0..CUTS {
+        let mut told = |_: Stage, _: Option<f64>| -> ControlFlow<()> {
+            watch.reached(Stage::Assembling, Some(cut as f64 / CUTS as f64))
+        };
+        let angle = (cut as f64 + OFFSET) / CUTS as f64 * std::f64::consts::TAU;
+        held[drive] = angle;
+        let found = find_assemblies(
+            &opened.mechanism,
+            &opened.plan,
+            &opened.design,
+            &held,
+            &mut told,
+        )?;
+        for assembly in &found.list {
+            let z = follower.scaled(&assembly.poses, &assembly.branch.near, angle);
+            if curves.iter().any(|curve| passes(curve, &z)) {
+                continue;
+            }
+            for direction in [1.0, -1.0] {
+                let Some(start) = follower.start(z.clone(), direction) else {
+                    continue;
+                };
+                let (nodes, closed) = go_round(
+                    &mut follower,
+                    start,
+                    &opened.mechanism,
+                    &path,
+                    f64::INFINITY,
+                    &mut told,
+                )?;
+                curves.push(nodes);
+                if closed {
+                    break;
+                }
+            }
+        }
+    }
+    let constraint = &mechanism.constraints[gear].0;
+    let mut poses = vec![Pose::identity(); mechanism.bodies];
+    let mut near = vec![0.0; mechanism.bodies];
+    let mut at = |z: &[f64]| -> (f64, Vec<Pose<f64>>) {
+        follower.unscaled(z, &mut poses, &mut near);
+        for (near, (pose, meant)) in near.iter_mut().zip(poses.iter().zip(meant)) {
+            *near = pose.angle_near(*meant);
+        }
+        let situation = Situation {
+            geometry: &design.geometry,
+            inputs: &[],
+            poses: &poses,
+            near: &near,
+        };
+        (situation.residual(constraint)[0], poses.clone())
+    };
+    let mut found = Vec::new();
+    for pair in curves.iter().flat_map(|curve| curve.windows(2)) {
+        let (from, to) = (&pair[0], &pair[1]);
+        let mut last: Option<(f64, f64)> = None;
+        for k in 0..=SAMPLES {
+            let s = k as f64 / SAMPLES as f64;
+            let (value, _) = at(&hermite(from, to, s));
+            if let Some((before, other)) = last
+                && other * value <= 0.0
+            {
+                // A jump of the count of turns is bisected too; the block's equations tell it from a zero.
+                let (mut low, mut high) = (before, s);
+                for _ in 0..40 {
+                    let middle = 0.5 * (low + high);
+                    if at(&hermite(from, to, middle)).0 * other > 0.0 {
+                        low = middle;
+                    } else {
+                        high = middle;
+                    }
+                }
+                found.push(at(&hermite(from, to, 0.5 * (low + high))).1);
+            }
+            last = Some((s, value));
+        }
+    }
+    Some(found)
+}
+
+/// Opens a mechanism at a gear: at the angle of one of its wheels on the arm, of the pinion on the rack.
+fn open(mechanism: &Mechanism, plan: &Plan, design: &Design<f64>, gear: usize) -> Option<Opened> {
+    let Source::Joint(joint) = mechanism.constraints[gear].1 else {
+        return None;
+    };
+    let joint = mechanism.model.joints.get(joint.index())?;
+    let turning: Vec<(LinkId, LinkId)> = match joint.kind {
+        JointKind::Gears { a, b, arm, .. } => vec![(a, arm), (b, arm)],
+        JointKind::Rack { rack, pinion, .. } => vec![(pinion, rack)],
+        _ => return None,
+    };
+    turning.into_iter().find_map(|(link, relative_to)| {
+        let mut model = mechanism.model.clone();
+        model.assembly.clear();
+        model.drives.push(Drive {
+            name: joint.name.clone(),
+            kind: DriveKind::Turn { link, relative_to },
+            law: Law {
+                pieces: Vec::new(),
+                from: Expr::Const(0.0),
+            },
+            dimension: Dimension::ANGLE,
+            span: joint.span.clone(),
+        });
+        let mut opened = Mechanism::new(&model);
+        opened.constraints.remove(gear);
+        opened.joint_constraints -= 1;
+        let new = Plan::new(&opened);
+        let (old, decomposition) = (&plan.decomposition, &new.decomposition);
+        let as_before = decomposition.undetermined.is_empty()
+            && decomposition.surplus.len() == old.surplus.len();
+        if !as_before {
+            return None;
+        }
+        // The new drive's angle is the last, and counts from wherever it likes.
+        let mut geometry = design.geometry.clone();
+        geometry.angles.push([1.0, 0.0]);
+        Some(Opened {
+            design: Design::from_geometry(&new, geometry.clone(), vec![geometry]),
+            mechanism: opened,
+            plan: new,
+        })
+    })
+}
+
+/// Whether a curve passes through a point, whole turns of any angle aside.
+fn passes(curve: &[Node], z: &[f64]) -> bool {
+    use std::f64::consts::TAU;
+    let last = z.len() - 1;
+    let is_angle = |i: usize| i == last || i % 3 == 2;
+    let gap = |a: f64, b: f64, i: usize| {
+        let gap = a - b;
+        if is_angle(i) {
+            gap - (gap / TAU).round() * TAU
+        } else {
+            gap
+        }
+    };
+    curve.windows(2).any(|pair| {
+        let (from, to) = (&pair[0], &pair[1]);
+        // Where along the step the cut is passed, if it is.
+        let (a, b) = (
+            gap(from.z[last], z[last], last),
+            gap(to.z[last], z[last], last),
+        );
+        if a * b > 0.0 || (a - b).abs() > 1.0 {
+            return false;
+        }
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..40 {
+            let middle = 0.5 * (low + high);
+            if gap(hermite(from, to, middle)[last], z[last], last) * a > 0.0 {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        let there = hermite(from, to, 0.5 * (low + high));
+        (there.iter().zip(z).enumerate()).all(|(i, (a, b))| gap(*a, *b, i).abs() <= SAME_CURVE)
+    })
+}

@@ -1,0 +1,142 @@
+//! How much of the demanded motion is proved, in the words of the file.
+
+use std::fmt::Write as _;
+use std::ops::ControlFlow;
+
+use kempe_kinematics::drive_path::DrivePath;
+use kempe_kinematics::events::EventKind;
+use kempe_kinematics::{Design, Mechanism, Motion, Plan, Stage, Subdivision, certify_motion};
+use kempe_model::{Diagnostic, Model};
+use kempe_units::Dimension;
+use serde::Serialize;
+
+use crate::explain::cannot_move;
+use crate::progress::{Ear, Flow, Progress};
+use crate::unit::Units;
+
+/// What is proved of a motion by interval arithmetic.
+#[derive(Clone, Debug, Serialize)]
+pub struct Proof {
+    /// What runs: the drive's name, or `time`.
+    pub along: String,
+    /// The range looked at, with units.
+    pub range: String,
+    /// Proved part of the range, 0 to 1.
+    pub fraction: f64,
+    /// Longest stretches proved to be one smooth branch, with units.
+    pub runs: Vec<String>,
+    /// What is not proved.
+    pub gaps: Vec<Unproved>,
+    /// Redundant constraint rows that are left out of the proof.
+    pub redundant: usize,
+    /// False when it was stopped on the way: what comes after is in neither list.
+    pub finished: bool,
+}
+
+/// A stretch that is not proved.
+#[derive(Clone, Debug, Serialize)]
+pub struct Unproved {
+    /// Where, with units.
+    pub place: String,
+    /// Why.
+    pub reason: String,
+    /// It holds a limit or a change point, where nothing can be proved by these means.
+    pub expected: bool,
+}
+
+/// Proves the demanded motion of a model, stretch by stretch: that for every place of the drive there is exactly one
+/// pose near the one followed, and that it moves smoothly. See [`kempe_kinematics::certify`] for what that says.
+///
+/// # Errors
+///
+/// What keeps the motion from starting; see [`run`](crate::run).
+pub fn prove(model: &Model, progress: &mut dyn Progress) -> Result<Proof, Vec<Diagnostic>> {
+    let mechanism = Mechanism::new(model);
+    let plan = Plan::new(&mechanism);
+    let parameters: Vec<f64> = model.parameter_values();
+    let design = Design::new(&mechanism, &plan, &parameters);
+    let motion = Motion::watched(&mechanism, &plan, &design, &parameters, &mut Ear(progress))
+        .map_err(|error| vec![cannot_move(&mechanism, &plan, &design, &error)])?;
+    let found = certify_motion(&motion, Subdivision::default(), |part| {
+        match progress.stage(Stage::Proving, Some(part)) {
+            Flow::Continue => ControlFlow::Continue(()),
+            Flow::Stop => ControlFlow::Break(()),
+        }
+    });
+    let units = Units::of(model);
+    let drive = match motion.path {
+        DrivePath::Coordinate { drive, .. } => model.drives.get(drive),
+        DrivePath::Time { .. } => None,
+    };
+    let (along, dimension) = drive.map_or(("time", Dimension::TIME), |d| {
+        (d.name.as_str(), d.dimension)
+    });
+    let range = |from: f64, to: f64| {
+        format!(
+            "{} to {}",
+            units.text(from, dimension),
+            units.text(to, dimension)
+        )
+    };
+    let gaps = found.gaps.iter().map(|gap| {
+        let event = gap.event.map_or("", |kind| match kind {
+            EventKind::Limit => ", at a limit of the drive",
+            EventKind::ChangePoint => ", at a change point",
+            EventKind::ModeChange => ", where an assembly mode changes",
+        });
+        Unproved {
+            place: range(gap.from, gap.to),
+            reason: format!("{}{event}", gap.reason.describe(&mechanism)),
+            expected: gap.event.is_some(),
+        }
+    });
+    Ok(Proof {
+        along: along.to_owned(),
+        range: range(found.range.0, found.range.1),
+        fraction: found.fraction,
+        runs: found.runs.iter().map(|(a, b)| range(*a, *b)).collect(),
+        gaps: gaps.collect(),
+        redundant: found.redundant,
+        finished: found.finished,
+    })
+}
+
+impl Proof {
+    /// Whether all of the range is proved but for neighbourhoods of limits and change points.
+    pub fn is_whole(&self) -> bool {
+        self.finished && self.redundant == 0 && self.gaps.iter().all(|gap| gap.expected)
+    }
+
+    /// The proof as plain text.
+    pub fn to_text(&self) -> String {
+        let mut out = String::from("\nProof\n");
+        // Rounded down: 100 % is said of all of it only.
+        let percent = (self.fraction * 1e6).floor() / 1e4;
+        let _ = writeln!(
+            out,
+            "  Proved    {percent} % of {} {}: one pose near the one followed, moving smoothly",
+            self.along, self.range
+        );
+        for run in &self.runs {
+            let _ = writeln!(out, "  One run   {} {run}", self.along);
+        }
+        for gap in &self.gaps {
+            let _ = writeln!(
+                out,
+                "  Left out  {} {}: {}",
+                self.along, gap.place, gap.reason
+            );
+        }
+        if self.redundant > 0 {
+            let _ = writeln!(
+                out,
+                "  Without   {} redundant constraint rows: that they agree cannot be proved",
+                self.redundant
+            );
+        }
+        if !self.finished {
+            out.push_str("  Stopped   what comes after is not known\n");
+        }
+        out
+    }
+}

@@ -1,0 +1,208 @@
+//! How measures change with the parameters, in the units of the file.
+
+use std::fmt::Write as _;
+
+use kempe_kinematics::drive_path::DrivePath;
+use kempe_kinematics::{Design, Held, Mechanism, Motion, Plan};
+use kempe_model::{Diagnostic, Model, ParameterId};
+use kempe_units::{Dimension, format_digits};
+use serde::Serialize;
+
+use crate::explain::cannot_move;
+use crate::pose::Setting;
+use crate::progress::{Ear, Progress};
+use crate::unit::Units;
+
+/// Digits that the text shows.
+const DIGITS: usize = 8;
+
+/// Derivatives of the model's measures to its parameters at one place.
+#[derive(Clone, Debug, Serialize)]
+pub struct Sensitivities {
+    /// Where, such as `motor = 30 deg`.
+    pub place: String,
+    /// One entry for each measure that has a value.
+    pub measures: Vec<MeasureSensitivity>,
+    /// Measures left out, with the reason.
+    pub left_out: Vec<(String, String)>,
+}
+
+/// A measure with its derivatives.
+#[derive(Clone, Debug, Serialize)]
+pub struct MeasureSensitivity {
+    /// Its name.
+    pub name: String,
+    /// Its value, in `unit`.
+    pub value: f64,
+    /// Unit of the value.
+    pub unit: String,
+    /// Derivatives, one for each parameter.
+    pub derivatives: Vec<Derivative>,
+}
+
+/// A derivative to a parameter; the drive's place is held.
+#[derive(Clone, Debug, Serialize)]
+pub struct Derivative {
+    /// The parameter.
+    pub parameter: String,
+    /// The derivative, in `unit`; NaN (null in JSON) where there is none.
+    pub value: f64,
+    /// Unit of the derivative, such as `deg/mm`.
+    pub unit: String,
+}
+
+/// Differentiates every measure of the model to every parameter, exactly, at the place of `setting`: a coordinate of the
+/// moving drive or a time, the start without one.
+///
+/// # Errors
+///
+/// `nothing-to-differentiate` without measures or parameters, `not-the-path` when the setting is of another drive than
+/// the one that moves alone, `not-reached`; and what keeps the motion from starting.
+pub fn sensitivities(
+    model: &Model,
+    setting: Option<&Setting>,
+    progress: &mut dyn Progress,
+) -> Result<Sensitivities, Vec<Diagnostic>> {
+    if model.measures.is_empty() || model.parameters.is_empty() {
+        let told = Diagnostic::error(
+            "nothing-to-differentiate",
+            "sensitivities are those of [measures] to [parameters]: the file lacks one of them",
+        );
+        return Err(vec![told.help("name what is asked for: [measures] swing = \"angle(rocker)\", [parameters] a = \"20 mm\"")]);
+    }
+    let mechanism = Mechanism::new(model);
+    let plan = Plan::new(&mechanism);
+    let parameters: Vec<f64> = model.parameter_values();
+    let design = Design::new(&mechanism, &plan, &parameters);
+    let motion = Motion::watched(&mechanism, &plan, &design, &parameters, &mut Ear(progress))
+        .map_err(|error| vec![cannot_move(&mechanism, &plan, &design, &error)])?;
+    let units = Units::of(model);
+    let drive = match motion.path {
+        DrivePath::Coordinate { drive, .. } => model.drives.get(drive),
+        DrivePath::Time { .. } => None,
+    };
+    let path_name = drive.map_or("time", |d| d.name.as_str());
+    let held = match setting {
+        None => Held::Path(motion.start),
+        Some(setting) if setting.name == "time" => Held::Time(setting.value),
+        Some(setting) if setting.name == path_name => Held::Path(setting.value),
+        Some(setting) => {
+            let told = Diagnostic::error(
+                "not-the-path",
+                format!("`{}` does not move the mechanism alone", setting.name),
+            );
+            return Err(vec![told.help(format!("give a place of `{path_name}`"))]);
+        }
+    };
+    let ids: Vec<ParameterId> = (0..model.parameters.len() as u32)
+        .map(ParameterId)
+        .collect();
+    let mut left_out = Vec::new();
+    let mut asked: Vec<_> = model.measures.iter().collect();
+    let found = loop {
+        let measures: Vec<_> = asked.iter().map(|m| &m.measure).collect();
+        match kempe_kinematics::sensitivities(&motion, held, &measures, &ids) {
+            Ok(found) => break found,
+            Err(problems) => {
+                // From the last on, so that the places before stay.
+                for problem in problems.iter().rev() {
+                    let measure = asked.remove(problem.index);
+                    left_out.insert(0, (measure.name.clone(), problem.reason.clone()));
+                }
+            }
+        }
+    };
+    let (name, at, dimension) = match (held, drive) {
+        (Held::Path(_), Some(drive)) => (path_name, found.parameter, drive.dimension),
+        _ => ("time", found.time, Dimension::TIME),
+    };
+    let place = format!("{name} = {}", units.text(at, dimension));
+    if !motion.reaches(found.parameter) {
+        let (low, high) = motion.reached();
+        let range = crate::explain::reach_text(
+            model,
+            (low, high),
+            drive.map_or(Dimension::TIME, |d| d.dimension),
+        );
+        let told = Diagnostic::error("not-reached", format!("the motion does not reach {place}"));
+        return Err(vec![told.note(format!("it goes from {range}"))]);
+    }
+    let rows = asked
+        .iter()
+        .zip(found.values.iter().zip(&found.derivatives));
+    let measures = rows.filter_map(|(named, (value, slopes))| {
+        let unit = units.unit(named.dimension);
+        if !value.is_finite() {
+            left_out.push((named.name.clone(), "it has no value here".to_owned()));
+            return None;
+        }
+        let derivatives = model
+            .parameters
+            .iter()
+            .zip(slopes)
+            .map(|(parameter, slope)| {
+                let per = units.unit(parameter.dimension);
+                Derivative {
+                    parameter: parameter.name.clone(),
+                    value: unit.from_si(*slope) * per.to_si(1.0),
+                    unit: match (unit.text(), per.text()) {
+                        (own, "") => own.to_owned(),
+                        ("", per) => format!("1/{per}"),
+                        (own, per) if per.contains([' ', '/']) => format!("{own}/({per})"),
+                        (own, per) => format!("{own}/{per}"),
+                    },
+                }
+            });
+        Some(MeasureSensitivity {
+            name: named.name.clone(),
+            value: unit.from_si(*value),
+            unit: unit.text().to_owned(),
+            derivatives: derivatives.collect(),
+        })
+    });
+    let measures = measures.collect();
+    Ok(Sensitivities {
+        place,
+        measures,
+        left_out,
+    })
+}
+
+impl Sensitivities {
+    /// The derivatives as plain text.
+    pub fn to_text(&self) -> String {
+        let one = kempe_units::Unit::one();
+        let number = |x: f64| match x.is_finite() {
+            true => format_digits(x, &one, DIGITS),
+            false => "none here".to_owned(),
+        };
+        let mut out = format!("At {}\n", self.place);
+        for measure in &self.measures {
+            let _ = writeln!(
+                out,
+                "\n{} = {} {}",
+                measure.name,
+                number(measure.value),
+                measure.unit
+            );
+            let width = measure
+                .derivatives
+                .iter()
+                .map(|d| d.parameter.chars().count());
+            let width = width.max().unwrap_or(0);
+            for d in &measure.derivatives {
+                let line = format!(
+                    "  per {:width$}  {} {}",
+                    d.parameter,
+                    number(d.value),
+                    d.unit
+                );
+                let _ = writeln!(out, "{}", line.trim_end());
+            }
+        }
+        for (name, reason) in &self.left_out {
+            let _ = writeln!(out, "\n{name}: left out, {reason}");
+        }
+        out
+    }
+}
