@@ -117,11 +117,13 @@ pub fn verify(arguments: &Verify) -> Exit {
 /// The cases at the paths, or those that came with the program.
 fn gather(paths: &[PathBuf]) -> Result<Vec<Found>, Box<Diagnostic>> {
     if paths.is_empty() {
-        let cases = EMBEDDED.iter().filter(|(path, _)| {
-            path.strip_prefix("validation/")
-                .is_some_and(|rest| !rest.contains('/'))
-                && path.ends_with(".toml")
-        });
+        let cases = EMBEDDED
+            .iter()
+            // Models of cases stand in a folder below.
+            .filter(|(path, _)| {
+                let case = path.strip_prefix("validation/");
+                case.is_some_and(|name| name.ends_with(".toml") && !name.contains('/'))
+            });
         return Ok(cases
             .map(|(path, text)| Found {
                 name: (*path).to_owned(),

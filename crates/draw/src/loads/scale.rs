@@ -68,12 +68,12 @@ mod tests {
 
     #[test]
     fn an_outlier_is_capped_and_a_usual_peak_is_not() {
-        let usual = over(&[100.0, 120.0, 90.0, 300.0]);
-        assert_eq!((usual.full, usual.capped()), (300.0, false));
+        let usual = over(&[100.0, 120.0, 90.0, 600.0]);
+        assert_eq!((usual.full, usual.capped()), (600.0, false));
         let singular = over(&[100.0, 120.0, 90.0, 110.0, 1e9, f64::INFINITY]);
-        assert_eq!((singular.full, singular.capped()), (360.0, true));
+        assert_eq!((singular.full, singular.capped()), (1200.0, true));
         assert_eq!(singular.share(1e9), Some((1.0, true)));
-        assert_eq!(singular.share(180.0), Some((0.5, false)));
+        assert_eq!(singular.share(600.0), Some((0.5, false)));
         assert_eq!(singular.share(1.0), None);
         assert_eq!(singular.share(f64::NAN), None);
         assert!(singular.dropped);
