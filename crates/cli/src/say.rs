@@ -80,6 +80,16 @@ fn colours() -> bool {
         && std::env::var_os("TERM").is_none_or(|t| t != "dumb")
 }
 
+/// A line without the codes that colour it.
+fn uncoloured(line: &str) -> String {
+    let parts = line.split('\u{1b}').enumerate();
+    let plain = parts.map(|(index, part)| match part.split_once('m') {
+        Some((_, rest)) if index > 0 => rest,
+        _ => part,
+    });
+    plain.collect()
+}
+
 /// A diagnostic as text over its file.
 fn rendered(diagnostic: &Diagnostic, file: &str, text: &str) -> String {
     let level = match diagnostic.severity {
@@ -140,5 +150,11 @@ fn rendered(diagnostic: &Diagnostic, file: &str, text: &str) -> String {
     } else {
         Renderer::plain()
     };
-    renderer.decor_style(DecorStyle::Ascii).render(&[group])
+    let text = renderer.decor_style(DecorStyle::Ascii).render(&[group]);
+    if diagnostic.labels.is_empty() {
+        // Without a place there is no margin to keep free.
+        let lines = text.lines().filter(|line| uncoloured(line).trim() != "|");
+        return lines.collect::<Vec<_>>().join("\n");
+    }
+    text
 }

@@ -17,6 +17,8 @@ pub enum Stage {
     Measuring,
     /// The motion is proved, stretch by stretch.
     Proving,
+    /// What could be put on the mechanism is tried, unit by unit.
+    Trying,
 }
 
 impl Stage {
@@ -28,6 +30,7 @@ impl Stage {
             Self::Locating => "locating limits and change points",
             Self::Measuring => "measuring over the motion",
             Self::Proving => "proving the motion",
+            Self::Trying => "trying what each unit does",
         }
     }
 }

@@ -34,12 +34,12 @@ pub(crate) fn balance(
     let goal = goal(model, study.goal);
 
     let target = match study.goal {
-        BalanceGoal::ShakingForce => values(model, &study.along, &goal)?,
-        BalanceGoal::Statics => values(&only_weights(model), &study.along, &goal)?,
+        BalanceGoal::ShakingForce => values(model, &study.along, &goal, progress)?,
+        BalanceGoal::Statics => values(&only_weights(model), &study.along, &goal, progress)?,
     };
     let mut units = Vec::new();
     for (link, pivot) in &study.on {
-        let unit = |direction: f64| -> Result<Vec<f64>, Vec<Diagnostic>> {
+        let mut unit = |direction: f64| -> Result<Vec<f64>, Vec<Diagnostic>> {
             let mut bare = bare(model);
             // A first moment of 1 kg m.
             let weight = weight(
@@ -52,7 +52,7 @@ pub(crate) fn balance(
                 1.0 / radius,
             );
             bare.actions.masses.push(weight);
-            Ok(in_one(&values(&bare, &study.along, &goal)?))
+            Ok(in_one(&values(&bare, &study.along, &goal, progress)?))
         };
         units.push([unit(0.0)?, unit(std::f64::consts::FRAC_PI_2)?]);
     }
@@ -76,7 +76,7 @@ pub(crate) fn balance(
     balanced.actions.masses.extend(weights.iter().cloned());
 
     let quantities = shown(model, study.goal);
-    let before = values(model, &study.along, &quantities)?;
+    let before = values(model, &study.along, &quantities, progress)?;
     let mut result = run_along(
         &balanced,
         name,
@@ -86,8 +86,8 @@ pub(crate) fn balance(
     )?;
     set_beside(&mut result, &quantities, &before);
     let left = match study.goal {
-        BalanceGoal::ShakingForce => values(&balanced, &study.along, &goal)?,
-        BalanceGoal::Statics => values(&only_weights(&balanced), &study.along, &goal)?,
+        BalanceGoal::ShakingForce => values(&balanced, &study.along, &goal, progress)?,
+        BalanceGoal::Statics => values(&only_weights(&balanced), &study.along, &goal, progress)?,
     };
     result.scalars = left_over(model, study.goal, &target, &left);
     result.listings.push(advice(model, &weights));

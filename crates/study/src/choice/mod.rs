@@ -9,7 +9,7 @@ mod spring;
 pub(crate) use balance::balance;
 pub(crate) use spring::spring;
 
-use kempe_kinematics::{Design, Mechanism, Motion, Plan};
+use kempe_kinematics::{Design, Mechanism, Motion, Plan, Stage};
 use kempe_model::{
     Actions, Column as Asked, Diagnostic, DriveId, DriveKind, ForceMeasure, Leaf, Measure, Model,
     MotionStudy,
@@ -18,7 +18,8 @@ use kempe_units::{Dimension, Expr};
 
 use crate::along::Along;
 use crate::columns::Quantity;
-use crate::explain::cannot_move;
+use crate::explain::{cannot_move, stopped};
+use crate::progress::{Ear, Flow, Progress};
 use crate::result::{Figure, StudyResult};
 use crate::rows::{RowPlace, places_along};
 use crate::table::Column;
@@ -68,18 +69,24 @@ fn values(
     model: &Model,
     study: &MotionStudy,
     quantities: &[Quantity],
+    progress: &mut dyn Progress,
 ) -> Result<Vec<Vec<f64>>, Vec<Diagnostic>> {
     let mechanism = Mechanism::new(model);
     let plan = Plan::new(&mechanism);
     let parameters: Vec<f64> = model.parameter_values();
     let design = Design::new(&mechanism, &plan, &parameters);
-    let motion = Motion::new(&mechanism, &plan, &design, &parameters)
+    let motion = Motion::watched(&mechanism, &plan, &design, &parameters, &mut Ear(progress))
         .map_err(|error| vec![cannot_move(&mechanism, &plan, &design, &error)])?;
     let asked: Vec<&Quantity> = quantities.iter().collect();
-    let mut along = Along::new(model, &motion, &asked, true)?;
+    let mut along = Along::watched(model, &motion, &asked, true, &mut Ear(progress))?;
     let places: Vec<RowPlace> = places_along(&motion, study, &parameters);
     let mut lists = vec![Vec::with_capacity(places.len()); quantities.len()];
-    for place in places {
+    let count = places.len() as f64;
+    for (done, place) in places.into_iter().enumerate() {
+        let part = Some(done as f64 / count);
+        if progress.stage(Stage::Trying, part) == Flow::Stop {
+            return Err(vec![stopped(Stage::Trying)]);
+        }
         let row = along.row(place);
         for (list, value) in lists.iter_mut().zip(row.sample.values) {
             list.push(value);

@@ -29,9 +29,9 @@ pub(crate) fn spring(
         ..own.clone()
     };
     let without = replaced(model, study.spring, with(0.0, 0.0));
-    let without = values(&without, &study.along, &asked)?;
+    let without = values(&without, &study.along, &asked, progress)?;
     // One unit of each, on the bare mechanism: acting both ways and without stops, so that it is linear.
-    let unit = |stiffness: f64, preload: f64| {
+    let mut unit = |stiffness: f64, preload: f64| {
         let mut alone = bare(model);
         alone.actions.gravity = Some([constant(0.0), constant(0.0)]);
         alone.actions.springs = vec![Spring {
@@ -39,7 +39,7 @@ pub(crate) fn spring(
             stops: [None, None],
             ..with(stiffness, preload)
         }];
-        values(&alone, &study.along, &asked)
+        values(&alone, &study.along, &asked, progress)
     };
     let (by_stiffness, by_preload) = (unit(1.0, 0.0)?, unit(0.0, 1.0)?);
     let wanted = Quantity {
@@ -47,7 +47,7 @@ pub(crate) fn spring(
         measure: study.wanted.clone(),
         ..effort(model, study.drive)
     };
-    let wanted = values(model, &study.along, &[wanted])?;
+    let wanted = values(model, &study.along, &[wanted], progress)?;
     let samples = samples(&without, &wanted, &by_stiffness, &by_preload);
     let parameters: Vec<f64> = model.parameter_values();
     let chosen = choose_spring(
