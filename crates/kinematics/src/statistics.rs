@@ -1,14 +1,23 @@
 //! One number over a whole motion: extremes located between rows, means integrated, ratios of times.
 
-use kempe_model::{Measure, Statistic};
+use std::f64::consts::TAU;
+
+use kempe_model::{LawPiece, Measure, Statistic};
+use kempe_units::Dimension;
 
 use crate::force_source::ForceSource;
 use crate::sampler::Sampler;
 use crate::swept::GAUSS;
 use crate::watch::{Stage, Watch};
 
-/// Intervals of time searched for extremes, besides the breaks of the laws.
+/// Intervals of time searched for extremes in every turn of a drive, besides the breaks of the laws.
 const GRID: usize = 360;
+
+/// Intervals at most: a motion of more turns is searched more coarsely.
+const MOST_INTERVALS: usize = 360_000;
+
+/// How near, in turns, to a whole number of turns a motion of several cycles ends.
+const WHOLE: f64 = 1e-9;
 
 /// Halvings of an interval by which an end without a rate of its own is approached: nearer than its 2^40th part nothing
 /// can be told from the end.
@@ -39,8 +48,10 @@ pub(crate) fn over<F: ForceSource>(
         Statistic::Max => high.1,
         Statistic::Range => high.1 - low.1,
         _ => {
-            let stroke = (high.0 - low.0).abs();
-            let back = sampler.duration() - stroke;
+            // Over several turns the cycle is one of them.
+            let cycle = sampler.duration() / whole_turns(sampler);
+            let stroke = (high.0 - low.0).abs() % cycle;
+            let back = cycle - stroke;
             stroke.max(back) / stroke.min(back)
         }
     })
@@ -49,13 +60,54 @@ pub(crate) fn over<F: ForceSource>(
 /// Times that matter: the breaks of the laws and an even grid.
 fn times<F: ForceSource>(sampler: &Sampler<'_, F>) -> Vec<f64> {
     let duration = sampler.duration();
-    let mut times: Vec<f64> = (0..=GRID)
-        .map(|k| duration * k as f64 / GRID as f64)
+    let turns = turns(sampler).iter().fold(1.0, |all: f64, t| all.max(*t));
+    let intervals = ((GRID as f64 * turns).ceil() as usize).clamp(GRID, MOST_INTERVALS);
+    let mut times: Vec<f64> = (0..=intervals)
+        .map(|k| duration * k as f64 / intervals as f64)
         .collect();
     times.extend(sampler.breaks());
     times.sort_by(f64::total_cmp);
     times.dedup();
     times
+}
+
+/// Turns that each turning drive makes, both ways counted.
+fn turns<F: ForceSource>(sampler: &Sampler<'_, F>) -> Vec<f64> {
+    let drives = sampler.motion().mechanism.model.drives.iter();
+    let parameters = sampler.motion().mechanism.model.parameter_values::<f64>();
+    drives
+        .filter(|d| d.dimension == Dimension::ANGLE)
+        .map(|d| {
+            let at = |t: &f64| d.law.at(*t, &parameters);
+            let breaks = d.law.breaks(&parameters);
+            let ways = breaks.windows(2).map(|w| (at(&w[1]) - at(&w[0])).abs());
+            ways.sum::<f64>() / TAU
+        })
+        .collect()
+}
+
+/// How many whole turns the only moving drive makes one way; 1 for any other motion.
+fn whole_turns<F: ForceSource>(sampler: &Sampler<'_, F>) -> f64 {
+    let Some(drive) = sampler.path_drive() else {
+        return 1.0;
+    };
+    let model = &sampler.motion().mechanism.model;
+    let Some(drive) = model.drives.get(drive.index()) else {
+        return 1.0;
+    };
+    let turns = match drive.law.pieces.as_slice() {
+        [LawPiece::ConstantSpeed { .. }] if drive.dimension == Dimension::ANGLE => {
+            let (low, high) = drive.law.extent(&model.parameter_values::<f64>());
+            (high - low) / TAU
+        }
+        _ => 1.0,
+    };
+    let whole = turns.round();
+    if whole >= 1.0 && (turns - whole).abs() <= WHOLE {
+        whole
+    } else {
+        1.0
+    }
 }
 
 pub(crate) type At = (f64, f64);

@@ -487,3 +487,32 @@ step = 10
         "{note}"
     );
 }
+
+#[test]
+fn numbers_over_many_turns_are_those_of_one() {
+    let numbers = |turns: u32| {
+        let text = FOUR_BAR
+            .replace("to = 360", &format!("to = {}", 360 * turns))
+            .replace("step = 1\n", "rows = 3\n")
+            .replace(
+                "play  = \"range(swing)\"",
+                "play = \"range(swing)\"\nratio = \"time_ratio(swing)\"\nmiddle = \"mean(swing)\"",
+            );
+        let result = ran(&text);
+        let value = |name: &str| {
+            let found = result.scalars.iter().find(|s| s.name == name);
+            found.map_or(f64::NAN, |s| s.value)
+        };
+        ["play", "ratio", "middle"].map(value)
+    };
+    let one = numbers(1);
+    assert!((one[0] - 60.032_348_552_120).abs() < 1e-10, "{one:?}");
+    // theta = 1.564113482665 deg: (180 + theta) / (180 - theta).
+    assert!((one[1] - 1.017_531_377_944).abs() < 1e-9, "{one:?}");
+    for turns in [2, 7, 60] {
+        let many = numbers(turns);
+        for (a, b) in one.iter().zip(many) {
+            assert!((a - b).abs() < 1e-9 * a.abs(), "{turns}: {one:?} {many:?}");
+        }
+    }
+}
