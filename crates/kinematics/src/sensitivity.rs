@@ -414,9 +414,8 @@ impl<'s, 'a> Varied<'s, 'a> {
                     Statistic::Max => high.1,
                     Statistic::Range => high.1 - low.1,
                     _ => {
-                        let stroke = (high.0 - low.0).abs();
-                        let back = self.duration() - stroke;
-                        stroke.max(back) / stroke.min(back)
+                        let duration = self.duration();
+                        crate::statistics::time_ratio(self.sampler, high.0 - low.0, duration)
                     }
                 }
             }

@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use kempe_model::{LawPiece, Measure, Statistic};
+use kempe_number::Number;
 use kempe_units::Dimension;
 
 use crate::force_source::ForceSource;
@@ -47,13 +48,7 @@ pub(crate) fn over<F: ForceSource>(
         Statistic::Min => low.1,
         Statistic::Max => high.1,
         Statistic::Range => high.1 - low.1,
-        _ => {
-            // Over several turns the cycle is one of them.
-            let cycle = sampler.duration() / whole_turns(sampler);
-            let stroke = (high.0 - low.0).abs() % cycle;
-            let back = cycle - stroke;
-            stroke.max(back) / stroke.min(back)
-        }
+        _ => time_ratio(sampler, high.0 - low.0, sampler.duration()),
     })
 }
 
@@ -84,6 +79,20 @@ fn turns<F: ForceSource>(sampler: &Sampler<'_, F>) -> Vec<f64> {
             ways.sum::<f64>() / TAU
         })
         .collect()
+}
+
+/// Duration of the slower stroke over that of the faster, from the time between both extremes and the duration of the
+/// motion. Over several turns the cycle is one of them.
+pub(crate) fn time_ratio<T: Number, F: ForceSource>(
+    sampler: &Sampler<'_, F>,
+    between: T,
+    duration: T,
+) -> T {
+    let cycle = duration / whole_turns(sampler);
+    let between = between.abs();
+    let stroke = between - cycle * (between.value() / cycle.value()).floor();
+    let back = cycle - stroke;
+    stroke.max(back) / stroke.min(back)
 }
 
 /// How many whole turns the only moving drive makes one way; 1 for any other motion.

@@ -12,12 +12,6 @@ use kempe_number::{Interval, Number};
 use support::generate::{make, recipe};
 use support::{Case, spread};
 
-fn example(path: &str) -> Case {
-    let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/");
-    let text = std::fs::read_to_string(format!("{root}{path}.toml")).unwrap();
-    Case::read(&text, path)
-}
-
 fn on(_: f64) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
@@ -98,7 +92,7 @@ const TRIAD: [(f64, [f64; 4]); 2] = [
 /// Source: computed with mpmath to 40 digits from the same dimensions in floating point.
 #[test]
 fn enclosures_hold_values_of_high_precision() {
-    let case = example("seeds/crank-rocker");
+    let case = Case::example("seeds/crank-rocker");
     assert_eq!(case.parameters, [0.02, 0.05, 0.04, 0.06]);
     let motion = case.must_move();
     for (p, [coupler, rocker]) in CRANK_ROCKER {
@@ -114,7 +108,7 @@ fn enclosures_hold_values_of_high_precision() {
             assert!(holds(pose.c, c) && holds(pose.s, s), "{p} {pose:?}");
         }
     }
-    let case = example("gallery/class-iii");
+    let case = Case::example("gallery/class-iii");
     let motion = case.must_move();
     let plate = case
         .model
@@ -146,7 +140,7 @@ fn holds(interval: Interval, decimal: f64) -> bool {
 #[test]
 fn the_crank_rocker_is_proved_all_round() {
     for file in ["seeds/crank-rocker", "seeds/crank-rocker-below"] {
-        let case = example(file);
+        let case = Case::example(file);
         let motion = case.must_move();
         let proof = certify_motion(&motion, Subdivision::default(), on);
         assert!(proof.finished && proof.fraction == 1.0 && proof.gaps.is_empty());
@@ -158,7 +152,7 @@ fn the_crank_rocker_is_proved_all_round() {
 
 #[test]
 fn the_door_lock_is_proved_but_for_its_change_point() {
-    let case = example("seeds/door-lock");
+    let case = Case::example("seeds/door-lock");
     let motion = case.must_move();
     let subdivision = Subdivision {
         narrowest: 1e-7,
@@ -187,7 +181,7 @@ fn gallery_motions_are_proved_and_hold_the_plain_poses() {
         "gallery/excavator",
         "gallery/parallelogram",
     ] {
-        let case = example(file);
+        let case = Case::example(file);
         let motion = case.must_move();
         let size = motion.size();
         let proof = certify_motion(&motion, Subdivision::default(), on);
@@ -228,7 +222,7 @@ fn what_is_not_a_pose_is_not_proved() {
         "gallery/class-iii",
         "gallery/geared-five-bar",
     ] {
-        let case = example(file);
+        let case = Case::example(file);
         let motion = case.must_move();
         let (low, high) = motion.reached();
         let p = low + 0.37 * (high - low);
@@ -289,7 +283,7 @@ fn limits_and_redundancy_are_told() {
         proof.gaps
     );
 
-    let case = example("gallery/three-crank");
+    let case = Case::example("gallery/three-crank");
     let motion = case.must_move();
     let certificate = certify_pose(&motion, 0.7);
     assert!(certificate.unique && !certificate.exists);
@@ -304,7 +298,7 @@ fn limits_and_redundancy_are_told() {
 #[test]
 fn a_pose_over_an_interval_holds_every_pose_in_it() {
     for file in ["seeds/crank-rocker", "seeds/door-lock", "gallery/class-iii"] {
-        let case = example(file);
+        let case = Case::example(file);
         let motion = case.must_move();
         let mut certifier = Certifier::new(&motion);
         let (from, to) = (0.7, 0.7005);
@@ -336,7 +330,7 @@ fn a_pose_over_an_interval_holds_every_pose_in_it() {
 
 #[test]
 fn work_can_be_stopped() {
-    let case = example("seeds/crank-rocker");
+    let case = Case::example("seeds/crank-rocker");
     let motion = case.must_move();
     let mut told = Vec::new();
     let proof = certify_motion(&motion, Subdivision::default(), |part| {

@@ -8,11 +8,7 @@ use kempe_model::Measure;
 use support::Case;
 
 fn example(name: &str) -> Case {
-    let path = format!(
-        "{}/../../examples/seeds/{name}.toml",
-        env!("CARGO_MANIFEST_DIR")
-    );
-    Case::read(&std::fs::read_to_string(path).unwrap(), name)
+    Case::example(&format!("seeds/{name}"))
 }
 
 /// A unit of the last digit written, and never less than 1e-12 relative.
@@ -35,7 +31,6 @@ fn table(case: &Case, unit: f64, names: &[&str], factors: &[f64], rows: &str, mo
         })
         .collect();
     let mut sampler = Sampler::new(&motion, &measures).unwrap();
-    let mut worst = 0.0_f64;
     for row in rows.trim().lines() {
         let cells: Vec<&str> = row.split('|').map(str::trim).collect();
         let cells: Vec<&str> = cells.into_iter().filter(|c| !c.is_empty()).collect();
@@ -56,7 +51,6 @@ fn table(case: &Case, unit: f64, names: &[&str], factors: &[f64], rows: &str, mo
                 off -= 360.0 * (off / 360.0).round();
             }
             let allowed = tolerance(cells[k + 1]);
-            worst = worst.max(off.abs() / allowed);
             assert!(
                 off.abs() <= allowed,
                 "{name} at {}: {} but {wanted}",
@@ -65,7 +59,6 @@ fn table(case: &Case, unit: f64, names: &[&str], factors: &[f64], rows: &str, mo
             );
         }
     }
-    assert!(worst > 0.0);
 }
 
 const DEG: f64 = std::f64::consts::PI / 180.0;

@@ -33,6 +33,21 @@ pub(crate) fn standard(mechanism: &Mechanism) -> Vec<Quantity> {
             ForceMeasure::Power(id),
             Dimension::POWER,
         ));
+        let (reduced, load) = if drive.dimension == Dimension::ANGLE {
+            (Dimension::INERTIA, Dimension::TORQUE)
+        } else {
+            (Dimension::MASS, Dimension::FORCE)
+        };
+        list.push(force(
+            format!("reduced_mass({name})"),
+            ForceMeasure::ReducedMass(id),
+            reduced,
+        ));
+        list.push(force(
+            format!("reduced_load({name})"),
+            ForceMeasure::ReducedLoad(id),
+            load,
+        ));
         if let Some(cylinder) = model.actions.cylinders.iter().find(|c| c.drive == id) {
             list.push(force(
                 format!("pressure({name})"),

@@ -591,6 +591,16 @@ impl Case {
         Self::read_with(text, name, &mut |file| Err(format!("no file {file}")))
     }
 
+    /// An example by its path, such as `seeds/door-lock`, with the tables beside it.
+    pub fn example(path: &str) -> Self {
+        let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/");
+        let file = std::path::PathBuf::from(format!("{root}{path}.toml"));
+        let text = std::fs::read_to_string(&file).unwrap();
+        Self::read_with(&text, path, &mut |table| {
+            std::fs::read_to_string(file.with_file_name(table)).map_err(|e| e.to_string())
+        })
+    }
+
     pub fn read_with(
         text: &str,
         name: &str,
