@@ -1,13 +1,14 @@
 //! One measure more, asked of a model that is read already.
 
-use kempe_units::{check, parse};
+use kempe_units::{Dimension, check, parse};
 
 use crate::diagnostic::{Diagnostic, Label, Source};
-use crate::load::Between;
+use crate::load::LoadKind;
 use crate::model::{DriveId, JointId, LinkId, Model, NamedMeasure, ParameterId, PointId};
 use crate::read::context::{Context, Meaning, MeasureState};
 use crate::read::measure_names::Measures;
 use crate::read::nature::{Nature, nature};
+use crate::read::springs::tension;
 
 impl Model {
     /// Reads a measure, the name of one or an expression such as `range(angle(rocker))`, as if it stood in the file. Its
@@ -101,12 +102,18 @@ impl<'a> Context<'a> {
             .map(|i| Some(DriveId(i as u32)))
             .collect();
         cx.springs = (model.actions.springs.iter().enumerate())
-            .map(|(i, spring)| {
-                let dimension = match spring.between {
-                    Between::Points(..) => kempe_units::Dimension::FORCE,
-                    Between::Links(..) => kempe_units::Dimension::TORQUE,
+            .map(|(i, spring)| (spring.name.clone(), Some((i, tension(&spring.between)))))
+            .collect();
+        cx.dampers = (model.actions.dampers.iter().enumerate())
+            .map(|(i, damper)| (damper.name.clone(), Some((i, tension(&damper.between)))))
+            .collect();
+        cx.loads = (model.actions.loads.iter().enumerate())
+            .map(|(i, load)| {
+                let dimension = match load.kind {
+                    LoadKind::Force { .. } => Dimension::FORCE,
+                    LoadKind::Torque { .. } => Dimension::TORQUE,
                 };
-                (spring.name.clone(), Some((i, dimension)))
+                (load.name.clone(), Some((i, dimension)))
             })
             .collect();
         cx.measures = (model.measures.iter().enumerate())

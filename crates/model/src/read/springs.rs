@@ -77,7 +77,7 @@ pub(crate) fn read_dampers(cx: &mut Context<'_>, entries: &[&(Key, Node)]) {
 }
 
 /// What something between two ends gives.
-fn tension(between: &Between) -> Dimension {
+pub(crate) fn tension(between: &Between) -> Dimension {
     match between {
         Between::Points(..) => Dimension::FORCE,
         Between::Links(..) => Dimension::TORQUE,
