@@ -6,6 +6,7 @@ use kempe_model::DriveId;
 use crate::equilibrium::FrictionOutcome;
 use crate::forces::Forces;
 use crate::instant::{Instant, Rates};
+use crate::load::Load;
 use crate::reaction::Carrier;
 
 /// A difference of the two routes, in parts of the terms of a drive's force, above which a row is marked.
@@ -85,6 +86,11 @@ pub enum ForceNote {
         /// Flow there is, m^3/s.
         given: f64,
     },
+    /// A load has no value here.
+    NoLoad {
+        /// Its place in the model's actions.
+        load: usize,
+    },
     /// Without time there are no speeds and no forces.
     NoTime,
 }
@@ -106,6 +112,7 @@ impl ForceNote {
             Self::MotorTooWeak { .. } => "motor-too-weak",
             Self::CylinderTooWeak { .. } => "cylinder-too-weak",
             Self::FlowTooSmall { .. } => "flow-too-small",
+            Self::NoLoad { .. } => "load-without-value",
             Self::NoTime => "no-time",
         }
     }
@@ -126,6 +133,7 @@ impl ForceNote {
             | Self::NotUnique(_)
             | Self::SelfLocking(_)
             | Self::AtRest
+            | Self::NoLoad { .. }
             | Self::NoTime => 0.0,
         }
     }
@@ -209,6 +217,13 @@ impl ForceNote {
                 flow * 6e4,
                 given * 6e4
             ),
+            Self::NoLoad { load } => {
+                let named = model.actions.loads.get(*load);
+                format!(
+                    "the load `{}` is infinite or not a number here, and with it all forces",
+                    named.map_or("", |l| l.name.as_str())
+                )
+            }
             Self::NoTime => "no forces without time".into(),
         }
     }
@@ -230,6 +245,17 @@ pub(crate) fn notes(forces: &Forces<'_, Rates>, at: &Instant<Rates>) -> Vec<Forc
     use kempe_number::Number as _;
     let equilibrium = &forces.equilibrium;
     let mut notes = Vec::new();
+    let without_value = forces.acting.loads.iter().position(|load| {
+        let amounts = match *load {
+            Load::Force { amount, .. } => amount..amount + 2,
+            Load::Torque { amount, .. } => amount..amount + 1,
+        };
+        at.amounts[amounts].iter().any(|a| !a.value().is_finite())
+    });
+    if let Some(load) = without_value {
+        notes.push(ForceNote::NoLoad { load });
+        return notes;
+    }
     let condition = equilibrium.condition();
     if equilibrium.singular {
         notes.push(ForceNote::Singular);

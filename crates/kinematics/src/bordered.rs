@@ -257,6 +257,12 @@ impl Bordered {
         self.worst = worst.1;
     }
 
+    /// The largest scaled residual at the situation last filled.
+    pub fn largest_residual(&self) -> f64 {
+        let sizes = self.residual.iter().map(|r| r.abs());
+        sizes.fold(0.0, |a: f64, b| if b.is_nan() { b } else { a.max(b) })
+    }
+
     /// Solves `[J J_p; border] d = [rhs; border_rhs]`, where `rhs` is the residual or zero, into `d` (in the order of
     /// `z`, the path parameter last).
     pub fn solve(

@@ -10,7 +10,7 @@ use crate::drive_path::DrivePath;
 use crate::events::locate_limit;
 use crate::force_source::NoForces;
 use crate::mechanism::Mechanism;
-use crate::motion::{EndReason, FAR, Motion, MotionError};
+use crate::motion::{EndReason, FAR, Motion, MotionError, REPEATS, Unlocated};
 use crate::plan::Plan;
 use crate::sampler::{Sample, Sampler, Unprepared};
 use crate::state::Design;
@@ -131,20 +131,34 @@ impl<'m> Circuit<'m> {
             let Some(start) = follower.start(z, direction) else {
                 continue;
             };
-            let (nodes, closed) = go_round(&mut follower, start, mechanism, &path, high, watch)
-                .ok_or_else(stopped(Stage::Following))?;
-            return Self::of_nodes(
-                mechanism,
-                plan,
-                design,
-                &path,
-                assemblies,
-                nodes,
-                closed,
-                &mut follower,
-                watch,
-            )
-            .ok_or_else(stopped(Stage::Locating));
+            for repeat in 0..=REPEATS {
+                let (nodes, closed) =
+                    go_round(&mut follower, start.clone(), mechanism, &path, high, watch)
+                        .ok_or_else(stopped(Stage::Following))?;
+                let found = Self::of_nodes(
+                    mechanism,
+                    plan,
+                    design,
+                    &path,
+                    assemblies.clone(),
+                    nodes,
+                    closed,
+                    &mut follower,
+                    watch,
+                );
+                match found {
+                    Ok(circuit) => return Ok(circuit),
+                    Err(Unlocated::Missed { z, residual }) if repeat < REPEATS => {
+                        follower.beware(z, residual);
+                    }
+                    Err(Unlocated::Missed { .. }) => break,
+                    Err(Unlocated::Stopped) => {
+                        return Err(MotionError::Stopped {
+                            stage: Stage::Locating,
+                        });
+                    }
+                }
+            }
         }
         Err(MotionError::Locked { at: motion.start })
     }
@@ -163,7 +177,7 @@ impl<'m> Circuit<'m> {
         closed: bool,
         follower: &mut Follower<'_, DrivePath>,
         watch: &mut dyn Watch,
-    ) -> Option<Self> {
+    ) -> Result<Self, Unlocated> {
         let mut stretches: Vec<Stretch<'m>> = Vec::new();
         let mut arc = 0.0;
         let mut current: Vec<Node> = Vec::new();
@@ -194,7 +208,7 @@ impl<'m> Circuit<'m> {
                 (follower, watch),
             )?;
         }
-        Some(Self {
+        Ok(Self {
             stretches,
             closed,
             length: arc,
@@ -305,7 +319,7 @@ fn push_stretch<'m>(
     path: &DrivePath,
     assemblies: &Assemblies,
     (follower, watch): (&mut Follower<'_, DrivePath>, &mut dyn Watch),
-) -> Option<()> {
+) -> Result<(), Unlocated> {
     let mut arcs = vec![*arc];
     for pair in nodes.windows(2) {
         *arc += pair[0]
@@ -342,7 +356,7 @@ fn push_stretch<'m>(
         arcs,
         nodes,
     });
-    Some(())
+    Ok(())
 }
 
 /// Follows the curve until it is back at its start (angles of bodies and of a turning drive count modulo a turn). Along

@@ -15,7 +15,7 @@ pub struct Evidence {
     pub smallest_singular_value: f64,
 }
 
-/// The largest residual of all joints and drives at a pose.
+/// The largest residual of all joints and drives at a pose, and of every body's length.
 pub fn closure(
     mechanism: &Mechanism,
     design: &Design<f64>,
@@ -24,7 +24,13 @@ pub fn closure(
     size: f64,
 ) -> f64 {
     let situation = state.situation(design, branch);
-    let mut largest = 0.0_f64;
+    // Directions that are no unit vectors stretch their bodies: poses that were joined from two sides may have them.
+    let mut largest = (state.poses.iter())
+        .map(|pose| (pose.c * pose.c + pose.s * pose.s - 1.0).abs())
+        .fold(0.0, |a: f64, b| if b.is_nan() { b } else { a.max(b) });
+    if largest.is_nan() {
+        return f64::NAN;
+    }
     for (constraint, _) in &mechanism.constraints {
         let residual = situation.residual(constraint);
         let unit = if is_length(constraint) {

@@ -26,6 +26,11 @@ pub const WHIRLING: f64 = 300.0;
 const STANDING: f64 = 1e-4;
 /// Pivot ratio of the bordered Jacobian below which branches are taken to cross.
 pub const CROSSING: f64 = 1e-7;
+/// Branches meet where both lie within this residual (in mechanism sizes and rad); where they keep farther apart the trace
+/// has gone from one to the other, and is repeated with care.
+pub const MEETING: f64 = 1e-11;
+/// How often a trace is repeated with care at one place more.
+pub(crate) const REPEATS: usize = 64;
 /// Width, as a part of the whole time, between the near and the far side of a place where the drives' rates jump.
 const SIDES: f64 = 1e-12;
 /// Where a motion starts at a singular pose, its branch is looked for at these parts of the range instead.
@@ -76,6 +81,8 @@ pub enum EndReason {
     Stuck,
     /// A part runs away to infinity as the drive nears a value, as where two crossing slots become parallel.
     Runaway,
+    /// The range is longer than [`STEP_LIMIT`] steps of the trace.
+    TooLong,
 }
 
 /// What is asked of a motion.
@@ -240,45 +247,65 @@ impl<'m> Motion<'m> {
             // The finished part of the whole range, of which the upper part is followed first.
             let whole = (demanded.1 - demanded.0).max(f64::MIN_POSITIVE);
             let share = ((demanded.1 - anchor) / whole).clamp(0.0, 1.0);
-            let mut told = |before: f64, part: f64| {
-                watch.reached(Stage::Following, Some((before + part).clamp(0.0, 1.0)))
-            };
-            let following = |()| MotionError::Stopped {
-                stage: Stage::Following,
-            };
-            let (high, end_high) = follow(&mut follower, up, demanded.1 / scale, &mut |part| {
-                told(0.0, part * share)
-            })
-            .ok_or(())
-            .map_err(following)?;
-            let (low, end_low) = follow(&mut follower, down, demanded.0 / scale, &mut |part| {
-                told(share, part * (1.0 - share))
-            })
-            .ok_or(())
-            .map_err(following)?;
-            // From the low end to the high one; the tangents of the lower half turned round.
-            let mut nodes: Vec<Node> = low
-                .into_iter()
-                .skip(1)
-                .map(|mut node| {
-                    node.tangent.iter_mut().for_each(|t| *t = -*t);
-                    node
-                })
-                .rev()
-                .collect();
-            nodes.extend(high);
-            let mut motion =
-                Self::of_nodes(mechanism, plan, design, path.clone(), assemblies, nodes);
-            motion.anchor = anchor;
-            motion.start = start;
-            motion.demanded = demanded;
-            motion.ends = (end_low, end_high);
-            motion
-                .find_events(&mut follower, watch)
-                .ok_or(MotionError::Stopped {
-                    stage: Stage::Locating,
-                })?;
-            return Ok(motion);
+            for repeat in 0..=REPEATS {
+                let mut told = |before: f64, part: f64| {
+                    watch.reached(Stage::Following, Some((before + part).clamp(0.0, 1.0)))
+                };
+                let following = |()| MotionError::Stopped {
+                    stage: Stage::Following,
+                };
+                let (high, end_high) =
+                    follow(&mut follower, up.clone(), demanded.1 / scale, &mut |part| {
+                        told(0.0, part * share)
+                    })
+                    .ok_or(())
+                    .map_err(following)?;
+                let (low, end_low) = follow(
+                    &mut follower,
+                    down.clone(),
+                    demanded.0 / scale,
+                    &mut |part| told(share, part * (1.0 - share)),
+                )
+                .ok_or(())
+                .map_err(following)?;
+                // From the low end to the high one; the tangents of the lower half turned round.
+                let mut nodes: Vec<Node> = low
+                    .into_iter()
+                    .skip(1)
+                    .map(|mut node| {
+                        node.tangent.iter_mut().for_each(|t| *t = -*t);
+                        node
+                    })
+                    .rev()
+                    .collect();
+                nodes.extend(high);
+                let mut motion = Self::of_nodes(
+                    mechanism,
+                    plan,
+                    design,
+                    path.clone(),
+                    assemblies.clone(),
+                    nodes,
+                );
+                motion.anchor = anchor;
+                motion.start = start;
+                motion.demanded = demanded;
+                motion.ends = (end_low, end_high);
+                match motion.find_events(&mut follower, watch) {
+                    Ok(()) => return Ok(motion),
+                    Err(Unlocated::Missed { z, residual }) if repeat < REPEATS => {
+                        follower.beware(z, residual);
+                    }
+                    Err(Unlocated::Missed { .. }) => {
+                        return Err(MotionError::Locked { at: anchor });
+                    }
+                    Err(Unlocated::Stopped) => {
+                        return Err(MotionError::Stopped {
+                            stage: Stage::Locating,
+                        });
+                    }
+                }
+            }
         }
         match nothing {
             Some(assemblies) => Err(MotionError::CannotAssemble {
@@ -485,13 +512,13 @@ impl<'m> Motion<'m> {
         &mut self,
         follower: &mut Follower<'_, DrivePath>,
         watch: &mut dyn Watch,
-    ) -> Option<()> {
+    ) -> Result<(), Unlocated> {
         let mut modes: Vec<Vec<f64>> = Vec::with_capacity(self.nodes.len());
         for (done, node) in self.nodes.iter().enumerate() {
             let part = done as f64 / self.nodes.len() as f64;
-            watch
-                .reached(Stage::Locating, Some(part))
-                .continue_value()?;
+            if watch.reached(Stage::Locating, Some(part)).is_break() {
+                return Err(Unlocated::Stopped);
+            }
             modes.push(self.determinants(follower, node));
         }
         let mut nodes: Vec<Node> = Vec::with_capacity(self.nodes.len());
@@ -536,6 +563,10 @@ impl<'m> Motion<'m> {
                     self.determinants(follower, node)[step]
                 };
                 if let Some((s, at)) = locate_change_point(follower, node, next, measure) {
+                    let residual = follower.residual(&at.z);
+                    if !(residual <= MEETING) {
+                        return Err(Unlocated::Missed { z: at.z, residual });
+                    }
                     found.push((s, at, step));
                 }
             }
@@ -586,7 +617,7 @@ impl<'m> Motion<'m> {
                 });
             }
         }
-        Some(())
+        Ok(())
     }
 
     /// The determinant of every step at a node, with the sign of its assembly mode.
@@ -647,6 +678,19 @@ impl<'m> Motion<'m> {
         }
         list
     }
+}
+
+/// Why the events of a motion are not known.
+pub(crate) enum Unlocated {
+    /// The work was stopped.
+    Stopped,
+    /// The trace went from one branch to another that does not meet it: they only come near each other at this place.
+    Missed {
+        /// Scaled unknowns, between the branches.
+        z: Vec<f64>,
+        /// Largest residual there, in mechanism sizes and rad.
+        residual: f64,
+    },
 }
 
 /// Steps whose determinant is all but zero, compared with a regular neighbour.
@@ -728,7 +772,7 @@ fn follow(
             return Some((nodes, EndReason::Runaway));
         }
     }
-    Some((nodes, EndReason::Stuck))
+    Some((nodes, EndReason::TooLong))
 }
 
 /// The places ahead where the drives' rates jump, as near and far sides in scaled parameters. Between the two lies less

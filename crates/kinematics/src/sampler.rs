@@ -588,6 +588,9 @@ impl<'a, F: ForceSource> Sampler<'a, F> {
         let at = self.place_text(at);
         match reason {
             EndReason::Limit => format!("not reached: the drive's limit is at {at}"),
+            EndReason::TooLong => {
+                format!("beyond {at}: the range is longer than can be followed")
+            }
             EndReason::Stuck => {
                 format!("not reached: the motion could not be followed beyond {at}")
             }

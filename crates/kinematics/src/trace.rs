@@ -25,6 +25,12 @@ const CORRECTIONS: usize = 8;
 const WIGGLE: f64 = 1e-6;
 /// Longest step, in mechanism sizes and rad over all bodies (root of the sum of squares).
 const LONGEST_STEP: f64 = 0.5;
+/// Longest step near a place where branches nearly cross, as a part of the way to it.
+const CAUTIOUS: f64 = 0.25;
+/// Shortest such step, over the root of the residual between the branches.
+const CAUTIOUS_FLOOR: f64 = 0.02;
+/// Places where branches nearly cross that are one.
+const SAME_PLACE: f64 = 1e-3;
 /// Shortest step: below it the motion is stuck.
 const SHORTEST_STEP: f64 = 1e-9;
 
@@ -71,6 +77,18 @@ pub struct Follower<'a, P> {
     inputs: Vec<Input<f64>>,
     coordinates: Vec<f64>,
     rates: Vec<f64>,
+    cautions: Vec<Caution>,
+}
+
+/// A place where two branches come near each other without crossing: they are followed with steps that shrink towards it.
+#[derive(Clone, Debug)]
+struct Caution {
+    /// Scaled unknowns, between the branches.
+    z: Vec<f64>,
+    /// Largest residual there, in mechanism sizes and rad: what keeps the branches apart.
+    residual: f64,
+    /// Part of the usual cautious steps to take: smaller each time that the branches were missed there.
+    part: f64,
 }
 
 impl<'a, P: Path> Follower<'a, P> {
@@ -94,7 +112,36 @@ impl<'a, P: Path> Follower<'a, P> {
             inputs: vec![Input::length(0.0); drives],
             coordinates: vec![0.0; drives],
             rates: vec![0.0; drives],
+            cautions: Vec::new(),
         }
+    }
+
+    /// Goes carefully near a place from now on.
+    pub fn beware(&mut self, z: Vec<f64>, residual: f64) {
+        let again = self
+            .cautions
+            .iter()
+            .filter(|c| apart(&c.z, &z) < SAME_PLACE);
+        let part = 0.5_f64.powi(again.count().min(30) as i32);
+        self.cautions.push(Caution { z, residual, part });
+    }
+
+    /// The longest step that is safe from a point: a part of the way to the nearest place to beware of, and no shorter than
+    /// a part of the distance that the branches keep there, which goes with the root of the residual between them.
+    fn safe(&self, z: &[f64]) -> f64 {
+        let mut least = f64::INFINITY;
+        for caution in &self.cautions {
+            let floor = CAUTIOUS_FLOOR * caution.residual.sqrt();
+            let step = (CAUTIOUS * apart(z, &caution.z)).max(floor);
+            least = least.min(caution.part * step);
+        }
+        least
+    }
+
+    /// The largest residual at a point, in mechanism sizes and rad.
+    pub fn residual(&mut self, z: &[f64]) -> f64 {
+        self.linearise(z);
+        self.system.largest_residual()
     }
 
     /// How many unknowns, the path parameter included.
@@ -271,6 +318,7 @@ impl<'a, P: Path> Follower<'a, P> {
     /// One step along the arc; `step` is the length to try and is adapted for the next. `None` when stuck.
     pub fn advance(&mut self, from: &Node, step: &mut f64) -> Option<Node> {
         let longest = LONGEST_STEP * ((self.mechanism.bodies - 1) as f64).sqrt();
+        let longest = longest.min(self.safe(&from.z));
         let mut odd = 0;
         while *step > SHORTEST_STEP {
             let h = step.min(longest);
@@ -316,6 +364,21 @@ impl<'a, P: Path> Follower<'a, P> {
         }
         None
     }
+}
+
+/// Distance of two configurations: places in mechanism sizes, angles in rad modulo turns, the path parameter left out.
+fn apart(a: &[f64], b: &[f64]) -> f64 {
+    let bodies = a.iter().zip(b).take(a.len() - 1).enumerate();
+    let squares = bodies.map(|(i, (a, b))| {
+        let gap = a - b;
+        let turns = if i % 3 == 2 {
+            (gap / std::f64::consts::TAU).round()
+        } else {
+            0.0
+        };
+        (gap - turns * std::f64::consts::TAU).powi(2)
+    });
+    squares.sum::<f64>().sqrt()
 }
 
 /// Whether the path parameter cannot run one way all along a step that leaves and arrives the same way (the condition

@@ -547,3 +547,90 @@ fn an_extreme_just_before_a_limit_is_found() {
         assert!(found <= 1e-18, "{back:e}: {found:e} m^2");
     }
 }
+
+/// An in-line slider-crank whose rod is hardly longer or shorter than its crank: the branches come near each other at a
+/// quarter turn and do not cross. The slider keeps its side, or the crank stops.
+#[test]
+fn branches_that_nearly_cross_are_not_mixed_up() {
+    let r = 40.0;
+    let mut rng = Rng(5);
+    for k in 0..120 {
+        let off = 10.0_f64.powf(rng.range(-7.0, -0.5)) * if k % 3 == 0 { -1.0 } else { 1.0 };
+        let l = r + off;
+        let from = rng.range(-80.0_f64, 85.0).to_radians();
+        let to = from + rng.range(1.0, 6.0);
+        let case = Case::read(
+            &format!(
+                "units = {{ length = \"mm\", angle = \"rad\" }}
+[links]
+frame = {{ O = [0, 0], E = [100, 0] }}
+crank = {{ O-A = {r:e} }}
+rod = {{ A-B = {l:e} }}
+block = {{ B = [0, 0] }}
+[joints]
+bore = {{ slider = \"block\", at = \"B\", on = \"O -> E\" }}
+[drives]
+motor = {{ turns = \"crank\", from = {from:e}, to = {to:e}, speed = \"1 rad/s\" }}
+[assembly]
+B = {{ near = [{:e}, 0] }}
+",
+                r * from.cos() + (l * l - (r * from.sin()).powi(2)).sqrt()
+            ),
+            "slider-crank.toml",
+        );
+        let motion = case.motion().unwrap();
+        let mut sampler = Sampler::new(&motion, &[]).unwrap();
+        let stop = if off < 0.0 { (l / r).asin() } else { to };
+        assert!(
+            (motion.reached().1 - stop.min(to)).abs() < 1e-7 || motion.reached().1 >= to,
+            "off {off:e}: {} but {stop}",
+            motion.reached().1
+        );
+        for j in 0..=40 {
+            let q = from + (stop.min(to) - from) * f64::from(j) / 40.0 * (1.0 - 1e-9);
+            let sample = sampler.at_parameter(q);
+            let x = point(&case, &sample.points, "B")[0] * 1e3;
+            let truth = r * q.cos() + (l * l - (r * q.sin()).powi(2)).max(0.0).sqrt();
+            assert!(
+                (x - truth).abs() < 1e-5 && sample.closure < 1e-12,
+                "off {off:e} from {from} at {q}: {x} but {truth}, {:e}",
+                sample.closure
+            );
+        }
+    }
+}
+
+/// A four-bar next to a change-point linkage: the rocker swings as the closed form says.
+#[test]
+fn four_bars_near_change_points_keep_their_branch() {
+    let mut rng = Rng(6);
+    for k in 0..60 {
+        let off = 10.0_f64.powf(rng.range(-7.0, -1.0)) * if k % 2 == 0 { -1.0 } else { 1.0 };
+        let bars = [40.0, 60.0, 40.0 + off, 60.0];
+        let from = rng.range(1.0, 2.0);
+        let case = four_bar(bars, from, from + 4.0, "C = \"left of B -> D\"");
+        let motion = case.motion().unwrap();
+        let (low, high) = motion.reached();
+        let mut sampler = Sampler::new(&motion, &[]).unwrap();
+        for j in 0..=60 {
+            let q = low + (high - low) * f64::from(j) / 60.0;
+            let sample = sampler.at_parameter(q);
+            let c = point(&case, &sample.points, "C").map(|x| x * 1e3);
+            let b = polar(bars[0], q);
+            let (coupler, rocker) = (norm(sub(c, b)), norm(sub(c, [bars[3], 0.0])));
+            assert!(
+                (coupler - bars[1]).abs() < 1e-9 && (rocker - bars[2]).abs() < 1e-9,
+                "off {off:e} at {q}: {coupler} {rocker}"
+            );
+        }
+        // On the side that the file names wherever both sides are apart.
+        assert!(
+            !motion
+                .events
+                .iter()
+                .any(|e| e.kind == EventKind::ChangePoint),
+            "off {off:e}: {:?}",
+            motion.events
+        );
+    }
+}

@@ -292,7 +292,16 @@ pub(crate) fn beyond_limit(motion: &Motion<'_>, missed: &[(EndReason, f64)]) -> 
         .collect();
     let stuck = missed.iter().all(|(r, _)| *r == EndReason::Stuck);
     let limited = missed.iter().any(|(r, _)| *r == EndReason::Limit);
-    let (code, message) = if !stuck && !limited {
+    let too_long = missed.iter().all(|(r, _)| *r == EndReason::TooLong);
+    let (code, message) = if too_long {
+        (
+            "range-too-long",
+            format!(
+                "{name} has a longer way than can be followed: {}",
+                list(&ends)
+            ),
+        )
+    } else if !stuck && !limited {
         (
             "motion-runs-away",
             format!(
@@ -319,6 +328,9 @@ pub(crate) fn beyond_limit(motion: &Motion<'_>, missed: &[(EndReason, f64)]) -> 
         text(low),
         text(high)
     ));
+    if too_long {
+        return told.help("ask for a shorter range: every turn of a cycle is like the first");
+    }
     if limited
         && let Some(group) = limiting_group(
             motion,

@@ -14,6 +14,7 @@ use crate::circuit::run_circuit;
 use crate::columns::{Asked, Quantity};
 use crate::explain::{beyond_limit, cannot_move, stopped};
 use crate::force_columns::standard_plots;
+use crate::force_notes::place;
 use crate::progress::{Ear, Flow, Progress};
 use crate::result::{Event, StudyResult};
 use crate::rows::places_along;
@@ -107,6 +108,7 @@ pub(crate) fn run_along(
         warnings.push(unreached_warning(name, &rows.table));
     }
     warnings.extend(rows.force_warnings(&mechanism, along));
+    warnings.extend(without_value(&rows, along));
     Ok(StudyResult {
         name: name.to_owned(),
         events: events(&motion, &units, &parameters_met),
@@ -132,6 +134,47 @@ pub(crate) fn unprepared(
         Unprepared::Unmeasurable(problems) => not_measurable(model, quantities, &problems),
         Unprepared::Stopped => vec![stopped(Stage::Measuring)],
     }
+}
+
+/// Columns and numbers over the motion that have no value where the pose is known and no note says why.
+fn without_value(rows: &RowSink, along: usize) -> Vec<Diagnostic> {
+    let table = &rows.table;
+    let silent = |row: usize| {
+        table.closure.get(row).is_some_and(|c| c.is_finite())
+            && table.notes.get(row).is_some_and(Option::is_none)
+    };
+    let columns = table.columns.iter().filter_map(|column| {
+        let values = column.values.iter().enumerate();
+        let missing: Vec<usize> = values
+            .filter(|(row, value)| !value.is_finite() && silent(*row))
+            .map(|(row, _)| row)
+            .collect();
+        let first = *missing.first()?;
+        Some(
+            Diagnostic::warning(
+                "no-value",
+                format!(
+                    "study `{}`: `{}` has no finite value in {} of {} rows, first at {}",
+                    table.name,
+                    column.name,
+                    missing.len(),
+                    table.rows(),
+                    place(table, along, first)
+                ),
+            )
+            .help("a quotient by zero, or a root, logarithm or arc of a number outside its range"),
+        )
+    });
+    let numbers = rows.scalars.iter().filter(|s| !s.value.is_finite());
+    let numbers = numbers.map(|scalar| {
+        Diagnostic::warning(
+            "no-value",
+            format!("study `{}`: `{}` has no finite value", table.name, scalar.name),
+        )
+        .help("what it is taken of has none somewhere, or the place that it asks for is not on the motion")
+    });
+    let all_reached = table.unreached() == 0;
+    columns.chain(numbers.filter(|_| all_reached)).collect()
 }
 
 /// The column that rows run along: the drive that goes one way through the whole motion, or else time.

@@ -98,7 +98,13 @@ pub fn sensitivities(
         .map(ParameterId)
         .collect();
     let mut left_out = Vec::new();
-    let mut asked: Vec<_> = model.measures.iter().collect();
+    let (of_forces, mut asked): (Vec<_>, Vec<_>) =
+        model.measures.iter().partition(|m| m.needs_forces);
+    left_out.extend(of_forces.iter().map(|m| {
+        let reason =
+            "it asks for forces, whose derivatives are not known: vary the parameter with --set";
+        (m.name.clone(), reason.to_owned())
+    }));
     let found = loop {
         let measures: Vec<_> = asked.iter().map(|m| &m.measure).collect();
         match kempe_kinematics::sensitivities(&motion, held, &measures, &ids) {

@@ -565,4 +565,4 @@ impl Measures<'_, '_> {
 }
 
 /// Derivatives go up to this order.
-const MAX_ORDER: f64 = 6.0;
+const MAX_ORDER: f64 = 4.0;
