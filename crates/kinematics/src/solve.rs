@@ -25,8 +25,8 @@ macro_rules! for_each {
 }
 
 /// Size, in bytes, of the largest numbers whose rarer steps are compiled into their caller for its vector instructions.
-/// Larger ones (series in lanes, long series) have them called: a third of the code, and no more than half the speed
-/// where a mechanism has such steps.
+/// Larger ones (series in lanes, long series) have them called, one baseline version for every instruction set: less to
+/// compile, and slower in lanes where a mechanism has such steps (how much has not been measured).
 const IN_PLACE: usize = 128;
 
 impl Plan {
