@@ -589,12 +589,13 @@ fn newton() {
         "ns/pose",
         best[0],
     );
+    let values = loaded.parameters.repeat(16);
     let best = compare(
         rows,
         vec![Box::new(|| {
             for chunk in at.chunks(8) {
                 let one = Designs {
-                    values: &[],
+                    values: &values,
                     count: 16,
                     layout: Layout::ByDesign,
                 };

@@ -14,7 +14,7 @@ mod sweep;
 mod wide;
 
 use kempe_model::PointId;
-use kempe_number::InstructionSet;
+use kempe_number::{InstructionSet, Jet};
 
 pub use self::designs::{Designs, Layout};
 #[cfg(not(target_family = "wasm"))]
@@ -23,9 +23,9 @@ pub use self::executor::{Executor, Serial, Task};
 pub use self::sweep::sweep_states;
 
 use self::columns::{check_length, split_columns};
-use self::designs::{Places, solve_designs};
+use self::designs::{Places, solve_designs, solve_guessed};
 use self::stretch::{Stretch, stretches};
-use self::sweep::{sweep_positions, sweep_rates};
+use self::sweep::{sweep_one_by_one, sweep_positions, sweep_rates};
 use crate::mechanism::Marker;
 use crate::motion::Motion;
 use crate::plan::Step;
@@ -165,7 +165,8 @@ impl<'a> Batch<'a> {
         parameters: &[f64],
         out: &mut [f64],
     ) -> Result<usize, BatchError> {
-        self.sweep_orders(executor, parameters, out, 1, sweep_positions)
+        let pieces = [sweep_positions, sweep_one_by_one::<f64>];
+        self.sweep_orders(executor, parameters, out, 1, pieces)
     }
 
     /// Places with their first and second derivatives to the path parameter: the columns of [`Batch::sweep`], then as
@@ -187,7 +188,8 @@ impl<'a> Batch<'a> {
         parameters: &[f64],
         out: &mut [f64],
     ) -> Result<usize, BatchError> {
-        self.sweep_orders(executor, parameters, out, 3, sweep_rates)
+        let pieces = [sweep_rates, sweep_one_by_one::<Jet<f64, 3>>];
+        self.sweep_orders(executor, parameters, out, 3, pieces)
     }
 
     fn sweep_orders(
@@ -196,9 +198,10 @@ impl<'a> Batch<'a> {
         parameters: &[f64],
         out: &mut [f64],
         orders: usize,
-        piece: SweepPiece,
+        [lanes, one_by_one]: [SweepPiece; 2],
     ) -> Result<usize, BatchError> {
         let columns = orders * self.columns();
+        let piece = if self.needs_guess { one_by_one } else { lanes };
         check_length("out", parameters.len() * columns, out.len())?;
         let mut closed = vec![0; parameters.len().div_ceil(POSES_PER_TASK)];
         let tasks = (parameters.chunks(POSES_PER_TASK))
@@ -251,7 +254,13 @@ impl<'a> Batch<'a> {
             designs.values.len(),
         )?;
         check_length("out", designs.count * at.len() * self.columns(), out.len())?;
-        let places = &Places::new(self, at);
+        let places = Places::new(self, at);
+        let runs = &places.runs(self);
+        let piece = if self.needs_guess {
+            solve_guessed
+        } else {
+            solve_designs
+        };
         let mut closed = vec![0; designs.count.div_ceil(DESIGNS_PER_TASK)];
         let tasks = (split_columns(out, designs.count, DESIGNS_PER_TASK).into_iter())
             .zip(&mut closed)
@@ -261,7 +270,7 @@ impl<'a> Batch<'a> {
                 let count = DESIGNS_PER_TASK.min(designs.count - first);
                 let range = first..first + count;
                 Box::new(move || {
-                    *closed = solve_designs(self.set, self, designs, range, places, &mut out);
+                    *closed = piece(self.set, self, designs, range, runs, &mut out);
                 })
             })
             .collect();

@@ -24,6 +24,11 @@ macro_rules! for_each {
     };
 }
 
+/// Size, in bytes, of the largest numbers whose rarer steps are compiled into their caller for its vector instructions.
+/// Larger ones (series in lanes, long series) have them called, one baseline version for every instruction set: less to
+/// compile, and slower in lanes where a mechanism has such steps (how much has not been measured).
+const IN_PLACE: usize = 128;
+
 impl Plan {
     /// Finds the pose for the drive coordinates in `state.inputs` on the given branch: fills `state.poses` and
     /// `state.determinants`. Where the mechanism cannot be assembled the poses become NaN (empty for intervals).
@@ -36,14 +41,16 @@ impl Plan {
         branch: &Branch,
         state: &mut State<T>,
     ) {
-        self.solve_all(mechanism, design, branch, std::slice::from_mut(state));
+        self.solve_all::<T, true>(mechanism, design, branch, std::slice::from_mut(state));
     }
 
     /// [`Plan::solve`] for several states of one design on one branch. Every step is run for all states before the
     /// next: it is taken apart once, and while one state waits for its roots and quotients the processor goes on with
     /// the others.
+    ///
+    /// Without `GUESSES` it is compiled without the steps that [need guesses](Step::needs_guess).
     #[cfg_attr(not(debug_assertions), inline(always))]
-    pub(crate) fn solve_all<T: PlanNumber>(
+    pub(crate) fn solve_all<T: PlanNumber, const GUESSES: bool>(
         &self,
         mechanism: &Mechanism,
         design: &Design<T>,
@@ -51,7 +58,7 @@ impl Plan {
         states: &mut [State<T>],
     ) {
         for (index, &sign) in branch.signs.iter().enumerate() {
-            self.run_step(index, sign, mechanism, design, branch, states);
+            self.run_step::<T, GUESSES>(index, sign, mechanism, design, branch, states);
         }
     }
 
@@ -66,11 +73,11 @@ impl Plan {
         state: &mut State<T>,
     ) {
         let states = std::slice::from_mut(state);
-        self.run_step(index, sign, mechanism, design, branch, states);
+        self.run_step::<T, true>(index, sign, mechanism, design, branch, states);
     }
 
     #[cfg_attr(not(debug_assertions), inline(always))]
-    fn run_step<T: PlanNumber>(
+    fn run_step<T: PlanNumber, const GUESSES: bool>(
         &self,
         index: usize,
         sign: f64,
@@ -116,8 +123,41 @@ impl Plan {
                 let step = DyadOf::new(design, step);
                 for_each!(states, index, |state| step.solve(state, sign));
             }
+            _ if const { size_of::<T>() > IN_PLACE } => {
+                self.call_step::<T, GUESSES>(index, sign, mechanism, design, branch, states);
+            }
+            _ => self.run_rarer::<T, GUESSES>(index, sign, mechanism, design, branch, states),
+        }
+    }
+
+    /// [`Plan::run_rarer`], called.
+    #[inline(never)]
+    fn call_step<T: PlanNumber, const GUESSES: bool>(
+        &self,
+        index: usize,
+        sign: f64,
+        mechanism: &Mechanism,
+        design: &Design<T>,
+        branch: &Branch,
+        states: &mut [State<T>],
+    ) {
+        self.run_rarer::<T, GUESSES>(index, sign, mechanism, design, branch, states);
+    }
+
+    /// The steps of fewer mechanisms.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn run_rarer<T: PlanNumber, const GUESSES: bool>(
+        &self,
+        index: usize,
+        sign: f64,
+        mechanism: &Mechanism,
+        design: &Design<T>,
+        branch: &Branch,
+        states: &mut [State<T>],
+    ) {
+        match &self.steps[index] {
             Step::Swing(step) => {
-                for_each!(states, index, |state| swing(
+                for_each!(states, index, |state| swing::<T, GUESSES>(
                     design, branch, state, step, sign
                 ));
             }
@@ -128,7 +168,7 @@ impl Plan {
                 carriers,
                 conditions,
             } => for_each!(states, index, |state| {
-                cross_loci(design, branch, state, (carriers, conditions), sign)
+                cross_loci::<T, GUESSES>(design, branch, state, (carriers, conditions), sign)
             }),
             &Step::TwoPins { a, at_a, b, at_b } => for_each!(states, index, |state| {
                 let (wa, wb) = (state.place(design, at_a), state.place(design, at_b));
@@ -146,17 +186,27 @@ impl Plan {
                 own,
                 at,
                 constraint,
-            } => for_each!(states, index, |state| {
+            } if GUESSES => for_each!(states, index, |state| {
                 roll(mechanism, design, branch, state, (own, at, constraint))
             }),
-            &Step::Gear { body, constraint } => for_each!(states, index, |state| {
+            &Step::Gear { body, constraint } if GUESSES => for_each!(states, index, |state| {
                 turn_gear(mechanism, design, branch, state, (body, constraint))
             }),
-            &Step::Newton { block } => for_each!(states, index, |state| {
+            &Step::Newton { block } if GUESSES => for_each!(states, index, |state| {
                 T::solve_newton(&self.newton_blocks[block], mechanism, design, branch, state)
             }),
+            // Callers without `GUESSES` have made sure that there are none, and the common steps are done.
+            _ => states.iter_mut().for_each(lose),
         }
     }
+}
+
+/// Leaves no pose standing.
+#[cold]
+#[inline(never)]
+fn lose<T: Number>(state: &mut State<T>) {
+    let nowhere = T::from_f64(f64::NAN);
+    (state.poses.iter_mut()).for_each(|pose| (pose.x, pose.c) = (nowhere, nowhere));
 }
 
 /// Turns a body into a direction; its determinant is one.

@@ -46,6 +46,7 @@ impl<T: Number> Design<T> {
     }
 
     /// Evaluates the dimensions anew for other parameter values, in the same storage; not the plain ones.
+    #[inline(never)]
     pub(crate) fn update(&mut self, mechanism: &Mechanism, plan: &Plan, parameters: &[T]) {
         self.geometry.update(mechanism, parameters);
         self.prepare(plan);
@@ -66,6 +67,7 @@ impl<T: Number> Design<T> {
 
 impl Design<f64> {
     /// The same design as constants of a richer number.
+    #[inline(never)]
     pub fn lift<T: Number>(&self) -> Design<T> {
         Design {
             geometry: self.geometry.map(T::from_f64),

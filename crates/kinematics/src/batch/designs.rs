@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use kempe_number::{Lanes, Number, multiversion};
+use kempe_number::{InstructionSet, Lanes, Number, multiversion};
 
 use crate::batch::Batch;
 use crate::batch::columns::{Target, all_lanes, write_places};
@@ -10,8 +10,8 @@ use crate::batch::stretch::nearest_stretch;
 use crate::constraint::Input;
 use crate::state::{Branch, State, input_of};
 
-/// How many designs run side by side: two of the widest registers.
-const WIDTH: usize = 16;
+/// How many designs are prepared before any is solved.
+const PREPARED: usize = 64;
 /// How many places of a motion take every step of the plan together.
 const STATES: usize = 4;
 
@@ -58,7 +58,7 @@ impl Designs<'_> {
 }
 
 /// What designs take from the motion at one path parameter.
-struct Place<'b> {
+pub(super) struct Place<'b> {
     /// Its index.
     index: usize,
     branch: &'b Branch,
@@ -102,7 +102,7 @@ impl Places {
     }
 
     /// Runs of places on one branch, not too long to be solved together.
-    fn runs<'b>(&'b self, batch: &'b Batch<'_>) -> Vec<Vec<Place<'b>>> {
+    pub(super) fn runs<'b>(&'b self, batch: &'b Batch<'_>) -> Vec<Vec<Place<'b>>> {
         let drives = batch.motion.mechanism.model.drives.len();
         let mut runs: Vec<Vec<Place<'b>>> = Vec::new();
         for (index, &p) in self.parameters.iter().enumerate() {
@@ -128,47 +128,62 @@ impl Places {
 }
 
 multiversion! {
-    /// Solves some of the designs, lanes over the designs; returns how many poses close.
+    /// Solves some of the designs at runs of places, lanes over the designs; returns how many poses close.
     pub(super) fn solve_designs(
         set: InstructionSet,
         batch: &Batch<'_>,
         designs: Designs<'_>,
         range: Range<usize>,
-        places: &Places,
+        runs: &[Vec<Place<'_>>],
         out: &mut [&mut [f64]],
-    ) -> usize = in_lanes;
+    ) -> usize = in_lanes::<16, false>;
 }
 
-#[cfg_attr(not(debug_assertions), inline(always))]
-fn in_lanes(
+/// [`solve_designs`] for mechanisms whose branch is more than signs: what they take longest for is not done in lanes.
+pub(super) fn solve_guessed(
+    _: InstructionSet,
     batch: &Batch<'_>,
     designs: Designs<'_>,
     range: Range<usize>,
-    places: &Places,
+    runs: &[Vec<Place<'_>>],
+    out: &mut [&mut [f64]],
+) -> usize {
+    in_lanes::<4, true>(batch, designs, range, runs, out)
+}
+
+#[cfg_attr(not(debug_assertions), inline(always))]
+fn in_lanes<const W: usize, const GUESSES: bool>(
+    batch: &Batch<'_>,
+    designs: Designs<'_>,
+    range: Range<usize>,
+    runs: &[Vec<Place<'_>>],
     out: &mut [&mut [f64]],
 ) -> usize {
     let (mechanism, plan) = (batch.motion.mechanism, batch.motion.plan);
-    let mut states = vec![State::<Lanes<WIDTH>>::new(mechanism, plan); STATES];
-    let mut design = batch.motion.design.lift::<Lanes<WIDTH>>();
+    let mut states = vec![State::<Lanes<W>>::new(mechanism, plan); STATES];
+    let together = PREPARED.min(range.len()).div_ceil(W);
+    let mut prepared = vec![batch.motion.design.lift::<Lanes<W>>(); together];
     let mut parameters = vec![Lanes::zero(); mechanism.model.parameters.len()];
-    let runs = places.runs(batch);
     let columns = batch.columns();
     let mut closed = 0;
-    for row in (0..range.len()).step_by(WIDTH) {
-        let first = range.start + row;
-        for (k, parameter) in parameters.iter_mut().enumerate() {
-            *parameter = designs.lanes(k, first, &range);
+    for block in (0..range.len()).step_by(PREPARED) {
+        let rows = (block..range.len()).step_by(W);
+        for (row, design) in rows.clone().zip(&mut prepared) {
+            for (k, parameter) in parameters.iter_mut().enumerate() {
+                *parameter = designs.lanes(k, range.start + row, &range);
+            }
+            design.update(mechanism, plan, &parameters);
+            if GUESSES {
+                // Newton's method wants each of them on its own as well.
+                let lane = |lane: usize| move |x: Lanes<W>| x.lane(lane);
+                design.plain = (0..W).map(|k| design.geometry.map(lane(k))).collect();
+            }
         }
-        design.update(mechanism, plan, &parameters);
-        if batch.needs_guess {
-            // Newton's method wants each of them on its own as well.
-            let lane = |lane: usize| move |x: Lanes<WIDTH>| x.lane(lane);
-            design.plain = (0..WIDTH).map(|k| design.geometry.map(lane(k))).collect();
-        }
-        let wanted = all_lanes(WIDTH.min(range.end - first));
-        for run in &runs {
+        for run in runs {
             let states = &mut states[..run.len()];
-            for (state, place) in states.iter_mut().zip(run) {
+            let mut targets = [Target::default(); STATES];
+            for ((state, target), place) in states.iter_mut().zip(&mut targets).zip(run) {
+                target.column = place.index * columns;
                 for (input, at) in state.inputs.iter_mut().zip(place.inputs) {
                     *input = Input {
                         c: Lanes::from_f64(at.c),
@@ -177,16 +192,14 @@ fn in_lanes(
                     };
                 }
             }
-            plan.solve_all(mechanism, &design, run[0].branch, states);
-            let mut targets = [Target::default(); STATES];
-            for (target, place) in targets.iter_mut().zip(run) {
-                *target = Target {
-                    column: place.index * columns,
-                    row,
-                    wanted,
-                };
+            for (row, design) in rows.clone().zip(&prepared) {
+                for target in &mut targets {
+                    target.row = row;
+                    target.wanted = all_lanes(W.min(range.len() - row));
+                }
+                plan.solve_all::<_, GUESSES>(mechanism, design, run[0].branch, states);
+                closed += write_places(batch, design, states, &targets, out);
             }
-            closed += write_places(batch, &design, states, &targets, out);
         }
     }
     closed

@@ -1,11 +1,11 @@
 //! One design over a sweep of its motion.
 
-use kempe_number::{Jet, Lanes, Number, multiversion};
+use kempe_number::{InstructionSet, Jet, Lanes, Number, multiversion};
 
 use crate::batch::Batch;
 use crate::batch::columns::{Target, all_lanes, closing, write_places};
 use crate::batch::stretch::{find_stretch, stretches};
-use crate::batch::wide::Wide;
+use crate::batch::wide::{Single, Wide};
 use crate::drive_path::DrivePath;
 use crate::mechanism::Mechanism;
 use crate::motion::Motion;
@@ -13,51 +13,29 @@ use crate::newton::PlanNumber;
 use crate::plan::Step;
 use crate::state::{Branch, Design, State, input_of};
 
-/// How many positions run side by side: two of the widest registers.
-const WIDTH: usize = 16;
-/// How many poses with derivatives run side by side.
-const RATES_WIDTH: usize = 8;
-/// How many states, each with all its lanes, take every step of the plan together: few enough for the nearest cache.
-const STATES: usize = 4;
-/// The same with derivatives.
-const RATES_STATES: usize = 4;
 /// How many plain states take every step of the plan together.
 const PLAIN_STATES: usize = 16;
 
-/// Positions and rates in lanes: values with derivatives of the first and second order.
-type Rates = Jet<Lanes<RATES_WIDTH>, 3>;
-
 multiversion! {
-    /// Sweeps positions in lanes; returns how many poses close.
+    /// Sweeps positions in lanes; returns how many poses close. Two of the widest registers
+    /// side by side, and as many states together as the nearest cache holds.
     pub(super) fn sweep_positions(
         set: InstructionSet,
         batch: &Batch<'_>,
         parameters: &[f64],
         columns: &mut [&mut [f64]],
-    ) -> usize = sweep::<Lanes<WIDTH>, WIDTH, STATES>;
+    ) -> usize = sweep_lanes::<Lanes<16>, 16, 4>;
 }
 
 multiversion! {
-    /// Sweeps positions with their first and second derivatives in lanes; returns how many poses close.
+    /// Sweeps positions with their first and second derivatives in lanes; returns how many poses close. One of the
+    /// widest registers for every order.
     pub(super) fn sweep_rates(
         set: InstructionSet,
         batch: &Batch<'_>,
         parameters: &[f64],
         columns: &mut [&mut [f64]],
-    ) -> usize = sweep::<Rates, RATES_WIDTH, RATES_STATES>;
-}
-
-#[cfg_attr(not(debug_assertions), inline(always))]
-fn sweep<T: Wide<W>, const W: usize, const M: usize>(
-    batch: &Batch<'_>,
-    parameters: &[f64],
-    columns: &mut [&mut [f64]],
-) -> usize {
-    if batch.needs_guess {
-        sweep_one_by_one::<T, W>(batch, parameters, columns)
-    } else {
-        sweep_lanes::<T, W, M>(batch, parameters, columns)
-    }
+    ) -> usize = sweep_lanes::<Jet<Lanes<8>, 3>, 8, 4>;
 }
 
 /// Sweeps the motion's own design, lanes over the parameter, `M` states with `W` lanes at a time.
@@ -99,7 +77,7 @@ fn sweep_lanes<T: Wide<W>, const W: usize, const M: usize>(
         }
         while let Some(targets) = next_stretch(batch, at, &mut wanted, &mut cursor, columns) {
             let branch = &batch.stretches[cursor].branch;
-            (motion.plan).solve_all(mechanism, design, branch, states);
+            (motion.plan).solve_all::<T, false>(mechanism, design, branch, states);
             closed += write_places(batch, design, states, &targets, columns);
         }
     }
@@ -139,22 +117,23 @@ fn next_stretch<const W: usize, const M: usize>(
     None
 }
 
-/// Mechanisms whose branch is more than signs: one pose after the other.
-fn sweep_one_by_one<T: Wide<W>, const W: usize>(
+/// Sweeps mechanisms whose branch is more than signs: one pose after the other.
+pub(super) fn sweep_one_by_one<T: Single>(
+    _: InstructionSet,
     batch: &Batch<'_>,
     parameters: &[f64],
     out: &mut [&mut [f64]],
 ) -> usize {
     let motion = batch.motion;
-    let design = motion.design.lift::<T::Lane>();
+    let design = motion.design.lift::<T>();
     let mut closed = 0;
-    sweep_states(motion, &design, parameters, T::seed_lane, |row, state| {
+    sweep_states(motion, &design, parameters, T::seed, |row, state| {
         closed += usize::from(state.is_some());
         for (index, column) in out.iter_mut().enumerate() {
             let (order, rest) = (index / batch.columns(), index % batch.columns());
             column[row] = state.map_or(f64::NAN, |state| {
                 let place = state.place(&design, batch.markers[rest / 2]);
-                T::order_of_lane(place[rest % 2], order)
+                place[rest % 2].order(order)
             });
         }
     });
@@ -162,6 +141,7 @@ fn sweep_one_by_one<T: Wide<W>, const W: usize>(
 }
 
 /// States with all drives where they are at the start of the motion.
+#[inline(never)]
 fn held_states<T: Number>(motion: &Motion<'_>, count: usize) -> Vec<State<T>> {
     let mut coordinates = vec![T::zero(); motion.mechanism.model.drives.len()];
     (motion.path).coordinates(T::from_f64(motion.start), &mut coordinates);
@@ -194,7 +174,7 @@ fn set_at_times<T: Wide<W>, const W: usize>(
     let mut values = vec![T::zero(); drives];
     let mut one = vec![T::Lane::zero(); drives];
     for (lane, time) in times.iter().enumerate() {
-        path.coordinates(T::seed_lane(*time), &mut one);
+        path.coordinates(T::Lane::seed(*time), &mut one);
         for (value, q) in values.iter_mut().zip(&one) {
             value.set_lane(lane, *q);
         }
@@ -256,7 +236,7 @@ pub fn sweep_states<T: PlanNumber>(
         } else {
             &stretch.branch
         };
-        plan.solve_all(mechanism, design, branch, &mut states[..count]);
+        plan.solve_all::<T, true>(mechanism, design, branch, &mut states[..count]);
         for state in &states[..count] {
             let closes = closing(state, T::value) == 0.0;
             each(row, closes.then_some(state));

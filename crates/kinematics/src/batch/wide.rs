@@ -10,22 +10,45 @@ pub(super) trait Wide<const W: usize>: PlanNumber {
     const ORDERS: usize;
 
     /// What one lane holds.
-    type Lane: PlanNumber;
+    type Lane: Single;
 
     /// The path parameter itself.
     fn seed(p: Lanes<W>) -> Self;
 
-    /// The path parameter in one lane.
-    fn seed_lane(p: f64) -> Self::Lane;
-
     /// The values (order 0) or derivatives of one order.
     fn order(self, order: usize) -> Lanes<W>;
 
-    /// The same of one lane.
-    fn order_of_lane(lane: Self::Lane, order: usize) -> f64;
-
     /// Puts one lane in its place.
     fn set_lane(&mut self, lane: usize, to: Self::Lane);
+}
+
+/// What one lane holds: a value and perhaps its derivatives to the path parameter.
+pub(super) trait Single: PlanNumber {
+    /// The path parameter itself.
+    fn seed(p: f64) -> Self;
+
+    /// The value (order 0) or the derivative of one order.
+    fn order(self, order: usize) -> f64;
+}
+
+impl Single for f64 {
+    fn seed(p: f64) -> Self {
+        p
+    }
+
+    fn order(self, _: usize) -> f64 {
+        self
+    }
+}
+
+impl<const N: usize> Single for Jet<f64, N> {
+    fn seed(p: f64) -> Self {
+        Self::variable(p)
+    }
+
+    fn order(self, order: usize) -> f64 {
+        self.derivative(order)
+    }
 }
 
 impl<const W: usize> Wide<W> for Lanes<W> {
@@ -38,17 +61,9 @@ impl<const W: usize> Wide<W> for Lanes<W> {
         p
     }
 
-    fn seed_lane(p: f64) -> f64 {
-        p
-    }
-
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn order(self, _: usize) -> Lanes<W> {
         self
-    }
-
-    fn order_of_lane(lane: f64, _: usize) -> f64 {
-        lane
     }
 
     fn set_lane(&mut self, lane: usize, to: f64) {
@@ -66,17 +81,9 @@ impl<const W: usize, const N: usize> Wide<W> for Jet<Lanes<W>, N> {
         Self::variable(p)
     }
 
-    fn seed_lane(p: f64) -> Jet<f64, N> {
-        Jet::variable(p)
-    }
-
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn order(self, order: usize) -> Lanes<W> {
         self.derivative(order)
-    }
-
-    fn order_of_lane(lane: Jet<f64, N>, order: usize) -> f64 {
-        lane.derivative(order)
     }
 
     fn set_lane(&mut self, lane: usize, to: Jet<f64, N>) {
