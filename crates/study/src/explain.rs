@@ -10,6 +10,7 @@ use kempe_model::{Diagnostic, Model};
 use kempe_number::math::hypot;
 use kempe_units::Dimension;
 
+use crate::findings::source_name;
 use crate::unit::{Units, shown};
 
 /// A motion that does not start, as a diagnostic over the model file.
@@ -54,8 +55,23 @@ pub fn cannot_move(
             let mut told = Diagnostic::error(
                 "cannot-assemble",
                 format!("{place} the mechanism cannot be assembled: {}", gap.message),
-            )
-            .help("change a length, or start the drive where the loop closes");
+            );
+            let parts = &plan.decomposition;
+            let surplus = parts.blocks.iter().flat_map(|b| &b.surplus).chain(&parts.surplus);
+            let mut named: Vec<String> = surplus
+                .filter_map(|row| mechanism.constraints.get(row.constraint))
+                .map(|(_, source)| format!("`{}`", source_name(model, *source)))
+                .collect();
+            named.dedup();
+            told = if named.is_empty() {
+                told.help("change a length, or start the drive where the loop closes")
+            } else {
+                told.note(format!(
+                    "by count the links are fixed more often than they can move: without {} the rest decides everything",
+                    list(&named)
+                ))
+                .help("leave out a drive or a joint that is one too many, or make the lengths agree exactly")
+            };
             for link in links {
                 if let Some(link) = model.links.iter().find(|l| l.name == link) {
                     told = told.at(link.span.clone(), "");

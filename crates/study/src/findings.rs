@@ -205,7 +205,7 @@ pub fn check_watched(model: &Model, progress: &mut dyn Progress) -> Report {
     report
 }
 
-fn source_name(model: &Model, source: Source) -> String {
+pub(crate) fn source_name(model: &Model, source: Source) -> String {
     match source {
         Source::Pin { point, .. } => model
             .points

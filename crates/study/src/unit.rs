@@ -71,9 +71,9 @@ impl Units {
         format_digits(si, &self.unit(dimension), 12)
     }
 
-    /// A value with its unit, to all its digits.
+    /// A value with its unit, to the digits that rounding leaves a located place: `117.51220651664 deg`.
     pub fn exact_text(&self, si: f64, dimension: Dimension) -> String {
-        format_digits(si, &self.unit(dimension), 17)
+        format_digits(si, &self.unit(dimension), 14)
     }
 }
 

@@ -474,3 +474,25 @@ columns = ["pull", "side", "load_y(hook)", "stop", "oily", "can", "torque(motor)
     near("can", &|_| 0.2);
     near("rest", &|_| 0.0);
 }
+
+#[test]
+fn values_that_are_missing_are_told() {
+    let text = FOUR_BAR.replace(
+        "[measures]",
+        "[loads]\npush = { torque = \"1 N m deg / motor\", on = \"rocker\" }\n[measures]\nlog = \"ln(y(P) / 1 mm - 20)\"",
+    );
+    let result = ran(&format!(
+        "{text}[studies.t]\nkind = \"forces\"\nrows = 13\ncolumns = [\"log\", \"effort\"]\n"
+    ));
+    let codes: Vec<&str> = result.warnings.iter().map(|d| d.code).collect();
+    assert!(
+        codes.contains(&"no-value") && codes.contains(&"load-without-value"),
+        "{codes:?}"
+    );
+    assert!(
+        result.table.notes[0]
+            .as_deref()
+            .is_some_and(|n| n.contains("`push`"))
+    );
+    assert!(result.table.notes[3].is_none());
+}

@@ -516,3 +516,20 @@ fn numbers_over_many_turns_are_those_of_one() {
         }
     }
 }
+
+#[test]
+fn one_drive_too_many_is_told_as_that() {
+    let text = FOUR_BAR.replace(
+        "[assembly]",
+        "other = { turns = \"rocker\", from = 0, to = 10, speed = \"1 rad/s\" }\n[assembly]",
+    );
+    let text = text
+        .replace("step = 1", "rows = 3")
+        .replace("\"gain\", ", "");
+    let (found, said) = fails(&text);
+    assert_eq!(found[0].code, "cannot-assemble");
+    assert!(
+        said.contains("more often than they can move") && said.contains("one too many"),
+        "{said}"
+    );
+}

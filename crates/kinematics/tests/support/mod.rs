@@ -595,7 +595,7 @@ impl Case {
     pub fn example(path: &str) -> Self {
         let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/");
         let file = std::path::PathBuf::from(format!("{root}{path}.toml"));
-        let text = std::fs::read_to_string(&file).unwrap();
+        let text = std::fs::read_to_string(&file).expect("an example");
         Self::read_with(&text, path, &mut |table| {
             std::fs::read_to_string(file.with_file_name(table)).map_err(|e| e.to_string())
         })
