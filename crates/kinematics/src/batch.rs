@@ -1,7 +1,8 @@
 //! Many poses at once: one design over a sweep of its motion, or many designs at the same places of a motion.
 //!
-//! Several poses run side by side in [`Lanes`], on the best vector instructions that the processor has. Every row has
-//! the bits that the plan gives on plain `f64`, whatever the instructions, the executor or the row's neighbours.
+//! Several poses run side by side in [`Lanes`](kempe_number::Lanes), on the best vector instructions that the processor
+//! has. Every row has the bits that the plan gives on plain `f64`, whatever the instructions, the executor or the row's
+//! neighbours.
 //!
 //! Output is by columns, as tables are: all `x` of the first point, all its `y`, all `x` of the second point, and so on;
 //! m, in the frame.

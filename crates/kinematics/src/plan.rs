@@ -76,7 +76,7 @@ pub struct Carrier {
 /// One step of a plan: one block solved.
 #[derive(Clone, Debug)]
 pub enum Step {
-    /// The angle of a body from that of another ([`Constraint::Direction`]).
+    /// The angle of a body from that of another ([`Constraint::Direction`](crate::mechanism::Constraint::Direction)).
     Turn {
         /// The body.
         body: BodyId,
