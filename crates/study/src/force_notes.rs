@@ -2,8 +2,11 @@
 
 use kempe_dynamics::ForceNote;
 use kempe_kinematics::Mechanism;
-use kempe_model::{Diagnostic, DriveId};
+use kempe_kinematics::events::EventKind;
+use kempe_model::{Diagnostic, DriveId, ForceMeasure, Leaf, Measure, Model};
 
+use crate::columns::Quantity;
+use crate::result::Event;
 use crate::table::Table;
 
 /// Notes of all rows, one entry for each kind and drive.
@@ -98,4 +101,51 @@ pub(crate) fn place(table: &Table, along: usize, row: usize) -> String {
     format!("{} = {digits} {}", column.name, column.unit.text())
         .trim_end()
         .to_owned()
+}
+
+/// Warnings of numbers over the motion that hold joint loads, where the motion meets a pose at which these grow without
+/// bound: such a number tells how near that pose was looked at.
+pub(crate) fn unbounded(model: &Model, scalars: &[Quantity], events: &[Event]) -> Vec<Diagnostic> {
+    let singular: Vec<&str> = (events.iter())
+        .filter(|e| e.kind != EventKind::ModeChange)
+        .map(|e| e.place.as_str())
+        .collect();
+    let Some(first) = singular.first() else {
+        return Vec::new();
+    };
+    let holding = scalars
+        .iter()
+        .filter(|q| holds_joint_load(model, &q.measure));
+    let told = holding.map(|q| {
+        Diagnostic::warning(
+            "unbounded-load",
+            format!(
+                "`{}` is taken over a singular pose, at {first}: joint loads grow without bound towards it",
+                q.name
+            ),
+        )
+        .note("its value tells how near that pose was looked at; the condition of every row stands in the table")
+        .help("ask for it over a motion that keeps away from that pose")
+    });
+    told.collect()
+}
+
+/// Whether a measure asks for what a joint carries, itself or by another measure.
+fn holds_joint_load(model: &Model, measure: &Measure) -> bool {
+    measure.leaves().any(|leaf| match leaf {
+        Leaf::Force(force) => matches!(
+            force,
+            ForceMeasure::Reaction(_)
+                | ForceMeasure::ReactionX(_)
+                | ForceMeasure::ReactionY(_)
+                | ForceMeasure::ReactionAlong(_)
+                | ForceMeasure::ReactionAcross(_)
+                | ForceMeasure::ReactionMoment(_)
+        ),
+        Leaf::Named(index) => {
+            (model.measures.get(*index)).is_some_and(|m| holds_joint_load(model, &m.measure))
+        }
+        Leaf::Rate(inner, _) | Leaf::Over(_, inner) => holds_joint_load(model, inner),
+        _ => false,
+    })
 }

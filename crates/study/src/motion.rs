@@ -14,7 +14,7 @@ use crate::circuit::run_circuit;
 use crate::columns::{Asked, Quantity};
 use crate::explain::{beyond_limit, cannot_move, stopped};
 use crate::force_columns::standard_plots;
-use crate::force_notes::place;
+use crate::force_notes::{place, unbounded};
 use crate::progress::{Ear, Flow, Progress};
 use crate::result::{Event, StudyResult};
 use crate::rows::places_along;
@@ -109,9 +109,13 @@ pub(crate) fn run_along(
     }
     warnings.extend(rows.force_warnings(&mechanism, along));
     warnings.extend(without_value(&rows, along));
+    let met = events(&motion, &units, &parameters_met);
+    if forces {
+        warnings.extend(unbounded(model, &asked.scalars, &met));
+    }
     Ok(StudyResult {
         name: name.to_owned(),
-        events: events(&motion, &units, &parameters_met),
+        events: met,
         scalars: rows.scalars.clone(),
         figures: rows.figures(&study.plots),
         table: rows.table,

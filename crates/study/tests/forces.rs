@@ -496,3 +496,30 @@ fn values_that_are_missing_are_told() {
     );
     assert!(result.table.notes[3].is_none());
 }
+
+#[test]
+fn a_peak_over_a_singular_pose_is_told_as_one() {
+    let path = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../examples/seeds/door-lock.toml"
+    );
+    let text = std::fs::read_to_string(path).expect("the lock");
+    let text = text.replace("[studies.turn]", "load = \"reaction(O)\"\npeak = \"max(load)\"\neffort = \"max(torque(lock))\"\n[studies.turn]");
+    let run_to = |text: &str| {
+        let model = model(text);
+        let study = model
+            .studies
+            .iter()
+            .find(|s| s.name == "ideal")
+            .expect("forces");
+        let warnings = run(&model, study, &mut Silent).expect("rows").warnings;
+        let told = warnings.into_iter().filter(|d| d.code == "unbounded-load");
+        told.map(|d| d.message).collect::<Vec<_>>()
+    };
+    let told = run_to(&text);
+    assert!(
+        told.len() == 1 && told[0].contains("`peak`") && told[0].contains("117.51220651664"),
+        "{told:?}"
+    );
+    assert!(run_to(&text.replace("to = 125", "to = 110")).is_empty());
+}
