@@ -17,6 +17,7 @@ pub(crate) fn assumptions(model: &Model, units: &Units) -> Vec<String> {
     let own = model
         .links
         .iter()
+        .skip(1)
         .filter_map(|l| l.inertia.as_ref()?.mass.as_ref());
     let masses = own.chain(actions.masses.iter().map(|m| &m.mass));
     let total: f64 = masses.map(|m| value(m, &parameters)).sum();
