@@ -4,7 +4,7 @@ use kempe_dynamics::spring_choice::{ChosenSpring, EffortSample, choose_spring};
 use kempe_model::{Acts, Diagnostic, Model, Scalar as Expression, Spring, SpringStudy, value};
 use kempe_units::{Dimension, Unit};
 
-use super::{bare, constant, effort, is_zero, set_beside, shown_by, values};
+use super::{bare, constant, effort, is_zero, set_beside, shown_by, values, weights};
 use crate::columns::Quantity;
 use crate::motion::run_along;
 use crate::progress::Progress;
@@ -89,7 +89,12 @@ fn samples(
     let all = |lists: &'_ [Vec<f64>]| lists.iter().flatten().copied().collect::<Vec<f64>>();
     let columns = [without, wanted, by_stiffness, by_preload].map(all);
     let rows = columns.iter().map(Vec::len).min().unwrap_or(0);
-    let row = |k: usize| columns.each_ref().map(|c| c[k]);
+    // The first and the last row count half, so that the rows of a full turn count evenly.
+    let weights = weights(rows);
+    let row = |k: usize| {
+        let weight = (weights[k] * rows as f64).sqrt();
+        columns.each_ref().map(|c| c[k] * weight)
+    };
     (0..rows)
         .map(row)
         .filter(|r| r.iter().all(|x| x.is_finite()))
