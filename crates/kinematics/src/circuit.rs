@@ -10,7 +10,7 @@ use crate::drive_path::DrivePath;
 use crate::events::locate_limit;
 use crate::force_source::NoForces;
 use crate::mechanism::Mechanism;
-use crate::motion::{EndReason, FAR, Motion, MotionError, REPEATS, Unlocated};
+use crate::motion::{EndReason, FAR, Motion, MotionError, Unlocated, with_care};
 use crate::plan::Plan;
 use crate::sampler::{Sample, Sampler, Unprepared};
 use crate::state::Design;
@@ -131,34 +131,15 @@ impl<'m> Circuit<'m> {
             let Some(start) = follower.start(z, direction) else {
                 continue;
             };
-            for repeat in 0..=REPEATS {
+            return with_care(&mut follower, |follower| {
                 let (nodes, closed) =
-                    go_round(&mut follower, start.clone(), mechanism, &path, high, watch)
-                        .ok_or_else(stopped(Stage::Following))?;
-                let found = Self::of_nodes(
-                    mechanism,
-                    plan,
-                    design,
-                    &path,
-                    assemblies.clone(),
-                    nodes,
-                    closed,
-                    &mut follower,
-                    watch,
-                );
-                match found {
-                    Ok(circuit) => return Ok(circuit),
-                    Err(Unlocated::Missed { z, residual }) if repeat < REPEATS => {
-                        follower.beware(z, residual);
-                    }
-                    Err(Unlocated::Missed { .. }) => break,
-                    Err(Unlocated::Stopped) => {
-                        return Err(MotionError::Stopped {
-                            stage: Stage::Locating,
-                        });
-                    }
-                }
-            }
+                    go_round(follower, start.clone(), mechanism, &path, high, watch)
+                        .ok_or(Unlocated::Stopped(Stage::Following))?;
+                let assemblies = assemblies.clone();
+                Self::of_nodes(
+                    mechanism, plan, design, &path, assemblies, nodes, closed, follower, watch,
+                )
+            });
         }
         Err(MotionError::Locked { at: motion.start })
     }

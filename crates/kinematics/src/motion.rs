@@ -30,7 +30,7 @@ pub const CROSSING: f64 = 1e-7;
 /// has gone from one to the other, and is repeated with care.
 pub const MEETING: f64 = 1e-11;
 /// How often a trace is repeated with care at one place more.
-pub(crate) const REPEATS: usize = 64;
+const REPEATS: usize = 64;
 /// Width, as a part of the whole time, between the near and the far side of a place where the drives' rates jump.
 const SIDES: f64 = 1e-12;
 /// Where a motion starts at a singular pose, its branch is looked for at these parts of the range instead.
@@ -62,6 +62,11 @@ pub enum MotionError {
     Scale {
         /// Its size, m.
         size: f64,
+    },
+    /// Branches come so near each other that the trace could not be kept on one of them.
+    Entangled {
+        /// Path parameter there.
+        at: f64,
     },
     /// It was told to stop before the motion was known.
     Stopped {
@@ -247,65 +252,36 @@ impl<'m> Motion<'m> {
             // The finished part of the whole range, of which the upper part is followed first.
             let whole = (demanded.1 - demanded.0).max(f64::MIN_POSITIVE);
             let share = ((demanded.1 - anchor) / whole).clamp(0.0, 1.0);
-            for repeat in 0..=REPEATS {
+            return with_care(&mut follower, |follower| {
                 let mut told = |before: f64, part: f64| {
                     watch.reached(Stage::Following, Some((before + part).clamp(0.0, 1.0)))
                 };
-                let following = |()| MotionError::Stopped {
-                    stage: Stage::Following,
-                };
+                let stopped = || Unlocated::Stopped(Stage::Following);
+                let mut up_told = |part| told(0.0, part * share);
                 let (high, end_high) =
-                    follow(&mut follower, up.clone(), demanded.1 / scale, &mut |part| {
-                        told(0.0, part * share)
-                    })
-                    .ok_or(())
-                    .map_err(following)?;
-                let (low, end_low) = follow(
-                    &mut follower,
-                    down.clone(),
-                    demanded.0 / scale,
-                    &mut |part| told(share, part * (1.0 - share)),
-                )
-                .ok_or(())
-                .map_err(following)?;
+                    follow(follower, up.clone(), demanded.1 / scale, &mut up_told)
+                        .ok_or_else(stopped)?;
+                let mut down_told = |part| told(share, part * (1.0 - share));
+                let (low, end_low) =
+                    follow(follower, down.clone(), demanded.0 / scale, &mut down_told)
+                        .ok_or_else(stopped)?;
                 // From the low end to the high one; the tangents of the lower half turned round.
-                let mut nodes: Vec<Node> = low
-                    .into_iter()
-                    .skip(1)
-                    .map(|mut node| {
-                        node.tangent.iter_mut().for_each(|t| *t = -*t);
-                        node
-                    })
-                    .rev()
-                    .collect();
+                let turned = low.into_iter().skip(1).map(|mut node| {
+                    node.tangent.iter_mut().for_each(|t| *t = -*t);
+                    node
+                });
+                let mut nodes: Vec<Node> = turned.rev().collect();
                 nodes.extend(high);
-                let mut motion = Self::of_nodes(
-                    mechanism,
-                    plan,
-                    design,
-                    path.clone(),
-                    assemblies.clone(),
-                    nodes,
-                );
+                let assemblies = assemblies.clone();
+                let mut motion =
+                    Self::of_nodes(mechanism, plan, design, path.clone(), assemblies, nodes);
                 motion.anchor = anchor;
                 motion.start = start;
                 motion.demanded = demanded;
                 motion.ends = (end_low, end_high);
-                match motion.find_events(&mut follower, watch) {
-                    Ok(()) => return Ok(motion),
-                    Err(Unlocated::Missed { z, residual }) if repeat < REPEATS => {
-                        follower.beware(z, residual);
-                    }
-                    Err(Unlocated::Missed { .. }) => {
-                        return Err(MotionError::Locked { at: anchor });
-                    }
-                    Err(Unlocated::Stopped) => {
-                        return Err(MotionError::Stopped {
-                            stage: Stage::Locating,
-                        });
-                    }
-                }
-            }
+                motion.find_events(follower, watch)?;
+                Ok(motion)
+            });
         }
         match nothing {
             Some(assemblies) => Err(MotionError::CannotAssemble {
@@ -507,7 +483,7 @@ impl<'m> Motion<'m> {
         solver.run(self, design);
     }
 
-    /// Finds where modes change between nodes, splits the motion there and records what was met. `None` when stopped.
+    /// Finds where modes change between nodes, splits the motion there and records what was met.
     pub(crate) fn find_events(
         &mut self,
         follower: &mut Follower<'_, DrivePath>,
@@ -517,7 +493,7 @@ impl<'m> Motion<'m> {
         for (done, node) in self.nodes.iter().enumerate() {
             let part = done as f64 / self.nodes.len() as f64;
             if watch.reached(Stage::Locating, Some(part)).is_break() {
-                return Err(Unlocated::Stopped);
+                return Err(Unlocated::Stopped(Stage::Locating));
             }
             modes.push(self.determinants(follower, node));
         }
@@ -682,8 +658,8 @@ impl<'m> Motion<'m> {
 
 /// Why the events of a motion are not known.
 pub(crate) enum Unlocated {
-    /// The work was stopped.
-    Stopped,
+    /// The work was stopped at this.
+    Stopped(Stage),
     /// The trace went from one branch to another that does not meet it: they only come near each other at this place.
     Missed {
         /// Scaled unknowns, between the branches.
@@ -691,6 +667,28 @@ pub(crate) enum Unlocated {
         /// Largest residual there, in mechanism sizes and rad.
         residual: f64,
     },
+}
+
+/// Traces until the trace stays on its branch: with care at one place more each time that it went to another.
+pub(crate) fn with_care<R>(
+    follower: &mut Follower<'_, DrivePath>,
+    mut trace: impl FnMut(&mut Follower<'_, DrivePath>) -> Result<R, Unlocated>,
+) -> Result<R, MotionError> {
+    let mut repeats = 0;
+    loop {
+        match trace(follower) {
+            Ok(found) => return Ok(found),
+            Err(Unlocated::Stopped(stage)) => return Err(MotionError::Stopped { stage }),
+            Err(Unlocated::Missed { z, .. }) if repeats == REPEATS => {
+                let at = follower.parameter(&z);
+                return Err(MotionError::Entangled { at });
+            }
+            Err(Unlocated::Missed { z, residual }) => {
+                follower.beware(z, residual);
+                repeats += 1;
+            }
+        }
+    }
 }
 
 /// Steps whose determinant is all but zero, compared with a regular neighbour.

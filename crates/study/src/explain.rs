@@ -79,6 +79,17 @@ pub fn cannot_move(
             }
             model.drives.iter().fold(told, |d, drive| d.see(drive.span.clone(), "where it starts"))
         }
+        MotionError::Entangled { at } => Diagnostic::error(
+            "branches-entangled",
+            format!(
+                "{} branches come so near each other that the motion could not be kept on one of them",
+                match model.drives.as_slice() {
+                    [_] => start_text(mechanism, *at),
+                    _ => format!("at time = {}", Units::of(model).text(*at, Dimension::TIME)),
+                }
+            ),
+        )
+        .help("change a length a little, or keep the drive away from that place"),
         MotionError::Stopped { stage } => stopped(*stage),
         MotionError::Scale { size } => Diagnostic::error(
             "scale",
