@@ -5,7 +5,7 @@ use kempe_kinematics::events::EventKind;
 use kempe_kinematics::{
     Design, EndReason, Mechanism, Motion, Plan, Stage, Unmeasurable, Unprepared,
 };
-use kempe_model::{Diagnostic, LawPiece, Model, MotionStudy, Study, StudyKind};
+use kempe_model::{Diagnostic, Model, MotionStudy, Study, StudyKind};
 use kempe_units::Dimension;
 
 use crate::along::Along;
@@ -188,12 +188,13 @@ fn abscissa(motion: &Motion<'_>, parameters: &[f64]) -> usize {
         return 0;
     };
     let goes_one_way = model.drives.get(drive).is_some_and(|d| {
-        let ends = [0.0, d.law.duration(parameters)].map(|t: f64| d.law.at(t, parameters));
+        let breaks = d.law.breaks(parameters);
+        let at: Vec<f64> = breaks.iter().map(|t| d.law.at(*t, parameters)).collect();
+        let ends = [at.first(), at.last()].map(|end| end.copied().unwrap_or(f64::NAN));
         let (low, high) = d.law.extent(parameters);
-        let dwells = |p: &LawPiece| matches!(p, LawPiece::Dwell { .. });
-        let alone = d.law.pieces.len() == 1;
+        // Measured laws may turn between their ends.
         let covers = ends[0].min(ends[1]) <= low && ends[0].max(ends[1]) >= high;
-        covers && (alone || !d.law.pieces.iter().any(dwells))
+        covers && (at.is_sorted_by(|a, b| a < b) || at.is_sorted_by(|a, b| a > b))
     });
     if goes_one_way { 1 + drive } else { 0 }
 }

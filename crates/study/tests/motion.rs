@@ -533,3 +533,29 @@ fn one_drive_too_many_is_told_as_that() {
         "{said}"
     );
 }
+
+/// Rows run along the drive only where it goes one way: there and back, a drive's value is no place.
+#[test]
+fn rows_run_along_time_where_the_drive_comes_back() {
+    let along = |law: &str| {
+        let text = FOUR_BAR
+            .replace("from = 0, to = 360, speed = \"1 rad/s\"", law)
+            .replace("step = 1", "rows = 9");
+        ran(&text).along
+    };
+    let rise = |to: &str| format!("{{ rise = \"{to}\", in = \"1 s\" }}");
+    let pieces = |list: &[&str]| {
+        format!(
+            "law = [{}]",
+            list.iter()
+                .map(|to| rise(to))
+                .collect::<Vec<_>>()
+                .join(", ")
+        )
+    };
+    assert_eq!(along("from = 0, to = 360, speed = \"1 rad/s\""), 1);
+    assert_eq!(along(&pieces(&["40 deg", "30 deg"])), 1);
+    assert_eq!(along(&pieces(&["40 deg", "-40 deg"])), 0);
+    // It ends where it has never been, and was at most places twice.
+    assert_eq!(along(&pieces(&["40 deg", "-20 deg", "80 deg"])), 0);
+}
