@@ -9,7 +9,7 @@ use crate::mechanism::Mechanism;
 use crate::newton::PlanNumber;
 use crate::plan::{Plan, Step};
 use crate::state::{Branch, Design, State};
-use crate::trace::{Cubic, Follower, Node};
+use crate::trace::{Cubic, Follower, Node, hermite};
 use crate::watch::{Stage, Unwatched, Watch};
 
 /// Sizes of mechanisms, m, whose lengths can be squared and multiplied with room to spare.
@@ -538,13 +538,17 @@ impl<'m> Motion<'m> {
                 let measure = |follower: &mut Follower<'_, DrivePath>, node: &Node| {
                     self.determinants(follower, node)[step]
                 };
-                if let Some((s, at)) = locate_change_point(follower, node, next, measure) {
-                    let residual = follower.residual(&at.z);
-                    if !(residual <= MEETING) {
-                        return Err(Unlocated::Missed { z: at.z, residual });
-                    }
-                    found.push((s, at, step));
+                let located = locate_change_point(follower, node, next, measure);
+                // Where nothing is located the middle of the step stands for it: a sign does not change without a place.
+                let z = match &located {
+                    Some((_, at)) => at.z.clone(),
+                    None => hermite(node, next, 0.5),
+                };
+                let residual = follower.residual(&z);
+                if !(residual <= MEETING) {
+                    return Err(Unlocated::Missed { z, residual });
                 }
+                found.extend(located.map(|(s, at)| (s, at, step)));
             }
             found.sort_by(|a, b| a.0.total_cmp(&b.0));
             let mut current: Vec<f64> = here.iter().map(|d| d.signum()).collect();
