@@ -31,21 +31,15 @@ impl<T: Number> Damper<T> {
         let mut list = Vec::new();
         for damper in &mechanism.model.actions.dampers {
             let name = &damper.name;
-            let Some(ends) = Ends::new(mechanism, &damper.between) else {
-                problems.push(Problem::new(
-                    "damper-ends",
-                    &damper.span,
-                    format!("an end of the damper `{name}` is on no link"),
-                ));
+            let named = (
+                ["damper-ends", "damper-idle"],
+                format!("the damper `{name}`"),
+                &damper.span,
+            );
+            let Some(ends) = Ends::checked(mechanism, geometry, &damper.between, named, problems)
+            else {
                 continue;
             };
-            if ends.is_idle(geometry) {
-                problems.push(Problem::new(
-                    "damper-idle",
-                    &damper.span,
-                    format!("the damper `{name}` is between a point and itself, or between links that are one body"),
-                ));
-            }
             let parting = model::value(&damper.damping, parameters);
             let closing = (damper.closing.as_ref())
                 .map_or(parting, |scalar| model::value(scalar, parameters));

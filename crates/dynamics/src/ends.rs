@@ -2,10 +2,11 @@
 
 use kempe_kinematics::mechanism::Marker;
 use kempe_kinematics::{BodyId, Geometry, Mechanism};
-use kempe_model::{Between, LinkId};
+use kempe_model::{Between, LinkId, Span};
 use kempe_number::Number;
 
 use crate::instant::Instant;
+use crate::problem::Problem;
 use crate::vector::{dot, length, sub, times};
 use crate::wrench::{self, Wrench};
 
@@ -39,6 +40,28 @@ impl Ends {
             ]),
             Between::Links(a, b) => Self::Links([a, b].map(|link| (link, mechanism.body_of(link)))),
         })
+    }
+
+    /// Finds the ends of something with a name; tells (by the codes given) when one is on no link, or when they can never
+    /// part.
+    pub(crate) fn checked(
+        mechanism: &Mechanism,
+        geometry: &Geometry<f64>,
+        between: &Between,
+        ([lost, idle], name, span): ([&'static str; 2], String, &Span),
+        problems: &mut Vec<Problem>,
+    ) -> Option<Self> {
+        let Some(ends) = Self::new(mechanism, between) else {
+            let message = format!("an end of {name} is on no link");
+            problems.push(Problem::new(lost, span, message));
+            return None;
+        };
+        if ends.is_idle(geometry) {
+            let message =
+                format!("{name} is between a point and itself, or between links that are one body");
+            problems.push(Problem::new(idle, span, message));
+        }
+        Some(ends)
     }
 
     /// How far apart the ends are at an instant.

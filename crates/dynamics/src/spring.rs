@@ -128,21 +128,15 @@ impl<T: Number> Spring<T> {
         let mut list = Vec::new();
         for spring in &mechanism.model.actions.springs {
             let name = &spring.name;
-            let Some(ends) = Ends::new(mechanism, &spring.between) else {
-                problems.push(Problem::new(
-                    "spring-ends",
-                    &spring.span,
-                    format!("an end of the spring `{name}` is on no link"),
-                ));
+            let named = (
+                ["spring-ends", "spring-idle"],
+                format!("the spring `{name}`"),
+                &spring.span,
+            );
+            let Some(ends) = Ends::checked(mechanism, geometry, &spring.between, named, problems)
+            else {
                 continue;
             };
-            if ends.is_idle(geometry) {
-                problems.push(Problem::new(
-                    "spring-idle",
-                    &spring.span,
-                    format!("the spring `{name}` is between a point and itself, or between links that are one body"),
-                ));
-            }
             let law = SpringLaw::new(spring, parameters);
             if law.stiffness.value() < 0.0 || law.stop_stiffness.value() < 0.0 {
                 problems.push(Problem::new(
