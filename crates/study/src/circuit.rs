@@ -1,7 +1,6 @@
 //! Circuits: rows along the arc of everything that can be reached without taking the mechanism apart.
 
 use kempe_kinematics::circuit::Circuit;
-use kempe_kinematics::{Design, Mechanism, Plan};
 use kempe_model::{Diagnostic, Model, MotionStudy, Rows};
 use kempe_units::Unit;
 
@@ -9,6 +8,7 @@ use crate::along::Row;
 use crate::columns::{Asked, Quantity};
 use crate::explain::cannot_move;
 use crate::motion::{events, unprepared, unreached_warning};
+use crate::prepared::Prepared;
 use crate::progress::{Ear, Flow, Progress};
 use crate::result::{Event, StudyResult};
 use crate::sink::RowSink;
@@ -28,10 +28,12 @@ pub(crate) fn run_circuit(
     study: &MotionStudy,
     progress: &mut dyn Progress,
 ) -> Result<StudyResult, Vec<Diagnostic>> {
-    let mechanism = Mechanism::new(model);
-    let plan = Plan::new(&mechanism);
-    let parameters: Vec<f64> = model.parameter_values();
-    let design = Design::new(&mechanism, &plan, &parameters);
+    let Prepared {
+        mechanism,
+        plan,
+        parameters,
+        design,
+    } = Prepared::new(model);
     let circuit = Circuit::watched(&mechanism, &plan, &design, &parameters, &mut Ear(progress))
         .map_err(|error| vec![cannot_move(&mechanism, &plan, &design, &error)])?;
     let asked = Asked::of_motion(model, study);

@@ -10,6 +10,7 @@ use serde::Serialize;
 
 use crate::alternatives::hints;
 use crate::explain::{cannot_move, list};
+use crate::prepared::Prepared;
 use crate::progress::{Ear, Progress, Silent};
 use crate::unit::Units;
 
@@ -92,10 +93,12 @@ pub fn check(model: &Model) -> Report {
 /// As [`check`]; `progress` hears how far it has come (no rows). Stopped, it tells what it found until then, with the
 /// diagnostic `stopped`.
 pub fn check_watched(model: &Model, progress: &mut dyn Progress) -> Report {
-    let mechanism = Mechanism::new(model);
-    let plan = Plan::new(&mechanism);
-    let parameters: Vec<f64> = model.parameter_values();
-    let design = Design::new(&mechanism, &plan, &parameters);
+    let Prepared {
+        mechanism,
+        plan,
+        parameters,
+        design,
+    } = Prepared::new(model);
     let found = kempe_kinematics::check_watched(
         &mechanism,
         &plan,

@@ -45,6 +45,7 @@ mod force_columns;
 mod force_notes;
 mod motion;
 mod pose;
+mod prepared;
 mod progress;
 mod proof;
 mod report;

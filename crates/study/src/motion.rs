@@ -2,9 +2,7 @@
 
 use kempe_kinematics::drive_path::DrivePath;
 use kempe_kinematics::events::EventKind;
-use kempe_kinematics::{
-    Design, EndReason, Mechanism, Motion, Plan, Stage, Unmeasurable, Unprepared,
-};
+use kempe_kinematics::{EndReason, Motion, Stage, Unmeasurable, Unprepared};
 use kempe_model::{Diagnostic, Model, MotionStudy, Study, StudyKind};
 use kempe_units::Dimension;
 
@@ -12,9 +10,10 @@ use crate::along::Along;
 use crate::choice::{balance, spring};
 use crate::circuit::run_circuit;
 use crate::columns::{Asked, Quantity};
-use crate::explain::{beyond_limit, cannot_move, stopped};
+use crate::explain::{beyond_limit, stopped};
 use crate::force_columns::standard_plots;
 use crate::force_notes::{place, unbounded};
+use crate::prepared::Prepared;
 use crate::progress::{Ear, Flow, Progress};
 use crate::result::{Event, StudyResult};
 use crate::rows::places_along;
@@ -66,25 +65,21 @@ pub(crate) fn run_along(
     forces: bool,
     progress: &mut dyn Progress,
 ) -> Result<StudyResult, Vec<Diagnostic>> {
-    let mechanism = Mechanism::new(model);
-    let plan = Plan::new(&mechanism);
-    let parameters: Vec<f64> = model.parameter_values();
-    let design = Design::new(&mechanism, &plan, &parameters);
-    let motion = Motion::watched(&mechanism, &plan, &design, &parameters, &mut Ear(progress))
-        .map_err(|error| vec![cannot_move(&mechanism, &plan, &design, &error)])?;
+    let prepared = Prepared::new(model);
+    let motion = prepared.motion(progress)?;
     let mut warnings = range_warnings(&motion)?;
     let mut study = study.clone();
     if forces && study.plots.is_empty() {
-        study.plots = standard_plots(&mechanism);
+        study.plots = standard_plots(&prepared.mechanism);
     }
     let asked = if forces {
-        Asked::of_forces(&mechanism, &study)
+        Asked::of_forces(&prepared.mechanism, &study)
     } else {
         Asked::of_motion(model, &study)
     };
     let quantities: Vec<&Quantity> = asked.all().collect();
     let mut sampler = Along::watched(model, &motion, &quantities, forces, &mut Ear(progress))?;
-    let places = places_along(&motion, &study, &parameters);
+    let places = places_along(&motion, &study, &prepared.parameters);
     let units = Units::of(model);
     let mut rows = RowSink::new(
         name,
@@ -98,16 +93,16 @@ pub(crate) fn run_along(
     for (done, place) in places.iter().enumerate() {
         let row = sampler.row(*place);
         parameters_met.push(row.sample.parameter);
-        frames.push(rows.push(&mechanism, row.sample.time, row));
+        frames.push(rows.push(&prepared.mechanism, row.sample.time, row));
         if progress.tick(done + 1, places.len()) == Flow::Stop {
             break;
         }
     }
-    let along = abscissa(&motion, &parameters);
+    let along = abscissa(&motion, &prepared.parameters);
     if rows.table.unreached() > 0 {
         warnings.push(unreached_warning(name, &rows.table));
     }
-    warnings.extend(rows.force_warnings(&mechanism, along));
+    warnings.extend(rows.force_warnings(&prepared.mechanism, along));
     warnings.extend(without_value(&rows, along));
     let met = events(&motion, &units, &parameters_met);
     if forces {

@@ -1,12 +1,11 @@
 //! One pose at given coordinates of the drives, reached from the start without leaving the branch.
 
-use kempe_kinematics::{Design, Mechanism, Motion, Plan};
 use kempe_model::{Diagnostic, Law, LawPiece, Model, MotionStudy, RiseLaw, Rows};
 use kempe_units::{Dimension, Expr, Issue, Resolver, Span, check_as, nearest, parse};
 
 use crate::along::{Along, Row};
-use crate::explain::cannot_move;
 use crate::motion::run_motion;
+use crate::prepared::Prepared;
 use crate::progress::Silent;
 use crate::result::Frame;
 use crate::rows::RowPlace;
@@ -227,12 +226,8 @@ fn on_motion(
     forces: bool,
     label: &str,
 ) -> Result<Loaded, Vec<Diagnostic>> {
-    let mechanism = Mechanism::new(model);
-    let plan = Plan::new(&mechanism);
-    let parameters: Vec<f64> = model.parameter_values();
-    let design = Design::new(&mechanism, &plan, &parameters);
-    let motion = Motion::new(&mechanism, &plan, &design, &parameters)
-        .map_err(|error| vec![cannot_move(&mechanism, &plan, &design, &error)])?;
+    let prepared = Prepared::new(model);
+    let motion = prepared.motion(&mut Silent)?;
     let mut along = Along::new(model, &motion, &[], forces)?;
     let at = place(&along)?;
     let Row { sample, forces } = along.row(at);
@@ -246,9 +241,12 @@ fn on_motion(
         )]);
     }
     let (arrows, notes) = forces.map_or_else(Default::default, |f| (f.arrows, f.notes));
-    let warnings = notes
-        .iter()
-        .map(|n| Diagnostic::warning(n.code(), format!("{label}: {}", n.text(&mechanism))));
+    let warnings = notes.iter().map(|n| {
+        Diagnostic::warning(
+            n.code(),
+            format!("{label}: {}", n.text(&prepared.mechanism)),
+        )
+    });
     Ok(Loaded {
         frame: Frame {
             links: sample.links,

@@ -5,13 +5,13 @@ use std::ops::ControlFlow;
 
 use kempe_kinematics::drive_path::DrivePath;
 use kempe_kinematics::events::EventKind;
-use kempe_kinematics::{Design, Mechanism, Motion, Plan, Stage, Subdivision, certify_motion};
+use kempe_kinematics::{Stage, Subdivision, certify_motion};
 use kempe_model::{Diagnostic, Model};
 use kempe_units::Dimension;
 use serde::Serialize;
 
-use crate::explain::cannot_move;
-use crate::progress::{Ear, Flow, Progress};
+use crate::prepared::Prepared;
+use crate::progress::{Flow, Progress};
 use crate::unit::Units;
 
 /// What is proved of a motion by interval arithmetic.
@@ -51,12 +51,8 @@ pub struct Unproved {
 ///
 /// What keeps the motion from starting; see [`run`](crate::run).
 pub fn prove(model: &Model, progress: &mut dyn Progress) -> Result<Proof, Vec<Diagnostic>> {
-    let mechanism = Mechanism::new(model);
-    let plan = Plan::new(&mechanism);
-    let parameters: Vec<f64> = model.parameter_values();
-    let design = Design::new(&mechanism, &plan, &parameters);
-    let motion = Motion::watched(&mechanism, &plan, &design, &parameters, &mut Ear(progress))
-        .map_err(|error| vec![cannot_move(&mechanism, &plan, &design, &error)])?;
+    let prepared = Prepared::new(model);
+    let motion = prepared.motion(progress)?;
     let found = certify_motion(&motion, Subdivision::default(), |part| {
         match progress.stage(Stage::Proving, Some(part)) {
             Flow::Continue => ControlFlow::Continue(()),
@@ -86,7 +82,7 @@ pub fn prove(model: &Model, progress: &mut dyn Progress) -> Result<Proof, Vec<Di
         });
         Unproved {
             place: range(gap.from, gap.to),
-            reason: format!("{}{event}", gap.reason.describe(&mechanism)),
+            reason: format!("{}{event}", gap.reason.describe(&prepared.mechanism)),
             expected: gap.event.is_some(),
         }
     });

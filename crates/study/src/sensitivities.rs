@@ -2,15 +2,15 @@
 
 use std::fmt::Write as _;
 
+use kempe_kinematics::Held;
 use kempe_kinematics::drive_path::DrivePath;
-use kempe_kinematics::{Design, Held, Mechanism, Motion, Plan};
 use kempe_model::{Diagnostic, Model, ParameterId};
 use kempe_units::{Dimension, format_digits};
 use serde::Serialize;
 
-use crate::explain::cannot_move;
 use crate::pose::Setting;
-use crate::progress::{Ear, Progress};
+use crate::prepared::Prepared;
+use crate::progress::Progress;
 use crate::unit::Units;
 
 /// Digits that the text shows.
@@ -70,12 +70,8 @@ pub fn sensitivities(
         );
         return Err(vec![told.help("name what is asked for: [measures] swing = \"angle(rocker)\", [parameters] a = \"20 mm\"")]);
     }
-    let mechanism = Mechanism::new(model);
-    let plan = Plan::new(&mechanism);
-    let parameters: Vec<f64> = model.parameter_values();
-    let design = Design::new(&mechanism, &plan, &parameters);
-    let motion = Motion::watched(&mechanism, &plan, &design, &parameters, &mut Ear(progress))
-        .map_err(|error| vec![cannot_move(&mechanism, &plan, &design, &error)])?;
+    let prepared = Prepared::new(model);
+    let motion = prepared.motion(progress)?;
     let units = Units::of(model);
     let drive = match motion.path {
         DrivePath::Coordinate { drive, .. } => model.drives.get(drive),

@@ -9,7 +9,7 @@ mod spring;
 pub(crate) use balance::balance;
 pub(crate) use spring::spring;
 
-use kempe_kinematics::{Design, Mechanism, Motion, Plan, Stage};
+use kempe_kinematics::Stage;
 use kempe_model::{
     Actions, Column as Asked, Diagnostic, DriveId, DriveKind, ForceMeasure, Leaf, Measure, Model,
     MotionStudy,
@@ -18,7 +18,8 @@ use kempe_units::{Dimension, Expr};
 
 use crate::along::Along;
 use crate::columns::Quantity;
-use crate::explain::{cannot_move, stopped};
+use crate::explain::stopped;
+use crate::prepared::Prepared;
 use crate::progress::{Ear, Flow, Progress};
 use crate::result::{Figure, StudyResult};
 use crate::rows::{RowPlace, places_along};
@@ -71,15 +72,11 @@ fn values(
     quantities: &[Quantity],
     progress: &mut dyn Progress,
 ) -> Result<Vec<Vec<f64>>, Vec<Diagnostic>> {
-    let mechanism = Mechanism::new(model);
-    let plan = Plan::new(&mechanism);
-    let parameters: Vec<f64> = model.parameter_values();
-    let design = Design::new(&mechanism, &plan, &parameters);
-    let motion = Motion::watched(&mechanism, &plan, &design, &parameters, &mut Ear(progress))
-        .map_err(|error| vec![cannot_move(&mechanism, &plan, &design, &error)])?;
+    let prepared = Prepared::new(model);
+    let motion = prepared.motion(progress)?;
     let asked: Vec<&Quantity> = quantities.iter().collect();
     let mut along = Along::watched(model, &motion, &asked, true, &mut Ear(progress))?;
-    let places: Vec<RowPlace> = places_along(&motion, study, &parameters);
+    let places: Vec<RowPlace> = places_along(&motion, study, &prepared.parameters);
     let mut lists = vec![Vec::with_capacity(places.len()); quantities.len()];
     let count = places.len() as f64;
     for (done, place) in places.into_iter().enumerate() {

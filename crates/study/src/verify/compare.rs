@@ -1,7 +1,7 @@
 //! Running validation cases.
 
+use kempe_kinematics::Motion;
 use kempe_kinematics::events::EventKind;
-use kempe_kinematics::{Design, Mechanism, Motion, Plan};
 use kempe_model::{Diagnostic, Model, NamedMeasure};
 use kempe_units::{Dimension, Unit};
 use serde::Serialize;
@@ -9,9 +9,10 @@ use serde::Serialize;
 use super::case::{Case, Expected, Target};
 use crate::along::{Along, Row};
 use crate::columns::Quantity;
-use crate::explain::cannot_move;
 use crate::findings::check;
 use crate::pose::Setting;
+use crate::prepared::Prepared;
+use crate::progress::Silent;
 use crate::rows::RowPlace;
 
 /// Ours and the reference, side by side.
@@ -69,12 +70,8 @@ pub fn compare(
         }
     }
     let model = Model::from_toml_with(text, &case.title, files, &case.set)?.model;
-    let mechanism = Mechanism::new(&model);
-    let plan = Plan::new(&mechanism);
-    let parameters: Vec<f64> = model.parameter_values();
-    let design = Design::new(&mechanism, &plan, &parameters);
-    let motion = Motion::new(&mechanism, &plan, &design, &parameters)
-        .map_err(|error| vec![cannot_move(&mechanism, &plan, &design, &error)])?;
+    let prepared = Prepared::new(&model);
+    let motion = prepared.motion(&mut Silent)?;
     let named: Vec<NamedMeasure> = (measures.iter())
         .map(|text| model.measure(text))
         .collect::<Result<_, _>>()?;
