@@ -14,7 +14,7 @@ use crate::motion::{EndReason, FAR, Motion, MotionError, Unlocated, with_care};
 use crate::plan::Plan;
 use crate::sampler::{Sample, Sampler, Unprepared};
 use crate::state::Design;
-use crate::trace::{Follower, Node, Path, hermite};
+use crate::trace::{Cubic, Follower, Node, Path, distance, hermite, interval};
 use crate::watch::{Stage, Unwatched, Watch};
 
 /// Steps after which a circuit that has not closed is given up.
@@ -51,7 +51,8 @@ impl Stretch<'_> {
     /// Arc length between the nodes `index - 1` and `index` where the path parameter is `p`.
     fn arc_where(&self, index: usize, p: f64, scale: f64) -> f64 {
         let (from, to) = (&self.nodes[index - 1], &self.nodes[index]);
-        let at = |s: f64| hermite(from, to, s).last().map_or(f64::NAN, |z| z * scale);
+        let (cubic, last) = (Cubic::new(from, to), from.z.len() - 1);
+        let at = |s: f64| cubic.at(s).part(last) * scale;
         let rising = at(1.0) > at(0.0);
         let (mut low, mut high) = (0.0, 1.0);
         for _ in 0..52 {
@@ -212,17 +213,14 @@ impl<'m> Circuit<'m> {
         let Some(stretch) = self.stretches.get(index) else {
             return (0, f64::NAN);
         };
-        let node = stretch
-            .arcs
-            .partition_point(|s| *s <= arc)
-            .clamp(1, stretch.arcs.len().max(2) - 1)
-            - 1;
+        let node = interval(&stretch.arcs, arc);
         let (Some(from), Some(to)) = (stretch.nodes.get(node), stretch.nodes.get(node + 1)) else {
             return (index, f64::NAN);
         };
         let (a, b) = (stretch.arcs[node], stretch.arcs[node + 1]);
-        let z = hermite(from, to, ((arc - a) / (b - a)).clamp(0.0, 1.0));
-        (index, z[z.len() - 1] * self.scale)
+        let cubic = Cubic::new(from, to);
+        let place = cubic.at(((arc - a) / (b - a)).clamp(0.0, 1.0));
+        (index, place.part(from.z.len() - 1) * self.scale)
     }
 
     /// Arc lengths, rising, at the start, at every multiple of `step` (SI) of the path parameter from there on as it runs
@@ -303,13 +301,7 @@ fn push_stretch<'m>(
 ) -> Result<(), Unlocated> {
     let mut arcs = vec![*arc];
     for pair in nodes.windows(2) {
-        *arc += pair[0]
-            .z
-            .iter()
-            .zip(&pair[1].z)
-            .map(|(a, b)| (b - a) * (b - a))
-            .sum::<f64>()
-            .sqrt();
+        *arc += distance(&pair[0].z, &pair[1].z);
         arcs.push(*arc);
     }
     let last = nodes[0].z.len() - 1;
@@ -375,13 +367,6 @@ pub(crate) fn go_round(
             })
             .collect()
     };
-    let gap = |a: &[f64], b: &[f64]| {
-        a.iter()
-            .zip(b)
-            .map(|(x, y)| (x - y) * (x - y))
-            .sum::<f64>()
-            .sqrt()
-    };
     let mut nodes = vec![start.clone()];
     let mut step = 0.02;
     let mut travelled = 0.0;
@@ -391,7 +376,7 @@ pub(crate) fn go_round(
         let Some(next) = follower.advance(&from, &mut step) else {
             return Some((nodes, false));
         };
-        let h = gap(&from.z, &next.z);
+        let h = distance(&from.z, &next.z);
         travelled += h;
         // Back at the start when it lies between the two nodes and the travel is the same way.
         let home = image(&next.z);
@@ -406,7 +391,7 @@ pub(crate) fn go_round(
             .map(|(a, b)| a * b)
             .sum();
         let reached = travelled > 2.0 * h && (0.0..=1.05 * h).contains(&ahead) && same_way > 0.9;
-        if reached && gap(&hermite_home(&from, &next, &home, h), &home) < 0.02 * h.max(1e-6) {
+        if reached && distance(&hermite_home(&from, &next, &home, h), &home) < 0.02 * h.max(1e-6) {
             nodes.push(Node {
                 z: home,
                 tangent: start.tangent.clone(),

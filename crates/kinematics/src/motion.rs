@@ -9,7 +9,7 @@ use crate::mechanism::Mechanism;
 use crate::newton::PlanNumber;
 use crate::plan::{Plan, Step};
 use crate::state::{Branch, Design, State};
-use crate::trace::{Cubic, Follower, Node, hermite};
+use crate::trace::{Cubic, Follower, Node, hermite, interval};
 use crate::watch::{Stage, Unwatched, Watch};
 
 /// Sizes of mechanisms, m, whose lengths can be squared and multiplied with room to spare.
@@ -406,11 +406,7 @@ impl<'m> Motion<'m> {
 
     /// Fills the branch for a path parameter: modes, guesses and turn counts.
     pub fn branch_at(&self, p: f64, branch: &mut Branch) {
-        let node = self
-            .parameters
-            .partition_point(|&q| q <= p)
-            .clamp(1, self.nodes.len().max(2) - 1)
-            - 1;
+        let node = interval(&self.parameters, p);
         let patch = self
             .patches
             .partition_point(|patch| patch.from <= node)
@@ -425,33 +421,19 @@ impl<'m> Motion<'m> {
         // Where on the cubic the path parameter is p: it is monotonic between nodes.
         let wanted = p / self.scale;
         let last = from.z.len() - 1;
-        let h = from
-            .z
-            .iter()
-            .zip(&to.z)
-            .map(|(a, b)| (b - a) * (b - a))
-            .sum::<f64>()
-            .sqrt();
-        let parameter = |s: f64| {
-            let (a, b) = (
-                (1.0 + 2.0 * s) * (1.0 - s) * (1.0 - s),
-                s * s * (3.0 - 2.0 * s),
-            );
-            let (c, d) = (s * (1.0 - s) * (1.0 - s) * h, s * s * (s - 1.0) * h);
-            a * from.z[last] + b * to.z[last] + c * from.tangent[last] + d * to.tangent[last]
-        };
+        let cubic = Cubic::new(from, to);
         let (mut low, mut high) = (0.0, 1.0);
         for _ in 0..30 {
             let middle = 0.5 * (low + high);
-            if parameter(middle) <= wanted {
+            if cubic.at(middle).part(last) <= wanted {
                 low = middle
             } else {
                 high = middle
             }
         }
-        let cubic = Cubic::new(from, to, 0.5 * (low + high));
+        let place = cubic.at(0.5 * (low + high));
         for body in 1..self.mechanism.bodies {
-            let [x, y, angle] = [0, 1, 2].map(|k| cubic.part(3 * (body - 1) + k));
+            let [x, y, angle] = [0, 1, 2].map(|k| place.part(3 * (body - 1) + k));
             branch.guess[body] = crate::pose::Pose::from_angle(x * self.size, y * self.size, angle);
             branch.near[body] = angle;
         }

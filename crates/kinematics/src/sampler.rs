@@ -15,6 +15,7 @@ use crate::motion::{EndReason, Motion, Solver};
 use crate::pose::Pose;
 use crate::state::Design;
 use crate::swept::Swept;
+use crate::trace::interval;
 use crate::watch::{Unwatched, Watch};
 
 /// A closure residual (in mechanism sizes) above which a row is marked.
@@ -520,10 +521,7 @@ impl<'a, F: ForceSource> Sampler<'a, F> {
     /// Unwrapped directions near a path parameter.
     pub(crate) fn directions_near(&self, p: f64) -> Vec<((PointId, PointId), f64)> {
         let parameters = self.motion.node_parameters();
-        let node = parameters
-            .partition_point(|&q| q <= p)
-            .clamp(1, parameters.len().max(2) - 1)
-            - 1;
+        let node = interval(parameters, p);
         (self.directions.iter())
             .map(|(pair, values)| {
                 let near = match (parameters.get(node), parameters.get(node + 1)) {

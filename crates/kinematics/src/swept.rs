@@ -4,6 +4,7 @@ use kempe_model::PointId;
 use kempe_number::{Jet, Number};
 
 use crate::motion::Motion;
+use crate::trace::interval;
 use crate::watch::{Stage, Watch};
 
 /// Gauss-Legendre points and weights on [-1, 1] (8 points).
@@ -75,10 +76,7 @@ impl Swept {
     /// Length from the trace's first node to a path parameter.
     fn until(&self, motion: &Motion<'_>, p: f64) -> f64 {
         let nodes = motion.node_parameters();
-        let node = nodes
-            .partition_point(|&q| q <= p)
-            .clamp(1, nodes.len().max(2) - 1)
-            - 1;
+        let node = interval(nodes, p);
         match nodes.get(node) {
             Some(&from) => self.cumulated[node] + self.stretch(motion, node, from, p),
             None => 0.0,

@@ -11,6 +11,11 @@ use crate::mechanism::{Constraint, Mechanism};
 use crate::plan::Plan;
 use crate::pose::Pose;
 
+mod cubic;
+
+pub(crate) use cubic::{Cubic, distance, interval};
+pub use cubic::{chord, hermite};
+
 /// How far the corrected middle of a step may lie from the cubic through its ends, as a part of the step.
 pub const MIDDLE_TOLERANCE: f64 = 1e-3;
 /// Smallest cosine between the tangents at the ends of a step.
@@ -386,14 +391,7 @@ fn apart(a: &[f64], b: &[f64]) -> f64 {
 fn hides_limits(from: &Node, to: &Node) -> bool {
     let last = from.z.len() - 1;
     let (a, b) = (from.parameter_rate(), to.parameter_rate());
-    let h = norm(
-        &from
-            .z
-            .iter()
-            .zip(&to.z)
-            .map(|(x, y)| y - x)
-            .collect::<Vec<_>>(),
-    );
+    let h = distance(&from.z, &to.z);
     let mean = (to.z[last] - from.z[last]) / h;
     a * b > 0.0 && (mean * a <= 0.0 || a.abs().max(b.abs()) > 3.0 * mean.abs())
 }
@@ -404,53 +402,6 @@ pub(crate) fn is_length(constraint: &Constraint) -> bool {
         constraint,
         Constraint::Direction { .. } | Constraint::Gears { .. }
     )
-}
-
-/// The cubic through two nodes with their tangents, at one place.
-pub(crate) struct Cubic<'a> {
-    from: &'a Node,
-    to: &'a Node,
-    weights: [f64; 4],
-}
-
-impl<'a> Cubic<'a> {
-    /// The cubic from one node to another at a part `s` of the step.
-    pub fn new(from: &'a Node, to: &'a Node, s: f64) -> Self {
-        let h = from
-            .z
-            .iter()
-            .zip(&to.z)
-            .map(|(a, b)| (b - a) * (b - a))
-            .sum::<f64>()
-            .sqrt();
-        let weights = [
-            (1.0 + 2.0 * s) * (1.0 - s) * (1.0 - s),
-            s * s * (3.0 - 2.0 * s),
-            s * (1.0 - s) * (1.0 - s) * h,
-            s * s * (s - 1.0) * h,
-        ];
-        Self { from, to, weights }
-    }
-
-    /// The `i`-th unknown there.
-    pub fn part(&self, i: usize) -> f64 {
-        let ([a, b, c, d], from, to) = (self.weights, self.from, self.to);
-        a * from.z[i] + b * to.z[i] + c * from.tangent[i] + d * to.tangent[i]
-    }
-}
-
-/// The cubic through two nodes with their tangents, at a part `s` of the step.
-pub fn hermite(from: &Node, to: &Node, s: f64) -> Vec<f64> {
-    let cubic = Cubic::new(from, to, s);
-    (0..from.z.len()).map(|i| cubic.part(i)).collect()
-}
-
-/// Unit vector from one node to the next.
-pub fn chord(from: &Node, to: &Node) -> Vec<f64> {
-    let mut v: Vec<f64> = from.z.iter().zip(&to.z).map(|(a, b)| b - a).collect();
-    let length = norm(&v);
-    v.iter_mut().for_each(|x| *x /= length);
-    v
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
