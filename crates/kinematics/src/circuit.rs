@@ -10,7 +10,7 @@ use crate::drive_path::DrivePath;
 use crate::events::locate_limit;
 use crate::force_source::NoForces;
 use crate::mechanism::Mechanism;
-use crate::motion::{EndReason, FAR, Motion, MotionError, Unlocated, with_care};
+use crate::motion::{EndReason, Motion, MotionError, Unlocated, runs_away, with_care};
 use crate::plan::Plan;
 use crate::sampler::{Sample, Sampler, Unprepared};
 use crate::state::Design;
@@ -402,9 +402,7 @@ pub(crate) fn go_round(
             nodes.push(locate_limit(follower, &from, &next));
         }
         let over = matches!(path, DrivePath::Time { .. }) && follower.parameter(&next.z) > end;
-        let away = (next.z[..last].chunks_exact(3))
-            .zip(start.z.chunks_exact(3))
-            .any(|(p, q)| (p[0] - q[0]).abs() > FAR || (p[1] - q[1]).abs() > FAR);
+        let away = runs_away(&next.z, &start.z, false);
         nodes.push(next);
         if over || away {
             break;

@@ -180,14 +180,7 @@ impl<'a, P: Path> Follower<'a, P> {
 
     /// Poses and unwrapped angles of scaled unknowns.
     pub fn unscaled(&self, z: &[f64], poses: &mut [Pose<f64>], near: &mut [f64]) {
-        for (body, part) in z
-            .chunks_exact(3)
-            .enumerate()
-            .take(self.mechanism.bodies - 1)
-        {
-            poses[body + 1] = Pose::from_angle(part[0] * self.size, part[1] * self.size, part[2]);
-            near[body + 1] = part[2];
-        }
+        unscale(z, self.size, poses, near);
     }
 
     /// Fills and factors the Jacobian and residuals at a point.
@@ -368,6 +361,14 @@ impl<'a, P: Path> Follower<'a, P> {
             }
         }
         None
+    }
+}
+
+/// Poses and unwrapped angles of scaled unknowns, for a mechanism of a size, m.
+pub(crate) fn unscale(z: &[f64], size: f64, poses: &mut [Pose<f64>], near: &mut [f64]) {
+    for (body, part) in z.chunks_exact(3).enumerate() {
+        poses[body + 1] = Pose::from_angle(part[0] * size, part[1] * size, part[2]);
+        near[body + 1] = part[2];
     }
 }
 

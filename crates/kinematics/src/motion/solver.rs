@@ -1,0 +1,44 @@
+//! Poses anywhere on a motion: every row is solved by itself.
+
+use super::Motion;
+use crate::newton::PlanNumber;
+use crate::state::{Branch, Design, State};
+
+/// Storage for solving poses of a motion, reused from row to row.
+#[derive(Clone, Debug)]
+pub struct Solver<T> {
+    /// The branch last used.
+    pub branch: Branch,
+    /// The state last solved.
+    pub state: State<T>,
+    /// Drive coordinates last used.
+    pub coordinates: Vec<T>,
+}
+
+impl<T: PlanNumber> Solver<T> {
+    /// Solves with the branch and coordinates set.
+    pub fn run(&mut self, motion: &Motion<'_>, design: &Design<T>) {
+        self.state.set_inputs(motion.mechanism, &self.coordinates);
+        motion
+            .plan
+            .solve(motion.mechanism, design, &self.branch, &mut self.state);
+    }
+}
+
+impl Motion<'_> {
+    /// Storage for solving poses of this motion on the number `T`.
+    pub fn solver<T: PlanNumber>(&self) -> Solver<T> {
+        Solver {
+            branch: Branch::neutral(self.mechanism, self.plan),
+            state: State::new(self.mechanism, self.plan),
+            coordinates: vec![T::zero(); self.mechanism.model.drives.len()],
+        }
+    }
+
+    /// Solves the pose at a path parameter. The series' direction, if `T` has one, is the path's.
+    pub fn solve<T: PlanNumber>(&self, design: &Design<T>, p: T, solver: &mut Solver<T>) {
+        self.branch_at(p.value(), &mut solver.branch);
+        self.path.coordinates(p, &mut solver.coordinates);
+        solver.run(self, design);
+    }
+}
