@@ -26,7 +26,6 @@ pub mod mechanism;
 pub mod mobility;
 pub mod motion;
 mod newton;
-mod open_loop;
 pub mod plan;
 mod pose;
 mod qr;

@@ -12,6 +12,16 @@ mod modes;
 mod solver;
 mod start;
 
+pub use self::care::MEETING;
+pub(crate) use self::care::{Unlocated, with_care};
+pub use self::error::MotionError;
+pub(crate) use self::follow::runs_away;
+pub use self::follow::{EndReason, FAR, STEP_LIMIT, WHIRLING};
+pub use self::modes::CROSSING;
+pub use self::solver::Solver;
+pub use self::start::SIZES;
+
+use self::branch::Patch;
 use crate::assemble::Assemblies;
 use crate::drive_path::DrivePath;
 use crate::events::{Event, EventKind};
@@ -21,15 +31,6 @@ use crate::pose::Pose;
 use crate::state::Design;
 use crate::trace::{Node, Path, unscale};
 use crate::watch::{Unwatched, Watch};
-
-pub use care::MEETING;
-pub(crate) use care::{Unlocated, with_care};
-pub use error::MotionError;
-pub(crate) use follow::runs_away;
-pub use follow::{EndReason, FAR, STEP_LIMIT, WHIRLING};
-pub use modes::CROSSING;
-pub use solver::Solver;
-pub use start::SIZES;
 
 /// A motion may end this close to a limit (in path scales) and still count as reaching it.
 pub const AT_LIMIT: f64 = 1e-12;
@@ -72,7 +73,7 @@ pub struct Motion<'m> {
     pub events: Vec<Event>,
     nodes: Vec<Node>,
     parameters: Vec<f64>,
-    patches: Vec<branch::Patch>,
+    patches: Vec<Patch>,
     scale: f64,
     size: f64,
 }

@@ -4,17 +4,17 @@
 //! depend on them either. Every step is accepted only if the cubic through its ends, with their tangents, agrees with a
 //! corrected point in the middle: a jump to another branch would show there.
 
+mod cubic;
+
+pub(crate) use self::cubic::{Cubic, distance, interval};
+pub use self::cubic::{chord, hermite};
+
 use crate::bordered::Bordered;
 use crate::constraint::{Input, Situation};
 use crate::geometry::Geometry;
 use crate::mechanism::{Constraint, Mechanism};
 use crate::plan::Plan;
 use crate::pose::Pose;
-
-mod cubic;
-
-pub(crate) use cubic::{Cubic, distance, interval};
-pub use cubic::{chord, hermite};
 
 /// How far the corrected middle of a step may lie from the cubic through its ends, as a part of the step.
 pub const MIDDLE_TOLERANCE: f64 = 1e-3;

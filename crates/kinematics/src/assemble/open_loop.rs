@@ -20,7 +20,7 @@ use crate::mechanism::{Mechanism, Source};
 use crate::plan::Plan;
 use crate::pose::Pose;
 use crate::state::Design;
-use crate::trace::{Follower, Node, hermite};
+use crate::trace::{Cubic, Follower, Node, hermite};
 use crate::watch::{Stage, Watch};
 
 /// Angles of the gear at which the curves are cut.
@@ -216,16 +216,17 @@ fn passes(curve: &[Node], z: &[f64]) -> bool {
         if a * b > 0.0 || (a - b).abs() > 1.0 {
             return false;
         }
+        let cubic = Cubic::new(from, to);
         let (mut low, mut high) = (0.0, 1.0);
         for _ in 0..40 {
             let middle = 0.5 * (low + high);
-            if gap(hermite(from, to, middle)[last], z[last], last) * a > 0.0 {
+            if gap(cubic.at(middle).part(last), z[last], last) * a > 0.0 {
                 low = middle;
             } else {
                 high = middle;
             }
         }
-        let there = hermite(from, to, 0.5 * (low + high));
-        (there.iter().zip(z).enumerate()).all(|(i, (a, b))| gap(*a, *b, i).abs() <= SAME_CURVE)
+        let there = cubic.at(0.5 * (low + high));
+        (z.iter().enumerate()).all(|(i, z)| gap(there.part(i), *z, i).abs() <= SAME_CURVE)
     })
 }
