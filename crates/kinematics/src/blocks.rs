@@ -60,6 +60,33 @@ pub struct Row {
     pub row: usize,
 }
 
+/// A constraint's index with the places of its two rows among those asked for.
+pub(crate) type ConstraintRows = (usize, [Option<usize>; 2]);
+
+/// Calls `f` for every constraint that has one of the rows, with the places of its rows among them.
+pub(crate) fn for_each_constraint(rows: &[Row], mut f: impl FnMut(usize, [Option<usize>; 2])) {
+    for (place, &Row { constraint, row }) in rows.iter().enumerate() {
+        if rows[..place].iter().any(|r| r.constraint == constraint) {
+            continue;
+        }
+        let mut at = [None; 2];
+        at[row] = Some(place);
+        for (later, r) in rows.iter().enumerate().skip(place + 1) {
+            if r.constraint == constraint {
+                at[r.row] = Some(later);
+            }
+        }
+        f(constraint, at);
+    }
+}
+
+/// Rows by constraint, in the order of the constraints' first rows.
+pub(crate) fn by_constraint(rows: &[Row]) -> Vec<ConstraintRows> {
+    let mut list = Vec::new();
+    for_each_constraint(rows, |constraint, at| list.push((constraint, at)));
+    list
+}
+
 /// A smallest set of unknowns that is solved at once.
 #[derive(Clone, Debug)]
 pub struct Block {

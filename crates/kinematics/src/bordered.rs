@@ -4,7 +4,7 @@
 //! proportion to the mechanism. One block may be singular without harm, the one where a limit or a crossing of
 //! branches lies: its unknowns and the path parameter are kept together and solved last, with the border row.
 
-use crate::blocks::{Row, Unknown};
+use crate::blocks::{ConstraintRows, Row, Unknown, by_constraint};
 use crate::constraint::Situation;
 use crate::mechanism::{BodyId, Mechanism};
 use crate::plan::Plan;
@@ -24,7 +24,7 @@ struct Block {
     /// How many rows; more than columns in an overconstrained block.
     rows: usize,
     /// The constraints with the places of their rows in the block.
-    constraints: Vec<(usize, [Option<usize>; 2])>,
+    constraints: Vec<ConstraintRows>,
     /// Idle angles held here: (column, row).
     held: Option<(usize, usize)>,
 }
@@ -83,24 +83,13 @@ impl Layout {
                 }
                 size += unknown.size();
             }
-            let mut constraints: Vec<(usize, [Option<usize>; 2])> = Vec::new();
-            for (place, row) in rows.iter().enumerate() {
-                match constraints.iter_mut().find(|(c, _)| *c == row.constraint) {
-                    Some((_, at)) => at[row.row] = Some(place),
-                    None => {
-                        let mut at = [None; 2];
-                        at[row.row] = Some(place);
-                        constraints.push((row.constraint, at));
-                    }
-                }
-            }
             let height = rows.len() + usize::from(idle.is_some());
             let held = idle.map(|column| (column, rows.len()));
             it.blocks.push(Block {
                 first: it.rows,
                 size,
                 rows: height.max(size),
-                constraints,
+                constraints: by_constraint(&rows),
                 held,
             });
             it.rows += height.max(size);

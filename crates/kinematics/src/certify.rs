@@ -285,7 +285,7 @@ impl<'a> Certifier<'a> {
                 size,
             };
             self.system
-                .enclose(&given, &mut middle, false, &mut self.wide.state.poses)?;
+                .enclose(&given, &mut middle, &mut self.wide.state.poses)?;
             if same(&before, &middle, size) {
                 Ok(())
             } else {
@@ -578,7 +578,7 @@ impl<'a> Certifier<'a> {
                 size,
             };
             let poses = &mut self.wide.state.poses;
-            let (_, image, _) = self.system.enclose(&given, &mut middle, false, poses)?;
+            let (image, _) = self.system.enclose(&given, &mut middle, poses)?;
             Ok([before, after]
                 .iter()
                 .all(|tube| self.system.is_in_tube(tube, p, &middle, &image)))

@@ -37,6 +37,16 @@ impl<T: Number> Input<T> {
             s: T::zero(),
         }
     }
+
+    /// The plain values.
+    #[inline]
+    pub(crate) fn plain(&self) -> Input<f64> {
+        Input {
+            value: self.value.value(),
+            c: self.c.value(),
+            s: self.s.value(),
+        }
+    }
 }
 
 /// Everything a residual needs: dimensions, drives, poses and the turn count of every body.

@@ -2,7 +2,7 @@
 
 use kempe_number::{Dual, Jet, Lanes, Number};
 
-use crate::blocks::{Row, Unknown};
+use crate::blocks::{Unknown, for_each_constraint};
 use crate::constraint::Situation;
 use crate::geometry::Geometry;
 use crate::mechanism::Mechanism;
@@ -132,26 +132,14 @@ fn lane_by_lane<T: Laned<W>, const W: usize>(
 ) -> T {
     let mut determinant = T::from_f64(f64::NAN);
     for lane in 0..W {
-        let plain = lane_newton(
-            block,
-            mechanism,
-            design,
-            branch,
-            state,
-            |x| x.plain(lane),
-            lane,
-        );
-        determinant = determinant.with_plain(lane, plain);
-        let State {
-            inputs,
-            poses,
-            scratch,
-            ..
-        } = state;
+        let part = |x: T| x.plain(lane);
+        let plain = &design.plain[lane.min(design.plain.len() - 1)];
+        let found = plain_part(block, mechanism, plain, branch, state, part);
+        determinant = determinant.with_plain(lane, found);
         let put = |to: &mut T, from: f64| *to = to.with_plain(lane, from);
         for unknown in &block.unknowns {
             let body = unknown.body().index();
-            let (wide, plain) = (&mut poses[body], &scratch.poses[body]);
+            let (wide, plain) = (&mut state.poses[body], &state.scratch.poses[body]);
             match unknown {
                 Unknown::Angle(_) => {
                     put(&mut wide.c, plain.c);
@@ -163,33 +151,44 @@ fn lane_by_lane<T: Laned<W>, const W: usize>(
                 }
             }
         }
-        // As in `carry_over`, with this lane's Jacobian; the other lanes stay where they are.
-        let rhs = &mut scratch.wide_rhs[..block.rows.len()];
-        for _ in 0..passes {
-            let situation = Situation {
-                geometry: &design.geometry,
-                inputs,
-                poses,
-                near: &branch.near,
-            };
-            fill_residuals(block, mechanism, &situation, rhs);
-            rhs.iter_mut().for_each(|row| *row = row.only(lane));
-            scratch.qr.solve(rhs);
-            apply_step(block, poses, &rhs[..block.size]);
-        }
+        // With this lane's Jacobian; the other lanes stay where they are.
+        let only = |row: T| row.only(lane);
+        sharpen(block, mechanism, design, branch, state, passes, only);
     }
     determinant
 }
 
-/// Solves one lane, whose plain value `part` takes out, into the plain poses of the scratch; returns the determinant.
-fn lane_newton<T: Number>(
+/// Solves on plain numbers, then makes the higher parts exact.
+fn carry_over<T: PlanNumber>(
     block: &NewtonBlock,
     mechanism: &Mechanism,
     design: &Design<T>,
     branch: &Branch,
     state: &mut State<T>,
+    passes: usize,
+) -> T {
+    let plain = &design.plain[0];
+    let determinant = plain_part(block, mechanism, plain, branch, state, T::value);
+    for unknown in &block.unknowns {
+        let body = unknown.body().index();
+        let (rich, plain) = (&mut state.poses[body], &state.scratch.poses[body]);
+        match unknown {
+            Unknown::Angle(_) => (rich.c, rich.s) = (T::from_f64(plain.c), T::from_f64(plain.s)),
+            Unknown::Place(_) => (rich.x, rich.y) = (T::from_f64(plain.x), T::from_f64(plain.y)),
+        }
+    }
+    sharpen(block, mechanism, design, branch, state, passes, |row| row);
+    T::from_f64(determinant)
+}
+
+/// Solves on the plain numbers that `part` takes out, into the plain poses of the scratch; returns the determinant.
+fn plain_part<T: Number>(
+    block: &NewtonBlock,
+    mechanism: &Mechanism,
+    geometry: &Geometry<f64>,
+    branch: &Branch,
+    state: &mut State<T>,
     part: impl Fn(T) -> f64,
-    lane: usize,
 ) -> f64 {
     let State {
         inputs,
@@ -197,28 +196,60 @@ fn lane_newton<T: Number>(
         scratch,
         ..
     } = state;
-    for (plain, wide) in scratch.poses.iter_mut().zip(poses.iter()) {
+    for (plain, rich) in scratch.poses.iter_mut().zip(poses.iter()) {
         *plain = Pose {
-            x: part(wide.x),
-            y: part(wide.y),
-            c: part(wide.c),
-            s: part(wide.s),
+            x: part(rich.x),
+            y: part(rich.y),
+            c: part(rich.c),
+            s: part(rich.s),
         };
     }
-    for (plain, wide) in scratch.inputs.iter_mut().zip(inputs.iter()) {
-        (plain.value, plain.c, plain.s) = (part(wide.value), part(wide.c), part(wide.s));
+    for (plain, rich) in scratch.inputs.iter_mut().zip(inputs.iter()) {
+        (plain.value, plain.c, plain.s) = (part(rich.value), part(rich.c), part(rich.s));
     }
     start(block, branch, &mut scratch.poses);
     plain_newton(
         block,
         mechanism,
-        &design.plain[lane.min(design.plain.len() - 1)],
+        geometry,
         &scratch.inputs,
         branch,
         &mut scratch.poses,
         &mut scratch.qr,
         &mut scratch.rhs,
     )
+}
+
+/// Makes higher parts exact: with the inverse of the plain Jacobian last factored every pass of the simplified Newton
+/// iteration x <- x - J0^-1 F(x) corrects one more order of a nilpotent number. `take` is what counts of a row.
+fn sharpen<T: Number>(
+    block: &NewtonBlock,
+    mechanism: &Mechanism,
+    design: &Design<T>,
+    branch: &Branch,
+    state: &mut State<T>,
+    passes: usize,
+    take: impl Fn(T) -> T,
+) {
+    let State {
+        inputs,
+        poses,
+        scratch,
+        ..
+    } = state;
+    let rhs = &mut scratch.wide_rhs[..block.rows.len()];
+    for _ in 0..passes {
+        let situation = Situation {
+            geometry: &design.geometry,
+            inputs,
+            poses,
+            near: &branch.near,
+        };
+        fill_residuals(block, mechanism, &situation, rhs);
+        rhs.iter_mut().for_each(|row| *row = take(*row));
+        scratch.qr.solve(rhs);
+        apply_step(block, poses, &rhs[..block.size]);
+    }
 }
 
 fn start(block: &NewtonBlock, branch: &Branch, poses: &mut [Pose<f64>]) {
@@ -240,7 +271,7 @@ pub(crate) fn factor_block(
     qr: &mut Qr,
 ) {
     qr.reset(block.rows.len(), block.size);
-    for_each_constraint(block, |constraint, at| {
+    for_each_constraint(&block.rows, |constraint, at| {
         situation.gradients(&mechanism.constraints[constraint].0, |gradient| {
             let Some(row) = at[gradient.row] else { return };
             for (unknown, &column) in block.unknowns.iter().zip(&block.columns) {
@@ -260,33 +291,13 @@ pub(crate) fn factor_block(
     qr.factor();
 }
 
-/// Calls `f` for every constraint of the block with the places of its rows in the block.
-fn for_each_constraint(block: &NewtonBlock, mut f: impl FnMut(usize, [Option<usize>; 2])) {
-    for (place, &Row { constraint, row }) in block.rows.iter().enumerate() {
-        if block.rows[..place]
-            .iter()
-            .any(|r| r.constraint == constraint)
-        {
-            continue;
-        }
-        let mut at = [None; 2];
-        at[row] = Some(place);
-        for (later, r) in block.rows.iter().enumerate().skip(place + 1) {
-            if r.constraint == constraint {
-                at[r.row] = Some(later);
-            }
-        }
-        f(constraint, at);
-    }
-}
-
 fn fill_residuals<T: Number>(
     block: &NewtonBlock,
     mechanism: &Mechanism,
     situation: &Situation<'_, T>,
     rhs: &mut [T],
 ) {
-    for_each_constraint(block, |constraint, at| {
+    for_each_constraint(&block.rows, |constraint, at| {
         let rows = situation.residual(&mechanism.constraints[constraint].0);
         for k in 0..2 {
             if let Some(place) = at[k] {
@@ -394,62 +405,4 @@ fn scaled_size(block: &NewtonBlock, poses: &[Pose<f64>], step: &[f64]) -> f64 {
     } else {
         angle.max(length / reach)
     }
-}
-
-/// Solves on plain numbers, then makes the higher parts exact: with the plain Jacobian's inverse every pass of the
-/// simplified Newton iteration x <- x - J0^-1 F(x) corrects one more order of a nilpotent number.
-fn carry_over<T: PlanNumber>(
-    block: &NewtonBlock,
-    mechanism: &Mechanism,
-    design: &Design<T>,
-    branch: &Branch,
-    state: &mut State<T>,
-    passes: usize,
-) -> T {
-    let State {
-        inputs,
-        poses,
-        scratch,
-        ..
-    } = state;
-    for (plain, rich) in scratch.poses.iter_mut().zip(poses.iter()) {
-        *plain = rich.value();
-    }
-    for (plain, rich) in scratch.inputs.iter_mut().zip(inputs.iter()) {
-        (plain.value, plain.c, plain.s) = (rich.value.value(), rich.c.value(), rich.s.value());
-    }
-    start(block, branch, &mut scratch.poses);
-    let determinant = plain_newton(
-        block,
-        mechanism,
-        &design.plain[0],
-        &scratch.inputs,
-        branch,
-        &mut scratch.poses,
-        &mut scratch.qr,
-        &mut scratch.rhs,
-    );
-    for unknown in &block.unknowns {
-        let (rich, plain) = (
-            &mut poses[unknown.body().index()],
-            &scratch.poses[unknown.body().index()],
-        );
-        match unknown {
-            Unknown::Angle(_) => (rich.c, rich.s) = (T::from_f64(plain.c), T::from_f64(plain.s)),
-            Unknown::Place(_) => (rich.x, rich.y) = (T::from_f64(plain.x), T::from_f64(plain.y)),
-        }
-    }
-    let rhs = &mut scratch.wide_rhs[..block.rows.len()];
-    for _ in 0..passes {
-        let situation = Situation {
-            geometry: &design.geometry,
-            inputs,
-            poses,
-            near: &branch.near,
-        };
-        fill_residuals(block, mechanism, &situation, rhs);
-        scratch.qr.solve(rhs);
-        apply_step(block, poses, &rhs[..block.size]);
-    }
-    T::from_f64(determinant)
 }
