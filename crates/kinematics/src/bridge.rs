@@ -5,16 +5,44 @@
 
 use kempe_number::Jet;
 
-/// Coefficients taken from each side.
-pub const SIDE_ORDER: usize = 6;
+use crate::events::Event;
+use crate::motion::{Motion, Solver};
+use crate::pose::Pose;
+use crate::state::Design;
 
-/// The series at `at` of the polynomial through two series given `half` to either side of `center`.
-pub fn join<const N: usize>(
-    low: &Jet<f64, SIDE_ORDER>,
-    high: &Jet<f64, SIDE_ORDER>,
-    half: f64,
-    at_from_center: f64,
-) -> Jet<f64, N> {
+/// Coefficients taken from each side.
+const SIDE_ORDER: usize = 6;
+
+/// The series on one side.
+pub(crate) type Side = Jet<f64, SIDE_ORDER>;
+
+/// The poses at a path parameter within the bridge of a change point, as series joined from both sides. `solver` is
+/// storage.
+pub(crate) fn across<const N: usize>(
+    motion: &Motion<'_>,
+    design: &Design<Side>,
+    event: &Event,
+    p: f64,
+    solver: &mut Solver<Side>,
+) -> Vec<Pose<Jet<f64, N>>> {
+    let (at, half) = (event.at, event.bridge);
+    motion.solve(design, Jet::variable(at - half), solver);
+    let low = solver.state.poses.clone();
+    motion.solve(design, Jet::variable(at + half), solver);
+    let joined = |low: &Side, high: &Side| join(low, high, half, p - at);
+    low.iter()
+        .zip(&solver.state.poses)
+        .map(|(low, high)| Pose {
+            x: joined(&low.x, &high.x),
+            y: joined(&low.y, &high.y),
+            c: joined(&low.c, &high.c),
+            s: joined(&low.s, &high.s),
+        })
+        .collect()
+}
+
+/// The series at `at_from_center` of the polynomial through two series given `half` to either side of `center`.
+fn join<const N: usize>(low: &Side, high: &Side, half: f64, at_from_center: f64) -> Jet<f64, N> {
     const M: usize = 2 * SIDE_ORDER;
     // In the variable u = (p - center) / half the points are -1 and +1.
     let mut scaled = [[0.0; SIDE_ORDER]; 2];

@@ -1,6 +1,6 @@
 //! The path through drive space along which a motion is followed.
 
-use kempe_model::{Law, Model};
+use kempe_model::{Law, LawPiece, Model};
 use kempe_number::Number;
 
 use crate::trace::Path;
@@ -153,6 +153,27 @@ impl DrivePath {
                 .map_or(T::zero(), |d| d.law.at(t, parameters)),
             Self::Time { .. } => t,
         }
+    }
+
+    /// Path parameters at which the drives' coordinates are not smooth, in no order.
+    pub(crate) fn knots(&self) -> Vec<f64> {
+        let Self::Time {
+            laws, parameters, ..
+        } = self
+        else {
+            return Vec::new();
+        };
+        let mut list = Vec::new();
+        for law in laws {
+            let starts = law.breaks(parameters);
+            for (piece, start) in law.pieces.iter().zip(&starts) {
+                if let LawPiece::Table { times, .. } = piece {
+                    list.extend(times.iter().map(|t| start + t));
+                }
+            }
+            list.extend(starts);
+        }
+        list
     }
 }
 

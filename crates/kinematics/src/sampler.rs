@@ -1,13 +1,13 @@
 //! Rows of a motion: measures, poses and evidence at any place or time.
 
 use kempe_model::{DriveId, Leaf, Measure, PointId, PoseMeasure, Statistic};
-use kempe_number::{Jet, Number};
+use kempe_number::Number;
 use kempe_units::{Dimension, Unit, format_digits};
 
 use crate::bordered::Bordered;
-use crate::bridge::{SIDE_ORDER, join};
+use crate::bridge::{Side, across};
 use crate::drive_path::DrivePath;
-use crate::events::EventKind;
+use crate::events::{Event, EventKind};
 use crate::evidence::{evidence, is_finite};
 use crate::force_source::{ForceSource, NoForces};
 use crate::measure::{Moment, ORDER, Series, order_of, plain_direction, visit_leaves};
@@ -73,10 +73,10 @@ pub struct Sampler<'a, F = NoForces> {
     measures: Vec<Measure>,
     parameters: Vec<f64>,
     series_design: Design<Series<f64>>,
-    side_design: Design<Jet<f64, SIDE_ORDER>>,
+    side_design: Design<Side>,
     plain: Solver<f64>,
     series: Solver<Series<f64>>,
-    side: Solver<Jet<f64, SIDE_ORDER>>,
+    side: Solver<Side>,
     drives: Vec<Option<Vec<Pose<Series<f64>>>>>,
     directions: Vec<((PointId, PointId), Vec<f64>)>,
     swept: Vec<Swept>,
@@ -358,8 +358,8 @@ impl<'a, F: ForceSource> Sampler<'a, F> {
             self.solve_at_limit(p, index);
             return true;
         }
-        match motion.bridge(p).map(|event| (event.at, event.bridge)) {
-            Some((at, half)) => self.solve_across(p, at, half),
+        match motion.bridge(p) {
+            Some(event) => self.solve_across(p, event),
             None => motion.solve(&self.series_design, Series::variable(p), &mut self.series),
         }
         if !self
@@ -414,27 +414,13 @@ impl<'a, F: ForceSource> Sampler<'a, F> {
     }
 
     /// Joins the series on both sides of a change point.
-    fn solve_across(&mut self, p: f64, at: f64, half: f64) {
+    fn solve_across(&mut self, p: f64, event: &Event) {
         let motion = self.motion;
         motion.branch_at(p, &mut self.series.branch);
         motion
             .path
             .coordinates(Series::variable(p), &mut self.series.coordinates);
-        motion.solve(&self.side_design, Jet::variable(at - half), &mut self.side);
-        let low = self.side.state.poses.clone();
-        motion.solve(&self.side_design, Jet::variable(at + half), &mut self.side);
-        let high = &self.side.state.poses;
-        for ((pose, low), high) in self.series.state.poses.iter_mut().zip(&low).zip(high) {
-            let joined = |a: &Jet<f64, SIDE_ORDER>, b: &Jet<f64, SIDE_ORDER>| {
-                join::<ORDER>(a, b, half, p - at)
-            };
-            *pose = Pose {
-                x: joined(&low.x, &high.x),
-                y: joined(&low.y, &high.y),
-                c: joined(&low.c, &high.c),
-                s: joined(&low.s, &high.s),
-            };
-        }
+        self.series.state.poses = across(motion, &self.side_design, event, p, &mut self.side);
     }
 
     /// Hands the moment last solved to `ask`, with its forces where they are wanted.
