@@ -81,12 +81,11 @@ impl<'a> Certifier<'a> {
     /// Prepares the dimensions as intervals.
     pub fn new(motion: &'a Motion<'a>) -> Self {
         let (mechanism, plan) = (motion.mechanism, motion.plan);
-        let model = &mechanism.model;
         let decomposition = &plan.decomposition;
         Self {
-            design: Design::new(mechanism, plan, &model.parameter_values::<Interval>()),
-            rich: Geometry::new(mechanism, &model.parameter_values::<Curve>()),
-            side: Design::new(mechanism, plan, &model.parameter_values()),
+            design: motion.design_on(),
+            rich: Geometry::new(mechanism, &mechanism.model.parameter_values::<Curve>()),
+            side: motion.design_on(),
             system: System::whole(mechanism, plan),
             idle: decomposition.idle.clone(),
             surplus: decomposition.surplus.clone(),

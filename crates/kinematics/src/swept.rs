@@ -96,8 +96,7 @@ impl Swept {
             })
         };
         let mut solver = motion.solver::<Line>();
-        let parameters: Vec<Line> = motion.mechanism.model.parameter_values();
-        let design = crate::state::Design::new(motion.mechanism, motion.plan, &parameters);
+        let design = motion.design_on::<Line>();
         let Some(marker) = motion.mechanism.any_marker(self.point) else {
             return 0.0;
         };

@@ -1,5 +1,7 @@
 //! Poses anywhere on a motion: every row is solved by itself.
 
+use kempe_number::Number;
+
 use super::Motion;
 use crate::newton::PlanNumber;
 use crate::state::{Branch, Design, State};
@@ -26,6 +28,12 @@ impl<T: PlanNumber> Solver<T> {
 }
 
 impl Motion<'_> {
+    /// The model's dimensions on the number `T`.
+    pub(crate) fn design_on<T: Number>(&self) -> Design<T> {
+        let parameters: Vec<T> = self.mechanism.model.parameter_values();
+        Design::new(self.mechanism, self.plan, &parameters)
+    }
+
     /// Storage for solving poses of this motion on the number `T`.
     pub fn solver<T: PlanNumber>(&self) -> Solver<T> {
         Solver {

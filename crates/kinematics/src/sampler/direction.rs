@@ -1,0 +1,62 @@
+//! Directions between two points along a motion, without jumps.
+
+use kempe_model::PointId;
+
+use crate::measure::plain_direction;
+use crate::motion::Motion;
+use crate::trace::interval;
+
+/// The direction from one point to another, unwrapped at every node of the trace.
+pub(super) struct Direction {
+    points: (PointId, PointId),
+    /// rad, at the nodes.
+    values: Vec<f64>,
+}
+
+impl Direction {
+    /// Follows a direction over the whole trace; in the principal range where the motion starts.
+    pub fn new(motion: &Motion<'_>, points: (PointId, PointId)) -> Self {
+        let mut values: Vec<f64> = Vec::with_capacity(motion.nodes());
+        for index in 0..motion.nodes() {
+            let (_, poses, _) = motion.node(index);
+            let (a, b) = points;
+            let mut angle = plain_direction(motion.mechanism, motion.design, &poses, a, b);
+            if let Some(last) = values.last() {
+                angle += whole_turns(last - angle);
+            }
+            values.push(angle);
+        }
+        let start = motion
+            .node_parameters()
+            .partition_point(|&p| p < motion.start)
+            .min(values.len().max(1) - 1);
+        if let Some(at_start) = values.get(start).copied() {
+            let turns = whole_turns(at_start);
+            values.iter_mut().for_each(|v| *v -= turns);
+        }
+        Self { points, values }
+    }
+
+    /// From which point to which.
+    pub fn points(&self) -> (PointId, PointId) {
+        self.points
+    }
+
+    /// About where it is at a path parameter, rad.
+    pub fn near(&self, motion: &Motion<'_>, p: f64) -> f64 {
+        let (parameters, values) = (motion.node_parameters(), &self.values);
+        let node = interval(parameters, p);
+        match (parameters.get(node), parameters.get(node + 1)) {
+            (Some(a), Some(b)) if b > a => {
+                let part = ((p - a) / (b - a)).clamp(0.0, 1.0);
+                values[node] + part * (values[node + 1] - values[node])
+            }
+            _ => values.first().copied().unwrap_or(0.0),
+        }
+    }
+}
+
+/// The whole turns nearest to an angle, rad.
+fn whole_turns(angle: f64) -> f64 {
+    (angle / std::f64::consts::TAU).round() * std::f64::consts::TAU
+}
