@@ -9,7 +9,6 @@ use crate::constraint::Situation;
 use crate::mechanism::{BodyId, Mechanism};
 use crate::plan::Plan;
 use crate::qr::Qr;
-use crate::trace::is_length;
 
 /// Where an unknown number of a body stands: block and first column in it.
 type Seat = Option<(u32, u32)>;
@@ -186,7 +185,7 @@ impl Bordered {
             for (constraint, at) in &block.constraints {
                 let kind = &mechanism.constraints[*constraint].0;
                 // Lengths count in mechanism sizes, directions and gear angles as they are.
-                let unit = if is_length(kind) { 1.0 / size } else { 1.0 };
+                let unit = kind.unit(size);
                 let value = situation.residual(kind);
                 let to_drive = situation.gradients(kind, |g| {
                     let Some(row) = at[g.row] else { return };

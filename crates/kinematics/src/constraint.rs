@@ -1,322 +1,142 @@
-//! The one definition of every joint: its residuals over the bodies it ties.
+//! The one definition of every joint: what it demands of the bodies it ties.
 //!
-//! Lengths in m, directions as sines, gears and racks as angles. Everything else (rank, Newton groups, closure evidence,
-//! reactions) comes from these rows; the closed forms are held to them.
+//! Its residuals over these bodies and their gradients are in `rows`: lengths in m, directions as sines, gears and racks as
+//! angles. Everything else (rank, Newton groups, closure evidence, reactions) comes from these rows; the closed forms are
+//! held to them.
 
-use kempe_number::Number;
+mod rows;
+mod situation;
 
-use crate::geometry::Geometry;
-use crate::mechanism::{BodyId, Constraint, LineRef, Marker};
-use crate::pose::{Pose, cross, dot, sub};
+pub use self::rows::Gradient;
+pub use self::situation::{Input, Situation};
 
-/// A drive's coordinate, with the unit vector of that angle for drives that turn.
-#[derive(Clone, Copy, Debug)]
-pub struct Input<T> {
-    /// Cosine (only meaningful for turning drives).
-    pub c: T,
-    /// Sine.
-    pub s: T,
-    /// The coordinate, SI.
-    pub value: T,
+use kempe_model::{DriveId, JointId, LinkId, PointId};
+
+use crate::mechanism::{BodyId, LineRef, Marker};
+
+/// What a constraint comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// A pin made by a shared point name; `link` is the later of the two links.
+    Pin {
+        /// The point.
+        point: PointId,
+        /// The later link.
+        link: LinkId,
+    },
+    /// A joint of the file.
+    Joint(JointId),
+    /// A drive.
+    Drive(DriveId),
 }
 
-impl<T: Number> Input<T> {
-    /// A turning drive at `value` rad.
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    pub fn turn(value: T) -> Self {
-        let (s, c) = value.sin_cos();
-        Self { value, c, s }
-    }
-
-    /// A drive along a length, at `value` m.
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    pub fn length(value: T) -> Self {
-        Self {
-            value,
-            c: T::one(),
-            s: T::zero(),
-        }
-    }
-
-    /// The plain values.
-    #[inline]
-    pub(crate) fn plain(&self) -> Input<f64> {
-        Input {
-            value: self.value.value(),
-            c: self.c.value(),
-            s: self.s.value(),
-        }
-    }
-}
-
-/// Everything a residual needs: dimensions, drives, poses and the turn count of every body.
-pub struct Situation<'a, T> {
-    /// Dimensions.
-    pub geometry: &'a Geometry<T>,
-    /// Coordinates of the drives.
-    pub inputs: &'a [Input<T>],
-    /// Poses of the bodies.
-    pub poses: &'a [Pose<T>],
-    /// Angles of the bodies to within half a turn, rad: gears count turns.
-    pub near: &'a [f64],
-}
-
-impl<T: Number> Situation<'_, T> {
-    /// A marker in the frame.
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    pub fn place(&self, marker: Marker) -> [T; 2] {
-        self.poses[marker.body.index()].place(self.geometry.marker(marker))
-    }
-
-    /// Origin and unit direction of a line in the frame.
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    pub fn line(&self, line: LineRef) -> ([T; 2], [T; 2]) {
-        let local = self.geometry.line(line);
-        let pose = &self.poses[line.body.index()];
-        (pose.place(local.origin), pose.turn(local.direction))
-    }
-
-    /// Unwrapped angle of a body, rad.
-    #[inline]
-    pub fn angle(&self, body: BodyId) -> T {
-        self.poses[body.index()].angle_near(self.near[body.index()])
-    }
-
-    /// The wanted direction of body `a` of a [`Constraint::Direction`], as a unit vector.
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    pub fn wanted_direction(
-        &self,
+/// One condition between bodies. Its residuals are [`Situation::residual`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Constraint {
+    /// Two points coincide: two rows.
+    Coincide {
+        /// Point of the earlier body.
+        a: Marker,
+        /// Point of the later body.
+        b: Marker,
+    },
+    /// A point lies on a line.
+    OnLine {
+        /// The point.
+        point: Marker,
+        /// The line.
+        line: LineRef,
+    },
+    /// `angle(a) - angle(b) = offset (+ the drive's coordinate)`.
+    Direction {
+        /// Body whose angle is set.
+        a: BodyId,
+        /// Body against which.
         b: BodyId,
+        /// Index into the geometry's angles.
         offset: u32,
-        input: Option<kempe_model::DriveId>,
-    ) -> [T; 2] {
-        let base = self.poses[b.index()].turn(self.geometry.angles[offset as usize]);
-        match input {
-            Some(drive) => {
-                let q = &self.inputs[drive.index()];
-                [base[0] * q.c - base[1] * q.s, base[1] * q.c + base[0] * q.s]
-            }
-            None => base,
-        }
-    }
-
-    /// Whether a direction points the opposite way: the residual, a sine, does not tell.
-    pub fn is_reversed(&self, constraint: &Constraint) -> bool {
-        match *constraint {
-            Constraint::Direction {
-                a,
-                b,
-                offset,
-                input,
-            } => {
-                let pose = &self.poses[a.index()];
-                dot(self.wanted_direction(b, offset, input), [pose.c, pose.s]).value() < 0.0
-            }
-            _ => false,
-        }
-    }
-
-    /// The residual rows of a constraint; only the first [`Constraint::rows`] count.
-    #[inline]
-    pub fn residual(&self, constraint: &Constraint) -> [T; 2] {
-        let row = match *constraint {
-            Constraint::Coincide { a, b } => return sub(self.place(b), self.place(a)),
-            Constraint::OnLine { point, line } => {
-                let (origin, direction) = self.line(line);
-                cross(direction, sub(self.place(point), origin))
-            }
-            Constraint::Direction {
-                a,
-                b,
-                offset,
-                input,
-            } => {
-                let pose = &self.poses[a.index()];
-                cross(self.wanted_direction(b, offset, input), [pose.c, pose.s])
-            }
-            Constraint::Distance { a, b, input } => {
-                let span = sub(self.place(b), self.place(a));
-                let length = self.inputs[input.index()].value;
-                // (|span|^2 - length^2) / (2 length): a length, and smooth where the points meet.
-                (dot(span, span) - length.square()) / (length * 2.0)
-            }
-            Constraint::Travel { point, line, input } => {
-                let (origin, direction) = self.line(line);
-                dot(direction, sub(self.place(point), origin)) - self.inputs[input.index()].value
-            }
-            Constraint::Gears {
-                a,
-                b,
-                arm,
-                constants,
-            } => {
-                let k = &self.geometry.gears[constants as usize];
-                let arm = self.angle(arm);
-                (k.first * (self.angle(a) - arm) + k.second * (self.angle(b) - arm) - k.constant)
-                    / (k.first.abs() + k.second.abs())
-            }
-            Constraint::Rack {
-                line,
-                center,
-                constants,
-            } => {
-                let k = &self.geometry.gears[constants as usize];
-                let (origin, direction) = self.line(line);
-                let travel = dot(direction, sub(self.place(center), origin));
-                travel + k.second * (self.angle(center.body) - self.angle(line.body)) - k.constant
-            }
-        };
-        [row, T::zero()]
-    }
+        /// The drive whose coordinate is added.
+        input: Option<DriveId>,
+    },
+    /// The distance of two points is the drive's coordinate.
+    Distance {
+        /// Foot.
+        a: Marker,
+        /// Eye.
+        b: Marker,
+        /// The drive.
+        input: DriveId,
+    },
+    /// A point's coordinate along a line is the drive's coordinate.
+    Travel {
+        /// The point.
+        point: Marker,
+        /// The line.
+        line: LineRef,
+        /// The drive.
+        input: DriveId,
+    },
+    /// `ratio_a (angle_a - angle_arm) + ratio_b (angle_b - angle_arm) = phase`.
+    Gears {
+        /// First gear.
+        a: BodyId,
+        /// Second gear.
+        b: BodyId,
+        /// Arm.
+        arm: BodyId,
+        /// Index into the geometry's gear constants.
+        constants: u32,
+    },
+    /// `s + radius (angle_pinion - angle_rack) = offset`, `s` along the rack's line.
+    Rack {
+        /// Pitch line on the rack.
+        line: LineRef,
+        /// The pinion's centre.
+        center: Marker,
+        /// Index into the geometry's gear constants.
+        constants: u32,
+    },
 }
 
-/// One entry of the constraint Jacobian: the derivative of a row to a body's x, y and angle.
-#[derive(Clone, Copy, Debug)]
-pub struct Gradient<T = f64> {
-    /// Row of the constraint.
-    pub row: usize,
-    /// The body.
-    pub body: BodyId,
-    /// Derivatives to x, y (per m) and angle (per rad).
-    pub to: [T; 3],
-}
-
-impl<T: Number> Situation<'_, T> {
-    /// Hands the rows of the constraint Jacobian to `emit`, and returns the derivative of each row to the coordinate
-    /// of the constraint's drive (zero without one). These are the derivatives of [`Situation::residual`] at any pose,
-    /// not only where the constraint holds.
-    #[inline]
-    pub fn gradients(&self, constraint: &Constraint, mut emit: impl FnMut(Gradient<T>)) -> T {
-        let (zero, one) = (T::zero(), T::one());
-        // From the body's origin: to its own point (intervals stay narrow without the detour over the frame), to any.
-        let own_arm =
-            |marker: Marker| self.poses[marker.body.index()].turn(self.geometry.marker(marker));
-        let arm = |body: BodyId, p: [T; 2]| {
-            let pose = &self.poses[body.index()];
-            [p[0] - pose.x, p[1] - pose.y]
-        };
-        match *constraint {
-            Constraint::Coincide { a, b } => {
-                for (marker, sign) in [(b, 1.0), (a, -1.0)] {
-                    let r = own_arm(marker);
-                    emit(Gradient {
-                        row: 0,
-                        body: marker.body,
-                        to: [one * sign, zero, r[1] * -sign],
-                    });
-                    emit(Gradient {
-                        row: 1,
-                        body: marker.body,
-                        to: [zero, one * sign, r[0] * sign],
-                    });
-                }
-                zero
-            }
-            Constraint::OnLine { point, line } => {
-                let (p, t) = (self.place(point), self.line(line).1);
-                emit(Gradient {
-                    row: 0,
-                    body: point.body,
-                    to: [-t[1], t[0], dot(t, own_arm(point))],
-                });
-                emit(Gradient {
-                    row: 0,
-                    body: line.body,
-                    to: [t[1], -t[0], -dot(t, arm(line.body, p))],
-                });
-                zero
-            }
-            Constraint::Direction {
-                a,
-                b,
-                offset,
-                input,
-            } => {
-                let pose = &self.poses[a.index()];
-                let cosine = dot(self.wanted_direction(b, offset, input), [pose.c, pose.s]);
-                emit(Gradient {
-                    row: 0,
-                    body: a,
-                    to: [zero, zero, cosine],
-                });
-                emit(Gradient {
-                    row: 0,
-                    body: b,
-                    to: [zero, zero, -cosine],
-                });
-                if input.is_some() { -cosine } else { zero }
-            }
-            Constraint::Distance { a, b, input } => {
-                let length = self.inputs[input.index()].value;
-                let span = sub(self.place(b), self.place(a));
-                for (marker, sign) in [(b, one / length), (a, -(one / length))] {
-                    let turn = cross(own_arm(marker), span);
-                    emit(Gradient {
-                        row: 0,
-                        body: marker.body,
-                        to: [span[0] * sign, span[1] * sign, turn * sign],
-                    });
-                }
-                (dot(span, span) / (length * length) + 1.0) * -0.5
-            }
-            Constraint::Travel { point, line, .. } => {
-                self.travel_gradients(point, line, &mut emit);
-                -one
-            }
-            Constraint::Gears {
-                a,
-                b,
-                arm,
-                constants,
-            } => {
-                let k = &self.geometry.gears[constants as usize];
-                let size = k.first.abs() + k.second.abs();
-                for (body, factor) in [(a, k.first), (b, k.second), (arm, -k.first - k.second)] {
-                    emit(Gradient {
-                        row: 0,
-                        body,
-                        to: [zero, zero, factor / size],
-                    });
-                }
-                zero
-            }
-            Constraint::Rack {
-                line,
-                center,
-                constants,
-            } => {
-                self.travel_gradients(center, line, &mut emit);
-                let k = &self.geometry.gears[constants as usize];
-                emit(Gradient {
-                    row: 0,
-                    body: center.body,
-                    to: [zero, zero, k.second],
-                });
-                emit(Gradient {
-                    row: 0,
-                    body: line.body,
-                    to: [zero, zero, -k.second],
-                });
-                zero
-            }
+impl Constraint {
+    /// How many rows it has.
+    pub fn rows(&self) -> usize {
+        match self {
+            Constraint::Coincide { .. } => 2,
+            _ => 1,
         }
     }
 
-    fn travel_gradients(&self, point: Marker, line: LineRef, emit: &mut impl FnMut(Gradient<T>)) {
-        let (p, t) = (self.place(point), self.line(line).1);
-        let guide = &self.poses[line.body.index()];
-        let own = self.poses[point.body.index()].turn(self.geometry.marker(point));
-        let turn = cross(own, t);
-        emit(Gradient {
-            row: 0,
-            body: point.body,
-            to: [t[0], t[1], turn],
-        });
-        let turn = cross(t, [p[0] - guide.x, p[1] - guide.y]);
-        emit(Gradient {
-            row: 0,
-            body: line.body,
-            to: [-t[0], -t[1], turn],
-        });
+    /// The drive whose coordinate it holds.
+    pub fn drive(&self) -> Option<DriveId> {
+        match self {
+            Constraint::Direction { input, .. } => *input,
+            Constraint::Distance { input, .. } | Constraint::Travel { input, .. } => Some(*input),
+            _ => None,
+        }
+    }
+
+    /// The bodies it ties.
+    pub fn bodies(&self) -> impl Iterator<Item = BodyId> {
+        let list = match *self {
+            Constraint::Coincide { a, b } | Constraint::Distance { a, b, .. } => {
+                [Some(a.body), Some(b.body), None]
+            }
+            Constraint::OnLine { point, line } | Constraint::Travel { point, line, .. } => {
+                [Some(point.body), Some(line.body), None]
+            }
+            Constraint::Direction { a, b, .. } => [Some(a), Some(b), None],
+            Constraint::Gears { a, b, arm, .. } => [Some(a), Some(b), Some(arm)],
+            Constraint::Rack { line, center, .. } => [Some(line.body), Some(center.body), None],
+        };
+        list.into_iter().flatten()
+    }
+
+    /// The factor that makes its rows comparable with others': lengths count in mechanism sizes, angles as they are.
+    pub(crate) fn unit(&self, size: f64) -> f64 {
+        match self {
+            Constraint::Direction { .. } | Constraint::Gears { .. } => 1.0,
+            _ => 1.0 / size,
+        }
     }
 }

@@ -4,7 +4,6 @@ use crate::bordered::Bordered;
 use crate::mechanism::Mechanism;
 use crate::pose::Pose;
 use crate::state::{Branch, Design, State};
-use crate::trace::is_length;
 
 /// What tells how good a pose is. Lengths are counted in mechanism sizes, angles in rad.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,11 +32,7 @@ pub fn closure(
     }
     for (constraint, _) in &mechanism.constraints {
         let residual = situation.residual(constraint);
-        let unit = if is_length(constraint) {
-            1.0 / size
-        } else {
-            1.0
-        };
+        let unit = constraint.unit(size);
         if situation.is_reversed(constraint) {
             largest = largest.max(2.0);
         }

@@ -5,7 +5,6 @@ use crate::mechanism::{BodyId, Constraint, Mechanism};
 use crate::pose::Pose;
 use crate::rank::{SparseRow, rank};
 use crate::state::{Branch, Design, State};
-use crate::trace::is_length;
 
 /// Mobility two ways.
 #[derive(Clone, Debug, PartialEq)]
@@ -82,11 +81,7 @@ fn joint_rank(
     let columns = 3 * (mechanism.bodies - 1);
     let mut rows: Vec<SparseRow> = Vec::new();
     for (constraint, _) in &mechanism.constraints[..mechanism.joint_constraints] {
-        let unit = if is_length(constraint) {
-            1.0 / size
-        } else {
-            1.0
-        };
+        let unit = constraint.unit(size);
         let first = rows.len();
         rows.resize(first + constraint.rows(), Vec::with_capacity(6));
         situation.gradients(constraint, |g| {

@@ -12,7 +12,7 @@ pub use self::cubic::{chord, hermite};
 use crate::bordered::Bordered;
 use crate::constraint::{Input, Situation};
 use crate::geometry::Geometry;
-use crate::mechanism::{Constraint, Mechanism};
+use crate::mechanism::Mechanism;
 use crate::plan::Plan;
 use crate::pose::Pose;
 
@@ -395,14 +395,6 @@ fn hides_limits(from: &Node, to: &Node) -> bool {
     let h = distance(&from.z, &to.z);
     let mean = (to.z[last] - from.z[last]) / h;
     a * b > 0.0 && (mean * a <= 0.0 || a.abs().max(b.abs()) > 3.0 * mean.abs())
-}
-
-/// Rows of a constraint that are lengths.
-pub(crate) fn is_length(constraint: &Constraint) -> bool {
-    !matches!(
-        constraint,
-        Constraint::Direction { .. } | Constraint::Gears { .. }
-    )
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
