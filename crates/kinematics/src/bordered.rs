@@ -4,104 +4,16 @@
 //! proportion to the mechanism. One block may be singular without harm, the one where a limit or a crossing of
 //! branches lies: its unknowns and the path parameter are kept together and solved last, with the border row.
 
-use crate::blocks::{ConstraintRows, Row, Unknown, by_constraint};
+mod layout;
+mod singular;
+
+pub use self::layout::Layout;
+
+use self::layout::Seat;
 use crate::constraint::Situation;
-use crate::mechanism::{BodyId, Mechanism};
+use crate::mechanism::Mechanism;
 use crate::plan::Plan;
 use crate::qr::Qr;
-
-/// Where an unknown number of a body stands: block and first column in it.
-type Seat = Option<(u32, u32)>;
-
-/// One block of the layout.
-#[derive(Clone, Debug)]
-struct Block {
-    /// First row (and column, where the system is square) in the whole system.
-    first: usize,
-    /// How many columns.
-    size: usize,
-    /// How many rows; more than columns in an overconstrained block.
-    rows: usize,
-    /// The constraints with the places of their rows in the block.
-    constraints: Vec<ConstraintRows>,
-    /// Idle angles held here: (column, row).
-    held: Option<(usize, usize)>,
-}
-
-/// Which rows and unknowns belong to which block.
-#[derive(Clone, Debug)]
-pub struct Layout {
-    blocks: Vec<Block>,
-    angle: Vec<Seat>,
-    place: Vec<Seat>,
-    rows: usize,
-    columns: usize,
-    drive_of: Vec<Option<usize>>,
-}
-
-impl Layout {
-    /// The blocks of a plan. An overconstrained mechanism is one block: what is redundant in one place keeps another
-    /// regular.
-    pub fn new(mechanism: &Mechanism, plan: &Plan) -> Self {
-        let mut blocks: Vec<(Vec<Unknown>, Vec<Row>)> = plan
-            .blocks
-            .iter()
-            .map(|b| (b.unknowns.clone(), b.rows.clone()))
-            .collect();
-        if !plan.decomposition.surplus.is_empty() {
-            let unknowns = blocks.iter().flat_map(|(u, _)| u.iter().copied()).collect();
-            let mut rows: Vec<Row> = blocks.iter().flat_map(|(_, r)| r.iter().copied()).collect();
-            rows.extend(&plan.decomposition.surplus);
-            blocks = vec![(unknowns, rows)];
-        }
-        let mut it = Self {
-            blocks: Vec::with_capacity(blocks.len()),
-            angle: vec![None; mechanism.bodies],
-            place: vec![None; mechanism.bodies],
-            rows: 0,
-            columns: 0,
-            drive_of: mechanism
-                .constraints
-                .iter()
-                .map(|(c, _)| c.drive().map(|d| d.index()))
-                .collect(),
-        };
-        for (index, (unknowns, rows)) in blocks.into_iter().enumerate() {
-            let mut size = 0;
-            let mut idle = None;
-            for unknown in &unknowns {
-                let seat = Some((index as u32, size as u32));
-                match unknown {
-                    Unknown::Angle(body) => {
-                        it.angle[body.index()] = seat;
-                        if plan.decomposition.idle.contains(body) {
-                            idle = Some(size);
-                        }
-                    }
-                    Unknown::Place(body) => it.place[body.index()] = seat,
-                }
-                size += unknown.size();
-            }
-            let height = rows.len() + usize::from(idle.is_some());
-            let held = idle.map(|column| (column, rows.len()));
-            it.blocks.push(Block {
-                first: it.rows,
-                size,
-                rows: height.max(size),
-                constraints: by_constraint(&rows),
-                held,
-            });
-            it.rows += height.max(size);
-            it.columns += size;
-        }
-        it
-    }
-
-    /// Place of a body's x (y follows) and angle among the scaled unknowns of a trace.
-    fn column_in_z(unknown: Unknown) -> usize {
-        3 * (unknown.body().index() - 1) + usize::from(matches!(unknown, Unknown::Angle(_))) * 2
-    }
-}
 
 /// An entry of the Jacobian outside the diagonal blocks.
 #[derive(Clone, Copy, Debug)]
@@ -117,8 +29,6 @@ struct Coupling {
 #[derive(Clone, Debug)]
 pub struct Bordered {
     layout: Layout,
-    /// Column of every block's unknowns in `z`, block after block.
-    columns_in_z: Vec<Vec<usize>>,
     diagonal: Vec<Qr>,
     /// Entries of the singular candidate's own block, kept unfactored: row-major.
     plain: Vec<Vec<f64>>,
@@ -136,21 +46,7 @@ impl Bordered {
     pub fn new(mechanism: &Mechanism, plan: &Plan) -> Self {
         let layout = Layout::new(mechanism, plan);
         let count = layout.blocks.len();
-        let mut columns_in_z: Vec<Vec<usize>> =
-            layout.blocks.iter().map(|b| vec![0; b.size]).collect();
-        for body in (1..mechanism.bodies).map(|b| BodyId(b as u32)) {
-            if let Some((block, column)) = layout.angle[body.index()] {
-                columns_in_z[block as usize][column as usize] =
-                    Layout::column_in_z(Unknown::Angle(body));
-            }
-            if let Some((block, column)) = layout.place[body.index()] {
-                let z = Layout::column_in_z(Unknown::Place(body));
-                columns_in_z[block as usize][column as usize] = z;
-                columns_in_z[block as usize][column as usize + 1] = z + 1;
-            }
-        }
         Self {
-            columns_in_z,
             diagonal: vec![Qr::default(); count],
             plain: vec![Vec::new(); count],
             couplings: vec![Vec::new(); count],
@@ -316,7 +212,7 @@ impl Bordered {
         let p = border.len() - 1;
         let mut row = vec![0.0; width];
         for (index, block) in layout.blocks.iter().enumerate() {
-            for (column, &z) in self.columns_in_z[index].iter().enumerate() {
+            for (column, &z) in layout.columns_in_z[index].iter().enumerate() {
                 constant += border[z] * affine[index][column];
                 for (k, value) in row.iter_mut().enumerate() {
                     *value += border[z] * affine[index][(k + 1) * block.size + column];
@@ -334,7 +230,7 @@ impl Bordered {
         d.clear();
         d.resize(border.len(), 0.0);
         for (index, block) in layout.blocks.iter().enumerate() {
-            for (column, &z) in self.columns_in_z[index].iter().enumerate() {
+            for (column, &z) in layout.columns_in_z[index].iter().enumerate() {
                 let linear: f64 = (0..width)
                     .map(|k| affine[index][(k + 1) * block.size + column] * last_rhs[k])
                     .sum();
@@ -359,66 +255,6 @@ impl Bordered {
         others
             .map(|(_, qr)| qr.smallest_pivot_ratio())
             .fold(self.last.smallest_pivot_ratio(), f64::min)
-    }
-
-    /// The smallest singular value of the Jacobian without its parameter column, by inverse iteration.
-    pub fn smallest_singular_value(&mut self) -> f64 {
-        let layout = &self.layout;
-        if self
-            .diagonal
-            .iter()
-            .any(|qr| qr.smallest_pivot_ratio() == 0.0)
-        {
-            return 0.0;
-        }
-        let at: Vec<usize> = layout
-            .blocks
-            .iter()
-            .scan(0, |sum, b| {
-                let first = *sum;
-                *sum += b.size;
-                Some(first)
-            })
-            .collect();
-        // Uneven entries, so that no singular vector is missed by symmetry.
-        let mut x: Vec<f64> = (0..layout.columns)
-            .map(|i| 1.0 + 0.37 * ((i * 7) % 11) as f64)
-            .collect();
-        let mut value = f64::INFINITY;
-        for _ in 0..60 {
-            let length = x.iter().map(|v| v * v).sum::<f64>().sqrt();
-            x.iter_mut().for_each(|v| *v /= length);
-            // y = J^-T x, last block first.
-            let mut y: Vec<f64> = vec![0.0; layout.rows];
-            for (index, block) in layout.blocks.iter().enumerate().rev() {
-                let own = &mut y[block.first..block.first + block.rows];
-                own[..block.size].copy_from_slice(&x[at[index]..at[index] + block.size]);
-                self.diagonal[index].solve_transposed(own);
-                for c in &self.couplings[index] {
-                    x[at[c.block as usize] + c.column as usize] -=
-                        c.value * y[block.first + c.row as usize];
-                }
-            }
-            let next = 1.0 / y.iter().map(|v| v * v).sum::<f64>().sqrt();
-            // x = J^-1 y, first block first.
-            for (index, block) in layout.blocks.iter().enumerate() {
-                self.rhs.clear();
-                self.rhs
-                    .extend_from_slice(&y[block.first..block.first + block.rows]);
-                for c in &self.couplings[index] {
-                    self.rhs[c.row as usize] -=
-                        c.value * x[at[c.block as usize] + c.column as usize];
-                }
-                self.diagonal[index].solve(&mut self.rhs);
-                x[at[index]..at[index] + block.size].copy_from_slice(&self.rhs[..block.size]);
-            }
-            let settled = (next - value).abs() <= 1e-9 * next;
-            value = next;
-            if settled || !value.is_finite() {
-                break;
-            }
-        }
-        value
     }
 }
 
@@ -479,13 +315,14 @@ motor = { turns = "crank", from = 0.3, to = 1, speed = "1 rad/s" }
                     let at = block.first + row;
                     for column in 0..block.size {
                         let value = system.plain[index][row * block.size + column];
-                        whole.add(at, system.columns_in_z[index][column], value);
+                        whole.add(at, system.layout.columns_in_z[index][column], value);
                     }
                     for c in system.couplings[index]
                         .iter()
                         .filter(|c| c.row as usize == row)
                     {
-                        let column = system.columns_in_z[c.block as usize][c.column as usize];
+                        let column =
+                            system.layout.columns_in_z[c.block as usize][c.column as usize];
                         whole.add(at, column, c.value);
                     }
                     whole.add(at, unknowns - 1, system.to_parameter[at]);
