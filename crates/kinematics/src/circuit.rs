@@ -3,26 +3,20 @@
 //! Between two dead points the drive's coordinate runs one way, so a circuit is a list of ordinary motions, travelled
 //! up and down in turn.
 
-use kempe_model::{DriveKind, Measure};
+mod round;
+mod rows;
+
+pub use self::round::CIRCUIT_STEPS;
+pub(crate) use self::round::go_round;
 
 use crate::assemble::{Assemblies, find_assemblies};
-use crate::drive_path::DrivePath;
-use crate::events::locate_limit;
-use crate::force_source::NoForces;
 use crate::mechanism::Mechanism;
-use crate::motion::{EndReason, Motion, MotionError, Unlocated, runs_away, with_care};
+use crate::motion::{EndReason, Motion, MotionError, Unlocated, with_care};
 use crate::plan::Plan;
-use crate::sampler::{Sample, Sampler, Unprepared};
 use crate::state::Design;
-use crate::trace::{Cubic, Follower, Node, Path, distance, hermite, interval};
+use crate::trace::{Follower, Node, Path, distance};
 use crate::watch::{Stage, Unwatched, Watch};
 
-/// Steps after which a circuit that has not closed is given up.
-pub const CIRCUIT_STEPS: usize = 50_000;
-/// A multiple of a step this near (in steps) to a place is that place.
-const ON_STEP: f64 = 1e-9;
-/// Arc lengths this near (mechanism sizes and rad) are one row.
-const SAME_ARC: f64 = 1e-9;
 /// A start this near a singular pose is moved along the drive by these parts of its range.
 const ANCHORS: [f64; 4] = [0.0, 0.0137, 0.1234, 0.3719];
 
@@ -37,35 +31,6 @@ pub struct Stretch<'m> {
     arcs: Vec<f64>,
     /// The nodes in the order of travel.
     nodes: Vec<Node>,
-}
-
-impl Stretch<'_> {
-    /// Path parameter at a node, in the order of travel.
-    fn parameter_at(&self, node: usize, scale: f64) -> Option<f64> {
-        self.nodes
-            .get(node)
-            .and_then(|n| n.z.last())
-            .map(|z| z * scale)
-    }
-
-    /// Arc length between the nodes `index - 1` and `index` where the path parameter is `p`.
-    fn arc_where(&self, index: usize, p: f64, scale: f64) -> f64 {
-        let (from, to) = (&self.nodes[index - 1], &self.nodes[index]);
-        let (cubic, last) = (Cubic::new(from, to), from.z.len() - 1);
-        let at = |s: f64| cubic.at(s).part(last) * scale;
-        let rising = at(1.0) > at(0.0);
-        let (mut low, mut high) = (0.0, 1.0);
-        for _ in 0..52 {
-            let middle = 0.5 * (low + high);
-            if (at(middle) < p) == rising {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        let (a, b) = (self.arcs[index - 1], self.arcs[index]);
-        a + 0.5 * (low + high) * (b - a)
-    }
 }
 
 /// A circuit of a mechanism: everything that can be reached without taking it apart.
@@ -136,292 +101,77 @@ impl<'m> Circuit<'m> {
                 let (nodes, closed) =
                     go_round(follower, start.clone(), mechanism, &path, high, watch)
                         .ok_or(Unlocated::Stopped(Stage::Following))?;
-                let assemblies = assemblies.clone();
-                Self::of_nodes(
-                    mechanism, plan, design, &path, assemblies, nodes, closed, follower, watch,
-                )
+                let mut stretches = Vec::new();
+                let mut length = 0.0;
+                for nodes in pieces(nodes) {
+                    let arcs = arcs(&nodes, length);
+                    length = arcs.last().copied().unwrap_or(length);
+                    let (rising, forward) = rising(&nodes);
+                    let (path, assemblies) = (path.clone(), assemblies.clone());
+                    let mut motion =
+                        Motion::of_nodes(mechanism, plan, design, path, assemblies, rising);
+                    motion.ends = (EndReason::Limit, EndReason::Limit);
+                    motion.find_events(follower, watch)?;
+                    stretches.push(Stretch {
+                        motion,
+                        forward,
+                        arcs,
+                        nodes,
+                    });
+                }
+                Ok(Self {
+                    stretches,
+                    closed,
+                    length,
+                    assemblies: assemblies.clone(),
+                    scale: path.scale(),
+                })
             });
         }
         Err(MotionError::Locked { at: motion.start })
-    }
-
-    #[allow(
-        clippy::too_many_arguments,
-        reason = "the parts of a mechanism at work, named"
-    )]
-    fn of_nodes(
-        mechanism: &'m Mechanism,
-        plan: &'m Plan,
-        design: &'m Design<f64>,
-        path: &DrivePath,
-        assemblies: Assemblies,
-        nodes: Vec<Node>,
-        closed: bool,
-        follower: &mut Follower<'_, DrivePath>,
-        watch: &mut dyn Watch,
-    ) -> Result<Self, Unlocated> {
-        let mut stretches: Vec<Stretch<'m>> = Vec::new();
-        let mut arc = 0.0;
-        let mut current: Vec<Node> = Vec::new();
-        for node in nodes {
-            let at_limit = node.parameter_rate() == 0.0;
-            current.push(node.clone());
-            if at_limit && current.len() > 1 {
-                let done = std::mem::replace(&mut current, vec![node]);
-                push_stretch(
-                    &mut stretches,
-                    &mut arc,
-                    done,
-                    (mechanism, plan, design),
-                    path,
-                    &assemblies,
-                    (follower, watch),
-                )?;
-            }
-        }
-        if current.len() > 1 {
-            push_stretch(
-                &mut stretches,
-                &mut arc,
-                current,
-                (mechanism, plan, design),
-                path,
-                &assemblies,
-                (follower, watch),
-            )?;
-        }
-        Ok(Self {
-            stretches,
-            closed,
-            length: arc,
-            assemblies,
-            scale: path.scale(),
-        })
     }
 
     /// Size of a typical change of the path parameter: a radian, or the mechanism's size.
     pub fn scale(&self) -> f64 {
         self.scale
     }
-
-    /// Which stretch an arc length lies on, and the path parameter there.
-    pub fn locate(&self, arc: f64) -> (usize, f64) {
-        let index = self
-            .stretches
-            .partition_point(|s| s.arcs.last().is_some_and(|end| *end < arc));
-        let index = index.min(self.stretches.len().saturating_sub(1));
-        let Some(stretch) = self.stretches.get(index) else {
-            return (0, f64::NAN);
-        };
-        let node = interval(&stretch.arcs, arc);
-        let (Some(from), Some(to)) = (stretch.nodes.get(node), stretch.nodes.get(node + 1)) else {
-            return (index, f64::NAN);
-        };
-        let (a, b) = (stretch.arcs[node], stretch.arcs[node + 1]);
-        let cubic = Cubic::new(from, to);
-        let place = cubic.at(((arc - a) / (b - a)).clamp(0.0, 1.0));
-        (index, place.part(from.z.len() - 1) * self.scale)
-    }
-
-    /// Arc lengths, rising, at the start, at every multiple of `step` (SI) of the path parameter from there on as it runs
-    /// up and down, at every dead point, and at the end.
-    pub fn arcs_by_step(&self, step: f64) -> Vec<f64> {
-        let mut arcs = vec![0.0];
-        let Some(origin) = (self.stretches.first()).and_then(|s| s.parameter_at(0, self.scale))
-        else {
-            return arcs;
-        };
-        for stretch in &self.stretches {
-            for index in 1..stretch.nodes.len() {
-                let ends = [index - 1, index].map(|k| stretch.parameter_at(k, self.scale));
-                let [Some(from), Some(to)] = ends else {
-                    continue;
-                };
-                // A node on a multiple belongs to the step before it.
-                let (from, to) = ((from - origin) / step, (to - origin) / step);
-                let multiples: Vec<i64> = if to > from {
-                    ((from + ON_STEP).floor() as i64 + 1..=(to + ON_STEP).floor() as i64).collect()
-                } else {
-                    ((to - ON_STEP).ceil() as i64..(from - ON_STEP).ceil() as i64)
-                        .rev()
-                        .collect()
-                };
-                for multiple in multiples {
-                    arcs.push(stretch.arc_where(
-                        index,
-                        origin + multiple as f64 * step,
-                        self.scale,
-                    ));
-                }
-            }
-            if let Some(end) = stretch.arcs.last() {
-                arcs.push(*end);
-            }
-        }
-        // A multiple at a dead point or at the end is one row.
-        arcs.dedup_by(|b, a| (*b - *a).abs() <= SAME_ARC);
-        arcs
-    }
-
-    /// Prepares measures for rows of the circuit.
-    ///
-    /// # Errors
-    /// All measures that cannot be evaluated, or that `watch` stopped it.
-    pub fn samplers<'a>(
-        &'a self,
-        measures: &[&Measure],
-        watch: &mut dyn Watch,
-    ) -> Result<Vec<Sampler<'a>>, Unprepared>
-    where
-        'm: 'a,
-    {
-        self.stretches
-            .iter()
-            .map(|s| Sampler::watched(&s.motion, measures, NoForces, watch))
-            .collect()
-    }
-
-    /// The row at an arc length. Time does not run along a circuit: measures of speed are NaN.
-    pub fn row(&self, samplers: &mut [Sampler<'_>], arc: f64) -> Option<Sample> {
-        let (index, p) = self.locate(arc);
-        samplers
-            .get_mut(index)
-            .map(|sampler| sampler.without_time(p))
-    }
 }
 
-fn push_stretch<'m>(
-    stretches: &mut Vec<Stretch<'m>>,
-    arc: &mut f64,
-    nodes: Vec<Node>,
-    (mechanism, plan, design): (&'m Mechanism, &'m Plan, &'m Design<f64>),
-    path: &DrivePath,
-    assemblies: &Assemblies,
-    (follower, watch): (&mut Follower<'_, DrivePath>, &mut dyn Watch),
-) -> Result<(), Unlocated> {
-    let mut arcs = vec![*arc];
+/// Cuts a curve at its dead points, which belong to both pieces.
+fn pieces(nodes: Vec<Node>) -> Vec<Vec<Node>> {
+    let mut pieces: Vec<Vec<Node>> = Vec::new();
+    let mut current: Vec<Node> = Vec::new();
+    for node in nodes {
+        let at_limit = node.parameter_rate() == 0.0;
+        current.push(node.clone());
+        if at_limit && current.len() > 1 {
+            pieces.push(std::mem::replace(&mut current, vec![node]));
+        }
+    }
+    if current.len() > 1 {
+        pieces.push(current);
+    }
+    pieces
+}
+
+/// Arc lengths at the nodes of a piece that begins at `arc`.
+fn arcs(nodes: &[Node], mut arc: f64) -> Vec<f64> {
+    let mut arcs = vec![arc];
     for pair in nodes.windows(2) {
-        *arc += distance(&pair[0].z, &pair[1].z);
-        arcs.push(*arc);
+        arc += distance(&pair[0].z, &pair[1].z);
+        arcs.push(arc);
     }
+    arcs
+}
+
+/// The nodes of a piece in the order of rising path parameters, and whether that is the order of travel.
+fn rising(nodes: &[Node]) -> (Vec<Node>, bool) {
     let last = nodes[0].z.len() - 1;
-    let forward = nodes[nodes.len() - 1].z[last] > nodes[0].z[last];
-    let mut rising = nodes.clone();
-    if !forward {
-        rising.reverse();
-        for node in &mut rising {
-            node.tangent.iter_mut().for_each(|t| *t = -*t);
-        }
+    if nodes[nodes.len() - 1].z[last] > nodes[0].z[last] {
+        return (nodes.to_vec(), true);
     }
-    let mut motion = Motion::of_nodes(
-        mechanism,
-        plan,
-        design,
-        path.clone(),
-        assemblies.clone(),
-        rising,
-    );
-    motion.ends = (EndReason::Limit, EndReason::Limit);
-    motion.find_events(follower, watch)?;
-    stretches.push(Stretch {
-        motion,
-        forward,
-        arcs,
-        nodes,
-    });
-    Ok(())
-}
-
-/// Follows the curve until it is back at its start (angles of bodies and of a turning drive count modulo a turn). Along
-/// time, where nothing comes back, until the motion's `end`; and no further than to where a part runs away. `None` when
-/// stopped.
-pub(crate) fn go_round(
-    follower: &mut Follower<'_, DrivePath>,
-    start: Node,
-    mechanism: &Mechanism,
-    path: &DrivePath,
-    end: f64,
-    watch: &mut dyn Watch,
-) -> Option<(Vec<Node>, bool)> {
-    let turning = match path {
-        DrivePath::Coordinate { drive, .. } => {
-            matches!(
-                mechanism.model.drives.get(*drive).map(|d| &d.kind),
-                Some(DriveKind::Turn { .. })
-            )
-        }
-        DrivePath::Time { .. } => false,
-    };
-    let last = start.z.len() - 1;
-    let is_angle = |i: usize| (i < last && i % 3 == 2) || (i == last && turning);
-    // The start, seen whole turns away, nearest to a point.
-    let image = |z: &[f64]| -> Vec<f64> {
-        (0..=last)
-            .map(|i| {
-                let turns = if is_angle(i) {
-                    ((z[i] - start.z[i]) / std::f64::consts::TAU).round()
-                } else {
-                    0.0
-                };
-                start.z[i] + turns * std::f64::consts::TAU
-            })
-            .collect()
-    };
-    let mut nodes = vec![start.clone()];
-    let mut step = 0.02;
-    let mut travelled = 0.0;
-    for _ in 0..CIRCUIT_STEPS {
-        watch.reached(Stage::Following, None).continue_value()?;
-        let from = nodes[nodes.len() - 1].clone();
-        let Some(next) = follower.advance(&from, &mut step) else {
-            return Some((nodes, false));
-        };
-        let h = distance(&from.z, &next.z);
-        travelled += h;
-        // Back at the start when it lies between the two nodes and the travel is the same way.
-        let home = image(&next.z);
-        let ahead: f64 = (home.iter().zip(&from.z))
-            .zip(&from.tangent)
-            .map(|((a, b), t)| (a - b) * t)
-            .sum();
-        let same_way: f64 = start
-            .tangent
-            .iter()
-            .zip(&from.tangent)
-            .map(|(a, b)| a * b)
-            .sum();
-        let reached = travelled > 2.0 * h && (0.0..=1.05 * h).contains(&ahead) && same_way > 0.9;
-        if reached && distance(&hermite_home(&from, &next, &home, h), &home) < 0.02 * h.max(1e-6) {
-            nodes.push(Node {
-                z: home,
-                tangent: start.tangent.clone(),
-            });
-            return Some((nodes, true));
-        }
-        if from.parameter_rate() * next.parameter_rate() < 0.0 {
-            nodes.push(locate_limit(follower, &from, &next));
-        }
-        let over = matches!(path, DrivePath::Time { .. }) && follower.parameter(&next.z) > end;
-        let away = runs_away(&next.z, &start.z, false);
-        nodes.push(next);
-        if over || away {
-            break;
-        }
-    }
-    Some((nodes, false))
-}
-
-/// The point of the step's cubic that lies nearest to `home`, by its projection on the chord.
-fn hermite_home(from: &Node, next: &Node, home: &[f64], h: f64) -> Vec<f64> {
-    let mut s = 0.5;
-    for _ in 0..20 {
-        let z = hermite(from, next, s);
-        let miss: f64 = (home.iter().zip(&z))
-            .zip(from.z.iter().zip(&next.z))
-            .map(|((a, b), (p, q))| (a - b) * (q - p))
-            .sum();
-        s += miss / (h * h);
-        s = s.clamp(-0.1, 1.1);
-    }
-    hermite(from, next, s)
+    (
+        nodes.iter().rev().cloned().map(Node::turned).collect(),
+        false,
+    )
 }

@@ -4,11 +4,15 @@
 //! depend on them either. Every step is accepted only if the cubic through its ends, with their tangents, agrees with a
 //! corrected point in the middle: a jump to another branch would show there.
 
+mod caution;
 mod cubic;
+mod step;
 
 pub(crate) use self::cubic::{Cubic, distance, interval};
 pub use self::cubic::{chord, hermite};
+pub use self::step::{MIDDLE_TOLERANCE, TURN_LIMIT};
 
+use self::caution::Caution;
 use crate::bordered::Bordered;
 use crate::constraint::{Input, Situation};
 use crate::geometry::Geometry;
@@ -16,29 +20,12 @@ use crate::mechanism::Mechanism;
 use crate::plan::Plan;
 use crate::pose::Pose;
 
-/// How far the corrected middle of a step may lie from the cubic through its ends, as a part of the step.
-pub const MIDDLE_TOLERANCE: f64 = 1e-3;
-/// Smallest cosine between the tangents at the ends of a step.
-pub const TURN_LIMIT: f64 = 0.97;
 /// Part of a unit of travel that may be left over by the redundant constraints.
 const LOCKED: f64 = 1e-6;
 /// A correction below this (in mechanism sizes and rad) ends Newton's method.
 const CORRECTED: f64 = 1e-13;
 /// Corrections before a point is given up.
 const CORRECTIONS: usize = 8;
-/// Steps shorter than this are not held to a path parameter that runs one way: rounding would decide.
-const WIGGLE: f64 = 1e-6;
-/// Longest step, in mechanism sizes and rad over all bodies (root of the sum of squares).
-const LONGEST_STEP: f64 = 0.5;
-/// Longest step near a place where branches nearly cross, as a part of the way to it.
-const CAUTIOUS: f64 = 0.25;
-/// Shortest such step, over the root of the residual between the branches.
-const CAUTIOUS_FLOOR: f64 = 0.02;
-/// Places where branches nearly cross that are one.
-const SAME_PLACE: f64 = 1e-3;
-/// Shortest step: below it the motion is stuck.
-const SHORTEST_STEP: f64 = 1e-9;
-
 /// A path through the space of drive coordinates.
 pub trait Path {
     /// Drive coordinates at the path parameter, and their derivatives to it.
@@ -66,6 +53,18 @@ impl Node {
     pub fn parameter_rate(&self) -> f64 {
         self.tangent[self.tangent.len() - 1]
     }
+
+    /// The same point, travelled the other way.
+    pub(crate) fn turned(mut self) -> Self {
+        self.tangent.iter_mut().for_each(|t| *t = -*t);
+        self
+    }
+
+    /// Scaled unknowns at a length `h` along the tangent.
+    fn ahead(&self, h: f64) -> Vec<f64> {
+        let unknowns = self.z.iter().zip(&self.tangent);
+        unknowns.map(|(z, t)| z + h * t).collect()
+    }
 }
 
 /// Follows the solution curve of a mechanism along a path of its drives.
@@ -83,17 +82,6 @@ pub struct Follower<'a, P> {
     coordinates: Vec<f64>,
     rates: Vec<f64>,
     cautions: Vec<Caution>,
-}
-
-/// A place where two branches come near each other without crossing: they are followed with steps that shrink towards it.
-#[derive(Clone, Debug)]
-struct Caution {
-    /// Scaled unknowns, between the branches.
-    z: Vec<f64>,
-    /// Largest residual there, in mechanism sizes and rad: what keeps the branches apart.
-    residual: f64,
-    /// Part of the usual cautious steps to take: smaller each time that the branches were missed there.
-    part: f64,
 }
 
 impl<'a, P: Path> Follower<'a, P> {
@@ -119,28 +107,6 @@ impl<'a, P: Path> Follower<'a, P> {
             rates: vec![0.0; drives],
             cautions: Vec::new(),
         }
-    }
-
-    /// Goes carefully near a place from now on.
-    pub fn beware(&mut self, z: Vec<f64>, residual: f64) {
-        let again = self
-            .cautions
-            .iter()
-            .filter(|c| apart(&c.z, &z) < SAME_PLACE);
-        let part = 0.5_f64.powi(again.count().min(30) as i32);
-        self.cautions.push(Caution { z, residual, part });
-    }
-
-    /// The longest step that is safe from a point: a part of the way to the nearest place to beware of, and no shorter than
-    /// a part of the distance that the branches keep there, which goes with the root of the residual between them.
-    fn safe(&self, z: &[f64]) -> f64 {
-        let mut least = f64::INFINITY;
-        for caution in &self.cautions {
-            let floor = CAUTIOUS_FLOOR * caution.residual.sqrt();
-            let step = (CAUTIOUS * apart(z, &caution.z)).max(floor);
-            least = least.min(caution.part * step);
-        }
-        least
     }
 
     /// The largest residual at a point, in mechanism sizes and rad.
@@ -273,95 +239,6 @@ impl<'a, P: Path> Follower<'a, P> {
         let tangent = self.tangent(&z, &border)?;
         (self.conditioning() > 1e-9 && tangent[last].abs() > 1e-7).then_some(Node { z, tangent })
     }
-
-    /// The node at a scaled path parameter, reached from `from` at fixed parameter: how a trace gets on a place where the
-    /// drives' rates jump, and over it. `None` when it is too far for one step.
-    pub fn land(&mut self, from: &Node, target: f64) -> Option<Node> {
-        let last = from.z.len() - 1;
-        let rate = from.tangent[last];
-        let far = (target - from.z[last]) / rate;
-        let mut z: Vec<f64> = from
-            .z
-            .iter()
-            .zip(&from.tangent)
-            .map(|(z, t)| z + far * t)
-            .collect();
-        z[last] = target;
-        let mut border = vec![0.0; z.len()];
-        border[last] = rate.signum();
-        let gap = self.correct(&mut z, &border)?;
-        let tangent = self.tangent(&z, &border)?;
-        (far >= 0.0 && gap <= 0.3 * far.max(SHORTEST_STEP)).then_some(Node { z, tangent })
-    }
-
-    /// Like [`Follower::land`], but only as far as the step's cubic holds; shortens `step` otherwise.
-    pub fn land_smoothly(&mut self, from: &Node, target: f64, step: &mut f64) -> Option<Node> {
-        let last = from.z.len() - 1;
-        let far = (target - from.z[last]) / from.tangent[last];
-        let smooth = self.land(from, target).filter(|to| {
-            let middle = hermite(from, to, 0.5);
-            let mut corrected = middle.clone();
-            let across = chord(from, to);
-            dot(&to.tangent, &from.tangent) >= TURN_LIMIT
-                && self
-                    .correct(&mut corrected, &across)
-                    .is_some_and(|gap| gap <= MIDDLE_TOLERANCE * far)
-        });
-        if smooth.is_none() {
-            *step = step.min(0.5 * far);
-        }
-        smooth
-    }
-
-    /// One step along the arc; `step` is the length to try and is adapted for the next. `None` when stuck.
-    pub fn advance(&mut self, from: &Node, step: &mut f64) -> Option<Node> {
-        let longest = LONGEST_STEP * ((self.mechanism.bodies - 1) as f64).sqrt();
-        let longest = longest.min(self.safe(&from.z));
-        let mut odd = 0;
-        while *step > SHORTEST_STEP {
-            let h = step.min(longest);
-            let mut z: Vec<f64> = from
-                .z
-                .iter()
-                .zip(&from.tangent)
-                .map(|(z, t)| z + h * t)
-                .collect();
-            let outcome = self
-                .correct(&mut z, &from.tangent)
-                .filter(|first| *first <= 0.3 * h)
-                .and_then(|_| {
-                    let tangent = self.tangent(&z, &from.tangent)?;
-                    // Right on a crossing of branches the tangent is not determined: step elsewhere.
-                    if self.conditioning() < 1e-10 {
-                        odd += 1;
-                        return None;
-                    }
-                    (dot(&tangent, &from.tangent) >= TURN_LIMIT).then_some(tangent)
-                });
-            let Some(tangent) = outcome else {
-                *step = h * if odd > 0 { 0.71 } else { 0.5 };
-                continue;
-            };
-            let to = Node { z, tangent };
-            if hides_limits(from, &to) && h > WIGGLE {
-                *step = 0.5 * h;
-                continue;
-            }
-            let mut middle = hermite(from, &to, 0.5);
-            let chord = chord(from, &to);
-            let gap = self.correct(&mut middle, &chord);
-            match gap {
-                Some(gap) if gap <= MIDDLE_TOLERANCE * h => {
-                    // The cubic's error goes with the fourth power of the step.
-                    let grow = (0.5 * MIDDLE_TOLERANCE * h / gap.max(1e-18)).sqrt().sqrt();
-                    *step = (h * grow.clamp(0.5, 2.0)).min(longest);
-                    return Some(to);
-                }
-                _ => *step = 0.6 * h,
-            }
-        }
-        None
-    }
 }
 
 /// Poses and unwrapped angles of scaled unknowns, for a mechanism of a size, m.
@@ -370,31 +247,6 @@ pub(crate) fn unscale(z: &[f64], size: f64, poses: &mut [Pose<f64>], near: &mut 
         poses[body + 1] = Pose::from_angle(part[0] * size, part[1] * size, part[2]);
         near[body + 1] = part[2];
     }
-}
-
-/// Distance of two configurations: places in mechanism sizes, angles in rad modulo turns, the path parameter left out.
-fn apart(a: &[f64], b: &[f64]) -> f64 {
-    let bodies = a.iter().zip(b).take(a.len() - 1).enumerate();
-    let squares = bodies.map(|(i, (a, b))| {
-        let gap = a - b;
-        let turns = if i % 3 == 2 {
-            (gap / std::f64::consts::TAU).round()
-        } else {
-            0.0
-        };
-        (gap - turns * std::f64::consts::TAU).powi(2)
-    });
-    squares.sum::<f64>().sqrt()
-}
-
-/// Whether the path parameter cannot run one way all along a step that leaves and arrives the same way (the condition
-/// of Fritsch and Carlson 1980 for a monotonic cubic): two limits lie in between.
-fn hides_limits(from: &Node, to: &Node) -> bool {
-    let last = from.z.len() - 1;
-    let (a, b) = (from.parameter_rate(), to.parameter_rate());
-    let h = distance(&from.z, &to.z);
-    let mean = (to.z[last] - from.z[last]) / h;
-    a * b > 0.0 && (mean * a <= 0.0 || a.abs().max(b.abs()) > 3.0 * mean.abs())
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {

@@ -52,11 +52,8 @@ pub(super) fn follow_both(
     let (lower, end_low) = follow(follower, down.clone(), low, &mut |part| {
         told(share, part * (1.0 - share))
     })?;
-    // From the low end to the high one; the tangents of the lower half turned round.
-    let turned = lower.into_iter().skip(1).map(|mut node| {
-        node.tangent.iter_mut().for_each(|t| *t = -*t);
-        node
-    });
+    // From the low end to the high one.
+    let turned = lower.into_iter().skip(1).map(Node::turned);
     let mut nodes: Vec<Node> = turned.rev().collect();
     nodes.extend(upper);
     Some((nodes, (end_low, end_high)))
