@@ -1,9 +1,12 @@
 //! Directions between two points along a motion, without jumps.
 
 use kempe_model::PointId;
+use kempe_number::math;
 
-use crate::measure::plain_direction;
+use crate::mechanism::Mechanism;
 use crate::motion::Motion;
+use crate::pose::{Pose, sub};
+use crate::state::Design;
 use crate::trace::interval;
 
 /// The direction from one point to another, unwrapped at every node of the trace.
@@ -59,4 +62,21 @@ impl Direction {
 /// The whole turns nearest to an angle, rad.
 fn whole_turns(angle: f64) -> f64 {
     (angle / std::f64::consts::TAU).round() * std::f64::consts::TAU
+}
+
+/// The direction from one point to another, principal value, rad.
+fn plain_direction(
+    mechanism: &Mechanism,
+    design: &Design<f64>,
+    poses: &[Pose<f64>],
+    a: PointId,
+    b: PointId,
+) -> f64 {
+    let place = |p: PointId| {
+        mechanism.any_marker(p).map_or([f64::NAN; 2], |m| {
+            poses[m.body.index()].place(design.geometry.marker(m))
+        })
+    };
+    let v = sub(place(b), place(a));
+    math::atan2(v[1], v[0])
 }

@@ -5,7 +5,7 @@ use crate::bridge::across;
 use crate::events::Event;
 use crate::evidence::is_finite;
 use crate::force_source::ForceSource;
-use crate::measure::{ORDER, Series};
+use crate::measure::{Series, only_value};
 use crate::motion::Solver;
 use crate::pose::Pose;
 
@@ -50,20 +50,15 @@ impl<F: ForceSource> Sampler<'_, F> {
     fn solve_at_limit(&mut self, p: f64, index: usize) {
         let motion = self.motion;
         let (_, poses, near) = motion.node(index);
-        let constant = |x: f64| {
-            let mut coefficients = [f64::NAN; ORDER];
-            coefficients[0] = x;
-            Series::from_coefficients(coefficients)
-        };
         motion
             .path
             .coordinates(Series::variable(p), &mut self.series.coordinates);
         for (series, pose) in self.series.state.poses.iter_mut().zip(&poses).skip(1) {
             *series = Pose {
-                x: constant(pose.x),
-                y: constant(pose.y),
-                c: constant(pose.c),
-                s: constant(pose.s),
+                x: only_value(pose.x),
+                y: only_value(pose.y),
+                c: only_value(pose.c),
+                s: only_value(pose.s),
             };
         }
         self.series.branch.near = near;

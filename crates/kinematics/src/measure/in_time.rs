@@ -1,0 +1,62 @@
+//! Measures of the motion in time: speeds, accelerations, lengths of path.
+
+use kempe_model::{PointId, PoseMeasure};
+use kempe_number::Number;
+
+use super::{Moment, Series};
+use crate::pose::dot;
+
+impl<B: Number> Moment<'_, B> {
+    /// Measures of the motion in time.
+    pub(super) fn motion_measure(&self, measure: &PoseMeasure) -> Series<B> {
+        let velocity = |p: PointId| {
+            let at = self.point(self.path, p);
+            [
+                at[0].compose(&self.clock).differentiate(),
+                at[1].compose(&self.clock).differentiate(),
+            ]
+        };
+        match measure {
+            PoseMeasure::Speed(p) => {
+                let v = velocity(*p);
+                dot(v, v).sqrt()
+            }
+            PoseMeasure::Acceleration(p) => {
+                let v = velocity(*p);
+                let a = [v[0].differentiate(), v[1].differentiate()];
+                dot(a, a).sqrt()
+            }
+            PoseMeasure::AngularSpeed(link) => self
+                .angle(self.path, *link)
+                .compose(&self.clock)
+                .differentiate(),
+            PoseMeasure::AngularAcceleration(link) => self
+                .angle(self.path, *link)
+                .compose(&self.clock)
+                .differentiate()
+                .differentiate(),
+            PoseMeasure::PathLength(p) => {
+                let v = velocity(*p);
+                let start = self
+                    .swept
+                    .iter()
+                    .find(|(q, _)| q == p)
+                    .map_or(B::from_f64(f64::NAN), |(_, length)| *length);
+                dot(v, v).sqrt().integrate(start)
+            }
+            _ => Series::from_f64(f64::NAN),
+        }
+    }
+}
+
+/// Measures that only make sense in time.
+pub(super) fn is_motion(measure: &PoseMeasure) -> bool {
+    matches!(
+        measure,
+        PoseMeasure::Speed(_)
+            | PoseMeasure::Acceleration(_)
+            | PoseMeasure::AngularSpeed(_)
+            | PoseMeasure::AngularAcceleration(_)
+            | PoseMeasure::PathLength(_)
+    )
+}
