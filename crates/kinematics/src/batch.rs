@@ -10,6 +10,7 @@
 mod columns;
 mod designs;
 mod executor;
+mod order;
 mod stretch;
 mod sweep;
 mod wide;
@@ -25,6 +26,7 @@ pub use self::sweep::sweep_states;
 
 use self::columns::{check_length, split_columns};
 use self::designs::{Places, solve_designs, solve_guessed};
+use self::order::Order;
 use self::stretch::{Stretch, stretches};
 use self::sweep::{sweep_one_by_one, sweep_positions, sweep_rates};
 use crate::mechanism::Marker;
@@ -34,7 +36,7 @@ use crate::plan::Step;
 /// Poses of a sweep handed to an executor at a time.
 const POSES_PER_TASK: usize = 8192;
 /// Designs handed to an executor at a time.
-const DESIGNS_PER_TASK: usize = 256;
+const DESIGNS_PER_TASK: usize = 1024;
 
 /// Why a batch cannot run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -110,6 +112,7 @@ pub struct Batch<'a> {
     set: InstructionSet,
     stretches: Vec<Stretch>,
     needs_guess: bool,
+    order: Order,
 }
 
 impl<'a> Batch<'a> {
@@ -119,15 +122,16 @@ impl<'a> Batch<'a> {
     /// [`BatchError::NoSuchPoint`].
     pub fn new(motion: &'a Motion<'a>, points: &[PointId]) -> Result<Self, BatchError> {
         let mechanism = motion.mechanism;
-        let markers = (points.iter())
+        let markers: Vec<Marker> = (points.iter())
             .map(|&p| mechanism.any_marker(p).ok_or(BatchError::NoSuchPoint(p)))
             .collect::<Result<_, _>>()?;
         Ok(Self {
             motion,
-            markers,
             set: InstructionSet::detect(),
             stretches: stretches(motion),
             needs_guess: motion.plan.steps.iter().any(Step::needs_guess),
+            order: Order::new(mechanism, motion.plan, &markers),
+            markers,
         })
     }
 

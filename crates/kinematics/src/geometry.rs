@@ -60,7 +60,7 @@ impl<T: Number> Geometry<T> {
             seat_angles: vec![zero; mechanism.model.links.len()],
             markers: vec![[zero; 2]; mechanism.markers.len()],
             lines: vec![along; mechanism.lines.len()],
-            angles: vec![[zero; 2]; mechanism.angles.len()],
+            angles: vec![[T::one(), zero]; mechanism.angles.len()],
             gears: vec![gear; mechanism.gears.len()],
         };
         it.update(mechanism, parameters);
@@ -68,11 +68,27 @@ impl<T: Number> Geometry<T> {
     }
 
     /// Evaluates the dimensions anew, in the same storage.
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub(crate) fn update(&mut self, mechanism: &Mechanism, parameters: &[T]) {
-        let scalar = |expr: &kempe_model::Scalar| kempe_model::value(expr, parameters);
         for (index, link) in mechanism.model.links.iter().enumerate() {
             link.evaluate_into(parameters, &mut self.markers[mechanism.markers_of(index)]);
         }
+        let is_plain = mechanism.lines.is_empty()
+            && mechanism.gears.is_empty()
+            && mechanism.seats.iter().all(|seat| seat.weld.is_none())
+            && mechanism
+                .angles
+                .iter()
+                .all(|angle| angle.is_zero(mechanism));
+        if !is_plain {
+            self.update_relations(mechanism, parameters);
+        }
+    }
+
+    /// Evaluates what stands between links: welds, lines, angles and gears.
+    #[inline(never)]
+    fn update_relations(&mut self, mechanism: &Mechanism, parameters: &[T]) {
+        let scalar = |expr: &kempe_model::Scalar| kempe_model::value(expr, parameters);
         if mechanism.seats.iter().any(|seat| seat.weld.is_some()) {
             self.seat_links(mechanism, &scalar);
         }
@@ -97,6 +113,10 @@ impl<T: Number> Geometry<T> {
             };
         }
         for (index, angle) in mechanism.angles.iter().enumerate() {
+            if angle.is_zero(mechanism) {
+                // As it was made.
+                continue;
+            }
             let value = match angle.value {
                 kempe_units::Expr::Const(0.0) => Pose::identity(),
                 _ => Pose::from_angle(T::zero(), T::zero(), scalar(&angle.value)),

@@ -40,16 +40,18 @@ impl<'d, T: Number> Known<'d, T> {
         }
     }
 
-    /// The pose of its body with this direction, when it lies at `world`.
+    /// Where the origin of its body is with this direction, when it lies at `world`.
     #[cfg_attr(not(debug_assertions), inline(always))]
-    pub(crate) fn pinned(&self, [c, s]: [T; 2], world: [T; 2]) -> Pose<T> {
+    pub(crate) fn origin(&self, [c, s]: [T; 2], world: [T; 2]) -> [T; 2] {
         let p = self.p;
-        let [x, y] = match self.spot {
+        match self.spot {
             Spot::Origin => world,
             Spot::Axis => [world[0] - c * p[0], world[1] - s * p[0]],
-            Spot::Frame | Spot::Anywhere => return Pose::pinned(c, s, *p, world),
-        };
-        Pose { x, y, c, s }
+            Spot::Frame | Spot::Anywhere => {
+                let pose = Pose::pinned(c, s, *p, world);
+                [pose.x, pose.y]
+            }
+        }
     }
 
     fn on_axis(&self) -> bool {
@@ -64,6 +66,7 @@ struct Side<'d, T> {
     at: Known<'d, T>,
     /// Both pins lie on the body's x axis.
     on_axis: bool,
+    wanted: bool,
 }
 
 impl<'d, T: Number> Side<'d, T> {
@@ -78,6 +81,7 @@ impl<'d, T: Number> Side<'d, T> {
             outer,
             at: Known::new(design, body.at),
             on_axis: outer.on_axis() && inner.on_axis(),
+            wanted: body.wanted,
         }
     }
 
@@ -89,7 +93,9 @@ impl<'d, T: Number> Side<'d, T> {
             true => [own[0] * seen[0], own[0] * seen[1]],
             false => [dot(own, seen), cross(own, seen)],
         };
-        self.outer.pinned(direction, world)
+        let [x, y] = self.outer.origin(direction, world);
+        let [c, s] = direction;
+        Pose { x, y, c, s }
     }
 }
 
@@ -110,15 +116,19 @@ impl<'d, T: Number> DyadOf<'d, T> {
         }
     }
 
-    /// Places both bodies; returns the determinant.
+    /// Places those of its bodies that are wanted; returns the determinant.
     #[cfg_attr(not(debug_assertions), inline(always))]
     pub(crate) fn solve(&self, state: &mut State<T>, sign: f64) -> T {
         let Self { a, b, constants: k } = self;
         let poses = &mut state.poses[..];
         let (wa, wb) = (a.at.place(poses), b.at.place(poses));
         let (da, db, h) = dyad(k, sub(wb, wa), sign);
-        poses[a.body] = a.pose([k[0], k[1]], da, wa);
-        poses[b.body] = b.pose([k[2], k[3]], db, wb);
+        if a.wanted {
+            poses[a.body] = a.pose([k[0], k[1]], da, wa);
+        }
+        if b.wanted {
+            poses[b.body] = b.pose([k[2], k[3]], db, wb);
+        }
         h
     }
 }

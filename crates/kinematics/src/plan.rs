@@ -188,6 +188,8 @@ pub struct DyadBody {
     pub at: Marker,
     /// Its pin to the other body.
     pub inner: Marker,
+    /// Whether somebody looks at its pose.
+    pub wanted: bool,
 }
 
 /// The RRR dyad: two bodies pinned to each other and each to a placed point.

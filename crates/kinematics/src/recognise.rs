@@ -316,7 +316,12 @@ fn rrr(i: BodyId, j: BodyId, constraints: &[&Constraint], constants: usize) -> O
     }
     let inner = constraints.iter().find_map(|c| pin_between(i, j, c))?;
     let (outer_i, outer_j) = (outer_pin(i, j, constraints)?, outer_pin(j, i, constraints)?);
-    let body = |(outer, at), inner| DyadBody { outer, at, inner };
+    let body = |(outer, at), inner| DyadBody {
+        outer,
+        at,
+        inner,
+        wanted: true,
+    };
     Some(Step::Dyad(Dyad {
         a: body(outer_i, inner.0),
         b: body(outer_j, inner.1),

@@ -13,13 +13,15 @@ use crate::pose::{Pose, dot, sub};
 use crate::state::{Branch, Design, State};
 use crate::swing::{cross_loci, swing, swing_line};
 
-/// Solves one step for every state and keeps its determinant. A macro, because a closure would not be compiled for the
-/// caller's vector instructions.
+/// Solves one step for every state and, in `ALL`, keeps its determinant. A macro, because a closure would not be
+/// compiled for the caller's vector instructions.
 macro_rules! for_each {
     ($states:ident, $index:ident, |$state:ident| $solve:expr) => {
         for $state in $states.iter_mut() {
             let determinant = $solve;
-            $state.determinants[$index] = determinant;
+            if ALL {
+                $state.determinants[$index] = determinant;
+            }
         }
     };
 }
@@ -41,24 +43,27 @@ impl Plan {
         branch: &Branch,
         state: &mut State<T>,
     ) {
-        self.solve_all::<T, true>(mechanism, design, branch, std::slice::from_mut(state));
+        let states = std::slice::from_mut(state);
+        self.solve_all::<T, true>(0..self.steps.len(), mechanism, design, branch, states);
     }
 
-    /// [`Plan::solve`] for several states of one design on one branch. Every step is run for all states before the
-    /// next: it is taken apart once, and while one state waits for its roots and quotients the processor goes on with
+    /// These steps of [`Plan::solve`] for several states of one design on one branch. Each is run for all states before
+    /// the next: it is taken apart once, and while one state waits for its roots and quotients the processor goes on with
     /// the others.
     ///
-    /// Without `GUESSES` it is compiled without the steps that [need guesses](Step::needs_guess).
+    /// Without `ALL` it is compiled without the steps that [need guesses](Step::needs_guess), and keeps no determinants.
     #[cfg_attr(not(debug_assertions), inline(always))]
-    pub(crate) fn solve_all<T: PlanNumber, const GUESSES: bool>(
+    pub(crate) fn solve_all<T: PlanNumber, const ALL: bool>(
         &self,
+        steps: impl IntoIterator<Item = usize>,
         mechanism: &Mechanism,
         design: &Design<T>,
         branch: &Branch,
         states: &mut [State<T>],
     ) {
-        for (index, &sign) in branch.signs.iter().enumerate() {
-            self.run_step::<T, GUESSES>(index, sign, mechanism, design, branch, states);
+        for index in steps {
+            let sign = branch.signs[index];
+            self.run_step::<T, ALL>(index, sign, mechanism, design, branch, states);
         }
     }
 
@@ -77,7 +82,7 @@ impl Plan {
     }
 
     #[cfg_attr(not(debug_assertions), inline(always))]
-    fn run_step<T: PlanNumber, const GUESSES: bool>(
+    fn run_step<T: PlanNumber, const ALL: bool>(
         &self,
         index: usize,
         sign: f64,
@@ -95,27 +100,36 @@ impl Plan {
                 reversed,
             } => {
                 let no_offset = mechanism.angles[offset as usize].is_zero(mechanism);
-                for_each!(states, index, |state| {
-                    let by = match input {
-                        Some(drive) if no_offset => {
+                match (input, from) {
+                    (Some(drive), BodyId::GROUND) if no_offset => {
+                        for_each!(states, index, |state| {
                             let q = &state.inputs[drive.index()];
-                            [q.c, if reversed { -q.s } else { q.s }]
-                        }
-                        _ => turn_by(design, state, offset, input, reversed),
-                    };
-                    let direction = match from {
-                        BodyId::GROUND => by,
-                        _ => state.poses[from.index()].turn(by),
-                    };
-                    point(state, body, direction)
-                });
+                            let by = [q.c, if reversed { -q.s } else { q.s }];
+                            point(state, body, by)
+                        });
+                    }
+                    _ => for_each!(states, index, |state| {
+                        let by = match input {
+                            Some(drive) if no_offset => {
+                                let q = &state.inputs[drive.index()];
+                                [q.c, if reversed { -q.s } else { q.s }]
+                            }
+                            _ => turn_by(design, state, offset, input, reversed),
+                        };
+                        let direction = match from {
+                            BodyId::GROUND => by,
+                            _ => state.poses[from.index()].turn(by),
+                        };
+                        point(state, body, direction)
+                    }),
+                }
             }
             &Step::Pin { own, at } => {
                 let (pin, at) = (Known::new(design, own), Known::new(design, at));
                 for_each!(states, index, |state| {
                     let world = at.place(&state.poses);
                     let pose = &mut state.poses[own.body.index()];
-                    *pose = pin.pinned([pose.c, pose.s], world);
+                    [pose.x, pose.y] = pin.origin([pose.c, pose.s], world);
                     T::one()
                 });
             }
@@ -124,15 +138,15 @@ impl Plan {
                 for_each!(states, index, |state| step.solve(state, sign));
             }
             _ if const { size_of::<T>() > IN_PLACE } => {
-                self.call_step::<T, GUESSES>(index, sign, mechanism, design, branch, states);
+                self.call_step::<T, ALL>(index, sign, mechanism, design, branch, states);
             }
-            _ => self.run_rarer::<T, GUESSES>(index, sign, mechanism, design, branch, states),
+            _ => self.run_rarer::<T, ALL>(index, sign, mechanism, design, branch, states),
         }
     }
 
     /// [`Plan::run_rarer`], called.
     #[inline(never)]
-    fn call_step<T: PlanNumber, const GUESSES: bool>(
+    fn call_step<T: PlanNumber, const ALL: bool>(
         &self,
         index: usize,
         sign: f64,
@@ -141,12 +155,12 @@ impl Plan {
         branch: &Branch,
         states: &mut [State<T>],
     ) {
-        self.run_rarer::<T, GUESSES>(index, sign, mechanism, design, branch, states);
+        self.run_rarer::<T, ALL>(index, sign, mechanism, design, branch, states);
     }
 
     /// The steps of fewer mechanisms.
     #[cfg_attr(not(debug_assertions), inline(always))]
-    fn run_rarer<T: PlanNumber, const GUESSES: bool>(
+    fn run_rarer<T: PlanNumber, const ALL: bool>(
         &self,
         index: usize,
         sign: f64,
@@ -157,7 +171,7 @@ impl Plan {
     ) {
         match &self.steps[index] {
             Step::Swing(step) => {
-                for_each!(states, index, |state| swing::<T, GUESSES>(
+                for_each!(states, index, |state| swing::<T, ALL>(
                     design, branch, state, step, sign
                 ));
             }
@@ -168,7 +182,7 @@ impl Plan {
                 carriers,
                 conditions,
             } => for_each!(states, index, |state| {
-                cross_loci::<T, GUESSES>(design, branch, state, (carriers, conditions), sign)
+                cross_loci::<T, ALL>(design, branch, state, (carriers, conditions), sign)
             }),
             &Step::TwoPins { a, at_a, b, at_b } => for_each!(states, index, |state| {
                 let (wa, wb) = (state.place(design, at_a), state.place(design, at_b));
@@ -186,16 +200,16 @@ impl Plan {
                 own,
                 at,
                 constraint,
-            } if GUESSES => for_each!(states, index, |state| {
+            } if ALL => for_each!(states, index, |state| {
                 roll(mechanism, design, branch, state, (own, at, constraint))
             }),
-            &Step::Gear { body, constraint } if GUESSES => for_each!(states, index, |state| {
+            &Step::Gear { body, constraint } if ALL => for_each!(states, index, |state| {
                 turn_gear(mechanism, design, branch, state, (body, constraint))
             }),
-            &Step::Newton { block } if GUESSES => for_each!(states, index, |state| {
+            &Step::Newton { block } if ALL => for_each!(states, index, |state| {
                 T::solve_newton(&self.newton_blocks[block], mechanism, design, branch, state)
             }),
-            // Callers without `GUESSES` have made sure that there are none, and the common steps are done.
+            // Callers without `ALL` have made sure that there are none, and the common steps are done.
             _ => states.iter_mut().for_each(lose),
         }
     }

@@ -46,13 +46,14 @@ impl<T: Number> Design<T> {
     }
 
     /// Evaluates the dimensions anew for other parameter values, in the same storage; not the plain ones.
-    #[inline(never)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub(crate) fn update(&mut self, mechanism: &Mechanism, plan: &Plan, parameters: &[T]) {
         self.geometry.update(mechanism, parameters);
         self.prepare(plan);
     }
 
     /// Fills the closed forms' constants from the geometry.
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn prepare(&mut self, plan: &Plan) {
         let geometry = &self.geometry;
         for step in &plan.steps {

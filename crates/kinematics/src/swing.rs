@@ -11,7 +11,7 @@ use crate::state::{Branch, Design, State};
 
 /// What a condition says about the point its carrier holds. The carrier's angle must be known.
 #[cfg_attr(not(debug_assertions), inline(always))]
-fn locus_of<T: Number, const GUESSES: bool>(
+fn locus_of<T: Number, const ALL: bool>(
     design: &Design<T>,
     branch: &Branch,
     state: &State<T>,
@@ -43,7 +43,7 @@ fn locus_of<T: Number, const GUESSES: bool>(
                 _ => Locus::Line(left(along), dot(left(along), from)),
             }
         }
-        Condition::Roll { .. } if GUESSES => rolling(design, branch, state, carrier, condition),
+        Condition::Roll { .. } if ALL => rolling(design, branch, state, carrier, condition),
         Condition::Roll { .. } => Locus::Line([T::zero(); 2], T::from_f64(f64::NAN)),
         Condition::Radius { own, center, input } => {
             let center = sub(
@@ -118,7 +118,7 @@ fn carry<T: Number>(design: &Design<T>, state: &mut State<T>, carrier: Carrier, 
 
 /// A point from two conditions on translating bodies.
 #[cfg_attr(not(debug_assertions), inline(always))]
-pub(crate) fn cross_loci<T: Number, const GUESSES: bool>(
+pub(crate) fn cross_loci<T: Number, const ALL: bool>(
     design: &Design<T>,
     branch: &Branch,
     state: &mut State<T>,
@@ -127,7 +127,7 @@ pub(crate) fn cross_loci<T: Number, const GUESSES: bool>(
 ) -> T {
     let mut loci = [Locus::Line([T::zero(); 2], T::zero()); 2];
     for (locus, (carrier, condition)) in loci.iter_mut().zip(carriers.iter().zip(conditions)) {
-        *locus = locus_of::<T, GUESSES>(design, branch, state, *carrier, *condition);
+        *locus = locus_of::<T, ALL>(design, branch, state, *carrier, *condition);
     }
     let (x, determinant) = meet(loci[0], loci[1], sign);
     for carrier in carriers {
@@ -138,7 +138,7 @@ pub(crate) fn cross_loci<T: Number, const GUESSES: bool>(
 
 /// A body pinned to a placed point, its angle from a condition on its tip.
 #[cfg_attr(not(debug_assertions), inline(always))]
-pub(crate) fn swing<T: Number, const GUESSES: bool>(
+pub(crate) fn swing<T: Number, const ALL: bool>(
     design: &Design<T>,
     branch: &Branch,
     state: &mut State<T>,
@@ -158,7 +158,7 @@ pub(crate) fn swing<T: Number, const GUESSES: bool>(
     let square = dot(arm, arm);
     // On the body itself the condition acts at the tip, whatever the body's angle.
     let locus = match (partner, condition) {
-        (Some(carrier), _) => locus_of::<T, GUESSES>(design, branch, state, carrier, condition),
+        (Some(carrier), _) => locus_of::<T, ALL>(design, branch, state, carrier, condition),
         (None, Condition::Radius { center, input, .. }) => Locus::Circle(
             place(design, state, center),
             state.inputs[input.index()].value,

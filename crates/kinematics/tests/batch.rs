@@ -124,6 +124,13 @@ fn sweeps_have_the_same_bits_one_by_one_in_lanes_and_in_parallel() {
             assert_eq!(batch.sweep(&parameters, &mut out), Ok(closed), "{name}");
             assert_same(&name, &out, &expected);
         }
+        // A batch of one point leaves out bodies that do not carry it.
+        for (j, &point) in points.iter().enumerate() {
+            let batch = Batch::new(&motion, &[point]).unwrap();
+            let mut out = vec![0.0; 2 * n];
+            assert_eq!(batch.sweep(&parameters, &mut out), Ok(closed), "{name}");
+            assert_same(&name, &out, &expected[2 * j * n..2 * (j + 1) * n]);
+        }
     }
 }
 
@@ -252,6 +259,20 @@ fn designs_have_the_same_bits_one_by_one_in_lanes_and_in_parallel() {
                     Ok(closed)
                 );
                 assert_same(&name, &out, &expected);
+            }
+        }
+        for (j, &point) in points.iter().enumerate() {
+            let batch = Batch::new(&motion, &[point]).unwrap();
+            let designs = Designs {
+                values: &by_design,
+                count,
+                layout: Layout::ByDesign,
+            };
+            let mut out = vec![0.0; 2 * count * at.len()];
+            assert_eq!(batch.designs(designs, &at, &mut out), Ok(closed), "{name}");
+            for (k, out) in out.chunks(2 * count).enumerate() {
+                let first = (k * columns + 2 * j) * count;
+                assert_same(&name, out, &expected[first..first + 2 * count]);
             }
         }
     }

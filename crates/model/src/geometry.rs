@@ -7,7 +7,20 @@ use crate::model::{Center, Link, Model, ParameterId, Place, Scalar};
 /// The value of a dimension, given the parameters' values in order.
 ///
 /// Shape: one number in SI. A parameter the slice does not hold counts as NaN.
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub fn value<T: Number>(scalar: &Scalar, parameters: &[T]) -> T {
+    match scalar {
+        Scalar::Const(value) => T::from_f64(*value),
+        Scalar::Leaf(id) => match parameters.get(id.index()) {
+            Some(value) => *value,
+            None => T::from_f64(f64::NAN),
+        },
+        _ => computed(scalar, parameters),
+    }
+}
+
+/// [`value`] of an expression that is more than a number or a parameter.
+fn computed<T: Number>(scalar: &Scalar, parameters: &[T]) -> T {
     scalar.eval(&mut |id: &ParameterId| {
         parameters
             .get(id.index())
@@ -56,9 +69,13 @@ impl Link {
     }
 
     /// [`Link::evaluate`] into storage with room for every point.
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn evaluate_into<T: Number>(&self, parameters: &[T], out: &mut [[T; 2]]) {
         for (index, point) in self.points.iter().enumerate().take(out.len()) {
-            out[index] = place(&point.place, &out[..index], parameters);
+            out[index] = match &point.place {
+                Place::Cartesian { x, y } => [value(x, parameters), value(y, parameters)],
+                other => place(other, &out[..index], parameters),
+            };
         }
     }
 
@@ -83,6 +100,7 @@ impl Link {
 }
 
 /// Coordinates of a place, given those of the link's earlier points.
+#[inline(never)]
 pub(crate) fn place<T: Number>(at: &Place, placed: &[[T; 2]], parameters: &[T]) -> [T; 2] {
     let nowhere = [T::from_f64(f64::NAN); 2];
     match at {

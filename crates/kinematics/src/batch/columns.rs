@@ -26,13 +26,14 @@ pub(super) fn write_places<T: Wide<W>, const W: usize>(
     targets: &[Target],
     columns: &mut [&mut [f64]],
 ) -> usize {
-    let mut together = Lanes([0.0; W]);
+    let spares = closing_spares(batch, design);
+    let mut together = spares;
     let mut wanted = all_lanes(W);
     for (state, target) in states.iter().zip(targets) {
-        together += closing(state, |x| x.order(0));
+        together += closing_wanted(batch, state);
         wanted &= target.wanted;
     }
-    if wanted != all_lanes(W) || !all_zero(&together.0) {
+    if wanted != all_lanes(W) || !all_zero(&(together * 0.0).0) {
         return write_wanted(batch, design, states, targets, columns);
     }
     for (j, marker) in batch.markers.iter().enumerate() {
@@ -64,8 +65,8 @@ fn write_wanted<T: Wide<W>, const W: usize>(
 ) -> usize {
     let mut closed = 0;
     for (state, target) in states.iter().zip(targets) {
-        let closing = closing(state, |x| x.order(0)).0;
-        let closes = lanes_where(|lane| closing[lane] == 0.0, W);
+        let closing = closing_spares(batch, design) + closing_wanted(batch, state);
+        let closes = lanes_where(|lane| closing.0[lane].is_finite(), W);
         closed += (target.wanted & closes).count_ones() as usize;
         for (j, marker) in batch.markers.iter().enumerate() {
             let place = state.place(design, *marker);
@@ -90,14 +91,36 @@ fn write_wanted<T: Wide<W>, const W: usize>(
     closed
 }
 
-/// Whether all are zero. Called, so that the lanes go to memory as whole registers.
+/// Finite in every lane in which the bodies that somebody looks at have a pose.
+#[cfg_attr(not(debug_assertions), inline(always))]
+fn closing_wanted<T: Wide<W>, const W: usize>(batch: &Batch<'_>, state: &State<T>) -> Lanes<W> {
+    let mut sum = Lanes([0.0; W]);
+    for body in &batch.order.wanted {
+        let pose = &state.poses[*body];
+        sum += pose.x.order(0) + pose.c.order(0);
+    }
+    sum
+}
+
+/// Finite in every lane in which the other bodies have a pose if those have one with which they are dyads.
+#[cfg_attr(not(debug_assertions), inline(always))]
+fn closing_spares<T: Wide<W>, const W: usize>(batch: &Batch<'_>, design: &Design<T>) -> Lanes<W> {
+    let mut sum = Lanes([0.0; W]);
+    for &(dyad, first) in &batch.order.spares {
+        let own = &design.constants[dyad][first..first + 2];
+        sum += own[0].order(0) + own[1].order(0);
+    }
+    sum
+}
+
+/// Whether all are zero, of either sign. Called, so that the lanes go to memory as whole registers.
 #[inline(never)]
 fn all_zero(closing: &[f64]) -> bool {
     let mut bits = 0;
     for x in closing {
         bits |= x.to_bits();
     }
-    bits == 0
+    bits << 1 == 0
 }
 
 /// The lanes for which something holds, one bit for each.
@@ -144,12 +167,12 @@ pub(super) fn check_length(
     })
 }
 
-/// Zero in every lane in which every body has a pose, NaN in the others. `part` takes out of a number what counts.
+/// Whether every body has a pose.
 #[cfg_attr(not(debug_assertions), inline(always))]
-pub(super) fn closing<T: Number, U: Number>(state: &State<T>, part: impl Fn(T) -> U) -> U {
-    let mut sum = U::zero();
+pub(super) fn closes<T: Number>(state: &State<T>) -> bool {
+    let mut sum = 0.0;
     for pose in &state.poses[1..] {
-        sum += part(pose.x) + part(pose.c);
+        sum += pose.x.value() + pose.c.value();
     }
-    sum * 0.0
+    sum.is_finite()
 }

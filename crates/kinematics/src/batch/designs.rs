@@ -152,17 +152,22 @@ pub(super) fn solve_guessed(
 }
 
 #[cfg_attr(not(debug_assertions), inline(always))]
-fn in_lanes<const W: usize, const GUESSES: bool>(
+fn in_lanes<const W: usize, const ALL: bool>(
     batch: &Batch<'_>,
     designs: Designs<'_>,
     range: Range<usize>,
     runs: &[Vec<Place<'_>>],
     out: &mut [&mut [f64]],
 ) -> usize {
-    let (mechanism, plan) = (batch.motion.mechanism, batch.motion.plan);
+    let (mechanism, order) = (batch.motion.mechanism, &batch.order);
+    let (plan, driven, rest) = (&order.plan, &order.driven, &order.rest);
     let mut states = vec![State::<Lanes<W>>::new(mechanism, plan); STATES];
+    let design = &batch.motion.design.lift::<Lanes<W>>();
+    let neutral = &Branch::neutral(mechanism, plan);
+    let fixed = order.fixed.iter().copied();
+    plan.solve_all::<_, ALL>(fixed, mechanism, design, neutral, &mut states);
     let together = PREPARED.min(range.len()).div_ceil(W);
-    let mut prepared = vec![batch.motion.design.lift::<Lanes<W>>(); together];
+    let mut prepared = vec![design.clone(); together];
     let mut parameters = vec![Lanes::zero(); mechanism.model.parameters.len()];
     let columns = batch.columns();
     let mut closed = 0;
@@ -173,7 +178,7 @@ fn in_lanes<const W: usize, const GUESSES: bool>(
                 *parameter = designs.lanes(k, range.start + row, &range);
             }
             design.update(mechanism, plan, &parameters);
-            if GUESSES {
+            if ALL {
                 // Newton's method wants each of them on its own as well.
                 let lane = |lane: usize| move |x: Lanes<W>| x.lane(lane);
                 design.plain = (0..W).map(|k| design.geometry.map(lane(k))).collect();
@@ -192,12 +197,14 @@ fn in_lanes<const W: usize, const GUESSES: bool>(
                     };
                 }
             }
+            let branch = run[0].branch;
+            plan.solve_all::<_, ALL>(driven.iter().copied(), mechanism, design, branch, states);
             for (row, design) in rows.clone().zip(&prepared) {
                 for target in &mut targets {
                     target.row = row;
                     target.wanted = all_lanes(W.min(range.len() - row));
                 }
-                plan.solve_all::<_, GUESSES>(mechanism, design, run[0].branch, states);
+                plan.solve_all::<_, ALL>(rest.iter().copied(), mechanism, design, branch, states);
                 closed += write_places(batch, design, states, &targets, out);
             }
         }

@@ -3,7 +3,7 @@
 use kempe_number::{InstructionSet, Jet, Lanes, Number, multiversion};
 
 use crate::batch::Batch;
-use crate::batch::columns::{Target, all_lanes, closing, write_places};
+use crate::batch::columns::{Target, all_lanes, closes, write_places};
 use crate::batch::stretch::{find_stretch, stretches};
 use crate::batch::wide::{Single, Wide};
 use crate::drive_path::DrivePath;
@@ -47,7 +47,11 @@ fn sweep_lanes<T: Wide<W>, const W: usize, const M: usize>(
 ) -> usize {
     let motion = batch.motion;
     let (mechanism, design) = (motion.mechanism, &motion.design.lift::<T>());
+    let order = &batch.order;
     let mut states = held_states::<T>(motion, M);
+    let neutral = &Branch::neutral(mechanism, &order.plan);
+    let fixed = order.fixed.iter().copied();
+    (order.plan).solve_all::<T, false>(fixed, mechanism, design, neutral, &mut states);
     let mut padded = [[0.0; W]; M];
     let (mut cursor, mut closed) = (0, 0);
     for (block, part) in parameters.chunks(M * W).enumerate() {
@@ -77,7 +81,8 @@ fn sweep_lanes<T: Wide<W>, const W: usize, const M: usize>(
         }
         while let Some(targets) = next_stretch(batch, at, &mut wanted, &mut cursor, columns) {
             let branch = &batch.stretches[cursor].branch;
-            (motion.plan).solve_all::<T, false>(mechanism, design, branch, states);
+            let steps = order.driven.iter().chain(&order.rest).copied();
+            (order.plan).solve_all::<T, false>(steps, mechanism, design, branch, states);
             closed += write_places(batch, design, states, &targets, columns);
         }
     }
@@ -236,10 +241,10 @@ pub fn sweep_states<T: PlanNumber>(
         } else {
             &stretch.branch
         };
-        plan.solve_all::<T, true>(mechanism, design, branch, &mut states[..count]);
+        let steps = 0..plan.steps.len();
+        plan.solve_all::<T, true>(steps, mechanism, design, branch, &mut states[..count]);
         for state in &states[..count] {
-            let closes = closing(state, T::value) == 0.0;
-            each(row, closes.then_some(state));
+            each(row, closes(state).then_some(state));
             row += 1;
         }
     }
