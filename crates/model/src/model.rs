@@ -78,6 +78,8 @@ pub struct Model {
     pub measures: Vec<NamedMeasure>,
     /// Studies in file order.
     pub studies: Vec<Study>,
+    /// Studies that are skipped: this version has not got their kind.
+    pub announced: Vec<AnnouncedStudy>,
 }
 
 /// Units in which bare numbers of the file are read and results are shown: m and deg where the file names none.
@@ -494,6 +496,15 @@ pub struct NamedMeasure {
     pub needs_forces: bool,
     /// Where it stands in the file.
     pub span: Span,
+}
+
+/// A study of a kind that the language keeps for later versions.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct AnnouncedStudy {
+    /// Name.
+    pub name: String,
+    /// Its kind, as in `kind = "clearance"`.
+    pub kind: String,
 }
 
 /// A question asked of the model.

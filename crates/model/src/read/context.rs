@@ -129,6 +129,7 @@ impl<'a> Context<'a> {
                 assembly: Vec::new(),
                 measures: Vec::new(),
                 studies: Vec::new(),
+                announced: Vec::new(),
             },
         }
     }

@@ -164,6 +164,17 @@ const RESERVED: &[&str] = &[
     "shaking_moment",
 ];
 
+/// Columns that every table has, or every table of a circuit or of forces: what is a column itself is not called so.
+const COLUMNS: &[&str] = &[
+    "arc",
+    "closure",
+    "smallest_singular_value",
+    "route_difference",
+    "equilibrium_residual",
+    "condition",
+    "note",
+];
+
 fn declare(cx: &mut Context<'_>, key: &Key, meaning: Meaning) {
     let name = key.name.as_str();
     if !is_small_name(name) {
@@ -198,6 +209,19 @@ fn declare(cx: &mut Context<'_>, key: &Key, meaning: Meaning) {
                 format!("`{name}` already means something in every file"),
             )
             .help("ask for it by this name, or choose another one"),
+        );
+    } else if COLUMNS.contains(&name) && matches!(meaning, Meaning::Drive(_) | Meaning::Measure(_))
+    {
+        cx.push(
+            Diagnostic::error(
+                "bad-name",
+                format!("`{name}` cannot name {}", meaning.what()),
+            )
+            .at(
+                key.span.clone(),
+                format!("tables have a column `{name}` of their own"),
+            )
+            .help(format!("choose another name, such as `my_{name}`")),
         );
     }
     if let Some((other, place)) = cx.names.get(name).cloned() {

@@ -1,10 +1,12 @@
 //! `[studies.NAME]`: what is asked of the model.
 
+use std::collections::BTreeMap;
+
 use kempe_units::{Builtin, Dimension, Expr};
 
 use crate::diagnostic::Diagnostic;
 use crate::document::{Key, Node, Table, Value};
-use crate::model::{Column, LawPiece, Model, MotionStudy, Rows, Scalar, Study, StudyKind};
+use crate::model::{AnnouncedStudy, Column, LawPiece, Model, MotionStudy, Rows, Scalar, Study, StudyKind};
 use crate::read::choices;
 use crate::read::context::Context;
 use crate::read::entry::Entry;
@@ -57,6 +59,7 @@ pub(crate) const MAX_ROWS: usize = 10_000_000;
 
 /// Reads all studies; without any, there is one motion study called `motion`.
 pub(crate) fn read(cx: &mut Context<'_>, entries: &[&(Key, Node)]) {
+    tell_clashes(cx, entries);
     for entry in entries {
         let (key, _) = entry;
         if let Some(kind) = read_study(cx, entry) {
@@ -82,19 +85,76 @@ pub(crate) fn read(cx: &mut Context<'_>, entries: &[&(Key, Node)]) {
     }
 }
 
+/// Bytes that a study's name may have, so that its files' names stay below what file systems take.
+const MAX_NAME: usize = 100;
+
+/// Names that stand for devices on Windows, whatever ending they have.
+const DEVICES: &[&str] = &["con", "prn", "aux", "nul"];
+
+/// Devices that are numbered from 0 to 9.
+const NUMBERED_DEVICES: &[&str] = &["com", "lpt"];
+
+/// Why a study's name cannot be a file's name too, as a remedy.
+fn no_file_name(name: &str) -> Option<String> {
+    let known = |c: char| c.is_alphanumeric() || c == '_' || c == '-';
+    if name.is_empty() || !name.chars().all(known) {
+        return Some("its name becomes a file's name: letters, digits, _ and -".to_owned());
+    }
+    if name.starts_with('-') {
+        let rest = name.trim_start_matches('-');
+        let such = if rest.is_empty() { "turn" } else { rest };
+        return Some(format!(
+            "on the command line it would be an option: write `{such}`"
+        ));
+    }
+    if name.len() > MAX_NAME {
+        return Some(format!(
+            "its name becomes a file's name: at most {MAX_NAME} bytes"
+        ));
+    }
+    let small = name.to_lowercase();
+    let numbered = NUMBERED_DEVICES.iter().any(|device| {
+        let number = small.strip_prefix(device);
+        number.is_some_and(|n| n.len() == 1 && n.chars().all(|c| c.is_ascii_digit()))
+    });
+    (numbered || DEVICES.contains(&small.as_str())).then(|| {
+        format!("its name becomes a file's name, and Windows has a device called so: write `{name}_study`")
+    })
+}
+
+/// Studies whose files would be the same where capitals do not count in file names.
+fn tell_clashes(cx: &mut Context<'_>, entries: &[&(Key, Node)]) {
+    let mut known: BTreeMap<String, &Key> = BTreeMap::new();
+    for (key, _) in entries {
+        match known.entry(key.name.to_lowercase()) {
+            std::collections::btree_map::Entry::Vacant(place) => {
+                place.insert(key);
+            }
+            std::collections::btree_map::Entry::Occupied(other) => cx.push(
+                Diagnostic::error(
+                    "name-clash",
+                    format!(
+                        "studies `{}` and `{}` write the same files",
+                        other.get().name,
+                        key.name
+                    ),
+                )
+                .at(key.span.clone(), "")
+                .see(other.get().span.clone(), "this one differs in capitals only")
+                .help("file names differ by more than capitals: rename one of them"),
+            ),
+        }
+    }
+}
+
 fn read_study(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<StudyKind> {
     let (key, node) = entry;
     let place = format!("study `{}`", key.name);
-    if key.name.is_empty()
-        || !key
-            .name
-            .chars()
-            .all(|c| c.is_alphanumeric() || c == '_' || c == '-')
-    {
+    if let Some(help) = no_file_name(&key.name) {
         cx.push(
             Diagnostic::error("bad-name", format!("`{}` cannot name a study", key.name))
                 .at(key.span.clone(), "")
-                .help("its name becomes a file's name: letters, digits, _ and -"),
+                .help(help),
         );
     }
     let table = cx.table(node, &place, EXAMPLE)?;
@@ -110,6 +170,10 @@ fn read_study(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<StudyKind> {
             .at(kind.span.clone(), "")
             .help("the other studies of the file run without it"),
         );
+        cx.model.announced.push(AnnouncedStudy {
+            name: key.name.clone(),
+            kind: name.to_owned(),
+        });
         return None;
     }
     let Some((_, keys, example)) = KINDS.iter().find(|(known, ..)| *known == name) else {
@@ -270,7 +334,8 @@ fn step(cx: &mut Context<'_>, node: &Node, place: &str) -> Option<Rows> {
         .as_ref()
         .and_then(|(i, ..)| cx.model.drives.get(*i))
         .map(|d| d.dimension);
-    let (step, dimension) = cx.inferred(node, of_drive.unwrap_or(Dimension::TIME))?;
+    // Of no drive, a bare number is a step of nothing: it is not taken for seconds.
+    let (step, dimension) = cx.inferred(node, of_drive.unwrap_or(Dimension::NONE))?;
     let size = cx.number(&step);
     if size <= 0.0 {
         cx.push(
