@@ -68,11 +68,24 @@ impl Asked {
                 dimension: m.dimension,
             })
         };
+        let constant = constants(model);
+        let is_constant =
+            |q: &Quantity| is_constant(&q.measure, &|index| constant.get(index).copied());
         let mut asked = Self {
-            scalars: named().filter(|q| is_constant(model, &q.measure)).collect(),
+            scalars: named().filter(|q| is_constant(q)).collect(),
             ..Self::default()
         };
         for column in &study.columns {
+            // Time and drives are the first columns of every table; along a circuit there is no time.
+            let there = match column.measure {
+                Expr::Leaf(Leaf::Drive(_)) => true,
+                Expr::Leaf(Leaf::Time) => !study.circuit,
+                _ => false,
+            };
+            let repeated = asked.columns.iter().any(|c| c.measure == column.measure);
+            if there || repeated {
+                continue;
+            }
             asked.add(Quantity {
                 name: column.name.clone(),
                 measure: column.measure.clone(),
@@ -81,7 +94,7 @@ impl Asked {
         }
         if study.columns.is_empty() {
             named()
-                .filter(|q| !is_constant(model, &q.measure))
+                .filter(|q| !is_constant(q))
                 .for_each(|q| asked.add(q));
         }
         for plot in &study.plots {
@@ -125,14 +138,37 @@ fn hodograph_axes(hodograph: &Hodograph) -> [Quantity; 2] {
     ]
 }
 
-/// Whether a measure is one number over the whole motion.
-fn is_constant(model: &Model, measure: &Measure) -> bool {
+/// Which of the named measures are one number over the whole motion.
+fn constants(model: &Model) -> Vec<bool> {
+    fn find(model: &Model, index: usize, known: &mut Vec<Option<bool>>) -> bool {
+        if let Some(known) = known.get(index).copied().flatten() {
+            return known;
+        }
+        let found = model.measures.get(index).is_some_and(|named| {
+            let leaves = named.measure.leaves();
+            let mut names = leaves.filter_map(|leaf| match leaf {
+                Leaf::Named(other) => Some(*other),
+                _ => None,
+            });
+            names.all(|other| find(model, other, known))
+                && is_constant(&named.measure, &|_| Some(true))
+        });
+        if let Some(place) = known.get_mut(index) {
+            *place = Some(found);
+        }
+        found
+    }
+    let mut known = vec![None; model.measures.len()];
+    (0..model.measures.len())
+        .map(|index| find(model, index, &mut known))
+        .collect()
+}
+
+/// Whether a measure is one number over the whole motion, given which of the named ones are.
+fn is_constant(measure: &Measure, named: &dyn Fn(usize) -> Option<bool>) -> bool {
     measure.leaves().all(|leaf| match leaf {
         Leaf::Parameter(_) | Leaf::Over(..) => true,
-        Leaf::Named(index) => model
-            .measures
-            .get(*index)
-            .is_some_and(|m| is_constant(model, &m.measure)),
+        Leaf::Named(index) => named(*index).unwrap_or(false),
         _ => false,
     })
 }
@@ -170,4 +206,27 @@ fn places(model: &Model) -> Vec<Quantity> {
         ));
     }
     all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn measures_that_name_each_other_many_times_over_are_sorted_at_once() {
+        // Looked at one by one, the last would be 2^60 measures.
+        let mut text = "[links]\nframe = { A = [0, 0] }\ncrank = { A-B = 1 }\n[drives]\n\
+                        motor = { turns = \"crank\", speed = 1 }\n[measures]\nm0 = \"max(x(B))\"\nn0 = \"x(B)\"\n"
+            .to_owned();
+        for k in 1..=60 {
+            let before = k - 1;
+            text += &format!(
+                "m{k} = \"m{before} + m{before}\"\nn{k} = \"m{k} + n{before} + n{before}\"\n"
+            );
+        }
+        let model = Model::from_toml(&text, "x", &mut |_| Err(String::new()));
+        let constant = constants(&model.expect("a model").model);
+        assert_eq!(constant.len(), 122);
+        assert!(constant.chunks(2).all(|pair| pair == [true, false]));
+    }
 }

@@ -115,7 +115,7 @@ pub(crate) fn unbounded(model: &Model, scalars: &[Quantity], events: &[Event]) -
     };
     let holding = scalars
         .iter()
-        .filter(|q| holds_joint_load(model, &q.measure));
+        .filter(|q| holds_joint_load(model, &q.measure, &mut Vec::new()));
     let told = holding.map(|q| {
         Diagnostic::warning(
             "unbounded-load",
@@ -130,8 +130,9 @@ pub(crate) fn unbounded(model: &Model, scalars: &[Quantity], events: &[Event]) -
     told.collect()
 }
 
-/// Whether a measure asks for what a joint carries, itself or by another measure.
-fn holds_joint_load(model: &Model, measure: &Measure) -> bool {
+/// Whether a measure asks for what a joint carries, itself or by another measure. What was looked at already
+/// is in `seen`: measures may name each other many times over.
+fn holds_joint_load(model: &Model, measure: &Measure, seen: &mut Vec<usize>) -> bool {
     measure.leaves().any(|leaf| match leaf {
         Leaf::Force(force) => matches!(
             force,
@@ -143,9 +144,13 @@ fn holds_joint_load(model: &Model, measure: &Measure) -> bool {
                 | ForceMeasure::ReactionMoment(_)
         ),
         Leaf::Named(index) => {
-            (model.measures.get(*index)).is_some_and(|m| holds_joint_load(model, &m.measure))
+            if seen.contains(index) {
+                return false;
+            }
+            seen.push(*index);
+            (model.measures.get(*index)).is_some_and(|m| holds_joint_load(model, &m.measure, seen))
         }
-        Leaf::Rate(inner, _) | Leaf::Over(_, inner) => holds_joint_load(model, inner),
+        Leaf::Rate(inner, _) | Leaf::Over(_, inner) => holds_joint_load(model, inner, seen),
         _ => false,
     })
 }
