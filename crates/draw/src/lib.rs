@@ -8,6 +8,7 @@
 //! let view = MechanismView {
 //!     title: "Crank".into(),
 //!     length_unit: LengthUnit::new("mm", 1e-3),
+//!     load_units: LoadUnits::default(),
 //!     points: vec!["A".into(), "B".into()],
 //!     links: vec![
 //!         LinkView { name: "frame".into(), points: vec![0] },
@@ -50,6 +51,6 @@ pub use loads::{LoadRole, LoadView};
 pub use stage::{DrawOptions, Stage};
 pub use tokens::Theme;
 pub use view::{
-    DriveKind, DriveView, Frame, Guide, JointView, LengthUnit, LinkView, MechanismView, TraceView,
-    Wheel,
+    DriveKind, DriveView, Frame, Guide, JointView, LengthUnit, LinkView, LoadUnit, LoadUnits,
+    MechanismView, TraceView, Wheel,
 };

@@ -5,7 +5,7 @@ use kempe_number::math::sin_cos;
 use crate::context::{Anchor, Context, link_angle, point, reference_frame};
 use crate::fit::{Bounds, Fit, Margins};
 use crate::furniture;
-use crate::loads::LoadSheet;
+use crate::loads::{LEAST_SCALE, LoadSheet, SHARES};
 use crate::roles::Roles;
 use crate::scene::{Group, Layer, Point, Scene};
 use crate::symbols::{self, Part};
@@ -102,25 +102,41 @@ impl<'a> Stage<'a> {
             0.0
         };
         let sheet = [options.width, options.max_height];
-        let mut loads = LoadSheet::new(view, frames, sheet, options.labels);
-        let legend = loads.as_ref().map_or(0.0, |l| l.legend.height());
-        let margins = Margins {
-            sides: [
-                SYMBOL_ROOM,
-                SYMBOL_ROOM,
-                SYMBOL_ROOM + top,
-                SYMBOL_ROOM + bottom + legend,
-            ],
-        };
-        let fitted = |bounds| {
-            let heights = [LEAST_HEIGHT + legend, options.max_height];
+        let fitted = |legend: f64, bounds| {
+            let margins = Margins {
+                sides: [
+                    SYMBOL_ROOM,
+                    SYMBOL_ROOM,
+                    SYMBOL_ROOM + top,
+                    SYMBOL_ROOM + bottom + legend,
+                ],
+            };
+            // the legend has a room of its own below the drawing
+            let heights = [LEAST_HEIGHT + legend, options.max_height + legend];
             let unit = view.length_unit.size();
             Fit::new(bounds, options.width, heights, margins, unit)
         };
-        let mut fit = fitted(bounds);
-        if let (Some(loads), None) = (&loads, options.view_box) {
-            fit = loads.fit(frames, bounds, fit, fitted);
+        let with_arrows = |share: f64| {
+            let loads = LoadSheet::new(view, frames, sheet, options.labels, share);
+            let legend = loads.as_ref().map_or(0.0, |l| l.legend.height());
+            let plain = fitted(legend, bounds);
+            let fit = match (&loads, options.view_box) {
+                (Some(loads), None) => {
+                    loads.fit(frames, bounds, plain, |bounds| fitted(legend, bounds))
+                }
+                _ => plain,
+            };
+            (loads, fit, fit.scale >= LEAST_SCALE * plain.scale)
+        };
+        let [first, shorter @ ..] = SHARES;
+        let mut found = with_arrows(first);
+        for share in shorter {
+            if found.2 {
+                break;
+            }
+            found = with_arrows(share);
         }
+        let (mut loads, fit, _) = found;
         let context = Context {
             view,
             frames,

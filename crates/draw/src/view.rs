@@ -1,6 +1,7 @@
 //! What to draw: a mechanism and its poses as plain data. SI units: lengths m, angles rad counter-clockwise from +x.
 
 use crate::loads::LoadView;
+use crate::number_format::{significant, with_prefix};
 
 /// A unit in which lengths are shown.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,6 +31,64 @@ impl LengthUnit {
     }
 }
 
+/// A unit in which forces or moments are told.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LoadUnit {
+    /// As shown, such as `lbf`.
+    pub name: String,
+    /// One of it in SI: in N or N m.
+    pub factor: f64,
+}
+
+impl LoadUnit {
+    /// A unit by name and size in N or N m.
+    pub fn new(name: impl Into<String>, factor: f64) -> LoadUnit {
+        LoadUnit {
+            name: name.into(),
+            factor,
+        }
+    }
+
+    /// The size in N or N m, or 1 when it is not a positive number.
+    pub(crate) fn size(&self) -> f64 {
+        if self.factor.is_finite() && self.factor > 0.0 {
+            self.factor
+        } else {
+            1.0
+        }
+    }
+
+    /// A value in SI as text. Units of SI itself take a prefix: `2.5 kN`; others are as they were chosen.
+    pub(crate) fn text(&self, si: f64, digits: usize) -> String {
+        if self.name.starts_with('N') && self.factor == 1.0 {
+            return with_prefix(si, &self.name, digits);
+        }
+        let value = si / self.size();
+        let rounded = format!("{value:.*e}", digits.saturating_sub(1));
+        let rounded = rounded.parse().unwrap_or(value);
+        format!("{} {}", significant(rounded, digits), self.name)
+    }
+}
+
+/// Units in which a drawing tells the sizes of its arrows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LoadUnits {
+    /// Of forces.
+    pub force: LoadUnit,
+    /// Of moments.
+    pub moment: LoadUnit,
+}
+
+impl Default for LoadUnits {
+    /// N and N m.
+    fn default() -> LoadUnits {
+        LoadUnits {
+            force: LoadUnit::new("N", 1.0),
+            moment: LoadUnit::new("N m", 1.0),
+        }
+    }
+}
+
 /// A mechanism, independent of its pose.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MechanismView {
@@ -37,6 +96,8 @@ pub struct MechanismView {
     pub title: String,
     /// Unit of the scale bar and of DXF files.
     pub length_unit: LengthUnit,
+    /// Units in which the sizes of forces and moments are told.
+    pub load_units: LoadUnits,
     /// Names of the points, in the order of [`Frame::points`].
     pub points: Vec<String>,
     /// Links in the order of [`Frame::links`]; the first is the frame. A point that several links carry is drawn as a
@@ -214,5 +275,19 @@ impl Frame {
     pub fn with_loads(mut self, loads: Vec<LoadView>) -> Frame {
         self.loads = loads;
         self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_of_loads_are_told_in_the_chosen_unit() {
+        let lbf = LoadUnit::new("lbf", 4.448_221_615_260_5);
+        assert_eq!(lbf.text(2239.0 * 4.448_221_615_260_5, 2), "2200 lbf");
+        assert_eq!(LoadUnit::new("kN", 1e3).text(50e3, 3), "50 kN");
+        assert_eq!(LoadUnits::default().force.text(50e3, 3), "50 kN");
+        assert_eq!(LoadUnits::default().moment.text(0.02, 3), "20 mN m");
     }
 }

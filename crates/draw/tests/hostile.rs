@@ -186,6 +186,7 @@ prop_compose! {
         let view = MechanismView {
             title: "any".into(),
             length_unit: LengthUnit::new("u", factor),
+            load_units: LoadUnits::default(),
             points: (0..points).map(|k| format!("P{k}")).collect(),
             links: links.into_iter().map(|points| LinkView { name: "l".into(), points }).collect(),
             joints,
@@ -253,6 +254,7 @@ fn a_hundred_thousand_links_are_drawn_in_seconds() {
     let view = MechanismView {
         title: "chain".into(),
         length_unit: LengthUnit::new("m", 1.0),
+        load_units: LoadUnits::default(),
         points: (0..=n).map(|k| format!("P{k}")).collect(),
         links: (0..n)
             .map(|k| LinkView {

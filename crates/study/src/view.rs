@@ -2,14 +2,16 @@
 
 use kempe_draw::{
     DriveKind as DrivenPart, DriveView, Frame as DrawnFrame, Guide, JointView, LengthUnit,
-    LinkView, LoadRole, LoadView, MechanismView, TraceView, Wheel,
+    LinkView, LoadRole, LoadUnit, LoadUnits, LoadView, MechanismView, TraceView, Wheel,
 };
 use kempe_dynamics::{ForceArrow, Origin};
 use kempe_model::{
     Between, DriveKind, FRAME, JointKind, Line, LinkId, Model, MotionStudy, Plot, PointId, value,
 };
+use kempe_units::Dimension;
 
 use crate::result::{Frame, StudyResult};
+use crate::unit::Units;
 
 /// Points traced when no study names one: at most this many.
 const MOST_TRACES: usize = 3;
@@ -20,6 +22,11 @@ pub fn mechanism_view(model: &Model, study: Option<&MotionStudy>) -> MechanismVi
     let parameters: Vec<f64> = model.parameter_values();
     let length = &model.units.length;
     let index = |point: &PointId| point.index();
+    let units = Units::of(model);
+    let load_unit = |dimension| {
+        let unit = units.unit(dimension);
+        LoadUnit::new(unit.text(), unit.to_si(1.0))
+    };
     let mut joints: Vec<JointView> = model
         .joints
         .iter()
@@ -37,6 +44,10 @@ pub fn mechanism_view(model: &Model, study: Option<&MotionStudy>) -> MechanismVi
     MechanismView {
         title: model.title.clone(),
         length_unit: LengthUnit::new(length.name.clone(), length.factor),
+        load_units: LoadUnits {
+            force: load_unit(Dimension::FORCE),
+            moment: load_unit(Dimension::TORQUE),
+        },
         points: model.points.iter().map(|p| p.name.clone()).collect(),
         links: model
             .links

@@ -46,6 +46,7 @@ fn view(title: &str, points: &[&str], links: &[(&str, &str)]) -> MechanismView {
     MechanismView {
         title: title.into(),
         length_unit: LengthUnit::new("mm", 1e-3),
+        load_units: LoadUnits::default(),
         points: points.iter().map(|p| p.to_string()).collect(),
         links: links
             .iter()

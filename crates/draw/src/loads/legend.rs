@@ -2,10 +2,11 @@
 
 use super::arrow::{HEAD, TURN};
 use super::{LoadRole, Quantity, Shape};
-use crate::number_format::{decade, power_of_ten, with_prefix};
+use crate::number_format::{decade, power_of_ten};
 use crate::scene::{Group, Item, Layer, Text};
 use crate::text::{shortened, width as text_width};
 use crate::tokens::Token;
+use crate::view::{LoadUnit, LoadUnits};
 
 /// Font size, mm.
 const SIZE: f64 = 3.0;
@@ -35,6 +36,7 @@ impl Legend {
     pub fn new(
         force: &Option<Quantity>,
         moment: &Option<Quantity>,
+        units: &LoadUnits,
         length: f64,
         roles: &[LoadRole],
         labels: bool,
@@ -43,13 +45,13 @@ impl Legend {
     ) -> Legend {
         let mut samples = Vec::new();
         if let Some(q) = force {
-            let round = below(0.75 * q.full);
-            let text = with_prefix(round, "N", 3);
+            let round = below(0.75 * q.full, &units.force);
+            let text = units.force.text(round, 3);
             samples.push(Entry::Force(round / q.full * length, text));
         }
         if let Some(q) = moment {
-            let round = below(0.75 * q.full);
-            let text = with_prefix(round, "N m", 3);
+            let round = below(0.75 * q.full, &units.moment);
+            let text = units.moment.text(round, 3);
             samples.push(Entry::Moment(round / q.full * TURN, text));
         }
         if force.is_some() && labels {
@@ -58,8 +60,8 @@ impl Legend {
             ));
         }
         samples.extend(roles.iter().map(|role| Entry::Role(*role)));
-        samples.extend(notes(force, "N"));
-        samples.extend(notes(moment, "N m"));
+        samples.extend(notes(force, &units.force));
+        samples.extend(notes(moment, &units.moment));
         if not_finite > 0 {
             samples.push(Entry::Note(format!("not finite, not drawn: {not_finite}")));
         }
@@ -101,7 +103,7 @@ impl Legend {
 }
 
 /// What is not drawn as it is.
-fn notes(quantity: &Option<Quantity>, unit: &str) -> Vec<Entry> {
+fn notes(quantity: &Option<Quantity>, unit: &LoadUnit) -> Vec<Entry> {
     let Some(q) = quantity else {
         return Vec::new();
     };
@@ -109,23 +111,24 @@ fn notes(quantity: &Option<Quantity>, unit: &str) -> Vec<Entry> {
     if q.capped() {
         notes.push(Entry::Note(format!(
             "broken: over {}, up to {}",
-            with_prefix(q.full, unit, 3),
-            with_prefix(q.largest, unit, 3)
+            unit.text(q.full, 3),
+            unit.text(q.largest, 3)
         )));
     }
     if q.dropped {
-        let least = with_prefix(q.least * q.full, unit, 2);
+        let least = unit.text(q.least * q.full, 2);
         notes.push(Entry::Note(format!("not drawn: below {least}")));
     }
     notes
 }
 
-/// The largest of 1, 2, 5 times a power of ten up to a value.
-fn below(value: f64) -> f64 {
+/// The largest of 1, 2, 5 times a power of ten of a unit up to a value, in SI as the value.
+fn below(si: f64, unit: &LoadUnit) -> f64 {
+    let value = si / unit.size();
     let power = power_of_ten(decade(value));
     let fits = |v: &f64| *v <= value * 1.0001;
     let rounds = [5.0, 2.0, 1.0].map(|m| m * power);
-    rounds.into_iter().find(fits).unwrap_or(power)
+    rounds.into_iter().find(fits).unwrap_or(power) * unit.size()
 }
 
 impl Entry {

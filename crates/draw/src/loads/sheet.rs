@@ -13,8 +13,11 @@ use crate::text::shortened;
 use crate::tokens::Token;
 use crate::view::{Frame, MechanismView};
 
-/// Length of the largest force as a share of the shorter side of the sheet.
-const SHARE: f64 = 0.2;
+/// Lengths of the largest force as shares of the shorter side of the sheet: the first that leaves the mechanism
+/// [`LEAST_SCALE`], or the last.
+pub(crate) const SHARES: [f64; 4] = [0.2, 0.16, 0.13, 0.1];
+/// The scale that arrows leave a mechanism at least, in parts of that without arrows.
+pub(crate) const LEAST_SCALE: f64 = 0.5;
 /// Poses looked at to place labels.
 const SAMPLES: usize = 16;
 /// With more loads than this, labels stand beyond the tips without a search.
@@ -39,12 +42,14 @@ pub(crate) struct LoadSheet {
 }
 
 impl LoadSheet {
-    /// The loads of the poses; `None` when there are none.
+    /// The loads of the poses, the largest force as long as `share` of the sheet's shorter side; `None` when there are
+    /// none.
     pub fn new(
         view: &MechanismView,
         frames: &[Frame],
         sheet: [f64; 2],
         labels: bool,
+        share: f64,
     ) -> Option<LoadSheet> {
         let mut tracks = Track::all(frames);
         for track in &mut tracks {
@@ -58,7 +63,7 @@ impl LoadSheet {
         if roles.is_empty() {
             return None;
         }
-        let length = SHARE * sheet[0].min(sheet[1]);
+        let length = share * sheet[0].min(sheet[1]);
         let over = |size: fn(&LoadView) -> f64, least| {
             let pose = |f: &Frame| {
                 f.loads
@@ -78,7 +83,14 @@ impl LoadSheet {
         let not_finite = reached.flat_map(|f| &f.loads).filter(broken).count();
         let sides = vec![0; tracks.len()];
         let legend = Legend::new(
-            &force, &moment, length, &roles, labels, not_finite, sheet[0],
+            &force,
+            &moment,
+            &view.load_units,
+            length,
+            &roles,
+            labels,
+            not_finite,
+            sheet[0],
         );
         Some(LoadSheet {
             force,

@@ -7,6 +7,7 @@ class Player {
     this.motion = motion;
     this.section = section;
     this.count = motion.row.length;
+    this.known = [];
     this.at = motion.row.indexOf(motion.shown);
     if (this.at < 0) this.at = 0;
     this.playing = false;
@@ -89,6 +90,11 @@ class Player {
     requestAnimationFrame((n) => this.tick(n));
   }
 
+  smooth(row) {
+    if (this.known[row] === undefined) this.known[row] = isSmooth(this.motion, row);
+    return this.known[row];
+  }
+
   seek(row) {
     if (row == null || !this.count) return;
     this.at = Math.min(this.count - 1, Math.max(0, row));
@@ -98,7 +104,10 @@ class Player {
   step(by) { if (this.playing) this.toggle(false); this.seek(Math.round(this.at) + by); }
 
   show() {
-    const motion = this.motion, row = Math.min(this.count - 1, Math.floor(this.at)), share = row < 0 ? 0 : this.at - row;
+    const motion = this.motion;
+    let row = Math.min(this.count - 1, Math.floor(this.at)), share = row < 0 ? 0 : this.at - row;
+    // rows that lie far apart are shown one after the other
+    if (share > 0 && !this.smooth(row)) { row = Math.round(this.at); share = 0; }
     if (row < 0) { this.status.textContent = "No row was reached"; return; }
     const reached = this.drawing.show(row, share);
     for (const plot of this.plots) plot.show(row, share);

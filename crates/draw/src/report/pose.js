@@ -12,6 +12,19 @@ function linkPose(motion, link, row, share) {
   return [v[a] + share * (v[a + 3] - v[a]), v[a + 1] + share * (v[a + 4] - v[a + 1]), v[a + 2] + share * short];
 }
 
+// Whether poses may be drawn between a row and the next: bodies are moved one by one, and where one of them turns more
+// than this their pins would be seen to part.
+const SMALL_TURN = 0.1;
+function isSmooth(motion, row) {
+  return motion.links.every((v, link) => {
+    if (!v || v.length === 3) return true;
+    const from = linkPose(motion, link, row, 0), to = linkPose(motion, link, row + 1, 0);
+    if (!from || !to) return false;
+    const turn = to[2] - from[2];
+    return Math.abs(turn - 2 * Math.PI * Math.round(turn / (2 * Math.PI))) <= SMALL_TURN;
+  });
+}
+
 function pointAt(motion, poses, index) {
   const p = motion.points[index];
   const pose = p && poses[p[0]];

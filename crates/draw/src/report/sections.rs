@@ -6,6 +6,9 @@ use crate::number_format::{escape, significant};
 /// Most rows of a table that are written out.
 const MOST_TABLE_ROWS: usize = 500;
 
+/// Characters of a value that stays on one line.
+const SHORT: usize = 24;
+
 /// A section with its heading.
 pub(super) fn section(section: &Section, id: &str) -> String {
     let blocks: String = section.blocks.iter().map(block).collect();
@@ -78,8 +81,15 @@ fn table(head: &[String], rows: &[Vec<String>]) -> String {
         .map(|h| format!("<th scope=\"col\">{}</th>", escape(h)))
         .collect();
     let cell = |c: &String| {
+        let starts_with_number = || {
+            let first = c.split(' ').next();
+            first.is_some_and(|word| word.parse::<f64>().is_ok())
+        };
         let class = if c.parse::<f64>().is_ok() {
             " class=\"number\""
+        } else if c.chars().count() <= SHORT && starts_with_number() {
+            // a comparison breaks at the sign of an exponent otherwise
+            " class=\"whole\""
         } else {
             ""
         };
