@@ -3,6 +3,7 @@
 use kempe_draw::plot::{Axis, Curve, Limit, Marker, MarkerKind, PlotSpec};
 use kempe_kinematics::events::EventKind;
 use kempe_model::Model;
+use kempe_units::{Dimension, Unit};
 
 use crate::result::{Event, Figure, StudyResult};
 use crate::table::Column;
@@ -49,7 +50,9 @@ pub fn figures(model: &Model, result: &StudyResult) -> Vec<(String, PlotSpec)> {
                 });
                 (names(curves), limited)
             }
-            Figure::Hodograph(name, axes) => (name.clone(), hodograph(name, axes, x)),
+            Figure::Hodograph(name, axes) => {
+                (name.clone(), hodograph(name, axes, x, noise(result)))
+            }
             Figure::Path(point) => {
                 let name = model.points.get(point.index()).map_or("", |p| &p.name);
                 (
@@ -58,11 +61,9 @@ pub fn figures(model: &Model, result: &StudyResult) -> Vec<(String, PlotSpec)> {
                 )
             }
         };
-        let mut file = file_name(&name);
-        let taken = plots.iter().filter(|(n, _)| *n == file).count();
-        if taken > 0 {
-            file = format!("{file}-{}", plots.len() + 1);
-        }
+        let file = free_name(file_name(&name), |name| {
+            name == MECHANISM || plots.iter().any(|(n, _)| n.to_lowercase() == name)
+        });
         plots.push((file, plot));
     }
     plots
@@ -70,6 +71,21 @@ pub fn figures(model: &Model, result: &StudyResult) -> Vec<(String, PlotSpec)> {
 
 /// Plots of a study that names none.
 const MOST_DEFAULT: usize = 4;
+
+/// The name of the picture of the mechanism itself, which no plot has.
+pub const MECHANISM: &str = "mechanism";
+
+/// The name, or the first of `name-2`, `name-3`, … that is not taken, where capitals do not count.
+fn free_name(name: String, taken: impl Fn(&str) -> bool) -> String {
+    let numbered = (2..).map(|k| format!("{name}-{k}"));
+    std::iter::once(name.clone())
+        .chain(numbered)
+        .find(|n| !taken(&n.to_lowercase()))
+        .unwrap_or(name)
+}
+
+/// Bytes of a file name that a measure's text may take.
+const MOST_BYTES: usize = 60;
 
 /// The parts of a measure's text that a file name takes.
 fn file_name(name: &str) -> String {
@@ -84,7 +100,8 @@ fn file_name(name: &str) -> String {
     let mut parts = text.split('-').filter(|p| !p.is_empty());
     let first = parts.next().unwrap_or("plot").to_owned();
     let joined = parts.fold(first, |all, part| all + "-" + part);
-    joined.chars().take(60).collect()
+    let end = joined.floor_char_boundary(MOST_BYTES.min(joined.len()));
+    joined[..end].trim_end_matches('-').to_owned()
 }
 
 fn names(columns: &[Column]) -> String {
@@ -92,15 +109,41 @@ fn names(columns: &[Column]) -> String {
     all.join(", ")
 }
 
-fn hodograph(name: &str, [x, y]: &[Column; 2], along: &Column) -> PlotSpec {
+/// A force below this part of the largest of the study is what rounding left of none.
+const NO_FORCE: f64 = 1e-12;
+
+/// The size below which a force of a study is none, SI.
+fn noise(result: &StudyResult) -> f64 {
+    let force = |unit: &Unit| unit.dimension() == Dimension::FORCE;
+    let of_figures = result.figures.iter().flat_map(|figure| match figure {
+        Figure::Hodograph(_, axes) => axes.as_slice(),
+        Figure::Curves { curves, .. } => curves.as_slice(),
+        Figure::Path(_) => &[],
+    });
+    let columns = result.table.columns.iter().chain(of_figures);
+    let values = columns.filter(|c| force(&c.unit)).flat_map(Column::si);
+    let arrows = result.frames.iter().flat_map(|f| &f.arrows);
+    let arrows = arrows.flat_map(|a| a.force);
+    let largest = values.chain(arrows).map(f64::abs);
+    NO_FORCE * largest.filter(|v| v.is_finite()).fold(0.0, f64::max)
+}
+
+fn hodograph(name: &str, [x, y]: &[Column; 2], along: &Column, noise: f64) -> PlotSpec {
+    let values = |column: &Column| -> Vec<f64> {
+        let plain = |v: &f64| match column.unit.to_si(*v).abs() < noise {
+            true => 0.0,
+            false => *v,
+        };
+        column.values.iter().map(plain).collect()
+    };
     PlotSpec {
         title: name.to_owned(),
         x: Axis::new("x", x.unit.text()),
         y: Axis::new("y", y.unit.text()),
         curves: vec![Curve {
             label: String::new(),
-            x: x.values.clone(),
-            y: y.values.clone(),
+            x: values(x),
+            y: values(y),
             dashed: false,
         }],
         equal_aspect: true,
@@ -179,7 +222,7 @@ fn path(model: &Model, name: &str, point: usize, result: &StudyResult) -> PlotSp
 
 #[cfg(test)]
 mod tests {
-    use super::file_name;
+    use super::{file_name, free_name};
 
     #[test]
     fn names_of_files_are_plain() {
@@ -187,5 +230,16 @@ mod tests {
         assert_eq!(file_name("path-P"), "path-P");
         assert_eq!(file_name("../../x"), "x");
         assert_eq!(file_name("/ * /"), "plot");
+    }
+
+    #[test]
+    fn names_of_files_are_free_and_short() {
+        let taken = |name: &str| ["a", "a-2", "mechanism"].contains(&name);
+        assert_eq!(free_name("b".into(), taken), "b");
+        assert_eq!(free_name("A".into(), taken), "A-3");
+        assert_eq!(free_name("mechanism".into(), taken), "mechanism-2");
+        assert_eq!(file_name("hypot(x(P), y(P)) / 2"), "hypot-x-P-y-P-2");
+        assert_eq!(file_name(&"ä".repeat(80)).len(), 60);
+        assert_eq!(file_name("+"), "plot");
     }
 }

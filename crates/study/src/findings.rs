@@ -4,7 +4,7 @@ use kempe_kinematics::assemble::Shortfall;
 use kempe_kinematics::events::EventKind;
 use kempe_kinematics::mechanism::{BodyId, Source};
 use kempe_kinematics::{Design, EndReason, Findings, Mechanism, Plan};
-use kempe_model::{Diagnostic, Model};
+use kempe_model::{Diagnostic, Drive, Model, Rows, Study, StudyKind, value};
 use kempe_units::Dimension;
 use serde::Serialize;
 
@@ -200,7 +200,7 @@ pub fn check_watched(model: &Model, progress: &mut dyn Progress) -> Report {
             };
             report.events.push(format!(
                 "{what} at {name} = {}",
-                units.exact_text(event.at, dimension)
+                units.place_text(event.at, dimension, reach.range)
             ));
         }
     }
@@ -247,7 +247,50 @@ fn assumptions(model: &Model, units: &Units) -> Vec<String> {
     if model.assembly.is_empty() {
         told.push("assembly: the first found, as the file names none".to_owned());
     }
+    told.extend(model.studies.iter().map(|study| {
+        format!(
+            "study {}: {}",
+            study.name,
+            study_text(model, study, &parameters, units)
+        )
+    }));
     told
+}
+
+/// What a study is, and where its rows stand.
+fn study_text(model: &Model, study: &Study, parameters: &[f64], units: &Units) -> String {
+    let kind = match &study.kind {
+        StudyKind::Motion(motion) if motion.circuit => "the whole circuit",
+        StudyKind::Motion(_) => "motion",
+        StudyKind::Forces(_) => "forces",
+        StudyKind::Balance(_) => "counterweights",
+        StudyKind::Spring(_) => "a spring",
+    };
+    let along = study.kind.along();
+    let moving = |d: &&Drive| {
+        let (low, high) = d.law.extent(parameters);
+        low < high
+    };
+    let rows = match &along.rows {
+        Rows::DriveStep(step) => {
+            let drive = model.drives.iter().find(moving).or(model.drives.first());
+            let (name, dimension) = drive.map_or(("time", Dimension::TIME), |d| {
+                (d.name.as_str(), d.dimension)
+            });
+            format!(
+                "a row every {} of {name}",
+                units.text(value(step, parameters), dimension)
+            )
+        }
+        Rows::TimeStep(step) => {
+            let step = units.text(value(step, parameters), Dimension::TIME);
+            format!("a row every {step}")
+        }
+        Rows::Count(1) => "1 row".to_owned(),
+        Rows::Count(count) if along.circuit => format!("{count} rows evenly along the arc"),
+        Rows::Count(count) => format!("{count} rows evenly in time"),
+    };
+    format!("{kind}, {rows}")
 }
 
 fn diagnostics(

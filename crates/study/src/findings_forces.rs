@@ -1,13 +1,21 @@
 //! What acts on a mechanism, as the check tells it: what is assumed, and what makes forces meaningless.
 
+use kempe_draw::number_format::significant;
 use kempe_dynamics::Acting;
 use kempe_dynamics::acting::GRAVITY;
 use kempe_kinematics::{Design, Mechanism};
-use kempe_model::{Center, Diagnostic, Model, Study, StudyKind, value};
+use kempe_model::{
+    Center, Diagnostic, DriveId, Friction, FrictionAt, Model, Study, StudyKind, value,
+};
 use kempe_units::Dimension;
 
 use crate::explain::list;
 use crate::unit::Units;
+
+/// Digits in which gravity is told.
+const GRAVITY_DIGITS: usize = 6;
+/// A component of gravity below this part of the other is the rounding of a direction.
+const NO_GRAVITY: f64 = 1e-12;
 
 /// What acts, and what is taken for granted about masses and gravity.
 pub(crate) fn assumptions(model: &Model, units: &Units) -> Vec<String> {
@@ -34,8 +42,18 @@ pub(crate) fn assumptions(model: &Model, units: &Units) -> Vec<String> {
     };
     told.push(match gravity {
         [0.0, 0.0] => "gravity: none".to_owned(),
-        [0.0, y] if y < 0.0 => format!("gravity: {} m/s^2 along -y", -y),
-        [x, y] => format!("gravity: [{x}, {y}] m/s^2"),
+        [0.0, y] if y < 0.0 => format!(
+            "gravity: {} m/s^2 along -y",
+            significant(-y, GRAVITY_DIGITS)
+        ),
+        [x, y] => {
+            let size = x.abs().max(y.abs());
+            let shown = |v: f64| match v.abs() < NO_GRAVITY * size {
+                true => "0".to_owned(),
+                false => significant(v, GRAVITY_DIGITS),
+            };
+            format!("gravity: [{}, {}] m/s^2", shown(x), shown(y))
+        }
     });
     let named = |test: &dyn Fn(&kempe_model::Link) -> bool| {
         let links = model.links.iter().skip(1).filter(|l| test(l));
@@ -62,6 +80,8 @@ pub(crate) fn assumptions(model: &Model, units: &Units) -> Vec<String> {
 fn acting(model: &Model) -> Vec<String> {
     let actions = &model.actions;
     let mut told = Vec::new();
+    let of_drive =
+        |drive: DriveId| (model.drives.get(drive.index())).map_or("", |d| d.name.as_str());
     let mut add = |what: &str, names: Vec<&str>| {
         if !names.is_empty() {
             told.push(format!("{what}: {}", names.join(", ")));
@@ -72,12 +92,36 @@ fn acting(model: &Model) -> Vec<String> {
         actions.loads.iter().map(|l| l.name.as_str()).collect(),
     );
     add(
+        "point masses",
+        actions.masses.iter().map(|m| m.name.as_str()).collect(),
+    );
+    add(
         "springs",
         actions.springs.iter().map(|s| s.name.as_str()).collect(),
     );
     add(
         "dampers",
         actions.dampers.iter().map(|d| d.name.as_str()).collect(),
+    );
+    add(
+        "friction",
+        actions
+            .friction
+            .iter()
+            .map(|f| friction_name(model, f))
+            .collect(),
+    );
+    add(
+        "cylinders",
+        actions
+            .cylinders
+            .iter()
+            .map(|c| of_drive(c.drive))
+            .collect(),
+    );
+    add(
+        "motors",
+        actions.motors.iter().map(|m| of_drive(m.drive)).collect(),
     );
     let asks = |s: &Study| !matches!(s.kind, StudyKind::Motion(_));
     if !told.is_empty() && !model.studies.iter().any(asks) {
@@ -86,6 +130,32 @@ fn acting(model: &Model) -> Vec<String> {
         );
     }
     told
+}
+
+/// What a friction is said of, as in the file.
+fn friction_name<'m>(model: &'m Model, friction: &Friction) -> &'m str {
+    match friction.at {
+        FrictionAt::Pin(point) => model.points.get(point.index()).map_or("", |p| &p.name),
+        FrictionAt::Joint(joint) => model.joints.get(joint.index()).map_or("", |j| &j.name),
+        FrictionAt::All => "all other joints",
+    }
+}
+
+/// Whether anything gives rise to forces: a mass that moves, a load, a spring, a damper, viscous friction.
+pub(crate) fn something_acts(model: &Model) -> bool {
+    let parameters: Vec<f64> = model.parameter_values();
+    let actions = &model.actions;
+    let heavy = model.links.iter().skip(1).any(|link| {
+        let inertia = link.inertia.as_ref();
+        let own = inertia.into_iter().flat_map(|i| [&i.mass, &i.moment]);
+        own.flatten().any(|s| value::<f64>(s, &parameters) != 0.0)
+    });
+    heavy
+        || !actions.masses.is_empty()
+        || !actions.loads.is_empty()
+        || !actions.springs.is_empty()
+        || !actions.dampers.is_empty()
+        || actions.friction.iter().any(|f| f.viscous.is_some())
 }
 
 /// What makes forces meaningless for the dimensions at hand.

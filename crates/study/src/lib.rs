@@ -59,7 +59,7 @@ pub mod verify;
 mod view;
 
 pub use explain::{cannot_move, reach_text};
-pub use figures::figures;
+pub use figures::{MECHANISM, figures};
 pub use findings::{Grashof, Group, Report as CheckReport, check, check_watched};
 pub use kempe_kinematics::Stage;
 pub use motion::{run, run_motion};

@@ -11,6 +11,7 @@ use crate::choice::{balance, spring};
 use crate::circuit::run_circuit;
 use crate::columns::{Asked, Quantity};
 use crate::explain::{beyond_limit, stopped};
+use crate::findings_forces::something_acts;
 use crate::force_columns::standard_plots;
 use crate::force_notes::{place, unbounded};
 use crate::prepared::Prepared;
@@ -34,10 +35,26 @@ pub fn run(
 ) -> Result<StudyResult, Vec<Diagnostic>> {
     match &study.kind {
         StudyKind::Motion(motion) => run_motion(model, &study.name, motion, progress),
-        StudyKind::Forces(forces) => run_along(model, &study.name, forces, true, progress),
+        StudyKind::Forces(forces) => {
+            let mut result = run_along(model, &study.name, forces, true, progress)?;
+            if !something_acts(model) {
+                result.warnings.push(nothing_acts());
+            }
+            Ok(result)
+        }
         StudyKind::Balance(choice) => balance(model, &study.name, choice, progress),
         StudyKind::Spring(choice) => spring(model, &study.name, choice, progress),
     }
+}
+
+/// Forces are asked for where there are none.
+pub(crate) fn nothing_acts() -> Diagnostic {
+    Diagnostic::warning(
+        "nothing-acts",
+        "nothing acts on the mechanism: there are no forces",
+    )
+    .note("links have no mass unless it is given")
+    .help("say what acts: mass = \"1 kg\" of a link, or [loads], [springs], [dampers]")
 }
 
 /// Runs a motion study called `name`.
@@ -281,7 +298,10 @@ pub(crate) fn events(motion: &Motion<'_>, units: &Units, parameters: &[f64]) -> 
     told.map(|event| Event {
         kind: event.kind,
         at: event.at,
-        place: format!("{name} = {}", units.exact_text(event.at, dimension)),
+        place: format!(
+            "{name} = {}",
+            units.place_text(event.at, dimension, motion.demanded)
+        ),
         label: match event.kind {
             EventKind::Limit => "limit of the drive".to_owned(),
             _ => "change point: branches cross, the motion goes on smoothly".to_owned(),

@@ -3,6 +3,9 @@
 use kempe_model::Model;
 use kempe_units::{Dimension, Unit, format_digits};
 
+/// Digits to which places on a motion are located.
+const PLACE_DIGITS: i32 = 14;
+
 /// Chooses units for results.
 #[derive(Clone, Debug)]
 pub struct Units {
@@ -68,12 +71,23 @@ impl Units {
 
     /// A value with its unit, to 12 digits: `117.512206517 deg`.
     pub fn text(&self, si: f64, dimension: Dimension) -> String {
-        format_digits(si, &self.unit(dimension), 12)
+        // A rounded negative zero is a zero.
+        format_digits(si + 0.0, &self.unit(dimension), 12)
     }
 
-    /// A value with its unit, to the digits that rounding leaves a located place: `117.51220651664 deg`.
-    pub fn exact_text(&self, si: f64, dimension: Dimension) -> String {
-        format_digits(si, &self.unit(dimension), 14)
+    /// A located place with its unit, to the digits that rounding leaves it: `117.51220651664 deg`. They are counted from
+    /// the size of `range`, what the place was looked for in, so that a place at 0 is 0.
+    pub fn place_text(&self, si: f64, dimension: Dimension, range: (f64, f64)) -> String {
+        let unit = self.unit(dimension);
+        let [at, low, high] = [si, range.0, range.1].map(|v| unit.from_si(v));
+        let size = [low, high].into_iter().filter(|v| v.is_finite());
+        let size = size.fold(at.abs(), |size, v| size.max(v.abs()));
+        let decimals = PLACE_DIGITS - 1 - kempe_draw::number_format::decade(size);
+        let rounded = match usize::try_from(decimals) {
+            Ok(decimals) => format!("{at:.decimals$}").parse().unwrap_or(at),
+            Err(_) => at,
+        };
+        format_digits(unit.to_si(rounded) + 0.0, &unit, PLACE_DIGITS as usize)
     }
 }
 
@@ -130,6 +144,21 @@ mod tests {
             "mm/s",
             "a speed, whatever it is made of"
         );
+    }
+
+    #[test]
+    fn places_have_the_digits_of_their_range_and_zero_is_zero() {
+        let mm = units("mm", "deg");
+        let turn = std::f64::consts::TAU;
+        let place = |deg: f64| mm.place_text(deg.to_radians(), Dimension::ANGLE, (0.0, turn));
+        assert_eq!(place(4.972_161_733_623_2e-13), "0 deg");
+        assert_eq!(place(-4.972_161_733_623_2e-13), "0 deg");
+        assert_eq!(place(117.512_206_516_641_08), "117.51220651664 deg");
+        assert_eq!(place(180.0), "180 deg");
+        assert_eq!(place(-0.001), "-0.001 deg");
+        assert_eq!(mm.text(-0.0, Dimension::LENGTH), "0 mm");
+        let near = mm.place_text(1e-9, Dimension::LENGTH, (0.0, 1e-8));
+        assert_eq!(near, "1e-6 mm");
     }
 
     #[test]

@@ -523,3 +523,50 @@ fn a_peak_over_a_singular_pose_is_told_as_one() {
     );
     assert!(run_to(&text.replace("to = 125", "to = 110")).is_empty());
 }
+
+#[test]
+fn check_tells_all_that_acts() {
+    let text = "units = { length = \"mm\", angle = \"deg\" }\ngravity = [\"9.81 m/s^2\", \"-30 deg\"]\n[links]\n\
+                frame = { A = [0, 0], F = [50, -40] }\narm = { A-T = 200, B = [80, 0] }\n[drives]\n\
+                lift = { cylinder = \"F-B\", from = 60, to = 90, speed = \"20 mm/s\" }\n[assembly]\nT = { near = [200, 0] }\n\
+                [masses]\nbob = { at = \"T\", mass = \"1 kg\" }\n[friction]\nA = { coefficient = 0.1, radius = \"5 mm\" }\n\
+                all = { coefficient = 0.1, radius = \"5 mm\" }\n[cylinders]\nlift = { bore = 20, rod = 10 }\n\
+                [studies.f]\nkind = \"forces\"\n";
+    let said = kempe_study::check(&model(text)).to_text();
+    for line in [
+        "point masses  bob",
+        "friction      A, all other joints",
+        "cylinders     lift",
+        "gravity       [8.49571, -4.905] m/s^2",
+        "study f       forces, a row every 0.166666666667 mm of lift",
+    ] {
+        assert!(said.contains(line), "{line}: {said}");
+    }
+}
+
+#[test]
+fn a_hodograph_of_rounding_is_a_point() {
+    let text = format!(
+        "{FOUR_BAR}[studies.loads]\nkind = \"forces\"\nrows = 9\ncolumns = [\"reaction_x(B, coupler)\"]\n"
+    );
+    let (model, mut result) = (model(&text), ran(&text));
+    let noisy = |column: &kempe_study::Column| kempe_study::Column {
+        values: column.values.iter().map(|v| 1e-15 * v).collect(),
+        ..column.clone()
+    };
+    let loads = column(&result, "reaction_x(B, coupler)");
+    assert!(largest(&loads) > 0.0);
+    let real = result
+        .table
+        .column("reaction_x(B, coupler)")
+        .expect("a column")
+        .clone();
+    result.figures = vec![
+        kempe_study::Figure::Hodograph("real".into(), [real.clone(), real.clone()]),
+        kempe_study::Figure::Hodograph("none".into(), [noisy(&real), noisy(&real)]),
+    ];
+    let drawn = kempe_study::figures(&model, &result);
+    let values = |index: usize| -> f64 { largest(&drawn[index].1.curves[0].x) };
+    assert!(values(0) > 0.0);
+    assert_eq!(values(1), 0.0);
+}
