@@ -178,10 +178,7 @@ impl Model {
     /// `unknown-name`, and why the place cannot be reached.
     pub fn pose(&self, place: &str) -> Result<Pose<'_>, Error> {
         let parts = place.split(',').filter(|part| !part.trim().is_empty());
-        let settings: Result<Vec<Setting>, Diagnostic> = parts
-            .map(|part| Setting::parse(&self.inner, part))
-            .collect();
-        let settings = settings.map_err(|told| self.error(vec![told]))?;
+        let settings = Setting::all(&self.inner, parts).map_err(|told| self.error(vec![told]))?;
         let (frame, _) =
             kempe_study::pose_at(&self.inner, &settings).map_err(|found| self.error(found))?;
         Ok(Pose {

@@ -1,10 +1,11 @@
 //! One pose at given coordinates of the drives, reached from the start without leaving the branch.
 
-use kempe_model::{Diagnostic, Law, LawPiece, Model, MotionStudy, RiseLaw, Rows};
+use kempe_model::{Diagnostic, Law, LawPiece, Model, MotionStudy, RiseLaw, Rows, Severity};
 use kempe_units::{Dimension, Expr, Issue, Resolver, Span, check_as, nearest, parse};
 
 use crate::along::{Along, Row};
-use crate::motion::run_motion;
+use crate::findings_forces::something_acts;
+use crate::motion::{nothing_acts, run_motion};
 use crate::prepared::Prepared;
 use crate::progress::Silent;
 use crate::result::Frame;
@@ -18,6 +19,8 @@ pub struct Setting {
     pub name: String,
     /// SI.
     pub value: f64,
+    /// As written, such as `motor=30deg`.
+    pub text: String,
 }
 
 /// Names stand for nothing in a setting.
@@ -29,23 +32,77 @@ impl Resolver<()> for NoNames {
     }
 }
 
+/// How far beyond the end a time may lie and still be the end, in parts of the duration.
+const SAME_TIME: f64 = 1e-9;
+
+/// A diagnostic that points into the text of a setting.
+fn pointing(told: Diagnostic, text: &str, span: Span, label: impl Into<String>) -> Diagnostic {
+    let before = told.labels.len();
+    let mut told = told.at(span, label.into());
+    for label in told.labels.iter_mut().skip(before) {
+        label.source = Some(kempe_model::Source {
+            name: "--at".to_owned(),
+            text: text.to_owned(),
+        });
+    }
+    told
+}
+
 impl Setting {
+    /// A setting of a drive or of `time`, SI.
+    pub fn new(name: &str, value: f64) -> Self {
+        Self {
+            name: name.to_owned(),
+            value,
+            text: format!("{name}={value}"),
+        }
+    }
+
+    /// Reads settings that hold together: each drive once, or the time alone.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Setting::parse`]; `over-specified` where a drive is set twice, or a drive and the time.
+    pub fn all<'t>(
+        model: &Model,
+        texts: impl Iterator<Item = &'t str>,
+    ) -> Result<Vec<Self>, Diagnostic> {
+        let mut known: Vec<Self> = Vec::new();
+        for text in texts {
+            let setting = Self::parse(model, text)?;
+            let timed = |s: &Self| s.name == "time";
+            let clash =
+                (known.iter()).find(|s| s.name == setting.name || timed(s) || timed(&setting));
+            if let Some(other) = clash {
+                let (message, help) = if other.name == setting.name {
+                    (
+                        format!("`{}` is set twice", setting.name),
+                        "leave one of them out",
+                    )
+                } else {
+                    (
+                        "a time and a drive are set: a time says where every drive stands"
+                            .to_owned(),
+                        "give the time, or places of the drives",
+                    )
+                };
+                let told = Diagnostic::error("over-specified", message).help(help);
+                let told = pointing(told, text, 0..text.len(), "");
+                return Err(pointing(told, &other.text, 0..other.text.len(), ""));
+            }
+            known.push(setting);
+        }
+        Ok(known)
+    }
+
     /// Reads `motor=30deg`, `lift = 400 mm` or `time=2s`; a bare number is in the file's unit.
     ///
     /// # Errors
     ///
-    /// `unknown-name` for a drive that is not there, and what is wrong with the value, labelled in `text`.
+    /// `unknown-name` for a drive that is not there, what is wrong with the value, and `not-on-the-motion` for a time
+    /// before its start or after its end, labelled in `text`.
     pub fn parse(model: &Model, text: &str) -> Result<Self, Diagnostic> {
-        let source = |d: Diagnostic, span: Span, label: String| {
-            let mut d = d.at(span, label);
-            for label in &mut d.labels {
-                label.source = Some(kempe_model::Source {
-                    name: "--at".to_owned(),
-                    text: text.to_owned(),
-                });
-            }
-            d
-        };
+        let source = |d: Diagnostic, span: Span, label: String| pointing(d, text, span, label);
         let Some((name, number)) = text.split_once('=') else {
             let told = Diagnostic::error("syntax", "a drive and its coordinate were expected");
             return Err(source(told, 0..text.len(), String::new()).help("write motor=30deg"));
@@ -69,10 +126,24 @@ impl Setting {
         let checked =
             parse(number).and_then(|tree| check_as(&tree, &mut NoNames, dimension, &unit));
         match checked {
-            Ok((expr, _)) => Ok(Self {
-                name: name.to_owned(),
-                value: expr.eval(&mut |()| f64::NAN),
-            }),
+            Ok((expr, _)) => {
+                let value = expr.eval(&mut |()| f64::NAN);
+                if !value.is_finite() {
+                    let told = Diagnostic::error("not-finite", "this value is not finite");
+                    let told = told.help("look for a division by zero or an overflow");
+                    return Err(source(told, offset..text.len(), String::new()));
+                }
+                if name == "time"
+                    && let Some(told) = off_the_motion(model, value)
+                {
+                    return Err(source(told, offset..text.len(), String::new()));
+                }
+                Ok(Self {
+                    name: name.to_owned(),
+                    value,
+                    text: text.to_owned(),
+                })
+            }
             Err(issues) => {
                 let mut told = Diagnostic::error("syntax", "the value cannot be read");
                 if let Some(issue) = issues.into_iter().next() {
@@ -84,6 +155,47 @@ impl Setting {
             }
         }
     }
+}
+
+/// Why a time is not on the motion, if it is not.
+fn off_the_motion(model: &Model, time: f64) -> Option<Diagnostic> {
+    let parameters: Vec<f64> = model.parameter_values();
+    let durations = model.drives.iter().map(|d| d.law.duration(&parameters));
+    let duration = durations.fold(0.0, f64::max);
+    if (0.0..=duration * (1.0 + SAME_TIME)).contains(&time) {
+        return None;
+    }
+    let units = Units::of(model);
+    let [time, duration] = [time, duration].map(|t| units.text(t, Dimension::TIME));
+    let message = format!("the motion does not pass {time}: it goes from 0 s to {duration}");
+    Some(
+        Diagnostic::error("not-on-the-motion", message)
+            .help(format!("give a time from 0 s to {duration}")),
+    )
+}
+
+/// What keeps the drives from going to a place, told of the place that was asked for.
+fn at_the_settings(told: Vec<Diagnostic>, settings: &[Setting]) -> Vec<Diagnostic> {
+    let of_the_way = |d: &Diagnostic| {
+        [
+            "range-beyond-limit",
+            "range-too-long",
+            "motion-runs-away",
+            "motion-stuck",
+        ]
+        .contains(&d.code)
+    };
+    let moved = told.into_iter().map(|mut d| {
+        if !of_the_way(&d) || settings.is_empty() {
+            return d;
+        }
+        d.severity = Severity::Error;
+        d.labels.clear();
+        settings.iter().fold(d, |d, setting| {
+            pointing(d, &setting.text, 0..setting.text.len(), "")
+        })
+    });
+    moved.collect()
 }
 
 fn drives_text(model: &Model) -> String {
@@ -117,16 +229,14 @@ pub fn pose_at(model: &Model, settings: &[Setting]) -> Result<(Frame, String), V
         plots: Vec::new(),
         circuit: false,
     };
-    let time = settings.iter().rev().find(|s| s.name == "time");
-    if let (Some(time), true) = (time, settings.iter().all(|s| s.name == "time")) {
+    if let Some(time) = settings.iter().find(|s| s.name == "time") {
         return pose_at_time(model, time.value);
     }
     let mut label: Vec<String> = Vec::new();
     for drive in &mut moved.drives {
-        let start = drive.law.at(time.map_or(0.0, |t| t.value), &parameters);
-        let own = settings.iter().rev().find(|s| s.name == drive.name);
-        let target = own.map_or(start, |s| s.value);
         let from = drive.law.at(0.0, &parameters);
+        let own = settings.iter().find(|s| s.name == drive.name);
+        let target = own.map_or(from, |s| s.value);
         label.push(format!(
             "{} = {}",
             drive.name,
@@ -148,13 +258,24 @@ pub fn pose_at(model: &Model, settings: &[Setting]) -> Result<(Frame, String), V
             from: Expr::Const(from),
         };
     }
-    let result = run_motion(&moved, "pose", &study(Rows::Count(2)), &mut Silent)?;
+    let result = run_motion(&moved, "pose", &study(Rows::Count(2)), &mut Silent)
+        .map_err(|told| at_the_settings(told, settings))?;
     let last = result.frames.into_iter().next_back();
     let reached = result.table.closure.last().is_some_and(|c| c.is_finite());
     match last {
         Some(frame) if reached => Ok((frame, label.join(", "))),
-        _ => Err(result.warnings),
+        _ => Err(at_the_settings(result.warnings, settings)),
     }
+}
+
+/// Where the drives stand at the start: `motor = 30 deg`.
+fn start_text(model: &Model, units: &Units) -> String {
+    let parameters: Vec<f64> = model.parameter_values();
+    let places = model.drives.iter().map(|drive| {
+        let start = drive.law.at(0.0, &parameters);
+        format!("{} = {}", drive.name, units.text(start, drive.dimension))
+    });
+    places.collect::<Vec<_>>().join(", ")
 }
 
 /// The pose of the motion at a time, s.
@@ -185,7 +306,7 @@ pub struct Loaded {
 pub fn loaded_at(model: &Model, settings: &[Setting]) -> Result<Loaded, Vec<Diagnostic>> {
     let units = Units::of(model);
     let label = match settings {
-        [] => "start".to_owned(),
+        [] => start_text(model, &units),
         [one] => {
             let drive = model.drives.iter().find(|d| d.name == one.name);
             let dimension = drive.map_or(Dimension::TIME, |d| d.dimension);
@@ -205,7 +326,11 @@ pub fn loaded_at(model: &Model, settings: &[Setting]) -> Result<Loaded, Vec<Diag
         [one] => Ok(RowPlace::Time(one.value)),
         _ => Ok(RowPlace::Time(0.0)),
     };
-    on_motion(model, &place, true, &label)
+    let mut loaded = on_motion(model, &place, true, &label)?;
+    if !something_acts(model) {
+        loaded.warnings.push(nothing_acts());
+    }
+    Ok(loaded)
 }
 
 fn not_on_motion(model: &Model) -> Diagnostic {

@@ -89,7 +89,8 @@ pub fn prove(model: &Model, progress: &mut dyn Progress) -> Result<Proof, Vec<Di
     Ok(Proof {
         along: along.to_owned(),
         range: range(found.range.0, found.range.1),
-        fraction: found.fraction,
+        // Nothing proved is a plain 0, however it was summed up.
+        fraction: found.fraction.clamp(0.0, 1.0) + 0.0,
         runs: found.runs.iter().map(|(a, b)| range(*a, *b)).collect(),
         gaps: gaps.collect(),
         redundant: found.redundant,
@@ -98,9 +99,9 @@ pub fn prove(model: &Model, progress: &mut dyn Progress) -> Result<Proof, Vec<Di
 }
 
 impl Proof {
-    /// Whether all of the range is proved but for neighbourhoods of limits and change points.
+    /// Whether all of the range is proved, without a gap.
     pub fn is_whole(&self) -> bool {
-        self.finished && self.redundant == 0 && self.gaps.iter().all(|gap| gap.expected)
+        self.finished && self.redundant == 0 && self.gaps.is_empty()
     }
 
     /// The proof as plain text.

@@ -559,3 +559,69 @@ fn rows_run_along_time_where_the_drive_comes_back() {
     // It ends where it has never been, and was at most places twice.
     assert_eq!(along(&pieces(&["40 deg", "-20 deg", "80 deg"])), 0);
 }
+
+#[test]
+fn every_column_of_a_table_has_a_head_of_its_own() {
+    let text = FOUR_BAR.replace(
+        "columns = [",
+        "columns = [\"time\", \"motor\", \"swing\", \"motor\", ",
+    );
+    let csv = encode::csv(&ran(&text).table);
+    let mut heads: Vec<&str> = csv.lines().next().expect("a head").split(',').collect();
+    assert_eq!(heads[..3], ["time [s]", "motor [deg]", "swing [deg]"]);
+    let all = heads.len();
+    heads.sort_unstable();
+    heads.dedup();
+    assert_eq!(heads.len(), all, "{csv:.200}");
+}
+
+#[test]
+fn settings_hold_together_and_are_told_of_where_they_stand() {
+    let model = model(FOUR_BAR);
+    let all = |texts: &[&str]| Setting::all(&model, texts.iter().copied());
+    assert_eq!(all(&["motor=30deg"]).expect("a place").len(), 1);
+    for texts in [
+        &["motor=30deg", "motor=30deg"][..],
+        &["time=1s", "motor=30deg"],
+        &["time=1s", "time=2s"],
+    ] {
+        assert_eq!(
+            all(texts).expect_err("refused").code,
+            "over-specified",
+            "{texts:?}"
+        );
+    }
+    for text in ["time=200s", "time=-1s"] {
+        let told = all(&[text]).expect_err("refused");
+        assert_eq!(told.code, "not-on-the-motion");
+        assert_eq!(
+            told.labels[0].source.as_ref().expect("a source").name,
+            "--at"
+        );
+    }
+    assert_eq!(
+        all(&["motor=1 deg / 0"]).expect_err("refused").code,
+        "not-finite"
+    );
+    // The end of the motion is on it, however it was rounded.
+    assert!(all(&["time=6.2831853072s"]).is_ok());
+}
+
+#[test]
+fn a_change_point_at_zero_is_at_zero_and_rows_are_told() {
+    // A kite: two short links, two long ones.
+    let text = "units = { length = \"mm\", angle = \"deg\" }\n[links]\nframe = { A = [0, 0], D = [20, 0] }\n\
+                crank = { A-B = 50 }\ncoupler = { B-C = 50 }\nrocker = { D-C = 20 }\n[drives]\n\
+                motor = { turns = \"crank\", from = 10, to = 730, speed = \"1 rad/s\" }\n[assembly]\nC = \"left of B -> D\"\n\
+                [studies.m]\nkind = \"motion\"\nrows = 5\n[studies.t]\nkind = \"motion\"\nstep = \"5 ms\"\n";
+    let said = check(&model(text)).to_text();
+    assert!(said.contains("change point at motor = 0 deg\n"), "{said}");
+    assert!(
+        said.contains("study m       motion, 5 rows evenly in time"),
+        "{said}"
+    );
+    assert!(
+        said.contains("study t       motion, a row every 0.005 s"),
+        "{said}"
+    );
+}

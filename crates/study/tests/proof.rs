@@ -56,12 +56,27 @@ fn a_regular_motion_is_proved_whole_and_stops_when_told() {
 }
 
 #[test]
+fn a_change_point_is_a_gap_and_nothing_proved_is_zero() {
+    // A parallelogram collapses in line where its crank comes to 180 degrees.
+    let text = "units = { length = \"mm\", angle = \"deg\" }\n[links]\nframe = { A = [0, 0], D = [60, 0] }\n\
+                crank = { A-B = 20 }\ncoupler = { B-C = 60 }\nrocker = { D-C = 20 }\n[drives]\n\
+                motor = { turns = \"crank\", from = 170, to = 190, speed = 1 }\n[assembly]\nC = { near = [40, 4] }\n";
+    let proof = prove(&model(text), &mut Silent).expect("a motion");
+    assert!(proof.gaps.iter().all(|gap| gap.expected), "{proof:?}");
+    assert!(!proof.gaps.is_empty() && !proof.is_whole(), "{proof:?}");
+
+    let nothing = kempe_study::Proof {
+        fraction: 0.0,
+        ..proof
+    };
+    let text = nothing.to_text();
+    assert!(text.contains("Proved    0 % of motor"), "{text}");
+}
+
+#[test]
 fn derivatives_carry_the_units_of_the_file() {
     let model = model(SLIDER);
-    let at = Setting {
-        name: "motor".into(),
-        value: 60.0_f64.to_radians(),
-    };
+    let at = Setting::new("motor", 60.0_f64.to_radians());
     let found = sensitivities(&model, Some(&at), &mut Silent).expect("a motion");
     assert_eq!(found.place, "motor = 60 deg");
     // x = a cos q + sqrt(b^2 - a^2 sin^2 q), so dx/da = cos q - a sin^2 q / sqrt(...).
@@ -89,10 +104,7 @@ fn derivatives_carry_the_units_of_the_file() {
 
 #[test]
 fn what_cannot_be_differentiated_is_told() {
-    let beyond = Setting {
-        name: "motor".into(),
-        value: 3.0,
-    };
+    let beyond = Setting::new("motor", 3.0);
     let told = sensitivities(&model(SLIDER), Some(&beyond), &mut Silent).expect_err("not there");
     assert_eq!(told[0].code, "not-reached");
     let bare = SLIDER.replace(
