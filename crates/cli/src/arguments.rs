@@ -68,7 +68,8 @@ fn name_and_value(text: &str) -> Result<(String, String), String> {
 #[derive(Debug, Args)]
 #[command(
     after_help = "Examples:\n  kempe check hitch.toml\n  kempe check hitch.toml --set k=450mm --json\n  kempe check hitch.toml --certify\n\n\
-                        Exit codes: 0 nothing to say, 1 warnings or a gap in the proof, 2 bad file,\n3 the mechanism cannot move as asked, \
+                        Exit codes: 0 nothing to say, 1 warnings or a gap in the proof (a change point is one),\n\
+                        2 bad file, 3 the mechanism cannot move as asked,\n\
                         130 stopped by Ctrl-C (what was found until then is told)."
 )]
 pub struct Check {
@@ -104,8 +105,10 @@ pub struct Sensitivities {
 #[command(
     after_help = "Examples:\n  kempe run hitch.toml --out results\n  kempe run hitch.toml lifting --out results --set k=450mm\n  \
                         kempe run hitch.toml --json --quiet | jq .studies[0].values\n\n\
-                        Writes STUDY.csv, STUDY.parquet, STUDY-*.svg and report.html. All appear at the end, each whole;\n\
-                        a run that fails leaves an earlier result as it was. Ctrl-C keeps finished rows."
+                        Writes STUDY.csv, STUDY.parquet, STUDY-*.svg and report.html. All appear at the end, each whole.\n\
+                        Where a study cannot run (exit code 3) or a file cannot be written, none does, and the folder\n\
+                        stays as it was. Ctrl-C keeps finished rows; the report names the studies that did not run.\n\
+                        Earlier files of studies that are not asked for stay."
 )]
 pub struct Run {
     #[command(flatten)]

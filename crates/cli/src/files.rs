@@ -38,6 +38,10 @@ pub fn load(model: &ModelFile, speaker: &mut Speaker) -> Result<Loaded, Exit> {
         .file
         .file_stem()
         .map_or(name.clone(), |s| s.to_string_lossy().into_owned());
+    if let Some(told) = set_twice(&model.set) {
+        speaker.tell(&[told]);
+        return Err(Exit::Usage);
+    }
     let folder = model.file.parent().unwrap_or(Path::new("")).to_owned();
     match Model::from_bytes(
         &bytes,
@@ -58,6 +62,16 @@ pub fn load(model: &ModelFile, speaker: &mut Speaker) -> Result<Loaded, Exit> {
             Err(Exit::Usage)
         }
     }
+}
+
+/// A parameter that the command line gives two values.
+fn set_twice(set: &[(String, String)]) -> Option<Diagnostic> {
+    let (index, (name, value)) = (set.iter().enumerate())
+        .find(|(index, (name, _))| set.iter().take(*index).any(|(other, _)| other == name))?;
+    let first = set.iter().take(index).find(|(other, _)| other == name);
+    let first = first.map_or("", |(_, value)| value);
+    let message = format!("parameter `{name}` is set twice, to {first} and to {value}");
+    Some(Diagnostic::error("over-specified", message).help("leave one of them out"))
 }
 
 /// The bytes of a file that is not too large.

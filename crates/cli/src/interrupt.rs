@@ -2,6 +2,8 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use crate::say::complain;
+
 static STOP: AtomicBool = AtomicBool::new(false);
 
 /// Listens for Ctrl-C from now on. Where that is not possible, Ctrl-C ends the program as usual.
@@ -10,10 +12,10 @@ pub fn listen() {
         if STOP.swap(true, Ordering::SeqCst) {
             std::process::exit(130);
         }
-        eprintln!("stopping: what is finished is kept; Ctrl-C again to end at once");
+        complain("stopping: what is finished is kept; Ctrl-C again to end at once\n");
     };
     if let Err(error) = ctrlc::set_handler(heard) {
-        eprintln!("Ctrl-C will end the program at once: {error}");
+        complain(&format!("Ctrl-C will end the program at once: {error}\n"));
     }
 }
 

@@ -5,6 +5,7 @@ mod command;
 mod exit;
 mod files;
 mod interrupt;
+mod names;
 mod output;
 mod progress;
 mod say;

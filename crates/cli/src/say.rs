@@ -40,7 +40,10 @@ impl Speaker {
             if self.json {
                 self.told.push(kempe_study::encode::diagnostic(diagnostic));
             } else if !self.quiet || diagnostic.severity == Severity::Error {
-                eprintln!("{}\n", rendered(diagnostic, &self.file, &self.text));
+                complain(&format!(
+                    "{}\n\n",
+                    rendered(diagnostic, &self.file, &self.text)
+                ));
             }
         }
     }
@@ -71,6 +74,12 @@ pub fn put(text: &str) {
     use std::io::Write;
     let mut out = std::io::stdout().lock();
     let _ = out.write_all(text.as_bytes()).and_then(|()| out.flush());
+}
+
+/// Prints text on the error stream; a reader that went away is no error.
+pub fn complain(text: &str) {
+    use std::io::Write;
+    let _ = std::io::stderr().lock().write_all(text.as_bytes());
 }
 
 /// Whether the error stream is a terminal that takes colours.

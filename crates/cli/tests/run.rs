@@ -367,3 +367,154 @@ fn sensitivities_are_those_of_differences() {
     let wrong = kempe(at, &["sensitivities", "m.toml", "--at", "moter=30deg"]);
     assert_eq!(wrong.status.code(), Some(2));
 }
+
+/// The model and the commands of the README's table.
+#[test]
+fn the_steps_of_the_readme_work_on_its_model() {
+    let readme = include_str!("../../../README.md");
+    let model = readme.split("```toml\n").nth(1).expect("a model");
+    let model = model.split("```").next().expect("its end");
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = folder.path();
+    fs::write(at.join("crank.toml"), model).expect("written");
+    let rows = readme.lines().filter_map(|l| l.strip_prefix("| `kempe "));
+    let mut steps: Vec<String> = rows
+        .filter_map(|row| row.split('`').next())
+        .filter(|step| step.contains("FILE"))
+        .map(str::to_owned)
+        .collect();
+    assert!(steps.len() >= 4, "{steps:?}");
+    // What the table says of options.
+    steps.push("run FILE --out DIR --set a=25mm".to_owned());
+    steps.push("check FILE --certify".to_owned());
+    steps.push("draw FILE -o pose.png --forces".to_owned());
+    for step in steps {
+        let words = step.replace("FILE", "crank.toml").replace("DIR", "out");
+        let words: Vec<&str> = words.split(' ').collect();
+        let output = kempe(at, &words);
+        assert!(
+            output.status.success(),
+            "{step}: {}",
+            String::from_utf8_lossy(&output.stderr)
+        );
+    }
+    assert!(at.join("out/report.html").exists() && at.join("pose.svg").exists());
+}
+
+#[test]
+fn no_two_files_of_a_model_have_one_name() {
+    let folder = folder();
+    let at = folder.path();
+    let twice = kempe(at, &["run", "m.toml", "turn", "turn", "--out", "twice"]);
+    assert!(twice.status.success());
+    assert_eq!(names(&at.join("twice")).len(), 6);
+    // A plot called as the picture of the mechanism, and plots that two studies might call the same.
+    let model = MODEL
+        .replace("play  =", "mechanism = \"y(P)\"\nb = \"x(P)\"\na_b = \"x(C)\"\nplay  =")
+        .replace(
+            "plot = [\"swing\", \"path(P)\"]",
+            "plot = [\"mechanism\", \"swing - angle(coupler)\", [\"b\", \"a_b\"], [\"b\", \"a_b\"]]\n\
+             [studies.turn-swing]\nkind = \"motion\"\nplot = [\"angle(coupler)\"]",
+        );
+    fs::write(at.join("clash.toml"), model).expect("written");
+    let run = kempe(at, &["run", "clash.toml", "--out", "clash"]);
+    assert!(
+        run.status.success(),
+        "{}",
+        String::from_utf8_lossy(&run.stderr)
+    );
+    assert_eq!(
+        names(&at.join("clash")),
+        [
+            "report.html",
+            "turn-b-a_b-2.svg",
+            "turn-b-a_b.svg",
+            "turn-mechanism-2.svg",
+            "turn-mechanism.svg",
+            "turn-swing-angle-coupler.svg",
+            "turn-swing-mechanism.svg",
+            "turn-swing.csv",
+            "turn-swing.parquet",
+            "turn.csv",
+            "turn.parquet",
+            "turn.swing-angle-coupler.svg",
+        ]
+    );
+}
+
+#[test]
+fn a_study_that_cannot_run_leaves_the_folder_as_it_was() {
+    let folder = folder();
+    let at = folder.path();
+    // Driven up to `top`; around, it goes as far as it can.
+    let model = MODEL
+        .replace("[parameters]\n", "[parameters]\ntop = \"40 deg\"\n")
+        .replace("A-B = \"a\"", "A-B = 45")
+        .replace("B-C = 50", "B-C = 30")
+        .replace("from = 0, to = 360", "from = 30, to = \"top\"")
+        .replace(
+            "[studies.turn]",
+            "[studies.around]\nkind = \"motion\"\ncircuit = true\n[studies.turn]",
+        );
+    fs::write(at.join("part.toml"), model).expect("written");
+    let first = kempe(at, &["run", "part.toml", "--out", "out"]);
+    let said = String::from_utf8_lossy(&first.stderr).into_owned();
+    assert_eq!(first.status.code(), Some(0), "{said}");
+    let read = || -> Vec<Vec<u8>> {
+        let all = names(&at.join("out"));
+        all.iter()
+            .map(|n| fs::read(at.join("out").join(n)).expect("a file"))
+            .collect()
+    };
+    let before = read();
+    let run = kempe(
+        at,
+        &["run", "part.toml", "--out", "out", "--set", "top=170deg"],
+    );
+    assert_eq!(run.status.code(), Some(3));
+    let said = String::from_utf8_lossy(&run.stderr).into_owned();
+    assert!(
+        said.contains("nothing was written to out: `turn` could not run")
+            && said.contains("kempe run part.toml around --out out"),
+        "{said}"
+    );
+    assert!(read() == before);
+    let alone = [
+        "run",
+        "part.toml",
+        "around",
+        "--out",
+        "out",
+        "--set",
+        "top=170deg",
+    ];
+    assert_eq!(kempe(at, &alone).status.code(), Some(0));
+    assert!(read() != before);
+}
+
+#[cfg(unix)]
+#[test]
+fn readers_that_go_away_do_not_keep_a_run_from_its_end() {
+    let folder = folder();
+    let at = folder.path();
+    // Something to say on both streams.
+    let loud = MODEL.replace("C = \"left of B -> D\"", "");
+    fs::write(at.join("loud.toml"), loud).expect("written");
+    for arguments in [
+        &["run", "loud.toml", "--out", "out"][..],
+        &["check", "loud.toml"],
+        &["run", "no.toml"],
+    ] {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_kempe"))
+            .args(arguments)
+            .current_dir(at)
+            .stdout(std::process::Stdio::piped())
+            .stderr(std::process::Stdio::piped())
+            .spawn()
+            .expect("kempe runs");
+        drop((child.stdout.take(), child.stderr.take()));
+        let code = child.wait().expect("it ends").code();
+        assert!(code.is_some_and(|c| c <= 3), "{arguments:?}: {code:?}");
+    }
+    assert!(at.join("out/report.html").exists());
+}

@@ -7,7 +7,7 @@ use crate::exit::Exit;
 use crate::files::load;
 use crate::interrupt;
 use crate::progress::Bar;
-use crate::say::{Speaker, print_json, put};
+use crate::say::{Speaker, complain, print_json, put};
 
 /// Runs `kempe check`.
 pub fn check(arguments: &Check) -> Exit {
@@ -42,7 +42,7 @@ pub fn check(arguments: &Check) -> Exit {
             put(&proof.to_text());
         }
         if report.has_findings() {
-            eprintln!();
+            complain("\n");
         }
         speaker.tell(&report.diagnostics);
     }

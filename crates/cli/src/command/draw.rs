@@ -7,6 +7,7 @@ use kempe_model::{Diagnostic, Model, MotionStudy, Study, StudyKind};
 use kempe_study::{Setting, drawing_frames, drawn, loaded_at, mechanism_view, pose_at};
 
 use crate::arguments::Draw;
+use crate::command::run::nothing_to_run;
 use crate::exit::Exit;
 use crate::files::{load, plain};
 use crate::interrupt;
@@ -49,7 +50,7 @@ pub fn draw(arguments: &Draw) -> Exit {
         Ok(bytes) => {
             let mut batch = Batch::new();
             let written = batch.add(&arguments.output, &bytes);
-            match written.and_then(|()| batch.publish()) {
+            match written.and_then(|()| Ok(batch.publish()?)) {
                 Ok(_) => Exit::Ok,
                 Err(error) => {
                     let message = format!(
@@ -182,11 +183,7 @@ fn first_study(model: &Model, forces: bool) -> Option<Study> {
 /// All poses of the first study, and how long one pass should take on the screen, s.
 fn motion(model: &Model, forces: bool) -> Result<(MechanismView, Vec<Frame>, f64), Failure> {
     let Some(study) = first_study(model, forces) else {
-        let told = Diagnostic::error(
-            "no-drive",
-            "nothing moves: the file has no study and no drive",
-        );
-        return Err(Failure::Usage(told));
+        return Err(Failure::Usage(nothing_to_run(model)));
     };
     interrupt::listen();
     let result = kempe_study::run(model, &study, &mut Bar::new(&study.name, false))
@@ -215,12 +212,8 @@ fn pose(
     model: &Model,
     speaker: &mut Speaker,
 ) -> Result<(MechanismView, Vec<Frame>, usize), Failure> {
-    let settings: Result<Vec<Setting>, Diagnostic> = arguments
-        .at
-        .iter()
-        .map(|text| Setting::parse(model, text))
-        .collect();
-    let settings = settings.map_err(Failure::Usage)?;
+    let texts = arguments.at.iter().map(String::as_str);
+    let settings = Setting::all(model, texts).map_err(Failure::Usage)?;
     let (frame, label) = if arguments.forces {
         let loaded = loaded_at(model, &settings).map_err(Failure::Unsolved)?;
         speaker.tell(&loaded.warnings);

@@ -34,7 +34,7 @@ pub fn new(arguments: &New) -> Exit {
     let text = starter.text.replace("FILE", &shown.to_string());
     let mut batch = Batch::new();
     let written = batch.add(&path, text.as_bytes());
-    if let Err(error) = written.and_then(|()| batch.publish()) {
+    if let Err(error) = written.and_then(|()| Ok(batch.publish()?)) {
         let told = Diagnostic::error(
             "cannot-write",
             format!("{shown} cannot be written: {}", plain(&error)),

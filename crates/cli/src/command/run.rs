@@ -2,9 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
+use kempe_draw::report::{Block, Section};
 use kempe_draw::{DrawOptions, Stage, Theme, svg};
 use kempe_model::{Diagnostic, Model, Study};
-use kempe_study::{StudyOutcome, StudyResult, drawing_frames, encode, figures, mechanism_view};
+use kempe_study::{
+    MECHANISM, StudyOutcome, StudyResult, drawing_frames, encode, figures, mechanism_view,
+};
 use kempe_units::nearest;
 use serde_json::{Value, json};
 
@@ -12,6 +15,7 @@ use crate::arguments::Run;
 use crate::exit::Exit;
 use crate::files::{Loaded, load, plain};
 use crate::interrupt;
+use crate::names;
 use crate::output::Batch;
 use crate::progress::Bar;
 use crate::say::{Speaker, print_json, put};
@@ -27,7 +31,7 @@ pub fn run(arguments: &Run) -> Exit {
         Err(exit) => return failed(&speaker, exit),
     };
     let model = &loaded.checked.model;
-    let studies = match chosen(model, &arguments.studies) {
+    let studies = match chosen(model, &arguments.studies, &loaded.name) {
         Ok(studies) => studies,
         Err(told) => {
             speaker.tell(&[*told]);
@@ -36,7 +40,7 @@ pub fn run(arguments: &Run) -> Exit {
     };
     interrupt::listen();
     let mut outcomes: Vec<StudyOutcome<'_>> = Vec::new();
-    for study in studies {
+    for study in &studies {
         let mut bar = Bar::new(&study.name, arguments.quiet || arguments.json);
         let result = kempe_study::run(model, study, &mut bar);
         drop(bar);
@@ -50,18 +54,28 @@ pub fn run(arguments: &Run) -> Exit {
         }
     }
     let mut files = Vec::new();
-    let any = outcomes.iter().any(|o| o.result.is_ok());
-    if let (Some(folder), true) = (&arguments.out, any) {
-        match write(
-            &loaded,
-            folder,
-            &outcomes,
-            arguments.quiet || arguments.json,
-        ) {
-            Ok(written) => files = written,
-            Err(told) => {
-                speaker.tell(&[*told]);
-                return failed(&speaker, Exit::Usage);
+    let finished: Vec<&str> = (outcomes.iter().filter(|o| o.result.is_ok()))
+        .map(|o| o.study.name.as_str())
+        .collect();
+    let missing: Vec<&str> = (studies.iter().map(|s| s.name.as_str()))
+        .filter(|name| !finished.contains(name))
+        .collect();
+    if let (Some(folder), false) = (&arguments.out, finished.is_empty()) {
+        if !missing.is_empty() && !interrupt::stopped() {
+            speaker.tell(&[nothing_written(&loaded, folder, &finished, &missing)]);
+        } else {
+            match write(
+                &loaded,
+                folder,
+                &outcomes,
+                &missing,
+                arguments.quiet || arguments.json,
+            ) {
+                Ok(written) => files = written,
+                Err(told) => {
+                    speaker.tell(&[*told]);
+                    return failed(&speaker, Exit::Usage);
+                }
             }
         }
     }
@@ -97,38 +111,103 @@ fn exit_of(outcomes: &[StudyOutcome<'_>]) -> Exit {
     outcomes.iter().map(one).max().unwrap_or(Exit::Ok)
 }
 
-/// The studies named on the command line, or all.
-fn chosen<'m>(model: &'m Model, names: &[String]) -> Result<Vec<&'m Study>, Box<Diagnostic>> {
-    if model.studies.is_empty() {
-        let told = Diagnostic::error(
-            "no-drive",
-            "there is nothing to run: the file has no study and no drive",
-        );
-        return Err(Box::new(told.help(
-            "say what moves: [drives] motor = { turns = \"crank\", from = 0, to = 360, speed = \"1 rad/s\" }",
-        )));
+/// A folder holds the results of one run: where a study could not run, nothing of the others is written either.
+fn nothing_written(
+    loaded: &Loaded,
+    folder: &Path,
+    finished: &[&str],
+    missing: &[&str],
+) -> Diagnostic {
+    let names: Vec<String> = missing.iter().map(|name| format!("`{name}`")).collect();
+    let message = format!(
+        "nothing was written to {}: {} could not run",
+        folder.display(),
+        names.join(", ")
+    );
+    Diagnostic::warning("not-written", message)
+        .note("earlier results are as they were")
+        .help(format!(
+            "run the others by themselves: kempe run {} {} --out {}",
+            loaded.name,
+            finished.join(" "),
+            folder.display()
+        ))
+}
+
+/// The studies named on the command line, each once, or all.
+fn chosen<'m>(
+    model: &'m Model,
+    names: &[String],
+    file: &str,
+) -> Result<Vec<&'m Study>, Box<Diagnostic>> {
+    let mut studies: Vec<&Study> = Vec::new();
+    for name in names {
+        let study = model.studies.iter().find(|s| s.name == *name);
+        let study = study.ok_or_else(|| Box::new(unknown_study(model, name, file)))?;
+        if studies.iter().all(|s| s.name != study.name) {
+            studies.push(study);
+        }
     }
     if names.is_empty() {
-        return Ok(model.studies.iter().collect());
+        studies.extend(&model.studies);
     }
-    let find = |name: &String| {
-        model
-            .studies
-            .iter()
-            .find(|s| s.name == *name)
-            .ok_or_else(|| {
-                let known: Vec<&str> = model.studies.iter().map(|s| s.name.as_str()).collect();
-                let help = match nearest(name, known.iter().copied()) {
-                    Some(near) => format!("did you mean `{near}`?"),
-                    None => format!("the file has: {}", known.join(", ")),
-                };
-                Box::new(
-                    Diagnostic::error("unknown-study", format!("there is no study `{name}`"))
-                        .help(help),
-                )
-            })
-    };
-    names.iter().map(find).collect()
+    match studies.is_empty() {
+        true => Err(Box::new(nothing_to_run(model))),
+        false => Ok(studies),
+    }
+}
+
+/// Why a model without studies that can run has none.
+pub fn nothing_to_run(model: &Model) -> Diagnostic {
+    if model.drives.is_empty() {
+        return Diagnostic::error(
+            "no-drive",
+            "there is nothing to run: the file has no study and no drive",
+        )
+        .help("say what moves: [drives] motor = { turns = \"crank\", from = 0, to = 360, speed = \"1 rad/s\" }");
+    }
+    let skipped: Vec<String> = (model.announced.iter())
+        .map(|s| format!("`{}` is a study of kind \"{}\"", s.name, s.kind))
+        .collect();
+    Diagnostic::error(
+        "study-not-available",
+        "there is nothing to run: this version has none of the kinds of study that the file asks for",
+    )
+    .note(skipped.join(", "))
+    .help("ask for the motion: [studies.turn] with the line kind = \"motion\"")
+}
+
+/// A study named on the command line that cannot be meant.
+fn unknown_study(model: &Model, name: &str, file: &str) -> Diagnostic {
+    if let Some(skipped) = model.announced.iter().find(|s| s.name == *name) {
+        let message = format!(
+            "study `{name}` cannot run: this version has no `{}` studies",
+            skipped.kind
+        );
+        return Diagnostic::error("study-not-available", message).help(others(model));
+    }
+    let told = Diagnostic::error("unknown-study", format!("there is no study `{name}`"));
+    if Path::new(name).extension().is_some_and(|e| e == "toml") || Path::new(name).is_file() {
+        return told
+            .note(format!(
+                "what follows the model file {file} are its studies"
+            ))
+            .help(format!("one model file at a time: kempe run {name}"));
+    }
+    let known = model.studies.iter().map(|s| s.name.as_str());
+    match nearest(name, known) {
+        Some(near) => told.help(format!("did you mean `{near}`?")),
+        None => told.help(others(model)),
+    }
+}
+
+/// The studies that can run.
+fn others(model: &Model) -> String {
+    let known: Vec<&str> = model.studies.iter().map(|s| s.name.as_str()).collect();
+    match known.is_empty() {
+        true => "the file has no other study; ask for the motion: [studies.turn] with the line kind = \"motion\"".to_owned(),
+        false => format!("the file has: {}", known.join(", ")),
+    }
 }
 
 /// Writes all files of a run, each whole or none.
@@ -136,6 +215,7 @@ fn write(
     loaded: &Loaded,
     folder: &Path,
     outcomes: &[StudyOutcome<'_>],
+    missing: &[&str],
     quiet: bool,
 ) -> Result<Vec<PathBuf>, Box<Diagnostic>> {
     let told = |path: &Path, reason: &str| {
@@ -171,7 +251,7 @@ fn write(
             bytes.map_err(|e| told(&folder.join(format!("{name}.parquet")), &e.to_string()))?;
         add(format!("{name}.parquet"), &bytes)?;
         add(
-            format!("{name}-mechanism.svg"),
+            names::picture(model, name, MECHANISM),
             picture(model, outcome.study, result).as_bytes(),
         )?;
         for (plot, spec) in figures(model, result) {
@@ -182,14 +262,14 @@ fn write(
             };
             let scene = spec.draw(PLOT[0], height).scene;
             add(
-                format!("{name}-{plot}.svg"),
+                names::picture(model, name, &plot),
                 svg::document(&scene, Theme::Light).as_bytes(),
             )?;
         }
     }
     // Stopped, it is not begun anew: the report says so.
     let check = kempe_study::check_watched(model, &mut Bar::new("check", quiet));
-    let report = kempe_study::report(
+    let mut report = kempe_study::report(
         model,
         &loaded.name,
         &generator(),
@@ -197,8 +277,37 @@ fn write(
         &check,
         outcomes,
     );
+    report.sections.splice(0..0, stopped_before(missing));
     add("report.html".to_owned(), report.to_html().as_bytes())?;
-    batch.publish().map_err(|e| told(folder, &plain(&e)))
+    batch.publish().map_err(|unpublished| {
+        if unpublished.kept.is_empty() {
+            return told(folder, &plain(&unpublished.error));
+        }
+        let kept = unpublished.kept.iter().map(|p| p.display().to_string());
+        let message = format!(
+            "{} cannot be written: {}",
+            folder.display(),
+            plain(&unpublished.error)
+        );
+        let note = "earlier results could not all be put back; they are kept as";
+        Box::new(
+            Diagnostic::error("cannot-write", message)
+                .note(format!("{note} {}", kept.collect::<Vec<_>>().join(", "))),
+        )
+    })
+}
+
+/// What a report says of studies that Ctrl-C kept from running.
+fn stopped_before(missing: &[&str]) -> Option<Section> {
+    let told = |name: &&str| {
+        format!(
+            "{name}: not run; its files in this folder, if there are any, are those of an earlier run"
+        )
+    };
+    (!missing.is_empty()).then(|| Section {
+        title: "Stopped by Ctrl-C".to_owned(),
+        blocks: vec![Block::List(missing.iter().map(told).collect())],
+    })
 }
 
 /// The mechanism at its first row that was reached.

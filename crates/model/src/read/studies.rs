@@ -6,7 +6,9 @@ use kempe_units::{Builtin, Dimension, Expr};
 
 use crate::diagnostic::Diagnostic;
 use crate::document::{Key, Node, Table, Value};
-use crate::model::{AnnouncedStudy, Column, LawPiece, Model, MotionStudy, Rows, Scalar, Study, StudyKind};
+use crate::model::{
+    AnnouncedStudy, Column, LawPiece, Model, MotionStudy, Rows, Scalar, Study, StudyKind,
+};
 use crate::read::choices;
 use crate::read::context::Context;
 use crate::read::entry::Entry;
@@ -140,7 +142,10 @@ fn tell_clashes(cx: &mut Context<'_>, entries: &[&(Key, Node)]) {
                     ),
                 )
                 .at(key.span.clone(), "")
-                .see(other.get().span.clone(), "this one differs in capitals only")
+                .see(
+                    other.get().span.clone(),
+                    "this one differs in capitals only",
+                )
                 .help("file names differ by more than capitals: rename one of them"),
             ),
         }

@@ -1,0 +1,47 @@
+//! What the pictures of studies are called, so that no two files of a model have one name.
+
+use kempe_model::Model;
+
+/// The file name of a picture of a study: `turn-swing.svg`.
+///
+/// Where that might as well be a picture of another study whose name goes on with a hyphen, as `b` of `turn-a` and `a-b` of
+/// `turn`, the shorter study's is set off by a dot: `turn.a-b.svg`. Neither studies nor pictures have a dot in their names.
+/// Only the model decides, so that a run of some of its studies leaves the files of others alone.
+pub fn picture(model: &Model, study: &str, picture: &str) -> String {
+    let name = format!("{study}-{picture}").to_lowercase();
+    let may_be_of = |other: &str| {
+        let start = format!("{}-", other.to_lowercase());
+        other.len() > study.len() && name.starts_with(&start)
+    };
+    let known = model.studies.iter().map(|s| s.name.as_str());
+    let skipped = model.announced.iter().map(|s| s.name.as_str());
+    let mark = match known.chain(skipped).any(may_be_of) {
+        true => '.',
+        false => '-',
+    };
+    format!("{study}{mark}{picture}.svg")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn studies_whose_names_go_on_keep_their_pictures_apart() {
+        let text = "[links]\nframe = { A = [0, 0] }\ncrank = { A-B = 1 }\n[drives]\nmotor = { turns = \"crank\", speed = 1 }\n\
+                    [studies.turn]\nkind = \"motion\"\n[studies.turn-a]\nkind = \"motion\"\n[studies.turn-a-b]\nkind = \"motion\"\n";
+        let model = Model::from_toml(text, "x", &mut |_| Err(String::new()));
+        let model = model.expect("a model").model;
+        for (study, plot, file) in [
+            ("turn", "swing", "turn-swing.svg"),
+            ("turn", "a", "turn-a.svg"),
+            ("turn", "a-b", "turn.a-b.svg"),
+            ("turn", "A-B", "turn.A-B.svg"),
+            ("turn-a", "b", "turn-a-b.svg"),
+            ("turn-a", "b-c", "turn-a.b-c.svg"),
+            ("turn-a-b", "c", "turn-a-b-c.svg"),
+        ] {
+            assert_eq!(picture(&model, study, plot), file);
+        }
+    }
+}
