@@ -137,7 +137,7 @@ pub struct Run {
 pub struct Draw {
     #[command(flatten)]
     pub model: ModelFile,
-    /// Where the drives stand, as in --at motor=30deg or --at time=2s; may be repeated
+    /// Where the drives stand, as in --at motor=30deg, once for each; or when, as in --at time=2s
     #[arg(long, value_name = "DRIVE=VALUE")]
     pub at: Vec<String>,
     /// Picture to write: .svg, .png, .dxf, .gif or .apng
