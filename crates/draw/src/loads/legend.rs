@@ -6,7 +6,7 @@ use crate::number_format::{decade, power_of_ten};
 use crate::scene::{Group, Item, Layer, Text};
 use crate::text::{shortened, width as text_width};
 use crate::tokens::Token;
-use crate::view::{LoadUnit, LoadUnits};
+use crate::view::LoadUnit;
 
 /// Font size, mm.
 const SIZE: f64 = 3.0;
@@ -32,11 +32,10 @@ pub(crate) struct Legend {
 }
 
 impl Legend {
-    /// Lays the legend out for a sheet of the given width, mm.
+    /// Lays the legend out for a sheet of the given width, mm; forces and moments each with the unit that tells them.
     pub fn new(
-        force: &Option<Quantity>,
-        moment: &Option<Quantity>,
-        units: &LoadUnits,
+        force: (&Option<Quantity>, &LoadUnit),
+        moment: (&Option<Quantity>, &LoadUnit),
         length: f64,
         roles: &[LoadRole],
         labels: bool,
@@ -44,14 +43,15 @@ impl Legend {
         width: f64,
     ) -> Legend {
         let mut samples = Vec::new();
+        let ((force, in_force), (moment, in_moment)) = (force, moment);
         if let Some(q) = force {
-            let round = below(0.75 * q.full, &units.force);
-            let text = units.force.text(round, 3);
+            let round = below(0.75 * q.full, in_force);
+            let text = in_force.text(round, 3);
             samples.push(Entry::Force(round / q.full * length, text));
         }
         if let Some(q) = moment {
-            let round = below(0.75 * q.full, &units.moment);
-            let text = units.moment.text(round, 3);
+            let round = below(0.75 * q.full, in_moment);
+            let text = in_moment.text(round, 3);
             samples.push(Entry::Moment(round / q.full * TURN, text));
         }
         if force.is_some() && labels {
@@ -60,8 +60,8 @@ impl Legend {
             ));
         }
         samples.extend(roles.iter().map(|role| Entry::Role(*role)));
-        samples.extend(notes(force, &units.force));
-        samples.extend(notes(moment, &units.moment));
+        samples.extend(notes(force, in_force));
+        samples.extend(notes(moment, in_moment));
         if not_finite > 0 {
             samples.push(Entry::Note(format!("not finite, not drawn: {not_finite}")));
         }

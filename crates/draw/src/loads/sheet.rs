@@ -83,9 +83,8 @@ impl LoadSheet {
         let not_finite = reached.flat_map(|f| &f.loads).filter(broken).count();
         let sides = vec![0; tracks.len()];
         let legend = Legend::new(
-            &force,
-            &moment,
-            &view.load_units,
+            (&force, &view.load_units.force),
+            (&moment, &view.load_units.moment),
             length,
             &roles,
             labels,
