@@ -314,3 +314,64 @@ fn follows_drives_whose_rates_jump() {
         assert!(row.closure < 1e-12, "at {} s: {:?}", row.time, row.note);
     }
 }
+
+/// A drive that stops while another goes on: however fast it was, over however long a time.
+#[test]
+fn a_fast_drive_may_stop_long_before_a_slow_one() {
+    for (turns, rpm, seconds) in [
+        (1.0, 600.0, 5.0),
+        (50.0, 600.0, 5.0),
+        (20.0, 1500.0, 2.0),
+        (0.5, 3000.0, 3600.0),
+    ] {
+        let case = Case::read(
+            &format!(
+                "units = {{ length = \"mm\", angle = \"deg\" }}
+[links]
+frame = {{ A = [0, 0], G = [0, 50], D = [60, 0] }}
+crank = {{ A-B = 20 }}
+rod = {{ B-C = 50 }}
+rocker = {{ D-C = 40 }}
+block = {{ S = [0, 0] }}
+[joints]
+guide = {{ slider = \"block\", at = \"S\", on = \"A -> G\" }}
+[drives]
+motor = {{ turns = \"crank\", from = 0, to = {}, speed = \"{rpm} rpm\" }}
+push = {{ slides = \"block\", from = 0, to = 50, speed = \"{:e} mm/s\" }}
+[assembly]
+C = \"left of B -> D\"
+[measures]
+x = \"x(B)\"
+v = \"rate(x(B))\"
+",
+                360.0 * turns,
+                50.0 / seconds
+            ),
+            "stops.toml",
+        );
+        let motion = case.must_move();
+        assert_eq!(
+            motion.ends,
+            (EndReason::Covered, EndReason::Covered),
+            "{rpm} {seconds}"
+        );
+        let measures: Vec<&Measure> = case.model.measures.iter().map(|m| &m.measure).collect();
+        let mut sampler = Sampler::new(&motion, &measures).unwrap();
+        let rate = rpm / 60.0 * TAU;
+        let stop = TAU * turns / rate;
+        for k in 0..=20 {
+            for t in [stop * f64::from(k) / 20.0, seconds * f64::from(k) / 20.0] {
+                let row = sampler.at_time(t);
+                let (angle, speed) = (rate * t.min(stop), if t < stop { rate } else { 0.0 });
+                let expected = [0.02 * angle.cos(), -0.02 * speed * angle.sin()];
+                assert!((row.values[0] - expected[0]).abs() < 1e-11, "{t}: {row:?}");
+                if (t - stop).abs() > 1e-9 {
+                    assert!(
+                        (row.values[1] - expected[1]).abs() < 1e-9 * rate,
+                        "{t}: {row:?}"
+                    );
+                }
+            }
+        }
+    }
+}

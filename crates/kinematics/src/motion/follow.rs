@@ -70,6 +70,10 @@ fn follow(
     let last = start.z.len() - 1;
     let direction = start.tangent[last].signum();
     let mut nodes = vec![start];
+    // Along time there is nothing beyond the range.
+    if follower.is_along_time() && (nodes[0].z[last] - target) * direction >= 0.0 {
+        return Some((nodes, EndReason::Covered));
+    }
     let mut step = 0.02;
     let stops = stops(follower, direction, nodes[0].z[last], target);
     let mut stops = stops.iter().peekable();
@@ -87,10 +91,11 @@ fn follow(
         {
             let far_side = *far;
             if let Some(on) = follower.land_smoothly(from, *near, &mut step) {
-                let Some(over) = follower.land(&on, far_side) else {
+                let over = follower.land_over(&on, far_side);
+                nodes.push(on);
+                let Some(over) = over else {
                     return Some((nodes, EndReason::Stuck));
                 };
-                nodes.push(on);
                 nodes.push(over);
                 stops.next();
                 step = 0.02;

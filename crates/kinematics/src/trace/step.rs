@@ -59,9 +59,9 @@ impl<P: Path> Follower<'_, P> {
         None
     }
 
-    /// The node at a scaled path parameter, reached from `from` at fixed parameter: how a trace gets on a place where the
-    /// drives' rates jump, and over it. `None` when it is too far for one step.
-    pub fn land(&mut self, from: &Node, target: f64) -> Option<Node> {
+    /// The node at a scaled path parameter ahead of `from`, reached at fixed parameter, and the length of the first
+    /// correction there.
+    fn land(&mut self, from: &Node, target: f64) -> Option<(Node, f64)> {
         let last = from.z.len() - 1;
         let rate = from.tangent[last];
         let far = (target - from.z[last]) / rate;
@@ -71,14 +71,27 @@ impl<P: Path> Follower<'_, P> {
         border[last] = rate.signum();
         let gap = self.correct(&mut z, &border)?;
         let tangent = self.tangent(&z, &border)?;
-        (far >= 0.0 && gap <= 0.3 * far.max(SHORTEST_STEP)).then_some(Node { z, tangent })
+        (far >= 0.0).then_some((Node { z, tangent }, gap))
     }
 
-    /// Like [`Follower::land`], but only as far as the step's cubic holds; shortens `step` otherwise.
+    /// The node at a scaled path parameter a little ahead, over a place where the drives' rates jump. `None` when it lies
+    /// farther away than the rates on both sides explain.
+    pub fn land_over(&mut self, from: &Node, target: f64) -> Option<Node> {
+        let (over, _) = self.land(from, target)?;
+        let last = from.z.len() - 1;
+        let width = (target - from.z[last]).abs();
+        let arcs = width / from.tangent[last].abs() + width / over.tangent[last].abs();
+        (distance(&from.z, &over.z) <= arcs + SHORTEST_STEP).then_some(over)
+    }
+
+    /// The node at a scaled path parameter ahead, such as where the drives' rates jump, but only as far as the cubic of
+    /// one step holds; shortens `step` otherwise.
     pub fn land_smoothly(&mut self, from: &Node, target: f64, step: &mut f64) -> Option<Node> {
         let last = from.z.len() - 1;
         let far = (target - from.z[last]) / from.tangent[last];
-        let smooth = self.land(from, target).filter(|to| {
+        let landed = self.land(from, target);
+        let near = landed.filter(|(_, gap)| *gap <= 0.3 * far.max(SHORTEST_STEP));
+        let smooth = near.map(|(to, _)| to).filter(|to| {
             let middle = hermite(from, to, 0.5);
             let mut corrected = middle.clone();
             let across = chord(from, to);
