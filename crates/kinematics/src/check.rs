@@ -49,7 +49,7 @@ pub struct Reach {
     pub ends: (EndReason, EndReason),
     /// The drive can turn on without end.
     pub full_turn: bool,
-    /// Dead points and change points in that range.
+    /// Dead points and change points met where the file demands the drive to go.
     pub events: Vec<Event>,
 }
 
@@ -153,7 +153,7 @@ fn reach(motion: &Motion<'_>, watch: &mut dyn Watch) -> Result<Reach, MotionErro
             range: wide.reached(),
             ends: wide.ends,
             full_turn: turning && wide.ends == (EndReason::Covered, EndReason::Covered),
-            events: wide.events,
+            events: wide.met(motion.demanded),
         }),
         Err(stopped @ MotionError::Stopped { .. }) => Err(stopped),
         Err(_) => Ok(own()),

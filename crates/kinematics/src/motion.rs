@@ -35,6 +35,9 @@ use crate::watch::{Unwatched, Watch};
 /// A motion may end this close to a limit (in path scales) and still count as reaching it.
 pub const AT_LIMIT: f64 = 1e-12;
 
+/// A place located this near (in path scales) beyond the demanded range lies at its end.
+const AT_END: f64 = 1e-9;
+
 /// What is asked of a motion.
 #[derive(Clone, Debug)]
 pub struct Demand {
@@ -69,8 +72,10 @@ pub struct Motion<'m> {
     pub demanded: (f64, f64),
     /// Why the trace ended at its low and its high end.
     pub ends: (EndReason, EndReason),
-    /// Dead points, change points and limits met, in order of the path parameter.
+    /// Dead points, change points and limits met within the demanded range, in order of the path parameter.
     pub events: Vec<Event>,
+    /// All those on the trace, which goes a little beyond the demanded range.
+    pub(crate) places: Vec<Event>,
     nodes: Vec<Node>,
     parameters: Vec<f64>,
     patches: Vec<Patch>,
@@ -142,6 +147,7 @@ impl<'m> Motion<'m> {
             demanded,
             ends: (EndReason::Covered, EndReason::Covered),
             events: Vec::new(),
+            places: Vec::new(),
             parameters: Vec::new(),
             patches: Vec::new(),
             nodes,
@@ -159,6 +165,13 @@ impl<'m> Motion<'m> {
             last.copied().unwrap_or(self.start),
         );
         (self.demanded.0.max(first), self.demanded.1.min(last))
+    }
+
+    /// What the trace meets within a range of the path parameter, its ends included.
+    pub(crate) fn met(&self, (low, high): (f64, f64)) -> Vec<Event> {
+        let margin = AT_END * self.scale;
+        let within = |e: &&Event| low - margin <= e.at && e.at <= high + margin;
+        self.places.iter().filter(within).cloned().collect()
     }
 
     /// How far beyond its ends the motion still counts as reaching.
@@ -214,7 +227,7 @@ impl<'m> Motion<'m> {
 
     /// The change point within whose bridge `p` lies, if any.
     pub fn bridge(&self, p: f64) -> Option<&Event> {
-        self.events
+        self.places
             .iter()
             .find(|e| e.kind != EventKind::Limit && (p - e.at).abs() < 0.5 * e.bridge)
     }

@@ -90,7 +90,7 @@ impl Swept {
         let limit_at = |p: Option<&f64>| {
             p.copied().filter(|p| {
                 motion
-                    .events
+                    .places
                     .iter()
                     .any(|e| e.kind == crate::events::EventKind::Limit && e.at == *p)
             })

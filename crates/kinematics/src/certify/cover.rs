@@ -73,7 +73,7 @@ impl Certifier<'_> {
             }
         }
         for gap in &mut it.gaps {
-            let events = &self.motion.events;
+            let events = &self.motion.places;
             let met = events.iter().find(|e| gap.from <= e.at && e.at <= gap.to);
             gap.event = met.map(|e| e.kind);
         }
@@ -88,7 +88,7 @@ impl Certifier<'_> {
     /// Stretches to begin with: `parts` between any two places where something is not smooth.
     fn stretches(&self, range: (f64, f64), parts: usize) -> Vec<(f64, f64)> {
         let mut ends = vec![range.0, range.1];
-        ends.extend(self.motion.events.iter().map(|e| e.at));
+        ends.extend(self.motion.places.iter().map(|e| e.at));
         ends.extend(&self.knots);
         ends.retain(|p| range.0 <= *p && *p <= range.1);
         ends.sort_by(f64::total_cmp);

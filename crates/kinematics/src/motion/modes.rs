@@ -19,6 +19,8 @@ const STATIONARY: f64 = 1e-9;
 const ONE_POSE: f64 = 1e-7;
 /// Half width of the stretch about a change that is interpolated, as a part of the step between its nodes.
 const BRIDGE: f64 = 0.15;
+/// How well (in path scales) a change point is located.
+const SNAP: f64 = 1e-11;
 /// Part of its size at a regular neighbour below which a determinant counts as zero at a limit.
 const VANISHING: f64 = 1e-3;
 
@@ -44,8 +46,9 @@ impl Motion<'_> {
         for (index, node) in old.iter().enumerate() {
             nodes.push(node.clone());
             let at_limit = node.parameter_rate().abs() < STATIONARY;
-            if at_limit {
-                self.events.push(Event {
+            // Only a limit that was located has no rate at all.
+            if node.parameter_rate() == 0.0 {
+                self.places.push(Event {
                     kind: EventKind::Limit,
                     at: follower.parameter(&node.z),
                     steps: vanishing(&modes[index], index.checked_sub(1).map(|i| &modes[i])),
@@ -71,7 +74,7 @@ impl Motion<'_> {
                 current[step] = -current[step];
                 if s - last_s < ONE_POSE {
                     // Several groups change at one pose.
-                    if let (Some(event), Some(now)) = (self.events.last_mut(), signs.last_mut()) {
+                    if let (Some(event), Some(now)) = (self.places.last_mut(), signs.last_mut()) {
                         event.steps.push(step);
                         now.clone_from(&current);
                     }
@@ -81,7 +84,7 @@ impl Motion<'_> {
                 // Where redundant constraints keep the tangent determined nothing crosses.
                 let crossing = follower.tangent(&at.z, &at.tangent).is_none()
                     || follower.conditioning() < CROSSING;
-                self.events.push(Event {
+                self.places.push(Event {
                     kind: if crossing {
                         EventKind::ChangePoint
                     } else {
@@ -95,6 +98,8 @@ impl Motion<'_> {
                 signs.push(current.clone());
             }
         }
+        self.snap();
+        self.events = self.met(self.demanded);
         self.parameters = nodes.iter().map(|n| follower.parameter(&n.z)).collect();
         self.nodes = nodes;
         for (from, signs) in signs.into_iter().enumerate() {
@@ -103,6 +108,24 @@ impl Motion<'_> {
             }
         }
         Ok(())
+    }
+
+    /// Puts change points that lie at an end of the demanded range to rounding right there.
+    fn snap(&mut self) {
+        let margin = SNAP * self.scale;
+        for place in self
+            .places
+            .iter_mut()
+            .filter(|e| e.kind != EventKind::Limit)
+        {
+            let ends = [self.demanded.0, self.demanded.1];
+            if let Some(end) = ends
+                .into_iter()
+                .find(|end| (place.at - end).abs() <= margin)
+            {
+                place.at = end;
+            }
+        }
     }
 
     /// The determinants of all steps at every node.
