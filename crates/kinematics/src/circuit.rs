@@ -9,16 +9,13 @@ mod rows;
 pub use self::round::CIRCUIT_STEPS;
 pub(crate) use self::round::go_round;
 
-use crate::assemble::{Assemblies, find_assemblies};
+use crate::assemble::Assemblies;
 use crate::mechanism::Mechanism;
 use crate::motion::{EndReason, Motion, MotionError, Unlocated, with_care};
 use crate::plan::Plan;
 use crate::state::Design;
 use crate::trace::{Follower, Node, Path, distance};
 use crate::watch::{Stage, Unwatched, Watch};
-
-/// A start this near a singular pose is moved along the drive by these parts of its range.
-const ANCHORS: [f64; 4] = [0.0, 0.0137, 0.1234, 0.3719];
 
 /// A stretch of a circuit on which the drive's coordinate runs one way.
 #[derive(Clone, Debug)]
@@ -72,63 +69,53 @@ impl<'m> Circuit<'m> {
         parameters: &[f64],
         watch: &mut dyn Watch,
     ) -> Result<Self, MotionError> {
-        let stopped = |stage| move || MotionError::Stopped { stage };
         // The demanded motion finds the start, with all its checks.
-        let mut motion = Motion::watched(mechanism, plan, design, parameters, watch)?;
-        let path = motion.path.clone();
+        let motion = Motion::watched(mechanism, plan, design, parameters, watch)?;
         let (low, high) = motion.demanded;
+        let direction = if motion.start == low { 1.0 } else { -1.0 };
+        let Motion {
+            path,
+            assemblies,
+            anchor,
+            start,
+            ..
+        } = motion;
         let mut follower = Follower::new(mechanism, plan, &design.geometry, &path);
-        let mut coordinates = vec![0.0; mechanism.model.drives.len()];
-        let far = if motion.start == low { high } else { low };
-        for part in ANCHORS {
-            let anchor = motion.anchor + part * (far - motion.anchor);
-            path.coordinates(anchor, &mut coordinates);
-            let assemblies = if anchor == motion.anchor {
-                std::mem::take(&mut motion.assemblies)
-            } else {
-                find_assemblies(mechanism, plan, design, &coordinates, watch)
-                    .ok_or_else(stopped(Stage::Assembling))?
-            };
-            let Some(chosen) = assemblies.list.first() else {
-                continue;
-            };
-            let z = follower.scaled(&chosen.poses, &chosen.branch.near, anchor);
-            let direction = if far >= motion.start { 1.0 } else { -1.0 };
-            let Some(start) = follower.start(z, direction) else {
-                continue;
-            };
-            return with_care(&mut follower, |follower| {
-                let (nodes, closed) =
-                    go_round(follower, start.clone(), mechanism, &path, high, watch)
-                        .ok_or(Unlocated::Stopped(Stage::Following))?;
-                let mut stretches = Vec::new();
-                let mut length = 0.0;
-                for nodes in pieces(nodes) {
-                    let arcs = arcs(&nodes, length);
-                    length = arcs.last().copied().unwrap_or(length);
-                    let (rising, forward) = rising(&nodes);
-                    let (path, assemblies) = (path.clone(), assemblies.clone());
-                    let mut motion =
-                        Motion::of_nodes(mechanism, plan, design, path, assemblies, rising);
-                    motion.ends = (EndReason::Limit, EndReason::Limit);
-                    motion.find_events(follower, watch)?;
-                    stretches.push(Stretch {
-                        motion,
-                        forward,
-                        arcs,
-                        nodes,
-                    });
-                }
-                Ok(Self {
-                    stretches,
-                    closed,
-                    length,
-                    assemblies: assemblies.clone(),
-                    scale: path.scale(),
-                })
-            });
-        }
-        Err(MotionError::Locked { at: motion.start })
+        let locked = MotionError::Locked { at: start };
+        let Some(chosen) = assemblies.list.first() else {
+            return Err(locked);
+        };
+        let z = follower.scaled(&chosen.poses, &chosen.branch.near, anchor);
+        let start = follower.start(z, direction).ok_or(locked)?;
+        with_care(&mut follower, |follower| {
+            let (nodes, closed) = go_round(follower, start.clone(), mechanism, &path, high, watch)
+                .ok_or(Unlocated::Stopped(Stage::Following))?;
+            let mut stretches = Vec::new();
+            let mut length = 0.0;
+            for nodes in pieces(nodes) {
+                let arcs = arcs(&nodes, length);
+                length = arcs.last().copied().unwrap_or(length);
+                let (rising, forward) = rising(&nodes);
+                let (path, assemblies) = (path.clone(), assemblies.clone());
+                let mut motion =
+                    Motion::of_nodes(mechanism, plan, design, path, assemblies, rising);
+                motion.ends = (EndReason::Limit, EndReason::Limit);
+                motion.find_events(follower, watch)?;
+                stretches.push(Stretch {
+                    motion,
+                    forward,
+                    arcs,
+                    nodes,
+                });
+            }
+            Ok(Self {
+                stretches,
+                closed,
+                length,
+                assemblies: assemblies.clone(),
+                scale: path.scale(),
+            })
+        })
     }
 
     /// Size of a typical change of the path parameter: a radian, or the mechanism's size.

@@ -38,6 +38,9 @@ pub const AT_LIMIT: f64 = 1e-12;
 /// A place located this near (in path scales) beyond the demanded range lies at its end.
 const AT_END: f64 = 1e-9;
 
+/// A change point this near (in path scales) to the start is where the motion starts.
+const AT_START: f64 = 1e-6;
+
 /// What is asked of a motion.
 #[derive(Clone, Debug)]
 pub struct Demand {
@@ -66,6 +69,9 @@ pub struct Motion<'m> {
     pub assemblies: Assemblies,
     /// Path parameter where the assembly was chosen: the start, or near it when the start is singular.
     pub anchor: f64,
+    /// How many assemblies at the anchor fit the file's hints and lead to the pose at the start: more than one where the
+    /// start is a change point and the hints do not tell which branch is meant.
+    pub choices: usize,
     /// Path parameter where the motion starts.
     pub start: f64,
     /// Demanded range of the path parameter.
@@ -143,6 +149,7 @@ impl<'m> Motion<'m> {
             design,
             assemblies,
             anchor: demanded.0,
+            choices: 1,
             start: demanded.0,
             demanded,
             ends: (EndReason::Covered, EndReason::Covered),
@@ -186,6 +193,13 @@ impl<'m> Motion<'m> {
             return false;
         };
         p >= first - tolerance && p <= last + tolerance
+    }
+
+    /// The change point at which the motion starts, if it does.
+    pub fn start_crossing(&self) -> Option<&Event> {
+        let margin = AT_START * self.scale;
+        (self.places.iter())
+            .find(|e| e.kind == EventKind::ChangePoint && (e.at - self.start).abs() <= margin)
     }
 
     /// Size of the mechanism, m: the scale of closure residuals.

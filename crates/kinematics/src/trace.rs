@@ -13,6 +13,7 @@ pub use self::cubic::{chord, hermite};
 pub use self::step::{MIDDLE_TOLERANCE, TURN_LIMIT};
 
 use self::caution::Caution;
+pub(crate) use self::caution::apart;
 use crate::bordered::Bordered;
 use crate::constraint::{Input, Situation};
 use crate::geometry::Geometry;
@@ -82,6 +83,7 @@ pub struct Follower<'a, P> {
     coordinates: Vec<f64>,
     rates: Vec<f64>,
     cautions: Vec<Caution>,
+    determined: f64,
 }
 
 impl<'a, P: Path> Follower<'a, P> {
@@ -106,6 +108,7 @@ impl<'a, P: Path> Follower<'a, P> {
             coordinates: vec![0.0; drives],
             rates: vec![0.0; drives],
             cautions: Vec::new(),
+            determined: 0.0,
         }
     }
 
@@ -207,6 +210,11 @@ impl<'a, P: Path> Follower<'a, P> {
         self.system.conditioning()
     }
 
+    /// [`Follower::conditioning`] at the node that the trace last began at or stepped to.
+    pub fn determined(&self) -> f64 {
+        self.determined
+    }
+
     /// Corrects a point within the hyperplane across `border` through it. Returns the length of the first correction.
     pub fn correct(&mut self, z: &mut [f64], border: &[f64]) -> Option<f64> {
         let mut first = None;
@@ -242,7 +250,8 @@ impl<'a, P: Path> Follower<'a, P> {
         border[last] = direction.signum();
         self.correct(&mut z, &border)?;
         let tangent = self.tangent(&z, &border)?;
-        (self.conditioning() > 1e-9 && tangent[last].abs() > 1e-7).then_some(Node { z, tangent })
+        self.determined = self.conditioning();
+        (self.determined > 1e-9 && tangent[last].abs() > 1e-7).then_some(Node { z, tangent })
     }
 }
 

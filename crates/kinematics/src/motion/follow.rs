@@ -15,6 +15,10 @@ pub const FAR: f64 = 1e3;
 pub const WHIRLING: f64 = 300.0;
 /// Rate of the scaled path parameter along the arc below which the drive all but stands still.
 const STANDING: f64 = 1e-4;
+/// Pivot ratio of the bordered Jacobian above which a node is far enough from where branches cross to be the last one.
+const WELL_DETERMINED: f64 = 1e-3;
+/// Steps beyond the range in search of such a node.
+const STEPS_BEYOND: usize = 3;
 /// Width, as a part of the whole time, between the near and the far side of a place where the drives' rates jump.
 const SIDES: f64 = 1e-12;
 
@@ -75,15 +79,21 @@ fn follow(
         return Some((nodes, EndReason::Covered));
     }
     let mut step = 0.02;
+    let mut beyond = 0;
     let stops = stops(follower, direction, nodes[0].z[last], target);
     let mut stops = stops.iter().peekable();
     for _ in 0..STEP_LIMIT {
         let from = &nodes[nodes.len() - 1];
         let whole = (target - nodes[0].z[last]).abs().max(f64::MIN_POSITIVE);
         told((from.z[last] - nodes[0].z[last]).abs() / whole).continue_value()?;
-        // A margin beyond the target, so that it lies inside a patch and not at the rim.
-        if (from.z[last] - target) * direction > 1e-9 {
-            return Some((nodes, EndReason::Covered));
+        // A margin beyond the target, so that it lies inside a patch and not at the rim; and near a crossing of branches
+        // on to its other side, so that rows there are joined from both sides.
+        let past = (from.z[last] - target) * direction > 1e-9;
+        if past {
+            if follower.determined() > WELL_DETERMINED || beyond == STEPS_BEYOND {
+                return Some((nodes, EndReason::Covered));
+            }
+            beyond += 1;
         }
         // Where the drives' rates jump the trace stops on the near side and goes on from the far side.
         if let Some((near, far)) = stops.peek()
@@ -105,8 +115,9 @@ fn follow(
                 continue;
             }
         }
+        let ended = |reason| if past { EndReason::Covered } else { reason };
         let Some(next) = follower.advance(from, &mut step) else {
-            return Some((nodes, EndReason::Stuck));
+            return Some((nodes, ended(EndReason::Stuck)));
         };
         if next.parameter_rate() * direction <= 0.0 {
             let limit = locate_limit(follower, from, &next);
@@ -123,7 +134,7 @@ fn follow(
         let away = runs_away(&next.z, &nodes[0].z, standing);
         nodes.push(next);
         if away {
-            return Some((nodes, EndReason::Runaway));
+            return Some((nodes, ended(EndReason::Runaway)));
         }
     }
     Some((nodes, EndReason::TooLong))

@@ -18,10 +18,22 @@ impl<F: ForceSource> Sampler<'_, F> {
             .bridge(p)
             .filter(|e| e.kind == EventKind::ChangePoint)
         {
-            return Some(format!(
-                "change point at {}: the motion goes on smoothly, interpolated from both sides",
-                self.place_text(event.at)
-            ));
+            let at = self.place_text(event.at);
+            let started = self.motion.start_crossing() == Some(event) && p == self.motion.start;
+            return Some(match self.motion.choices {
+                1 if started => format!(
+                    "change point at {at}, where the motion starts: it follows the branch through it that fits the hints in \
+                     [assembly], interpolated from both sides"
+                ),
+                n if started => format!(
+                    "change point at {at}, where the motion starts: {n} branches through it fit the hints in [assembly], \
+                     and it follows the first, interpolated from both sides; a side, or a near place a little further on, \
+                     chooses"
+                ),
+                _ => format!(
+                    "change point at {at}: the motion goes on smoothly, interpolated from both sides"
+                ),
+            });
         }
         if !(sample.closure <= CLOSURE_LIMIT) {
             return Some(format!(

@@ -45,7 +45,7 @@ impl<P: Path> Follower<'_, P> {
 }
 
 /// Distance of two configurations: places in mechanism sizes, angles in rad modulo turns, the path parameter left out.
-fn apart(a: &[f64], b: &[f64]) -> f64 {
+pub(crate) fn apart(a: &[f64], b: &[f64]) -> f64 {
     let bodies = a.iter().zip(b).take(a.len() - 1).enumerate();
     let squares = bodies.map(|(i, (a, b))| {
         let gap = a - b;

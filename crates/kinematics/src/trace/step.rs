@@ -28,7 +28,8 @@ impl<P: Path> Follower<'_, P> {
                 .and_then(|_| {
                     let tangent = self.tangent(&z, &from.tangent)?;
                     // Right on a crossing of branches the tangent is not determined: step elsewhere.
-                    if self.conditioning() < 1e-10 {
+                    self.determined = self.conditioning();
+                    if self.determined < 1e-10 {
                         odd += 1;
                         return None;
                     }
