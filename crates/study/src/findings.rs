@@ -177,6 +177,12 @@ pub fn check_watched(model: &Model, progress: &mut dyn Progress) -> Report {
             let range = crate::explain::reach_text(model, reach.range, dimension);
             let why = match reach.ends {
                 (EndReason::Limit, EndReason::Limit) => ", limits on both sides",
+                (EndReason::Runaway, EndReason::Limit) => {
+                    ", a part runs away to infinity at the low end, a limit at the high end"
+                }
+                (EndReason::Limit, EndReason::Runaway) => {
+                    ", a limit at the low end, a part runs away to infinity at the high end"
+                }
                 (EndReason::Limit, _) => " and more, a limit at the low end",
                 (_, EndReason::Limit) => " and less, a limit at the high end",
                 (EndReason::Runaway, _) | (_, EndReason::Runaway) => {

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use crate::drive_path::DrivePath;
 use crate::events::locate_limit;
-use crate::trace::{Follower, Node};
+use crate::trace::{Follower, Node, distance};
 use crate::watch::{Stage, Watch};
 
 /// Steps after which a trace is given up.
@@ -15,6 +15,11 @@ pub const FAR: f64 = 1e3;
 pub const WHIRLING: f64 = 300.0;
 /// Rate of the scaled path parameter along the arc below which the drive all but stands still.
 const STANDING: f64 = 1e-4;
+/// Rate below which it stands still, as far as rounding lets tell: such a place is a limit only where the rate changes sign
+/// from what is more than rounding.
+const STILL: f64 = 1e-10;
+/// Shortest step, in mechanism sizes and rad, over which the drive must stand still for a part to run away.
+const STILL_STEP: f64 = 1e-3;
 /// Pivot ratio of the bordered Jacobian above which a node is far enough from where branches cross to be the last one.
 const WELL_DETERMINED: f64 = 1e-3;
 /// Steps beyond the range in search of such a node.
@@ -119,6 +124,11 @@ fn follow(
         let Some(next) = follower.advance(from, &mut step) else {
             return Some((nodes, ended(EndReason::Stuck)));
         };
+        // Where the drive's coordinate no longer changes while the mechanism moves on, rounding alone decides its sign.
+        let still = [from, &next].map(|node| node.parameter_rate().abs() < STILL);
+        if still == [true; 2] && distance(&from.z, &next.z) > STILL_STEP {
+            return Some((nodes, ended(EndReason::Runaway)));
+        }
         if next.parameter_rate() * direction <= 0.0 {
             let limit = locate_limit(follower, from, &next);
             let covered = (limit.z[last] - target) * direction > 0.0;
