@@ -11,6 +11,7 @@ mod step;
 pub(crate) use self::cubic::{Cubic, distance, interval};
 pub use self::cubic::{chord, hermite};
 pub use self::step::{MIDDLE_TOLERANCE, TURN_LIMIT};
+pub(crate) use self::step::{WIGGLE, hides_limits};
 
 use self::caution::Caution;
 pub(crate) use self::caution::apart;

@@ -6,7 +6,7 @@ use crate::drive_path::DrivePath;
 use crate::events::locate_limit;
 use crate::mechanism::Mechanism;
 use crate::motion::runs_away;
-use crate::trace::{Follower, Node, distance, hermite};
+use crate::trace::{Follower, Node, WIGGLE, distance, hermite, hides_limits};
 use crate::watch::{Stage, Watch};
 
 /// Steps after which a circuit that has not closed is given up.
@@ -72,10 +72,21 @@ pub(crate) fn go_round(
             .sum();
         let reached = travelled > 2.0 * h && (0.0..=1.05 * h).contains(&ahead) && same_way > 0.9;
         if reached && distance(&hermite_home(&from, &next, &home, h), &home) < 0.02 * h.max(1e-6) {
-            nodes.push(Node {
+            let home = Node {
                 z: home,
                 tangent: start.tangent.clone(),
-            });
+            };
+            // Dead points just before the start.
+            let rest = distance(&from.z, &home.z);
+            if from.parameter_rate() * home.parameter_rate() < 0.0 {
+                nodes.push(locate_limit(follower, &from, &home));
+            } else if rest < WIGGLE {
+                nodes.pop();
+            } else if hides_limits(&from, &home) {
+                step = 0.5 * rest;
+                continue;
+            }
+            nodes.push(home);
             return Some((nodes, true));
         }
         if from.parameter_rate() * next.parameter_rate() < 0.0 {

@@ -7,7 +7,7 @@ pub const MIDDLE_TOLERANCE: f64 = 1e-3;
 /// Smallest cosine between the tangents at the ends of a step.
 pub const TURN_LIMIT: f64 = 0.97;
 /// Steps shorter than this are not held to a path parameter that runs one way: rounding would decide.
-const WIGGLE: f64 = 1e-6;
+pub(crate) const WIGGLE: f64 = 1e-6;
 /// Longest step, in mechanism sizes and rad over all bodies (root of the sum of squares).
 const LONGEST_STEP: f64 = 0.5;
 /// Shortest step: below it the motion is stuck.
@@ -110,7 +110,7 @@ impl<P: Path> Follower<'_, P> {
 
 /// Whether the path parameter cannot run one way all along a step that leaves and arrives the same way (the condition
 /// of Fritsch and Carlson 1980 for a monotonic cubic): two limits lie in between.
-fn hides_limits(from: &Node, to: &Node) -> bool {
+pub(crate) fn hides_limits(from: &Node, to: &Node) -> bool {
     let last = from.z.len() - 1;
     let (a, b) = (from.parameter_rate(), to.parameter_rate());
     let h = distance(&from.z, &to.z);
