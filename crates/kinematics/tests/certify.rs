@@ -328,6 +328,70 @@ fn a_pose_over_an_interval_holds_every_pose_in_it() {
     }
 }
 
+/// A beam whose pins lie exactly in line: its height is a root of what holds zero, and its rate must not be divided by it.
+#[test]
+fn a_flat_triangle_is_proved() {
+    let text = |height: &str| {
+        format!(
+            "units = {{ length = \"mm\", angle = \"deg\" }}
+[links]
+frame = {{ A = [0, 0], D = [200, -50], U = [420, 0], V = [420, 100] }}
+back = {{ A-B = 200 }}
+beam = {{ B-C = 200, B-P = 400, C-P = {height}, P = \"right of B -> C\" }}
+arm = {{ D-C = 60 }}
+piston = {{ P = [0, 0] }}
+[drives]
+motor = {{ turns = \"arm\", from = 0, to = 60, speed = \"10 deg/s\" }}
+"
+        )
+    };
+    for height in ["200", "201"] {
+        let case = Case::read(&text(height), "beam.toml");
+        let motion = case.must_move();
+        let proof = certify_motion(&motion, Subdivision::default(), on);
+        assert!(
+            proof.fraction == 1.0 && proof.gaps.is_empty(),
+            "{height}: {:?}",
+            proof.gaps
+        );
+        assert!(proof.cells.len() < 300, "{height}: {}", proof.cells.len());
+    }
+}
+
+/// Where nothing can be proved, as where rounding leaves a length open by as much as it is, the work is bounded and all of the range
+/// is told as not proved.
+#[test]
+fn what_cannot_be_proved_is_given_up_soon() {
+    let case = Case::read(
+        "units = { length = \"m\", angle = \"deg\" }
+[parameters]
+far = \"1e14 m\"
+[links]
+frame = { A = [0, 0], D = [0.06, 0] }
+crank = { A-B = \"far + 0.02 m - far\" }
+coupler = { B-C = 0.05 }
+rocker = { D-C = 0.04 }
+[drives]
+motor = { turns = \"crank\", from = 0, to = 360, speed = \"60 rpm\" }
+",
+        "rounded.toml",
+    );
+    let motion = case.must_move();
+    let mut told = 0;
+    let proof = certify_motion(&motion, Subdivision::default(), |_| {
+        told += 1;
+        ControlFlow::Continue(())
+    });
+    assert!(
+        proof.finished && proof.fraction.to_bits() == 0,
+        "{}",
+        proof.fraction
+    );
+    let (first, last) = (proof.gaps.first().unwrap(), proof.gaps.last().unwrap());
+    assert_eq!((first.from, last.to), proof.range);
+    assert!(told < 10_000, "{told}");
+}
+
 #[test]
 fn work_can_be_stopped() {
     let case = Case::example("seeds/crank-rocker");

@@ -24,6 +24,10 @@ impl Default for Subdivision {
     }
 }
 
+/// Proofs tried in each of the stretches to begin with, before what is left of it becomes gaps as it is. A limit or a change
+/// point takes about a hundred.
+const TRIES: usize = 1000;
+
 impl Certifier<'_> {
     /// Covers the motion with proved stretches, cutting in two what can not be proved until it is narrow.
     ///
@@ -46,9 +50,16 @@ impl Certifier<'_> {
         };
         let mut stack = self.stretches(range, subdivision.start.max(1));
         stack.reverse();
+        let mut others = stack.len();
         let mut last: Option<Tube> = None;
+        let mut tries = 0;
         while let Some((from, to)) = stack.pop() {
             let middle = 0.5 * (from + to);
+            // With the last piece of a stretch to begin with, what follows is another.
+            if stack.len() < others {
+                (others, tries) = (stack.len(), 0);
+            }
+            tries += 1;
             match self.cell(from, to) {
                 Ok((mut cell, tube)) => {
                     cell.joined = last.as_ref().is_some_and(|before| {
@@ -59,6 +70,7 @@ impl Certifier<'_> {
                 }
                 Err(_)
                     if to - from > subdivision.narrowest * scale
+                        && tries < TRIES
                         && from < middle
                         && middle < to =>
                 {
@@ -77,7 +89,7 @@ impl Certifier<'_> {
             let met = events.iter().find(|e| gap.from <= e.at && e.at <= gap.to);
             gap.event = met.map(|e| e.kind);
         }
-        let proved: f64 = it.cells.iter().map(|c| c.to - c.from).sum();
+        let proved = it.cells.iter().fold(0.0, |sum, c| sum + (c.to - c.from));
         it.fraction = match it.gaps.is_empty() && it.finished {
             true if !it.cells.is_empty() => 1.0,
             _ => proved / (range.1 - range.0),

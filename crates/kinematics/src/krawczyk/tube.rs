@@ -133,7 +133,8 @@ impl System {
     }
 }
 
-fn constant_pose(pose: &Pose<Interval>) -> Pose<Curve> {
+/// A pose that does not change.
+pub(crate) fn constant_pose(pose: &Pose<Interval>) -> Pose<Curve> {
     Pose {
         x: Jet::constant(pose.x),
         y: Jet::constant(pose.y),
