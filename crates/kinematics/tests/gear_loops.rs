@@ -4,8 +4,10 @@
 mod support;
 
 use std::f64::consts::PI;
+use std::ops::ControlFlow;
 
-use kempe_kinematics::assemble::{Shortfall, all_assemblies};
+use kempe_kinematics::Stage;
+use kempe_kinematics::assemble::{Shortfall, all_assemblies, find_assemblies};
 use kempe_kinematics::evidence::closure;
 use support::{Case, Rng, V, add, norm, polar, sub};
 
@@ -123,6 +125,30 @@ fn a_gear_in_a_loop_without_hints_is_assembled() {
         );
         assert!(residual < 1e-12, "{residual:e}");
     }
+}
+
+/// A rack that the loop's wheel moves is placed after the loop: curves that close in the loop are not followed for as long
+/// as the rack runs on.
+#[test]
+fn what_comes_after_a_gear_loop_is_no_work_in_it() {
+    let case = Case::read(include_str!("models/rack-after-loop.toml"), "rack-after");
+    let start: Vec<f64> = (case.model.drives.iter())
+        .map(|d| d.law.at(0.0, &case.parameters))
+        .collect();
+    let mut told = 0;
+    let mut watch = |_: Stage, _: Option<f64>| {
+        told += 1;
+        ControlFlow::Continue(())
+    };
+    let found = find_assemblies(
+        &case.mechanism,
+        &case.plan,
+        &case.design,
+        &start,
+        &mut watch,
+    );
+    assert_eq!(found.unwrap().list.len(), 2);
+    assert!(told < 20_000, "{told}");
 }
 
 /// The angles that a gear ties count from the hints: the same five-bar with its wheel hinted a turn further on has another

@@ -4,9 +4,10 @@ use std::cmp::Ordering;
 
 use kempe_number::math;
 
+use super::Shortfall;
 use super::gear_train::gear_train;
+use super::open_loop::{self, Gear};
 use super::search::Search;
-use super::{Shortfall, open_loop};
 use crate::blocks::Unknown;
 use crate::homotopy::{Random, Solutions, all_real_solutions};
 use crate::mechanism::Constraint;
@@ -148,7 +149,11 @@ impl Search<'_> {
                 self.plan,
                 self.design,
                 self.coordinates,
-                (gear, &self.hints.meant),
+                Gear {
+                    constraint: gear,
+                    step,
+                    meant: &self.hints.meant,
+                },
                 self.watch,
             )?;
             self.opened.push((gear, found));

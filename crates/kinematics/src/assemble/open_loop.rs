@@ -13,6 +13,7 @@ use kempe_model::{Drive, DriveKind, JointKind, Law, LinkId};
 use kempe_units::{Dimension, Expr};
 
 use crate::assemble::find_assemblies;
+use crate::blocks::{Block, Unknown};
 use crate::circuit::go_round;
 use crate::constraint::Situation;
 use crate::drive_path::DrivePath;
@@ -32,24 +33,34 @@ const SAME_CURVE: f64 = 1e-3;
 /// Places within a step of the trace at which the gear's equation is evaluated.
 const SAMPLES: usize = 12;
 
-/// The mechanism with the gear's constraint replaced by a drive that turns it.
+/// A gear pair or rack to open.
+pub(crate) struct Gear<'a> {
+    /// Its constraint.
+    pub constraint: usize,
+    /// The step of the plan whose block holds it.
+    pub step: usize,
+    /// Angles near which those of the bodies are counted.
+    pub meant: &'a [f64],
+}
+
+/// The mechanism with the gear's constraint replaced by a drive that turns it, as far as the gear's block: what is placed
+/// after it stands still.
 struct Opened {
     mechanism: Mechanism,
     plan: Plan,
     design: Design<f64>,
 }
 
-/// Poses in whose neighbourhood the constraint number `gear` may hold, with `meant` the angles near which angles are
-/// counted. `None` when stopped; nothing where the gear cannot be opened.
+/// Poses in whose neighbourhood the gear's constraint may hold; of what is placed after it they say nothing. `None` when stopped; nothing where the gear cannot be opened.
 pub(crate) fn candidates(
     mechanism: &Mechanism,
     plan: &Plan,
     design: &Design<f64>,
     coordinates: &[f64],
-    (gear, meant): (usize, &[f64]),
+    gear: Gear<'_>,
     watch: &mut dyn Watch,
 ) -> Option<Vec<Vec<Pose<f64>>>> {
-    let Some(opened) = open(mechanism, plan, design, gear) else {
+    let Some(opened) = open(mechanism, plan, design, &gear) else {
         return Some(Vec::new());
     };
     let drive = mechanism.model.drives.len();
@@ -104,12 +115,12 @@ pub(crate) fn candidates(
             }
         }
     }
-    let constraint = &mechanism.constraints[gear].0;
+    let constraint = &mechanism.constraints[gear.constraint].0;
     let mut poses = vec![Pose::identity(); mechanism.bodies];
     let mut near = vec![0.0; mechanism.bodies];
     let mut at = |z: &[f64]| -> (f64, Vec<Pose<f64>>) {
         follower.unscaled(z, &mut poses, &mut near);
-        for (near, (pose, meant)) in near.iter_mut().zip(poses.iter().zip(meant)) {
+        for (near, (pose, meant)) in near.iter_mut().zip(poses.iter().zip(gear.meant)) {
             *near = pose.angle_near(*meant);
         }
         let situation = Situation {
@@ -149,10 +160,16 @@ pub(crate) fn candidates(
 }
 
 /// Opens a mechanism at a gear: at the angle of one of its wheels on the arm, of the pinion on the rack.
-fn open(mechanism: &Mechanism, plan: &Plan, design: &Design<f64>, gear: usize) -> Option<Opened> {
-    let Source::Joint(joint) = mechanism.constraints[gear].1 else {
+fn open(
+    mechanism: &Mechanism,
+    plan: &Plan,
+    design: &Design<f64>,
+    gear: &Gear<'_>,
+) -> Option<Opened> {
+    let Source::Joint(joint) = mechanism.constraints[gear.constraint].1 else {
         return None;
     };
+    let placed = Placed::until(plan, gear.step);
     let joint = mechanism.model.joints.get(joint.index())?;
     let turning: Vec<(LinkId, LinkId)> = match joint.kind {
         JointKind::Gears { a, b, arm, .. } => vec![(a, arm), (b, arm)],
@@ -173,11 +190,18 @@ fn open(mechanism: &Mechanism, plan: &Plan, design: &Design<f64>, gear: usize) -
             span: joint.span.clone(),
         });
         let mut opened = Mechanism::new(&model);
-        opened.constraints.remove(gear);
-        opened.joint_constraints -= 1;
+        let mut index = 0;
+        let before = opened.joint_constraints;
+        opened.constraints.retain(|_| {
+            let kept = index != gear.constraint && placed.keeps(index);
+            opened.joint_constraints -= usize::from(!kept && index < before);
+            index += 1;
+            kept
+        });
         let new = Plan::new(&opened);
         let (old, decomposition) = (&plan.decomposition, &new.decomposition);
-        let as_before = decomposition.undetermined.is_empty()
+        let left = |unknown| placed.later.contains(unknown);
+        let as_before = decomposition.undetermined.iter().all(left)
             && decomposition.surplus.len() == old.surplus.len();
         if !as_before {
             return None;
@@ -191,6 +215,40 @@ fn open(mechanism: &Mechanism, plan: &Plan, design: &Design<f64>, gear: usize) -
             plan: new,
         })
     })
+}
+
+/// What of a mechanism is placed up to a step of its plan.
+struct Placed {
+    /// Constraints that hold only what is placed later.
+    dropped: Vec<usize>,
+    /// Unknowns that are placed later.
+    later: Vec<Unknown>,
+}
+
+impl Placed {
+    fn until(plan: &Plan, step: usize) -> Self {
+        // What is redundant may tie anything to anything.
+        let end = match plan.decomposition.surplus.is_empty() {
+            true => step + 1,
+            false => plan.blocks.len(),
+        };
+        let constraints = |blocks: &[Block]| -> Vec<usize> {
+            let rows = blocks.iter().flat_map(|b| &b.rows);
+            rows.map(|row| row.constraint).collect()
+        };
+        let (now, later) = plan.blocks.split_at(end);
+        let needed = constraints(now);
+        let mut dropped = constraints(later);
+        dropped.retain(|index| !needed.contains(index));
+        Self {
+            dropped,
+            later: later.iter().flat_map(|b| &b.unknowns).copied().collect(),
+        }
+    }
+
+    fn keeps(&self, constraint: usize) -> bool {
+        !self.dropped.contains(&constraint)
+    }
 }
 
 /// Whether a curve passes through a point, whole turns of any angle aside.
