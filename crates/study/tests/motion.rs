@@ -612,7 +612,7 @@ fn a_change_point_at_zero_is_at_zero_and_rows_are_told() {
     // A kite: two short links, two long ones.
     let text = "units = { length = \"mm\", angle = \"deg\" }\n[links]\nframe = { A = [0, 0], D = [20, 0] }\n\
                 crank = { A-B = 50 }\ncoupler = { B-C = 50 }\nrocker = { D-C = 20 }\n[drives]\n\
-                motor = { turns = \"crank\", from = 10, to = 730, speed = \"1 rad/s\" }\n[assembly]\nC = \"left of B -> D\"\n\
+                motor = { turns = \"crank\", from = -10, to = 710, speed = \"1 rad/s\" }\n[assembly]\nC = \"left of B -> D\"\n\
                 [studies.m]\nkind = \"motion\"\nrows = 5\n[studies.t]\nkind = \"motion\"\nstep = \"5 ms\"\n";
     let said = check(&model(text)).to_text();
     assert!(said.contains("change point at motor = 0 deg\n"), "{said}");
