@@ -122,18 +122,11 @@ pub fn check_as<L, R: Resolver<L> + ?Sized>(
     }
     let message = format!("{expected} expected, found {}", found.with_article());
     let issue = Issue::new("unit-mismatch", node.span.clone(), message);
-    let help = match (
-        found == Dimension::NONE,
-        expected == Dimension::NONE && found == Dimension::ANGLE,
-    ) {
-        (true, _) if expected == Dimension::ANGLE => {
-            Some("make it an angle by `* 1 rad`".to_owned())
-        }
-        (_, true) => Some("make it a number by `/ 1 rad`".to_owned()),
-        _ => None,
-    };
+    let help = remedy(node, found, expected, default);
     Err(vec![
-        Issue { help, ..issue }.with_label(format!("this is {}", found.with_article())),
+        issue
+            .with_label(format!("this is {}", found.with_article()))
+            .with_help(help),
     ])
 }
 
@@ -246,7 +239,9 @@ impl<R: ?Sized> Checker<'_, R> {
                     node.span.clone(),
                     "a directed line is not a value",
                 );
-                one(issue.with_label("this is a line"))
+                one(issue.with_label("this is a line").with_help(
+                    "take a measure of it, such as `angle(A -> B)`; a difference is written `-`",
+                ))
             }
             Kind::Neg(inner) => {
                 let (expr, dimension) = self.node(inner)?;
@@ -334,14 +329,7 @@ impl<R: ?Sized> Checker<'_, R> {
         }
         let issue = Issue::new("unit-mismatch", right.span.clone(), message)
             .with_label(format!("this is {}", right_is.with_article()));
-        let angle_and_number = [left_is, right_is].contains(&Dimension::ANGLE)
-            && [left_is, right_is].contains(&Dimension::NONE);
-        if angle_and_number {
-            return issue.with_help(
-                "a number is made an angle by `* 1 rad`, an angle a number by `/ 1 rad`",
-            );
-        }
-        issue
+        issue.with_help(relation(left_is, right_is))
     }
 
     /// The unit to propose for a bare number beside a quantity of `dimension`.
@@ -368,7 +356,9 @@ impl<R: ?Sized> Checker<'_, R> {
                 "an exponent is a number, found {}",
                 exponent_is.with_article()
             );
-            return one(bad(message).with_label(format!("this is {}", exponent_is.with_article())));
+            return one(bad(message)
+                .with_label(format!("this is {}", exponent_is.with_article()))
+                .with_help("divide it by a quantity of the same kind"));
         }
         let Some(constant) = exponent.as_constant() else {
             if base_is == Dimension::NONE {
@@ -377,10 +367,13 @@ impl<R: ?Sized> Checker<'_, R> {
                 return Ok((Expr::Call(Builtin::Exp, vec![product]), Dimension::NONE));
             }
             let message = format!("{} is raised to a constant only", base_is.with_article());
-            return one(bad(message).with_label("this is not constant"));
+            return one(bad(message).with_label("this is not constant").with_help(
+                "only plain numbers have variable powers: divide the base by a quantity of its kind first",
+            ));
         };
         if constant.is_nan() || constant.abs() > MAX_EXPONENT {
-            return one(bad(format!("an exponent is at most {MAX_EXPONENT}")));
+            let message = format!("an exponent is at most {MAX_EXPONENT}");
+            return one(bad(message).with_help("write a smaller one, or use `exp` and `ln`"));
         }
         #[expect(clippy::cast_possible_truncation, reason = "bounded above")]
         let sixths = (6.0 * constant).round() as i32;
@@ -434,7 +427,7 @@ impl<R: ?Sized> Checker<'_, R> {
             return Err(issues);
         };
         let x_is = checked[0].2;
-        let wanted = |wanted: Dimension, help: &str| {
+        let wanted = |wanted: Dimension, help: String| {
             if x_is == wanted {
                 return Ok(());
             }
@@ -444,36 +437,35 @@ impl<R: ?Sized> Checker<'_, R> {
                 x_is.with_article()
             );
             let issue = Issue::new("unit-mismatch", first.span.clone(), message);
-            let issue = issue.with_label(format!("this is {}", x_is.with_article()));
-            one(if help.is_empty() {
-                issue
-            } else {
-                issue.with_help(help)
-            })
+            one(issue
+                .with_label(format!("this is {}", x_is.with_article()))
+                .with_help(help))
+        };
+        let ratio_help = || match x_is == Dimension::ANGLE {
+            true => format!("`{builtin}` is of a number: divide the angle by `1 rad`"),
+            false => "divide by a quantity of the same kind".to_owned(),
         };
         let dimension = match builtin {
             Builtin::Sin | Builtin::Cos | Builtin::Tan => {
-                let help = if x_is == Dimension::NONE {
-                    "a number is made an angle by `* 1 rad`"
-                } else {
-                    ""
-                };
-                wanted(Dimension::ANGLE, help)?;
+                wanted(Dimension::ANGLE, angle_help(builtin, first, x_is))?;
                 Dimension::NONE
             }
             Builtin::Asin | Builtin::Acos | Builtin::Atan => {
-                wanted(Dimension::NONE, "divide by a quantity of the same kind")?;
+                wanted(Dimension::NONE, ratio_help())?;
                 Dimension::ANGLE
             }
             Builtin::Exp | Builtin::Ln => {
-                wanted(Dimension::NONE, "divide by a quantity of the same kind")?;
+                wanted(Dimension::NONE, ratio_help())?;
                 Dimension::NONE
             }
             Builtin::Sqrt => match x_is.sqrt() {
                 Some(dimension) => dimension,
                 None => {
                     let message = format!("{} has no square root", x_is.with_article());
-                    return one(Issue::new("unit-mismatch", first.span.clone(), message));
+                    let issue = Issue::new("unit-mismatch", first.span.clone(), message);
+                    return one(issue.with_help(
+                        "the exponents of a unit are whole numbers, halves, thirds or sixths",
+                    ));
                 }
             },
             Builtin::Abs => x_is,
@@ -520,9 +512,193 @@ impl<R: ?Sized> Checker<'_, R> {
             format!("unknown function `{function}`"),
         )
         .with_label("neither a measure nor a function");
+        if let Some((_, help)) = INSTEAD.iter().find(|(word, _)| *word == function) {
+            return issue.with_help(*help);
+        }
+        let list: Vec<&str> = builtins.clone().collect();
+        let list = list.join(", ");
         match nearest(function, known.iter().map(String::as_str).chain(builtins)) {
             Some(near) => issue.with_help(format!("did you mean `{near}`?")),
-            None => issue,
+            None if known.is_empty() => issue.with_help(format!("the functions are {list}")),
+            None => issue.with_help(format!(
+                "the functions are {list}, and the questions that `kempe measures` tells"
+            )),
         }
     }
+}
+
+/// What to write instead of functions of other languages.
+const INSTEAD: &[(&str, &str)] = &[
+    (
+        "log",
+        "`ln(x)` is the natural logarithm; to the base 10 write `ln(x) / ln(10)`",
+    ),
+    ("log10", "write `ln(x) / ln(10)`"),
+    ("log2", "write `ln(x) / ln(2)`"),
+    ("pow", "a power is written `x^2`"),
+    ("sqr", "a square is written `x^2`"),
+    ("square", "a square is written `x^2`"),
+    ("cbrt", "write `x^(1/3)`"),
+    ("arcsin", "it is called `asin`"),
+    ("arccos", "it is called `acos`"),
+    ("arctan", "it is called `atan`; of two sides `atan2(y, x)`"),
+    ("deg", "a unit stands behind a number: write `x * 1 deg`"),
+    ("rad", "a unit stands behind a number: write `x * 1 rad`"),
+    (
+        "radians",
+        "write `x * 1 deg` where x counts degrees; angles carry their unit",
+    ),
+    (
+        "degrees",
+        "write `x / 1 deg` for the number of degrees; angles carry their unit",
+    ),
+    (
+        "mod",
+        "there is no remainder: angles count turns; give a table its `period`",
+    ),
+    (
+        "fmod",
+        "there is no remainder: angles count turns; give a table its `period`",
+    ),
+    (
+        "sign",
+        "there is no sign: `x / abs(x)` is 1 or -1 where x is not 0",
+    ),
+    (
+        "sgn",
+        "there is no sign: `x / abs(x)` is 1 or -1 where x is not 0",
+    ),
+];
+
+/// Help where a trigonometric function got no angle.
+fn angle_help(builtin: Builtin, argument: &Node, found: Dimension) -> String {
+    if let Some(value) = argument.as_bare_number() {
+        let number = crate::unit::format_number(value);
+        return format!(
+            "give it a unit: write `{builtin}({number} deg)` or `{builtin}({number} rad)`"
+        );
+    }
+    if found == Dimension::NONE {
+        return "a number is made an angle by `* 1 deg` where it counts degrees, by `* 1 rad` where it is an arc over its radius".to_owned();
+    }
+    if found.compatible(Dimension::LENGTH) {
+        return format!(
+            "an arc is made an angle by dividing it by its radius and `* 1 rad`; sides give one by `atan2(y, x)`, such as `{builtin}(atan2(y, x))`"
+        );
+    }
+    format!("an angle has a unit such as `30 deg`: write `{builtin}(30 deg)`")
+}
+
+/// What to do where `found` stands and `expected` should.
+fn remedy(node: &Node, found: Dimension, expected: Dimension, default: &Unit) -> String {
+    if found == Dimension::NONE && expected != Dimension::NONE {
+        let one = match expected == Dimension::ANGLE {
+            true => "; a number is made an angle by `* 1 deg` or `* 1 rad`",
+            false => "",
+        };
+        return format!(
+            "give it a unit, here or where its parameters are declared: \"20 {}\"{one}",
+            default.text()
+        );
+    }
+    if let Some(help) = divided_unit(node, found, expected) {
+        return help;
+    }
+    if expected == Dimension::NONE && found == Dimension::ANGLE {
+        return "make it a number by `/ 1 rad`".to_owned();
+    }
+    if expected == Dimension::ANGULAR_SPEED && found == Dimension::FREQUENCY {
+        let hertz = match &node.kind {
+            Kind::Quantity(quantity) => quantity.unit.to_si(quantity.value),
+            _ => f64::NAN,
+        };
+        let written = crate::unit::format_digits(hertz, &Unit::one(), 6);
+        return match hertz.is_finite() {
+            true => format!(
+                "turns per second are written `{written} rev/s`, radians per second `{written} rad/s`"
+            ),
+            false => "multiply it by `1 rev` if it counts turns, by `1 rad` if it is an angular frequency".to_owned(),
+        };
+    }
+    let example = match (expected == Dimension::NONE, default.text()) {
+        (true, _) => "a number has no unit: \"20\"".to_owned(),
+        (false, "") => format!("{} is expected", expected.with_article()),
+        (false, unit) => format!("{} is written like \"20 {unit}\"", expected.with_article()),
+    };
+    match between(found, expected) {
+        Some(how) => format!("{example}; {how}"),
+        None => example,
+    }
+}
+
+/// `1/4 rev` is 1/(4 rev): the help where that is what happened.
+fn divided_unit(node: &Node, found: Dimension, expected: Dimension) -> Option<String> {
+    let Kind::Binary {
+        op: BinaryOp::Div,
+        left,
+        right,
+    } = &node.kind
+    else {
+        return None;
+    };
+    let Kind::Quantity(quantity) = &right.kind else {
+        return None;
+    };
+    let numerator = left.as_bare_number()?;
+    if !(Dimension::NONE / found).compatible(expected) || quantity.value == 0.0 {
+        return None;
+    }
+    let (unit, below) = (
+        quantity.unit.text(),
+        crate::unit::format_number(quantity.value),
+    );
+    let above = crate::unit::format_number(numerator);
+    let value = crate::unit::format_digits(numerator / quantity.value, &Unit::one(), 12);
+    Some(format!(
+        "a unit binds tighter than `/`: write `{value} {unit}` or `{above}/{below} * 1 {unit}`"
+    ))
+}
+
+/// How two dimensions that should be one are related.
+fn relation(left: Dimension, right: Dimension) -> String {
+    if [left, right].contains(&Dimension::ANGLE) && [left, right].contains(&Dimension::NONE) {
+        return "a number is made an angle by `* 1 deg` or `* 1 rad`, an angle a number by `/ 1 rad`".to_owned();
+    }
+    let pair = [left, right];
+    if pair.contains(&Dimension::ANGULAR_SPEED) && pair.contains(&Dimension::FREQUENCY) {
+        return "turns per second are `rev/s`: multiply the frequency by `1 rev`, or by `1 rad` if it is an angular one".to_owned();
+    }
+    match between(right, left) {
+        Some(how) => format!("both must measure the same; {how}"),
+        None => {
+            "both must measure the same: look for a wrong unit, a missing factor or a wrong name"
+                .to_owned()
+        }
+    }
+}
+
+/// How one dimension becomes the other: `a force times a length is a torque`.
+fn between(found: Dimension, expected: Dimension) -> Option<String> {
+    if found.is_number() || expected.is_number() {
+        return None;
+    }
+    let (a, b) = (found.with_article(), expected.with_article());
+    for by in [
+        Dimension::LENGTH,
+        Dimension::TIME,
+        Dimension::MASS,
+        Dimension::ANGLE,
+        Dimension::AREA,
+        Dimension::SPEED,
+        Dimension::ANGULAR_SPEED,
+        Dimension::ACCELERATION,
+    ] {
+        if (found * by).compatible(expected) {
+            return Some(format!("{a} times {} is {b}", by.with_article()));
+        }
+        if (found / by).compatible(expected) {
+            return Some(format!("{a} divided by {} is {b}", by.with_article()));
+        }
+    }
+    None
 }

@@ -39,6 +39,9 @@ pub struct Issue {
     pub help: Option<String>,
 }
 
+/// More names than this are not listed.
+const MAX_KNOWN: usize = 12;
+
 impl Issue {
     /// An issue without label or help.
     pub fn new(code: &'static str, span: Span, message: impl Into<String>) -> Self {
@@ -83,9 +86,19 @@ impl Issue {
         if crate::unit_table::find(name).is_some() {
             return issue.with_help(format!("a unit stands after a number: write `1 {name}`"));
         }
-        match nearest(name, known) {
+        let known: Vec<&str> = known.into_iter().collect();
+        match nearest(name, known.iter().copied()) {
             Some(near) => issue.with_help(format!("did you mean `{near}`?")),
-            None => issue,
+            None if known.is_empty() => {
+                issue.with_help("nothing that may stand here has a name: write a value")
+            }
+            None if known.len() <= MAX_KNOWN => {
+                issue.with_help(format!("known here: {}", known.join(", ")))
+            }
+            None => issue.with_help(format!(
+                "{} names are known here, none of them near this one",
+                known.len()
+            )),
         }
     }
 }

@@ -43,8 +43,13 @@ pub(crate) enum Token {
     End,
 }
 
-/// The tokens of `text` with their spans, ended by [`Token::End`]; what cannot be read goes to `errors`.
-pub(crate) fn tokens(text: &str, errors: &mut Vec<SyntaxError>) -> Vec<(Token, Span)> {
+/// The tokens of `text` with their spans, ended by [`Token::End`]; what cannot be read goes to `errors`, and where it was left
+/// out to `skipped`.
+pub(crate) fn tokens(
+    text: &str,
+    errors: &mut Vec<SyntaxError>,
+    skipped: &mut Vec<usize>,
+) -> Vec<(Token, Span)> {
     let mut out = Vec::new();
     let mut at = 0;
     while let Some(first) = text[at..].chars().next() {
@@ -58,11 +63,7 @@ pub(crate) fn tokens(text: &str, errors: &mut Vec<SyntaxError>) -> Vec<(Token, S
             let length = number_length(rest);
             let value = rest[..length].parse().unwrap_or(f64::INFINITY);
             if !value.is_finite() {
-                errors.push(Issue::new(
-                    "syntax",
-                    at..at + length,
-                    "this number is too large",
-                ));
+                errors.push(too_large(at..at + length));
             }
             (Token::Number(value), length)
         } else if starts_name(first) {
@@ -77,11 +78,12 @@ pub(crate) fn tokens(text: &str, errors: &mut Vec<SyntaxError>) -> Vec<(Token, S
             match raised(&rest[..length]) {
                 Some(power) => (Token::Raised(power), length),
                 None => {
-                    errors.push(Issue::new(
+                    let issue = Issue::new(
                         "syntax",
                         at..at + length,
                         "these raised digits are not a power",
-                    ));
+                    );
+                    errors.push(issue.with_help("a power is written `a^2` or `a^-2`"));
                     at += length;
                     continue;
                 }
@@ -89,20 +91,16 @@ pub(crate) fn tokens(text: &str, errors: &mut Vec<SyntaxError>) -> Vec<(Token, S
         } else if let Some(symbol) = symbol(rest) {
             symbol
         } else {
-            let span = at..at + first.len_utf8();
-            let issue = Issue::new(
-                "syntax",
-                span,
-                format!("`{}` has no meaning here", first.escape_debug()),
+            let (meant, length, help) = stands_for(rest);
+            let span = at..at + length;
+            let sign = rest[..length].escape_debug();
+            errors.push(
+                Issue::new("syntax", span, format!("`{sign}` has no meaning here")).with_help(help),
             );
-            let length = first.len_utf8();
-            match stands_for(first) {
-                Some((meant, help)) => {
-                    errors.push(issue.with_help(help));
-                    (meant, length)
-                }
+            match meant {
+                Some(meant) => (meant, length),
                 None => {
-                    errors.push(issue);
+                    skipped.push(at);
                     at += length;
                     continue;
                 }
@@ -141,22 +139,83 @@ fn symbol(rest: &str) -> Option<(Token, usize)> {
         .map(|(sign, token)| (token, sign.len()))
 }
 
-/// What is meant by signs the language does not have, so that the reading goes on as if it were written, and advice.
-fn stands_for(sign: char) -> Option<(Token, &'static str)> {
-    Some(match sign {
-        '−' | '–' => (Token::Minus, "minus is written `-`"),
-        '×' | '⋅' => (Token::Star, "times is written `*`"),
-        '÷' | ':' => (Token::Slash, "a division is written `/`"),
-        '→' => (Token::Arrow, "a directed line is written `A -> B`"),
-        '=' => (
-            Token::LessEqual,
-            "a comparison is one of `<=`, `>=`, `<`, `>`",
+/// The issue of a number beyond all numbers.
+pub(crate) fn too_large(span: Span) -> SyntaxError {
+    Issue::new("syntax", span, "this number is too large")
+        .with_help("numbers go up to about 1e308: look for a wrong exponent or a missing point")
+}
+
+/// What is meant by the sign at the start of `rest` that the language does not have, so that the reading goes on as if it were
+/// written; the sign's length; and advice.
+fn stands_for(rest: &str) -> (Option<Token>, usize, &'static str) {
+    const COMPARISON: &str =
+        "a comparison is one of `<=`, `>=`, `<`, `>`, and stands in conditions alone";
+    const BOTH: &str = "write two conditions, one for each";
+    const ROUND: &str = "only round brackets group";
+    for (sign, meant, help) in [
+        ("==", Some(Token::LessEqual), COMPARISON),
+        ("!=", Some(Token::LessEqual), COMPARISON),
+        ("=", Some(Token::LessEqual), COMPARISON),
+        ("&&", None, BOTH),
+        ("||", None, BOTH),
+    ] {
+        if rest.starts_with(sign) {
+            return (meant, sign.len(), help);
+        }
+    }
+    let sign = rest.chars().next().unwrap_or(' ');
+    let (meant, help) = match sign {
+        '−' | '–' | '—' => (Some(Token::Minus), "minus is written `-`"),
+        '×' | '⋅' | '∙' | '•' => (Some(Token::Star), "times is written `*`"),
+        '÷' | ':' | '∕' | '⁄' => (Some(Token::Slash), "a division is written `/`"),
+        '→' => (Some(Token::Arrow), "a directed line is written `A -> B`"),
+        '[' | '{' => (Some(Token::Open), ROUND),
+        ']' | '}' => (Some(Token::Close), ROUND),
+        'π' => (
+            Some(Token::Name("pi".to_owned())),
+            "the constant is called `pi`",
         ),
-        '[' | '{' => (Token::Open, "only round brackets group"),
-        ']' | '}' => (Token::Close, "only round brackets group"),
-        'π' => (Token::Name("pi".to_owned()), "the constant is called `pi`"),
-        _ => return None,
-    })
+        ';' => (
+            Some(Token::Comma),
+            "arguments are parted by `,`: `atan2(y, x)`",
+        ),
+        '√' => (
+            Some(Token::Name("sqrt".to_owned())),
+            "a root is written `sqrt(x)`",
+        ),
+        '"' | '\'' | '`' | '´' | '“' | '”' | '„' | '‘' | '’' | '‚' | '«' | '»' => (
+            None,
+            "leave it out: a value stands between two plain double quotes and holds none itself",
+        ),
+        '′' | '″' => (None, "feet and inches are written `ft` and `in`"),
+        '.' => (None, "a decimal point stands beside a digit, as in `0.5`"),
+        '#' => (
+            None,
+            "leave it out: a comment stands behind the closing quote",
+        ),
+        '!' | '&' | '|' | '?' | '~' => (
+            None,
+            "there is no logic in expressions: values are made by `+ - * / ^` and functions",
+        ),
+        '@' | '$' | '\\' => (
+            None,
+            "names are made of letters, digits and `_`; leave this out",
+        ),
+        c if c.is_control() || is_invisible(c) => (
+            None,
+            "a sign that does not show, perhaps from a copied text: type the value again",
+        ),
+        _ => (
+            None,
+            "an expression is made of numbers, units, names and `+ - * / ^ ( ) ,`: leave this out",
+        ),
+    };
+    (meant, sign.len_utf8(), help)
+}
+
+/// Whether a sign has no width, such as a byte order mark or a joiner.
+fn is_invisible(c: char) -> bool {
+    matches!(c, '\u{ad}' | '\u{200b}'..='\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{feff}')
 }
 
 /// Whether a name may start with `c`.
@@ -214,7 +273,7 @@ mod tests {
 
     fn read(text: &str) -> (Vec<Token>, Vec<String>) {
         let mut errors = Vec::new();
-        let tokens = tokens(text, &mut errors)
+        let tokens = tokens(text, &mut errors, &mut Vec::new())
             .into_iter()
             .map(|(token, _)| token)
             .collect();
@@ -236,7 +295,7 @@ mod tests {
             read("2e").0,
             [Token::Number(2.0), Token::Name("e".into()), Token::End]
         );
-        assert_eq!(read("1e999").1, ["this number is too large"]);
+        assert!(read("1e999").1[0].starts_with("this number is too large (numbers go up to"));
     }
 
     #[test]
@@ -258,5 +317,10 @@ mod tests {
             ["`×` has no meaning here (times is written `*`)"]
         );
         assert_eq!(read("2⁻").1.len(), 1);
+        assert_eq!(
+            read("2\u{a0}mm").0,
+            [Token::Number(2.0), name("mm"), Token::End],
+            "a blank of any width is a blank"
+        );
     }
 }

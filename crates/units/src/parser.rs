@@ -7,7 +7,7 @@
 //! comparison = "<=" | ">=" | "<" | ">" ;
 //! expression = term { ( "+" | "-" ) term } ;
 //! term       = factor { ( "*" | "·" | "/" ) factor } ;
-//! factor     = "-" factor | power ;
+//! factor     = ( "-" | "+" ) factor | power ;
 //! power      = atom [ "^" factor | raised ] ;
 //! atom       = number [ unit ] | name | point | call | "(" expression ")" ;
 //! call       = name "(" [ argument { "," argument } ] ")" ;
@@ -40,10 +40,10 @@ pub(crate) use unit::parse_unit_alone;
 
 use crate::Unit;
 use crate::issue::{Issue, Span, SyntaxError};
-use crate::lexer::{Token, tokens};
+use crate::lexer::{Token, tokens, too_large};
 use crate::syntax::{BinaryOp, CONSTANTS, Comparison, Condition, Kind, Node, Quantity};
-use crate::unit::format_number;
-use crate::unit_table::{find, instead_of};
+use crate::unit::{format_digits, format_number};
+use crate::unit_table::{find, foreign, instead_of};
 
 /// The longest text that is read, in bytes.
 pub const MAX_LENGTH: usize = 4096;
@@ -120,16 +120,21 @@ impl Built {
 }
 
 /// The tokens, the place in them, and what is wrong so far.
-struct Parser {
+struct Parser<'t> {
+    text: &'t str,
     tokens: Vec<(Token, Span)>,
+    /// Where signs were left out that the language does not have.
+    skipped: Vec<usize>,
     at: usize,
     depth: usize,
+    /// Whether a comparison may stand at the outermost level.
+    compares: bool,
     errors: Vec<SyntaxError>,
 }
 
-impl Parser {
+impl<'t> Parser<'t> {
     /// Reads `text` by `read` up to its end.
-    fn run<T>(text: &str, read: impl FnOnce(&mut Self) -> T) -> Result<T, Vec<SyntaxError>> {
+    fn run<T>(text: &'t str, read: impl FnOnce(&mut Self) -> T) -> Result<T, Vec<SyntaxError>> {
         if text.len() > MAX_LENGTH {
             let issue = Issue::new(
                 "too-long",
@@ -139,12 +144,15 @@ impl Parser {
             .with_help("give parts of it names");
             return Err(vec![issue]);
         }
-        let mut errors = Vec::new();
-        let tokens = tokens(text, &mut errors);
+        let (mut errors, mut skipped) = (Vec::new(), Vec::new());
+        let tokens = tokens(text, &mut errors, &mut skipped);
         let mut parser = Self {
+            text,
             tokens,
+            skipped,
             at: 0,
             depth: 0,
+            compares: false,
             errors,
         };
         let out = read(&mut parser);
@@ -162,29 +170,61 @@ impl Parser {
     /// Reports what stands behind the end of the reading, and goes on reading there for further problems.
     fn rest(&mut self) {
         while self.peek() != &Token::End && self.errors.len() < MAX_ERRORS {
-            match self.peek() {
-                Token::Close => self.error_here("a bracket is closed that was not opened"),
-                Token::Comma => {
-                    let issue = self.issue_here("a comma stands outside of a call");
-                    self.push(issue.with_help("a decimal point is written `.`"));
-                }
-                Token::Arrow => {
-                    let issue = self.issue_here("a directed line stands only as an argument");
-                    self.push(issue);
-                }
-                Token::LessEqual | Token::GreaterEqual | Token::Less | Token::Greater => {
-                    self.error_here("a comparison has no place here");
-                }
-                _ => self.error_here("an operator is missing before this"),
+            self.unexpected();
+            if !self.starts_operand() {
+                self.advance();
             }
             let before = self.at;
             if self.starts_operand() {
                 self.expression(Power::LOWEST);
             }
-            if self.at == before {
+            if self.at == before && self.peek() != &Token::End {
                 self.advance();
             }
         }
+    }
+
+    /// Reports a token with which no expression goes on.
+    fn unexpected(&mut self) {
+        let (message, help) = match self.peek() {
+            Token::Close => (
+                "a bracket is closed that was not opened",
+                "leave it out, or open one with `(` before it".to_owned(),
+            ),
+            Token::Comma => (
+                "a comma stands outside of a call",
+                "a decimal point is written `.`".to_owned(),
+            ),
+            Token::Arrow => (
+                "a directed line stands only as an argument",
+                "such as in `angle(A -> B)`".to_owned(),
+            ),
+            _ => ("an operator is missing before this", self.operator_help()),
+        };
+        let issue = self.issue_here(message);
+        self.push(issue.with_help(help));
+    }
+
+    /// What to write where two values stand side by side.
+    fn operator_help(&self) -> String {
+        let here = self.written(self.at);
+        let before = match self.at.checked_sub(1).map(|at| &self.tokens[at].0) {
+            Some(Token::Name(name)) if find(name).is_none() => format!("{name} "),
+            _ => String::new(),
+        };
+        match self.peek() {
+            Token::Name(name) if find(name).is_some() => {
+                format!("a unit stands behind a number: write `{before}* 1 {here}`")
+            }
+            Token::Name(_) | Token::Number(_) => format!("for a product write `{before}* {here}`"),
+            _ => "for a product write `*` between the two".to_owned(),
+        }
+    }
+
+    /// A token as it was written.
+    fn written(&self, at: usize) -> &'t str {
+        let span = self.tokens.get(at).map_or(0..0, |(_, span)| span.clone());
+        self.text.get(span).unwrap_or("")
     }
 
     fn peek(&self) -> &Token {
@@ -208,15 +248,24 @@ impl Parser {
     fn starts_operand(&self) -> bool {
         matches!(
             self.peek(),
-            Token::Number(_) | Token::Name(_) | Token::Open | Token::Minus
+            Token::Number(_) | Token::Name(_) | Token::Open | Token::Minus | Token::Plus
         )
     }
 
-    /// Records an issue, unless one starts at the same place already or the reading was stopped.
+    /// Records an issue, unless one starts at the same place already, it follows from a sign that was left out before it, or the
+    /// reading was stopped.
     fn push(&mut self, issue: SyntaxError) {
         let known =
             |error: &Issue| error.span.start == issue.span.start || error.code == "too-deep";
-        if !self.errors.iter().any(known) {
+        let before = self
+            .tokens
+            .partition_point(|(_, span)| span.start < issue.span.start);
+        let from = before.checked_sub(1).map_or(0, |i| self.tokens[i].1.end);
+        let follows = self
+            .skipped
+            .iter()
+            .any(|at| (from..issue.span.start).contains(at));
+        if !follows && !self.errors.iter().any(known) {
             self.errors.push(issue);
         }
     }
@@ -225,8 +274,8 @@ impl Parser {
         Issue::new("syntax", self.span(), message)
     }
 
-    fn error_here(&mut self, message: &str) {
-        self.push(self.issue_here(message));
+    fn error_here(&mut self, message: &str, help: &str) {
+        self.push(self.issue_here(message).with_help(help));
     }
 
     /// A stand-in for what could not be read; no result that holds one is ever returned.
@@ -263,6 +312,7 @@ impl Parser {
 
     /// `condition`.
     fn condition(&mut self) -> Condition {
+        self.compares = true;
         let left = self.expression(Power::LOWEST).node;
         let comparison = self.at_comparison();
         let comparison_span = self.span();
@@ -279,6 +329,7 @@ impl Parser {
         if self.at_comparison().is_some() {
             let issue = self.issue_here("a condition has one comparison");
             self.push(issue.with_help("write two conditions for two bounds"));
+            self.compares = false;
         }
         Condition {
             left,
@@ -305,10 +356,22 @@ impl Parser {
                 Token::Slash => (BinaryOp::Div, Power::PRODUCT, Power::PRODUCT + 1),
                 Token::Caret => (BinaryOp::Pow, Power::POWER, Power::NEGATION),
                 Token::Raised(_) => (BinaryOp::Pow, Power::POWER, Power::POWER),
+                // read as if it joined two values, so that both sides are looked at
+                Token::LessEqual | Token::GreaterEqual | Token::Less | Token::Greater
+                    if !(self.compares && self.depth == 1) =>
+                {
+                    (BinaryOp::Sub, Power::LOWEST, Power::SUM)
+                }
                 _ => break,
             };
             if power < lowest {
                 break;
+            }
+            if power == Power::LOWEST {
+                self.error_here(
+                    "a comparison has no place here",
+                    "a value is wanted: `max(x, y)` and `min(x, y)` choose one of two",
+                );
             }
             let right = if let Token::Raised(exponent) = *self.peek() {
                 self.raised(exponent)
@@ -354,6 +417,13 @@ impl Parser {
                 let span = start..inner.outer.end;
                 self.build(Kind::Neg(Box::new(inner.node)), span, inner.height)
             }
+            // a sign that changes nothing leaves no node
+            Token::Plus => {
+                let start = self.advance().start;
+                let inner = self.expression(Power::NEGATION);
+                let outer = start..inner.outer.end;
+                Built { outer, ..inner }
+            }
             Token::Number(value) => self.number(value),
             Token::Name(name) if self.peek_second() == &Token::Open => self.call(name),
             Token::Name(name) => {
@@ -373,16 +443,21 @@ impl Parser {
                 Built { outer, ..inner }
             }
             Token::End => {
-                self.error_here("the text ends where a value is expected");
+                let help = if self.at == 0 {
+                    "write a value, such as `20 mm` or `2 * a`"
+                } else {
+                    "write the value that is missing, or leave out what stands before it"
+                };
+                self.error_here("the text ends where a value is expected", help);
                 self.stand_in()
             }
-            Token::Plus => {
-                self.error_here("a value is expected before `+`");
-                self.advance();
-                self.expression(Power::NEGATION)
-            }
             _ => {
-                self.error_here("a value is expected here");
+                let help = if self.at == 0 {
+                    "a value starts with a number, a name, a sign or a bracket"
+                } else {
+                    "a value is missing between this and what stands before it"
+                };
+                self.error_here("a value is expected here", help);
                 self.stand_in()
             }
         }
@@ -390,12 +465,30 @@ impl Parser {
 
     /// The `)` that belongs to the bracket at `open`; what stands before it is reported and skipped.
     fn close(&mut self, open: Span) {
-        match self.peek() {
-            Token::Close => {
+        let mut told = false;
+        loop {
+            match self.peek() {
+                Token::Close => {
+                    self.advance();
+                    return;
+                }
+                Token::End => {
+                    let issue = Issue::new("syntax", open, "this bracket is not closed");
+                    return self.push(issue.with_help("add the `)` that belongs to it"));
+                }
+                _ if !told => {
+                    told = true;
+                    self.unexpected();
+                }
+                _ => {}
+            }
+            let before = self.at;
+            if self.starts_operand() {
+                self.expression(Power::LOWEST);
+            }
+            if self.at == before {
                 self.advance();
             }
-            Token::End => self.push(Issue::new("syntax", open, "this bracket is not closed")),
-            _ => self.error_here("`)` or an operator is expected"),
         }
     }
 
@@ -411,13 +504,16 @@ impl Parser {
             arguments.push(argument.node);
             // What no argument goes on with is reported and skipped up to the next one.
             if !matches!(self.peek(), Token::Comma | Token::Close | Token::End) {
-                self.error_here("`,` or `)` is expected");
+                self.unexpected();
                 self.skip_argument();
             }
             if self.peek() == &Token::Comma {
                 self.advance();
                 if matches!(self.peek(), Token::Close) {
-                    self.error_here("an argument is expected after the comma");
+                    self.error_here(
+                        "an argument is expected after the comma",
+                        "write it, or leave the comma out",
+                    );
                 }
             }
         }
@@ -490,17 +586,26 @@ impl Parser {
         let name = name.clone();
         let calls = self.peek_second() == &Token::Open;
         let constant = CONSTANTS.iter().any(|(constant, _)| *constant == name);
-        if calls || constant || (find(&name).is_none() && instead_of(&name).is_none()) {
+        let unit = find(&name).is_some() || instead_of(&name).is_some();
+        if calls || constant || foreign(&name).is_some() || !unit {
             let number = format_number(value);
+            let product = format!("for a product write `{number}*{name}`");
             let issue = match calls || constant {
-                true => self.issue_here("an operator is missing before this"),
-                false => Issue::new(
-                    "unknown-unit",
-                    self.span(),
-                    format!("unknown unit `{name}`"),
-                ),
+                true => self
+                    .issue_here("an operator is missing before this")
+                    .with_help(product),
+                false => {
+                    let unit = self.issue_of_unit(&name, self.span());
+                    match foreign(&name) {
+                        Some((factor, unit_of_ours)) => unit.with_help(format!(
+                            "write `{} {unit_of_ours}`",
+                            format_digits(value * factor, &Unit::one(), 6)
+                        )),
+                        None => unit.with_help(product),
+                    }
+                }
             };
-            self.push(issue.with_help(format!("for a product write `{number}*{name}`")));
+            self.push(issue);
             if !calls {
                 self.advance();
             }
@@ -515,11 +620,7 @@ impl Parser {
         }
         let unit = Unit::from_factors(&factors);
         if !unit.to_si(value).is_finite() {
-            self.push(Issue::new(
-                "syntax",
-                span.clone(),
-                "this number is too large",
-            ));
+            self.push(too_large(span.clone()));
         }
         let quantity = Quantity {
             value,

@@ -63,10 +63,12 @@ pub const UNITS: &[UnitDefinition] = &[
     row("min",    &[],            Dimension::TIME, 60.0, 1.0, "minute"),
     row("h",      &[],            Dimension::TIME, 3600.0, 1.0, "hour"),
     row("kg",     &[],            Dimension::MASS, 1.0, 1.0, "kilogram"),
+    row("mg",     &[],            Dimension::MASS, 1.0, 1e6, "milligram"),
     row("g",      &[],            Dimension::MASS, 1.0, 1e3, "gram"),
     row("t",      &[],            Dimension::MASS, 1e3, 1.0, "tonne, 1000 kg"),
     row("lb",     &[],            Dimension::MASS, 45_359_237.0, 1e8, "pound, 0.453 592 37 kg"),
     row("N",      &[],            Dimension::FORCE, 1.0, 1.0, "newton"),
+    row("mN",     &[],            Dimension::FORCE, 1.0, 1e3, "millinewton"),
     row("kN",     &[],            Dimension::FORCE, 1e3, 1.0, "kilonewton"),
     row("MN",     &[],            Dimension::FORCE, 1e6, 1.0, "meganewton"),
     row("lbf",    &[],            Dimension::FORCE, 44_482_216_152_605.0, 1e13, "pound-force, 1 lb at 9.806 65 m/s^2"),
@@ -74,14 +76,19 @@ pub const UNITS: &[UnitDefinition] = &[
     row("kPa",    &[],            Dimension::PRESSURE, 1e3, 1.0, "kilopascal"),
     row("MPa",    &[],            Dimension::PRESSURE, 1e6, 1.0, "megapascal, N/mm^2"),
     row("GPa",    &[],            Dimension::PRESSURE, 1e9, 1.0, "gigapascal"),
+    row("mbar",   &[],            Dimension::PRESSURE, 1e2, 1.0, "millibar, 100 Pa"),
     row("bar",    &[],            Dimension::PRESSURE, 1e5, 1.0, "bar, 100 kPa"),
     row("psi",    &[],            Dimension::PRESSURE, 44_482_216_152_605.0, 6_451_600_000.0, "pound-force per square inch"),
     row("J",      &[],            Dimension::ENERGY, 1.0, 1.0, "joule, N m"),
+    row("mJ",     &[],            Dimension::ENERGY, 1.0, 1e3, "millijoule"),
     row("kJ",     &[],            Dimension::ENERGY, 1e3, 1.0, "kilojoule"),
     row("W",      &[],            Dimension::POWER, 1.0, 1.0, "watt, J/s"),
+    row("mW",     &[],            Dimension::POWER, 1.0, 1e3, "milliwatt"),
     row("kW",     &[],            Dimension::POWER, 1e3, 1.0, "kilowatt"),
+    row("MW",     &[],            Dimension::POWER, 1e6, 1.0, "megawatt"),
     row("hp",     &[],            Dimension::POWER, 745.699_871_582_270_2, 1.0, "mechanical horsepower, 550 ft lbf/s"),
     row("Hz",     &[],            Dimension::FREQUENCY, 1.0, 1.0, "hertz, cycles per second: a frequency, not an angular speed"),
+    row("kHz",    &[],            Dimension::FREQUENCY, 1e3, 1.0, "kilohertz"),
     row("rpm",    &[],            Dimension::ANGULAR_SPEED, PI, 30.0, "revolution per minute: an angular speed"),
     row("L",      &[],            Dimension::VOLUME, 1.0, 1e3, "litre, 1 dm^3"),
     row("%",      &[],            Dimension::NONE, 1.0, 1e2, "per cent, a number"),
@@ -132,6 +139,64 @@ const SPELT_OUT: &[(&str, &str)] = &[
     ("liter", "L"),
     ("litre", "L"),
     ("lpm", "L/min"),
+    ("rads", "rad"),
+    ("rps", "rev/s"),
+    ("mps", "m/s"),
+    ("kmh", "km/h"),
+    ("kph", "km/h"),
+    ("fps", "ft/s"),
+    ("lbm", "lb"),
+    ("lbft", "lbf ft"),
+    ("ftlb", "lbf ft"),
+    ("lbin", "lbf in"),
+    ("inlb", "lbf in"),
+];
+
+/// Units that the language does not have, as a number of one that it has.
+const FOREIGN: &[(&str, f64, &str)] = &[
+    ("slug", 14.593_903, "kg"),
+    ("oz", 28.349_523_125, "g"),
+    ("kgf", 9.806_65, "N"),
+    ("kp", 9.806_65, "N"),
+    ("dyn", 1e-5, "N"),
+    ("kip", 1000.0, "lbf"),
+    ("ksi", 1000.0, "psi"),
+    ("atm", 1.013_25, "bar"),
+    ("torr", 133.322_368, "Pa"),
+    ("mmHg", 133.322_387, "Pa"),
+    ("yd", 3.0, "ft"),
+    ("mi", 1.609_344, "km"),
+    ("mile", 1.609_344, "km"),
+    ("miles", 1.609_344, "km"),
+    ("mph", 1.609_344, "km/h"),
+    ("knot", 1.852, "km/h"),
+    ("thou", 0.001, "in"),
+    ("mil", 0.001, "in"),
+    ("dm", 10.0, "cm"),
+    ("nm", 0.001, "um"),
+    ("ml", 0.001, "L"),
+    ("mL", 0.001, "L"),
+    ("gon", 0.9, "deg"),
+    ("grad", 0.9, "deg"),
+    ("day", 24.0, "h"),
+    ("ns", 0.001, "us"),
+    ("cal", 4.184, "J"),
+    ("btu", 1055.055_852_62, "J"),
+];
+
+/// A unit that the language does not have as a number of one that it has.
+pub(crate) fn foreign(name: &str) -> Option<(f64, &'static str)> {
+    let (_, factor, unit) = FOREIGN.iter().find(|(word, ..)| *word == name)?;
+    Some((*factor, unit))
+}
+
+/// What a product written without a blank may start with: `Nm`, `kgm`, `kWh`. Other pairs of units, such as the `m` and the `W` of
+/// a prefix, are a chance.
+const JOINED: &[Dimension] = &[
+    Dimension::FORCE,
+    Dimension::MASS,
+    Dimension::POWER,
+    Dimension::PRESSURE,
 ];
 
 /// The unit written `symbol`.
@@ -154,7 +219,7 @@ pub(crate) fn instead_of(name: &str) -> Option<String> {
         let (left, right) = name.split_at(at);
         if let (Some(a), Some(b)) = (find(left), find(right))
             && a.dimension != b.dimension
-            && a.dimension != Dimension::NONE
+            && JOINED.contains(&a.dimension)
         {
             return Some(format!("{left} {right}"));
         }

@@ -183,37 +183,61 @@ fn issues_name_both_sides() {
             "crank + theta",
             "unit-mismatch",
             "theta",
-            "a length plus an angle",
+            "a length plus an angle (both must measure the same; an angle times a length is a length)",
         ),
         (
             "theta + ratio",
             "unit-mismatch",
             "ratio",
-            "an angle plus a number (a number is made an angle by `* 1 rad`, an angle a number by `/ 1 rad`)",
+            "an angle plus a number (a number is made an angle by `* 1 deg` or `* 1 rad`, an angle a number by `/ 1 rad`)",
         ),
         (
             "omega + 5 Hz",
             "unit-mismatch",
             "5 Hz",
-            "an angular speed plus a frequency",
+            "an angular speed plus a frequency (turns per second are `rev/s`: multiply the frequency by `1 rev`, or by `1 rad` if it is an angular one)",
         ),
         (
             "sin(crank)",
             "unit-mismatch",
             "crank",
-            "`sin` takes an angle, found a length",
+            "`sin` takes an angle, found a length (an arc is made an angle by dividing it by its radius and `* 1 rad`; sides give one by `atan2(y, x)`, such as `sin(atan2(y, x))`)",
         ),
         (
             "sin(0.5)",
             "unit-mismatch",
             "0.5",
-            "`sin` takes an angle, found a number (a number is made an angle by `* 1 rad`)",
+            "`sin` takes an angle, found a number (give it a unit: write `sin(0.5 deg)` or `sin(0.5 rad)`)",
+        ),
+        (
+            "sin(2*ratio)",
+            "unit-mismatch",
+            "2*ratio",
+            "`sin` takes an angle, found a number (a number is made an angle by `* 1 deg` where it counts degrees, by `* 1 rad` where it is an arc over its radius)",
+        ),
+        (
+            "moment + load",
+            "unit-mismatch",
+            "load",
+            "a torque plus a force (both must measure the same; a force times a length is a torque)",
+        ),
+        (
+            "log(ratio)",
+            "unknown-function",
+            "log",
+            "unknown function `log` (`ln(x)` is the natural logarithm; to the base 10 write `ln(x) / ln(10)`)",
+        ),
+        (
+            "floor(ratio)",
+            "unknown-function",
+            "floor",
+            "unknown function `floor` (the functions are sin, cos, tan, asin, acos, atan, atan2, sqrt, abs, exp, ln, min, max, hypot, and the questions that `kempe measures` tells)",
         ),
         (
             "asin(theta)",
             "unit-mismatch",
             "theta",
-            "`asin` takes a number, found an angle (divide by a quantity of the same kind)",
+            "`asin` takes a number, found an angle (`asin` is of a number: divide the angle by `1 rad`)",
         ),
         (
             "exp(crank)",
@@ -225,7 +249,7 @@ fn issues_name_both_sides() {
             "max(crank, theta)",
             "unit-mismatch",
             "theta",
-            "`max` of a length and an angle",
+            "`max` of a length and an angle (both must measure the same; an angle times a length is a length)",
         ),
         (
             "max(crank, 5)",
@@ -245,7 +269,12 @@ fn issues_name_both_sides() {
             "mm",
             "unknown name `mm` (a unit stands after a number: write `1 mm`)",
         ),
-        ("zzz", "unknown-name", "zzz", "unknown name `zzz`"),
+        (
+            "zzz",
+            "unknown-name",
+            "zzz",
+            "unknown name `zzz` (known here: crank, radius, theta, omega, load, moment, ratio, inertia, s, m)",
+        ),
         (
             "rnage(crank)",
             "unknown-function",
@@ -280,19 +309,19 @@ fn issues_name_both_sides() {
             "sqrt(A -> B)",
             "not-a-value",
             "A -> B",
-            "a directed line is not a value",
+            "a directed line is not a value (take a measure of it, such as `angle(A -> B)`; a difference is written `-`)",
         ),
         (
             "2^crank",
             "bad-exponent",
             "crank",
-            "an exponent is a number, found a length",
+            "an exponent is a number, found a length (divide it by a quantity of the same kind)",
         ),
         (
             "crank^ratio",
             "bad-exponent",
             "ratio",
-            "a length is raised to a constant only",
+            "a length is raised to a constant only (only plain numbers have variable powers: divide the base by a quantity of its kind first)",
         ),
         (
             "crank^0.3",
@@ -304,21 +333,24 @@ fn issues_name_both_sides() {
             "ratio^1e9",
             "bad-exponent",
             "1e9",
-            "an exponent is at most 1000",
+            "an exponent is at most 1000 (write a smaller one, or use `exp` and `ln`)",
         ),
         (
             "ratio^(1/0)",
             "bad-exponent",
             "1/0",
-            "an exponent is at most 1000",
+            "an exponent is at most 1000 (write a smaller one, or use `exp` and `ln`)",
         ),
         ("x(crank)", "not-a-point", "crank", "a point is expected"),
     ] {
         let found = issues(text);
-        assert_eq!(
-            found,
-            [(code, marked.to_owned(), message.to_owned())],
-            "{text}"
+        assert_eq!(found.len(), 1, "one issue to a cause: {found:?}");
+        assert_eq!(found[0].0, code, "{text}");
+        assert_eq!(found[0].1, marked, "{text}");
+        assert_eq!(found[0].2, message, "{text}");
+        assert!(
+            found[0].2.contains('(') || text == "x(crank)",
+            "{text} has no remedy"
         );
     }
 }
@@ -408,6 +440,82 @@ fn the_place_gives_a_bare_number_its_unit() {
         issue[0].help.as_deref(),
         Some("give it a unit: write `5 in`")
     );
+}
+
+#[test]
+fn what_measures_something_else_comes_with_a_remedy() {
+    for (text, dimension, unit, help) in [
+        (
+            "8 deg",
+            Dimension::LENGTH,
+            "mm",
+            "a length is written like \"20 mm\"; an angle times a length is a length",
+        ),
+        (
+            "30 mm",
+            Dimension::ANGLE,
+            "deg",
+            "an angle is written like \"20 deg\"",
+        ),
+        (
+            "2*ratio",
+            Dimension::ANGLE,
+            "deg",
+            "give it a unit, here or where its parameters are declared: \"20 deg\"; a number is made an angle by `* 1 deg` or `* 1 rad`",
+        ),
+        (
+            "1/4 rev",
+            Dimension::ANGLE,
+            "deg",
+            "a unit binds tighter than `/`: write `0.25 rev` or `1/4 * 1 rev`",
+        ),
+        (
+            "10 Hz",
+            Dimension::ANGULAR_SPEED,
+            "deg/s",
+            "turns per second are written `10 rev/s`, radians per second `10 rad/s`",
+        ),
+        (
+            "2*10 Hz",
+            Dimension::ANGULAR_SPEED,
+            "deg/s",
+            "multiply it by `1 rev` if it counts turns, by `1 rad` if it is an angular frequency",
+        ),
+        (
+            "10 deg",
+            Dimension::ANGULAR_SPEED,
+            "deg/s",
+            "an angular speed is written like \"20 deg/s\"; an angle divided by a time is an angular speed",
+        ),
+        (
+            "5 N",
+            Dimension::TORQUE,
+            "N m",
+            "a torque is written like \"20 N m\"; a force times a length is a torque",
+        ),
+        (
+            "5 N m",
+            Dimension::FORCE,
+            "N",
+            "a force is written like \"20 N\"; a torque divided by a length is a force",
+        ),
+        (
+            "theta",
+            Dimension::NONE,
+            "1",
+            "make it a number by `/ 1 rad`",
+        ),
+        (
+            "crank",
+            Dimension::NONE,
+            "1",
+            "a number has no unit: \"20\"",
+        ),
+    ] {
+        let unit = Unit::parse(unit).unwrap();
+        let issues = check_as(&parse(text).unwrap(), &mut File, dimension, &unit).unwrap_err();
+        assert_eq!(issues[0].help.as_deref(), Some(help), "{text}");
+    }
 }
 
 #[test]

@@ -32,7 +32,7 @@ fn every_production_has_an_example() {
         ),
         ("expression", &["a", "a + b", "a - b + c"]),
         ("term", &["a * b", "a·b", "a / b * c"]),
-        ("factor", &["-a", "--a", "a^b"]),
+        ("factor", &["-a", "--a", "+a", "a^b"]),
         ("power", &["a^2", "a^-2", "a^b^c", "a²", "a⁻¹"]),
         ("atom", &["5", "5 mm", "a", "A", "f(a)", "(a + b)"]),
         ("call", &["f()", "f(a)", "f(a, 2 mm)"]),
@@ -89,6 +89,9 @@ fn operators_bind_as_in_mathematics() {
         ("-a*b", "-a * b"),
         ("-(a*b)", "-(a * b)"),
         ("a*-b", "a * -b"),
+        ("+5 mm", "5 mm"),
+        ("a - +b", "a - b"),
+        ("-+a^2", "-a^2"),
         ("a³", "a^3"),
         ("((a))", "a"),
         ("f(a,g( b ),A->B, A-B)", "f(a, g(b), A -> B, A - B)"),
@@ -184,27 +187,47 @@ fn pairs_lines_and_bare_numbers() {
 #[test]
 fn errors_say_where_and_what() {
     for (source, code, marked, message) in [
-        ("", "syntax", "", "the text ends where a value is expected"),
+        (
+            "",
+            "syntax",
+            "",
+            "the text ends where a value is expected (write a value, such as `20 mm` or `2 * a`)",
+        ),
         (
             "2 +",
             "syntax",
             "",
-            "the text ends where a value is expected",
+            "the text ends where a value is expected (write the value that is missing, or leave out what stands before it)",
         ),
-        ("(a", "syntax", "(", "this bracket is not closed"),
-        ("f(a", "syntax", "(", "this bracket is not closed"),
+        (
+            "(a",
+            "syntax",
+            "(",
+            "this bracket is not closed (add the `)` that belongs to it)",
+        ),
+        (
+            "f(a",
+            "syntax",
+            "(",
+            "this bracket is not closed (add the `)` that belongs to it)",
+        ),
         (
             "a)",
             "syntax",
             ")",
-            "a bracket is closed that was not opened",
+            "a bracket is closed that was not opened (leave it out, or open one with `(` before it)",
         ),
-        ("a b", "syntax", "b", "an operator is missing before this"),
+        (
+            "a b",
+            "syntax",
+            "b",
+            "an operator is missing before this (for a product write `a * b`)",
+        ),
         (
             "5 mm 3 mm",
             "syntax",
             "3",
-            "an operator is missing before this",
+            "an operator is missing before this (for a product write `* 3`)",
         ),
         (
             "2 crank",
@@ -248,19 +271,113 @@ fn errors_say_where_and_what() {
             "×",
             "`×` has no meaning here (times is written `*`)",
         ),
-        ("a $ b", "syntax", "$", "`$` has no meaning here"),
+        (
+            "a $ b",
+            "syntax",
+            "$",
+            "`$` has no meaning here (names are made of letters, digits and `_`; leave this out)",
+        ),
+        (
+            "a # b",
+            "syntax",
+            "#",
+            "`#` has no meaning here (leave it out: a comment stands behind the closing quote)",
+        ),
+        (
+            "@",
+            "syntax",
+            "@",
+            "`@` has no meaning here (names are made of letters, digits and `_`; leave this out)",
+        ),
+        (
+            "a == b",
+            "syntax",
+            "==",
+            "`==` has no meaning here (a comparison is one of `<=`, `>=`, `<`, `>`, and stands in conditions alone)",
+        ),
+        (
+            "“20 mm",
+            "syntax",
+            "“",
+            "`“` has no meaning here (leave it out: a value stands between two plain double quotes and holds none itself)",
+        ),
+        (
+            "20\u{200b}mm",
+            "syntax",
+            "\u{200b}",
+            "`\\u{200b}` has no meaning here (a sign that does not show, perhaps from a copied text: type the value again)",
+        ),
+        (
+            "pi rad",
+            "syntax",
+            "rad",
+            "an operator is missing before this (a unit stands behind a number: write `pi * 1 rad`)",
+        ),
+        (
+            "(1/4) rev",
+            "syntax",
+            "rev",
+            "an operator is missing before this (a unit stands behind a number: write `* 1 rev`)",
+        ),
+        (
+            "(a b)",
+            "syntax",
+            "b",
+            "an operator is missing before this (for a product write `a * b`)",
+        ),
+        (
+            "(a < b)",
+            "syntax",
+            "<",
+            "a comparison has no place here (a value is wanted: `max(x, y)` and `min(x, y)` choose one of two)",
+        ),
+        (
+            "a * / b",
+            "syntax",
+            "/",
+            "a value is expected here (a value is missing between this and what stands before it)",
+        ),
+        (
+            "5 rpms",
+            "unknown-unit",
+            "rpms",
+            "unknown unit `rpms` (did you mean `rpm`?)",
+        ),
+        (
+            "5 slug",
+            "unknown-unit",
+            "slug",
+            "unknown unit `slug` (write `72.9695 kg`)",
+        ),
+        (
+            "5 furlong",
+            "unknown-unit",
+            "furlong",
+            "unknown unit `furlong` (for a product write `5*furlong`)",
+        ),
+        (
+            "atan2(a; b)",
+            "syntax",
+            ";",
+            "`;` has no meaning here (arguments are parted by `,`: `atan2(y, x)`)",
+        ),
         (
             "f(a,)",
             "syntax",
             ")",
-            "an argument is expected after the comma",
+            "an argument is expected after the comma (write it, or leave the comma out)",
         ),
-        ("f(a b)", "syntax", "b", "`,` or `)` is expected"),
+        (
+            "f(a b)",
+            "syntax",
+            "b",
+            "an operator is missing before this (for a product write `a * b`)",
+        ),
         (
             "A -> B",
             "syntax",
             "->",
-            "a directed line stands only as an argument",
+            "a directed line stands only as an argument (such as in `angle(A -> B)`)",
         ),
         (
             "5 mm^2^2",
@@ -274,10 +391,24 @@ fn errors_say_where_and_what() {
             "a",
             "the power of a unit is a whole number (set the quantity in brackets to raise it: `(5 mm)^n`)",
         ),
-        ("a <= b", "syntax", "<=", "a comparison has no place here"),
-        ("1e999", "syntax", "1e999", "this number is too large"),
-        ("1e308 km", "syntax", "1e308", "this number is too large"),
-        ("+a", "syntax", "+", "a value is expected before `+`"),
+        (
+            "a <= b",
+            "syntax",
+            "<=",
+            "a comparison has no place here (a value is wanted: `max(x, y)` and `min(x, y)` choose one of two)",
+        ),
+        (
+            "1e999",
+            "syntax",
+            "1e999",
+            "this number is too large (numbers go up to about 1e308: look for a wrong exponent or a missing point)",
+        ),
+        (
+            "1e308 km",
+            "syntax",
+            "1e308",
+            "this number is too large (numbers go up to about 1e308: look for a wrong exponent or a missing point)",
+        ),
         (
             "2π",
             "syntax",
@@ -286,12 +417,11 @@ fn errors_say_where_and_what() {
         ),
     ] {
         let found = errors(source);
-        assert_eq!(
-            found[0],
-            (code, marked.to_owned(), message.to_owned()),
-            "{source}"
-        );
-        assert!(found.len() <= 2, "{source}: {found:?}");
+        assert_eq!(found.len(), 1, "one error to a cause: {source}: {found:?}");
+        assert_eq!(found[0].2, message, "{source}");
+        assert_eq!(found[0].0, code, "{source}");
+        assert_eq!(found[0].1, marked, "{source}");
+        assert!(found[0].2.ends_with(')'), "{source} has no remedy");
     }
 }
 
@@ -324,9 +454,13 @@ fn conditions() {
     );
     assert_eq!(
         message("a == b"),
-        "`=` has no meaning here (a comparison is one of `<=`, `>=`, `<`, `>`)"
+        "`==` has no meaning here (a comparison is one of `<=`, `>=`, `<`, `>`, and stands in conditions alone)"
     );
-    assert_eq!(message("a <="), "the text ends where a value is expected");
+    assert_eq!(
+        message("a <="),
+        "the text ends where a value is expected (write the value that is missing, or leave out what stands before it)"
+    );
+    assert!(message("(a < b) < c").starts_with("a comparison has no place here"));
 }
 
 #[test]
@@ -334,7 +468,7 @@ fn hostile_texts_meet_a_limit() {
     let code = |source: String| parse(&source).unwrap_err()[0].code;
     assert_eq!(code("(".repeat(MAX_LENGTH)), "too-deep");
     assert_eq!(code("-".repeat(MAX_LENGTH)), "too-deep");
-    assert_eq!(code("+".repeat(MAX_LENGTH)), "syntax");
+    assert_eq!(code("+".repeat(MAX_LENGTH)), "too-deep");
     assert_eq!(code("f(".repeat(MAX_LENGTH / 2)), "too-deep");
     assert_eq!(code("a^".repeat(MAX_LENGTH / 2)), "too-deep");
     assert_eq!(code("a+".repeat(MAX_LENGTH / 2 - 1) + "a"), "too-deep");

@@ -2,14 +2,16 @@
 
 use super::Parser;
 use crate::Unit;
-use crate::issue::{Issue, SyntaxError};
+use crate::issue::{Issue, Span, SyntaxError};
 use crate::lexer::Token;
 use crate::syntax::JoinedUnit;
 use crate::unit::MAX_UNIT_POWER;
-use crate::unit_table::{UnitDefinition, find, instead_of};
+use crate::unit_table::{UNITS, UnitDefinition, find, foreign, instead_of};
 
 /// Powers of the table's units, in the order of writing.
 type Factors = Vec<(&'static UnitDefinition, i32)>;
+
+const UNIT_HELP: &str = "such as `mm`, `rad/s` or `kg m^2`";
 
 /// The unit written `text` and nothing else.
 pub(crate) fn parse_unit_alone(text: &str) -> Result<Unit, SyntaxError> {
@@ -28,14 +30,27 @@ pub(crate) fn parse_unit_alone(text: &str) -> Result<Unit, SyntaxError> {
             Token::Name(_) => {
                 parser.unit_factors(&mut factors, divides);
             }
-            _ => parser.error_here("a unit is expected"),
+            _ => parser.error_here("a unit is expected", UNIT_HELP),
         }
         Unit::from_factors(&factors)
     });
     unit.map_err(|mut errors| errors.swap_remove(0))
 }
 
-impl Parser {
+impl Parser<'_> {
+    /// The issue of a name that is no unit, with what may be meant.
+    pub(super) fn issue_of_unit(&self, name: &str, span: Span) -> SyntaxError {
+        let help = match (foreign(name), instead_of(name)) {
+            (Some((factor, unit)), _) => format!("it is {factor} {unit}"),
+            (None, Some(near)) => format!("did you mean `{near}`?"),
+            (None, None) => {
+                let units: Vec<&str> = UNITS.iter().map(|unit| unit.symbol).collect();
+                format!("the units are {}", units.join(", "))
+            }
+        };
+        Issue::new("unknown-unit", span, format!("unknown unit `{name}`")).with_help(help)
+    }
+
     /// `unit`, at its first name, into `factors`; returns the names that an operator stands before, and the end.
     pub(super) fn unit_factors(
         &mut self,
@@ -88,19 +103,14 @@ impl Parser {
     /// `unit-power`, at its name; returns its end.
     fn unit_power(&mut self, factors: &mut Factors, divides: bool) -> usize {
         let Token::Name(name) = self.peek().clone() else {
-            self.error_here("a unit is expected");
+            self.error_here("a unit is expected", UNIT_HELP);
             return self.span().start;
         };
         let span = self.advance();
         let definition = find(&name);
         if definition.is_none() {
-            let issue = Issue::new(
-                "unknown-unit",
-                span.clone(),
-                format!("unknown unit `{name}`"),
-            );
-            let help = instead_of(&name).map(|near| format!("did you mean `{near}`?"));
-            self.push(Issue { help, ..issue });
+            let issue = self.issue_of_unit(&name, span.clone());
+            self.push(issue);
         }
         let (power, end) = self.unit_exponent(span.end);
         if let Some(definition) = definition {
@@ -138,7 +148,9 @@ impl Parser {
             let message = format!(
                 "the power of a unit is a whole number from 1 to {MAX_UNIT_POWER}, or its negative"
             );
-            self.push(Issue::new("syntax", start..end, message));
+            self.push(
+                Issue::new("syntax", start..end, message).with_help("such as `mm^2` or `s^-1`"),
+            );
             return (1, end);
         }
         #[expect(
