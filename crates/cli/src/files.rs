@@ -1,7 +1,7 @@
 //! Reading model files and the files they name.
 
 use std::fs;
-use std::io;
+use std::io::{self, Read as _};
 use std::path::Path;
 
 use kempe_model::{Checked, Diagnostic, MAX_FILE_BYTES, Model};
@@ -77,14 +77,19 @@ fn set_twice(set: &[(String, String)]) -> Option<Diagnostic> {
 /// The bytes of a file that is not too large.
 fn read_bytes(path: &Path) -> Result<Vec<u8>, Box<Diagnostic>> {
     let refuse = |error: io::Error| Box::new(unreadable(path, &error));
-    let size = fs::metadata(path).map_err(refuse)?.len();
-    if size > MAX_FILE_BYTES as u64 {
-        let told = Diagnostic::error("too-large", format!("{} has {size} bytes", path.display()));
+    let file = fs::File::open(path).map_err(refuse)?;
+    // devices have no size: what is read is what counts
+    let mut bytes = Vec::new();
+    file.take(MAX_FILE_BYTES as u64 + 1)
+        .read_to_end(&mut bytes)
+        .map_err(refuse)?;
+    if bytes.len() > MAX_FILE_BYTES {
+        let message = format!("{} has more than {MAX_FILE_BYTES} bytes", path.display());
         return Err(Box::new(
-            told.help(format!("a model file has at most {MAX_FILE_BYTES} bytes")),
+            Diagnostic::error("too-large", message).help("no more of a file is read"),
         ));
     }
-    fs::read(path).map_err(refuse)
+    Ok(bytes)
 }
 
 /// The text of a table that a model file names, from the file's folder.

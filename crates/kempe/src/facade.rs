@@ -1,5 +1,6 @@
 //! A model with the text it came from, and the questions most people ask.
 
+use std::io::Read as _;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
@@ -43,7 +44,7 @@ impl Model {
     pub fn from_path(path: impl AsRef<Path>) -> Result<Self, Error> {
         let path = path.as_ref();
         let name = path.display().to_string();
-        let bytes = std::fs::read(path).map_err(|error| Error {
+        let bytes = read_bounded(path).map_err(|error| Error {
             diagnostics: vec![Diagnostic::error(
                 "no-file",
                 format!("{name} cannot be read: {error}"),
@@ -66,7 +67,10 @@ impl Model {
             .file_stem()
             .map_or(name.clone(), |s| s.to_string_lossy().into_owned());
         let mut files = |wanted: &str| match &folder {
-            Some(folder) => std::fs::read_to_string(folder.join(wanted)).map_err(|e| e.to_string()),
+            Some(folder) => {
+                let bytes = read_bounded(&folder.join(wanted)).map_err(|e| e.to_string())?;
+                String::from_utf8(bytes).map_err(|_| "it is not UTF-8 text".to_owned())
+            }
             None => Err("a model that is no file can name none".to_owned()),
         };
         match kempe_model::Model::from_bytes(bytes, &title, &mut files, &set) {
@@ -197,6 +201,19 @@ impl Model {
 }
 
 /// Reads a model from its text.
+/// The bytes of a file, and no more than one beyond what a model file may have: a device has no end.
+fn read_bounded(path: &Path) -> std::io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    std::fs::File::open(path)?
+        .take(kempe_model::MAX_FILE_BYTES as u64 + 1)
+        .read_to_end(&mut bytes)?;
+    if bytes.len() > kempe_model::MAX_FILE_BYTES {
+        let message = format!("it has more than {} bytes", kempe_model::MAX_FILE_BYTES);
+        return Err(std::io::Error::other(message));
+    }
+    Ok(bytes)
+}
+
 impl FromStr for Model {
     type Err = Error;
     fn from_str(text: &str) -> Result<Self, Error> {
