@@ -3,6 +3,7 @@
 use toml::de::{DeTable, DeValue};
 
 use crate::diagnostic::{Diagnostic, line_at};
+use crate::mend::{Broken, tell, unclosed, without};
 use crate::model::Span;
 
 /// A value with its place (quotes and brackets included).
@@ -21,6 +22,8 @@ pub(crate) enum Value {
     Date,
     Array(Vec<Node>),
     Table(Table),
+    /// On a line that is not TOML.
+    Broken,
 }
 
 /// A string, with the way back from its characters to the file's bytes.
@@ -56,6 +59,7 @@ impl Node {
             Value::Date => "a date",
             Value::Array(_) => "an array",
             Value::Table(_) => "a table",
+            Value::Broken => "what is not TOML",
         }
     }
 }
@@ -155,20 +159,76 @@ fn hex_width(digits: Option<&str>) -> usize {
     code.map_or(1, char::len_utf8)
 }
 
-/// Reads a TOML text. What is wrong with its syntax goes to `diagnostics`; the tree is what could be read anyway.
-pub(crate) fn parse(text: &str, diagnostics: &mut Vec<Diagnostic>) -> Table {
+/// Reads a TOML text. What is wrong with its syntax goes to `diagnostics`; the tree is what could be read anyway, and what could not
+/// is told besides.
+pub(crate) fn parse(text: &str, diagnostics: &mut Vec<Diagnostic>) -> (Table, Broken) {
     let (root, errors) = DeTable::parse_recoverable(text);
+    let twice = |e: &toml::de::Error| e.message().starts_with(DUPLICATE);
+    let open = match errors.iter().all(twice) {
+        true => Vec::new(),
+        false => unclosed(text),
+    };
+    let mut broken = Broken::default();
+    if open.len() > MAX_SYNTAX_ERRORS {
+        broken.beyond_telling();
+    }
+    for entry in open.iter().take(MAX_SYNTAX_ERRORS) {
+        broken.add(text, entry.lines.clone());
+        diagnostics.push(tell(entry, text));
+    }
+    if open.is_empty() {
+        let table = read(&root, &errors, text, diagnostics, &mut broken);
+        return (table, broken);
+    }
+    let rest = without(text, &open);
+    let (root, errors) = DeTable::parse_recoverable(&rest);
+    let table = read(&root, &errors, text, diagnostics, &mut broken);
+    (table, broken)
+}
+
+/// How the message on a key that is given twice starts.
+const DUPLICATE: &str = "duplicate key";
+
+fn read(
+    root: &toml::Spanned<DeTable<'_>>,
+    errors: &[toml::de::Error],
+    text: &str,
+    diagnostics: &mut Vec<Diagnostic>,
+    broken: &mut Broken,
+) -> Table {
     // one error to a line: the others of the line follow from it
     let mut told = None;
     for error in errors.iter().take(MAX_SYNTAX_ERRORS) {
         let diagnostic = syntax_error(error, text);
         let line = line_at(text, diagnostic.start()).number;
+        if diagnostic.code == "toml-syntax" {
+            broken.add(text, diagnostic.start()..diagnostic.start());
+        }
         if diagnostic.code != "toml-syntax" || told != Some(line) {
             diagnostics.push(diagnostic);
         }
         told = Some(line);
     }
-    table(root.get_ref(), text)
+    let mut table = table(root.get_ref(), text);
+    if !broken.is_empty() {
+        forget(&mut table, broken);
+    }
+    table
+}
+
+/// What stands on a broken line is not what was meant.
+fn forget(table: &mut Table, broken: &Broken) {
+    fn forget_node(node: &mut Node, broken: &Broken) {
+        match &mut node.value {
+            Value::Table(table) => forget(table, broken),
+            Value::Array(items) => items.iter_mut().for_each(|item| forget_node(item, broken)),
+            _ if broken.holds(node.span.start) => node.value = Value::Broken,
+            _ => {}
+        }
+    }
+    for (_, node) in &mut table.entries {
+        forget_node(node, broken);
+    }
 }
 
 /// Syntax errors shown at most: after a few, the rest are consequences.
@@ -217,12 +277,20 @@ fn syntax_error(error: &toml::de::Error, text: &str) -> Diagnostic {
     let span = error.span().unwrap_or(0..0);
     let at = text.get(span.clone()).unwrap_or("");
     let message = error.message();
-    if message.starts_with("duplicate key") {
+    if message.starts_with(DUPLICATE) {
         return Diagnostic::error("duplicate-name", format!("`{at}` is written twice"))
             .at(span, "the second one")
             .help("a name may be given once in a table: rename one of them, or join the two");
     }
-    let help = if message.contains("recursion limit") {
+    if let Some(d) = strange_sign(&span, text) {
+        return d;
+    }
+    let quoted;
+    let number = at.starts_with(|c: char| c.is_ascii_digit() || c == '-' || c == '+');
+    let help = if message.contains("must be quoted") && number && at.len() < 40 {
+        quoted = format!("a value with a unit is a string: \"{}\"", at.trim());
+        &quoted
+    } else if message.contains("recursion limit") {
         "this is nested deeper than any model needs"
     } else if message.contains("string") || message.contains("quote") {
         "strings stand between two double quotes, on one line: \"20 mm\""
@@ -241,12 +309,48 @@ fn syntax_error(error: &toml::de::Error, text: &str) -> Diagnostic {
         .help(help)
 }
 
+/// The error of a sign that looks like one of TOML and is none, on the line up to the end of what could not be read.
+fn strange_sign(span: &Span, text: &str) -> Option<Diagnostic> {
+    let start = text.get(..span.start)?.rfind('\n').map_or(0, |i| i + 1);
+    let end = text.ceil_char_boundary(span.end.max(span.start + 1).min(text.len()));
+    let (at, sign) = text
+        .get(start..end)?
+        .char_indices()
+        .find(|(_, c)| is_quote(*c) || is_strange_blank(*c))?;
+    let at = start + at;
+    let place = at..at + sign.len_utf8();
+    let code = format!("U+{:04X}", u32::from(sign));
+    let d = if is_quote(sign) {
+        let message = format!("not TOML: `{sign}` is not the quote of a string");
+        Diagnostic::error("toml-syntax", message)
+            .at(place, code)
+            .help("strings stand between two plain double quotes, on one line: \"20 mm\"")
+    } else {
+        let message = "not TOML: a blank that is not one of TOML's";
+        Diagnostic::error("toml-syntax", message)
+            .at(place, code)
+            .help("it may come from a copied text: type a plain blank instead")
+    };
+    Some(d)
+}
+
+/// A quote of print.
+fn is_quote(c: char) -> bool {
+    "“”„‟‘’‚‛«»‹›´`".contains(c)
+}
+
+/// A blank besides those of the keyboard, or a sign without width.
+fn is_strange_blank(c: char) -> bool {
+    (c.is_whitespace() && !c.is_ascii())
+        || matches!(c, '\u{ad}' | '\u{200b}'..='\u{200f}' | '\u{2060}'..='\u{206f}' | '\u{feff}')
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     fn text_of(source: &str) -> (Text, String) {
-        let root = parse(source, &mut Vec::new());
+        let (root, _) = parse(source, &mut Vec::new());
         match &root.entries[0].1.value {
             Value::Text(t) => (t.clone(), source.to_owned()),
             other => panic!("{other:?}"),
@@ -275,7 +379,7 @@ mod tests {
     #[test]
     fn a_broken_line_does_not_hide_the_others() {
         let mut diagnostics = Vec::new();
-        let root = parse(
+        let (root, _) = parse(
             "a = 1\nb = \nc = 3\nc = 4\n[d]\ne = \"x\n f = 2\n",
             &mut diagnostics,
         );

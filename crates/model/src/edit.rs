@@ -31,7 +31,7 @@ pub fn set_value(text: &str, path: &[&str], new: &str) -> Result<String, Diagnos
         .help("a value is a number, a \"string\", an [array] or a { table }"));
     }
     let mut found = Vec::new();
-    let root = document::parse(text, &mut found);
+    let (root, _) = document::parse(text, &mut found);
     if let Some(first) = found.into_iter().next() {
         return Err(first);
     }

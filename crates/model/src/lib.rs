@@ -8,6 +8,7 @@ mod geometry;
 mod law;
 mod load;
 mod measure;
+mod mend;
 mod model;
 mod read;
 mod registry;

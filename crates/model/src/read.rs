@@ -30,9 +30,7 @@ pub(crate) mod studies;
 mod transmission;
 mod value;
 
-use std::collections::BTreeSet;
-
-use crate::diagnostic::{Diagnostic, Severity, line_at};
+use crate::diagnostic::{Diagnostic, Severity};
 use crate::document;
 use crate::model::Model;
 use context::Context;
@@ -99,12 +97,16 @@ impl Model {
             return Err(vec![too_large(text.len())]);
         }
         let mut cx = Context::new(name, files);
-        let root = document::parse(text, &mut cx.found);
-        // what follows from a line that is not TOML is not told: its names are missing everywhere
-        let broken_syntax = cx.found.iter().any(|d| d.code == "toml-syntax");
-        sections::read(&mut cx, &root, overrides, broken_syntax);
+        let (root, broken) = document::parse(text, &mut cx.found);
+        let own = cx.found.len();
+        sections::read(&mut cx, &root, overrides);
         let mut found = cx.found;
-        without_echoes(&mut found, text);
+        if !broken.is_empty() {
+            // what may follow from a line that is not TOML is not told
+            let rest = found.split_off(own).into_iter();
+            let rest = rest.filter(|d| !broken.may_cause(d, text));
+            found.extend(rest.map(of_a_broken_file));
+        }
         for label in found
             .iter_mut()
             .flat_map(|d| &mut d.labels)
@@ -166,19 +168,15 @@ impl Model {
     }
 }
 
-/// Drops what is told of a line that is not TOML anyway.
-fn without_echoes(found: &mut Vec<Diagnostic>, text: &str) {
-    let line = |d: &Diagnostic| line_at(text, d.start()).number;
-    let broken: BTreeSet<usize> = found
-        .iter()
-        .filter(|d| d.code == "toml-syntax")
-        .map(line)
-        .collect();
-    if !broken.is_empty() {
-        found.retain(|d| {
-            d.code == "toml-syntax" || d.start() > text.len() || !broken.contains(&line(d))
-        });
+/// A list of what the file has is not whole where a part of it could not be read.
+fn of_a_broken_file(mut d: Diagnostic) -> Diagnostic {
+    if let Some(help) = &mut d.help
+        && d.code == "unknown-name"
+        && !help.starts_with("did you mean")
+    {
+        help.push_str("; lines that are not TOML may hold more");
     }
+    d
 }
 
 fn too_large(bytes: usize) -> Diagnostic {

@@ -37,13 +37,7 @@ pub(crate) const FILE_KEYS: &[&str] = &[
 pub(crate) const ANNOUNCED_SECTIONS: &[&str] = &["clearance"];
 
 /// Reads the whole file.
-pub(crate) fn read(
-    cx: &mut Context<'_>,
-    root: &Table,
-    overrides: &[(String, String)],
-    broken_syntax: bool,
-) {
-    let own = cx.found.len();
+pub(crate) fn read(cx: &mut Context<'_>, root: &Table, overrides: &[(String, String)]) {
     cx.unknown_keys(root, "the file", FILE_KEYS);
     if let Some(node) = root.get("title")
         && let Some(text) = cx.text(node, "`title`", "\"Crank-rocker\"")
@@ -94,14 +88,6 @@ pub(crate) fn read(
     measures::read(cx, &sections.measures);
     loads::read(cx, &sections.loads);
     studies::read(cx, &sections.studies);
-    if broken_syntax {
-        // a line that could not be read may have held the name or the key that is missed elsewhere
-        let mut i = 0;
-        cx.found.retain(|d| {
-            i += 1;
-            i <= own || !FOLLOWS_FROM_SYNTAX.contains(&d.code)
-        });
-    }
 }
 
 /// Warns of links that nothing holds.
@@ -147,21 +133,6 @@ fn loose_links(cx: &mut Context<'_>) {
         cx.push(warning);
     }
 }
-
-/// Codes of errors that a line which is not TOML may cause elsewhere.
-const FOLLOWS_FROM_SYNTAX: &[&str] = &[
-    "unknown-name",
-    "missing-key",
-    "no-frame",
-    "empty-link",
-    "not-placed",
-    "side-missing",
-    "point-not-on-link",
-    "no-common-link",
-    "no-common-point",
-    "no-drive",
-    "not-a-pin",
-];
 
 /// Keys of `units`.
 pub(crate) const UNIT_KEYS: &[&str] = &[
