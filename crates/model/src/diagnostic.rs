@@ -122,6 +122,16 @@ impl Diagnostic {
         self
     }
 
+    /// The same without texts that no reader wants to see whole: what a file says may be megabytes long, or not show at all.
+    #[must_use]
+    pub(crate) fn tamed(mut self) -> Self {
+        tame(&mut self.message);
+        self.labels.iter_mut().for_each(|l| tame(&mut l.text));
+        self.help.iter_mut().for_each(tame);
+        self.notes.iter_mut().for_each(tame);
+        self
+    }
+
     /// Where the trouble is: the first primary label's start, for sorting.
     pub fn start(&self) -> usize {
         let primary = self
@@ -219,6 +229,54 @@ impl Diagnostic {
     }
 }
 
+/// What is quoted of a file in a sentence has at most so many characters.
+const LONGEST_QUOTE: usize = 80;
+
+/// A sentence has at most so many characters: beyond what a dozen names of the longest kind need.
+const LONGEST_SENTENCE: usize = 1000;
+
+/// Shortens words of more than [`LONGEST_QUOTE`] characters and a text of more than [`LONGEST_SENTENCE`], and makes signs visible that
+/// do not show.
+fn tame(text: &mut String) {
+    let shows = |c: char| !c.is_control();
+    let mut longest = 0;
+    let mut run = 0;
+    for c in text.chars() {
+        run = if c.is_whitespace() { 0 } else { run + 1 };
+        longest = longest.max(run);
+    }
+    let short = longest <= LONGEST_QUOTE && text.len() <= LONGEST_SENTENCE;
+    if short && text.chars().all(shows) {
+        return;
+    }
+    let mut out = String::new();
+    let (mut run, mut length) = (0, 0);
+    for c in text.chars() {
+        run = if c.is_whitespace() { 0 } else { run + 1 };
+        if length >= LONGEST_SENTENCE {
+            out.push('…');
+            break;
+        }
+        // a cut word keeps the quote that closes it
+        if run > LONGEST_QUOTE && c != '`' {
+            if run == LONGEST_QUOTE + 1 {
+                out.push('…');
+            }
+            continue;
+        }
+        if shows(c) {
+            out.push(c);
+            length += 1;
+        } else {
+            let escaped = c.escape_debug().to_string();
+            length += escaped.len();
+            run += escaped.len() - 1;
+            out.push_str(&escaped);
+        }
+    }
+    *text = out;
+}
+
 /// A line with more characters than this is shown in part.
 const WIDE: usize = 140;
 
@@ -276,6 +334,25 @@ mod tests {
             "error[unit-mismatch]: length expected, found an angle\n  ┌ hitch.toml:2:14\n2 │ arm = { D = [\"8 deg\", \
              \"0.3 m\"] }\n  │              ^^^^^^^ this is an angle\n  = help: swap them\n"
         );
+    }
+
+    #[test]
+    fn what_is_quoted_is_short_and_shows() {
+        let long = format!("there is no link `{}` here", "x".repeat(300));
+        let d = Diagnostic::error("unknown-name", long)
+            .help(format!("its columns are {}", "\0".repeat(3_000_000)))
+            .note("short `a b`")
+            .tamed();
+        assert_eq!(
+            d.message,
+            format!("there is no link `{}…` here", "x".repeat(79))
+        );
+        let help = d.help.expect("there");
+        assert!(
+            help.starts_with("its columns are \\0\\0") && help.chars().count() < 200,
+            "{help}"
+        );
+        assert_eq!(d.notes, ["short `a b`"]);
     }
 
     #[test]

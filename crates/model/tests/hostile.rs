@@ -52,6 +52,24 @@ fn many(count: usize, mut line: impl FnMut(usize) -> String) -> String {
 const FRAME: &str = "[links]\nframe = { A = [0, 0], D = [1, 0] }\ncrank = { A-B = 1 }\n";
 
 #[test]
+fn messages_are_short_whatever_a_table_holds() {
+    let zeros = "\0".repeat(3_000_000);
+    let text = FRAME.to_owned()
+        + "[drives]\nmotor = { turns = \"crank\", law = { table = \"zeros.csv\" } }\n";
+    let found = Model::from_toml(&text, "zeros", &mut |_| Ok(zeros.clone())).unwrap_err();
+    for d in &found {
+        let told = d.render_plain("zeros.toml", &text);
+        assert!(
+            told.len() < 2000 && !told.contains('\0'),
+            "{} bytes",
+            told.len()
+        );
+    }
+    let found = Model::from_toml(&text, "large", &mut |_| Ok(" ".repeat(70 << 20))).unwrap_err();
+    assert_eq!(found[0].code, "too-large");
+}
+
+#[test]
 fn nesting() {
     refused(
         "arrays",

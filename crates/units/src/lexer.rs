@@ -101,7 +101,12 @@ pub(crate) fn tokens(
                 Some(meant) => (meant, length),
                 None => {
                     skipped.push(at);
-                    at += length;
+                    // what stands behind a comment's sign is none of the expression
+                    at = if first == '#' {
+                        text.len()
+                    } else {
+                        at + length
+                    };
                     continue;
                 }
             }

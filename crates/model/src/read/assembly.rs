@@ -4,7 +4,7 @@ use kempe_units::Dimension;
 
 use crate::diagnostic::Diagnostic;
 use crate::document::{Key, Node, Value};
-use crate::model::{AssemblyHint, FRAME, HintKind, Place, PointId};
+use crate::model::{AssemblyHint, Drive, DriveKind, FRAME, HintKind, LinkId, Place, PointId};
 use crate::read::context::{Context, Meaning};
 use crate::read::names::is_point_name;
 
@@ -98,7 +98,34 @@ fn link_hint(cx: &mut Context<'_>, key: &Key, node: &Node) -> Option<HintKind> {
                 .help("leave this out"),
         );
     }
+    driven_angle(cx, key, link);
     Some(HintKind::NearAngle { link, angle })
+}
+
+/// Warns of the angle of a link that a drive turns against the frame.
+fn driven_angle(cx: &mut Context<'_>, key: &Key, link: LinkId) {
+    let turns = |d: &&Drive| matches!(d.kind, DriveKind::Turn { link: turned, relative_to: FRAME } if turned == link);
+    let Some((drive, span)) = cx
+        .model
+        .drives
+        .iter()
+        .find(turns)
+        .map(|d| (d.name.clone(), d.span.clone()))
+    else {
+        return;
+    };
+    cx.push(
+        Diagnostic::warning(
+            "idle-hint",
+            format!(
+                "this says nothing about the assembly: drive `{drive}` says the angle of `{}`",
+                key.name
+            ),
+        )
+        .at(key.span.clone(), "")
+        .see(span, "turns it")
+        .help("leave this out: the motion starts where the drive does"),
+    );
 }
 
 fn near<'n>(cx: &mut Context<'_>, key: &Key, node: &'n Node, example: &str) -> Option<&'n Node> {
@@ -126,11 +153,19 @@ fn idle_hint(cx: &mut Context<'_>, key: &Key, points: &[PointId]) {
                 .all(|p| cx.carriers(*p).binary_search(l).is_ok())
     });
     let Some(link) = common else { return };
-    let name = cx.link_name(link).to_owned();
+    let points: Vec<&str> = points.iter().map(|p| cx.point_name(*p)).collect();
+    let why = match (link == FRAME, points.as_slice()) {
+        (true, [one]) => format!("{one} is a point of the frame, which stands still"),
+        (_, many) => format!(
+            "{} are points of link `{}`, however it lies",
+            many.join(", "),
+            cx.link_name(link)
+        ),
+    };
     cx.push(
         Diagnostic::warning(
             "idle-hint",
-            format!("this says nothing about the assembly: link `{name}` settles it"),
+            format!("this says nothing about the assembly: {why}"),
         )
         .at(key.span.clone(), "")
         .help("name points of different links, or leave this out"),

@@ -65,7 +65,14 @@ pub(crate) fn balance(
     for node in cx.array(node, &place, "[\"crank\"]")? {
         let link = link_of(cx, node, &place)?;
         let pivot = pivot(cx, link, node)?;
-        if on.iter().all(|(known, _)| *known != link) {
+        if on.iter().any(|(known, _)| *known == link) {
+            let name = cx.link_name(link).to_owned();
+            cx.push(
+                Diagnostic::error("over-specified", format!("{place} names `{name}` twice"))
+                    .at(node.span.clone(), "named before")
+                    .help("leave one of the two out: a link carries one counterweight"),
+            );
+        } else {
             on.push((link, pivot));
         }
     }
@@ -149,6 +156,12 @@ fn spring_named(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<(usize, Dimen
             let springs: Vec<&str> = cx.springs.keys().map(String::as_str).collect();
             let help = match kempe_units::nearest(name, springs.iter().copied()) {
                 Some(near) => format!("did you mean `{near}`?"),
+                None if !springs.is_empty() => {
+                    format!(
+                        "the springs are {}",
+                        springs.get(..12).unwrap_or(&springs).join(", ")
+                    )
+                }
                 None => "describe its ends under [springs]; stiffness and preload are chosen here"
                     .to_owned(),
             };

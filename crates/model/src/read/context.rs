@@ -136,7 +136,7 @@ impl<'a> Context<'a> {
 
     pub fn push(&mut self, diagnostic: Diagnostic) {
         if self.found.len() < MAX_DIAGNOSTICS {
-            self.found.push(diagnostic);
+            self.found.push(diagnostic.tamed());
         }
     }
 
@@ -303,6 +303,9 @@ impl<'a> Context<'a> {
         let help = match nearest(name, known.iter().copied()) {
             Some(near) => format!("did you mean `{near}`?"),
             None if known.is_empty() => format!("the file has no {kind}s"),
+            None if known.len() <= 12 && kind.contains(' ') => {
+                format!("there are {}", known.join(", "))
+            }
             None if known.len() <= 12 => format!("the {kind}s are {}", known.join(", ")),
             None => format!(
                 "the file has {} {kind}s, none of them near this name",

@@ -10,6 +10,9 @@ use crate::read::context::Context;
 /// A table has at most so many rows.
 const MAX_ROWS: usize = 1_000_000;
 
+/// A table has at most so many bytes, as many as its rows need.
+const MAX_BYTES: usize = 64 << 20;
+
 /// All tables of a model together have at most so many rows.
 const MAX_ALL_ROWS: usize = 8_000_000;
 
@@ -60,11 +63,21 @@ pub(crate) fn columns(
                     format!("cannot read `{name}`: {reason}"),
                 )
                 .at(file.span.clone(), "")
-                .help("the name counts from the folder of the model file"),
+                .help("a table is a CSV text, its name counts from the folder of the model file"),
             );
             return None;
         }
     };
+    if content.len() > MAX_BYTES {
+        cx.push(
+            Diagnostic::error("too-large", format!("`{name}` has {} bytes", content.len()))
+                .at(file.span.clone(), "")
+                .help(format!(
+                    "a table has at most {MAX_BYTES} bytes: leave out rows between others"
+                )),
+        );
+        return None;
+    }
     let mut lines = content
         .lines()
         .enumerate()
@@ -100,9 +113,11 @@ pub(crate) fn columns(
                 .and_then(|c| c.parse::<f64>().ok())
                 .filter(|x| x.is_finite())
         };
+        let filled = cells.len() - cells.iter().rev().take_while(|c| c.is_empty()).count();
         let room = abscissas.len() < MAX_ROWS && cx.table_rows < MAX_ALL_ROWS;
+        let mut help = format!("{}, at most {MAX_ROWS} of them", words.order);
         let trouble = match (cell(first), cell(second)) {
-            (Some(t), Some(x)) => {
+            (Some(t), Some(x)) if filled <= heads.len() => {
                 let t = first_unit.to_si(t);
                 if abscissas.last().is_none_or(|last| t > *last) && room {
                     abscissas.push(t);
@@ -111,12 +126,33 @@ pub(crate) fn columns(
                     continue;
                 }
                 if room {
-                    words.not_rising
+                    words.not_rising.to_owned()
                 } else {
-                    "one row too many"
+                    "one row too many".to_owned()
                 }
             }
-            _ => "a cell is not a number",
+            _ if filled > heads.len() => {
+                let part = match separator {
+                    ',' => "a decimal point is written `.`; or part the columns by a semicolon",
+                    _ => "each row has as many cells as the first line has heads",
+                };
+                help = part.to_owned();
+                cells_and_heads(filled, heads.len())
+            }
+            _ if filled <= first.max(second) => {
+                help = "each row has a cell under each head".to_owned();
+                cells_and_heads(filled, heads.len())
+            }
+            _ => {
+                let decimal = |i: usize| {
+                    let cell = cells.get(i).copied().unwrap_or("");
+                    cell.contains(',') && cell.replace(',', ".").parse::<f64>().is_ok()
+                };
+                if decimal(first) || decimal(second) {
+                    help = "a decimal point is written `.`".to_owned();
+                }
+                "a cell is not a number".to_owned()
+            }
         };
         cx.push(
             Diagnostic::error(
@@ -128,7 +164,7 @@ pub(crate) fn columns(
                 "the line is: {}",
                 line.chars().take(80).collect::<String>()
             ))
-            .help(format!("{}, at most {MAX_ROWS} of them", words.order)),
+            .help(help),
         );
         return None;
     }
@@ -144,6 +180,15 @@ pub(crate) fn columns(
         return None;
     }
     Some((abscissas, values))
+}
+
+fn cells_and_heads(cells: usize, heads: usize) -> String {
+    let plural = |n: usize| if n == 1 { "" } else { "s" };
+    format!(
+        "{cells} cell{} under {heads} head{}",
+        plural(cells),
+        plural(heads)
+    )
 }
 
 fn unquoted(cell: &str) -> &str {
@@ -177,6 +222,31 @@ fn find_column(
             .or(names.iter().position(|(n, _)| n == name)),
         Pick::Number(i) => (*i < heads.len()).then_some(*i),
     };
+    if let (Some(i), Pick::Name(wanted)) = (place, &ask.pick) {
+        let exact = heads.get(i).is_some_and(|head| head == wanted);
+        let same = match exact {
+            true => heads.iter().filter(|head| *head == wanted).count(),
+            false => names.iter().filter(|(name, _)| name == wanted).count(),
+        };
+        if same > 1 {
+            let help = match exact {
+                true => "give the columns of the table different names".to_owned(),
+                false => format!(
+                    "give them different names, or ask with the unit: \"{}\"",
+                    heads.get(i).copied().unwrap_or("")
+                ),
+            };
+            cx.push(
+                Diagnostic::error(
+                    "table-column",
+                    format!("`{file}` has {same} columns `{wanted}`"),
+                )
+                .at(span, "which one?")
+                .help(help),
+            );
+            return None;
+        }
+    }
     let name = match &ask.pick {
         Pick::Name(name) => name.as_str(),
         Pick::Number(i) => names.get(*i).map_or("2", |(name, _)| name.as_str()),

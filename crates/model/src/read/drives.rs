@@ -54,12 +54,14 @@ fn read_drive(cx: &mut Context<'_>, key: &Key, node: &Node) -> Option<Drive> {
         [one] => **one,
         [] => {
             let names = DRIVE_KINDS.iter().map(|(kind, _)| *kind);
+            let own = |k: &&(Key, Node)| !LAW_KEYS.contains(&k.0.name.as_str());
             let near = table
                 .entries
                 .iter()
-                .find_map(|(k, _)| kempe_units::nearest(&k.name, names.clone()));
+                .filter(own)
+                .find_map(|(k, _)| Some((k, kempe_units::nearest(&k.name, names.clone())?)));
             let help = match near {
-                Some(near) => format!("did you mean `{near}`?"),
+                Some((written, near)) => format!("`{}`: did you mean `{near}`?", written.name),
                 None => format!(
                     "a drive turns a link, is a cylinder between two points, or slides a slider: {}",
                     DRIVE_KINDS[0].1
@@ -70,6 +72,9 @@ fn read_drive(cx: &mut Context<'_>, key: &Key, node: &Node) -> Option<Drive> {
                     .at(key.span.clone(), "")
                     .help(help),
             );
+            if let Some((written, near)) = near {
+                of_misspelt_kind(cx, key, table, &place, (&written.name, near));
+            }
             return None;
         }
         [first, second, ..] => {
@@ -84,22 +89,13 @@ fn read_drive(cx: &mut Context<'_>, key: &Key, node: &Node) -> Option<Drive> {
             return None;
         }
     };
-    let mut known = vec![kind];
-    if kind == "turns" {
-        known.push("relative_to");
-    }
-    known.extend(LAW_KEYS);
-    cx.unknown_keys(table, &place, &known);
+    cx.unknown_keys(table, &place, &known_keys(kind, kind));
     let kind_read = match kind {
         "turns" => turns(cx, table, &place, key),
         "cylinder" => cylinder(cx, table, &place),
         _ => slides(cx, table, &place),
     };
-    let dimension = if kind == "turns" {
-        Dimension::ANGLE
-    } else {
-        Dimension::LENGTH
-    };
+    let dimension = coordinate(kind);
     let law = read_law(cx, table, &place, &key.span, dimension, kind);
     let lasts: Option<f64> = law.as_ref().map(|law| law.duration(&cx.values));
     if lasts.is_some_and(|t| !t.is_finite()) {
@@ -116,6 +112,37 @@ fn read_drive(cx: &mut Context<'_>, key: &Key, node: &Node) -> Option<Drive> {
         dimension,
         span: key.span.clone(),
     })
+}
+
+/// Keys of a drive of a kind, whose own is written so.
+fn known_keys<'k>(written: &'k str, kind: &str) -> Vec<&'k str> {
+    let mut known = vec![written];
+    if kind == "turns" {
+        known.push("relative_to");
+    }
+    known.extend(LAW_KEYS);
+    known
+}
+
+/// What the coordinate of a kind of drive measures.
+fn coordinate(kind: &str) -> Dimension {
+    if kind == "turns" {
+        Dimension::ANGLE
+    } else {
+        Dimension::LENGTH
+    }
+}
+
+/// Tells what else is wrong with a drive whose kind is misspelt: what it moves is left alone, how it moves is read as meant.
+fn of_misspelt_kind(
+    cx: &mut Context<'_>,
+    key: &Key,
+    table: &Table,
+    place: &str,
+    (written, kind): (&str, &str),
+) {
+    cx.unknown_keys(table, place, &known_keys(written, kind));
+    read_law(cx, table, place, &key.span, coordinate(kind), kind);
 }
 
 fn turns(cx: &mut Context<'_>, table: &Table, place: &str, key: &Key) -> Option<DriveKind> {

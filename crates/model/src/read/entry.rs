@@ -221,11 +221,31 @@ pub(crate) fn on_link(
             format!("{name} is not a point of link `{link_name}`"),
         )
         .at(node.span.clone(), "")
-        .help(format!(
-            "give it a place there: {link_name} = {{ {name} = [0, 0] }}"
-        )),
+        .help(points_help(cx, point, link)),
     );
     None
+}
+
+/// The links that carry a point and the points of a link, for help where one is not on the other.
+fn points_help(cx: &Context<'_>, point: PointId, link: LinkId) -> String {
+    const SHOWN: usize = 8;
+    let list = |names: Vec<&str>| {
+        let more = if names.len() > SHOWN { ", …" } else { "" };
+        format!("{}{more}", names.get(..SHOWN).unwrap_or(&names).join(", "))
+    };
+    let carriers = cx
+        .carriers(point)
+        .iter()
+        .map(|l| cx.link_name(*l))
+        .collect();
+    // links are read after their points are known, so that a link's own list may not be there yet
+    let points = cx.model.points.iter().filter(|p| p.links.contains(&link));
+    let points: Vec<&str> = points.map(|p| p.name.as_str()).collect();
+    let carriers = format!("{} is on {}", cx.point_name(point), list(carriers));
+    match points.is_empty() {
+        true => carriers,
+        false => format!("{carriers}; `{}` has {}", cx.link_name(link), list(points)),
+    }
 }
 
 /// The link that something at a point acts on when none is named: the first-named that moves, or else the frame.

@@ -163,12 +163,19 @@ fn place(cx: &mut Context<'_>, key: &Key) -> Option<FrictionAt> {
     let known: Vec<String> = cx
         .names
         .iter()
-        .filter(|(_, (m, _))| matches!(m, Meaning::Joint(_)))
+        .filter(|(_, (m, _))| matches!(m, Meaning::Joint(i) if slides(cx, *i)))
         .map(|(n, _)| n.clone())
+        .chain(
+            cx.model
+                .points
+                .iter()
+                .filter(|p| p.links.len() > 1)
+                .map(|p| p.name.clone()),
+        )
         .chain(["all".to_owned()])
         .collect();
     let mut d = cx.no_such(
-        "joint",
+        "pin or joint",
         name,
         key.span.clone(),
         known.iter().map(String::as_str),
@@ -180,6 +187,17 @@ fn place(cx: &mut Context<'_>, key: &Key) -> Option<FrictionAt> {
         d.note("friction is told of pins by their point, of sliders by their joint, and of `all`"),
     );
     None
+}
+
+/// Whether a joint, by file order, is one that friction may be told of; a broken one may be.
+fn slides(cx: &Context<'_>, joint: usize) -> bool {
+    let Some(id) = cx.joints.get(joint).copied().flatten() else {
+        return true;
+    };
+    matches!(
+        cx.model.joints.get(id.index()).map(|j| &j.kind),
+        Some(JointKind::Slider { .. } | JointKind::Slot { .. })
+    )
 }
 
 fn pin(cx: &mut Context<'_>, point: PointId, key: &Key) -> Option<FrictionAt> {

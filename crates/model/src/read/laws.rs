@@ -364,6 +364,34 @@ impl LawReader<'_> {
         })
     }
 
+    /// Keys of a piece that would not be looked at.
+    fn contradictions(&self, cx: &mut Context<'_>, table: &Table, end: &str) {
+        let (says, idle): (&str, &[&str]) = if end == "dwell" {
+            ("dwell", &["in", "by", "speed", "acceleration"])
+        } else if table.get("speed").is_some() {
+            ("speed", &["in", "by", "acceleration"])
+        } else if table.get("acceleration").is_some() {
+            ("acceleration", &["in", "by"])
+        } else {
+            return;
+        };
+        let why = match says {
+            "dwell" => "`dwell` is the time for which it stands still".to_owned(),
+            _ => format!("`{says}` says how it moves"),
+        };
+        let keys = table.entries.iter().map(|(key, _)| key);
+        for key in keys.filter(|key| idle.contains(&key.name.as_str())) {
+            cx.push(
+                Diagnostic::error(
+                    "over-specified",
+                    format!("{}: this piece needs no `{}`", self.place, key.name),
+                )
+                .at(key.span.clone(), why.clone())
+                .help(format!("leave `{}` out, or `{says}`", key.name)),
+            );
+        }
+    }
+
     fn piece(
         &self,
         cx: &mut Context<'_>,
@@ -384,6 +412,7 @@ impl LawReader<'_> {
             return None;
         };
         let value = table.get(end)?;
+        self.contradictions(cx, table, end);
         if *end == "dwell" {
             let duration = cx.positive(value, Dimension::TIME, "a dwell", false)?;
             return Some(LawPiece::Dwell { duration });

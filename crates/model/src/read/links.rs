@@ -6,9 +6,9 @@ use kempe_units::Dimension;
 
 use crate::diagnostic::Diagnostic;
 use crate::document::{Key, Node, Value};
-use crate::model::{Center, LinkId, Place, PointId, Scalar, Side, Span};
+use crate::model::{Center, FRAME, LinkId, Place, PointId, Scalar, Side, Span};
 use crate::read::context::Context;
-use crate::read::masses::read_inertia;
+use crate::read::masses::{mass_of_frame, read_inertia};
 use crate::read::names::{is_point_name, pair_of};
 use crate::read::place::place_points;
 
@@ -91,6 +91,9 @@ fn read_link(cx: &mut Context<'_>, id: LinkId, key: &Key, node: &Node) {
         );
     }
     let points = place_points(cx, &draft, &place, &key.span);
+    if id == FRAME {
+        mass_of_frame(cx, table);
+    }
     let inertia = read_inertia(cx, table, (&draft, &points), &place, |cx, node| {
         read_center(cx, node, &draft, &place)
     });

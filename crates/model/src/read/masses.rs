@@ -51,9 +51,7 @@ pub(crate) fn read_gravity(cx: &mut Context<'_>, node: &Node) {
                 None
             }
         },
-        _ => cx
-            .positive(node, Dimension::ACCELERATION, "`gravity`", true)
-            .map(|size| [Expr::Const(0.0), Expr::Neg(Box::new(size))]),
+        _ => single_gravity(cx, node),
     };
     let Some([x, y]) = gravity else { return };
     let size = kempe_number::math::hypot(cx.number(&x), cx.number(&y));
@@ -74,6 +72,28 @@ pub(crate) fn read_gravity(cx: &mut Context<'_>, node: &Node) {
         );
     }
     cx.model.actions.gravity = Some([x, y]);
+}
+
+/// One value points along -y.
+fn single_gravity(cx: &mut Context<'_>, node: &Node) -> Option<[Scalar; 2]> {
+    let size = cx.scalar(node, Dimension::ACCELERATION)?;
+    let x = cx.number(&size);
+    if x < 0.0 {
+        let found = cx.show(x, Dimension::ACCELERATION);
+        let up = cx.show(-x, Dimension::ACCELERATION);
+        cx.push(
+            Diagnostic::error(
+                "bad-size",
+                format!("`gravity` must not be negative, found {found}"),
+            )
+            .at(node.span.clone(), format!("this is {found}"))
+            .help(format!(
+                "one value alone points down: leave the sign out, or write the pair [0, \"{found}\"]; [0, \"{up}\"] points up"
+            )),
+        );
+        return None;
+    }
+    Some([Expr::Const(0.0), Expr::Neg(Box::new(size))])
 }
 
 fn gravity_pair(cx: &mut Context<'_>, x: &Node, y: &Node) -> Option<[Scalar; 2]> {
@@ -115,7 +135,7 @@ pub(crate) fn read(cx: &mut Context<'_>, entries: &[&(Key, Node)]) {
 
 fn read_mass(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<PointMass> {
     let entry = Entry::new(cx, entry, "mass", MASS, MASS_KEYS)?;
-    let mass = entry.required_positive(cx, "mass", Dimension::MASS, false);
+    let mass = entry.required_positive(cx, "mass", Dimension::MASS, true);
     let at = entry.required(cx, "at")?;
     let (on, place) = match &at.value {
         Value::Text(text) if is_point_name(text.content.trim()) => {
@@ -173,6 +193,19 @@ pub(crate) fn on_the_frame(cx: &mut Context<'_>, on: LinkId, place: &str, span: 
     );
 }
 
+/// Warns of a mass of the frame.
+pub(crate) fn mass_of_frame(cx: &mut Context<'_>, table: &Table) {
+    let mut keys = ["mass", "inertia", "bar", "linear_density"].iter();
+    let Some((key, _)) = keys.find_map(|key| table.entry(key)) else {
+        return;
+    };
+    cx.push(
+        Diagnostic::warning("idle-load", "the frame stands still: its mass does nothing")
+            .at(key.span.clone(), "moves nothing")
+            .help("leave it out, or give it to a link that moves"),
+    );
+}
+
 /// The mass properties of a link.
 pub(crate) fn read_inertia(
     cx: &mut Context<'_>,
@@ -210,6 +243,10 @@ pub(crate) fn read_inertia(
     };
     let mass = scalar(cx, "mass", Dimension::MASS);
     let moment = scalar(cx, "inertia", Dimension::INERTIA);
+    if moment.is_none() && table.get("inertia").is_some() {
+        // told: it is not missing
+        return None;
+    }
     let center = match table.entry("center") {
         None => Center::Centroid,
         Some((_, node)) => center(cx, node)?,

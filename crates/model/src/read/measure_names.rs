@@ -343,8 +343,14 @@ impl Measures<'_, '_> {
                     format!("there is no link `{name}`"),
                 )
                 .with_label(what);
-                let near = nearest(name, cx.model.links.iter().map(|l| l.name.as_str()));
-                issue.help = near.map(|near| format!("did you mean `{near}`?"));
+                let links = cx.model.links.iter().map(|l| l.name.as_str());
+                issue.help = Some(match nearest(name, links.clone()) {
+                    Some(near) => format!("did you mean `{near}`?"),
+                    None => {
+                        let links: Vec<&str> = links.take(20).collect();
+                        format!("the links are {}", links.join(", "))
+                    }
+                });
                 Err(vec![issue])
             }
         }

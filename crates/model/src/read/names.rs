@@ -152,6 +152,24 @@ pub(crate) fn collect<'d>(cx: &mut Context<'_>, root: &'d Table) -> Sections<'d>
     sections
 }
 
+/// A name has at most so many bytes: names become those of files, two to a file.
+pub(crate) const MAX_NAME: usize = 64;
+
+/// Tells a name that is too long; whether it was.
+pub(crate) fn long_name(cx: &mut Context<'_>, name: &str, span: &crate::model::Span) -> bool {
+    let bytes = name.len();
+    if bytes > MAX_NAME {
+        cx.push(
+            Diagnostic::error("bad-name", format!("a name of {bytes} bytes"))
+                .at(span.clone(), "too long")
+                .help(format!(
+                    "a name has at most {MAX_NAME} bytes, one for a letter without accents"
+                )),
+        );
+    }
+    bytes > MAX_NAME
+}
+
 /// Names the language keeps for itself.
 const RESERVED: &[&str] = &[
     "time",
@@ -177,7 +195,9 @@ const COLUMNS: &[&str] = &[
 
 fn declare(cx: &mut Context<'_>, key: &Key, meaning: Meaning) {
     let name = key.name.as_str();
-    if !is_small_name(name) {
+    if long_name(cx, name, &key.span) {
+        // the length is what is wrong, whatever else is
+    } else if !is_small_name(name) {
         let capital = name.chars().next().is_some_and(char::is_uppercase);
         let help = if capital {
             format!(
@@ -269,6 +289,9 @@ fn collect_points(cx: &mut Context<'_>, id: LinkId, key: &Key, node: &Node) {
         let pair = pair_of(&key.name);
         let single = is_point_name(&key.name).then_some(key.name.as_str());
         for name in pair.into_iter().flat_map(|(a, b)| [a, b]).chain(single) {
+            if !cx.points.contains_key(name) {
+                long_name(cx, name, &key.span);
+            }
             enter_point(cx, name, id);
         }
     }

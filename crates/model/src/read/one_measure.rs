@@ -51,7 +51,7 @@ impl Model {
                             text: text.to_owned(),
                         }),
                     });
-                    told
+                    told.tamed()
                 })
                 .collect()),
         }

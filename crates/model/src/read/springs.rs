@@ -21,7 +21,7 @@ use crate::load::{Acts, Between, Damper, Spring};
 use crate::model::{LinkPointRef, Scalar};
 use crate::read::context::Context;
 use crate::read::entry::{Entry, link_of};
-use crate::read::names::is_small_name;
+use crate::read::names::{is_small_name, long_name};
 
 /// Keys of a spring.
 pub(crate) const SPRING_KEYS: &[&str] = &[
@@ -47,6 +47,10 @@ pub(crate) const ACTS: &[(&str, Acts)] = &[
 
 const SPRING: &str = "return = { between = \"A-B\", stiffness = \"2 N/mm\", free = \"80 mm\" }";
 const DAMPER: &str = "closer = { between = \"A-B\", damping = \"50 N s/m\" }";
+
+const TORSION_SPRING: &str =
+    "door = { links = [\"frame\", \"lever\"], stiffness = \"3 N m/rad\", free = \"20 deg\" }";
+const TORSION_DAMPER: &str = "hinge = { links = [\"frame\", \"lever\"], damping = \"0.1 N m s\" }";
 
 /// A file has at most so many of each.
 const MAX: usize = 10_000;
@@ -86,7 +90,7 @@ pub(crate) fn tension(between: &Between) -> Dimension {
 
 /// Tells a name that only a point may have, or none.
 pub(crate) fn plain_name(cx: &mut Context<'_>, key: &Key, what: &str) {
-    if is_small_name(&key.name) {
+    if long_name(cx, &key.name, &key.span) || is_small_name(&key.name) {
         return;
     }
     cx.push(
@@ -97,8 +101,11 @@ pub(crate) fn plain_name(cx: &mut Context<'_>, key: &Key, what: &str) {
 }
 
 fn read_spring(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<Spring> {
-    let entry = Entry::new(cx, entry, "spring", SPRING, SPRING_KEYS)?;
+    let mut entry = Entry::new(cx, entry, "spring", SPRING, SPRING_KEYS)?;
     let between = between(cx, &entry)?;
+    if matches!(between, Between::Links(..)) {
+        entry.example = TORSION_SPRING;
+    }
     let (travel, per, force) = match between {
         Between::Points(..) => (Dimension::LENGTH, Dimension::STIFFNESS, Dimension::FORCE),
         Between::Links(..) => (
@@ -127,7 +134,11 @@ fn read_spring(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<Spring> {
     entry.idle(cx, &["stop_stiffness"], "stops");
     if entry.table.get("stops").is_some() {
         let (place, span) = (&entry.place, &entry.key.span);
-        cx.required(entry.table, "stop_stiffness", place, span, "\"500 N/mm\"")?;
+        let example = match travel == Dimension::LENGTH {
+            true => "\"500 N/mm\"",
+            false => "\"1 N m/deg\"",
+        };
+        cx.required(entry.table, "stop_stiffness", place, span, example)?;
     }
     Some(Spring {
         name: entry.key.name.clone(),
@@ -172,8 +183,11 @@ fn stops(
 }
 
 fn read_damper(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<Damper> {
-    let entry = Entry::new(cx, entry, "damper", DAMPER, DAMPER_KEYS)?;
+    let mut entry = Entry::new(cx, entry, "damper", DAMPER, DAMPER_KEYS)?;
     let between = between(cx, &entry)?;
+    if matches!(between, Between::Links(..)) {
+        entry.example = TORSION_DAMPER;
+    }
     let per = match between {
         Between::Points(..) => Dimension::DAMPING,
         Between::Links(..) => Dimension::TORSIONAL_DAMPING,

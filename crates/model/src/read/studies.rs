@@ -13,6 +13,7 @@ use crate::read::choices;
 use crate::read::context::Context;
 use crate::read::entry::Entry;
 use crate::read::measures::measure_text;
+use crate::read::names::long_name;
 use crate::read::nature::nature;
 use crate::read::plots;
 
@@ -87,8 +88,6 @@ pub(crate) fn read(cx: &mut Context<'_>, entries: &[&(Key, Node)]) {
     }
 }
 
-/// Bytes that a study's name may have, so that its files' names stay below what file systems take.
-const MAX_NAME: usize = 100;
 
 /// Names that stand for devices on Windows, whatever ending they have.
 const DEVICES: &[&str] = &["con", "prn", "aux", "nul"];
@@ -107,11 +106,6 @@ fn no_file_name(name: &str) -> Option<String> {
         let such = if rest.is_empty() { "turn" } else { rest };
         return Some(format!(
             "on the command line it would be an option: write `{such}`"
-        ));
-    }
-    if name.len() > MAX_NAME {
-        return Some(format!(
-            "its name becomes a file's name: at most {MAX_NAME} bytes"
         ));
     }
     let small = name.to_lowercase();
@@ -155,7 +149,9 @@ fn tell_clashes(cx: &mut Context<'_>, entries: &[&(Key, Node)]) {
 fn read_study(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<StudyKind> {
     let (key, node) = entry;
     let place = format!("study `{}`", key.name);
-    if let Some(help) = no_file_name(&key.name) {
+    if long_name(cx, &key.name, &key.span) {
+        // The length is what is wrong, whatever else is.
+    } else if let Some(help) = no_file_name(&key.name) {
         cx.push(
             Diagnostic::error("bad-name", format!("`{}` cannot name a study", key.name))
                 .at(key.span.clone(), "")
@@ -183,7 +179,8 @@ fn read_study(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<StudyKind> {
     }
     let Some((_, keys, example)) = KINDS.iter().find(|(known, ..)| *known == name) else {
         let known = KINDS.iter().map(|(known, ..)| *known);
-        let help = match kempe_units::nearest(name, known.chain(ANNOUNCED_KINDS.iter().copied())) {
+        let near = kempe_units::nearest(name, known.chain(ANNOUNCED_KINDS.iter().copied()));
+        let help = match near {
             Some(near) => format!("did you mean `{near}`?"),
             None => {
                 let kinds: Vec<&str> = KINDS.iter().map(|(known, ..)| *known).collect();
@@ -198,6 +195,7 @@ fn read_study(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<StudyKind> {
             .at(text.span(0..text.content.len()), "")
             .help(help),
         );
+        of_unknown_kind(cx, table, &place, near);
         return None;
     };
     if cx.drives.is_empty() {
@@ -211,12 +209,12 @@ fn read_study(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<StudyKind> {
     let entry = Entry::new(cx, entry, "study", example, keys)?;
     let rows = rows(cx, table, &place);
     let forces = name != "motion";
-    let columns = entries(cx, table, "columns", "[\"swing\", \"rate(swing)\"]");
+    let columns = entries(cx, table, "columns", COLUMNS);
     let columns = columns
         .into_iter()
         .filter_map(|node| column(cx, node, forces))
         .collect();
-    let plots = entries(cx, table, "plot", "[\"swing\", \"path(P)\"]");
+    let plots = entries(cx, table, "plot", PLOTS);
     let plots = plots
         .into_iter()
         .filter_map(|node| plots::plot(cx, node, forces))
@@ -246,6 +244,36 @@ fn read_study(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<StudyKind> {
     }
 }
 
+/// Tells what is wrong with a study whatever its kind may be; `near` is the kind that may be meant.
+fn of_unknown_kind(cx: &mut Context<'_>, table: &Table, place: &str, near: Option<&str>) {
+    if near.is_some_and(|near| ANNOUNCED_KINDS.contains(&near)) {
+        return;
+    }
+    let meant = KINDS.iter().find(|(kind, ..)| Some(*kind) == near);
+    let keys: Vec<&str> = match meant {
+        Some((_, keys, _)) => keys.to_vec(),
+        None => KINDS
+            .iter()
+            .flat_map(|(_, keys, _)| *keys)
+            .copied()
+            .collect(),
+    };
+    cx.unknown_keys(table, place, &keys);
+    // only one kind knows no forces; what asks for them is told once the kind is known
+    for node in entries(cx, table, "columns", COLUMNS) {
+        column(cx, node, true);
+    }
+    for node in entries(cx, table, "plot", PLOTS) {
+        plots::plot(cx, node, true);
+    }
+    if !cx.drives.is_empty() {
+        rows(cx, table, place);
+    }
+}
+
+const COLUMNS: &str = "[\"swing\", \"rate(swing)\"]";
+const PLOTS: &str = "[\"swing\", \"path(P)\"]";
+
 fn entries<'n>(cx: &mut Context<'_>, table: &'n Table, key: &str, example: &str) -> Vec<&'n Node> {
     match table.get(key) {
         None => Vec::new(),
@@ -256,9 +284,22 @@ fn entries<'n>(cx: &mut Context<'_>, table: &'n Table, key: &str, example: &str)
                 ..
             },
         ) => vec![node],
-        Some(node) => cx
-            .array(node, &format!("`{key}`"), example)
-            .map_or(Vec::new(), |a| a.iter().collect()),
+        Some(node) => {
+            let items = cx.array(node, &format!("`{key}`"), example);
+            if items.is_some_and(<[Node]>::is_empty)
+                && let Some((key, _)) = table.entry(key)
+            {
+                cx.push(
+                    Diagnostic::warning("idle-key", format!("`{}` names nothing", key.name))
+                        .at(key.span.clone(), "counts as if it were not there")
+                        .help(format!(
+                            "leave it out, or name what is wanted: {} = {example}",
+                            key.name
+                        )),
+                );
+            }
+            items.map_or(Vec::new(), |a| a.iter().collect())
+        }
     }
 }
 
@@ -300,13 +341,25 @@ fn rows(cx: &mut Context<'_>, table: &Table, place: &str) -> Option<Rows> {
             Value::Number(n) if n == n.trunc() && n >= 1.0 && n <= MAX_ROWS as f64 => {
                 Some(Rows::Count(n as usize))
             }
-            _ => {
-                cx.wrong_type(
-                    node,
-                    "`rows`",
-                    &format!("a whole number from 1 to {MAX_ROWS}"),
-                    "rows = 361",
+            Value::Number(n) => {
+                let (code, message) = if n > MAX_ROWS as f64 {
+                    ("too-large", format!("{place}: {n} rows"))
+                } else if n < 1.0 {
+                    ("bad-size", format!("{place}: a table has at least one row"))
+                } else {
+                    ("wrong-type", format!("{place}: {n} is no number of rows"))
+                };
+                cx.push(
+                    Diagnostic::error(code, message)
+                        .at(node.span.clone(), "")
+                        .help(format!(
+                            "write a whole number from 1 to {MAX_ROWS}: rows = 361"
+                        )),
                 );
+                None
+            }
+            _ => {
+                cx.wrong_type(node, "`rows`", "a number, how many rows", "rows = 361");
                 None
             }
         },

@@ -23,7 +23,9 @@ impl Resolver<ParameterId> for Parameters<'_, '_> {
                     "`{name}` is {}: a dimension is computed from parameters only",
                     meaning.what()
                 );
-                Err(Issue::new("unknown-name", span, message).with_label("not a parameter"))
+                Err(Issue::new("unknown-name", span, message)
+                    .with_label("not a parameter")
+                    .with_help("give what both need a name under [parameters]"))
             }
             None => {
                 let known = self
@@ -90,18 +92,7 @@ impl Context<'_> {
                     .and_then(|tree| check_as(&tree, &mut Parameters(self), expected, &unit));
                 match checked {
                     Ok((scalar, _)) => scalar,
-                    Err(mut issues) => {
-                        for issue in &mut issues {
-                            if issue.code == "unit-mismatch"
-                                && issue.help.is_none()
-                                && issue.message.ends_with("found a number")
-                            {
-                                issue.help = Some(format!(
-                                    "give it a unit, here or where its parameters are declared: {}",
-                                    self.example(expected)
-                                ));
-                            }
-                        }
+                    Err(issues) => {
                         self.issues(text, issues);
                         return None;
                     }
@@ -190,11 +181,12 @@ impl Context<'_> {
         } else {
             "must be positive"
         };
+        let or_zero = if zero { "0, or " } else { "" };
         self.push(
             Diagnostic::error("bad-size", format!("{what} {wanted}, found {found}"))
                 .at(node.span.clone(), format!("this is {found}"))
                 .help(format!(
-                    "give a positive value, such as {}",
+                    "give {or_zero}a positive value, such as {}",
                     self.example(dimension)
                 )),
         );
