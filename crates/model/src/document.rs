@@ -287,7 +287,9 @@ fn syntax_error(error: &toml::de::Error, text: &str) -> Diagnostic {
     }
     let quoted;
     let number = at.starts_with(|c: char| c.is_ascii_digit() || c == '-' || c == '+');
-    let help = if message.contains("must be quoted") && number && at.len() < 40 {
+    let help = if message.contains("carriage return") {
+        "save the file with line ends of LF or CRLF: here is a CR alone"
+    } else if message.contains("must be quoted") && number && at.len() < 40 {
         quoted = format!("a value with a unit is a string: \"{}\"", at.trim());
         &quoted
     } else if message.contains("recursion limit") {
@@ -316,11 +318,15 @@ fn strange_sign(span: &Span, text: &str) -> Option<Diagnostic> {
     let (at, sign) = text
         .get(start..end)?
         .char_indices()
-        .find(|(_, c)| is_quote(*c) || is_strange_blank(*c))?;
+        .find(|(_, c)| is_quote(*c) || is_strange_blank(*c) || is_hidden(*c))?;
     let at = start + at;
     let place = at..at + sign.len_utf8();
     let code = format!("U+{:04X}", u32::from(sign));
-    let d = if is_quote(sign) {
+    let d = if is_hidden(sign) {
+        Diagnostic::error("toml-syntax", "not TOML: a sign that does not show")
+            .at(place, code)
+            .help("leave it out; a model file is plain text with line ends of LF or CRLF")
+    } else if is_quote(sign) {
         let message = format!("not TOML: `{sign}` is not the quote of a string");
         Diagnostic::error("toml-syntax", message)
             .at(place, code)
@@ -332,6 +338,11 @@ fn strange_sign(span: &Span, text: &str) -> Option<Diagnostic> {
             .help("it may come from a copied text: type a plain blank instead")
     };
     Some(d)
+}
+
+/// A sign of control that TOML does not know.
+fn is_hidden(c: char) -> bool {
+    c.is_control() && !matches!(c, '\t' | '\n' | '\r')
 }
 
 /// A quote of print.

@@ -679,7 +679,9 @@ fn relation(left: Dimension, right: Dimension) -> String {
 
 /// How one dimension becomes the other: `a force times a length is a torque`.
 fn between(found: Dimension, expected: Dimension) -> Option<String> {
-    if found.is_number() || expected.is_number() {
+    // what has no word of its own says nothing in a sentence
+    let has_word = |d: Dimension| !d.is_number() && !d.with_article().starts_with("a quantity");
+    if !has_word(found) || !has_word(expected) {
         return None;
     }
     let (a, b) = (found.with_article(), expected.with_article());

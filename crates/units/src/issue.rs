@@ -40,7 +40,7 @@ pub struct Issue {
 }
 
 /// More names than this are not listed.
-const MAX_KNOWN: usize = 12;
+const MAX_KNOWN: usize = 24;
 
 impl Issue {
     /// An issue without label or help.

@@ -181,7 +181,7 @@ const FOREIGN: &[(&str, f64, &str)] = &[
     ("day", 24.0, "h"),
     ("ns", 0.001, "us"),
     ("cal", 4.184, "J"),
-    ("btu", 1055.055_852_62, "J"),
+    ("btu", 1_055.055_852_62, "J"),
 ];
 
 /// A unit that the language does not have as a number of one that it has.

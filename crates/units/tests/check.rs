@@ -500,6 +500,12 @@ fn what_measures_something_else_comes_with_a_remedy() {
             "a force is written like \"20 N\"; a torque divided by a length is a force",
         ),
         (
+            "1/4 rev",
+            Dimension::LENGTH,
+            "mm",
+            "a length is written like \"20 mm\"",
+        ),
+        (
             "theta",
             Dimension::NONE,
             "1",

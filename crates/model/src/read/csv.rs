@@ -89,6 +89,14 @@ pub(crate) fn columns(
         .into_iter()
         .find(|c| header.contains(*c))
         .unwrap_or(',');
+    if header.trim().is_empty() {
+        cx.push(
+            Diagnostic::error("table-column", format!("`{name}` is empty"))
+                .at(file.span.clone(), "")
+                .help("its first line names the columns, with their units: t [s], angle [deg]"),
+        );
+        return None;
+    }
     let heads: Vec<&str> = header.split(separator).map(unquoted).collect();
     if heads.iter().all(|head| head.parse::<f64>().is_ok()) {
         cx.push(
