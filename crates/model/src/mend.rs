@@ -144,7 +144,7 @@ fn begins_anew(line: &str, bracket: u8, last: u8) -> bool {
     let is_key = !key.is_empty()
         && key
             .chars()
-            .all(|c| c.is_alphanumeric() || "_-.\"' ".contains(c));
+            .all(|c| c.is_alphanumeric() || "_-. ".contains(c));
     // arrays hold no entries; tables do, behind a comma
     is_key && (bracket == b'[' || !matches!(last, b',' | b'{'))
 }
@@ -370,6 +370,7 @@ mod tests {
             "a = [\n  [1, 2],\n  [3],\n]\n",
             "a = {\n  b = 1,\n  c = 2 # [x\n}\n[links]\n",
             "a = \"\"\"\n[x]\nb = \"[\n\"\"\"\n",
+            "a = [\n  \"b = c\",\n  { d = 1 },\n]\n",
             "a = '[\\'\nb = \"\\\"[\"\n",
             "a = { b = [ { c = 1 },\n { d = 2 } ] }\n",
         ] {

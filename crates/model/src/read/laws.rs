@@ -210,6 +210,13 @@ impl LawReader<'_> {
     /// `from`, `to` and `speed` or `acceleration`.
     fn constant(&self, cx: &mut Context<'_>) -> Option<Law> {
         let limits = self.limits(cx);
+        let rates = ["speed", "acceleration"];
+        if let Some(rate) = rates.into_iter().find(|key| self.table.get(key).is_some())
+            && self.table.get("in").is_some()
+        {
+            self.idle(cx, &["in"], &format!("`{rate}` says how it moves"));
+            return None;
+        }
         if let Some((key, _)) = self.table.entry("in") {
             cx.push(
                 Diagnostic::error("missing-key", format!("{} has `in` but no `law`", self.place))

@@ -229,7 +229,7 @@ fn read_center(cx: &mut Context<'_>, node: &Node, draft: &Draft, place: &str) ->
             )
             .at(node.span.clone(), "")
             .help(format!(
-                "give {name} a place on the link, or write the center as [x, y]"
+                "name a point of the link itself, or write the center as a place on it, [x, y]; {name} is on other links"
             )),
         );
         return None;
