@@ -88,7 +88,6 @@ pub(crate) fn read(cx: &mut Context<'_>, entries: &[&(Key, Node)]) {
     }
 }
 
-
 /// Names that stand for devices on Windows, whatever ending they have.
 const DEVICES: &[&str] = &["con", "prn", "aux", "nul"];
 
