@@ -2,17 +2,21 @@
 //!
 //! The steps of the plan are solved in every way there is (`search`): a closed form in both of its modes, a block without
 //! one (`blocks`) by the complete homotopy, as linear equations where it is a train of gears (`gear_train`), or by cutting
-//! it open at its gear (`open_loop`). The file's hints choose among them (`hints`).
+//! it open at its gear (`open_loop`). The file's hints choose among them (`hints`) and say from where angles are counted (`turns`).
 
 mod blocks;
 mod gear_train;
 mod hints;
 mod open_loop;
 mod search;
+mod turns;
 
 pub use self::search::{ASSEMBLY_LIMIT, CLOSED};
 
+use std::borrow::Cow;
+
 use self::search::Search;
+use self::turns::counted_turns;
 use crate::evidence::is_finite;
 use crate::homotopy::PathReport;
 use crate::mechanism::Mechanism;
@@ -20,6 +24,9 @@ use crate::plan::Plan;
 use crate::pose::Pose;
 use crate::state::{Branch, Design, State};
 use crate::watch::{Unwatched, Watch};
+
+/// How often the turns of links may change those of links further on.
+const TURNS_SETTLE: usize = 8;
 
 /// One way to put the mechanism together.
 #[derive(Clone, Debug)]
@@ -31,6 +38,24 @@ pub struct Assembly {
     /// Root mean square distance of the points of `near` hints from where they should be, m (angles in rad count as
     /// lengths of one mechanism size).
     pub distance: f64,
+    /// Whole turns, rad, by which every link's angle is counted further than its weld says: links of one body each count
+    /// from their own drive or hint.
+    pub turns: Vec<f64>,
+}
+
+impl Assembly {
+    /// The design with the angles of its links counted as this assembly has them.
+    pub(crate) fn count_in<'d>(
+        &self,
+        mechanism: &Mechanism,
+        design: &'d Design<f64>,
+    ) -> Cow<'d, Design<f64>> {
+        let mut design = Cow::Borrowed(design);
+        if design.geometry.turns != self.turns {
+            design.to_mut().count_turns(mechanism, &self.turns);
+        }
+        design
+    }
 }
 
 /// Why assemblies may be missing from a list.
@@ -86,7 +111,22 @@ pub fn find_assemblies(
     coordinates: &[f64],
     watch: &mut dyn Watch,
 ) -> Option<Assemblies> {
-    Search::new(mechanism, plan, design, coordinates, watch).run()
+    // A gear meshes by the angle of its own link: where links of one body count from different turns, which shows in an
+    // assembly, what hangs on such gears is found with these turns.
+    let mut design = Cow::Borrowed(design);
+    let mut found = Search::new(mechanism, plan, &design, coordinates, watch).run()?;
+    for _ in 0..TURNS_SETTLE {
+        let Some(chosen) = found.list.first() else {
+            break;
+        };
+        let turns = counted_turns(mechanism, plan, &design, coordinates, chosen);
+        if turns == design.geometry.turns {
+            break;
+        }
+        design.to_mut().count_turns(mechanism, &turns);
+        found = Search::new(mechanism, plan, &design, coordinates, watch).run()?;
+    }
+    Some(found)
 }
 
 /// Runs the whole plan on plain numbers from a branch; `None` when it does not close.

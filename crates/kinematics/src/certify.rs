@@ -142,6 +142,7 @@ fn constant(geometry: &Geometry<Interval>) -> Geometry<Curve> {
     Geometry {
         seats: geometry.seats.iter().map(constant_pose).collect(),
         seat_angles: geometry.seat_angles.iter().map(still).collect(),
+        turns: geometry.turns.clone(),
         markers: geometry.markers.iter().map(pair).collect(),
         lines: (geometry.lines.iter())
             .map(|line| LocalLine {

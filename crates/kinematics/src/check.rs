@@ -147,7 +147,7 @@ fn reach(motion: &Motion<'_>, watch: &mut dyn Watch) -> Result<Reach, MotionErro
         start: motion.anchor,
         assemblies: Some(motion.assemblies.clone()),
     };
-    let (mechanism, plan, design) = (motion.mechanism, motion.plan, motion.design);
+    let (mechanism, plan, design) = (motion.mechanism, motion.plan, &*motion.design);
     match Motion::along(mechanism, plan, design, demand, watch) {
         Ok(wide) => Ok(Reach {
             range: wide.reached(),

@@ -80,11 +80,12 @@ impl<'m> Circuit<'m> {
             start,
             ..
         } = motion;
-        let mut follower = Follower::new(mechanism, plan, &design.geometry, &path);
         let locked = MotionError::Locked { at: start };
         let Some(chosen) = assemblies.list.first() else {
             return Err(locked);
         };
+        let design = chosen.count_in(mechanism, design);
+        let mut follower = Follower::new(mechanism, plan, &design.geometry, &path);
         let z = follower.scaled(&chosen.poses, &chosen.branch.near, anchor);
         let start = follower.start(z, direction).ok_or(locked)?;
         with_care(&mut follower, |follower| {
@@ -96,7 +97,8 @@ impl<'m> Circuit<'m> {
                 let arcs = arcs(&nodes, length);
                 length = arcs.last().copied().unwrap_or(length);
                 let (rising, forward) = rising(&nodes);
-                let (path, assemblies) = (path.clone(), assemblies.clone());
+                let (design, path) = (design.clone(), path.clone());
+                let assemblies = assemblies.clone();
                 let mut motion =
                     Motion::of_nodes(mechanism, plan, design, path, assemblies, rising);
                 motion.ends = (EndReason::Limit, EndReason::Limit);

@@ -30,8 +30,10 @@ pub struct GearConstants<T> {
 pub struct Geometry<T> {
     /// Pose of every link in its body.
     pub seats: Vec<Pose<T>>,
-    /// Angle of every link in its body, rad.
+    /// Angle of every link in its body, rad, its whole turns counted.
     pub seat_angles: Vec<T>,
+    /// Whole turns, rad, by which every link's angle is counted further than its weld says.
+    pub turns: Vec<f64>,
     /// Local coordinates of every marker in its body.
     pub markers: Vec<[T; 2]>,
     /// Lines.
@@ -58,6 +60,7 @@ impl<T: Number> Geometry<T> {
         let mut it = Self {
             seats: vec![Pose::identity(); mechanism.model.links.len()],
             seat_angles: vec![zero; mechanism.model.links.len()],
+            turns: vec![0.0; mechanism.model.links.len()],
             markers: vec![[zero; 2]; mechanism.markers.len()],
             lines: vec![along; mechanism.lines.len()],
             angles: vec![[T::one(), zero]; mechanism.angles.len()],
@@ -148,14 +151,34 @@ impl<T: Number> Geometry<T> {
             seat(mechanism, &self.markers, scalar, link, &mut seats);
         }
         for (link, seat) in seats.into_iter().enumerate() {
-            let (Some((pose, angle)), true) = (seat, mechanism.seats[link].weld.is_some()) else {
+            let Some((pose, angle)) = seat else {
                 continue;
             };
-            (self.seats[link], self.seat_angles[link]) = (pose, angle);
+            self.seat_angles[link] = angle + self.turns[link];
+            if mechanism.seats[link].weld.is_none() {
+                continue;
+            }
+            self.seats[link] = pose;
             for marker in &mut self.markers[mechanism.markers_of(link)] {
                 *marker = pose.place(*marker);
             }
         }
+    }
+
+    /// Counts every link's angle by these whole turns, rad, further than its weld says.
+    pub fn count_turns(&mut self, mechanism: &Mechanism, turns: &[f64]) {
+        if self.turns == turns {
+            return;
+        }
+        let further = |link: usize| turns[link] - self.turns[link];
+        for (link, angle) in self.seat_angles.iter_mut().enumerate() {
+            *angle = *angle + further(link);
+        }
+        for (gear, source) in self.gears.iter_mut().zip(&mechanism.gears) {
+            let [a, b, arm] = source.links.map(|link| further(link.index()));
+            gear.constant = gear.constant - gear.first * (a - arm) - gear.second * (b - arm);
+        }
+        self.turns = turns.to_vec();
     }
 
     /// Local coordinates of a marker.
@@ -188,6 +211,7 @@ impl<T: Number> Geometry<T> {
                 })
                 .collect(),
             seat_angles: self.seat_angles.iter().map(|a| f(*a)).collect(),
+            turns: self.turns.clone(),
             markers: self.markers.iter().map(pair).collect(),
             lines: (self.lines.iter())
                 .map(|l| LocalLine {

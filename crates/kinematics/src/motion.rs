@@ -21,6 +21,8 @@ pub use self::modes::CROSSING;
 pub use self::solver::Solver;
 pub use self::start::SIZES;
 
+use std::borrow::Cow;
+
 use self::branch::Patch;
 use crate::assemble::Assemblies;
 use crate::drive_path::DrivePath;
@@ -61,8 +63,8 @@ pub struct Motion<'m> {
     pub mechanism: &'m Mechanism,
     /// Its plan.
     pub plan: &'m Plan,
-    /// The design.
-    pub design: &'m Design<f64>,
+    /// The design, the angles of its links counted as in the chosen assembly.
+    pub design: Cow<'m, Design<f64>>,
     /// The drives' path.
     pub path: DrivePath,
     /// All assemblies at the anchor, the chosen one first.
@@ -132,7 +134,7 @@ impl<'m> Motion<'m> {
     pub(crate) fn of_nodes(
         mechanism: &'m Mechanism,
         plan: &'m Plan,
-        design: &'m Design<f64>,
+        design: Cow<'m, Design<f64>>,
         path: DrivePath,
         assemblies: Assemblies,
         nodes: Vec<Node>,
@@ -146,7 +148,6 @@ impl<'m> Motion<'m> {
         Self {
             mechanism,
             plan,
-            design,
             assemblies,
             anchor: demanded.0,
             choices: 1,
@@ -160,6 +161,7 @@ impl<'m> Motion<'m> {
             nodes,
             scale,
             size: design.geometry.size(mechanism),
+            design,
             path,
         }
     }

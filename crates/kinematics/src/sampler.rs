@@ -213,7 +213,7 @@ impl<'a, F: ForceSource> Sampler<'a, F> {
         let (branch, state) = (&self.plain.branch, &self.plain.state);
         let found = evidence(
             motion.mechanism,
-            motion.design,
+            &motion.design,
             branch,
             state,
             motion.size(),

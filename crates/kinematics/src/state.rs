@@ -45,6 +45,14 @@ impl<T: Number> Design<T> {
         it
     }
 
+    /// Counts the angles of links by whole turns: see [`Geometry::count_turns`].
+    pub(crate) fn count_turns(&mut self, mechanism: &Mechanism, turns: &[f64]) {
+        self.geometry.count_turns(mechanism, turns);
+        for plain in &mut self.plain {
+            plain.count_turns(mechanism, turns);
+        }
+    }
+
     /// Evaluates the dimensions anew for other parameter values, in the same storage; not the plain ones.
     #[cfg_attr(not(debug_assertions), inline(always))]
     pub(crate) fn update(&mut self, mechanism: &Mechanism, plan: &Plan, parameters: &[T]) {

@@ -12,7 +12,7 @@ use std::ops::ControlFlow;
 use kempe_model::{Drive, DriveKind, JointKind, Law, LinkId};
 use kempe_units::{Dimension, Expr};
 
-use crate::assemble::find_assemblies;
+use super::search::Search;
 use crate::blocks::{Block, Unknown};
 use crate::circuit::go_round;
 use crate::constraint::Situation;
@@ -84,13 +84,8 @@ pub(crate) fn candidates(
         };
         let angle = (cut as f64 + OFFSET) / CUTS as f64 * std::f64::consts::TAU;
         held[drive] = angle;
-        let found = find_assemblies(
-            &opened.mechanism,
-            &opened.plan,
-            &opened.design,
-            &held,
-            &mut told,
-        )?;
+        let (mechanism, plan, design) = (&opened.mechanism, &opened.plan, &opened.design);
+        let found = Search::new(mechanism, plan, design, &held, &mut told).run()?;
         for assembly in &found.list {
             let z = follower.scaled(&assembly.poses, &assembly.branch.near, angle);
             if curves.iter().any(|curve| passes(curve, &z)) {

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use kempe_number::math;
+use kempe_model::LinkId;
 
 use super::hints::Hints;
 use super::{Assemblies, Assembly, Shortfall};
@@ -147,6 +147,7 @@ impl<'a> Search<'a> {
                 branch,
                 poses: state.poses,
                 distance: 0.0,
+                turns: self.design.geometry.turns.clone(),
             });
         } else {
             self.rejected += 1;
@@ -215,8 +216,10 @@ impl<'a> Search<'a> {
                 input: Some(drive),
                 reversed,
             } => {
-                let [c, s] = self.design.geometry.angles[offset as usize];
-                let turn = state.inputs[drive.index()].value + math::atan2(s, c);
+                // The angle of the driven link, turns and all, not that of its body.
+                let driven = &self.mechanism.angles[offset as usize];
+                let seat = |link: LinkId| self.design.geometry.seat_angles[link.index()];
+                let turn = state.inputs[drive.index()].value + seat(driven.b) - seat(driven.a);
                 branch.near[body.index()] =
                     branch.near[from.index()] + if reversed { -turn } else { turn };
                 return;

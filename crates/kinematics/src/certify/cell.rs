@@ -81,7 +81,7 @@ impl Certifier<'_> {
             motion.branch_at(p, &mut self.plain.branch);
             self.plain.state.poses = joined.iter().map(Pose::value).collect();
         } else {
-            motion.solve(motion.design, p, &mut self.plain);
+            motion.solve(&motion.design, p, &mut self.plain);
         }
         let poses = &self.plain.state.poses;
         if !poses.iter().all(is_finite) {

@@ -199,7 +199,7 @@ impl Motion<'_> {
                     index,
                     sign,
                     self.mechanism,
-                    self.design,
+                    &self.design,
                     &branch,
                     &mut state,
                 );

@@ -31,7 +31,14 @@ impl Motion<'_> {
     /// The model's dimensions on the number `T`.
     pub(crate) fn design_on<T: Number>(&self) -> Design<T> {
         let parameters: Vec<T> = self.mechanism.model.parameter_values();
-        Design::new(self.mechanism, self.plan, &parameters)
+        self.design_of(&parameters)
+    }
+
+    /// The design of parameter values on the number `T`, its angles counted as this motion counts them.
+    pub(crate) fn design_of<T: Number>(&self, parameters: &[T]) -> Design<T> {
+        let mut design = Design::new(self.mechanism, self.plan, parameters);
+        design.count_turns(self.mechanism, &self.design.geometry.turns);
+        design
     }
 
     /// Storage for solving poses of this motion on the number `T`.

@@ -1,5 +1,7 @@
 //! Where a motion starts, and how it is followed from there to both ends of its range.
 
+use std::borrow::Cow;
+
 use super::care::{Unlocated, with_care};
 use super::follow::follow_both;
 use super::{Demand, Motion, MotionError};
@@ -29,8 +31,10 @@ const TRIES: usize = 2;
 const LEADS_TO: f64 = 30.0;
 
 /// Where a trace may begin.
-struct Beginning {
+struct Beginning<'m> {
     anchor: f64,
+    /// The design, its angles counted as in the first of the assemblies.
+    design: Cow<'m, Design<f64>>,
     /// The one to begin with first.
     assemblies: Assemblies,
     up: Node,
@@ -59,11 +63,10 @@ impl<'m> Motion<'m> {
         } = demand;
         check(mechanism, plan, design)?;
         let scale = path.scale();
-        let mut follower = Follower::new(mechanism, plan, &design.geometry, &path);
         let mut coordinates = vec![0.0; mechanism.model.drives.len()];
         let mut nothing: Option<Assemblies> = None;
         let mut at_start: Option<Vec<f64>> = None;
-        let mut best: Option<Beginning> = None;
+        let mut best: Option<Beginning<'m>> = None;
         let mut compared = 0;
         let mut missed = 0;
         for Place { anchor, inside } in places(&path, demanded, start) {
@@ -85,7 +88,8 @@ impl<'m> Motion<'m> {
                 nothing.get_or_insert(assemblies);
                 continue;
             }
-            let found = begin(&mut follower, assemblies, anchor, &mut at_start);
+            let of = (mechanism, plan, design);
+            let found = begin(of, &path, assemblies, anchor, &mut at_start);
             let Some(found) = found else { continue };
             let clear = found.determined > DETERMINED;
             let factor = if best.is_some() { BETTER } else { 1.0 };
@@ -100,6 +104,7 @@ impl<'m> Motion<'m> {
         }
         let Some(Beginning {
             anchor,
+            design,
             assemblies,
             up,
             down,
@@ -117,13 +122,13 @@ impl<'m> Motion<'m> {
         // The share of the range that lies above it.
         let whole = (demanded.1 - demanded.0).max(f64::MIN_POSITIVE);
         let share = ((demanded.1 - anchor) / whole).clamp(0.0, 1.0);
+        let mut follower = Follower::new(mechanism, plan, &design.geometry, &path);
         with_care(&mut follower, |follower| {
             let range = (demanded.0 / scale, demanded.1 / scale);
             let (nodes, ends) = follow_both(follower, [&down, &up], range, share, watch)
                 .ok_or(Unlocated::Stopped(Stage::Following))?;
-            let assemblies = assemblies.clone();
-            let mut motion =
-                Self::of_nodes(mechanism, plan, design, path.clone(), assemblies, nodes);
+            let (design, path, assemblies) = (design.clone(), path.clone(), assemblies.clone());
+            let mut motion = Self::of_nodes(mechanism, plan, design, path, assemblies, nodes);
             motion.anchor = anchor;
             motion.start = start;
             motion.demanded = demanded;
@@ -182,32 +187,40 @@ fn places(path: &DrivePath, (low, high): (f64, f64), start: f64) -> Vec<Place> {
 
 /// A beginning at a place with these assemblies: with the first that leads to the pose at the start, where there is one.
 /// `at_start` is that pose, in scaled unknowns; it is set at the first place. `None` at a singular pose.
-fn begin(
-    follower: &mut Follower<'_, DrivePath>,
+fn begin<'m>(
+    (mechanism, plan, design): (&'m Mechanism, &'m Plan, &'m Design<f64>),
+    path: &DrivePath,
     mut assemblies: Assemblies,
     anchor: f64,
     at_start: &mut Option<Vec<f64>>,
-) -> Option<Beginning> {
+) -> Option<Beginning<'m>> {
     if let Some(at_start) = at_start {
+        let follower = Follower::new(mechanism, plan, &design.geometry, path);
         let list = assemblies.list.iter();
         let far: Vec<f64> = list
-            .map(|assembly| apart(&scaled(follower, assembly, anchor), at_start))
+            .map(|assembly| apart(&scaled(&follower, assembly, anchor), at_start))
             .collect();
         let nearest = far.iter().copied().fold(f64::INFINITY, f64::min);
         let leads = |far: &f64| *far <= LEADS_TO * nearest;
         let first = far.iter().position(leads).unwrap_or(0);
         assemblies.list[..=first].rotate_right(1);
     }
-    let z = scaled(follower, assemblies.list.first()?, anchor);
+    let first = assemblies.list.first()?;
+    let design = first.count_in(mechanism, design);
+    let mut follower = Follower::new(mechanism, plan, &design.geometry, path);
+    let z = scaled(&follower, first, anchor);
     at_start.get_or_insert_with(|| z.clone());
     let up = follower.start(z.clone(), 1.0)?;
     let down = follower.start(z, -1.0)?;
+    let determined = follower.determined();
+    drop(follower);
     Some(Beginning {
         anchor,
+        design,
         assemblies,
         up,
         down,
-        determined: follower.determined(),
+        determined,
     })
 }
 

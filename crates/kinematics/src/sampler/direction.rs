@@ -23,7 +23,7 @@ impl Direction {
         for index in 0..motion.nodes() {
             let (_, poses, _) = motion.node(index);
             let (a, b) = points;
-            let mut angle = plain_direction(motion.mechanism, motion.design, &poses, a, b);
+            let mut angle = plain_direction(motion.mechanism, &motion.design, &poses, a, b);
             if let Some(last) = values.last() {
                 angle += whole_turns(last - angle);
             }

@@ -52,7 +52,7 @@ impl<'s, 'a> Varied<'s, 'a> {
         }
         let rich: Vec<Series<Base>> = parameters.iter().map(|x| Series::constant(*x)).collect();
         Self {
-            design: Design::new(motion.mechanism, motion.plan, &rich),
+            design: motion.design_of(&rich),
             solver: motion.solver(),
             drives: vec![None; model.drives.len()],
             path_drive: sampler.path_drive(),
