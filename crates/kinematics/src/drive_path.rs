@@ -1,9 +1,76 @@
 //! The path through drive space along which a motion is followed.
 
-use kempe_model::{Law, LawPiece, Model};
+use std::f64::consts::TAU;
+
+use kempe_model::{Law, LawPiece, Model, SAME_END};
 use kempe_number::Number;
+use kempe_units::Dimension;
 
 use crate::trace::Path;
+
+/// A sum of a few quotients is this near to what it means, as a part of itself.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
+/// How long a motion takes, s: as long as its longest law. Of what differs from that by rounding alone, a number of few
+/// digits is meant.
+pub fn duration(model: &Model, parameters: &[f64]) -> f64 {
+    let laws = model.drives.iter();
+    let longest = (laws.map(|d| d.law.duration(parameters))).fold(0.0, f64::max);
+    let short: f64 = format!("{longest:.14e}").parse().unwrap_or(longest);
+    if (short - longest).abs() <= ROUNDING * longest {
+        short
+    } else {
+        longest
+    }
+}
+
+/// How near to its start, in turns or parts of its range, a drive ends that has gone through a cycle.
+pub(crate) const WHOLE: f64 = 1e-9;
+
+/// Whether a motion is a cycle: every drive ends where it started, or whole turns from there.
+pub fn is_cycle(model: &Model, parameters: &[f64]) -> bool {
+    model.drives.iter().all(|drive| {
+        let law = &drive.law;
+        let way = law.at(law.duration(parameters), parameters) - law.at(0.0, parameters);
+        let (low, high) = law.extent(parameters);
+        if drive.dimension == Dimension::ANGLE {
+            let turns = way / TAU;
+            (turns - turns.round()).abs() <= WHOLE
+        } else {
+            way.abs() <= WHOLE * (high - low)
+        }
+    })
+}
+
+/// Times between which all laws are smooth, rising, both ends of the motion included: first and last of those that are
+/// one but for rounding. `pieces` leaves out the knots of tables.
+pub(crate) fn law_knots(model: &Model, parameters: &[f64], pieces: bool) -> Vec<[f64; 2]> {
+    let end = duration(model, parameters);
+    let mut times = vec![0.0];
+    for drive in &model.drives {
+        let starts = drive.law.breaks(parameters);
+        for (piece, start) in drive.law.pieces.iter().zip(&starts) {
+            if let (LawPiece::Table { times: knots, .. }, false) = (piece, pieces) {
+                times.extend(knots.iter().map(|t| start + t));
+            }
+        }
+        times.extend(starts);
+    }
+    let near_end = SAME_END * end;
+    times.retain(|t| *t < end - near_end);
+    times.sort_by(f64::total_cmp);
+    let mut knots: Vec<[f64; 2]> = Vec::with_capacity(times.len() + 1);
+    for t in times {
+        match knots.last_mut() {
+            Some([_, last]) if t - *last <= near_end => *last = t,
+            _ => knots.push([t, t]),
+        }
+    }
+    if end > 0.0 {
+        knots.push([end, end]);
+    }
+    knots
+}
 
 /// Where the drives are along a motion.
 #[derive(Clone, Debug)]
@@ -48,7 +115,7 @@ impl DrivePath {
                 let is_angle = model
                     .drives
                     .get(drive)
-                    .is_none_or(|d| d.dimension == kempe_units::Dimension::ANGLE);
+                    .is_none_or(|d| d.dimension == Dimension::ANGLE);
                 Self::Coordinate {
                     drive,
                     held,
@@ -57,10 +124,7 @@ impl DrivePath {
             }
             _ => {
                 let laws: Vec<Law> = model.drives.iter().map(|d| d.law.clone()).collect();
-                let total = laws
-                    .iter()
-                    .map(|l| l.duration(parameters))
-                    .fold(0.0, f64::max);
+                let total = duration(model, parameters);
                 // A radian, or a mechanism size, of the drives' whole travel counts as one.
                 let travel: f64 = model
                     .drives
@@ -68,7 +132,7 @@ impl DrivePath {
                     .map(|d| {
                         let (low, high) = d.law.extent(parameters);
                         (high - low)
-                            / if d.dimension == kempe_units::Dimension::ANGLE {
+                            / if d.dimension == Dimension::ANGLE {
                                 1.0
                             } else {
                                 size
@@ -96,12 +160,7 @@ impl DrivePath {
                 .drives
                 .get(*drive)
                 .map_or((0.0, 0.0), |d| d.law.extent(parameters)),
-            Self::Time { laws, .. } => (
-                0.0,
-                laws.iter()
-                    .map(|l| l.duration(parameters))
-                    .fold(0.0, f64::max),
-            ),
+            Self::Time { .. } => (0.0, duration(model, parameters)),
         }
     }
 

@@ -8,8 +8,9 @@ use crate::pose::sub;
 
 /// Most loops that are listed.
 const LOOP_LIMIT: usize = 64;
-/// Lengths equal to this part count as equal: a change-point linkage.
-pub const SAME_LENGTH: f64 = 1e-9;
+/// Lengths equal to this part count as equal: a change-point linkage. A motion tells branches apart whose pivots differ by
+/// [`CROSSING`](crate::motion::CROSSING), and these go with the root of what is left between the lengths.
+pub const SAME_LENGTH: f64 = crate::motion::CROSSING * crate::motion::CROSSING;
 
 /// A loop of four bodies joined by four pins.
 #[derive(Clone, Debug, PartialEq)]
@@ -179,6 +180,8 @@ mod tests {
             FourBarKind::of([410.0, 230.0, 430.0, 210.0], true),
             ChangePoint
         );
+        let almost = [60.0, 20.0, 60.0, 20.000_000_1];
+        assert_eq!(FourBarKind::of(almost, true), CrankRocker);
         assert_eq!(FourBarKind::of([60.0, 50.0, 30.0, 30.0], true), NonGrashof);
         assert_eq!(FourBarKind::of([200.0, 50.0, 30.0, 30.0], true), Open);
         assert_eq!(FourBarKind::of([60.0, 20.0, 50.0, 40.0], false), Grashof);

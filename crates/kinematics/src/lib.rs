@@ -29,6 +29,7 @@ mod newton;
 pub mod plan;
 mod pose;
 mod qr;
+mod quadrature;
 mod rank;
 mod recognise;
 mod sampler;

@@ -52,6 +52,10 @@ pub struct Moment<'a, B> {
     pub path: &'a [Pose<Series<B>>],
     /// The path parameter as a series in time.
     pub clock: Series<B>,
+    /// Which way the motion runs along the path: 1 or -1.
+    pub heading: f64,
+    /// A typical change of the path parameter.
+    pub unit: f64,
     /// Poses along each drive, where they were asked for.
     pub drives: &'a [Option<Vec<Pose<Series<B>>>>],
     /// The drive that is the path parameter itself.

@@ -116,6 +116,13 @@ impl Mechanism {
         self.marker(LinkPointRef { link, point })
     }
 
+    /// Whether a point is one of the frame.
+    pub fn is_fixed(&self, point: PointId) -> bool {
+        let links = self.model.points.get(point.index()).map(|p| &p.links);
+        let mut links = links.into_iter().flatten();
+        links.any(|link| self.body_of(*link) == BodyId::GROUND)
+    }
+
     /// Whether the marker lies at its body's origin whatever the dimensions, so that turning the body cannot move it.
     pub fn at_origin(&self, marker: Marker) -> bool {
         let at = self.markers[marker.index as usize];

@@ -67,6 +67,8 @@ pub struct Sampler<'a, F = NoForces> {
     drives: Vec<Option<Vec<Pose<Series<f64>>>>>,
     directions: Vec<Direction>,
     swept: Vec<Swept>,
+    /// Moving points whose curvature is asked for.
+    curved: Vec<PointId>,
     statistics: Vec<(Statistic, Measure, f64)>,
     system: Bordered,
 }
@@ -129,6 +131,7 @@ impl<'a, F: ForceSource> Sampler<'a, F> {
             drives: vec![None; mechanism.model.drives.len()],
             directions: Vec::new(),
             swept: Vec::new(),
+            curved: Vec::new(),
             statistics: Vec::new(),
             system: Bordered::new(motion.mechanism, motion.plan),
             parameters,
@@ -189,12 +192,15 @@ impl<'a, F: ForceSource> Sampler<'a, F> {
             return sample;
         }
         let measures = std::mem::take(&mut self.measures);
+        let curved = std::mem::take(&mut self.curved);
+        let mut still = Vec::new();
         self.with_moment(p, time, true, |moment| {
+            still.extend(curved.iter().filter(|p| moment.stands_still(**p)));
             for (value, measure) in sample.values.iter_mut().zip(&measures) {
                 *value = moment.value(measure);
             }
         });
-        self.measures = measures;
+        (self.measures, self.curved) = (measures, curved);
 
         for (pose, plain) in self
             .plain
@@ -222,7 +228,7 @@ impl<'a, F: ForceSource> Sampler<'a, F> {
         sample.closure = found.closure;
         sample.smallest_singular_value = found.smallest_singular_value;
         self.fill_places(&mut sample);
-        sample.note = self.note(p, &sample);
+        sample.note = self.note(p, &sample, &still);
         sample
     }
 

@@ -6,19 +6,32 @@ use kempe_model::{LawPiece, Measure, Statistic};
 use kempe_number::Number;
 use kempe_units::Dimension;
 
+use crate::drive_path::{WHOLE, is_cycle, law_knots};
 use crate::force_source::ForceSource;
+use crate::quadrature::{graded, integrate};
 use crate::sampler::Sampler;
-use crate::swept::GAUSS;
 use crate::watch::{Stage, Watch};
 
-/// Intervals of time searched for extremes in every turn of a drive, besides the breaks of the laws.
+/// Intervals of time searched for extremes in every turn of a drive, and in the whole motion at least.
 const GRID: usize = 360;
+
+/// Intervals in which every piece of a law is searched at least.
+const LEAST: usize = 48;
+
+/// Intervals in which every segment of a table is searched at least.
+const LEAST_IN_TABLE: usize = 4;
+
+/// Intervals that are integrated together.
+const INTERVALS_TOGETHER: usize = 12;
+
+/// Bisections that close in on the zero of a rate.
+const BISECTIONS: usize = 52;
+
+/// What a measure changes by less than this part of itself is rounding, and no extreme.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// Intervals at most: a motion of more turns is searched more coarsely.
 const MOST_INTERVALS: usize = 360_000;
-
-/// How near, in turns, to a whole number of turns a motion of several cycles ends.
-const WHOLE: f64 = 1e-9;
 
 /// Halvings of an interval by which an end without a rate of its own is approached: nearer than its 2^40th part nothing
 /// can be told from the end.
@@ -52,42 +65,69 @@ pub(crate) fn over<F: ForceSource>(
     })
 }
 
-/// Times that matter: the breaks of the laws and an even grid.
-fn times<F: ForceSource>(sampler: &Sampler<'_, F>) -> Vec<f64> {
-    let duration = sampler.duration();
-    let turns = turns(sampler).iter().fold(1.0, |all: f64, t| all.max(*t));
-    let intervals = ((GRID as f64 * turns).ceil() as usize).clamp(GRID, MOST_INTERVALS);
-    let mut times: Vec<f64> = (0..=intervals)
-        .map(|k| duration * k as f64 / intervals as f64)
-        .collect();
-    times.extend(sampler.breaks());
-    times.sort_by(f64::total_cmp);
-    times.dedup();
-    times
+/// A stretch of time on which all laws are smooth.
+struct Stretch {
+    /// Its ends; the law behind `from` and that before `to` are meant.
+    from: f64,
+    to: f64,
+    /// Intervals in which it is searched.
+    intervals: usize,
 }
 
-/// Turns that each turning drive makes, both ways counted.
-fn turns<F: ForceSource>(sampler: &Sampler<'_, F>) -> Vec<f64> {
-    let drives = sampler.motion().mechanism.model.drives.iter();
-    let parameters = sampler.motion().mechanism.model.parameter_values::<f64>();
-    drives
-        .filter(|d| d.dimension == Dimension::ANGLE)
-        .map(|d| {
-            let at = |t: &f64| d.law.at(*t, &parameters);
-            let breaks = d.law.breaks(&parameters);
-            let ways = breaks.windows(2).map(|w| (at(&w[1]) - at(&w[0])).abs());
-            ways.sum::<f64>() / TAU
+/// The stretches of a motion between the knots of its laws. However short, each is searched.
+fn stretches<F: ForceSource>(sampler: &Sampler<'_, F>) -> Vec<Stretch> {
+    let model = &sampler.motion().mechanism.model;
+    let parameters = model.parameter_values::<f64>();
+    let duration = sampler.duration();
+    let turning = || (model.drives.iter()).filter(|d| d.dimension == Dimension::ANGLE);
+    let turns = |from: f64, to: f64| {
+        let ways =
+            turning().map(|d| (d.law.at(to, &parameters) - d.law.at(from, &parameters)).abs());
+        ways.fold(0.0, f64::max) / TAU
+    };
+    let pieces = law_knots(model, &parameters, true);
+    let list = law_knots(model, &parameters, false);
+    let mut stretches: Vec<Stretch> = (list.windows(2))
+        .map(|pair| {
+            let ([_, from], [end, _]) = (pair[0], pair[1]);
+            // The last bit before a knot: what is evaluated at the knot itself is what follows.
+            let to = if end < duration { end.next_down() } else { end };
+            let whole = pieces.contains(&pair[0]) && pieces.contains(&pair[1]);
+            let least = if whole { LEAST } else { LEAST_IN_TABLE };
+            let parts = turns(from, to).max((to - from) / duration);
+            Stretch {
+                from,
+                to: to.max(from),
+                intervals: ((GRID as f64 * parts).ceil() as usize).max(least),
+            }
         })
-        .collect()
+        .collect();
+    let all: usize = stretches.iter().map(|s| s.intervals).sum();
+    let coarser = (all as f64 / MOST_INTERVALS as f64).max(1.0);
+    for stretch in &mut stretches {
+        stretch.intervals = ((stretch.intervals as f64 / coarser).ceil() as usize).max(1);
+    }
+    if stretches.is_empty() {
+        stretches.push(Stretch {
+            from: 0.0,
+            to: 0.0,
+            intervals: 1,
+        });
+    }
+    stretches
 }
 
 /// Duration of the slower stroke over that of the faster, from the time between both extremes and the duration of the
-/// motion. Over several turns the cycle is one of them.
+/// motion; NaN where the motion is no cycle. Over several turns the cycle is one of them.
 pub(crate) fn time_ratio<T: Number, F: ForceSource>(
     sampler: &Sampler<'_, F>,
     between: T,
     duration: T,
 ) -> T {
+    let model = &sampler.motion().mechanism.model;
+    if !is_cycle(model, &model.parameter_values::<f64>()) {
+        return T::from_f64(f64::NAN);
+    }
     let cycle = duration / whole_turns(sampler);
     let between = between.abs();
     let stroke = between - cycle * (between.value() / cycle.value()).floor();
@@ -121,15 +161,13 @@ fn whole_turns<F: ForceSource>(sampler: &Sampler<'_, F>) -> f64 {
 
 pub(crate) type At = (f64, f64);
 
-/// Smallest and largest value with their times: ends, breaks, and the zeros of the rate between grid points. `None`
+/// Smallest and largest value with their times: ends of stretches, and the zeros of the rate between grid points. `None`
 /// inside where the motion does not reach, outside when stopped.
 pub(crate) fn extremes<F: ForceSource>(
     sampler: &mut Sampler<'_, F>,
     measure: &Measure,
     watch: &mut dyn Watch,
 ) -> Option<Option<(At, At)>> {
-    let times = times(sampler);
-    let breaks = sampler.breaks();
     let mut low: At = (f64::NAN, f64::INFINITY);
     let mut high: At = (f64::NAN, f64::NEG_INFINITY);
     let mut take = |t: f64, value: f64| {
@@ -141,96 +179,118 @@ pub(crate) fn extremes<F: ForceSource>(
             high = (t, value);
         }
     };
-    let mut last: Option<(f64, f64)> = None;
-    for (done, &t) in times.iter().enumerate() {
-        let part = done as f64 / times.len() as f64;
-        watch
-            .reached(Stage::Measuring, Some(part))
-            .continue_value()?;
-        let [value, rate] = sampler.value_and_rate(measure, t);
-        if value.is_nan() {
-            return Some(None);
-        }
-        take(t, value);
-        if let Some((before, rate_before)) = last {
-            let ends = [(before, rate_before), (t, rate)];
-            let probes = rates_between(sampler, measure, ends, breaks.contains(&t));
-            for pair in probes.windows(2) {
-                let ((mut a, rate_a), (mut b, rate_b)) = (pair[0], pair[1]);
-                if !(rate_a * rate_b < 0.0) {
-                    continue;
-                }
-                for _ in 0..52 {
-                    let middle = 0.5 * (a + b);
-                    if sampler.value_and_rate(measure, middle)[1] * rate_a > 0.0 {
-                        a = middle;
-                    } else {
-                        b = middle;
+    let duration = sampler.duration();
+    for stretch in stretches(sampler) {
+        let mut last: Option<[f64; 3]> = None;
+        for k in 0..=stretch.intervals {
+            let part = k as f64 / stretch.intervals as f64;
+            let t = if k == stretch.intervals {
+                stretch.to
+            } else {
+                stretch.from + (stretch.to - stretch.from) * part
+            };
+            watch
+                .reached(Stage::Measuring, Some(t / duration))
+                .continue_value()?;
+            let [value, rate] = sampler.value_and_rate(measure, t);
+            if value.is_nan() {
+                return Some(None);
+            }
+            take(t, value);
+            if let Some(before) = last {
+                let probes = rates_between(sampler, measure, [before, [t, value, rate]]);
+                for pair in probes.windows(2) {
+                    let ([mut a, _, rate_a], [mut b, _, rate_b]) = (pair[0], pair[1]);
+                    let steepest = rate_a.abs().max(rate_b.abs());
+                    let rounding = ROUNDING * value.abs();
+                    if !(rate_a * rate_b < 0.0) || steepest * (b - a) <= rounding {
+                        continue;
+                    }
+                    for _ in 0..BISECTIONS {
+                        let middle = 0.5 * (a + b);
+                        if sampler.value_and_rate(measure, middle)[1] * rate_a > 0.0 {
+                            a = middle;
+                        } else {
+                            b = middle;
+                        }
+                    }
+                    // On both sides: between them there may be a jump.
+                    for t in [a, b] {
+                        let value = sampler.value_and_rate(measure, t)[0];
+                        if !value.is_nan() {
+                            take(t, value);
+                        }
                     }
                 }
-                let t = 0.5 * (a + b);
-                let value = sampler.value_and_rate(measure, t)[0];
-                if !value.is_nan() {
-                    take(t, value);
-                }
             }
+            last = Some([t, value, rate]);
         }
-        last = Some((t, rate));
     }
     Some(low.1.is_finite().then_some((low, high)))
 }
 
-/// Times of an interval with the rates there, rising: its ends, and where an end has no rate (at a limit), or that of
-/// what follows (`broken`: at a break of a law), times ever nearer to it.
+/// Times of an interval with values and rates there, rising: its ends, and where an end has no rate (at a limit), times
+/// ever nearer to it.
 fn rates_between<F: ForceSource>(
     sampler: &mut Sampler<'_, F>,
     measure: &Measure,
-    [(from, rate_from), (to, rate_to)]: [(f64, f64); 2],
-    broken: bool,
-) -> Vec<(f64, f64)> {
-    if rate_from.is_finite() && rate_to.is_finite() && !broken {
-        return vec![(from, rate_from), (to, rate_to)];
+    [from, to]: [[f64; 3]; 2],
+) -> Vec<[f64; 3]> {
+    if from[2].is_finite() && to[2].is_finite() {
+        return vec![from, to];
     }
-    let part = |k: i32| (to - from) * 2.0_f64.powi(-k);
+    let part = |k: i32| (to[0] - from[0]) * 2.0_f64.powi(-k);
     let mut at: Vec<f64> = Vec::new();
-    if !rate_from.is_finite() {
-        at.extend((1..=HALVINGS).rev().map(|k| from + part(k)));
+    if !from[2].is_finite() {
+        at.extend((1..=HALVINGS).rev().map(|k| from[0] + part(k)));
     }
-    if !rate_to.is_finite() {
-        at.extend((1..=HALVINGS).map(|k| to - part(k)));
-    } else if broken {
-        at.push(to - part(HALVINGS));
+    if !to[2].is_finite() {
+        at.extend((1..=HALVINGS).map(|k| to[0] - part(k)));
     }
-    let mut probes = vec![(from, rate_from)];
-    probes.extend((at.into_iter()).map(|t| (t, sampler.value_and_rate(measure, t)[1])));
-    if !broken {
-        probes.push((to, rate_to));
-    }
-    probes.retain(|(_, rate)| rate.is_finite());
+    let mut probes = vec![from];
+    probes.extend((at.into_iter()).map(|t| {
+        let [value, rate] = sampler.value_and_rate(measure, t);
+        [t, value, rate]
+    }));
+    probes.push(to);
+    probes.retain(|[.., rate]| rate.is_finite());
     probes
 }
 
-/// Mean over time by Gauss quadrature between the times that matter; `None` when stopped.
+/// Mean over time between the knots of the laws; `None` when stopped.
 fn mean<F: ForceSource>(
     sampler: &mut Sampler<'_, F>,
     measure: &Measure,
     watch: &mut dyn Watch,
 ) -> Option<f64> {
-    let times = times(sampler);
     let duration = sampler.duration();
     if duration <= 0.0 {
         return Some(sampler.value_and_rate(measure, 0.0)[0]);
     }
+    let stretches = stretches(sampler);
+    let parts: usize = stretches.iter().map(|s| parts_of(s.intervals)).sum();
     let mut sum = 0.0;
-    for (done, pair) in times.windows(2).enumerate() {
-        let part = done as f64 / times.len() as f64;
-        watch
-            .reached(Stage::Measuring, Some(part))
-            .continue_value()?;
-        let (middle, half) = (0.5 * (pair[0] + pair[1]), 0.5 * (pair[1] - pair[0]));
-        for (x, w) in GAUSS {
-            sum += w * half * sampler.value_and_rate(measure, middle + half * x)[0];
-        }
+    let mut done = 0;
+    for stretch in stretches {
+        let own = parts_of(stretch.intervals);
+        // Where a rate is infinite at an end, as at a limit, equal steps of this variable come ever nearer to it.
+        let width = stretch.to - stretch.from;
+        let [part] = integrate(&graded(own), 0.0, &mut |u| {
+            let told = (done as f64 + u * own as f64) / parts as f64;
+            watch
+                .reached(Stage::Measuring, Some(told))
+                .continue_value()?;
+            let t = stretch.from + width * (u * u * (3.0 - 2.0 * u));
+            let weight = width * 6.0 * u * (1.0 - u);
+            Some([weight * sampler.value_and_rate(measure, t)[0]])
+        })?;
+        sum += part;
+        done += own;
     }
     Some(sum / duration)
+}
+
+/// Parts in which a stretch of so many intervals is integrated first.
+fn parts_of(intervals: usize) -> usize {
+    intervals.div_ceil(INTERVALS_TOGETHER)
 }

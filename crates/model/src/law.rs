@@ -8,6 +8,10 @@ use crate::geometry::value;
 use crate::model::{Law, LawPiece, RiseLaw};
 use crate::spline::spline_at;
 
+/// A time this near to the end of a law, as a part of it, is the end: sums and quotients of a file's numbers miss it by
+/// their rounding, and drives that end together do so to the last bit.
+pub const SAME_END: f64 = 1e-12;
+
 /// A piece of a law with its place in time.
 struct Stretch<'a, T> {
     piece: &'a LawPiece,
@@ -28,7 +32,7 @@ impl Law {
     /// The coordinate (rad or m) at the time `t` s; before the start and behind the end the law stands still.
     ///
     /// With a Taylor number that runs in `t` this gives speed, acceleration and jerk as well. Where two pieces meet, the
-    /// later one is meant.
+    /// later one is meant; at the end the last piece, to within [`SAME_END`]: rates there are those of the motion.
     pub fn at<T: Number>(&self, t: T, parameters: &[T]) -> T {
         let mut end = value(&self.from, parameters);
         if t.value() < 0.0 {
@@ -37,9 +41,12 @@ impl Law {
         let stretches = self.stretches(parameters);
         let count = stretches.len();
         for (i, stretch) in stretches.iter().enumerate() {
-            let local = t.value() - stretch.start.value();
-            let duration = stretch.duration.value();
-            if local < duration || (i + 1 == count && local <= duration && duration > 0.0) {
+            let until = (stretch.start + stretch.duration).value();
+            let last = i + 1 == count && stretch.duration.value() > 0.0;
+            if last && (t.value() - until).abs() <= SAME_END * until {
+                return stretch.at_end(t);
+            }
+            if t.value() < until {
                 return stretch.at(t - stretch.start);
             }
             end = stretch.to;
@@ -141,6 +148,15 @@ impl<T: Number> Stretch<'_, T> {
                 moments,
             } => spline_at(times, values, moments, t),
         }
+    }
+}
+
+impl<T: Number> Stretch<'_, T> {
+    /// The coordinate at the end of the stretch, exactly; with its rates where `t` is a series.
+    fn at_end(&self, t: T) -> T {
+        let local = t - self.start;
+        let reached = self.at(local + (self.duration.value() - local.value()));
+        reached + (self.to.value() - reached.value())
     }
 }
 

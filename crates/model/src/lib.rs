@@ -20,6 +20,7 @@ pub use codes::{CODES, Code};
 pub use diagnostic::{Diagnostic, Label, Severity, Source};
 pub use edit::set_value;
 pub use geometry::value;
+pub use law::SAME_END;
 pub use load::*;
 pub use measure::{ForceMeasure, JointRef, Leaf, Measure, PoseMeasure, Statistic};
 pub use model::*;

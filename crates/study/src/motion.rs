@@ -1,9 +1,9 @@
 //! Motion studies: a row for every place along the drives' laws.
 
-use kempe_kinematics::drive_path::DrivePath;
+use kempe_kinematics::drive_path::{DrivePath, is_cycle};
 use kempe_kinematics::events::EventKind;
 use kempe_kinematics::{EndReason, Motion, Stage, Unmeasurable, Unprepared};
-use kempe_model::{Diagnostic, Model, MotionStudy, Study, StudyKind};
+use kempe_model::{Diagnostic, Leaf, Measure, Model, MotionStudy, Statistic, Study, StudyKind};
 use kempe_units::Dimension;
 
 use crate::along::Along;
@@ -120,7 +120,11 @@ pub(crate) fn run_along(
         warnings.push(unreached_warning(name, &rows.table));
     }
     warnings.extend(rows.force_warnings(&prepared.mechanism, along));
-    warnings.extend(without_value(&rows, along));
+    warnings.extend(without_value(&rows, along, |index| {
+        let of_cycles =
+            (asked.scalars.get(index)).is_some_and(|q| asks_time_ratio(model, &q.measure));
+        of_cycles && !is_cycle(model, &prepared.parameters)
+    }));
     let met = events(&motion, &units, &parameters_met);
     if forces {
         warnings.extend(unbounded(model, &asked.scalars, &met));
@@ -152,8 +156,13 @@ pub(crate) fn unprepared(
     }
 }
 
-/// Columns and numbers over the motion that have no value where the pose is known and no note says why.
-fn without_value(rows: &RowSink, along: usize) -> Vec<Diagnostic> {
+/// Columns and numbers over the motion that have no value where the pose is known and no note says why. `lacks_cycle` tells
+/// of which numbers that is because the motion is no cycle.
+fn without_value(
+    rows: &RowSink,
+    along: usize,
+    lacks_cycle: impl Fn(usize) -> bool,
+) -> Vec<Diagnostic> {
     let table = &rows.table;
     let silent = |row: usize| {
         table.closure.get(row).is_some_and(|c| c.is_finite())
@@ -181,16 +190,36 @@ fn without_value(rows: &RowSink, along: usize) -> Vec<Diagnostic> {
             .help("a quotient by zero, or a root, logarithm or arc of a number outside its range"),
         )
     });
-    let numbers = rows.scalars.iter().filter(|s| !s.value.is_finite());
-    let numbers = numbers.map(|scalar| {
-        Diagnostic::warning(
+    let numbers = rows.scalars.iter().enumerate();
+    let numbers = numbers.filter(|(_, s)| !s.value.is_finite());
+    let numbers = numbers.map(|(index, scalar)| {
+        let told = Diagnostic::warning(
             "no-value",
             format!("study `{}`: `{}` has no finite value", table.name, scalar.name),
-        )
-        .help("what it is taken of has none somewhere, or the place that it asks for is not on the motion")
+        );
+        if lacks_cycle(index) {
+            return told
+                .note("a time ratio compares both strokes of a cycle, and this motion is none")
+                .help("let the drives end where they started, or whole turns from there");
+        }
+        told.help("what it is taken of has none somewhere, or the place that it asks for is not on the motion")
     });
     let all_reached = table.unreached() == 0;
     columns.chain(numbers.filter(|_| all_reached)).collect()
+}
+
+/// Whether a measure asks for a time ratio, itself or by another measure.
+fn asks_time_ratio(model: &Model, measure: &Measure) -> bool {
+    measure.leaves().any(|leaf| match leaf {
+        Leaf::Over(statistic, inner) => {
+            *statistic == Statistic::TimeRatio || asks_time_ratio(model, inner)
+        }
+        Leaf::Named(index) => {
+            (model.measures.get(*index)).is_some_and(|m| asks_time_ratio(model, &m.measure))
+        }
+        Leaf::Rate(inner, _) | Leaf::Coefficient(inner, ..) => asks_time_ratio(model, inner),
+        _ => false,
+    })
 }
 
 /// The column that rows run along: the drive that goes one way through the whole motion, or else time.

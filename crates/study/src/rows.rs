@@ -39,11 +39,7 @@ pub(crate) fn places_along(
 
 /// The places of all rows. `drive` is the drive that a step of the drive means.
 fn places(model: &Model, rows: &Rows, parameters: &[f64], drive: usize) -> Vec<RowPlace> {
-    let duration = model
-        .drives
-        .iter()
-        .map(|d| d.law.duration::<f64>(parameters))
-        .fold(0.0, f64::max);
+    let duration = kempe_kinematics::drive_path::duration(model, parameters);
     match rows {
         Rows::DriveStep(step) => {
             let Some(drive) = model.drives.get(drive) else {

@@ -1,10 +1,24 @@
 //! Measures of a pose: places, angles, distances, and the geometry of paths.
 
 use kempe_model::{Line, LinkId, LinkPointRef, PointId, PoseMeasure};
-use kempe_number::Number;
+use kempe_number::{Number, math};
 
-use super::{Along, Moment, Series};
+use super::{Along, Moment, Series, only_value};
 use crate::pose::{Pose, cross, dot, left, sub};
+
+/// A speed, in mechanism sizes per typical change of the path, that is rounding.
+const NO_SPEED: f64 = 1e-14;
+/// A point turns back where its speed is below this part of its acceleration (both per typical change of the path): nearer
+/// to the place of reversal than this the curvature of its path is rounding.
+const REVERSAL: f64 = 1e-6;
+/// Links translate where their turning moves a mechanism size by less than this part of their sliding; a path is straight
+/// where a mechanism size is less than this part of its radius.
+const TRANSLATION: f64 = 1e-12;
+
+/// Beyond all measure, with nothing to be said of how it changes.
+fn infinite<B: Number>() -> Series<B> {
+    only_value(B::from_f64(f64::INFINITY))
+}
 
 impl<B: Number> Moment<'_, B> {
     /// A measure of the poses of one series.
@@ -62,7 +76,7 @@ impl<B: Number> Moment<'_, B> {
             PoseMeasure::Curvature(p) => {
                 let (curvature, _) = self.curvature(point(*p));
                 // Positive turning left along the travel, whichever way the path parameter runs.
-                if self.clock.coefficient(1).value() < 0.0 && along != Along::Path {
+                if self.heading < 0.0 && along != Along::Path {
                     -curvature
                 } else {
                     curvature
@@ -136,8 +150,27 @@ impl<B: Number> Moment<'_, B> {
         frame.unturn(sub(self.point(poses, point), [frame.x, frame.y]))
     }
 
-    /// Instant centre of two links: the point where both have the same velocity. Infinite when they only translate
-    /// against each other.
+    /// Size of the mechanism, m.
+    fn size(&self) -> f64 {
+        let plain = self.design.plain.first();
+        plain.map_or(1.0, |geometry| geometry.size(self.mechanism))
+    }
+
+    /// Whether a point of the mechanism stands still here, as at the end of a stroke: its path has no direction then.
+    pub fn stands_still(&self, point: PointId) -> bool {
+        self.is_still(self.point(self.path, point))
+    }
+
+    fn is_still(&self, p: [Series<B>; 2]) -> bool {
+        let size = |order: usize| {
+            let [x, y] = [0, 1].map(|k| p[k].derivative(order).value());
+            math::hypot(x, y) * self.unit.powi(order as i32)
+        };
+        size(1) <= NO_SPEED * self.size() || size(1) <= REVERSAL * size(2)
+    }
+
+    /// Instant centre of two links: the point where both have the same velocity. Infinite, in both coordinates, when they
+    /// only translate against each other; none when they are at rest.
     fn instant_center(&self, poses: &[Pose<Series<B>>], a: LinkId, b: LinkId) -> [Series<B>; 2] {
         let motion = |link: LinkId| {
             let pose = self.link(poses, link);
@@ -151,17 +184,41 @@ impl<B: Number> Moment<'_, B> {
         };
         let ((va, wa), (vb, wb)) = (motion(a), motion(b));
         let (v, w) = (sub(vb, va), wa - wb);
-        [v[1] / w, -v[0] / w]
+        let size = self.size();
+        // Where the links are at rest for a moment, what they do next decides.
+        let mut speeds = (0..2).map(|order| {
+            let [x, y, w] = [v[0], v[1], w].map(|s| s.coefficient(order).value());
+            (
+                math::hypot(x, y),
+                size * w.abs(),
+                self.unit.powi(order as i32 + 1),
+            )
+        });
+        match speeds.find(|(slide, turn, unit)| !(slide.max(*turn) * unit <= NO_SPEED * size)) {
+            None => [Series::from_f64(f64::NAN); 2],
+            Some((slide, turn, _)) if turn <= TRANSLATION * slide => [infinite(); 2],
+            Some(_) => [v[1] / w, -v[0] / w],
+        }
     }
 
-    /// Curvature of a path and its centre, from the first two derivatives along the path parameter.
+    /// Curvature of a path and its centre, from the first two derivatives along the path parameter; none where the point
+    /// stands still, and an infinite centre where the path is straight.
     fn curvature(&self, p: [Series<B>; 2]) -> (Series<B>, [Series<B>; 2]) {
+        let nothing = Series::from_f64(f64::NAN);
+        if self.is_still(p) {
+            return (nothing, [nothing; 2]);
+        }
         let d = [p[0].differentiate(), p[1].differentiate()];
         let dd = [d[0].differentiate(), d[1].differentiate()];
         let square = dot(d, d);
         let bend = cross(d, dd);
+        let speed = math::hypot(d[0].coefficient(0).value(), d[1].coefficient(0).value());
+        let straight = bend.value().abs() * self.size() <= TRANSLATION * speed * speed * speed;
         let curvature = bend / (square * square.sqrt());
         let reach = square / bend;
+        if straight {
+            return (curvature, [infinite(); 2]);
+        }
         let n = left(d);
         (curvature, [p[0] + n[0] * reach, p[1] + n[1] * reach])
     }

@@ -10,21 +10,21 @@ impl<B: Number> Moment<'_, B> {
     /// Measures of the motion in time.
     pub(super) fn motion_measure(&self, measure: &PoseMeasure) -> Series<B> {
         let velocity = |p: PointId| {
+            // Of a moving point at rest the speed has no derivatives; of one that cannot move all are zero.
+            if self.mechanism.is_fixed(p) {
+                return None;
+            }
             let at = self.point(self.path, p);
-            [
+            Some([
                 at[0].compose(&self.clock).differentiate(),
                 at[1].compose(&self.clock).differentiate(),
-            ]
+            ])
         };
+        let size = |v: Option<[Series<B>; 2]>| v.map_or(Series::zero(), |v| dot(v, v).sqrt());
         match measure {
-            PoseMeasure::Speed(p) => {
-                let v = velocity(*p);
-                dot(v, v).sqrt()
-            }
+            PoseMeasure::Speed(p) => size(velocity(*p)),
             PoseMeasure::Acceleration(p) => {
-                let v = velocity(*p);
-                let a = [v[0].differentiate(), v[1].differentiate()];
-                dot(a, a).sqrt()
+                size(velocity(*p).map(|v| [v[0].differentiate(), v[1].differentiate()]))
             }
             PoseMeasure::AngularSpeed(link) => self
                 .angle(self.path, *link)
@@ -36,13 +36,12 @@ impl<B: Number> Moment<'_, B> {
                 .differentiate()
                 .differentiate(),
             PoseMeasure::PathLength(p) => {
-                let v = velocity(*p);
                 let start = self
                     .swept
                     .iter()
                     .find(|(q, _)| q == p)
                     .map_or(B::from_f64(f64::NAN), |(_, length)| *length);
-                dot(v, v).sqrt().integrate(start)
+                size(velocity(*p)).integrate(start)
             }
             _ => Series::from_f64(f64::NAN),
         }

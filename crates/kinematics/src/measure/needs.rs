@@ -43,6 +43,9 @@ fn depth(mechanism: &Mechanism, measure: &Measure, in_coefficient: bool) -> Resu
                 depth(mechanism, inner, false)?;
                 0
             }
+            Leaf::Pose(PoseMeasure::PathLength(_)) if in_coefficient => {
+                return Err("a length of path depends on the whole way since the start, not on where a drive is: divide its rate() by that of the drive".into());
+            }
             Leaf::Pose(pose) if in_coefficient && is_motion(pose) => {
                 return Err("a speed or acceleration in time has no derivative to a drive".into());
             }

@@ -6,6 +6,7 @@ use kempe_number::Number;
 use super::Sampler;
 use crate::force_source::ForceSource;
 use crate::measure::{Along, Moment, Series, visit_leaves};
+use crate::trace::Path;
 
 impl<F: ForceSource> Sampler<'_, F> {
     /// Hands the moment last solved to `ask`, with its forces where they are wanted.
@@ -55,6 +56,8 @@ impl<F: ForceSource> Sampler<'_, F> {
             time,
             path: &self.series.state.poses,
             clock,
+            heading: self.heading(time, clock.coefficient(1)),
+            unit: motion.path.scale(),
             drives: &self.drives,
             path_drive: self.path_drive(),
             coordinates: &self.series.coordinates,

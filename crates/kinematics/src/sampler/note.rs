@@ -1,5 +1,6 @@
 //! What a careful engineer would want to be told about a row.
 
+use kempe_model::PointId;
 use kempe_units::{Dimension, Unit, format_digits};
 
 use super::{CLOSURE_LIMIT, Sample, Sampler};
@@ -11,8 +12,8 @@ use crate::motion::EndReason;
 const NOTE_DIGITS: usize = 12;
 
 impl<F: ForceSource> Sampler<'_, F> {
-    /// What is to be said of a row that was reached.
-    pub(super) fn note(&self, p: f64, sample: &Sample) -> Option<String> {
+    /// What is to be said of a row that was reached. `still` are points that stand still whose curvature is asked for.
+    pub(super) fn note(&self, p: f64, sample: &Sample, still: &[PointId]) -> Option<String> {
         if let Some(event) = self
             .motion
             .bridge(p)
@@ -42,7 +43,18 @@ impl<F: ForceSource> Sampler<'_, F> {
             ));
         }
         let singular = self.motion.limit_at(p).is_some() || sample.smallest_singular_value < 1e-9;
-        singular.then(|| "limit of the drive: rates are not defined here".into())
+        if singular {
+            return Some("limit of the drive: rates are not defined here".into());
+        }
+        let points = &self.motion.mechanism.model.points;
+        let names: Vec<&str> = (still.iter())
+            .filter_map(|p| Some(points.get(p.index())?.name.as_str()))
+            .collect();
+        (!names.is_empty()).then(|| {
+            let stand = if names.len() == 1 { "stands" } else { "stand" };
+            let names = names.join(", ");
+            format!("{names} {stand} still: no curvature of path here")
+        })
     }
 
     /// Why a path parameter was not reached.

@@ -35,6 +35,7 @@ impl<F: ForceSource> Sampler<'_, F> {
         let mut directions: Vec<(PointId, PointId)> = Vec::new();
         let mut swept: Vec<PointId> = Vec::new();
         let mut drives: Vec<DriveId> = Vec::new();
+        let mut curved: Vec<PointId> = Vec::new();
         let motion = self.motion;
         // What the forces ask for comes last, so that its statistics are found first.
         let inputs = self.forces.as_ref().map_or(&[][..], F::measures);
@@ -49,6 +50,11 @@ impl<F: ForceSource> Sampler<'_, F> {
                 Leaf::Pose(PoseMeasure::Direction(a, b)) if !directions.contains(&(*a, *b)) => {
                     directions.push((*a, *b));
                 }
+                Leaf::Pose(
+                    PoseMeasure::Curvature(p)
+                    | PoseMeasure::CurvatureCenterX(p)
+                    | PoseMeasure::CurvatureCenterY(p),
+                ) if !curved.contains(p) => curved.push(*p),
                 Leaf::Pose(PoseMeasure::PathLength(p)) if !swept.contains(p) => swept.push(*p),
                 Leaf::Coefficient(_, drive, _)
                 | Leaf::Pose(PoseMeasure::MechanicalAdvantage(_, drive)) => {
@@ -65,6 +71,8 @@ impl<F: ForceSource> Sampler<'_, F> {
                 self.drives[drive.index()] = Some(Vec::new());
             }
         }
+        curved.retain(|p| !motion.mechanism.is_fixed(*p));
+        self.curved = curved;
         self.directions = (directions.into_iter())
             .map(|points| Direction::new(motion, points))
             .collect();

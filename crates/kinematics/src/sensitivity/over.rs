@@ -1,17 +1,17 @@
 //! Statistics over a varied motion, and lengths of path.
 
-use kempe_model::{Measure, PointId, Statistic};
+use kempe_model::{Measure, PointId, SAME_END, Statistic};
 use kempe_number::Number;
 
-use super::Base;
 use super::varied::{Place, Varied};
+use super::{Base, CHUNK};
 use crate::measure::Series;
+use crate::quadrature::{graded, integrate};
 use crate::statistics::{extremes, time_ratio};
-use crate::swept::GAUSS;
 use crate::watch::Unwatched;
 
 /// Intervals of time over which path lengths and means are integrated, besides the breaks of the laws.
-const GRID: usize = 90;
+const GRID: usize = 45;
 
 impl Varied<'_, '_> {
     /// A statistic of a measure over the motion.
@@ -63,7 +63,12 @@ impl Varied<'_, '_> {
     /// Time and value of an extreme found at `time`.
     fn extreme(&mut self, measure: &Measure, time: f64) -> (Base, Base) {
         // At an end of a piece the time moves with the law; otherwise with the zero of the rate.
-        if let Some(moving) = self.breaks().into_iter().find(|b| b.re == time) {
+        let near = SAME_END * self.sampler.duration();
+        let breaks = self.breaks().into_iter();
+        let mut breaks = breaks.filter(|b| (b.re - time).abs() <= near);
+        if let Some(moving) = breaks.next() {
+            // On the side of the piece on which it was found.
+            let moving = Base { re: time, ..moving };
             let place = self.at_time(moving);
             return (moving, self.value(measure, place));
         }
@@ -81,7 +86,11 @@ impl Varied<'_, '_> {
 
     /// Length of path swept by a point until a time.
     pub(super) fn length(&mut self, point: PointId, until: Base) -> Base {
-        let Some(marker) = self.motion.mechanism.any_marker(point) else {
+        let mechanism = self.motion.mechanism;
+        if mechanism.is_fixed(point) {
+            return Base::zero();
+        }
+        let Some(marker) = mechanism.any_marker(point) else {
             return Base::from_f64(f64::NAN);
         };
         self.integrate(until, &mut |it, place| {
@@ -101,27 +110,30 @@ impl Varied<'_, '_> {
         })
     }
 
-    /// Gauss quadrature over time from the start, between the breaks of the laws and the times of an even grid.
+    /// Integral over time from the start, between the breaks of the laws and the times of an even grid.
     fn integrate(&mut self, until: Base, f: &mut dyn FnMut(&mut Self, Place) -> Base) -> Base {
-        let mut times: Vec<Base> = (0..=GRID)
-            .map(|k| until * (k as f64 / GRID as f64))
-            .collect();
-        times.extend(
+        let mut cuts = vec![Base::zero(), until];
+        cuts.extend(
             self.breaks()
                 .into_iter()
                 .filter(|t| 0.0 < t.re && t.re < until.re),
         );
-        times.sort_by(|a, b| a.re.total_cmp(&b.re));
+        cuts.sort_by(|a, b| a.re.total_cmp(&b.re));
         let mut sum = Base::zero();
-        for pair in times.windows(2) {
-            let (middle, half) = ((pair[0] + pair[1]) * 0.5, (pair[1] - pair[0]) * 0.5);
-            if half.re <= 0.0 {
-                continue;
-            }
-            for (x, w) in GAUSS {
-                let place = self.at_time(middle + half * x);
-                sum += f(self, place) * half * w;
-            }
+        for pair in cuts.windows(2).filter(|pair| pair[1].re > pair[0].re) {
+            let width = pair[1] - pair[0];
+            let count = (GRID as f64 * width.re / until.re).ceil() as usize;
+            let part = integrate(&graded(count), 0.0, &mut |u| {
+                let place = self.at_time(pair[0] + width * u);
+                let part = f(self, place) * width;
+                let mut values = [part.re; 1 + CHUNK];
+                values[1..].copy_from_slice(&part.eps);
+                Some(values)
+            });
+            let Some([re, eps @ ..]) = part else {
+                return Base::from_f64(f64::NAN);
+            };
+            sum += Base { re, eps };
         }
         sum
     }

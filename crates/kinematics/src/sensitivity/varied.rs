@@ -10,6 +10,7 @@ use crate::motion::{Motion, Solver};
 use crate::pose::Pose;
 use crate::sampler::Sampler;
 use crate::state::Design;
+use crate::trace::Path;
 
 /// A time and a path parameter, both as they move with the parameters.
 #[derive(Clone, Copy, Debug)]
@@ -197,6 +198,10 @@ impl<'s, 'a> Varied<'s, 'a> {
             time: place.time,
             path: &self.solver.state.poses,
             clock,
+            heading: self
+                .sampler
+                .heading(place.time.re, clock.coefficient(1).value()),
+            unit: motion.path.scale(),
             drives: &self.drives,
             path_drive: self.path_drive,
             coordinates: &self.solver.coordinates,
