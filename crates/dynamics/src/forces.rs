@@ -3,11 +3,13 @@
 use kempe_kinematics::mechanism::{Constraint, LineSource, Source};
 use kempe_kinematics::{BodyId, Geometry, Mechanism, Plan};
 use kempe_model::{DriveId, LinkId};
+use kempe_number::Number as _;
+use kempe_units::Dimension;
 
 use crate::acting::Acting;
 use crate::equilibrium::Equilibrium;
 pub use crate::equilibrium::FrictionOutcome;
-use crate::instant::Instant;
+use crate::instant::{Instant, Rates};
 use crate::number::ForceNumber;
 use crate::problem::Problem;
 use crate::virtual_power::{self, ByPower};
@@ -16,6 +18,10 @@ use crate::wrench::{self, Wrench};
 
 /// Part of the largest load in which the difference of both routes is counted at least.
 pub const FLOOR: f64 = 1e-3;
+
+/// A load that changes its sense within this way of the drive, by its rate there (in rad, or in mechanism sizes), is not
+/// held by friction but about to turn about.
+const SENSE_CHANGES: f64 = 0.25;
 
 /// What a joint or drive does to one of its links.
 #[derive(Clone, Copy, Debug)]
@@ -234,6 +240,33 @@ impl<'m, T: ForceNumber> Forces<'m, T> {
             wrench::add(&mut sum, wrench::opposite(self.joints_on(*link)));
         }
         sum
+    }
+}
+
+impl Forces<'_, Rates> {
+    /// Whether friction holds a drive against what acts on the mechanism, masses at rest: without friction the drive would
+    /// have to brake the motion at hand, with friction it has to drive it, and this is not only because the load is about
+    /// to change its sense, where any friction is enough.
+    pub(crate) fn holds_at_rest(&self, at: &Instant<Rates>, drive: usize) -> bool {
+        let Some(constraint) = self.drive_constraints.get(drive).copied().flatten() else {
+            return false;
+        };
+        let loads = self.applied_on_bodies.iter();
+        let needed: Vec<Wrench<Rates>> = loads.map(|w| wrench::opposite(*w)).collect();
+        let mut resting = self.equilibrium.clone();
+        let frictions = &self.acting.friction;
+        resting.solve(self.mechanism, &self.geometry, frictions, at, &needed);
+        let (row, speed) = (resting.row(constraint), at.drive_speeds[drive].value());
+        let holds =
+            resting.frictionless[row] * speed < 0.0 && resting.lambda[row].value() * speed > 0.0;
+        let load = virtual_power::project(&needed, &at.coefficients[drive]).value;
+        let per_drive = load.coefficient(1) / speed;
+        let typical = match self.mechanism.model.drives[drive].dimension {
+            Dimension::ANGLE => 1.0,
+            _ => self.geometry.value().size(self.mechanism),
+        };
+        let turns_about = load.value().abs() < SENSE_CHANGES * typical * per_drive.abs();
+        holds && !turns_about
     }
 }
 

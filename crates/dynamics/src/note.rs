@@ -289,7 +289,9 @@ pub(crate) fn notes(forces: &Forces<'_, Rates>, at: &Instant<Rates>) -> Vec<Forc
     }
     for (index, drive) in forces.drives.iter().enumerate() {
         let speed = at.drive_speeds[index].value();
-        if drive.frictionless * speed < 0.0 && drive.value.value() * speed > 0.0 {
+        let braked = drive.frictionless * speed < 0.0 && drive.value.value() * speed > 0.0;
+        // What the masses do on their way is no load: friction holds what pushes at rest too.
+        if braked && forces.holds_at_rest(at, index) {
             notes.push(ForceNote::SelfLocking(DriveId(index as u32)));
         }
     }
