@@ -17,6 +17,9 @@ const GAUSS: [(f64, f64); 8] = [
 const AGREED: f64 = 1e-14;
 /// Halvings at most, and so many more for every stretch: a kink takes about a hundred.
 const HALVINGS: (usize, usize) = (2000, 40);
+/// Where halving everything that is open leaves more than this part of all differences, and does so again, they are rounding
+/// of the functions: a jump, which is slowest, leaves a half.
+const LEFT_BY_ROUNDING: f64 = 0.7;
 /// A part this much narrower than the stretch that it came from is not halved further.
 const NARROWEST: f64 = 1e-15;
 /// The first and the last stretch are graded towards their ends in so many steps of this factor: a kink nearer to an end
@@ -108,6 +111,7 @@ pub(crate) fn integrate<const K: usize>(
         gaps.any(|(gap, size)| *gap > AGREED * size)
     };
     let mut left = HALVINGS.0 + HALVINGS.1 * stretches.len();
+    let (mut last, mut stalled) = (f64::INFINITY, false);
     loop {
         for k in 1..parts.len() {
             let (a, b) = (&parts[k - 1], &parts[k]);
@@ -130,6 +134,17 @@ pub(crate) fn integrate<const K: usize>(
         if halved == 0 || halved > left {
             break;
         }
+        let gaps = (parts.iter()).flat_map(|part| [Some(part.gap), part.seam]);
+        let gaps = gaps.flatten().map(|gap| {
+            let gaps = gap.iter().zip(sizes).map(|(gap, size)| gap / size);
+            gaps.filter(|gap| gap.is_finite()).fold(0.0, f64::max)
+        });
+        let all: f64 = gaps.sum();
+        let stalls = all > LEFT_BY_ROUNDING * last;
+        if stalls && stalled {
+            break;
+        }
+        (last, stalled) = (all, stalls);
         left -= halved;
         let mut finer: Vec<Part<K>> = Vec::with_capacity(parts.len() + halved);
         for (part, open) in parts.into_iter().zip(open) {
