@@ -11,6 +11,7 @@ mod open_loop;
 mod search;
 mod turns;
 
+pub use self::hints::{Standing, standing};
 pub use self::search::{ASSEMBLY_LIMIT, CLOSED};
 
 use std::borrow::Cow;
@@ -80,6 +81,8 @@ pub struct Assemblies {
     pub list: Vec<Assembly>,
     /// How many more there are when the sides are not asked for.
     pub rejected: usize,
+    /// Those, up to [`ASSEMBLY_LIMIT`].
+    pub others: Vec<Assembly>,
     /// Whether every assembly was found: all blocks were solved in closed form or by the complete method, no path was
     /// lost and no limit was met.
     pub complete: bool,

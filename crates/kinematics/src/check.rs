@@ -5,11 +5,12 @@ use crate::assur::{AssurGroup, assur_groups};
 use crate::drive_path::DrivePath;
 use crate::events::Event;
 use crate::four_bar::{FourBar, four_bars};
+use crate::hold::hold;
 use crate::mechanism::{BodyId, Mechanism, Source};
 use crate::mobility::{Mobility, mobility, state_at};
 use crate::motion::{Demand, EndReason, Motion, MotionError};
 use crate::plan::Plan;
-use crate::state::Design;
+use crate::state::{Branch, Design};
 use crate::watch::{Unwatched, Watch};
 
 /// A cylinder or slide is followed this many mechanism sizes from its start when its reach is asked for.
@@ -34,6 +35,8 @@ pub struct Findings {
     pub redundant: Vec<Source>,
     /// All assemblies at the start.
     pub assemblies: Assemblies,
+    /// Whether assemblies were looked for: with too few drives there is no place at which they could be counted.
+    pub searched: bool,
     /// How far the drive can go on this circuit.
     pub reach: Option<Reach>,
     /// Why there is no motion, if there is none.
@@ -80,6 +83,7 @@ pub fn check_watched(
         idle: plan.decomposition.idle.clone(),
         redundant: Vec::new(),
         assemblies: Assemblies::default(),
+        searched: true,
         reach: None,
         problem: None,
     };
@@ -106,6 +110,20 @@ pub fn check_watched(
         Err(problem) => {
             if let MotionError::CannotAssemble { assemblies, .. } = &problem {
                 findings.assemblies = (**assemblies).clone();
+            }
+            if matches!(
+                problem,
+                MotionError::NoDrive | MotionError::Undetermined { .. }
+            ) {
+                findings.searched = false;
+                // The bodies and what joins them are the same however they are held.
+                if let Some(held) = hold(mechanism, parameters, watch) {
+                    let coordinates = vec![0.0; mechanism.model.drives.len()];
+                    let state = state_at(mechanism, plan, &held.assembly.poses, &coordinates);
+                    let mut branch = Branch::neutral(mechanism, plan);
+                    branch.near = held.assembly.branch.near;
+                    findings.mobility = mobility(mechanism, design, Some((&state, &branch)));
+                }
             }
             findings.problem = Some(problem);
         }

@@ -18,6 +18,7 @@ pub mod evidence;
 pub mod force_source;
 pub mod four_bar;
 pub mod geometry;
+pub mod hold;
 pub mod homotopy;
 mod known;
 mod krawczyk;

@@ -11,6 +11,7 @@ use kempe_number::math::hypot;
 use kempe_units::Dimension;
 
 use crate::findings::source_name;
+use crate::hints;
 use crate::unit::{Units, shown};
 
 /// A motion that does not start, as a diagnostic over the model file.
@@ -47,7 +48,20 @@ pub fn cannot_move(
                     ),
                 )
                 .help("change a side, or leave the sides out to see what `kempe check` finds");
-                return model.assembly.iter().fold(told, |d, hint| d.at(hint.span.clone(), ""));
+                let told = match hints::nearest(mechanism, design, assemblies) {
+                    Some(lies) => told.note(format!("the one that agrees with most of them has {lies}")),
+                    None => told,
+                };
+                let against = hints::contradiction(mechanism, design, assemblies);
+                let label = match against.len() {
+                    1 => "no assembly agrees with this",
+                    _ => "no assembly agrees with these together",
+                };
+                let labelled = against.iter().enumerate();
+                return labelled.fold(told, |d, (k, index)| {
+                    let span = model.assembly[*index].span.clone();
+                    d.at(span, if k == 0 { label } else { "" })
+                });
             }
             let step = assemblies.open_step.unwrap_or(0);
             let gap = gap(mechanism, plan, design, *at, step);

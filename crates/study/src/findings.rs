@@ -1,15 +1,16 @@
 //! What is to be known of a mechanism before it moves, in the names and units of its file.
 
-use kempe_kinematics::assemble::Shortfall;
+use kempe_kinematics::assemble::{Assemblies, Assembly, Shortfall};
 use kempe_kinematics::events::EventKind;
 use kempe_kinematics::mechanism::{BodyId, Source};
 use kempe_kinematics::{Design, EndReason, Findings, Mechanism, Plan};
-use kempe_model::{Diagnostic, Drive, Model, Rows, Study, StudyKind, value};
+use kempe_model::{Diagnostic, Drive, Model, Rows, Severity, Study, StudyKind, value};
 use kempe_units::Dimension;
 use serde::Serialize;
 
-use crate::alternatives::hints;
+use crate::alternatives;
 use crate::explain::{cannot_move, list};
+use crate::hints;
 use crate::prepared::Prepared;
 use crate::progress::{Ear, Progress, Silent};
 use crate::unit::Units;
@@ -41,12 +42,14 @@ pub struct Report {
     pub groups: Vec<Group>,
     /// Four-bar loops.
     pub four_bars: Vec<Grashof>,
-    /// Assemblies at the start that agree with the file.
-    pub assemblies: usize,
+    /// Assemblies at the start that agree with the file; unknown where drives are missing.
+    pub assemblies: Option<usize>,
     /// Assemblies that the file's sides reject.
     pub assemblies_rejected: usize,
     /// Whether all assemblies were found by complete methods.
     pub assemblies_complete: bool,
+    /// How the one was chosen where several agree, and hints that decide nothing, in words.
+    pub chosen: Vec<String>,
     /// How far the drive can go on its circuit, in words.
     pub reach: Option<String>,
     /// The same in SI: lowest and highest coordinate.
@@ -158,9 +161,10 @@ pub fn check_watched(model: &Model, progress: &mut dyn Progress) -> Report {
                 kind: f.kind.name().to_owned(),
             })
             .collect(),
-        assemblies: found.assemblies.list.len(),
+        assemblies: found.searched.then_some(found.assemblies.list.len()),
         assemblies_rejected: found.assemblies.rejected,
         assemblies_complete: found.assemblies.complete,
+        chosen: chosen(&mechanism, &design, &found.assemblies, &units),
         reach: None,
         reach_si: found.reach.as_ref().map(|r| r.range),
         events: Vec::new(),
@@ -210,7 +214,7 @@ pub fn check_watched(model: &Model, progress: &mut dyn Progress) -> Report {
             ));
         }
     }
-    report.diagnostics = diagnostics(model, &mechanism, &plan, &design, &found, &units);
+    report.diagnostics = diagnostics(model, &mechanism, &plan, &design, &found);
     report
 }
 
@@ -229,6 +233,43 @@ pub(crate) fn source_name(model: &Model, source: Source) -> String {
             .get(drive.index())
             .map_or(String::new(), |d| d.name.clone()),
     }
+}
+
+/// How the assembly was chosen where several agree with the file, and which hints decide nothing.
+fn chosen(
+    mechanism: &Mechanism,
+    design: &Design<f64>,
+    assemblies: &Assemblies,
+    units: &Units,
+) -> Vec<String> {
+    let mut told = Vec::new();
+    if let [first, second, ..] = assemblies.list.as_slice() {
+        let text = |a: &Assembly| units.text(a.distance, Dimension::LENGTH);
+        let decided = hints::near_decides(mechanism, design, assemblies);
+        told.push(match decided {
+            true => format!(
+                "the nearest to [assembly], {} from it; the next is {} away",
+                text(first),
+                text(second)
+            ),
+            false => "the first of them: nothing in [assembly] decides".to_owned(),
+        });
+    }
+    let idle = hints::idle(mechanism, design, assemblies).into_iter();
+    told.extend(idle.map(|(index, why)| {
+        format!(
+            "{} decides nothing: {why}",
+            hints::text(&mechanism.model, index)
+        )
+    }));
+    told
+}
+
+/// Whether the file leaves open which assembly is meant.
+fn open_choice(mechanism: &Mechanism, design: &Design<f64>, assemblies: &Assemblies) -> bool {
+    let hints = &mechanism.model.assembly;
+    let idle = hints::idle(mechanism, design, assemblies).len();
+    idle == hints.len() || !hints::near_decides(mechanism, design, assemblies)
 }
 
 /// What Kempe takes for granted where the file is silent.
@@ -305,13 +346,21 @@ fn diagnostics(
     plan: &Plan,
     design: &Design<f64>,
     found: &Findings,
-    units: &Units,
 ) -> Vec<Diagnostic> {
     let mut told = crate::findings_forces::problems(mechanism, design);
     if let Some(problem) = &found.problem {
-        told.push(cannot_move(mechanism, plan, design, problem));
+        let problem = cannot_move(mechanism, plan, design, problem);
+        // A file need not say what moves it: only what asks for a motion cannot do without.
+        told.push(match problem.code {
+            "no-drive" => Diagnostic {
+                severity: Severity::Warning,
+                ..problem
+            },
+            _ => problem,
+        });
     }
-    if let (Some(rank), None) = (found.mobility.by_rank, &found.problem) {
+    let whole = found.problem.is_none() || !found.searched;
+    if let (Some(rank), true) = (found.mobility.by_rank, whole) {
         let free = rank.saturating_sub(found.idle.len());
         if free < found.drives {
             told.push(
@@ -350,53 +399,49 @@ fn diagnostics(
             ),
         ));
     }
-    if found.assemblies.list.len() > 1 {
-        let near = found.assemblies.list.first().map(|a| a.distance);
-        let decided = match near {
-            Some(distance)
-                if model
-                    .assembly
-                    .iter()
-                    .any(|h| !matches!(h.kind, kempe_model::HintKind::Side { .. })) =>
-            {
-                format!(
-                    "the one nearest to [assembly] was chosen, {} from it",
-                    units.text(distance, Dimension::LENGTH)
-                )
-            }
-            _ => "the first was chosen".to_owned(),
+    let open = open_choice(mechanism, design, &found.assemblies);
+    if found.assemblies.list.len() > 1 && open {
+        let agree = match model.assembly.is_empty() {
+            true => "fit the file",
+            false => "agree with the file",
         };
         let told_now = Diagnostic::warning(
             "several-assemblies",
             format!(
-                "{} assemblies agree with the file: {decided}",
+                "{} assemblies {agree}: the first was chosen",
                 found.assemblies.list.len()
             ),
         );
-        // A place near which things are is an answer; nothing said is a question.
-        if model.assembly.is_empty() {
-            let lines = hints(mechanism, plan, design, &found.assemblies.list);
-            let help = match lines.is_empty() {
-                true => {
-                    "say under [assembly] near which angle a link is meant: rocker = { near = \"30 deg\" }"
-                }
-                false => "write the line of the one that is meant under [assembly]",
-            };
-            let lines = lines.into_iter().enumerate();
-            let told_now = lines.fold(told_now, |told, (k, line)| match k {
-                0 => told.note(format!("the first: {line}")),
-                _ => told.note(format!("number {}: {line}", k + 1)),
-            });
-            told.push(told_now.help(help));
-        }
+        let lines = alternatives::hints(mechanism, plan, design, &found.assemblies.list);
+        let help = match (lines.is_empty(), model.assembly.is_empty()) {
+            (true, _) => {
+                "say under [assembly] near which angle a link is meant: rocker = { near = \"30 deg\" }"
+            }
+            (false, true) => "write the line of the one that is meant under [assembly]",
+            (false, false) => "write the line of the one that is meant under [assembly] too",
+        };
+        let lines = lines.into_iter().enumerate();
+        let told_now = lines.fold(told_now, |told, (k, line)| match k {
+            0 => told.note(format!("the first: {line}")),
+            _ => told.note(format!("number {}: {line}", k + 1)),
+        });
+        let idle = hints::idle(mechanism, design, &found.assemblies).into_iter();
+        let told_now = idle.fold(told_now, |told, (index, why)| {
+            let span = model.assembly[index].span.clone();
+            told.at(span, format!("decides nothing: {why}"))
+        });
+        told.push(told_now.help(help));
     }
-    if let (Some(shortfall), None) = (found.assemblies.shortfall, &found.problem) {
+    // Where hints have chosen one, what may be missing is not it.
+    if let (Some(shortfall), None, true) = (found.assemblies.shortfall, &found.problem, open) {
         let why = match shortfall {
             Shortfall::Searched => "a group was searched by trial",
             Shortfall::Scanned => {
                 "a group with a gear or rack was followed along its curves, and a short one can be overlooked"
             }
-            Shortfall::LostPath => "two assemblies of a group meet here, or all but",
+            Shortfall::LostPath => {
+                "positions of a group coincide at this start, or so nearly that not all could be told apart, as where links lie in line"
+            }
             Shortfall::Exhausted => "a group has more of them than could be followed",
             Shortfall::TooMany => "there are too many to list",
         };
@@ -405,7 +450,7 @@ fn diagnostics(
                 "assemblies-incomplete",
                 format!("some assemblies may be missing: {why}"),
             )
-            .help("where the one that is meant is not found, say where its points are: [assembly] C = { near = [x, y] }"),
+            .help("say where points of the one that is meant are, [assembly] C = { near = [x, y] }: it is looked for there too; or start the drive a little elsewhere"),
         );
     }
     if let Some(reach) = &found.reach {

@@ -64,10 +64,14 @@ impl Report {
         } else {
             "perhaps not all of them found"
         };
-        let mut facts = vec![(
-            "Assemblies".to_owned(),
-            format!("{} fit the file{others} ({complete})", self.assemblies),
-        )];
+        let assemblies = match self.assemblies {
+            Some(count) => format!("{count} fit the file{others} ({complete})"),
+            None => {
+                "unknown: they are counted at a place of the drives, and one is missing".to_owned()
+            }
+        };
+        let mut facts = vec![("Assemblies".to_owned(), assemblies)];
+        facts.extend((self.chosen.iter()).map(|c| ("Chosen".to_owned(), c.clone())));
         if let Some(reach) = &self.reach {
             facts.push(("Reach".to_owned(), reach.clone()));
         }

@@ -43,6 +43,7 @@ mod findings_forces;
 mod findings_text;
 mod force_columns;
 mod force_notes;
+mod hints;
 mod motion;
 mod pose;
 mod prepared;

@@ -1,5 +1,7 @@
 //! One pose at given coordinates of the drives, reached from the start without leaving the branch.
 
+use kempe_kinematics::Unwatched;
+use kempe_kinematics::hold::hold;
 use kempe_model::{Diagnostic, Law, LawPiece, Model, MotionStudy, RiseLaw, Rows, Severity};
 use kempe_units::{Dimension, Expr, Issue, Resolver, Span, check_as, nearest, parse};
 
@@ -221,6 +223,14 @@ fn drives_text(model: &Model) -> String {
 pub fn pose_at(model: &Model, settings: &[Setting]) -> Result<(Frame, String), Vec<Diagnostic>> {
     let parameters: Vec<f64> = model.parameter_values();
     let units = Units::of(model);
+    let held;
+    let model = match with_held(model, &parameters) {
+        Some(with_drives) => {
+            held = with_drives;
+            &held
+        }
+        None => model,
+    };
     let mut moved = model.clone();
     moved.measures.clear();
     let study = |rows| MotionStudy {
@@ -276,6 +286,16 @@ fn start_text(model: &Model, units: &Units) -> String {
         format!("{} = {}", drive.name, units.text(start, drive.dimension))
     });
     places.collect::<Vec<_>>().join(", ")
+}
+
+/// The model with its missing drives held, where it lacks some and a pose was found.
+fn with_held(model: &Model, parameters: &[f64]) -> Option<Model> {
+    let Prepared {
+        mechanism, plan, ..
+    } = Prepared::new(model);
+    let lacks = model.drives.is_empty() || !plan.decomposition.undetermined.is_empty();
+    let held = lacks.then(|| hold(&mechanism, parameters, &mut Unwatched))??;
+    Some(held.model)
 }
 
 /// The pose of the motion at a time, s.

@@ -249,7 +249,10 @@ fn check_tells_mobility_groups_and_reach() {
     assert_eq!((report.mobility_count, report.mobility_rank), (1, Some(1)));
     assert_eq!(report.four_bars[0].kind, "crank-rocker");
     assert_eq!(report.reach.as_deref(), Some("motor turns fully"));
-    assert_eq!((report.assemblies, report.assemblies_rejected), (1, 1));
+    assert_eq!(
+        (report.assemblies, report.assemblies_rejected),
+        (Some(1), 1)
+    );
     assert!(!report.has_findings(), "{:?}", report.diagnostics);
     let text = report.to_text();
     assert!(text.contains("RRR dyad, class II, closed form"), "{text}");
@@ -624,4 +627,81 @@ fn a_change_point_at_zero_is_at_zero_and_rows_are_told() {
         said.contains("study t       motion, a row every 0.005 s"),
         "{said}"
     );
+}
+
+/// The sides that leave nothing are named, and no other.
+#[test]
+fn only_the_sides_that_contradict_are_underlined() {
+    let text = FOUR_BAR.replace(
+        "C = \"left of B -> D\"",
+        "P = { near = [30, 20] }\nC = \"left of B -> D\"\nD = \"left of B -> C\"\nrocker = { near = 60 }",
+    );
+    let (found, text) = fails(&text);
+    assert_eq!(found[0].code, "cannot-assemble");
+    assert_eq!(found[0].labels.len(), 2, "{text}");
+    assert!(
+        text.contains("no assembly agrees with these together"),
+        "{text}"
+    );
+    assert!(
+        text.contains("has D right of B -> C") || text.contains("has C right of B -> D"),
+        "{text}"
+    );
+}
+
+/// A side of a driven point leaves the choice as open as no side at all.
+#[test]
+fn a_hint_that_decides_nothing_asks_as_if_it_were_not_there() {
+    let hinted = |hint: &str| check(&model(&FOUR_BAR.replace("C = \"left of B -> D\"", hint)));
+    for (hint, why) in [
+        ("B = \"left of A -> D\"", "B lies on A -> D here"),
+        ("D = \"right of B -> A\"\nB = \"left of A -> D\"", "lies on"),
+    ] {
+        let report = hinted(hint);
+        assert_eq!(report.assemblies, Some(2));
+        let told = report.diagnostics.iter();
+        let told: Vec<_> = told.filter(|d| d.code == "several-assemblies").collect();
+        assert_eq!(told.len(), 1, "{hint}");
+        assert_eq!(told[0].notes.len(), 2);
+        assert!(told[0].labels[0].text.contains(why), "{:?}", told[0].labels);
+        assert!(
+            report.to_text().contains("decides nothing"),
+            "{}",
+            report.to_text()
+        );
+    }
+    // A place decides, and the report says by how much.
+    let report = hinted("C = { near = [40, 30] }");
+    assert!(!report.has_findings(), "{:?}", report.diagnostics);
+    assert!(
+        report.chosen[0].contains("the nearest to [assembly]"),
+        "{:?}",
+        report.chosen
+    );
+}
+
+/// Mobility and a picture need no drive.
+#[test]
+fn a_file_without_drives_has_a_rank_and_a_pose() {
+    let start = FOUR_BAR.find("[drives]").unwrap();
+    let end = start
+        + FOUR_BAR[start..]
+            .find("\n[")
+            .map_or(FOUR_BAR.len() - start, |k| k + 1);
+    let text = format!("{}{}", &FOUR_BAR[..start], &FOUR_BAR[end..]);
+    let bare = model(&text);
+    assert!(bare.drives.is_empty());
+    let report = check(&bare);
+    assert_eq!(report.mobility_rank, Some(1));
+    assert_eq!(report.assemblies, None);
+    assert!(!report.has_errors(), "{:?}", report.diagnostics);
+    let (frame, _) = pose_at(&bare, &[]).unwrap();
+    let at = |name: &str| frame.points[bare.points.iter().position(|p| p.name == name).unwrap()];
+    let apart = |a: &str, b: &str| {
+        let (a, b) = (at(a), at(b));
+        ((a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2)).sqrt()
+    };
+    for (a, b, length) in [("A", "B", 0.02), ("B", "C", 0.05), ("D", "C", 0.04)] {
+        assert!((apart(a, b) - length).abs() < 1e-12, "{a} {b}");
+    }
 }

@@ -11,6 +11,65 @@ use crate::pose::{Pose, cross, sub};
 /// Side hints are not held against a point closer to the line than this, in sizes of the mechanism.
 const ON_THE_LINE: f64 = 1e-9;
 
+/// How an assembly stands to a side that a file asks for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Standing {
+    /// The point lies on that side.
+    Holds,
+    /// It lies on the other.
+    Fails,
+    /// It lies on the line, or the line has no direction: neither side is meant.
+    OnTheLine,
+}
+
+/// How poses stand to a hint; `None` for hints that ask for no side.
+pub fn standing(
+    mechanism: &Mechanism,
+    geometry: &Geometry<f64>,
+    poses: &[Pose<f64>],
+    hint: &HintKind,
+) -> Option<Standing> {
+    let &HintKind::Side {
+        point,
+        side,
+        from,
+        to,
+    } = hint
+    else {
+        return None;
+    };
+    let [from, to, point] = [from, to, point].map(|p| mechanism.any_marker(p));
+    let size = geometry.size(mechanism);
+    Some(on_side(
+        geometry,
+        poses,
+        [from?, to?, point?],
+        side.sign(),
+        size,
+    ))
+}
+
+/// On which side of a directed line a point lies; `sign` is that of the side asked for.
+fn on_side(
+    geometry: &Geometry<f64>,
+    poses: &[Pose<f64>],
+    points: [Marker; 3],
+    sign: f64,
+    size: f64,
+) -> Standing {
+    let [from, to, p] = points.map(|m| poses[m.body.index()].place(geometry.marker(m)));
+    let line = sub(to, from);
+    let side = cross(line, sub(p, from)) * sign;
+    let least = ON_THE_LINE * size * math::hypot(line[0], line[1]);
+    if side > least {
+        Standing::Holds
+    } else if side < -least {
+        Standing::Fails
+    } else {
+        Standing::OnTheLine
+    }
+}
+
 /// A file's hints, evaluated.
 pub(super) struct Hints<'a> {
     mechanism: &'a Mechanism,
@@ -93,12 +152,8 @@ impl<'a> Hints<'a> {
     pub fn sides_hold(&self, step: usize, poses: &[Pose<f64>]) -> bool {
         let mut ready = self.sides.iter().filter(|side| side.after_step == step);
         ready.all(|check| {
-            let [from, to, p] = check
-                .points
-                .map(|m| poses[m.body.index()].place(self.geometry.marker(m)));
-            let line = sub(to, from);
-            let side = cross(line, sub(p, from)) * check.sign;
-            side >= -ON_THE_LINE * self.size * math::hypot(line[0], line[1])
+            let found = on_side(self.geometry, poses, check.points, check.sign, self.size);
+            found != Standing::Fails
         })
     }
 

@@ -43,6 +43,7 @@ pub(super) struct Search<'a> {
     pub opened: Vec<(usize, Vec<Vec<Pose<f64>>>)>,
     found: Vec<Assembly>,
     rejected: usize,
+    others: Vec<Assembly>,
     trials: usize,
     furthest: usize,
 }
@@ -71,6 +72,7 @@ impl<'a> Search<'a> {
             opened: Vec::new(),
             found: Vec::new(),
             rejected: 0,
+            others: Vec::new(),
             trials: 0,
             furthest: 0,
         }
@@ -85,15 +87,13 @@ impl<'a> Search<'a> {
         if self.stopped {
             return None;
         }
-        for assembly in &mut self.found {
-            assembly.distance = self.hints.distance(&assembly.poses);
-        }
         // A stable sort: where the hints say nothing, the order of the search decides, left before right.
         self.found.sort_by(|a, b| a.distance.total_cmp(&b.distance));
         let open_step = self.found.is_empty().then_some(self.furthest);
         Some(Assemblies {
             list: self.found,
             rejected: self.rejected,
+            others: self.others,
             complete: self.shortfall.is_none(),
             shortfall: self.shortfall,
             paths: self.paths,
@@ -142,15 +142,19 @@ impl<'a> Search<'a> {
                 return;
             }
         }
+        let assembly = Assembly {
+            branch,
+            distance: self.hints.distance(&state.poses),
+            poses: state.poses,
+            turns: self.design.geometry.turns.clone(),
+        };
         if wanted {
-            self.found.push(Assembly {
-                branch,
-                poses: state.poses,
-                distance: 0.0,
-                turns: self.design.geometry.turns.clone(),
-            });
+            self.found.push(assembly);
         } else {
             self.rejected += 1;
+            if self.others.len() < ASSEMBLY_LIMIT {
+                self.others.push(assembly);
+            }
         }
     }
 

@@ -1,0 +1,164 @@
+//! What the hints of a file decide: which of them do nothing, which contradict each other, and whether one assembly is left.
+
+use kempe_kinematics::assemble::{Assemblies, Assembly, Standing, standing};
+use kempe_kinematics::{Design, Mechanism};
+use kempe_model::{HintKind, Model, Side};
+
+use crate::explain::list;
+
+/// Two assemblies are as near to the hints when their distances differ by less than this part of the mechanism's size.
+const AS_NEAR: f64 = 1e-6;
+/// Contradictions of up to so many sides are looked for; of more all are named.
+const SMALL: usize = 4;
+
+/// How one assembly stands to every hint of the file, in their order.
+fn standings(
+    mechanism: &Mechanism,
+    design: &Design<f64>,
+    assembly: &Assembly,
+) -> Vec<Option<Standing>> {
+    let hints = mechanism.model.assembly.iter();
+    hints
+        .map(|hint| standing(mechanism, &design.geometry, &assembly.poses, &hint.kind))
+        .collect()
+}
+
+/// The sides that decide nothing, by their place in the file, each with the reason.
+pub(crate) fn idle(
+    mechanism: &Mechanism,
+    design: &Design<f64>,
+    assemblies: &Assemblies,
+) -> Vec<(usize, String)> {
+    let model = &mechanism.model;
+    let all: Vec<Vec<Option<Standing>>> = (assemblies.list.iter().chain(&assemblies.others))
+        .map(|assembly| standings(mechanism, design, assembly))
+        .collect();
+    let idle = |index: usize| {
+        let mut found = all.iter().filter_map(|s| s.get(index).copied().flatten());
+        let first = found.next()?;
+        if first == Standing::Fails || found.any(|s| s == Standing::Fails) {
+            return None;
+        }
+        let lies = all
+            .iter()
+            .any(|s| s.get(index) == Some(&Some(Standing::OnTheLine)));
+        Some(match (lies, parts(model, index)) {
+            (true, Some((point, _, line))) => format!("{point} lies on {line} here"),
+            _ => "every assembly agrees with it".to_owned(),
+        })
+    };
+    (0..model.assembly.len())
+        .filter_map(|index| Some((index, idle(index)?)))
+        .collect()
+}
+
+/// Whether places and angles near which things are leave one assembly only.
+pub(crate) fn near_decides(
+    mechanism: &Mechanism,
+    design: &Design<f64>,
+    assemblies: &Assemblies,
+) -> bool {
+    let size = design.geometry.size(mechanism);
+    match assemblies.list.as_slice() {
+        [first, second, ..] => second.distance - first.distance > AS_NEAR * size,
+        _ => true,
+    }
+}
+
+/// The smallest set of sides that no assembly agrees with, by their place in the file.
+pub(crate) fn contradiction(
+    mechanism: &Mechanism,
+    design: &Design<f64>,
+    assemblies: &Assemblies,
+) -> Vec<usize> {
+    let fails: Vec<Vec<usize>> = (assemblies.others.iter())
+        .map(|assembly| failing(mechanism, design, assembly))
+        .collect();
+    let mut sides: Vec<usize> = fails.iter().flatten().copied().collect();
+    sides.sort_unstable();
+    sides.dedup();
+    let excluded = |set: &[usize]| fails.iter().all(|f| f.iter().any(|i| set.contains(i)));
+    (1..=SMALL.min(sides.len()))
+        .find_map(|count| chosen(&sides, count, &mut Vec::new(), &excluded))
+        .unwrap_or(sides)
+}
+
+/// The first choice of `count` of the `sides` that is `good`.
+fn chosen(
+    sides: &[usize],
+    count: usize,
+    taken: &mut Vec<usize>,
+    good: &dyn Fn(&[usize]) -> bool,
+) -> Option<Vec<usize>> {
+    if count == 0 {
+        return good(taken).then(|| taken.clone());
+    }
+    for (k, side) in sides.iter().enumerate() {
+        taken.push(*side);
+        let found = chosen(&sides[k + 1..], count - 1, taken, good);
+        taken.pop();
+        if found.is_some() {
+            return found;
+        }
+    }
+    None
+}
+
+/// The sides with which an assembly does not agree.
+fn failing(mechanism: &Mechanism, design: &Design<f64>, assembly: &Assembly) -> Vec<usize> {
+    let standings = standings(mechanism, design, assembly).into_iter();
+    standings
+        .enumerate()
+        .filter(|(_, s)| *s == Some(Standing::Fails))
+        .map(|(index, _)| index)
+        .collect()
+}
+
+/// How the assembly lies that agrees with most of the hints: `D left of A -> C`.
+pub(crate) fn nearest(
+    mechanism: &Mechanism,
+    design: &Design<f64>,
+    assemblies: &Assemblies,
+) -> Option<String> {
+    let others = assemblies.others.iter();
+    let fails = others.map(|assembly| failing(mechanism, design, assembly));
+    let fewest = fails.min_by_key(Vec::len)?;
+    let lies: Vec<String> = (fewest.into_iter())
+        .filter_map(|index| {
+            let (point, side, line) = parts(&mechanism.model, index)?;
+            let other = if side == "left" { "right" } else { "left" };
+            Some(format!("{point} {other} of {line}"))
+        })
+        .collect();
+    Some(list(&lies))
+}
+
+/// A side in words: its point, `left` or `right`, its line.
+fn parts(model: &Model, index: usize) -> Option<(&str, &'static str, String)> {
+    let HintKind::Side {
+        point,
+        side,
+        from,
+        to,
+    } = model.assembly.get(index)?.kind
+    else {
+        return None;
+    };
+    let name = |p: kempe_model::PointId| Some(model.points.get(p.index())?.name.as_str());
+    let side = match side {
+        Side::Left => "left",
+        Side::Right => "right",
+    };
+    Some((
+        name(point)?,
+        side,
+        format!("{} -> {}", name(from)?, name(to)?),
+    ))
+}
+
+/// A hint in words: `B = left of A -> D`.
+pub(crate) fn text(model: &Model, index: usize) -> String {
+    parts(model, index).map_or_else(String::new, |(point, side, line)| {
+        format!("{point} = \"{side} of {line}\"")
+    })
+}
