@@ -357,6 +357,33 @@ motor = { turns = "arm", from = "0 deg", to = "-60 deg", speed = "1 rad/s" }
     );
 }
 
+/// Where a drive's torque passes through zero, as its masses or a spring take turns, any friction is more than it: no lock.
+#[test]
+fn a_torque_that_changes_its_sense_is_not_locked() {
+    let text = SLIDER_CRANK
+        .replace(
+            "from = \"20 deg\", to = \"160 deg\", speed = \"1 rad/s\"",
+            "speed = \"300 rpm\"",
+        )
+        .replace("{ C = [0, 0] }", "{ C = [0, 0], mass = \"2 kg\" }");
+    let angles: Vec<f64> = (0..360).map(|k| f64::from(k).to_radians()).collect();
+    let spring = "\n[springs]\nk = { between = \"A-C\", stiffness = \"5 N/mm\", free = 0.3 }\n";
+    for extra in ["", spring] {
+        let mut model = model(&format!("{text}{extra}"));
+        let pins = ["A", "B", "C"].map(|name| FrictionAt::Pin(point(&model, name)));
+        for pin in pins {
+            model.actions.friction.push(friction(pin, 0.1, Some(0.02)));
+        }
+        let rows = rows(&model, &[drive()], &angles);
+        let torques: Vec<f64> = rows.iter().map(|r| r.sample.values[0]).collect();
+        assert!(torques.windows(2).any(|w| w[0] * w[1] < 0.0), "{torques:?}");
+        for row in &rows {
+            let locks = |n: &ForceNote| matches!(n, ForceNote::SelfLocking(_));
+            assert!(!row.notes.iter().any(locks), "{:?}", row.sample.coordinates);
+        }
+    }
+}
+
 /// Pressure, capacity and notes of the hitch's cylinder, and a motor that is too weak.
 #[test]
 fn actuators() {

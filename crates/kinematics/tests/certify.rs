@@ -38,7 +38,7 @@ fn outside(boxes: &[Pose<Interval>], poses: &[Pose<f64>], size: f64) -> f64 {
 
 fn plain(motion: &Motion<'_>, p: f64) -> Vec<Pose<f64>> {
     let mut solver = motion.solver();
-    motion.solve(motion.design, p, &mut solver);
+    motion.solve(&motion.design, p, &mut solver);
     solver.state.poses
 }
 

@@ -32,7 +32,7 @@ fn numbers<T: Number>(poses: &[Pose<T>], size: f64) -> Vec<T> {
 
 fn plain_at(motion: &Motion<'_>, p: f64) -> Vec<f64> {
     let mut solver = motion.solver::<f64>();
-    motion.solve(motion.design, p, &mut solver);
+    motion.solve(&motion.design, p, &mut solver);
     numbers(&solver.state.poses, motion.size())
 }
 
