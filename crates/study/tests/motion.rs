@@ -683,13 +683,16 @@ fn a_hint_that_decides_nothing_asks_as_if_it_were_not_there() {
 /// Mobility and a picture need no drive.
 #[test]
 fn a_file_without_drives_has_a_rank_and_a_pose() {
-    let start = FOUR_BAR.find("[drives]").unwrap();
-    let end = start
-        + FOUR_BAR[start..]
-            .find("\n[")
-            .map_or(FOUR_BAR.len() - start, |k| k + 1);
-    let text = format!("{}{}", &FOUR_BAR[..start], &FOUR_BAR[end..]);
-    let bare = model(&text);
+    let text = "units = { length = \"mm\" }
+[links]
+frame   = { A = [0, 0], D = [60, 0] }
+crank   = { A-B = 20 }
+coupler = { B-C = 50 }
+rocker  = { D-C = 40 }
+[assembly]
+C = \"left of B -> D\"
+";
+    let bare = model(text);
     assert!(bare.drives.is_empty());
     let report = check(&bare);
     assert_eq!(report.mobility_rank, Some(1));
