@@ -43,13 +43,13 @@ pub(super) fn counted_turns(
         if alone[body] == 1 || meshed[body] {
             continue;
         }
-        let hints = model.assembly.iter().filter_map(|hint| match &hint.kind {
+        let mut hints = model.assembly.iter().filter_map(|hint| match &hint.kind {
             HintKind::NearAngle { link: of, angle } if of.index() == link => {
                 Some(kempe_model::value(angle, &parameters))
             }
             _ => None,
         });
-        let off = angle(link, &turns) - hints.last().unwrap_or(0.0);
+        let off = angle(link, &turns) - hints.next_back().unwrap_or(0.0);
         turns[link] -= TAU * ((off - PI - HALF_TURN) / TAU).ceil();
     }
     // A driven angle is what its drive says; that against which it is driven may be driven itself.
