@@ -6,8 +6,10 @@
 
 mod geometric;
 mod in_time;
+mod named;
 mod needs;
 
+pub use self::named::NamedSeries;
 pub use self::needs::{order_of, visit_leaves};
 
 use kempe_model::{DriveId, ForceMeasure, Leaf, Measure, PointId, PoseMeasure, Statistic};
@@ -72,6 +74,8 @@ pub struct Moment<'a, B> {
     pub forces: Option<Forces<'a, B>>,
     /// Values of the statistics that occur, in SI.
     pub statistics: &'a [(Statistic, Measure, B)],
+    /// Named measures that were evaluated here already.
+    pub named: NamedSeries<B>,
 }
 
 impl<B: Number> Moment<'_, B> {
@@ -92,7 +96,9 @@ impl<B: Number> Moment<'_, B> {
                 .get(id.index())
                 .map_or(Series::from_f64(f64::NAN), |value| Series::constant(*value)),
             Leaf::Named(index) => match self.mechanism.model.measures.get(*index) {
-                Some(named) => self.series(&named.measure, along),
+                Some(named) => {
+                    (self.named).or_evaluate(*index, along, || self.series(&named.measure, along))
+                }
                 None => Series::from_f64(f64::NAN),
             },
             Leaf::Drive(drive) => match along {

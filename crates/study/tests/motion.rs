@@ -708,3 +708,45 @@ C = \"left of B -> D\"
         assert!((apart(a, b) - length).abs() < 1e-12, "{a} {b}");
     }
 }
+
+#[test]
+fn measures_that_name_each_other_many_times_over_are_evaluated_once() {
+    let mut named =
+        "m0 = \"x(P) / (1 mm)\"\nlargest = \"max(x(P))\"\nshare = \"max(x(P) / largest)\"\n"
+            .to_owned();
+    for k in 1..60 {
+        named += &format!("m{k} = \"m{0} + m{0}\"\n", k - 1);
+    }
+    let text = FOUR_BAR
+        .replace("[measures]\n", &format!("[measures]\n{named}"))
+        .replace("columns = [", "columns = [\"m0\", \"rate(m59)\", ");
+    let result = ran(&text);
+    let column = |name: &str| &result.table.column(name).expect("a column").values;
+    let times = 2f64.powi(59);
+    for (m0, (slope, rate)) in column("m0")
+        .iter()
+        .zip(column("rate(x(P))").iter().zip(column("rate(m59)")))
+    {
+        assert!(
+            m0.is_finite() && (rate / times - slope).abs() < 1e-9,
+            "{rate} {slope}"
+        );
+    }
+    // A number over the motion may hold another one.
+    let share = result
+        .scalars
+        .iter()
+        .find(|s| s.name == "share")
+        .expect("a number");
+    assert_eq!(share.value, 1.0);
+    let found = kempe_study::sensitivities(&model(&text), None, &mut Silent).expect("derivatives");
+    let slope = |name: &str| {
+        let measure = found
+            .measures
+            .iter()
+            .find(|m| m.name == name)
+            .expect("a measure");
+        measure.derivatives[0].value
+    };
+    assert!((slope("m59") / slope("m0") - times).abs() < 1e-9 * times);
+}

@@ -11,7 +11,8 @@ use crate::mechanism::Mechanism;
 /// # Errors
 /// A sentence for the user: a rate inside a kinematic coefficient, or an order beyond what the series carry.
 pub fn order_of(mechanism: &Mechanism, measure: &Measure) -> Result<u32, String> {
-    let order = depth(mechanism, measure, false)?;
+    let mut known = vec![[None; 2]; mechanism.model.measures.len()];
+    let order = depth(mechanism, measure, false, &mut known)?;
     if order as usize >= ORDER {
         return Err(format!(
             "needs derivatives of order {order}; the highest available is {}",
@@ -21,7 +22,13 @@ pub fn order_of(mechanism: &Mechanism, measure: &Measure) -> Result<u32, String>
     Ok(order)
 }
 
-fn depth(mechanism: &Mechanism, measure: &Measure, in_coefficient: bool) -> Result<u32, String> {
+/// The same without the bound. Named measures are looked at once, outside and inside of a coefficient: `known`.
+fn depth(
+    mechanism: &Mechanism,
+    measure: &Measure,
+    in_coefficient: bool,
+    known: &mut [[Option<u32>; 2]],
+) -> Result<u32, String> {
     let mut deepest = 0;
     for leaf in measure.leaves() {
         let own = match leaf {
@@ -31,16 +38,23 @@ fn depth(mechanism: &Mechanism, measure: &Measure, in_coefficient: bool) -> Resu
             }
             Leaf::Force(_) => 2,
             Leaf::Named(index) => match mechanism.model.measures.get(*index) {
-                Some(named) => depth(mechanism, &named.measure, in_coefficient)?,
+                Some(named) => match known[*index][usize::from(in_coefficient)] {
+                    Some(depth) => depth,
+                    None => {
+                        let found = depth(mechanism, &named.measure, in_coefficient, known)?;
+                        known[*index][usize::from(in_coefficient)] = Some(found);
+                        found
+                    }
+                },
                 None => 0,
             },
             Leaf::Rate(_, _) if in_coefficient => {
                 return Err("a rate in time has no derivative to a drive: take rate() of the coefficient instead".into());
             }
-            Leaf::Rate(inner, order) => order + depth(mechanism, inner, false)?,
-            Leaf::Coefficient(inner, _, order) => order + depth(mechanism, inner, true)?,
+            Leaf::Rate(inner, order) => order + depth(mechanism, inner, false, known)?,
+            Leaf::Coefficient(inner, _, order) => order + depth(mechanism, inner, true, known)?,
             Leaf::Over(_, inner) => {
-                depth(mechanism, inner, false)?;
+                depth(mechanism, inner, false, known)?;
                 0
             }
             Leaf::Pose(PoseMeasure::PathLength(_)) if in_coefficient => {
@@ -59,7 +73,9 @@ fn depth(mechanism: &Mechanism, measure: &Measure, in_coefficient: bool) -> Resu
                 | PoseMeasure::Curvature(_)
                 | PoseMeasure::CurvatureCenterX(_)
                 | PoseMeasure::CurvatureCenterY(_) => 2,
-                PoseMeasure::MechanicalAdvantage(inner, _) => 1 + depth(mechanism, inner, true)?,
+                PoseMeasure::MechanicalAdvantage(inner, _) => {
+                    1 + depth(mechanism, inner, true, known)?
+                }
                 _ => 0,
             },
         };
@@ -68,23 +84,36 @@ fn depth(mechanism: &Mechanism, measure: &Measure, in_coefficient: bool) -> Resu
     Ok(deepest)
 }
 
-/// Calls `f` for every leaf of a measure, inside rates, coefficients, statistics and named measures as well.
+/// Calls `f` for every leaf of a measure, inside rates, coefficients, statistics and named measures as well, the inner
+/// leaves first. A named measure is looked into once.
 pub fn visit_leaves(mechanism: &Mechanism, measure: &Measure, f: &mut impl FnMut(&Leaf)) {
+    let mut seen = vec![false; mechanism.model.measures.len()];
+    visit_unseen(mechanism, measure, &mut seen, f);
+}
+
+fn visit_unseen(
+    mechanism: &Mechanism,
+    measure: &Measure,
+    seen: &mut [bool],
+    f: &mut impl FnMut(&Leaf),
+) {
     for leaf in measure.leaves() {
-        f(leaf);
         match leaf {
             Leaf::Named(index) => {
-                if let Some(named) = mechanism.model.measures.get(*index) {
-                    visit_leaves(mechanism, &named.measure, f);
+                let named = mechanism.model.measures.get(*index);
+                if let (Some(named), Some(false)) = (named, seen.get(*index)) {
+                    seen[*index] = true;
+                    visit_unseen(mechanism, &named.measure, seen, f);
                 }
             }
-            Leaf::Rate(inner, _) | Leaf::Coefficient(inner, _, _) | Leaf::Over(_, inner) => {
-                visit_leaves(mechanism, inner, f);
-            }
-            Leaf::Pose(PoseMeasure::MechanicalAdvantage(inner, _)) => {
-                visit_leaves(mechanism, inner, f)
+            Leaf::Rate(inner, _)
+            | Leaf::Coefficient(inner, _, _)
+            | Leaf::Over(_, inner)
+            | Leaf::Pose(PoseMeasure::MechanicalAdvantage(inner, _)) => {
+                visit_unseen(mechanism, inner, seen, f);
             }
             _ => {}
         }
+        f(leaf);
     }
 }

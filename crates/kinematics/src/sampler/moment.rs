@@ -5,7 +5,7 @@ use kempe_number::Number;
 
 use super::Sampler;
 use crate::force_source::ForceSource;
-use crate::measure::{Along, Moment, Series, visit_leaves};
+use crate::measure::{Along, Moment, NamedSeries, Series, visit_leaves};
 use crate::trace::Path;
 
 impl<F: ForceSource> Sampler<'_, F> {
@@ -28,6 +28,8 @@ impl<F: ForceSource> Sampler<'_, F> {
         };
         let result = ask(&Moment {
             forces: with_forces.then_some(&answer as &dyn Fn(&_) -> _),
+            // What was evaluated before knew no forces.
+            named: NamedSeries::default(),
             ..moment
         });
         self.forces = forces;
@@ -70,6 +72,7 @@ impl<F: ForceSource> Sampler<'_, F> {
                 .collect(),
             forces: None,
             statistics: &self.statistics,
+            named: NamedSeries::default(),
         }
     }
 

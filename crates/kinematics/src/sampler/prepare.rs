@@ -37,9 +37,9 @@ impl<F: ForceSource> Sampler<'_, F> {
         let mut drives: Vec<DriveId> = Vec::new();
         let mut curved: Vec<PointId> = Vec::new();
         let motion = self.motion;
-        // What the forces ask for comes last, so that its statistics are found first.
+        // What the forces ask for comes first: measures of forces need its statistics.
         let inputs = self.forces.as_ref().map_or(&[][..], F::measures);
-        for measure in self.measures.iter().chain(inputs) {
+        for measure in inputs.iter().chain(&self.measures) {
             visit_leaves(motion.mechanism, measure, &mut |leaf| match leaf {
                 Leaf::Over(statistic, inner) => {
                     let entry = (*statistic, (**inner).clone());
@@ -79,8 +79,8 @@ impl<F: ForceSource> Sampler<'_, F> {
         for point in swept {
             self.swept.push(Swept::watched(motion, point, watch)?);
         }
-        // Inner statistics first: a measure that contains another is found before it.
-        for (statistic, measure) in statistics.into_iter().rev() {
+        // A statistic that another contains is found before it.
+        for (statistic, measure) in statistics {
             let value = over(self, statistic, &measure, watch)?;
             self.statistics.push((statistic, measure, value));
         }

@@ -5,7 +5,7 @@ use kempe_number::Number;
 
 use super::{Base, Held};
 use crate::drive_path::DrivePath;
-use crate::measure::{Along, Moment, Series, visit_leaves};
+use crate::measure::{Along, Moment, NamedSeries, Series, visit_leaves};
 use crate::motion::{Motion, Solver};
 use crate::pose::Pose;
 use crate::sampler::Sampler;
@@ -127,8 +127,8 @@ impl<'s, 'a> Varied<'s, 'a> {
                 _ => {}
             });
         }
-        // Inner statistics first.
-        for (statistic, measure) in statistics.into_iter().rev() {
+        // A statistic that another contains is found before it.
+        for (statistic, measure) in statistics {
             let value = self.over(statistic, &measure);
             self.statistics.push((statistic, measure, value));
         }
@@ -210,6 +210,7 @@ impl<'s, 'a> Varied<'s, 'a> {
             swept,
             forces: None,
             statistics: &self.statistics,
+            named: NamedSeries::default(),
         };
         moment.series(measure, Along::Time)
     }
