@@ -36,8 +36,8 @@ use kempe_number::{Interval, Number};
 
 use crate::blocks::Row;
 use crate::bridge::Side;
-use crate::geometry::{GearConstants, Geometry, LocalLine};
-use crate::krawczyk::{Curve, Middle, System, constant_pose};
+use crate::geometry::Geometry;
+use crate::krawczyk::{Curve, Middle, System};
 use crate::mechanism::BodyId;
 use crate::motion::{Motion, Solver};
 use crate::pose::Pose;
@@ -84,7 +84,9 @@ impl<'a> Certifier<'a> {
         let decomposition = &plan.decomposition;
         let design: Design<Interval> = motion.design_on();
         Self {
-            rich: constant(&design.geometry),
+            // Not computed as series: a triangle whose points lie in line would divide by the interval of its height, which
+            // holds zero.
+            rich: design.geometry.map(Curve::constant),
             design,
             side: motion.design_on(),
             system: System::whole(mechanism, plan),
@@ -131,33 +133,6 @@ impl<'a> Certifier<'a> {
             0 => Ok(()),
             rows => Err(NotProved::Redundant { rows }),
         }
-    }
-}
-
-/// Dimensions as series that do not change. They are not computed as series: a triangle whose points lie in line would
-/// then divide by the interval of its height, which holds zero.
-fn constant(geometry: &Geometry<Interval>) -> Geometry<Curve> {
-    let still = |v: &Interval| Curve::constant(*v);
-    let pair = |v: &[Interval; 2]| [still(&v[0]), still(&v[1])];
-    Geometry {
-        seats: geometry.seats.iter().map(constant_pose).collect(),
-        seat_angles: geometry.seat_angles.iter().map(still).collect(),
-        turns: geometry.turns.clone(),
-        markers: geometry.markers.iter().map(pair).collect(),
-        lines: (geometry.lines.iter())
-            .map(|line| LocalLine {
-                origin: pair(&line.origin),
-                direction: pair(&line.direction),
-            })
-            .collect(),
-        angles: geometry.angles.iter().map(pair).collect(),
-        gears: (geometry.gears.iter())
-            .map(|gear| GearConstants {
-                first: still(&gear.first),
-                second: still(&gear.second),
-                constant: still(&gear.constant),
-            })
-            .collect(),
     }
 }
 

@@ -25,7 +25,7 @@ mod tube;
 
 pub(crate) use self::block::enclose_block;
 pub(crate) use self::system::System;
-pub(crate) use self::tube::{Curve, Tube, constant_pose};
+pub(crate) use self::tube::{Curve, Tube};
 
 use kempe_number::{Interval, Number};
 

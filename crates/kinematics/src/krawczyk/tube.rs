@@ -134,7 +134,7 @@ impl System {
 }
 
 /// A pose that does not change.
-pub(crate) fn constant_pose(pose: &Pose<Interval>) -> Pose<Curve> {
+fn constant_pose(pose: &Pose<Interval>) -> Pose<Curve> {
     Pose {
         x: Jet::constant(pose.x),
         y: Jet::constant(pose.y),
