@@ -160,12 +160,10 @@ fn in_lanes<const W: usize, const ALL: bool>(
     out: &mut [&mut [f64]],
 ) -> usize {
     let (mechanism, order) = (batch.motion.mechanism, &batch.order);
-    let (plan, driven, rest) = (&order.plan, &order.driven, &order.rest);
+    let plan = &order.plan;
     let mut states = vec![State::<Lanes<W>>::new(mechanism, plan); STATES];
     let design = &batch.motion.design.lift::<Lanes<W>>();
-    let neutral = &Branch::neutral(mechanism, plan);
-    let fixed = order.fixed.iter().copied();
-    plan.solve_all::<_, ALL>(fixed, mechanism, design, neutral, &mut states);
+    order.solve_once(&order.fixed, mechanism, design, &mut states);
     let together = PREPARED.min(range.len()).div_ceil(W);
     let mut prepared = vec![design.clone(); together];
     let mut parameters = vec![Lanes::zero(); mechanism.model.parameters.len()];
@@ -197,14 +195,14 @@ fn in_lanes<const W: usize, const ALL: bool>(
                     };
                 }
             }
-            let branch = run[0].branch;
-            plan.solve_all::<_, ALL>(driven.iter().copied(), mechanism, design, branch, states);
+            order.solve_once(&order.driven, mechanism, design, states);
             for (row, design) in rows.clone().zip(&prepared) {
                 for target in &mut targets {
                     target.row = row;
                     target.wanted = all_lanes(W.min(range.len() - row));
                 }
-                plan.solve_all::<_, ALL>(rest.iter().copied(), mechanism, design, branch, states);
+                let rest = order.rest.iter().copied();
+                plan.solve_all::<_, ALL>(rest, mechanism, design, run[0].branch, states);
                 closed += write_places(batch, design, states, &targets, out);
             }
         }

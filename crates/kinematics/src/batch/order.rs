@@ -3,7 +3,9 @@
 use kempe_model::{Place, Scalar};
 
 use crate::mechanism::{BodyId, Marker, Mechanism, Spot};
+use crate::newton::PlanNumber;
 use crate::plan::{Plan, Step};
+use crate::state::{Branch, Design, State};
 
 /// A plan whose branch is signs alone, in the order in which a batch runs it.
 #[derive(Clone, Debug)]
@@ -16,6 +18,10 @@ pub(super) struct Order {
     pub driven: Vec<usize>,
     /// All other steps.
     pub rest: Vec<usize>,
+    /// All but the fixed ones.
+    pub moving: Vec<usize>,
+    /// For steps that have no assembly modes.
+    neutral: Branch,
     /// The moving bodies whose poses somebody looks at.
     pub wanted: Vec<usize>,
     /// The others, each as the index of its dyad's constants and the first of its own there.
@@ -30,6 +36,8 @@ impl Order {
             fixed: Vec::new(),
             driven: Vec::new(),
             rest: Vec::new(),
+            moving: Vec::new(),
+            neutral: Branch::neutral(mechanism, plan),
             wanted: (1..mechanism.bodies).collect(),
             spares: Vec::new(),
         };
@@ -48,8 +56,22 @@ impl Order {
             };
             list.push(index);
         }
+        it.moving = [&it.driven[..], &it.rest].concat();
         it.leave_out(mechanism, markers);
         it
+    }
+
+    /// Solves steps without assembly modes once for many poses. Called, so that the loops over poses stay small.
+    #[inline(never)]
+    pub(super) fn solve_once<T: PlanNumber>(
+        &self,
+        steps: &[usize],
+        mechanism: &Mechanism,
+        design: &Design<T>,
+        states: &mut [State<T>],
+    ) {
+        let steps = steps.iter().copied();
+        (self.plan).solve_all::<T, false>(steps, mechanism, design, &self.neutral, states);
     }
 
     /// Leaves out one body of every dyad where one carries none of the markers and no later step looks at it.

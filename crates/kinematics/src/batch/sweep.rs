@@ -49,9 +49,7 @@ fn sweep_lanes<T: Wide<W>, const W: usize, const M: usize>(
     let (mechanism, design) = (motion.mechanism, &motion.design.lift::<T>());
     let order = &batch.order;
     let mut states = held_states::<T>(motion, M);
-    let neutral = &Branch::neutral(mechanism, &order.plan);
-    let fixed = order.fixed.iter().copied();
-    (order.plan).solve_all::<T, false>(fixed, mechanism, design, neutral, &mut states);
+    order.solve_once(&order.fixed, mechanism, design, &mut states);
     let mut padded = [[0.0; W]; M];
     let (mut cursor, mut closed) = (0, 0);
     for (block, part) in parameters.chunks(M * W).enumerate() {
@@ -81,7 +79,7 @@ fn sweep_lanes<T: Wide<W>, const W: usize, const M: usize>(
         }
         while let Some(targets) = next_stretch(batch, at, &mut wanted, &mut cursor, columns) {
             let branch = &batch.stretches[cursor].branch;
-            let steps = order.driven.iter().chain(&order.rest).copied();
+            let steps = order.moving.iter().copied();
             (order.plan).solve_all::<T, false>(steps, mechanism, design, branch, states);
             closed += write_places(batch, design, states, &targets, columns);
         }
