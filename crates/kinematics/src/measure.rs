@@ -94,12 +94,12 @@ impl<B: Number> Moment<'_, B> {
             Leaf::Parameter(id) => self
                 .parameters
                 .get(id.index())
-                .map_or(Series::from_f64(f64::NAN), |value| Series::constant(*value)),
+                .map_or(undefined(), |value| Series::constant(*value)),
             Leaf::Named(index) => match self.mechanism.model.measures.get(*index) {
                 Some(named) => {
                     (self.named).or_evaluate(*index, along, || self.series(&named.measure, along))
                 }
-                None => Series::from_f64(f64::NAN),
+                None => undefined(),
             },
             Leaf::Drive(drive) => match along {
                 Along::Drive(d) if d == *drive => {
@@ -113,9 +113,7 @@ impl<B: Number> Moment<'_, B> {
                 _ => Series::constant(self.time),
             },
             // Forces are known to the crate that computes them; here they have no value.
-            Leaf::Force(measure) => self
-                .forces
-                .map_or(Series::from_f64(f64::NAN), |forces| forces(measure)),
+            Leaf::Force(measure) => self.forces.map_or(undefined(), |forces| forces(measure)),
             Leaf::Rate(measure, order) => (0..*order)
                 .fold(self.series(measure, Along::Time), |series, _| {
                     series.differentiate()
@@ -185,6 +183,11 @@ impl<B: Number> Moment<'_, B> {
         let geometric = self.geometric(measure, poses, along);
         self.along_time(geometric, along)
     }
+}
+
+/// A series of which nothing is known.
+fn undefined<B: Number>() -> Series<B> {
+    only_value(B::from_f64(f64::NAN))
 }
 
 /// A series of which only the value is known.

@@ -297,6 +297,37 @@ fn a_point_that_turns_back_has_no_curvature() {
     }
 }
 
+/// Towards a limit of its drive a point is fast, and its path bends as it does everywhere.
+#[test]
+fn a_path_has_its_curvature_close_to_a_limit() {
+    for (to, part) in [("139.999", 1e-9), ("139.9999", 1e-8), ("139.99999", 1e-6)] {
+        let text = format!(
+            "units = {{ length = \"mm\", angle = \"deg\" }}
+[links]
+frame = {{ A = [0, 0], F = [200, 0] }}
+crank = {{ A-B = 40 }}
+rod = {{ B-C = 100 }}
+block = {{ C = [0, 0] }}
+[joints]
+way = {{ slider = \"block\", at = \"C\", on = \"A -> F\" }}
+[drives]
+push = {{ slides = \"block\", from = 139.9, to = {to}, speed = 0.01 }}
+[assembly]
+B = \"left of A -> C\"
+[measures]
+k = \"curvature(B)\"
+still = \"curvature(F)\"
+rate = \"rate(curvature(F))\"
+"
+        );
+        for row in rows(&text, &[0.0, 0.5, 0.99, 1.0]) {
+            near(row.values[0], -25.0, part, to);
+            // Of what has no value the rate has none either.
+            assert!(row.values[1].is_nan() && row.values[2].is_nan(), "{row:?}");
+        }
+    }
+}
+
 /// A coupler that goes round in a circle without turning has its instant centre at infinity everywhere.
 #[test]
 fn the_instant_centre_of_a_translating_link_is_infinite() {

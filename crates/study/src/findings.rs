@@ -352,6 +352,10 @@ fn diagnostics(
         let problem = cannot_move(mechanism, plan, design, problem);
         // A file need not say what moves it: only what asks for a motion cannot do without.
         told.push(match problem.code {
+            "no-drive" if found.mobility.by_rank == Some(0) => {
+                Diagnostic::warning("no-drive", "nothing can move: the links hold each other")
+                    .help("a mechanism has a joint more, or a link less")
+            }
             "no-drive" => Diagnostic {
                 severity: Severity::Warning,
                 ..problem

@@ -3,7 +3,7 @@
 use kempe_model::{Line, LinkId, LinkPointRef, PointId, PoseMeasure};
 use kempe_number::{Number, math};
 
-use super::{Along, Moment, Series, only_value};
+use super::{Along, Moment, Series, only_value, undefined};
 use crate::pose::{Pose, cross, dot, left, sub};
 
 /// A speed, in mechanism sizes per typical change of the path, that is rounding.
@@ -11,6 +11,8 @@ const NO_SPEED: f64 = 1e-14;
 /// A point turns back where its speed is below this part of its acceleration (both per typical change of the path): nearer
 /// to the place of reversal than this the curvature of its path is rounding.
 const REVERSAL: f64 = 1e-6;
+/// ... and less than this speed, in the units of [`NO_SPEED`]: towards a limit of the drive both grow beyond all bounds.
+const SLOW: f64 = 1e-3;
 /// Links translate where their turning moves a mechanism size by less than this part of their sliding; a path is straight
 /// where a mechanism size is less than this part of its radius.
 const TRANSLATION: f64 = 1e-12;
@@ -97,7 +99,7 @@ impl<B: Number> Moment<'_, B> {
                         },
                     )
             }
-            _ => Series::from_f64(f64::NAN),
+            _ => undefined(),
         }
     }
 
@@ -105,7 +107,7 @@ impl<B: Number> Moment<'_, B> {
     pub(super) fn point(&self, poses: &[Pose<Series<B>>], point: PointId) -> [Series<B>; 2] {
         match self.mechanism.any_marker(point) {
             Some(marker) => poses[marker.body.index()].place(self.design.geometry.marker(marker)),
-            None => [Series::from_f64(f64::NAN); 2],
+            None => [undefined(); 2],
         }
     }
 
@@ -135,7 +137,7 @@ impl<B: Number> Moment<'_, B> {
                 Some(marker) => {
                     poses[marker.body.index()].place(self.design.geometry.marker(marker))
                 }
-                None => [Series::from_f64(f64::NAN); 2],
+                None => [undefined(); 2],
             }
         };
         let origin = marker(line.from);
@@ -166,7 +168,8 @@ impl<B: Number> Moment<'_, B> {
             let [x, y] = [0, 1].map(|k| p[k].derivative(order).value());
             math::hypot(x, y) * self.unit.powi(order as i32)
         };
-        size(1) <= NO_SPEED * self.size() || size(1) <= REVERSAL * size(2)
+        let speed = size(1) / self.size();
+        speed <= NO_SPEED || (speed <= SLOW && size(1) <= REVERSAL * size(2))
     }
 
     /// Instant centre of two links: the point where both have the same velocity. Infinite, in both coordinates, when they
@@ -195,7 +198,7 @@ impl<B: Number> Moment<'_, B> {
             )
         });
         match speeds.find(|(slide, turn, unit)| !(slide.max(*turn) * unit <= NO_SPEED * size)) {
-            None => [Series::from_f64(f64::NAN); 2],
+            None => [undefined(); 2],
             Some((slide, turn, _)) if turn <= TRANSLATION * slide => [infinite(); 2],
             Some(_) => [v[1] / w, -v[0] / w],
         }
@@ -204,7 +207,7 @@ impl<B: Number> Moment<'_, B> {
     /// Curvature of a path and its centre, from the first two derivatives along the path parameter; none where the point
     /// stands still, and an infinite centre where the path is straight.
     fn curvature(&self, p: [Series<B>; 2]) -> (Series<B>, [Series<B>; 2]) {
-        let nothing = Series::from_f64(f64::NAN);
+        let nothing = undefined();
         if self.is_still(p) {
             return (nothing, [nothing; 2]);
         }

@@ -3,7 +3,7 @@
 use kempe_model::{PointId, PoseMeasure};
 use kempe_number::Number;
 
-use super::{Moment, Series};
+use super::{Moment, Series, undefined};
 use crate::pose::dot;
 
 impl<B: Number> Moment<'_, B> {
@@ -43,7 +43,7 @@ impl<B: Number> Moment<'_, B> {
                     .map_or(B::from_f64(f64::NAN), |(_, length)| *length);
                 size(velocity(*p)).integrate(start)
             }
-            _ => Series::from_f64(f64::NAN),
+            _ => undefined(),
         }
     }
 }

@@ -422,7 +422,7 @@ fn step(cx: &mut Context<'_>, node: &Node, place: &str) -> Option<Rows> {
                     ),
                 ),
                 None => (
-                    "no single drive runs one way, so this is a step of what?".to_owned(),
+                    format!("{}, so this is a step of what?", not_one_way(cx)),
                     "give the step in time, step = \"1 ms\", or the number of rows, rows = 361"
                         .to_owned(),
                 ),
@@ -444,6 +444,17 @@ fn step(cx: &mut Context<'_>, node: &Node, place: &str) -> Option<Rows> {
         return None;
     }
     Some(rows)
+}
+
+/// Why no drive alone runs one way.
+fn not_one_way(cx: &Context<'_>) -> String {
+    let drives = &cx.model.drives;
+    let mut moving = (drives.iter()).filter(|d| d.law.duration(&cx.values) > 0.0);
+    match (moving.next(), moving.next()) {
+        (Some(_), Some(_)) => "several drives move".to_owned(),
+        (Some(one), None) => format!("the law of `{}` has several pieces", one.name),
+        _ => "no drive moves".to_owned(),
+    }
 }
 
 /// One degree of an angle, the 180th part of a length; evenly in time when not one drive alone runs one way.
