@@ -95,6 +95,10 @@ fn read_bytes(path: &Path) -> Result<Vec<u8>, Box<Diagnostic>> {
 /// The text of a table that a model file names, from the file's folder.
 pub fn read_table(folder: &Path, name: &str) -> Result<String, String> {
     let path = folder.join(name);
+    // A pipe may never say anything.
+    if path.exists() && !path.is_file() && !path.is_dir() {
+        return Err(format!("{} is not a plain file", path.display()));
+    }
     let bytes = read_bytes(&path).map_err(|told| told.message)?;
     String::from_utf8(bytes).map_err(|_| format!("{} is not UTF-8 text", path.display()))
 }

@@ -492,6 +492,22 @@ fn a_study_that_cannot_run_leaves_the_folder_as_it_was() {
     assert!(read() != before);
 }
 
+/// A pipe as a table would keep the reader waiting for ever.
+#[cfg(unix)]
+#[test]
+fn a_table_is_a_plain_file() {
+    let folder = folder();
+    let at = folder.path();
+    let motor = MODEL.lines().find(|line| line.starts_with("motor"));
+    let motor = motor.expect("a drive");
+    let law = "motor = { turns = \"crank\", law = { table = \"/dev/null\" } }";
+    fs::write(at.join("t.toml"), MODEL.replace(motor, law)).expect("written");
+    let out = kempe(at, &["check", "t.toml"]);
+    assert_eq!(out.status.code(), Some(2));
+    let said = String::from_utf8_lossy(&out.stderr);
+    assert!(said.contains("/dev/null is not a plain file"), "{said}");
+}
+
 #[cfg(unix)]
 #[test]
 fn readers_that_go_away_do_not_keep_a_run_from_its_end() {

@@ -68,7 +68,12 @@ impl Model {
             .map_or(name.clone(), |s| s.to_string_lossy().into_owned());
         let mut files = |wanted: &str| match &folder {
             Some(folder) => {
-                let bytes = read_bounded(&folder.join(wanted)).map_err(|e| e.to_string())?;
+                let table = folder.join(wanted);
+                // A pipe may never say anything.
+                if table.exists() && !table.is_file() {
+                    return Err("it is not a plain file".to_owned());
+                }
+                let bytes = read_bounded(&table).map_err(|e| e.to_string())?;
                 String::from_utf8(bytes).map_err(|_| "it is not UTF-8 text".to_owned())
             }
             None => Err("a model that is no file can name none".to_owned()),
@@ -200,7 +205,6 @@ impl Model {
     }
 }
 
-/// Reads a model from its text.
 /// The bytes of a file, and no more than one beyond what a model file may have: a device has no end.
 fn read_bounded(path: &Path) -> std::io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
@@ -214,6 +218,7 @@ fn read_bounded(path: &Path) -> std::io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
+/// Reads a model from its text.
 impl FromStr for Model {
     type Err = Error;
     fn from_str(text: &str) -> Result<Self, Error> {
