@@ -79,7 +79,8 @@ impl Order {
         let mut uses = vec![0; mechanism.bodies];
         for block in &self.plan.blocks {
             let mut seen = vec![false; mechanism.bodies];
-            for row in &block.rows {
+            // Newton's method holds a block to its surplus rows too.
+            for row in block.rows.iter().chain(&block.surplus) {
                 for body in mechanism.constraints[row.constraint].0.bodies() {
                     uses[body.index()] += usize::from(!seen[body.index()]);
                     seen[body.index()] = true;
