@@ -29,44 +29,48 @@ pub fn standing(
     poses: &[Pose<f64>],
     hint: &HintKind,
 ) -> Option<Standing> {
-    let &HintKind::Side {
-        point,
-        side,
-        from,
-        to,
-    } = hint
-    else {
-        return None;
-    };
-    let [from, to, point] = [from, to, point].map(|p| mechanism.any_marker(p));
-    let size = geometry.size(mechanism);
-    Some(on_side(
-        geometry,
-        poses,
-        [from?, to?, point?],
-        side.sign(),
-        size,
-    ))
+    let side = AskedSide::of(mechanism, hint)?;
+    Some(side.standing(geometry, poses, geometry.size(mechanism)))
 }
 
-/// On which side of a directed line a point lies; `sign` is that of the side asked for.
-fn on_side(
-    geometry: &Geometry<f64>,
-    poses: &[Pose<f64>],
+/// A side that a file asks for: its line's two points and the point itself.
+struct AskedSide {
     points: [Marker; 3],
     sign: f64,
-    size: f64,
-) -> Standing {
-    let [from, to, p] = points.map(|m| poses[m.body.index()].place(geometry.marker(m)));
-    let line = sub(to, from);
-    let side = cross(line, sub(p, from)) * sign;
-    let least = ON_THE_LINE * size * math::hypot(line[0], line[1]);
-    if side > least {
-        Standing::Holds
-    } else if side < -least {
-        Standing::Fails
-    } else {
-        Standing::OnTheLine
+}
+
+impl AskedSide {
+    /// `None` for other hints.
+    fn of(mechanism: &Mechanism, hint: &HintKind) -> Option<Self> {
+        let &HintKind::Side {
+            point,
+            side,
+            from,
+            to,
+        } = hint
+        else {
+            return None;
+        };
+        let marker = |p| mechanism.any_marker(p);
+        Some(Self {
+            points: [marker(from)?, marker(to)?, marker(point)?],
+            sign: side.sign(),
+        })
+    }
+
+    /// How poses stand to it, in a mechanism of this size, m.
+    fn standing(&self, geometry: &Geometry<f64>, poses: &[Pose<f64>], size: f64) -> Standing {
+        let [from, to, p] = (self.points).map(|m| poses[m.body.index()].place(geometry.marker(m)));
+        let line = sub(to, from);
+        let side = cross(line, sub(p, from)) * self.sign;
+        let least = ON_THE_LINE * size * math::hypot(line[0], line[1]);
+        if side > least {
+            Standing::Holds
+        } else if side < -least {
+            Standing::Fails
+        } else {
+            Standing::OnTheLine
+        }
     }
 }
 
@@ -84,8 +88,7 @@ pub(super) struct Hints<'a> {
 
 /// A side that can be checked once its points are placed.
 struct Side {
-    points: [Marker; 3],
-    sign: f64,
+    asked: AskedSide,
     after_step: usize,
 }
 
@@ -151,10 +154,7 @@ impl<'a> Hints<'a> {
     /// Whether the sides hold that can be checked after a step.
     pub fn sides_hold(&self, step: usize, poses: &[Pose<f64>]) -> bool {
         let mut ready = self.sides.iter().filter(|side| side.after_step == step);
-        ready.all(|check| {
-            let found = on_side(self.geometry, poses, check.points, check.sign, self.size);
-            found != Standing::Fails
-        })
+        ready.all(|check| check.asked.standing(self.geometry, poses, self.size) != Standing::Fails)
     }
 
     /// The pose that the `near` hints tell; what they leave open stays.
@@ -212,22 +212,11 @@ impl<'a> Hints<'a> {
 impl Side {
     /// `None` for other hints. `placed` tells after which step each body is placed.
     fn new(hint: &HintKind, mechanism: &Mechanism, placed: &[usize]) -> Option<Self> {
-        let &HintKind::Side {
-            point,
-            side,
-            from,
-            to,
-        } = hint
-        else {
-            return None;
-        };
-        let points = [from, to, point].map(|p| mechanism.any_marker(p));
-        let points = [points[0]?, points[1]?, points[2]?];
-        let after = points.iter().map(|m| placed[m.body.index()]);
+        let asked = AskedSide::of(mechanism, hint)?;
+        let after = asked.points.iter().map(|m| placed[m.body.index()]);
         Some(Self {
-            points,
-            sign: side.sign(),
             after_step: after.max().unwrap_or(0),
+            asked,
         })
     }
 }
