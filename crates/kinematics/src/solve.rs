@@ -4,7 +4,7 @@ use kempe_model::DriveId;
 use kempe_number::Number;
 
 use crate::closed_form::direction;
-use crate::constraint::Situation;
+use crate::constraint::{Input, Situation};
 use crate::known::{DyadOf, Known};
 use crate::mechanism::{BodyId, Constraint, LineRef, Marker, Mechanism};
 use crate::newton::PlanNumber;
@@ -103,16 +103,14 @@ impl Plan {
                 match (input, from) {
                     (Some(drive), BodyId::GROUND) if no_offset => {
                         for_each!(states, index, |state| {
-                            let q = &state.inputs[drive.index()];
-                            let by = [q.c, if reversed { -q.s } else { q.s }];
+                            let by = driven(&state.inputs[drive.index()], reversed);
                             point(state, body, by)
                         });
                     }
                     _ => for_each!(states, index, |state| {
                         let by = match input {
                             Some(drive) if no_offset => {
-                                let q = &state.inputs[drive.index()];
-                                [q.c, if reversed { -q.s } else { q.s }]
+                                driven(&state.inputs[drive.index()], reversed)
                             }
                             _ => turn_by(design, state, offset, input, reversed),
                         };
@@ -221,6 +219,12 @@ impl Plan {
 fn lose<T: Number>(state: &mut State<T>) {
     let nowhere = T::from_f64(f64::NAN);
     (state.poses.iter_mut()).for_each(|pose| (pose.x, pose.c) = (nowhere, nowhere));
+}
+
+/// The turn by a drive alone, as a unit vector.
+#[cfg_attr(not(debug_assertions), inline(always))]
+fn driven<T: Number>(input: &Input<T>, reversed: bool) -> [T; 2] {
+    [input.c, if reversed { -input.s } else { input.s }]
 }
 
 /// Turns a body into a direction; its determinant is one.
