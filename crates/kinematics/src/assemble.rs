@@ -2,7 +2,8 @@
 //!
 //! The steps of the plan are solved in every way there is (`search`): a closed form in both of its modes, a block without
 //! one (`blocks`) by the complete homotopy, as linear equations where it is a train of gears (`gear_train`), or by cutting
-//! it open at its gear (`open_loop`). The file's hints choose among them (`hints`) and say from where angles are counted (`turns`).
+//! it open at its gear (`open_loop`). The file's hints choose among them (`hints`) and say from where angles are counted
+//! (`turns`).
 
 mod blocks;
 mod gear_train;
@@ -18,12 +19,11 @@ use std::borrow::Cow;
 
 use self::search::Search;
 use self::turns::counted_turns;
-use crate::evidence::is_finite;
 use crate::homotopy::PathReport;
 use crate::mechanism::Mechanism;
 use crate::plan::Plan;
 use crate::pose::Pose;
-use crate::state::{Branch, Design, State};
+use crate::state::{Branch, Design};
 use crate::watch::{Unwatched, Watch};
 
 /// How often the turns of links may change those of links further on.
@@ -130,18 +130,4 @@ pub fn find_assemblies(
         found = Search::new(mechanism, plan, &design, coordinates, watch).run()?;
     }
     Some(found)
-}
-
-/// Runs the whole plan on plain numbers from a branch; `None` when it does not close.
-pub fn solve_plain(
-    mechanism: &Mechanism,
-    plan: &Plan,
-    design: &Design<f64>,
-    branch: &Branch,
-    coordinates: &[f64],
-) -> Option<State<f64>> {
-    let mut state = State::new(mechanism, plan);
-    state.set_inputs(mechanism, coordinates);
-    plan.solve(mechanism, design, branch, &mut state);
-    state.poses.iter().all(is_finite).then_some(state)
 }
