@@ -8,7 +8,7 @@ use std::hint::black_box;
 use std::time::Instant as Clock;
 
 use kempe_dynamics::{Forces, Instant};
-use kempe_kinematics::{Branch, Design, Geometry, Mechanism, Motion, Plan, State};
+use kempe_kinematics::{Branch, Design, Mechanism, Motion, State};
 use kempe_model::{DriveId, Model};
 use kempe_number::{Jet, Number};
 
@@ -98,16 +98,14 @@ fn main() {
     };
     let model = checked.model;
     let mechanism = Mechanism::new(&model);
-    let plan = Plan::new(&mechanism);
     let parameters: Vec<f64> = model.parameter_values();
-    let design = Design::new(&mechanism, &plan, &parameters);
-    let Ok(motion) = Motion::new(&mechanism, &plan, &design, &parameters) else {
+    let design = Design::new(&mechanism, &parameters);
+    let Ok(motion) = Motion::new(&design) else {
         println!("the example does not move");
         return;
     };
-    let rich: Design<Series> = Design::new(&mechanism, &plan, &model.parameter_values::<Series>());
-    let geometry = Geometry::new(&mechanism, &parameters);
-    let Ok(mut forces) = Forces::new(&mechanism, &plan, geometry, &parameters) else {
+    let rich: Design<Series> = Design::new(&mechanism, &model.parameter_values::<Series>());
+    let Ok(mut forces) = Forces::new(design.clone()) else {
         println!("the example has no forces");
         return;
     };
@@ -117,19 +115,19 @@ fn main() {
         .collect();
     let branches: Vec<Branch> = (places.iter())
         .map(|p| {
-            let mut branch = Branch::neutral(&mechanism, &plan);
+            let mut branch = Branch::neutral(&mechanism);
             motion.branch_at(*p, &mut branch);
             branch
         })
         .collect();
 
     let kernel = kernel_of(&mechanism, &forces);
-    let mut plain: State<f64> = State::new(&mechanism, &plan);
-    let mut series: State<Series> = State::new(&mechanism, &plan);
+    let mut plain: State<f64> = State::new(&mechanism);
+    let mut series: State<Series> = State::new(&mechanism);
     let mut states: Vec<State<Series>> = Vec::with_capacity(ROWS);
     for (p, branch) in places.iter().zip(&branches) {
         series.set_inputs(&mechanism, &[Series::variable(*p)]);
-        plan.solve(&mechanism, &rich, branch, &mut series);
+        rich.solve(branch, &mut series);
         states.push(series.clone());
     }
     let rate = |p: f64| [(4.0 * (p - from)).max(0.0).sqrt(), 2.0];
@@ -148,14 +146,14 @@ fn main() {
         let position = best(|| {
             for (p, branch) in places.iter().zip(&branches) {
                 plain.set_inputs(&mechanism, &[*p]);
-                plan.solve(&mechanism, &design, branch, &mut plain);
+                design.solve(branch, &mut plain);
                 black_box(&plain);
             }
         });
         let rates = best(|| {
             for (p, branch) in places.iter().zip(&branches) {
                 series.set_inputs(&mechanism, &[Series::variable(*p)]);
-                plan.solve(&mechanism, &rich, branch, &mut series);
+                rich.solve(branch, &mut series);
                 black_box(&series);
             }
         });
@@ -169,7 +167,7 @@ fn main() {
         let whole = best(|| {
             for (p, branch) in places.iter().zip(&branches) {
                 series.set_inputs(&mechanism, &[Series::variable(*p)]);
-                plan.solve(&mechanism, &rich, branch, &mut series);
+                rich.solve(branch, &mut series);
                 instant.set_along(&mechanism, &series, &branch.near, DriveId(0), rate(*p));
                 forces.solve(&instant);
                 black_box(&forces.drives);
@@ -210,7 +208,7 @@ fn inputs(at: &Instant<f64>) -> ([[f64; 4]; 6], [[f64; 4]; 6]) {
     (poses, accelerations)
 }
 
-fn kernel_of(mechanism: &Mechanism, forces: &Forces<'_, f64>) -> Kernel {
+fn kernel_of(mechanism: &Mechanism, forces: &Forces<f64>) -> Kernel {
     use kempe_kinematics::mechanism::Constraint;
     let mut bodies = [(0.0, 0.0, [0.0; 2]); 5];
     for mass in &forces.acting.masses {
@@ -220,7 +218,7 @@ fn kernel_of(mechanism: &Mechanism, forces: &Forces<'_, f64>) -> Kernel {
     let mut at = 0;
     for (constraint, _) in &mechanism.constraints {
         if let Constraint::Coincide { a, b } = constraint {
-            let local = |m| forces.geometry.marker(m);
+            let local = |m| forces.design.geometry.marker(m);
             pins[at] = (a.body.index(), b.body.index(), local(*a), local(*b));
             at += 1;
         }

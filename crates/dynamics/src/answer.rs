@@ -29,7 +29,7 @@ impl<T: Copy> LoadValue<T> {
     }
 }
 
-impl<T: ForceNumber> Forces<'_, T> {
+impl<T: ForceNumber> Forces<T> {
     /// The value of a force measure at the instant last solved, SI. NaN where it has none.
     pub fn answer(&self, at: &Instant<T>, measure: &ForceMeasure) -> T {
         let nothing = T::from_f64(f64::NAN);
@@ -52,7 +52,7 @@ impl<T: ForceNumber> Forces<'_, T> {
             ForceMeasure::Power(d) => drive(d).map(|f| f.value * at.drive_speeds[d.index()]),
             ForceMeasure::KineticEnergy => Some(energy::kinetic(&self.acting, at)),
             ForceMeasure::PotentialEnergy => {
-                Some(energy::potential(&self.acting, &self.geometry, at))
+                Some(energy::potential(&self.acting, &self.design.geometry, at))
             }
             ForceMeasure::ShakingForceX => Some(shaking(&self.acting, at)[0]),
             ForceMeasure::ShakingForceY => Some(shaking(&self.acting, at)[1]),
@@ -83,10 +83,10 @@ impl<T: ForceNumber> Forces<'_, T> {
                 }),
             },
             ForceMeasure::Spring(index) => {
-                (self.acting.springs.get(*index)).map(|s| s.tension(&self.geometry, at))
+                (self.acting.springs.get(*index)).map(|s| s.tension(&self.design.geometry, at))
             }
             ForceMeasure::Damper(index) => {
-                (self.acting.dampers.get(*index)).map(|d| d.tension_at(&self.geometry, at))
+                (self.acting.dampers.get(*index)).map(|d| d.tension_at(&self.design.geometry, at))
             }
             ForceMeasure::Load(index) => self.load(at, *index).map(|load| match load {
                 LoadValue::Force(force) => length(force),
@@ -103,7 +103,7 @@ impl<T: ForceNumber> Forces<'_, T> {
         Some(match *load {
             Load::Torque { amount, .. } => LoadValue::Torque(at.amounts[amount]),
             Load::Force { .. } => {
-                LoadValue::Force(load.force(self.mechanism, &self.geometry, at)?)
+                LoadValue::Force(load.force(&self.design.mechanism, &self.design.geometry, at)?)
             }
         })
     }

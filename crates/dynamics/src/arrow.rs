@@ -45,18 +45,18 @@ pub struct ForceArrow {
     pub moment: f64,
 }
 
-impl<T: ForceNumber> Forces<'_, T> {
+impl<T: ForceNumber> Forces<T> {
     /// What acts on the links at the instant last solved: joints and drives as in [`Forces::joint_loads`], then loads,
     /// weights, springs and dampers on everything but the frame.
     pub fn arrows(&self, at: &Instant<T>) -> Vec<ForceArrow> {
-        let model = &self.mechanism.model;
+        let model = &self.design.mechanism.model;
         let mut arrows: Vec<ForceArrow> = (self.joint_loads(at).into_iter())
             .map(|load| ForceArrow {
                 origin: match load.carrier {
                     Carrier::Drive(_) => Origin::Drive,
                     _ => Origin::Joint,
                 },
-                name: load.carrier.name(self.mechanism),
+                name: load.carrier.name(&self.design.mechanism),
                 link: load.link,
                 place: load.place,
                 force: match load.carrier {
@@ -91,7 +91,7 @@ impl<T: ForceNumber> Forces<'_, T> {
             });
         }
         for (spring, named) in self.acting.springs.iter().zip(&model.actions.springs) {
-            let tension = spring.tension(&self.geometry, at).value();
+            let tension = spring.tension(&self.design.geometry, at).value();
             self.pull_arrows(
                 at,
                 &spring.ends,
@@ -102,7 +102,7 @@ impl<T: ForceNumber> Forces<'_, T> {
             );
         }
         for (damper, named) in self.acting.dampers.iter().zip(&model.actions.dampers) {
-            let tension = damper.tension_at(&self.geometry, at).value();
+            let tension = damper.tension_at(&self.design.geometry, at).value();
             self.pull_arrows(
                 at,
                 &damper.ends,
@@ -121,7 +121,10 @@ impl<T: ForceNumber> Forces<'_, T> {
             Load::Torque { on, against, .. } => (on, self.pivot_marker(on, against)?),
         };
         let (force, moment) = match *load {
-            Load::Force { .. } => (load.force(self.mechanism, &self.geometry, at)?, T::zero()),
+            Load::Force { .. } => (
+                load.force(&self.design.mechanism, &self.design.geometry, at)?,
+                T::zero(),
+            ),
             Load::Torque { amount, .. } => ([T::zero(); 2], at.amounts[amount]),
         };
         (link != FRAME).then(|| ForceArrow {
@@ -179,18 +182,18 @@ impl<T: ForceNumber> Forces<'_, T> {
     }
 
     fn place_of(&self, at: &Instant<T>, marker: Marker) -> [f64; 2] {
-        let arm = at.arm(marker.body, self.geometry.marker(marker));
+        let arm = at.arm(marker.body, self.design.geometry.marker(marker));
         at.place(marker.body, arm).map(|x| x.value())
     }
 
     /// The point at which a moment between two links is drawn: their pin, or else the first point of the first.
     pub(crate) fn pivot_marker(&self, link: LinkId, other: LinkId) -> Option<Marker> {
-        let model = &self.mechanism.model;
+        let model = &self.design.mechanism.model;
         let own = &model.links.get(link.index())?.points;
         let shared = own.iter().find(|p| {
             (model.points.get(p.point.index())).is_some_and(|point| point.links.contains(&other))
         });
-        self.mechanism.marker(LinkPointRef {
+        self.design.mechanism.marker(LinkPointRef {
             link,
             point: shared.or(own.first())?.point,
         })

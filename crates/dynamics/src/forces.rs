@@ -1,7 +1,7 @@
 //! Forces of one instant, by both routes.
 
 use kempe_kinematics::mechanism::{Constraint, LineSource, Source};
-use kempe_kinematics::{BodyId, Geometry, Mechanism, Plan};
+use kempe_kinematics::{BodyId, Design, Mechanism};
 use kempe_model::{DriveId, LinkId};
 use kempe_number::Number as _;
 use kempe_units::Dimension;
@@ -50,11 +50,9 @@ pub struct DriveForce<T> {
 /// Forces of a mechanism at one instant, with storage that is reused from instant to instant: [`Forces::solve`]
 /// allocates nothing.
 #[derive(Clone, Debug)]
-pub struct Forces<'m, T> {
-    /// The mechanism.
-    pub mechanism: &'m Mechanism,
-    /// Its dimensions.
-    pub geometry: Geometry<T>,
+pub struct Forces<T> {
+    /// The design.
+    pub design: Design<T>,
     /// What acts on it.
     pub acting: Acting<T>,
     /// Equilibrium of all bodies.
@@ -77,19 +75,16 @@ pub struct Forces<'m, T> {
     drive_constraints: Vec<Option<usize>>,
 }
 
-impl<'m, T: ForceNumber> Forces<'m, T> {
+impl<T: ForceNumber> Forces<T> {
     /// Prepares the forces of a design.
     ///
     /// # Errors
     /// All problems of what acts on the mechanism.
-    pub fn new(
-        mechanism: &'m Mechanism,
-        plan: &Plan,
-        geometry: Geometry<T>,
-        parameters: &[T],
-    ) -> Result<Self, Vec<Problem>> {
-        let acting = Acting::new(mechanism, &geometry, parameters)?;
-        let size = geometry.value().size(mechanism);
+    pub fn new(design: Design<T>) -> Result<Self, Vec<Problem>> {
+        let mechanism = &design.mechanism.clone();
+        let parameters = &design.parameters;
+        let acting = Acting::new(mechanism, &design.geometry, parameters)?;
+        let size = design.geometry.value().size(mechanism);
         let zero = [T::zero(); 3];
         let (links, bodies) = (mechanism.model.links.len(), mechanism.bodies);
         let sides = (mechanism.constraints.iter())
@@ -114,7 +109,7 @@ impl<'m, T: ForceNumber> Forces<'m, T> {
             frictionless: 0.0,
         };
         Ok(Self {
-            equilibrium: Equilibrium::new(mechanism, plan, size, acting.friction.len()),
+            equilibrium: Equilibrium::new(mechanism, size, acting.friction.len()),
             welds: Weld::all(mechanism),
             sides,
             drives: vec![nothing; drives],
@@ -128,24 +123,23 @@ impl<'m, T: ForceNumber> Forces<'m, T> {
                     mechanism.constraints.iter().position(|c| c.1 == source)
                 })
                 .collect(),
-            mechanism,
-            geometry,
             acting,
+            design,
         })
     }
 
     /// Finds all forces of an instant.
     pub fn solve(&mut self, at: &Instant<T>) {
         self.acting.evaluate(
-            self.mechanism,
-            &self.geometry,
+            &self.design.mechanism,
+            &self.design.geometry,
             at,
             &mut self.applied,
             &mut self.inertial,
         );
         self.applied_on_bodies.fill([T::zero(); 3]);
         self.needed.fill([T::zero(); 3]);
-        for (index, seat) in self.mechanism.seats.iter().enumerate() {
+        for (index, seat) in self.design.mechanism.seats.iter().enumerate() {
             let body = seat.body.index();
             let (applied, inertial) = (self.applied[index], self.inertial[index]);
             wrench::add(&mut self.applied_on_bodies[body], applied);
@@ -153,8 +147,8 @@ impl<'m, T: ForceNumber> Forces<'m, T> {
             wrench::add(&mut self.needed[body], wrench::opposite(applied));
         }
         self.equilibrium.solve(
-            self.mechanism,
-            &self.geometry,
+            &self.design.mechanism,
+            &self.design.geometry,
             &self.acting.friction,
             at,
             &self.needed,
@@ -243,7 +237,7 @@ impl<'m, T: ForceNumber> Forces<'m, T> {
     }
 }
 
-impl Forces<'_, Rates> {
+impl Forces<Rates> {
     /// Whether friction holds a drive against what acts on the mechanism, masses at rest: without friction the drive would
     /// have to brake the motion at hand, with friction it has to drive it, and this is not only because the load is about
     /// to change its sense, where any friction is enough.
@@ -255,15 +249,21 @@ impl Forces<'_, Rates> {
         let needed: Vec<Wrench<Rates>> = loads.map(|w| wrench::opposite(*w)).collect();
         let mut resting = self.equilibrium.clone();
         let frictions = &self.acting.friction;
-        resting.solve(self.mechanism, &self.geometry, frictions, at, &needed);
+        resting.solve(
+            &self.design.mechanism,
+            &self.design.geometry,
+            frictions,
+            at,
+            &needed,
+        );
         let (row, speed) = (resting.row(constraint), at.drive_speeds[drive].value());
         let holds =
             resting.frictionless[row] * speed < 0.0 && resting.lambda[row].value() * speed > 0.0;
         let load = virtual_power::project(&needed, &at.coefficients[drive]).value;
         let per_drive = load.coefficient(1) / speed;
-        let typical = match self.mechanism.model.drives[drive].dimension {
+        let typical = match self.design.mechanism.model.drives[drive].dimension {
             Dimension::ANGLE => 1.0,
-            _ => self.geometry.value().size(self.mechanism),
+            _ => self.design.geometry.value().size(&self.design.mechanism),
         };
         let turns_about = load.value().abs() < SENSE_CHANGES * typical * per_drive.abs();
         holds && !turns_about

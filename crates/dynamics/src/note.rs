@@ -241,7 +241,7 @@ fn short(x: f64) -> String {
 }
 
 /// What is to be told about the forces of an instant.
-pub(crate) fn notes(forces: &Forces<'_, Rates>, at: &Instant<Rates>) -> Vec<ForceNote> {
+pub(crate) fn notes(forces: &Forces<Rates>, at: &Instant<Rates>) -> Vec<ForceNote> {
     use kempe_number::Number as _;
     let equilibrium = &forces.equilibrium;
     let mut notes = Vec::new();
@@ -311,7 +311,7 @@ pub(crate) fn notes(forces: &Forces<'_, Rates>, at: &Instant<Rates>) -> Vec<Forc
     notes
 }
 
-fn actuator_notes(forces: &Forces<'_, Rates>, at: &Instant<Rates>, notes: &mut Vec<ForceNote>) {
+fn actuator_notes(forces: &Forces<Rates>, at: &Instant<Rates>, notes: &mut Vec<ForceNote>) {
     use kempe_number::Number as _;
     for motor in &forces.acting.motors {
         let Some(drive) = forces.drives.get(motor.drive.index()) else {
@@ -356,13 +356,13 @@ fn actuator_notes(forces: &Forces<'_, Rates>, at: &Instant<Rates>, notes: &mut V
 }
 
 /// Which joints' loads are not unique; asked of the row at hand, as it may change along the motion.
-fn not_unique_note(forces: &Forces<'_, Rates>) -> Option<ForceNote> {
+fn not_unique_note(forces: &Forces<Rates>) -> Option<ForceNote> {
     if forces.equilibrium.redundant_rows() == 0 {
         return None;
     }
     let mut carriers: Vec<Carrier> = Vec::new();
     for constraint in forces.equilibrium.not_unique() {
-        let carrier = Carrier::of(&forces.mechanism.constraints[constraint].1);
+        let carrier = Carrier::of(&forces.design.mechanism.constraints[constraint].1);
         if !carriers.contains(&carrier) {
             carriers.push(carrier);
         }

@@ -83,23 +83,23 @@ pub struct JointLoad {
     pub unique: bool,
 }
 
-impl<T: ForceNumber> Forces<'_, T> {
+impl<T: ForceNumber> Forces<T> {
     /// The load of a joint on the link asked for, or on the one that the sign convention names. `None` when the joint
     /// has no load on that link.
     pub fn reaction(&self, at: &Instant<T>, joint: JointRef) -> Option<Reaction<T>> {
         match joint {
             JointRef::Pin(point, link) => {
-                let model = &self.mechanism.model;
+                let model = &self.design.mechanism.model;
                 let link =
                     link.or_else(|| model.points.get(point.index())?.links.last().copied())?;
                 let is_pin =
                     |source: &Source| matches!(source, Source::Pin { point: p, .. } if *p == point);
                 let w = self.on_body_of(link, is_pin)?;
-                let marker = (self.mechanism.marker(LinkPointRef { link, point }))
-                    .or_else(|| self.mechanism.any_marker(point))?;
+                let marker = (self.design.mechanism.marker(LinkPointRef { link, point }))
+                    .or_else(|| self.design.mechanism.any_marker(point))?;
                 let place = at.place(
                     marker.body,
-                    at.arm(marker.body, self.geometry.marker(marker)),
+                    at.arm(marker.body, self.design.geometry.marker(marker)),
                 );
                 Some(self.about(at, link, place, w))
             }
@@ -113,12 +113,12 @@ impl<T: ForceNumber> Forces<'_, T> {
         id: JointId,
         link: Option<LinkId>,
     ) -> Option<Reaction<T>> {
-        let joint = self.mechanism.model.joints.get(id.index())?;
+        let joint = self.design.mechanism.model.joints.get(id.index())?;
         let link = link.unwrap_or(joint.kind.links().0);
         if let JointKind::Weld { .. } = joint.kind {
             let weld = self.welds.iter().find(|w| w.joint == id)?;
             let on_child = self.weld_on_child(weld);
-            let arm = at.arm(weld.at.body, self.geometry.marker(weld.at));
+            let arm = at.arm(weld.at.body, self.design.geometry.marker(weld.at));
             let place = at.place(weld.at.body, arm);
             let w = if link == weld.child {
                 on_child
@@ -135,22 +135,24 @@ impl<T: ForceNumber> Forces<'_, T> {
 
     /// Where a joint's load is counted: the slider's point or pin, the centre of a gear or pinion.
     fn joint_place(&self, at: &Instant<T>, id: JointId, link: LinkId) -> Option<[T; 2]> {
-        let marker = match self.mechanism.model.joints.get(id.index())?.kind {
+        let marker = match self.design.mechanism.model.joints.get(id.index())?.kind {
             JointKind::Slider { at, .. } | JointKind::Slot { pin: at, .. } => {
-                self.mechanism.marker(at)?
+                self.design.mechanism.marker(at)?
             }
-            JointKind::Rack { pinion, center, .. } => self.mechanism.marker(LinkPointRef {
-                link: pinion,
-                point: center,
-            })?,
+            JointKind::Rack { pinion, center, .. } => {
+                self.design.mechanism.marker(LinkPointRef {
+                    link: pinion,
+                    point: center,
+                })?
+            }
             JointKind::Gears { .. } => {
-                let constraint =
-                    (self.mechanism.constraints.iter()).position(|c| c.1 == Source::Joint(id))?;
+                let constraint = (self.design.mechanism.constraints.iter())
+                    .position(|c| c.1 == Source::Joint(id))?;
                 let mesh = crate::gear_mesh::GearMesh::new(
-                    self.mechanism,
-                    &self.mechanism.constraints[constraint].0,
+                    &self.design.mechanism,
+                    &self.design.mechanism.constraints[constraint].0,
                 );
-                let body = self.mechanism.body_of(link);
+                let body = self.design.mechanism.body_of(link);
                 match mesh {
                     Some(mesh) if mesh.a.body == body => mesh.a,
                     Some(mesh) => mesh.b,
@@ -160,21 +162,22 @@ impl<T: ForceNumber> Forces<'_, T> {
                     }
                 }
             }
-            JointKind::Weld { a, at, .. } => {
-                self.mechanism.marker(LinkPointRef { link: a, point: at })?
-            }
+            JointKind::Weld { a, at, .. } => self
+                .design
+                .mechanism
+                .marker(LinkPointRef { link: a, point: at })?,
         };
         Some(at.place(
             marker.body,
-            at.arm(marker.body, self.geometry.marker(marker)),
+            at.arm(marker.body, self.design.geometry.marker(marker)),
         ))
     }
 
     /// Everything that constraints from one source do to a link's body.
     fn on_body_of(&self, link: LinkId, from: impl Fn(&Source) -> bool) -> Option<Wrench<T>> {
-        let body = self.mechanism.body_of(link);
+        let body = self.design.mechanism.body_of(link);
         let mut sum: Option<Wrench<T>> = None;
-        for ((_, source), sides) in self.mechanism.constraints.iter().zip(&self.sides) {
+        for ((_, source), sides) in self.design.mechanism.constraints.iter().zip(&self.sides) {
             if !from(source) {
                 continue;
             }
@@ -186,7 +189,7 @@ impl<T: ForceNumber> Forces<'_, T> {
     }
 
     fn about(&self, at: &Instant<T>, link: LinkId, place: [T; 2], w: Wrench<T>) -> Reaction<T> {
-        let pose = &at.poses[self.mechanism.body_of(link).index()];
+        let pose = &at.poses[self.design.mechanism.body_of(link).index()];
         Reaction {
             link,
             place,
@@ -197,8 +200,8 @@ impl<T: ForceNumber> Forces<'_, T> {
 
     /// Force along a link's x axis and along its y axis, N.
     pub fn in_axes_of(&self, at: &Instant<T>, link: LinkId, force: [T; 2]) -> [T; 2] {
-        let seat = &self.geometry.seats[link.index()];
-        let body = &at.poses[self.mechanism.body_of(link).index()];
+        let seat = &self.design.geometry.seats[link.index()];
+        let body = &at.poses[self.design.mechanism.body_of(link).index()];
         let x = body.turn([seat.c, seat.s]);
         [dot(x, force), dot([-x[1], x[0]], force)]
     }
@@ -208,8 +211,8 @@ impl<T: ForceNumber> Forces<'_, T> {
     pub fn joint_loads(&self, at: &Instant<T>) -> Vec<JointLoad> {
         let loose = self.equilibrium.not_unique();
         let mut list: Vec<JointLoad> = Vec::new();
-        let model = &self.mechanism.model;
-        for (index, (_, source)) in self.mechanism.constraints.iter().enumerate() {
+        let model = &self.design.mechanism.model;
+        for (index, (_, source)) in self.design.mechanism.constraints.iter().enumerate() {
             let (carrier, reaction) = match *source {
                 Source::Pin { point, link } => (
                     Carrier::Pin(point),
@@ -244,19 +247,21 @@ impl<T: ForceNumber> Forces<'_, T> {
         id: DriveId,
     ) -> Option<Reaction<T>> {
         let side = self.sides.get(constraint)?.first()?;
-        let marker = match &self.mechanism.model.drives.get(id.index())?.kind {
-            DriveKind::Cylinder { b, .. } => self.mechanism.marker(*b),
-            DriveKind::Slide { joint } => match self.mechanism.model.joints[joint.index()].kind {
-                JointKind::Slider { at, .. } | JointKind::Slot { pin: at, .. } => {
-                    self.mechanism.marker(at)
+        let marker = match &self.design.mechanism.model.drives.get(id.index())?.kind {
+            DriveKind::Cylinder { b, .. } => self.design.mechanism.marker(*b),
+            DriveKind::Slide { joint } => {
+                match self.design.mechanism.model.joints[joint.index()].kind {
+                    JointKind::Slider { at, .. } | JointKind::Slot { pin: at, .. } => {
+                        self.design.mechanism.marker(at)
+                    }
+                    _ => None,
                 }
-                _ => None,
-            },
+            }
             DriveKind::Turn { link, relative_to } => self.pivot_marker(*link, *relative_to),
         }?;
         let place = at.place(
             marker.body,
-            at.arm(marker.body, self.geometry.marker(marker)),
+            at.arm(marker.body, self.design.geometry.marker(marker)),
         );
         Some(self.about(at, side.link, place, side.wrench))
     }

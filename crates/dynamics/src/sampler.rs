@@ -1,9 +1,10 @@
 //! Rows of a motion with its forces: measures, poses and evidence at any place or time.
 
 use std::fmt;
+use std::sync::Arc;
 
-use kempe_kinematics::{Branch, Motion, Sample, Sampler, Unprepared, Unwatched, Watch};
-use kempe_model::{DriveId, Measure, Model};
+use kempe_kinematics::{Branch, Design, Motion, Sample, Sampler, Unprepared, Unwatched, Watch};
+use kempe_model::{DriveId, Measure};
 
 use crate::equilibrium::{FrictionOutcome, Pace};
 use crate::forces::Forces;
@@ -53,8 +54,8 @@ pub struct ForceSample {
 }
 
 /// Evaluates measures of motion and forces along a motion.
-pub struct ForceSampler<'a> {
-    sampler: Sampler<'a, Source<'a>>,
+pub struct ForceSampler {
+    sampler: Sampler<Source>,
 }
 
 impl fmt::Display for ForceError {
@@ -78,12 +79,12 @@ impl fmt::Display for ForceError {
 
 impl std::error::Error for ForceError {}
 
-impl<'a> ForceSampler<'a> {
+impl ForceSampler {
     /// Prepares measures for evaluation along a motion; statistics over the motion are computed here.
     ///
     /// # Errors
     /// Problems of what acts on the mechanism, or measures that cannot be evaluated.
-    pub fn new(motion: &'a Motion<'a>, measures: &[&Measure]) -> Result<Self, ForceError> {
+    pub fn new(motion: &Arc<Motion>, measures: &[&Measure]) -> Result<Self, ForceError> {
         Self::watched(motion, measures, &mut Unwatched)
     }
 
@@ -92,28 +93,25 @@ impl<'a> ForceSampler<'a> {
     /// # Errors
     /// As [`ForceSampler::new`], and that it was stopped.
     pub fn watched(
-        motion: &'a Motion<'a>,
+        motion: &Arc<Motion>,
         measures: &[&Measure],
         watch: &mut dyn Watch,
     ) -> Result<Self, ForceError> {
-        let mechanism = motion.mechanism;
-        let parameters: Vec<Rates> = mechanism.model.parameter_values();
-        let geometry = kempe_kinematics::Geometry::new(mechanism, &parameters);
-        let mut forces = Forces::new(mechanism, motion.plan, geometry, &parameters)
-            .map_err(ForceError::Problems)?;
-        let mut start = Branch::neutral(mechanism, motion.plan);
+        let mechanism = motion.mechanism();
+        let mut forces = Forces::new(motion.design_on()).map_err(ForceError::Problems)?;
+        let mut start = Branch::neutral(mechanism);
         motion.branch_at(motion.start, &mut start);
         for spring in &mut forces.acting.springs {
-            spring.align(&forces.geometry, &start.near);
+            spring.align(&forces.design.geometry, &start.near);
         }
-        forces.equilibrium.pace = pace(&mechanism.model);
+        forces.equilibrium.pace = pace(&motion.design);
         let sampler = Sampler::watched(motion, measures, Source::new(forces), watch)
             .map_err(ForceError::Unprepared)?;
         Ok(Self { sampler })
     }
 
     /// The motion.
-    pub fn motion(&self) -> &'a Motion<'a> {
+    pub fn motion(&self) -> &Arc<Motion> {
         self.sampler.motion()
     }
 
@@ -162,7 +160,7 @@ impl<'a> ForceSampler<'a> {
     }
 
     /// Forces and instant of the row last asked for.
-    pub fn solved(&self) -> Option<(&Forces<'a, Rates>, &Instant<Rates>)> {
+    pub fn solved(&self) -> Option<(&Forces<Rates>, &Instant<Rates>)> {
         self.sampler.forces().map(|s| (&s.forces, &s.instant))
     }
 
@@ -185,15 +183,15 @@ impl<'a> ForceSampler<'a> {
 }
 
 /// Mean speeds of the drives over their laws.
-fn pace(model: &Model) -> Pace {
-    let parameters: Vec<f64> = model.parameter_values();
-    let durations = model.drives.iter().map(|d| d.law.duration(&parameters));
+fn pace(design: &Design<f64>) -> Pace {
+    let (model, parameters) = (&design.mechanism.model, &design.parameters);
+    let durations = model.drives.iter().map(|d| d.law.duration(parameters));
     let longest = durations.fold(0.0, f64::max);
     if !(longest > 0.0) {
         return Pace::default();
     }
     let speed = |drive: &kempe_model::Drive| {
-        let (low, high) = drive.law.extent(&parameters);
+        let (low, high) = drive.law.extent(parameters);
         (high - low) / longest
     };
     Pace {
@@ -202,7 +200,7 @@ fn pace(model: &Model) -> Pace {
     }
 }
 
-fn evidence(forces: &Forces<'_, Rates>, at: &Instant<Rates>) -> ForceEvidence {
+fn evidence(forces: &Forces<Rates>, at: &Instant<Rates>) -> ForceEvidence {
     use kempe_number::Number as _;
     let equilibrium = &forces.equilibrium;
     ForceEvidence {
@@ -214,6 +212,7 @@ fn evidence(forces: &Forces<'_, Rates>, at: &Instant<Rates>) -> ForceEvidence {
             .map(|(drive, speed)| drive.value.value() * speed.value())
             .sum(),
         friction_power: equilibrium.friction_power(&forces.acting.friction).value(),
-        damping_power: crate::energy::dissipation(&forces.acting, &forces.geometry, at).value(),
+        damping_power: crate::energy::dissipation(&forces.acting, &forces.design.geometry, at)
+            .value(),
     }
 }

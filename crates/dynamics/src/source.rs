@@ -8,26 +8,26 @@ use crate::forces::Forces;
 use crate::instant::{Instant, Rates};
 
 /// The forces of the moment last solved, as series in time.
-pub(crate) struct Source<'m> {
-    pub forces: Forces<'m, Rates>,
+pub(crate) struct Source {
+    pub forces: Forces<Rates>,
     pub instant: Instant<Rates>,
     measures: Vec<Measure>,
 }
 
-impl<'m> Source<'m> {
-    pub fn new(forces: Forces<'m, Rates>) -> Self {
+impl Source {
+    pub fn new(forces: Forces<Rates>) -> Self {
         let measures: Vec<Measure> = (forces.acting.amounts.iter())
             .map(|a| a.measure.clone())
             .collect();
         Self {
-            instant: Instant::new(forces.mechanism, measures.len()),
+            instant: Instant::new(&forces.design.mechanism, measures.len()),
             measures,
             forces,
         }
     }
 }
 
-impl ForceSource for Source<'_> {
+impl ForceSource for Source {
     fn measures(&self) -> &[Measure] {
         &self.measures
     }

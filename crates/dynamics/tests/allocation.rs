@@ -7,7 +7,7 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
 use kempe_dynamics::{Forces, Instant};
-use kempe_kinematics::{Design, Geometry, Mechanism, Motion, Plan};
+use kempe_kinematics::{Design, Mechanism, Motion};
 use kempe_model::DriveId;
 use kempe_number::Jet;
 
@@ -44,14 +44,12 @@ fn forces_of_the_door_lock_allocate_nothing() {
         span: 0..0,
     });
     let mechanism = Mechanism::new(&model);
-    let plan = Plan::new(&mechanism);
     let parameters: Vec<f64> = model.parameter_values();
-    let design = Design::new(&mechanism, &plan, &parameters);
-    let motion = Motion::new(&mechanism, &plan, &design, &parameters).expect("a motion");
+    let design = Design::new(&mechanism, &parameters);
+    let motion = Motion::new(&design).expect("a motion");
     let rich: Design<Jet<f64, 3>> =
-        Design::new(&mechanism, &plan, &model.parameter_values::<Jet<f64, 3>>());
-    let geometry = Geometry::new(&mechanism, &parameters);
-    let mut forces = Forces::new(&mechanism, &plan, geometry, &parameters).expect("forces");
+        Design::new(&mechanism, &model.parameter_values::<Jet<f64, 3>>());
+    let mut forces = Forces::new(design.clone()).expect("forces");
     let mut instant = Instant::new(&mechanism, 0);
     let mut solver = motion.solver();
     motion.solve(&rich, Jet::variable(0.3), &mut solver);

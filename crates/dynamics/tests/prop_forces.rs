@@ -4,7 +4,7 @@
 mod mechanisms;
 
 use kempe_dynamics::{ForceEvidence, ForceNote, ForceSampler, FrictionOutcome};
-use kempe_kinematics::{Design, Mechanism, Motion, Plan};
+use kempe_kinematics::{Design, Mechanism, Motion};
 use kempe_model::{
     Acts, Amount, Between, Center, Damper, DriveId, ForceMeasure, Friction, FrictionAt, Inertia,
     JointRef, Leaf, LinkId, LinkPointRef, Load, LoadKind, Measure, Model, Place, PointId,
@@ -249,10 +249,9 @@ fn rows(model: &Model, measures: &[Measure], parts: usize) -> Option<Vec<Row>> {
 /// Evenly spread places inside what a model's motion reaches, from its start.
 fn offsets(model: &Model, parts: usize) -> Option<Vec<f64>> {
     let mechanism = Mechanism::new(model);
-    let plan = Plan::new(&mechanism);
     let parameters: Vec<f64> = model.parameter_values();
-    let design = Design::new(&mechanism, &plan, &parameters);
-    let motion = Motion::new(&mechanism, &plan, &design, &parameters).ok()?;
+    let design = Design::new(&mechanism, &parameters);
+    let motion = Motion::new(&design).ok()?;
     let inside = spread(&motion, parts + 2).into_iter().skip(1).take(parts);
     Some(inside.map(|p| p - motion.start).collect())
 }
@@ -260,10 +259,9 @@ fn offsets(model: &Model, parts: usize) -> Option<Vec<f64>> {
 /// Rows at places counted from the start of the motion: two motions that end at a limit end at slightly different places.
 fn rows_from_start(model: &Model, measures: &[Measure], offsets: &[f64]) -> Option<Vec<Row>> {
     let mechanism = Mechanism::new(model);
-    let plan = Plan::new(&mechanism);
     let parameters: Vec<f64> = model.parameter_values();
-    let design = Design::new(&mechanism, &plan, &parameters);
-    let motion = Motion::new(&mechanism, &plan, &design, &parameters).ok()?;
+    let design = Design::new(&mechanism, &parameters);
+    let motion = Motion::new(&design).ok()?;
     let measures: Vec<&Measure> = measures.iter().collect();
     let mut sampler = match ForceSampler::new(&motion, &measures) {
         Ok(sampler) => sampler,

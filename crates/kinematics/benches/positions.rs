@@ -8,10 +8,11 @@
 //! the kernel are held against each other.
 
 use std::hint::black_box;
+use std::sync::Arc;
 use std::time::Instant;
 
 use kempe_kinematics::batch::{Batch, Designs, Layout, sweep_states};
-use kempe_kinematics::{Design, Mechanism, Motion, Plan};
+use kempe_kinematics::{Design, Mechanism, Motion};
 use kempe_model::{Model, PointId};
 use kempe_number::{InstructionSet, Jet, Lanes, Lanes8, Number, multiversion};
 
@@ -293,8 +294,7 @@ multiversion! {
 
 /// A model of the examples with its plan.
 struct Loaded {
-    mechanism: Mechanism,
-    plan: Plan,
+    mechanism: Arc<Mechanism>,
     parameters: Vec<f64>,
 }
 
@@ -328,21 +328,19 @@ impl Loaded {
             .expect("a valid example")
             .model;
         let mechanism = Mechanism::new(&model);
-        let plan = Plan::new(&mechanism);
         Self {
             parameters: model.parameter_values(),
             mechanism,
-            plan,
         }
     }
 
     fn design<T: Number>(&self) -> Design<T> {
         let parameters: Vec<T> = self.mechanism.model.parameter_values();
-        Design::new(&self.mechanism, &self.plan, &parameters)
+        Design::new(&self.mechanism, &parameters)
     }
 
-    fn motion<'a>(&'a self, design: &'a Design<f64>) -> Motion<'a> {
-        Motion::new(&self.mechanism, &self.plan, design, &self.parameters).expect("a motion")
+    fn motion(&self, design: &Design<f64>) -> Arc<Motion> {
+        Motion::new(design).expect("a motion")
     }
 
     fn point(&self, name: &str) -> PointId {

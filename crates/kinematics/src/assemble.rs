@@ -20,8 +20,6 @@ use std::borrow::Cow;
 use self::search::Search;
 use self::turns::counted_turns;
 use crate::homotopy::PathReport;
-use crate::mechanism::Mechanism;
-use crate::plan::Plan;
 use crate::pose::Pose;
 use crate::state::{Branch, Design};
 use crate::watch::{Unwatched, Watch};
@@ -46,14 +44,10 @@ pub struct Assembly {
 
 impl Assembly {
     /// The design with the angles of its links counted as this assembly has them.
-    pub(crate) fn count_in<'d>(
-        &self,
-        mechanism: &Mechanism,
-        design: &'d Design<f64>,
-    ) -> Cow<'d, Design<f64>> {
-        let mut design = Cow::Borrowed(design);
+    pub(crate) fn count_in(&self, design: &Design<f64>) -> Design<f64> {
+        let mut design = design.clone();
         if design.geometry.turns != self.turns {
-            design.to_mut().count_turns(mechanism, &self.turns);
+            design.count_turns(&self.turns);
         }
         design
     }
@@ -95,21 +89,14 @@ pub struct Assemblies {
 }
 
 /// Finds all assemblies at the drive coordinates (SI).
-pub fn all_assemblies(
-    mechanism: &Mechanism,
-    plan: &Plan,
-    design: &Design<f64>,
-    coordinates: &[f64],
-) -> Assemblies {
+pub fn all_assemblies(design: &Design<f64>, coordinates: &[f64]) -> Assemblies {
     // Unwatched, it is never stopped.
-    find_assemblies(mechanism, plan, design, coordinates, &mut Unwatched).unwrap_or_default()
+    find_assemblies(design, coordinates, &mut Unwatched).unwrap_or_default()
 }
 
 /// As [`all_assemblies`]; `watch` hears how far it has come. `None` when it stops the search: a part of the list could
 /// lack the assembly that is meant.
 pub fn find_assemblies(
-    mechanism: &Mechanism,
-    plan: &Plan,
     design: &Design<f64>,
     coordinates: &[f64],
     watch: &mut dyn Watch,
@@ -117,17 +104,17 @@ pub fn find_assemblies(
     // A gear meshes by the angle of its own link: where links of one body count from different turns, which shows in an
     // assembly, what hangs on such gears is found with these turns.
     let mut design = Cow::Borrowed(design);
-    let mut found = Search::new(mechanism, plan, &design, coordinates, watch).run()?;
+    let mut found = Search::new(&design, coordinates, watch).run()?;
     for _ in 0..TURNS_SETTLE {
         let Some(chosen) = found.list.first() else {
             break;
         };
-        let turns = counted_turns(mechanism, plan, &design, coordinates, chosen);
+        let turns = counted_turns(&design, coordinates, chosen);
         if turns == design.geometry.turns {
             break;
         }
-        design.to_mut().count_turns(mechanism, &turns);
-        found = Search::new(mechanism, plan, &design, coordinates, watch).run()?;
+        design.to_mut().count_turns(&turns);
+        found = Search::new(&design, coordinates, watch).run()?;
     }
     Some(found)
 }

@@ -1,7 +1,7 @@
 //! Assur groups: what the plan's blocks mean in the language of the field.
 
 use crate::mechanism::{BodyId, Constraint, Mechanism};
-use crate::plan::{Condition, Plan, Step, Swing};
+use crate::plan::{Condition, Step, Swing};
 
 /// A group of bodies that are determined together.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,7 +20,8 @@ pub struct AssurGroup {
 }
 
 /// The groups of a plan, in the order in which they are solved.
-pub fn assur_groups(mechanism: &Mechanism, plan: &Plan) -> Vec<AssurGroup> {
+pub fn assur_groups(mechanism: &Mechanism) -> Vec<AssurGroup> {
+    let plan = &mechanism.plan;
     // Bodies depend on the bodies that their steps' rows feel; what depends on each other is one group.
     let n = mechanism.bodies;
     let mut depends: Vec<Vec<usize>> = vec![Vec::new(); n];
@@ -62,7 +63,7 @@ pub fn assur_groups(mechanism: &Mechanism, plan: &Plan) -> Vec<AssurGroup> {
                     .any(|u| bodies.contains(&u.body()))
             })
             .collect();
-        let (class, kind) = describe(mechanism, plan, &bodies, &steps);
+        let (class, kind) = describe(mechanism, &bodies, &steps);
         let closed_form = steps
             .iter()
             .all(|&s| !matches!(plan.steps[s], Step::Newton { .. }));
@@ -77,12 +78,8 @@ pub fn assur_groups(mechanism: &Mechanism, plan: &Plan) -> Vec<AssurGroup> {
     groups
 }
 
-fn describe(
-    mechanism: &Mechanism,
-    plan: &Plan,
-    bodies: &[BodyId],
-    steps: &[usize],
-) -> (u32, String) {
+fn describe(mechanism: &Mechanism, bodies: &[BodyId], steps: &[usize]) -> (u32, String) {
+    let plan = &mechanism.plan;
     let drives: Vec<&str> = (steps.iter().flat_map(|&s| &plan.blocks[s].rows))
         .filter_map(|row| match mechanism.constraints[row.constraint].1 {
             crate::mechanism::Source::Drive(d) => {

@@ -15,6 +15,8 @@ mod stretch;
 mod sweep;
 mod wide;
 
+use std::sync::Arc;
+
 use kempe_model::PointId;
 use kempe_number::{InstructionSet, Jet};
 
@@ -91,8 +93,8 @@ impl std::error::Error for BatchError {}
 /// let mechanism = Mechanism::new(&model);
 /// let plan = Plan::new(&mechanism);
 /// let parameters: Vec<f64> = model.parameter_values();
-/// let design = Design::new(&mechanism, &plan, &parameters);
-/// let motion = Motion::new(&mechanism, &plan, &design, &parameters).unwrap();
+/// let design = Design::new(&mechanism, &parameters);
+/// let motion = Motion::new(&design).unwrap();
 ///
 /// let joint = model.points.iter().position(|p| p.name == "C").unwrap();
 /// let batch = Batch::new(&motion, &[kempe_model::PointId(joint as u32)]).unwrap();
@@ -106,8 +108,8 @@ impl std::error::Error for BatchError {}
 /// assert!(places[0].is_finite() && places[1].is_nan());
 /// ```
 #[derive(Clone, Debug)]
-pub struct Batch<'a> {
-    motion: &'a Motion<'a>,
+pub struct Batch {
+    motion: Arc<Motion>,
     markers: Vec<Marker>,
     set: InstructionSet,
     stretches: Vec<Stretch>,
@@ -115,22 +117,22 @@ pub struct Batch<'a> {
     order: Order,
 }
 
-impl<'a> Batch<'a> {
+impl Batch {
     /// Prepares for points of the motion's mechanism.
     ///
     /// # Errors
     /// [`BatchError::NoSuchPoint`].
-    pub fn new(motion: &'a Motion<'a>, points: &[PointId]) -> Result<Self, BatchError> {
-        let mechanism = motion.mechanism;
+    pub fn new(motion: &Arc<Motion>, points: &[PointId]) -> Result<Self, BatchError> {
+        let mechanism = motion.mechanism();
         let markers: Vec<Marker> = (points.iter())
             .map(|&p| mechanism.any_marker(p).ok_or(BatchError::NoSuchPoint(p)))
             .collect::<Result<_, _>>()?;
         Ok(Self {
-            motion,
+            motion: motion.clone(),
             set: InstructionSet::detect(),
             stretches: stretches(motion),
-            needs_guess: motion.plan.steps.iter().any(Step::needs_guess),
-            order: Order::new(mechanism, motion.plan, &markers),
+            needs_guess: motion.mechanism().plan.steps.iter().any(Step::needs_guess),
+            order: Order::new(mechanism, &markers),
             markers,
         })
     }
@@ -252,7 +254,7 @@ impl<'a> Batch<'a> {
         at: &[f64],
         out: &mut [f64],
     ) -> Result<usize, BatchError> {
-        let model = &self.motion.mechanism.model;
+        let model = &self.motion.mechanism().model;
         check_length(
             "designs",
             designs.count * model.parameters.len(),
@@ -285,4 +287,4 @@ impl<'a> Batch<'a> {
 }
 
 /// Sweeps some parameters into the columns' parts for them; returns how many poses close.
-type SweepPiece = fn(InstructionSet, &Batch<'_>, &[f64], &mut [&mut [f64]]) -> usize;
+type SweepPiece = fn(InstructionSet, &Batch, &[f64], &mut [&mut [f64]]) -> usize;

@@ -99,7 +99,7 @@ pub struct Block {
 }
 
 /// The whole mechanism taken apart.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Decomposition {
     /// Blocks in the order in which they can be solved.
     pub blocks: Vec<Block>,

@@ -12,7 +12,6 @@ pub use self::layout::Layout;
 use self::layout::Seat;
 use crate::constraint::Situation;
 use crate::mechanism::Mechanism;
-use crate::plan::Plan;
 use crate::qr::Qr;
 
 /// An entry of the Jacobian outside the diagonal blocks.
@@ -43,8 +42,8 @@ pub struct Bordered {
 
 impl Bordered {
     /// Storage for a mechanism's systems.
-    pub fn new(mechanism: &Mechanism, plan: &Plan) -> Self {
-        let layout = Layout::new(mechanism, plan);
+    pub fn new(mechanism: &Mechanism) -> Self {
+        let layout = Layout::new(mechanism);
         let count = layout.blocks.len();
         Self {
             diagonal: vec![Qr::default(); count],
@@ -283,24 +282,23 @@ motor = { turns = "crank", from = 0.3, to = 1, speed = "1 rad/s" }
     fn with_two_nearly_singular_blocks_no_more_is_lost_than_the_condition_takes() {
         let model = kempe_model::Model::from_toml(TWINS, "twins", &mut |_| Err(String::new()));
         let mechanism = Mechanism::new(&model.unwrap().model);
-        let plan = Plan::new(&mechanism);
-        let design = Design::new(&mechanism, &plan, &[]);
+        let design = Design::new(&mechanism, &[]);
         let size = design.geometry.size(&mechanism);
         for back in [1e-2, 1e-4, 1e-6, 1e-8, 1e-10] {
-            let mut state: State<f64> = State::new(&mechanism, &plan);
+            let mut state: State<f64> = State::new(&mechanism);
             state.set_inputs(&mechanism, &[back]);
-            let mut branch = Branch::neutral(&mechanism, &plan);
+            let mut branch = Branch::neutral(&mechanism);
             for sign in &mut branch.signs {
                 *sign = -1.0;
             }
-            plan.solve(&mechanism, &design, &branch, &mut state);
+            design.solve(&branch, &mut state);
             for link in 1..mechanism.bodies {
                 // Cranks and rockers stand like the crank, couplers like the frame.
                 let angle = if link == 2 || link == 4 { 0.0 } else { back };
                 let pose = &mut state.poses[link];
                 *pose = crate::pose::Pose::from_angle(pose.x, pose.y, angle);
             }
-            let mut system = Bordered::new(&mechanism, &plan);
+            let mut system = Bordered::new(&mechanism);
             system.fill(&mechanism, &state.situation(&design, &branch), size, &[1.0]);
             let unknowns = 3 * (mechanism.bodies - 1) + 1;
             // A border that leaves the tangent well determined: the first dyad's travel.

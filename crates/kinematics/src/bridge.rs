@@ -19,7 +19,7 @@ pub(crate) type Side = Jet<f64, SIDE_ORDER>;
 /// The poses at a path parameter within the bridge of a change point, as series joined from both sides. `solver` is
 /// storage.
 pub(crate) fn across<const N: usize>(
-    motion: &Motion<'_>,
+    motion: &Motion,
     design: &Design<Side>,
     event: &Event,
     p: f64,

@@ -31,6 +31,7 @@ pub use self::found::{Cell, Certificate, CertifiedMotion, Gap};
 pub use self::not_proved::NotProved;
 
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 use kempe_number::{Interval, Number};
 
@@ -50,8 +51,8 @@ const SAME: f64 = 1e-6;
 const AGREED: f64 = 1e-12;
 
 /// Proves poses of a motion.
-pub struct Certifier<'a> {
-    motion: &'a Motion<'a>,
+pub struct Certifier {
+    motion: Arc<Motion>,
     design: Design<Interval>,
     rich: Geometry<Curve>,
     side: Design<Side>,
@@ -64,24 +65,24 @@ pub struct Certifier<'a> {
 }
 
 /// Proves the pose of a motion at a path parameter, or says why it can not: see [`Certifier::pose`].
-pub fn certify_pose(motion: &Motion<'_>, p: f64) -> Certificate {
+pub fn certify_pose(motion: &Arc<Motion>, p: f64) -> Certificate {
     Certifier::new(motion).pose(Interval::from_f64(p))
 }
 
 /// Proves a whole motion, stretch by stretch: see [`Certifier::motion`].
 pub fn certify_motion(
-    motion: &Motion<'_>,
+    motion: &Arc<Motion>,
     subdivision: Subdivision,
     progress: impl FnMut(f64) -> ControlFlow<()>,
 ) -> CertifiedMotion {
     Certifier::new(motion).motion(subdivision, progress)
 }
 
-impl<'a> Certifier<'a> {
+impl Certifier {
     /// Prepares the dimensions as intervals.
-    pub fn new(motion: &'a Motion<'a>) -> Self {
-        let (mechanism, plan) = (motion.mechanism, motion.plan);
-        let decomposition = &plan.decomposition;
+    pub fn new(motion: &Arc<Motion>) -> Self {
+        let mechanism = motion.mechanism();
+        let decomposition = &mechanism.plan.decomposition;
         let design: Design<Interval> = motion.design_on();
         Self {
             // Not computed as series: a triangle whose points lie in line would divide by the interval of its height, which
@@ -89,19 +90,19 @@ impl<'a> Certifier<'a> {
             rich: design.geometry.map(Curve::constant),
             design,
             side: motion.design_on(),
-            system: System::whole(mechanism, plan),
+            system: System::whole(mechanism),
             idle: decomposition.idle.clone(),
             surplus: decomposition.surplus.clone(),
             knots: motion.path.knots(),
             plain: motion.solver(),
             wide: motion.solver(),
-            motion,
+            motion: motion.clone(),
         }
     }
 
     /// Fills the branch, the coordinates and the poses that are known beforehand.
     fn prepare(&mut self, p: Interval) -> Result<(), NotProved> {
-        let motion = self.motion;
+        let motion = &*self.motion.clone();
         if !(motion.reaches(p.lo()) && motion.reaches(p.hi())) {
             return Err(NotProved::NotReached);
         }
@@ -112,14 +113,14 @@ impl<'a> Certifier<'a> {
         motion.path.coordinates(p, &mut self.wide.coordinates);
         self.wide
             .state
-            .set_inputs(motion.mechanism, &self.wide.coordinates);
+            .set_inputs(motion.mechanism(), &self.wide.coordinates);
         self.wide.state.poses.fill(Pose::identity());
         Ok(())
     }
 
     /// Whether there are redundant rows, and whether they may hold.
     fn check_redundant(&self) -> Result<(), NotProved> {
-        let mechanism = self.motion.mechanism;
+        let mechanism = self.motion.mechanism();
         let situation = self.wide.state.situation(&self.design, &self.plain.branch);
         for row in &self.surplus {
             let residual = situation.residual(&mechanism.constraints[row.constraint].0)[row.row];

@@ -6,10 +6,9 @@ use crate::drive_path::DrivePath;
 use crate::events::Event;
 use crate::four_bar::{FourBar, four_bars};
 use crate::hold::hold;
-use crate::mechanism::{BodyId, Mechanism, Source};
+use crate::mechanism::{BodyId, Source};
 use crate::mobility::{Mobility, mobility, state_at};
 use crate::motion::{Demand, EndReason, Motion, MotionError};
-use crate::plan::Plan;
 use crate::state::{Branch, Design};
 use crate::watch::{Unwatched, Watch};
 
@@ -57,28 +56,19 @@ pub struct Reach {
 }
 
 /// Checks a mechanism for the model's parameter values.
-pub fn check(
-    mechanism: &Mechanism,
-    plan: &Plan,
-    design: &Design<f64>,
-    parameters: &[f64],
-) -> Findings {
-    check_watched(mechanism, plan, design, parameters, &mut Unwatched)
+pub fn check(design: &Design<f64>) -> Findings {
+    check_watched(design, &mut Unwatched)
 }
 
 /// As [`check`]; `watch` hears how far it has come. Stopped, it returns what it found until then, with
 /// [`MotionError::Stopped`] as the problem.
-pub fn check_watched(
-    mechanism: &Mechanism,
-    plan: &Plan,
-    design: &Design<f64>,
-    parameters: &[f64],
-    watch: &mut dyn Watch,
-) -> Findings {
+pub fn check_watched(design: &Design<f64>, watch: &mut dyn Watch) -> Findings {
+    let mechanism = &*design.mechanism;
+    let plan = &mechanism.plan;
     let mut findings = Findings {
-        mobility: mobility(mechanism, design, None),
+        mobility: mobility(design, None),
         drives: mechanism.model.drives.len(),
-        groups: assur_groups(mechanism, plan),
+        groups: assur_groups(mechanism),
         four_bars: four_bars(mechanism, &design.geometry),
         idle: plan.decomposition.idle.clone(),
         redundant: Vec::new(),
@@ -93,19 +83,19 @@ pub fn check_watched(
             findings.redundant.push(source);
         }
     }
-    match Motion::watched(mechanism, plan, design, parameters, watch) {
+    match Motion::watched(design, watch) {
         Ok(motion) => {
             if let Some(chosen) = motion.assemblies.list.first() {
                 let mut coordinates = vec![0.0; mechanism.model.drives.len()];
                 motion.path.coordinates(motion.anchor, &mut coordinates);
-                let state = state_at(mechanism, plan, &chosen.poses, &coordinates);
-                findings.mobility = mobility(mechanism, design, Some((&state, &chosen.branch)));
+                let state = state_at(mechanism, &chosen.poses, &coordinates);
+                findings.mobility = mobility(design, Some((&state, &chosen.branch)));
             }
             match reach(&motion, watch) {
                 Ok(reach) => findings.reach = Some(reach),
                 Err(stopped) => findings.problem = Some(stopped),
             }
-            findings.assemblies = motion.assemblies;
+            findings.assemblies = motion.assemblies.clone();
         }
         Err(problem) => {
             if let MotionError::CannotAssemble { assemblies, .. } = &problem {
@@ -117,12 +107,12 @@ pub fn check_watched(
             ) {
                 findings.searched = false;
                 // The bodies and what joins them are the same however they are held.
-                if let Some(held) = hold(mechanism, parameters, watch) {
+                if let Some(held) = hold(mechanism, &design.parameters, watch) {
                     let coordinates = vec![0.0; mechanism.model.drives.len()];
-                    let state = state_at(mechanism, plan, &held.assembly.poses, &coordinates);
-                    let mut branch = Branch::neutral(mechanism, plan);
+                    let state = state_at(mechanism, &held.assembly.poses, &coordinates);
+                    let mut branch = Branch::neutral(mechanism);
                     branch.near = held.assembly.branch.near;
-                    findings.mobility = mobility(mechanism, design, Some((&state, &branch)));
+                    findings.mobility = mobility(design, Some((&state, &branch)));
                 }
             }
             findings.problem = Some(problem);
@@ -132,7 +122,7 @@ pub fn check_watched(
 }
 
 /// How far the moving drive can go from its start, beyond what the file demands.
-fn reach(motion: &Motion<'_>, watch: &mut dyn Watch) -> Result<Reach, MotionError> {
+fn reach(motion: &Motion, watch: &mut dyn Watch) -> Result<Reach, MotionError> {
     let own = || Reach {
         range: motion.reached(),
         ends: motion.ends,
@@ -142,7 +132,7 @@ fn reach(motion: &Motion<'_>, watch: &mut dyn Watch) -> Result<Reach, MotionErro
     let DrivePath::Coordinate { drive, .. } = &motion.path else {
         return Ok(own());
     };
-    let Some(law) = motion.mechanism.model.drives.get(*drive) else {
+    let Some(law) = motion.mechanism().model.drives.get(*drive) else {
         return Ok(own());
     };
     let turning = matches!(law.kind, kempe_model::DriveKind::Turn { .. });
@@ -165,8 +155,7 @@ fn reach(motion: &Motion<'_>, watch: &mut dyn Watch) -> Result<Reach, MotionErro
         start: motion.anchor,
         assemblies: Some(motion.assemblies.clone()),
     };
-    let (mechanism, plan, design) = (motion.mechanism, motion.plan, &*motion.design);
-    match Motion::along(mechanism, plan, design, demand, watch) {
+    match Motion::along(&motion.design, demand, watch) {
         Ok(wide) => Ok(Reach {
             range: wide.reached(),
             ends: wide.ends,

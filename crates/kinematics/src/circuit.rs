@@ -9,19 +9,19 @@ mod rows;
 pub use self::round::CIRCUIT_STEPS;
 pub(crate) use self::round::go_round;
 
+use std::sync::Arc;
+
 use crate::assemble::Assemblies;
-use crate::mechanism::Mechanism;
 use crate::motion::{EndReason, Motion, MotionError, Unlocated, with_care};
-use crate::plan::Plan;
 use crate::state::Design;
 use crate::trace::{Follower, Node, Path, distance};
 use crate::watch::{Stage, Unwatched, Watch};
 
 /// A stretch of a circuit on which the drive's coordinate runs one way.
 #[derive(Clone, Debug)]
-pub struct Stretch<'m> {
+pub struct Stretch {
     /// The motion, over rising coordinates.
-    pub motion: Motion<'m>,
+    pub motion: Arc<Motion>,
     /// Whether the circuit travels it upwards.
     pub forward: bool,
     /// Arc length (mechanism sizes and rad over all bodies) at every node, in the order of travel.
@@ -32,9 +32,9 @@ pub struct Stretch<'m> {
 
 /// A circuit of a mechanism: everything that can be reached without taking it apart.
 #[derive(Clone, Debug)]
-pub struct Circuit<'m> {
+pub struct Circuit {
     /// Its stretches in the order of travel.
-    pub stretches: Vec<Stretch<'m>>,
+    pub stretches: Vec<Stretch>,
     /// Whether it came back to its start.
     pub closed: bool,
     /// Whole arc length, in mechanism sizes and rad over all bodies.
@@ -44,53 +44,44 @@ pub struct Circuit<'m> {
     scale: f64,
 }
 
-impl<'m> Circuit<'m> {
+impl Circuit {
     /// Traces the circuit through the assembly meant by the file's hints at the drive's start.
     ///
     /// # Errors
     /// When it cannot start; see [`Motion::new`].
-    pub fn new(
-        mechanism: &'m Mechanism,
-        plan: &'m Plan,
-        design: &'m Design<f64>,
-        parameters: &[f64],
-    ) -> Result<Self, MotionError> {
-        Self::watched(mechanism, plan, design, parameters, &mut Unwatched)
+    pub fn new(design: &Design<f64>) -> Result<Self, MotionError> {
+        Self::watched(design, &mut Unwatched)
     }
 
     /// As [`Circuit::new`]; `watch` hears how far it has come and may stop it.
     ///
     /// # Errors
     /// As [`Circuit::new`], and [`MotionError::Stopped`].
-    pub fn watched(
-        mechanism: &'m Mechanism,
-        plan: &'m Plan,
-        design: &'m Design<f64>,
-        parameters: &[f64],
-        watch: &mut dyn Watch,
-    ) -> Result<Self, MotionError> {
+    pub fn watched(design: &Design<f64>, watch: &mut dyn Watch) -> Result<Self, MotionError> {
         // The demanded motion finds the start, with all its checks.
-        let motion = Motion::watched(mechanism, plan, design, parameters, watch)?;
+        let motion = Motion::watched(design, watch)?;
         let (low, high) = motion.demanded;
         let direction = if motion.start == low { 1.0 } else { -1.0 };
-        let Motion {
-            path,
-            assemblies,
-            anchor,
-            start,
-            ..
-        } = motion;
+        let (path, assemblies) = (motion.path.clone(), motion.assemblies.clone());
+        let (anchor, start) = (motion.anchor, motion.start);
         let locked = MotionError::Locked { at: start };
         let Some(chosen) = assemblies.list.first() else {
             return Err(locked);
         };
-        let design = chosen.count_in(mechanism, design);
-        let mut follower = Follower::new(mechanism, plan, &design.geometry, &path);
+        let design = chosen.count_in(design);
+        let mut follower = Follower::new(&design, &path);
         let z = follower.scaled(&chosen.poses, &chosen.branch.near, anchor);
         let start = follower.start(z, direction).ok_or(locked)?;
         with_care(&mut follower, |follower| {
-            let (nodes, closed) = go_round(follower, start.clone(), mechanism, &path, high, watch)
-                .ok_or(Unlocated::Stopped(Stage::Following))?;
+            let (nodes, closed) = go_round(
+                follower,
+                start.clone(),
+                &design.mechanism,
+                &path,
+                high,
+                watch,
+            )
+            .ok_or(Unlocated::Stopped(Stage::Following))?;
             let mut stretches = Vec::new();
             let mut length = 0.0;
             for nodes in pieces(nodes) {
@@ -99,12 +90,11 @@ impl<'m> Circuit<'m> {
                 let (rising, forward) = rising(&nodes);
                 let (design, path) = (design.clone(), path.clone());
                 let assemblies = assemblies.clone();
-                let mut motion =
-                    Motion::of_nodes(mechanism, plan, design, path, assemblies, rising);
+                let mut motion = Motion::of_nodes(design, path, assemblies, rising);
                 motion.ends = (EndReason::Limit, EndReason::Limit);
                 motion.find_events(follower, watch)?;
                 stretches.push(Stretch {
-                    motion,
+                    motion: Arc::new(motion),
                     forward,
                     arcs,
                     nodes,

@@ -1,7 +1,6 @@
 //! How far a pose can be trusted: closure residual and distance from singularity.
 
 use crate::bordered::Bordered;
-use crate::mechanism::Mechanism;
 use crate::pose::Pose;
 use crate::state::{Branch, Design, State};
 
@@ -15,13 +14,8 @@ pub struct Evidence {
 }
 
 /// The largest residual of all joints and drives at a pose, and of every body's length.
-pub fn closure(
-    mechanism: &Mechanism,
-    design: &Design<f64>,
-    branch: &Branch,
-    state: &State<f64>,
-    size: f64,
-) -> f64 {
+pub fn closure(design: &Design<f64>, branch: &Branch, state: &State<f64>, size: f64) -> f64 {
+    let mechanism = &*design.mechanism;
     let situation = state.situation(design, branch);
     // Directions that are no unit vectors stretch their bodies: poses that were joined from two sides may have them.
     let mut largest = (state.poses.iter())
@@ -48,14 +42,14 @@ pub fn closure(
 
 /// The evidence of a pose; `system` is storage that is reused from pose to pose.
 pub fn evidence(
-    mechanism: &Mechanism,
     design: &Design<f64>,
     branch: &Branch,
     state: &State<f64>,
     size: f64,
     system: &mut Bordered,
 ) -> Evidence {
-    let closure = closure(mechanism, design, branch, state, size);
+    let mechanism = &*design.mechanism;
+    let closure = closure(design, branch, state, size);
     if !closure.is_finite() {
         return Evidence {
             closure,

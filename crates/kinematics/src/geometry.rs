@@ -1,4 +1,4 @@
-//! The dimensions of a mechanism on one kind of number: everything the constraints need, in body coordinates.
+//! Where the points and lines of every body lie in it, on one kind of number: everything the constraints need.
 
 use kempe_number::Number;
 
@@ -25,7 +25,7 @@ pub struct GearConstants<T> {
     pub constant: T,
 }
 
-/// A design: the dimensions of a mechanism on one kind of number.
+/// The dimensions of a mechanism in the coordinates of its bodies.
 #[derive(Clone, Debug)]
 pub struct Geometry<T> {
     /// Pose of every link in its body.

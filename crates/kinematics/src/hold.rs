@@ -1,12 +1,13 @@
 //! A pose for a mechanism that its drives do not determine: what they leave free is held somewhere.
 
+use std::sync::Arc;
+
 use kempe_model::{Drive, DriveKind, HintKind, JointKind, Law, LawPiece, LinkId, Model};
 use kempe_units::{Dimension, Expr};
 
 use crate::assemble::{Assembly, find_assemblies};
 use crate::drive_path::DrivePath;
 use crate::mechanism::Mechanism;
-use crate::plan::Plan;
 use crate::state::Design;
 use crate::watch::Watch;
 
@@ -60,12 +61,11 @@ pub fn hold(mechanism: &Mechanism, parameters: &[f64], watch: &mut dyn Watch) ->
             drive.law.from = Expr::Const(wanted.unwrap_or(value));
         }
         let mechanism = Mechanism::new(&model);
-        let plan = Plan::new(&mechanism);
-        let design = Design::new(&mechanism, &plan, parameters);
+        let design = Design::new(&mechanism, parameters);
         let path = DrivePath::new(&model, parameters, size);
         let mut coordinates = vec![0.0; model.drives.len()];
         path.coordinates(path.start(&model, parameters), &mut coordinates);
-        let found = find_assemblies(&mechanism, &plan, &design, &coordinates, watch)?;
+        let found = find_assemblies(&design, &coordinates, watch)?;
         let Some(assembly) = found.list.into_iter().next() else {
             continue;
         };
@@ -140,7 +140,7 @@ fn candidates(model: &Model) -> Vec<Drive> {
 
 /// How much the drives of a model determine.
 struct Determined {
-    mechanism: Mechanism,
+    mechanism: Arc<Mechanism>,
     /// Unknowns that nothing determines.
     free: usize,
     /// Constraints that say what others say.
@@ -150,7 +150,7 @@ struct Determined {
 impl Determined {
     fn of(model: &Model) -> Self {
         let mechanism = Mechanism::new(model);
-        let parts = Plan::new(&mechanism).decomposition;
+        let parts = &mechanism.plan.decomposition;
         let inside: usize = parts.blocks.iter().map(|b| b.surplus.len()).sum();
         Self {
             free: parts.undetermined.len(),

@@ -51,12 +51,12 @@ pub(crate) struct Given<'a> {
 impl<'a> Given<'a> {
     /// A design's dimensions at the drives' `inputs`; `size` is the mechanism's, m.
     pub fn new(
-        mechanism: &'a Mechanism,
         design: &'a Design<Interval>,
         inputs: &'a [Input<Interval>],
         near: &'a [f64],
         size: f64,
     ) -> Self {
+        let mechanism = &*design.mechanism;
         Self {
             mechanism,
             geometry: &design.geometry,

@@ -9,12 +9,16 @@ pub use self::dimensions::{AngleSource, GearSource, LineSource, LinkSeat};
 pub use self::parts::{BodyId, LineRef, Marker, Spot};
 pub use crate::constraint::{Constraint, Source};
 
+use std::sync::Arc;
+
 use kempe_model::{DriveId, JointId, LinkId, LinkPointRef, Model, Place, PointId};
 
 use self::dimensions::ZERO;
 use self::weld::seats;
+use crate::plan::Plan;
 
-/// A model compiled to bodies, markers and constraints.
+/// A model compiled to bodies, markers, constraints and the plan by which it is solved. It lives once, shared by all that
+/// is computed of it: designs, motions and samplers each hold their share.
 #[derive(Clone, Debug)]
 pub struct Mechanism {
     /// The model.
@@ -37,11 +41,25 @@ pub struct Mechanism {
     pub constraints: Vec<(Constraint, Source)>,
     /// How many constraints come from joints.
     pub joint_constraints: usize,
+    /// How its poses are found for given coordinates of the drives.
+    pub plan: Plan,
 }
 
 impl Mechanism {
     /// Compiles a model.
-    pub fn new(model: &Model) -> Self {
+    pub fn new(model: &Model) -> Arc<Self> {
+        let mut it = Self::without_plan(model);
+        it.make_plan();
+        Arc::new(it)
+    }
+
+    /// Makes the plan from the constraints as they stand.
+    pub(crate) fn make_plan(&mut self) {
+        self.plan = Plan::new(self);
+    }
+
+    /// The bodies and constraints of a model; the plan is empty.
+    pub(crate) fn without_plan(model: &Model) -> Self {
         let mut it = Self {
             bodies: 0,
             seats: seats(model),
@@ -52,6 +70,7 @@ impl Mechanism {
             gears: Vec::new(),
             constraints: Vec::new(),
             joint_constraints: 0,
+            plan: Plan::default(),
             model: model.clone(),
         };
         it.bodies = it

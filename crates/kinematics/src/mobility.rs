@@ -24,11 +24,8 @@ pub struct Mobility {
 }
 
 /// Counts and, with a pose, measures the mobility.
-pub fn mobility(
-    mechanism: &Mechanism,
-    design: &Design<f64>,
-    pose: Option<(&State<f64>, &Branch)>,
-) -> Mobility {
+pub fn mobility(design: &Design<f64>, pose: Option<(&State<f64>, &Branch)>) -> Mobility {
+    let mechanism = &*design.mechanism;
     let mut it = Mobility {
         links: mechanism.bodies,
         lower_pairs: 0,
@@ -62,7 +59,7 @@ pub fn mobility(
             .iter()
             .map(|(c, _)| c.rows())
             .sum();
-        let rank = joint_rank(mechanism, design, branch, state);
+        let rank = joint_rank(design, branch, state);
         it.by_rank = Some(3 * (mechanism.bodies - 1) - rank);
         it.redundant_rows = Some(rows - rank);
     }
@@ -70,13 +67,9 @@ pub fn mobility(
 }
 
 /// Rank of the joints' scaled constraint Jacobian at a pose.
-fn joint_rank(
-    mechanism: &Mechanism,
-    design: &Design<f64>,
-    branch: &Branch,
-    state: &State<f64>,
-) -> usize {
-    let size = design.geometry.size(mechanism);
+fn joint_rank(design: &Design<f64>, branch: &Branch, state: &State<f64>) -> usize {
+    let mechanism = &*design.mechanism;
+    let size = design.size();
     let situation = state.situation(design, branch);
     let columns = 3 * (mechanism.bodies - 1);
     let mut rows: Vec<SparseRow> = Vec::new();
@@ -110,11 +103,10 @@ fn joint_rank(
 /// A state at given poses, ready for residuals and gradients.
 pub(crate) fn state_at(
     mechanism: &Mechanism,
-    plan: &crate::plan::Plan,
     poses: &[Pose<f64>],
     coordinates: &[f64],
 ) -> State<f64> {
-    let mut state = State::new(mechanism, plan);
+    let mut state = State::new(mechanism);
     state.poses.copy_from_slice(poses);
     state.set_inputs(mechanism, coordinates);
     state

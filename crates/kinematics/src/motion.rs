@@ -21,14 +21,13 @@ pub use self::modes::CROSSING;
 pub use self::solver::Solver;
 pub use self::start::SIZES;
 
-use std::borrow::Cow;
+use std::sync::Arc;
 
 use self::branch::Patch;
 use crate::assemble::Assemblies;
 use crate::drive_path::DrivePath;
 use crate::events::{Event, EventKind};
 use crate::mechanism::Mechanism;
-use crate::plan::Plan;
 use crate::pose::Pose;
 use crate::state::Design;
 use crate::trace::{Node, Path, unscale};
@@ -56,15 +55,12 @@ pub struct Demand {
     pub assemblies: Option<Assemblies>,
 }
 
-/// The branch of a motion, all along the path: what every row of a table is computed from.
+/// The branch of a motion, all along the path: what every row of a table is computed from. It lives once, shared by the
+/// samplers, batches and proofs of it.
 #[derive(Clone, Debug)]
-pub struct Motion<'m> {
-    /// The mechanism.
-    pub mechanism: &'m Mechanism,
-    /// Its plan.
-    pub plan: &'m Plan,
+pub struct Motion {
     /// The design, the angles of its links counted as in the chosen assembly.
-    pub design: Cow<'m, Design<f64>>,
+    pub design: Design<f64>,
     /// The drives' path.
     pub path: DrivePath,
     /// All assemblies at the anchor, the chosen one first.
@@ -91,33 +87,22 @@ pub struct Motion<'m> {
     size: f64,
 }
 
-impl<'m> Motion<'m> {
+impl Motion {
     /// Finds the assembly at the start and follows it over the demanded range of the drives.
     ///
     /// # Errors
     /// When it cannot start. A range that is cut short by a limit is not an error here: see [`Motion::ends`].
-    pub fn new(
-        mechanism: &'m Mechanism,
-        plan: &'m Plan,
-        design: &'m Design<f64>,
-        parameters: &[f64],
-    ) -> Result<Self, MotionError> {
-        Self::watched(mechanism, plan, design, parameters, &mut Unwatched)
+    pub fn new(design: &Design<f64>) -> Result<Arc<Self>, MotionError> {
+        Self::watched(design, &mut Unwatched)
     }
 
     /// As [`Motion::new`]; `watch` hears how far it has come and may stop it.
     ///
     /// # Errors
     /// As [`Motion::new`], and [`MotionError::Stopped`].
-    pub fn watched(
-        mechanism: &'m Mechanism,
-        plan: &'m Plan,
-        design: &'m Design<f64>,
-        parameters: &[f64],
-        watch: &mut dyn Watch,
-    ) -> Result<Self, MotionError> {
-        let size = design.geometry.size(mechanism);
-        let model = &mechanism.model;
+    pub fn watched(design: &Design<f64>, watch: &mut dyn Watch) -> Result<Arc<Self>, MotionError> {
+        let (model, parameters) = (&design.mechanism.model, &design.parameters);
+        let size = design.size();
         let path = DrivePath::new(model, parameters, size);
         let demanded = path.range(model, parameters);
         let start = path.start(model, parameters);
@@ -127,14 +112,12 @@ impl<'m> Motion<'m> {
             start,
             assemblies: None,
         };
-        Self::along(mechanism, plan, design, stretch, watch)
+        Self::along(design, stretch, watch).map(Arc::new)
     }
 
     /// A motion over given nodes, rising in the path parameter; it covers just them.
     pub(crate) fn of_nodes(
-        mechanism: &'m Mechanism,
-        plan: &'m Plan,
-        design: Cow<'m, Design<f64>>,
+        design: Design<f64>,
         path: DrivePath,
         assemblies: Assemblies,
         nodes: Vec<Node>,
@@ -146,8 +129,6 @@ impl<'m> Motion<'m> {
         };
         let demanded = (at(nodes.first()), at(nodes.last()));
         Self {
-            mechanism,
-            plan,
             assemblies,
             anchor: demanded.0,
             choices: 1,
@@ -160,10 +141,15 @@ impl<'m> Motion<'m> {
             patches: Vec::new(),
             nodes,
             scale,
-            size: design.geometry.size(mechanism),
+            size: design.size(),
             design,
             path,
         }
+    }
+
+    /// The mechanism.
+    pub fn mechanism(&self) -> &Arc<Mechanism> {
+        &self.design.mechanism
     }
 
     /// The range that was reached of the demanded one.
@@ -211,8 +197,8 @@ impl<'m> Motion<'m> {
 
     /// Path parameter and poses of a node of the trace, with unwrapped body angles.
     pub(crate) fn node(&self, index: usize) -> (f64, Vec<Pose<f64>>, Vec<f64>) {
-        let mut poses = vec![Pose::identity(); self.mechanism.bodies];
-        let mut near = vec![0.0; self.mechanism.bodies];
+        let mut poses = vec![Pose::identity(); self.mechanism().bodies];
+        let mut near = vec![0.0; self.mechanism().bodies];
         unscale(&self.nodes[index].z, self.size, &mut poses, &mut near);
         (self.parameters[index], poses, near)
     }

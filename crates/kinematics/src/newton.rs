@@ -22,7 +22,6 @@ pub trait PlanNumber: Number {
     /// Solves a block from the branch's guess; returns its determinant. What cannot be solved becomes NaN.
     fn solve_newton(
         block: &NewtonBlock,
-        mechanism: &Mechanism,
         design: &Design<Self>,
         branch: &Branch,
         state: &mut State<Self>,
@@ -32,11 +31,11 @@ pub trait PlanNumber: Number {
 impl PlanNumber for f64 {
     fn solve_newton(
         block: &NewtonBlock,
-        mechanism: &Mechanism,
         design: &Design<f64>,
         branch: &Branch,
         state: &mut State<f64>,
     ) -> f64 {
+        let mechanism = &*design.mechanism;
         let scratch = &mut state.scratch;
         plain_newton(
             block,
@@ -57,12 +56,10 @@ macro_rules! plan_number {
         impl<$($generics)*> PlanNumber for $type {
             fn solve_newton(
                 block: &NewtonBlock,
-                mechanism: &Mechanism,
                 design: &Design<Self>,
                 branch: &Branch,
-                state: &mut State<Self>,
-            ) -> Self {
-                $solve(block, mechanism, design, branch, state, $($more),*)
+                state: &mut State<Self>) -> Self {
+                $solve(block, design, branch, state, $($more),*)
             }
         }
     )*};
@@ -80,12 +77,12 @@ plan_number! {
 /// Solves on plain numbers, then makes the higher parts exact.
 fn carry_over<T: PlanNumber>(
     block: &NewtonBlock,
-    mechanism: &Mechanism,
     design: &Design<T>,
     branch: &Branch,
     state: &mut State<T>,
     passes: usize,
 ) -> T {
+    let mechanism = &*design.mechanism;
     let plain = &design.plain[0];
     let determinant = plain_part(block, mechanism, plain, branch, state, T::value);
     for unknown in &block.unknowns {
@@ -96,7 +93,7 @@ fn carry_over<T: PlanNumber>(
             Unknown::Place(_) => (rich.x, rich.y) = (T::from_f64(plain.x), T::from_f64(plain.y)),
         }
     }
-    sharpen(block, mechanism, design, branch, state, passes, |row| row);
+    sharpen(block, design, branch, state, passes, |row| row);
     T::from_f64(determinant)
 }
 
@@ -142,13 +139,13 @@ fn plain_part<T: Number>(
 /// iteration x <- x - J0^-1 F(x) corrects one more order of a nilpotent number. `take` is what counts of a row.
 fn sharpen<T: Number>(
     block: &NewtonBlock,
-    mechanism: &Mechanism,
     design: &Design<T>,
     branch: &Branch,
     state: &mut State<T>,
     passes: usize,
     take: impl Fn(T) -> T,
 ) {
+    let mechanism = &*design.mechanism;
     let State {
         inputs,
         poses,

@@ -261,7 +261,7 @@ pub struct NewtonBlock {
 }
 
 /// How the pose is found.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Plan {
     /// Steps in order.
     pub steps: Vec<Step>,
@@ -302,7 +302,7 @@ impl Step {
 impl Plan {
     /// Makes the plan of a mechanism with its drives. Freedoms without a drive are left where they are (see
     /// [`Decomposition::undetermined`]): the caller decides whether that is an error.
-    pub fn new(mechanism: &Mechanism) -> Self {
+    pub(crate) fn new(mechanism: &Mechanism) -> Self {
         let decomposition = decompose(mechanism, true);
         let mut plan = Self {
             steps: Vec::new(),

@@ -12,6 +12,8 @@ mod series;
 
 pub use self::prepare::{Unmeasurable, Unprepared};
 
+use std::sync::Arc;
+
 use kempe_model::{Measure, PointId, Statistic};
 
 use self::direction::Direction;
@@ -53,12 +55,11 @@ pub struct Sample {
 }
 
 /// Evaluates measures along a motion; those of forces too where it is given their source.
-pub struct Sampler<'a, F = NoForces> {
-    motion: &'a Motion<'a>,
+pub struct Sampler<F = NoForces> {
+    motion: Arc<Motion>,
     /// Only ever `None` while its own questions are answered.
     forces: Option<F>,
     measures: Vec<Measure>,
-    parameters: Vec<f64>,
     series_design: Design<Series<f64>>,
     side_design: Design<Side>,
     plain: Solver<f64>,
@@ -73,23 +74,23 @@ pub struct Sampler<'a, F = NoForces> {
     system: Bordered,
 }
 
-impl<'a> Sampler<'a> {
+impl Sampler {
     /// Prepares measures for evaluation along a motion; statistics over the motion are computed here.
     ///
     /// # Errors
     /// All measures that cannot be evaluated, each with its reason.
-    pub fn new(motion: &'a Motion<'a>, measures: &[&Measure]) -> Result<Self, Vec<Unmeasurable>> {
+    pub fn new(motion: &Arc<Motion>, measures: &[&Measure]) -> Result<Self, Vec<Unmeasurable>> {
         Self::with_forces(motion, measures, NoForces)
     }
 }
 
-impl<'a, F: ForceSource> Sampler<'a, F> {
+impl<F: ForceSource> Sampler<F> {
     /// As [`Sampler::new`], with a source of forces.
     ///
     /// # Errors
     /// All measures that cannot be evaluated, each with its reason.
     pub fn with_forces(
-        motion: &'a Motion<'a>,
+        motion: &Arc<Motion>,
         measures: &[&Measure],
         forces: F,
     ) -> Result<Self, Vec<Unmeasurable>> {
@@ -105,12 +106,12 @@ impl<'a, F: ForceSource> Sampler<'a, F> {
     /// # Errors
     /// As [`Sampler::with_forces`], and [`Unprepared::Stopped`].
     pub fn watched(
-        motion: &'a Motion<'a>,
+        motion: &Arc<Motion>,
         measures: &[&Measure],
         forces: F,
         watch: &mut dyn Watch,
     ) -> Result<Self, Unprepared> {
-        let mechanism = motion.mechanism;
+        let mechanism = motion.mechanism();
         let problems: Vec<Unmeasurable> = (measures.iter().enumerate())
             .filter_map(|(index, m)| {
                 order_of(mechanism, m)
@@ -121,7 +122,6 @@ impl<'a, F: ForceSource> Sampler<'a, F> {
         if !problems.is_empty() {
             return Err(Unprepared::Unmeasurable(problems));
         }
-        let parameters = mechanism.model.parameter_values::<f64>();
         let mut it = Self {
             series_design: motion.design_on(),
             side_design: motion.design_on(),
@@ -133,10 +133,9 @@ impl<'a, F: ForceSource> Sampler<'a, F> {
             swept: Vec::new(),
             curved: Vec::new(),
             statistics: Vec::new(),
-            system: Bordered::new(motion.mechanism, motion.plan),
-            parameters,
+            system: Bordered::new(mechanism),
             measures: measures.iter().map(|m| (*m).clone()).collect(),
-            motion,
+            motion: motion.clone(),
             forces: Some(forces),
         };
         it.prepare(watch).ok_or(Unprepared::Stopped)?;
@@ -148,9 +147,14 @@ impl<'a, F: ForceSource> Sampler<'a, F> {
         self.forces.as_ref()
     }
 
+    /// Values of the parameters, SI, in the model's order.
+    pub fn parameters(&self) -> &[f64] {
+        &self.motion.design.parameters
+    }
+
     /// The motion.
-    pub fn motion(&self) -> &'a Motion<'a> {
-        self.motion
+    pub fn motion(&self) -> &Arc<Motion> {
+        &self.motion
     }
 
     /// The row at a path parameter: the first time the motion passes it.
@@ -169,8 +173,8 @@ impl<'a, F: ForceSource> Sampler<'a, F> {
     }
 
     fn row(&mut self, p: f64, time: f64) -> Sample {
-        let motion = self.motion;
-        let model = &motion.mechanism.model;
+        let motion = &*self.motion.clone();
+        let model = &motion.mechanism().model;
         let mut sample = Sample {
             parameter: p,
             time,
@@ -215,10 +219,9 @@ impl<'a, F: ForceSource> Sampler<'a, F> {
         motion.path.coordinates(p, &mut self.plain.coordinates);
         self.plain
             .state
-            .set_inputs(motion.mechanism, &self.plain.coordinates);
+            .set_inputs(motion.mechanism(), &self.plain.coordinates);
         let (branch, state) = (&self.plain.branch, &self.plain.state);
         let found = evidence(
-            motion.mechanism,
             &motion.design,
             branch,
             state,
@@ -234,10 +237,10 @@ impl<'a, F: ForceSource> Sampler<'a, F> {
 
     /// Fills in where links and points are.
     fn fill_places(&self, sample: &mut Sample) {
-        let motion = self.motion;
+        let motion = &*self.motion.clone();
         let geometry = &motion.design.geometry;
         for (index, place) in sample.links.iter_mut().enumerate() {
-            let body = motion.mechanism.seats[index].body.index();
+            let body = motion.mechanism().seats[index].body.index();
             let (pose, seat) = (&self.plain.state.poses[body], &geometry.seats[index]);
             let [x, y] = pose.place([seat.x, seat.y]);
             *place = [
@@ -247,7 +250,7 @@ impl<'a, F: ForceSource> Sampler<'a, F> {
             ];
         }
         for (index, place) in sample.points.iter_mut().enumerate() {
-            if let Some(marker) = motion.mechanism.any_marker(PointId(index as u32)) {
+            if let Some(marker) = motion.mechanism().any_marker(PointId(index as u32)) {
                 *place = self.plain.state.poses[marker.body.index()].place(geometry.marker(marker));
             }
         }

@@ -22,6 +22,8 @@
 mod over;
 mod varied;
 
+use std::sync::Arc;
+
 use kempe_model::{Measure, ParameterId};
 use kempe_number::{Dual, Number};
 
@@ -64,7 +66,7 @@ pub struct Sensitivities {
 /// # Errors
 /// All measures that cannot be evaluated, each with its reason.
 pub fn sensitivities(
-    motion: &Motion<'_>,
+    motion: &Arc<Motion>,
     held: Held,
     measures: &[&Measure],
     parameters: &[ParameterId],

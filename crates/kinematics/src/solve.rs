@@ -31,23 +31,20 @@ macro_rules! for_each {
 /// compile, and slower in lanes where a mechanism has such steps (how much has not been measured).
 const IN_PLACE: usize = 128;
 
-impl Plan {
+impl<T: PlanNumber> Design<T> {
     /// Finds the pose for the drive coordinates in `state.inputs` on the given branch: fills `state.poses` and
     /// `state.determinants`. Where the mechanism cannot be assembled the poses become NaN (empty for intervals).
     ///
     /// Allocates nothing.
-    pub fn solve<T: PlanNumber>(
-        &self,
-        mechanism: &Mechanism,
-        design: &Design<T>,
-        branch: &Branch,
-        state: &mut State<T>,
-    ) {
+    pub fn solve(&self, branch: &Branch, state: &mut State<T>) {
+        let plan = &self.mechanism.plan;
         let states = std::slice::from_mut(state);
-        self.solve_all::<T, true>(0..self.steps.len(), mechanism, design, branch, states);
+        plan.solve_all::<T, true>(0..plan.steps.len(), self, branch, states);
     }
+}
 
-    /// These steps of [`Plan::solve`] for several states of one design on one branch. Each is run for all states before
+impl Plan {
+    /// These steps of [`Design::solve`] for several states of one design on one branch. Each is run for all states before
     /// the next: it is taken apart once, and while one state waits for its roots and quotients the processor goes on with
     /// the others.
     ///
@@ -56,14 +53,13 @@ impl Plan {
     pub(crate) fn solve_all<T: PlanNumber, const ALL: bool>(
         &self,
         steps: impl IntoIterator<Item = usize>,
-        mechanism: &Mechanism,
         design: &Design<T>,
         branch: &Branch,
         states: &mut [State<T>],
     ) {
         for index in steps {
             let sign = branch.signs[index];
-            self.run_step::<T, ALL>(index, sign, mechanism, design, branch, states);
+            self.run_step::<T, ALL>(index, sign, design, branch, states);
         }
     }
 
@@ -72,13 +68,12 @@ impl Plan {
         &self,
         index: usize,
         sign: f64,
-        mechanism: &Mechanism,
         design: &Design<T>,
         branch: &Branch,
         state: &mut State<T>,
     ) {
         let states = std::slice::from_mut(state);
-        self.run_step::<T, true>(index, sign, mechanism, design, branch, states);
+        self.run_step::<T, true>(index, sign, design, branch, states);
     }
 
     #[cfg_attr(not(debug_assertions), inline(always))]
@@ -86,11 +81,11 @@ impl Plan {
         &self,
         index: usize,
         sign: f64,
-        mechanism: &Mechanism,
         design: &Design<T>,
         branch: &Branch,
         states: &mut [State<T>],
     ) {
+        let mechanism = &*design.mechanism;
         match &self.steps[index] {
             &Step::Turn {
                 body,
@@ -136,9 +131,9 @@ impl Plan {
                 for_each!(states, index, |state| step.solve(state, sign));
             }
             _ if const { size_of::<T>() > IN_PLACE } => {
-                self.call_step::<T, ALL>(index, sign, mechanism, design, branch, states);
+                self.call_step::<T, ALL>(index, sign, design, branch, states);
             }
-            _ => self.run_rarer::<T, ALL>(index, sign, mechanism, design, branch, states),
+            _ => self.run_rarer::<T, ALL>(index, sign, design, branch, states),
         }
     }
 
@@ -148,12 +143,11 @@ impl Plan {
         &self,
         index: usize,
         sign: f64,
-        mechanism: &Mechanism,
         design: &Design<T>,
         branch: &Branch,
         states: &mut [State<T>],
     ) {
-        self.run_rarer::<T, ALL>(index, sign, mechanism, design, branch, states);
+        self.run_rarer::<T, ALL>(index, sign, design, branch, states);
     }
 
     /// The steps of fewer mechanisms.
@@ -162,7 +156,6 @@ impl Plan {
         &self,
         index: usize,
         sign: f64,
-        mechanism: &Mechanism,
         design: &Design<T>,
         branch: &Branch,
         states: &mut [State<T>],
@@ -199,13 +192,13 @@ impl Plan {
                 at,
                 constraint,
             } if ALL => for_each!(states, index, |state| {
-                roll(mechanism, design, branch, state, (own, at, constraint))
+                roll(design, branch, state, (own, at, constraint))
             }),
             &Step::Gear { body, constraint } if ALL => for_each!(states, index, |state| {
-                turn_gear(mechanism, design, branch, state, (body, constraint))
+                turn_gear(design, branch, state, (body, constraint))
             }),
             &Step::Newton { block } if ALL => for_each!(states, index, |state| {
-                T::solve_newton(&self.newton_blocks[block], mechanism, design, branch, state)
+                T::solve_newton(&self.newton_blocks[block], design, branch, state)
             }),
             // Callers without `ALL` have made sure that there are none, and the common steps are done.
             _ => states.iter_mut().for_each(lose),
@@ -238,12 +231,12 @@ fn point<T: Number>(state: &mut State<T>, body: BodyId, [c, s]: [T; 2]) -> T {
 /// Places a pinion by its centre and turns it by its rack.
 #[inline(never)]
 fn roll<T: Number>(
-    mechanism: &Mechanism,
     design: &Design<T>,
     branch: &Branch,
     state: &mut State<T>,
     (own, at, constraint): (Marker, Marker, usize),
 ) -> T {
+    let mechanism = &*design.mechanism;
     // The centre is in place whatever the angle.
     let world = state.place(design, at);
     let (body, pin) = (own.body, design.geometry.marker(own));
@@ -259,12 +252,12 @@ fn roll<T: Number>(
 /// Turns a body by a gear pair or a rack.
 #[inline(never)]
 fn turn_gear<T: Number>(
-    mechanism: &Mechanism,
     design: &Design<T>,
     branch: &Branch,
     state: &mut State<T>,
     (body, constraint): (BodyId, usize),
 ) -> T {
+    let mechanism = &*design.mechanism;
     let situation = state.situation(design, branch);
     if let Some(angle) = gear(&situation, mechanism, body, constraint) {
         let (s, c) = angle.sin_cos();

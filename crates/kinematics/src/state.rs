@@ -1,5 +1,7 @@
 //! What a position solve works on: a design, a branch, and the state it fills.
 
+use std::sync::Arc;
+
 use kempe_model::DriveKind;
 use kempe_number::Number;
 
@@ -8,14 +10,19 @@ use crate::constraint::{Input, Situation};
 use crate::geometry::Geometry;
 use crate::known::Known;
 use crate::mechanism::{Marker, Mechanism};
-use crate::plan::{DyadBody, Plan, Step};
+use crate::plan::{DyadBody, Step};
 use crate::pose::Pose;
 use crate::qr::Qr;
 
-/// The dimensions of one design (or several in lanes), with what the plan's closed forms prepare from them.
+/// A design: a mechanism with dimensions on one kind of number (several designs at once in lanes), and what the plan's closed
+/// forms prepare from them.
 #[derive(Clone, Debug)]
 pub struct Design<T> {
-    /// Dimensions.
+    /// The mechanism, shared.
+    pub mechanism: Arc<Mechanism>,
+    /// Values of the parameters, SI, in the model's order.
+    pub parameters: Vec<T>,
+    /// Where points and lines lie in their bodies.
     pub geometry: Geometry<T>,
     /// Constants of every dyad.
     pub constants: Vec<[T; DYAD_CONSTANTS]>,
@@ -25,46 +32,50 @@ pub struct Design<T> {
 
 impl<T: Number> Design<T> {
     /// Prepares a design from parameter values (SI, in the model's order).
-    pub fn new(mechanism: &Mechanism, plan: &Plan, parameters: &[T]) -> Self {
+    pub fn new(mechanism: &Arc<Mechanism>, parameters: &[T]) -> Self {
         let geometry = Geometry::new(mechanism, parameters);
         let plain = vec![geometry.value()];
-        Self::from_geometry(plan, geometry, plain)
+        Self::from_geometry(mechanism, parameters, geometry, plain)
     }
 
     pub(crate) fn from_geometry(
-        plan: &Plan,
+        mechanism: &Arc<Mechanism>,
+        parameters: &[T],
         geometry: Geometry<T>,
         plain: Vec<Geometry<f64>>,
     ) -> Self {
         let mut it = Self {
             geometry,
-            constants: vec![[T::zero(); DYAD_CONSTANTS]; plan.dyads],
+            constants: vec![[T::zero(); DYAD_CONSTANTS]; mechanism.plan.dyads],
             plain,
+            mechanism: mechanism.clone(),
+            parameters: parameters.to_vec(),
         };
-        it.prepare(plan);
+        it.prepare();
         it
     }
 
     /// Counts the angles of links by whole turns: see [`Geometry::count_turns`].
-    pub(crate) fn count_turns(&mut self, mechanism: &Mechanism, turns: &[f64]) {
-        self.geometry.count_turns(mechanism, turns);
+    pub(crate) fn count_turns(&mut self, turns: &[f64]) {
+        self.geometry.count_turns(&self.mechanism, turns);
         for plain in &mut self.plain {
-            plain.count_turns(mechanism, turns);
+            plain.count_turns(&self.mechanism, turns);
         }
     }
 
     /// Evaluates the dimensions anew for other parameter values, in the same storage; not the plain ones.
     #[cfg_attr(not(debug_assertions), inline(always))]
-    pub(crate) fn update(&mut self, mechanism: &Mechanism, plan: &Plan, parameters: &[T]) {
-        self.geometry.update(mechanism, parameters);
-        self.prepare(plan);
+    pub(crate) fn update(&mut self, parameters: &[T]) {
+        self.parameters.copy_from_slice(parameters);
+        self.geometry.update(&self.mechanism, parameters);
+        self.prepare();
     }
 
     /// Fills the closed forms' constants from the geometry.
     #[cfg_attr(not(debug_assertions), inline(always))]
-    fn prepare(&mut self, plan: &Plan) {
+    fn prepare(&mut self) {
         let geometry = &self.geometry;
-        for step in &plan.steps {
+        for step in &self.mechanism.plan.steps {
             if let Step::Dyad(dyad) = step {
                 let own =
                     |body: DyadBody| (geometry.marker(body.outer), geometry.marker(body.inner));
@@ -75,10 +86,17 @@ impl<T: Number> Design<T> {
 }
 
 impl Design<f64> {
+    /// A characteristic length of the mechanism, m: see [`Geometry::size`].
+    pub fn size(&self) -> f64 {
+        self.geometry.size(&self.mechanism)
+    }
+
     /// The same design as constants of a richer number.
     #[inline(never)]
     pub fn lift<T: Number>(&self) -> Design<T> {
         Design {
+            mechanism: self.mechanism.clone(),
+            parameters: self.parameters.iter().map(|x| T::from_f64(*x)).collect(),
             geometry: self.geometry.map(T::from_f64),
             constants: self.constants.iter().map(|c| c.map(T::from_f64)).collect(),
             plain: vec![self.geometry.clone()],
@@ -99,7 +117,8 @@ pub struct Branch {
 
 impl Branch {
     /// A branch with every mode at +1 and every guess at the frame's pose.
-    pub fn neutral(mechanism: &Mechanism, plan: &Plan) -> Self {
+    pub fn neutral(mechanism: &Mechanism) -> Self {
+        let plan = &mechanism.plan;
         Self {
             signs: vec![1.0; plan.steps.len()],
             guess: vec![Pose::identity(); mechanism.bodies],
@@ -132,7 +151,8 @@ pub(crate) struct Scratch<T> {
 
 impl<T: Number> State<T> {
     /// Storage for a mechanism and its plan.
-    pub fn new(mechanism: &Mechanism, plan: &Plan) -> Self {
+    pub fn new(mechanism: &Mechanism) -> Self {
+        let plan = &mechanism.plan;
         let rows = plan
             .newton_blocks
             .iter()

@@ -39,7 +39,7 @@ const HALVINGS: i32 = 40;
 
 /// Evaluates a statistic of a measure over the motion, SI. NaN where the motion does not reach; `None` when stopped.
 pub(crate) fn over<F: ForceSource>(
-    sampler: &mut Sampler<'_, F>,
+    sampler: &mut Sampler<F>,
     statistic: Statistic,
     measure: &Measure,
     watch: &mut dyn Watch,
@@ -75,18 +75,17 @@ struct Stretch {
 }
 
 /// The stretches of a motion between the knots of its laws. However short, each is searched.
-fn stretches<F: ForceSource>(sampler: &Sampler<'_, F>) -> Vec<Stretch> {
-    let model = &sampler.motion().mechanism.model;
-    let parameters = model.parameter_values::<f64>();
+fn stretches<F: ForceSource>(sampler: &Sampler<F>) -> Vec<Stretch> {
+    let model = &sampler.motion().mechanism().model;
+    let parameters = sampler.parameters();
     let duration = sampler.duration();
     let turning = || (model.drives.iter()).filter(|d| d.dimension == Dimension::ANGLE);
     let turns = |from: f64, to: f64| {
-        let ways =
-            turning().map(|d| (d.law.at(to, &parameters) - d.law.at(from, &parameters)).abs());
+        let ways = turning().map(|d| (d.law.at(to, parameters) - d.law.at(from, parameters)).abs());
         ways.fold(0.0, f64::max) / TAU
     };
-    let pieces = law_knots(model, &parameters, true);
-    let list = law_knots(model, &parameters, false);
+    let pieces = law_knots(model, parameters, true);
+    let list = law_knots(model, parameters, false);
     let mut stretches: Vec<Stretch> = (list.windows(2))
         .map(|pair| {
             let ([_, from], [end, _]) = (pair[0], pair[1]);
@@ -120,12 +119,11 @@ fn stretches<F: ForceSource>(sampler: &Sampler<'_, F>) -> Vec<Stretch> {
 /// Duration of the slower stroke over that of the faster, from the time between both extremes and the duration of the
 /// motion; NaN where the motion is no cycle. Over several turns the cycle is one of them.
 pub(crate) fn time_ratio<T: Number, F: ForceSource>(
-    sampler: &Sampler<'_, F>,
+    sampler: &Sampler<F>,
     between: T,
     duration: T,
 ) -> T {
-    let model = &sampler.motion().mechanism.model;
-    if !is_cycle(model, &model.parameter_values::<f64>()) {
+    if !is_cycle(&sampler.motion().mechanism().model, sampler.parameters()) {
         return T::from_f64(f64::NAN);
     }
     let cycle = duration / whole_turns(sampler);
@@ -136,17 +134,17 @@ pub(crate) fn time_ratio<T: Number, F: ForceSource>(
 }
 
 /// How many whole turns the only moving drive makes one way; 1 for any other motion.
-fn whole_turns<F: ForceSource>(sampler: &Sampler<'_, F>) -> f64 {
+fn whole_turns<F: ForceSource>(sampler: &Sampler<F>) -> f64 {
     let Some(drive) = sampler.path_drive() else {
         return 1.0;
     };
-    let model = &sampler.motion().mechanism.model;
+    let model = &sampler.motion().mechanism().model;
     let Some(drive) = model.drives.get(drive.index()) else {
         return 1.0;
     };
     let turns = match drive.law.pieces.as_slice() {
         [LawPiece::ConstantSpeed { .. }] if drive.dimension == Dimension::ANGLE => {
-            let (low, high) = drive.law.extent(&model.parameter_values::<f64>());
+            let (low, high) = drive.law.extent(sampler.parameters());
             (high - low) / TAU
         }
         _ => 1.0,
@@ -164,7 +162,7 @@ pub(crate) type At = (f64, f64);
 /// Smallest and largest value with their times: ends of stretches, and the zeros of the rate between grid points. `None`
 /// inside where the motion does not reach, outside when stopped.
 pub(crate) fn extremes<F: ForceSource>(
-    sampler: &mut Sampler<'_, F>,
+    sampler: &mut Sampler<F>,
     measure: &Measure,
     watch: &mut dyn Watch,
 ) -> Option<Option<(At, At)>> {
@@ -232,7 +230,7 @@ pub(crate) fn extremes<F: ForceSource>(
 /// Times of an interval with values and rates there, rising: its ends, and where an end has no rate (at a limit), times
 /// ever nearer to it.
 fn rates_between<F: ForceSource>(
-    sampler: &mut Sampler<'_, F>,
+    sampler: &mut Sampler<F>,
     measure: &Measure,
     [from, to]: [[f64; 3]; 2],
 ) -> Vec<[f64; 3]> {
@@ -259,7 +257,7 @@ fn rates_between<F: ForceSource>(
 
 /// Mean over time between the knots of the laws; `None` when stopped.
 fn mean<F: ForceSource>(
-    sampler: &mut Sampler<'_, F>,
+    sampler: &mut Sampler<F>,
     measure: &Measure,
     watch: &mut dyn Watch,
 ) -> Option<f64> {

@@ -41,7 +41,7 @@ pub struct Swept {
 
 impl Swept {
     /// Integrates over a motion; `None` when stopped.
-    pub fn watched(motion: &Motion<'_>, point: PointId, watch: &mut dyn Watch) -> Option<Self> {
+    pub fn watched(motion: &Motion, point: PointId, watch: &mut dyn Watch) -> Option<Self> {
         let mut it = Self {
             point,
             marks: Vec::new(),
@@ -64,7 +64,7 @@ impl Swept {
             let length = it.stretch(motion, &mut runner, index - 1, it.marks[index]);
             it.cumulated.push(it.cumulated[index - 1] + length);
         }
-        let parameters = motion.mechanism.model.parameter_values::<f64>();
+        let parameters = motion.design.parameters.clone();
         let (low, high) = motion.reached();
         for (time, p) in turns(motion, &parameters) {
             let until = it.until(motion, &mut runner, p.clamp(low.min(high), high));
@@ -81,19 +81,19 @@ impl Swept {
     }
 
     /// Length swept from the start of the motion until a time, m.
-    pub fn at_time(&self, motion: &Motion<'_>, parameters: &[f64], time: f64) -> f64 {
+    pub fn at_time(&self, motion: &Motion, parameters: &[f64], time: f64) -> f64 {
         let passed = self.turns.partition_point(|[t, ..]| *t <= time).max(1) - 1;
         let Some([_, last, swept]) = self.turns.get(passed).filter(|_| time.is_finite()) else {
             return f64::NAN;
         };
-        let model = &motion.mechanism.model;
+        let model = &motion.mechanism().model;
         let now = motion.path.parameter_at(model, time, parameters);
         let mut runner = Runner::new(motion, self.point);
         swept + (self.until(motion, &mut runner, now) - last).abs()
     }
 
     /// Length from the first mark to a path parameter.
-    fn until(&self, motion: &Motion<'_>, runner: &mut Option<Runner<'_>>, p: f64) -> f64 {
+    fn until(&self, motion: &Motion, runner: &mut Option<Runner<'_>>, p: f64) -> f64 {
         let mark = interval(&self.marks, p);
         match self.marks.get(mark) {
             Some(_) => self.cumulated[mark] + self.stretch(motion, runner, mark, p),
@@ -105,7 +105,7 @@ impl Swept {
     /// over a root, which the substitution p = limit -+ w^2 takes away.
     fn stretch(
         &self,
-        motion: &Motion<'_>,
+        motion: &Motion,
         runner: &mut Option<Runner<'_>>,
         mark: usize,
         to: f64,
@@ -145,7 +145,7 @@ impl Swept {
 
 /// A point on its way along the path, with the storage to solve it.
 struct Runner<'a> {
-    motion: &'a Motion<'a>,
+    motion: &'a Motion,
     marker: Marker,
     design: Design<Line>,
     side_design: Design<Side>,
@@ -154,9 +154,9 @@ struct Runner<'a> {
 }
 
 impl<'a> Runner<'a> {
-    fn new(motion: &'a Motion<'a>, point: PointId) -> Option<Self> {
+    fn new(motion: &'a Motion, point: PointId) -> Option<Self> {
         Some(Self {
-            marker: motion.mechanism.any_marker(point)?,
+            marker: motion.mechanism().any_marker(point)?,
             design: motion.design_on(),
             side_design: motion.design_on(),
             solver: motion.solver(),
@@ -220,13 +220,13 @@ impl<'a> Runner<'a> {
 }
 
 /// Times, from the start on, between which the path parameter runs one way, with the path parameters there.
-fn turns(motion: &Motion<'_>, parameters: &[f64]) -> Vec<(f64, f64)> {
-    let model = &motion.mechanism.model;
+fn turns(motion: &Motion, parameters: &[f64]) -> Vec<(f64, f64)> {
+    let model = &motion.mechanism().model;
     let mut times = vec![0.0];
     if let DrivePath::Coordinate { drive, .. } = motion.path
         && let Some(drive) = model.drives.get(drive)
     {
-        let rich: Vec<Line> = model.parameter_values();
+        let rich: Vec<Line> = parameters.iter().map(|x| Line::constant(*x)).collect();
         let rate = |t: f64| drive.law.at(Line::variable(t), &rich).coefficient(1);
         let starts = drive.law.breaks(parameters);
         for (piece, start) in drive.law.pieces.iter().zip(&starts) {

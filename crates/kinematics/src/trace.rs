@@ -17,10 +17,8 @@ use self::caution::Caution;
 pub(crate) use self::caution::apart;
 use crate::bordered::Bordered;
 use crate::constraint::{Input, Situation};
-use crate::geometry::Geometry;
-use crate::mechanism::Mechanism;
-use crate::plan::Plan;
 use crate::pose::Pose;
+use crate::state::Design;
 
 /// Part of a unit of travel that may be left over by the redundant constraints.
 const LOCKED: f64 = 1e-6;
@@ -71,8 +69,7 @@ impl Node {
 
 /// Follows the solution curve of a mechanism along a path of its drives.
 pub struct Follower<'a, P> {
-    mechanism: &'a Mechanism,
-    geometry: &'a Geometry<f64>,
+    design: &'a Design<f64>,
     path: &'a P,
     /// Mechanism size, m.
     pub size: f64,
@@ -89,19 +86,14 @@ pub struct Follower<'a, P> {
 
 impl<'a, P: Path> Follower<'a, P> {
     /// A follower for a design.
-    pub fn new(
-        mechanism: &'a Mechanism,
-        plan: &Plan,
-        geometry: &'a Geometry<f64>,
-        path: &'a P,
-    ) -> Self {
+    pub fn new(design: &'a Design<f64>, path: &'a P) -> Self {
+        let mechanism = &*design.mechanism;
         let drives = mechanism.model.drives.len();
         Self {
-            mechanism,
-            geometry,
+            design,
             path,
-            size: geometry.size(mechanism),
-            system: Bordered::new(mechanism, plan),
+            size: design.size(),
+            system: Bordered::new(mechanism),
             step: Vec::new(),
             poses: vec![Pose::identity(); mechanism.bodies],
             near: vec![0.0; mechanism.bodies],
@@ -121,7 +113,7 @@ impl<'a, P: Path> Follower<'a, P> {
 
     /// How many unknowns, the path parameter included.
     pub fn unknowns(&self) -> usize {
-        3 * (self.mechanism.bodies - 1) + 1
+        3 * (self.design.mechanism.bodies - 1) + 1
     }
 
     /// Where the drives' rates jump, and the scale of the path parameter.
@@ -170,7 +162,7 @@ impl<'a, P: Path> Follower<'a, P> {
         for ((input, drive), &value) in self
             .inputs
             .iter_mut()
-            .zip(&self.mechanism.model.drives)
+            .zip(&self.design.mechanism.model.drives)
             .zip(&self.coordinates)
         {
             *input = crate::state::input_of(drive, value);
@@ -178,13 +170,13 @@ impl<'a, P: Path> Follower<'a, P> {
         let scale = self.path.scale();
         self.rates.iter_mut().for_each(|rate| *rate *= scale);
         let situation = Situation {
-            geometry: self.geometry,
+            geometry: &self.design.geometry,
             inputs: &self.inputs,
             poses: &poses,
             near: &near,
         };
         self.system
-            .fill(self.mechanism, &situation, self.size, &self.rates);
+            .fill(&self.design.mechanism, &situation, self.size, &self.rates);
         (self.poses, self.near) = (poses, near);
     }
 

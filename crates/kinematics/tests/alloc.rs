@@ -5,7 +5,7 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::path::Path;
 
-use kempe_kinematics::{Design, Mechanism, Motion, Plan, PlanNumber};
+use kempe_kinematics::{Design, Mechanism, Motion, PlanNumber};
 use kempe_model::Model;
 use kempe_number::{Dual, Jet, Lanes, Lanes8, Number};
 
@@ -39,10 +39,8 @@ fn allocations(mut work: impl FnMut()) -> usize {
 }
 
 /// Solves along the whole motion on one kind of number.
-fn solves<T: PlanNumber>(name: &str, motion: &Motion<'_>, seed: impl Fn(f64) -> T) {
-    let (mechanism, plan) = (motion.mechanism, motion.plan);
-    let parameters: Vec<T> = mechanism.model.parameter_values();
-    let design = Design::new(mechanism, plan, &parameters);
+fn solves<T: PlanNumber>(name: &str, motion: &Motion, seed: impl Fn(f64) -> T) {
+    let design = motion.design_on::<T>();
     let mut solver = motion.solver::<T>();
     let (low, high) = motion.reached();
     let mut sum = 0.0;
@@ -75,10 +73,9 @@ fn no_position_solve_allocates() {
             .unwrap()
             .model;
         let mechanism = Mechanism::new(&model);
-        let plan = Plan::new(&mechanism);
         let values: Vec<f64> = model.parameter_values();
-        let design = Design::new(&mechanism, &plan, &values);
-        let motion = Motion::new(&mechanism, &plan, &design, &values).unwrap();
+        let design = Design::new(&mechanism, &values);
+        let motion = Motion::new(&design).unwrap();
         solves(file, &motion, |p| p);
         solves(file, &motion, Jet::<f64, 4>::variable);
         solves(file, &motion, Dual::<f64, 2>::from_f64);

@@ -7,7 +7,7 @@
 use std::path::Path;
 
 use kempe_kinematics::batch::{Batch, Designs, Layout, Serial, Threads, sweep_states};
-use kempe_kinematics::{Design, Mechanism, Motion, Plan};
+use kempe_kinematics::{Design, Mechanism, Motion};
 use kempe_model::{Model, PointId};
 use kempe_number::{InstructionSet, Jet};
 
@@ -57,7 +57,7 @@ fn all_points(model: &Model) -> Vec<PointId> {
 }
 
 /// Path parameters all over the motion and beyond its ends, in no order.
-fn parameters(motion: &Motion<'_>, count: usize) -> Vec<f64> {
+fn parameters(motion: &Motion, count: usize) -> Vec<f64> {
     let (low, high) = motion.reached();
     let mut seed = 7;
     let mut list: Vec<f64> = (0..count)
@@ -79,10 +79,9 @@ fn parameters(motion: &Motion<'_>, count: usize) -> Vec<f64> {
 fn sweeps_have_the_same_bits_one_by_one_in_lanes_and_in_parallel() {
     for (name, model) in examples() {
         let mechanism = Mechanism::new(&model);
-        let plan = Plan::new(&mechanism);
         let values: Vec<f64> = model.parameter_values();
-        let design = Design::new(&mechanism, &plan, &values);
-        let Ok(motion) = Motion::new(&mechanism, &plan, &design, &values) else {
+        let design = Design::new(&mechanism, &values);
+        let Ok(motion) = Motion::new(&design) else {
             continue;
         };
         let points = all_points(&model);
@@ -138,10 +137,9 @@ fn sweeps_have_the_same_bits_one_by_one_in_lanes_and_in_parallel() {
 fn rates_have_the_same_bits_one_by_one_and_in_lanes() {
     for (name, model) in examples() {
         let mechanism = Mechanism::new(&model);
-        let plan = Plan::new(&mechanism);
         let values: Vec<f64> = model.parameter_values();
-        let design = Design::new(&mechanism, &plan, &values);
-        let Ok(motion) = Motion::new(&mechanism, &plan, &design, &values) else {
+        let design = Design::new(&mechanism, &values);
+        let Ok(motion) = Motion::new(&design) else {
             continue;
         };
         let points = all_points(&model);
@@ -181,10 +179,9 @@ fn rates_have_the_same_bits_one_by_one_and_in_lanes() {
 fn designs_have_the_same_bits_one_by_one_in_lanes_and_in_parallel() {
     for (name, model) in examples() {
         let mechanism = Mechanism::new(&model);
-        let plan = Plan::new(&mechanism);
         let values: Vec<f64> = model.parameter_values();
-        let design = Design::new(&mechanism, &plan, &values);
-        let Ok(motion) = Motion::new(&mechanism, &plan, &design, &values) else {
+        let design = Design::new(&mechanism, &values);
+        let Ok(motion) = Motion::new(&design) else {
             continue;
         };
         let points = all_points(&model);
@@ -212,7 +209,7 @@ fn designs_have_the_same_bits_one_by_one_in_lanes_and_in_parallel() {
         let mut closed = 0;
         for d in 0..count {
             let own = &by_design[d * values.len()..(d + 1) * values.len()];
-            let design = Design::new(&mechanism, &plan, own);
+            let design = Design::new(&mechanism, own);
             for (k, &p) in at.iter().enumerate() {
                 motion.solve(&design, p, &mut solver);
                 let finite = |x: &f64| x.is_finite();
@@ -284,10 +281,9 @@ fn a_long_sweep_is_the_same_on_any_number_of_threads() {
         .find(|(name, _)| name == "crank-rocker")
         .unwrap();
     let mechanism = Mechanism::new(&model);
-    let plan = Plan::new(&mechanism);
     let values: Vec<f64> = model.parameter_values();
-    let design = Design::new(&mechanism, &plan, &values);
-    let motion = Motion::new(&mechanism, &plan, &design, &values).unwrap();
+    let design = Design::new(&mechanism, &values);
+    let motion = Motion::new(&design).unwrap();
     let batch = Batch::new(&motion, &all_points(&model)).unwrap();
     let parameters: Vec<f64> = (0..40_003)
         .map(|i| 6.25 * f64::from(i) / 40_000.0)

@@ -17,8 +17,7 @@ const DEG: f64 = PI / 180.0;
 /// of it has a pose.
 fn has_dead_points(text: &str, dead: &[f64]) {
     let case = Case::read(text, "circuit.toml");
-    let circuit =
-        Circuit::new(&case.mechanism, &case.plan, &case.design, &case.parameters).unwrap();
+    let circuit = Circuit::new(&case.design).unwrap();
     assert!(circuit.closed, "{text}");
     let mut samplers = circuit
         .samplers(&[], &mut kempe_kinematics::Unwatched)
@@ -136,7 +135,7 @@ B = \"right of A -> C\"
 #[test]
 fn a_drive_that_comes_to_a_stand_has_no_limit_there() {
     let mut case = Case::read(include_str!("models/comes-to-a-stand.toml"), "stand");
-    let found = check(&case.mechanism, &case.plan, &case.design, &case.parameters);
+    let found = check(&case.design);
     let reach = found.reach.unwrap();
     assert_eq!(reach.ends, (EndReason::Runaway, EndReason::Limit));
     for to in ["2.4490325", "2.44903198"] {

@@ -234,8 +234,7 @@ C = \"left of B -> D\"
             ),
             "circuit.toml",
         );
-        let circuit =
-            Circuit::new(&case.mechanism, &case.plan, &case.design, &case.parameters).unwrap();
+        let circuit = Circuit::new(&case.design).unwrap();
         assert!(circuit.closed, "{:?}", [a, b, c, d]);
         let full = near == 0.0 && far == PI;
         let mut limits: Vec<f64> = Vec::new();
@@ -302,11 +301,9 @@ fn follows_drives_whose_rates_jump() {
     let checked = kempe_model::Model::from_toml(text, "jumps", &mut |_| Err("no files".into()))
         .expect("a model");
     let mechanism = kempe_kinematics::Mechanism::new(&checked.model);
-    let plan = kempe_kinematics::Plan::new(&mechanism);
     let parameters: Vec<f64> = checked.model.parameter_values();
-    let design = kempe_kinematics::Design::new(&mechanism, &plan, &parameters);
-    let motion =
-        kempe_kinematics::Motion::new(&mechanism, &plan, &design, &parameters).expect("a motion");
+    let design = kempe_kinematics::Design::new(&mechanism, &parameters);
+    let motion = kempe_kinematics::Motion::new(&design).expect("a motion");
     assert_eq!(motion.reached(), (0.0, 6.5));
     let mut sampler = kempe_kinematics::Sampler::new(&motion, &[]).expect("a sampler");
     for k in 0..=130 {

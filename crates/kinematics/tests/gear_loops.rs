@@ -91,7 +91,7 @@ fn geared_five_bars_have_all_the_assemblies_that_a_scan_finds() {
         };
         let case = geared.case();
         let start = [geared.between];
-        let found = all_assemblies(&case.mechanism, &case.plan, &case.design, &start);
+        let found = all_assemblies(&case.design, &start);
         assert_eq!(found.list.len(), geared.scanned(), "{round}: {}", case.text);
         if !found.list.is_empty() {
             assert_eq!(found.shortfall, Some(Shortfall::Scanned), "{round}");
@@ -108,21 +108,14 @@ fn a_gear_in_a_loop_without_hints_is_assembled() {
     let case = Case::read(include_str!("models/gear-in-loop.toml"), "gear-in-loop");
     let motion = case.must_move();
     assert_eq!(motion.assemblies.list.len(), 4);
-    let mut state: kempe_kinematics::State<f64> =
-        kempe_kinematics::State::new(&case.mechanism, &case.plan);
+    let mut state: kempe_kinematics::State<f64> = kempe_kinematics::State::new(&case.mechanism);
     let start: Vec<f64> = (case.model.drives.iter())
         .map(|d| d.law.at(0.0, &case.parameters))
         .collect();
     state.set_inputs(&case.mechanism, &start);
     for assembly in &motion.assemblies.list {
         state.poses.clone_from(&assembly.poses);
-        let residual = closure(
-            &case.mechanism,
-            &case.design,
-            &assembly.branch,
-            &state,
-            motion.size(),
-        );
+        let residual = closure(&case.design, &assembly.branch, &state, motion.size());
         assert!(residual < 1e-12, "{residual:e}");
     }
 }
@@ -140,13 +133,7 @@ fn what_comes_after_a_gear_loop_is_no_work_in_it() {
         told += 1;
         ControlFlow::Continue(())
     };
-    let found = find_assemblies(
-        &case.mechanism,
-        &case.plan,
-        &case.design,
-        &start,
-        &mut watch,
-    );
+    let found = find_assemblies(&case.design, &start, &mut watch);
     assert_eq!(found.unwrap().list.len(), 2);
     assert!(told < 20_000, "{told}");
 }

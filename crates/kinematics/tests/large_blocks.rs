@@ -19,16 +19,17 @@ fn two_triads() -> Case {
 
 /// Solves the one Newton block of a mechanism whose drives are at their start, with so much work allowed.
 fn solved(case: &Case, work: &mut f64, told: &mut dyn FnMut(f64) -> ControlFlow<()>) -> Solutions {
-    let (mechanism, plan) = (&case.mechanism, &case.plan);
-    let mut state: State<f64> = State::new(mechanism, plan);
+    let mechanism = &case.mechanism;
+    let plan = &mechanism.plan;
+    let mut state: State<f64> = State::new(mechanism);
     let start: Vec<f64> = (case.model.drives.iter())
         .map(|d| d.law.at(0.0, &case.parameters))
         .collect();
     state.set_inputs(mechanism, &start);
     // What comes before the block needs no branch; what the block seeks is not looked at.
-    let branch = Branch::neutral(mechanism, plan);
-    plan.solve(mechanism, &case.design, &branch, &mut state);
-    let size = case.design.geometry.size(mechanism);
+    let branch = Branch::neutral(mechanism);
+    case.design.solve(&branch, &mut state);
+    let size = case.design.size();
     let situation = state.situation(&case.design, &branch);
     all_real_solutions(
         &plan.newton_blocks[0],
@@ -115,9 +116,9 @@ fn ladder(loops: usize) -> Case {
 #[test]
 fn the_rank_of_a_large_mechanism_is_found() {
     let case = ladder(400);
-    let (mechanism, plan) = (&case.mechanism, &case.plan);
+    let mechanism = &case.mechanism;
     assert!(mechanism.bodies > 800);
-    let mut state: State<f64> = State::new(mechanism, plan);
+    let mut state: State<f64> = State::new(mechanism);
     let mut rng = support::Rng(3);
     for (link, seat) in case.model.links.iter().zip(&mechanism.seats) {
         let angle = match link.name.as_str() {
@@ -127,8 +128,8 @@ fn the_rank_of_a_large_mechanism_is_found() {
         };
         state.poses[seat.body.index()] = Pose::from_angle(0.0, 0.0, angle);
     }
-    let branch = Branch::neutral(mechanism, plan);
-    let found = mobility(mechanism, &case.design, Some((&state, &branch)));
+    let branch = Branch::neutral(mechanism);
+    let found = mobility(&case.design, Some((&state, &branch)));
     // The ladder and the bar move; of the three parallel cranks one says nothing new.
     assert_eq!(found.by_rank, Some(2));
     assert_eq!(found.redundant_rows, Some(1));

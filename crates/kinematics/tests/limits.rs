@@ -114,7 +114,7 @@ fn random_four_bars_stop_where_the_formula_says() {
 }
 
 /// Rows from end to end, both included, close and are where the joints say.
-fn rows_to_the_end(motion: &Motion<'_>) {
+fn rows_to_the_end(motion: &std::sync::Arc<Motion>) {
     let mut sampler = Sampler::new(motion, &[]).unwrap();
     let (low, high) = motion.reached();
     for k in 0..=12 {

@@ -93,12 +93,12 @@ fn agree(recipe: &Recipe, starts: usize) -> (usize, usize) {
     let spec = &made.spec;
     let case = Case::of(spec);
     let coordinates = spec.coordinates();
-    if !case.plan.decomposition.surplus.is_empty()
-        || !case.plan.decomposition.undetermined.is_empty()
+    if !case.mechanism.plan.decomposition.surplus.is_empty()
+        || !case.mechanism.plan.decomposition.undetermined.is_empty()
     {
         return (0, 0);
     }
-    let found = all_assemblies(&case.mechanism, &case.plan, &case.design, &coordinates);
+    let found = all_assemblies(&case.design, &coordinates);
     let size = spec.size();
     let known: Vec<Vec<[f64; 3]>> = found
         .list

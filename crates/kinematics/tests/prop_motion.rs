@@ -39,7 +39,7 @@ fn check(made: &Made) -> Result<Outcome, String> {
     let case = Case::of(spec);
     let sigma = case.sigma(&spec.poses(), &spec.coordinates());
     // A floating drive may fall on two links that cannot move against each other.
-    let regular = sigma > REGULAR && case.plan.decomposition.surplus.is_empty();
+    let regular = sigma > REGULAR && case.mechanism.plan.decomposition.surplus.is_empty();
     let start = Instant::now();
     let motion = case.motion();
     let took = start.elapsed();
@@ -68,7 +68,7 @@ fn check(made: &Made) -> Result<Outcome, String> {
             j,
             support::SJoint::Gears { .. } | support::SJoint::Rack { .. }
         )
-    }) && !case.plan.newton_blocks.is_empty();
+    }) && !case.mechanism.plan.newton_blocks.is_empty();
     if regular && !by_teeth {
         let near = motion
             .assemblies
@@ -159,7 +159,7 @@ fn unwrapped(case: &Case, assembly: &kempe_kinematics::assemble::Assembly) -> Ve
 }
 
 /// Rows of a motion at chosen path parameters.
-fn rows(motion: &Motion<'_>, at: &[f64]) -> Vec<Sample> {
+fn rows(motion: &std::sync::Arc<Motion>, at: &[f64]) -> Vec<Sample> {
     let mut sampler = Sampler::new(motion, &[]).unwrap();
     at.iter().map(|p| sampler.at_parameter(*p)).collect()
 }
@@ -174,7 +174,7 @@ fn compare(
     length: f64,
 ) -> Result<(), TestCaseError> {
     let (one, two) = (Case::of(&made.spec), Case::of(other));
-    if !one.plan.decomposition.surplus.is_empty() {
+    if !one.mechanism.plan.decomposition.surplus.is_empty() {
         return Ok(());
     }
     let sigma = one.sigma(&made.spec.poses(), &made.spec.coordinates());
@@ -190,7 +190,7 @@ fn compare(
         return Ok(());
     };
     // Nearly singular starts and gears in loops may choose another assembly.
-    if sigma < 1e-3 || !one.plan.newton_blocks.is_empty() && has_gears(&made.spec) {
+    if sigma < 1e-3 || !one.mechanism.plan.newton_blocks.is_empty() && has_gears(&made.spec) {
         return Ok(());
     }
     let size = made.spec.size();

@@ -30,7 +30,7 @@ fn numbers<T: Number>(poses: &[Pose<T>], size: f64) -> Vec<T> {
         .collect()
 }
 
-fn plain_at(motion: &Motion<'_>, p: f64) -> Vec<f64> {
+fn plain_at(motion: &std::sync::Arc<Motion>, p: f64) -> Vec<f64> {
     let mut solver = motion.solver::<f64>();
     motion.solve(&motion.design, p, &mut solver);
     numbers(&solver.state.poses, motion.size())
@@ -66,7 +66,7 @@ proptest! {
         let Ok(motion) = case.motion() else { return Ok(()) };
         let (low, high) = motion.reached();
         let p = low + part * (high - low);
-        let design: Design<Series> = Design::new(&case.mechanism, &case.plan, &[]);
+        let design: Design<Series> = Design::new(&case.mechanism, &[]);
         let mut solver = motion.solver::<Series>();
         motion.solve(&design, Series::variable(p), &mut solver);
         let rich = numbers(&solver.state.poses, motion.size());

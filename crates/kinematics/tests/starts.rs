@@ -66,12 +66,12 @@ slope = \"d(x(C), motor)\"
 }
 
 /// The row at a place of the drive.
-fn row(case: &Case, motion: &Motion<'_>, at: f64) -> Sample {
+fn row(case: &Case, motion: &std::sync::Arc<Motion>, at: f64) -> Sample {
     let measures: Vec<&Measure> = case.model.measures.iter().map(|m| &m.measure).collect();
     Sampler::new(motion, &measures).unwrap().at_parameter(at)
 }
 
-fn change_points(motion: &Motion<'_>) -> Vec<f64> {
+fn change_points(motion: &std::sync::Arc<Motion>) -> Vec<f64> {
     let events = motion.events.iter();
     let crossings = events.filter(|e| e.kind == EventKind::ChangePoint);
     crossings.map(|e| e.at).collect()
@@ -256,7 +256,7 @@ fn only_what_lies_in_the_demanded_range_is_met() {
             assert!((met - expected).abs() < 1e-11, "{from} to {to}: {met}");
         }
         // Neither does the check of how far the drive can go tell them as met.
-        let found = check(&case.mechanism, &case.plan, &case.design, &case.parameters);
+        let found = check(&case.design);
         assert_eq!(
             found.reach.unwrap().events.len(),
             expected.len(),

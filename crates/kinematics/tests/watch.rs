@@ -60,13 +60,7 @@ fn a_motion_stops_in_every_stage_as_soon_as_it_is_told() {
     let case = Case::read(FOUR_BAR, "four-bar");
     for at in [Stage::Assembling, Stage::Following, Stage::Locating] {
         let mut watch = stopping(at, 3);
-        let motion = Motion::watched(
-            &case.mechanism,
-            &case.plan,
-            &case.design,
-            &case.parameters,
-            &mut watch,
-        );
+        let motion = Motion::watched(&case.design, &mut watch);
         assert!(
             matches!(motion, Err(MotionError::Stopped { stage }) if stage == at),
             "{at:?}"
@@ -83,14 +77,7 @@ fn a_motion_stops_in_every_stage_as_soon_as_it_is_told() {
 fn parts_of_a_stage_rise_from_zero_to_one() {
     let case = Case::read(FOUR_BAR, "four-bar");
     let mut watch = stopping(Stage::Following, usize::MAX);
-    let motion = Motion::watched(
-        &case.mechanism,
-        &case.plan,
-        &case.design,
-        &case.parameters,
-        &mut watch,
-    )
-    .unwrap();
+    let motion = Motion::watched(&case.design, &mut watch).unwrap();
     assert_eq!(motion.nodes(), case.motion().unwrap().nodes());
     let heard = watch.heard;
     assert!(heard.iter().all(|p| (0.0..=1.0).contains(p)));
@@ -117,13 +104,7 @@ fn statistics_circuits_and_checks_stop_too() {
             ControlFlow::Continue(())
         }
     };
-    let circuit = Circuit::watched(
-        &case.mechanism,
-        &case.plan,
-        &case.design,
-        &case.parameters,
-        &mut watch,
-    );
+    let circuit = Circuit::watched(&case.design, &mut watch);
     assert!(matches!(
         circuit,
         Err(MotionError::Stopped {
@@ -132,13 +113,7 @@ fn statistics_circuits_and_checks_stop_too() {
     ));
 
     let mut watch = stopping(Stage::Following, 1);
-    let findings = check_watched(
-        &case.mechanism,
-        &case.plan,
-        &case.design,
-        &case.parameters,
-        &mut watch,
-    );
+    let findings = check_watched(&case.design, &mut watch);
     assert!(matches!(
         findings.problem,
         Some(MotionError::Stopped { .. })

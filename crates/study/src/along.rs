@@ -1,5 +1,7 @@
 //! What is evaluated along a motion: the motion alone, or its forces too.
 
+use std::sync::Arc;
+
 use kempe_dynamics::{ForceArrow, ForceError, ForceEvidence, ForceNote, ForceSampler};
 use kempe_kinematics::force_source::NoForces;
 use kempe_kinematics::{Motion, Sample, Sampler, Unwatched, Watch};
@@ -10,9 +12,9 @@ use crate::motion::unprepared;
 use crate::rows::RowPlace;
 
 /// Evaluates quantities along a motion.
-pub(crate) enum Along<'a> {
-    Motion(Box<Sampler<'a>>),
-    Forces(Box<ForceSampler<'a>>),
+pub(crate) enum Along {
+    Motion(Box<Sampler>),
+    Forces(Box<ForceSampler>),
 }
 
 /// A row with the forces in it, where they were asked for.
@@ -29,11 +31,11 @@ pub(crate) struct RowForces {
     pub arrows: Vec<ForceArrow>,
 }
 
-impl<'a> Along<'a> {
+impl Along {
     /// Prepares quantities for evaluation.
     pub fn new(
         model: &Model,
-        motion: &'a Motion<'a>,
+        motion: &Arc<Motion>,
         quantities: &[&Quantity],
         forces: bool,
     ) -> Result<Self, Vec<Diagnostic>> {
@@ -43,7 +45,7 @@ impl<'a> Along<'a> {
     /// As [`Along::new`]; `watch` hears how far the statistics have come and may stop them.
     pub fn watched(
         model: &Model,
-        motion: &'a Motion<'a>,
+        motion: &Arc<Motion>,
         quantities: &[&Quantity],
         forces: bool,
         watch: &mut dyn Watch,

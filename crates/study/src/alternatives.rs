@@ -1,9 +1,9 @@
 //! How to say which of several assemblies is meant, in the words of the file.
 
+use kempe_kinematics::Design;
 use kempe_kinematics::assemble::Assembly;
 use kempe_kinematics::mechanism::Marker;
 use kempe_kinematics::plan::Step;
-use kempe_kinematics::{Design, Mechanism, Plan};
 use kempe_model::PointId;
 use kempe_number::math::{hypot, log10};
 use kempe_units::Dimension;
@@ -19,19 +19,14 @@ const ROUND: f64 = 1e-3;
 
 /// For each assembly, in their order, what to write under `[assembly]` to choose it: sides where these tell all of them
 /// apart, else a place of the point that differs most. Nothing where no single point tells them apart.
-pub(crate) fn hints(
-    mechanism: &Mechanism,
-    plan: &Plan,
-    design: &Design<f64>,
-    assemblies: &[Assembly],
-) -> Vec<String> {
+pub(crate) fn hints(design: &Design<f64>, assemblies: &[Assembly]) -> Vec<String> {
     let shown = &assemblies[..assemblies.len().min(SHOWN)];
-    let sides = sides(mechanism, plan, design, shown);
+    let sides = sides(design, shown);
     let unique = |lines: &[String]| (1..lines.len()).all(|k| !lines[..k].contains(&lines[k]));
     if unique(&sides) && sides.iter().all(|line| !line.is_empty()) {
         return sides;
     }
-    places(mechanism, design, shown)
+    places(design, shown)
 }
 
 fn place(design: &Design<f64>, assembly: &Assembly, marker: Marker) -> Option<[f64; 2]> {
@@ -40,12 +35,9 @@ fn place(design: &Design<f64>, assembly: &Assembly, marker: Marker) -> Option<[f
 }
 
 /// The sides of all dyads whose sides differ.
-fn sides(
-    mechanism: &Mechanism,
-    plan: &Plan,
-    design: &Design<f64>,
-    assemblies: &[Assembly],
-) -> Vec<String> {
+fn sides(design: &Design<f64>, assemblies: &[Assembly]) -> Vec<String> {
+    let mechanism = &*design.mechanism;
+    let plan = &mechanism.plan;
     let name = |m: Marker| {
         let at = mechanism.markers.get(m.index as usize)?;
         Some(mechanism.model.points.get(at.point.index())?.name.as_str())
@@ -86,9 +78,10 @@ fn sides(
 }
 
 /// The place of the point whose places differ most.
-fn places(mechanism: &Mechanism, design: &Design<f64>, assemblies: &[Assembly]) -> Vec<String> {
+fn places(design: &Design<f64>, assemblies: &[Assembly]) -> Vec<String> {
+    let mechanism = &*design.mechanism;
     let model = &mechanism.model;
-    let size = design.geometry.size(mechanism);
+    let size = design.size();
     let candidates = (0..model.points.len()).filter_map(|index| {
         let marker = mechanism.any_marker(PointId(index as u32))?;
         let places: Option<Vec<[f64; 2]>> = assemblies

@@ -8,7 +8,7 @@ use crate::along::Row;
 use crate::columns::{Asked, Quantity};
 use crate::explain::cannot_move;
 use crate::motion::{events, unprepared, unreached_warning};
-use crate::prepared::Prepared;
+use crate::prepared::design;
 use crate::progress::{Ear, Flow, Progress};
 use crate::result::{Event, StudyResult};
 use crate::sink::RowSink;
@@ -28,14 +28,10 @@ pub(crate) fn run_circuit(
     study: &MotionStudy,
     progress: &mut dyn Progress,
 ) -> Result<StudyResult, Vec<Diagnostic>> {
-    let Prepared {
-        mechanism,
-        plan,
-        parameters,
-        design,
-    } = Prepared::new(model);
-    let circuit = Circuit::watched(&mechanism, &plan, &design, &parameters, &mut Ear(progress))
-        .map_err(|error| vec![cannot_move(&mechanism, &plan, &design, &error)])?;
+    let design = design(model);
+    let mechanism = &design.mechanism;
+    let circuit = Circuit::watched(&design, &mut Ear(progress))
+        .map_err(|error| vec![cannot_move(&design, &error)])?;
     let asked = Asked::of_motion(model, study);
     let quantities: Vec<&Quantity> = asked.all().collect();
     let measures: Vec<_> = quantities.iter().map(|q| &q.measure).collect();
@@ -52,7 +48,7 @@ pub(crate) fn run_circuit(
     let arcs = match &study.rows {
         Rows::Count(count) => evenly((*count).max(2)),
         Rows::DriveStep(step) => {
-            let step = kempe_model::value(step, &parameters).abs();
+            let step = kempe_model::value(step, &design.parameters).abs();
             let travel = circuit.length * circuit.scale();
             if step > 0.0 && travel / step <= MOST_ROWS as f64 {
                 circuit.arcs_by_step(step)

@@ -3,9 +3,7 @@
 use kempe_kinematics::drive_path::DrivePath;
 use kempe_kinematics::mechanism::Marker;
 use kempe_kinematics::plan::{Condition, Dyad, Step, Swing};
-use kempe_kinematics::{
-    Branch, Design, EndReason, Mechanism, Motion, MotionError, Plan, Stage, State,
-};
+use kempe_kinematics::{Branch, Design, EndReason, Mechanism, Motion, MotionError, Stage, State};
 use kempe_model::{Diagnostic, Model};
 use kempe_number::math::hypot;
 use kempe_units::Dimension;
@@ -15,12 +13,9 @@ use crate::hints;
 use crate::unit::{Units, shown};
 
 /// A motion that does not start, as a diagnostic over the model file.
-pub fn cannot_move(
-    mechanism: &Mechanism,
-    plan: &Plan,
-    design: &Design<f64>,
-    error: &MotionError,
-) -> Diagnostic {
+pub fn cannot_move(design: &Design<f64>, error: &MotionError) -> Diagnostic {
+    let mechanism = &*design.mechanism;
+    let plan = &mechanism.plan;
     let model = &mechanism.model;
     match error {
         MotionError::NoDrive => Diagnostic::error("no-drive", "nothing moves the mechanism")
@@ -48,11 +43,11 @@ pub fn cannot_move(
                     ),
                 )
                 .help("change a side, or leave the sides out to see what `kempe check` finds");
-                let told = match hints::nearest(mechanism, design, assemblies) {
+                let told = match hints::nearest( design, assemblies) {
                     Some(lies) => told.note(format!("the one that agrees with most of them has {lies}")),
                     None => told,
                 };
-                let against = hints::contradiction(mechanism, design, assemblies);
+                let against = hints::contradiction( design, assemblies);
                 let label = match against.len() {
                     1 => "no assembly agrees with this",
                     _ => "no assembly agrees with these together",
@@ -64,7 +59,7 @@ pub fn cannot_move(
                 });
             }
             let step = assemblies.open_step.unwrap_or(0);
-            let gap = gap(mechanism, plan, design, *at, step);
+            let gap = gap( design, *at, step);
             let links = gap.links;
             let mut told = Diagnostic::error(
                 "cannot-assemble",
@@ -161,14 +156,16 @@ struct Gap {
 }
 
 /// What does not meet in a step of the plan.
-fn gap(mechanism: &Mechanism, plan: &Plan, design: &Design<f64>, at: f64, step: usize) -> Gap {
+fn gap(design: &Design<f64>, at: f64, step: usize) -> Gap {
+    let mechanism = &*design.mechanism;
+    let plan = &mechanism.plan;
     let parameters: Vec<f64> = mechanism.model.parameter_values();
-    let size = design.geometry.size(mechanism);
+    let size = design.size();
     let mut coordinates = vec![0.0; mechanism.model.drives.len()];
     DrivePath::new(&mechanism.model, &parameters, size).coordinates(at, &mut coordinates);
-    let mut state = State::new(mechanism, plan);
+    let mut state = State::new(mechanism);
     state.set_inputs(mechanism, &coordinates);
-    let mut branch = Branch::neutral(mechanism, plan);
+    let mut branch = Branch::neutral(mechanism);
     // Modes before the open step are free: those under which all points before it are placed are right enough.
     for trial in 0..64_usize {
         let mut bit = 0;
@@ -184,11 +181,11 @@ fn gap(mechanism: &Mechanism, plan: &Plan, design: &Design<f64>, at: f64, step: 
                 1.0
             };
         }
-        plan.solve(mechanism, design, &branch, &mut state);
+        design.solve(&branch, &mut state);
         if let Some(found) = plan
             .steps
             .get(step)
-            .and_then(|s| measured(mechanism, design, &state, &coordinates, s))
+            .and_then(|s| measured(design, &state, &coordinates, s))
         {
             return found;
         }
@@ -217,12 +214,12 @@ fn gap(mechanism: &Mechanism, plan: &Plan, design: &Design<f64>, at: f64, step: 
 
 /// The distances that contradict each other, where the step is of a kind that has them.
 fn measured(
-    mechanism: &Mechanism,
     design: &Design<f64>,
     state: &State<f64>,
     coordinates: &[f64],
     step: &Step,
 ) -> Option<Gap> {
+    let mechanism = &*design.mechanism;
     let units = Units::of(&mechanism.model);
     let text = |m: f64| units.text(m, Dimension::LENGTH);
     let world = |m: Marker| {
@@ -308,8 +305,8 @@ fn measured(
 }
 
 /// A demanded range that is not covered. `missed` are the ends that are not reached, with the reason.
-pub(crate) fn beyond_limit(motion: &Motion<'_>, missed: &[(EndReason, f64)]) -> Diagnostic {
-    let model = &motion.mechanism.model;
+pub(crate) fn beyond_limit(motion: &Motion, missed: &[(EndReason, f64)]) -> Diagnostic {
+    let model = &motion.mechanism().model;
     let units = Units::of(model);
     let (low, high) = motion.reached();
     let (name, dimension, span) = match motion.path {
@@ -422,22 +419,25 @@ fn inside(demanded: f64, low: f64, high: f64, lower: bool) -> f64 {
 }
 
 /// Which links stand in line at a limit.
-fn limiting_group(motion: &Motion<'_>, at: f64) -> Option<String> {
+fn limiting_group(motion: &Motion, at: f64) -> Option<String> {
     let near = |x: f64| (x - at).abs() <= 1e-9 * at.abs().max(1.0);
     let event = motion
         .events
         .iter()
         .find(|e| near(e.at) && !e.steps.is_empty())?;
-    let block = motion.plan.blocks.get(*event.steps.first()?)?;
+    let block = motion.mechanism().plan.blocks.get(*event.steps.first()?)?;
     let mut bodies: Vec<_> = block.unknowns.iter().map(|u| u.body()).collect();
     bodies.dedup();
     bodies.sort_unstable();
     bodies.dedup();
     let names: Vec<String> = bodies
         .iter()
-        .map(|b| format!("`{}`", motion.mechanism.body_name(*b)))
+        .map(|b| format!("`{}`", motion.mechanism().body_name(*b)))
         .collect();
-    match (motion.plan.steps.get(*event.steps.first()?)?, names.len()) {
+    match (
+        motion.mechanism().plan.steps.get(*event.steps.first()?)?,
+        names.len(),
+    ) {
         (Step::Dyad { .. }, 2) => Some(format!("{} stand in line", list(&names))),
         (_, 0) => None,
         (_, 1) => Some(format!("{} cannot be placed any further", names[0])),

@@ -3,7 +3,7 @@
 use kempe_kinematics::assemble::{Assemblies, Assembly, Shortfall};
 use kempe_kinematics::events::EventKind;
 use kempe_kinematics::mechanism::{BodyId, Source};
-use kempe_kinematics::{Design, EndReason, Findings, Mechanism, Plan};
+use kempe_kinematics::{Design, EndReason, Findings};
 use kempe_model::{Diagnostic, Drive, Model, Rows, Severity, Study, StudyKind, value};
 use kempe_units::Dimension;
 use serde::Serialize;
@@ -11,7 +11,7 @@ use serde::Serialize;
 use crate::alternatives;
 use crate::explain::{cannot_move, list};
 use crate::hints;
-use crate::prepared::Prepared;
+use crate::prepared::design;
 use crate::progress::{Ear, Progress, Silent};
 use crate::unit::Units;
 
@@ -96,19 +96,9 @@ pub fn check(model: &Model) -> Report {
 /// As [`check`]; `progress` hears how far it has come (no rows). Stopped, it tells what it found until then, with the
 /// diagnostic `stopped`.
 pub fn check_watched(model: &Model, progress: &mut dyn Progress) -> Report {
-    let Prepared {
-        mechanism,
-        plan,
-        parameters,
-        design,
-    } = Prepared::new(model);
-    let found = kempe_kinematics::check_watched(
-        &mechanism,
-        &plan,
-        &design,
-        &parameters,
-        &mut Ear(progress),
-    );
+    let design = design(model);
+    let mechanism = &design.mechanism;
+    let found = kempe_kinematics::check_watched(&design, &mut Ear(progress));
     let units = Units::of(model);
     let bodies = |list: &[BodyId]| {
         list.iter()
@@ -164,7 +154,7 @@ pub fn check_watched(model: &Model, progress: &mut dyn Progress) -> Report {
         assemblies: found.searched.then_some(found.assemblies.list.len()),
         assemblies_rejected: found.assemblies.rejected,
         assemblies_complete: found.assemblies.complete,
-        chosen: chosen(&mechanism, &design, &found.assemblies, &units),
+        chosen: chosen(&design, &found.assemblies, &units),
         reach: None,
         reach_si: found.reach.as_ref().map(|r| r.range),
         events: Vec::new(),
@@ -214,7 +204,7 @@ pub fn check_watched(model: &Model, progress: &mut dyn Progress) -> Report {
             ));
         }
     }
-    report.diagnostics = diagnostics(model, &mechanism, &plan, &design, &found);
+    report.diagnostics = diagnostics(model, &design, &found);
     report
 }
 
@@ -236,16 +226,12 @@ pub(crate) fn source_name(model: &Model, source: Source) -> String {
 }
 
 /// How the assembly was chosen where several agree with the file, and which hints decide nothing.
-fn chosen(
-    mechanism: &Mechanism,
-    design: &Design<f64>,
-    assemblies: &Assemblies,
-    units: &Units,
-) -> Vec<String> {
+fn chosen(design: &Design<f64>, assemblies: &Assemblies, units: &Units) -> Vec<String> {
+    let mechanism = &*design.mechanism;
     let mut told = Vec::new();
     if let [first, second, ..] = assemblies.list.as_slice() {
         let text = |a: &Assembly| units.text(a.distance, Dimension::LENGTH);
-        let decided = hints::near_decides(mechanism, design, assemblies);
+        let decided = hints::near_decides(design, assemblies);
         told.push(match decided {
             true => format!(
                 "the nearest to [assembly], {} from it; the next is {} away",
@@ -255,7 +241,7 @@ fn chosen(
             false => "the first of them: nothing in [assembly] decides".to_owned(),
         });
     }
-    let idle = hints::idle(mechanism, design, assemblies).into_iter();
+    let idle = hints::idle(design, assemblies).into_iter();
     told.extend(idle.map(|(index, why)| {
         format!(
             "{} decides nothing: {why}",
@@ -266,10 +252,11 @@ fn chosen(
 }
 
 /// Whether the file leaves open which assembly is meant.
-fn open_choice(mechanism: &Mechanism, design: &Design<f64>, assemblies: &Assemblies) -> bool {
+fn open_choice(design: &Design<f64>, assemblies: &Assemblies) -> bool {
+    let mechanism = &*design.mechanism;
     let hints = &mechanism.model.assembly;
-    let idle = hints::idle(mechanism, design, assemblies).len();
-    idle == hints.len() || !hints::near_decides(mechanism, design, assemblies)
+    let idle = hints::idle(design, assemblies).len();
+    idle == hints.len() || !hints::near_decides(design, assemblies)
 }
 
 /// What Kempe takes for granted where the file is silent.
@@ -340,16 +327,11 @@ fn study_text(model: &Model, study: &Study, parameters: &[f64], units: &Units) -
     format!("{kind}, {rows}")
 }
 
-fn diagnostics(
-    model: &Model,
-    mechanism: &Mechanism,
-    plan: &Plan,
-    design: &Design<f64>,
-    found: &Findings,
-) -> Vec<Diagnostic> {
-    let mut told = crate::findings_forces::problems(mechanism, design);
+fn diagnostics(model: &Model, design: &Design<f64>, found: &Findings) -> Vec<Diagnostic> {
+    let mechanism = &*design.mechanism;
+    let mut told = crate::findings_forces::problems(design);
     if let Some(problem) = &found.problem {
-        let problem = cannot_move(mechanism, plan, design, problem);
+        let problem = cannot_move(design, problem);
         // A file need not say what moves it: only what asks for a motion cannot do without.
         told.push(match problem.code {
             "no-drive" if found.mobility.by_rank == Some(0) => {
@@ -403,7 +385,7 @@ fn diagnostics(
             ),
         ));
     }
-    let open = open_choice(mechanism, design, &found.assemblies);
+    let open = open_choice(design, &found.assemblies);
     if found.assemblies.list.len() > 1 && open {
         let agree = match model.assembly.is_empty() {
             true => "fit the file",
@@ -416,7 +398,7 @@ fn diagnostics(
                 found.assemblies.list.len()
             ),
         );
-        let lines = alternatives::hints(mechanism, plan, design, &found.assemblies.list);
+        let lines = alternatives::hints(design, &found.assemblies.list);
         let help = match (lines.is_empty(), model.assembly.is_empty()) {
             (true, _) => {
                 "say under [assembly] near which angle a link is meant: rocker = { near = \"30 deg\" }"
@@ -429,7 +411,7 @@ fn diagnostics(
             0 => told.note(format!("the first: {line}")),
             _ => told.note(format!("number {}: {line}", k + 1)),
         });
-        let idle = hints::idle(mechanism, design, &found.assemblies).into_iter();
+        let idle = hints::idle(design, &found.assemblies).into_iter();
         let told_now = idle.fold(told_now, |told, (index, why)| {
             let span = model.assembly[index].span.clone();
             told.at(span, format!("decides nothing: {why}"))

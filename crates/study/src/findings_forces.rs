@@ -3,7 +3,7 @@
 use kempe_draw::number_format::significant;
 use kempe_dynamics::Acting;
 use kempe_dynamics::acting::GRAVITY;
-use kempe_kinematics::{Design, Mechanism};
+use kempe_kinematics::Design;
 use kempe_model::{
     Center, Diagnostic, DriveId, Friction, FrictionAt, Model, Study, StudyKind, value,
 };
@@ -159,7 +159,8 @@ pub(crate) fn something_acts(model: &Model) -> bool {
 }
 
 /// What makes forces meaningless for the dimensions at hand.
-pub(crate) fn problems(mechanism: &Mechanism, design: &Design<f64>) -> Vec<Diagnostic> {
+pub(crate) fn problems(design: &Design<f64>) -> Vec<Diagnostic> {
+    let mechanism = &*design.mechanism;
     let parameters: Vec<f64> = mechanism.model.parameter_values();
     match Acting::new(mechanism, &design.geometry, &parameters) {
         Ok(_) => Vec::new(),

@@ -1,7 +1,7 @@
 //! What the hints of a file decide: which of them do nothing, which contradict each other, and whether one assembly is left.
 
+use kempe_kinematics::Design;
 use kempe_kinematics::assemble::{Assemblies, Assembly, Standing, standing};
-use kempe_kinematics::{Design, Mechanism};
 use kempe_model::{HintKind, Model, Side};
 
 use crate::explain::list;
@@ -12,11 +12,8 @@ const AS_NEAR: f64 = 1e-6;
 const SMALL: usize = 4;
 
 /// How one assembly stands to every hint of the file, in their order.
-fn standings(
-    mechanism: &Mechanism,
-    design: &Design<f64>,
-    assembly: &Assembly,
-) -> Vec<Option<Standing>> {
+fn standings(design: &Design<f64>, assembly: &Assembly) -> Vec<Option<Standing>> {
+    let mechanism = &*design.mechanism;
     let hints = mechanism.model.assembly.iter();
     hints
         .map(|hint| standing(mechanism, &design.geometry, &assembly.poses, &hint.kind))
@@ -24,14 +21,11 @@ fn standings(
 }
 
 /// The sides that decide nothing, by their place in the file, each with the reason.
-pub(crate) fn idle(
-    mechanism: &Mechanism,
-    design: &Design<f64>,
-    assemblies: &Assemblies,
-) -> Vec<(usize, String)> {
+pub(crate) fn idle(design: &Design<f64>, assemblies: &Assemblies) -> Vec<(usize, String)> {
+    let mechanism = &*design.mechanism;
     let model = &mechanism.model;
     let all: Vec<Vec<Option<Standing>>> = (assemblies.list.iter().chain(&assemblies.others))
-        .map(|assembly| standings(mechanism, design, assembly))
+        .map(|assembly| standings(design, assembly))
         .collect();
     let idle = |index: usize| {
         let mut found = all.iter().filter_map(|s| s.get(index).copied().flatten());
@@ -53,12 +47,8 @@ pub(crate) fn idle(
 }
 
 /// Whether places and angles near which things are leave one assembly only.
-pub(crate) fn near_decides(
-    mechanism: &Mechanism,
-    design: &Design<f64>,
-    assemblies: &Assemblies,
-) -> bool {
-    let size = design.geometry.size(mechanism);
+pub(crate) fn near_decides(design: &Design<f64>, assemblies: &Assemblies) -> bool {
+    let size = design.size();
     match assemblies.list.as_slice() {
         [first, second, ..] => second.distance - first.distance > AS_NEAR * size,
         _ => true,
@@ -66,13 +56,9 @@ pub(crate) fn near_decides(
 }
 
 /// The smallest set of sides that no assembly agrees with, by their place in the file.
-pub(crate) fn contradiction(
-    mechanism: &Mechanism,
-    design: &Design<f64>,
-    assemblies: &Assemblies,
-) -> Vec<usize> {
+pub(crate) fn contradiction(design: &Design<f64>, assemblies: &Assemblies) -> Vec<usize> {
     let fails: Vec<Vec<usize>> = (assemblies.others.iter())
-        .map(|assembly| failing(mechanism, design, assembly))
+        .map(|assembly| failing(design, assembly))
         .collect();
     let mut sides: Vec<usize> = fails.iter().flatten().copied().collect();
     sides.sort_unstable();
@@ -105,8 +91,8 @@ fn chosen(
 }
 
 /// The sides with which an assembly does not agree.
-fn failing(mechanism: &Mechanism, design: &Design<f64>, assembly: &Assembly) -> Vec<usize> {
-    let standings = standings(mechanism, design, assembly).into_iter();
+fn failing(design: &Design<f64>, assembly: &Assembly) -> Vec<usize> {
+    let standings = standings(design, assembly).into_iter();
     standings
         .enumerate()
         .filter(|(_, s)| *s == Some(Standing::Fails))
@@ -115,13 +101,10 @@ fn failing(mechanism: &Mechanism, design: &Design<f64>, assembly: &Assembly) -> 
 }
 
 /// How the assembly lies that agrees with most of the hints: `D left of A -> C`.
-pub(crate) fn nearest(
-    mechanism: &Mechanism,
-    design: &Design<f64>,
-    assemblies: &Assemblies,
-) -> Option<String> {
+pub(crate) fn nearest(design: &Design<f64>, assemblies: &Assemblies) -> Option<String> {
+    let mechanism = &*design.mechanism;
     let others = assemblies.others.iter();
-    let fails = others.map(|assembly| failing(mechanism, design, assembly));
+    let fails = others.map(|assembly| failing(design, assembly));
     let fewest = fails.min_by_key(Vec::len)?;
     let lies: Vec<String> = (fewest.into_iter())
         .filter_map(|index| {

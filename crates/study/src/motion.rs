@@ -14,7 +14,7 @@ use crate::explain::{beyond_limit, stopped};
 use crate::findings_forces::something_acts;
 use crate::force_columns::standard_plots;
 use crate::force_notes::{place, unbounded};
-use crate::prepared::Prepared;
+use crate::prepared::{design, motion};
 use crate::progress::{Ear, Flow, Progress};
 use crate::result::{Event, StudyResult};
 use crate::rows::places_along;
@@ -82,21 +82,21 @@ pub(crate) fn run_along(
     forces: bool,
     progress: &mut dyn Progress,
 ) -> Result<StudyResult, Vec<Diagnostic>> {
-    let prepared = Prepared::new(model);
-    let motion = prepared.motion(progress)?;
+    let design = design(model);
+    let motion = motion(&design, progress)?;
     let mut warnings = range_warnings(&motion)?;
     let mut study = study.clone();
     if forces && study.plots.is_empty() {
-        study.plots = standard_plots(&prepared.mechanism);
+        study.plots = standard_plots(&design.mechanism);
     }
     let asked = if forces {
-        Asked::of_forces(&prepared.mechanism, &study)
+        Asked::of_forces(&design.mechanism, &study)
     } else {
         Asked::of_motion(model, &study)
     };
     let quantities: Vec<&Quantity> = asked.all().collect();
     let mut sampler = Along::watched(model, &motion, &quantities, forces, &mut Ear(progress))?;
-    let places = places_along(&motion, &study, &prepared.parameters);
+    let places = places_along(&motion, &study, &design.parameters);
     let units = Units::of(model);
     let mut rows = RowSink::new(
         name,
@@ -110,20 +110,20 @@ pub(crate) fn run_along(
     for (done, place) in places.iter().enumerate() {
         let row = sampler.row(*place);
         parameters_met.push(row.sample.parameter);
-        frames.push(rows.push(&prepared.mechanism, row.sample.time, row));
+        frames.push(rows.push(&design.mechanism, row.sample.time, row));
         if progress.tick(done + 1, places.len()) == Flow::Stop {
             break;
         }
     }
-    let along = abscissa(&motion, &prepared.parameters);
+    let along = abscissa(&motion, &design.parameters);
     if rows.table.unreached() > 0 {
         warnings.push(unreached_warning(name, &rows.table));
     }
-    warnings.extend(rows.force_warnings(&prepared.mechanism, along));
+    warnings.extend(rows.force_warnings(&design.mechanism, along));
     warnings.extend(without_value(&rows, along, |index| {
         let of_cycles =
             (asked.scalars.get(index)).is_some_and(|q| asks_time_ratio(model, &q.measure));
-        of_cycles && !is_cycle(model, &prepared.parameters)
+        of_cycles && !is_cycle(model, &design.parameters)
     }));
     let met = events(&motion, &units, &parameters_met);
     if forces {
@@ -223,8 +223,8 @@ fn asks_time_ratio(model: &Model, measure: &Measure) -> bool {
 }
 
 /// The column that rows run along: the drive that goes one way through the whole motion, or else time.
-fn abscissa(motion: &Motion<'_>, parameters: &[f64]) -> usize {
-    let model = &motion.mechanism.model;
+fn abscissa(motion: &Motion, parameters: &[f64]) -> usize {
+    let model = &motion.mechanism().model;
     let DrivePath::Coordinate { drive, .. } = motion.path else {
         return 0;
     };
@@ -262,7 +262,7 @@ pub(crate) fn not_measurable(
 
 /// Nothing, where the demanded range is covered. An error where one drive alone is asked to go beyond its limit; a warning
 /// where several drives meet a limit on their way, or the motion could not be followed.
-fn range_warnings(motion: &Motion<'_>) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> {
+fn range_warnings(motion: &Motion) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> {
     let missed = [
         (motion.ends.0, motion.demanded.0),
         (motion.ends.1, motion.demanded.1),
@@ -303,8 +303,8 @@ pub(crate) fn unreached_warning(name: &str, table: &Table) -> Diagnostic {
 }
 
 /// What the motion met, with the row nearest to each place.
-pub(crate) fn events(motion: &Motion<'_>, units: &Units, parameters: &[f64]) -> Vec<Event> {
-    let model = &motion.mechanism.model;
+pub(crate) fn events(motion: &Motion, units: &Units, parameters: &[f64]) -> Vec<Event> {
+    let model = &motion.mechanism().model;
     let (name, dimension) = match motion.path {
         DrivePath::Coordinate { drive, .. } => model
             .drives

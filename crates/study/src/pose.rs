@@ -1,14 +1,14 @@
 //! One pose at given coordinates of the drives, reached from the start without leaving the branch.
 
-use kempe_kinematics::Unwatched;
 use kempe_kinematics::hold::hold;
+use kempe_kinematics::{Mechanism, Unwatched};
 use kempe_model::{Diagnostic, Law, LawPiece, Model, MotionStudy, RiseLaw, Rows, Severity};
 use kempe_units::{Dimension, Expr, Issue, Resolver, Span, check_as, nearest, parse};
 
 use crate::along::{Along, Row};
 use crate::findings_forces::something_acts;
 use crate::motion::{nothing_acts, run_motion};
-use crate::prepared::Prepared;
+use crate::prepared::{design, motion};
 use crate::progress::Silent;
 use crate::result::Frame;
 use crate::rows::RowPlace;
@@ -290,10 +290,8 @@ fn start_text(model: &Model, units: &Units) -> String {
 
 /// The model with its missing drives held, where it lacks some and a pose was found.
 fn with_held(model: &Model, parameters: &[f64]) -> Option<Model> {
-    let Prepared {
-        mechanism, plan, ..
-    } = Prepared::new(model);
-    let lacks = model.drives.is_empty() || !plan.decomposition.undetermined.is_empty();
+    let mechanism = Mechanism::new(model);
+    let lacks = model.drives.is_empty() || !mechanism.plan.decomposition.undetermined.is_empty();
     let held = lacks.then(|| hold(&mechanism, parameters, &mut Unwatched))??;
     Some(held.model)
 }
@@ -334,7 +332,7 @@ pub fn loaded_at(model: &Model, settings: &[Setting]) -> Result<Loaded, Vec<Diag
         }
         _ => return Err(vec![not_on_motion(model)]),
     };
-    let place = |along: &Along<'_>| match settings {
+    let place = |along: &Along| match settings {
         [one] if one.name != "time" => {
             let moving = along.path_drive().and_then(|d| model.drives.get(d.index()));
             if moving.is_some_and(|d| d.name == one.name) {
@@ -367,12 +365,12 @@ fn not_on_motion(model: &Model) -> Diagnostic {
 /// A row of the motion.
 fn on_motion(
     model: &Model,
-    place: &dyn Fn(&Along<'_>) -> Result<RowPlace, Vec<Diagnostic>>,
+    place: &dyn Fn(&Along) -> Result<RowPlace, Vec<Diagnostic>>,
     forces: bool,
     label: &str,
 ) -> Result<Loaded, Vec<Diagnostic>> {
-    let prepared = Prepared::new(model);
-    let motion = prepared.motion(&mut Silent)?;
+    let design = design(model);
+    let motion = motion(&design, &mut Silent)?;
     let mut along = Along::new(model, &motion, &[], forces)?;
     let at = place(&along)?;
     let Row { sample, forces } = along.row(at);
@@ -386,12 +384,9 @@ fn on_motion(
         )]);
     }
     let (arrows, notes) = forces.map_or_else(Default::default, |f| (f.arrows, f.notes));
-    let warnings = notes.iter().map(|n| {
-        Diagnostic::warning(
-            n.code(),
-            format!("{label}: {}", n.text(&prepared.mechanism)),
-        )
-    });
+    let warnings = notes
+        .iter()
+        .map(|n| Diagnostic::warning(n.code(), format!("{label}: {}", n.text(&design.mechanism))));
     Ok(Loaded {
         frame: Frame {
             links: sample.links,

@@ -1,45 +1,22 @@
 //! A model made ready to move: what every study starts from.
 
-use kempe_kinematics::{Design, Mechanism, Motion, Plan};
+use std::sync::Arc;
+
+use kempe_kinematics::{Design, Mechanism, Motion};
 use kempe_model::{Diagnostic, Model};
 
 use crate::explain::cannot_move;
 use crate::progress::{Ear, Progress};
 
-/// The mechanism of a model with its plan and its dimensions.
-pub(crate) struct Prepared {
-    pub mechanism: Mechanism,
-    pub plan: Plan,
-    /// Values of the parameters, SI.
-    pub parameters: Vec<f64>,
-    pub design: Design<f64>,
+/// The design that a model describes: its mechanism with the values of its parameters.
+pub(crate) fn design(model: &Model) -> Design<f64> {
+    Design::new(&Mechanism::new(model), &model.parameter_values())
 }
 
-impl Prepared {
-    /// Takes a model apart.
-    pub fn new(model: &Model) -> Self {
-        let mechanism = Mechanism::new(model);
-        let plan = Plan::new(&mechanism);
-        let parameters: Vec<f64> = model.parameter_values();
-        let design = Design::new(&mechanism, &plan, &parameters);
-        Self {
-            mechanism,
-            plan,
-            parameters,
-            design,
-        }
-    }
-
-    /// The motion that the drives' laws demand, or why there is none.
-    pub fn motion(&self, progress: &mut dyn Progress) -> Result<Motion<'_>, Vec<Diagnostic>> {
-        let (mechanism, plan, design) = (&self.mechanism, &self.plan, &self.design);
-        Motion::watched(
-            mechanism,
-            plan,
-            design,
-            &self.parameters,
-            &mut Ear(progress),
-        )
-        .map_err(|error| vec![cannot_move(mechanism, plan, design, &error)])
-    }
+/// The motion that the drives' laws demand of a design, or why there is none.
+pub(crate) fn motion(
+    design: &Design<f64>,
+    progress: &mut dyn Progress,
+) -> Result<Arc<Motion>, Vec<Diagnostic>> {
+    Motion::watched(design, &mut Ear(progress)).map_err(|error| vec![cannot_move(design, &error)])
 }

@@ -10,7 +10,7 @@ use kempe_model::{Diagnostic, Model};
 use kempe_units::Dimension;
 use serde::Serialize;
 
-use crate::prepared::Prepared;
+use crate::prepared::{design, motion};
 use crate::progress::{Flow, Progress};
 use crate::unit::Units;
 
@@ -51,8 +51,8 @@ pub struct Unproved {
 ///
 /// What keeps the motion from starting; see [`run`](crate::run).
 pub fn prove(model: &Model, progress: &mut dyn Progress) -> Result<Proof, Vec<Diagnostic>> {
-    let prepared = Prepared::new(model);
-    let motion = prepared.motion(progress)?;
+    let design = design(model);
+    let motion = motion(&design, progress)?;
     let found = certify_motion(&motion, Subdivision::default(), |part| {
         match progress.stage(Stage::Proving, Some(part)) {
             Flow::Continue => ControlFlow::Continue(()),
@@ -82,7 +82,7 @@ pub fn prove(model: &Model, progress: &mut dyn Progress) -> Result<Proof, Vec<Di
         });
         Unproved {
             place: range(gap.from, gap.to),
-            reason: format!("{}{event}", gap.reason.describe(&prepared.mechanism)),
+            reason: format!("{}{event}", gap.reason.describe(&design.mechanism)),
             expected: gap.event.is_some(),
         }
     });

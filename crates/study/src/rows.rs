@@ -20,7 +20,7 @@ pub enum RowPlace {
 const SAME_PLACE: f64 = 1e-9;
 
 /// The drive that a step of the drive means.
-pub(crate) fn path_drive(motion: &Motion<'_>) -> usize {
+pub(crate) fn path_drive(motion: &Motion) -> usize {
     match motion.path {
         DrivePath::Coordinate { drive, .. } => drive,
         DrivePath::Time { .. } => 0,
@@ -29,11 +29,11 @@ pub(crate) fn path_drive(motion: &Motion<'_>) -> usize {
 
 /// The places of all rows of a study along a motion.
 pub(crate) fn places_along(
-    motion: &Motion<'_>,
+    motion: &Motion,
     study: &MotionStudy,
     parameters: &[f64],
 ) -> Vec<RowPlace> {
-    let model = &motion.mechanism.model;
+    let model = &motion.mechanism().model;
     places(model, &study.rows, parameters, path_drive(motion))
 }
 

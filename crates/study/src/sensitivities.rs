@@ -9,7 +9,7 @@ use kempe_units::{Dimension, format_digits};
 use serde::Serialize;
 
 use crate::pose::Setting;
-use crate::prepared::Prepared;
+use crate::prepared::{design, motion};
 use crate::progress::Progress;
 use crate::unit::Units;
 
@@ -70,8 +70,8 @@ pub fn sensitivities(
         );
         return Err(vec![told.help("name what is asked for: [measures] swing = \"angle(rocker)\", [parameters] a = \"20 mm\"")]);
     }
-    let prepared = Prepared::new(model);
-    let motion = prepared.motion(progress)?;
+    let design = design(model);
+    let motion = motion(&design, progress)?;
     let units = Units::of(model);
     let drive = match motion.path {
         DrivePath::Coordinate { drive, .. } => model.drives.get(drive),

@@ -14,7 +14,7 @@ mod rubbing;
 
 use kempe_kinematics::constraint::Situation;
 use kempe_kinematics::mechanism::Constraint;
-use kempe_kinematics::{BodyId, Geometry, Mechanism, Plan, Qr};
+use kempe_kinematics::{BodyId, Geometry, Mechanism, Qr};
 
 use self::order::Order;
 pub use self::rubbing::{FRICTION_STEP, FRICTION_STEPS, FrictionOutcome, Pace, STILL, UNMOVED};
@@ -77,7 +77,8 @@ pub struct Equilibrium<T> {
 
 impl<T: ForceNumber> Equilibrium<T> {
     /// Storage for a mechanism of this size (m).
-    pub fn new(mechanism: &Mechanism, plan: &Plan, size: f64, frictions: usize) -> Self {
+    pub fn new(mechanism: &Mechanism, size: f64, frictions: usize) -> Self {
+        let plan = &mechanism.plan;
         let mut first_row = Vec::with_capacity(mechanism.constraints.len());
         let mut unit = Vec::new();
         let mut meshes = Vec::with_capacity(mechanism.constraints.len());
@@ -95,7 +96,7 @@ impl<T: ForceNumber> Equilibrium<T> {
         let (rows, columns) = (unit.len(), 3 * (mechanism.bodies - 1));
         let longest = rows.max(columns);
         Self {
-            order: Order::new(mechanism, plan, &first_row, rows),
+            order: Order::new(mechanism, &first_row, rows),
             first_row,
             meshes,
             idle,

@@ -1,7 +1,7 @@
 //! The order in which the equations of equilibrium are solved: block by block, the last group of links first.
 
+use kempe_kinematics::Mechanism;
 use kempe_kinematics::blocks::Unknown;
-use kempe_kinematics::{Mechanism, Plan};
 
 /// Where every row and every column of J stands in the matrix that is factored.
 ///
@@ -17,7 +17,8 @@ pub(crate) struct Order {
 
 impl Order {
     /// The order for constraints whose rows start at `first_row`, with `rows` rows in all.
-    pub fn new(mechanism: &Mechanism, plan: &Plan, first_row: &[usize], rows: usize) -> Self {
+    pub fn new(mechanism: &Mechanism, first_row: &[usize], rows: usize) -> Self {
+        let plan = &mechanism.plan;
         let parts = &plan.decomposition;
         let (mut row_list, mut column_list) = (Vec::new(), Vec::new());
         for block in parts.blocks.iter().rev() {

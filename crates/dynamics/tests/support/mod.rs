@@ -2,7 +2,7 @@
 #![allow(dead_code, reason = "each test uses a part of it")]
 
 use kempe_dynamics::{ForceSample, ForceSampler};
-use kempe_kinematics::{Design, Mechanism, Motion, Plan};
+use kempe_kinematics::{Design, Mechanism, Motion};
 use kempe_model::{
     Amount, DriveId, ForceMeasure, JointId, JointRef, Leaf, LinkId, LinkPointRef, Load, LoadKind,
     Measure, Model, PointId, Scalar,
@@ -127,13 +127,12 @@ pub fn values(model: &Model, measures: &[Measure], at: &[f64]) -> Vec<Vec<f64>> 
 pub fn with_sampler<R>(
     model: &Model,
     measures: &[Measure],
-    use_it: impl FnOnce(&mut ForceSampler<'_>) -> R,
+    use_it: impl FnOnce(&mut ForceSampler) -> R,
 ) -> R {
     let mechanism = Mechanism::new(model);
-    let plan = Plan::new(&mechanism);
     let parameters: Vec<f64> = model.parameter_values();
-    let design = Design::new(&mechanism, &plan, &parameters);
-    let motion = Motion::new(&mechanism, &plan, &design, &parameters).expect("a motion");
+    let design = Design::new(&mechanism, &parameters);
+    let motion = Motion::new(&design).expect("a motion");
     let measures: Vec<&Measure> = measures.iter().collect();
     let mut sampler = ForceSampler::new(&motion, &measures).expect("forces");
     use_it(&mut sampler)

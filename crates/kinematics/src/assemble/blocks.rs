@@ -37,7 +37,7 @@ impl Search<'_> {
         wanted: bool,
     ) {
         let block = &self.plan.newton_blocks[block];
-        if let Some(poses) = gear_train(self.mechanism, self.design, block, &state, &mut branch) {
+        if let Some(poses) = gear_train(self.design, block, &state, &mut branch) {
             branch.guess.clone_from(&poses);
             let mut state = state;
             if self.solve(step, 1.0, &mut state, &mut branch) {
@@ -145,8 +145,6 @@ impl Search<'_> {
         };
         if self.opened.iter().all(|(index, _)| *index != gear) {
             let found = open_loop::candidates(
-                self.mechanism,
-                self.plan,
                 self.design,
                 self.coordinates,
                 Gear {

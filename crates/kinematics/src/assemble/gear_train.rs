@@ -3,7 +3,7 @@
 use kempe_number::math;
 
 use crate::blocks::Unknown;
-use crate::mechanism::{BodyId, Constraint, Mechanism};
+use crate::mechanism::{BodyId, Constraint};
 use crate::plan::NewtonBlock;
 use crate::pose::Pose;
 use crate::qr::Qr;
@@ -11,12 +11,12 @@ use crate::state::{Branch, Design, State};
 
 /// Angles of a block of gears and angle drives alone: linear equations, one solution.
 pub(super) fn gear_train(
-    mechanism: &Mechanism,
     design: &Design<f64>,
     block: &NewtonBlock,
     state: &State<f64>,
     branch: &mut Branch,
 ) -> Option<Vec<Pose<f64>>> {
+    let mechanism = &*design.mechanism;
     let column = |body: BodyId| {
         block
             .unknowns

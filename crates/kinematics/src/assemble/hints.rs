@@ -5,8 +5,8 @@ use kempe_number::math;
 
 use crate::geometry::Geometry;
 use crate::mechanism::{BodyId, Marker, Mechanism};
-use crate::plan::Plan;
 use crate::pose::{Pose, cross, sub};
+use crate::state::Design;
 
 /// Side hints are not held against a point closer to the line than this, in sizes of the mechanism.
 const ON_THE_LINE: f64 = 1e-9;
@@ -109,14 +109,9 @@ enum Near {
 
 impl<'a> Hints<'a> {
     /// Evaluates the hints of a mechanism's file.
-    pub fn new(
-        mechanism: &'a Mechanism,
-        plan: &Plan,
-        geometry: &'a Geometry<f64>,
-        size: f64,
-    ) -> Self {
-        let parameters = mechanism.model.parameter_values::<f64>();
-        let value = |scalar: &Scalar| kempe_model::value(scalar, &parameters);
+    pub fn new(design: &'a Design<f64>, size: f64) -> Self {
+        let (mechanism, geometry) = (&*design.mechanism, &design.geometry);
+        let value = |scalar: &Scalar| kempe_model::value(scalar, &design.parameters);
         let hints = || mechanism.model.assembly.iter().map(|hint| &hint.kind);
         let near: Vec<Near> = hints()
             .filter_map(|hint| match hint {
@@ -138,7 +133,7 @@ impl<'a> Hints<'a> {
                 meant[body.index()] = wanted - seat;
             }
         }
-        let placed = placed_after(mechanism, plan);
+        let placed = placed_after(mechanism);
         Self {
             sides: hints()
                 .filter_map(|hint| Side::new(hint, mechanism, &placed))
@@ -222,7 +217,8 @@ impl Side {
 }
 
 /// The step after which each body is placed: the last that seeks anything of it.
-fn placed_after(mechanism: &Mechanism, plan: &Plan) -> Vec<usize> {
+fn placed_after(mechanism: &Mechanism) -> Vec<usize> {
+    let plan = &mechanism.plan;
     let mut placed = vec![0; mechanism.bodies];
     for (step, block) in plan.blocks.iter().enumerate() {
         for unknown in &block.unknowns {

@@ -8,6 +8,7 @@
 //! What can be missed is a curve that lies between two neighbouring cuts.
 
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 use kempe_model::{Drive, DriveKind, JointKind, Law, LinkId};
 use kempe_units::{Dimension, Expr};
@@ -43,24 +44,15 @@ pub(crate) struct Gear<'a> {
     pub meant: &'a [f64],
 }
 
-/// The mechanism with the gear's constraint replaced by a drive that turns it, as far as the gear's block: what is placed
-/// after it stands still.
-struct Opened {
-    mechanism: Mechanism,
-    plan: Plan,
-    design: Design<f64>,
-}
-
 /// Poses in whose neighbourhood the gear's constraint may hold; of what is placed after it they say nothing. `None` when stopped; nothing where the gear cannot be opened.
 pub(crate) fn candidates(
-    mechanism: &Mechanism,
-    plan: &Plan,
     design: &Design<f64>,
     coordinates: &[f64],
     gear: Gear<'_>,
     watch: &mut dyn Watch,
 ) -> Option<Vec<Vec<Pose<f64>>>> {
-    let Some(opened) = open(mechanism, plan, design, &gear) else {
+    let mechanism = &*design.mechanism;
+    let Some(opened) = open(design, &gear) else {
         return Some(Vec::new());
     };
     let drive = mechanism.model.drives.len();
@@ -71,12 +63,7 @@ pub(crate) fn candidates(
         held: held.clone(),
         scale: 1.0,
     };
-    let mut follower = Follower::new(
-        &opened.mechanism,
-        &opened.plan,
-        &opened.design.geometry,
-        &path,
-    );
+    let mut follower = Follower::new(&opened, &path);
     let mut curves: Vec<Vec<Node>> = Vec::new();
     for cut in 0..CUTS {
         let mut told = |_: Stage, _: Option<f64>| -> ControlFlow<()> {
@@ -84,8 +71,7 @@ pub(crate) fn candidates(
         };
         let angle = (cut as f64 + OFFSET) / CUTS as f64 * std::f64::consts::TAU;
         held[drive] = angle;
-        let (mechanism, plan, design) = (&opened.mechanism, &opened.plan, &opened.design);
-        let found = Search::new(mechanism, plan, design, &held, &mut told).run()?;
+        let found = Search::new(&opened, &held, &mut told).run()?;
         for assembly in &found.list {
             let z = follower.scaled(&assembly.poses, &assembly.branch.near, angle);
             if curves.iter().any(|curve| passes(curve, &z)) {
@@ -154,13 +140,11 @@ pub(crate) fn candidates(
     Some(found)
 }
 
-/// Opens a mechanism at a gear: at the angle of one of its wheels on the arm, of the pinion on the rack.
-fn open(
-    mechanism: &Mechanism,
-    plan: &Plan,
-    design: &Design<f64>,
-    gear: &Gear<'_>,
-) -> Option<Opened> {
+/// The mechanism with the gear's constraint replaced by a drive that turns it, as far as the gear's block: what is placed
+/// after it stands still. It is opened at the angle of one of its wheels on the arm, of the pinion on the rack.
+fn open(design: &Design<f64>, gear: &Gear<'_>) -> Option<Design<f64>> {
+    let mechanism = &*design.mechanism;
+    let plan = &mechanism.plan;
     let Source::Joint(joint) = mechanism.constraints[gear.constraint].1 else {
         return None;
     };
@@ -184,7 +168,7 @@ fn open(
             dimension: Dimension::ANGLE,
             span: joint.span.clone(),
         });
-        let mut opened = Mechanism::new(&model);
+        let mut opened = Mechanism::without_plan(&model);
         let mut index = 0;
         let before = opened.joint_constraints;
         opened.constraints.retain(|_| {
@@ -193,8 +177,8 @@ fn open(
             index += 1;
             kept
         });
-        let new = Plan::new(&opened);
-        let (old, decomposition) = (&plan.decomposition, &new.decomposition);
+        opened.make_plan();
+        let (old, decomposition) = (&plan.decomposition, &opened.plan.decomposition);
         let left = |unknown| placed.later.contains(unknown);
         let as_before = decomposition.undetermined.iter().all(left)
             && decomposition.surplus.len() == old.surplus.len();
@@ -204,11 +188,13 @@ fn open(
         // The new drive's angle is the last, and counts from wherever it likes.
         let mut geometry = design.geometry.clone();
         geometry.angles.push([1.0, 0.0]);
-        Some(Opened {
-            design: Design::from_geometry(&new, geometry.clone(), vec![geometry]),
-            mechanism: opened,
-            plan: new,
-        })
+        let plain = vec![geometry.clone()];
+        Some(Design::from_geometry(
+            &Arc::new(opened),
+            &design.parameters,
+            geometry,
+            plain,
+        ))
     })
 }
 

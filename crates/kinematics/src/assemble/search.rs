@@ -49,21 +49,17 @@ pub(super) struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    pub fn new(
-        mechanism: &'a Mechanism,
-        plan: &'a Plan,
-        design: &'a Design<f64>,
-        coordinates: &'a [f64],
-        watch: &'a mut dyn Watch,
-    ) -> Self {
-        let size = design.geometry.size(mechanism);
+    pub fn new(design: &'a Design<f64>, coordinates: &'a [f64], watch: &'a mut dyn Watch) -> Self {
+        let mechanism = &*design.mechanism;
+        let plan = &mechanism.plan;
+        let size = design.size();
         Self {
             mechanism,
             plan,
             design,
             coordinates,
             size,
-            hints: Hints::new(mechanism, plan, &design.geometry, size),
+            hints: Hints::new(design, size),
             watch,
             stopped: false,
             shortfall: None,
@@ -80,9 +76,9 @@ impl<'a> Search<'a> {
 
     /// Finds all assemblies, the one meant first; `None` when stopped.
     pub fn run(mut self) -> Option<Assemblies> {
-        let mut state = State::new(self.mechanism, self.plan);
+        let mut state = State::new(self.mechanism);
         state.set_inputs(self.mechanism, self.coordinates);
-        let branch = Branch::neutral(self.mechanism, self.plan);
+        let branch = Branch::neutral(self.mechanism);
         self.descend(0, state, branch, true);
         if self.stopped {
             return None;
@@ -136,7 +132,7 @@ impl<'a> Search<'a> {
         }
         // Redundant constraints are in no closed form: they hold here, or this is no assembly.
         if !self.plan.decomposition.surplus.is_empty() {
-            let residual = closure(self.mechanism, self.design, &branch, &state, self.size);
+            let residual = closure(self.design, &branch, &state, self.size);
             if !(residual <= CLOSED) {
                 self.furthest = self.furthest.max(step.saturating_sub(1));
                 return;
@@ -190,8 +186,7 @@ impl<'a> Search<'a> {
         state: &mut State<f64>,
         branch: &mut Branch,
     ) -> bool {
-        self.plan
-            .solve_step(step, sign, self.mechanism, self.design, branch, state);
+        self.plan.solve_step(step, sign, self.design, branch, state);
         for unknown in &self.plan.blocks[step].unknowns {
             let body = unknown.body().index();
             let pose = state.poses[body];

@@ -9,7 +9,7 @@ use kempe_model::{DriveKind, HintKind};
 
 use super::Assembly;
 use crate::mechanism::{BodyId, Mechanism};
-use crate::plan::{Plan, Step};
+use crate::plan::Step;
 use crate::state::Design;
 
 /// An angle this near, rad, to half a turn below its hint counts as half a turn above it: rounding decides no turn.
@@ -17,14 +17,13 @@ const HALF_TURN: f64 = 1e-9;
 
 /// Whole turns, rad, of every link's angle in an assembly found with a design.
 pub(super) fn counted_turns(
-    mechanism: &Mechanism,
-    plan: &Plan,
     design: &Design<f64>,
     coordinates: &[f64],
     assembly: &Assembly,
 ) -> Vec<f64> {
+    let mechanism = &*design.mechanism;
     let model = &mechanism.model;
-    let parameters = model.parameter_values::<f64>();
+    let parameters = &design.parameters;
     let geometry = &design.geometry;
     let mut turns = geometry.turns.clone();
     let angle = |link: usize, turns: &[f64]| {
@@ -36,7 +35,7 @@ pub(super) fn counted_turns(
     for seat in &mechanism.seats {
         alone[seat.body.index()] += 1;
     }
-    let meshed = meshed(mechanism, plan);
+    let meshed = meshed(mechanism);
     for link in 0..model.links.len() {
         let body = mechanism.seats[link].body.index();
         // A body of one link counts its own turns, and one that a gear turns is counted by that gear.
@@ -66,7 +65,8 @@ pub(super) fn counted_turns(
 }
 
 /// Which bodies are turned by a gear or rack.
-fn meshed(mechanism: &Mechanism, plan: &Plan) -> Vec<bool> {
+fn meshed(mechanism: &Mechanism) -> Vec<bool> {
+    let plan = &mechanism.plan;
     use crate::mechanism::Constraint::{Gears, Rack};
     let mut meshed = vec![false; mechanism.bodies];
     let mut mark = |body: BodyId| meshed[body.index()] = true;

@@ -20,7 +20,7 @@ pub(super) struct Target {
 /// Writes the places of the batch's points in every state; returns how many lanes close.
 #[cfg_attr(not(debug_assertions), inline(always))]
 pub(super) fn write_places<T: Wide<W>, const W: usize>(
-    batch: &Batch<'_>,
+    batch: &Batch,
     design: &Design<T>,
     states: &[State<T>],
     targets: &[Target],
@@ -57,7 +57,7 @@ pub(super) fn write_places<T: Wide<W>, const W: usize>(
 #[cold]
 #[inline(never)]
 fn write_wanted<T: Wide<W>, const W: usize>(
-    batch: &Batch<'_>,
+    batch: &Batch,
     design: &Design<T>,
     states: &[State<T>],
     targets: &[Target],
@@ -93,7 +93,7 @@ fn write_wanted<T: Wide<W>, const W: usize>(
 
 /// Finite in every lane in which the bodies that somebody looks at have a pose.
 #[cfg_attr(not(debug_assertions), inline(always))]
-fn closing_wanted<T: Wide<W>, const W: usize>(batch: &Batch<'_>, state: &State<T>) -> Lanes<W> {
+fn closing_wanted<T: Wide<W>, const W: usize>(batch: &Batch, state: &State<T>) -> Lanes<W> {
     let mut sum = Lanes([0.0; W]);
     for body in &batch.order.wanted {
         let pose = &state.poses[*body];
@@ -104,7 +104,7 @@ fn closing_wanted<T: Wide<W>, const W: usize>(batch: &Batch<'_>, state: &State<T
 
 /// Finite in every lane in which the other bodies have a pose if those have one with which they are dyads.
 #[cfg_attr(not(debug_assertions), inline(always))]
-fn closing_spares<T: Wide<W>, const W: usize>(batch: &Batch<'_>, design: &Design<T>) -> Lanes<W> {
+fn closing_spares<T: Wide<W>, const W: usize>(batch: &Batch, design: &Design<T>) -> Lanes<W> {
     let mut sum = Lanes([0.0; W]);
     for &(dyad, first) in &batch.order.spares {
         let own = &design.constants[dyad][first..first + 2];

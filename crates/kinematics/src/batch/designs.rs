@@ -77,9 +77,9 @@ pub(super) struct Places {
 
 impl Places {
     /// Looks them up at these path parameters.
-    pub(super) fn new(batch: &Batch<'_>, at: &[f64]) -> Self {
-        let motion = batch.motion;
-        let drives = &motion.mechanism.model.drives;
+    pub(super) fn new(batch: &Batch, at: &[f64]) -> Self {
+        let motion = &*batch.motion;
+        let drives = &motion.mechanism().model.drives;
         let mut it = Self {
             branches: Vec::new(),
             inputs: Vec::with_capacity(at.len() * drives.len()),
@@ -102,8 +102,8 @@ impl Places {
     }
 
     /// Runs of places on one branch, not too long to be solved together.
-    pub(super) fn runs<'b>(&'b self, batch: &'b Batch<'_>) -> Vec<Vec<Place<'b>>> {
-        let drives = batch.motion.mechanism.model.drives.len();
+    pub(super) fn runs<'b>(&'b self, batch: &'b Batch) -> Vec<Vec<Place<'b>>> {
+        let drives = batch.motion.mechanism().model.drives.len();
         let mut runs: Vec<Vec<Place<'b>>> = Vec::new();
         for (index, &p) in self.parameters.iter().enumerate() {
             let guessed = &self.branches[index.min(self.branches.len() - 1)];
@@ -131,7 +131,7 @@ multiversion! {
     /// Solves some of the designs at runs of places, lanes over the designs; returns how many poses close.
     pub(super) fn solve_designs(
         set: InstructionSet,
-        batch: &Batch<'_>,
+        batch: &Batch,
         designs: Designs<'_>,
         range: Range<usize>,
         runs: &[Vec<Place<'_>>],
@@ -142,7 +142,7 @@ multiversion! {
 /// [`solve_designs`] for mechanisms whose branch is more than signs: what they take longest for is not done in lanes.
 pub(super) fn solve_guessed(
     _: InstructionSet,
-    batch: &Batch<'_>,
+    batch: &Batch,
     designs: Designs<'_>,
     range: Range<usize>,
     runs: &[Vec<Place<'_>>],
@@ -153,17 +153,17 @@ pub(super) fn solve_guessed(
 
 #[cfg_attr(not(debug_assertions), inline(always))]
 fn in_lanes<const W: usize, const ALL: bool>(
-    batch: &Batch<'_>,
+    batch: &Batch,
     designs: Designs<'_>,
     range: Range<usize>,
     runs: &[Vec<Place<'_>>],
     out: &mut [&mut [f64]],
 ) -> usize {
-    let (mechanism, order) = (batch.motion.mechanism, &batch.order);
+    let (mechanism, order) = (batch.motion.mechanism(), &batch.order);
     let plan = &order.plan;
-    let mut states = vec![State::<Lanes<W>>::new(mechanism, plan); STATES];
+    let mut states = vec![State::<Lanes<W>>::new(mechanism); STATES];
     let design = &batch.motion.design.lift::<Lanes<W>>();
-    order.solve_once(&order.fixed, mechanism, design, &mut states);
+    order.solve_once(&order.fixed, design, &mut states);
     let together = PREPARED.min(range.len()).div_ceil(W);
     let mut prepared = vec![design.clone(); together];
     let mut parameters = vec![Lanes::zero(); mechanism.model.parameters.len()];
@@ -175,7 +175,7 @@ fn in_lanes<const W: usize, const ALL: bool>(
             for (k, parameter) in parameters.iter_mut().enumerate() {
                 *parameter = designs.lanes(k, range.start + row, &range);
             }
-            design.update(mechanism, plan, &parameters);
+            design.update(&parameters);
             if ALL {
                 // Newton's method wants each of them on its own as well.
                 let lane = |lane: usize| move |x: Lanes<W>| x.lane(lane);
@@ -195,14 +195,14 @@ fn in_lanes<const W: usize, const ALL: bool>(
                     };
                 }
             }
-            order.solve_once(&order.driven, mechanism, design, states);
+            order.solve_once(&order.driven, design, states);
             for (row, design) in rows.clone().zip(&prepared) {
                 for target in &mut targets {
                     target.row = row;
                     target.wanted = all_lanes(W.min(range.len() - row));
                 }
                 let rest = order.rest.iter().copied();
-                plan.solve_all::<_, ALL>(rest, mechanism, design, run[0].branch, states);
+                plan.solve_all::<_, ALL>(rest, design, run[0].branch, states);
                 closed += write_places(batch, design, states, &targets, out);
             }
         }

@@ -30,14 +30,15 @@ pub(super) struct Order {
 
 impl Order {
     /// For a batch that looks at these markers.
-    pub(super) fn new(mechanism: &Mechanism, plan: &Plan, markers: &[Marker]) -> Self {
+    pub(super) fn new(mechanism: &Mechanism, markers: &[Marker]) -> Self {
+        let plan = &mechanism.plan;
         let mut it = Self {
             plan: plan.clone(),
             fixed: Vec::new(),
             driven: Vec::new(),
             rest: Vec::new(),
             moving: Vec::new(),
-            neutral: Branch::neutral(mechanism, plan),
+            neutral: Branch::neutral(mechanism),
             wanted: (1..mechanism.bodies).collect(),
             spares: Vec::new(),
         };
@@ -66,12 +67,11 @@ impl Order {
     pub(super) fn solve_once<T: PlanNumber>(
         &self,
         steps: &[usize],
-        mechanism: &Mechanism,
         design: &Design<T>,
         states: &mut [State<T>],
     ) {
         let steps = steps.iter().copied();
-        (self.plan).solve_all::<T, false>(steps, mechanism, design, &self.neutral, states);
+        (self.plan).solve_all::<T, false>(steps, design, &self.neutral, states);
     }
 
     /// Leaves out one body of every dyad where one carries none of the markers and no later step looks at it.

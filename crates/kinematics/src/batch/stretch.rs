@@ -14,12 +14,12 @@ pub(super) struct Stretch {
 }
 
 /// The motion's stretches with a margin at both ends; together they cover what the motion reaches.
-pub(super) fn stretches(motion: &Motion<'_>) -> Vec<Stretch> {
+pub(super) fn stretches(motion: &Motion) -> Vec<Stretch> {
     let margin = motion.margin();
     let last = motion.node_parameters().last().copied();
     let mut list: Vec<Stretch> = Vec::new();
     for (from, signs) in motion.stretches() {
-        let mut branch = Branch::neutral(motion.mechanism, motion.plan);
+        let mut branch = Branch::neutral(motion.mechanism());
         branch.signs.copy_from_slice(signs);
         if let Some(before) = list.last_mut() {
             before.to = from;

@@ -21,7 +21,7 @@ multiversion! {
     /// side by side, and as many states together as the nearest cache holds.
     pub(super) fn sweep_positions(
         set: InstructionSet,
-        batch: &Batch<'_>,
+        batch: &Batch,
         parameters: &[f64],
         columns: &mut [&mut [f64]],
     ) -> usize = sweep_lanes::<Lanes<16>, 16, 4>;
@@ -32,7 +32,7 @@ multiversion! {
     /// widest registers for every order.
     pub(super) fn sweep_rates(
         set: InstructionSet,
-        batch: &Batch<'_>,
+        batch: &Batch,
         parameters: &[f64],
         columns: &mut [&mut [f64]],
     ) -> usize = sweep_lanes::<Jet<Lanes<8>, 3>, 8, 4>;
@@ -41,15 +41,15 @@ multiversion! {
 /// Sweeps the motion's own design, lanes over the parameter, `M` states with `W` lanes at a time.
 #[cfg_attr(not(debug_assertions), inline(always))]
 fn sweep_lanes<T: Wide<W>, const W: usize, const M: usize>(
-    batch: &Batch<'_>,
+    batch: &Batch,
     parameters: &[f64],
     columns: &mut [&mut [f64]],
 ) -> usize {
-    let motion = batch.motion;
-    let (mechanism, design) = (motion.mechanism, &motion.design.lift::<T>());
+    let motion = &*batch.motion;
+    let (mechanism, design) = (motion.mechanism(), &motion.design.lift::<T>());
     let order = &batch.order;
     let mut states = held_states::<T>(motion, M);
-    order.solve_once(&order.fixed, mechanism, design, &mut states);
+    order.solve_once(&order.fixed, design, &mut states);
     let mut padded = [[0.0; W]; M];
     let (mut cursor, mut closed) = (0, 0);
     for (block, part) in parameters.chunks(M * W).enumerate() {
@@ -80,7 +80,7 @@ fn sweep_lanes<T: Wide<W>, const W: usize, const M: usize>(
         while let Some(targets) = next_stretch(batch, at, &mut wanted, &mut cursor, columns) {
             let branch = &batch.stretches[cursor].branch;
             let steps = order.moving.iter().copied();
-            (order.plan).solve_all::<T, false>(steps, mechanism, design, branch, states);
+            (order.plan).solve_all::<T, false>(steps, design, branch, states);
             closed += write_places(batch, design, states, &targets, columns);
         }
     }
@@ -91,7 +91,7 @@ fn sweep_lanes<T: Wide<W>, const W: usize, const M: usize>(
 /// become NaN. Nearly always one stretch holds them all.
 #[inline(never)]
 fn next_stretch<const W: usize, const M: usize>(
-    batch: &Batch<'_>,
+    batch: &Batch,
     at: &[[f64; W]],
     wanted: &mut [Target; M],
     cursor: &mut usize,
@@ -123,11 +123,11 @@ fn next_stretch<const W: usize, const M: usize>(
 /// Sweeps mechanisms whose branch is more than signs: one pose after the other.
 pub(super) fn sweep_one_by_one<T: Single>(
     _: InstructionSet,
-    batch: &Batch<'_>,
+    batch: &Batch,
     parameters: &[f64],
     out: &mut [&mut [f64]],
 ) -> usize {
-    let motion = batch.motion;
+    let motion = &*batch.motion;
     let design = motion.design.lift::<T>();
     let mut closed = 0;
     sweep_states(motion, &design, parameters, T::seed, |row, state| {
@@ -145,11 +145,11 @@ pub(super) fn sweep_one_by_one<T: Single>(
 
 /// States with all drives where they are at the start of the motion.
 #[inline(never)]
-fn held_states<T: Number>(motion: &Motion<'_>, count: usize) -> Vec<State<T>> {
-    let mut coordinates = vec![T::zero(); motion.mechanism.model.drives.len()];
+fn held_states<T: Number>(motion: &Motion, count: usize) -> Vec<State<T>> {
+    let mut coordinates = vec![T::zero(); motion.mechanism().model.drives.len()];
     (motion.path).coordinates(T::from_f64(motion.start), &mut coordinates);
-    let mut state = State::new(motion.mechanism, motion.plan);
-    state.set_inputs(motion.mechanism, &coordinates);
+    let mut state = State::new(motion.mechanism());
+    state.set_inputs(motion.mechanism(), &coordinates);
     vec![state; count]
 }
 
@@ -196,17 +196,18 @@ fn set_at_times<T: Wide<W>, const W: usize>(
 /// |row, state| ...)` with a `Design<Jet<f64, 3>>`.
 #[inline]
 pub fn sweep_states<T: PlanNumber>(
-    motion: &Motion<'_>,
+    motion: &Motion,
     design: &Design<T>,
     parameters: &[f64],
     seed: impl Fn(f64) -> T,
     mut each: impl FnMut(usize, Option<&State<T>>),
 ) {
-    let (mechanism, plan) = (motion.mechanism, motion.plan);
+    let mechanism = motion.mechanism();
+    let plan = &mechanism.plan;
     let needs_guess = plan.steps.iter().any(Step::needs_guess);
     let together = if needs_guess { 1 } else { PLAIN_STATES };
     let stretches = stretches(motion);
-    let mut guessed = Branch::neutral(mechanism, plan);
+    let mut guessed = Branch::neutral(mechanism);
     let mut states = held_states::<T>(motion, together);
     let mut coordinates = vec![T::zero(); mechanism.model.drives.len()];
     let (mut cursor, mut row) = (0, 0);
@@ -240,7 +241,7 @@ pub fn sweep_states<T: PlanNumber>(
             &stretch.branch
         };
         let steps = 0..plan.steps.len();
-        plan.solve_all::<T, true>(steps, mechanism, design, branch, &mut states[..count]);
+        plan.solve_all::<T, true>(steps, design, branch, &mut states[..count]);
         for state in &states[..count] {
             each(row, closes(state).then_some(state));
             row += 1;

@@ -2,7 +2,6 @@
 
 use crate::blocks::{ConstraintRows, Row, Unknown, by_constraint};
 use crate::mechanism::Mechanism;
-use crate::plan::Plan;
 
 /// Where an unknown number of a body stands: block and first column in it.
 pub(super) type Seat = Option<(u32, u32)>;
@@ -38,7 +37,8 @@ pub struct Layout {
 impl Layout {
     /// The blocks of a plan. An overconstrained mechanism is one block: what is redundant in one place keeps another
     /// regular.
-    pub fn new(mechanism: &Mechanism, plan: &Plan) -> Self {
+    pub fn new(mechanism: &Mechanism) -> Self {
+        let plan = &mechanism.plan;
         let mut blocks: Vec<(Vec<Unknown>, Vec<Row>)> = plan
             .blocks
             .iter()

@@ -9,16 +9,16 @@ use crate::krawczyk::{Curve, Given, Middle, Tube, middle_of};
 use crate::pose::Pose;
 use crate::state::input_of;
 
-impl Certifier<'_> {
+impl Certifier {
     /// Proves the stretch from one path parameter to another.
     pub(super) fn cell(&mut self, from: f64, to: f64) -> Result<(Cell, Tube), NotProved> {
         let range = Interval::new(from, to);
         self.prepare(range)?;
         let at = range.midpoint();
         let traced = self.traced(at)?;
-        let motion = self.motion;
+        let motion = &*self.motion.clone();
         let size = motion.size();
-        let drives = &motion.mechanism.model.drives;
+        let drives = &motion.mechanism().model.drives;
         let mut coordinates = vec![Curve::zero(); drives.len()];
         let mut curve = |p: Curve| {
             motion.path.coordinates(p, &mut coordinates);
@@ -29,7 +29,7 @@ impl Certifier<'_> {
                 .collect()
         };
         let (inputs, near) = (&self.wide.state.inputs, &self.plain.branch.near);
-        let given = Given::new(motion.mechanism, &self.design, inputs, near, size);
+        let given = Given::new(&self.design, inputs, near, size);
         let poses = &mut self.wide.state.poses;
         let tube = self.system.tube(
             &given,
@@ -63,7 +63,7 @@ impl Certifier<'_> {
             let mut middle = self.traced(p)?;
             let size = self.motion.size();
             let (inputs, near) = (&self.wide.state.inputs, &self.plain.branch.near);
-            let given = Given::new(self.motion.mechanism, &self.design, inputs, near, size);
+            let given = Given::new(&self.design, inputs, near, size);
             let poses = &mut self.wide.state.poses;
             let (image, _) = self.system.enclose(&given, &mut middle, poses)?;
             Ok([before, after]
@@ -75,7 +75,7 @@ impl Certifier<'_> {
 
     /// Where the traced branch is at a path parameter, to full accuracy: solved, or joined across a change point.
     fn traced(&mut self, p: f64) -> Result<Middle, NotProved> {
-        let motion = self.motion;
+        let motion = &*self.motion.clone();
         if let Some(event) = motion.bridge(p) {
             let joined = across::<1>(motion, &self.side, event, p, &mut motion.solver());
             motion.branch_at(p, &mut self.plain.branch);

@@ -28,7 +28,7 @@ impl Default for Subdivision {
 /// point takes about a hundred.
 const TRIES: usize = 1000;
 
-impl Certifier<'_> {
+impl Certifier {
     /// Covers the motion with proved stretches, cutting in two what can not be proved until it is narrow.
     ///
     /// `progress` is told the finished part after every stretch and may stop the work.

@@ -8,7 +8,7 @@ use crate::mechanism::BodyId;
 use crate::plan::Step;
 use crate::pose::Pose;
 
-impl Certifier<'_> {
+impl Certifier {
     /// The pose on the motion's branch for every path parameter in `p`, by the plan run on intervals.
     ///
     /// Its boxes grow with the width of `p`; for wide stretches [`Certifier::motion`] is made.
@@ -33,7 +33,7 @@ impl Certifier<'_> {
             let mut middle = before.clone();
             let size = self.motion.size();
             let (inputs, near) = (&self.wide.state.inputs, &self.plain.branch.near);
-            let given = Given::new(self.motion.mechanism, &self.design, inputs, near, size);
+            let given = Given::new(&self.design, inputs, near, size);
             self.system
                 .enclose(&given, &mut middle, &mut self.wide.state.poses)?;
             if same_but(&[], &before, &middle, size) {
@@ -48,23 +48,17 @@ impl Certifier<'_> {
     fn run_plan(&mut self, p: Interval) -> Result<(), NotProved> {
         self.wide.state.determinants.fill(Interval::EMPTY);
         self.prepare(p)?;
-        let (mechanism, plan) = (self.motion.mechanism, self.motion.plan);
+        let motion = self.motion.clone();
+        let mechanism = motion.mechanism();
+        let plan = &mechanism.plan;
         let (branch, state) = (&self.plain.branch, &mut self.wide.state);
         for (index, step) in plan.steps.iter().enumerate() {
             if let Step::Newton { block } = step {
                 let block = &plan.newton_blocks[*block];
-                state.determinants[index] =
-                    enclose_block(block, mechanism, &self.design, branch, state)?;
+                state.determinants[index] = enclose_block(block, &self.design, branch, state)?;
                 continue;
             }
-            plan.solve_step(
-                index,
-                branch.signs[index],
-                mechanism,
-                &self.design,
-                branch,
-                state,
-            );
+            plan.solve_step(index, branch.signs[index], &self.design, branch, state);
             let determinant = state.determinants[index];
             let mut bodies: Vec<BodyId> = plan.blocks[index]
                 .unknowns
@@ -85,7 +79,7 @@ impl Certifier<'_> {
 
     /// Puts a certificate together.
     fn conclude(&self, at: Interval, outcome: Result<(), NotProved>) -> Certificate {
-        let bodies = self.motion.mechanism.bodies;
+        let bodies = self.motion.mechanism().bodies;
         let nothing = Pose {
             x: Interval::EMPTY,
             y: Interval::EMPTY,

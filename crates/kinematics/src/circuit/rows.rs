@@ -13,7 +13,7 @@ const ON_STEP: f64 = 1e-9;
 /// Arc lengths this near (mechanism sizes and rad) are one row.
 const SAME_ARC: f64 = 1e-9;
 
-impl<'m> Circuit<'m> {
+impl Circuit {
     /// Which stretch an arc length lies on, and the path parameter there.
     pub fn locate(&self, arc: f64) -> (usize, f64) {
         let index = self
@@ -77,14 +77,11 @@ impl<'m> Circuit<'m> {
     ///
     /// # Errors
     /// All measures that cannot be evaluated, or that `watch` stopped it.
-    pub fn samplers<'a>(
-        &'a self,
+    pub fn samplers(
+        &self,
         measures: &[&Measure],
         watch: &mut dyn Watch,
-    ) -> Result<Vec<Sampler<'a>>, Unprepared>
-    where
-        'm: 'a,
-    {
+    ) -> Result<Vec<Sampler>, Unprepared> {
         self.stretches
             .iter()
             .map(|s| Sampler::watched(&s.motion, measures, NoForces, watch))
@@ -92,7 +89,7 @@ impl<'m> Circuit<'m> {
     }
 
     /// The row at an arc length. Time does not run along a circuit: measures of speed are NaN.
-    pub fn row(&self, samplers: &mut [Sampler<'_>], arc: f64) -> Option<Sample> {
+    pub fn row(&self, samplers: &mut [Sampler], arc: f64) -> Option<Sample> {
         let (index, p) = self.locate(arc);
         samplers
             .get_mut(index)
@@ -100,7 +97,7 @@ impl<'m> Circuit<'m> {
     }
 }
 
-impl Stretch<'_> {
+impl Stretch {
     /// Path parameter at a node, in the order of travel.
     fn parameter_at(&self, node: usize, scale: f64) -> Option<f64> {
         self.nodes

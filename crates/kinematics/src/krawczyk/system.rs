@@ -6,7 +6,7 @@ use super::Middle;
 use crate::blocks::{ConstraintRows, Row, Unknown, by_constraint};
 use crate::constraint::Situation;
 use crate::mechanism::Mechanism;
-use crate::plan::{NewtonBlock, Plan};
+use crate::plan::NewtonBlock;
 use crate::pose::Pose;
 
 /// As many rows as unknowns: a block of the plan, or all of its blocks.
@@ -34,7 +34,8 @@ impl System {
     }
 
     /// The square parts of all blocks of a plan: every body's pose, without redundant rows and idle angles.
-    pub fn whole(mechanism: &Mechanism, plan: &Plan) -> Self {
+    pub fn whole(mechanism: &Mechanism) -> Self {
+        let plan = &mechanism.plan;
         let (mut unknowns, mut rows, mut size) = (Vec::new(), Vec::new(), 0);
         for block in plan
             .decomposition

@@ -14,7 +14,7 @@ pub(crate) struct Patch {
     pub signs: Vec<f64>,
 }
 
-impl Motion<'_> {
+impl Motion {
     /// Fills the branch for a path parameter: modes, guesses and turn counts.
     pub fn branch_at(&self, p: f64, branch: &mut Branch) {
         let node = interval(&self.parameters, p);
@@ -43,7 +43,7 @@ impl Motion<'_> {
             }
         }
         let place = cubic.at(0.5 * (low + high));
-        for body in 1..self.mechanism.bodies {
+        for body in 1..self.mechanism().bodies {
             let [x, y, angle] = [0, 1, 2].map(|k| place.part(3 * (body - 1) + k));
             branch.guess[body] = Pose::from_angle(x * self.size, y * self.size, angle);
             branch.near[body] = angle;

@@ -32,7 +32,7 @@ struct Change {
     step: usize,
 }
 
-impl Motion<'_> {
+impl Motion {
     /// Finds where modes change between nodes, splits the motion there and records what was met.
     pub(crate) fn find_events(
         &mut self,
@@ -176,18 +176,18 @@ impl Motion<'_> {
 
     /// The determinant of every step at a node, with the sign of its assembly mode.
     fn determinants(&self, follower: &mut Follower<'_, DrivePath>, node: &Node) -> Vec<f64> {
-        let mut branch = Branch::neutral(self.mechanism, self.plan);
-        let mut state: State<f64> = State::new(self.mechanism, self.plan);
+        let mut branch = Branch::neutral(self.mechanism());
+        let mut state: State<f64> = State::new(self.mechanism());
         follower.unscaled(&node.z, &mut state.poses, &mut branch.near);
         branch.guess.clone_from(&state.poses);
-        let mut coordinates = vec![0.0; self.mechanism.model.drives.len()];
+        let mut coordinates = vec![0.0; self.mechanism().model.drives.len()];
         self.path
             .coordinates(follower.parameter(&node.z), &mut coordinates);
-        state.set_inputs(self.mechanism, &coordinates);
+        state.set_inputs(self.mechanism(), &coordinates);
         let truth = state.poses.clone();
-        let mut list = Vec::with_capacity(self.plan.steps.len());
-        for (index, step) in self.plan.steps.iter().enumerate() {
-            let unknowns = &self.plan.blocks[index].unknowns;
+        let mut list = Vec::with_capacity(self.mechanism().plan.steps.len());
+        for (index, step) in self.mechanism().plan.steps.iter().enumerate() {
+            let unknowns = &self.mechanism().plan.blocks[index].unknowns;
             let mut best = (f64::INFINITY, 1.0);
             let trials: &[f64] = if step.has_modes() {
                 &[1.0, -1.0]
@@ -195,14 +195,9 @@ impl Motion<'_> {
                 &[1.0]
             };
             for &sign in trials {
-                self.plan.solve_step(
-                    index,
-                    sign,
-                    self.mechanism,
-                    &self.design,
-                    &branch,
-                    &mut state,
-                );
+                self.mechanism()
+                    .plan
+                    .solve_step(index, sign, &self.design, &branch, &mut state);
                 let gap: f64 = unknowns
                     .iter()
                     .map(|u| {

@@ -19,34 +19,33 @@ pub struct Solver<T> {
 
 impl<T: PlanNumber> Solver<T> {
     /// Solves with the branch and coordinates set.
-    pub fn run(&mut self, motion: &Motion<'_>, design: &Design<T>) {
-        self.state.set_inputs(motion.mechanism, &self.coordinates);
-        motion
-            .plan
-            .solve(motion.mechanism, design, &self.branch, &mut self.state);
+    pub fn run(&mut self, motion: &Motion, design: &Design<T>) {
+        self.state.set_inputs(motion.mechanism(), &self.coordinates);
+        design.solve(&self.branch, &mut self.state);
     }
 }
 
-impl Motion<'_> {
-    /// The model's dimensions on the number `T`.
-    pub(crate) fn design_on<T: Number>(&self) -> Design<T> {
-        let parameters: Vec<T> = self.mechanism.model.parameter_values();
+impl Motion {
+    /// The motion's design on the number `T`: its dimensions evaluated anew, its angles counted as here.
+    pub fn design_on<T: Number>(&self) -> Design<T> {
+        let given = self.design.parameters.iter();
+        let parameters: Vec<T> = given.map(|x| T::from_f64(*x)).collect();
         self.design_of(&parameters)
     }
 
     /// The design of parameter values on the number `T`, its angles counted as this motion counts them.
     pub(crate) fn design_of<T: Number>(&self, parameters: &[T]) -> Design<T> {
-        let mut design = Design::new(self.mechanism, self.plan, parameters);
-        design.count_turns(self.mechanism, &self.design.geometry.turns);
+        let mut design = Design::new(self.mechanism(), parameters);
+        design.count_turns(&self.design.geometry.turns);
         design
     }
 
     /// Storage for solving poses of this motion on the number `T`.
     pub fn solver<T: PlanNumber>(&self) -> Solver<T> {
         Solver {
-            branch: Branch::neutral(self.mechanism, self.plan),
-            state: State::new(self.mechanism, self.plan),
-            coordinates: vec![T::zero(); self.mechanism.model.drives.len()],
+            branch: Branch::neutral(self.mechanism()),
+            state: State::new(self.mechanism()),
+            coordinates: vec![T::zero(); self.mechanism().model.drives.len()],
         }
     }
 

@@ -1,14 +1,10 @@
 //! Where a motion starts, and how it is followed from there to both ends of its range.
 
-use std::borrow::Cow;
-
 use super::care::{Unlocated, with_care};
 use super::follow::follow_both;
 use super::{Demand, Motion, MotionError};
 use crate::assemble::{Assemblies, Assembly, find_assemblies};
 use crate::drive_path::DrivePath;
-use crate::mechanism::Mechanism;
-use crate::plan::Plan;
 use crate::state::{Branch, Design};
 use crate::trace::{Follower, Node, Path, apart};
 use crate::watch::{Stage, Watch};
@@ -31,10 +27,10 @@ const TRIES: usize = 2;
 const LEADS_TO: f64 = 30.0;
 
 /// Where a trace may begin.
-struct Beginning<'m> {
+struct Beginning {
     anchor: f64,
     /// The design, its angles counted as in the first of the assemblies.
-    design: Cow<'m, Design<f64>>,
+    design: Design<f64>,
     /// The one to begin with first.
     assemblies: Assemblies,
     up: Node,
@@ -43,15 +39,13 @@ struct Beginning<'m> {
     determined: f64,
 }
 
-impl<'m> Motion<'m> {
+impl Motion {
     /// Follows the branch through the assembly meant by the file's hints over a demanded range.
     ///
     /// # Errors
     /// As [`Motion::watched`].
     pub fn along(
-        mechanism: &'m Mechanism,
-        plan: &'m Plan,
-        design: &'m Design<f64>,
+        design: &Design<f64>,
         demand: Demand,
         watch: &mut dyn Watch,
     ) -> Result<Self, MotionError> {
@@ -61,12 +55,12 @@ impl<'m> Motion<'m> {
             start,
             assemblies: mut known,
         } = demand;
-        check(mechanism, plan, design)?;
+        check(design)?;
         let scale = path.scale();
-        let mut coordinates = vec![0.0; mechanism.model.drives.len()];
+        let mut coordinates = vec![0.0; design.mechanism.model.drives.len()];
         let mut nothing: Option<Assemblies> = None;
         let mut at_start: Option<Vec<f64>> = None;
-        let mut best: Option<Beginning<'m>> = None;
+        let mut best: Option<Beginning> = None;
         let mut compared = 0;
         let mut missed = 0;
         for Place { anchor, inside } in places(&path, demanded, start) {
@@ -77,19 +71,18 @@ impl<'m> Motion<'m> {
             path.coordinates(anchor, &mut coordinates);
             let assemblies = match known.take().filter(|_| anchor == start) {
                 Some(known) => known,
-                None => find_assemblies(mechanism, plan, design, &coordinates, watch).ok_or(
-                    MotionError::Stopped {
+                None => {
+                    find_assemblies(design, &coordinates, watch).ok_or(MotionError::Stopped {
                         stage: Stage::Assembling,
-                    },
-                )?,
+                    })?
+                }
             };
             if assemblies.list.is_empty() {
                 missed += 1;
                 nothing.get_or_insert(assemblies);
                 continue;
             }
-            let of = (mechanism, plan, design);
-            let found = begin(of, &path, assemblies, anchor, &mut at_start);
+            let found = begin(design, &path, assemblies, anchor, &mut at_start);
             let Some(found) = found else { continue };
             let clear = found.determined > DETERMINED;
             let factor = if best.is_some() { BETTER } else { 1.0 };
@@ -122,13 +115,13 @@ impl<'m> Motion<'m> {
         // The share of the range that lies above it.
         let whole = (demanded.1 - demanded.0).max(f64::MIN_POSITIVE);
         let share = ((demanded.1 - anchor) / whole).clamp(0.0, 1.0);
-        let mut follower = Follower::new(mechanism, plan, &design.geometry, &path);
+        let mut follower = Follower::new(&design, &path);
         with_care(&mut follower, |follower| {
             let range = (demanded.0 / scale, demanded.1 / scale);
             let (nodes, ends) = follow_both(follower, [&down, &up], range, share, watch)
                 .ok_or(Unlocated::Stopped(Stage::Following))?;
             let (design, path, assemblies) = (design.clone(), path.clone(), assemblies.clone());
-            let mut motion = Self::of_nodes(mechanism, plan, design, path, assemblies, nodes);
+            let mut motion = Self::of_nodes(design, path, assemblies, nodes);
             motion.anchor = anchor;
             motion.start = start;
             motion.demanded = demanded;
@@ -144,7 +137,7 @@ impl<'m> Motion<'m> {
         if self.start_crossing().is_none() {
             return 1;
         }
-        let mut branch = Branch::neutral(self.mechanism, self.plan);
+        let mut branch = Branch::neutral(self.mechanism());
         self.branch_at(self.start, &mut branch);
         let at_start = follower.scaled(&branch.guess, &branch.near, self.start);
         let far = |a: &Assembly| apart(&scaled(follower, a, self.anchor), &at_start);
@@ -187,15 +180,15 @@ fn places(path: &DrivePath, (low, high): (f64, f64), start: f64) -> Vec<Place> {
 
 /// A beginning at a place with these assemblies: with the first that leads to the pose at the start, where there is one.
 /// `at_start` is that pose, in scaled unknowns; it is set at the first place. `None` at a singular pose.
-fn begin<'m>(
-    (mechanism, plan, design): (&'m Mechanism, &'m Plan, &'m Design<f64>),
+fn begin(
+    design: &Design<f64>,
     path: &DrivePath,
     mut assemblies: Assemblies,
     anchor: f64,
     at_start: &mut Option<Vec<f64>>,
-) -> Option<Beginning<'m>> {
+) -> Option<Beginning> {
     if let Some(at_start) = at_start {
-        let follower = Follower::new(mechanism, plan, &design.geometry, path);
+        let follower = Follower::new(&design, path);
         let list = assemblies.list.iter();
         let far: Vec<f64> = list
             .map(|assembly| apart(&scaled(&follower, assembly, anchor), at_start))
@@ -206,8 +199,8 @@ fn begin<'m>(
         assemblies.list[..=first].rotate_right(1);
     }
     let first = assemblies.list.first()?;
-    let design = first.count_in(mechanism, design);
-    let mut follower = Follower::new(mechanism, plan, &design.geometry, path);
+    let design = first.count_in(design);
+    let mut follower = Follower::new(&design, path);
     let z = scaled(&follower, first, anchor);
     at_start.get_or_insert_with(|| z.clone());
     let up = follower.start(z.clone(), 1.0)?;
@@ -230,7 +223,9 @@ fn scaled(follower: &Follower<'_, DrivePath>, assembly: &Assembly, at: f64) -> V
 }
 
 /// Whether a mechanism can be moved at all.
-fn check(mechanism: &Mechanism, plan: &Plan, design: &Design<f64>) -> Result<(), MotionError> {
+fn check(design: &Design<f64>) -> Result<(), MotionError> {
+    let mechanism = &*design.mechanism;
+    let plan = &mechanism.plan;
     if mechanism.model.drives.is_empty() {
         return Err(MotionError::NoDrive);
     }
@@ -244,7 +239,7 @@ fn check(mechanism: &Mechanism, plan: &Plan, design: &Design<f64>) -> Result<(),
         bodies.dedup();
         return Err(MotionError::Undetermined { bodies });
     }
-    let size = design.geometry.size(mechanism);
+    let size = design.size();
     if !(SIZES.0..=SIZES.1).contains(&size) {
         return Err(MotionError::Scale { size });
     }

@@ -4,7 +4,6 @@ use kempe_number::{Jet, Lanes, Number};
 
 use super::{plain_part, sharpen};
 use crate::blocks::Unknown;
-use crate::mechanism::Mechanism;
 use crate::plan::NewtonBlock;
 use crate::state::{Branch, Design, State};
 
@@ -55,12 +54,12 @@ impl<const W: usize, const N: usize> Laned<W> for Jet<Lanes<W>, N> {
 /// Solves one lane after the other, each with as many passes for its higher parts.
 pub(super) fn lane_by_lane<T: Laned<W>, const W: usize>(
     block: &NewtonBlock,
-    mechanism: &Mechanism,
     design: &Design<T>,
     branch: &Branch,
     state: &mut State<T>,
     passes: usize,
 ) -> T {
+    let mechanism = &*design.mechanism;
     let mut determinant = T::from_f64(f64::NAN);
     for lane in 0..W {
         let part = |x: T| x.plain(lane);
@@ -84,7 +83,7 @@ pub(super) fn lane_by_lane<T: Laned<W>, const W: usize>(
         }
         // With this lane's Jacobian; the other lanes stay where they are.
         let only = |row: T| row.only(lane);
-        sharpen(block, mechanism, design, branch, state, passes, only);
+        sharpen(block, design, branch, state, passes, only);
     }
     determinant
 }

@@ -9,15 +9,15 @@ use crate::force_source::ForceSource;
 /// A rate at which less than this part of the motion is covered in its duration counts as rest.
 const AT_REST: f64 = 1e-9;
 
-impl<F: ForceSource> Sampler<'_, F> {
+impl<F: ForceSource> Sampler<F> {
     /// Duration of the motion, s.
     pub fn duration(&self) -> f64 {
-        duration(&self.motion.mechanism.model, &self.parameters)
+        duration(&self.motion.mechanism().model, self.parameters())
     }
 
     /// Times at which some drive's law goes from one piece to the next, both ends of the motion included.
     pub fn breaks(&self) -> Vec<f64> {
-        let knots = law_knots(&self.motion.mechanism.model, &self.parameters, true);
+        let knots = law_knots(&self.motion.mechanism().model, self.parameters(), true);
         knots.into_iter().map(|[_, last]| last).collect()
     }
 
@@ -34,7 +34,7 @@ impl<F: ForceSource> Sampler<'_, F> {
         }
         let here = self.parameter_at(time);
         let away = |t: f64| Some(self.parameter_at(t) - here).filter(|d| d.abs() > least);
-        let knots = law_knots(&self.motion.mechanism.model, &self.parameters, false);
+        let knots = law_knots(&self.motion.mechanism().model, self.parameters(), false);
         let (after, before): (Vec<f64>, Vec<f64>) =
             knots.iter().map(|[t, _]| *t).partition(|t| *t > time);
         let onward = after.iter().find_map(|t| away(*t));
@@ -47,12 +47,12 @@ impl<F: ForceSource> Sampler<'_, F> {
     /// The first time at which a drive's coordinate takes a value, s.
     pub fn time_of(&self, drive: DriveId, value: f64) -> Option<f64> {
         self.motion
-            .mechanism
+            .mechanism()
             .model
             .drives
             .get(drive.index())?
             .law
-            .first_time(value, &self.parameters)
+            .first_time(value, self.parameters())
     }
 
     /// The drive whose coordinate is the path parameter.
@@ -70,8 +70,8 @@ impl<F: ForceSource> Sampler<'_, F> {
             Some(drive) => self.time_of(drive, p).map_or_else(
                 || {
                     let duration = self.duration();
-                    let law = &self.motion.mechanism.model.drives[drive.index()].law;
-                    let gap = (law.at(duration, &self.parameters) - p).abs();
+                    let law = &self.motion.mechanism().model.drives[drive.index()].law;
+                    let gap = (law.at(duration, self.parameters()) - p).abs();
                     if gap <= 1e-12 * p.abs().max(1e-3) {
                         duration
                     } else {
@@ -90,7 +90,7 @@ impl<F: ForceSource> Sampler<'_, F> {
 
     /// The path parameter at a time, s.
     pub(crate) fn parameter_at(&self, t: f64) -> f64 {
-        let model = &self.motion.mechanism.model;
-        self.motion.path.parameter_at(model, t, &self.parameters)
+        let model = &self.motion.mechanism().model;
+        self.motion.path.parameter_at(model, t, self.parameters())
     }
 }

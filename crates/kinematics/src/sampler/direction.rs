@@ -3,7 +3,6 @@
 use kempe_model::PointId;
 use kempe_number::math;
 
-use crate::mechanism::Mechanism;
 use crate::motion::Motion;
 use crate::pose::{Pose, sub};
 use crate::state::Design;
@@ -18,12 +17,12 @@ pub(super) struct Direction {
 
 impl Direction {
     /// Follows a direction over the whole trace; in the principal range where the motion starts.
-    pub fn new(motion: &Motion<'_>, points: (PointId, PointId)) -> Self {
+    pub fn new(motion: &Motion, points: (PointId, PointId)) -> Self {
         let mut values: Vec<f64> = Vec::with_capacity(motion.nodes());
         for index in 0..motion.nodes() {
             let (_, poses, _) = motion.node(index);
             let (a, b) = points;
-            let mut angle = plain_direction(motion.mechanism, &motion.design, &poses, a, b);
+            let mut angle = plain_direction(&motion.design, &poses, a, b);
             if let Some(last) = values.last() {
                 angle += whole_turns(last - angle);
             }
@@ -46,7 +45,7 @@ impl Direction {
     }
 
     /// About where it is at a path parameter, rad.
-    pub fn near(&self, motion: &Motion<'_>, p: f64) -> f64 {
+    pub fn near(&self, motion: &Motion, p: f64) -> f64 {
         let (parameters, values) = (motion.node_parameters(), &self.values);
         let node = interval(parameters, p);
         match (parameters.get(node), parameters.get(node + 1)) {
@@ -65,13 +64,8 @@ fn whole_turns(angle: f64) -> f64 {
 }
 
 /// The direction from one point to another, principal value, rad.
-fn plain_direction(
-    mechanism: &Mechanism,
-    design: &Design<f64>,
-    poses: &[Pose<f64>],
-    a: PointId,
-    b: PointId,
-) -> f64 {
+fn plain_direction(design: &Design<f64>, poses: &[Pose<f64>], a: PointId, b: PointId) -> f64 {
+    let mechanism = &*design.mechanism;
     let place = |p: PointId| {
         mechanism.any_marker(p).map_or([f64::NAN; 2], |m| {
             poses[m.body.index()].place(design.geometry.marker(m))

@@ -8,7 +8,7 @@ use crate::force_source::ForceSource;
 use crate::measure::{Along, Moment, NamedSeries, Series, visit_leaves};
 use crate::trace::Path;
 
-impl<F: ForceSource> Sampler<'_, F> {
+impl<F: ForceSource> Sampler<F> {
     /// Hands the moment last solved to `ask`, with its forces where they are wanted.
     pub(super) fn with_moment<R>(
         &mut self,
@@ -38,23 +38,23 @@ impl<F: ForceSource> Sampler<'_, F> {
 
     /// The moment last solved, without forces.
     fn moment(&self, p: f64, time: f64) -> Moment<'_, f64> {
-        let motion = self.motion;
+        let motion = &*self.motion;
         let clock = if time.is_finite() {
             let rich: Vec<Series<f64>> = self
-                .parameters
+                .parameters()
                 .iter()
                 .map(|x| Series::constant(*x))
                 .collect();
             motion
                 .path
-                .parameter_at(&motion.mechanism.model, Series::variable(time), &rich)
+                .parameter_at(&motion.mechanism().model, Series::variable(time), &rich)
         } else {
             Series::from_f64(f64::NAN)
         };
         Moment {
-            mechanism: motion.mechanism,
+            mechanism: motion.mechanism(),
             design: &self.series_design,
-            parameters: &self.parameters,
+            parameters: self.parameters(),
             time,
             path: &self.series.state.poses,
             clock,
@@ -68,7 +68,7 @@ impl<F: ForceSource> Sampler<'_, F> {
             swept: self
                 .swept
                 .iter()
-                .map(|s| (s.point(), s.at_time(motion, &self.parameters, time)))
+                .map(|s| (s.point(), s.at_time(motion, self.parameters(), time)))
                 .collect(),
             forces: None,
             statistics: &self.statistics,
@@ -80,7 +80,7 @@ impl<F: ForceSource> Sampler<'_, F> {
     pub(crate) fn directions_near(&self, p: f64) -> Vec<((PointId, PointId), f64)> {
         let directions = self.directions.iter();
         directions
-            .map(|d| (d.points(), d.near(self.motion, p)))
+            .map(|d| (d.points(), d.near(&self.motion, p)))
             .collect()
     }
 
@@ -91,7 +91,7 @@ impl<F: ForceSource> Sampler<'_, F> {
             return [f64::NAN; 2];
         }
         let mut asks_forces = false;
-        visit_leaves(self.motion.mechanism, measure, &mut |leaf| {
+        visit_leaves(self.motion.mechanism(), measure, &mut |leaf| {
             asks_forces |= matches!(leaf, Leaf::Force(_));
         });
         let series = self.with_moment(p, time, asks_forces, |moment| {

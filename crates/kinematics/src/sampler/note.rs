@@ -11,7 +11,7 @@ use crate::motion::EndReason;
 /// Digits of a place in a note.
 const NOTE_DIGITS: usize = 12;
 
-impl<F: ForceSource> Sampler<'_, F> {
+impl<F: ForceSource> Sampler<F> {
     /// What is to be said of a row that was reached. `still` are points that stand still whose curvature is asked for.
     pub(super) fn note(&self, p: f64, sample: &Sample, still: &[PointId]) -> Option<String> {
         if let Some(event) = self
@@ -46,7 +46,7 @@ impl<F: ForceSource> Sampler<'_, F> {
         if singular {
             return Some("limit of the drive: rates are not defined here".into());
         }
-        let points = &self.motion.mechanism.model.points;
+        let points = &self.motion.mechanism().model.points;
         let names: Vec<&str> = (still.iter())
             .filter_map(|p| Some(points.get(p.index())?.name.as_str()))
             .collect();
@@ -59,7 +59,7 @@ impl<F: ForceSource> Sampler<'_, F> {
 
     /// Why a path parameter was not reached.
     pub(super) fn why_unreached(&self, p: f64) -> String {
-        let motion = self.motion;
+        let motion = &*self.motion.clone();
         let (low, high) = motion.reached();
         let (reason, at) = if p > high {
             (motion.ends.1, high)
@@ -84,7 +84,7 @@ impl<F: ForceSource> Sampler<'_, F> {
 
     /// A path parameter with its unit, as the file would say it.
     fn place_text(&self, p: f64) -> String {
-        let model = &self.motion.mechanism.model;
+        let model = &self.motion.mechanism().model;
         let dimension = match self.path_drive() {
             Some(drive) => model.drives.get(drive.index()).map(|d| d.dimension),
             None => None,

@@ -28,7 +28,7 @@ pub enum Unprepared {
     Stopped,
 }
 
-impl<F: ForceSource> Sampler<'_, F> {
+impl<F: ForceSource> Sampler<F> {
     /// Finds out what the measures need beyond the poses along the path. `None` when stopped.
     pub(super) fn prepare(&mut self, watch: &mut dyn Watch) -> Option<()> {
         let mut statistics: Vec<(Statistic, Measure)> = Vec::new();
@@ -36,11 +36,11 @@ impl<F: ForceSource> Sampler<'_, F> {
         let mut swept: Vec<PointId> = Vec::new();
         let mut drives: Vec<DriveId> = Vec::new();
         let mut curved: Vec<PointId> = Vec::new();
-        let motion = self.motion;
+        let motion = &*self.motion.clone();
         // What the forces ask for comes first: measures of forces need its statistics.
         let inputs = self.forces.as_ref().map_or(&[][..], F::measures);
         for measure in inputs.iter().chain(&self.measures) {
-            visit_leaves(motion.mechanism, measure, &mut |leaf| match leaf {
+            visit_leaves(motion.mechanism(), measure, &mut |leaf| match leaf {
                 Leaf::Over(statistic, inner) => {
                     let entry = (*statistic, (**inner).clone());
                     if !statistics.contains(&entry) {
@@ -71,7 +71,7 @@ impl<F: ForceSource> Sampler<'_, F> {
                 self.drives[drive.index()] = Some(Vec::new());
             }
         }
-        curved.retain(|p| !motion.mechanism.is_fixed(*p));
+        curved.retain(|p| !motion.mechanism().is_fixed(*p));
         self.curved = curved;
         self.directions = (directions.into_iter())
             .map(|points| Direction::new(motion, points))

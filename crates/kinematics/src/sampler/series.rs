@@ -9,10 +9,10 @@ use crate::measure::{Series, only_value};
 use crate::motion::Solver;
 use crate::pose::Pose;
 
-impl<F: ForceSource> Sampler<'_, F> {
+impl<F: ForceSource> Sampler<F> {
     /// Solves the series along the path at `p` and along the drives that measures ask for. False without a pose.
     pub(super) fn solve(&mut self, p: f64) -> bool {
-        let motion = self.motion;
+        let motion = &*self.motion.clone();
         if let Some(index) = motion.limit_at(p) {
             self.solve_at_limit(p, index);
             return true;
@@ -48,7 +48,7 @@ impl<F: ForceSource> Sampler<'_, F> {
 
     /// Takes the pose of the trace at a limit of the drive; rates are infinite there, or not defined.
     fn solve_at_limit(&mut self, p: f64, index: usize) {
-        let motion = self.motion;
+        let motion = &*self.motion.clone();
         let (_, poses, near) = motion.node(index);
         motion
             .path
@@ -69,7 +69,7 @@ impl<F: ForceSource> Sampler<'_, F> {
 
     /// Joins the series on both sides of a change point.
     fn solve_across(&mut self, p: f64, event: &Event) {
-        let motion = self.motion;
+        let motion = &*self.motion.clone();
         motion.branch_at(p, &mut self.series.branch);
         motion
             .path

@@ -86,7 +86,7 @@ impl Varied<'_, '_> {
 
     /// Length of path swept by a point until a time.
     pub(super) fn length(&mut self, point: PointId, until: Base) -> Base {
-        let mechanism = self.motion.mechanism;
+        let mechanism = self.motion.mechanism();
         if mechanism.is_fixed(point) {
             return Base::zero();
         }
@@ -97,7 +97,7 @@ impl Varied<'_, '_> {
             if !it.solve(place) {
                 return Base::from_f64(f64::NAN);
             }
-            let model = &it.motion.mechanism.model;
+            let model = &it.motion.mechanism().model;
             let rate = it
                 .motion
                 .path
@@ -139,7 +139,7 @@ impl Varied<'_, '_> {
     }
 
     fn duration(&self) -> Base {
-        let laws = self.motion.mechanism.model.drives.iter();
+        let laws = self.motion.mechanism().model.drives.iter();
         laws.map(|d| d.law.duration(&self.parameters))
             .fold(Base::zero(), Base::max)
     }
@@ -147,7 +147,7 @@ impl Varied<'_, '_> {
     /// Times at which some law goes from one piece to the next, as they move with the parameters.
     fn breaks(&self) -> Vec<Base> {
         let mut list = vec![Base::zero(), self.duration()];
-        for drive in &self.motion.mechanism.model.drives {
+        for drive in &self.motion.mechanism().model.drives {
             let mut law = drive.law.clone();
             while !law.pieces.is_empty() {
                 list.push(law.duration(&self.parameters));

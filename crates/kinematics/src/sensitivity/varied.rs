@@ -21,8 +21,8 @@ pub(super) struct Place {
 
 /// A motion with some parameters varied.
 pub(super) struct Varied<'s, 'a> {
-    pub motion: &'a Motion<'a>,
-    pub sampler: &'s mut Sampler<'a>,
+    pub motion: &'a Motion,
+    pub sampler: &'s mut Sampler,
     pub parameters: Vec<Base>,
     pub rich: Vec<Series<Base>>,
     pub design: Design<Series<Base>>,
@@ -34,12 +34,8 @@ pub(super) struct Varied<'s, 'a> {
 }
 
 impl<'s, 'a> Varied<'s, 'a> {
-    pub(super) fn new(
-        motion: &'a Motion<'a>,
-        sampler: &'s mut Sampler<'a>,
-        chunk: &[ParameterId],
-    ) -> Self {
-        let model = &motion.mechanism.model;
+    pub(super) fn new(motion: &'a Motion, sampler: &'s mut Sampler, chunk: &[ParameterId]) -> Self {
+        let model = &motion.mechanism().model;
         // A varied parameter still follows those it is built on: d/d(each) is the same whatever else is asked for.
         let mut parameters: Vec<Base> = Vec::with_capacity(model.parameters.len());
         for (index, parameter) in model.parameters.iter().enumerate() {
@@ -76,7 +72,7 @@ impl<'s, 'a> Varied<'s, 'a> {
 
     /// The place at a time that may move with the parameters.
     pub(super) fn at_time(&self, time: Base) -> Place {
-        let model = &self.motion.mechanism.model;
+        let model = &self.motion.mechanism().model;
         Place {
             time,
             path: self.motion.path.parameter_at(model, time, &self.parameters),
@@ -94,7 +90,7 @@ impl<'s, 'a> Varied<'s, 'a> {
 
     /// The time at which a drive's coordinate stays what it is at `time`: dt = -dq / (dq/dt).
     pub(super) fn passing(&self, drive: DriveId, time: f64) -> Base {
-        let law = &self.motion.mechanism.model.drives[drive.index()].law;
+        let law = &self.motion.mechanism().model.drives[drive.index()].law;
         let q = law.at(Series::variable(Base::from_f64(time)), &self.rich);
         let (change, rate) = (q.coefficient(0), q.coefficient(1).re);
         Base {
@@ -108,7 +104,7 @@ impl<'s, 'a> Varied<'s, 'a> {
     pub(super) fn prepare(&mut self, measures: &[&Measure]) {
         let mut statistics: Vec<(Statistic, Measure)> = Vec::new();
         for measure in measures {
-            visit_leaves(self.motion.mechanism, measure, &mut |leaf| match leaf {
+            visit_leaves(self.motion.mechanism(), measure, &mut |leaf| match leaf {
                 Leaf::Over(statistic, inner) => {
                     let entry = (*statistic, (**inner).clone());
                     if !statistics.contains(&entry) {
@@ -136,7 +132,7 @@ impl<'s, 'a> Varied<'s, 'a> {
 
     /// Drive coordinates at a path parameter. Drives at rest follow their laws' start.
     fn coordinates(&mut self, p: Series<Base>) {
-        let drives = &self.motion.mechanism.model.drives;
+        let drives = &self.motion.mechanism().model.drives;
         for (index, (out, drive)) in self.solver.coordinates.iter_mut().zip(drives).enumerate() {
             *out = match self.motion.path {
                 DrivePath::Coordinate { drive, .. } if drive == index => p,
@@ -183,7 +179,7 @@ impl<'s, 'a> Varied<'s, 'a> {
             return Series::from_f64(f64::NAN);
         }
         let motion = self.motion;
-        let model = &motion.mechanism.model;
+        let model = &motion.mechanism().model;
         let clock = if place.time.re.is_finite() {
             motion
                 .path
@@ -192,7 +188,7 @@ impl<'s, 'a> Varied<'s, 'a> {
             Series::from_f64(f64::NAN)
         };
         let moment = Moment {
-            mechanism: motion.mechanism,
+            mechanism: motion.mechanism(),
             design: &self.design,
             parameters: &self.parameters,
             time: place.time,
@@ -221,9 +217,9 @@ impl<'s, 'a> Varied<'s, 'a> {
 }
 
 /// Whether a measure asks for a swept length (not inside a statistic: that has its own).
-fn needs_length(motion: &Motion<'_>, measure: &Measure) -> bool {
+fn needs_length(motion: &Motion, measure: &Measure) -> bool {
     let mut found = false;
-    visit_leaves(motion.mechanism, measure, &mut |leaf| {
+    visit_leaves(motion.mechanism(), measure, &mut |leaf| {
         found |= matches!(leaf, Leaf::Pose(PoseMeasure::PathLength(_)));
     });
     found

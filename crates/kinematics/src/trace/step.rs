@@ -16,7 +16,7 @@ const SHORTEST_STEP: f64 = 1e-9;
 impl<P: Path> Follower<'_, P> {
     /// One step along the arc; `step` is the length to try and is adapted for the next. `None` when stuck.
     pub fn advance(&mut self, from: &Node, step: &mut f64) -> Option<Node> {
-        let longest = LONGEST_STEP * ((self.mechanism.bodies - 1) as f64).sqrt();
+        let longest = LONGEST_STEP * ((self.design.mechanism.bodies - 1) as f64).sqrt();
         let longest = longest.min(self.safe(&from.z));
         let mut odd = 0;
         while *step > SHORTEST_STEP {

@@ -10,7 +10,9 @@ pub mod generate;
 
 use std::fmt::Write as _;
 
-use kempe_kinematics::{Design, Mechanism, Motion, MotionError, Plan, Pose, Sample, State};
+use std::sync::Arc;
+
+use kempe_kinematics::{Design, Mechanism, Motion, MotionError, Pose, Sample, State};
 use kempe_model::Model;
 
 /// A small reproducible generator (splitmix64).
@@ -579,8 +581,7 @@ impl Spec {
 pub struct Case {
     pub text: String,
     pub model: Model,
-    pub mechanism: Mechanism,
-    pub plan: Plan,
+    pub mechanism: Arc<Mechanism>,
     pub design: Design<f64>,
     pub parameters: Vec<f64>,
 }
@@ -622,14 +623,12 @@ impl Case {
     /// Compiles a model that was not read from one text.
     pub fn from_model(model: Model) -> Self {
         let mechanism = Mechanism::new(&model);
-        let plan = Plan::new(&mechanism);
         let parameters: Vec<f64> = model.parameter_values();
-        let design = Design::new(&mechanism, &plan, &parameters);
+        let design = Design::new(&mechanism, &parameters);
         Self {
             text: String::new(),
             model,
             mechanism,
-            plan,
             design,
             parameters,
         }
@@ -639,12 +638,12 @@ impl Case {
         Self::read(&spec.toml(), "case.toml")
     }
 
-    pub fn motion(&self) -> Result<Motion<'_>, MotionError> {
-        Motion::new(&self.mechanism, &self.plan, &self.design, &self.parameters)
+    pub fn motion(&self) -> Result<Arc<Motion>, MotionError> {
+        Motion::new(&self.design)
     }
 
     /// The motion, or a panic that shows the file.
-    pub fn must_move(&self) -> Motion<'_> {
+    pub fn must_move(&self) -> Arc<Motion> {
         match self.motion() {
             Ok(motion) => motion,
             Err(error) => panic!("{error:?}\n{}", self.text),
@@ -653,8 +652,8 @@ impl Case {
 
     /// Smallest singular value of the scaled constraint Jacobian at given link poses.
     pub fn sigma(&self, poses: &[[f64; 3]], coordinates: &[f64]) -> f64 {
-        let mut state: State<f64> = State::new(&self.mechanism, &self.plan);
-        let mut branch = kempe_kinematics::Branch::neutral(&self.mechanism, &self.plan);
+        let mut state: State<f64> = State::new(&self.mechanism);
+        let mut branch = kempe_kinematics::Branch::neutral(&self.mechanism);
         state.set_inputs(&self.mechanism, coordinates);
         for (index, pose) in poses.iter().enumerate().skip(1) {
             let seat = &self.mechanism.seats[index];
@@ -664,16 +663,9 @@ impl Case {
             }
         }
         let size = self.design.geometry.size(&self.mechanism);
-        let mut system = kempe_kinematics::bordered::Bordered::new(&self.mechanism, &self.plan);
-        kempe_kinematics::evidence::evidence(
-            &self.mechanism,
-            &self.design,
-            &branch,
-            &state,
-            size,
-            &mut system,
-        )
-        .smallest_singular_value
+        let mut system = kempe_kinematics::bordered::Bordered::new(&self.mechanism);
+        kempe_kinematics::evidence::evidence(&self.design, &branch, &state, size, &mut system)
+            .smallest_singular_value
     }
 
     /// Poses of the links from poses of the bodies.
@@ -716,7 +708,7 @@ pub fn difference(a: &[[f64; 3]], b: &[[f64; 3]], size: f64, idle: &[usize]) -> 
 }
 
 /// `n` path parameters from one end of what was reached to the other.
-pub fn spread(motion: &Motion<'_>, n: usize) -> Vec<f64> {
+pub fn spread(motion: &Motion, n: usize) -> Vec<f64> {
     let (low, high) = motion.reached();
     (0..n)
         .map(|i| {

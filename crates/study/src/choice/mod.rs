@@ -19,7 +19,7 @@ use kempe_units::{Dimension, Expr};
 use crate::along::Along;
 use crate::columns::Quantity;
 use crate::explain::stopped;
-use crate::prepared::Prepared;
+use crate::prepared::{design, motion};
 use crate::progress::{Ear, Flow, Progress};
 use crate::result::{Figure, StudyResult};
 use crate::rows::{RowPlace, places_along};
@@ -72,11 +72,11 @@ fn values(
     quantities: &[Quantity],
     progress: &mut dyn Progress,
 ) -> Result<Vec<Vec<f64>>, Vec<Diagnostic>> {
-    let prepared = Prepared::new(model);
-    let motion = prepared.motion(progress)?;
+    let design = design(model);
+    let motion = motion(&design, progress)?;
     let asked: Vec<&Quantity> = quantities.iter().collect();
     let mut along = Along::watched(model, &motion, &asked, true, &mut Ear(progress))?;
-    let places: Vec<RowPlace> = places_along(&motion, study, &prepared.parameters);
+    let places: Vec<RowPlace> = places_along(&motion, study, &design.parameters);
     let mut lists = vec![Vec::with_capacity(places.len()); quantities.len()];
     let count = places.len() as f64;
     for (done, place) in places.into_iter().enumerate() {

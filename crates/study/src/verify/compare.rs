@@ -1,5 +1,7 @@
 //! Running validation cases.
 
+use std::sync::Arc;
+
 use kempe_kinematics::Motion;
 use kempe_kinematics::events::EventKind;
 use kempe_model::{Diagnostic, Model, NamedMeasure};
@@ -11,7 +13,7 @@ use crate::along::{Along, Row};
 use crate::columns::Quantity;
 use crate::findings::check;
 use crate::pose::Setting;
-use crate::prepared::Prepared;
+use crate::prepared::{design, motion};
 use crate::progress::Silent;
 use crate::rows::RowPlace;
 
@@ -45,8 +47,8 @@ pub struct Comparison {
 /// What a case needs of its model.
 struct Subject<'m> {
     model: &'m Model,
-    sampler: Along<'m>,
-    motion: &'m Motion<'m>,
+    sampler: Along,
+    motion: Arc<Motion>,
     /// Measures asked for, in the order of the sampler's.
     measures: Vec<String>,
 }
@@ -70,8 +72,8 @@ pub fn compare(
         }
     }
     let model = Model::from_toml_with(text, &case.title, files, &case.set)?.model;
-    let prepared = Prepared::new(&model);
-    let motion = prepared.motion(&mut Silent)?;
+    let design = design(&model);
+    let motion = motion(&design, &mut Silent)?;
     let named: Vec<NamedMeasure> = (measures.iter())
         .map(|text| model.measure(text))
         .collect::<Result<_, _>>()?;
@@ -89,7 +91,7 @@ pub fn compare(
     let mut subject = Subject {
         model: &model,
         sampler,
-        motion: &motion,
+        motion,
         measures,
     };
     let mut last: Option<(String, Vec<f64>)> = None;
