@@ -8,8 +8,9 @@ use std::hint::black_box;
 use std::time::Instant as Clock;
 
 use kempe_dynamics::{Forces, Instant};
-use kempe_kinematics::{Branch, Design, Mechanism, Motion, State};
+use kempe_mechanism::{Branch, Design, Mechanism, State};
 use kempe_model::{DriveId, Model};
+use kempe_motion::Motion;
 use kempe_number::{Jet, Number};
 
 const ROWS: usize = 512;
@@ -209,7 +210,7 @@ fn inputs(at: &Instant<f64>) -> ([[f64; 4]; 6], [[f64; 4]; 6]) {
 }
 
 fn kernel_of(mechanism: &Mechanism, forces: &Forces<f64>) -> Kernel {
-    use kempe_kinematics::mechanism::Constraint;
+    use kempe_mechanism::structure::Constraint;
     let mut bodies = [(0.0, 0.0, [0.0; 2]); 5];
     for mass in &forces.acting.masses {
         bodies[mass.body.index() - 1] = (mass.mass, mass.moment, mass.center);

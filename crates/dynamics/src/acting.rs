@@ -1,6 +1,6 @@
 //! Everything that acts on a mechanism, evaluated for one design.
 
-use kempe_kinematics::{Geometry, Mechanism};
+use kempe_mechanism::{Geometry, Mechanism};
 use kempe_model as model;
 use kempe_number::Number;
 

@@ -1,7 +1,7 @@
 //! Values that vary along a motion: what loads are made of.
 
-use kempe_kinematics::Mechanism;
-use kempe_kinematics::measure::{Along, Moment, order_of, visit_leaves};
+use kempe_measure::measure::{Along, Moment, order_of, visit_leaves};
+use kempe_mechanism::Mechanism;
 use kempe_model::{self as model, Leaf, Measure, Span};
 use kempe_number::Number;
 

@@ -3,16 +3,15 @@
 use kempe_model::{DriveId, ForceMeasure, JointRef};
 
 use crate::cylinder::Cylinder;
-use crate::energy;
 use crate::equilibrium::STILL;
 use crate::forces::Forces;
 use crate::instant::Instant;
 use crate::load::Load;
 use crate::number::ForceNumber;
 use crate::reaction::Reaction;
-use crate::reduced;
 use crate::shaking::shaking;
 use crate::vector::{length, sign};
+use crate::{energy, reduced};
 
 /// A load at an instant: a force along the frame's axes, N, or a torque, N m.
 enum LoadValue<T> {

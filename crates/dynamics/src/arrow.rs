@@ -1,6 +1,6 @@
 //! Everything that acts on the links of one instant as arrows to be drawn.
 
-use kempe_kinematics::mechanism::Marker;
+use kempe_mechanism::structure::Marker;
 use kempe_model::{DriveKind, FRAME, Joint, JointKind, LinkId, LinkPointRef};
 
 use crate::ends::Ends;

@@ -1,6 +1,6 @@
 //! Dampers: a force against the speed at which two points part, a torque against the relative turning of two links.
 
-use kempe_kinematics::{Geometry, Mechanism};
+use kempe_mechanism::{Geometry, Mechanism};
 use kempe_model as model;
 use kempe_number::Number;
 

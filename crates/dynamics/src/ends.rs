@@ -1,7 +1,7 @@
 //! What springs and dampers act between: two points, or two links.
 
-use kempe_kinematics::mechanism::Marker;
-use kempe_kinematics::{BodyId, Geometry, Mechanism};
+use kempe_mechanism::structure::Marker;
+use kempe_mechanism::{BodyId, Geometry, Mechanism};
 use kempe_model::{Between, LinkId, Span};
 use kempe_number::Number;
 

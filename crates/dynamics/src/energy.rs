@@ -1,6 +1,6 @@
 //! Energy and power.
 
-use kempe_kinematics::Geometry;
+use kempe_mechanism::Geometry;
 use kempe_number::Number;
 
 use crate::acting::Acting;

@@ -1,7 +1,7 @@
 //! Forces of one instant, by both routes.
 
-use kempe_kinematics::mechanism::{Constraint, LineSource, Source};
-use kempe_kinematics::{BodyId, Design, Mechanism};
+use kempe_mechanism::structure::{Constraint, LineSource, Source};
+use kempe_mechanism::{BodyId, Design, Mechanism};
 use kempe_model::{DriveId, LinkId};
 use kempe_number::Number as _;
 use kempe_units::Dimension;
@@ -272,8 +272,8 @@ impl Forces<Rates> {
 
 /// The links that a constraint acts on, one for each of its bodies.
 fn links_of(mechanism: &Mechanism, constraint: &Constraint) -> Vec<LinkId> {
-    let marker = |m: kempe_kinematics::mechanism::Marker| mechanism.markers[m.index as usize].link;
-    let line = |l: kempe_kinematics::mechanism::LineRef| match mechanism.lines[l.index as usize] {
+    let marker = |m: kempe_mechanism::structure::Marker| mechanism.markers[m.index as usize].link;
+    let line = |l: kempe_mechanism::structure::LineRef| match mechanism.lines[l.index as usize] {
         LineSource::Points(from, _) => marker(from),
         LineSource::AxisOf(link) => link,
     };

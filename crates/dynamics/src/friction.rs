@@ -1,7 +1,7 @@
 //! Friction at pins and sliders: Coulomb's, with Stribeck's falling coefficient and a viscous part.
 
-use kempe_kinematics::Mechanism;
-use kempe_kinematics::mechanism::{Constraint, Source};
+use kempe_mechanism::Mechanism;
+use kempe_mechanism::structure::{Constraint, Source};
 use kempe_model::{self as model, FrictionAt, JointId, JointKind, PointId};
 use kempe_number::Number;
 

@@ -5,9 +5,9 @@
 //! `P = A + (B - A) z_a / (z_a + z_b)` (`z_b` negative for a ring). Its multiplier is the tangential tooth force, and the
 //! pins carry its reaction. The radial part of a real tooth force depends on the pressure angle and is left out.
 
-use kempe_kinematics::constraint::{Gradient, Situation};
-use kempe_kinematics::mechanism::{Constraint, Marker};
-use kempe_kinematics::{BodyId, Mechanism};
+use kempe_mechanism::constraint::{Gradient, Situation};
+use kempe_mechanism::structure::{Constraint, Marker};
+use kempe_mechanism::{BodyId, Mechanism};
 use kempe_model::LinkPointRef;
 use kempe_number::Number;
 

@@ -1,6 +1,6 @@
 //! Masses of links and counterweights.
 
-use kempe_kinematics::{BodyId, Geometry, Mechanism};
+use kempe_mechanism::{BodyId, Geometry, Mechanism};
 use kempe_model::{self as model, LinkId};
 use kempe_number::Number;
 

@@ -1,8 +1,8 @@
 //! One instant of a motion, as the forces need it.
 
-use kempe_kinematics::constraint::Input;
-use kempe_kinematics::measure::{Moment, Series};
-use kempe_kinematics::{BodyId, Mechanism, Pose, State};
+use kempe_measure::measure::{Moment, Series};
+use kempe_mechanism::constraint::Input;
+use kempe_mechanism::{BodyId, Mechanism, Pose, State};
 use kempe_model::{DriveId, DriveKind};
 use kempe_number::{Jet, Number};
 

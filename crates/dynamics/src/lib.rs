@@ -19,7 +19,7 @@
 //! *Virtual power* ([`virtual_power`]) projects inertia, loads, springs, dampers and friction on the motion that each
 //! drive alone gives (its kinematic coefficients); it knows nothing of joints. *Newton and Euler* ([`equilibrium`])
 //! solve every body's equilibrium for the multipliers of all joints and drives, from the one definition of each joint
-//! in `kempe-kinematics`; it knows nothing of kinematic coefficients. Where they differ, one of them is wrong, so their
+//! in `kempe-mechanism`; it knows nothing of kinematic coefficients. Where they differ, one of them is wrong, so their
 //! difference stands in every row. What a drive gives is taken from virtual power (it stays finite at a singular pose),
 //! what a joint carries from the multipliers.
 //!

@@ -1,7 +1,7 @@
 //! Forces and torques from outside.
 
-use kempe_kinematics::mechanism::Marker;
-use kempe_kinematics::{Geometry, Mechanism};
+use kempe_mechanism::structure::Marker;
+use kempe_mechanism::{Geometry, Mechanism};
 use kempe_model::{LinkId, LoadKind};
 use kempe_number::Number;
 

@@ -1,6 +1,6 @@
 //! What is to be told about the forces of a row.
 
-use kempe_kinematics::{BodyId, Mechanism};
+use kempe_mechanism::{BodyId, Mechanism};
 use kempe_model::DriveId;
 
 use crate::equilibrium::FrictionOutcome;

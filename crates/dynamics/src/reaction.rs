@@ -1,7 +1,7 @@
 //! What joints carry, as vectors on a named link.
 
-use kempe_kinematics::Mechanism;
-use kempe_kinematics::mechanism::Source;
+use kempe_mechanism::Mechanism;
+use kempe_mechanism::structure::Source;
 use kempe_model::{
     DriveId, DriveKind, JointId, JointKind, JointRef, LinkId, LinkPointRef, PointId,
 };

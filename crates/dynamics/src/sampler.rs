@@ -3,8 +3,10 @@
 use std::fmt;
 use std::sync::Arc;
 
-use kempe_kinematics::{Branch, Design, Motion, Sample, Sampler, Unprepared, Unwatched, Watch};
+use kempe_measure::{Sample, Sampler, Unprepared};
+use kempe_mechanism::{Branch, Design};
 use kempe_model::{DriveId, Measure};
+use kempe_motion::{Motion, Unwatched, Watch};
 
 use crate::equilibrium::{FrictionOutcome, Pace};
 use crate::forces::Forces;

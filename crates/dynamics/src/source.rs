@@ -1,7 +1,7 @@
-//! Forces along a motion, for the sampler of `kempe-kinematics`.
+//! Forces along a motion, for the sampler of `kempe-measure`.
 
-use kempe_kinematics::ForceSource;
-use kempe_kinematics::measure::{Moment, Series};
+use kempe_measure::ForceSource;
+use kempe_measure::measure::{Moment, Series};
 use kempe_model::{ForceMeasure, Measure};
 
 use crate::forces::Forces;

@@ -1,6 +1,6 @@
 //! Springs: linear ones between points, torsion springs between links, with preload, stops and one-sided ones.
 
-use kempe_kinematics::{Geometry, Mechanism};
+use kempe_mechanism::{Geometry, Mechanism};
 use kempe_model::{self as model, Acts};
 use kempe_number::Number;
 
@@ -167,7 +167,7 @@ impl<T: Number> Spring<T> {
     /// have these angles: at the start of a motion. Otherwise its torque would depend on how the frame is laid.
     pub fn align(&mut self, geometry: &Geometry<T>, angles: &[f64]) {
         if let Ends::Links([(link_a, a), (link_b, b)]) = self.ends {
-            let of = |link: kempe_model::LinkId, body: kempe_kinematics::BodyId| {
+            let of = |link: kempe_model::LinkId, body: kempe_mechanism::BodyId| {
                 angles[body.index()] + geometry.seat_angles[link.index()].value()
             };
             let apart = self.law.free.value() - (of(link_b, b) - of(link_a, a));

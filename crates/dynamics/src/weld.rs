@@ -1,7 +1,7 @@
 //! What a weld carries: the equilibrium of the part of a body that hangs on it.
 
-use kempe_kinematics::Mechanism;
-use kempe_kinematics::mechanism::Marker;
+use kempe_mechanism::Mechanism;
+use kempe_mechanism::structure::Marker;
 use kempe_model::{JointId, JointKind, LinkId, LinkPointRef};
 
 /// A weld, found in the tree of links that make up a body.

@@ -7,8 +7,9 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
 use kempe_dynamics::{Forces, Instant};
-use kempe_kinematics::{Design, Mechanism, Motion};
+use kempe_mechanism::{Design, Mechanism};
 use kempe_model::DriveId;
+use kempe_motion::Motion;
 use kempe_number::Jet;
 
 thread_local! {

@@ -518,9 +518,9 @@ fn problems_are_told() {
         .actions
         .friction
         .push(friction(FrictionAt::Pin(point(&model, "A")), 0.1, None));
-    let mechanism = kempe_kinematics::Mechanism::new(&model);
+    let mechanism = kempe_mechanism::Mechanism::new(&model);
     let parameters: Vec<f64> = Vec::new();
-    let geometry = kempe_kinematics::Geometry::new(&mechanism, &parameters);
+    let geometry = kempe_mechanism::Geometry::new(&mechanism, &parameters);
     let found = kempe_dynamics::Acting::new(&mechanism, &geometry, &parameters).unwrap_err();
     let codes: Vec<&str> = found.iter().map(|p| p.code).collect();
     for code in [

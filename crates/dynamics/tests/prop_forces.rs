@@ -1,15 +1,16 @@
 //! Random mechanisms with random masses, springs, dampers, loads and friction.
 
-#[path = "../../kinematics/tests/support/mod.rs"]
+#[path = "../../motion/tests/support/mod.rs"]
 mod mechanisms;
 
 use kempe_dynamics::{ForceEvidence, ForceNote, ForceSampler, FrictionOutcome};
-use kempe_kinematics::{Design, Mechanism, Motion};
+use kempe_mechanism::{Design, Mechanism};
 use kempe_model::{
     Acts, Amount, Between, Center, Damper, DriveId, ForceMeasure, Friction, FrictionAt, Inertia,
     JointRef, Leaf, LinkId, LinkPointRef, Load, LoadKind, Measure, Model, Place, PointId,
     PointMass, PoseMeasure, Scalar, Spring,
 };
+use kempe_motion::Motion;
 use kempe_units::Expr;
 use mechanisms::generate::{make, recipe};
 use mechanisms::{Case, Rng, spread};
@@ -428,7 +429,7 @@ proptest! {
             matches!(j.kind, kempe_model::JointKind::Gears { .. } | kempe_model::JointKind::Rack { .. })
         });
         for model in [&mut plain, &mut moved] {
-            let fixed = |link: LinkId| mechanism.body_of(link) == kempe_kinematics::BodyId::GROUND;
+            let fixed = |link: LinkId| mechanism.body_of(link) == kempe_mechanism::BodyId::GROUND;
             model.actions.springs.retain(|s| match s.between {
                 Between::Links(a, b) => !fixed(a) && !fixed(b),
                 Between::Points(..) => true,
@@ -451,7 +452,7 @@ proptest! {
             // A gear's or pinion's turns are counted from its angle at the start, which is taken between -pi and pi.
             let whole = |x: f64| if counts_turns { x } else { mechanisms::wrapped(x) };
             let turned = (1..a.links.len()).all(|l| {
-                mechanism.body_of(LinkId(l as u32)) == kempe_kinematics::BodyId::GROUND
+                mechanism.body_of(LinkId(l as u32)) == kempe_mechanism::BodyId::GROUND
                     || whole(b.links[l][2] - a.links[l][2] - turn).abs() < 1e-6
             });
             if !turned { continue }

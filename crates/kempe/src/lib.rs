@@ -46,7 +46,7 @@
 //! model gives the same bytes on every machine.
 //!
 //! The parts that this crate puts together are there under their own names: [`number`], [`units`], [`model`],
-//! [`kinematics`], [`study`], [`draw`].
+//! [`mechanism`], [`homotopy`], [`motion`], [`measure`], [`proof`], [`dynamics`], [`study`], [`draw`].
 
 mod error;
 mod facade;
@@ -56,9 +56,14 @@ pub use facade::{Model, Pose};
 pub use kempe_study::{CheckReport, Column, StudyResult, Table};
 
 pub use kempe_draw as draw;
-pub use kempe_kinematics as kinematics;
+pub use kempe_dynamics as dynamics;
+pub use kempe_homotopy as homotopy;
+pub use kempe_measure as measure;
+pub use kempe_mechanism as mechanism;
 pub use kempe_model as model;
+pub use kempe_motion as motion;
 pub use kempe_number as number;
+pub use kempe_proof as proof;
 pub use kempe_study as study;
 pub use kempe_units as units;
 

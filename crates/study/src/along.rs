@@ -3,9 +3,10 @@
 use std::sync::Arc;
 
 use kempe_dynamics::{ForceArrow, ForceError, ForceEvidence, ForceNote, ForceSampler};
-use kempe_kinematics::force_source::NoForces;
-use kempe_kinematics::{Motion, Sample, Sampler, Unwatched, Watch};
+use kempe_measure::force_source::NoForces;
+use kempe_measure::{Sample, Sampler};
 use kempe_model::{Diagnostic, DriveId, Model};
+use kempe_motion::{Motion, Unwatched, Watch};
 
 use crate::columns::Quantity;
 use crate::motion::unprepared;

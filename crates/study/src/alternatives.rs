@@ -1,10 +1,10 @@
 //! How to say which of several assemblies is meant, in the words of the file.
 
-use kempe_kinematics::Design;
-use kempe_kinematics::assemble::Assembly;
-use kempe_kinematics::mechanism::Marker;
-use kempe_kinematics::plan::Step;
+use kempe_mechanism::Design;
+use kempe_mechanism::plan::Step;
+use kempe_mechanism::structure::Marker;
 use kempe_model::PointId;
+use kempe_motion::assemble::Assembly;
 use kempe_number::math::{hypot, log10};
 use kempe_units::Dimension;
 

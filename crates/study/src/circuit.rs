@@ -1,7 +1,8 @@
 //! Circuits: rows along the arc of everything that can be reached without taking the mechanism apart.
 
-use kempe_kinematics::circuit::Circuit;
+use kempe_measure::{circuit_row, circuit_samplers};
 use kempe_model::{Diagnostic, Model, MotionStudy, Rows};
+use kempe_motion::circuit::Circuit;
 use kempe_units::Unit;
 
 use crate::along::Row;
@@ -35,8 +36,7 @@ pub(crate) fn run_circuit(
     let asked = Asked::of_motion(model, study);
     let quantities: Vec<&Quantity> = asked.all().collect();
     let measures: Vec<_> = quantities.iter().map(|q| &q.measure).collect();
-    let mut samplers = circuit
-        .samplers(&measures, &mut Ear(progress))
+    let mut samplers = circuit_samplers(&circuit, &measures, &mut Ear(progress))
         .map_err(|problem| unprepared(model, &quantities, problem))?;
 
     let mut warnings = Vec::new();
@@ -74,7 +74,7 @@ pub(crate) fn run_circuit(
     let mut frames = Vec::with_capacity(count);
     let mut stretch_of: Vec<(usize, f64)> = Vec::with_capacity(count);
     for (done, arc) in arcs.into_iter().enumerate() {
-        let Some(sample) = circuit.row(&mut samplers, arc) else {
+        let Some(sample) = circuit_row(&circuit, &mut samplers, arc) else {
             break;
         };
         stretch_of.push((circuit.locate(arc).0, sample.parameter));
@@ -82,7 +82,7 @@ pub(crate) fn run_circuit(
             sample,
             forces: None,
         };
-        frames.push(rows.push(&mechanism, arc, row));
+        frames.push(rows.push(mechanism, arc, row));
         if progress.tick(done + 1, count) == Flow::Stop {
             break;
         }

@@ -1,6 +1,6 @@
 //! Which quantities a motion study reports.
 
-use kempe_kinematics::Mechanism;
+use kempe_mechanism::Mechanism;
 use kempe_model::{
     FRAME, ForceMeasure, Hodograph, Leaf, LinkId, Measure, Model, MotionStudy, Plot, PointId,
     PoseMeasure,

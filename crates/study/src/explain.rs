@@ -1,10 +1,11 @@
 //! Why there is no motion, or less than was asked for, in the words of the file.
 
-use kempe_kinematics::drive_path::DrivePath;
-use kempe_kinematics::mechanism::Marker;
-use kempe_kinematics::plan::{Condition, Dyad, Step, Swing};
-use kempe_kinematics::{Branch, Design, EndReason, Mechanism, Motion, MotionError, Stage, State};
+use kempe_mechanism::plan::{Condition, Dyad, Step, Swing};
+use kempe_mechanism::structure::Marker;
+use kempe_mechanism::{Branch, Design, Mechanism, State};
 use kempe_model::{Diagnostic, Model};
+use kempe_motion::drive_path::DrivePath;
+use kempe_motion::{EndReason, Motion, MotionError, Stage};
 use kempe_number::math::hypot;
 use kempe_units::Dimension;
 

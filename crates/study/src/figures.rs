@@ -1,8 +1,8 @@
 //! The plots a study asks for.
 
 use kempe_draw::plot::{Axis, Curve, Limit, Marker, MarkerKind, PlotSpec};
-use kempe_kinematics::events::EventKind;
 use kempe_model::Model;
+use kempe_motion::events::EventKind;
 use kempe_units::{Dimension, Unit};
 
 use crate::result::{Event, Figure, StudyResult};

@@ -1,19 +1,19 @@
 //! What is to be known of a mechanism before it moves, in the names and units of its file.
 
-use kempe_kinematics::assemble::{Assemblies, Assembly, Shortfall};
-use kempe_kinematics::events::EventKind;
-use kempe_kinematics::mechanism::{BodyId, Source};
-use kempe_kinematics::{Design, EndReason, Findings};
+use kempe_mechanism::Design;
+use kempe_mechanism::structure::{BodyId, Source};
 use kempe_model::{Diagnostic, Drive, Model, Rows, Severity, Study, StudyKind, value};
+use kempe_motion::assemble::{Assemblies, Assembly, Shortfall};
+use kempe_motion::events::EventKind;
+use kempe_motion::{EndReason, Findings};
 use kempe_units::Dimension;
 use serde::Serialize;
 
-use crate::alternatives;
 use crate::explain::{cannot_move, list};
-use crate::hints;
 use crate::prepared::design;
 use crate::progress::{Ear, Progress, Silent};
 use crate::unit::Units;
+use crate::{alternatives, hints};
 
 /// The answer of `check`.
 #[derive(Clone, Debug, Serialize)]
@@ -98,7 +98,7 @@ pub fn check(model: &Model) -> Report {
 pub fn check_watched(model: &Model, progress: &mut dyn Progress) -> Report {
     let design = design(model);
     let mechanism = &design.mechanism;
-    let found = kempe_kinematics::check_watched(&design, &mut Ear(progress));
+    let found = kempe_motion::check_watched(&design, &mut Ear(progress));
     let units = Units::of(model);
     let bodies = |list: &[BodyId]| {
         list.iter()

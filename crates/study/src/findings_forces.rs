@@ -3,7 +3,7 @@
 use kempe_draw::number_format::significant;
 use kempe_dynamics::Acting;
 use kempe_dynamics::acting::GRAVITY;
-use kempe_kinematics::Design;
+use kempe_mechanism::Design;
 use kempe_model::{
     Center, Diagnostic, DriveId, Friction, FrictionAt, Model, Study, StudyKind, value,
 };

@@ -1,6 +1,6 @@
 //! What a study of forces reports where it names no columns: everything that drives and joints carry.
 
-use kempe_kinematics::Mechanism;
+use kempe_mechanism::Mechanism;
 use kempe_model::{
     Column, DriveId, DriveKind, ForceMeasure, Hodograph, JointId, JointKind, JointRef, Leaf, Plot,
     PointId,

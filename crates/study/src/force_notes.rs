@@ -1,9 +1,9 @@
 //! What the rows of a study note about their forces, gathered into warnings: one for each kind, with where it is worst.
 
 use kempe_dynamics::ForceNote;
-use kempe_kinematics::Mechanism;
-use kempe_kinematics::events::EventKind;
+use kempe_mechanism::Mechanism;
 use kempe_model::{Diagnostic, DriveId, ForceMeasure, Leaf, Measure, Model};
+use kempe_motion::events::EventKind;
 
 use crate::columns::Quantity;
 use crate::result::Event;

@@ -1,8 +1,8 @@
 //! What the hints of a file decide: which of them do nothing, which contradict each other, and whether one assembly is left.
 
-use kempe_kinematics::Design;
-use kempe_kinematics::assemble::{Assemblies, Assembly, Standing, standing};
+use kempe_mechanism::Design;
 use kempe_model::{HintKind, Model, Side};
+use kempe_motion::assemble::{Assemblies, Assembly, Standing, standing};
 
 use crate::explain::list;
 

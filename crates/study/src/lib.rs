@@ -62,7 +62,7 @@ mod view;
 pub use explain::{cannot_move, reach_text};
 pub use figures::{MECHANISM, figures};
 pub use findings::{Grashof, Group, Report as CheckReport, check, check_watched};
-pub use kempe_kinematics::Stage;
+pub use kempe_motion::Stage;
 pub use motion::{run, run_motion};
 pub use pose::{Loaded, Setting, loaded_at, pose_at};
 pub use progress::{Flow, Progress, Silent};

@@ -1,9 +1,10 @@
 //! Motion studies: a row for every place along the drives' laws.
 
-use kempe_kinematics::drive_path::{DrivePath, is_cycle};
-use kempe_kinematics::events::EventKind;
-use kempe_kinematics::{EndReason, Motion, Stage, Unmeasurable, Unprepared};
+use kempe_measure::{Unmeasurable, Unprepared};
 use kempe_model::{Diagnostic, Leaf, Measure, Model, MotionStudy, Statistic, Study, StudyKind};
+use kempe_motion::drive_path::{DrivePath, is_cycle};
+use kempe_motion::events::EventKind;
+use kempe_motion::{EndReason, Motion, Stage};
 use kempe_units::Dimension;
 
 use crate::along::Along;

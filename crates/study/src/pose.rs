@@ -1,8 +1,9 @@
 //! One pose at given coordinates of the drives, reached from the start without leaving the branch.
 
-use kempe_kinematics::hold::hold;
-use kempe_kinematics::{Mechanism, Unwatched};
+use kempe_mechanism::Mechanism;
 use kempe_model::{Diagnostic, Law, LawPiece, Model, MotionStudy, RiseLaw, Rows, Severity};
+use kempe_motion::Unwatched;
+use kempe_motion::temporary_drives::hold;
 use kempe_units::{Dimension, Expr, Issue, Resolver, Span, check_as, nearest, parse};
 
 use crate::along::{Along, Row};

@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
-use kempe_kinematics::{Design, Mechanism, Motion};
+use kempe_mechanism::{Design, Mechanism};
 use kempe_model::{Diagnostic, Model};
+use kempe_motion::Motion;
 
 use crate::explain::cannot_move;
 use crate::progress::{Ear, Progress};

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use kempe_kinematics::{Stage, Watch};
+use kempe_motion::{Stage, Watch};
 
 /// Whether to go on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,10 +3,11 @@
 use std::fmt::Write as _;
 use std::ops::ControlFlow;
 
-use kempe_kinematics::drive_path::DrivePath;
-use kempe_kinematics::events::EventKind;
-use kempe_kinematics::{Stage, Subdivision, certify_motion};
 use kempe_model::{Diagnostic, Model};
+use kempe_motion::Stage;
+use kempe_motion::drive_path::DrivePath;
+use kempe_motion::events::EventKind;
+use kempe_proof::{Subdivision, certify_motion};
 use kempe_units::Dimension;
 use serde::Serialize;
 
@@ -45,7 +46,7 @@ pub struct Unproved {
 }
 
 /// Proves the demanded motion of a model, stretch by stretch: that for every place of the drive there is exactly one
-/// pose near the one followed, and that it moves smoothly. See [`kempe_kinematics::certify`] for what that says.
+/// pose near the one followed, and that it moves smoothly. See [`kempe_proof::certify`] for what that says.
 ///
 /// # Errors
 ///

@@ -4,7 +4,7 @@ use kempe_draw::report::{
     Block, Check, Column as Shown, Event, Evidence, MotionReport, NotReached, Report, Section,
 };
 use kempe_dynamics::note::{EQUILIBRIUM_LIMIT, ILL_CONDITIONED, ROUTES_AGREE};
-use kempe_kinematics::CLOSURE_LIMIT;
+use kempe_measure::CLOSURE_LIMIT;
 use kempe_model::{Diagnostic, Model, MotionStudy, Study};
 
 use crate::figures::{figures, marker_kind};

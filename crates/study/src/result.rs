@@ -1,8 +1,8 @@
 //! What a study returns.
 
 use kempe_dynamics::ForceArrow;
-use kempe_kinematics::events::EventKind;
 use kempe_model::{Diagnostic, PointId};
+use kempe_motion::events::EventKind;
 use kempe_units::Unit;
 
 use crate::table::{Column, Table};

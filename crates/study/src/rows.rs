@@ -1,8 +1,8 @@
 //! Where the rows of a table stand.
 
-use kempe_kinematics::Motion;
-use kempe_kinematics::drive_path::DrivePath;
 use kempe_model::{Model, MotionStudy, Rows, value};
+use kempe_motion::Motion;
+use kempe_motion::drive_path::DrivePath;
 use kempe_units::{Dimension, Unit};
 
 use crate::unit::{Units, rounded};
@@ -39,7 +39,7 @@ pub(crate) fn places_along(
 
 /// The places of all rows. `drive` is the drive that a step of the drive means.
 fn places(model: &Model, rows: &Rows, parameters: &[f64], drive: usize) -> Vec<RowPlace> {
-    let duration = kempe_kinematics::drive_path::duration(model, parameters);
+    let duration = kempe_motion::drive_path::duration(model, parameters);
     match rows {
         Rows::DriveStep(step) => {
             let Some(drive) = model.drives.get(drive) else {

@@ -2,9 +2,9 @@
 
 use std::fmt::Write as _;
 
-use kempe_kinematics::Held;
-use kempe_kinematics::drive_path::DrivePath;
+use kempe_measure::Held;
 use kempe_model::{Diagnostic, Model, ParameterId};
+use kempe_motion::drive_path::DrivePath;
 use kempe_units::{Dimension, format_digits};
 use serde::Serialize;
 
@@ -103,7 +103,7 @@ pub fn sensitivities(
     }));
     let found = loop {
         let measures: Vec<_> = asked.iter().map(|m| &m.measure).collect();
-        match kempe_kinematics::sensitivities(&motion, held, &measures, &ids) {
+        match kempe_measure::sensitivities(&motion, held, &measures, &ids) {
             Ok(found) => break found,
             Err(problems) => {
                 // From the last on, so that the places before stay.

@@ -1,7 +1,7 @@
 //! Collects the rows of a study into columns.
 
 use kempe_dynamics::ForceEvidence;
-use kempe_kinematics::Mechanism;
+use kempe_mechanism::Mechanism;
 use kempe_model::{Diagnostic, ForceMeasure, Leaf, Measure, Model, Plot};
 use kempe_units::{Expr, Unit};
 

@@ -14,11 +14,10 @@ use serde_json::{Value, json};
 use crate::arguments::Run;
 use crate::exit::Exit;
 use crate::files::{Loaded, load, plain};
-use crate::interrupt;
-use crate::names;
 use crate::output::Batch;
 use crate::progress::Bar;
 use crate::say::{Speaker, print_json, put};
+use crate::{interrupt, names};
 
 /// Width and height of a plot, mm.
 const PLOT: [f64; 2] = [160.0, 100.0];

@@ -9,16 +9,16 @@
 //! With more rows than unknowns the loads of some joints are not determined by equilibrium; the shortest solution is
 //! given (moments counted over the mechanism's size) and those joints are named.
 
+mod friction;
 mod order;
-mod rubbing;
 
-use kempe_kinematics::constraint::Situation;
-use kempe_kinematics::mechanism::Constraint;
-use kempe_kinematics::{BodyId, Geometry, Mechanism, Qr};
+use kempe_mechanism::constraint::Situation;
+use kempe_mechanism::structure::Constraint;
+use kempe_mechanism::{BodyId, Geometry, Mechanism, Qr};
 
+pub use self::friction::{FRICTION_STEP, FRICTION_STEPS, FrictionOutcome, Pace, STILL, UNMOVED};
+use self::friction::{FrictionContact, load_of, resistance};
 use self::order::Order;
-pub use self::rubbing::{FRICTION_STEP, FRICTION_STEPS, FrictionOutcome, Pace, STILL, UNMOVED};
-use self::rubbing::{Rubbing, load_of, resistance};
 use crate::friction::Friction;
 use crate::gear_mesh::GearMesh;
 use crate::instant::Instant;
@@ -54,7 +54,7 @@ pub struct Equilibrium<T> {
     /// Scale of every row.
     unit: Vec<f64>,
     entries: Vec<Entry<T>>,
-    rubbing: Vec<Rubbing<T>>,
+    contacts: Vec<FrictionContact<T>>,
     qr: Qr,
     right: Vec<f64>,
     wide_plain: Vec<f64>,
@@ -106,7 +106,7 @@ impl<T: ForceNumber> Equilibrium<T> {
             pace: Pace::default(),
             unit,
             entries: Vec::with_capacity(4 * rows),
-            rubbing: Vec::with_capacity(frictions),
+            contacts: Vec::with_capacity(frictions),
             qr: Qr::with_capacity(rows, columns),
             right: vec![0.0; columns],
             wide_plain: vec![0.0; longest],
@@ -184,7 +184,7 @@ impl<T: ForceNumber> Equilibrium<T> {
         needed: &[Wrench<T>],
     ) {
         self.assemble(mechanism, geometry, at);
-        self.find_rubbing(mechanism, geometry, frictions, at);
+        self.find_contacts(mechanism, geometry, frictions, at);
         self.factor(frictions, None);
         self.lambda.fill(T::zero());
         self.singular = !(self.qr.smallest_pivot_ratio() > SINGULAR);
@@ -229,7 +229,7 @@ impl<T: ForceNumber> Equilibrium<T> {
         for (index, (constraint, _)) in mechanism.constraints.iter().enumerate() {
             let row = self.first_row[index];
             let entries = &mut self.entries;
-            let mut push = |g: kempe_kinematics::constraint::Gradient<T>| {
+            let mut push = |g: kempe_mechanism::constraint::Gradient<T>| {
                 entries.push(Entry {
                     row: row + g.row,
                     body: g.body,
@@ -259,7 +259,7 @@ impl<T: ForceNumber> Equilibrium<T> {
             entries,
             unit,
             size,
-            rubbing,
+            contacts,
             order,
             ..
         } = self;
@@ -273,17 +273,17 @@ impl<T: ForceNumber> Equilibrium<T> {
             }
         }
         if let Some((lambda, share)) = friction_at {
-            for rub in rubbing.iter() {
-                let friction = &frictions[rub.friction];
-                let slope = friction.slope(rub.speed.value(), rub.direction) * share;
-                let (count, load) = load_of(friction.place, &lambda[rub.row..]);
+            for contact in contacts.iter() {
+                let friction = &frictions[contact.friction];
+                let slope = friction.slope(contact.speed.value(), contact.direction) * share;
+                let (count, load) = load_of(friction.place, &lambda[contact.row..]);
                 for k in 0..count {
                     let part = if load > 0.0 {
-                        lambda[rub.row + k] / load
+                        lambda[contact.row + k] / load
                     } else {
                         0.0
                     };
-                    for (body, unit_wrench) in &rub.unit {
+                    for (body, unit_wrench) in &contact.unit {
                         if *body == BodyId::GROUND {
                             continue;
                         }
@@ -291,9 +291,9 @@ impl<T: ForceNumber> Equilibrium<T> {
                         for j in 0..3 {
                             let value = unit_wrench[j].value() * slope * part;
                             qr.add(
-                                order.rows[rub.row + k],
+                                order.rows[contact.row + k],
                                 order.columns[column + j],
-                                value * unit[rub.row + k] * column_scale[j],
+                                value * unit[contact.row + k] * column_scale[j],
                             );
                         }
                     }
@@ -329,9 +329,9 @@ impl<T: ForceNumber> Equilibrium<T> {
                 *rest -= to * self.lambda[entry.row];
             }
         }
-        for rub in &self.rubbing {
-            let resistance = resistance(frictions, rub, &self.lambda);
-            for (body, unit) in rub.unit.iter().filter(|u| u.0 != BodyId::GROUND) {
+        for contact in &self.contacts {
+            let resistance = resistance(frictions, contact, &self.lambda);
+            for (body, unit) in contact.unit.iter().filter(|u| u.0 != BodyId::GROUND) {
                 let rest = &mut self.rest[3 * (body.index() - 1)..][..3];
                 for (rest, unit) in rest.iter_mut().zip(unit) {
                     *rest -= *unit * resistance;

@@ -1,7 +1,7 @@
 //! The order in which the equations of equilibrium are solved: block by block, the last group of links first.
 
-use kempe_kinematics::Mechanism;
-use kempe_kinematics::blocks::Unknown;
+use kempe_mechanism::Mechanism;
+use kempe_mechanism::blocks::Unknown;
 
 /// Where every row and every column of J stands in the matrix that is factored.
 ///

@@ -2,11 +2,12 @@
 #![allow(dead_code, reason = "each test uses a part of it")]
 
 use kempe_dynamics::{ForceSample, ForceSampler};
-use kempe_kinematics::{Design, Mechanism, Motion};
+use kempe_mechanism::{Design, Mechanism};
 use kempe_model::{
     Amount, DriveId, ForceMeasure, JointId, JointRef, Leaf, LinkId, LinkPointRef, Load, LoadKind,
     Measure, Model, PointId, Scalar,
 };
+use kempe_motion::Motion;
 use kempe_units::Expr;
 
 /// An example's text.

@@ -9,13 +9,12 @@ use crate::document::{Key, Node, Table, Value};
 use crate::model::{
     AnnouncedStudy, Column, LawPiece, Model, MotionStudy, Rows, Scalar, Study, StudyKind,
 };
-use crate::read::choices;
 use crate::read::context::Context;
 use crate::read::entry::Entry;
 use crate::read::measures::measure_text;
 use crate::read::names::long_name;
 use crate::read::nature::nature;
-use crate::read::plots;
+use crate::read::{choices, plots};
 
 /// Keys of a motion study.
 pub(crate) const MOTION_KEYS: &[&str] = &["kind", "step", "rows", "columns", "plot", "circuit"];

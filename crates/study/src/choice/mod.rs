@@ -9,11 +9,11 @@ mod spring;
 pub(crate) use balance::balance;
 pub(crate) use spring::spring;
 
-use kempe_kinematics::Stage;
 use kempe_model::{
     Actions, Column as Asked, Diagnostic, DriveId, DriveKind, ForceMeasure, Leaf, Measure, Model,
     MotionStudy,
 };
+use kempe_motion::Stage;
 use kempe_units::{Dimension, Expr};
 
 use crate::along::Along;

@@ -1,7 +1,7 @@
 //! Results and diagnostics as JSON for scripts. What is not finite becomes null.
 
-use kempe_kinematics::events::EventKind;
 use kempe_model::Diagnostic;
+use kempe_motion::events::EventKind;
 use serde_json::{Value, json};
 
 use crate::result::{Event, StudyResult};

@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use kempe_kinematics::Motion;
-use kempe_kinematics::events::EventKind;
 use kempe_model::{Diagnostic, Model, NamedMeasure};
+use kempe_motion::Motion;
+use kempe_motion::events::EventKind;
 use kempe_units::{Dimension, Unit};
 use serde::Serialize;
 

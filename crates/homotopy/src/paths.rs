@@ -1,0 +1,168 @@
+//! All paths of a bilinear system, from their start points to their ends.
+
+use std::ops::ControlFlow;
+
+use crate::complex_linear::{Affine, C, eliminate};
+use crate::random::Random;
+use crate::sparsest::sparsest;
+use crate::system::{Bilinear, LARGEST, Start, System, subsets};
+use crate::tracker::{CARES, Care, End, Tracker};
+
+/// Largest number of paths followed.
+pub const PATH_LIMIT: usize = 3432;
+/// Complex products that the paths of one search for assemblies may cost in all, some ten seconds of them: the bound
+/// is not a time, so that the result is the same everywhere. Paths left over then count as lost.
+pub const WORK_LIMIT: f64 = 3e9;
+
+/// What the paths found.
+#[derive(Clone, Debug, Default)]
+pub struct PathReport {
+    /// How many paths were followed.
+    pub paths: usize,
+    /// How many ended at a regular finite solution, real or not.
+    pub finite: usize,
+    /// How many went to infinity.
+    pub infinite: usize,
+    /// How many could not be followed to the end.
+    pub lost: usize,
+    /// Whether some of these were not followed because [`WORK_LIMIT`] was reached.
+    pub exhausted: bool,
+}
+
+/// A solution of a system: `d` plain unknowns, then as many conjugate ones.
+#[derive(Clone, Debug)]
+pub struct Solution {
+    /// The plain variables asked for.
+    pub plain: Vec<C>,
+    /// How far the conjugate free unknowns are from being conjugate to the plain ones, over the size of each, the largest:
+    /// zero for a real solution.
+    pub unreal: f64,
+}
+
+/// What the complete method came to.
+#[derive(Clone, Debug)]
+pub enum Outcome {
+    /// All isolated solutions, with what the paths did.
+    Found(Vec<Solution>, PathReport),
+    /// The system is not square, too large, or needs more than [`PATH_LIMIT`] paths.
+    TooLarge,
+    /// It was stopped on the way.
+    Stopped,
+}
+
+/// All isolated solutions of linear and bilinear equations in `variables` plain unknowns and their conjugates; the
+/// conjugate of every linear equation is taken along. `work` is what is left of [`WORK_LIMIT`]; `told` hears the finished
+/// part of the paths and may stop the work.
+pub fn all_solutions(
+    linear: &[Affine],
+    bilinear: &[Bilinear],
+    variables: usize,
+    work: &mut f64,
+    told: &mut dyn FnMut(f64) -> ControlFlow<()>,
+) -> Outcome {
+    let Some(solved) = eliminate(linear, variables) else {
+        return Outcome::Found(Vec::new(), PathReport::default());
+    };
+    let d = solved.first().map_or(0, |f| f.0.len() - 1);
+    if bilinear.len() != 2 * d || d > LARGEST {
+        return Outcome::TooLarge;
+    }
+    let (solved, system, count) = sparsest(solved, bilinear, d);
+    if count > PATH_LIMIT {
+        return Outcome::TooLarge;
+    }
+    let Some((found, report)) = follow_all(&system, work, told) else {
+        return Outcome::Stopped;
+    };
+    let solutions = found.iter().map(|x| {
+        let (y, hat) = x.split_at(d);
+        let unreal = y.iter().zip(hat);
+        let unreal = unreal.map(|(a, b)| (*b - a.conj()).norm() / (1.0 + a.norm()));
+        Solution {
+            plain: solved.iter().map(|f| f.value(y)).collect(),
+            unreal: unreal.fold(0.0, f64::max),
+        }
+    });
+    Outcome::Found(solutions.collect(), report)
+}
+
+/// Follows every path and returns the distinct regular end points with what the paths did; `None` when stopped.
+pub(crate) fn follow_all(
+    system: &System,
+    work: &mut f64,
+    told: &mut dyn FnMut(f64) -> ControlFlow<()>,
+) -> Option<(Vec<Vec<C>>, PathReport)> {
+    let d = system.d;
+    let n = 2 * d;
+    let mut random = Random(0xd134_2543_de82_ef95);
+    let mut factor = |support: u32| {
+        let mut f = Affine((0..=d).map(|_| random.unit()).collect());
+        for (j, c) in f.0[..d].iter_mut().enumerate() {
+            if support >> j & 1 == 0 {
+                *c = C::zero();
+            }
+        }
+        f
+    };
+    let start = Start {
+        plain: system.supports.iter().map(|s| factor(s[0])).collect(),
+        conjugate: system.supports.iter().map(|s| factor(s[1])).collect(),
+        gamma: random.unit(),
+    };
+    let subsets: Vec<Vec<bool>> = subsets(n, d)
+        .into_iter()
+        .filter(|s| system.is_start(s))
+        .collect();
+    let mut tracker = Tracker::new(system, &start);
+    let mut ends: Vec<End> = Vec::with_capacity(subsets.len());
+    let follow = |tracker: &mut Tracker, subset: &[bool], care: Care, work: &mut f64| {
+        match system.start_point(&start, subset) {
+            Some(x) if *work > 0.0 => {
+                let before = tracker.solves;
+                let end = tracker.follow(x, care);
+                // A solve costs about n^3 / 3 products.
+                *work -= (tracker.solves - before) as f64 * (n * n * n) as f64 / 3.0;
+                end
+            }
+            _ => End::Lost,
+        }
+    };
+    for (done, subset) in subsets.iter().enumerate() {
+        told(done as f64 / subsets.len() as f64).continue_value()?;
+        ends.push(follow(&mut tracker, subset, CARES[0], work));
+    }
+    // Paths that were lost, and all that ended at one point, are followed again with more care.
+    let again: Vec<usize> = (0..ends.len())
+        .filter(|&i| match &ends[i] {
+            End::Lost => true,
+            End::Infinite => false,
+            End::Finite(x) => (0..ends.len())
+                .any(|j| j != i && matches!(&ends[j], End::Finite(y) if is_same(x, y))),
+        })
+        .collect();
+    for i in again {
+        told(1.0).continue_value()?;
+        ends[i] = follow(&mut tracker, &subsets[i], CARES[1], work);
+    }
+    let mut report = PathReport {
+        paths: subsets.len(),
+        exhausted: *work <= 0.0,
+        ..PathReport::default()
+    };
+    let mut found: Vec<Vec<C>> = Vec::new();
+    for end in ends {
+        match end {
+            End::Infinite => report.infinite += 1,
+            End::Lost => report.lost += 1,
+            // Two paths at one point: a multiple solution, or a path that jumped.
+            End::Finite(x) if found.iter().any(|y| is_same(&x, y)) => report.lost += 1,
+            End::Finite(x) => found.push(x),
+        }
+    }
+    report.finite = found.len();
+    Some((found, report))
+}
+
+fn is_same(x: &[C], y: &[C]) -> bool {
+    (x.iter().zip(y)).all(|(a, b)| (*a - *b).norm() < 1e-6 * (1.0 + a.norm()))
+}

@@ -1,0 +1,26 @@
+//! Numbers that are generic and the same everywhere.
+
+use kempe_number::{Complex, math};
+
+use crate::complex_linear::C;
+
+/// A small reproducible generator (splitmix64): the start systems must be generic, not secret.
+pub struct Random(pub u64);
+
+impl Random {
+    /// The next number, even between 0 and 1.
+    pub fn uniform(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// A complex number of size between 1/2 and 3/2.
+    pub(super) fn unit(&mut self) -> C {
+        let (s, c) = math::sin_cos(self.uniform() * std::f64::consts::TAU);
+        let size = 0.5 + self.uniform();
+        Complex::new(c * size, s * size)
+    }
+}

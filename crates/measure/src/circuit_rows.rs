@@ -1,0 +1,30 @@
+//! Rows of a whole circuit, by arc length.
+
+use kempe_model::Measure;
+use kempe_motion::Watch;
+use kempe_motion::circuit::Circuit;
+
+use crate::force_source::NoForces;
+use crate::sampler::{Sample, Sampler, Unprepared};
+
+/// Prepares measures for rows of a circuit: a sampler for each of its stretches.
+///
+/// # Errors
+/// All measures that cannot be evaluated, or that `watch` stopped it.
+pub fn circuit_samplers(
+    circuit: &Circuit,
+    measures: &[&Measure],
+    watch: &mut dyn Watch,
+) -> Result<Vec<Sampler>, Unprepared> {
+    let stretches = circuit.stretches.iter();
+    stretches
+        .map(|s| Sampler::watched(&s.motion, measures, NoForces, watch))
+        .collect()
+}
+
+/// The row at an arc length. Time does not run along a circuit: measures of speed are NaN.
+pub fn circuit_row(circuit: &Circuit, samplers: &mut [Sampler], arc: f64) -> Option<Sample> {
+    let (index, p) = circuit.locate(arc);
+    let sampler = samplers.get_mut(index);
+    sampler.map(|sampler| sampler.without_time(p))
+}

@@ -1,0 +1,228 @@
+//! Measures of a pose: places, angles, distances, and the geometry of paths.
+
+use kempe_mechanism::pose::{Pose, cross, dot, left, sub};
+use kempe_model::{Line, LinkId, LinkPointRef, PointId, PoseMeasure};
+use kempe_number::{Number, math};
+
+use super::{Along, Moment, Series, only_value, undefined};
+
+/// A speed, in mechanism sizes per typical change of the path, that is rounding.
+const NO_SPEED: f64 = 1e-14;
+/// A point turns back where its speed is below this part of its acceleration (both per typical change of the path): nearer
+/// to the place of reversal than this the curvature of its path is rounding.
+const REVERSAL: f64 = 1e-6;
+/// ... and less than this speed, in the units of [`NO_SPEED`]: towards a limit of the drive both grow beyond all bounds.
+const SLOW: f64 = 1e-3;
+/// Links translate where their turning moves a mechanism size by less than this part of their sliding; a path is straight
+/// where a mechanism size is less than this part of its radius.
+const TRANSLATION: f64 = 1e-12;
+
+/// Beyond all measure, with nothing to be said of how it changes.
+fn infinite<B: Number>() -> Series<B> {
+    only_value(B::from_f64(f64::INFINITY))
+}
+
+impl<B: Number> Moment<'_, B> {
+    /// A measure of the poses of one series.
+    pub(super) fn geometric(
+        &self,
+        measure: &PoseMeasure,
+        poses: &[Pose<Series<B>>],
+        along: Along,
+    ) -> Series<B> {
+        let point = |p: PointId| self.point(poses, p);
+        match measure {
+            PoseMeasure::X(p) => point(*p)[0],
+            PoseMeasure::Y(p) => point(*p)[1],
+            PoseMeasure::XOn(p, link) => self.seen_from(poses, *p, *link)[0],
+            PoseMeasure::YOn(p, link) => self.seen_from(poses, *p, *link)[1],
+            PoseMeasure::Angle(link) => self.angle(poses, *link),
+            PoseMeasure::AngleBetween(link, other) => {
+                self.angle(poses, *link) - self.angle(poses, *other)
+            }
+            PoseMeasure::Direction(a, b) => {
+                let v = sub(point(*b), point(*a));
+                let near = self
+                    .directions
+                    .iter()
+                    .find(|(pair, _)| *pair == (*a, *b))
+                    .map_or(0.0, |(_, near)| *near);
+                Pose {
+                    x: v[0],
+                    y: v[1],
+                    c: v[0],
+                    s: v[1],
+                }
+                .angle_near(near)
+            }
+            PoseMeasure::Distance(a, b) => {
+                let v = sub(point(*b), point(*a));
+                dot(v, v).sqrt()
+            }
+            PoseMeasure::DistanceToLine(p, line) => {
+                let (origin, direction) = self.guide(poses, *line);
+                cross(direction, sub(point(*p), origin))
+            }
+            PoseMeasure::Travel(at, line) => {
+                let (origin, direction) = self.guide(poses, *line);
+                dot(direction, sub(point(at.point), origin))
+            }
+            PoseMeasure::TransmissionAngle { at, a, b, folded } => {
+                let corner = point(*at);
+                let (u, v) = (sub(point(*a), corner), sub(point(*b), corner));
+                let along = if *folded { dot(u, v).abs() } else { dot(u, v) };
+                cross(u, v).abs().atan2(along)
+            }
+            PoseMeasure::InstantCenterX(a, b) => self.instant_center(poses, *a, *b)[0],
+            PoseMeasure::InstantCenterY(a, b) => self.instant_center(poses, *a, *b)[1],
+            PoseMeasure::Curvature(p) => {
+                let (curvature, _) = self.curvature(point(*p));
+                // Positive turning left along the travel, whichever way the path parameter runs.
+                if self.heading < 0.0 && along != Along::Path {
+                    -curvature
+                } else {
+                    curvature
+                }
+            }
+            PoseMeasure::CurvatureCenterX(p) => self.curvature(point(*p)).1[0],
+            PoseMeasure::CurvatureCenterY(p) => self.curvature(point(*p)).1[1],
+            PoseMeasure::MechanicalAdvantage(output, drive) => {
+                Series::one()
+                    / self.coefficient(
+                        output,
+                        *drive,
+                        1,
+                        if along == Along::Time {
+                            Along::Path
+                        } else {
+                            along
+                        },
+                    )
+            }
+            _ => undefined(),
+        }
+    }
+
+    /// A point in the frame.
+    pub(super) fn point(&self, poses: &[Pose<Series<B>>], point: PointId) -> [Series<B>; 2] {
+        match self.mechanism.any_marker(point) {
+            Some(marker) => poses[marker.body.index()].place(self.design.geometry.marker(marker)),
+            None => [undefined(); 2],
+        }
+    }
+
+    /// Pose of a link, not of its body.
+    fn link(&self, poses: &[Pose<Series<B>>], link: LinkId) -> Pose<Series<B>> {
+        let body = &poses[self.mechanism.body_of(link).index()];
+        let seat = &self.design.geometry.seats[link.index()];
+        let [x, y] = body.place([seat.x, seat.y]);
+        let [c, s] = body.turn([seat.c, seat.s]);
+        Pose { x, y, c, s }
+    }
+
+    /// Unwrapped angle of a link.
+    pub(super) fn angle(&self, poses: &[Pose<Series<B>>], link: LinkId) -> Series<B> {
+        let body = self.mechanism.body_of(link).index();
+        poses[body].angle_near(self.near[body]) + self.design.geometry.seat_angles[link.index()]
+    }
+
+    /// Origin and unit direction of a line in the frame.
+    fn guide(&self, poses: &[Pose<Series<B>>], line: Line) -> ([Series<B>; 2], [Series<B>; 2]) {
+        let marker = |point| {
+            let at = LinkPointRef {
+                link: line.link,
+                point,
+            };
+            match self.mechanism.marker(at) {
+                Some(marker) => {
+                    poses[marker.body.index()].place(self.design.geometry.marker(marker))
+                }
+                None => [undefined(); 2],
+            }
+        };
+        let origin = marker(line.from);
+        let span = sub(marker(line.to), origin);
+        let length = dot(span, span).sqrt();
+        (origin, [span[0] / length, span[1] / length])
+    }
+
+    /// A point seen from a link.
+    fn seen_from(&self, poses: &[Pose<Series<B>>], point: PointId, link: LinkId) -> [Series<B>; 2] {
+        let frame = self.link(poses, link);
+        frame.unturn(sub(self.point(poses, point), [frame.x, frame.y]))
+    }
+
+    /// Size of the mechanism, m.
+    fn size(&self) -> f64 {
+        let plain = self.design.plain.first();
+        plain.map_or(1.0, |geometry| geometry.size(self.mechanism))
+    }
+
+    /// Whether a point of the mechanism stands still here, as at the end of a stroke: its path has no direction then.
+    pub fn stands_still(&self, point: PointId) -> bool {
+        self.is_still(self.point(self.path, point))
+    }
+
+    fn is_still(&self, p: [Series<B>; 2]) -> bool {
+        let size = |order: usize| {
+            let [x, y] = [0, 1].map(|k| p[k].derivative(order).value());
+            math::hypot(x, y) * self.unit.powi(order as i32)
+        };
+        let speed = size(1) / self.size();
+        speed <= NO_SPEED || (speed <= SLOW && size(1) <= REVERSAL * size(2))
+    }
+
+    /// Instant centre of two links: the point where both have the same velocity. Infinite, in both coordinates, when they
+    /// only translate against each other; none when they are at rest.
+    fn instant_center(&self, poses: &[Pose<Series<B>>], a: LinkId, b: LinkId) -> [Series<B>; 2] {
+        let motion = |link: LinkId| {
+            let pose = self.link(poses, link);
+            // Rate of the angle from c s' - s c'; velocity of the body's point that passes the frame's origin.
+            let rate = pose.c * pose.s.differentiate() - pose.s * pose.c.differentiate();
+            let velocity = [
+                pose.x.differentiate() + rate * pose.y,
+                pose.y.differentiate() - rate * pose.x,
+            ];
+            (velocity, rate)
+        };
+        let ((va, wa), (vb, wb)) = (motion(a), motion(b));
+        let (v, w) = (sub(vb, va), wa - wb);
+        let size = self.size();
+        // Where the links are at rest for a moment, what they do next decides.
+        let mut speeds = (0..2).map(|order| {
+            let [x, y, w] = [v[0], v[1], w].map(|s| s.coefficient(order).value());
+            (
+                math::hypot(x, y),
+                size * w.abs(),
+                self.unit.powi(order as i32 + 1),
+            )
+        });
+        match speeds.find(|(slide, turn, unit)| !(slide.max(*turn) * unit <= NO_SPEED * size)) {
+            None => [undefined(); 2],
+            Some((slide, turn, _)) if turn <= TRANSLATION * slide => [infinite(); 2],
+            Some(_) => [v[1] / w, -v[0] / w],
+        }
+    }
+
+    /// Curvature of a path and its centre, from the first two derivatives along the path parameter; none where the point
+    /// stands still, and an infinite centre where the path is straight.
+    fn curvature(&self, p: [Series<B>; 2]) -> (Series<B>, [Series<B>; 2]) {
+        let nothing = undefined();
+        if self.is_still(p) {
+            return (nothing, [nothing; 2]);
+        }
+        let d = [p[0].differentiate(), p[1].differentiate()];
+        let dd = [d[0].differentiate(), d[1].differentiate()];
+        let square = dot(d, d);
+        let bend = cross(d, dd);
+        let speed = math::hypot(d[0].coefficient(0).value(), d[1].coefficient(0).value());
+        let straight = bend.value().abs() * self.size() <= TRANSLATION * speed * speed * speed;
+        let curvature = bend / (square * square.sqrt());
+        let reach = square / bend;
+        if straight {
+            return (curvature, [infinite(); 2]);
+        }
+        let n = left(d);
+        (curvature, [p[0] + n[0] * reach, p[1] + n[1] * reach])
+    }
+}

@@ -1,0 +1,61 @@
+//! Measures of the motion in time: speeds, accelerations, lengths of path.
+
+use kempe_mechanism::pose::dot;
+use kempe_model::{PointId, PoseMeasure};
+use kempe_number::Number;
+
+use super::{Moment, Series, undefined};
+
+impl<B: Number> Moment<'_, B> {
+    /// Measures of the motion in time.
+    pub(super) fn motion_measure(&self, measure: &PoseMeasure) -> Series<B> {
+        let velocity = |p: PointId| {
+            // Of a moving point at rest the speed has no derivatives; of one that cannot move all are zero.
+            if self.mechanism.is_fixed(p) {
+                return None;
+            }
+            let at = self.point(self.path, p);
+            Some([
+                at[0].compose(&self.clock).differentiate(),
+                at[1].compose(&self.clock).differentiate(),
+            ])
+        };
+        let size = |v: Option<[Series<B>; 2]>| v.map_or(Series::zero(), |v| dot(v, v).sqrt());
+        match measure {
+            PoseMeasure::Speed(p) => size(velocity(*p)),
+            PoseMeasure::Acceleration(p) => {
+                size(velocity(*p).map(|v| [v[0].differentiate(), v[1].differentiate()]))
+            }
+            PoseMeasure::AngularSpeed(link) => self
+                .angle(self.path, *link)
+                .compose(&self.clock)
+                .differentiate(),
+            PoseMeasure::AngularAcceleration(link) => self
+                .angle(self.path, *link)
+                .compose(&self.clock)
+                .differentiate()
+                .differentiate(),
+            PoseMeasure::PathLength(p) => {
+                let start = self
+                    .swept
+                    .iter()
+                    .find(|(q, _)| q == p)
+                    .map_or(B::from_f64(f64::NAN), |(_, length)| *length);
+                size(velocity(*p)).integrate(start)
+            }
+            _ => undefined(),
+        }
+    }
+}
+
+/// Measures that only make sense in time.
+pub(super) fn is_motion(measure: &PoseMeasure) -> bool {
+    matches!(
+        measure,
+        PoseMeasure::Speed(_)
+            | PoseMeasure::Acceleration(_)
+            | PoseMeasure::AngularSpeed(_)
+            | PoseMeasure::AngularAcceleration(_)
+            | PoseMeasure::PathLength(_)
+    )
+}

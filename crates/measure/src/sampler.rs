@@ -1,0 +1,258 @@
+//! Rows of a motion: measures, poses and evidence at any place or time.
+//!
+//! What the measures need is found first (`prepare`, `direction`). Then a row is its place on the path (`clock`), the pose
+//! there as series (`series`), the measures of that moment (`moment`) and a note where there is something to say (`note`).
+
+mod clock;
+mod direction;
+mod moment;
+mod note;
+mod prepare;
+mod series;
+
+pub use self::prepare::{Unmeasurable, Unprepared};
+
+use std::sync::Arc;
+
+use kempe_mechanism::bordered::Bordered;
+use kempe_mechanism::evidence::evidence;
+use kempe_mechanism::pose::Pose;
+use kempe_mechanism::state::Design;
+use kempe_model::{Measure, PointId, Statistic};
+use kempe_motion::bridge::Side;
+use kempe_motion::motion::{Motion, Solver};
+use kempe_motion::progress::{Unwatched, Watch};
+
+use self::direction::Direction;
+use crate::force_source::{ForceSource, NoForces};
+use crate::measure::{Series, order_of};
+use crate::path_length::Swept;
+
+/// A closure residual (in mechanism sizes) above which a row is marked.
+pub const CLOSURE_LIMIT: f64 = 1e-9;
+
+/// One row of a motion.
+#[derive(Clone, Debug)]
+pub struct Sample {
+    /// Path parameter: the coordinate of the only moving drive, or time.
+    pub parameter: f64,
+    /// Time, s.
+    pub time: f64,
+    /// Coordinates of all drives, SI.
+    pub coordinates: Vec<f64>,
+    /// Values of the measures asked for, SI.
+    pub values: Vec<f64>,
+    /// x, y and unwrapped angle of every link.
+    pub links: Vec<[f64; 3]>,
+    /// Place of every point of the model in the frame.
+    pub points: Vec<[f64; 2]>,
+    /// Largest closure residual, in mechanism sizes (directions in rad).
+    pub closure: f64,
+    /// Smallest singular value of the scaled constraint Jacobian.
+    pub smallest_singular_value: f64,
+    /// What a careful engineer would want to be told about this row, such as why it could not be reached.
+    pub note: Option<String>,
+}
+
+/// Evaluates measures along a motion; those of forces too where it is given their source.
+pub struct Sampler<F = NoForces> {
+    motion: Arc<Motion>,
+    /// Only ever `None` while its own questions are answered.
+    forces: Option<F>,
+    measures: Vec<Measure>,
+    series_design: Design<Series<f64>>,
+    side_design: Design<Side>,
+    plain: Solver<f64>,
+    series: Solver<Series<f64>>,
+    side: Solver<Side>,
+    drives: Vec<Option<Vec<Pose<Series<f64>>>>>,
+    directions: Vec<Direction>,
+    swept: Vec<Swept>,
+    /// Moving points whose curvature is asked for.
+    curved: Vec<PointId>,
+    statistics: Vec<(Statistic, Measure, f64)>,
+    system: Bordered,
+}
+
+impl Sampler {
+    /// Prepares measures for evaluation along a motion; statistics over the motion are computed here.
+    ///
+    /// # Errors
+    /// All measures that cannot be evaluated, each with its reason.
+    pub fn new(motion: &Arc<Motion>, measures: &[&Measure]) -> Result<Self, Vec<Unmeasurable>> {
+        Self::with_forces(motion, measures, NoForces)
+    }
+}
+
+impl<F: ForceSource> Sampler<F> {
+    /// As [`Sampler::new`], with a source of forces.
+    ///
+    /// # Errors
+    /// All measures that cannot be evaluated, each with its reason.
+    pub fn with_forces(
+        motion: &Arc<Motion>,
+        measures: &[&Measure],
+        forces: F,
+    ) -> Result<Self, Vec<Unmeasurable>> {
+        Self::watched(motion, measures, forces, &mut Unwatched).map_err(|problem| match problem {
+            Unprepared::Unmeasurable(list) => list,
+            // Unwatched, it is never stopped.
+            Unprepared::Stopped => Vec::new(),
+        })
+    }
+
+    /// As [`Sampler::with_forces`]; `watch` hears how far the statistics over the motion have come.
+    ///
+    /// # Errors
+    /// As [`Sampler::with_forces`], and [`Unprepared::Stopped`].
+    pub fn watched(
+        motion: &Arc<Motion>,
+        measures: &[&Measure],
+        forces: F,
+        watch: &mut dyn Watch,
+    ) -> Result<Self, Unprepared> {
+        let mechanism = motion.mechanism();
+        let problems: Vec<Unmeasurable> = (measures.iter().enumerate())
+            .filter_map(|(index, m)| {
+                order_of(mechanism, m)
+                    .err()
+                    .map(|reason| Unmeasurable { index, reason })
+            })
+            .collect();
+        if !problems.is_empty() {
+            return Err(Unprepared::Unmeasurable(problems));
+        }
+        let mut it = Self {
+            series_design: motion.design_on(),
+            side_design: motion.design_on(),
+            plain: motion.solver(),
+            series: motion.solver(),
+            side: motion.solver(),
+            drives: vec![None; mechanism.model.drives.len()],
+            directions: Vec::new(),
+            swept: Vec::new(),
+            curved: Vec::new(),
+            statistics: Vec::new(),
+            system: Bordered::new(mechanism),
+            measures: measures.iter().map(|m| (*m).clone()).collect(),
+            motion: motion.clone(),
+            forces: Some(forces),
+        };
+        it.prepare(watch).ok_or(Unprepared::Stopped)?;
+        Ok(it)
+    }
+
+    /// The source of forces, as it stands after the row last asked for.
+    pub fn forces(&self) -> Option<&F> {
+        self.forces.as_ref()
+    }
+
+    /// Values of the parameters, SI, in the model's order.
+    pub fn parameters(&self) -> &[f64] {
+        &self.motion.design.parameters
+    }
+
+    /// The motion.
+    pub fn motion(&self) -> &Arc<Motion> {
+        &self.motion
+    }
+
+    /// The row at a path parameter: the first time the motion passes it.
+    pub fn at_parameter(&mut self, p: f64) -> Sample {
+        self.row(p, self.time_at(p))
+    }
+
+    /// The row at a time, s.
+    pub fn at_time(&mut self, t: f64) -> Sample {
+        self.row(self.parameter_at(t), t)
+    }
+
+    /// The row at a path parameter, without time: measures of speed are NaN.
+    pub fn without_time(&mut self, p: f64) -> Sample {
+        self.row(p, f64::NAN)
+    }
+
+    fn row(&mut self, p: f64, time: f64) -> Sample {
+        let motion = &*self.motion.clone();
+        let model = &motion.mechanism().model;
+        let mut sample = Sample {
+            parameter: p,
+            time,
+            coordinates: vec![f64::NAN; model.drives.len()],
+            values: vec![f64::NAN; self.measures.len()],
+            links: vec![[f64::NAN; 3]; model.links.len()],
+            points: vec![[f64::NAN; 2]; model.points.len()],
+            closure: f64::NAN,
+            smallest_singular_value: f64::NAN,
+            note: None,
+        };
+        motion.path.coordinates(p, &mut sample.coordinates);
+        if !motion.reaches(p) {
+            sample.note = Some(self.why_unreached(p));
+            return sample;
+        }
+        if !self.solve(p) {
+            sample.note = Some("no pose was found here".into());
+            return sample;
+        }
+        let measures = std::mem::take(&mut self.measures);
+        let curved = std::mem::take(&mut self.curved);
+        let mut still = Vec::new();
+        self.with_moment(p, time, true, |moment| {
+            still.extend(curved.iter().filter(|p| moment.stands_still(**p)));
+            for (value, measure) in sample.values.iter_mut().zip(&measures) {
+                *value = moment.value(measure);
+            }
+        });
+        (self.measures, self.curved) = (measures, curved);
+
+        for (pose, plain) in self
+            .plain
+            .state
+            .poses
+            .iter_mut()
+            .zip(&self.series.state.poses)
+        {
+            *pose = plain.value();
+        }
+        self.plain.branch.near.clone_from(&self.series.branch.near);
+        motion.path.coordinates(p, &mut self.plain.coordinates);
+        self.plain
+            .state
+            .set_inputs(motion.mechanism(), &self.plain.coordinates);
+        let (branch, state) = (&self.plain.branch, &self.plain.state);
+        let found = evidence(
+            &motion.design,
+            branch,
+            state,
+            motion.size(),
+            &mut self.system,
+        );
+        sample.closure = found.closure;
+        sample.smallest_singular_value = found.smallest_singular_value;
+        self.fill_places(&mut sample);
+        sample.note = self.note(p, &sample, &still);
+        sample
+    }
+
+    /// Fills in where links and points are.
+    fn fill_places(&self, sample: &mut Sample) {
+        let motion = &*self.motion.clone();
+        let geometry = &motion.design.geometry;
+        for (index, place) in sample.links.iter_mut().enumerate() {
+            let body = motion.mechanism().seats[index].body.index();
+            let (pose, seat) = (&self.plain.state.poses[body], &geometry.seats[index]);
+            let [x, y] = pose.place([seat.x, seat.y]);
+            *place = [
+                x,
+                y,
+                pose.angle_near(self.plain.branch.near[body]) + geometry.seat_angles[index],
+            ];
+        }
+        for (index, place) in sample.points.iter_mut().enumerate() {
+            if let Some(marker) = motion.mechanism().any_marker(PointId(index as u32)) {
+                *place = self.plain.state.poses[marker.body.index()].place(geometry.marker(marker));
+            }
+        }
+    }
+}

@@ -1,0 +1,96 @@
+//! Between time and the path parameter.
+
+use kempe_model::{DriveId, SAME_END};
+use kempe_motion::drive_path::{DrivePath, duration, law_knots};
+
+use super::Sampler;
+use crate::force_source::ForceSource;
+
+/// A rate at which less than this part of the motion is covered in its duration counts as rest.
+const AT_REST: f64 = 1e-9;
+
+impl<F: ForceSource> Sampler<F> {
+    /// Duration of the motion, s.
+    pub fn duration(&self) -> f64 {
+        duration(&self.motion.mechanism().model, self.parameters())
+    }
+
+    /// Times at which some drive's law goes from one piece to the next, both ends of the motion included.
+    pub fn breaks(&self) -> Vec<f64> {
+        let knots = law_knots(&self.motion.mechanism().model, self.parameters(), true);
+        knots.into_iter().map(|[_, last]| last).collect()
+    }
+
+    /// Which way the motion runs along its path at a time, by the rate of the path parameter there: 1 or -1. Where it is at
+    /// rest, the way it goes on; the way it came where it does not go on.
+    pub(crate) fn heading(&self, time: f64, rate: f64) -> f64 {
+        if !rate.is_finite() {
+            return 1.0;
+        }
+        let (low, high) = self.motion.demanded;
+        let least = AT_REST * (high - low);
+        if rate.abs() * self.duration() > least {
+            return rate.signum();
+        }
+        let here = self.parameter_at(time);
+        let away = |t: f64| Some(self.parameter_at(t) - here).filter(|d| d.abs() > least);
+        let knots = law_knots(&self.motion.mechanism().model, self.parameters(), false);
+        let (after, before): (Vec<f64>, Vec<f64>) =
+            knots.iter().map(|[t, _]| *t).partition(|t| *t > time);
+        let onward = after.iter().find_map(|t| away(*t));
+        let back = || before.iter().rev().find_map(|t| away(*t));
+        onward
+            .or_else(|| back().map(|d| -d))
+            .map_or(1.0, f64::signum)
+    }
+
+    /// The first time at which a drive's coordinate takes a value, s.
+    pub fn time_of(&self, drive: DriveId, value: f64) -> Option<f64> {
+        self.motion
+            .mechanism()
+            .model
+            .drives
+            .get(drive.index())?
+            .law
+            .first_time(value, self.parameters())
+    }
+
+    /// The drive whose coordinate is the path parameter.
+    pub fn path_drive(&self) -> Option<DriveId> {
+        match self.motion.path {
+            DrivePath::Coordinate { drive, .. } => Some(DriveId(drive as u32)),
+            DrivePath::Time { .. } => None,
+        }
+    }
+
+    /// The first time at which the motion passes a path parameter, s; NaN when it never does.
+    pub(crate) fn time_at(&self, p: f64) -> f64 {
+        match self.path_drive() {
+            // The last coordinate of a law may be missed by a rounding error.
+            Some(drive) => self.time_of(drive, p).map_or_else(
+                || {
+                    let duration = self.duration();
+                    let law = &self.motion.mechanism().model.drives[drive.index()].law;
+                    let gap = (law.at(duration, self.parameters()) - p).abs();
+                    if gap <= 1e-12 * p.abs().max(1e-3) {
+                        duration
+                    } else {
+                        f64::NAN
+                    }
+                },
+                |time| {
+                    let duration = self.duration();
+                    let at_end = (time - duration).abs() <= SAME_END * duration;
+                    if at_end { duration } else { time }
+                },
+            ),
+            None => p,
+        }
+    }
+
+    /// The path parameter at a time, s.
+    pub(crate) fn parameter_at(&self, t: f64) -> f64 {
+        let model = &self.motion.mechanism().model;
+        self.motion.path.parameter_at(model, t, self.parameters())
+    }
+}

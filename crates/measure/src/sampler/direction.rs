@@ -1,0 +1,75 @@
+//! Directions between two points along a motion, without jumps.
+
+use kempe_mechanism::pose::{Pose, sub};
+use kempe_mechanism::state::Design;
+use kempe_model::PointId;
+use kempe_motion::motion::Motion;
+use kempe_motion::trace::interval;
+use kempe_number::math;
+
+/// The direction from one point to another, unwrapped at every node of the trace.
+pub(super) struct Direction {
+    points: (PointId, PointId),
+    /// rad, at the nodes.
+    values: Vec<f64>,
+}
+
+impl Direction {
+    /// Follows a direction over the whole trace; in the principal range where the motion starts.
+    pub fn new(motion: &Motion, points: (PointId, PointId)) -> Self {
+        let mut values: Vec<f64> = Vec::with_capacity(motion.nodes());
+        for index in 0..motion.nodes() {
+            let (_, poses, _) = motion.node(index);
+            let (a, b) = points;
+            let mut angle = plain_direction(&motion.design, &poses, a, b);
+            if let Some(last) = values.last() {
+                angle += whole_turns(last - angle);
+            }
+            values.push(angle);
+        }
+        let start = motion
+            .node_parameters()
+            .partition_point(|&p| p < motion.start)
+            .min(values.len().max(1) - 1);
+        if let Some(at_start) = values.get(start).copied() {
+            let turns = whole_turns(at_start);
+            values.iter_mut().for_each(|v| *v -= turns);
+        }
+        Self { points, values }
+    }
+
+    /// From which point to which.
+    pub fn points(&self) -> (PointId, PointId) {
+        self.points
+    }
+
+    /// About where it is at a path parameter, rad.
+    pub fn near(&self, motion: &Motion, p: f64) -> f64 {
+        let (parameters, values) = (motion.node_parameters(), &self.values);
+        let node = interval(parameters, p);
+        match (parameters.get(node), parameters.get(node + 1)) {
+            (Some(a), Some(b)) if b > a => {
+                let part = ((p - a) / (b - a)).clamp(0.0, 1.0);
+                values[node] + part * (values[node + 1] - values[node])
+            }
+            _ => values.first().copied().unwrap_or(0.0),
+        }
+    }
+}
+
+/// The whole turns nearest to an angle, rad.
+fn whole_turns(angle: f64) -> f64 {
+    (angle / std::f64::consts::TAU).round() * std::f64::consts::TAU
+}
+
+/// The direction from one point to another, principal value, rad.
+fn plain_direction(design: &Design<f64>, poses: &[Pose<f64>], a: PointId, b: PointId) -> f64 {
+    let mechanism = &*design.mechanism;
+    let place = |p: PointId| {
+        mechanism.any_marker(p).map_or([f64::NAN; 2], |m| {
+            poses[m.body.index()].place(design.geometry.marker(m))
+        })
+    };
+    let v = sub(place(b), place(a));
+    math::atan2(v[1], v[0])
+}

@@ -1,0 +1,108 @@
+//! Exact derivatives of measures to the parameters of the design.
+//!
+//! The plan runs on `Jet<Dual<f64, K>, N>`: a Taylor series along the motion whose coefficients carry the derivatives to
+//! `K` parameters (forward mode; A. Griewank and A. Walther, *Evaluating Derivatives*, 2nd ed. 2008, chapters 3 and 13).
+//! Positions, rates and kinematic coefficients alike are then differentiated to rounding, Newton blocks by the implicit
+//! function theorem (the iteration is repeated on dual numbers with the plain Jacobian).
+//!
+//! **What is held.** A parameter may change lengths, angles and the drives' laws. With [`Held::Path`] the path parameter
+//! stays where it is: the coordinate of the only moving drive (the time at which it is passed then moves with the
+//! laws, and rates are taken at the moved time), or the time when several drives move. With [`Held::Time`] time stays,
+//! and coordinates follow the laws. In both, drives that stand still follow the laws' start values, the branch (assembly
+//! modes) stays, and parameters built on the one that is varied follow it.
+//!
+//! **Over a motion.** `min` and `max` change as the measure does at the time of the extreme, held there, because its rate
+//! vanishes (envelope theorem; at the ends of a law's piece the time moves with the law). Where two extremes are equally
+//! large the derivative is that of the first one. `mean` is integrated on dual numbers, `time_ratio` takes the moving of
+//! the extremes' times by the implicit function theorem.
+//!
+//! At a change point a change of dimensions pulls the crossing branches apart: there, and at limits, nothing is
+//! differentiable and the results are not finite.
+
+mod over;
+mod varied;
+
+use std::sync::Arc;
+
+use kempe_model::{Measure, ParameterId};
+use kempe_motion::motion::Motion;
+use kempe_number::{Dual, Number};
+
+use self::varied::Varied;
+use crate::sampler::{Sampler, Unmeasurable};
+
+/// Parameters differentiated to at once.
+const CHUNK: usize = 4;
+
+/// A number with its derivatives to some parameters.
+type Base = Dual<f64, CHUNK>;
+
+/// What stays while a parameter changes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Held {
+    /// The path parameter: the coordinate of the only moving drive (SI), or time when several move.
+    Path(f64),
+    /// Time, s.
+    Time(f64),
+}
+
+/// Values of measures with their derivatives to parameters, SI.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sensitivities {
+    /// Path parameter at which they were taken.
+    pub parameter: f64,
+    /// Time at which they were taken, s.
+    pub time: f64,
+    /// Value of every measure.
+    pub values: Vec<f64>,
+    /// `derivatives[i][j]` is d(measure i)/d(parameter j); not finite where there is none.
+    pub derivatives: Vec<Vec<f64>>,
+}
+
+/// The derivatives of measures at a place of a motion to parameters of the model: see the module's text.
+///
+/// Beyond the motion every result is NaN.
+///
+/// # Errors
+/// All measures that cannot be evaluated, each with its reason.
+pub fn sensitivities(
+    motion: &Arc<Motion>,
+    held: Held,
+    measures: &[&Measure],
+    parameters: &[ParameterId],
+) -> Result<Sensitivities, Vec<Unmeasurable>> {
+    // Unwrapped directions and the times of extremes come from the plain motion.
+    let mut sampler = Sampler::new(motion, measures)?;
+    let (parameter, time) = match held {
+        Held::Path(p) => (p, sampler.time_at(p)),
+        Held::Time(t) => (sampler.parameter_at(t), t),
+    };
+    let mut it = Sensitivities {
+        parameter,
+        time,
+        values: vec![f64::NAN; measures.len()],
+        derivatives: vec![Vec::with_capacity(parameters.len()); measures.len()],
+    };
+    // Without parameters the values are still wanted.
+    let chunks = parameters
+        .chunks(CHUNK)
+        .chain(parameters.is_empty().then_some(parameters));
+    for chunk in chunks {
+        let mut varied = Varied::new(motion, &mut sampler, chunk);
+        let results: Vec<Base> = match varied.clock(held) {
+            Some(time) => {
+                varied.prepare(measures);
+                measures.iter().map(|m| varied.value(m, time)).collect()
+            }
+            None => vec![Base::from_f64(f64::NAN); measures.len()],
+        };
+        for (index, result) in results.iter().enumerate() {
+            it.values[index] = result.re;
+            // What has no value has no derivatives either.
+            let slopes = result.eps.iter().take(chunk.len());
+            it.derivatives[index]
+                .extend(slopes.map(|d| if result.re.is_nan() { f64::NAN } else { *d }));
+        }
+    }
+    Ok(it)
+}

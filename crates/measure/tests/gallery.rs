@@ -1,0 +1,54 @@
+//! Every example runs: it closes, covers the whole of its drive's range, on a known assembly.
+#![allow(clippy::unwrap_used)]
+
+#[path = "../../motion/tests/support/mod.rs"]
+mod support;
+
+use kempe_measure::Sampler;
+use kempe_model::Measure;
+use kempe_motion::EndReason;
+use support::{Case, spread};
+
+#[test]
+fn every_example_closes_over_its_whole_range() {
+    let mut count = 0;
+    for folder in ["gallery", "seeds"] {
+        let root = format!("{}/../../examples/{folder}", env!("CARGO_MANIFEST_DIR"));
+        let mut paths: Vec<_> = std::fs::read_dir(&root)
+            .unwrap()
+            .map(|entry| entry.unwrap().path())
+            .filter(|path| path.extension().is_some_and(|e| e == "toml"))
+            .collect();
+        paths.sort();
+        for path in paths {
+            let name = path.file_name().unwrap().to_string_lossy().into_owned();
+            let text = std::fs::read_to_string(&path).unwrap();
+            let case = Case::read_with(&text, &name, &mut |file| {
+                std::fs::read_to_string(format!("{root}/{file}")).map_err(|e| e.to_string())
+            });
+            let motion = case.must_move();
+            assert_eq!(
+                motion.ends,
+                (EndReason::Covered, EndReason::Covered),
+                "{name}"
+            );
+            assert!(!motion.assemblies.list.is_empty(), "{name}");
+            let measures: Vec<&Measure> = (case.model.measures.iter())
+                .filter(|m| !m.needs_forces)
+                .map(|m| &m.measure)
+                .collect();
+            let mut sampler = Sampler::new(&motion, &measures).unwrap();
+            for p in spread(&motion, 25) {
+                let row = sampler.at_parameter(p);
+                assert!(row.closure < 1e-12, "{name} at {p}: {:e}", row.closure);
+                let told = row.note.as_deref().unwrap_or("");
+                let fine = told.is_empty()
+                    || told.starts_with("change point")
+                    || told.starts_with("limit");
+                assert!(fine, "{name} at {p}: {told}");
+            }
+            count += 1;
+        }
+    }
+    assert!(count >= 27, "{count} examples");
+}

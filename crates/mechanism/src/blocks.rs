@@ -1,0 +1,364 @@
+//! Which unknowns are solved together, and in what order.
+//!
+//! Every body has an angle (one unknown) and a place (two). Constraint rows are matched to unknowns (maximum bipartite
+//! matching); the strongly connected components of the resulting dependencies, in topological order, are the smallest
+//! sets that must be solved at once (Dulmage and Mendelsohn 1958). For lower pairs with one drive these are the Assur
+//! groups, split further where an angle is known before a place.
+
+use std::collections::VecDeque;
+
+use crate::structure::{BodyId, Constraint, Marker, Structure};
+
+/// One unknown quantity of a body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Unknown {
+    /// The angle of a body.
+    Angle(BodyId),
+    /// The place of a body: two numbers.
+    Place(BodyId),
+}
+
+impl Unknown {
+    /// How many numbers it is.
+    pub fn size(self) -> usize {
+        match self {
+            Unknown::Angle(_) => 1,
+            Unknown::Place(_) => 2,
+        }
+    }
+
+    /// The body.
+    pub fn body(self) -> BodyId {
+        match self {
+            Unknown::Angle(body) | Unknown::Place(body) => body,
+        }
+    }
+
+    fn node(self) -> usize {
+        match self {
+            Unknown::Angle(body) => 2 * (body.index() - 1),
+            Unknown::Place(body) => 2 * (body.index() - 1) + 1,
+        }
+    }
+
+    fn from_node(node: usize) -> Self {
+        let body = BodyId((node / 2 + 1) as u32);
+        if node.is_multiple_of(2) {
+            Unknown::Angle(body)
+        } else {
+            Unknown::Place(body)
+        }
+    }
+}
+
+/// One residual row: which constraint, and which of its rows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Row {
+    /// Index into the mechanism's constraints.
+    pub constraint: usize,
+    /// Row of that constraint.
+    pub row: usize,
+}
+
+/// A constraint's index with the places of its two rows among those asked for.
+pub type ConstraintRows = (usize, [Option<usize>; 2]);
+
+/// Calls `f` for every constraint that has one of the rows, with the places of its rows among them.
+pub(crate) fn for_each_constraint(rows: &[Row], mut f: impl FnMut(usize, [Option<usize>; 2])) {
+    for (place, &Row { constraint, row }) in rows.iter().enumerate() {
+        if rows[..place].iter().any(|r| r.constraint == constraint) {
+            continue;
+        }
+        let mut at = [None; 2];
+        at[row] = Some(place);
+        for (later, r) in rows.iter().enumerate().skip(place + 1) {
+            if r.constraint == constraint {
+                at[r.row] = Some(later);
+            }
+        }
+        f(constraint, at);
+    }
+}
+
+/// Rows by constraint, in the order of the constraints' first rows.
+pub fn by_constraint(rows: &[Row]) -> Vec<ConstraintRows> {
+    let mut list = Vec::new();
+    for_each_constraint(rows, |constraint, at| list.push((constraint, at)));
+    list
+}
+
+/// A smallest set of unknowns that is solved at once.
+#[derive(Clone, Debug)]
+pub struct Block {
+    /// The unknowns.
+    pub unknowns: Vec<Unknown>,
+    /// As many rows as there are numbers to find.
+    pub rows: Vec<Row>,
+    /// Further rows that must hold as well: the block is overconstrained.
+    pub surplus: Vec<Row>,
+}
+
+/// The whole mechanism taken apart.
+#[derive(Clone, Debug, Default)]
+pub struct Decomposition {
+    /// Blocks in the order in which they can be solved.
+    pub blocks: Vec<Block>,
+    /// Rows that found no unknown of their own: overconstraint.
+    pub surplus: Vec<Row>,
+    /// Angles that no constraint feels: idle freedoms.
+    pub idle: Vec<BodyId>,
+    /// Unknowns that nothing determines: freedoms without a drive.
+    pub undetermined: Vec<Unknown>,
+}
+
+/// The unknowns that a constraint feels. `idle[body]` tells that nothing feels the body's angle.
+fn felt(constraint: &Constraint, idle: &[bool]) -> Vec<Unknown> {
+    let mut list = Vec::with_capacity(6);
+    let point = |list: &mut Vec<Unknown>, marker: Marker| {
+        list.push(Unknown::Place(marker.body));
+        if !idle[marker.body.index()] {
+            list.push(Unknown::Angle(marker.body));
+        }
+    };
+    match *constraint {
+        Constraint::Coincide { a, b } | Constraint::Distance { a, b, .. } => {
+            point(&mut list, a);
+            point(&mut list, b);
+        }
+        Constraint::OnLine { point: p, line } | Constraint::Travel { point: p, line, .. } => {
+            point(&mut list, p);
+            list.extend([Unknown::Place(line.body), Unknown::Angle(line.body)]);
+        }
+        Constraint::Direction { a, b, .. } => list.extend([Unknown::Angle(a), Unknown::Angle(b)]),
+        Constraint::Gears { a, b, arm, .. } => list.extend([a, b, arm].map(Unknown::Angle)),
+        Constraint::Rack { line, center, .. } => {
+            point(&mut list, center);
+            list.push(Unknown::Angle(center.body));
+            list.extend([Unknown::Place(line.body), Unknown::Angle(line.body)]);
+        }
+    }
+    list.retain(|u| u.body() != BodyId::GROUND);
+    list.sort_unstable();
+    list.dedup();
+    list
+}
+
+/// The bodies whose angle no constraint feels: everything that holds them acts at their origin.
+fn idle_bodies(structure: &Structure) -> Vec<bool> {
+    let mut idle = vec![true; structure.bodies];
+    for (constraint, _) in &structure.constraints {
+        let mut point = |marker: Marker| {
+            if !structure.at_origin(marker) {
+                idle[marker.body.index()] = false;
+            }
+        };
+        let whole: &[BodyId] = match *constraint {
+            Constraint::Coincide { a, b } | Constraint::Distance { a, b, .. } => {
+                point(a);
+                point(b);
+                &[]
+            }
+            Constraint::OnLine { point: p, line } | Constraint::Travel { point: p, line, .. } => {
+                point(p);
+                &[line.body]
+            }
+            Constraint::Direction { a, b, .. } => &[a, b],
+            Constraint::Gears { a, b, arm, .. } => &[a, b, arm],
+            Constraint::Rack { line, center, .. } => &[center.body, line.body],
+        };
+        for body in whole {
+            idle[body.index()] = false;
+        }
+    }
+    idle
+}
+
+/// Takes a mechanism apart. `with_drives` tells whether the drives' constraints count.
+pub fn decompose(structure: &Structure, with_drives: bool) -> Decomposition {
+    let nodes = 2 * (structure.bodies - 1);
+    // Drives first: where the count says too much, it is a joint's row that is surplus.
+    let joints = 0..structure.joint_constraints;
+    let drives = structure.joint_constraints..structure.constraints.len();
+    let order = drives.filter(|_| with_drives).chain(joints);
+
+    let idle_angle = idle_bodies(structure);
+    let mut rows: Vec<(Row, Vec<usize>)> = Vec::new();
+    for index in order {
+        let constraint = &structure.constraints[index].0;
+        let list: Vec<usize> = felt(constraint, &idle_angle)
+            .into_iter()
+            .map(Unknown::node)
+            .collect();
+        for row in 0..constraint.rows() {
+            rows.push((
+                Row {
+                    constraint: index,
+                    row,
+                },
+                list.clone(),
+            ));
+        }
+    }
+
+    let owner = match_rows(&rows, nodes);
+    let mut owned: Vec<Vec<usize>> = vec![Vec::new(); nodes];
+    let mut surplus = Vec::new();
+    for (row, node) in owner.iter().enumerate() {
+        match node {
+            Some(node) => owned[*node].push(row),
+            None => surplus.push(rows[row].0),
+        }
+    }
+
+    let mut idle = Vec::new();
+    let mut undetermined = Vec::new();
+    for node in 0..nodes {
+        let unknown = Unknown::from_node(node);
+        if owned[node].len() < unknown.size() {
+            match unknown {
+                Unknown::Angle(body) if idle_angle[body.index()] => idle.push(body),
+                _ => undetermined.push(unknown),
+            }
+        }
+    }
+
+    // A node depends on the nodes that its own rows feel.
+    let depends: Vec<Vec<usize>> = (0..nodes)
+        .map(|node| {
+            let mut list: Vec<usize> = owned[node]
+                .iter()
+                .flat_map(|&row| rows[row].1.iter().copied())
+                .filter(|&n| n != node)
+                .collect();
+            list.sort_unstable();
+            list.dedup();
+            list
+        })
+        .collect();
+
+    let mut blocks = Vec::new();
+    let mut block_of = vec![usize::MAX; nodes];
+    for component in components(&depends) {
+        let mut component = component;
+        component.sort_unstable();
+        let mut block_rows: Vec<usize> = component
+            .iter()
+            .flat_map(|&n| owned[n].iter().copied())
+            .collect();
+        block_rows.sort_unstable();
+        for &node in &component {
+            block_of[node] = blocks.len();
+        }
+        // Angles before places, each in the order of the bodies.
+        let mut unknowns: Vec<Unknown> = component.into_iter().map(Unknown::from_node).collect();
+        unknowns.sort_unstable();
+        blocks.push(Block {
+            unknowns,
+            rows: block_rows.into_iter().map(|row| rows[row].0).collect(),
+            surplus: Vec::new(),
+        });
+    }
+    // A surplus row joins the block that solves the other row of its constraint.
+    for &row in &surplus {
+        let home = blocks
+            .iter()
+            .position(|b: &Block| b.rows.iter().any(|r| r.constraint == row.constraint));
+        if let Some(home) = home {
+            blocks[home].surplus.push(row);
+        }
+    }
+    Decomposition {
+        blocks,
+        surplus,
+        idle,
+        undetermined,
+    }
+}
+
+/// Maximum matching of rows to unknowns (an angle takes one row, a place two), by shortest augmenting paths.
+fn match_rows(rows: &[(Row, Vec<usize>)], nodes: usize) -> Vec<Option<usize>> {
+    let capacity = |node: usize| Unknown::from_node(node).size();
+    let mut owner: Vec<Option<usize>> = vec![None; rows.len()];
+    let mut owned: Vec<Vec<usize>> = vec![Vec::new(); nodes];
+    let mut seen = vec![usize::MAX; nodes];
+    let mut came_from: Vec<usize> = vec![0; nodes];
+    for start in 0..rows.len() {
+        let mut queue: VecDeque<usize> = VecDeque::from([start]);
+        'search: while let Some(row) = queue.pop_front() {
+            for &node in &rows[row].1 {
+                if seen[node] == start {
+                    continue;
+                }
+                seen[node] = start;
+                came_from[node] = row;
+                if owned[node].len() < capacity(node) {
+                    // Walk back: every row on the path moves to the node it reached.
+                    let mut node = node;
+                    loop {
+                        let row = came_from[node];
+                        let before = owner[row].replace(node);
+                        owned[node].push(row);
+                        match before {
+                            Some(old) => {
+                                owned[old].retain(|&r| r != row);
+                                node = old;
+                            }
+                            None => break 'search,
+                        }
+                    }
+                }
+                queue.extend(owned[node].iter().copied());
+            }
+        }
+    }
+    owner
+}
+
+/// Strongly connected components, dependencies first (Tarjan 1972, without recursion).
+pub(crate) fn components(depends: &[Vec<usize>]) -> Vec<Vec<usize>> {
+    const UNSEEN: usize = usize::MAX;
+    let n = depends.len();
+    let (mut index, mut low) = (vec![UNSEEN; n], vec![0; n]);
+    let mut on_stack = vec![false; n];
+    let (mut stack, mut found) = (Vec::new(), Vec::new());
+    let mut counter = 0;
+    for root in 0..n {
+        if index[root] != UNSEEN {
+            continue;
+        }
+        let mut calls: Vec<(usize, usize)> = vec![(root, 0)];
+        while let Some((node, next)) = calls.pop() {
+            if next == 0 {
+                index[node] = counter;
+                low[node] = counter;
+                counter += 1;
+                stack.push(node);
+                on_stack[node] = true;
+            }
+            if let Some(&child) = depends[node].get(next) {
+                calls.push((node, next + 1));
+                if index[child] == UNSEEN {
+                    calls.push((child, 0));
+                } else if on_stack[child] {
+                    low[node] = low[node].min(index[child]);
+                }
+                continue;
+            }
+            if low[node] == index[node] {
+                let mut component = Vec::new();
+                while let Some(top) = stack.pop() {
+                    on_stack[top] = false;
+                    component.push(top);
+                    if top == node {
+                        break;
+                    }
+                }
+                found.push(component);
+            }
+            if let Some(&(parent, _)) = calls.last() {
+                low[parent] = low[parent].min(low[node]);
+            }
+        }
+    }
+    found
+}

@@ -1,0 +1,351 @@
+//! The linear systems of the continuation, solved block by block.
+//!
+//! With the plan's blocks in order the constraint Jacobian is block lower triangular, so a system costs time in
+//! proportion to the mechanism. One block may be singular without harm, the one where a limit or a crossing of
+//! branches lies: its unknowns and the path parameter are kept together and solved last, with the border row.
+
+mod layout;
+mod singular;
+
+pub use self::layout::Layout;
+
+use self::layout::Seat;
+use crate::Mechanism;
+use crate::constraint::Situation;
+use crate::qr::Qr;
+
+/// An entry of the Jacobian outside the diagonal blocks.
+#[derive(Clone, Copy, Debug)]
+struct Coupling {
+    row: u32,
+    /// Block and column of the unknown.
+    block: u32,
+    column: u32,
+    value: f64,
+}
+
+/// A bordered system ready to be solved.
+#[derive(Clone, Debug)]
+pub struct Bordered {
+    layout: Layout,
+    diagonal: Vec<Qr>,
+    /// Entries of the singular candidate's own block, kept unfactored: row-major.
+    plain: Vec<Vec<f64>>,
+    couplings: Vec<Vec<Coupling>>,
+    to_parameter: Vec<f64>,
+    residual: Vec<f64>,
+    worst: usize,
+    last: Qr,
+    rest: f64,
+    rhs: Vec<f64>,
+}
+
+impl Bordered {
+    /// Storage for a mechanism's systems.
+    pub fn new(mechanism: &Mechanism) -> Self {
+        let layout = Layout::new(mechanism);
+        let count = layout.blocks.len();
+        Self {
+            diagonal: vec![Qr::default(); count],
+            plain: vec![Vec::new(); count],
+            couplings: vec![Vec::new(); count],
+            to_parameter: vec![0.0; layout.rows],
+            residual: vec![0.0; layout.rows],
+            worst: 0,
+            last: Qr::default(),
+            rest: 0.0,
+            rhs: Vec::new(),
+            layout,
+        }
+    }
+
+    /// Fills the scaled Jacobian and residuals at a situation. `rates` are the drives' rates along the scaled path
+    /// parameter.
+    pub fn fill(
+        &mut self,
+        mechanism: &Mechanism,
+        situation: &Situation<'_, f64>,
+        size: f64,
+        rates: &[f64],
+    ) {
+        let layout = &self.layout;
+        for (index, block) in layout.blocks.iter().enumerate() {
+            let couplings = &mut self.couplings[index];
+            let plain = &mut self.plain[index];
+            couplings.clear();
+            plain.clear();
+            plain.resize(block.rows * block.size, 0.0);
+            self.to_parameter[block.first..block.first + block.rows].fill(0.0);
+            self.residual[block.first..block.first + block.rows].fill(0.0);
+            for (constraint, at) in &block.constraints {
+                let kind = &mechanism.constraints[*constraint].0;
+                // Lengths count in mechanism sizes, directions and gear angles as they are.
+                let unit = kind.unit(size);
+                let value = situation.residual(kind);
+                let to_drive = situation.gradients(kind, |g| {
+                    let Some(row) = at[g.row] else { return };
+                    let mut put = |seat: Seat, offset: usize, value: f64| {
+                        // A row that does not feel an unknown says so with a zero.
+                        let Some((home, column)) = seat.filter(|_| value != 0.0) else {
+                            return;
+                        };
+                        let column = column as usize + offset;
+                        if home as usize == index {
+                            plain[row * block.size + column] += value;
+                        } else {
+                            couplings.push(Coupling {
+                                row: row as u32,
+                                block: home,
+                                column: column as u32,
+                                value,
+                            });
+                        }
+                    };
+                    let body = g.body.index();
+                    put(layout.place[body], 0, g.to[0] * size * unit);
+                    put(layout.place[body], 1, g.to[1] * size * unit);
+                    put(layout.angle[body], 0, g.to[2] * unit);
+                });
+                for k in 0..2 {
+                    let Some(row) = at[k] else { continue };
+                    self.residual[block.first + row] = value[k] * unit;
+                    if let Some(drive) = layout.drive_of[*constraint] {
+                        self.to_parameter[block.first + row] = to_drive * rates[drive] * unit;
+                    }
+                }
+            }
+            if let Some((column, row)) = block.held {
+                plain[row * block.size + column] = 1.0;
+            }
+        }
+        self.factor();
+    }
+
+    fn factor(&mut self) {
+        let mut worst = (f64::INFINITY, 0);
+        for (index, block) in self.layout.blocks.iter().enumerate() {
+            let qr = &mut self.diagonal[index];
+            qr.reset(block.rows, block.size);
+            for row in 0..block.rows {
+                for column in 0..block.size {
+                    qr.add(row, column, self.plain[index][row * block.size + column]);
+                }
+            }
+            qr.factor();
+            let ratio = qr.smallest_pivot_ratio();
+            if ratio < worst.0 {
+                worst = (ratio, index);
+            }
+        }
+        self.worst = worst.1;
+    }
+
+    /// The largest scaled residual at the situation last filled.
+    pub fn largest_residual(&self) -> f64 {
+        let sizes = self.residual.iter().map(|r| r.abs());
+        sizes.fold(0.0, |a: f64, b| if b.is_nan() { b } else { a.max(b) })
+    }
+
+    /// Solves `[J J_p; border] d = [rhs; border_rhs]`, where `rhs` is the residual or zero, into `d` (in the order of
+    /// `z`, the path parameter last).
+    pub fn solve(
+        &mut self,
+        with_residual: bool,
+        border: &[f64],
+        border_rhs: f64,
+        d: &mut Vec<f64>,
+    ) {
+        let layout = &self.layout;
+        let kept = layout.blocks.get(self.worst).map_or(0, |b| b.size);
+        let width = kept + 1;
+        // Every block's unknowns as a constant and a matrix on the kept ones: column 0, then 1..=width.
+        let mut affine: Vec<Vec<f64>> = Vec::with_capacity(layout.blocks.len());
+        let kept_rows = layout.blocks.get(self.worst).map_or(0, |b| b.rows);
+        self.last.reset(kept_rows + 1, width);
+        let mut last_rhs = vec![0.0; kept_rows + 1];
+        for (index, block) in layout.blocks.iter().enumerate() {
+            let mut known = vec![0.0; block.rows * (width + 1)];
+            for row in 0..block.rows {
+                if with_residual {
+                    known[row] = self.residual[block.first + row];
+                }
+                known[width * block.rows + row] = -self.to_parameter[block.first + row];
+            }
+            for c in &self.couplings[index] {
+                let (home, column) = (c.block as usize, c.column as usize);
+                let size = layout.blocks[home].size;
+                for k in 0..=width {
+                    known[k * block.rows + c.row as usize] -=
+                        c.value * affine[home][k * size + column];
+                }
+            }
+            if index == self.worst {
+                for row in 0..block.rows {
+                    last_rhs[row] = known[row];
+                    for column in 0..block.size {
+                        self.last
+                            .add(row, column, self.plain[index][row * block.size + column]);
+                    }
+                    self.last.add(row, kept, -known[width * block.rows + row]);
+                }
+                let mut own = vec![0.0; block.size * (width + 1)];
+                for column in 0..block.size {
+                    own[(column + 1) * block.size + column] = 1.0;
+                }
+                affine.push(own);
+                continue;
+            }
+            let mut own = Vec::with_capacity(block.size * (width + 1));
+            for k in 0..=width {
+                self.rhs.clear();
+                self.rhs
+                    .extend_from_slice(&known[k * block.rows..(k + 1) * block.rows]);
+                if self.rhs.iter().any(|v| *v != 0.0) {
+                    self.diagonal[index].solve(&mut self.rhs);
+                }
+                own.extend_from_slice(&self.rhs[..block.size]);
+            }
+            affine.push(own);
+        }
+        let mut constant = 0.0;
+        let p = border.len() - 1;
+        let mut row = vec![0.0; width];
+        for (index, block) in layout.blocks.iter().enumerate() {
+            for (column, &z) in layout.columns_in_z[index].iter().enumerate() {
+                constant += border[z] * affine[index][column];
+                for (k, value) in row.iter_mut().enumerate() {
+                    *value += border[z] * affine[index][(k + 1) * block.size + column];
+                }
+            }
+        }
+        row[kept] += border[p];
+        for (k, value) in row.iter().enumerate() {
+            self.last.add(kept_rows, k, *value);
+        }
+        last_rhs[kept_rows] = border_rhs - constant;
+        self.last.factor();
+        self.last.solve(&mut last_rhs);
+        self.rest = last_rhs[width..].iter().map(|v| v * v).sum::<f64>().sqrt();
+        d.clear();
+        d.resize(border.len(), 0.0);
+        for (index, block) in layout.blocks.iter().enumerate() {
+            for (column, &z) in layout.columns_in_z[index].iter().enumerate() {
+                let linear: f64 = (0..width)
+                    .map(|k| affine[index][(k + 1) * block.size + column] * last_rhs[k])
+                    .sum();
+                d[z] = affine[index][column] + linear;
+            }
+        }
+        d[p] = last_rhs[kept];
+    }
+
+    /// What redundant rows left over of the system last solved in the least-squares sense.
+    pub fn rest(&self) -> f64 {
+        self.rest
+    }
+
+    /// Smallest pivot ratio of the systems last solved: how well the tangent is determined.
+    pub fn conditioning(&self) -> f64 {
+        let others = self
+            .diagonal
+            .iter()
+            .enumerate()
+            .filter(|(index, _)| *index != self.worst);
+        others
+            .map(|(_, qr)| qr.smallest_pivot_ratio())
+            .fold(self.last.smallest_pivot_ratio(), f64::min)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::state::{Branch, Design, State};
+
+    /// Two parallelograms on one crank: at zero all their links lie in one line.
+    const TWINS: &str = r#"
+units = { length = "m", angle = "rad" }
+[links]
+frame = { A = [0, 0], D = [60, 0], E = [50, 0] }
+crank = { A-B = 30, F = [20, 0] }
+c1 = { B-C = 60 }
+r1 = { D-C = 30 }
+c2 = { F-G = 50 }
+r2 = { E-G = 20 }
+[drives]
+motor = { turns = "crank", from = 0.3, to = 1, speed = "1 rad/s" }
+"#;
+
+    /// Where two blocks are nearly singular at once, one border cannot keep the system regular: digits are lost to its
+    /// condition, and going block by block loses no more.
+    #[test]
+    fn with_two_nearly_singular_blocks_no_more_is_lost_than_the_condition_takes() {
+        let model = kempe_model::Model::from_toml(TWINS, "twins", &mut |_| Err(String::new()));
+        let mechanism = Mechanism::new(&model.unwrap().model);
+        let design = Design::new(&mechanism, &[]);
+        let size = design.geometry.size(&mechanism);
+        for back in [1e-2, 1e-4, 1e-6, 1e-8, 1e-10] {
+            let mut state: State<f64> = State::new(&mechanism);
+            state.set_inputs(&mechanism, &[back]);
+            let mut branch = Branch::neutral(&mechanism);
+            for sign in &mut branch.signs {
+                *sign = -1.0;
+            }
+            design.solve(&branch, &mut state);
+            for link in 1..mechanism.bodies {
+                // Cranks and rockers stand like the crank, couplers like the frame.
+                let angle = if link == 2 || link == 4 { 0.0 } else { back };
+                let pose = &mut state.poses[link];
+                *pose = crate::pose::Pose::from_angle(pose.x, pose.y, angle);
+            }
+            let mut system = Bordered::new(&mechanism);
+            system.fill(&mechanism, &state.situation(&design, &branch), size, &[1.0]);
+            let unknowns = 3 * (mechanism.bodies - 1) + 1;
+            // A border that leaves the tangent well determined: the first dyad's travel.
+            let border: Vec<f64> = (0..unknowns).map(|k| 1.0 + 0.1 * k as f64).collect();
+            let mut d = Vec::new();
+            system.solve(false, &border, 1.0, &mut d);
+            // The same system without blocks.
+            let mut whole = Qr::default();
+            whole.reset(unknowns, unknowns);
+            for (index, block) in system.layout.blocks.iter().enumerate() {
+                for row in 0..block.rows {
+                    let at = block.first + row;
+                    for column in 0..block.size {
+                        let value = system.plain[index][row * block.size + column];
+                        whole.add(at, system.layout.columns_in_z[index][column], value);
+                    }
+                    for c in system.couplings[index]
+                        .iter()
+                        .filter(|c| c.row as usize == row)
+                    {
+                        let column =
+                            system.layout.columns_in_z[c.block as usize][c.column as usize];
+                        whole.add(at, column, c.value);
+                    }
+                    whole.add(at, unknowns - 1, system.to_parameter[at]);
+                }
+            }
+            for (column, value) in border.iter().enumerate() {
+                whole.add(unknowns - 1, column, *value);
+            }
+            whole.factor();
+            let mut e = vec![0.0; unknowns];
+            e[unknowns - 1] = 1.0;
+            whole.solve(&mut e);
+            let length = e.iter().map(|x| x * x).sum::<f64>().sqrt();
+            let gap = e
+                .iter()
+                .zip(&d)
+                .map(|(a, b)| (a - b) * (a - b))
+                .sum::<f64>()
+                .sqrt();
+            let inherent = f64::EPSILON / system.conditioning();
+            assert!(
+                gap <= 20.0 * inherent * length,
+                "{back:e}: {:e}",
+                gap / length
+            );
+        }
+    }
+}

@@ -1,0 +1,103 @@
+//! Which rows and unknowns belong to which block of the linear systems.
+
+use crate::Mechanism;
+use crate::blocks::{ConstraintRows, Row, Unknown, by_constraint};
+
+/// Where an unknown number of a body stands: block and first column in it.
+pub(super) type Seat = Option<(u32, u32)>;
+
+/// One block of the layout.
+#[derive(Clone, Debug)]
+pub(super) struct Block {
+    /// First row (and column, where the system is square) in the whole system.
+    pub first: usize,
+    /// How many columns.
+    pub size: usize,
+    /// How many rows; more than columns in an overconstrained block.
+    pub rows: usize,
+    /// The constraints with the places of their rows in the block.
+    pub constraints: Vec<ConstraintRows>,
+    /// Idle angles held here: (column, row).
+    pub held: Option<(usize, usize)>,
+}
+
+/// Which rows and unknowns belong to which block.
+#[derive(Clone, Debug)]
+pub struct Layout {
+    pub(super) blocks: Vec<Block>,
+    pub(super) angle: Vec<Seat>,
+    pub(super) place: Vec<Seat>,
+    /// Column of every block's unknowns among the scaled unknowns of a trace, block after block.
+    pub(super) columns_in_z: Vec<Vec<usize>>,
+    pub(super) rows: usize,
+    pub(super) columns: usize,
+    pub(super) drive_of: Vec<Option<usize>>,
+}
+
+impl Layout {
+    /// The blocks of a plan. An overconstrained mechanism is one block: what is redundant in one place keeps another
+    /// regular.
+    pub fn new(mechanism: &Mechanism) -> Self {
+        let plan = &mechanism.plan;
+        let mut blocks: Vec<(Vec<Unknown>, Vec<Row>)> = plan
+            .blocks
+            .iter()
+            .map(|b| (b.unknowns.clone(), b.rows.clone()))
+            .collect();
+        if !plan.decomposition.surplus.is_empty() {
+            let unknowns = blocks.iter().flat_map(|(u, _)| u.iter().copied()).collect();
+            let mut rows: Vec<Row> = blocks.iter().flat_map(|(_, r)| r.iter().copied()).collect();
+            rows.extend(&plan.decomposition.surplus);
+            blocks = vec![(unknowns, rows)];
+        }
+        let mut it = Self {
+            blocks: Vec::with_capacity(blocks.len()),
+            angle: vec![None; mechanism.bodies],
+            place: vec![None; mechanism.bodies],
+            columns_in_z: Vec::with_capacity(blocks.len()),
+            rows: 0,
+            columns: 0,
+            drive_of: mechanism
+                .constraints
+                .iter()
+                .map(|(c, _)| c.drive().map(|d| d.index()))
+                .collect(),
+        };
+        for (index, (unknowns, rows)) in blocks.into_iter().enumerate() {
+            let mut columns = Vec::new();
+            let mut idle = None;
+            for unknown in &unknowns {
+                let size = columns.len();
+                let seat = Some((index as u32, size as u32));
+                let z = 3 * (unknown.body().index() - 1);
+                match unknown {
+                    Unknown::Angle(body) => {
+                        it.angle[body.index()] = seat;
+                        columns.push(z + 2);
+                        if plan.decomposition.idle.contains(body) {
+                            idle = Some(size);
+                        }
+                    }
+                    Unknown::Place(body) => {
+                        it.place[body.index()] = seat;
+                        columns.extend([z, z + 1]);
+                    }
+                }
+            }
+            let size = columns.len();
+            let height = rows.len() + usize::from(idle.is_some());
+            let held = idle.map(|column| (column, rows.len()));
+            it.blocks.push(Block {
+                first: it.rows,
+                size,
+                rows: height.max(size),
+                constraints: by_constraint(&rows),
+                held,
+            });
+            it.rows += height.max(size);
+            it.columns += size;
+            it.columns_in_z.push(columns);
+        }
+        it
+    }
+}

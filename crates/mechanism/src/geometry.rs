@@ -1,0 +1,291 @@
+//! Where the points and lines of every body lie in it, on one kind of number: everything the constraints need.
+
+use kempe_number::Number;
+
+use crate::pose::{Pose, sub};
+use crate::structure::{LineRef, LineSource, Marker, Structure};
+
+/// A directed line of a body, in the body's own coordinates.
+#[derive(Clone, Copy, Debug)]
+pub struct LocalLine<T> {
+    /// A point of the line.
+    pub origin: [T; 2],
+    /// Its unit direction.
+    pub direction: [T; 2],
+}
+
+/// Constants of a gear pair or rack: `first angle_a + second angle_b - (first + second) angle_arm = constant`.
+#[derive(Clone, Copy, Debug)]
+pub struct GearConstants<T> {
+    /// Factor of the first angle.
+    pub first: T,
+    /// Factor of the second angle.
+    pub second: T,
+    /// Right-hand side, link seats taken in.
+    pub constant: T,
+}
+
+/// The dimensions of a mechanism in the coordinates of its bodies.
+#[derive(Clone, Debug)]
+pub struct Geometry<T> {
+    /// Pose of every link in its body.
+    pub seats: Vec<Pose<T>>,
+    /// Angle of every link in its body, rad, its whole turns counted.
+    pub seat_angles: Vec<T>,
+    /// Whole turns, rad, by which every link's angle is counted further than its weld says.
+    pub turns: Vec<f64>,
+    /// Local coordinates of every marker in its body.
+    pub markers: Vec<[T; 2]>,
+    /// Lines.
+    pub lines: Vec<LocalLine<T>>,
+    /// Angle constants as unit vectors.
+    pub angles: Vec<[T; 2]>,
+    /// Gear constants.
+    pub gears: Vec<GearConstants<T>>,
+}
+
+impl<T: Number> Geometry<T> {
+    /// Evaluates a mechanism's dimensions for parameter values (SI, in the model's order).
+    pub fn new(structure: &Structure, parameters: &[T]) -> Self {
+        let zero = T::zero();
+        let along = LocalLine {
+            origin: [zero; 2],
+            direction: [zero; 2],
+        };
+        let gear = GearConstants {
+            first: zero,
+            second: zero,
+            constant: zero,
+        };
+        let mut it = Self {
+            seats: vec![Pose::identity(); structure.model.links.len()],
+            seat_angles: vec![zero; structure.model.links.len()],
+            turns: vec![0.0; structure.model.links.len()],
+            markers: vec![[zero; 2]; structure.markers.len()],
+            lines: vec![along; structure.lines.len()],
+            angles: vec![[T::one(), zero]; structure.angles.len()],
+            gears: vec![gear; structure.gears.len()],
+        };
+        it.update(structure, parameters);
+        it
+    }
+
+    /// Evaluates the dimensions anew, in the same storage.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    pub(crate) fn update(&mut self, structure: &Structure, parameters: &[T]) {
+        for (index, link) in structure.model.links.iter().enumerate() {
+            link.evaluate_into(parameters, &mut self.markers[structure.markers_of(index)]);
+        }
+        let is_plain = structure.lines.is_empty()
+            && structure.gears.is_empty()
+            && structure.seats.iter().all(|seat| seat.weld.is_none())
+            && structure
+                .angles
+                .iter()
+                .all(|angle| angle.is_zero(structure));
+        if !is_plain {
+            self.update_relations(structure, parameters);
+        }
+    }
+
+    /// Evaluates what stands between links: welds, lines, angles and gears.
+    #[inline(never)]
+    fn update_relations(&mut self, structure: &Structure, parameters: &[T]) {
+        let scalar = |expr: &kempe_model::Scalar| kempe_model::value(expr, parameters);
+        if structure.seats.iter().any(|seat| seat.weld.is_some()) {
+            self.seat_links(structure, &scalar);
+        }
+        for (index, line) in structure.lines.iter().enumerate() {
+            self.lines[index] = match *line {
+                LineSource::Points(from, to) => {
+                    let origin = self.marker(from);
+                    let span = sub(self.marker(to), origin);
+                    let length = (span[0].square() + span[1].square()).sqrt();
+                    LocalLine {
+                        origin,
+                        direction: [span[0] / length, span[1] / length],
+                    }
+                }
+                LineSource::AxisOf(link) => {
+                    let seat = self.seats[link.index()];
+                    LocalLine {
+                        origin: [seat.x, seat.y],
+                        direction: [seat.c, seat.s],
+                    }
+                }
+            };
+        }
+        for (index, angle) in structure.angles.iter().enumerate() {
+            if angle.is_zero(structure) {
+                // As it was made.
+                continue;
+            }
+            let value = match angle.value {
+                kempe_units::Expr::Const(0.0) => Pose::identity(),
+                _ => Pose::from_angle(T::zero(), T::zero(), scalar(&angle.value)),
+            };
+            let base = match angle.along {
+                Some(line) => self.line(line).direction,
+                None => [self.seats[angle.b.index()].c, self.seats[angle.b.index()].s],
+            };
+            self.angles[index] = self.seats[angle.a.index()].unturn(value.turn(base));
+        }
+        for (index, gear) in structure.gears.iter().enumerate() {
+            let (first, second) = (scalar(&gear.first), scalar(&gear.second));
+            let seat = gear.links.map(|link| self.seat_angles[link.index()]);
+            let constant =
+                scalar(&gear.constant) - first * (seat[0] - seat[2]) - second * (seat[1] - seat[2]);
+            self.gears[index] = GearConstants {
+                first,
+                second,
+                constant,
+            };
+        }
+    }
+
+    /// Places welded links in their bodies, and their markers with them.
+    fn seat_links(&mut self, structure: &Structure, scalar: &impl Fn(&kempe_model::Scalar) -> T) {
+        let count = structure.model.links.len();
+        let mut seats: Vec<Option<(Pose<T>, T)>> = vec![None; count];
+        for link in 0..count {
+            seat(structure, &self.markers, scalar, link, &mut seats);
+        }
+        for (link, seat) in seats.into_iter().enumerate() {
+            let Some((pose, angle)) = seat else {
+                continue;
+            };
+            self.seat_angles[link] = angle + self.turns[link];
+            if structure.seats[link].weld.is_none() {
+                continue;
+            }
+            self.seats[link] = pose;
+            for marker in &mut self.markers[structure.markers_of(link)] {
+                *marker = pose.place(*marker);
+            }
+        }
+    }
+
+    /// Counts every link's angle by these whole turns, rad, further than its weld says.
+    pub fn count_turns(&mut self, structure: &Structure, turns: &[f64]) {
+        if self.turns == turns {
+            return;
+        }
+        let further = |link: usize| turns[link] - self.turns[link];
+        for (link, angle) in self.seat_angles.iter_mut().enumerate() {
+            *angle = *angle + further(link);
+        }
+        for (gear, source) in self.gears.iter_mut().zip(&structure.gears) {
+            let [a, b, arm] = source.links.map(|link| further(link.index()));
+            gear.constant = gear.constant - gear.first * (a - arm) - gear.second * (b - arm);
+        }
+        self.turns = turns.to_vec();
+    }
+
+    /// Local coordinates of a marker.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    pub fn marker(&self, marker: Marker) -> [T; 2] {
+        self.markers[marker.index as usize]
+    }
+
+    /// A line in its body.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    pub fn line(&self, line: LineRef) -> LocalLine<T> {
+        self.lines[line.index as usize]
+    }
+
+    /// The plain values.
+    pub fn value(&self) -> Geometry<f64> {
+        self.map(T::value)
+    }
+
+    /// Every dimension through `f`.
+    pub fn map<U>(&self, f: impl Fn(T) -> U) -> Geometry<U> {
+        let pair = |v: &[T; 2]| [f(v[0]), f(v[1])];
+        Geometry {
+            seats: (self.seats.iter())
+                .map(|p| Pose {
+                    x: f(p.x),
+                    y: f(p.y),
+                    c: f(p.c),
+                    s: f(p.s),
+                })
+                .collect(),
+            seat_angles: self.seat_angles.iter().map(|a| f(*a)).collect(),
+            turns: self.turns.clone(),
+            markers: self.markers.iter().map(pair).collect(),
+            lines: (self.lines.iter())
+                .map(|l| LocalLine {
+                    origin: pair(&l.origin),
+                    direction: pair(&l.direction),
+                })
+                .collect(),
+            angles: self.angles.iter().map(pair).collect(),
+            gears: (self.gears.iter())
+                .map(|g| GearConstants {
+                    first: f(g.first),
+                    second: f(g.second),
+                    constant: f(g.constant),
+                })
+                .collect(),
+        }
+    }
+}
+
+impl Geometry<f64> {
+    /// A characteristic length of the mechanism, m: the largest distance of two markers of one body.
+    pub fn size(&self, structure: &Structure) -> f64 {
+        let mut low = vec![[f64::INFINITY; 2]; structure.bodies];
+        let mut high = vec![[f64::NEG_INFINITY; 2]; structure.bodies];
+        for (at, p) in structure.markers.iter().zip(&self.markers) {
+            let body = structure.body_of(at.link).index();
+            for k in 0..2 {
+                low[body][k] = low[body][k].min(p[k]);
+                high[body][k] = high[body][k].max(p[k]);
+            }
+        }
+        let size = (low.iter().zip(&high))
+            .filter(|(l, h)| l[0] <= h[0])
+            .map(|(l, h)| kempe_number::math::hypot(h[0] - l[0], h[1] - l[1]))
+            .fold(0.0, f64::max);
+        if size > 0.0 && size.is_finite() {
+            size
+        } else {
+            1.0
+        }
+    }
+}
+
+/// Places a link in its body: welded links hang on the link they are welded to.
+fn seat<T: Number>(
+    structure: &Structure,
+    local: &[[T; 2]],
+    scalar: &impl Fn(&kempe_model::Scalar) -> T,
+    link: usize,
+    seats: &mut Vec<Option<(Pose<T>, T)>>,
+) -> (Pose<T>, T) {
+    if let Some(known) = seats[link] {
+        return known;
+    }
+    let seated = match &structure.seats[link].weld {
+        None => (Pose::identity(), T::zero()),
+        Some((parent, point, angle)) => {
+            let (base, base_angle) = seat(structure, local, scalar, parent.index(), seats);
+            let find = |l: usize| {
+                let points = &structure.model.links[l].points;
+                points
+                    .iter()
+                    .position(|p| p.point == *point)
+                    .map_or([T::zero(); 2], |i| local[structure.markers_of(l)][i])
+            };
+            let angle = scalar(angle);
+            let turn = Pose::from_angle(T::zero(), T::zero(), angle);
+            let [c, s] = base.turn([turn.c, turn.s]);
+            (
+                Pose::pinned(c, s, find(link), base.place(find(parent.index()))),
+                base_angle + angle,
+            )
+        }
+    };
+    seats[link] = Some(seated);
+    seated
+}

@@ -1,0 +1,110 @@
+//! Freedoms counted and measured.
+
+use crate::Mechanism;
+use crate::evidence::is_finite;
+use crate::pose::Pose;
+use crate::rank::{SparseRow, rank};
+use crate::state::{Branch, Design, State};
+use crate::structure::{BodyId, Constraint};
+
+/// Mobility two ways.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mobility {
+    /// Links, the frame included, welded links counted once; a cylinder counts as its barrel and rod.
+    pub links: usize,
+    /// Lower pairs (pins and sliders); a multiple joint of k links counts k - 1, a cylinder its two pins and its slide.
+    pub lower_pairs: usize,
+    /// Higher pairs (pins in slots, gears, racks).
+    pub higher_pairs: usize,
+    /// Chebyshev-Grübler: `3 (links - 1) - 2 lower_pairs - higher_pairs`.
+    pub count: i64,
+    /// Unknowns less the rank of the constraint Jacobian of the joints at the pose, when a pose is known.
+    pub by_rank: Option<usize>,
+    /// Rows of the joints' constraints beyond their rank at the pose.
+    pub redundant_rows: Option<usize>,
+}
+
+/// Counts and, with a pose, measures the mobility.
+pub fn mobility(design: &Design<f64>, pose: Option<(&State<f64>, &Branch)>) -> Mobility {
+    let mechanism = &*design.mechanism;
+    let mut it = Mobility {
+        links: mechanism.bodies,
+        lower_pairs: 0,
+        higher_pairs: 0,
+        count: 0,
+        by_rank: None,
+        redundant_rows: None,
+    };
+    for (constraint, _) in &mechanism.constraints[..mechanism.joint_constraints] {
+        match constraint {
+            Constraint::Coincide { .. } => it.lower_pairs += 1,
+            // A slider's direction belongs to its own line: together one lower pair.
+            Constraint::Direction { .. } => {
+                it.lower_pairs += 1;
+                it.higher_pairs = it.higher_pairs.wrapping_sub(1);
+            }
+            _ => it.higher_pairs = it.higher_pairs.wrapping_add(1),
+        }
+    }
+    let cylinders = mechanism
+        .constraints
+        .iter()
+        .filter(|(c, _)| matches!(c, Constraint::Distance { .. }))
+        .count();
+    it.links += 2 * cylinders;
+    it.lower_pairs += 3 * cylinders;
+    it.count = 3 * (it.links as i64 - 1) - 2 * it.lower_pairs as i64 - it.higher_pairs as i64;
+
+    if let Some((state, branch)) = pose.filter(|(s, _)| s.poses.iter().all(is_finite)) {
+        let rows: usize = mechanism.constraints[..mechanism.joint_constraints]
+            .iter()
+            .map(|(c, _)| c.rows())
+            .sum();
+        let rank = joint_rank(design, branch, state);
+        it.by_rank = Some(3 * (mechanism.bodies - 1) - rank);
+        it.redundant_rows = Some(rows - rank);
+    }
+    it
+}
+
+/// Rank of the joints' scaled constraint Jacobian at a pose.
+fn joint_rank(design: &Design<f64>, branch: &Branch, state: &State<f64>) -> usize {
+    let mechanism = &*design.mechanism;
+    let size = design.size();
+    let situation = state.situation(design, branch);
+    let columns = 3 * (mechanism.bodies - 1);
+    let mut rows: Vec<SparseRow> = Vec::new();
+    for (constraint, _) in &mechanism.constraints[..mechanism.joint_constraints] {
+        let unit = constraint.unit(size);
+        let first = rows.len();
+        rows.resize(first + constraint.rows(), Vec::with_capacity(6));
+        situation.gradients(constraint, |g| {
+            if g.body != BodyId::GROUND {
+                let column = 3 * (g.body.index() - 1);
+                let row = &mut rows[first + g.row];
+                for (k, value) in [g.to[0] * size * unit, g.to[1] * size * unit, g.to[2] * unit]
+                    .into_iter()
+                    .enumerate()
+                {
+                    match row.iter_mut().find(|(c, _)| *c == column + k) {
+                        Some((_, sum)) => *sum += value,
+                        None if value != 0.0 => row.push((column + k, value)),
+                        None => {}
+                    }
+                }
+            }
+        });
+    }
+    for row in &mut rows {
+        row.sort_unstable_by_key(|(column, _)| *column);
+    }
+    rank(rows, columns)
+}
+
+/// A state at given poses, ready for residuals and gradients.
+pub fn state_at(mechanism: &Mechanism, poses: &[Pose<f64>], coordinates: &[f64]) -> State<f64> {
+    let mut state = State::new(mechanism);
+    state.poses.copy_from_slice(poses);
+    state.set_inputs(mechanism, coordinates);
+    state
+}

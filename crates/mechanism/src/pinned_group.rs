@@ -1,0 +1,267 @@
+//! The class II groups with sliders, slots and cylinders: where two loci meet, and which way a body then points.
+
+use kempe_number::Number;
+
+use crate::closed_form::{Locus, direction, meet, reach_locus};
+use crate::plan::{Carrier, Condition, Reach, Swing, SwingLine};
+use crate::pose::{Pose, cross, dot, left, sub};
+use crate::solve::{placed_line, turn_by};
+use crate::state::{Branch, Design, State};
+use crate::structure::Marker;
+
+/// What a condition says about the point its carrier holds. The carrier's angle must be known.
+#[cfg_attr(not(debug_assertions), inline(always))]
+fn locus_of<T: Number, const ALL: bool>(
+    design: &Design<T>,
+    branch: &Branch,
+    state: &State<T>,
+    carrier: Carrier,
+    condition: Condition,
+) -> Locus<T> {
+    let geometry = &design.geometry;
+    let pose = &state.poses[carrier.body.index()];
+    let pin = carrier
+        .pin
+        .map_or([T::zero(); 2], |pin| geometry.marker(pin));
+    match condition {
+        Condition::OnLine { own, line } | Condition::TravelOn { own, line, .. } => {
+            let (origin, along) = placed_line(design, state, line);
+            let from = sub(origin, pose.turn(sub(geometry.marker(own), pin)));
+            on_line(state, condition, along, from)
+        }
+        Condition::Through { line, point } | Condition::TravelThrough { line, point, .. } => {
+            let local = geometry.line(line);
+            let along = pose.turn(local.direction);
+            let from = sub(
+                place(design, state, point),
+                pose.turn(sub(local.origin, pin)),
+            );
+            match condition {
+                Condition::TravelThrough { input, .. } => {
+                    Locus::Line(along, dot(along, from) - state.inputs[input.index()].value)
+                }
+                _ => Locus::Line(left(along), dot(left(along), from)),
+            }
+        }
+        Condition::Roll { .. } if ALL => rolling(design, branch, state, carrier, condition),
+        Condition::Roll { .. } => Locus::Line([T::zero(); 2], T::from_f64(f64::NAN)),
+        Condition::Radius { own, center, input } => {
+            let center = sub(
+                place(design, state, center),
+                pose.turn(sub(geometry.marker(own), pin)),
+            );
+            Locus::Circle(center, state.inputs[input.index()].value)
+        }
+    }
+}
+
+/// What a pinion on a carrier's pitch line says. Racks count turns, pose by pose: nothing is gained by compiling this in
+/// place.
+#[inline(never)]
+fn rolling<T: Number>(
+    design: &Design<T>,
+    branch: &Branch,
+    state: &State<T>,
+    carrier: Carrier,
+    condition: Condition,
+) -> Locus<T> {
+    let Condition::Roll {
+        line,
+        center,
+        constants,
+    } = condition
+    else {
+        return Locus::Line([T::zero(); 2], T::from_f64(f64::NAN));
+    };
+    let geometry = &design.geometry;
+    let pose = &state.poses[carrier.body.index()];
+    let pin = carrier
+        .pin
+        .map_or([T::zero(); 2], |pin| geometry.marker(pin));
+    let local = geometry.line(line);
+    let along = pose.turn(local.direction);
+    let from = sub(
+        place(design, state, center),
+        pose.turn(sub(local.origin, pin)),
+    );
+    let k = &geometry.gears[constants as usize];
+    let situation = state.situation(design, branch);
+    let roll = k.second * (situation.angle(center.body) - situation.angle(line.body));
+    Locus::Line(along, dot(along, from) + roll - k.constant)
+}
+
+/// A point on the line through `from` along `along`, or with the drive's coordinate along it.
+#[cfg_attr(not(debug_assertions), inline(always))]
+fn on_line<T: Number>(
+    state: &State<T>,
+    condition: Condition,
+    along: [T; 2],
+    from: [T; 2],
+) -> Locus<T> {
+    match condition {
+        Condition::TravelOn { input, .. } => {
+            Locus::Line(along, dot(along, from) + state.inputs[input.index()].value)
+        }
+        _ => Locus::Line(left(along), dot(left(along), from)),
+    }
+}
+
+/// Places a translating body by the point it carries.
+#[cfg_attr(not(debug_assertions), inline(always))]
+fn carry<T: Number>(design: &Design<T>, state: &mut State<T>, carrier: Carrier, x: [T; 2]) {
+    let pin = carrier
+        .pin
+        .map_or([T::zero(); 2], |pin| design.geometry.marker(pin));
+    let pose = &mut state.poses[carrier.body.index()];
+    *pose = Pose::pinned(pose.c, pose.s, pin, x);
+}
+
+/// A point from two conditions on translating bodies.
+#[cfg_attr(not(debug_assertions), inline(always))]
+pub(crate) fn cross_loci<T: Number, const ALL: bool>(
+    design: &Design<T>,
+    branch: &Branch,
+    state: &mut State<T>,
+    (carriers, conditions): (&[Carrier; 2], &[Condition; 2]),
+    sign: f64,
+) -> T {
+    let mut loci = [Locus::Line([T::zero(); 2], T::zero()); 2];
+    for (locus, (carrier, condition)) in loci.iter_mut().zip(carriers.iter().zip(conditions)) {
+        *locus = locus_of::<T, ALL>(design, branch, state, *carrier, *condition);
+    }
+    let (x, determinant) = meet(loci[0], loci[1], sign);
+    for carrier in carriers {
+        carry(design, state, *carrier, x);
+    }
+    determinant
+}
+
+/// A body pinned to a placed point, its angle from a condition on its tip.
+#[cfg_attr(not(debug_assertions), inline(always))]
+pub(crate) fn swing<T: Number, const ALL: bool>(
+    design: &Design<T>,
+    branch: &Branch,
+    state: &mut State<T>,
+    step: &Swing,
+    sign: f64,
+) -> T {
+    let Swing {
+        own,
+        at,
+        tip,
+        condition,
+        partner,
+    } = *step;
+    let center = place(design, state, at);
+    let pin = design.geometry.marker(own);
+    let arm = sub(design.geometry.marker(tip), pin);
+    let square = dot(arm, arm);
+    // On the body itself the condition acts at the tip, whatever the body's angle.
+    let locus = match (partner, condition) {
+        (Some(carrier), _) => locus_of::<T, ALL>(design, branch, state, carrier, condition),
+        (None, Condition::Radius { center, input, .. }) => Locus::Circle(
+            place(design, state, center),
+            state.inputs[input.index()].value,
+        ),
+        (None, Condition::OnLine { line, .. } | Condition::TravelOn { line, .. }) => {
+            let (origin, along) = placed_line(design, state, line);
+            on_line(state, condition, along, origin)
+        }
+        // Conditions with a line of the swinging body are `SwingLine`s.
+        (
+            None,
+            Condition::Through { .. } | Condition::TravelThrough { .. } | Condition::Roll { .. },
+        ) => {
+            return T::from_f64(f64::NAN);
+        }
+    };
+    let (reach, h) = reach_locus(center, square.sqrt(), locus, sign);
+    let [c, s] = direction(arm, reach, square);
+    state.poses[own.body.index()] = Pose::pinned(c, s, pin, center);
+    if let Some(carrier) = partner {
+        carry(
+            design,
+            state,
+            carrier,
+            [center[0] + reach[0], center[1] + reach[1]],
+        );
+    }
+    h
+}
+
+/// A body pinned to a placed point, one of its lines through another.
+#[cfg_attr(not(debug_assertions), inline(always))]
+pub(crate) fn swing_line<T: Number>(
+    design: &Design<T>,
+    state: &mut State<T>,
+    step: &SwingLine,
+    sign: f64,
+) -> T {
+    let SwingLine {
+        own,
+        at,
+        toward,
+        reach,
+        partner,
+    } = *step;
+    let geometry = &design.geometry;
+    let (center, far) = (place(design, state, at), place(design, state, toward));
+    let pin = geometry.marker(own);
+    let v = sub(far, center);
+    // Turn of the partner against the body, as a unit vector.
+    let relative = partner.map(|p| {
+        let by = turn_by(design, state, p.offset, p.input, p.reversed);
+        Pose {
+            x: T::zero(),
+            y: T::zero(),
+            c: by[0],
+            s: by[1],
+        }
+    });
+    let outer = partner.map_or([T::zero(); 2], |p| geometry.marker(p.outer));
+    let relative = relative.unwrap_or(Pose::identity());
+    // Seen from the body, `v` has this known projection on this unit vector.
+    let (unit, k) = match reach {
+        Reach::Line { line } => {
+            let local = geometry.line(line);
+            let n = left(local.direction);
+            (n, dot(n, sub(local.origin, pin)))
+        }
+        Reach::Travel { line, input } => {
+            let local = geometry.line(line);
+            (
+                local.direction,
+                state.inputs[input.index()].value + dot(local.direction, sub(local.origin, pin)),
+            )
+        }
+        Reach::PartnerPoint { line, point } => {
+            let local = geometry.line(line);
+            let n = left(local.direction);
+            let lever = relative.turn(sub(geometry.marker(point), outer));
+            (n, dot(n, sub(local.origin, pin)) - dot(n, lever))
+        }
+        Reach::PartnerLine { point, line } => {
+            let local = geometry.line(line);
+            let n = relative.turn(left(local.direction));
+            let origin = relative.turn(sub(local.origin, outer));
+            (n, dot(n, sub(geometry.marker(point), pin)) - dot(n, origin))
+        }
+    };
+    let square = dot(v, v);
+    let (seen, h) = crate::closed_form::with_projection(unit, k, square, sign);
+    // The body sees `v` as `seen`: its direction is v / seen.
+    let (c, s) = (dot(seen, v) / square, cross(seen, v) / square);
+    let pose = Pose::pinned(c, s, pin, center);
+    state.poses[own.body.index()] = pose;
+    if let Some(sliding) = partner {
+        let [c, s] = pose.turn([relative.c, relative.s]);
+        state.poses[sliding.outer.body.index()] = Pose::pinned(c, s, outer, far);
+    }
+    h
+}
+
+/// A marker in the frame.
+#[cfg_attr(not(debug_assertions), inline(always))]
+fn place<T: Number>(design: &Design<T>, state: &State<T>, marker: Marker) -> [T; 2] {
+    state.poses[marker.body.index()].place(design.geometry.marker(marker))
+}

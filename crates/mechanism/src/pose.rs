@@ -1,0 +1,120 @@
+//! Where a body is.
+
+use kempe_number::Number;
+
+/// Place and direction of a body: its origin in the frame (m) and the unit vector of its x axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose<T> {
+    /// x of the body's origin, m.
+    pub x: T,
+    /// y of the body's origin, m.
+    pub y: T,
+    /// Cosine of the body's angle.
+    pub c: T,
+    /// Sine of the body's angle.
+    pub s: T,
+}
+
+impl<T: Number> Pose<T> {
+    /// The frame's own pose.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    pub fn identity() -> Self {
+        Self {
+            x: T::zero(),
+            y: T::zero(),
+            c: T::one(),
+            s: T::zero(),
+        }
+    }
+
+    /// The pose at (`x`, `y`) turned by `angle` rad.
+    #[inline]
+    pub fn from_angle(x: T, y: T, angle: T) -> Self {
+        let (s, c) = angle.sin_cos();
+        Self { x, y, c, s }
+    }
+
+    /// A vector of the body seen from the frame.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    pub fn turn(&self, v: [T; 2]) -> [T; 2] {
+        [self.c * v[0] - self.s * v[1], self.s * v[0] + self.c * v[1]]
+    }
+
+    /// A vector of the frame seen from the body.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    pub fn unturn(&self, v: [T; 2]) -> [T; 2] {
+        [self.c * v[0] + self.s * v[1], self.c * v[1] - self.s * v[0]]
+    }
+
+    /// A point of the body seen from the frame.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    pub fn place(&self, p: [T; 2]) -> [T; 2] {
+        let v = self.turn(p);
+        [self.x + v[0], self.y + v[1]]
+    }
+
+    /// This pose with its origin moved so that the body's point `p` lies at `world`.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    pub fn pinned(c: T, s: T, p: [T; 2], world: [T; 2]) -> Self {
+        Self {
+            x: world[0] - (c * p[0] - s * p[1]),
+            y: world[1] - (s * p[0] + c * p[1]),
+            c,
+            s,
+        }
+    }
+
+    /// The pose moved by (`dx`, `dy`) and turned further by `turn` rad.
+    #[inline]
+    pub fn moved(&self, dx: T, dy: T, turn: T) -> Self {
+        let (sn, cs) = turn.sin_cos();
+        Self {
+            x: self.x + dx,
+            y: self.y + dy,
+            c: self.c * cs - self.s * sn,
+            s: self.s * cs + self.c * sn,
+        }
+    }
+
+    /// Angle of the body in rad, within half a turn of `near`.
+    #[inline]
+    pub fn angle_near(&self, near: f64) -> T {
+        let (s0, c0) = kempe_number::math::sin_cos(near);
+        (self.s * c0 - self.c * s0).atan2(self.c * c0 + self.s * s0) + near
+    }
+
+    /// The plain value of every part.
+    #[inline]
+    pub fn value(&self) -> Pose<f64> {
+        Pose {
+            x: self.x.value(),
+            y: self.y.value(),
+            c: self.c.value(),
+            s: self.s.value(),
+        }
+    }
+}
+
+/// Dot product.
+#[cfg_attr(not(debug_assertions), inline(always))]
+pub fn dot<T: Number>(a: [T; 2], b: [T; 2]) -> T {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+/// Cross product: positive when `b` lies counter-clockwise of `a`.
+#[cfg_attr(not(debug_assertions), inline(always))]
+pub fn cross<T: Number>(a: [T; 2], b: [T; 2]) -> T {
+    a[0] * b[1] - a[1] * b[0]
+}
+
+/// Difference of two vectors.
+#[cfg_attr(not(debug_assertions), inline(always))]
+pub fn sub<T: Number>(a: [T; 2], b: [T; 2]) -> [T; 2] {
+    [a[0] - b[0], a[1] - b[1]]
+}
+
+/// Quarter turn to the left.
+#[cfg_attr(not(debug_assertions), inline(always))]
+pub fn left<T: Number>(a: [T; 2]) -> [T; 2] {
+    [-a[1], a[0]]
+}

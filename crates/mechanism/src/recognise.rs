@@ -1,0 +1,374 @@
+//! Which closed form solves a block: the Assur groups of class II, driven links and gears.
+
+use crate::blocks::{Block, Row, Unknown};
+use crate::plan::{Carrier, Condition, Dyad, DyadBody, Reach, Sliding, Step, Swing, SwingLine};
+use crate::structure::{BodyId, Constraint, Marker, Structure};
+
+/// The constraints of a block, each once, with whether all of its rows are there.
+fn constraints_of<'m>(structure: &'m Structure, rows: &[Row]) -> Option<Vec<&'m Constraint>> {
+    let mut list: Vec<(usize, usize)> = Vec::new();
+    for row in rows {
+        match list.iter_mut().find(|(c, _)| *c == row.constraint) {
+            Some((_, count)) => *count += 1,
+            None => list.push((row.constraint, 1)),
+        }
+    }
+    list.into_iter()
+        .map(|(index, count)| {
+            let constraint = &structure.constraints[index].0;
+            (constraint.rows() == count).then_some(constraint)
+        })
+        .collect()
+}
+
+/// Finds the closed form of a block, if there is one; `dyads` are known already.
+pub(crate) fn recognise(structure: &Structure, block: &Block, dyads: usize) -> Option<Step> {
+    let rows: Vec<Row> = block.rows.iter().chain(&block.surplus).copied().collect();
+    let constraints = constraints_of(structure, &rows)?;
+    match (block.unknowns.as_slice(), block.surplus.len()) {
+        ([Unknown::Angle(body)], 0) => angle_alone(*body, block, constraints[0]),
+        ([Unknown::Place(body)], 0) => place_alone(*body, &constraints),
+        ([Unknown::Angle(body), Unknown::Place(_)], 0) if body.index() > 0 && one_body(block) => {
+            swing(*body, &constraints).or_else(|| pinion(*body, block, structure))
+        }
+        ([Unknown::Angle(body), Unknown::Place(_)], 1) if one_body(block) => {
+            two_pins(*body, &constraints)
+        }
+        ([Unknown::Place(i), Unknown::Place(j)], 0) => prp(*i, *j, &constraints),
+        ([_, _, _], 0) => rrp(block, &constraints),
+        ([_, _, _, _], 0) => two_bodies(block)
+            .and_then(|(i, j)| rrr(i, j, &constraints, dyads).or_else(|| rpr(i, j, &constraints))),
+        _ => None,
+    }
+}
+
+fn one_body(block: &Block) -> bool {
+    block
+        .unknowns
+        .iter()
+        .all(|u| u.body() == block.unknowns[0].body())
+}
+
+/// The two bodies of a block that seeks angle and place of both.
+fn two_bodies(block: &Block) -> Option<(BodyId, BodyId)> {
+    match block.unknowns.as_slice() {
+        &[
+            Unknown::Angle(i),
+            Unknown::Angle(j),
+            Unknown::Place(k),
+            Unknown::Place(l),
+        ] if i == k && j == l => Some((i, j)),
+        _ => None,
+    }
+}
+
+fn angle_alone(body: BodyId, block: &Block, constraint: &Constraint) -> Option<Step> {
+    match *constraint {
+        Constraint::Direction {
+            a,
+            b,
+            offset,
+            input,
+        } => {
+            let reversed = a != body;
+            Some(Step::Turn {
+                body,
+                from: if reversed { a } else { b },
+                offset,
+                input,
+                reversed,
+            })
+        }
+        Constraint::Gears { .. } | Constraint::Rack { .. } => Some(Step::Gear {
+            body,
+            constraint: block.rows[0].constraint,
+        }),
+        _ => None,
+    }
+}
+
+/// `(own, other)` of a pin between `body` and anything else.
+fn pin_of(body: BodyId, constraint: &Constraint) -> Option<(Marker, Marker)> {
+    match *constraint {
+        Constraint::Coincide { a, b } if a.body == body => Some((a, b)),
+        Constraint::Coincide { a, b } if b.body == body => Some((b, a)),
+        _ => None,
+    }
+}
+
+fn condition_of(body: BodyId, constraint: &Constraint) -> Option<Condition> {
+    match *constraint {
+        Constraint::OnLine { point, line } if point.body == body => {
+            Some(Condition::OnLine { own: point, line })
+        }
+        Constraint::OnLine { point, line } if line.body == body => {
+            Some(Condition::Through { line, point })
+        }
+        Constraint::Travel { point, line, input } if point.body == body => {
+            Some(Condition::TravelOn {
+                own: point,
+                line,
+                input,
+            })
+        }
+        Constraint::Travel { point, line, input } if line.body == body => {
+            Some(Condition::TravelThrough { line, point, input })
+        }
+        Constraint::Rack {
+            line,
+            center,
+            constants,
+        } if line.body == body => Some(Condition::Roll {
+            line,
+            center,
+            constants,
+        }),
+        Constraint::Distance { a, b, input } if a.body == body => Some(Condition::Radius {
+            own: a,
+            center: b,
+            input,
+        }),
+        Constraint::Distance { a, b, input } if b.body == body => Some(Condition::Radius {
+            own: b,
+            center: a,
+            input,
+        }),
+        _ => None,
+    }
+}
+
+fn place_alone(body: BodyId, constraints: &[&Constraint]) -> Option<Step> {
+    match constraints {
+        [pin] => pin_of(body, pin).map(|(own, at)| Step::Pin { own, at }),
+        [first, second] => {
+            let carrier = Carrier { body, pin: None };
+            let conditions = [condition_of(body, first)?, condition_of(body, second)?];
+            Some(Step::Cross {
+                carriers: [carrier; 2],
+                conditions,
+            })
+        }
+        _ => None,
+    }
+}
+
+/// One pin to something placed and one more condition.
+fn swing(body: BodyId, constraints: &[&Constraint]) -> Option<Step> {
+    let [first, second] = constraints else {
+        return None;
+    };
+    let (pin, other) = if pin_of(body, first).is_some() {
+        (first, second)
+    } else {
+        (second, first)
+    };
+    let (own, at) = pin_of(body, pin)?;
+    match condition_of(body, other)? {
+        Condition::Through { line, point } => Some(Step::SwingLine(SwingLine {
+            own,
+            at,
+            toward: point,
+            reach: Reach::Line { line },
+            partner: None,
+        })),
+        Condition::TravelThrough { line, point, input } => Some(Step::SwingLine(SwingLine {
+            own,
+            at,
+            toward: point,
+            reach: Reach::Travel { line, input },
+            partner: None,
+        })),
+        // The travel depends on the angle sought.
+        Condition::Roll { .. } => None,
+        condition @ (Condition::OnLine { own: tip, .. }
+        | Condition::TravelOn { own: tip, .. }
+        | Condition::Radius { own: tip, .. }) => Some(Step::Swing(Swing {
+            own,
+            at,
+            tip,
+            condition,
+            partner: None,
+        })),
+    }
+}
+
+/// A pinion pinned at its centre: the rack's travel is known before its angle.
+fn pinion(body: BodyId, block: &Block, structure: &Structure) -> Option<Step> {
+    let constraint = |row: &Row| structure.constraints[row.constraint].0;
+    let (own, at) = block
+        .rows
+        .iter()
+        .find_map(|row| pin_of(body, &constraint(row)))?;
+    block.rows.iter().find_map(|row| match constraint(row) {
+        Constraint::Rack { line, center, .. } if center == own && line.body != body => {
+            Some(Step::Roll {
+                own,
+                at,
+                constraint: row.constraint,
+            })
+        }
+        _ => None,
+    })
+}
+
+fn two_pins(body: BodyId, constraints: &[&Constraint]) -> Option<Step> {
+    let [first, second] = constraints else {
+        return None;
+    };
+    let ((a, at_a), (b, at_b)) = (pin_of(body, first)?, pin_of(body, second)?);
+    Some(Step::TwoPins { a, at_a, b, at_b })
+}
+
+/// The pin between two bodies, as `(on i, on j)`.
+fn pin_between(i: BodyId, j: BodyId, constraint: &Constraint) -> Option<(Marker, Marker)> {
+    pin_of(i, constraint).filter(|(_, other)| other.body == j)
+}
+
+fn prp(i: BodyId, j: BodyId, constraints: &[&Constraint]) -> Option<Step> {
+    let inner = constraints.iter().find_map(|c| pin_between(i, j, c))?;
+    let outer: Vec<&&Constraint> = constraints
+        .iter()
+        .filter(|c| pin_between(i, j, c).is_none())
+        .collect();
+    let [first, second] = outer.as_slice() else {
+        return None;
+    };
+    let (first, second) = if condition_of(i, first).is_some() {
+        (first, second)
+    } else {
+        (second, first)
+    };
+    let conditions = [condition_of(i, first)?, condition_of(j, second)?];
+    if touches(first, j) || touches(second, i) {
+        return None;
+    }
+    let carriers = [
+        Carrier {
+            body: i,
+            pin: Some(inner.0),
+        },
+        Carrier {
+            body: j,
+            pin: Some(inner.1),
+        },
+    ];
+    Some(Step::Cross {
+        carriers,
+        conditions,
+    })
+}
+
+/// The pin of a body to anything but its partner, as `(own, other)`.
+fn outer_pin(
+    body: BodyId,
+    partner: BodyId,
+    constraints: &[&Constraint],
+) -> Option<(Marker, Marker)> {
+    (constraints.iter())
+        .filter(|c| !touches(c, partner))
+        .find_map(|c| pin_of(body, c))
+}
+
+fn touches(constraint: &Constraint, body: BodyId) -> bool {
+    constraint.bodies().any(|b| b == body)
+}
+
+/// Angle and place of one body, place of a second whose angle is known.
+fn rrp(block: &Block, constraints: &[&Constraint]) -> Option<Step> {
+    let swinging = block
+        .unknowns
+        .iter()
+        .find_map(|u| matches!(u, Unknown::Angle(_)).then(|| u.body()))?;
+    let mut places = block
+        .unknowns
+        .iter()
+        .filter(|u| matches!(u, Unknown::Place(_)))
+        .map(|u| u.body());
+    let (first, second) = (places.next()?, places.next()?);
+    let sliding = match (first == swinging, second == swinging) {
+        (true, false) => second,
+        (false, true) => first,
+        _ => return None,
+    };
+    let inner = constraints
+        .iter()
+        .find_map(|c| pin_between(swinging, sliding, c))?;
+    let outer = outer_pin(swinging, sliding, constraints)?;
+    let condition = constraints
+        .iter()
+        .filter(|c| !touches(c, swinging))
+        .find_map(|c| condition_of(sliding, c))?;
+    (constraints.len() == 3).then_some(Step::Swing(Swing {
+        own: outer.0,
+        at: outer.1,
+        tip: inner.0,
+        condition,
+        partner: Some(Carrier {
+            body: sliding,
+            pin: Some(inner.1),
+        }),
+    }))
+}
+
+fn rrr(i: BodyId, j: BodyId, constraints: &[&Constraint], constants: usize) -> Option<Step> {
+    if constraints.len() != 3 {
+        return None;
+    }
+    let inner = constraints.iter().find_map(|c| pin_between(i, j, c))?;
+    let (outer_i, outer_j) = (outer_pin(i, j, constraints)?, outer_pin(j, i, constraints)?);
+    let body = |(outer, at), inner| DyadBody {
+        outer,
+        at,
+        inner,
+        wanted: true,
+    };
+    Some(Step::Dyad(Dyad {
+        a: body(outer_i, inner.0),
+        b: body(outer_j, inner.1),
+        constants,
+    }))
+}
+
+fn rpr(i: BodyId, j: BodyId, constraints: &[&Constraint]) -> Option<Step> {
+    if constraints.len() != 4 {
+        return None;
+    }
+    let (outer_i, outer_j) = (outer_pin(i, j, constraints)?, outer_pin(j, i, constraints)?);
+    let (offset, input, reversed) = constraints.iter().find_map(|c| match **c {
+        Constraint::Direction {
+            a,
+            b,
+            offset,
+            input,
+        } if a == j && b == i => Some((offset, input, false)),
+        Constraint::Direction {
+            a,
+            b,
+            offset,
+            input,
+        } if a == i && b == j => Some((offset, input, true)),
+        _ => None,
+    })?;
+    let reach = constraints.iter().find_map(|c| match **c {
+        Constraint::OnLine { point, line } if line.body == i && point.body == j => {
+            Some(Reach::PartnerPoint { line, point })
+        }
+        Constraint::OnLine { point, line } if line.body == j && point.body == i => {
+            Some(Reach::PartnerLine { point, line })
+        }
+        _ => None,
+    })?;
+    let partner = Some(Sliding {
+        outer: outer_j.0,
+        offset,
+        input,
+        reversed,
+    });
+    Some(Step::SwingLine(SwingLine {
+        own: outer_i.0,
+        at: outer_i.1,
+        toward: outer_j.1,
+        reach,
+        partner,
+    }))
+}

@@ -1,0 +1,343 @@
+//! Running a plan: from drive coordinates to poses.
+
+use kempe_model::DriveId;
+use kempe_number::Number;
+
+use crate::Mechanism;
+use crate::closed_form::direction;
+use crate::constraint::{Input, Situation};
+use crate::known::{DyadOf, Known};
+use crate::newton::PlanNumber;
+use crate::pinned_group::{cross_loci, swing, swing_line};
+use crate::plan::{Plan, Step};
+use crate::pose::{Pose, dot, sub};
+use crate::state::{Branch, Design, State};
+use crate::structure::{BodyId, Constraint, LineRef, Marker};
+
+/// Solves one step for every state and, in `ALL`, keeps its determinant. A macro, because a closure would not be
+/// compiled for the caller's vector instructions.
+macro_rules! for_each {
+    ($states:ident, $index:ident, |$state:ident| $solve:expr) => {
+        for $state in $states.iter_mut() {
+            let determinant = $solve;
+            if ALL {
+                $state.determinants[$index] = determinant;
+            }
+        }
+    };
+}
+
+/// Size, in bytes, of the largest numbers whose rarer steps are compiled into their caller for its vector instructions.
+/// Larger ones (series in lanes, long series) have them called, one baseline version for every instruction set: less to
+/// compile, and slower in lanes where a mechanism has such steps (how much has not been measured).
+const IN_PLACE: usize = 128;
+
+impl<T: PlanNumber> Design<T> {
+    /// Finds the pose for the drive coordinates in `state.inputs` on the given branch: fills `state.poses` and
+    /// `state.determinants`. Where the mechanism cannot be assembled the poses become NaN (empty for intervals).
+    ///
+    /// Allocates nothing.
+    pub fn solve(&self, branch: &Branch, state: &mut State<T>) {
+        let plan = &self.mechanism.plan;
+        let states = std::slice::from_mut(state);
+        plan.solve_all::<T, true>(0..plan.steps.len(), self, branch, states);
+    }
+}
+
+impl Plan {
+    /// These steps of [`Design::solve`] for several states of one design on one branch. Each is run for all states before
+    /// the next: it is taken apart once, and while one state waits for its roots and quotients the processor goes on with
+    /// the others.
+    ///
+    /// Without `ALL` it is compiled without the steps that [need guesses](Step::needs_guess), and keeps no determinants.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    pub fn solve_all<T: PlanNumber, const ALL: bool>(
+        &self,
+        steps: impl IntoIterator<Item = usize>,
+        design: &Design<T>,
+        branch: &Branch,
+        states: &mut [State<T>],
+    ) {
+        for index in steps {
+            let sign = branch.signs[index];
+            self.run_step::<T, ALL>(index, sign, design, branch, states);
+        }
+    }
+
+    /// Solves one step with the given assembly mode; the steps before it must have been solved.
+    pub fn solve_step<T: PlanNumber>(
+        &self,
+        index: usize,
+        sign: f64,
+        design: &Design<T>,
+        branch: &Branch,
+        state: &mut State<T>,
+    ) {
+        let states = std::slice::from_mut(state);
+        self.run_step::<T, true>(index, sign, design, branch, states);
+    }
+
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn run_step<T: PlanNumber, const ALL: bool>(
+        &self,
+        index: usize,
+        sign: f64,
+        design: &Design<T>,
+        branch: &Branch,
+        states: &mut [State<T>],
+    ) {
+        let mechanism = &*design.mechanism;
+        match &self.steps[index] {
+            &Step::Turn {
+                body,
+                from,
+                offset,
+                input,
+                reversed,
+            } => {
+                let no_offset = mechanism.angles[offset as usize].is_zero(mechanism);
+                match (input, from) {
+                    (Some(drive), BodyId::GROUND) if no_offset => {
+                        for_each!(states, index, |state| {
+                            let by = driven(&state.inputs[drive.index()], reversed);
+                            point(state, body, by)
+                        });
+                    }
+                    _ => for_each!(states, index, |state| {
+                        let by = match input {
+                            Some(drive) if no_offset => {
+                                driven(&state.inputs[drive.index()], reversed)
+                            }
+                            _ => turn_by(design, state, offset, input, reversed),
+                        };
+                        let direction = match from {
+                            BodyId::GROUND => by,
+                            _ => state.poses[from.index()].turn(by),
+                        };
+                        point(state, body, direction)
+                    }),
+                }
+            }
+            &Step::Pin { own, at } => {
+                let (pin, at) = (Known::new(design, own), Known::new(design, at));
+                for_each!(states, index, |state| {
+                    let world = at.place(&state.poses);
+                    let pose = &mut state.poses[own.body.index()];
+                    [pose.x, pose.y] = pin.origin([pose.c, pose.s], world);
+                    T::one()
+                });
+            }
+            Step::Dyad(step) => {
+                let step = DyadOf::new(design, step);
+                for_each!(states, index, |state| step.solve(state, sign));
+            }
+            _ if const { size_of::<T>() > IN_PLACE } => {
+                self.call_step::<T, ALL>(index, sign, design, branch, states);
+            }
+            _ => self.run_rarer::<T, ALL>(index, sign, design, branch, states),
+        }
+    }
+
+    /// [`Plan::run_rarer`], called.
+    #[inline(never)]
+    fn call_step<T: PlanNumber, const ALL: bool>(
+        &self,
+        index: usize,
+        sign: f64,
+        design: &Design<T>,
+        branch: &Branch,
+        states: &mut [State<T>],
+    ) {
+        self.run_rarer::<T, ALL>(index, sign, design, branch, states);
+    }
+
+    /// The steps of fewer mechanisms.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn run_rarer<T: PlanNumber, const ALL: bool>(
+        &self,
+        index: usize,
+        sign: f64,
+        design: &Design<T>,
+        branch: &Branch,
+        states: &mut [State<T>],
+    ) {
+        match &self.steps[index] {
+            Step::Swing(step) => {
+                for_each!(states, index, |state| swing::<T, ALL>(
+                    design, branch, state, step, sign
+                ));
+            }
+            Step::SwingLine(step) => {
+                for_each!(states, index, |state| swing_line(design, state, step, sign));
+            }
+            Step::Cross {
+                carriers,
+                conditions,
+            } => for_each!(states, index, |state| {
+                cross_loci::<T, ALL>(design, branch, state, (carriers, conditions), sign)
+            }),
+            &Step::TwoPins { a, at_a, b, at_b } => for_each!(states, index, |state| {
+                let (wa, wb) = (state.place(design, at_a), state.place(design, at_b));
+                let seen = sub(wb, wa);
+                let own = sub(design.geometry.marker(b), design.geometry.marker(a));
+                let [c, s] = direction(own, seen, (dot(own, own) * dot(seen, seen)).sqrt());
+                state.poses[a.body.index()] = Pose::pinned(c, s, design.geometry.marker(a), wa);
+                T::one()
+            }),
+            &Step::Hold { body } => for_each!(states, index, |state| {
+                point(state, body, [T::one(), T::zero()])
+            }),
+            // Gears and racks count turns, pose by pose: nothing is gained by compiling them in place.
+            &Step::Roll {
+                own,
+                at,
+                constraint,
+            } if ALL => for_each!(states, index, |state| {
+                roll(design, branch, state, (own, at, constraint))
+            }),
+            &Step::Gear { body, constraint } if ALL => for_each!(states, index, |state| {
+                turn_gear(design, branch, state, (body, constraint))
+            }),
+            &Step::Newton { block } if ALL => for_each!(states, index, |state| {
+                T::solve_newton(&self.newton_blocks[block], design, branch, state)
+            }),
+            // Callers without `ALL` have made sure that there are none, and the common steps are done.
+            _ => states.iter_mut().for_each(lose),
+        }
+    }
+}
+
+/// Leaves no pose standing.
+#[cold]
+#[inline(never)]
+fn lose<T: Number>(state: &mut State<T>) {
+    let nowhere = T::from_f64(f64::NAN);
+    (state.poses.iter_mut()).for_each(|pose| (pose.x, pose.c) = (nowhere, nowhere));
+}
+
+/// The turn by a drive alone, as a unit vector.
+#[cfg_attr(not(debug_assertions), inline(always))]
+fn driven<T: Number>(input: &Input<T>, reversed: bool) -> [T; 2] {
+    [input.c, if reversed { -input.s } else { input.s }]
+}
+
+/// Turns a body into a direction; its determinant is one.
+#[cfg_attr(not(debug_assertions), inline(always))]
+fn point<T: Number>(state: &mut State<T>, body: BodyId, [c, s]: [T; 2]) -> T {
+    let pose = &mut state.poses[body.index()];
+    (pose.c, pose.s) = (c, s);
+    T::one()
+}
+
+/// Places a pinion by its centre and turns it by its rack.
+#[inline(never)]
+fn roll<T: Number>(
+    design: &Design<T>,
+    branch: &Branch,
+    state: &mut State<T>,
+    (own, at, constraint): (Marker, Marker, usize),
+) -> T {
+    let mechanism = &*design.mechanism;
+    // The centre is in place whatever the angle.
+    let world = state.place(design, at);
+    let (body, pin) = (own.body, design.geometry.marker(own));
+    state.poses[body.index()] = Pose::pinned(T::one(), T::zero(), pin, world);
+    let situation = state.situation(design, branch);
+    if let Some(angle) = gear(&situation, mechanism, body, constraint) {
+        let (s, c) = angle.sin_cos();
+        state.poses[body.index()] = Pose::pinned(c, s, pin, world);
+    }
+    T::one()
+}
+
+/// Turns a body by a gear pair or a rack.
+#[inline(never)]
+fn turn_gear<T: Number>(
+    design: &Design<T>,
+    branch: &Branch,
+    state: &mut State<T>,
+    (body, constraint): (BodyId, usize),
+) -> T {
+    let mechanism = &*design.mechanism;
+    let situation = state.situation(design, branch);
+    if let Some(angle) = gear(&situation, mechanism, body, constraint) {
+        let (s, c) = angle.sin_cos();
+        point(state, body, [c, s]);
+    }
+    T::one()
+}
+
+/// Origin and unit direction of a line in the frame.
+#[cfg_attr(not(debug_assertions), inline(always))]
+pub(crate) fn placed_line<T: Number>(
+    design: &Design<T>,
+    state: &State<T>,
+    line: LineRef,
+) -> ([T; 2], [T; 2]) {
+    let local = design.geometry.line(line);
+    if line.body == BodyId::GROUND {
+        return (local.origin, local.direction);
+    }
+    let pose = &state.poses[line.body.index()];
+    (pose.place(local.origin), pose.turn(local.direction))
+}
+
+/// The turn by an angle constant and a drive, as a unit vector.
+#[cfg_attr(not(debug_assertions), inline(always))]
+pub(crate) fn turn_by<T: Number>(
+    design: &Design<T>,
+    state: &State<T>,
+    offset: u32,
+    input: Option<DriveId>,
+    reversed: bool,
+) -> [T; 2] {
+    let mut by = design.geometry.angles[offset as usize];
+    if let Some(drive) = input {
+        let q = &state.inputs[drive.index()];
+        by = [by[0] * q.c - by[1] * q.s, by[1] * q.c + by[0] * q.s];
+    }
+    if reversed {
+        by[1] = -by[1];
+    }
+    by
+}
+
+/// Angle of a body from a gear pair or a rack; `None` when the constraint is of another kind.
+#[inline]
+pub fn gear<T: Number>(
+    situation: &Situation<'_, T>,
+    mechanism: &Mechanism,
+    body: crate::structure::BodyId,
+    constraint: usize,
+) -> Option<T> {
+    match mechanism.constraints[constraint].0 {
+        Constraint::Gears {
+            a,
+            b,
+            arm,
+            constants,
+        } => {
+            let k = &situation.geometry.gears[constants as usize];
+            let angle = |body| situation.angle(body);
+            Some(if body == a {
+                (k.constant - k.second * (angle(b) - angle(arm))) / k.first + angle(arm)
+            } else if body == b {
+                (k.constant - k.first * (angle(a) - angle(arm))) / k.second + angle(arm)
+            } else {
+                (k.first * angle(a) + k.second * angle(b) - k.constant) / (k.first + k.second)
+            })
+        }
+        Constraint::Rack {
+            line,
+            center,
+            constants,
+        } => {
+            let k = &situation.geometry.gears[constants as usize];
+            let (origin, along) = situation.line(line);
+            let turn = (k.constant - dot(along, sub(situation.place(center), origin))) / k.second;
+            // The rack itself can only be the one sought when its line's place is known without its angle.
+            (body == center.body).then(|| situation.angle(line.body) + turn)
+        }
+        _ => None,
+    }
+}

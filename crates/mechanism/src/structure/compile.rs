@@ -1,0 +1,212 @@
+//! From a model's joints and drives to constraints.
+
+use kempe_model::{DriveId, DriveKind, JointId, JointKind, Line, LinkPointRef, PointId, Scalar};
+use kempe_units::Expr;
+
+use super::sources::ZERO;
+use super::{AngleSource, BodyId, Constraint, GearSource, LineRef, LineSource, Source, Structure};
+
+impl Structure {
+    /// Pins made by shared point names.
+    pub(super) fn add_pins(&mut self) {
+        for index in 0..self.model.points.len() {
+            let point = PointId(index as u32);
+            let links = self.model.points[index].links.clone();
+            // A multiple joint of k links counts k - 1: every later link is pinned to the first one.
+            let mut pinned: Vec<BodyId> = Vec::new();
+            let Some(a) = links
+                .first()
+                .and_then(|&link| self.marker(LinkPointRef { link, point }))
+            else {
+                continue;
+            };
+            pinned.push(a.body);
+            for &link in &links[1..] {
+                let Some(b) = self.marker(LinkPointRef { link, point }) else {
+                    continue;
+                };
+                if !pinned.contains(&b.body) {
+                    pinned.push(b.body);
+                    self.constraints
+                        .push((Constraint::Coincide { a, b }, Source::Pin { point, link }));
+                }
+            }
+        }
+    }
+
+    /// What a joint of the file demands.
+    pub(super) fn add_joint(&mut self, id: JointId) {
+        let joint = self.model.joints[id.index()].clone();
+        let source = Source::Joint(id);
+        match joint.kind {
+            JointKind::Slider { at, on, angle } => {
+                let Some(line) = self.line(on) else { return };
+                let offset = self.angle(AngleSource {
+                    value: angle,
+                    along: Some(line),
+                    a: at.link,
+                    b: on.link,
+                });
+                let (a, b) = (self.body_of(at.link), self.body_of(on.link));
+                let constraint = Constraint::Direction {
+                    a,
+                    b,
+                    offset,
+                    input: None,
+                };
+                self.constraints.push((constraint, source));
+                if let Some(point) = self.marker(at) {
+                    self.constraints
+                        .push((Constraint::OnLine { point, line }, source));
+                }
+            }
+            JointKind::Slot { pin, on } => {
+                if let (Some(point), Some(line)) = (self.marker(pin), self.line(on)) {
+                    self.constraints
+                        .push((Constraint::OnLine { point, line }, source));
+                }
+            }
+            // Welded links are one body: nothing is left to constrain.
+            JointKind::Weld { .. } => {}
+            JointKind::Gears {
+                a,
+                b,
+                arm,
+                teeth_a,
+                teeth_b,
+                internal,
+                phase,
+            } => {
+                let second = signed(teeth_b, internal);
+                let constant = Expr::Mul(Box::new(teeth_a.clone()), Box::new(phase));
+                let constants = self.gear(GearSource {
+                    first: teeth_a,
+                    second,
+                    constant,
+                    links: [a, b, arm],
+                });
+                let (a, b, arm) = (self.body_of(a), self.body_of(b), self.body_of(arm));
+                let constraint = Constraint::Gears {
+                    a,
+                    b,
+                    arm,
+                    constants,
+                };
+                self.constraints.push((constraint, source));
+            }
+            JointKind::Rack {
+                rack,
+                pinion,
+                center,
+                radius,
+                side,
+                offset,
+            } => {
+                let line = LineRef {
+                    body: self.body_of(rack),
+                    index: self.lines.len() as u32,
+                };
+                self.lines.push(LineSource::AxisOf(rack));
+                let constants = self.gear(GearSource {
+                    first: Expr::Const(1.0),
+                    second: signed(radius, side.sign() < 0.0),
+                    constant: offset,
+                    links: [rack, pinion, rack],
+                });
+                if let Some(center) = self.marker(LinkPointRef {
+                    link: pinion,
+                    point: center,
+                }) {
+                    let constraint = Constraint::Rack {
+                        line,
+                        center,
+                        constants,
+                    };
+                    self.constraints.push((constraint, source));
+                }
+            }
+        }
+    }
+
+    /// What a drive demands.
+    pub(super) fn add_drive(&mut self, id: DriveId) {
+        let drive = self.model.drives[id.index()].clone();
+        let source = Source::Drive(id);
+        match drive.kind {
+            DriveKind::Turn { link, relative_to } => {
+                let offset = self.angle(AngleSource {
+                    value: ZERO,
+                    along: None,
+                    a: link,
+                    b: relative_to,
+                });
+                let (a, b) = (self.body_of(link), self.body_of(relative_to));
+                let constraint = Constraint::Direction {
+                    a,
+                    b,
+                    offset,
+                    input: Some(id),
+                };
+                self.constraints.push((constraint, source));
+            }
+            DriveKind::Cylinder { a, b } => {
+                if let (Some(a), Some(b)) = (self.marker(a), self.marker(b)) {
+                    let constraint = Constraint::Distance { a, b, input: id };
+                    self.constraints.push((constraint, source));
+                }
+            }
+            DriveKind::Slide { joint } => {
+                let (at, on) = match &self.model.joints[joint.index()].kind {
+                    JointKind::Slider { at, on, .. } | JointKind::Slot { pin: at, on } => {
+                        (*at, *on)
+                    }
+                    _ => return,
+                };
+                if let (Some(point), Some(line)) = (self.marker(at), self.line(on)) {
+                    let constraint = Constraint::Travel {
+                        point,
+                        line,
+                        input: id,
+                    };
+                    self.constraints.push((constraint, source));
+                }
+            }
+        }
+    }
+
+    fn line(&mut self, line: Line) -> Option<LineRef> {
+        let from = self.marker(LinkPointRef {
+            link: line.link,
+            point: line.from,
+        })?;
+        let to = self.marker(LinkPointRef {
+            link: line.link,
+            point: line.to,
+        })?;
+        let index = self.lines.len() as u32;
+        self.lines.push(LineSource::Points(from, to));
+        Some(LineRef {
+            body: from.body,
+            index,
+        })
+    }
+
+    fn angle(&mut self, angle: AngleSource) -> u32 {
+        self.angles.push(angle);
+        self.angles.len() as u32 - 1
+    }
+
+    fn gear(&mut self, gear: GearSource) -> u32 {
+        self.gears.push(gear);
+        self.gears.len() as u32 - 1
+    }
+}
+
+/// A length or a count of teeth with its sign.
+fn signed(size: Scalar, negative: bool) -> Scalar {
+    if negative {
+        Expr::Neg(Box::new(size))
+    } else {
+        size
+    }
+}

@@ -1,0 +1,60 @@
+//! What a mechanism's dimensions are made of: expressions over the parameters, still free.
+
+use kempe_model::{LinkId, ParameterId, PointId, Scalar};
+use kempe_units::Expr;
+
+use super::{BodyId, LineRef, Marker, Structure};
+
+pub(super) const ZERO: Expr<ParameterId> = Expr::Const(0.0);
+
+/// How a link sits in its body.
+#[derive(Clone, Debug)]
+pub struct LinkSeat {
+    /// The body.
+    pub body: BodyId,
+    /// For a welded link: the link it is welded to, the shared point and the angle; `None` for the body's own link.
+    pub weld: Option<(LinkId, PointId, Scalar)>,
+}
+
+/// A line by two markers of the same body, or by a marker and the link's x axis.
+#[derive(Clone, Copy, Debug)]
+pub enum LineSource {
+    /// Through two points.
+    Points(Marker, Marker),
+    /// Through the link's origin along its x axis.
+    AxisOf(LinkId),
+}
+
+/// An angle constant between two bodies: `value + direction of the line + seat(b) - seat(a)`.
+#[derive(Clone, Debug)]
+pub struct AngleSource {
+    /// Explicit angle, rad.
+    pub value: Scalar,
+    /// A line of the second link's body whose direction is added; then `b`'s seat is not.
+    pub along: Option<LineRef>,
+    /// Link whose seat angle is subtracted.
+    pub a: LinkId,
+    /// Link whose seat angle is added.
+    pub b: LinkId,
+}
+
+impl AngleSource {
+    /// Whether it is zero whatever the dimensions.
+    pub fn is_zero(&self, structure: &Structure) -> bool {
+        let is_free = |link: LinkId| structure.seats[link.index()].weld.is_none();
+        self.value == ZERO && self.along.is_none() && is_free(self.a) && is_free(self.b)
+    }
+}
+
+/// Constants of a gear pair or of a rack.
+#[derive(Clone, Debug)]
+pub struct GearSource {
+    /// Factor of the first angle (teeth; 1 for a rack).
+    pub first: Scalar,
+    /// Factor of the second angle (signed teeth; signed radius for a rack).
+    pub second: Scalar,
+    /// Right-hand side.
+    pub constant: Scalar,
+    /// Links a, b, arm whose seat angles matter.
+    pub links: [LinkId; 3],
+}

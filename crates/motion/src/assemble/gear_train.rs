@@ -1,0 +1,82 @@
+//! Trains of gears: their angles are linear in each other.
+
+use kempe_mechanism::blocks::Unknown;
+use kempe_mechanism::plan::NewtonBlock;
+use kempe_mechanism::pose::Pose;
+use kempe_mechanism::qr::Qr;
+use kempe_mechanism::state::{Branch, Design, State};
+use kempe_mechanism::structure::{BodyId, Constraint};
+use kempe_number::math;
+
+/// Angles of a block of gears and angle drives alone: linear equations, one solution.
+pub(super) fn gear_train(
+    design: &Design<f64>,
+    block: &NewtonBlock,
+    state: &State<f64>,
+    branch: &mut Branch,
+) -> Option<Vec<Pose<f64>>> {
+    let mechanism = &*design.mechanism;
+    let column = |body: BodyId| {
+        block
+            .unknowns
+            .iter()
+            .position(|u| *u == Unknown::Angle(body))
+    };
+    if block
+        .unknowns
+        .iter()
+        .any(|u| matches!(u, Unknown::Place(_)))
+        || block.rows.len() != block.size
+    {
+        return None;
+    }
+    let mut qr = Qr::with_capacity(block.size, block.size);
+    qr.reset(block.size, block.size);
+    let mut rhs = vec![0.0; block.size];
+    for (row, entry) in block.rows.iter().enumerate() {
+        let (terms, constant) = match mechanism.constraints[entry.constraint].0 {
+            Constraint::Gears {
+                a,
+                b,
+                arm,
+                constants,
+            } => {
+                let k = &design.geometry.gears[constants as usize];
+                (
+                    [(a, k.first), (b, k.second), (arm, -k.first - k.second)],
+                    k.constant,
+                )
+            }
+            Constraint::Direction {
+                a,
+                b,
+                offset,
+                input,
+            } => {
+                let by = design.geometry.angles[offset as usize];
+                let drive = input.map_or(0.0, |d| state.inputs[d.index()].value);
+                (
+                    [(a, 1.0), (b, -1.0), (b, 0.0)],
+                    math::atan2(by[1], by[0]) + drive,
+                )
+            }
+            _ => return None,
+        };
+        rhs[row] = constant;
+        for (body, factor) in terms {
+            match column(body) {
+                Some(column) => qr.add(row, column, factor),
+                None => rhs[row] -= factor * branch.near[body.index()],
+            }
+        }
+    }
+    qr.factor();
+    qr.solve(&mut rhs);
+    let mut poses = state.poses.clone();
+    for (unknown, angle) in block.unknowns.iter().zip(&rhs) {
+        let body = unknown.body().index();
+        poses[body] = Pose::from_angle(poses[body].x, poses[body].y, *angle);
+        branch.near[body] = *angle;
+    }
+    rhs.iter().all(|a| a.is_finite()).then_some(poses)
+}

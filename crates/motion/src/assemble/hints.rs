@@ -1,0 +1,229 @@
+//! What a file says about the assembly that is meant: on which side points lie, and near what they are.
+
+use kempe_mechanism::Mechanism;
+use kempe_mechanism::geometry::Geometry;
+use kempe_mechanism::pose::{Pose, cross, sub};
+use kempe_mechanism::state::Design;
+use kempe_mechanism::structure::{BodyId, Marker};
+use kempe_model::{HintKind, LinkPointRef, PointId, Scalar};
+use kempe_number::math;
+
+/// Side hints are not held against a point closer to the line than this, in sizes of the mechanism.
+const ON_THE_LINE: f64 = 1e-9;
+
+/// How an assembly stands to a side that a file asks for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Standing {
+    /// The point lies on that side.
+    Holds,
+    /// It lies on the other.
+    Fails,
+    /// It lies on the line, or the line has no direction: neither side is meant.
+    OnTheLine,
+}
+
+/// How poses stand to a hint; `None` for hints that ask for no side.
+pub fn standing(
+    mechanism: &Mechanism,
+    geometry: &Geometry<f64>,
+    poses: &[Pose<f64>],
+    hint: &HintKind,
+) -> Option<Standing> {
+    let side = AskedSide::of(mechanism, hint)?;
+    Some(side.standing(geometry, poses, geometry.size(mechanism)))
+}
+
+/// A side that a file asks for: its line's two points and the point itself.
+struct AskedSide {
+    points: [Marker; 3],
+    sign: f64,
+}
+
+impl AskedSide {
+    /// `None` for other hints.
+    fn of(mechanism: &Mechanism, hint: &HintKind) -> Option<Self> {
+        let &HintKind::Side {
+            point,
+            side,
+            from,
+            to,
+        } = hint
+        else {
+            return None;
+        };
+        let marker = |p| mechanism.any_marker(p);
+        Some(Self {
+            points: [marker(from)?, marker(to)?, marker(point)?],
+            sign: side.sign(),
+        })
+    }
+
+    /// How poses stand to it, in a mechanism of this size, m.
+    fn standing(&self, geometry: &Geometry<f64>, poses: &[Pose<f64>], size: f64) -> Standing {
+        let [from, to, p] = (self.points).map(|m| poses[m.body.index()].place(geometry.marker(m)));
+        let line = sub(to, from);
+        let side = cross(line, sub(p, from)) * self.sign;
+        let least = ON_THE_LINE * size * math::hypot(line[0], line[1]);
+        if side > least {
+            Standing::Holds
+        } else if side < -least {
+            Standing::Fails
+        } else {
+            Standing::OnTheLine
+        }
+    }
+}
+
+/// A file's hints, evaluated.
+pub(super) struct Hints<'a> {
+    mechanism: &'a Mechanism,
+    geometry: &'a Geometry<f64>,
+    /// Size of the mechanism, m.
+    size: f64,
+    sides: Vec<Side>,
+    near: Vec<Near>,
+    /// Angles of the bodies by the file's hints, zero without: angles count within half a turn of these.
+    pub meant: Vec<f64>,
+}
+
+/// A side that can be checked once its points are placed.
+struct Side {
+    asked: AskedSide,
+    after_step: usize,
+}
+
+/// Where a point or how a link should lie, nearly.
+enum Near {
+    Place {
+        point: PointId,
+        world: [f64; 2],
+    },
+    Angle {
+        body: BodyId,
+        /// Angle of the link, rad.
+        wanted: f64,
+        /// Angle of the link in its body, rad.
+        seat: f64,
+    },
+}
+
+impl<'a> Hints<'a> {
+    /// Evaluates the hints of a mechanism's file.
+    pub fn new(design: &'a Design<f64>, size: f64) -> Self {
+        let (mechanism, geometry) = (&*design.mechanism, &design.geometry);
+        let value = |scalar: &Scalar| kempe_model::value(scalar, &design.parameters);
+        let hints = || mechanism.model.assembly.iter().map(|hint| &hint.kind);
+        let near: Vec<Near> = hints()
+            .filter_map(|hint| match hint {
+                HintKind::NearPlace { point, x, y } => Some(Near::Place {
+                    point: *point,
+                    world: [value(x), value(y)],
+                }),
+                HintKind::NearAngle { link, angle } => Some(Near::Angle {
+                    body: mechanism.body_of(*link),
+                    wanted: value(angle),
+                    seat: geometry.seat_angles[link.index()],
+                }),
+                HintKind::Side { .. } => None,
+            })
+            .collect();
+        let mut meant = vec![0.0; mechanism.bodies];
+        for hint in &near {
+            if let Near::Angle { body, wanted, seat } = hint {
+                meant[body.index()] = wanted - seat;
+            }
+        }
+        let placed = placed_after(mechanism);
+        Self {
+            sides: hints()
+                .filter_map(|hint| Side::new(hint, mechanism, &placed))
+                .collect(),
+            mechanism,
+            geometry,
+            size,
+            near,
+            meant,
+        }
+    }
+
+    /// Whether the sides hold that can be checked after a step.
+    pub fn sides_hold(&self, step: usize, poses: &[Pose<f64>]) -> bool {
+        let mut ready = self.sides.iter().filter(|side| side.after_step == step);
+        ready.all(|check| check.asked.standing(self.geometry, poses, self.size) != Standing::Fails)
+    }
+
+    /// The pose that the `near` hints tell; what they leave open stays.
+    pub fn start(&self, poses: &[Pose<f64>]) -> Vec<Pose<f64>> {
+        let mut poses = poses.to_vec();
+        for hint in &self.near {
+            if let Near::Angle { body, .. } = hint {
+                let pose = &mut poses[body.index()];
+                *pose = Pose::from_angle(pose.x, pose.y, self.meant[body.index()]);
+            }
+        }
+        for hint in &self.near {
+            let &Near::Place { point, world } = hint else {
+                continue;
+            };
+            for &link in &self.mechanism.model.points[point.index()].links {
+                if let Some(marker) = self.mechanism.marker(LinkPointRef { link, point }) {
+                    let pose = &mut poses[marker.body.index()];
+                    *pose = Pose::pinned(pose.c, pose.s, self.geometry.marker(marker), world);
+                }
+            }
+        }
+        poses
+    }
+
+    /// How far poses are from the `near` hints: root mean square, m.
+    pub fn distance(&self, poses: &[Pose<f64>]) -> f64 {
+        let (mut sum, mut count) = (0.0, 0);
+        for hint in &self.near {
+            match hint {
+                Near::Place { point, world } => {
+                    let Some(marker) = self.mechanism.any_marker(*point) else {
+                        continue;
+                    };
+                    let p = poses[marker.body.index()].place(self.geometry.marker(marker));
+                    let (dx, dy) = (p[0] - world[0], p[1] - world[1]);
+                    sum += dx * dx + dy * dy;
+                }
+                Near::Angle { body, wanted, seat } => {
+                    let angle = poses[body.index()].angle_near(wanted - seat);
+                    let off = (angle + seat - wanted) * self.size;
+                    sum += off * off;
+                }
+            }
+            count += 1;
+        }
+        if count == 0 {
+            0.0
+        } else {
+            (sum / count as f64).sqrt()
+        }
+    }
+}
+
+impl Side {
+    /// `None` for other hints. `placed` tells after which step each body is placed.
+    fn new(hint: &HintKind, mechanism: &Mechanism, placed: &[usize]) -> Option<Self> {
+        let asked = AskedSide::of(mechanism, hint)?;
+        let after = asked.points.iter().map(|m| placed[m.body.index()]);
+        Some(Self {
+            after_step: after.max().unwrap_or(0),
+            asked,
+        })
+    }
+}
+
+/// The step after which each body is placed: the last that seeks anything of it.
+fn placed_after(mechanism: &Mechanism) -> Vec<usize> {
+    let plan = &mechanism.plan;
+    let mut placed = vec![0; mechanism.bodies];
+    for (step, block) in plan.blocks.iter().enumerate() {
+        for unknown in &block.unknowns {
+            placed[unknown.body().index()] = step;
+        }
+    }
+    placed
+}

@@ -1,0 +1,253 @@
+//! The search through every way to solve the plan's steps one after the other.
+
+use std::ops::ControlFlow;
+
+use kempe_homotopy::{PathReport, WORK_LIMIT};
+use kempe_mechanism::Mechanism;
+use kempe_mechanism::blocks::Unknown;
+use kempe_mechanism::evidence::{closure, is_finite};
+use kempe_mechanism::plan::{Plan, Step};
+use kempe_mechanism::pose::Pose;
+use kempe_mechanism::solve::gear;
+use kempe_mechanism::state::{Branch, Design, State};
+use kempe_model::LinkId;
+
+use super::hints::Hints;
+use super::{Assemblies, Assembly, Shortfall};
+use crate::progress::{Stage, Watch};
+
+/// Most assemblies that are listed; a file with many dyads and no hints can have more than anyone wants to see.
+pub const ASSEMBLY_LIMIT: usize = 512;
+/// Most partial assemblies that are tried while looking for them.
+const TRIAL_LIMIT: usize = 200_000;
+/// Two poses of a block closer than this (in sizes of the mechanism, and rad) are one.
+const SAME_POSE: f64 = 1e-7;
+/// Closure residual (in sizes of the mechanism, and rad) up to which an assembly with redundant constraints closes.
+pub const CLOSED: f64 = 1e-9;
+
+pub(super) struct Search<'a> {
+    pub mechanism: &'a Mechanism,
+    pub plan: &'a Plan,
+    pub design: &'a Design<f64>,
+    pub coordinates: &'a [f64],
+    pub size: f64,
+    pub hints: Hints<'a>,
+    pub watch: &'a mut dyn Watch,
+    pub stopped: bool,
+    /// Why assemblies may be missing; the first reason met.
+    pub shortfall: Option<Shortfall>,
+    pub paths: Vec<PathReport>,
+    /// What the homotopies may still cost.
+    pub work: f64,
+    /// What was found by cutting the mechanism open at a gear (its constraint): the same for every branch before it.
+    pub opened: Vec<(usize, Vec<Vec<Pose<f64>>>)>,
+    found: Vec<Assembly>,
+    rejected: usize,
+    others: Vec<Assembly>,
+    trials: usize,
+    furthest: usize,
+}
+
+impl<'a> Search<'a> {
+    pub fn new(design: &'a Design<f64>, coordinates: &'a [f64], watch: &'a mut dyn Watch) -> Self {
+        let mechanism = &*design.mechanism;
+        let plan = &mechanism.plan;
+        let size = design.size();
+        Self {
+            mechanism,
+            plan,
+            design,
+            coordinates,
+            size,
+            hints: Hints::new(design, size),
+            watch,
+            stopped: false,
+            shortfall: None,
+            paths: Vec::new(),
+            work: WORK_LIMIT,
+            opened: Vec::new(),
+            found: Vec::new(),
+            rejected: 0,
+            others: Vec::new(),
+            trials: 0,
+            furthest: 0,
+        }
+    }
+
+    /// Finds all assemblies, the one meant first; `None` when stopped.
+    pub fn run(mut self) -> Option<Assemblies> {
+        let mut state = State::new(self.mechanism);
+        state.set_inputs(self.mechanism, self.coordinates);
+        let branch = Branch::neutral(self.mechanism);
+        self.descend(0, state, branch, true);
+        if self.stopped {
+            return None;
+        }
+        // A stable sort: where the hints say nothing, the order of the search decides, left before right.
+        self.found.sort_by(|a, b| a.distance.total_cmp(&b.distance));
+        let open_step = self.found.is_empty().then_some(self.furthest);
+        Some(Assemblies {
+            list: self.found,
+            rejected: self.rejected,
+            others: self.others,
+            complete: self.shortfall.is_none(),
+            shortfall: self.shortfall,
+            paths: self.paths,
+            open_step,
+        })
+    }
+
+    /// Solves the steps from `step` on, in every way there is. `wanted` is false once a side hint failed: such
+    /// assemblies are only counted.
+    pub(super) fn descend(
+        &mut self,
+        mut step: usize,
+        mut state: State<f64>,
+        mut branch: Branch,
+        mut wanted: bool,
+    ) {
+        loop {
+            self.trials += 1;
+            if self.found.len() >= ASSEMBLY_LIMIT || self.trials > TRIAL_LIMIT {
+                self.shortfall.get_or_insert(Shortfall::TooMany);
+                return;
+            }
+            if self.stopped || self.told(None).is_break() {
+                return;
+            }
+            let Some(kind) = self.plan.steps.get(step) else {
+                break;
+            };
+            if let Step::Newton { block } = kind {
+                return self.descend_block(step, *block, state, branch, wanted);
+            }
+            if kind.has_modes() {
+                return self.descend_modes(step, state, branch, wanted);
+            }
+            if !self.solve(step, 1.0, &mut state, &mut branch) {
+                return;
+            }
+            wanted &= self.hints.sides_hold(step, &state.poses);
+            step += 1;
+        }
+        // Redundant constraints are in no closed form: they hold here, or this is no assembly.
+        if !self.plan.decomposition.surplus.is_empty() {
+            let residual = closure(self.design, &branch, &state, self.size);
+            if !(residual <= CLOSED) {
+                self.furthest = self.furthest.max(step.saturating_sub(1));
+                return;
+            }
+        }
+        let assembly = Assembly {
+            branch,
+            distance: self.hints.distance(&state.poses),
+            poses: state.poses,
+            turns: self.design.geometry.turns.clone(),
+        };
+        if wanted {
+            self.found.push(assembly);
+        } else {
+            self.rejected += 1;
+            if self.others.len() < ASSEMBLY_LIMIT {
+                self.others.push(assembly);
+            }
+        }
+    }
+
+    fn descend_modes(&mut self, step: usize, state: State<f64>, branch: Branch, wanted: bool) {
+        let mut first: Option<Vec<Pose<f64>>> = None;
+        for sign in [1.0, -1.0] {
+            let (mut state, mut branch) = (state.clone(), branch.clone());
+            branch.signs[step] = sign;
+            if !self.solve(step, sign, &mut state, &mut branch) {
+                continue;
+            }
+            // At a dead point both modes are one assembly.
+            if let Some(first) = &first
+                && self.same(first, &state.poses)
+            {
+                continue;
+            }
+            first = Some(state.poses.clone());
+            let wanted = wanted && self.hints.sides_hold(step, &state.poses);
+            if !wanted && self.rejected >= ASSEMBLY_LIMIT {
+                self.shortfall.get_or_insert(Shortfall::TooMany);
+                continue;
+            }
+            self.descend(step + 1, state, branch, wanted);
+        }
+    }
+
+    /// Solves one step; false when it does not close. Keeps the branch's turn counts and guesses up to date.
+    pub(super) fn solve(
+        &mut self,
+        step: usize,
+        sign: f64,
+        state: &mut State<f64>,
+        branch: &mut Branch,
+    ) -> bool {
+        self.plan.solve_step(step, sign, self.design, branch, state);
+        for unknown in &self.plan.blocks[step].unknowns {
+            let body = unknown.body().index();
+            let pose = state.poses[body];
+            if !is_finite(&pose) {
+                self.furthest = self.furthest.max(step);
+                return false;
+            }
+            if matches!(unknown, Unknown::Angle(_))
+                && !matches!(self.plan.steps[step], Step::Newton { .. })
+            {
+                branch.near[body] = pose.angle_near(self.hints.meant[body]);
+            }
+            branch.guess[body] = pose;
+        }
+        self.count_turns(step, state, branch);
+        true
+    }
+
+    /// Sets the angles that count turns: those of driven bodies and of wheels.
+    fn count_turns(&self, step: usize, state: &State<f64>, branch: &mut Branch) {
+        let (body, constraint) = match self.plan.steps[step] {
+            Step::Turn {
+                body,
+                from,
+                offset,
+                input: Some(drive),
+                reversed,
+            } => {
+                // The angle of the driven link, turns and all, not that of its body.
+                let driven = &self.mechanism.angles[offset as usize];
+                let seat = |link: LinkId| self.design.geometry.seat_angles[link.index()];
+                let turn = state.inputs[drive.index()].value + seat(driven.b) - seat(driven.a);
+                branch.near[body.index()] =
+                    branch.near[from.index()] + if reversed { -turn } else { turn };
+                return;
+            }
+            Step::Gear { body, constraint } => (body, constraint),
+            Step::Roll {
+                own, constraint, ..
+            } => (own.body, constraint),
+            _ => return,
+        };
+        let situation = state.situation(self.design, branch);
+        if let Some(angle) = gear(&situation, self.mechanism, body, constraint) {
+            branch.near[body.index()] = angle;
+        }
+    }
+
+    /// Says how far the search has come; how many branches there are to try is not known beforehand.
+    pub(super) fn told(&mut self, part: Option<f64>) -> ControlFlow<()> {
+        let flow = self.watch.reached(Stage::Assembling, part);
+        self.stopped |= flow.is_break();
+        flow
+    }
+
+    /// Whether two assemblies are one.
+    pub(super) fn same(&self, a: &[Pose<f64>], b: &[Pose<f64>]) -> bool {
+        a.iter().zip(b).all(|(a, b)| {
+            let length = (a.x - b.x).abs().max((a.y - b.y).abs());
+            let angle = (a.c - b.c).abs().max((a.s - b.s).abs());
+            length <= SAME_POSE * self.size && angle <= SAME_POSE
+        })
+    }
+}

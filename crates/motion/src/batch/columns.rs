@@ -1,0 +1,178 @@
+//! From solved states to columns of numbers.
+
+use kempe_mechanism::state::{Design, State};
+use kempe_number::{Lanes, Number};
+
+use crate::batch::wide::Wide;
+use crate::batch::{Batch, BatchError};
+
+/// Where the results of one state go.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Target {
+    /// Its first column.
+    pub column: usize,
+    /// Row of its first lane.
+    pub row: usize,
+    /// The lanes that are wanted, one bit for each.
+    pub wanted: u32,
+}
+
+/// Writes the places of the batch's points in every state; returns how many lanes close.
+#[cfg_attr(not(debug_assertions), inline(always))]
+pub(super) fn write_places<T: Wide<W>, const W: usize>(
+    batch: &Batch,
+    design: &Design<T>,
+    states: &[State<T>],
+    targets: &[Target],
+    columns: &mut [&mut [f64]],
+) -> usize {
+    let spares = closing_spares(batch, design);
+    let mut together = spares;
+    let mut wanted = all_lanes(W);
+    for (state, target) in states.iter().zip(targets) {
+        together += closing_wanted(batch, state);
+        wanted &= target.wanted;
+    }
+    if wanted != all_lanes(W) || !all_zero(&(together * 0.0).0) {
+        return write_wanted(batch, design, states, targets, columns);
+    }
+    for (j, marker) in batch.markers.iter().enumerate() {
+        for (state, target) in states.iter().zip(targets) {
+            let place = state.place(design, *marker);
+            for order in 0..T::ORDERS {
+                for axis in 0..2 {
+                    let column = target.column + order * batch.columns() + 2 * j + axis;
+                    let to = columns.get_mut(column);
+                    if let Some(to) = to.and_then(|c| c.get_mut(target.row..target.row + W)) {
+                        to.copy_from_slice(&place[axis].order(order).0);
+                    }
+                }
+            }
+        }
+    }
+    W * states.len()
+}
+
+/// [`write_places`] for the lanes that are wanted alone, NaN where they do not close.
+#[cold]
+#[inline(never)]
+fn write_wanted<T: Wide<W>, const W: usize>(
+    batch: &Batch,
+    design: &Design<T>,
+    states: &[State<T>],
+    targets: &[Target],
+    columns: &mut [&mut [f64]],
+) -> usize {
+    let mut closed = 0;
+    for (state, target) in states.iter().zip(targets) {
+        let closing = closing_spares(batch, design) + closing_wanted(batch, state);
+        let closes = lanes_where(|lane| closing.0[lane].is_finite(), W);
+        closed += (target.wanted & closes).count_ones() as usize;
+        for (j, marker) in batch.markers.iter().enumerate() {
+            let place = state.place(design, *marker);
+            for order in 0..T::ORDERS {
+                for axis in 0..2 {
+                    let column = target.column + order * batch.columns() + 2 * j + axis;
+                    let values = place[axis].order(order).0;
+                    let to = columns[column].iter_mut().skip(target.row);
+                    for (lane, (to, value)) in to.zip(values).enumerate() {
+                        if target.wanted >> lane & 1 == 1 {
+                            *to = if closes >> lane & 1 == 1 {
+                                value
+                            } else {
+                                f64::NAN
+                            };
+                        }
+                    }
+                }
+            }
+        }
+    }
+    closed
+}
+
+/// Finite in every lane in which the bodies that somebody looks at have a pose.
+#[cfg_attr(not(debug_assertions), inline(always))]
+fn closing_wanted<T: Wide<W>, const W: usize>(batch: &Batch, state: &State<T>) -> Lanes<W> {
+    let mut sum = Lanes([0.0; W]);
+    for body in &batch.order.wanted {
+        let pose = &state.poses[*body];
+        sum += pose.x.order(0) + pose.c.order(0);
+    }
+    sum
+}
+
+/// Finite in every lane in which the other bodies have a pose if those have one with which they are dyads.
+#[cfg_attr(not(debug_assertions), inline(always))]
+fn closing_spares<T: Wide<W>, const W: usize>(batch: &Batch, design: &Design<T>) -> Lanes<W> {
+    let mut sum = Lanes([0.0; W]);
+    for &(dyad, first) in &batch.order.spares {
+        let own = &design.constants[dyad][first..first + 2];
+        sum += own[0].order(0) + own[1].order(0);
+    }
+    sum
+}
+
+/// Whether all are zero, of either sign. Called, so that the lanes go to memory as whole registers.
+#[inline(never)]
+fn all_zero(closing: &[f64]) -> bool {
+    let mut bits = 0;
+    for x in closing {
+        bits |= x.to_bits();
+    }
+    bits << 1 == 0
+}
+
+/// The lanes for which something holds, one bit for each.
+#[cfg_attr(not(debug_assertions), inline(always))]
+pub(super) fn lanes_where(holds: impl Fn(usize) -> bool, lanes: usize) -> u32 {
+    let mut mask = 0;
+    for lane in 0..lanes {
+        mask |= u32::from(holds(lane)) << lane;
+    }
+    mask
+}
+
+/// All of this many lanes.
+pub(super) const fn all_lanes(lanes: usize) -> u32 {
+    u32::MAX >> (u32::BITS as usize - lanes)
+}
+
+/// Cuts every column of `rows` values into pieces, and gathers the pieces that belong together.
+pub(super) fn split_columns(out: &mut [f64], rows: usize, piece: usize) -> Vec<Vec<&mut [f64]>> {
+    let mut pieces: Vec<Vec<&mut [f64]>> = Vec::new();
+    pieces.resize_with(rows.div_ceil(piece), Vec::new);
+    if rows > 0 {
+        for column in out.chunks_mut(rows) {
+            for (piece, part) in pieces.iter_mut().zip(column.chunks_mut(piece)) {
+                piece.push(part);
+            }
+        }
+    }
+    pieces
+}
+
+pub(super) fn check_length(
+    what: &'static str,
+    expected: usize,
+    got: usize,
+) -> Result<(), BatchError> {
+    if expected == got {
+        return Ok(());
+    }
+    Err(BatchError::Length {
+        what,
+        expected,
+        got,
+    })
+}
+
+/// Whether every body has a pose.
+#[cfg_attr(not(debug_assertions), inline(always))]
+pub(super) fn closes<T: Number>(state: &State<T>) -> bool {
+    let mut sum = 0.0;
+    for pose in &state.poses[1..] {
+        sum += pose.x.value() + pose.c.value();
+    }
+    sum.is_finite()
+}

@@ -1,0 +1,211 @@
+//! Many designs at the same places of a motion.
+
+use std::ops::Range;
+
+use kempe_mechanism::constraint::Input;
+use kempe_mechanism::state::{Branch, State, input_of};
+use kempe_number::{InstructionSet, Lanes, Number, multiversion};
+
+use crate::batch::Batch;
+use crate::batch::columns::{Target, all_lanes, write_places};
+use crate::batch::stretch::nearest_stretch;
+
+/// How many designs are prepared before any is solved.
+const PREPARED: usize = 64;
+/// How many places of a motion take every step of the plan together.
+const STATES: usize = 4;
+
+/// Parameter values of many designs (SI, all of the model's parameters in its order).
+#[derive(Clone, Copy, Debug)]
+pub struct Designs<'a> {
+    /// The values.
+    pub values: &'a [f64],
+    /// How many designs.
+    pub count: usize,
+    /// How the values lie.
+    pub layout: Layout,
+}
+
+/// How the values of many designs lie in one slice.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Layout {
+    /// All parameters of the first design, then all of the second.
+    ByDesign,
+    /// The first parameter of all designs, then the second of all: columns.
+    ByParameter,
+}
+
+impl Designs<'_> {
+    /// One parameter of the designs from `first` on, the last one of the range repeated.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn lanes<const W: usize>(
+        &self,
+        parameter: usize,
+        first: usize,
+        range: &Range<usize>,
+    ) -> Lanes<W> {
+        let (start, stride) = match self.layout {
+            Layout::ByDesign => (parameter, self.values.len() / self.count),
+            Layout::ByParameter => (parameter * self.count, 1),
+        };
+        if let (1, Some(whole)) = (stride, self.values[start + first..].first_chunk())
+            && first + W <= range.end
+        {
+            return Lanes(*whole);
+        }
+        Lanes::from_fn(|lane| self.values[start + stride * (first + lane).min(range.end - 1)])
+    }
+}
+
+/// What designs take from the motion at one path parameter.
+pub(super) struct Place<'b> {
+    /// Its index.
+    index: usize,
+    branch: &'b Branch,
+    /// Coordinates of the drives.
+    inputs: &'b [Input<f64>],
+}
+
+/// What designs take from the motion.
+pub(super) struct Places {
+    /// The branch at every place for a plan that needs guesses, else a neutral one.
+    branches: Vec<Branch>,
+    /// Coordinates of the drives at one place after the other.
+    inputs: Vec<Input<f64>>,
+    parameters: Vec<f64>,
+}
+
+impl Places {
+    /// Looks them up at these path parameters.
+    pub(super) fn new(batch: &Batch, at: &[f64]) -> Self {
+        let motion = &*batch.motion;
+        let drives = &motion.mechanism().model.drives;
+        let mut it = Self {
+            branches: Vec::new(),
+            inputs: Vec::with_capacity(at.len() * drives.len()),
+            parameters: at.to_vec(),
+        };
+        let mut solver = motion.solver::<f64>();
+        if !batch.needs_guess {
+            it.branches.push(solver.branch.clone());
+        }
+        for &p in at {
+            if batch.needs_guess {
+                motion.branch_at(p, &mut solver.branch);
+                it.branches.push(solver.branch.clone());
+            }
+            motion.path.coordinates(p, &mut solver.coordinates);
+            let inputs = drives.iter().zip(&solver.coordinates);
+            (it.inputs).extend(inputs.map(|(drive, q)| input_of(drive, *q)));
+        }
+        it
+    }
+
+    /// Runs of places on one branch, not too long to be solved together.
+    pub(super) fn runs<'b>(&'b self, batch: &'b Batch) -> Vec<Vec<Place<'b>>> {
+        let drives = batch.motion.mechanism().model.drives.len();
+        let mut runs: Vec<Vec<Place<'b>>> = Vec::new();
+        for (index, &p) in self.parameters.iter().enumerate() {
+            let guessed = &self.branches[index.min(self.branches.len() - 1)];
+            let branch = match nearest_stretch(&batch.stretches, p) {
+                Some(stretch) if !batch.needs_guess => &stretch.branch,
+                _ => guessed,
+            };
+            let place = Place {
+                index,
+                branch,
+                inputs: &self.inputs[index * drives..(index + 1) * drives],
+            };
+            match runs.last_mut() {
+                Some(run) if run.len() < STATES && std::ptr::eq(run[0].branch, branch) => {
+                    run.push(place);
+                }
+                _ => runs.push(vec![place]),
+            }
+        }
+        runs
+    }
+}
+
+multiversion! {
+    /// Solves some of the designs at runs of places, lanes over the designs; returns how many poses close.
+    pub(super) fn solve_designs(
+        set: InstructionSet,
+        batch: &Batch,
+        designs: Designs<'_>,
+        range: Range<usize>,
+        runs: &[Vec<Place<'_>>],
+        out: &mut [&mut [f64]],
+    ) -> usize = in_lanes::<16, false>;
+}
+
+/// [`solve_designs`] for mechanisms whose branch is more than signs: what they take longest for is not done in lanes.
+pub(super) fn solve_guessed(
+    _: InstructionSet,
+    batch: &Batch,
+    designs: Designs<'_>,
+    range: Range<usize>,
+    runs: &[Vec<Place<'_>>],
+    out: &mut [&mut [f64]],
+) -> usize {
+    in_lanes::<4, true>(batch, designs, range, runs, out)
+}
+
+#[cfg_attr(not(debug_assertions), inline(always))]
+fn in_lanes<const W: usize, const ALL: bool>(
+    batch: &Batch,
+    designs: Designs<'_>,
+    range: Range<usize>,
+    runs: &[Vec<Place<'_>>],
+    out: &mut [&mut [f64]],
+) -> usize {
+    let (mechanism, order) = (batch.motion.mechanism(), &batch.order);
+    let plan = &order.plan;
+    let mut states = vec![State::<Lanes<W>>::new(mechanism); STATES];
+    let design = &batch.motion.design.lift::<Lanes<W>>();
+    order.solve_once(&order.fixed, design, &mut states);
+    let together = PREPARED.min(range.len()).div_ceil(W);
+    let mut prepared = vec![design.clone(); together];
+    let mut parameters = vec![Lanes::zero(); mechanism.model.parameters.len()];
+    let columns = batch.columns();
+    let mut closed = 0;
+    for block in (0..range.len()).step_by(PREPARED) {
+        let rows = (block..range.len()).step_by(W);
+        for (row, design) in rows.clone().zip(&mut prepared) {
+            for (k, parameter) in parameters.iter_mut().enumerate() {
+                *parameter = designs.lanes(k, range.start + row, &range);
+            }
+            design.update(&parameters);
+            if ALL {
+                // Newton's method wants each of them on its own as well.
+                let lane = |lane: usize| move |x: Lanes<W>| x.lane(lane);
+                design.plain = (0..W).map(|k| design.geometry.map(lane(k))).collect();
+            }
+        }
+        for run in runs {
+            let states = &mut states[..run.len()];
+            let mut targets = [Target::default(); STATES];
+            for ((state, target), place) in states.iter_mut().zip(&mut targets).zip(run) {
+                target.column = place.index * columns;
+                for (input, at) in state.inputs.iter_mut().zip(place.inputs) {
+                    *input = Input {
+                        c: Lanes::from_f64(at.c),
+                        s: Lanes::from_f64(at.s),
+                        value: Lanes::from_f64(at.value),
+                    };
+                }
+            }
+            order.solve_once(&order.driven, design, states);
+            for (row, design) in rows.clone().zip(&prepared) {
+                for target in &mut targets {
+                    target.row = row;
+                    target.wanted = all_lanes(W.min(range.len() - row));
+                }
+                let rest = order.rest.iter().copied();
+                plan.solve_all::<_, ALL>(rest, design, run[0].branch, states);
+                closed += write_places(batch, design, states, &targets, out);
+            }
+        }
+    }
+    closed
+}

@@ -1,0 +1,124 @@
+//! What a batch makes of the motion's plan before it runs it.
+
+use kempe_mechanism::Mechanism;
+use kempe_mechanism::newton::PlanNumber;
+use kempe_mechanism::plan::{Plan, Step};
+use kempe_mechanism::state::{Branch, Design, State};
+use kempe_mechanism::structure::{BodyId, Marker, Spot};
+use kempe_model::{Place, Scalar};
+
+/// A plan whose branch is signs alone, in the order in which a batch runs it.
+#[derive(Clone, Debug)]
+pub(super) struct Order {
+    /// The plan, without the bodies whose poses nobody looks at.
+    pub plan: Plan,
+    /// Steps that give the same for every design and every coordinate of the drives.
+    pub fixed: Vec<usize>,
+    /// Steps that give the same for every design.
+    pub driven: Vec<usize>,
+    /// All other steps.
+    pub rest: Vec<usize>,
+    /// All but the fixed ones.
+    pub moving: Vec<usize>,
+    /// For steps that have no assembly modes.
+    neutral: Branch,
+    /// The moving bodies whose poses somebody looks at.
+    pub wanted: Vec<usize>,
+    /// The others, each as the index of its dyad's constants and the first of its own there.
+    pub spares: Vec<(usize, usize)>,
+}
+
+impl Order {
+    /// For a batch that looks at these markers.
+    pub(super) fn new(mechanism: &Mechanism, markers: &[Marker]) -> Self {
+        let plan = &mechanism.plan;
+        let mut it = Self {
+            plan: plan.clone(),
+            fixed: Vec::new(),
+            driven: Vec::new(),
+            rest: Vec::new(),
+            moving: Vec::new(),
+            neutral: Branch::neutral(mechanism),
+            wanted: (1..mechanism.bodies).collect(),
+            spares: Vec::new(),
+        };
+        for (index, step) in plan.steps.iter().enumerate() {
+            let list = match *step {
+                Step::Pin { own, at } if is_fixed(mechanism, at) && own.spot == Spot::Origin => {
+                    &mut it.fixed
+                }
+                Step::Turn { from, offset, .. }
+                    if from == BodyId::GROUND
+                        && mechanism.angles[offset as usize].is_zero(mechanism) =>
+                {
+                    &mut it.driven
+                }
+                _ => &mut it.rest,
+            };
+            list.push(index);
+        }
+        it.moving = [&it.driven[..], &it.rest].concat();
+        it.leave_out(mechanism, markers);
+        it
+    }
+
+    /// Solves steps without assembly modes once for many poses. Called, so that the loops over poses stay small.
+    #[inline(never)]
+    pub(super) fn solve_once<T: PlanNumber>(
+        &self,
+        steps: &[usize],
+        design: &Design<T>,
+        states: &mut [State<T>],
+    ) {
+        let steps = steps.iter().copied();
+        (self.plan).solve_all::<T, false>(steps, design, &self.neutral, states);
+    }
+
+    /// Leaves out one body of every dyad where one carries none of the markers and no later step looks at it.
+    fn leave_out(&mut self, mechanism: &Mechanism, markers: &[Marker]) {
+        let mut uses = vec![0; mechanism.bodies];
+        for block in &self.plan.blocks {
+            let mut seen = vec![false; mechanism.bodies];
+            // Newton's method holds a block to its surplus rows too.
+            for row in block.rows.iter().chain(&block.surplus) {
+                for body in mechanism.constraints[row.constraint].0.bodies() {
+                    uses[body.index()] += usize::from(!seen[body.index()]);
+                    seen[body.index()] = true;
+                }
+            }
+        }
+        for marker in markers {
+            uses[marker.body.index()] += 1;
+        }
+        for step in &mut self.plan.steps {
+            let Step::Dyad(dyad) = step else { continue };
+            for (first, side) in [(0, &mut dyad.a), (2, &mut dyad.b)] {
+                let body = side.inner.body.index();
+                if uses[body] == 1 {
+                    side.wanted = false;
+                    self.wanted.retain(|wanted| *wanted != body);
+                    self.spares.push((dyad.constants, first));
+                    break;
+                }
+            }
+        }
+    }
+}
+
+/// Whether a marker is at the same place of the frame for every design.
+fn is_fixed(mechanism: &Mechanism, marker: Marker) -> bool {
+    let at = mechanism.markers[marker.index as usize];
+    let points = &mechanism.model.links[at.link.index()].points;
+    marker.spot == Spot::Frame
+        && mechanism.seats[at.link.index()].weld.is_none()
+        && points.iter().any(|point| {
+            let is_constant = matches!(
+                point.place,
+                Place::Cartesian {
+                    x: Scalar::Const(_),
+                    y: Scalar::Const(_)
+                }
+            );
+            point.point == at.point && is_constant
+        })
+}

@@ -1,0 +1,250 @@
+//! One design over a sweep of its motion.
+
+use kempe_mechanism::Mechanism;
+use kempe_mechanism::newton::PlanNumber;
+use kempe_mechanism::plan::Step;
+use kempe_mechanism::state::{Branch, Design, State, input_of};
+use kempe_number::{InstructionSet, Jet, Lanes, Number, multiversion};
+
+use crate::batch::Batch;
+use crate::batch::columns::{Target, all_lanes, closes, write_places};
+use crate::batch::stretch::{find_stretch, stretches};
+use crate::batch::wide::{Single, Wide};
+use crate::drive_path::DrivePath;
+use crate::motion::Motion;
+
+/// How many plain states take every step of the plan together.
+const PLAIN_STATES: usize = 16;
+
+multiversion! {
+    /// Sweeps positions in lanes; returns how many poses close. Two of the widest registers
+    /// side by side, and as many states together as the nearest cache holds.
+    pub(super) fn sweep_positions(
+        set: InstructionSet,
+        batch: &Batch,
+        parameters: &[f64],
+        columns: &mut [&mut [f64]],
+    ) -> usize = sweep_lanes::<Lanes<16>, 16, 4>;
+}
+
+multiversion! {
+    /// Sweeps positions with their first and second derivatives in lanes; returns how many poses close. One of the
+    /// widest registers for every order.
+    pub(super) fn sweep_rates(
+        set: InstructionSet,
+        batch: &Batch,
+        parameters: &[f64],
+        columns: &mut [&mut [f64]],
+    ) -> usize = sweep_lanes::<Jet<Lanes<8>, 3>, 8, 4>;
+}
+
+/// Sweeps the motion's own design, lanes over the parameter, `M` states with `W` lanes at a time.
+#[cfg_attr(not(debug_assertions), inline(always))]
+fn sweep_lanes<T: Wide<W>, const W: usize, const M: usize>(
+    batch: &Batch,
+    parameters: &[f64],
+    columns: &mut [&mut [f64]],
+) -> usize {
+    let motion = &*batch.motion;
+    let (mechanism, design) = (motion.mechanism(), &motion.design.lift::<T>());
+    let order = &batch.order;
+    let mut states = held_states::<T>(motion, M);
+    order.solve_once(&order.fixed, design, &mut states);
+    let mut padded = [[0.0; W]; M];
+    let (mut cursor, mut closed) = (0, 0);
+    for (block, part) in parameters.chunks(M * W).enumerate() {
+        let states = &mut states[..part.len().div_ceil(W)];
+        let at = match part.as_chunks() {
+            (whole, []) => whole,
+            _ => {
+                // The last block repeats its last parameter.
+                for (k, p) in padded.as_flattened_mut().iter_mut().enumerate() {
+                    *p = part[k.min(part.len() - 1)];
+                }
+                &padded[..states.len()]
+            }
+        };
+        for (state, at) in states.iter_mut().zip(at) {
+            match &motion.path {
+                DrivePath::Coordinate { drive, .. } => {
+                    set_moving(mechanism, *drive, T::seed(Lanes(*at)), state);
+                }
+                path => set_at_times(path, mechanism, at, state),
+            }
+        }
+        let mut wanted = [Target::default(); M];
+        for (m, target) in wanted.iter_mut().enumerate().take(states.len()) {
+            target.row = (block * M + m) * W;
+            target.wanted = all_lanes(W.min(parameters.len() - target.row));
+        }
+        while let Some(targets) = next_stretch(batch, at, &mut wanted, &mut cursor, columns) {
+            let branch = &batch.stretches[cursor].branch;
+            let steps = order.moving.iter().copied();
+            (order.plan).solve_all::<T, false>(steps, design, branch, states);
+            closed += write_places(batch, design, states, &targets, columns);
+        }
+    }
+    closed
+}
+
+/// Finds a stretch for `cursor` in which wanted lanes lie, and takes them from those wanted; lanes that lie in none
+/// become NaN. Nearly always one stretch holds them all.
+#[inline(never)]
+fn next_stretch<const W: usize, const M: usize>(
+    batch: &Batch,
+    at: &[[f64; W]],
+    wanted: &mut [Target; M],
+    cursor: &mut usize,
+    columns: &mut [&mut [f64]],
+) -> Option<[Target; M]> {
+    while let Some(m) = wanted.iter().position(|target| target.wanted != 0) {
+        let lane = wanted[m].wanted.trailing_zeros() as usize;
+        if !find_stretch(&batch.stretches, at[m][lane], cursor) {
+            let row = wanted[m].row + lane;
+            columns.iter_mut().for_each(|c| c[row] = f64::NAN);
+            wanted[m].wanted &= !(1 << lane);
+            continue;
+        }
+        let stretch = &batch.stretches[*cursor];
+        let mut mine = *wanted;
+        if !stretch.holds_all(at.as_flattened()) {
+            for (mine, at) in mine.iter_mut().zip(at) {
+                mine.wanted &= stretch.lanes(at);
+            }
+        }
+        for (rest, mine) in wanted.iter_mut().zip(&mine) {
+            rest.wanted &= !mine.wanted;
+        }
+        return Some(mine);
+    }
+    None
+}
+
+/// Sweeps mechanisms whose branch is more than signs: one pose after the other.
+pub(super) fn sweep_one_by_one<T: Single>(
+    _: InstructionSet,
+    batch: &Batch,
+    parameters: &[f64],
+    out: &mut [&mut [f64]],
+) -> usize {
+    let motion = &*batch.motion;
+    let design = motion.design.lift::<T>();
+    let mut closed = 0;
+    sweep_states(motion, &design, parameters, T::seed, |row, state| {
+        closed += usize::from(state.is_some());
+        for (index, column) in out.iter_mut().enumerate() {
+            let (order, rest) = (index / batch.columns(), index % batch.columns());
+            column[row] = state.map_or(f64::NAN, |state| {
+                let place = state.place(&design, batch.markers[rest / 2]);
+                place[rest % 2].order(order)
+            });
+        }
+    });
+    closed
+}
+
+/// States with all drives where they are at the start of the motion.
+#[inline(never)]
+fn held_states<T: Number>(motion: &Motion, count: usize) -> Vec<State<T>> {
+    let mut coordinates = vec![T::zero(); motion.mechanism().model.drives.len()];
+    (motion.path).coordinates(T::from_f64(motion.start), &mut coordinates);
+    let mut state = State::new(motion.mechanism());
+    state.set_inputs(motion.mechanism(), &coordinates);
+    vec![state; count]
+}
+
+/// Sets the moving drive.
+#[cfg_attr(not(debug_assertions), inline(always))]
+fn set_moving<T: Number>(mechanism: &Mechanism, drive: usize, p: T, state: &mut State<T>) {
+    if let (Some(input), Some(drive)) = (
+        state.inputs.get_mut(drive),
+        mechanism.model.drives.get(drive),
+    ) {
+        *input = input_of(drive, p);
+    }
+}
+
+/// Motion laws branch on time, so every lane is asked for on its own.
+#[cold]
+#[inline(never)]
+fn set_at_times<T: Wide<W>, const W: usize>(
+    path: &DrivePath,
+    mechanism: &Mechanism,
+    times: &[f64; W],
+    state: &mut State<T>,
+) {
+    let drives = state.inputs.len();
+    let mut values = vec![T::zero(); drives];
+    let mut one = vec![T::Lane::zero(); drives];
+    for (lane, time) in times.iter().enumerate() {
+        path.coordinates(T::Lane::seed(*time), &mut one);
+        for (value, q) in values.iter_mut().zip(&one) {
+            value.set_lane(lane, *q);
+        }
+    }
+    state.set_inputs(mechanism, &values);
+}
+
+/// Solves the poses at path parameters of a motion one by one, on any number, and hands each state to `each`
+/// with the row's index; `None` where the parameter is beyond the motion's ends or the pose does not close.
+///
+/// `seed` makes the number from the path parameter: itself for positions, `Jet::variable` for rates along the path.
+/// The same solves as [`Motion::solve`], without looking up the branch anew for every row.
+///
+/// # Example
+/// Speeds and accelerations, per rad of the drive: `sweep_states(&motion, &design, &angles, Jet::<f64, 3>::variable,
+/// |row, state| ...)` with a `Design<Jet<f64, 3>>`.
+#[inline]
+pub fn sweep_states<T: PlanNumber>(
+    motion: &Motion,
+    design: &Design<T>,
+    parameters: &[f64],
+    seed: impl Fn(f64) -> T,
+    mut each: impl FnMut(usize, Option<&State<T>>),
+) {
+    let mechanism = motion.mechanism();
+    let plan = &mechanism.plan;
+    let needs_guess = plan.steps.iter().any(Step::needs_guess);
+    let together = if needs_guess { 1 } else { PLAIN_STATES };
+    let stretches = stretches(motion);
+    let mut guessed = Branch::neutral(mechanism);
+    let mut states = held_states::<T>(motion, together);
+    let mut coordinates = vec![T::zero(); mechanism.model.drives.len()];
+    let (mut cursor, mut row) = (0, 0);
+    while let Some(&p) = parameters.get(row) {
+        if !find_stretch(&stretches, p, &mut cursor) {
+            each(row, None);
+            row += 1;
+            continue;
+        }
+        let stretch = &stretches[cursor];
+        let mut count = 0;
+        for (state, &p) in states.iter_mut().zip(&parameters[row..]) {
+            if !stretch.holds(p) {
+                break;
+            }
+            match &motion.path {
+                DrivePath::Coordinate { drive, .. } => {
+                    set_moving(mechanism, *drive, seed(p), state)
+                }
+                path => {
+                    path.coordinates(seed(p), &mut coordinates);
+                    state.set_inputs(mechanism, &coordinates);
+                }
+            }
+            count += 1;
+        }
+        let branch = if needs_guess {
+            motion.branch_at(p, &mut guessed);
+            &guessed
+        } else {
+            &stretch.branch
+        };
+        let steps = 0..plan.steps.len();
+        plan.solve_all::<T, true>(steps, design, branch, &mut states[..count]);
+        for state in &states[..count] {
+            each(row, closes(state).then_some(state));
+            row += 1;
+        }
+    }
+}

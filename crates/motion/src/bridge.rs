@@ -1,0 +1,105 @@
+//! Across a change point: the motion is smooth there, but the constraints alone do not determine its derivatives.
+//!
+//! The series on both sides are joined by the polynomial that agrees with all their coefficients (Hermite
+//! interpolation, divided differences with repeated points).
+
+use kempe_mechanism::pose::Pose;
+use kempe_mechanism::state::Design;
+use kempe_number::Jet;
+
+use crate::events::Event;
+use crate::motion::{Motion, Solver};
+
+/// Coefficients taken from each side.
+const SIDE_ORDER: usize = 6;
+
+/// The series on one side.
+pub type Side = Jet<f64, SIDE_ORDER>;
+
+/// The poses at a path parameter within the bridge of a change point, as series joined from both sides. `solver` is
+/// storage.
+pub fn across<const N: usize>(
+    motion: &Motion,
+    design: &Design<Side>,
+    event: &Event,
+    p: f64,
+    solver: &mut Solver<Side>,
+) -> Vec<Pose<Jet<f64, N>>> {
+    let (at, half) = (event.at, event.bridge);
+    motion.solve(design, Jet::variable(at - half), solver);
+    let low = solver.state.poses.clone();
+    motion.solve(design, Jet::variable(at + half), solver);
+    let joined = |low: &Side, high: &Side| join(low, high, half, p - at);
+    low.iter()
+        .zip(&solver.state.poses)
+        .map(|(low, high)| Pose {
+            x: joined(&low.x, &high.x),
+            y: joined(&low.y, &high.y),
+            c: joined(&low.c, &high.c),
+            s: joined(&low.s, &high.s),
+        })
+        .collect()
+}
+
+/// The series at `at_from_center` of the polynomial through two series given `half` to either side of `center`.
+fn join<const N: usize>(low: &Side, high: &Side, half: f64, at_from_center: f64) -> Jet<f64, N> {
+    const M: usize = 2 * SIDE_ORDER;
+    // In the variable u = (p - center) / half the points are -1 and +1.
+    let mut scaled = [[0.0; SIDE_ORDER]; 2];
+    let mut power = 1.0;
+    for k in 0..SIDE_ORDER {
+        scaled[0][k] = low.coefficient(k) * power;
+        scaled[1][k] = high.coefficient(k) * power;
+        power *= half;
+    }
+    let node = |i: usize| if i < SIDE_ORDER { -1.0 } else { 1.0 };
+    let side = |i: usize| usize::from(i >= SIDE_ORDER);
+    // Divided differences of rising order; within one side they are the Taylor coefficients.
+    let mut table: Vec<f64> = (0..M).map(|i| scaled[side(i)][0]).collect();
+    let mut newton = [0.0; M];
+    newton[0] = table[0];
+    for order in 1..M {
+        for i in 0..M - order {
+            table[i] = if side(i) == side(i + order) {
+                scaled[side(i)][order]
+            } else {
+                (table[i + 1] - table[i]) / (node(i + order) - node(i))
+            };
+        }
+        newton[order] = table[0];
+    }
+    // Newton's form, evaluated as a series at the wanted place.
+    let u = Jet::<f64, N>::variable(at_from_center / half);
+    let mut sum = Jet::<f64, N>::constant(newton[M - 1]);
+    for i in (0..M - 1).rev() {
+        sum = sum * (u - node(i)) + newton[i];
+    }
+    let mut coefficients = *sum.coefficients();
+    let mut power = 1.0;
+    for c in &mut coefficients {
+        *c *= power;
+        power /= half;
+    }
+    Jet::from_coefficients(coefficients)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use kempe_number::Number;
+
+    #[test]
+    fn joins_a_smooth_function_to_full_accuracy() {
+        let f = |p: f64| Jet::<f64, SIDE_ORDER>::variable(p).sin_cos().0;
+        let (center, half) = (0.7, 0.03);
+        let joined: Jet<f64, 5> = join(&f(center - half), &f(center + half), half, 0.004);
+        let truth = Jet::<f64, 5>::variable(center + 0.004).sin_cos().0;
+        for k in 0..5 {
+            let tolerance = [1e-15, 1e-14, 1e-12, 1e-10, 1e-8][k];
+            assert!(
+                (joined.derivative(k) - truth.derivative(k)).abs() < tolerance,
+                "order {k}"
+            );
+        }
+    }
+}

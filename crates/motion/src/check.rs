@@ -1,0 +1,169 @@
+//! Everything worth knowing about a mechanism before it moves.
+
+use kempe_mechanism::assur::{AssurGroup, assur_groups};
+use kempe_mechanism::mobility::{Mobility, mobility, state_at};
+use kempe_mechanism::state::{Branch, Design};
+use kempe_mechanism::structure::{BodyId, Source};
+
+use crate::assemble::Assemblies;
+use crate::drive_path::DrivePath;
+use crate::events::Event;
+use crate::four_bar::{FourBar, four_bars};
+use crate::motion::{Demand, EndReason, Motion, MotionError};
+use crate::progress::{Unwatched, Watch};
+use crate::temporary_drives::hold;
+
+/// A cylinder or slide is followed this many mechanism sizes from its start when its reach is asked for.
+const FAR: f64 = 20.0;
+/// Shortest length of a cylinder that is tried, in mechanism sizes.
+const SHORTEST: f64 = 1e-6;
+
+/// What a check found.
+#[derive(Clone, Debug)]
+pub struct Findings {
+    /// Freedoms, counted and measured.
+    pub mobility: Mobility,
+    /// How many drives there are.
+    pub drives: usize,
+    /// Assur groups in the order in which they are solved.
+    pub groups: Vec<AssurGroup>,
+    /// Four-bar loops.
+    pub four_bars: Vec<FourBar>,
+    /// Bodies with an idle freedom.
+    pub idle: Vec<BodyId>,
+    /// Joints with redundant constraints.
+    pub redundant: Vec<Source>,
+    /// All assemblies at the start.
+    pub assemblies: Assemblies,
+    /// Whether assemblies were looked for: with too few drives there is no place at which they could be counted.
+    pub searched: bool,
+    /// How far the drive can go on this circuit.
+    pub reach: Option<Reach>,
+    /// Why there is no motion, if there is none.
+    pub problem: Option<MotionError>,
+}
+
+/// How far a drive can go.
+#[derive(Clone, Debug)]
+pub struct Reach {
+    /// Lowest and highest coordinate (or time), SI.
+    pub range: (f64, f64),
+    /// Why it ends there.
+    pub ends: (EndReason, EndReason),
+    /// The drive can turn on without end.
+    pub full_turn: bool,
+    /// Dead points and change points met where the file demands the drive to go.
+    pub events: Vec<Event>,
+}
+
+/// Checks a mechanism for the model's parameter values.
+pub fn check(design: &Design<f64>) -> Findings {
+    check_watched(design, &mut Unwatched)
+}
+
+/// As [`check`]; `watch` hears how far it has come. Stopped, it returns what it found until then, with
+/// [`MotionError::Stopped`] as the problem.
+pub fn check_watched(design: &Design<f64>, watch: &mut dyn Watch) -> Findings {
+    let mechanism = &*design.mechanism;
+    let plan = &mechanism.plan;
+    let mut findings = Findings {
+        mobility: mobility(design, None),
+        drives: mechanism.model.drives.len(),
+        groups: assur_groups(mechanism),
+        four_bars: four_bars(mechanism, &design.geometry),
+        idle: plan.decomposition.idle.clone(),
+        redundant: Vec::new(),
+        assemblies: Assemblies::default(),
+        searched: true,
+        reach: None,
+        problem: None,
+    };
+    for row in &plan.decomposition.surplus {
+        let source = mechanism.constraints[row.constraint].1;
+        if !findings.redundant.contains(&source) {
+            findings.redundant.push(source);
+        }
+    }
+    match Motion::watched(design, watch) {
+        Ok(motion) => {
+            if let Some(chosen) = motion.assemblies.list.first() {
+                let mut coordinates = vec![0.0; mechanism.model.drives.len()];
+                motion.path.coordinates(motion.anchor, &mut coordinates);
+                let state = state_at(mechanism, &chosen.poses, &coordinates);
+                findings.mobility = mobility(design, Some((&state, &chosen.branch)));
+            }
+            match reach(&motion, watch) {
+                Ok(reach) => findings.reach = Some(reach),
+                Err(stopped) => findings.problem = Some(stopped),
+            }
+            findings.assemblies = motion.assemblies.clone();
+        }
+        Err(problem) => {
+            if let MotionError::CannotAssemble { assemblies, .. } = &problem {
+                findings.assemblies = (**assemblies).clone();
+            }
+            if matches!(
+                problem,
+                MotionError::NoDrive | MotionError::Undetermined { .. }
+            ) {
+                findings.searched = false;
+                // The bodies and what joins them are the same however they are held.
+                if let Some(held) = hold(mechanism, &design.parameters, watch) {
+                    let coordinates = vec![0.0; mechanism.model.drives.len()];
+                    let state = state_at(mechanism, &held.assembly.poses, &coordinates);
+                    let mut branch = Branch::neutral(mechanism);
+                    branch.near = held.assembly.branch.near;
+                    findings.mobility = mobility(design, Some((&state, &branch)));
+                }
+            }
+            findings.problem = Some(problem);
+        }
+    }
+    findings
+}
+
+/// How far the moving drive can go from its start, beyond what the file demands.
+fn reach(motion: &Motion, watch: &mut dyn Watch) -> Result<Reach, MotionError> {
+    let own = || Reach {
+        range: motion.reached(),
+        ends: motion.ends,
+        full_turn: false,
+        events: motion.events.clone(),
+    };
+    let DrivePath::Coordinate { drive, .. } = &motion.path else {
+        return Ok(own());
+    };
+    let Some(law) = motion.mechanism().model.drives.get(*drive) else {
+        return Ok(own());
+    };
+    let turning = matches!(law.kind, kempe_model::DriveKind::Turn { .. });
+    let far = if turning {
+        std::f64::consts::TAU
+    } else {
+        FAR * motion.size()
+    };
+    // At least what the file demands.
+    let mut demanded = (
+        (motion.anchor - far).min(motion.demanded.0),
+        (motion.anchor + far).max(motion.demanded.1),
+    );
+    if matches!(law.kind, kempe_model::DriveKind::Cylinder { .. }) {
+        demanded.0 = demanded.0.max(SHORTEST * motion.size());
+    }
+    let demand = Demand {
+        path: motion.path.clone(),
+        range: demanded,
+        start: motion.anchor,
+        assemblies: Some(motion.assemblies.clone()),
+    };
+    match Motion::along(&motion.design, demand, watch) {
+        Ok(wide) => Ok(Reach {
+            range: wide.reached(),
+            ends: wide.ends,
+            full_turn: turning && wide.ends == (EndReason::Covered, EndReason::Covered),
+            events: wide.met(motion.demanded),
+        }),
+        Err(stopped @ MotionError::Stopped { .. }) => Err(stopped),
+        Err(_) => Ok(own()),
+    }
+}

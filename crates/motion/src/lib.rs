@@ -1,0 +1,19 @@
+//! Planar mechanisms in motion: assemblies, following, limits, dead points, change points, circuits.
+
+pub mod assemble;
+pub mod batch;
+pub mod bridge;
+pub mod check;
+pub mod circuit;
+pub mod drive_path;
+pub mod events;
+pub mod four_bar;
+pub mod motion;
+pub mod progress;
+pub mod temporary_drives;
+pub mod trace;
+
+pub use batch::{Batch, BatchError, Designs, sweep_states};
+pub use check::{Findings, Reach, check, check_watched};
+pub use motion::{Demand, EndReason, Motion, MotionError, Solver};
+pub use progress::{Stage, Unwatched, Watch};

@@ -1,0 +1,237 @@
+//! A motion: the branch through the chosen assembly, known all along the drives' path.
+//!
+//! It begins at an assembly (`start`) and is followed from there both ways (`follow`), with restricted steps where branches come
+//! near each other (`restriction`). Where modes change between nodes of the trace it is split (`modes`). From then on the branch is
+//! known everywhere (`branch`), and rows are solved on any number (`solver`).
+
+mod branch;
+mod error;
+mod follow;
+mod modes;
+mod restriction;
+mod solver;
+mod start;
+
+pub use self::error::MotionError;
+pub(crate) use self::follow::runs_away;
+pub use self::follow::{EndReason, FAR, STEP_LIMIT, WHIRLING};
+pub use self::modes::CROSSING;
+pub use self::restriction::MEETING;
+pub(crate) use self::restriction::{Unlocated, restricting_steps};
+pub use self::solver::Solver;
+pub use self::start::SIZES;
+
+use std::sync::Arc;
+
+use kempe_mechanism::Mechanism;
+use kempe_mechanism::pose::Pose;
+use kempe_mechanism::state::Design;
+
+use self::branch::Patch;
+use crate::assemble::Assemblies;
+use crate::drive_path::DrivePath;
+use crate::events::{Event, EventKind};
+use crate::progress::{Unwatched, Watch};
+use crate::trace::{Node, Path, unscale};
+
+/// A motion may end this close to a limit (in path scales) and still count as reaching it.
+pub const AT_LIMIT: f64 = 1e-12;
+
+/// A place located this near (in path scales) beyond the demanded range lies at its end.
+const AT_END: f64 = 1e-9;
+
+/// A change point this near (in path scales) to the start is where the motion starts.
+const AT_START: f64 = 1e-6;
+
+/// What is asked of a motion.
+#[derive(Clone, Debug)]
+pub struct Demand {
+    /// The drives' path.
+    pub path: DrivePath,
+    /// Range of the path parameter to cover.
+    pub range: (f64, f64),
+    /// Where it starts.
+    pub start: f64,
+    /// All assemblies at the start, where they are known already: finding them can take long.
+    pub assemblies: Option<Assemblies>,
+}
+
+/// The branch of a motion, all along the path: what every row of a table is computed from. It lives once, shared by the
+/// samplers, batches and proofs of it.
+#[derive(Clone, Debug)]
+pub struct Motion {
+    /// The design, the angles of its links counted as in the chosen assembly.
+    pub design: Design<f64>,
+    /// The drives' path.
+    pub path: DrivePath,
+    /// All assemblies at the anchor, the chosen one first.
+    pub assemblies: Assemblies,
+    /// Path parameter where the assembly was chosen: the start, or near it when the start is singular.
+    pub anchor: f64,
+    /// How many assemblies at the anchor fit the file's hints and lead to the pose at the start: more than one where the
+    /// start is a change point and the hints do not tell which branch is meant.
+    pub choices: usize,
+    /// Path parameter where the motion starts.
+    pub start: f64,
+    /// Demanded range of the path parameter.
+    pub demanded: (f64, f64),
+    /// Why the trace ended at its low and its high end.
+    pub ends: (EndReason, EndReason),
+    /// Dead points, change points and limits met within the demanded range, in order of the path parameter.
+    pub events: Vec<Event>,
+    /// All those on the trace, which goes a little beyond the demanded range.
+    pub places: Vec<Event>,
+    nodes: Vec<Node>,
+    parameters: Vec<f64>,
+    patches: Vec<Patch>,
+    scale: f64,
+    size: f64,
+}
+
+impl Motion {
+    /// Finds the assembly at the start and follows it over the demanded range of the drives.
+    ///
+    /// # Errors
+    /// When it cannot start. A range that is cut short by a limit is not an error here: see [`Motion::ends`].
+    pub fn new(design: &Design<f64>) -> Result<Arc<Self>, MotionError> {
+        Self::watched(design, &mut Unwatched)
+    }
+
+    /// As [`Motion::new`]; `watch` hears how far it has come and may stop it.
+    ///
+    /// # Errors
+    /// As [`Motion::new`], and [`MotionError::Stopped`].
+    pub fn watched(design: &Design<f64>, watch: &mut dyn Watch) -> Result<Arc<Self>, MotionError> {
+        let (model, parameters) = (&design.mechanism.model, &design.parameters);
+        let size = design.size();
+        let path = DrivePath::new(model, parameters, size);
+        let demanded = path.range(model, parameters);
+        let start = path.start(model, parameters);
+        let stretch = Demand {
+            path,
+            range: demanded,
+            start,
+            assemblies: None,
+        };
+        Self::along(design, stretch, watch).map(Arc::new)
+    }
+
+    /// A motion over given nodes, rising in the path parameter; it covers just them.
+    pub(crate) fn of_nodes(
+        design: Design<f64>,
+        path: DrivePath,
+        assemblies: Assemblies,
+        nodes: Vec<Node>,
+    ) -> Self {
+        let scale = path.scale();
+        let at = |node: Option<&Node>| {
+            node.and_then(|n| n.z.last())
+                .map_or(f64::NAN, |z| z * scale)
+        };
+        let demanded = (at(nodes.first()), at(nodes.last()));
+        Self {
+            assemblies,
+            anchor: demanded.0,
+            choices: 1,
+            start: demanded.0,
+            demanded,
+            ends: (EndReason::Covered, EndReason::Covered),
+            events: Vec::new(),
+            places: Vec::new(),
+            parameters: Vec::new(),
+            patches: Vec::new(),
+            nodes,
+            scale,
+            size: design.size(),
+            design,
+            path,
+        }
+    }
+
+    /// The mechanism.
+    pub fn mechanism(&self) -> &Arc<Mechanism> {
+        &self.design.mechanism
+    }
+
+    /// The range that was reached of the demanded one.
+    pub fn reached(&self) -> (f64, f64) {
+        let (first, last) = (self.parameters.first(), self.parameters.last());
+        let (first, last) = (
+            first.copied().unwrap_or(self.start),
+            last.copied().unwrap_or(self.start),
+        );
+        (self.demanded.0.max(first), self.demanded.1.min(last))
+    }
+
+    /// What the trace meets within a range of the path parameter, its ends included.
+    pub(crate) fn met(&self, (low, high): (f64, f64)) -> Vec<Event> {
+        let margin = AT_END * self.scale;
+        let within = |e: &&Event| low - margin <= e.at && e.at <= high + margin;
+        self.places.iter().filter(within).cloned().collect()
+    }
+
+    /// How far beyond its ends the motion still counts as reaching.
+    pub(crate) fn margin(&self) -> f64 {
+        AT_LIMIT * self.scale
+    }
+
+    /// Whether a path parameter lies on the motion.
+    pub fn reaches(&self, p: f64) -> bool {
+        let tolerance = self.margin();
+        let (Some(first), Some(last)) = (self.parameters.first(), self.parameters.last()) else {
+            return false;
+        };
+        p >= first - tolerance && p <= last + tolerance
+    }
+
+    /// The change point at which the motion starts, if it does.
+    pub fn start_crossing(&self) -> Option<&Event> {
+        let margin = AT_START * self.scale;
+        (self.places.iter())
+            .find(|e| e.kind == EventKind::ChangePoint && (e.at - self.start).abs() <= margin)
+    }
+
+    /// Size of the mechanism, m: the scale of closure residuals.
+    pub fn size(&self) -> f64 {
+        self.size
+    }
+
+    /// Path parameter and poses of a node of the trace, with unwrapped body angles.
+    pub fn node(&self, index: usize) -> (f64, Vec<Pose<f64>>, Vec<f64>) {
+        let mut poses = vec![Pose::identity(); self.mechanism().bodies];
+        let mut near = vec![0.0; self.mechanism().bodies];
+        unscale(&self.nodes[index].z, self.size, &mut poses, &mut near);
+        (self.parameters[index], poses, near)
+    }
+
+    /// Path parameters of all nodes, rising.
+    pub fn node_parameters(&self) -> &[f64] {
+        &self.parameters
+    }
+
+    /// How many nodes the trace needed.
+    pub fn nodes(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// The node at a limit, when `p` is one to within [`AT_LIMIT`]. There the closed forms may miss the pose by a
+    /// rounding error; the trace does not.
+    pub fn limit_at(&self, p: f64) -> Option<usize> {
+        [0, self.nodes.len().saturating_sub(1)]
+            .into_iter()
+            .find(|&index| {
+                let (Some(node), Some(at)) = (self.nodes.get(index), self.parameters.get(index))
+                else {
+                    return false;
+                };
+                node.parameter_rate() == 0.0 && (p - at).abs() <= AT_LIMIT * self.scale
+            })
+    }
+
+    /// The change point within whose bridge `p` lies, if any.
+    pub fn bridge(&self, p: f64) -> Option<&Event> {
+        self.places
+            .iter()
+            .find(|e| e.kind != EventKind::Limit && (p - e.at).abs() < 0.5 * e.bridge)
+    }
+}

@@ -1,0 +1,58 @@
+//! The branch of a motion anywhere on it: assembly modes, guesses and turn counts from the trace.
+
+use kempe_mechanism::pose::Pose;
+use kempe_mechanism::state::Branch;
+
+use super::Motion;
+use crate::trace::{Cubic, interval};
+
+/// One stretch of the motion on which every assembly mode stays the same.
+#[derive(Clone, Debug)]
+pub(crate) struct Patch {
+    /// The node where it begins.
+    pub from: usize,
+    /// Assembly mode of every step.
+    pub signs: Vec<f64>,
+}
+
+impl Motion {
+    /// Fills the branch for a path parameter: modes, guesses and turn counts.
+    pub fn branch_at(&self, p: f64, branch: &mut Branch) {
+        let node = interval(&self.parameters, p);
+        let patch = self
+            .patches
+            .partition_point(|patch| patch.from <= node)
+            .max(1)
+            - 1;
+        if let Some(patch) = self.patches.get(patch) {
+            branch.signs.clone_from(&patch.signs);
+        }
+        let (Some(from), Some(to)) = (self.nodes.get(node), self.nodes.get(node + 1)) else {
+            return;
+        };
+        // Where on the cubic the path parameter is p: it is monotonic between nodes.
+        let wanted = p / self.scale;
+        let last = from.z.len() - 1;
+        let cubic = Cubic::new(from, to);
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..30 {
+            let middle = 0.5 * (low + high);
+            if cubic.at(middle).part(last) <= wanted {
+                low = middle
+            } else {
+                high = middle
+            }
+        }
+        let place = cubic.at(0.5 * (low + high));
+        for body in 1..self.mechanism().bodies {
+            let [x, y, angle] = [0, 1, 2].map(|k| place.part(3 * (body - 1) + k));
+            branch.guess[body] = Pose::from_angle(x * self.size, y * self.size, angle);
+            branch.near[body] = angle;
+        }
+    }
+
+    /// The stretches on which every assembly mode stays the same: where each begins, and the modes; rising.
+    pub(crate) fn stretches(&self) -> impl Iterator<Item = (f64, &[f64])> {
+        (self.patches.iter()).map(|patch| (self.parameters[patch.from], &patch.signs[..]))
+    }
+}

@@ -1,0 +1,58 @@
+//! Poses anywhere on a motion: every row is solved by itself.
+
+use kempe_mechanism::newton::PlanNumber;
+use kempe_mechanism::state::{Branch, Design, State};
+use kempe_number::Number;
+
+use super::Motion;
+
+/// Storage for solving poses of a motion, reused from row to row.
+#[derive(Clone, Debug)]
+pub struct Solver<T> {
+    /// The branch last used.
+    pub branch: Branch,
+    /// The state last solved.
+    pub state: State<T>,
+    /// Drive coordinates last used.
+    pub coordinates: Vec<T>,
+}
+
+impl<T: PlanNumber> Solver<T> {
+    /// Solves with the branch and coordinates set.
+    pub fn run(&mut self, motion: &Motion, design: &Design<T>) {
+        self.state.set_inputs(motion.mechanism(), &self.coordinates);
+        design.solve(&self.branch, &mut self.state);
+    }
+}
+
+impl Motion {
+    /// The motion's design on the number `T`: its dimensions evaluated anew, its angles counted as here.
+    pub fn design_on<T: Number>(&self) -> Design<T> {
+        let given = self.design.parameters.iter();
+        let parameters: Vec<T> = given.map(|x| T::from_f64(*x)).collect();
+        self.design_of(&parameters)
+    }
+
+    /// The design of parameter values on the number `T`, its angles counted as this motion counts them.
+    pub fn design_of<T: Number>(&self, parameters: &[T]) -> Design<T> {
+        let mut design = Design::new(self.mechanism(), parameters);
+        design.count_turns(&self.design.geometry.turns);
+        design
+    }
+
+    /// Storage for solving poses of this motion on the number `T`.
+    pub fn solver<T: PlanNumber>(&self) -> Solver<T> {
+        Solver {
+            branch: Branch::neutral(self.mechanism()),
+            state: State::new(self.mechanism()),
+            coordinates: vec![T::zero(); self.mechanism().model.drives.len()],
+        }
+    }
+
+    /// Solves the pose at a path parameter. The series' direction, if `T` has one, is the path's.
+    pub fn solve<T: PlanNumber>(&self, design: &Design<T>, p: T, solver: &mut Solver<T>) {
+        self.branch_at(p.value(), &mut solver.branch);
+        self.path.coordinates(p, &mut solver.coordinates);
+        solver.run(self, design);
+    }
+}

@@ -1,0 +1,265 @@
+//! Following the motion: pseudo-arc-length continuation of all constraints at once.
+//!
+//! The step depends on the mechanism alone, never on the rows that a study wants, so the branch that comes out cannot
+//! depend on them either. Every step is accepted only if the cubic through its ends, with their tangents, agrees with a
+//! corrected point in the middle: a jump to another branch would show there.
+
+mod cubic;
+mod restriction;
+mod step;
+
+pub use self::cubic::{Cubic, distance, interval};
+pub use self::cubic::{chord, hermite};
+pub use self::step::{MIDDLE_TOLERANCE, TURN_LIMIT};
+pub(crate) use self::step::{WIGGLE, hides_limits};
+
+use self::restriction::StepRestriction;
+pub(crate) use self::restriction::apart;
+use kempe_mechanism::bordered::Bordered;
+use kempe_mechanism::constraint::{Input, Situation};
+use kempe_mechanism::pose::Pose;
+use kempe_mechanism::state::Design;
+
+/// Part of a unit of travel that may be left over by the redundant constraints.
+const LOCKED: f64 = 1e-6;
+/// A correction below this (in mechanism sizes and rad) ends Newton's method.
+const CORRECTED: f64 = 1e-13;
+/// Corrections before a point is given up.
+const CORRECTIONS: usize = 8;
+/// A path through the space of drive coordinates.
+pub trait Path {
+    /// Drive coordinates at the path parameter, and their derivatives to it.
+    fn at(&self, p: f64, coordinates: &mut [f64], rates: &mut [f64]);
+    /// Size of a typical change of the parameter: 1 for an angle, a mechanism size for a length.
+    fn scale(&self) -> f64;
+    /// Where the drives' rates jump, rising; the rates at such a place are those behind it.
+    fn breaks(&self) -> Vec<f64> {
+        Vec::new()
+    }
+}
+
+/// A point of the motion: scaled unknowns (x and y over the mechanism's size, angle, for every body; last the path
+/// parameter over its scale) and the unit tangent.
+#[derive(Clone, Debug)]
+pub struct Node {
+    /// Unknowns.
+    pub z: Vec<f64>,
+    /// Unit tangent, in the direction of travel.
+    pub tangent: Vec<f64>,
+}
+
+impl Node {
+    /// Rate of the path parameter along the arc; zero at a limit.
+    pub fn parameter_rate(&self) -> f64 {
+        self.tangent[self.tangent.len() - 1]
+    }
+
+    /// The same point, travelled the other way.
+    pub(crate) fn turned(mut self) -> Self {
+        self.tangent.iter_mut().for_each(|t| *t = -*t);
+        self
+    }
+
+    /// Scaled unknowns at a length `h` along the tangent.
+    fn ahead(&self, h: f64) -> Vec<f64> {
+        let unknowns = self.z.iter().zip(&self.tangent);
+        unknowns.map(|(z, t)| z + h * t).collect()
+    }
+}
+
+/// Follows the solution curve of a mechanism along a path of its drives.
+pub struct Follower<'a, P> {
+    design: &'a Design<f64>,
+    path: &'a P,
+    /// Mechanism size, m.
+    pub size: f64,
+    system: Bordered,
+    step: Vec<f64>,
+    poses: Vec<Pose<f64>>,
+    near: Vec<f64>,
+    inputs: Vec<Input<f64>>,
+    coordinates: Vec<f64>,
+    rates: Vec<f64>,
+    restrictions: Vec<StepRestriction>,
+    determined: f64,
+}
+
+impl<'a, P: Path> Follower<'a, P> {
+    /// A follower for a design.
+    pub fn new(design: &'a Design<f64>, path: &'a P) -> Self {
+        let mechanism = &*design.mechanism;
+        let drives = mechanism.model.drives.len();
+        Self {
+            design,
+            path,
+            size: design.size(),
+            system: Bordered::new(mechanism),
+            step: Vec::new(),
+            poses: vec![Pose::identity(); mechanism.bodies],
+            near: vec![0.0; mechanism.bodies],
+            inputs: vec![Input::length(0.0); drives],
+            coordinates: vec![0.0; drives],
+            rates: vec![0.0; drives],
+            restrictions: Vec::new(),
+            determined: 0.0,
+        }
+    }
+
+    /// The largest residual at a point, in mechanism sizes and rad.
+    pub fn residual(&mut self, z: &[f64]) -> f64 {
+        self.linearise(z);
+        self.system.largest_residual()
+    }
+
+    /// How many unknowns, the path parameter included.
+    pub fn unknowns(&self) -> usize {
+        3 * (self.design.mechanism.bodies - 1) + 1
+    }
+
+    /// Where the drives' rates jump, and the scale of the path parameter.
+    pub fn breaks(&self) -> (Vec<f64>, f64) {
+        (self.path.breaks(), self.path.scale())
+    }
+
+    /// Whether the path parameter is time.
+    pub fn is_along_time(&self) -> bool {
+        !self.path.breaks().is_empty()
+    }
+
+    /// Path parameter at scaled unknowns.
+    pub fn parameter(&self, z: &[f64]) -> f64 {
+        z[z.len() - 1] * self.path.scale()
+    }
+
+    /// Scaled unknowns of a pose with unwrapped angles `near`.
+    pub fn scaled(&self, poses: &[Pose<f64>], near: &[f64], p: f64) -> Vec<f64> {
+        let mut z = Vec::with_capacity(self.unknowns());
+        for (pose, near) in poses.iter().zip(near).skip(1) {
+            z.extend([
+                pose.x / self.size,
+                pose.y / self.size,
+                pose.angle_near(*near),
+            ]);
+        }
+        z.push(p / self.path.scale());
+        z
+    }
+
+    /// Poses and unwrapped angles of scaled unknowns.
+    pub fn unscaled(&self, z: &[f64], poses: &mut [Pose<f64>], near: &mut [f64]) {
+        unscale(z, self.size, poses, near);
+    }
+
+    /// Fills and factors the Jacobian and residuals at a point.
+    fn linearise(&mut self, z: &[f64]) {
+        let p = self.parameter(z);
+        let (mut poses, mut near) = (
+            std::mem::take(&mut self.poses),
+            std::mem::take(&mut self.near),
+        );
+        self.unscaled(z, &mut poses, &mut near);
+        self.path.at(p, &mut self.coordinates, &mut self.rates);
+        for ((input, drive), &value) in self
+            .inputs
+            .iter_mut()
+            .zip(&self.design.mechanism.model.drives)
+            .zip(&self.coordinates)
+        {
+            *input = kempe_mechanism::state::input_of(drive, value);
+        }
+        let scale = self.path.scale();
+        self.rates.iter_mut().for_each(|rate| *rate *= scale);
+        let situation = Situation {
+            geometry: &self.design.geometry,
+            inputs: &self.inputs,
+            poses: &poses,
+            near: &near,
+        };
+        self.system
+            .fill(&self.design.mechanism, &situation, self.size, &self.rates);
+        (self.poses, self.near) = (poses, near);
+    }
+
+    /// The unit tangent at a point, on the side of `toward`. `None` where it is not unique.
+    pub fn tangent(&mut self, z: &[f64], toward: &[f64]) -> Option<Vec<f64>> {
+        self.linearise(z);
+        let mut t = Vec::new();
+        self.system.solve(false, toward, 1.0, &mut t);
+        // With redundant constraints the least squares leave a rest where there is no way to move at all.
+        let rest = self.system.rest();
+        let length = norm(&t);
+        if !length.is_finite() || length == 0.0 || rest > LOCKED {
+            return None;
+        }
+        for value in &mut t {
+            *value /= length;
+        }
+        Some(t)
+    }
+
+    /// Smallest over largest pivot of the bordered Jacobian at the point last linearised: how well the tangent is
+    /// determined.
+    pub fn conditioning(&self) -> f64 {
+        self.system.conditioning()
+    }
+
+    /// [`Follower::conditioning`] at the node that the trace last began at or stepped to.
+    pub fn determined(&self) -> f64 {
+        self.determined
+    }
+
+    /// Corrects a point within the hyperplane across `border` through it. Returns the length of the first correction.
+    pub fn correct(&mut self, z: &mut [f64], border: &[f64]) -> Option<f64> {
+        let mut first = None;
+        let mut last = f64::INFINITY;
+        for _ in 0..CORRECTIONS {
+            self.linearise(z);
+            let mut step = std::mem::take(&mut self.step);
+            self.system.solve(true, border, 0.0, &mut step);
+            let length = norm(&step);
+            for (z, d) in z.iter_mut().zip(&step) {
+                *z -= d;
+            }
+            self.step = step;
+            // What rounding leaves over, and more of it near singular poses.
+            let floor = (1e-15 / self.conditioning()).clamp(1e-11, 1e-8);
+            if !length.is_finite() || (length > 0.5 * last && length > 10.0 * floor) {
+                return None;
+            }
+            first.get_or_insert(length);
+            if length <= CORRECTED || (length > 0.1 * last && length < floor) {
+                return first;
+            }
+            last = length;
+        }
+        None
+    }
+
+    /// The start of a trace: corrects `z` at fixed path parameter and finds the tangent with the parameter growing
+    /// (`direction` > 0) or shrinking. `None` at a singular pose.
+    pub fn start(&mut self, mut z: Vec<f64>, direction: f64) -> Option<Node> {
+        let mut border = vec![0.0; z.len()];
+        let last = z.len() - 1;
+        border[last] = direction.signum();
+        self.correct(&mut z, &border)?;
+        let tangent = self.tangent(&z, &border)?;
+        self.determined = self.conditioning();
+        (self.determined > 1e-9 && tangent[last].abs() > 1e-7).then_some(Node { z, tangent })
+    }
+}
+
+/// Poses and unwrapped angles of scaled unknowns, for a mechanism of a size, m.
+pub(crate) fn unscale(z: &[f64], size: f64, poses: &mut [Pose<f64>], near: &mut [f64]) {
+    for (body, part) in z.chunks_exact(3).enumerate() {
+        poses[body + 1] = Pose::from_angle(part[0] * size, part[1] * size, part[2]);
+        near[body + 1] = part[2];
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}
+
+fn norm(a: &[f64]) -> f64 {
+    dot(a, a).sqrt()
+}

@@ -1,0 +1,119 @@
+//! Steps of a trace: along the arc, and onto a given path parameter.
+
+use super::{Follower, Node, Path, chord, distance, dot, hermite};
+
+/// How far the corrected middle of a step may lie from the cubic through its ends, as a part of the step.
+pub const MIDDLE_TOLERANCE: f64 = 1e-3;
+/// Smallest cosine between the tangents at the ends of a step.
+pub const TURN_LIMIT: f64 = 0.97;
+/// Steps shorter than this are not held to a path parameter that runs one way: rounding would decide.
+pub(crate) const WIGGLE: f64 = 1e-6;
+/// Longest step, in mechanism sizes and rad over all bodies (root of the sum of squares).
+const LONGEST_STEP: f64 = 0.5;
+/// Shortest step: below it the motion is stuck.
+const SHORTEST_STEP: f64 = 1e-9;
+
+impl<P: Path> Follower<'_, P> {
+    /// One step along the arc; `step` is the length to try and is adapted for the next. `None` when stuck.
+    pub fn advance(&mut self, from: &Node, step: &mut f64) -> Option<Node> {
+        let longest = LONGEST_STEP * ((self.design.mechanism.bodies - 1) as f64).sqrt();
+        let longest = longest.min(self.longest_step(&from.z));
+        let mut odd = 0;
+        while *step > SHORTEST_STEP {
+            let h = step.min(longest);
+            let mut z = from.ahead(h);
+            let outcome = self
+                .correct(&mut z, &from.tangent)
+                .filter(|first| *first <= 0.3 * h)
+                .and_then(|_| {
+                    let tangent = self.tangent(&z, &from.tangent)?;
+                    // Right on a crossing of branches the tangent is not determined: step elsewhere.
+                    self.determined = self.conditioning();
+                    if self.determined < 1e-10 {
+                        odd += 1;
+                        return None;
+                    }
+                    (dot(&tangent, &from.tangent) >= TURN_LIMIT).then_some(tangent)
+                });
+            let Some(tangent) = outcome else {
+                *step = h * if odd > 0 { 0.71 } else { 0.5 };
+                continue;
+            };
+            let to = Node { z, tangent };
+            if hides_limits(from, &to) && h > WIGGLE {
+                *step = 0.5 * h;
+                continue;
+            }
+            let mut middle = hermite(from, &to, 0.5);
+            let chord = chord(from, &to);
+            let gap = self.correct(&mut middle, &chord);
+            match gap {
+                Some(gap) if gap <= MIDDLE_TOLERANCE * h => {
+                    // The cubic's error goes with the fourth power of the step.
+                    let grow = (0.5 * MIDDLE_TOLERANCE * h / gap.max(1e-18)).sqrt().sqrt();
+                    *step = (h * grow.clamp(0.5, 2.0)).min(longest);
+                    return Some(to);
+                }
+                _ => *step = 0.6 * h,
+            }
+        }
+        None
+    }
+
+    /// The node at a scaled path parameter ahead of `from`, reached at fixed parameter, and the length of the first
+    /// correction there.
+    fn land(&mut self, from: &Node, target: f64) -> Option<(Node, f64)> {
+        let last = from.z.len() - 1;
+        let rate = from.tangent[last];
+        let far = (target - from.z[last]) / rate;
+        let mut z = from.ahead(far);
+        z[last] = target;
+        let mut border = vec![0.0; z.len()];
+        border[last] = rate.signum();
+        let gap = self.correct(&mut z, &border)?;
+        let tangent = self.tangent(&z, &border)?;
+        (far >= 0.0).then_some((Node { z, tangent }, gap))
+    }
+
+    /// The node at a scaled path parameter a little ahead, over a place where the drives' rates jump. `None` when it lies
+    /// farther away than the rates on both sides explain.
+    pub fn land_over(&mut self, from: &Node, target: f64) -> Option<Node> {
+        let (over, _) = self.land(from, target)?;
+        let last = from.z.len() - 1;
+        let width = (target - from.z[last]).abs();
+        let arcs = width / from.tangent[last].abs() + width / over.tangent[last].abs();
+        (distance(&from.z, &over.z) <= arcs + SHORTEST_STEP).then_some(over)
+    }
+
+    /// The node at a scaled path parameter ahead, such as where the drives' rates jump, but only as far as the cubic of
+    /// one step holds; shortens `step` otherwise.
+    pub fn land_smoothly(&mut self, from: &Node, target: f64, step: &mut f64) -> Option<Node> {
+        let last = from.z.len() - 1;
+        let far = (target - from.z[last]) / from.tangent[last];
+        let landed = self.land(from, target);
+        let near = landed.filter(|(_, gap)| *gap <= 0.3 * far.max(SHORTEST_STEP));
+        let smooth = near.map(|(to, _)| to).filter(|to| {
+            let middle = hermite(from, to, 0.5);
+            let mut corrected = middle.clone();
+            let across = chord(from, to);
+            dot(&to.tangent, &from.tangent) >= TURN_LIMIT
+                && self
+                    .correct(&mut corrected, &across)
+                    .is_some_and(|gap| gap <= MIDDLE_TOLERANCE * far)
+        });
+        if smooth.is_none() {
+            *step = step.min(0.5 * far);
+        }
+        smooth
+    }
+}
+
+/// Whether the path parameter cannot run one way all along a step that leaves and arrives the same way (the condition
+/// of Fritsch and Carlson 1980 for a monotonic cubic): two limits lie in between.
+pub(crate) fn hides_limits(from: &Node, to: &Node) -> bool {
+    let last = from.z.len() - 1;
+    let (a, b) = (from.parameter_rate(), to.parameter_rate());
+    let h = distance(&from.z, &to.z);
+    let mean = (to.z[last] - from.z[last]) / h;
+    a * b > 0.0 && (mean * a <= 0.0 || a.abs().max(b.abs()) > 3.0 * mean.abs())
+}

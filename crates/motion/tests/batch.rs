@@ -1,0 +1,304 @@
+//! One pose at a time, eight in lanes on every instruction set, and in parallel: the same bits.
+#![allow(
+    clippy::unwrap_used,
+    reason = "test helpers: a failure is the test's failure"
+)]
+
+use std::path::Path;
+
+use kempe_mechanism::{Design, Mechanism};
+use kempe_model::{Model, PointId};
+use kempe_motion::Motion;
+use kempe_motion::batch::{Batch, Designs, Layout, Serial, Threads, sweep_states};
+use kempe_number::{InstructionSet, Jet};
+
+/// Every example file, in order.
+fn examples() -> Vec<(String, Model)> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
+    let mut files: Vec<_> = ["seeds", "gallery"]
+        .iter()
+        .flat_map(|folder| std::fs::read_dir(root.join(folder)).unwrap())
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.extension().is_some_and(|e| e == "toml"))
+        .collect();
+    files.sort();
+    assert!(files.len() > 20);
+    (files.into_iter())
+        .map(|path| {
+            let text = std::fs::read_to_string(&path).unwrap();
+            let folder = path.parent().unwrap().to_owned();
+            let name = path.file_stem().unwrap().to_string_lossy().into_owned();
+            let mut read =
+                |file: &str| std::fs::read_to_string(folder.join(file)).map_err(|e| e.to_string());
+            let checked = Model::from_toml(&text, &name, &mut read).unwrap();
+            (name, checked.model)
+        })
+        .collect()
+}
+
+fn random(seed: &mut u64) -> f64 {
+    *seed = seed
+        .wrapping_mul(6364136223846793005)
+        .wrapping_add(1442695040888963407);
+    (*seed >> 11) as f64 / (1_u64 << 53) as f64
+}
+
+/// Equal bits; two undefined numbers are equal.
+#[track_caller]
+fn assert_same(name: &str, a: &[f64], b: &[f64]) {
+    assert_eq!(a.len(), b.len());
+    for (i, (a, b)) in a.iter().zip(b).enumerate() {
+        let same = a.to_bits() == b.to_bits() || (a.is_nan() && b.is_nan());
+        assert!(same, "{name}: number {i} is {a:e} and {b:e}");
+    }
+}
+
+fn all_points(model: &Model) -> Vec<PointId> {
+    (0..model.points.len() as u32).map(PointId).collect()
+}
+
+/// Path parameters all over the motion and beyond its ends, in no order.
+fn parameters(motion: &Motion, count: usize) -> Vec<f64> {
+    let (low, high) = motion.reached();
+    let mut seed = 7;
+    let mut list: Vec<f64> = (0..count)
+        .map(|i| {
+            let part = if i % 3 == 0 {
+                random(&mut seed)
+            } else {
+                i as f64 / count as f64
+            };
+            low + (high - low) * (1.1 * part - 0.05)
+        })
+        .collect();
+    list.extend(motion.events.iter().map(|e| e.at));
+    list.push(f64::NAN);
+    list
+}
+
+#[test]
+fn sweeps_have_the_same_bits_one_by_one_in_lanes_and_in_parallel() {
+    for (name, model) in examples() {
+        let mechanism = Mechanism::new(&model);
+        let values: Vec<f64> = model.parameter_values();
+        let design = Design::new(&mechanism, &values);
+        let Ok(motion) = Motion::new(&design) else {
+            continue;
+        };
+        let points = all_points(&model);
+        let batch = Batch::new(&motion, &points).unwrap();
+        let parameters = parameters(&motion, 83);
+        let n = parameters.len();
+
+        // The reference: the motion's own solve on plain numbers.
+        let mut expected = vec![f64::NAN; n * batch.columns()];
+        let mut solver = motion.solver::<f64>();
+        let mut closed = 0;
+        for (row, &p) in parameters.iter().enumerate() {
+            if !motion.reaches(p) {
+                continue;
+            }
+            motion.solve(&design, p, &mut solver);
+            let finite = |x: &f64| x.is_finite();
+            if !solver
+                .state
+                .poses
+                .iter()
+                .all(|q| [q.x, q.y, q.c, q.s].iter().all(finite))
+            {
+                continue;
+            }
+            closed += 1;
+            for (j, &point) in points.iter().enumerate() {
+                let place = solver
+                    .state
+                    .place(&design, mechanism.any_marker(point).unwrap());
+                expected[2 * j * n + row] = place[0];
+                expected[(2 * j + 1) * n + row] = place[1];
+            }
+        }
+        assert!(closed > 40, "{name} closes at {closed} places");
+        for set in InstructionSet::ALL {
+            let batch = batch.clone().with_instructions(set);
+            let mut out = vec![0.0; expected.len()];
+            assert_eq!(batch.sweep(&parameters, &mut out), Ok(closed), "{name}");
+            assert_same(&name, &out, &expected);
+        }
+        // A batch of one point leaves out bodies that do not carry it.
+        for (j, &point) in points.iter().enumerate() {
+            let batch = Batch::new(&motion, &[point]).unwrap();
+            let mut out = vec![0.0; 2 * n];
+            assert_eq!(batch.sweep(&parameters, &mut out), Ok(closed), "{name}");
+            assert_same(&name, &out, &expected[2 * j * n..2 * (j + 1) * n]);
+        }
+    }
+}
+
+#[test]
+fn rates_have_the_same_bits_one_by_one_and_in_lanes() {
+    for (name, model) in examples() {
+        let mechanism = Mechanism::new(&model);
+        let values: Vec<f64> = model.parameter_values();
+        let design = Design::new(&mechanism, &values);
+        let Ok(motion) = Motion::new(&design) else {
+            continue;
+        };
+        let points = all_points(&model);
+        let batch = Batch::new(&motion, &points).unwrap();
+        let parameters = parameters(&motion, 21);
+        let n = parameters.len();
+        let rich = design.lift::<Jet<f64, 3>>();
+        let mut expected = vec![f64::NAN; 3 * n * batch.columns()];
+        sweep_states(
+            &motion,
+            &rich,
+            &parameters,
+            Jet::<f64, 3>::variable,
+            |row, state| {
+                let Some(state) = state else { return };
+                for (j, &point) in points.iter().enumerate() {
+                    let place = state.place(&rich, mechanism.any_marker(point).unwrap());
+                    for order in 0..3 {
+                        for axis in 0..2 {
+                            let column = order * batch.columns() + 2 * j + axis;
+                            expected[column * n + row] = place[axis].derivative(order);
+                        }
+                    }
+                }
+            },
+        );
+        for set in InstructionSet::ALL {
+            let batch = batch.clone().with_instructions(set);
+            let mut out = vec![0.0; expected.len()];
+            batch.sweep_rates(&parameters, &mut out).unwrap();
+            assert_same(&name, &out, &expected);
+        }
+    }
+}
+
+#[test]
+fn designs_have_the_same_bits_one_by_one_in_lanes_and_in_parallel() {
+    for (name, model) in examples() {
+        let mechanism = Mechanism::new(&model);
+        let values: Vec<f64> = model.parameter_values();
+        let design = Design::new(&mechanism, &values);
+        let Ok(motion) = Motion::new(&design) else {
+            continue;
+        };
+        let points = all_points(&model);
+        let batch = Batch::new(&motion, &points).unwrap();
+        let (low, high) = motion.reached();
+        let at: Vec<f64> = (0..5)
+            .map(|i| low + (high - low) * (0.05 + 0.19 * f64::from(i)))
+            .collect();
+
+        // 77 designs: whole blocks, a rest, and more than one task; some far enough not to close.
+        let count = 77;
+        let mut seed = 3;
+        let by_design: Vec<f64> = (0..count)
+            .flat_map(|d| {
+                let spread = if d % 10 == 9 { 0.8 } else { 0.04 };
+                values
+                    .iter()
+                    .map(|v| v * (1.0 + spread * (random(&mut seed) - 0.5)))
+                    .collect::<Vec<_>>()
+            })
+            .collect();
+        let columns = batch.columns();
+        let mut expected = vec![f64::NAN; count * at.len() * columns];
+        let mut solver = motion.solver::<f64>();
+        let mut closed = 0;
+        for d in 0..count {
+            let own = &by_design[d * values.len()..(d + 1) * values.len()];
+            let design = Design::new(&mechanism, own);
+            for (k, &p) in at.iter().enumerate() {
+                motion.solve(&design, p, &mut solver);
+                let finite = |x: &f64| x.is_finite();
+                if !solver
+                    .state
+                    .poses
+                    .iter()
+                    .all(|q| [q.x, q.y, q.c, q.s].iter().all(finite))
+                {
+                    continue;
+                }
+                closed += 1;
+                for (j, &point) in points.iter().enumerate() {
+                    let place = solver
+                        .state
+                        .place(&design, mechanism.any_marker(point).unwrap());
+                    for axis in 0..2 {
+                        expected[(k * columns + 2 * j + axis) * count + d] = place[axis];
+                    }
+                }
+            }
+        }
+        let by_parameter: Vec<f64> = (0..values.len())
+            .flat_map(|p| (0..count).map(move |d| (d, p)))
+            .map(|(d, p)| by_design[d * values.len() + p])
+            .collect();
+        for set in InstructionSet::ALL {
+            let batch = batch.clone().with_instructions(set);
+            for (values, layout) in [
+                (&by_design, Layout::ByDesign),
+                (&by_parameter, Layout::ByParameter),
+            ] {
+                let designs = Designs {
+                    values,
+                    count,
+                    layout,
+                };
+                let mut out = vec![0.0; expected.len()];
+                assert_eq!(batch.designs(designs, &at, &mut out), Ok(closed), "{name}");
+                assert_same(&name, &out, &expected);
+                let mut out = vec![0.0; expected.len()];
+                assert_eq!(
+                    batch.designs_on(&Threads(3), designs, &at, &mut out),
+                    Ok(closed)
+                );
+                assert_same(&name, &out, &expected);
+            }
+        }
+        for (j, &point) in points.iter().enumerate() {
+            let batch = Batch::new(&motion, &[point]).unwrap();
+            let designs = Designs {
+                values: &by_design,
+                count,
+                layout: Layout::ByDesign,
+            };
+            let mut out = vec![0.0; 2 * count * at.len()];
+            assert_eq!(batch.designs(designs, &at, &mut out), Ok(closed), "{name}");
+            for (k, out) in out.chunks(2 * count).enumerate() {
+                let first = (k * columns + 2 * j) * count;
+                assert_same(&name, out, &expected[first..first + 2 * count]);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_long_sweep_is_the_same_on_any_number_of_threads() {
+    let (_, model) = (examples().into_iter())
+        .find(|(name, _)| name == "crank-rocker")
+        .unwrap();
+    let mechanism = Mechanism::new(&model);
+    let values: Vec<f64> = model.parameter_values();
+    let design = Design::new(&mechanism, &values);
+    let motion = Motion::new(&design).unwrap();
+    let batch = Batch::new(&motion, &all_points(&model)).unwrap();
+    let parameters: Vec<f64> = (0..40_003)
+        .map(|i| 6.25 * f64::from(i) / 40_000.0)
+        .collect();
+    let mut serial = vec![0.0; batch.columns() * parameters.len()];
+    let closed = batch.sweep_on(&Serial, &parameters, &mut serial).unwrap();
+    for threads in [1, 2, 7] {
+        let mut out = vec![0.0; serial.len()];
+        assert_eq!(
+            batch.sweep_on(&Threads(threads), &parameters, &mut out),
+            Ok(closed)
+        );
+        assert_same("crank-rocker", &out, &serial);
+    }
+    assert!(batch.sweep(&parameters, &mut [0.0; 3]).is_err());
+    assert!(Batch::new(&motion, &[PointId(99)]).is_err());
+}
