@@ -29,7 +29,7 @@ pub struct Acting<T> {
     /// Loads.
     pub loads: Vec<Load>,
     /// What the loads vary with.
-    pub amounts: Vec<Amount>,
+    pub amounts: Vec<Amount<T>>,
     /// Springs, in the model's order.
     pub springs: Vec<Spring<T>>,
     /// Dampers.
@@ -54,11 +54,10 @@ impl<T: Number> Acting<T> {
         parameters: &[T],
     ) -> Result<Self, Vec<Problem>> {
         let actions = &mechanism.model.actions;
-        let plain: Vec<f64> = parameters.iter().map(|p| p.value()).collect();
         let plain_geometry = geometry.value();
         let mut problems = Vec::new();
         let mut amounts = Vec::new();
-        let loads = Load::all(mechanism, &plain, &mut amounts, &mut problems);
+        let loads = Load::all(mechanism, parameters, &mut amounts, &mut problems);
         let gravity = match &actions.gravity {
             Some(g) => [&g[0], &g[1]].map(|scalar| model::value(scalar, parameters)),
             None => [T::zero(), T::from_f64(-GRAVITY)],

@@ -1,29 +1,28 @@
 //! Values that vary along a motion: what loads are made of.
 
-use kempe_measure::measure::{Along, Moment, order_of, visit_leaves};
+use kempe_measure::measure::{order_of, visit_leaves};
 use kempe_mechanism::Mechanism;
 use kempe_model::{self as model, Leaf, Measure, Span};
 use kempe_number::Number;
 
-use crate::instant::Rates;
 use crate::problem::Problem;
 use crate::table::Table;
 
 /// A value that varies: a measure, or a curve over one.
 #[derive(Clone, Debug)]
-pub struct Amount {
+pub struct Amount<T> {
     /// What is measured.
     pub measure: Measure,
     /// The curve over it, with a factor on its values.
-    pub curve: Option<(Table, f64)>,
+    pub curve: Option<(Table, T)>,
 }
 
-impl Amount {
+impl<T: Number> Amount<T> {
     /// Compiles a varying value.
     pub(crate) fn new(
         mechanism: &Mechanism,
         amount: &model::Amount,
-        parameters: &[f64],
+        parameters: &[T],
         span: &Span,
         what: &str,
         problems: &mut Vec<Problem>,
@@ -73,15 +72,8 @@ impl Amount {
         it
     }
 
-    /// Its value at a moment, as a series in time.
-    pub fn rates(&self, moment: &Moment<'_, f64>) -> Rates {
-        let series = moment.series(&self.measure, Along::Time);
-        let rates = Rates::from_coefficients([0, 1, 2].map(|k| series.coefficient(k)));
-        self.of(rates)
-    }
-
     /// Its value where the measure has this one.
-    pub fn of<T: Number>(&self, measured: T) -> T {
+    pub fn of(&self, measured: T) -> T {
         match &self.curve {
             Some((table, factor)) => table.value(measured) * *factor,
             None => measured,

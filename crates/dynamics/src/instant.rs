@@ -1,15 +1,15 @@
 //! One instant of a motion, as the forces need it.
 
-use kempe_measure::measure::{Moment, Series};
+use kempe_measure::{Series, State};
 use kempe_mechanism::constraint::Input;
-use kempe_mechanism::{BodyId, Mechanism, Pose, State};
+use kempe_mechanism::{BodyId, Mechanism, Pose, State as Solved};
 use kempe_model::{DriveId, DriveKind};
 use kempe_number::{Jet, Number};
 
 use crate::vector::{add, left, times};
 
 /// Series in time of force quantities: value, rate and second derivative are what the series of the poses leave exact.
-pub type Rates = Jet<f64, 3>;
+pub type Rates<B = f64> = Jet<B, 3>;
 
 /// Where everything is, how it moves, and how each drive alone would move it.
 #[derive(Clone, Debug)]
@@ -104,7 +104,7 @@ fn slopes<B: Number, const N: usize>(pose: &Pose<Jet<B, N>>) -> [Jet<B, N>; 3] {
     ]
 }
 
-fn cut(series: Series<f64>) -> Rates {
+pub(crate) fn cut<B: Number>(series: Series<B>) -> Rates<B> {
     Rates::from_coefficients([0, 1, 2].map(|k| series.coefficient(k)))
 }
 
@@ -115,41 +115,27 @@ fn input<T: Number>(kind: &DriveKind, value: T) -> Input<T> {
     }
 }
 
-impl Instant<Rates> {
-    /// Takes everything but the amounts from a moment of a motion. Coefficients of drives other than the one along
-    /// which the path runs are known at the instant only: their rates are NaN.
-    pub fn set(&mut self, moment: &Moment<'_, f64>) {
-        let clock = &moment.clock;
-        let composed = |pose: &Pose<Series<f64>>| Pose {
-            x: pose.x.compose(clock),
-            y: pose.y.compose(clock),
-            c: pose.c.compose(clock),
-            s: pose.s.compose(clock),
-        };
-        for (body, path) in moment.path.iter().enumerate() {
-            let pose = composed(path);
+impl<B: Number> Instant<Rates<B>> {
+    /// Takes everything but the amounts from a state. Coefficients of drives other than the one along which the state's
+    /// series run are known at the instant only: their rates are NaN.
+    pub fn set(&mut self, state: &State<B>) {
+        for body in 0..state.poses.len() {
+            let pose = state.pose(BodyId(body as u32));
             let velocity = slopes(&pose);
-            self.poses[body] = Pose {
-                x: cut(pose.x),
-                y: cut(pose.y),
-                c: cut(pose.c),
-                s: cut(pose.s),
-            };
-            self.angles[body] = self.poses[body].angle_near(moment.near[body]);
+            self.poses[body] = pose.map(cut);
+            self.angles[body] = self.poses[body].angle_near(state.near[body]);
             self.velocities[body] = velocity.map(cut);
             self.accelerations[body] = velocity.map(|v| cut(v.differentiate()));
         }
-        self.near.copy_from_slice(moment.near);
-        for (index, drive) in moment.mechanism.model.drives.iter().enumerate() {
-            let coordinate = moment.coordinates[index].compose(clock);
+        self.near.copy_from_slice(&state.near);
+        let unknown = B::from_f64(f64::NAN);
+        for (index, drive) in state.mechanism().model.drives.iter().enumerate() {
+            let id = DriveId(index as u32);
+            let coordinate = state.coordinate(id);
             self.inputs[index] = input(&drive.kind, cut(coordinate));
             self.drive_speeds[index] = cut(coordinate.differentiate());
-            let along_path = moment.path_drive == Some(DriveId(index as u32));
-            let poses = match (along_path, moment.drives.get(index)) {
-                (true, _) => Some(moment.path),
-                (false, Some(Some(poses))) => Some(poses.as_slice()),
-                (false, _) => None,
-            };
+            let along_path = state.abscissa.drive == Some(id);
+            let poses = state.along(id);
             for body in 0..self.poses.len() {
                 let (first, second) = match poses {
                     None => (
@@ -159,11 +145,11 @@ impl Instant<Rates> {
                     Some(poses) => {
                         let first = slopes(&poses[body]);
                         let second = first.map(|s| s.differentiate());
-                        let in_time = |s: Series<f64>| {
+                        let in_time = |s: Series<B>| {
                             if along_path {
-                                cut(s.compose(clock))
+                                cut(s.compose(&state.abscissa.clock))
                             } else {
-                                Rates::from_coefficients([s.coefficient(0), f64::NAN, f64::NAN])
+                                Rates::from_coefficients([s.coefficient(0), unknown, unknown])
                             }
                         };
                         (first.map(in_time), second.map(in_time))
@@ -174,7 +160,9 @@ impl Instant<Rates> {
             }
         }
     }
+}
 
+impl Instant<Rates> {
     /// The plain values.
     pub fn value_into(&self, out: &mut Instant<f64>) {
         let three = |from: &[[Rates; 3]], to: &mut [[f64; 3]]| {
@@ -223,7 +211,7 @@ impl Instant<f64> {
     pub fn set_along(
         &mut self,
         mechanism: &Mechanism,
-        state: &State<Rates>,
+        state: &Solved<Rates>,
         near: &[f64],
         drive: DriveId,
         [speed, acceleration]: [f64; 2],

@@ -37,10 +37,10 @@ pub enum Load {
 
 impl Load {
     /// Compiles the model's loads and what they vary with.
-    pub(crate) fn all(
+    pub(crate) fn all<T: Number>(
         mechanism: &Mechanism,
-        parameters: &[f64],
-        amounts: &mut Vec<Amount>,
+        parameters: &[T],
+        amounts: &mut Vec<Amount<T>>,
         problems: &mut Vec<Problem>,
     ) -> Vec<Self> {
         let mut list = Vec::new();

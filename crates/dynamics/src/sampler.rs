@@ -3,12 +3,11 @@
 use std::fmt;
 use std::sync::Arc;
 
-use kempe_measure::{Sample, Sampler, Unprepared};
-use kempe_mechanism::{Branch, Design};
+use kempe_measure::{Sample, Sampler, Unmeasurable, Unprepared};
 use kempe_model::{DriveId, Measure};
 use kempe_motion::{Motion, Unwatched, Watch};
 
-use crate::equilibrium::{FrictionOutcome, Pace};
+use crate::equilibrium::FrictionOutcome;
 use crate::forces::Forces;
 use crate::instant::{Instant, Rates};
 use crate::note::{ForceNote, notes};
@@ -57,7 +56,7 @@ pub struct ForceSample {
 
 /// Evaluates measures of motion and forces along a motion.
 pub struct ForceSampler {
-    sampler: Sampler<Source>,
+    sampler: Sampler<Source<f64>>,
 }
 
 impl fmt::Display for ForceError {
@@ -81,6 +80,20 @@ impl fmt::Display for ForceError {
 
 impl std::error::Error for ForceError {}
 
+impl ForceError {
+    /// The measures that cannot be evaluated.
+    ///
+    /// # Errors
+    /// The problems of what acts, where these are the reason. Nothing of either where the work was stopped.
+    pub fn unmeasurable(self) -> Result<Vec<Unmeasurable>, Vec<Problem>> {
+        match self {
+            Self::Problems(problems) => Err(problems),
+            Self::Unprepared(Unprepared::Unmeasurable(list)) => Ok(list),
+            Self::Unprepared(Unprepared::Stopped) => Ok(Vec::new()),
+        }
+    }
+}
+
 impl ForceSampler {
     /// Prepares measures for evaluation along a motion; statistics over the motion are computed here.
     ///
@@ -99,16 +112,10 @@ impl ForceSampler {
         measures: &[&Measure],
         watch: &mut dyn Watch,
     ) -> Result<Self, ForceError> {
-        let mechanism = motion.mechanism();
-        let mut forces = Forces::new(motion.design_on()).map_err(ForceError::Problems)?;
-        let mut start = Branch::neutral(mechanism);
-        motion.branch_at(motion.start, &mut start);
-        for spring in &mut forces.acting.springs {
-            spring.align(&forces.design.geometry, &start.near);
-        }
-        forces.equilibrium.pace = pace(&motion.design);
-        let sampler = Sampler::watched(motion, measures, Source::new(forces), watch)
-            .map_err(ForceError::Unprepared)?;
+        let source =
+            Source::new(motion, &motion.design.parameters).map_err(ForceError::Problems)?;
+        let sampler =
+            Sampler::watched(motion, measures, source, watch).map_err(ForceError::Unprepared)?;
         Ok(Self { sampler })
     }
 
@@ -151,54 +158,35 @@ impl ForceSampler {
 
     /// The loads of all joints and drives of the row last asked for: what arrows and hodographs are drawn from.
     pub fn joint_loads(&self) -> Vec<JointLoad> {
-        self.solved()
-            .map_or_else(Vec::new, |(forces, at)| forces.joint_loads(at))
+        let (forces, at) = self.solved();
+        forces.joint_loads(at)
     }
 
     /// Everything that acts on the links of the row last asked for, to be drawn.
     pub fn arrows(&self) -> Vec<crate::arrow::ForceArrow> {
-        self.solved()
-            .map_or_else(Vec::new, |(forces, at)| forces.arrows(at))
+        let (forces, at) = self.solved();
+        forces.arrows(at)
     }
 
     /// Forces and instant of the row last asked for.
-    pub fn solved(&self) -> Option<(&Forces<Rates>, &Instant<Rates>)> {
-        self.sampler.forces().map(|s| (&s.forces, &s.instant))
+    pub fn solved(&self) -> (&Forces<Rates>, &Instant<Rates>) {
+        let source = self.sampler.forces();
+        (&source.forces, &source.instant)
     }
 
     fn with_evidence(&self, sample: Sample) -> ForceSample {
-        let found = self
-            .solved()
-            .filter(|_| sample.closure.is_finite() && sample.time.is_finite())
-            .map(|(forces, at)| (evidence(forces, at), notes(forces, at)));
-        let (evidence, notes) = match found {
-            Some((evidence, notes)) => (Some(evidence), notes),
-            None if sample.closure.is_finite() => (None, vec![ForceNote::NoTime]),
-            None => (None, Vec::new()),
+        let (forces, at) = self.solved();
+        let reached = sample.closure.is_finite();
+        let (evidence, notes) = match reached && sample.time.is_finite() {
+            true => (Some(evidence(forces, at)), notes(forces, at)),
+            false if reached => (None, vec![ForceNote::NoTime]),
+            false => (None, Vec::new()),
         };
         ForceSample {
             sample,
             evidence,
             notes,
         }
-    }
-}
-
-/// Mean speeds of the drives over their laws.
-fn pace(design: &Design<f64>) -> Pace {
-    let (model, parameters) = (&design.mechanism.model, &design.parameters);
-    let durations = model.drives.iter().map(|d| d.law.duration(parameters));
-    let longest = durations.fold(0.0, f64::max);
-    if !(longest > 0.0) {
-        return Pace::default();
-    }
-    let speed = |drive: &kempe_model::Drive| {
-        let (low, high) = drive.law.extent(parameters);
-        (high - low) / longest
-    };
-    Pace {
-        speeds: model.drives.iter().map(speed).collect(),
-        frequency: 1.0 / longest,
     }
 }
 

@@ -1,58 +1,100 @@
-//! Forces along a motion, for the sampler of `kempe-measure`.
+//! Forces of states, for the sampler of `kempe-measure`.
 
-use kempe_measure::ForceSource;
-use kempe_measure::measure::{Moment, Series};
-use kempe_model::{ForceMeasure, Measure};
+use std::sync::Arc;
 
+use kempe_measure::{Base, ForceSource, Series, State};
+use kempe_mechanism::Design;
+use kempe_mechanism::state::Branch;
+use kempe_model::{Drive, ForceMeasure, Measure};
+use kempe_motion::Motion;
+
+use crate::equilibrium::Pace;
 use crate::forces::Forces;
-use crate::instant::{Instant, Rates};
+use crate::instant::{Instant, Rates, cut};
+use crate::number::ForceNumber;
+use crate::problem::Problem;
 
-/// The forces of the moment last solved, as series in time.
-pub(crate) struct Source {
-    pub forces: Forces<Rates>,
-    pub instant: Instant<Rates>,
+/// The forces of the state last solved, as series in time.
+pub struct Source<B> {
+    /// The forces.
+    pub forces: Forces<Rates<B>>,
+    /// What they were solved for.
+    pub instant: Instant<Rates<B>>,
     measures: Vec<Measure>,
 }
 
-impl Source {
-    pub fn new(forces: Forces<Rates>) -> Self {
+impl<B: Base> Source<B>
+where
+    Rates<B>: ForceNumber,
+{
+    /// Prepares the forces of a motion for these parameter values.
+    ///
+    /// # Errors
+    /// All problems of what acts on the mechanism.
+    pub fn new(motion: &Arc<Motion>, parameters: &[B]) -> Result<Self, Vec<Problem>> {
+        let rich: Vec<Rates<B>> = parameters.iter().map(|x| Rates::constant(*x)).collect();
+        let mut forces = Forces::new(motion.design_of(&rich))?;
+        let mut start = Branch::neutral(motion.mechanism());
+        motion.branch_at(motion.start, &mut start);
+        for spring in &mut forces.acting.springs {
+            spring.align(&forces.design.geometry, &start.near);
+        }
+        forces.equilibrium.pace = pace(&motion.design);
         let measures: Vec<Measure> = (forces.acting.amounts.iter())
             .map(|a| a.measure.clone())
             .collect();
-        Self {
-            instant: Instant::new(&forces.design.mechanism, measures.len()),
+        Ok(Self {
+            instant: Instant::new(motion.mechanism(), measures.len()),
             measures,
             forces,
-        }
+        })
     }
 }
 
-impl ForceSource for Source {
+impl<B: Base> ForceSource<B> for Source<B>
+where
+    Rates<B>: ForceNumber,
+{
     fn measures(&self) -> &[Measure] {
         &self.measures
     }
 
-    fn solve(&mut self, moment: &Moment<'_, f64>) {
-        self.instant.set(moment);
-        for (value, amount) in self
-            .instant
-            .amounts
-            .iter_mut()
-            .zip(&self.forces.acting.amounts)
+    fn solve(&mut self, state: &State<B>, amounts: &[Series<B>]) {
+        self.instant.set(state);
+        let acting = self.forces.acting.amounts.iter();
+        for ((value, measured), amount) in self.instant.amounts.iter_mut().zip(amounts).zip(acting)
         {
-            *value = amount.rates(moment);
+            *value = amount.of(cut(*measured));
         }
         self.forces.solve(&self.instant);
     }
 
-    fn answer(&self, measure: &ForceMeasure) -> Series<f64> {
+    fn answer(&self, measure: &ForceMeasure) -> Series<B> {
         let rates = self.forces.answer(&self.instant, measure);
         Series::from_coefficients(std::array::from_fn(|k| {
             if k < 3 {
                 rates.coefficient(k)
             } else {
-                f64::NAN
+                B::from_f64(f64::NAN)
             }
         }))
+    }
+}
+
+/// Mean speeds of the drives over their laws.
+fn pace(design: &Design<f64>) -> Pace {
+    let (model, parameters) = (&design.mechanism.model, &design.parameters);
+    let durations = model.drives.iter().map(|d| d.law.duration(parameters));
+    let longest = durations.fold(0.0, f64::max);
+    if !(longest > 0.0) {
+        return Pace::default();
+    }
+    let speed = |drive: &Drive| {
+        let (low, high) = drive.law.extent(parameters);
+        (high - low) / longest
+    };
+    Pace {
+        speeds: model.drives.iter().map(speed).collect(),
+        frequency: 1.0 / longest,
     }
 }

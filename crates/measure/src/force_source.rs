@@ -1,12 +1,13 @@
-//! The place where forces come in: kinematics asks for them, the crate that knows the physics answers.
+//! The place where forces come in: measuring asks for them, the crate that knows the physics answers.
 
 use kempe_model::{ForceMeasure, Measure};
+use kempe_number::Number;
 
-use crate::measure::{Moment, Series};
+use crate::state::{Series, State};
 
-/// Answers questions to the forces along a motion, for a [`Sampler`](crate::Sampler).
-pub trait ForceSource {
-    /// What the forces themselves ask of the motion: loads that depend on it.
+/// Answers questions to the forces of states, on any number.
+pub trait ForceSource<B = f64> {
+    /// What the forces themselves ask of a state: loads that depend on it.
     fn measures(&self) -> &[Measure];
 
     /// Whether it needs the motion that every drive gives on its own: virtual power does.
@@ -14,18 +15,21 @@ pub trait ForceSource {
         true
     }
 
-    /// Finds the forces at a moment. The moment knows the poses along every drive; it knows no forces.
-    fn solve(&mut self, moment: &Moment<'_, f64>);
+    /// Finds the forces of a state that knows the poses along every drive. `amounts` are its own [measures] there, as series
+    /// in time.
+    ///
+    /// [measures]: ForceSource::measures
+    fn solve(&mut self, state: &State<B>, amounts: &[Series<B>]);
 
-    /// Answers from the moment last solved: a series in time. Coefficients that are not known are NaN.
-    fn answer(&self, measure: &ForceMeasure) -> Series<f64>;
+    /// Answers from the state last solved: a series in time. Coefficients that are not known are NaN.
+    fn answer(&self, measure: &ForceMeasure) -> Series<B>;
 }
 
 /// No forces: questions to them have no value.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct NoForces;
 
-impl ForceSource for NoForces {
+impl<B: Number> ForceSource<B> for NoForces {
     fn measures(&self) -> &[Measure] {
         &[]
     }
@@ -34,9 +38,33 @@ impl ForceSource for NoForces {
         false
     }
 
-    fn solve(&mut self, _: &Moment<'_, f64>) {}
+    fn solve(&mut self, _: &State<B>, _: &[Series<B>]) {}
 
-    fn answer(&self, _: &ForceMeasure) -> Series<f64> {
-        kempe_number::Number::from_f64(f64::NAN)
+    fn answer(&self, _: &ForceMeasure) -> Series<B> {
+        Series::from_f64(f64::NAN)
+    }
+}
+
+/// Forces that may be lacking: then questions to them have no value.
+impl<B: Number, F: ForceSource<B>> ForceSource<B> for Option<F> {
+    fn measures(&self) -> &[Measure] {
+        self.as_ref().map_or(&[], F::measures)
+    }
+
+    fn needs_drives(&self) -> bool {
+        self.as_ref().is_some_and(F::needs_drives)
+    }
+
+    fn solve(&mut self, state: &State<B>, amounts: &[Series<B>]) {
+        if let Some(forces) = self {
+            forces.solve(state, amounts);
+        }
+    }
+
+    fn answer(&self, measure: &ForceMeasure) -> Series<B> {
+        match self {
+            Some(forces) => forces.answer(measure),
+            None => NoForces.answer(measure),
+        }
     }
 }

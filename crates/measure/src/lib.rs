@@ -1,15 +1,22 @@
 //! What is measured at a pose and over a motion, with its derivatives.
 
 pub mod circuit_rows;
+mod clock;
+mod direction;
 pub mod force_source;
 pub mod measure;
+mod measurer;
 mod path_length;
 mod quadrature;
 mod sampler;
 pub mod sensitivity;
+pub mod state;
+mod states_along;
 mod statistics;
 
 pub use circuit_rows::{circuit_row, circuit_samplers};
 pub use force_source::{ForceSource, NoForces};
 pub use sampler::{CLOSURE_LIMIT, Sample, Sampler, Unmeasurable, Unprepared};
-pub use sensitivity::{Held, Sensitivities, sensitivities};
+pub use sensitivity::{Held, Sensitivities, Varying, sensitivities, sensitivities_with};
+pub use state::{Abscissa, ORDER, Series, State};
+pub use states_along::Base;

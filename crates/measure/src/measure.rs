@@ -9,22 +9,16 @@ mod in_time;
 mod named;
 mod needs;
 
-pub use self::named::NamedSeries;
+use self::named::NamedSeries;
 pub use self::needs::{order_of, visit_leaves};
 
-use kempe_mechanism::Mechanism;
 use kempe_mechanism::pose::Pose;
-use kempe_mechanism::state::Design;
 use kempe_model::{DriveId, ForceMeasure, Leaf, Measure, PointId, PoseMeasure, Statistic};
-use kempe_number::{Jet, Number};
+use kempe_number::Number;
 
 use self::in_time::is_motion;
-
-/// Coefficients carried by a series: position and four derivatives.
-pub const ORDER: usize = 5;
-
-/// A series in the path parameter, in time or in one drive.
-pub type Series<B> = Jet<B, ORDER>;
+use crate::state::State;
+pub use crate::state::{ORDER, Series};
 
 /// What a series runs along.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,42 +34,69 @@ pub enum Along {
 /// Answers questions to the forces.
 pub type Forces<'a, B> = &'a dyn Fn(&ForceMeasure) -> Series<B>;
 
-/// A pose with its series along one variable, and all that is needed to measure it.
-pub struct Moment<'a, B> {
-    /// The mechanism.
-    pub mechanism: &'a Mechanism,
-    /// The design, as constants of the series.
-    pub design: &'a Design<Series<B>>,
-    /// Parameter values.
-    pub parameters: &'a [B],
-    /// Time, s.
-    pub time: B,
-    /// Poses along the path parameter.
-    pub path: &'a [Pose<Series<B>>],
-    /// The path parameter as a series in time.
-    pub clock: Series<B>,
-    /// Which way the motion runs along the path: 1 or -1.
-    pub heading: f64,
-    /// A typical change of the path parameter.
-    pub unit: f64,
-    /// Poses along each drive, where they were asked for.
-    pub drives: &'a [Option<Vec<Pose<Series<B>>>>],
-    /// The drive that is the path parameter itself.
-    pub path_drive: Option<DriveId>,
-    /// Drive coordinates along the path.
-    pub coordinates: &'a [Series<B>],
-    /// Angles of the bodies to within half a turn, rad.
-    pub near: &'a [f64],
-    /// Unwrapped values for directions between points of different bodies.
+/// What was found of the motion before a state: it lifts what a state alone leaves open.
+#[derive(Clone, Debug)]
+pub struct History<B> {
+    /// Directions between points of different bodies, rad, within half a turn; principal values where they are not here.
     pub directions: Vec<((PointId, PointId), f64)>,
-    /// Lengths of path swept so far and since the start.
-    pub swept: Vec<(PointId, B)>,
+    /// Lengths of path that points have gone since the start, m.
+    pub lengths: Vec<(PointId, B)>,
+}
+
+impl<B> Default for History<B> {
+    fn default() -> Self {
+        Self {
+            directions: Vec::new(),
+            lengths: Vec::new(),
+        }
+    }
+}
+
+/// A number over a whole motion, and its value, SI.
+pub(crate) type KnownStatistic<B> = (Statistic, Measure, B);
+
+/// A state with all that is needed to measure it.
+pub(crate) struct Moment<'a, B> {
+    /// Where the mechanism is and how it moves.
+    pub state: &'a State<B>,
+    /// What happened before.
+    pub history: &'a History<B>,
     /// Answers questions to the forces, where forces are computed.
     pub forces: Option<Forces<'a, B>>,
-    /// Values of the statistics that occur, in SI.
-    pub statistics: &'a [(Statistic, Measure, B)],
+    /// Values of the statistics that occur.
+    pub statistics: &'a [KnownStatistic<B>],
     /// Named measures that were evaluated here already.
-    pub named: NamedSeries<B>,
+    named: NamedSeries<B>,
+}
+
+/// A measure of a state as a series, SI: where the history says nothing, directions are principal values and lengths of
+/// path have no value; forces are asked of `forces`.
+pub fn measure<B: Number>(
+    state: &State<B>,
+    history: &History<B>,
+    forces: Option<Forces<'_, B>>,
+    measure: &Measure,
+    along: Along,
+) -> Series<B> {
+    Moment::new(state, history, &[], forces).series(measure, along)
+}
+
+impl<'a, B: Number> Moment<'a, B> {
+    /// A state to be measured.
+    pub fn new(
+        state: &'a State<B>,
+        history: &'a History<B>,
+        statistics: &'a [KnownStatistic<B>],
+        forces: Option<Forces<'a, B>>,
+    ) -> Self {
+        Self {
+            state,
+            history,
+            forces,
+            statistics,
+            named: NamedSeries::default(),
+        }
+    }
 }
 
 impl<B: Number> Moment<'_, B> {
@@ -91,11 +112,11 @@ impl<B: Number> Moment<'_, B> {
 
     fn leaf(&self, leaf: &Leaf, along: Along) -> Series<B> {
         match leaf {
-            Leaf::Parameter(id) => self
-                .parameters
+            Leaf::Parameter(id) => (self.state.design.parameters)
                 .get(id.index())
-                .map_or(undefined(), |value| Series::constant(*value)),
-            Leaf::Named(index) => match self.mechanism.model.measures.get(*index) {
+                .copied()
+                .unwrap_or_else(undefined),
+            Leaf::Named(index) => match self.state.mechanism().model.measures.get(*index) {
                 Some(named) => {
                     (self.named).or_evaluate(*index, along, || self.series(&named.measure, along))
                 }
@@ -103,14 +124,16 @@ impl<B: Number> Moment<'_, B> {
             },
             Leaf::Drive(drive) => match along {
                 Along::Drive(d) if d == *drive => {
-                    Series::variable(self.coordinates[d.index()].coefficient(0))
+                    Series::variable(self.state.coordinates[d.index()].coefficient(0))
                 }
-                Along::Drive(_) => Series::constant(self.coordinates[drive.index()].coefficient(0)),
-                _ => self.along_time(self.coordinates[drive.index()], along),
+                Along::Drive(_) => {
+                    Series::constant(self.state.coordinates[drive.index()].coefficient(0))
+                }
+                _ => self.along_time(self.state.coordinates[drive.index()], along),
             },
             Leaf::Time => match along {
-                Along::Time => Series::variable(self.time),
-                _ => Series::constant(self.time),
+                Along::Time => Series::variable(self.state.time),
+                _ => Series::constant(self.state.time),
             },
             // Forces are known to the crate that computes them; here they have no value.
             Leaf::Force(measure) => self.forces.map_or(undefined(), |forces| forces(measure)),
@@ -146,7 +169,7 @@ impl<B: Number> Moment<'_, B> {
         });
         match along {
             Along::Drive(d) if d == drive => series,
-            _ if self.path_drive == Some(drive) => self.along_time(series, along),
+            _ if self.state.abscissa.drive == Some(drive) => self.along_time(series, along),
             _ => only_value(series.coefficient(0)),
         }
     }
@@ -155,23 +178,20 @@ impl<B: Number> Moment<'_, B> {
     fn along_time(&self, series: Series<B>, along: Along) -> Series<B> {
         match along {
             // Without time (on a circuit) only the value is known.
-            Along::Time if !self.clock.coefficient(1).value().is_finite() => {
+            Along::Time if !self.state.abscissa.clock.coefficient(1).value().is_finite() => {
                 only_value(series.coefficient(0))
             }
-            Along::Time => series.compose(&self.clock),
+            Along::Time => series.compose(&self.state.abscissa.clock),
             Along::Path | Along::Drive(_) => series,
         }
     }
 
     fn poses(&self, along: Along) -> &[Pose<Series<B>>] {
-        match along {
-            Along::Drive(drive) if self.path_drive != Some(drive) => self
-                .drives
-                .get(drive.index())
-                .and_then(Option::as_deref)
-                .unwrap_or(self.path),
-            _ => self.path,
-        }
+        let alone = match along {
+            Along::Drive(drive) => self.state.along(drive),
+            _ => None,
+        };
+        alone.unwrap_or(&self.state.poses)
     }
 
     /// What is geometry is measured along the path and carried over to time; what is motion is measured in time.

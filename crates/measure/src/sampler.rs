@@ -1,14 +1,11 @@
 //! Rows of a motion: measures, poses and evidence at any place or time.
 //!
-//! What the measures need is found first (`prepare`, `direction`). Then a row is its place on the path (`clock`), the pose
-//! there as series (`series`), the measures of that moment (`moment`) and a note where there is something to say (`note`).
+//! What the measures need is found first (`prepare`). Then a row is its place on the path, the state there, the measures of
+//! that moment (`moment`) and a note where there is something to say (`note`).
 
-mod clock;
-mod direction;
 mod moment;
 mod note;
 mod prepare;
-mod series;
 
 pub use self::prepare::{Unmeasurable, Unprepared};
 
@@ -16,17 +13,16 @@ use std::sync::Arc;
 
 use kempe_mechanism::bordered::Bordered;
 use kempe_mechanism::evidence::evidence;
-use kempe_mechanism::pose::Pose;
-use kempe_mechanism::state::Design;
-use kempe_model::{Measure, PointId, Statistic};
-use kempe_motion::bridge::Side;
+use kempe_model::{Measure, PointId};
 use kempe_motion::motion::{Motion, Solver};
 use kempe_motion::progress::{Unwatched, Watch};
 
-use self::direction::Direction;
+use crate::clock::Clock;
 use crate::force_source::{ForceSource, NoForces};
-use crate::measure::{Series, order_of};
+use crate::measure::order_of;
+use crate::measurer::Measurer;
 use crate::path_length::Swept;
+use crate::states_along::Place;
 
 /// A closure residual (in mechanism sizes) above which a row is marked.
 pub const CLOSURE_LIMIT: f64 = 1e-9;
@@ -56,21 +52,13 @@ pub struct Sample {
 
 /// Evaluates measures along a motion; those of forces too where it is given their source.
 pub struct Sampler<F = NoForces> {
-    motion: Arc<Motion>,
-    /// Only ever `None` while its own questions are answered.
-    forces: Option<F>,
+    pub(crate) measurer: Measurer<f64, F>,
     measures: Vec<Measure>,
-    series_design: Design<Series<f64>>,
-    side_design: Design<Side>,
-    plain: Solver<f64>,
-    series: Solver<Series<f64>>,
-    side: Solver<Side>,
-    drives: Vec<Option<Vec<Pose<Series<f64>>>>>,
-    directions: Vec<Direction>,
-    swept: Vec<Swept>,
+    /// Lengths of path that are asked for.
+    lengths: Vec<Swept>,
     /// Moving points whose curvature is asked for.
     curved: Vec<PointId>,
-    statistics: Vec<(Statistic, Measure, f64)>,
+    plain: Solver<f64>,
     system: Bordered,
 }
 
@@ -123,48 +111,45 @@ impl<F: ForceSource> Sampler<F> {
             return Err(Unprepared::Unmeasurable(problems));
         }
         let mut it = Self {
-            series_design: motion.design_on(),
-            side_design: motion.design_on(),
-            plain: motion.solver(),
-            series: motion.solver(),
-            side: motion.solver(),
-            drives: vec![None; mechanism.model.drives.len()],
-            directions: Vec::new(),
-            swept: Vec::new(),
-            curved: Vec::new(),
-            statistics: Vec::new(),
-            system: Bordered::new(mechanism),
+            measurer: Measurer::new(motion, &motion.design.parameters, forces),
             measures: measures.iter().map(|m| (*m).clone()).collect(),
-            motion: motion.clone(),
-            forces: Some(forces),
+            lengths: Vec::new(),
+            curved: Vec::new(),
+            plain: motion.solver(),
+            system: Bordered::new(mechanism),
         };
         it.prepare(watch).ok_or(Unprepared::Stopped)?;
         Ok(it)
     }
 
     /// The source of forces, as it stands after the row last asked for.
-    pub fn forces(&self) -> Option<&F> {
-        self.forces.as_ref()
+    pub fn forces(&self) -> &F {
+        &self.measurer.forces
     }
 
     /// Values of the parameters, SI, in the model's order.
     pub fn parameters(&self) -> &[f64] {
-        &self.motion.design.parameters
+        &self.motion().design.parameters
     }
 
     /// The motion.
     pub fn motion(&self) -> &Arc<Motion> {
-        &self.motion
+        self.measurer.states.motion()
+    }
+
+    /// Where the motion is at a time.
+    pub(crate) fn clock(&self) -> &Clock {
+        self.measurer.states.clock()
     }
 
     /// The row at a path parameter: the first time the motion passes it.
     pub fn at_parameter(&mut self, p: f64) -> Sample {
-        self.row(p, self.time_at(p))
+        self.row(p, self.clock().time_at(p))
     }
 
     /// The row at a time, s.
     pub fn at_time(&mut self, t: f64) -> Sample {
-        self.row(self.parameter_at(t), t)
+        self.row(self.clock().parameter_at(t), t)
     }
 
     /// The row at a path parameter, without time: measures of speed are NaN.
@@ -173,7 +158,7 @@ impl<F: ForceSource> Sampler<F> {
     }
 
     fn row(&mut self, p: f64, time: f64) -> Sample {
-        let motion = &*self.motion.clone();
+        let motion = &*self.motion().clone();
         let model = &motion.mechanism().model;
         let mut sample = Sample {
             parameter: p,
@@ -191,14 +176,15 @@ impl<F: ForceSource> Sampler<F> {
             sample.note = Some(self.why_unreached(p));
             return sample;
         }
-        if !self.solve(p) {
+        let place = Place { time, path: p };
+        if !self.measurer.find(place) {
             sample.note = Some("no pose was found here".into());
             return sample;
         }
         let measures = std::mem::take(&mut self.measures);
         let curved = std::mem::take(&mut self.curved);
         let mut still = Vec::new();
-        self.with_moment(p, time, true, |moment| {
+        self.with_moment(place, true, |moment| {
             still.extend(curved.iter().filter(|p| moment.stands_still(**p)));
             for (value, measure) in sample.values.iter_mut().zip(&measures) {
                 *value = moment.value(measure);
@@ -206,16 +192,11 @@ impl<F: ForceSource> Sampler<F> {
         });
         (self.measures, self.curved) = (measures, curved);
 
-        for (pose, plain) in self
-            .plain
-            .state
-            .poses
-            .iter_mut()
-            .zip(&self.series.state.poses)
-        {
-            *pose = plain.value();
+        let found = self.measurer.state();
+        for (pose, series) in self.plain.state.poses.iter_mut().zip(&found.poses) {
+            *pose = series.value();
         }
-        self.plain.branch.near.clone_from(&self.series.branch.near);
+        self.plain.branch.near.clone_from(&found.near);
         motion.path.coordinates(p, &mut self.plain.coordinates);
         self.plain
             .state
@@ -237,7 +218,7 @@ impl<F: ForceSource> Sampler<F> {
 
     /// Fills in where links and points are.
     fn fill_places(&self, sample: &mut Sample) {
-        let motion = &*self.motion.clone();
+        let motion = &*self.motion().clone();
         let geometry = &motion.design.geometry;
         for (index, place) in sample.links.iter_mut().enumerate() {
             let body = motion.mechanism().seats[index].body.index();

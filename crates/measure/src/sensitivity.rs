@@ -26,16 +26,17 @@ use std::sync::Arc;
 
 use kempe_model::{Measure, ParameterId};
 use kempe_motion::motion::Motion;
-use kempe_number::{Dual, Number};
+use kempe_number::Dual;
 
-use self::varied::Varied;
+use self::varied::{Varied, varied_parameters};
+use crate::force_source::{ForceSource, NoForces};
 use crate::sampler::{Sampler, Unmeasurable};
 
 /// Parameters differentiated to at once.
 const CHUNK: usize = 4;
 
 /// A number with its derivatives to some parameters.
-type Base = Dual<f64, CHUNK>;
+pub type Varying = Dual<f64, CHUNK>;
 
 /// What stays while a parameter changes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,11 +72,27 @@ pub fn sensitivities(
     measures: &[&Measure],
     parameters: &[ParameterId],
 ) -> Result<Sensitivities, Vec<Unmeasurable>> {
+    sensitivities_with(motion, held, measures, parameters, NoForces, |_| NoForces)
+}
+
+/// As [`sensitivities`], of measures of forces too: `plain` answers them for the motion's own design, and what `varying`
+/// makes of parameter values for designs whose parameters vary.
+///
+/// # Errors
+/// As [`sensitivities`].
+pub fn sensitivities_with<F: ForceSource, G: ForceSource<Varying>>(
+    motion: &Arc<Motion>,
+    held: Held,
+    measures: &[&Measure],
+    parameters: &[ParameterId],
+    plain: F,
+    mut varying: impl FnMut(&[Varying]) -> G,
+) -> Result<Sensitivities, Vec<Unmeasurable>> {
     // Unwrapped directions and the times of extremes come from the plain motion.
-    let mut sampler = Sampler::new(motion, measures)?;
+    let mut sampler = Sampler::with_forces(motion, measures, plain)?;
     let (parameter, time) = match held {
-        Held::Path(p) => (p, sampler.time_at(p)),
-        Held::Time(t) => (sampler.parameter_at(t), t),
+        Held::Path(p) => (p, sampler.clock().time_at(p)),
+        Held::Time(t) => (sampler.clock().parameter_at(t), t),
     };
     let mut it = Sensitivities {
         parameter,
@@ -88,14 +105,12 @@ pub fn sensitivities(
         .chunks(CHUNK)
         .chain(parameters.is_empty().then_some(parameters));
     for chunk in chunks {
-        let mut varied = Varied::new(motion, &mut sampler, chunk);
-        let results: Vec<Base> = match varied.clock(held) {
-            Some(time) => {
-                varied.prepare(measures);
-                measures.iter().map(|m| varied.value(m, time)).collect()
-            }
-            None => vec![Base::from_f64(f64::NAN); measures.len()],
-        };
+        let values = varied_parameters(&motion.mechanism().model, chunk);
+        let forces = varying(&values);
+        let mut varied = Varied::new(motion, &mut sampler, &values, forces);
+        varied.prepare(measures);
+        let place = varied.place(held);
+        let results: Vec<Varying> = measures.iter().map(|m| varied.value(m, place)).collect();
         for (index, result) in results.iter().enumerate() {
             it.values[index] = result.re;
             // What has no value has no derivatives either.

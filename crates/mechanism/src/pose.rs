@@ -83,6 +83,16 @@ impl<T: Number> Pose<T> {
         (self.s * c0 - self.c * s0).atan2(self.c * c0 + self.s * s0) + near
     }
 
+    /// Every part through `f`.
+    pub fn map<U>(&self, f: impl Fn(T) -> U) -> Pose<U> {
+        Pose {
+            x: f(self.x),
+            y: f(self.y),
+            c: f(self.c),
+            s: f(self.s),
+        }
+    }
+
     /// The plain value of every part.
     #[inline]
     pub fn value(&self) -> Pose<f64> {

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use kempe_dynamics::{ForceArrow, ForceError, ForceEvidence, ForceNote, ForceSampler};
+use kempe_dynamics::{ForceArrow, ForceError, ForceEvidence, ForceNote, ForceSampler, Problem};
 use kempe_measure::force_source::NoForces;
 use kempe_measure::{Sample, Sampler};
 use kempe_model::{Diagnostic, DriveId, Model};
@@ -11,6 +11,13 @@ use kempe_motion::{Motion, Unwatched, Watch};
 use crate::columns::Quantity;
 use crate::motion::unprepared;
 use crate::rows::RowPlace;
+
+/// What acts on the mechanism makes no sense, as diagnostics over the model file.
+pub(crate) fn force_problems(problems: Vec<Problem>) -> Vec<Diagnostic> {
+    let told = problems.into_iter();
+    told.map(|p| Diagnostic::error(p.code, p.message).at(p.span, ""))
+        .collect()
+}
 
 /// Evaluates quantities along a motion.
 pub(crate) enum Along {
@@ -62,12 +69,7 @@ impl Along {
             .map(|sampler| Self::Forces(Box::new(sampler)))
             .map_err(|error| match error {
                 ForceError::Unprepared(problem) => unprepared(model, quantities, problem),
-                ForceError::Problems(problems) => {
-                    let told = problems
-                        .into_iter()
-                        .map(|p| Diagnostic::error(p.code, p.message).at(p.span, ""));
-                    told.collect()
-                }
+                ForceError::Problems(problems) => force_problems(problems),
             })
     }
 

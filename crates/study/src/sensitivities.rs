@@ -8,6 +8,7 @@ use kempe_motion::drive_path::DrivePath;
 use kempe_units::{Dimension, format_digits};
 use serde::Serialize;
 
+use crate::along::force_problems;
 use crate::pose::Setting;
 use crate::prepared::{design, motion};
 use crate::progress::Progress;
@@ -94,16 +95,18 @@ pub fn sensitivities(
         .map(ParameterId)
         .collect();
     let mut left_out = Vec::new();
-    let (of_forces, mut asked): (Vec<_>, Vec<_>) =
-        model.measures.iter().partition(|m| m.needs_forces);
-    left_out.extend(of_forces.iter().map(|m| {
-        let reason =
-            "it asks for forces, whose derivatives are not known: vary the parameter with --set";
-        (m.name.clone(), reason.to_owned())
-    }));
+    let mut asked: Vec<_> = model.measures.iter().collect();
     let found = loop {
         let measures: Vec<_> = asked.iter().map(|m| &m.measure).collect();
-        match kempe_measure::sensitivities(&motion, held, &measures, &ids) {
+        let found = if asked.iter().any(|m| m.needs_forces) {
+            match kempe_dynamics::sensitivities(&motion, held, &measures, &ids) {
+                Ok(found) => Ok(found),
+                Err(error) => Err(error.unmeasurable().map_err(force_problems)?),
+            }
+        } else {
+            kempe_measure::sensitivities(&motion, held, &measures, &ids)
+        };
+        match found {
             Ok(found) => break found,
             Err(problems) => {
                 // From the last on, so that the places before stay.

@@ -43,6 +43,7 @@ impl<B: Number> Moment<'_, B> {
             PoseMeasure::Direction(a, b) => {
                 let v = sub(point(*b), point(*a));
                 let near = self
+                    .history
                     .directions
                     .iter()
                     .find(|(pair, _)| *pair == (*a, *b))
@@ -78,7 +79,7 @@ impl<B: Number> Moment<'_, B> {
             PoseMeasure::Curvature(p) => {
                 let (curvature, _) = self.curvature(point(*p));
                 // Positive turning left along the travel, whichever way the path parameter runs.
-                if self.heading < 0.0 && along != Along::Path {
+                if self.state.abscissa.heading < 0.0 && along != Along::Path {
                     -curvature
                 } else {
                     curvature
@@ -105,16 +106,18 @@ impl<B: Number> Moment<'_, B> {
 
     /// A point in the frame.
     pub(super) fn point(&self, poses: &[Pose<Series<B>>], point: PointId) -> [Series<B>; 2] {
-        match self.mechanism.any_marker(point) {
-            Some(marker) => poses[marker.body.index()].place(self.design.geometry.marker(marker)),
+        match self.state.mechanism().any_marker(point) {
+            Some(marker) => {
+                poses[marker.body.index()].place(self.state.design.geometry.marker(marker))
+            }
             None => [undefined(); 2],
         }
     }
 
     /// Pose of a link, not of its body.
     fn link(&self, poses: &[Pose<Series<B>>], link: LinkId) -> Pose<Series<B>> {
-        let body = &poses[self.mechanism.body_of(link).index()];
-        let seat = &self.design.geometry.seats[link.index()];
+        let body = &poses[self.state.mechanism().body_of(link).index()];
+        let seat = &self.state.design.geometry.seats[link.index()];
         let [x, y] = body.place([seat.x, seat.y]);
         let [c, s] = body.turn([seat.c, seat.s]);
         Pose { x, y, c, s }
@@ -122,8 +125,9 @@ impl<B: Number> Moment<'_, B> {
 
     /// Unwrapped angle of a link.
     pub(super) fn angle(&self, poses: &[Pose<Series<B>>], link: LinkId) -> Series<B> {
-        let body = self.mechanism.body_of(link).index();
-        poses[body].angle_near(self.near[body]) + self.design.geometry.seat_angles[link.index()]
+        let body = self.state.mechanism().body_of(link).index();
+        poses[body].angle_near(self.state.near[body])
+            + self.state.design.geometry.seat_angles[link.index()]
     }
 
     /// Origin and unit direction of a line in the frame.
@@ -133,9 +137,9 @@ impl<B: Number> Moment<'_, B> {
                 link: line.link,
                 point,
             };
-            match self.mechanism.marker(at) {
+            match self.state.mechanism().marker(at) {
                 Some(marker) => {
-                    poses[marker.body.index()].place(self.design.geometry.marker(marker))
+                    poses[marker.body.index()].place(self.state.design.geometry.marker(marker))
                 }
                 None => [undefined(); 2],
             }
@@ -154,19 +158,19 @@ impl<B: Number> Moment<'_, B> {
 
     /// Size of the mechanism, m.
     fn size(&self) -> f64 {
-        let plain = self.design.plain.first();
-        plain.map_or(1.0, |geometry| geometry.size(self.mechanism))
+        let plain = self.state.design.plain.first();
+        plain.map_or(1.0, |geometry| geometry.size(self.state.mechanism()))
     }
 
     /// Whether a point of the mechanism stands still here, as at the end of a stroke: its path has no direction then.
     pub fn stands_still(&self, point: PointId) -> bool {
-        self.is_still(self.point(self.path, point))
+        self.is_still(self.point(&self.state.poses, point))
     }
 
     fn is_still(&self, p: [Series<B>; 2]) -> bool {
         let size = |order: usize| {
             let [x, y] = [0, 1].map(|k| p[k].derivative(order).value());
-            math::hypot(x, y) * self.unit.powi(order as i32)
+            math::hypot(x, y) * self.state.abscissa.unit.powi(order as i32)
         };
         let speed = size(1) / self.size();
         speed <= NO_SPEED || (speed <= SLOW && size(1) <= REVERSAL * size(2))
@@ -194,7 +198,7 @@ impl<B: Number> Moment<'_, B> {
             (
                 math::hypot(x, y),
                 size * w.abs(),
-                self.unit.powi(order as i32 + 1),
+                self.state.abscissa.unit.powi(order as i32 + 1),
             )
         });
         match speeds.find(|(slide, turn, unit)| !(slide.max(*turn) * unit <= NO_SPEED * size)) {

@@ -11,13 +11,13 @@ impl<B: Number> Moment<'_, B> {
     pub(super) fn motion_measure(&self, measure: &PoseMeasure) -> Series<B> {
         let velocity = |p: PointId| {
             // Of a moving point at rest the speed has no derivatives; of one that cannot move all are zero.
-            if self.mechanism.is_fixed(p) {
+            if self.state.mechanism().is_fixed(p) {
                 return None;
             }
-            let at = self.point(self.path, p);
+            let at = self.point(&self.state.poses, p);
             Some([
-                at[0].compose(&self.clock).differentiate(),
-                at[1].compose(&self.clock).differentiate(),
+                at[0].compose(&self.state.abscissa.clock).differentiate(),
+                at[1].compose(&self.state.abscissa.clock).differentiate(),
             ])
         };
         let size = |v: Option<[Series<B>; 2]>| v.map_or(Series::zero(), |v| dot(v, v).sqrt());
@@ -27,17 +27,18 @@ impl<B: Number> Moment<'_, B> {
                 size(velocity(*p).map(|v| [v[0].differentiate(), v[1].differentiate()]))
             }
             PoseMeasure::AngularSpeed(link) => self
-                .angle(self.path, *link)
-                .compose(&self.clock)
+                .angle(&self.state.poses, *link)
+                .compose(&self.state.abscissa.clock)
                 .differentiate(),
             PoseMeasure::AngularAcceleration(link) => self
-                .angle(self.path, *link)
-                .compose(&self.clock)
+                .angle(&self.state.poses, *link)
+                .compose(&self.state.abscissa.clock)
                 .differentiate()
                 .differentiate(),
             PoseMeasure::PathLength(p) => {
                 let start = self
-                    .swept
+                    .history
+                    .lengths
                     .iter()
                     .find(|(q, _)| q == p)
                     .map_or(B::from_f64(f64::NAN), |(_, length)| *length);

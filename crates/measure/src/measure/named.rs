@@ -11,7 +11,7 @@ type Known<B> = Vec<(Along, Series<B>)>;
 
 /// Named measures that were evaluated at a moment already, by their place in the model.
 #[derive(Clone, Debug)]
-pub struct NamedSeries<B>(RefCell<Vec<Known<B>>>);
+pub(crate) struct NamedSeries<B>(RefCell<Vec<Known<B>>>);
 
 impl<B> Default for NamedSeries<B> {
     fn default() -> Self {

@@ -15,13 +15,13 @@ impl<F: ForceSource> Sampler<F> {
     /// What is to be said of a row that was reached. `still` are points that stand still whose curvature is asked for.
     pub(super) fn note(&self, p: f64, sample: &Sample, still: &[PointId]) -> Option<String> {
         if let Some(event) = self
-            .motion
+            .motion()
             .bridge(p)
             .filter(|e| e.kind == EventKind::ChangePoint)
         {
             let at = self.place_text(event.at);
-            let started = self.motion.start_crossing() == Some(event) && p == self.motion.start;
-            return Some(match self.motion.choices {
+            let started = self.motion().start_crossing() == Some(event) && p == self.motion().start;
+            return Some(match self.motion().choices {
                 1 if started => format!(
                     "change point at {at}, where the motion starts: it follows the branch through it that fits the hints in \
                      [assembly], interpolated from both sides"
@@ -42,11 +42,11 @@ impl<F: ForceSource> Sampler<F> {
                 sample.closure
             ));
         }
-        let singular = self.motion.limit_at(p).is_some() || sample.smallest_singular_value < 1e-9;
+        let singular = self.motion().limit_at(p).is_some() || sample.smallest_singular_value < 1e-9;
         if singular {
             return Some("limit of the drive: rates are not defined here".into());
         }
-        let points = &self.motion.mechanism().model.points;
+        let points = &self.motion().mechanism().model.points;
         let names: Vec<&str> = (still.iter())
             .filter_map(|p| Some(points.get(p.index())?.name.as_str()))
             .collect();
@@ -59,7 +59,7 @@ impl<F: ForceSource> Sampler<F> {
 
     /// Why a path parameter was not reached.
     pub(super) fn why_unreached(&self, p: f64) -> String {
-        let motion = &*self.motion.clone();
+        let motion = self.motion();
         let (low, high) = motion.reached();
         let (reason, at) = if p > high {
             (motion.ends.1, high)
@@ -84,7 +84,7 @@ impl<F: ForceSource> Sampler<F> {
 
     /// A path parameter with its unit, as the file would say it.
     fn place_text(&self, p: f64) -> String {
-        let model = &self.motion.mechanism().model;
+        let model = &self.motion().mechanism().model;
         let dimension = match self.path_drive() {
             Some(drive) => model.drives.get(drive.index()).map(|d| d.dimension),
             None => None,

@@ -1,12 +1,10 @@
 //! What measures need beyond the poses along the path, found before the first row.
 
-use kempe_model::{DriveId, Leaf, Measure, PointId, PoseMeasure, Statistic};
 use kempe_motion::progress::Watch;
 
 use super::Sampler;
-use super::direction::Direction;
 use crate::force_source::ForceSource;
-use crate::measure::visit_leaves;
+use crate::measurer::Needs;
 use crate::path_length::Swept;
 use crate::statistics::over;
 
@@ -31,58 +29,19 @@ pub enum Unprepared {
 impl<F: ForceSource> Sampler<F> {
     /// Finds out what the measures need beyond the poses along the path. `None` when stopped.
     pub(super) fn prepare(&mut self, watch: &mut dyn Watch) -> Option<()> {
-        let mut statistics: Vec<(Statistic, Measure)> = Vec::new();
-        let mut directions: Vec<(PointId, PointId)> = Vec::new();
-        let mut swept: Vec<PointId> = Vec::new();
-        let mut drives: Vec<DriveId> = Vec::new();
-        let mut curved: Vec<PointId> = Vec::new();
-        let motion = &*self.motion.clone();
+        let motion = self.motion().clone();
         // What the forces ask for comes first: measures of forces need its statistics.
-        let inputs = self.forces.as_ref().map_or(&[][..], F::measures);
-        for measure in inputs.iter().chain(&self.measures) {
-            visit_leaves(motion.mechanism(), measure, &mut |leaf| match leaf {
-                Leaf::Over(statistic, inner) => {
-                    let entry = (*statistic, (**inner).clone());
-                    if !statistics.contains(&entry) {
-                        statistics.push(entry);
-                    }
-                }
-                Leaf::Pose(PoseMeasure::Direction(a, b)) if !directions.contains(&(*a, *b)) => {
-                    directions.push((*a, *b));
-                }
-                Leaf::Pose(
-                    PoseMeasure::Curvature(p)
-                    | PoseMeasure::CurvatureCenterX(p)
-                    | PoseMeasure::CurvatureCenterY(p),
-                ) if !curved.contains(p) => curved.push(*p),
-                Leaf::Pose(PoseMeasure::PathLength(p)) if !swept.contains(p) => swept.push(*p),
-                Leaf::Coefficient(_, drive, _)
-                | Leaf::Pose(PoseMeasure::MechanicalAdvantage(_, drive)) => {
-                    drives.push(*drive);
-                }
-                _ => {}
-            });
+        let inputs = self.measurer.forces.measures().iter();
+        let needs = Needs::of(&motion, inputs.chain(&self.measures));
+        self.measurer.take_up(&needs);
+        self.curved = needs.curved;
+        self.curved.retain(|p| !motion.mechanism().is_fixed(*p));
+        for point in needs.lengths {
+            self.lengths.push(Swept::watched(&motion, point, watch)?);
         }
-        if self.forces.as_ref().is_some_and(F::needs_drives) {
-            drives.extend((0..self.drives.len()).map(|d| DriveId(d as u32)));
-        }
-        for drive in drives {
-            if Some(drive) != self.path_drive() {
-                self.drives[drive.index()] = Some(Vec::new());
-            }
-        }
-        curved.retain(|p| !motion.mechanism().is_fixed(*p));
-        self.curved = curved;
-        self.directions = (directions.into_iter())
-            .map(|points| Direction::new(motion, points))
-            .collect();
-        for point in swept {
-            self.swept.push(Swept::watched(motion, point, watch)?);
-        }
-        // A statistic that another contains is found before it.
-        for (statistic, measure) in statistics {
+        for (statistic, measure) in needs.statistics {
             let value = over(self, statistic, &measure, watch)?;
-            self.statistics.push((statistic, measure, value));
+            self.measurer.statistics.push((statistic, measure, value));
         }
         Some(())
     }

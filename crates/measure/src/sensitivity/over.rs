@@ -5,21 +5,21 @@ use kempe_motion::progress::Unwatched;
 use kempe_number::Number;
 
 use super::varied::{Place, Varied};
-use super::{Base, CHUNK};
-use crate::measure::Series;
+use super::{CHUNK, Varying};
+use crate::force_source::ForceSource;
 use crate::quadrature::{graded, integrate};
 use crate::statistics::{extremes, time_ratio};
 
 /// Intervals of time over which path lengths and means are integrated, besides the breaks of the laws.
 const GRID: usize = 45;
 
-impl Varied<'_, '_> {
+impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
     /// A statistic of a measure over the motion.
-    pub(super) fn over(&mut self, statistic: Statistic, measure: &Measure) -> Base {
-        let nothing = Base::from_f64(f64::NAN);
+    pub(super) fn over(&mut self, statistic: Statistic, measure: &Measure) -> Varying {
+        let nothing = Varying::from_f64(f64::NAN);
         match statistic {
             Statistic::At { drive: None, value } => {
-                let place = self.at_time(Base::from_f64(value));
+                let place = self.at_time(Varying::from_f64(value));
                 self.value(measure, place)
             }
             Statistic::At {
@@ -35,7 +35,7 @@ impl Varied<'_, '_> {
             Statistic::Mean => {
                 let duration = self.duration();
                 if duration.re <= 0.0 {
-                    let place = self.at_time(Base::zero());
+                    let place = self.at_time(Varying::zero());
                     return self.value(measure, place);
                 }
                 let sum = self.integrate(duration, &mut |it, place| it.value(measure, place));
@@ -61,22 +61,22 @@ impl Varied<'_, '_> {
     }
 
     /// Time and value of an extreme found at `time`.
-    fn extreme(&mut self, measure: &Measure, time: f64) -> (Base, Base) {
+    fn extreme(&mut self, measure: &Measure, time: f64) -> (Varying, Varying) {
         // At an end of a piece the time moves with the law; otherwise with the zero of the rate.
         let near = SAME_END * self.sampler.duration();
         let breaks = self.breaks().into_iter();
         let mut breaks = breaks.filter(|b| (b.re - time).abs() <= near);
         if let Some(moving) = breaks.next() {
             // On the side of the piece on which it was found.
-            let moving = Base { re: time, ..moving };
+            let moving = Varying { re: time, ..moving };
             let place = self.at_time(moving);
             return (moving, self.value(measure, place));
         }
-        let place = self.at_time(Base::from_f64(time));
+        let place = self.at_time(Varying::from_f64(time));
         let series = self.series(measure, place);
         let (rate, bend) = (series.coefficient(1), series.coefficient(2).re * 2.0);
         (
-            Base {
+            Varying {
                 re: time,
                 eps: rate.eps.map(|d| -d / bend),
             },
@@ -85,41 +85,41 @@ impl Varied<'_, '_> {
     }
 
     /// Length of path swept by a point until a time.
-    pub(super) fn length(&mut self, point: PointId, until: Base) -> Base {
-        let mechanism = self.motion.mechanism();
+    pub(super) fn length(&mut self, point: PointId, until: Varying) -> Varying {
+        let mechanism = self.motion.mechanism().clone();
         if mechanism.is_fixed(point) {
-            return Base::zero();
+            return Varying::zero();
         }
         let Some(marker) = mechanism.any_marker(point) else {
-            return Base::from_f64(f64::NAN);
+            return Varying::from_f64(f64::NAN);
         };
         self.integrate(until, &mut |it, place| {
-            if !it.solve(place) {
-                return Base::from_f64(f64::NAN);
+            if !it.measurer.find(place) {
+                return Varying::from_f64(f64::NAN);
             }
-            let model = &it.motion.mechanism().model;
-            let rate = it
-                .motion
-                .path
-                .parameter_at(model, Series::variable(place.time), &it.rich)
-                .coefficient(1);
-            let local = it.design.geometry.marker(marker);
-            let at = it.solver.state.poses[marker.body.index()].place(local);
+            let rate = it.measurer.states.path_rate(place.time);
+            let state = it.measurer.state();
+            let local = state.design.geometry.marker(marker);
+            let at = state.poses[marker.body.index()].place(local);
             let (dx, dy) = (at[0].coefficient(1), at[1].coefficient(1));
             ((dx.square() + dy.square()) * rate.square()).sqrt()
         })
     }
 
     /// Integral over time from the start, between the breaks of the laws and the times of an even grid.
-    fn integrate(&mut self, until: Base, f: &mut dyn FnMut(&mut Self, Place) -> Base) -> Base {
-        let mut cuts = vec![Base::zero(), until];
+    fn integrate(
+        &mut self,
+        until: Varying,
+        f: &mut dyn FnMut(&mut Self, Place<Varying>) -> Varying,
+    ) -> Varying {
+        let mut cuts = vec![Varying::zero(), until];
         cuts.extend(
             self.breaks()
                 .into_iter()
                 .filter(|t| 0.0 < t.re && t.re < until.re),
         );
         cuts.sort_by(|a, b| a.re.total_cmp(&b.re));
-        let mut sum = Base::zero();
+        let mut sum = Varying::zero();
         for pair in cuts.windows(2).filter(|pair| pair[1].re > pair[0].re) {
             let width = pair[1] - pair[0];
             let count = (GRID as f64 * width.re / until.re).ceil() as usize;
@@ -131,26 +131,26 @@ impl Varied<'_, '_> {
                 Some(values)
             });
             let Some([re, eps @ ..]) = part else {
-                return Base::from_f64(f64::NAN);
+                return Varying::from_f64(f64::NAN);
             };
-            sum += Base { re, eps };
+            sum += Varying { re, eps };
         }
         sum
     }
 
-    fn duration(&self) -> Base {
+    fn duration(&self) -> Varying {
         let laws = self.motion.mechanism().model.drives.iter();
-        laws.map(|d| d.law.duration(&self.parameters))
-            .fold(Base::zero(), Base::max)
+        laws.map(|d| d.law.duration(self.parameters()))
+            .fold(Varying::zero(), Varying::max)
     }
 
     /// Times at which some law goes from one piece to the next, as they move with the parameters.
-    fn breaks(&self) -> Vec<Base> {
-        let mut list = vec![Base::zero(), self.duration()];
+    fn breaks(&self) -> Vec<Varying> {
+        let mut list = vec![Varying::zero(), self.duration()];
         for drive in &self.motion.mechanism().model.drives {
             let mut law = drive.law.clone();
             while !law.pieces.is_empty() {
-                list.push(law.duration(&self.parameters));
+                list.push(law.duration(self.parameters()));
                 law.pieces.pop();
             }
         }

@@ -1,15 +1,35 @@
 //! Between time and the path parameter.
 
-use kempe_model::{DriveId, SAME_END};
-use kempe_motion::drive_path::{DrivePath, duration, law_knots};
+use std::sync::Arc;
 
-use super::Sampler;
-use crate::force_source::ForceSource;
+use kempe_model::{DriveId, SAME_END};
+use kempe_motion::Motion;
+use kempe_motion::drive_path::{DrivePath, duration, law_knots};
 
 /// A rate at which less than this part of the motion is covered in its duration counts as rest.
 const AT_REST: f64 = 1e-9;
 
-impl<F: ForceSource> Sampler<F> {
+/// Where a motion is at a time, and when it passes a place.
+#[derive(Clone, Debug)]
+pub(crate) struct Clock {
+    motion: Arc<Motion>,
+}
+
+impl Clock {
+    /// The clock of a motion.
+    pub fn new(motion: Arc<Motion>) -> Self {
+        Self { motion }
+    }
+
+    /// The motion.
+    pub fn motion(&self) -> &Arc<Motion> {
+        &self.motion
+    }
+
+    fn parameters(&self) -> &[f64] {
+        &self.motion.design.parameters
+    }
+
     /// Duration of the motion, s.
     pub fn duration(&self) -> f64 {
         duration(&self.motion.mechanism().model, self.parameters())
@@ -23,7 +43,7 @@ impl<F: ForceSource> Sampler<F> {
 
     /// Which way the motion runs along its path at a time, by the rate of the path parameter there: 1 or -1. Where it is at
     /// rest, the way it goes on; the way it came where it does not go on.
-    pub(crate) fn heading(&self, time: f64, rate: f64) -> f64 {
+    pub fn heading(&self, time: f64, rate: f64) -> f64 {
         if !rate.is_finite() {
             return 1.0;
         }
@@ -64,7 +84,7 @@ impl<F: ForceSource> Sampler<F> {
     }
 
     /// The first time at which the motion passes a path parameter, s; NaN when it never does.
-    pub(crate) fn time_at(&self, p: f64) -> f64 {
+    pub fn time_at(&self, p: f64) -> f64 {
         match self.path_drive() {
             // The last coordinate of a law may be missed by a rounding error.
             Some(drive) => self.time_of(drive, p).map_or_else(
@@ -89,7 +109,7 @@ impl<F: ForceSource> Sampler<F> {
     }
 
     /// The path parameter at a time, s.
-    pub(crate) fn parameter_at(&self, t: f64) -> f64 {
+    pub fn parameter_at(&self, t: f64) -> f64 {
         let model = &self.motion.mechanism().model;
         self.motion.path.parameter_at(model, t, self.parameters())
     }

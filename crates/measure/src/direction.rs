@@ -8,7 +8,7 @@ use kempe_motion::trace::interval;
 use kempe_number::math;
 
 /// The direction from one point to another, unwrapped at every node of the trace.
-pub(super) struct Direction {
+pub(crate) struct Direction {
     points: (PointId, PointId),
     /// rad, at the nodes.
     values: Vec<f64>,

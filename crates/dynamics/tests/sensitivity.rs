@@ -1,0 +1,157 @@
+//! Derivatives of forces to parameters against differences of whole new designs.
+#![allow(clippy::unwrap_used)]
+
+use std::path::Path;
+use std::sync::Arc;
+
+use kempe_dynamics::{ForceSampler, sensitivities};
+use kempe_measure::Held;
+use kempe_measure::measure::visit_leaves;
+use kempe_mechanism::{Design, Mechanism};
+use kempe_model::{DriveId, ForceMeasure, JointRef, Leaf, Measure, Model, ParameterId, PointId};
+use kempe_motion::Motion;
+use kempe_units::Expr;
+
+/// Differences of eighth order keep about so many parts of the largest derivative asked for.
+const TOLERANCE: f64 = 1e-6;
+
+fn ask(measure: ForceMeasure) -> Measure {
+    Expr::Leaf(Leaf::Force(measure))
+}
+
+/// Parameter values with one of them changed; those built on it follow.
+fn changed(model: &Model, which: usize, by: f64) -> Vec<f64> {
+    let mut values: Vec<f64> = Vec::new();
+    for (index, parameter) in model.parameters.iter().enumerate() {
+        let value = kempe_model::value(&parameter.value, &values);
+        values.push(if index == which { value + by } else { value });
+    }
+    values
+}
+
+fn values(
+    mechanism: &Arc<Mechanism>,
+    parameters: &[f64],
+    measures: &[&Measure],
+    time: f64,
+) -> Option<Vec<f64>> {
+    let motion = Motion::new(&Design::new(mechanism, parameters)).ok()?;
+    let mut sampler = ForceSampler::new(&motion, measures).ok()?;
+    Some(sampler.at_time(time).sample.values)
+}
+
+/// Largest difference, in parts of the largest derivative, over the measures of a model of which both ways know all.
+fn compare(model: &Model, part: f64, over_motion: bool) -> Option<(usize, f64)> {
+    let mechanism = Mechanism::new(model);
+    let plain: Vec<f64> = model.parameter_values();
+    let motion = Motion::new(&Design::new(&mechanism, &plain)).ok()?;
+    // Numbers over the motion take long; one example stands for them.
+    let goes_over = |measure: &Measure| {
+        let mut found = false;
+        visit_leaves(&mechanism, measure, &mut |leaf| {
+            found |= matches!(leaf, Leaf::Over(..))
+        });
+        found
+    };
+    let mut measures: Vec<Measure> = (model.measures.iter())
+        .map(|m| m.measure.clone())
+        .filter(|m| over_motion || !goes_over(m))
+        .collect();
+    for drive in 0..model.drives.len() as u32 {
+        measures.push(ask(ForceMeasure::Drive(DriveId(drive))));
+        measures.push(ask(ForceMeasure::Power(DriveId(drive))));
+    }
+    for (point, at) in model.points.iter().enumerate() {
+        if at.links.len() > 1 {
+            let joint = JointRef::Pin(PointId(point as u32), None);
+            measures.push(ask(ForceMeasure::Reaction(joint)));
+            measures.push(ask(ForceMeasure::ReactionX(joint)));
+        }
+    }
+    measures.push(ask(ForceMeasure::ShakingForceX));
+    let measures: Vec<&Measure> = measures.iter().collect();
+    let duration = ForceSampler::new(&motion, &measures).ok()?.duration();
+    let time = part * duration;
+    let ids: Vec<ParameterId> = (0..plain.len() as u32).map(ParameterId).collect();
+    let found = sensitivities(&motion, Held::Time(time), &measures, &ids).unwrap();
+    let largest = found
+        .values
+        .iter()
+        .filter(|v| v.is_finite())
+        .fold(0.0_f64, |a, v| a.max(v.abs()));
+    let (mut compared, mut worst) = (0, 0.0_f64);
+    for (which, value) in plain.iter().enumerate() {
+        let h = 2e-5 * if *value == 0.0 { 1e-2 } else { value.abs() };
+        let at = |k: f64| values(&mechanism, &changed(model, which, k * h), &measures, time);
+        let Some(sides) = [1.0, 2.0, 3.0, 4.0, -1.0, -2.0, -3.0, -4.0]
+            .map(at)
+            .into_iter()
+            .collect::<Option<Vec<_>>>()
+        else {
+            continue;
+        };
+        for (index, row) in found.derivatives.iter().enumerate() {
+            let weights = [4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0];
+            let sum: f64 = (0..4)
+                .map(|k| weights[k] * (sides[k][index] - sides[k + 4][index]))
+                .sum();
+            let expected = sum / h;
+            // What is left of differences of forces that cancel is counted in the largest.
+            let own = found.values[index].abs().max(1e-3 * largest);
+            let scale = expected.abs().max(own / value.abs().max(1e-3));
+            if expected.is_finite() && found.values[index].is_finite() && scale > 1e-9 {
+                assert!(
+                    row[which].is_finite(),
+                    "{index} to {}",
+                    model.parameters[which].name
+                );
+                let off = (row[which] - expected).abs() / scale;
+                compared += 1;
+                worst = worst.max(off);
+                assert!(
+                    off < TOLERANCE,
+                    "measure {index} to {}: {} is not {expected}",
+                    model.parameters[which].name,
+                    row[which]
+                );
+            }
+        }
+    }
+    Some((compared, worst))
+}
+
+#[test]
+fn derivatives_of_forces_are_those_of_new_designs() {
+    let mut all = 0;
+    for folder in ["seeds", "gallery"] {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join("../../examples")
+            .join(folder);
+        let mut files: Vec<_> = std::fs::read_dir(&folder)
+            .unwrap()
+            .map(|e| e.unwrap().path())
+            .collect();
+        files.sort();
+        for file in files
+            .iter()
+            .filter(|f| f.extension().is_some_and(|e| e == "toml"))
+        {
+            let text = std::fs::read_to_string(file).unwrap();
+            let name = file.file_stem().unwrap().to_string_lossy().into_owned();
+            let mut tables = |table: &str| {
+                std::fs::read_to_string(folder.join(table)).map_err(|e| e.to_string())
+            };
+            let model = Model::from_toml(&text, &name, &mut tables).unwrap().model;
+            let acts =
+                !model.actions.loads.is_empty() || model.links.iter().any(|l| l.inertia.is_some());
+            if model.parameters.is_empty() || !acts {
+                continue;
+            }
+            if let Some((compared, worst)) = compare(&model, 0.3719, name == "luffing-crane") {
+                println!("{name}: {compared} compared, {worst:e}");
+                all += compared;
+            }
+        }
+    }
+    assert!(all > 300, "only {all} derivatives were compared");
+}

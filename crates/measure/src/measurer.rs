@@ -1,0 +1,152 @@
+//! Measures of the states along a motion, on any number: what rows, numbers over the motion and derivatives all ask.
+
+use std::sync::Arc;
+
+use kempe_mechanism::PlanNumber;
+use kempe_model::{DriveId, Leaf, Measure, PointId, PoseMeasure, Statistic};
+use kempe_motion::motion::Motion;
+
+use crate::direction::Direction;
+use crate::force_source::ForceSource;
+use crate::measure::{Along, History, KnownStatistic, Moment, visit_leaves};
+use crate::state::{Series, State};
+use crate::states_along::{Base, Place, StatesAlong};
+
+/// What measures need beyond the poses along the path.
+#[derive(Debug, Default)]
+pub(crate) struct Needs {
+    /// Statistics; one that another contains stands before it.
+    pub statistics: Vec<(Statistic, Measure)>,
+    /// Directions between points.
+    pub directions: Vec<(PointId, PointId)>,
+    /// Points whose lengths of path are asked for.
+    pub lengths: Vec<PointId>,
+    /// Points whose curvature of path is asked for.
+    pub curved: Vec<PointId>,
+    /// Drives whose kinematic coefficients are asked for.
+    pub drives: Vec<DriveId>,
+}
+
+impl Needs {
+    /// What these measures need of a motion.
+    pub fn of<'m>(motion: &Motion, measures: impl Iterator<Item = &'m Measure>) -> Self {
+        let mut it = Self::default();
+        for measure in measures {
+            visit_leaves(motion.mechanism(), measure, &mut |leaf| match leaf {
+                Leaf::Over(statistic, inner) => {
+                    let entry = (*statistic, (**inner).clone());
+                    if !it.statistics.contains(&entry) {
+                        it.statistics.push(entry);
+                    }
+                }
+                Leaf::Pose(PoseMeasure::Direction(a, b)) if !it.directions.contains(&(*a, *b)) => {
+                    it.directions.push((*a, *b));
+                }
+                Leaf::Pose(
+                    PoseMeasure::Curvature(p)
+                    | PoseMeasure::CurvatureCenterX(p)
+                    | PoseMeasure::CurvatureCenterY(p),
+                ) if !it.curved.contains(p) => it.curved.push(*p),
+                Leaf::Pose(PoseMeasure::PathLength(p)) if !it.lengths.contains(p) => {
+                    it.lengths.push(*p);
+                }
+                Leaf::Coefficient(_, drive, _)
+                | Leaf::Pose(PoseMeasure::MechanicalAdvantage(_, drive)) => {
+                    it.drives.push(*drive);
+                }
+                _ => {}
+            });
+        }
+        it
+    }
+}
+
+/// Measures the states along a motion.
+pub(crate) struct Measurer<B, F> {
+    /// Finds the states.
+    pub states: StatesAlong<B>,
+    /// Answers questions to forces.
+    pub forces: F,
+    /// Directions that are asked for.
+    pub directions: Vec<Direction>,
+    /// Numbers over the motion that are known.
+    pub statistics: Vec<KnownStatistic<B>>,
+}
+
+impl<B: Base, F: ForceSource<B>> Measurer<B, F>
+where
+    Series<B>: PlanNumber,
+{
+    /// Prepares to measure a motion for these parameter values.
+    pub fn new(motion: &Arc<Motion>, parameters: &[B], forces: F) -> Self {
+        Self {
+            states: StatesAlong::new(motion, parameters),
+            forces,
+            directions: Vec::new(),
+            statistics: Vec::new(),
+        }
+    }
+
+    /// Takes up what measures need of states and directions.
+    pub fn take_up(&mut self, needs: &Needs) {
+        let motion = self.states.motion().clone();
+        for drive in &needs.drives {
+            self.states.ask_alone(*drive);
+        }
+        if self.forces.needs_drives() {
+            let drives = motion.mechanism().model.drives.len() as u32;
+            (0..drives).for_each(|drive| self.states.ask_alone(DriveId(drive)));
+        }
+        self.directions = (needs.directions.iter())
+            .map(|points| Direction::new(&motion, *points))
+            .collect();
+    }
+
+    /// Hands the state last found, at a path parameter, to `ask`, with its forces where they are wanted.
+    pub fn with_moment<R>(
+        &mut self,
+        p: f64,
+        lengths: Vec<(PointId, B)>,
+        with_forces: bool,
+        ask: impl FnOnce(&Moment<'_, B>) -> R,
+    ) -> R {
+        let motion = self.states.motion();
+        let directions = self.directions.iter();
+        let history = History {
+            directions: directions
+                .map(|d| (d.points(), d.near(motion, p)))
+                .collect(),
+            lengths,
+        };
+        let (state, statistics) = (self.states.state(), self.statistics.as_slice());
+        if !with_forces {
+            return ask(&Moment::new(state, &history, statistics, None));
+        }
+        let without_forces = Moment::new(state, &history, statistics, None);
+        let amounts: Vec<Series<B>> = (self.forces.measures().iter())
+            .map(|measure| without_forces.series(measure, Along::Time))
+            .collect();
+        self.forces.solve(state, &amounts);
+        let answer = |measure: &_| self.forces.answer(measure);
+        ask(&Moment::new(state, &history, statistics, Some(&answer)))
+    }
+
+    /// The state last found.
+    pub fn state(&self) -> &State<B> {
+        self.states.state()
+    }
+
+    /// Finds the state at a place; false where there is none.
+    pub fn find(&mut self, place: Place<B>) -> bool {
+        self.states.find(place)
+    }
+}
+
+/// Whether a measure asks for forces.
+pub(crate) fn asks_forces(motion: &Motion, measure: &Measure) -> bool {
+    let mut found = false;
+    visit_leaves(motion.mechanism(), measure, &mut |leaf| {
+        found |= matches!(leaf, Leaf::Force(_));
+    });
+    found
+}

@@ -1,0 +1,236 @@
+//! The states of a motion along its drives' path: anywhere, at a limit, and across a change point.
+
+use std::sync::Arc;
+
+use kempe_mechanism::PlanNumber;
+use kempe_mechanism::evidence::is_finite;
+use kempe_mechanism::state::Design;
+use kempe_model::DriveId;
+use kempe_motion::bridge::{Side, across};
+use kempe_motion::drive_path::DrivePath;
+use kempe_motion::events::Event;
+use kempe_motion::motion::{Motion, Solver};
+use kempe_motion::trace::Path;
+use kempe_number::{Dual, Jet, Number};
+
+use crate::clock::Clock;
+use crate::measure::only_value;
+use crate::state::{Abscissa, Series, State};
+
+/// A number on which the states of a motion are found.
+pub trait Base: Number {
+    /// A value of which it is not known how it varies.
+    fn unvaried(value: f64) -> Self;
+}
+
+impl Base for f64 {
+    fn unvaried(value: f64) -> Self {
+        value
+    }
+}
+
+impl<const K: usize> Base for Dual<f64, K> {
+    fn unvaried(value: f64) -> Self {
+        Self {
+            re: value,
+            eps: [f64::NAN; K],
+        }
+    }
+}
+
+/// A place of a motion: time and path parameter, both as they vary.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Place<B> {
+    /// Time, s.
+    pub time: B,
+    /// The path parameter.
+    pub path: B,
+}
+
+/// Finds the states of a motion along its path, for parameters that may vary.
+pub(crate) struct StatesAlong<B> {
+    clock: Clock,
+    /// The parameters as constants of series.
+    rich: Vec<Series<B>>,
+    /// Values of the parameters.
+    parameters: Vec<B>,
+    solver: Solver<Series<B>>,
+    side_design: Design<Side>,
+    side: Solver<Side>,
+    state: State<B>,
+}
+
+impl<B: Base> StatesAlong<B>
+where
+    Series<B>: PlanNumber,
+{
+    /// Prepares to find the states of a motion for these parameter values.
+    pub fn new(motion: &Arc<Motion>, parameters: &[B]) -> Self {
+        let rich: Vec<Series<B>> = parameters.iter().map(|x| Series::constant(*x)).collect();
+        let clock = Clock::new(motion.clone());
+        let abscissa = Abscissa {
+            drive: clock.path_drive(),
+            clock: Series::zero(),
+            heading: 1.0,
+            unit: motion.path.scale(),
+        };
+        Self {
+            state: State::empty(Arc::new(motion.design_of(&rich)), abscissa),
+            solver: motion.solver(),
+            side_design: motion.design_on(),
+            side: motion.solver(),
+            parameters: parameters.to_vec(),
+            rich,
+            clock,
+        }
+    }
+
+    /// The motion.
+    pub fn motion(&self) -> &Arc<Motion> {
+        self.clock.motion()
+    }
+
+    /// Where the motion is at a time.
+    pub fn clock(&self) -> &Clock {
+        &self.clock
+    }
+
+    /// Values of the parameters, SI, in the model's order.
+    pub fn parameters(&self) -> &[B] {
+        &self.parameters
+    }
+
+    /// The state last found.
+    pub fn state(&self) -> &State<B> {
+        &self.state
+    }
+
+    /// Finds the motion that a drive alone would give, too, from now on.
+    pub fn ask_alone(&mut self, drive: DriveId) {
+        if self.clock.path_drive() != Some(drive) {
+            self.state.alone[drive.index()] = Some(Vec::new());
+        }
+    }
+
+    /// The place at a time that may vary with the parameters.
+    pub fn at_time(&self, time: B) -> Place<B> {
+        let motion = self.motion();
+        let model = &motion.mechanism().model;
+        Place {
+            time,
+            path: motion.path.parameter_at(model, time, &self.parameters),
+        }
+    }
+
+    /// The rate of the path parameter in time at a place.
+    pub fn path_rate(&self, time: B) -> B {
+        self.clock_at(time).coefficient(1)
+    }
+
+    fn clock_at(&self, time: B) -> Series<B> {
+        let motion = self.motion();
+        let model = &motion.mechanism().model;
+        if time.value().is_finite() {
+            (motion.path).parameter_at(model, Series::variable(time), &self.rich)
+        } else {
+            Series::from_f64(f64::NAN)
+        }
+    }
+
+    /// Finds the state at a place. False where the motion does not reach, or no pose is found.
+    pub fn find(&mut self, place: Place<B>) -> bool {
+        let motion = self.motion().clone();
+        let p = place.path.value();
+        if !motion.reaches(p) {
+            return false;
+        }
+        if let Some(index) = motion.limit_at(p) {
+            self.find_at_limit(&motion, place, index);
+        } else {
+            match motion.bridge(p) {
+                Some(event) => self.find_across(&motion, place, event),
+                None => self.find_poses(&motion, place),
+            }
+            if !(self.state.poses.iter()).all(|pose| is_finite(&pose.value().value())) {
+                return false;
+            }
+            self.find_alone(&motion, place);
+        }
+        let clock = self.clock_at(place.time);
+        let heading = self
+            .clock
+            .heading(place.time.value(), clock.coefficient(1).value());
+        self.state.time = place.time;
+        (self.state.abscissa.clock, self.state.abscissa.heading) = (clock, heading);
+        true
+    }
+
+    /// Drive coordinates at a path parameter. Drives at rest vary as their laws' starts do.
+    fn coordinates(&mut self, motion: &Motion, p: Series<B>) {
+        let drives = &motion.mechanism().model.drives;
+        for (index, (out, drive)) in self.solver.coordinates.iter_mut().zip(drives).enumerate() {
+            *out = match &motion.path {
+                DrivePath::Coordinate { drive, .. } if *drive == index => p,
+                DrivePath::Coordinate { held, .. } => {
+                    let start = drive.law.at(Series::zero(), &self.rich).coefficient(0);
+                    Series::constant(start + (held[index] - start.value()))
+                }
+                DrivePath::Time { .. } => drive.law.at(p, &self.rich),
+            };
+        }
+    }
+
+    fn find_poses(&mut self, motion: &Motion, place: Place<B>) {
+        motion.branch_at(place.path.value(), &mut self.solver.branch);
+        self.coordinates(motion, Series::variable(place.path));
+        self.solver.run(motion, &self.state.design);
+        self.state.poses.clone_from(&self.solver.state.poses);
+        self.state.near.clone_from(&self.solver.branch.near);
+        self.state.coordinates.clone_from(&self.solver.coordinates);
+    }
+
+    fn find_alone(&mut self, motion: &Motion, place: Place<B>) {
+        for index in 0..self.state.alone.len() {
+            if self.state.alone[index].is_none() {
+                continue;
+            }
+            motion.branch_at(place.path.value(), &mut self.solver.branch);
+            self.coordinates(motion, Series::constant(place.path));
+            let q = self.solver.coordinates[index].coefficient(0);
+            self.solver.coordinates[index] = Series::variable(q);
+            self.solver.run(motion, &self.state.design);
+            self.state.alone[index] = Some(self.solver.state.poses.clone());
+        }
+    }
+
+    /// Takes the pose of the trace at a limit of the drive; rates are infinite there, or not defined.
+    fn find_at_limit(&mut self, motion: &Motion, place: Place<B>, index: usize) {
+        let (_, poses, near) = motion.node(index);
+        self.coordinates(motion, Series::variable(place.path));
+        self.state.coordinates.clone_from(&self.solver.coordinates);
+        for (series, pose) in self.state.poses.iter_mut().zip(&poses).skip(1) {
+            *series = pose.map(|x| only_value(B::unvaried(x)));
+        }
+        self.state.near = near;
+        let poses = &self.state.poses;
+        for drive in self.state.alone.iter_mut().flatten() {
+            drive.clone_from(poses);
+        }
+    }
+
+    /// Joins the series on both sides of a change point. How they vary is not known: a change of dimensions pulls the
+    /// crossing branches apart.
+    fn find_across(&mut self, motion: &Motion, place: Place<B>, event: &Event) {
+        let p = place.path.value();
+        motion.branch_at(p, &mut self.solver.branch);
+        self.coordinates(motion, Series::variable(place.path));
+        self.state.coordinates.clone_from(&self.solver.coordinates);
+        self.state.near.clone_from(&self.solver.branch.near);
+        let joined = across(motion, &self.side_design, event, p, &mut self.side);
+        let unvaried =
+            |series: Series<f64>| Jet::from_coefficients(series.coefficients().map(B::unvaried));
+        for (pose, joined) in self.state.poses.iter_mut().zip(joined) {
+            *pose = joined.map(unvaried);
+        }
+    }
+}
