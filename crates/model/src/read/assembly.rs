@@ -4,8 +4,10 @@ use kempe_units::Dimension;
 
 use crate::diagnostic::Diagnostic;
 use crate::document::{Key, Node, Value};
+use crate::key_table::HINT;
 use crate::model::{AssemblyHint, Drive, DriveKind, FRAME, HintKind, LinkId, Place, PointId};
 use crate::read::context::{Context, Meaning};
+use crate::read::entry::Entry;
 use crate::read::names::is_point_name;
 
 /// Reads all hints.
@@ -128,17 +130,16 @@ fn driven_angle(cx: &mut Context<'_>, key: &Key, link: LinkId) {
     );
 }
 
-fn near<'n>(cx: &mut Context<'_>, key: &Key, node: &'n Node, example: &str) -> Option<&'n Node> {
+fn near<'n>(
+    cx: &mut Context<'_>,
+    key: &'n Key,
+    node: &'n Node,
+    example: &'static str,
+) -> Option<&'n Node> {
     let place = format!("the assembly of {}", key.name);
-    let table = cx.table(node, &place, example)?;
-    cx.unknown_keys(table, &place, &["near"]);
-    cx.required(
-        table,
-        "near",
-        &place,
-        &key.span,
-        "[173, 151], or an angle for a link",
-    )
+    cx.table(node, &place, example)?;
+    let entry = Entry::inner(cx, node, &key.span, place, &HINT)?;
+    entry.required_like(cx, "near", "[173, 151], or an angle for a link")
 }
 
 /// Warns when all points are on one link (or the frame): then nothing is left to choose.

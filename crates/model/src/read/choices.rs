@@ -20,6 +20,7 @@ use kempe_units::{Dimension, Expr};
 
 use crate::diagnostic::Diagnostic;
 use crate::document::Node;
+use crate::key_table::GOALS;
 use crate::measure::{Leaf, Measure};
 use crate::model::{
     BalanceGoal, BalanceStudy, DriveId, FRAME, LinkId, MotionStudy, PointId, Scalar, SpringStudy,
@@ -30,39 +31,18 @@ use crate::read::entry::{Entry, link_of};
 use crate::read::measures::measure_text;
 use crate::read::nature::nature;
 
-/// Keys of a study of counterweights.
-pub(crate) const BALANCE_KEYS: &[&str] = &["kind", "step", "rows", "goal", "on", "radius"];
-
-/// Keys of a study that chooses a spring.
-pub(crate) const SPRING_KEYS: &[&str] = &[
-    "kind",
-    "step",
-    "rows",
-    "spring",
-    "drive",
-    "wanted",
-    "stiffness",
-    "preload",
-];
-
-/// What counterweights may be for.
-pub(crate) const GOALS: &[(&str, BalanceGoal)] = &[
-    ("shaking force", BalanceGoal::ShakingForce),
-    ("statics", BalanceGoal::Statics),
-];
-
 /// A study of counterweights.
 pub(crate) fn balance(
     cx: &mut Context<'_>,
     entry: &Entry<'_>,
     along: MotionStudy,
 ) -> Option<StudyKind> {
-    let goal = entry.choice(cx, "goal", GOALS);
-    let radius = entry.required_positive(cx, "radius", Dimension::LENGTH, false);
+    let goal = entry.choice(cx, "goal", &GOALS);
+    let radius = entry.needed(cx, "radius");
     let node = entry.required(cx, "on")?;
-    let place = format!("`on` of {}", entry.place);
+    let place = entry.place_of("on");
     let mut on = Vec::new();
-    for node in cx.array(node, &place, "[\"crank\"]")? {
+    for node in cx.array(node, &place, entry.example_of("on"))? {
         let link = link_of(cx, node, &place)?;
         let pivot = pivot(cx, link, node)?;
         if on.iter().any(|(known, _)| *known == link) {
@@ -116,26 +96,18 @@ fn pivot(cx: &mut Context<'_>, link: LinkId, node: &Node) -> Option<PointId> {
 /// A study that chooses a spring.
 pub(crate) fn spring(
     cx: &mut Context<'_>,
-    entry: &Entry<'_>,
+    entry: &mut Entry<'_>,
     along: MotionStudy,
 ) -> Option<StudyKind> {
     let chosen = spring_named(cx, entry);
     let drive = drive_named(cx, entry);
     let (spring, tension) = chosen?;
     let (drive, coordinate) = drive?;
-    let effort = if coordinate == Dimension::ANGLE {
-        Dimension::TORQUE
-    } else {
-        Dimension::FORCE
-    };
-    let wanted = wanted(cx, entry, effort);
-    let stretch = if tension == Dimension::TORQUE {
-        Dimension::ANGLE
-    } else {
-        Dimension::LENGTH
-    };
-    let stiffness = bounds(cx, entry, "stiffness", tension / stretch);
-    let preload = bounds(cx, entry, "preload", tension);
+    entry.turning = coordinate == Dimension::ANGLE;
+    let wanted = wanted(cx, entry);
+    entry.turning = tension == Dimension::TORQUE;
+    let stiffness = bounds(cx, entry, "stiffness");
+    let preload = bounds(cx, entry, "preload");
     Some(StudyKind::Spring(SpringStudy {
         along,
         spring,
@@ -148,7 +120,7 @@ pub(crate) fn spring(
 
 fn spring_named(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<(usize, Dimension)> {
     let node = entry.required(cx, "spring")?;
-    let text = cx.text(node, &format!("`spring` of {}", entry.place), "\"back\"")?;
+    let text = entry.text(cx, "spring", node)?;
     let name = text.content.trim();
     match cx.springs.get(name) {
         Some(found) => *found,
@@ -180,14 +152,14 @@ fn drive_named(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<(DriveId, Dime
         let drive = cx.model.drives.get(id.index())?;
         Some((id, drive.dimension))
     };
-    let Some(node) = entry.table.get("drive") else {
+    let Some(node) = entry.get("drive") else {
         if cx.model.drives.len() == 1 {
             return found(cx, DriveId(0));
         }
         entry.required(cx, "drive");
         return None;
     };
-    let text = cx.text(node, &format!("`drive` of {}", entry.place), "\"motor\"")?;
+    let text = entry.text(cx, "drive", node)?;
     let name = text.content.trim();
     if let Some(Meaning::Drive(i)) = cx.names.get(name).map(|(meaning, _)| *meaning) {
         let id = cx.drives.get(i).copied().flatten()?;
@@ -207,8 +179,9 @@ fn drive_named(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<(DriveId, Dime
 }
 
 /// What the drive is to give: nothing unless said otherwise.
-fn wanted(cx: &mut Context<'_>, entry: &Entry<'_>, effort: Dimension) -> Option<Measure> {
-    let Some(node) = entry.table.get("wanted") else {
+fn wanted(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<Measure> {
+    let effort = entry.dimension("wanted");
+    let Some(node) = entry.get("wanted") else {
         return Some(Expr::Const(0.0));
     };
     let crate::document::Value::Text(text) = &node.value else {
@@ -247,35 +220,23 @@ fn constant(scalar: Scalar) -> Measure {
     scalar.map_leaves(&mut |id| Leaf::Parameter(*id))
 }
 
-/// Two bounds, `"none"` for no bound; the outer `None` when they are wrong.
+/// Two bounds in order.
 fn bounds(
     cx: &mut Context<'_>,
     entry: &Entry<'_>,
     key: &str,
-    dimension: Dimension,
 ) -> Option<Option<[Option<Scalar>; 2]>> {
-    let Some(node) = entry.table.get(key) else {
+    let Some([low, high]) = entry.bounds(cx, key)? else {
         return Some(None);
     };
-    let (low, high) = entry.two(cx, node, key)?;
-    let mut bound = |node: &Node| match &node.value {
-        crate::document::Value::Text(text) if text.content.trim() == "none" => Some(None),
-        _ => cx.scalar(node, dimension).map(Some),
-    };
-    let (low, high) = (bound(low)?, bound(high)?);
     if let (Some(low), Some(high)) = (&low, &high)
         && cx.number(low) > cx.number(high)
     {
-        cx.push(
-            Diagnostic::error(
-                "contradictory-values",
-                format!(
-                    "{}: the lower bound of the {key} lies above the upper one",
-                    entry.place
-                ),
-            )
-            .at(node.span.clone(), "")
-            .help("write the smaller one first"),
+        entry.contradiction(
+            cx,
+            &[key],
+            &format!("the lower bound of the {key} lies above the upper one"),
+            "write the smaller one first",
         );
         return None;
     }

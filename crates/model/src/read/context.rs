@@ -241,26 +241,6 @@ impl<'a> Context<'a> {
         );
     }
 
-    /// The value of a key that must be there.
-    pub fn required<'n>(
-        &mut self,
-        table: &'n Table,
-        key: &str,
-        place: &str,
-        span: &Span,
-        example: &str,
-    ) -> Option<&'n Node> {
-        let node = table.get(key);
-        if node.is_none() {
-            self.push(
-                Diagnostic::error("missing-key", format!("{place} has no `{key}`"))
-                    .at(span.clone(), format!("`{key}` is missing"))
-                    .help(format!("add {key} = {example}")),
-            );
-        }
-        node
-    }
-
     /// The point of a name.
     pub fn point(&mut self, name: &str, span: Span) -> Option<PointId> {
         let found = self.points.get(name).copied();
