@@ -31,6 +31,6 @@ pub use load::*;
 pub use measure::{ForceMeasure, JointRef, Leaf, Measure, PoseMeasure, Statistic};
 pub use model::*;
 pub use read::{Checked, MAX_FILE_BYTES};
-pub use registry::{MeasureEntry, Registry};
+pub use registry::{Argument, MeasureEntry, Nature, Registry};
 pub use schema::schema;
 pub use starter::{STARTERS, Starter, starter};

@@ -1,6 +1,7 @@
 //! From the text of a model file to a [`Model`], with everything that is to be said about it.
 
 mod actuators;
+mod arguments;
 mod assembly;
 mod choices;
 mod context;

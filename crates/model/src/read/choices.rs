@@ -122,29 +122,16 @@ fn spring_named(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<(usize, Dimen
     let node = entry.required(cx, "spring")?;
     let text = entry.text(cx, "spring", node)?;
     let name = text.content.trim();
-    match cx.springs.get(name) {
-        Some(found) => *found,
-        None => {
-            let springs: Vec<&str> = cx.springs.keys().map(String::as_str).collect();
-            let help = match kempe_units::nearest(name, springs.iter().copied()) {
-                Some(near) => format!("did you mean `{near}`?"),
-                None if !springs.is_empty() => {
-                    format!(
-                        "the springs are {}",
-                        springs.get(..12).unwrap_or(&springs).join(", ")
-                    )
-                }
-                None => "describe its ends under [springs]; stiffness and preload are chosen here"
-                    .to_owned(),
-            };
-            cx.push(
-                Diagnostic::error("unknown-name", format!("there is no spring `{name}`"))
-                    .at(node.span.clone(), "not declared")
-                    .help(help),
-            );
-            None
-        }
+    if let Some(found) = cx.springs.get(name) {
+        return *found;
     }
+    let springs = cx.springs.keys().map(String::as_str);
+    let mut d = cx.no_such("spring", name, node.span.clone(), springs);
+    if cx.springs.is_empty() {
+        d = d.help("describe its ends under [springs]; stiffness and preload are chosen here");
+    }
+    cx.push(d);
+    None
 }
 
 fn drive_named(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<(DriveId, Dimension)> {
@@ -152,13 +139,10 @@ fn drive_named(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<(DriveId, Dime
         let drive = cx.model.drives.get(id.index())?;
         Some((id, drive.dimension))
     };
-    let Some(node) = entry.get("drive") else {
-        if cx.model.drives.len() == 1 {
-            return found(cx, DriveId(0));
-        }
-        entry.required(cx, "drive");
-        return None;
-    };
+    if !entry.has("drive") && cx.model.drives.len() == 1 {
+        return found(cx, DriveId(0));
+    }
+    let node = entry.required(cx, "drive")?;
     let text = entry.text(cx, "drive", node)?;
     let name = text.content.trim();
     if let Some(Meaning::Drive(i)) = cx.names.get(name).map(|(meaning, _)| *meaning) {
@@ -166,15 +150,8 @@ fn drive_named(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<(DriveId, Dime
         return found(cx, id);
     }
     let drives = cx.model.drives.iter().map(|d| d.name.as_str());
-    let help = match kempe_units::nearest(name, drives) {
-        Some(near) => format!("did you mean `{near}`?"),
-        None => "name the drive that the spring is to help".to_owned(),
-    };
-    cx.push(
-        Diagnostic::error("unknown-name", format!("there is no drive `{name}`"))
-            .at(node.span.clone(), "not declared")
-            .help(help),
-    );
+    let d = cx.no_such("drive", name, node.span.clone(), drives);
+    cx.push(d);
     None
 }
 

@@ -279,19 +279,7 @@ impl<'a> Context<'a> {
         span: Span,
         known: impl Iterator<Item = &'n str>,
     ) -> Diagnostic {
-        let known: Vec<&str> = known.collect();
-        let help = match nearest(name, known.iter().copied()) {
-            Some(near) => format!("did you mean `{near}`?"),
-            None if known.is_empty() => format!("the file has no {kind}s"),
-            None if known.len() <= 12 && kind.contains(' ') => {
-                format!("there are {}", known.join(", "))
-            }
-            None if known.len() <= 12 => format!("the {kind}s are {}", known.join(", ")),
-            None => format!(
-                "the file has {} {kind}s, none of them near this name",
-                known.len()
-            ),
-        };
+        let help = near_or_all(kind, name, known);
         Diagnostic::error("unknown-name", format!("there is no {kind} `{name}`"))
             .at(span, "not declared")
             .help(help)
@@ -370,3 +358,24 @@ impl<'a> Context<'a> {
 
 /// A file with more to say than this has one trouble, not many.
 pub(crate) const MAX_DIAGNOSTICS: usize = 200;
+
+/// Help on a name that nothing has: the near one, or those that there are.
+pub(crate) fn near_or_all<'n>(
+    kind: &str,
+    name: &str,
+    known: impl Iterator<Item = &'n str>,
+) -> String {
+    let known: Vec<&str> = known.collect();
+    match nearest(name, known.iter().copied()) {
+        Some(near) => format!("did you mean `{near}`?"),
+        None if known.is_empty() => format!("the file has no {kind}s"),
+        None if known.len() <= 12 && kind.contains(' ') => {
+            format!("there are {}", known.join(", "))
+        }
+        None if known.len() <= 12 => format!("the {kind}s are {}", known.join(", ")),
+        None => format!(
+            "the file has {} {kind}s, none of them near this name",
+            known.len()
+        ),
+    }
+}

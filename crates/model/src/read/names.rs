@@ -7,7 +7,7 @@ use crate::keys::Takes;
 use crate::model::{Link, LinkId, ParameterId, Point, PointId};
 use crate::read::context::{Context, Meaning};
 use crate::read::entry::Entry;
-use crate::read::force_names::bare;
+use crate::read::measure_names::bare;
 
 /// Links and points a file may have at most.
 pub(crate) const MAX_LINKS: usize = 10_000;
