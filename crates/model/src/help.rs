@@ -9,9 +9,9 @@ use crate::keys::{Key, Kind, Need, Takes};
 /// # Example
 ///
 /// ```
-/// let text = kempe_model::help("bore").unwrap();
+/// let text = kempe_model::language::help("bore").unwrap();
 /// assert!(text.contains("Diameter of the piston") && text.contains("[cylinders]"));
-/// assert!(kempe_model::help("bor").is_none());
+/// assert!(kempe_model::language::help("bor").is_none());
 /// ```
 pub fn help(word: &str) -> Option<String> {
     let mut told = Vec::new();
@@ -72,19 +72,12 @@ fn of_key(section: &str, kind: &Kind, key: &Key) -> String {
         _ => format!("`{}` in [{section}], {} {}", key.name, kind.what, kind.name),
     };
     let need = match key.need {
-        Need::Required => "needed",
-        Need::Optional => "may be left out",
+        Need::Required => "needed".to_owned(),
+        Need::Optional => "may be left out".to_owned(),
         Need::OneOf => {
             let all = kind.keys().filter(|key| key.need == Need::OneOf);
             let all: Vec<&str> = all.map(|key| key.name).collect();
-            return format!(
-                "{place}\n    {}\n    {}; one of {}\n    such as {} = {}\n",
-                key.about,
-                key.takes.in_words(),
-                all.join(", "),
-                key.name,
-                key.example
-            );
+            format!("one of {}", all.join(", "))
         }
     };
     format!(

@@ -6,6 +6,7 @@ mod document;
 mod edit;
 mod geometry;
 mod help;
+#[rustfmt::skip]
 mod key_table;
 mod keys;
 mod law;
@@ -23,9 +24,6 @@ pub use codes::{CODES, Code};
 pub use diagnostic::{Diagnostic, Label, Severity, Source};
 pub use edit::set_value;
 pub use geometry::value;
-pub use help::{help, visit_keys};
-pub use key_table::{ANNOUNCED_STUDIES, FILE};
-pub use keys::{Key, Kind, Named, Need, Quantity, Sign, Takes};
 pub use law::SAME_END;
 pub use load::*;
 pub use measure::{ForceMeasure, JointRef, Leaf, Measure, PoseMeasure, Statistic};
@@ -34,3 +32,10 @@ pub use read::{Checked, MAX_FILE_BYTES};
 pub use registry::{Argument, MeasureEntry, Nature, Registry};
 pub use schema::schema;
 pub use starter::{STARTERS, Starter, starter};
+
+/// The words of the model file as data: every section, kind of entry and key, with what it takes, an example and a sentence.
+pub mod language {
+    pub use crate::help::{help, visit_keys};
+    pub use crate::key_table::{ANNOUNCED_STUDIES, FILE};
+    pub use crate::keys::{Key, Kind, Named, Need, Quantity, Sign, Takes};
+}

@@ -247,6 +247,37 @@ impl MeasureEntry {
     }
 }
 
+impl P {
+    /// The row of the registry that it belongs to.
+    pub fn entry(&self) -> Option<&'static MeasureEntry> {
+        Registry::find(match self {
+            Self::X(_) | Self::XOn(..) => "x",
+            Self::Y(_) | Self::YOn(..) => "y",
+            Self::Angle(_) | Self::AngleBetween(..) | Self::Direction(..) => "angle",
+            Self::TransmissionAngle { folded: false, .. } => "angle",
+            Self::Distance(..) | Self::DistanceToLine(..) => "distance",
+            Self::Travel(..) => "travel",
+            Self::TransmissionAngle { folded: true, .. } => "transmission_angle",
+            Self::Speed(_) => "speed",
+            Self::Acceleration(_) => "acceleration",
+            Self::AngularSpeed(_) => "angular_speed",
+            Self::AngularAcceleration(_) => "angular_acceleration",
+            Self::InstantCenterX(..) => "instant_center_x",
+            Self::InstantCenterY(..) => "instant_center_y",
+            Self::Curvature(_) => "curvature",
+            Self::CurvatureCenterX(_) => "curvature_center_x",
+            Self::CurvatureCenterY(_) => "curvature_center_y",
+            Self::PathLength(_) => "path_length",
+            Self::MechanicalAdvantage(..) => "mechanical_advantage",
+        })
+    }
+
+    /// What it asks for.
+    pub fn nature(&self) -> Nature {
+        self.entry().map_or(Geometric(0), |entry| entry.nature)
+    }
+}
+
 impl Serialize for MeasureEntry {
     fn serialize<Z: Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
         let mut fields = serializer.serialize_struct("MeasureEntry", 5)?;

@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
-use crate::key_table::{ANNOUNCED_STUDIES, FILE, LAW_WORDS, PIECE};
+use crate::key_table::{ANNOUNCED_STUDIES, FILE, PIECE};
 use crate::keys::{Key, Kind, Need, Takes};
 
 /// The JSON schema (draft-07) of the model file.
@@ -40,9 +40,6 @@ pub fn schema() -> Value {
         "line",
         json!({ "description": "A directed line.", "type": "string", "pattern": "->" }),
     );
-    let mut law = of(&LAW_WORDS);
-    describe(&mut law, "A motion law from rest to rest.");
-    define("law", law);
     define(PIECE.what, table(&PIECE));
     for section in FILE.keys() {
         if let Takes::Entries(kinds) = section.takes {

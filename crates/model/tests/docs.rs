@@ -7,7 +7,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use kempe_model::{ANNOUNCED_STUDIES, Diagnostic, Model, Registry, Severity, Takes, visit_keys};
+use kempe_model::language::{ANNOUNCED_STUDIES, Takes, visit_keys};
+use kempe_model::{Diagnostic, Model, Registry, Severity};
 use kempe_units::{Builtin, Unit};
 
 /// A fenced block: its language, the words behind that, its text and the line on which it starts.

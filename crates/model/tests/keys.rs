@@ -3,7 +3,8 @@
 
 use std::collections::BTreeSet;
 
-use kempe_model::{Diagnostic, Key, Kind, Model, Need, help, visit_keys};
+use kempe_model::language::{Key, Kind, Need, help, visit_keys};
+use kempe_model::{Diagnostic, Model};
 
 /// Everything that the examples of the table name.
 const FILE: &str = r#"

@@ -141,7 +141,7 @@ fn the_schema_describes_every_key() {
     let mut all = Vec::new();
     told(&schema(), &mut all);
     let mut known = Vec::new();
-    kempe_model::visit_keys(&mut |_, _, key| known.push((key.name, key.about)));
+    kempe_model::language::visit_keys(&mut |_, _, key| known.push((key.name, key.about)));
     for (name, about) in &known {
         let found = all
             .iter()
@@ -160,7 +160,7 @@ fn the_schema_describes_every_key() {
 
 #[test]
 fn every_example_is_valid() {
-    kempe_model::visit_keys(&mut |section, kind, key| {
+    kempe_model::language::visit_keys(&mut |section, kind, key| {
         if section.is_empty() {
             return;
         }

@@ -181,25 +181,20 @@ fn read_motor(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<Motor> {
     let pairs = cx.array(node, &entry.place_of("curve"), example)?;
     if pairs.len() < 2 || pairs.len() > MAX_PAIRS {
         let count = pairs.len();
-        cx.push(
-            Diagnostic::error(
-                if count < 2 {
-                    "missing-key"
-                } else {
-                    "too-large"
-                },
-                format!(
-                    "the curve of {} has too {} pairs",
-                    entry.place,
-                    if count < 2 { "few" } else { "many" }
-                ),
-            )
-            .at(node.span.clone(), "")
-            .help(format!(
-                "a curve has 2 to {MAX_PAIRS} pairs of speed and torque: {example}"
-            )),
+        return cx.refuse(
+            if count < 2 {
+                "missing-key"
+            } else {
+                "too-large"
+            },
+            format!(
+                "the curve of {} has too {} pairs",
+                entry.place,
+                if count < 2 { "few" } else { "many" }
+            ),
+            &node.span,
+            format!("a curve has 2 to {MAX_PAIRS} pairs of speed and torque: {example}"),
         );
-        return None;
     }
     let mut curve: Vec<(Scalar, Scalar)> = Vec::with_capacity(pairs.len());
     for pair in pairs {

@@ -59,17 +59,12 @@ fn point_hint(cx: &mut Context<'_>, key: &Key, node: &Node) -> Option<HintKind> 
             idle_hint(cx, key, &[point]);
             Some(HintKind::NearPlace { point, x, y })
         }
-        _ => {
-            cx.push(
-                Diagnostic::error(
-                    "wrong-type",
-                    format!("`near` of {} is a place in the frame, [x, y]", key.name),
-                )
-                .at(near.span.clone(), "")
-                .help("write { near = [173, 151] }"),
-            );
-            None
-        }
+        _ => cx.refuse(
+            "wrong-type",
+            format!("`near` of {} is a place in the frame, [x, y]", key.name),
+            &near.span,
+            "write { near = [173, 151] }",
+        ),
     }
 }
 

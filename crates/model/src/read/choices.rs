@@ -57,12 +57,12 @@ pub(crate) fn balance(
         }
     }
     if on.is_empty() {
-        cx.push(
-            Diagnostic::error("missing-key", format!("{place} names no link"))
-                .at(node.span.clone(), "")
-                .help("say which links may carry a counterweight: on = [\"crank\"]"),
+        return cx.refuse(
+            "missing-key",
+            format!("{place} names no link"),
+            &node.span,
+            "say which links may carry a counterweight: on = [\"crank\"]",
         );
-        return None;
     }
     Some(StudyKind::Balance(BalanceStudy {
         along,
@@ -166,28 +166,20 @@ fn wanted(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<Measure> {
     };
     let (measure, dimension) = measure_text(cx, text)?;
     if !dimension.compatible(effort) {
-        cx.push(
-            Diagnostic::error(
-                "unit-mismatch",
-                format!("{effort} expected, found {}", dimension.with_article()),
-            )
-            .at(node.span.clone(), "")
-            .help(
-                "say what the drive is to give: wanted = \"0 N m\", or a measure along the motion",
-            ),
+        return cx.refuse(
+            "unit-mismatch",
+            format!("{effort} expected, found {}", dimension.with_article()),
+            &node.span,
+            "say what the drive is to give: wanted = \"0 N m\", or a measure along the motion",
         );
-        return None;
     }
     if nature(&measure, &cx.natures).forces {
-        cx.push(
-            Diagnostic::error(
-                "force-depends-on-force",
-                "the wanted effort asks for a force",
-            )
-            .at(node.span.clone(), "")
-            .help("give it over drives, time and measures of the motion"),
+        return cx.refuse(
+            "force-depends-on-force",
+            "the wanted effort asks for a force",
+            &node.span,
+            "give it over drives, time and measures of the motion",
         );
-        return None;
     }
     Some(measure)
 }

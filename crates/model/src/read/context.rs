@@ -140,6 +140,22 @@ impl<'a> Context<'a> {
         }
     }
 
+    /// Tells an error whose place says it all.
+    pub fn refuse<T>(
+        &mut self,
+        code: &'static str,
+        message: impl Into<String>,
+        at: &Span,
+        help: impl Into<String>,
+    ) -> Option<T> {
+        self.push(
+            Diagnostic::error(code, message)
+                .at(at.clone(), "")
+                .help(help),
+        );
+        None
+    }
+
     /// Whether enough has been said.
     pub fn full(&self) -> bool {
         self.found.len() >= MAX_DIAGNOSTICS
@@ -359,6 +375,9 @@ impl<'a> Context<'a> {
 /// A file with more to say than this has one trouble, not many.
 pub(crate) const MAX_DIAGNOSTICS: usize = 200;
 
+/// More names than this are not listed.
+const MAX_LISTED: usize = 20;
+
 /// Help on a name that nothing has: the near one, or those that there are.
 pub(crate) fn near_or_all<'n>(
     kind: &str,
@@ -369,10 +388,10 @@ pub(crate) fn near_or_all<'n>(
     match nearest(name, known.iter().copied()) {
         Some(near) => format!("did you mean `{near}`?"),
         None if known.is_empty() => format!("the file has no {kind}s"),
-        None if known.len() <= 12 && kind.contains(' ') => {
+        None if known.len() <= MAX_LISTED && kind.contains(' ') => {
             format!("there are {}", known.join(", "))
         }
-        None if known.len() <= 12 => format!("the {kind}s are {}", known.join(", ")),
+        None if known.len() <= MAX_LISTED => format!("the {kind}s are {}", known.join(", ")),
         None => format!(
             "the file has {} {kind}s, none of them near this name",
             known.len()

@@ -67,15 +67,12 @@ fn read_drive(cx: &mut Context<'_>, (key, node): &(Key, Node)) -> Option<Drive> 
             return None;
         }
         [first, second, ..] => {
-            cx.push(
-                Diagnostic::error(
-                    "over-specified",
-                    format!("{place} has both `{}` and `{}`", first.name, second.name),
-                )
-                .at(key.span.clone(), "")
-                .help("a drive moves one thing: make two drives of it"),
+            return cx.refuse(
+                "over-specified",
+                format!("{place} has both `{}` and `{}`", first.name, second.name),
+                &key.span,
+                "a drive moves one thing: make two drives of it",
             );
-            return None;
         }
     };
     let entry = Entry::inner(cx, node, &key.span, place, kind)?.moving();
@@ -151,15 +148,12 @@ fn cylinder(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<DriveKind> {
     let text = entry.text(cx, "cylinder", node)?;
     let (a, b) = cx.pair_phrase(text)?;
     if a == b {
-        cx.push(
-            Diagnostic::error(
-                "same-link",
-                format!("{place} is between a point and itself"),
-            )
-            .at(node.span.clone(), "")
-            .help("a cylinder is between two points of different links"),
+        return cx.refuse(
+            "same-link",
+            format!("{place} is between a point and itself"),
+            &node.span,
+            "a cylinder is between two points of different links",
         );
-        return None;
     }
     let (on_a, on_b) = different_links(cx, a, b)?;
     if cx
@@ -168,12 +162,14 @@ fn cylinder(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<DriveKind> {
         .any(|l| cx.carriers(b).binary_search(l).is_ok())
     {
         let (a_name, b_name) = (cx.point_name(a).to_owned(), cx.point_name(b).to_owned());
-        cx.push(
-            Diagnostic::error("same-link", format!("{place}: {a_name} and {b_name} are on one link, so their distance cannot change"))
-                .at(node.span.clone(), "")
-                .help("a cylinder takes the place of a bar: leave that bar out of [links]"),
+        return cx.refuse(
+            "same-link",
+            format!(
+                "{place}: {a_name} and {b_name} are on one link, so their distance cannot change"
+            ),
+            &node.span,
+            "a cylinder takes the place of a bar: leave that bar out of [links]",
         );
-        return None;
     }
     Some(DriveKind::Cylinder {
         a: LinkPointRef {

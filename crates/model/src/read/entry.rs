@@ -235,15 +235,12 @@ impl<'d> Entry<'d> {
             [a, b] => Some((a, b)),
             items => {
                 let count = items.len();
-                cx.push(
-                    Diagnostic::error(
-                        "wrong-type",
-                        format!("{place} has two entries, found {count}"),
-                    )
-                    .at(node.span.clone(), "")
-                    .help(format!("write it like {}", self.example)),
-                );
-                None
+                cx.refuse(
+                    "wrong-type",
+                    format!("{place} has two entries, found {count}"),
+                    &node.span,
+                    format!("write it like {}", self.example),
+                )
             }
         }
     }
@@ -346,15 +343,12 @@ pub(crate) fn on_link(
         cx.point_name(point).to_owned(),
         cx.link_name(link).to_owned(),
     );
-    cx.push(
-        Diagnostic::error(
-            "point-not-on-link",
-            format!("{name} is not a point of link `{link_name}`"),
-        )
-        .at(node.span.clone(), "")
-        .help(points_help(cx, point, link)),
-    );
-    None
+    cx.refuse(
+        "point-not-on-link",
+        format!("{name} is not a point of link `{link_name}`"),
+        &node.span,
+        points_help(cx, point, link),
+    )
 }
 
 /// The links that carry a point and the points of a link, for help where one is not on the other.

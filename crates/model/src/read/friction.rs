@@ -130,12 +130,12 @@ fn place(cx: &mut Context<'_>, key: &Key) -> Option<FrictionAt> {
             _ => None,
         };
         if let Some(what) = what {
-            cx.push(
-                Diagnostic::error("not-a-slider", format!("`{name}` is {what}"))
-                    .at(key.span.clone(), "")
-                    .help("friction acts at pins, sliders and slots"),
+            return cx.refuse(
+                "not-a-slider",
+                format!("`{name}` is {what}"),
+                &key.span,
+                "friction acts at pins, sliders and slots",
             );
-            return None;
         }
         return Some(FrictionAt::Joint(id));
     }

@@ -46,12 +46,12 @@ fn read_joint(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<JointKind> {
                 kinds.join(", ")
             ),
         };
-        cx.push(
-            Diagnostic::error("missing-key", format!("{place}: what kind of joint is it?"))
-                .at(key.span.clone(), "")
-                .help(help),
+        return cx.refuse(
+            "missing-key",
+            format!("{place}: what kind of joint is it?"),
+            &key.span,
+            help,
         );
-        return None;
     };
     let entry = Entry::new(cx, entry, kind)?;
     match kind.name {
@@ -69,15 +69,12 @@ impl Entry<'_> {
             return Some(());
         }
         let name = cx.link_name(a).to_owned();
-        cx.push(
-            Diagnostic::error(
-                "same-link",
-                format!("{} joins link `{name}` to itself", self.place),
-            )
-            .at(self.span.clone(), "")
-            .help("a joint is between two different links"),
-        );
-        None
+        cx.refuse(
+            "same-link",
+            format!("{} joins link `{name}` to itself", self.place),
+            self.span,
+            "a joint is between two different links",
+        )
     }
 }
 
@@ -112,18 +109,15 @@ fn slot(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<JointKind> {
             cx.point_name(pin).to_owned(),
             cx.link_name(on.link).to_owned(),
         );
-        cx.push(
-            Diagnostic::error(
-                "same-link",
-                format!(
-                    "{}: the pin {name} is on `{slot}`, the link with the slot",
-                    entry.place
-                ),
-            )
-            .at(node.span.clone(), "")
-            .help("the pin is a point of another link than the slot"),
+        return cx.refuse(
+            "same-link",
+            format!(
+                "{}: the pin {name} is on `{slot}`, the link with the slot",
+                entry.place
+            ),
+            &node.span,
+            "the pin is a point of another link than the slot",
         );
-        return None;
     };
     if cx.carriers(pin).binary_search(&on.link).is_ok() {
         let (name, slot) = (
@@ -162,15 +156,12 @@ fn weld(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<JointKind> {
         false => {
             let Some(at) = shared_point(cx, a, b) else {
                 let (a, b) = (cx.link_name(a).to_owned(), cx.link_name(b).to_owned());
-                cx.push(
-                    Diagnostic::error(
-                        "no-common-point",
-                        format!("{}: `{a}` and `{b}` share no point", entry.place),
-                    )
-                    .at(entry.span.clone(), "")
-                    .help("welded links meet in a point that both of them name"),
+                return cx.refuse(
+                    "no-common-point",
+                    format!("{}: `{a}` and `{b}` share no point", entry.place),
+                    entry.span,
+                    "welded links meet in a point that both of them name",
                 );
-                return None;
             };
             at
         }

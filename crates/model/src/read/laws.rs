@@ -295,12 +295,11 @@ impl<'d> LawReader<'_, 'd> {
     fn sequence(&self, cx: &mut Context<'_>, pieces: &'d [Node], span: &Span) -> Option<Law> {
         let start = self.from(cx)?;
         if pieces.is_empty() || pieces.len() > MAX_PIECES {
-            cx.push(
-                Diagnostic::error("bad-law", format!("{}: a sequence of {} pieces", self.place, pieces.len()))
-                    .at(span.clone(), "")
-                    .help(format!("write law = [ {{ dwell = \"0.1 s\" }}, {{ rise = \"30 deg\", in = \"0.3 s\" }} ], at most {MAX_PIECES} pieces")),
+            let message = format!("{}: a sequence of {} pieces", self.place, pieces.len());
+            let help = format!(
+                "write law = [ {{ dwell = \"0.1 s\" }}, {{ rise = \"30 deg\", in = \"0.3 s\" }} ], at most {MAX_PIECES} pieces"
             );
-            return None;
+            return cx.refuse("bad-law", message, span, help);
         }
         let mut from = start.clone();
         let mut read = Vec::with_capacity(pieces.len());
@@ -391,18 +390,15 @@ impl<'d> LawReader<'_, 'd> {
             (_, a, b) => Expr::Sub(Box::new(a.clone()), Box::new(b)),
         };
         if cx.number(&to) == cx.number(from) {
-            cx.push(
-                Diagnostic::error(
-                    "no-motion",
-                    format!(
-                        "{}: this piece starts and ends at the same place",
-                        self.place
-                    ),
-                )
-                .at(value.span.clone(), "")
-                .help("to stand still, write { dwell = \"0.1 s\" }"),
+            return cx.refuse(
+                "no-motion",
+                format!(
+                    "{}: this piece starts and ends at the same place",
+                    self.place
+                ),
+                &value.span,
+                "to stand still, write { dwell = \"0.1 s\" }",
             );
-            return None;
         }
         let limits = (from.clone(), to.clone());
         match (piece.get("speed"), piece.get("acceleration")) {

@@ -210,29 +210,19 @@ fn read_center(cx: &mut Context<'_>, node: &Node, draft: &Draft, place: &str) ->
         return Some(Center::Centroid);
     }
     if !is_point_name(text.content.trim()) {
-        cx.push(
-            Diagnostic::error("wrong-type", format!("the center of {place} is not known"))
-                .at(node.span.clone(), "")
-                .help(
-                    "write center = \"centroid\", the name of one of the link's points, or [x, y]",
-                ),
+        return cx.refuse(
+            "wrong-type",
+            format!("the center of {place} is not known"),
+            &node.span,
+            "write center = \"centroid\", the name of one of the link's points, or [x, y]",
         );
-        return None;
     }
     let point = cx.point_text(text)?;
     if !draft.known.contains(&point) {
         let name = cx.point_name(point).to_owned();
-        cx.push(
-            Diagnostic::error(
-                "point-not-on-link",
-                format!("{name} is not a point of {place}"),
-            )
-            .at(node.span.clone(), "")
-            .help(format!(
+        return cx.refuse("point-not-on-link", format!("{name} is not a point of {place}"), &node.span, format!(
                 "name a point of the link itself, or write the center as a place on it, [x, y]; {name} is on other links"
-            )),
-        );
-        return None;
+            ));
     }
     Some(Center::Point(point))
 }

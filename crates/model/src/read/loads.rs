@@ -71,17 +71,12 @@ fn read_load(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<LoadKind> {
     let place = format!("load `{}`", entry.0.name);
     let table = cx.table(&entry.1, &place, FORCE.example)?;
     match (table.get("force"), table.entry("torque")) {
-        (Some(_), Some((key, _))) => {
-            cx.push(
-                Diagnostic::error(
-                    "over-specified",
-                    format!("{place} has both `force` and `torque`"),
-                )
-                .at(key.span.clone(), "")
-                .help("make two loads of it"),
-            );
-            None
-        }
+        (Some(_), Some((key, _))) => cx.refuse(
+            "over-specified",
+            format!("{place} has both `force` and `torque`"),
+            &key.span,
+            "make two loads of it",
+        ),
         (None, None) => {
             let near = table
                 .entries
@@ -94,12 +89,12 @@ fn read_load(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<LoadKind> {
                     FORCE.example, TORQUE.example
                 ),
             };
-            cx.push(
-                Diagnostic::error("missing-key", format!("{place}: what kind of load is it?"))
-                    .at(entry.0.span.clone(), "")
-                    .help(help),
-            );
-            None
+            cx.refuse(
+                "missing-key",
+                format!("{place}: what kind of load is it?"),
+                &entry.0.span,
+                help,
+            )
         }
         (Some(node), None) => {
             let entry = Entry::new(cx, entry, &FORCE)?;
@@ -138,15 +133,12 @@ fn torque(cx: &mut Context<'_>, entry: &Entry<'_>, node: &Node) -> Option<LoadKi
         on_the_frame(cx, on, &entry.place, entry.span);
     } else if on == against {
         let name = cx.link_name(on).to_owned();
-        cx.push(
-            Diagnostic::error(
-                "same-link",
-                format!("{} turns `{name}` against itself", entry.place),
-            )
-            .at(entry.span.clone(), "")
-            .help("`against` names the link that takes the reaction: another one"),
+        return cx.refuse(
+            "same-link",
+            format!("{} turns `{name}` against itself", entry.place),
+            entry.span,
+            "`against` names the link that takes the reaction: another one",
         );
-        return None;
     }
     Some(LoadKind::Torque {
         on,
@@ -201,15 +193,9 @@ fn polar(
         }
         table @ Amount::Table { .. } => {
             let Some(direction) = as_scalar(direction) else {
-                cx.push(
-                    Diagnostic::error(
-                        "bad-choice",
-                        "the direction of a table's force cannot move",
-                    )
-                    .at(node.span.clone(), "")
-                    .help("give the components along the axes of the link that it turns with: axes = \"rod\""),
-                );
-                return None;
+                let message = "the direction of a table's force cannot move";
+                let help = "give the components along the axes of the link that it turns with: axes = \"rod\"";
+                return cx.refuse("bad-choice", message, &node.span, help);
             };
             let scaled = |function| {
                 let mut table = table.clone();

@@ -170,38 +170,23 @@ fn between(cx: &mut Context<'_>, entry: &mut Entry<'_>, torsion: &'static str) -
     let place = &entry.place;
     match (entry.get("between"), entry.entry("links")) {
         (None, None) => {
-            cx.push(
-                Diagnostic::error("missing-key", format!("{place}: between what does it act?"))
-                    .at(entry.span.clone(), "")
-                    .help("between = \"A-B\" names two points; links = [\"frame\", \"lever\"] makes it act between two links, about their pin"),
-            );
-            None
+            let help = "between = \"A-B\" names two points; links = [\"frame\", \"lever\"] makes it act between two links, about their pin";
+            let message = format!("{place}: between what does it act?");
+            cx.refuse("missing-key", message, entry.span, help)
         }
         (Some(_), Some((key, _))) => {
-            cx.push(
-                Diagnostic::error(
-                    "over-specified",
-                    format!("{place} has both `between` and `links`"),
-                )
-                .at(key.span.clone(), "")
-                .help("two points for one that pulls and pushes, two links for one that turns"),
-            );
-            None
+            let help = "two points for one that pulls and pushes, two links for one that turns";
+            let message = format!("{place} has both `between` and `links`");
+            cx.refuse("over-specified", message, &key.span, help)
         }
         (Some(node), None) => points(cx, entry, node),
         (None, Some(_)) => {
             let ((first, second), node) = entry.two_links(cx, "links")?;
             if first == second {
                 let name = cx.link_name(first).to_owned();
-                cx.push(
-                    Diagnostic::error(
-                        "same-link",
-                        format!("{place} is between link `{name}` and itself"),
-                    )
-                    .at(node.span.clone(), "")
-                    .help("name two different links; the frame is one too"),
-                );
-                return None;
+                let message = format!("{place} is between link `{name}` and itself");
+                let help = "name two different links; the frame is one too";
+                return cx.refuse("same-link", message, &node.span, help);
             }
             entry.turning = true;
             entry.example = torsion;
@@ -216,12 +201,12 @@ fn points<'d>(cx: &mut Context<'_>, entry: &Entry<'d>, node: &'d Node) -> Option
     let (a, b) = cx.pair_phrase(text)?;
     if a == b {
         let name = cx.point_name(a).to_owned();
-        cx.push(
-            Diagnostic::error("same-link", format!("{place} is between {name} and itself"))
-                .at(node.span.clone(), "")
-                .help("name two points of different links"),
+        return cx.refuse(
+            "same-link",
+            format!("{place} is between {name} and itself"),
+            &node.span,
+            "name two points of different links",
         );
-        return None;
     }
     let common = cx
         .carriers(a)
@@ -231,17 +216,12 @@ fn points<'d>(cx: &mut Context<'_>, entry: &Entry<'d>, node: &'d Node) -> Option
     if let Some(link) = common {
         let (a, b) = (cx.point_name(a).to_owned(), cx.point_name(b).to_owned());
         let link = cx.link_name(link).to_owned();
-        cx.push(
-            Diagnostic::error(
-                "same-link",
-                format!(
-                    "{place}: {a} and {b} are both on `{link}`, so their distance cannot change"
-                ),
-            )
-            .at(node.span.clone(), "")
-            .help("name two points that no link has in common"),
+        return cx.refuse(
+            "same-link",
+            format!("{place}: {a} and {b} are both on `{link}`, so their distance cannot change"),
+            &node.span,
+            "name two points that no link has in common",
         );
-        return None;
     }
     let end = |point| {
         Some(LinkPointRef {

@@ -6,7 +6,7 @@ use kempe_units::{Builtin, Dimension, Expr};
 
 use crate::diagnostic::Diagnostic;
 use crate::document::{Key, Node, Value};
-use crate::key_table::{ANNOUNCED_STUDIES, MAX_ROWS, STUDIES};
+use crate::key_table::{ANNOUNCED_STUDIES, DRIVES, MAX_ROWS, STUDIES};
 use crate::model::{
     AnnouncedStudy, Column, LawPiece, Model, MotionStudy, Plot, Rows, Scalar, Study, StudyKind,
 };
@@ -161,12 +161,9 @@ fn read_study(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<StudyKind> {
         return None;
     };
     if cx.drives.is_empty() {
-        cx.push(
-            Diagnostic::error("no-drive", format!("{place} has nothing that moves"))
-                .at(key.span.clone(), "")
-                .help("say what moves: [drives] motor = { turns = \"crank\", from = 0, to = 360, speed = \"1 rad/s\" }"),
-        );
-        return None;
+        let message = format!("{place} has nothing that moves");
+        let help = format!("say what moves: [drives] {}", DRIVES[0].example);
+        return cx.refuse("no-drive", message, &key.span, help);
     }
     let mut entry = Entry::new(cx, entry, known)?;
     let rows = rows(cx, &entry);
@@ -311,14 +308,12 @@ fn rows(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<Rows> {
                 } else {
                     ("wrong-type", format!("{place}: {n} is no number of rows"))
                 };
-                cx.push(
-                    Diagnostic::error(code, message)
-                        .at(node.span.clone(), "")
-                        .help(format!(
-                            "write a whole number from 1 to {MAX_ROWS}: rows = 361"
-                        )),
-                );
-                None
+                cx.refuse(
+                    code,
+                    message,
+                    &node.span,
+                    format!("write a whole number from 1 to {MAX_ROWS}: rows = 361"),
+                )
             }
             _ => {
                 cx.wrong_type(node, "`rows`", "a number, how many rows", "rows = 361");
@@ -358,12 +353,12 @@ fn step(cx: &mut Context<'_>, node: &Node, place: &str) -> Option<Rows> {
     let (step, dimension) = cx.inferred(node, of_drive.unwrap_or(Dimension::NONE))?;
     let size = cx.number(&step);
     if size <= 0.0 {
-        cx.push(
-            Diagnostic::error("bad-size", format!("{place}: a step must be positive"))
-                .at(node.span.clone(), "")
-                .help("write step = 1: one degree (or one unit of length) of the drive"),
+        return cx.refuse(
+            "bad-size",
+            format!("{place}: a step must be positive"),
+            &node.span,
+            "write step = 1: one degree (or one unit of length) of the drive",
         );
-        return None;
     }
     let (rows, count) = if dimension == Dimension::TIME {
         let durations = cx.model.drives.iter().map(|d| d.law.duration(&cx.values));
