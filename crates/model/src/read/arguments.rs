@@ -84,16 +84,6 @@ impl Measures<'_, '_> {
         }
     }
 
-    /// The angle at a point between the directions to two others.
-    pub(crate) fn corner(&self, [at, a, b]: [&Node; 3], folded: bool) -> Found<PoseMeasure> {
-        Ok(PoseMeasure::TransmissionAngle {
-            at: self.point(at)?,
-            a: self.point(a)?,
-            b: self.point(b)?,
-            folded,
-        })
-    }
-
     pub(crate) fn line(&self, node: &Node) -> Found<(PointId, PointId)> {
         let Kind::Line { from, to } = &node.kind else {
             return self.argument(node, "a directed line", "write A -> B".to_owned());

@@ -153,8 +153,16 @@ impl Measures<'_, '_> {
                 let (from, to) = self.line(line)?;
                 pose(P::Direction(from, to))
             }
-            (Form::Corner, [a, at, b]) => self.corner([at, a, b], false).map(pose)?,
-            (Form::Transmission, [at, a, b]) => self.corner([at, a, b], true).map(pose)?,
+            (Form::Corner, [a, at, b]) => {
+                let (a, at, b) = (self.point(a)?, self.point(at)?, self.point(b)?);
+                let folded = false;
+                pose(P::TransmissionAngle { at, a, b, folded })
+            }
+            (Form::Transmission, [at, a, b]) => {
+                let (at, a, b) = (self.point(at)?, self.point(a)?, self.point(b)?);
+                let folded = true;
+                pose(P::TransmissionAngle { at, a, b, folded })
+            }
             (Form::Transmission, [node]) => {
                 let at = self.point(node)?;
                 let (a, b) = self.transmission(at, node)?;
