@@ -234,7 +234,7 @@ impl RiseLaw {
     }
 
     /// The law's name in a model file.
-    pub fn name(self) -> &'static str {
+    pub const fn name(self) -> &'static str {
         match self {
             RiseLaw::Cycloidal => "cycloidal",
             RiseLaw::Harmonic => "harmonic",

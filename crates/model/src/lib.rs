@@ -5,6 +5,10 @@ mod diagnostic;
 mod document;
 mod edit;
 mod geometry;
+mod help;
+#[rustfmt::skip]
+mod key_table;
+mod keys;
 mod law;
 mod load;
 mod measure;
@@ -25,6 +29,13 @@ pub use load::*;
 pub use measure::{ForceMeasure, JointRef, Leaf, Measure, PoseMeasure, Statistic};
 pub use model::*;
 pub use read::{Checked, MAX_FILE_BYTES};
-pub use registry::{MeasureEntry, Registry};
+pub use registry::{Argument, MeasureEntry, Nature, Registry};
 pub use schema::schema;
 pub use starter::{STARTERS, Starter, starter};
+
+/// The words of the model file as data: every section, kind of entry and key, with what it takes, an example and a sentence.
+pub mod language {
+    pub use crate::help::{help, visit_keys};
+    pub use crate::key_table::{ANNOUNCED_STUDIES, FILE};
+    pub use crate::keys::{Key, Kind, Named, Need, Quantity, Sign, Takes};
+}

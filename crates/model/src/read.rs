@@ -1,32 +1,33 @@
 //! From the text of a model file to a [`Model`], with everything that is to be said about it.
 
-pub(crate) mod actuators;
+mod actuators;
+mod arguments;
 mod assembly;
-pub(crate) mod choices;
-pub(crate) mod context;
+mod choices;
+mod context;
 mod csv;
-pub(crate) mod drives;
+mod drives;
 mod entry;
 mod force_names;
-pub(crate) mod friction;
-pub(crate) mod joints;
-pub(crate) mod law_table;
-pub(crate) mod laws;
-pub(crate) mod links;
-pub(crate) mod loads;
-pub(crate) mod masses;
+mod friction;
+mod joints;
+mod law_table;
+mod laws;
+mod links;
+mod loads;
+mod masses;
 mod measure_names;
 mod measures;
-pub(crate) mod names;
+mod names;
 mod nature;
 mod one_measure;
 mod parameters;
 mod phrase;
 mod place;
 mod plots;
-pub(crate) mod sections;
-pub(crate) mod springs;
-pub(crate) mod studies;
+mod sections;
+mod springs;
+mod studies;
 mod transmission;
 mod value;
 

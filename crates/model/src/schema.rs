@@ -1,321 +1,189 @@
-//! The JSON schema of the model file, for editors: draft-07, made of the same tables the reader reads by.
+//! The JSON schema of the model file, for editors: draft-07, a walk over the table of keys.
 
 use serde_json::{Map, Value, json};
 
-use crate::model::RiseLaw;
-use crate::read::actuators::{CYLINDER_KEYS, MOTOR_KEYS};
-use crate::read::choices;
-use crate::read::drives::DRIVE_KINDS;
-use crate::read::friction::FRICTION_KEYS;
-use crate::read::joints::JOINT_KEYS;
-use crate::read::law_table::TABLE_KEYS;
-use crate::read::laws::{LAW_KEYS, PIECE_KEYS};
-use crate::read::links::LINK_KEYS;
-use crate::read::loads::{FORCE_KEYS, LOAD_TABLE_KEYS, TORQUE_KEYS};
-use crate::read::masses::{BAR_KEYS, MASS_KEYS};
-use crate::read::sections::{ANNOUNCED_SECTIONS, FILE_KEYS, UNIT_KEYS};
-use crate::read::springs::{ACTS, DAMPER_KEYS, SPRING_KEYS};
-use crate::read::studies::{ANNOUNCED_KINDS, FORCES_KEYS, MOTION_KEYS};
+use crate::key_table::{ANNOUNCED_STUDIES, FILE, PIECE};
+use crate::keys::{Key, Kind, Need, Takes};
 
 /// The JSON schema (draft-07) of the model file.
 ///
 /// It knows the shape; names, dimensions and geometry are checked by reading alone.
 pub fn schema() -> Value {
-    json!({
-        "$schema": "http://json-schema.org/draft-07/schema#",
-        "title": "Kempe model",
-        "description": "A planar linkage: its links, joints, drives, measures and studies.",
-        "type": "object",
-        "additionalProperties": false,
-        "properties": keyed(FILE_KEYS, &file_key),
-        "definitions": {
-            "scalar": {
-                "description": "A bare number in the file's unit, or a string: a value with its unit, or an expression over parameters.",
-                "type": ["number", "string"]
-            },
-            "pair": {
-                "description": "[x, y], or [radius, angle] when the second is an angle.",
-                "type": "array",
-                "items": reference("scalar"),
-                "minItems": 2,
-                "maxItems": 2
-            },
-            "side": {
-                "description": "The side of a directed line on which a point lies.",
-                "type": "string",
-                "pattern": "^\\s*(left|right)\\s+of\\s.*->"
-            },
-            "line": { "description": "A directed line.", "type": "string", "pattern": "->" },
-            "law": { "description": "A motion law from rest to rest.", "enum": RiseLaw::ALL.map(RiseLaw::name) },
-            "link": link(),
-            "joint": { "anyOf": JOINT_KEYS.iter().map(|(kind, keys, _)| joint(kind, keys)).collect::<Vec<_>>() },
-            "drive": { "anyOf": DRIVE_KINDS.iter().map(|(kind, _)| drive(kind)).collect::<Vec<_>>() },
-            "piece": {
-                "description": "A piece of a sequence: a dwell, or a rise, fall or end point with a time and a law or with a speed.",
-                "type": "object",
-                "additionalProperties": false,
-                "properties": keyed(PIECE_KEYS, &|key| if key == "by" { reference("law") } else { reference("scalar") })
-            },
-            "amount": amount(),
-            "load": load(),
-            "mass": table(MASS_KEYS, &["at", "mass"], &|key| match key {
-                "on" => text(),
-                "at" => json!({ "anyOf": [reference("pair"), text()] }),
-                _ => reference("scalar"),
-            }),
-            "spring": table(SPRING_KEYS, &["stiffness"], &|key| match key {
-                "between" => text(),
-                "links" => two(text()),
-                "acts" => json!({ "enum": ACTS.iter().map(|(word, _)| *word).collect::<Vec<_>>() }),
-                "stops" => two(reference("scalar")),
-                _ => reference("scalar"),
-            }),
-            "damper": table(DAMPER_KEYS, &["damping"], &|key| match key {
-                "between" => text(),
-                "links" => two(text()),
-                _ => reference("scalar"),
-            }),
-            "friction": table(FRICTION_KEYS, &[], &|_| reference("scalar")),
-            "cylinder": table(CYLINDER_KEYS, &["bore", "rod"], &|_| reference("scalar")),
-            "motor": table(MOTOR_KEYS, MOTOR_KEYS, &|_| json!({
-                "description": "Pairs of speed and torque.",
-                "type": "array",
-                "items": reference("pair"),
-                "minItems": 2
-            })),
-            "study": study()
+    let mut definitions = Map::new();
+    let mut define = |name: &str, schema: Value| definitions.insert(name.to_owned(), schema);
+    define(
+        "scalar",
+        json!({
+            "description": "A bare number in the file's unit, or a string: a value with its unit, or an expression over parameters.",
+            "type": ["number", "string"]
+        }),
+    );
+    define(
+        "pair",
+        json!({
+            "description": "[x, y], or [radius, angle] when the second is an angle.",
+            "type": "array",
+            "items": reference("scalar"),
+            "minItems": 2,
+            "maxItems": 2
+        }),
+    );
+    define(
+        "side",
+        json!({
+            "description": "The side of a directed line on which a point lies.",
+            "type": "string",
+            "pattern": "^\\s*(left|right)\\s+of\\s.*->"
+        }),
+    );
+    define(
+        "line",
+        json!({ "description": "A directed line.", "type": "string", "pattern": "->" }),
+    );
+    define(PIECE.what, table(&PIECE));
+    for section in FILE.keys() {
+        if let Takes::Entries(kinds) = section.takes {
+            let mut kinds_read: Vec<Value> = kinds.iter().map(|kind| table(kind)).collect();
+            if section.name == "studies" {
+                kinds_read.push(announced_studies());
+            }
+            let schema = match <[Value; 1]>::try_from(kinds_read) {
+                Ok([one]) => one,
+                Err(several) => json!({ "anyOf": several }),
+            };
+            define(definition_of(kinds), schema);
         }
-    })
+    }
+    let mut file = table(&FILE);
+    if let Some(file) = file.as_object_mut() {
+        // an editor starts from an empty file
+        file.remove("required");
+        file.insert(
+            "$schema".to_owned(),
+            json!("http://json-schema.org/draft-07/schema#"),
+        );
+        file.insert("title".to_owned(), json!("Kempe model"));
+        file.insert("definitions".to_owned(), Value::Object(definitions));
+    }
+    file
 }
 
 fn reference(definition: &str) -> Value {
     json!({ "$ref": format!("#/definitions/{definition}") })
 }
 
-fn keyed(keys: &[&str], of: &dyn Fn(&str) -> Value) -> Value {
-    Value::Object(
-        keys.iter()
-            .map(|key| ((*key).to_owned(), of(key)))
-            .collect::<Map<String, Value>>(),
-    )
+/// The definition of the kinds of one section: the word for what they are.
+fn definition_of(kinds: &[&Kind]) -> &'static str {
+    let what = kinds.first().map_or("", |kind| kind.what);
+    what.split(' ').next().unwrap_or(what)
 }
 
-fn text() -> Value {
-    json!({ "type": "string" })
-}
-
-fn two(item: Value) -> Value {
-    json!({ "type": "array", "items": item, "minItems": 2, "maxItems": 2 })
-}
-
-/// A table with these keys alone.
-fn table(keys: &[&str], required: &[&str], of: &dyn Fn(&str) -> Value) -> Value {
+fn announced_studies() -> Value {
     json!({
+        "description": "Read by later versions.",
+        "type": "object",
+        "required": ["kind"],
+        "properties": { "kind": { "enum": ANNOUNCED_STUDIES } }
+    })
+}
+
+/// A table with the keys of a kind alone.
+fn table(kind: &Kind) -> Value {
+    let mut properties = Map::new();
+    let mut patterns = Map::new();
+    for row in kind.keys() {
+        let mut schema = match row.name {
+            "kind" => json!({ "const": kind.name }),
+            _ => of(&row.takes),
+        };
+        tell(&mut schema, row);
+        properties.insert(row.name.to_owned(), schema);
+    }
+    for row in kind.points {
+        const POINT: &str = "[A-Z][A-Za-z0-9_]*";
+        let pattern = match row.takes {
+            Takes::Value(_) => format!("^{POINT}-{POINT}$"),
+            _ => format!("^{POINT}$"),
+        };
+        let mut schema = of(&row.takes);
+        tell(&mut schema, row);
+        patterns.insert(pattern, schema);
+    }
+    let those = |need: Need| {
+        kind.keys()
+            .filter(move |row| row.need == need)
+            .map(|row| row.name)
+    };
+    let required: Vec<&str> = those(Need::Required).collect();
+    let one_of: Vec<Value> = those(Need::OneOf)
+        .map(|name| json!({ "required": [name] }))
+        .collect();
+    let mut table = json!({
+        "description": kind.about,
         "type": "object",
         "additionalProperties": false,
-        "required": required,
-        "properties": keyed(keys, of)
-    })
-}
-
-fn amount() -> Value {
-    json!({
-        "description": "A value, a measure of the motion, or a table from a file.",
-        "anyOf": [
-            reference("scalar"),
-            table(LOAD_TABLE_KEYS, &["table", "over"], &|key| match key {
-                "factor" | "period" => reference("scalar"),
-                _ => text(),
-            })
-        ]
-    })
-}
-
-fn load() -> Value {
-    let of = |key: &str| match key {
-        "force" => json!({
-            "description": "[x, y], or [size, direction] when the second is an angle.",
-            "type": "array",
-            "items": reference("amount"),
-            "minItems": 2,
-            "maxItems": 2
-        }),
-        "torque" => reference("amount"),
-        _ => text(),
-    };
-    json!({ "anyOf": [
-        table(FORCE_KEYS, &["force", "at"], &of),
-        table(TORQUE_KEYS, &["torque", "on"], &of)
-    ] })
-}
-
-/// A table whose small-letter names are the user's.
-fn named(description: &str, of: Value) -> Value {
-    json!({ "description": description, "type": "object", "additionalProperties": of })
-}
-
-fn file_key(key: &str) -> Value {
-    match key {
-        "title" => json!({ "description": "Title of the report.", "type": "string" }),
-        "units" => json!({
-            "description": "Units of bare numbers and of results; m and deg unless said otherwise.",
-            "type": "object",
-            "additionalProperties": false,
-            "properties": keyed(UNIT_KEYS, &|_| json!({ "type": "string" }))
-        }),
-        "parameters" => named("Named dimensions of the design.", reference("scalar")),
-        "links" => named(
-            "Rigid bodies as sets of points; `frame` stands still.",
-            reference("link"),
-        ),
-        "joints" => named(
-            "Joints that a shared point name does not say.",
-            reference("joint"),
-        ),
-        "drives" => named("What is moved from outside, and how.", reference("drive")),
-        "assembly" => named(
-            "Which assembly is meant, at the start of the drives.",
-            json!({ "anyOf": [
-                reference("side"),
-                { "type": "object", "additionalProperties": false, "required": ["near"],
-                  "properties": { "near": { "anyOf": [reference("scalar"), reference("pair")] } } }
-            ] }),
-        ),
-        "measures" => named(
-            "Named measures: expressions over what may be asked of the mechanism.",
-            json!({ "type": "string" }),
-        ),
-        "gravity" => json!({
-            "description": "Acceleration of gravity: [x, y], or its size along -y; 9.81 m/s^2 along -y unless said otherwise.",
-            "anyOf": [reference("scalar"), reference("pair")]
-        }),
-        "loads" => named("Forces and torques from outside.", reference("load")),
-        "masses" => named("Point masses on links: counterweights.", reference("mass")),
-        "springs" => named("Springs.", reference("spring")),
-        "dampers" => named("Dampers.", reference("damper")),
-        "friction" => named(
-            "Friction, by the point of a pin, by the name of a joint, or for `all`.",
-            reference("friction"),
-        ),
-        "cylinders" => named(
-            "Hydraulic cylinders, by the name of their drive.",
-            reference("cylinder"),
-        ),
-        "motors" => named("Motors, by the name of their drive.", reference("motor")),
-        "studies" => named("What is asked of the model.", reference("study")),
-        key if ANNOUNCED_SECTIONS.contains(&key) => {
-            json!({ "description": "Read by later versions.", "type": "object" })
+        "properties": properties
+    });
+    let mut add = |key: &str, value: Value| {
+        if let (Some(table), false) = (
+            table.as_object_mut(),
+            value == json!([]) || value == json!({}),
+        ) {
+            table.insert(key.to_owned(), value);
         }
-        _ => json!({}),
+    };
+    add("patternProperties", Value::Object(patterns));
+    add("required", json!(required));
+    add("oneOf", json!(one_of));
+    table
+}
+
+fn describe(schema: &mut Value, about: &str) {
+    // beside a reference nothing counts
+    if schema.get("$ref").is_some() {
+        *schema = json!({ "allOf": [schema.take()] });
+    }
+    if let Some(schema) = schema.as_object_mut() {
+        schema.insert("description".to_owned(), json!(about));
     }
 }
 
-fn link() -> Value {
-    json!({
-        "description": "Points by coordinates (P = [x, y]), by distances (A-B = 20) and sides, and mass properties.",
-        "type": "object",
-        "additionalProperties": false,
-        "properties": keyed(LINK_KEYS, &|key| match key {
-            "center" => json!({ "description": "\"centroid\", a point of the link, or a place on it.",
-                "anyOf": [{ "type": "string" }, reference("pair")] }),
-            "bar" => table(BAR_KEYS, BAR_KEYS, &|_| reference("scalar")),
-            _ => reference("scalar"),
-        }),
-        "patternProperties": {
-            "^[A-Z][A-Za-z0-9_]*$": { "anyOf": [reference("pair"), reference("side")] },
-            "^[A-Z][A-Za-z0-9_]*-[A-Z][A-Za-z0-9_]*$": reference("scalar")
-        }
-    })
-}
-
-fn joint(kind: &str, keys: &[&str]) -> Value {
-    let required: &[&str] = match kind {
-        "slider" => &["slider", "at", "on"],
-        "pin" => &["pin", "on"],
-        "weld" => &["weld"],
-        "gears" => &["gears", "teeth"],
-        _ => &["rack", "pinion", "radius"],
-    };
-    json!({
-        "type": "object",
-        "additionalProperties": false,
-        "required": required,
-        "properties": keyed(keys, &|key| match key {
-            "on" => reference("line"),
-            "angle" | "phase" | "radius" | "offset" => reference("scalar"),
-            "weld" | "gears" => two(json!({ "type": "string" })),
-            "teeth" => two(reference("scalar")),
-            "internal" => json!({ "type": "boolean" }),
-            "side" => json!({ "enum": ["left", "right", "left of", "right of"] }),
-            _ => json!({ "type": "string" }),
-        })
-    })
-}
-
-fn drive(kind: &str) -> Value {
-    let mut keys = vec![kind];
-    if kind == "turns" {
-        keys.push("relative_to");
+/// What a key says, and an example of it.
+fn tell(schema: &mut Value, row: &Key) {
+    describe(schema, row.about);
+    let example = toml::from_str::<Value>(&format!("example = {}", row.example));
+    if let (Some(schema), Ok(example)) = (schema.as_object_mut(), example) {
+        schema.insert("examples".to_owned(), json!([example["example"]]));
     }
-    keys.extend(LAW_KEYS);
-    let required: &[&str] = if kind == "cylinder" {
-        &["cylinder"]
-    } else {
-        &[kind]
-    };
-    json!({
-        "type": "object",
-        "additionalProperties": false,
-        "required": required,
-        "properties": keyed(&keys, &|key| match key {
-            "law" => json!({ "anyOf": [
-                reference("law"),
-                { "type": "array", "items": reference("piece"), "minItems": 1 },
-                { "type": "object", "additionalProperties": false, "required": ["table"],
-                  "properties": keyed(TABLE_KEYS, &|_| json!({ "type": "string" })) }
-            ] }),
-            key if key == kind || key == "relative_to" => json!({ "type": "string" }),
-            _ => reference("scalar"),
-        })
-    })
 }
 
-fn study() -> Value {
-    let texts = json!({ "anyOf": [{ "type": "string" }, { "type": "array", "items": { "type": "string" } }] });
-    let along = |kind: &str, keys: &[&str], description: &str| {
-        let mut study = table(keys, &["kind"], &|key| match key {
-            "kind" => json!({ "const": kind }),
-            "step" => reference("scalar"),
-            "rows" => {
-                json!({ "type": "integer", "minimum": 1, "maximum": crate::read::studies::MAX_ROWS })
-            }
-            "circuit" => json!({ "type": "boolean" }),
-            "goal" => json!({ "enum": choices::GOALS.iter().map(|g| g.0).collect::<Vec<_>>() }),
-            "on" => json!({ "type": "array", "items": { "type": "string" }, "minItems": 1 }),
-            "radius" | "wanted" => reference("scalar"),
-            "stiffness" | "preload" => two(reference("scalar")),
-            "spring" | "drive" => json!({ "type": "string" }),
-            "plot" => json!({
-                "description": "Measures, path(P), of forces also hodograph(B, link); in brackets measures that share a picture.",
-                "anyOf": [{ "type": "string" }, { "type": "array", "items": texts }]
-            }),
-            _ => texts.clone(),
-        });
-        if let Some(study) = study.as_object_mut() {
-            study.insert("description".to_owned(), json!(description));
+/// What a key takes.
+fn of(takes: &Takes) -> Value {
+    match takes {
+        Takes::Text | Takes::Name(_) | Takes::Unit(_) | Takes::PointPair | Takes::Measure => {
+            json!({ "type": "string" })
         }
-        study
-    };
-    json!({ "anyOf": [
-        along("motion", MOTION_KEYS, "The motion along the drives' laws."),
-        along("forces", FORCES_KEYS, "What drives the motion and what the joints carry along it."),
-        along("balance", choices::BALANCE_KEYS, "The counterweights that make it run quietly or hang in balance."),
-        along("spring", choices::SPRING_KEYS, "The spring that leaves a wanted effort to a drive."),
-        {
-            "description": "Read by later versions.",
-            "type": "object",
-            "required": ["kind"],
-            "properties": { "kind": { "enum": ANNOUNCED_KINDS } }
+        Takes::Flag => json!({ "type": "boolean" }),
+        Takes::Count(most) => json!({ "type": "integer", "minimum": 1, "maximum": most }),
+        Takes::Value(_) | Takes::AnyValue => reference("scalar"),
+        Takes::Pair(_) => reference("pair"),
+        Takes::Line => reference("line"),
+        Takes::Side => reference("side"),
+        Takes::Amount(kind) => json!({ "anyOf": [reference("scalar"), table(kind)] }),
+        Takes::Words(words) => json!({ "enum": words }),
+        Takes::Two(one) => {
+            json!({ "type": "array", "items": of(one), "minItems": 2, "maxItems": 2 })
         }
-    ] })
+        Takes::List(one, least) => {
+            json!({ "type": "array", "items": of(one), "minItems": least })
+        }
+        Takes::AnyOf(some) => json!({ "anyOf": some.iter().map(of).collect::<Vec<_>>() }),
+        Takes::Table(kind) if kind.what == PIECE.what => reference(kind.what),
+        Takes::Table(kind) => table(kind),
+        Takes::Values(one) => json!({ "type": "object", "additionalProperties": of(one) }),
+        Takes::Entries(kinds) => {
+            json!({ "type": "object", "additionalProperties": reference(definition_of(kinds)) })
+        }
+        Takes::Announced => json!({ "type": "object" }),
+    }
 }

@@ -44,9 +44,9 @@ pub fn measures(arguments: &Measures) -> Exit {
     for entry in &entries {
         out.push_str(&format!(
             "{}\n    {} ({})\n    such as {}\n",
-            entry.signatures.join("   "),
+            entry.signatures().join("   "),
             entry.doc,
-            entry.dimension,
+            entry.dimension(),
             entry.example
         ));
     }

@@ -1,10 +1,9 @@
 //! What a measure asks for: the leaves inside it, and how often it must be differentiated.
 
 use kempe_mechanism::Mechanism;
-use kempe_model::{Leaf, Measure, PoseMeasure};
+use kempe_model::{Leaf, Measure, Nature, PoseMeasure};
 
 use super::ORDER;
-use super::in_time::is_motion;
 
 /// How often a measure must be differentiated to be evaluated, or why it cannot be.
 ///
@@ -36,7 +35,7 @@ fn depth(
             Leaf::Force(_) if in_coefficient => {
                 return Err("a force has no derivative to a drive".into());
             }
-            Leaf::Force(_) => 2,
+            Leaf::Force(_) => Nature::Forces.order(),
             Leaf::Named(index) => match mechanism.model.measures.get(*index) {
                 Some(named) => match known[*index][usize::from(in_coefficient)] {
                     Some(depth) => depth,
@@ -60,24 +59,18 @@ fn depth(
             Leaf::Pose(PoseMeasure::PathLength(_)) if in_coefficient => {
                 return Err("a length of path depends on the whole way since the start, not on where a drive is: divide its rate() by that of the drive".into());
             }
-            Leaf::Pose(pose) if in_coefficient && is_motion(pose) => {
+            Leaf::Pose(pose) if in_coefficient && matches!(pose.nature(), Nature::InTime(_)) => {
                 return Err("a speed or acceleration in time has no derivative to a drive".into());
             }
-            Leaf::Pose(pose) => match pose {
-                PoseMeasure::Speed(_)
-                | PoseMeasure::AngularSpeed(_)
-                | PoseMeasure::InstantCenterX(..)
-                | PoseMeasure::InstantCenterY(..) => 1,
-                PoseMeasure::Acceleration(_)
-                | PoseMeasure::AngularAcceleration(_)
-                | PoseMeasure::Curvature(_)
-                | PoseMeasure::CurvatureCenterX(_)
-                | PoseMeasure::CurvatureCenterY(_) => 2,
-                PoseMeasure::MechanicalAdvantage(inner, _) => {
-                    1 + depth(mechanism, inner, true, known)?
-                }
-                _ => 0,
-            },
+            Leaf::Pose(pose) => {
+                let inner = match pose {
+                    PoseMeasure::MechanicalAdvantage(inner, _) => {
+                        depth(mechanism, inner, true, known)?
+                    }
+                    _ => 0,
+                };
+                inner + pose.nature().order()
+            }
         };
         deepest = deepest.max(own);
     }

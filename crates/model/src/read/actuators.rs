@@ -10,25 +10,15 @@
 //! A cylinder may also have the `friction` of its seals, and `count` when several act side by side. A motor's curve is
 //! straight between its pairs of speed and torque, at the drive.
 
-use kempe_units::{Dimension, Expr};
+use kempe_units::Dimension;
 
 use crate::diagnostic::Diagnostic;
 use crate::document::{Key, Node, Value};
+use crate::key_table::{CYLINDER, MOTOR};
 use crate::load::{HydraulicCylinder, Motor};
 use crate::model::{DriveId, DriveKind, Scalar};
 use crate::read::context::{Context, Meaning};
 use crate::read::entry::Entry;
-
-/// Keys of a cylinder.
-pub(crate) const CYLINDER_KEYS: &[&str] = &[
-    "bore", "rod", "supply", "relief", "back", "flow", "friction", "count",
-];
-
-/// Keys of a motor.
-pub(crate) const MOTOR_KEYS: &[&str] = &["curve"];
-
-const CYLINDER: &str = "lift = { bore = \"80 mm\", rod = \"40 mm\", supply = \"180 bar\" }";
-const MOTOR: &str = "motor = { curve = [[\"0 rpm\", \"12 N m\"], [\"3000 rpm\", \"0 N m\"]] }";
 
 /// A file has at most so many of each: as many as drives.
 const MAX: usize = 1_000;
@@ -122,21 +112,22 @@ pub(crate) fn what_it_is(kind: &DriveKind) -> &'static str {
 }
 
 fn read_cylinder(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<HydraulicCylinder> {
-    let drive = drive(cx, &entry.0, true);
-    let entry = Entry::new(cx, entry, "cylinder", CYLINDER, CYLINDER_KEYS)?;
-    let bore = entry.required_positive(cx, "bore", Dimension::LENGTH, false);
-    let rod = entry.required_positive(cx, "rod", Dimension::LENGTH, true);
-    let supply = entry.positive(cx, "supply", Dimension::PRESSURE, false);
-    let relief = entry.positive(cx, "relief", Dimension::PRESSURE, false);
-    let back = entry.positive(cx, "back", Dimension::PRESSURE, true);
-    let flow = entry.positive(cx, "flow", Dimension::FLOW, false);
-    let friction = entry.positive(cx, "friction", Dimension::FORCE, true);
-    let count = entry.positive(cx, "count", Dimension::NONE, false);
+    let (key, _) = entry;
+    let drive = drive(cx, key, true);
+    let entry = Entry::new(cx, entry, &CYLINDER)?;
+    let bore = entry.needed(cx, "bore");
+    let rod = entry.needed(cx, "rod");
+    let supply = entry.value(cx, "supply");
+    let relief = entry.value(cx, "relief");
+    let back = entry.value(cx, "back");
+    let flow = entry.value(cx, "flow");
+    let friction = entry.value_or(cx, "friction", 0.0);
+    let count = entry.value_or(cx, "count", 1.0);
     let (bore, rod, supply, relief, back) = (bore?, rod?, supply?, relief?, back?);
     if cx.number(&rod) >= cx.number(&bore) {
         entry.contradiction(
             cx,
-            ["rod", "bore"],
+            &["rod", "bore"],
             "the rod does not fit into the bore",
             "the rod is thinner than the bore; for a plunger write rod = 0",
         );
@@ -151,24 +142,20 @@ fn read_cylinder(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<HydraulicC
         if back.as_ref().is_some_and(above) {
             entry.contradiction(
                 cx,
-                ["back", key],
+                &["back", key],
                 &format!("the side that drains has as much pressure as `{key}` allows at all"),
                 "`back` is the pressure in the return line, a few bar",
             );
             return None;
         }
     }
-    let count = count?.unwrap_or(Expr::Const(1.0));
+    let count = count?;
     let number = cx.number(&count);
     if number != number.round()
-        && let Some(node) = entry.table.get("count")
+        && let Some(node) = entry.get("count")
     {
-        cx.wrong_type(
-            node,
-            &format!("`count` of {}", entry.place),
-            "a whole number",
-            "count = 2",
-        );
+        let place = entry.place_of("count");
+        cx.wrong_type(node, &place, "a whole number", "count = 2");
         return None;
     }
     Some(HydraulicCylinder {
@@ -177,45 +164,42 @@ fn read_cylinder(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<HydraulicC
         rod,
         supply,
         relief,
-        back: back.unwrap_or(Expr::Const(0.0)),
+        back: back.unwrap_or(kempe_units::Expr::Const(0.0)),
         flow: flow?,
-        friction: friction?.unwrap_or(Expr::Const(0.0)),
+        friction: friction?,
         count,
-        span: entry.key.span.clone(),
+        span: key.span.clone(),
     })
 }
 
 fn read_motor(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<Motor> {
-    let drive = drive(cx, &entry.0, false);
-    let entry = Entry::new(cx, entry, "motor", MOTOR, MOTOR_KEYS)?;
+    let (key, _) = entry;
+    let drive = drive(cx, key, false);
+    let entry = Entry::new(cx, entry, &MOTOR)?;
+    let example = entry.example;
     let node = entry.required(cx, "curve")?;
-    let pairs = cx.array(node, &format!("`curve` of {}", entry.place), MOTOR)?;
+    let pairs = cx.array(node, &entry.place_of("curve"), example)?;
     if pairs.len() < 2 || pairs.len() > MAX_PAIRS {
         let count = pairs.len();
-        cx.push(
-            Diagnostic::error(
-                if count < 2 {
-                    "missing-key"
-                } else {
-                    "too-large"
-                },
-                format!(
-                    "the curve of {} has too {} pairs",
-                    entry.place,
-                    if count < 2 { "few" } else { "many" }
-                ),
-            )
-            .at(node.span.clone(), "")
-            .help(format!(
-                "a curve has 2 to {MAX_PAIRS} pairs of speed and torque: {MOTOR}"
-            )),
+        return cx.refuse(
+            if count < 2 {
+                "missing-key"
+            } else {
+                "too-large"
+            },
+            format!(
+                "the curve of {} has too {} pairs",
+                entry.place,
+                if count < 2 { "few" } else { "many" }
+            ),
+            &node.span,
+            format!("a curve has 2 to {MAX_PAIRS} pairs of speed and torque: {example}"),
         );
-        return None;
     }
     let mut curve: Vec<(Scalar, Scalar)> = Vec::with_capacity(pairs.len());
     for pair in pairs {
         let Value::Array(_) = pair.value else {
-            cx.wrong_type(pair, "a pair of the curve", "[speed, torque]", MOTOR);
+            cx.wrong_type(pair, "a pair of the curve", "[speed, torque]", example);
             return None;
         };
         let (speed, torque) = entry.two(cx, pair, "curve")?;
@@ -242,6 +226,6 @@ fn read_motor(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<Motor> {
     Some(Motor {
         drive: drive?,
         curve,
-        span: entry.key.span.clone(),
+        span: key.span.clone(),
     })
 }

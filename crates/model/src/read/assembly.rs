@@ -4,8 +4,10 @@ use kempe_units::Dimension;
 
 use crate::diagnostic::Diagnostic;
 use crate::document::{Key, Node, Value};
+use crate::key_table::HINT;
 use crate::model::{AssemblyHint, Drive, DriveKind, FRAME, HintKind, LinkId, Place, PointId};
 use crate::read::context::{Context, Meaning};
+use crate::read::entry::Entry;
 use crate::read::names::is_point_name;
 
 /// Reads all hints.
@@ -57,17 +59,12 @@ fn point_hint(cx: &mut Context<'_>, key: &Key, node: &Node) -> Option<HintKind> 
             idle_hint(cx, key, &[point]);
             Some(HintKind::NearPlace { point, x, y })
         }
-        _ => {
-            cx.push(
-                Diagnostic::error(
-                    "wrong-type",
-                    format!("`near` of {} is a place in the frame, [x, y]", key.name),
-                )
-                .at(near.span.clone(), "")
-                .help("write { near = [173, 151] }"),
-            );
-            None
-        }
+        _ => cx.refuse(
+            "wrong-type",
+            format!("`near` of {} is a place in the frame, [x, y]", key.name),
+            &near.span,
+            "write { near = [173, 151] }",
+        ),
     }
 }
 
@@ -128,17 +125,16 @@ fn driven_angle(cx: &mut Context<'_>, key: &Key, link: LinkId) {
     );
 }
 
-fn near<'n>(cx: &mut Context<'_>, key: &Key, node: &'n Node, example: &str) -> Option<&'n Node> {
+fn near<'n>(
+    cx: &mut Context<'_>,
+    key: &'n Key,
+    node: &'n Node,
+    example: &'static str,
+) -> Option<&'n Node> {
     let place = format!("the assembly of {}", key.name);
-    let table = cx.table(node, &place, example)?;
-    cx.unknown_keys(table, &place, &["near"]);
-    cx.required(
-        table,
-        "near",
-        &place,
-        &key.span,
-        "[173, 151], or an angle for a link",
-    )
+    cx.table(node, &place, example)?;
+    let entry = Entry::inner(cx, node, &key.span, place, &HINT)?;
+    entry.required_like(cx, "near", "[173, 151], or an angle for a link")
 }
 
 /// Warns when all points are on one link (or the frame): then nothing is left to choose.

@@ -20,6 +20,7 @@ use kempe_units::{Dimension, Expr};
 
 use crate::diagnostic::Diagnostic;
 use crate::document::Node;
+use crate::key_table::GOALS;
 use crate::measure::{Leaf, Measure};
 use crate::model::{
     BalanceGoal, BalanceStudy, DriveId, FRAME, LinkId, MotionStudy, PointId, Scalar, SpringStudy,
@@ -30,39 +31,18 @@ use crate::read::entry::{Entry, link_of};
 use crate::read::measures::measure_text;
 use crate::read::nature::nature;
 
-/// Keys of a study of counterweights.
-pub(crate) const BALANCE_KEYS: &[&str] = &["kind", "step", "rows", "goal", "on", "radius"];
-
-/// Keys of a study that chooses a spring.
-pub(crate) const SPRING_KEYS: &[&str] = &[
-    "kind",
-    "step",
-    "rows",
-    "spring",
-    "drive",
-    "wanted",
-    "stiffness",
-    "preload",
-];
-
-/// What counterweights may be for.
-pub(crate) const GOALS: &[(&str, BalanceGoal)] = &[
-    ("shaking force", BalanceGoal::ShakingForce),
-    ("statics", BalanceGoal::Statics),
-];
-
 /// A study of counterweights.
 pub(crate) fn balance(
     cx: &mut Context<'_>,
     entry: &Entry<'_>,
     along: MotionStudy,
 ) -> Option<StudyKind> {
-    let goal = entry.choice(cx, "goal", GOALS);
-    let radius = entry.required_positive(cx, "radius", Dimension::LENGTH, false);
+    let goal = entry.choice(cx, "goal", &GOALS);
+    let radius = entry.needed(cx, "radius");
     let node = entry.required(cx, "on")?;
-    let place = format!("`on` of {}", entry.place);
+    let place = entry.place_of("on");
     let mut on = Vec::new();
-    for node in cx.array(node, &place, "[\"crank\"]")? {
+    for node in cx.array(node, &place, entry.example_of("on"))? {
         let link = link_of(cx, node, &place)?;
         let pivot = pivot(cx, link, node)?;
         if on.iter().any(|(known, _)| *known == link) {
@@ -77,12 +57,12 @@ pub(crate) fn balance(
         }
     }
     if on.is_empty() {
-        cx.push(
-            Diagnostic::error("missing-key", format!("{place} names no link"))
-                .at(node.span.clone(), "")
-                .help("say which links may carry a counterweight: on = [\"crank\"]"),
+        return cx.refuse(
+            "missing-key",
+            format!("{place} names no link"),
+            &node.span,
+            "say which links may carry a counterweight: on = [\"crank\"]",
         );
-        return None;
     }
     Some(StudyKind::Balance(BalanceStudy {
         along,
@@ -116,26 +96,18 @@ fn pivot(cx: &mut Context<'_>, link: LinkId, node: &Node) -> Option<PointId> {
 /// A study that chooses a spring.
 pub(crate) fn spring(
     cx: &mut Context<'_>,
-    entry: &Entry<'_>,
+    entry: &mut Entry<'_>,
     along: MotionStudy,
 ) -> Option<StudyKind> {
     let chosen = spring_named(cx, entry);
     let drive = drive_named(cx, entry);
     let (spring, tension) = chosen?;
     let (drive, coordinate) = drive?;
-    let effort = if coordinate == Dimension::ANGLE {
-        Dimension::TORQUE
-    } else {
-        Dimension::FORCE
-    };
-    let wanted = wanted(cx, entry, effort);
-    let stretch = if tension == Dimension::TORQUE {
-        Dimension::ANGLE
-    } else {
-        Dimension::LENGTH
-    };
-    let stiffness = bounds(cx, entry, "stiffness", tension / stretch);
-    let preload = bounds(cx, entry, "preload", tension);
+    entry.turning = coordinate == Dimension::ANGLE;
+    let wanted = wanted(cx, entry);
+    entry.turning = tension == Dimension::TORQUE;
+    let stiffness = bounds(cx, entry, "stiffness");
+    let preload = bounds(cx, entry, "preload");
     Some(StudyKind::Spring(SpringStudy {
         along,
         spring,
@@ -148,31 +120,18 @@ pub(crate) fn spring(
 
 fn spring_named(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<(usize, Dimension)> {
     let node = entry.required(cx, "spring")?;
-    let text = cx.text(node, &format!("`spring` of {}", entry.place), "\"back\"")?;
+    let text = entry.text(cx, "spring", node)?;
     let name = text.content.trim();
-    match cx.springs.get(name) {
-        Some(found) => *found,
-        None => {
-            let springs: Vec<&str> = cx.springs.keys().map(String::as_str).collect();
-            let help = match kempe_units::nearest(name, springs.iter().copied()) {
-                Some(near) => format!("did you mean `{near}`?"),
-                None if !springs.is_empty() => {
-                    format!(
-                        "the springs are {}",
-                        springs.get(..12).unwrap_or(&springs).join(", ")
-                    )
-                }
-                None => "describe its ends under [springs]; stiffness and preload are chosen here"
-                    .to_owned(),
-            };
-            cx.push(
-                Diagnostic::error("unknown-name", format!("there is no spring `{name}`"))
-                    .at(node.span.clone(), "not declared")
-                    .help(help),
-            );
-            None
-        }
+    if let Some(found) = cx.springs.get(name) {
+        return *found;
     }
+    let springs = cx.springs.keys().map(String::as_str);
+    let mut d = cx.no_such("spring", name, node.span.clone(), springs);
+    if cx.springs.is_empty() {
+        d = d.help("describe its ends under [springs]; stiffness and preload are chosen here");
+    }
+    cx.push(d);
+    None
 }
 
 fn drive_named(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<(DriveId, Dimension)> {
@@ -180,35 +139,26 @@ fn drive_named(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<(DriveId, Dime
         let drive = cx.model.drives.get(id.index())?;
         Some((id, drive.dimension))
     };
-    let Some(node) = entry.table.get("drive") else {
-        if cx.model.drives.len() == 1 {
-            return found(cx, DriveId(0));
-        }
-        entry.required(cx, "drive");
-        return None;
-    };
-    let text = cx.text(node, &format!("`drive` of {}", entry.place), "\"motor\"")?;
+    if !entry.has("drive") && cx.model.drives.len() == 1 {
+        return found(cx, DriveId(0));
+    }
+    let node = entry.required(cx, "drive")?;
+    let text = entry.text(cx, "drive", node)?;
     let name = text.content.trim();
     if let Some(Meaning::Drive(i)) = cx.names.get(name).map(|(meaning, _)| *meaning) {
         let id = cx.drives.get(i).copied().flatten()?;
         return found(cx, id);
     }
     let drives = cx.model.drives.iter().map(|d| d.name.as_str());
-    let help = match kempe_units::nearest(name, drives) {
-        Some(near) => format!("did you mean `{near}`?"),
-        None => "name the drive that the spring is to help".to_owned(),
-    };
-    cx.push(
-        Diagnostic::error("unknown-name", format!("there is no drive `{name}`"))
-            .at(node.span.clone(), "not declared")
-            .help(help),
-    );
+    let d = cx.no_such("drive", name, node.span.clone(), drives);
+    cx.push(d);
     None
 }
 
 /// What the drive is to give: nothing unless said otherwise.
-fn wanted(cx: &mut Context<'_>, entry: &Entry<'_>, effort: Dimension) -> Option<Measure> {
-    let Some(node) = entry.table.get("wanted") else {
+fn wanted(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<Measure> {
+    let effort = entry.dimension("wanted");
+    let Some(node) = entry.get("wanted") else {
         return Some(Expr::Const(0.0));
     };
     let crate::document::Value::Text(text) = &node.value else {
@@ -216,28 +166,20 @@ fn wanted(cx: &mut Context<'_>, entry: &Entry<'_>, effort: Dimension) -> Option<
     };
     let (measure, dimension) = measure_text(cx, text)?;
     if !dimension.compatible(effort) {
-        cx.push(
-            Diagnostic::error(
-                "unit-mismatch",
-                format!("{effort} expected, found {}", dimension.with_article()),
-            )
-            .at(node.span.clone(), "")
-            .help(
-                "say what the drive is to give: wanted = \"0 N m\", or a measure along the motion",
-            ),
+        return cx.refuse(
+            "unit-mismatch",
+            format!("{effort} expected, found {}", dimension.with_article()),
+            &node.span,
+            "say what the drive is to give: wanted = \"0 N m\", or a measure along the motion",
         );
-        return None;
     }
     if nature(&measure, &cx.natures).forces {
-        cx.push(
-            Diagnostic::error(
-                "force-depends-on-force",
-                "the wanted effort asks for a force",
-            )
-            .at(node.span.clone(), "")
-            .help("give it over drives, time and measures of the motion"),
+        return cx.refuse(
+            "force-depends-on-force",
+            "the wanted effort asks for a force",
+            &node.span,
+            "give it over drives, time and measures of the motion",
         );
-        return None;
     }
     Some(measure)
 }
@@ -247,35 +189,23 @@ fn constant(scalar: Scalar) -> Measure {
     scalar.map_leaves(&mut |id| Leaf::Parameter(*id))
 }
 
-/// Two bounds, `"none"` for no bound; the outer `None` when they are wrong.
+/// Two bounds in order.
 fn bounds(
     cx: &mut Context<'_>,
     entry: &Entry<'_>,
     key: &str,
-    dimension: Dimension,
 ) -> Option<Option<[Option<Scalar>; 2]>> {
-    let Some(node) = entry.table.get(key) else {
+    let Some([low, high]) = entry.bounds(cx, key)? else {
         return Some(None);
     };
-    let (low, high) = entry.two(cx, node, key)?;
-    let mut bound = |node: &Node| match &node.value {
-        crate::document::Value::Text(text) if text.content.trim() == "none" => Some(None),
-        _ => cx.scalar(node, dimension).map(Some),
-    };
-    let (low, high) = (bound(low)?, bound(high)?);
     if let (Some(low), Some(high)) = (&low, &high)
         && cx.number(low) > cx.number(high)
     {
-        cx.push(
-            Diagnostic::error(
-                "contradictory-values",
-                format!(
-                    "{}: the lower bound of the {key} lies above the upper one",
-                    entry.place
-                ),
-            )
-            .at(node.span.clone(), "")
-            .help("write the smaller one first"),
+        entry.contradiction(
+            cx,
+            &[key],
+            &format!("the lower bound of the {key} lies above the upper one"),
+            "write the smaller one first",
         );
         return None;
     }

@@ -140,6 +140,22 @@ impl<'a> Context<'a> {
         }
     }
 
+    /// Tells an error whose place says it all.
+    pub fn refuse<T>(
+        &mut self,
+        code: &'static str,
+        message: impl Into<String>,
+        at: &Span,
+        help: impl Into<String>,
+    ) -> Option<T> {
+        self.push(
+            Diagnostic::error(code, message)
+                .at(at.clone(), "")
+                .help(help),
+        );
+        None
+    }
+
     /// Whether enough has been said.
     pub fn full(&self) -> bool {
         self.found.len() >= MAX_DIAGNOSTICS
@@ -241,26 +257,6 @@ impl<'a> Context<'a> {
         );
     }
 
-    /// The value of a key that must be there.
-    pub fn required<'n>(
-        &mut self,
-        table: &'n Table,
-        key: &str,
-        place: &str,
-        span: &Span,
-        example: &str,
-    ) -> Option<&'n Node> {
-        let node = table.get(key);
-        if node.is_none() {
-            self.push(
-                Diagnostic::error("missing-key", format!("{place} has no `{key}`"))
-                    .at(span.clone(), format!("`{key}` is missing"))
-                    .help(format!("add {key} = {example}")),
-            );
-        }
-        node
-    }
-
     /// The point of a name.
     pub fn point(&mut self, name: &str, span: Span) -> Option<PointId> {
         let found = self.points.get(name).copied();
@@ -299,19 +295,7 @@ impl<'a> Context<'a> {
         span: Span,
         known: impl Iterator<Item = &'n str>,
     ) -> Diagnostic {
-        let known: Vec<&str> = known.collect();
-        let help = match nearest(name, known.iter().copied()) {
-            Some(near) => format!("did you mean `{near}`?"),
-            None if known.is_empty() => format!("the file has no {kind}s"),
-            None if known.len() <= 12 && kind.contains(' ') => {
-                format!("there are {}", known.join(", "))
-            }
-            None if known.len() <= 12 => format!("the {kind}s are {}", known.join(", ")),
-            None => format!(
-                "the file has {} {kind}s, none of them near this name",
-                known.len()
-            ),
-        };
+        let help = near_or_all(kind, name, known);
         Diagnostic::error("unknown-name", format!("there is no {kind} `{name}`"))
             .at(span, "not declared")
             .help(help)
@@ -390,3 +374,27 @@ impl<'a> Context<'a> {
 
 /// A file with more to say than this has one trouble, not many.
 pub(crate) const MAX_DIAGNOSTICS: usize = 200;
+
+/// More names than this are not listed.
+const MAX_LISTED: usize = 20;
+
+/// Help on a name that nothing has: the near one, or those that there are.
+pub(crate) fn near_or_all<'n>(
+    kind: &str,
+    name: &str,
+    known: impl Iterator<Item = &'n str>,
+) -> String {
+    let known: Vec<&str> = known.collect();
+    match nearest(name, known.iter().copied()) {
+        Some(near) => format!("did you mean `{near}`?"),
+        None if known.is_empty() => format!("the file has no {kind}s"),
+        None if known.len() <= MAX_LISTED && kind.contains(' ') => {
+            format!("there are {}", known.join(", "))
+        }
+        None if known.len() <= MAX_LISTED => format!("the {kind}s are {}", known.join(", ")),
+        None => format!(
+            "the file has {} {kind}s, none of them near this name",
+            known.len()
+        ),
+    }
+}

@@ -57,26 +57,21 @@ pub(crate) fn columns(
     let content = match (cx.files)(&name) {
         Ok(content) => content,
         Err(reason) => {
-            cx.push(
-                Diagnostic::error(
-                    "table-unreadable",
-                    format!("cannot read `{name}`: {reason}"),
-                )
-                .at(file.span.clone(), "")
-                .help("a table is a CSV text, its name counts from the folder of the model file"),
+            return cx.refuse(
+                "table-unreadable",
+                format!("cannot read `{name}`: {reason}"),
+                &file.span,
+                "a table is a CSV text, its name counts from the folder of the model file",
             );
-            return None;
         }
     };
     if content.len() > MAX_BYTES {
-        cx.push(
-            Diagnostic::error("too-large", format!("`{name}` has {} bytes", content.len()))
-                .at(file.span.clone(), "")
-                .help(format!(
-                    "a table has at most {MAX_BYTES} bytes: leave out rows between others"
-                )),
+        return cx.refuse(
+            "too-large",
+            format!("`{name}` has {} bytes", content.len()),
+            &file.span,
+            format!("a table has at most {MAX_BYTES} bytes: leave out rows between others"),
         );
-        return None;
     }
     let mut lines = content
         .lines()
@@ -90,12 +85,12 @@ pub(crate) fn columns(
         .find(|c| header.contains(*c))
         .unwrap_or(',');
     if header.trim().is_empty() {
-        cx.push(
-            Diagnostic::error("table-column", format!("`{name}` is empty"))
-                .at(file.span.clone(), "")
-                .help("its first line names the columns, with their units: t [s], angle [deg]"),
+        return cx.refuse(
+            "table-column",
+            format!("`{name}` is empty"),
+            &file.span,
+            "its first line names the columns, with their units: t [s], angle [deg]",
         );
-        return None;
     }
     let heads: Vec<&str> = header.split(separator).map(unquoted).collect();
     if heads.iter().all(|head| head.parse::<f64>().is_ok()) {
@@ -177,15 +172,12 @@ pub(crate) fn columns(
         return None;
     }
     if abscissas.len() < 2 {
-        cx.push(
-            Diagnostic::error(
-                "table-values",
-                format!("`{name}` has {} rows of data", abscissas.len()),
-            )
-            .at(file.span.clone(), "")
-            .help(words.few),
+        return cx.refuse(
+            "table-values",
+            format!("`{name}` has {} rows of data", abscissas.len()),
+            &file.span,
+            words.few,
         );
-        return None;
     }
     Some((abscissas, values))
 }

@@ -1,39 +1,23 @@
 //! `[drives]`: what is moved from outside.
 
-use kempe_units::Dimension;
-
 use crate::diagnostic::Diagnostic;
-use crate::document::{Key, Node, Table};
+use crate::document::{Key, Node};
+use crate::key_table::DRIVES;
+use crate::keys::Kind;
 use crate::model::{
     Drive, DriveId, DriveKind, FRAME, JointId, JointKind, LinkId, LinkPointRef, PointId,
 };
 use crate::read::context::{Context, Meaning};
-use crate::read::entry::link_of;
-use crate::read::laws::{LAW_KEYS, read_law};
-
-/// What a drive may move.
-pub(crate) const DRIVE_KINDS: &[(&str, &str)] = &[
-    (
-        "turns",
-        "motor = { turns = \"crank\", from = 0, to = 360, speed = \"1 rad/s\" }",
-    ),
-    (
-        "cylinder",
-        "lift = { cylinder = \"A-B\", from = \"380 mm\", to = \"520 mm\", speed = \"20 mm/s\" }",
-    ),
-    (
-        "slides",
-        "feed = { slides = \"piston\", from = \"0 mm\", to = \"40 mm\", law = \"cycloidal\", in = \"0.2 s\" }",
-    ),
-];
+use crate::read::entry::Entry;
+use crate::read::laws::read_law;
 
 /// A file has at most so many drives.
 const MAX_DRIVES: usize = 1_000;
 
 /// Reads all drives.
 pub(crate) fn read(cx: &mut Context<'_>, entries: &[&(Key, Node)]) {
-    for (key, node) in cx.limited(entries, MAX_DRIVES, "drives") {
-        let drive = read_drive(cx, key, node);
+    for entry in cx.limited(entries, MAX_DRIVES, "drives") {
+        let drive = read_drive(cx, entry);
         let id = DriveId(cx.model.drives.len() as u32);
         cx.drives.push(drive.is_some().then_some(id));
         if let Some(drive) = drive {
@@ -43,28 +27,25 @@ pub(crate) fn read(cx: &mut Context<'_>, entries: &[&(Key, Node)]) {
     }
 }
 
-fn read_drive(cx: &mut Context<'_>, key: &Key, node: &Node) -> Option<Drive> {
+fn read_drive(cx: &mut Context<'_>, (key, node): &(Key, Node)) -> Option<Drive> {
     let place = format!("drive `{}`", key.name);
-    let table = cx.table(node, &place, DRIVE_KINDS[0].1)?;
-    let kinds: Vec<&(&str, &str)> = DRIVE_KINDS
-        .iter()
-        .filter(|(kind, _)| table.get(kind).is_some())
-        .collect();
-    let (kind, _) = match kinds.as_slice() {
+    let example = DRIVES[0].example;
+    let table = cx.table(node, &place, example)?;
+    let kinds = DRIVES.iter().filter(|kind| table.get(kind.name).is_some());
+    let kind = match kinds.collect::<Vec<_>>().as_slice() {
         [one] => **one,
         [] => {
-            let names = DRIVE_KINDS.iter().map(|(kind, _)| *kind);
-            let own = |k: &&(Key, Node)| !LAW_KEYS.contains(&k.0.name.as_str());
+            let names = DRIVES.map(|kind| kind.name);
+            let own = |k: &&(Key, Node)| !how_it_moves(DRIVES[0]).any(|key| key == k.0.name);
             let near = table
                 .entries
                 .iter()
                 .filter(own)
-                .find_map(|(k, _)| Some((k, kempe_units::nearest(&k.name, names.clone())?)));
+                .find_map(|(k, _)| Some((k, kempe_units::nearest(&k.name, names)?)));
             let help = match near {
                 Some((written, near)) => format!("`{}`: did you mean `{near}`?", written.name),
                 None => format!(
-                    "a drive turns a link, is a cylinder between two points, or slides a slider: {}",
-                    DRIVE_KINDS[0].1
+                    "a drive turns a link, is a cylinder between two points, or slides a slider: {example}"
                 ),
             };
             cx.push(
@@ -72,33 +53,38 @@ fn read_drive(cx: &mut Context<'_>, key: &Key, node: &Node) -> Option<Drive> {
                     .at(key.span.clone(), "")
                     .help(help),
             );
-            if let Some((written, near)) = near {
-                of_misspelt_kind(cx, key, table, &place, (&written.name, near));
+            let meant = near.and_then(|(written, near)| {
+                Some((written, DRIVES.iter().find(|kind| kind.name == near)?))
+            });
+            if let Some((written, kind)) = meant {
+                // what it moves is left alone, how it moves is read as meant
+                let mut known = kind.names();
+                known.retain(|name| *name != kind.name);
+                known.insert(0, &written.name);
+                cx.unknown_keys(table, &place, &known);
+                read_law(cx, &Entry::of(table, &key.span, place, kind).moving());
             }
             return None;
         }
         [first, second, ..] => {
-            cx.push(
-                Diagnostic::error(
-                    "over-specified",
-                    format!("{place} has both `{}` and `{}`", first.0, second.0),
-                )
-                .at(key.span.clone(), "")
-                .help("a drive moves one thing: make two drives of it"),
+            return cx.refuse(
+                "over-specified",
+                format!("{place} has both `{}` and `{}`", first.name, second.name),
+                &key.span,
+                "a drive moves one thing: make two drives of it",
             );
-            return None;
         }
     };
-    cx.unknown_keys(table, &place, &known_keys(kind, kind));
-    let kind_read = match kind {
-        "turns" => turns(cx, table, &place, key),
-        "cylinder" => cylinder(cx, table, &place),
-        _ => slides(cx, table, &place),
+    let entry = Entry::inner(cx, node, &key.span, place, kind)?.moving();
+    let kind_read = match kind.name {
+        "turns" => turns(cx, &entry),
+        "cylinder" => cylinder(cx, &entry),
+        _ => slides(cx, &entry),
     };
-    let dimension = coordinate(kind);
-    let law = read_law(cx, table, &place, &key.span, dimension, kind);
+    let law = read_law(cx, &entry);
     let lasts: Option<f64> = law.as_ref().map(|law| law.duration(&cx.values));
     if lasts.is_some_and(|t| !t.is_finite()) {
+        let place = &entry.place;
         cx.push(
             Diagnostic::error("not-finite", format!("{place} never comes to its end"))
                 .at(key.span.clone(), "lasts beyond all numbers")
@@ -109,50 +95,29 @@ fn read_drive(cx: &mut Context<'_>, key: &Key, node: &Node) -> Option<Drive> {
         name: key.name.clone(),
         kind: kind_read?,
         law: law?,
-        dimension,
+        dimension: entry.dimension("from"),
         span: key.span.clone(),
     })
 }
 
-/// Keys of a drive of a kind, whose own is written so.
-fn known_keys<'k>(written: &'k str, kind: &str) -> Vec<&'k str> {
-    let mut known = vec![written];
-    if kind == "turns" {
-        known.push("relative_to");
-    }
-    known.extend(LAW_KEYS);
-    known
+/// The keys of a kind of drive that say how it moves.
+fn how_it_moves(kind: &Kind) -> impl Iterator<Item = &'static str> + use<> {
+    let groups = kind.groups.iter().skip(1);
+    groups.flat_map(|keys| keys.iter()).map(|key| key.name)
 }
 
-/// What the coordinate of a kind of drive measures.
-fn coordinate(kind: &str) -> Dimension {
-    if kind == "turns" {
-        Dimension::ANGLE
-    } else {
-        Dimension::LENGTH
+impl Entry<'_> {
+    /// The entry of a drive: its coordinate is an angle where it turns, a length elsewhere.
+    fn moving(mut self) -> Self {
+        self.turning = self.kind.name == "turns";
+        self
     }
 }
 
-/// Tells what else is wrong with a drive whose kind is misspelt: what it moves is left alone, how it moves is read as meant.
-fn of_misspelt_kind(
-    cx: &mut Context<'_>,
-    key: &Key,
-    table: &Table,
-    place: &str,
-    (written, kind): (&str, &str),
-) {
-    cx.unknown_keys(table, place, &known_keys(written, kind));
-    read_law(cx, table, place, &key.span, coordinate(kind), kind);
-}
-
-fn turns(cx: &mut Context<'_>, table: &Table, place: &str, key: &Key) -> Option<DriveKind> {
-    let link = table
-        .get("turns")
-        .and_then(|node| link_of(cx, node, &format!("`turns` of {place}")));
-    let relative_to = match table.get("relative_to") {
-        None => Some(FRAME),
-        Some(node) => link_of(cx, node, &format!("`relative_to` of {place}")),
-    };
+fn turns(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<DriveKind> {
+    let place = &entry.place;
+    let link = entry.link(cx, "turns");
+    let relative_to = entry.link_or_frame(cx, "relative_to");
     let (link, relative_to) = (link?, relative_to?);
     if link == relative_to {
         let name = cx.link_name(link).to_owned();
@@ -171,26 +136,24 @@ fn turns(cx: &mut Context<'_>, table: &Table, place: &str, key: &Key) -> Option<
             )
             .help("relative_to names another link")
         };
-        cx.push(d.at(key.span.clone(), ""));
+        cx.push(d.at(entry.span.clone(), ""));
         return None;
     }
     Some(DriveKind::Turn { link, relative_to })
 }
 
-fn cylinder(cx: &mut Context<'_>, table: &Table, place: &str) -> Option<DriveKind> {
-    let node = table.get("cylinder")?;
-    let text = cx.text(node, &format!("`cylinder` of {place}"), "\"A-B\"")?;
+fn cylinder(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<DriveKind> {
+    let place = &entry.place;
+    let node = entry.get("cylinder")?;
+    let text = entry.text(cx, "cylinder", node)?;
     let (a, b) = cx.pair_phrase(text)?;
     if a == b {
-        cx.push(
-            Diagnostic::error(
-                "same-link",
-                format!("{place} is between a point and itself"),
-            )
-            .at(node.span.clone(), "")
-            .help("a cylinder is between two points of different links"),
+        return cx.refuse(
+            "same-link",
+            format!("{place} is between a point and itself"),
+            &node.span,
+            "a cylinder is between two points of different links",
         );
-        return None;
     }
     let (on_a, on_b) = different_links(cx, a, b)?;
     if cx
@@ -199,12 +162,14 @@ fn cylinder(cx: &mut Context<'_>, table: &Table, place: &str) -> Option<DriveKin
         .any(|l| cx.carriers(b).binary_search(l).is_ok())
     {
         let (a_name, b_name) = (cx.point_name(a).to_owned(), cx.point_name(b).to_owned());
-        cx.push(
-            Diagnostic::error("same-link", format!("{place}: {a_name} and {b_name} are on one link, so their distance cannot change"))
-                .at(node.span.clone(), "")
-                .help("a cylinder takes the place of a bar: leave that bar out of [links]"),
+        return cx.refuse(
+            "same-link",
+            format!(
+                "{place}: {a_name} and {b_name} are on one link, so their distance cannot change"
+            ),
+            &node.span,
+            "a cylinder takes the place of a bar: leave that bar out of [links]",
         );
-        return None;
     }
     Some(DriveKind::Cylinder {
         a: LinkPointRef {
@@ -222,9 +187,10 @@ fn different_links(cx: &Context<'_>, a: PointId, b: PointId) -> Option<(LinkId, 
     Some((*cx.carriers(a).first()?, *cx.carriers(b).first()?))
 }
 
-fn slides(cx: &mut Context<'_>, table: &Table, place: &str) -> Option<DriveKind> {
-    let node = table.get("slides")?;
-    let text = cx.text(node, &format!("`slides` of {place}"), "\"piston\"")?;
+fn slides(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<DriveKind> {
+    let place = &entry.place;
+    let node = entry.get("slides")?;
+    let text = entry.text(cx, "slides", node)?;
     let name = text.content.trim().to_owned();
     let span = text.span(0..text.content.len());
     match cx.names.get(&name).map(|(m, _)| *m) {

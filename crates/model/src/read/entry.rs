@@ -1,104 +1,226 @@
-//! One entry of a section, `name = { … }`, and what every section asks of it.
+//! One table of the file, `name = { … }`, read by what the table of keys knows of its kind.
 
-use kempe_units::Dimension;
+use kempe_units::{Dimension, Expr};
 
 use crate::diagnostic::Diagnostic;
-use crate::document::{Key, Node, Table};
-use crate::model::{FRAME, LinkId, LinkPointRef, PointId, Scalar};
+use crate::document::{Key, Node, Table, Text, Value};
+use crate::keys::{Kind, Quantity, Sign, Takes};
+use crate::model::{FRAME, LinkId, LinkPointRef, PointId, Scalar, Span};
 use crate::read::context::Context;
 
-/// A table with what messages about it need.
+/// A table of a known kind: only keys that the kind has can be read from it.
 pub(crate) struct Entry<'d> {
-    pub key: &'d Key,
-    pub table: &'d Table,
+    table: &'d Table,
+    pub kind: &'static Kind,
+    /// Where to tell what is missing.
+    pub span: &'d Span,
     /// What it is: ``spring `return` ``.
     pub place: String,
-    /// A whole entry of its kind.
+    /// A whole one of its kind.
     pub example: &'static str,
+    /// Whether it is about what turns: values have the dimensions that go with it.
+    pub turning: bool,
 }
 
 impl<'d> Entry<'d> {
-    /// The entry, with unknown keys told.
+    /// An entry of a section, with unknown keys told.
     pub fn new(
         cx: &mut Context<'_>,
         (key, node): &'d (Key, Node),
-        what: &str,
-        example: &'static str,
-        known: &[&str],
+        kind: &'static Kind,
     ) -> Option<Self> {
-        let place = format!("{what} `{}`", key.name);
-        let table = cx.table(node, &place, example)?;
-        cx.unknown_keys(table, &place, known);
-        Some(Self {
-            key,
+        let place = format!("{} `{}`", kind.what, key.name);
+        Self::inner(cx, node, &key.span, place, kind)
+    }
+
+    /// A table inside of an entry, with unknown keys told.
+    pub fn inner(
+        cx: &mut Context<'_>,
+        node: &'d Node,
+        span: &'d Span,
+        place: String,
+        kind: &'static Kind,
+    ) -> Option<Self> {
+        let table = cx.table(node, &place, kind.example)?;
+        cx.unknown_keys(table, &place, &kind.names());
+        Some(Self::of(table, span, place, kind))
+    }
+
+    /// The same of a table whose unknown keys are told otherwise.
+    pub fn of(table: &'d Table, span: &'d Span, place: String, kind: &'static Kind) -> Self {
+        Self {
             table,
+            kind,
+            span,
             place,
-            example,
-        })
+            example: kind.example,
+            turning: false,
+        }
+    }
+
+    /// A key and its value, if it is given.
+    pub fn entry(&self, key: &str) -> Option<&'d (Key, Node)> {
+        let known = self.kind.key(key).is_some();
+        debug_assert!(known, "no `{key}` of {} in the table", self.kind.name);
+        self.table.entry(key).filter(|_| known)
+    }
+
+    /// The value of a key, if it is given.
+    pub fn get(&self, key: &str) -> Option<&'d Node> {
+        self.entry(key).map(|(_, node)| node)
+    }
+
+    /// Whether a key is given.
+    pub fn has(&self, key: &str) -> bool {
+        self.entry(key).is_some()
+    }
+
+    /// Those of some keys that are given, in the order of the file.
+    pub fn given<'k>(&self, keys: &'k [&str]) -> impl Iterator<Item = &'d Key> + use<'d, 'k> {
+        debug_assert!(keys.iter().all(|key| self.kind.key(key).is_some()));
+        let entries = self.table.entries.iter().map(|(key, _)| key);
+        entries.filter(|key| keys.contains(&key.name.as_str()))
+    }
+
+    /// A key in words: `` `at` of joint `bore` ``.
+    pub fn place_of(&self, key: &str) -> String {
+        format!("`{key}` of {}", self.place)
     }
 
     /// The value of a key that must be there.
     pub fn required(&self, cx: &mut Context<'_>, key: &str) -> Option<&'d Node> {
-        cx.required(
-            self.table,
-            key,
-            &self.place,
-            &self.key.span,
-            &format!("… as in {}", self.example),
-        )
+        self.required_like(cx, key, &format!("… as in {}", self.example))
+    }
+
+    /// The same, with an example of the value.
+    pub fn required_like(
+        &self,
+        cx: &mut Context<'_>,
+        key: &str,
+        example: &str,
+    ) -> Option<&'d Node> {
+        let node = self.get(key);
+        if node.is_none() {
+            cx.push(
+                Diagnostic::error("missing-key", format!("{} has no `{key}`", self.place))
+                    .at(self.span.clone(), format!("`{key}` is missing"))
+                    .help(format!("add {key} = {example}")),
+            );
+        }
+        node
+    }
+
+    /// An example of the value of a key.
+    pub fn example_of(&self, key: &str) -> &'static str {
+        self.kind.key(key).map_or("", |row| row.example)
+    }
+
+    /// The string of a key.
+    pub fn text(&self, cx: &mut Context<'_>, key: &str, node: &'d Node) -> Option<&'d Text> {
+        cx.text(node, &self.place_of(key), self.example_of(key))
     }
 
     /// A link that must be named.
     pub fn link(&self, cx: &mut Context<'_>, key: &str) -> Option<LinkId> {
         let node = self.required(cx, key)?;
-        link_of(cx, node, &format!("`{key}` of {}", self.place))
+        link_of(cx, node, &self.place_of(key))
+    }
+
+    /// A link that may be named; the frame otherwise.
+    pub fn link_or_frame(&self, cx: &mut Context<'_>, key: &str) -> Option<LinkId> {
+        match self.get(key) {
+            Some(_) => self.link(cx, key),
+            None => Some(FRAME),
+        }
+    }
+
+    /// A point that must be named.
+    pub fn point(&self, cx: &mut Context<'_>, key: &str) -> Option<(PointId, &'d Node)> {
+        let node = self.required(cx, key)?;
+        let text = self.text(cx, key, node)?;
+        Some((cx.point_text(text)?, node))
+    }
+
+    /// The value of a key of `true` or `false`; `false` without it.
+    pub fn flag(&self, cx: &mut Context<'_>, key: &str) -> Option<bool> {
+        match self.get(key) {
+            Some(node) => cx.flag(node, &self.place_of(key)),
+            None => Some(false),
+        }
+    }
+
+    /// What a key measures.
+    pub fn dimension(&self, key: &str) -> Dimension {
+        let quantity = self.kind.key(key).and_then(|row| quantity(&row.takes));
+        debug_assert!(quantity.is_some(), "`{key}` has no dimension in the table");
+        quantity.map_or(Dimension::NONE, |quantity| quantity.of(self.turning))
     }
 
     /// A value that may be given; the outer `None` when it is wrong.
-    pub fn scalar(
-        &self,
-        cx: &mut Context<'_>,
-        key: &str,
-        dimension: Dimension,
-    ) -> Option<Option<Scalar>> {
-        match self.table.get(key) {
-            Some(node) => cx.scalar(node, dimension).map(Some),
-            None => Some(None),
-        }
+    pub fn value(&self, cx: &mut Context<'_>, key: &str) -> Option<Option<Scalar>> {
+        let Some(node) = self.get(key) else {
+            return Some(None);
+        };
+        let quantity = self.kind.key(key).and_then(|row| quantity(&row.takes))?;
+        self.signed(cx, key, node, quantity.sign).map(Some)
     }
 
-    /// A value that may be given and is positive (or, with `zero`, not negative); the outer `None` when it is wrong.
-    pub fn positive(
-        &self,
-        cx: &mut Context<'_>,
-        key: &str,
-        dimension: Dimension,
-        zero: bool,
-    ) -> Option<Option<Scalar>> {
-        match self.table.get(key) {
-            Some(node) => cx
-                .positive(node, dimension, &format!("`{key}` of {}", self.place), zero)
-                .map(Some),
-            None => Some(None),
-        }
+    /// A value that may be given, or this one.
+    pub fn value_or(&self, cx: &mut Context<'_>, key: &str, default: f64) -> Option<Scalar> {
+        let value = self.value(cx, key)?;
+        Some(value.unwrap_or(Expr::Const(default)))
     }
 
-    /// A value that must be given and is positive (or, with `zero`, not negative).
-    pub fn required_positive(
+    /// A value that must be given.
+    pub fn needed(&self, cx: &mut Context<'_>, key: &str) -> Option<Scalar> {
+        self.required(cx, key)?;
+        self.value(cx, key)?
+    }
+
+    /// A value whose sign depends on more than its key.
+    pub fn signed(
         &self,
         cx: &mut Context<'_>,
         key: &str,
-        dimension: Dimension,
-        zero: bool,
+        node: &Node,
+        sign: Sign,
     ) -> Option<Scalar> {
-        let node = self.required(cx, key)?;
-        cx.positive(node, dimension, &format!("`{key}` of {}", self.place), zero)
+        let dimension = self.dimension(key);
+        match sign {
+            Sign::Any => cx.scalar(node, dimension),
+            _ => {
+                let zero = sign == Sign::NotNegative;
+                cx.positive(node, dimension, &self.place_of(key), zero)
+            }
+        }
     }
 
-    /// An array of two that must be there.
-    pub fn pair(&self, cx: &mut Context<'_>, key: &str) -> Option<(&'d Node, &'d Node)> {
+    /// Two bounds, `"none"` where there is no bound; the outer `None` when they are wrong.
+    pub fn bounds(&self, cx: &mut Context<'_>, key: &str) -> Option<Option<[Option<Scalar>; 2]>> {
+        let Some(node) = self.get(key) else {
+            return Some(None);
+        };
+        let (low, high) = self.two(cx, node, key)?;
+        let dimension = self.dimension(key);
+        let mut bound = |node: &Node| match &node.value {
+            Value::Text(text) if text.content.trim() == "none" => Some(None),
+            _ => cx.scalar(node, dimension).map(Some),
+        };
+        let (low, high) = (bound(low), bound(high));
+        Some(Some([low?, high?]))
+    }
+
+    /// Two links that must be named.
+    pub fn two_links(
+        &self,
+        cx: &mut Context<'_>,
+        key: &str,
+    ) -> Option<((LinkId, LinkId), &'d Node)> {
         let node = self.required(cx, key)?;
-        self.two(cx, node, key)
+        let (a, b) = self.two(cx, node, key)?;
+        let place = self.place_of(key);
+        let (a, b) = (link_of(cx, a, &place), link_of(cx, b, &place));
+        Some(((a?, b?), node))
     }
 
     /// The two values of an array.
@@ -108,30 +230,27 @@ impl<'d> Entry<'d> {
         node: &'d Node,
         key: &str,
     ) -> Option<(&'d Node, &'d Node)> {
-        let place = format!("`{key}` of {}", self.place);
+        let place = self.place_of(key);
         match cx.array(node, &place, self.example)? {
             [a, b] => Some((a, b)),
             items => {
                 let count = items.len();
-                cx.push(
-                    Diagnostic::error(
-                        "wrong-type",
-                        format!("{place} has two entries, found {count}"),
-                    )
-                    .at(node.span.clone(), "")
-                    .help(format!("write it like {}", self.example)),
-                );
-                None
+                cx.refuse(
+                    "wrong-type",
+                    format!("{place} has two entries, found {count}"),
+                    &node.span,
+                    format!("write it like {}", self.example),
+                )
             }
         }
     }
 
     /// Warns of keys that mean nothing without another.
     pub fn idle(&self, cx: &mut Context<'_>, keys: &[&str], without: &str) {
-        if self.table.get(without).is_some() {
+        if self.has(without) {
             return;
         }
-        for (key, _) in keys.iter().filter_map(|key| self.table.entry(key)) {
+        for (key, _) in keys.iter().filter_map(|key| self.entry(key)) {
             cx.push(
                 Diagnostic::warning(
                     "idle-key",
@@ -147,10 +266,10 @@ impl<'d> Entry<'d> {
     }
 
     /// Tells that two values cannot both be right.
-    pub fn contradiction(&self, cx: &mut Context<'_>, keys: [&str; 2], message: &str, help: &str) {
+    pub fn contradiction(&self, cx: &mut Context<'_>, keys: &[&str], message: &str, help: &str) {
         let mut d = Diagnostic::error("contradictory-values", format!("{}: {message}", self.place))
             .help(help);
-        for (i, node) in keys.iter().filter_map(|k| self.table.get(k)).enumerate() {
+        for (i, node) in keys.iter().filter_map(|k| self.get(k)).enumerate() {
             d = if i == 0 {
                 d.at(node.span.clone(), "")
             } else {
@@ -160,18 +279,17 @@ impl<'d> Entry<'d> {
         cx.push(d);
     }
 
-    /// One of some words.
+    /// One of some words, if it is given.
     pub fn choice<T: Copy>(
         &self,
         cx: &mut Context<'_>,
         key: &str,
         words: &[(&str, T)],
     ) -> Option<Option<T>> {
-        let Some(node) = self.table.get(key) else {
+        let Some(node) = self.get(key) else {
             return Some(None);
         };
-        let example = format!("{:?}", words.first().map_or("", |w| w.0));
-        let text = cx.text(node, &format!("`{key}` of {}", self.place), &example)?;
+        let text = self.text(cx, key, node)?;
         let word = text.content.trim();
         let found = words.iter().find(|(name, _)| *name == word).map(|w| w.1);
         if found.is_none() {
@@ -190,6 +308,16 @@ impl<'d> Entry<'d> {
             );
         }
         found.map(Some)
+    }
+}
+
+/// The quantity of what a key takes, or of its parts.
+fn quantity(takes: &Takes) -> Option<Quantity> {
+    match takes {
+        Takes::Value(quantity) => Some(*quantity),
+        Takes::AnyOf(some) => some.iter().find_map(quantity),
+        Takes::Two(one) | Takes::List(one, _) => quantity(one),
+        _ => None,
     }
 }
 
@@ -215,15 +343,12 @@ pub(crate) fn on_link(
         cx.point_name(point).to_owned(),
         cx.link_name(link).to_owned(),
     );
-    cx.push(
-        Diagnostic::error(
-            "point-not-on-link",
-            format!("{name} is not a point of link `{link_name}`"),
-        )
-        .at(node.span.clone(), "")
-        .help(points_help(cx, point, link)),
-    );
-    None
+    cx.refuse(
+        "point-not-on-link",
+        format!("{name} is not a point of link `{link_name}`"),
+        &node.span,
+        points_help(cx, point, link),
+    )
 }
 
 /// The links that carry a point and the points of a link, for help where one is not on the other.
@@ -256,4 +381,30 @@ pub(crate) fn moving_carrier(cx: &Context<'_>, point: PointId) -> Option<LinkId>
         .find(|l| **l != FRAME)
         .or(carriers.first())
         .copied()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::key_table::SPRING;
+
+    /// A key that the table of keys does not have for a kind cannot be read, even where the file has it.
+    #[test]
+    #[cfg_attr(debug_assertions, should_panic(expected = "no `bore` of spring"))]
+    fn what_the_table_does_not_have_is_not_read() {
+        let key = |name: &str| Key {
+            name: name.to_owned(),
+            span: 0..1,
+        };
+        let value = || Node {
+            span: 0..1,
+            value: Value::Number(1.0),
+        };
+        let table = Table {
+            entries: vec![(key("free"), value()), (key("bore"), value())],
+        };
+        let entry = Entry::of(&table, &(0..1), String::new(), &SPRING);
+        assert!(entry.has("free"));
+        assert!(!entry.has("bore"));
+    }
 }

@@ -1,132 +1,24 @@
-//! What the names and functions of force measures mean.
+//! The arguments of force measures: drives that give, joints that carry, springs, dampers and loads.
 
-use kempe_units::{Dimension, Issue, nearest};
+use std::collections::BTreeMap;
 
-use crate::measure::{ForceMeasure, JointRef, Leaf};
+use kempe_units::{Dimension, Issue, Node, nearest};
+
+use crate::measure::{ForceMeasure, JointRef};
 use crate::model::{DriveId, DriveKind, JointKind, LinkId};
 use crate::read::actuators::what_it_is;
+use crate::read::arguments::already_told;
 use crate::read::context::Meaning;
 use crate::read::measure_names::{Call, Found, Measures};
-use crate::read::value::ALREADY_TOLD;
-
-/// Force measures that ask about the whole mechanism, and so have no arguments.
-const BARE: &[(&str, ForceMeasure, Dimension)] = &[
-    (
-        "kinetic_energy",
-        ForceMeasure::KineticEnergy,
-        Dimension::ENERGY,
-    ),
-    (
-        "potential_energy",
-        ForceMeasure::PotentialEnergy,
-        Dimension::ENERGY,
-    ),
-    (
-        "shaking_force",
-        ForceMeasure::ShakingForce,
-        Dimension::FORCE,
-    ),
-    (
-        "shaking_force_x",
-        ForceMeasure::ShakingForceX,
-        Dimension::FORCE,
-    ),
-    (
-        "shaking_force_y",
-        ForceMeasure::ShakingForceY,
-        Dimension::FORCE,
-    ),
-    (
-        "shaking_moment",
-        ForceMeasure::ShakingMoment,
-        Dimension::TORQUE,
-    ),
-];
-
-/// The force measure that a name without brackets is.
-pub(crate) fn bare(name: &str) -> Option<(Leaf, Dimension)> {
-    let (_, measure, dimension) = BARE.iter().find(|(bare, ..)| *bare == name)?;
-    Some((Leaf::Force(measure.clone()), *dimension))
-}
-
-/// The names of [`bare`].
-pub(crate) fn bare_names<'n>() -> impl Iterator<Item = &'n str> {
-    BARE.iter().map(|(name, ..)| *name)
-}
 
 impl Measures<'_, '_> {
-    /// The force measure that a call is; `None` for other functions.
-    pub(crate) fn force(&self, call: &Call<'_>) -> Option<Found<(Leaf, Dimension)>> {
-        use ForceMeasure as F;
-        let of = |measure: Found<F>, dimension: Dimension| {
-            Some(measure.map(|m| (Leaf::Force(m), dimension)))
-        };
-        let (force, torque) = (Dimension::FORCE, Dimension::TORQUE);
-        let joint = |own: bool| self.joint(call, own);
-        match call.function {
-            "torque" => of(self.effort(call, true), torque),
-            "force" => of(self.effort(call, false), force),
-            "reaction" => of(joint(false).map(F::Reaction), force),
-            "reaction_x" => of(joint(false).map(F::ReactionX), force),
-            "reaction_y" => of(joint(false).map(F::ReactionY), force),
-            "reaction_angle" => of(joint(false).map(F::ReactionAngle), Dimension::ANGLE),
-            "reaction_along" => of(joint(true).map(F::ReactionAlong), force),
-            "reaction_across" => of(joint(true).map(F::ReactionAcross), force),
-            "reaction_moment" => of(self.moment(call).map(F::ReactionMoment), torque),
-            "power" => of(
-                self.only_drive(call).map(|(id, _)| F::Power(id)),
-                Dimension::POWER,
-            ),
-            "reduced_mass" => Some(self.only_drive(call).map(|(id, is)| {
-                let dimension = if is == Dimension::ANGLE {
-                    Dimension::INERTIA
-                } else {
-                    Dimension::MASS
-                };
-                (Leaf::Force(F::ReducedMass(id)), dimension)
-            })),
-            "reduced_load" => Some(self.only_drive(call).map(|(id, is)| {
-                let dimension = if is == Dimension::ANGLE {
-                    torque
-                } else {
-                    force
-                };
-                (Leaf::Force(F::ReducedLoad(id)), dimension)
-            })),
-            "pressure" => of(
-                self.hydraulic(call, false).map(F::Pressure),
-                Dimension::PRESSURE,
-            ),
-            "capacity" => Some(self.capacity(call)),
-            "spring_force" => Some(self.acting(call, "spring", &self.0.springs, F::Spring)),
-            "damper_force" => Some(self.acting(call, "damper", &self.0.dampers, F::Damper)),
-            "load" => Some(self.acting(call, "load", &self.0.loads, F::Load)),
-            "load_x" => Some(self.component(call, F::LoadX)),
-            "load_y" => Some(self.component(call, F::LoadY)),
-            name if bare(name).is_some() => Some(Err(vec![
-                Issue::new(
-                    "wrong-arguments",
-                    call.span.clone(),
-                    format!("`{name}` is one of the whole mechanism and takes no arguments"),
-                )
-                .with_help(format!("write {name}, without brackets")),
-            ])),
-            _ => None,
-        }
-    }
-
-    fn only_drive(&self, call: &Call<'_>) -> Found<(DriveId, Dimension)> {
-        match call.arguments {
-            [drive] => self.drive(drive),
-            _ => self.wrong(call),
-        }
-    }
-
     /// What a drive must give: a torque where it turns, a force elsewhere.
-    fn effort(&self, call: &Call<'_>, turning: bool) -> Found<ForceMeasure> {
-        let [node] = call.arguments else {
-            return self.wrong(call);
-        };
+    pub(crate) fn effort(
+        &self,
+        call: &Call<'_>,
+        node: &Node,
+        turning: bool,
+    ) -> Found<ForceMeasure> {
         if let Some(point) = node.as_point() {
             return self.argument(
                 node,
@@ -153,13 +45,9 @@ impl Measures<'_, '_> {
             return Ok(ForceMeasure::Drive(id));
         }
         let Some(drive) = self.0.model.drives.get(id.index()) else {
-            return self.wrong(call);
+            return already_told(node);
         };
-        let (has, write) = if turning {
-            ("force", "force")
-        } else {
-            ("torque", "torque")
-        };
+        let has = if turning { "force" } else { "torque" };
         let name = &drive.name;
         Err(vec![
             Issue::new(
@@ -171,18 +59,18 @@ impl Measures<'_, '_> {
                     call.function
                 ),
             )
-            .with_help(format!("write {write}({name})")),
+            .with_help(format!("write {has}({name})")),
         ])
     }
 
-    /// A joint and the link on which its reaction acts; with `own` the link must be named.
-    pub(crate) fn joint(&self, call: &Call<'_>, own: bool) -> Found<JointRef> {
+    /// A joint and the link on which its reaction acts.
+    pub(crate) fn joint(
+        &self,
+        call: &Call<'_>,
+        node: &Node,
+        link: Option<&Node>,
+    ) -> Found<JointRef> {
         let cx = self.0;
-        let (node, link) = match call.arguments {
-            [node] if !own => (node, None),
-            [node, link] => (node, Some(link)),
-            _ => return self.wrong(call),
-        };
         let named = link.map(|node| self.link(node)).transpose()?;
         let joins = |links: &[LinkId], what: &str| -> Found<()> {
             let (Some(node), Some(named)) = (link, named) else {
@@ -238,7 +126,7 @@ impl Measures<'_, '_> {
         match cx.names.get(name).map(|(m, _)| *m) {
             Some(Meaning::Joint(i)) => {
                 let Some(id) = cx.joints.get(i).copied().flatten() else {
-                    return Err(vec![Issue::new(ALREADY_TOLD, node.span.clone(), "")]);
+                    return already_told(node);
                 };
                 if let Some(joint) = cx.model.joints.get(id.index()) {
                     let (a, b) = joint.kind.links();
@@ -291,8 +179,13 @@ impl Measures<'_, '_> {
     }
 
     /// A joint that carries a moment.
-    fn moment(&self, call: &Call<'_>) -> Found<JointRef> {
-        let found = self.joint(call, false)?;
+    pub(crate) fn moment(
+        &self,
+        call: &Call<'_>,
+        node: &Node,
+        link: Option<&Node>,
+    ) -> Found<JointRef> {
+        let found = self.joint(call, node, link)?;
         let carries = match found {
             JointRef::Pin(..) => false,
             JointRef::Joint(id, _) => matches!(
@@ -300,22 +193,19 @@ impl Measures<'_, '_> {
                 Some(JointKind::Slider { .. } | JointKind::Weld { .. })
             ),
         };
-        match call.arguments {
-            [node, ..] if !carries => self.argument(
-                node,
-                "a slider or a weld",
-                "pins, slots, gears and racks carry no moment".to_owned(),
-            ),
-            _ => Ok(found),
+        if carries {
+            return Ok(found);
         }
+        let help = "pins, slots, gears and racks carry no moment".to_owned();
+        self.argument(node, "a slider or a weld", help)
     }
 
     /// A cylinder with its entry under `[cylinders]`; with `limited`, one whose pressure has a limit.
-    fn hydraulic(&self, call: &Call<'_>, limited: bool) -> Found<DriveId> {
-        let (id, _) = self.only_drive(call)?;
+    pub(crate) fn hydraulic(&self, call: &Call<'_>, node: &Node, limited: bool) -> Found<DriveId> {
+        let (id, _) = self.drive(node)?;
         let cx = self.0;
         let Some(drive) = cx.model.drives.get(id.index()) else {
-            return self.wrong(call);
+            return already_told(node);
         };
         let name = &drive.name;
         if !matches!(drive.kind, DriveKind::Cylinder { .. }) {
@@ -334,7 +224,7 @@ impl Measures<'_, '_> {
         }
         let Some(cylinder) = cx.model.actions.cylinders.iter().find(|c| c.drive == id) else {
             if cx.broken_cylinders.contains(name) {
-                return Err(vec![Issue::new(ALREADY_TOLD, call.span.clone(), "")]);
+                return already_told(node);
             }
             return Err(vec![
                 Issue::new(
@@ -362,73 +252,31 @@ impl Measures<'_, '_> {
         Ok(id)
     }
 
-    /// What a cylinder or a motor can give.
-    fn capacity(&self, call: &Call<'_>) -> Found<(Leaf, Dimension)> {
-        let (id, _) = self.only_drive(call)?;
-        let motors = &self.0.model.actions.motors;
-        if motors.iter().any(|m| m.drive == id) {
-            return Ok((Leaf::Force(ForceMeasure::Capacity(id)), Dimension::TORQUE));
+    /// A motor or a cylinder that can give so much and no more, and whether it is a motor.
+    pub(crate) fn capacity(&self, call: &Call<'_>, node: &Node) -> Found<(DriveId, bool)> {
+        let (id, _) = self.drive(node)?;
+        let mut motors = self.0.model.actions.motors.iter();
+        if motors.any(|m| m.drive == id) {
+            return Ok((id, true));
         }
-        let id = self.hydraulic(call, true)?;
-        Ok((Leaf::Force(ForceMeasure::Capacity(id)), Dimension::FORCE))
+        Ok((self.hydraulic(call, node, true)?, false))
     }
 
-    /// A spring, a damper or a load, by its name.
-    fn acting(
+    /// A spring, a damper or a load, by its name, and what it gives.
+    pub(crate) fn acting(
         &self,
-        call: &Call<'_>,
+        node: &Node,
         what: &str,
-        declared: &std::collections::BTreeMap<String, Option<(usize, Dimension)>>,
-        measure: impl Fn(usize) -> ForceMeasure,
-    ) -> Found<(Leaf, Dimension)> {
-        let [node] = call.arguments else {
-            return self.wrong(call);
-        };
+        declared: &BTreeMap<String, Option<(usize, Dimension)>>,
+    ) -> Found<(usize, Dimension)> {
         let Some(name) = node.as_name() else {
-            return self.argument(
-                node,
-                &format!("a {what}"),
-                format!("name a {what} of [{what}s]"),
-            );
+            let help = format!("name a {what} of [{what}s]");
+            return self.argument(node, &format!("a {what}"), help);
         };
         match declared.get(name) {
-            Some(Some((i, dimension))) => Ok((Leaf::Force(measure(*i)), *dimension)),
-            Some(None) => Err(vec![Issue::new(ALREADY_TOLD, node.span.clone(), "")]),
-            None => {
-                let mut issue = Issue::new(
-                    "unknown-name",
-                    node.span.clone(),
-                    format!("there is no {what} `{name}`"),
-                )
-                .with_label("not declared");
-                let known: Vec<&str> = declared.keys().map(String::as_str).collect();
-                issue.help = Some(match nearest(name, known.iter().copied()) {
-                    Some(near) => format!("did you mean `{near}`?"),
-                    None if known.is_empty() => format!("the file has no {what}s"),
-                    None => {
-                        let first: Vec<&str> = known.iter().take(12).copied().collect();
-                        format!("the {what}s are {}", first.join(", "))
-                    }
-                });
-                Err(vec![issue])
-            }
+            Some(Some(found)) => Ok(*found),
+            Some(None) => already_told(node),
+            None => self.no_such(node, what, declared.keys().map(String::as_str)),
         }
-    }
-
-    /// A component of a force load.
-    fn component(
-        &self,
-        call: &Call<'_>,
-        measure: impl Fn(usize) -> ForceMeasure,
-    ) -> Found<(Leaf, Dimension)> {
-        let found = self.acting(call, "load", &self.0.loads, measure)?;
-        if found.1 != Dimension::FORCE {
-            let help = "a torque has one value: load(…)".to_owned();
-            return match call.arguments {
-                [node] => self.argument(node, "a force", help),
-                _ => self.wrong(call),
-            };
-        }
-        Ok(found)
     }
 }

@@ -10,27 +10,16 @@
 //! `coefficient` is Coulomb's, at speed; `static` the one at rest, from which it falls over the speed `stribeck`. A viscous
 //! part is told of a pin or a slider, not of all, because it measures something else at each.
 
-use kempe_units::{Dimension, Expr};
+use kempe_units::Expr;
 
 use crate::diagnostic::Diagnostic;
 use crate::document::{Key, Node};
+use crate::key_table::{FRICTION_OF_ALL, FRICTION_OF_JOINT, FRICTION_OF_PIN};
 use crate::load::{Friction, FrictionAt};
 use crate::model::{JointKind, PointId};
 use crate::read::context::{Context, Meaning};
 use crate::read::entry::Entry;
 use crate::read::names::is_point_name;
-
-/// Keys of friction at a pin or joint.
-pub(crate) const FRICTION_KEYS: &[&str] =
-    &["coefficient", "static", "stribeck", "viscous", "radius"];
-
-/// Keys of friction for all.
-const ALL_KEYS: &[&str] = &["coefficient", "static", "stribeck", "radius"];
-
-/// Keys of friction where nothing turns about a pin.
-const JOINT_KEYS: &[&str] = &["coefficient", "static", "stribeck", "viscous"];
-
-const EXAMPLE: &str = "B = { coefficient = 0.1, radius = \"10 mm\" }";
 
 /// A file has at most so many.
 const MAX: usize = 100_000;
@@ -48,47 +37,37 @@ fn read_one(
     entry: &(Key, Node),
     entries: &[&(Key, Node)],
 ) -> Option<Friction> {
-    let at = place(cx, &entry.0)?;
-    let known = match at {
-        FrictionAt::Pin(_) => FRICTION_KEYS,
-        FrictionAt::Joint(_) => JOINT_KEYS,
-        FrictionAt::All => ALL_KEYS,
+    let (key, _) = entry;
+    let at = place(cx, key)?;
+    let kind = match at {
+        FrictionAt::Pin(_) => &FRICTION_OF_PIN,
+        FrictionAt::Joint(_) => &FRICTION_OF_JOINT,
+        FrictionAt::All => &FRICTION_OF_ALL,
     };
-    let entry = Entry::new(cx, entry, "friction of", EXAMPLE, known)?;
-    let viscous_per = match at {
-        FrictionAt::Pin(_) => Dimension::TORSIONAL_DAMPING,
-        _ => Dimension::DAMPING,
+    let mut entry = Entry::new(cx, entry, kind)?;
+    entry.turning = matches!(at, FrictionAt::Pin(_));
+    let known = |key: &str| kind.key(key).is_some();
+    let viscous = match known("viscous") {
+        true => entry.value(cx, "viscous"),
+        false => Some(None),
     };
-    let viscous = match at {
-        FrictionAt::All => Some(None),
-        _ => entry.positive(cx, "viscous", viscous_per, true),
-    };
-    let only_viscous =
-        entry.table.get("viscous").is_some() && entry.table.get("coefficient").is_none();
+    let only_viscous = known("viscous") && entry.has("viscous") && !entry.has("coefficient");
     let coefficient = if only_viscous {
         Some(Expr::Const(0.0))
     } else {
-        entry.required_positive(cx, "coefficient", Dimension::NONE, true)
+        entry.needed(cx, "coefficient")
     };
-    let at_rest = entry.positive(cx, "static", Dimension::NONE, true);
-    let stribeck = entry.positive(cx, "stribeck", Dimension::SPEED, false);
+    let at_rest = entry.value(cx, "static");
+    let stribeck = entry.value(cx, "stribeck");
     entry.idle(cx, &["stribeck"], "static");
     entry.idle(cx, &["static"], "stribeck");
-    let radius = match at {
-        FrictionAt::Joint(_) => Some(None),
-        _ => entry.positive(cx, "radius", Dimension::LENGTH, false),
+    let radius = match known("radius") {
+        true => entry.value(cx, "radius"),
+        false => Some(None),
     };
-    let dry = coefficient.as_ref().is_some_and(|c| cx.number(c) > 0.0)
-        || entry.table.get("static").is_some();
-    if dry && entry.table.get("radius").is_none() && needs_radius(cx, at, entries) {
-        let (place, span) = (&entry.place, &entry.key.span);
-        cx.required(
-            entry.table,
-            "radius",
-            place,
-            span,
-            "\"10 mm\", that of the pin",
-        )?;
+    let dry = coefficient.as_ref().is_some_and(|c| cx.number(c) > 0.0) || entry.has("static");
+    if dry && needs_radius(cx, at, entries) {
+        entry.required_like(cx, "radius", "\"10 mm\", that of the pin")?;
     }
     let (coefficient, at_rest) = (coefficient?, at_rest?);
     if let Some(rest) = &at_rest
@@ -96,7 +75,7 @@ fn read_one(
     {
         entry.contradiction(
             cx,
-            ["static", "coefficient"],
+            &["static", "coefficient"],
             "the coefficient at rest is below that at speed",
             "`static` is the coefficient at rest, the larger one",
         );
@@ -109,7 +88,7 @@ fn read_one(
         stribeck_speed: stribeck?,
         viscous: viscous?,
         radius: radius?,
-        span: entry.key.span.clone(),
+        span: key.span.clone(),
     })
 }
 
@@ -151,12 +130,12 @@ fn place(cx: &mut Context<'_>, key: &Key) -> Option<FrictionAt> {
             _ => None,
         };
         if let Some(what) = what {
-            cx.push(
-                Diagnostic::error("not-a-slider", format!("`{name}` is {what}"))
-                    .at(key.span.clone(), "")
-                    .help("friction acts at pins, sliders and slots"),
+            return cx.refuse(
+                "not-a-slider",
+                format!("`{name}` is {what}"),
+                &key.span,
+                "friction acts at pins, sliders and slots",
             );
-            return None;
         }
         return Some(FrictionAt::Joint(id));
     }

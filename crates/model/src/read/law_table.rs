@@ -2,14 +2,11 @@
 
 use kempe_units::{Dimension, Expr};
 
-use crate::document::{Node, Table};
 use crate::model::{Law, LawPiece, Span};
 use crate::read::context::Context;
 use crate::read::csv::{Ask, Pick, Words, columns};
+use crate::read::entry::Entry;
 use crate::spline::moments;
-
-/// Keys of a table law.
-pub(crate) const TABLE_KEYS: &[&str] = &["table", "time", "value"];
 
 const WORDS: Words = Words {
     not_rising: "its time is not later than that of the row before",
@@ -20,13 +17,10 @@ const WORDS: Words = Words {
 /// Reads a table law.
 pub(crate) fn read_table(
     cx: &mut Context<'_>,
-    table: &Table,
-    place: &str,
-    span: &Span,
+    table: &Entry<'_>,
     dimension: Dimension,
 ) -> Option<Law> {
-    cx.unknown_keys(table, &format!("the table law of {place}"), TABLE_KEYS);
-    let file = cx.required(table, "table", place, span, "\"measured.csv\"")?;
+    let file = table.required_like(cx, "table", table.example_of("table"))?;
     let mut column = |key: &str, default: &str, dimension: Dimension| {
         let (pick, span) = column_name(cx, table, key)?
             .unwrap_or_else(|| (Pick::Name(default.to_owned()), file.span.clone()));
@@ -59,13 +53,13 @@ pub(crate) fn read_table(
 /// The column that a key names; `Some(None)` without the key.
 pub(crate) fn column_name(
     cx: &mut Context<'_>,
-    table: &Table,
+    table: &Entry<'_>,
     key: &str,
 ) -> Option<Option<(Pick, Span)>> {
-    let Some(node): Option<&Node> = table.get(key) else {
+    let Some(node) = table.get(key) else {
         return Some(None);
     };
-    let text = cx.text(node, &format!("`{key}`"), "\"t\"")?;
+    let text = table.text(cx, key, node)?;
     Some(Some((
         Pick::Name(text.content.trim().to_owned()),
         node.span.clone(),

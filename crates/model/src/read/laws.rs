@@ -3,73 +3,53 @@
 use kempe_units::{Builtin, Dimension, Expr};
 
 use crate::diagnostic::Diagnostic;
-use crate::document::{Node, Table, Value};
+use crate::document::{Node, Value};
+use crate::key_table::{LAW_TABLE, LAWS, PIECE};
 use crate::model::{Law, LawPiece, RiseLaw, Scalar, Span};
 use crate::read::context::Context;
+use crate::read::entry::Entry;
 use crate::read::law_table::read_table;
-
-/// Keys of a drive that say how it moves.
-pub(crate) const LAW_KEYS: [&str; 7] = ["from", "to", "speed", "acceleration", "law", "in", "at"];
-
-/// Keys of a piece of a sequence.
-pub(crate) const PIECE_KEYS: &[&str] = &[
-    "dwell",
-    "rise",
-    "fall",
-    "to",
-    "in",
-    "by",
-    "speed",
-    "acceleration",
-];
 
 /// A sequence has at most so many pieces.
 const MAX_PIECES: usize = 1_000;
 
 /// A drive's law while it is read.
-pub(crate) struct LawReader<'d> {
-    pub table: &'d Table,
-    pub place: &'d str,
-    pub span: &'d Span,
-    pub dimension: Dimension,
-    pub kind: &'d str,
+struct LawReader<'e, 'd> {
+    entry: &'e Entry<'d>,
+    place: &'e str,
+    dimension: Dimension,
 }
 
 /// Reads the law of a drive.
-pub(crate) fn read_law(
-    cx: &mut Context<'_>,
-    table: &Table,
-    place: &str,
-    span: &Span,
-    dimension: Dimension,
-    kind: &str,
-) -> Option<Law> {
+pub(crate) fn read_law(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<Law> {
     LawReader {
-        table,
-        place,
-        span,
-        dimension,
-        kind,
+        entry,
+        place: &entry.place,
+        dimension: entry.dimension("from"),
     }
     .read(cx)
 }
 
-impl LawReader<'_> {
+impl<'d> LawReader<'_, 'd> {
     fn read(&self, cx: &mut Context<'_>) -> Option<Law> {
-        if let Some(node) = self.table.get("at") {
+        if let Some(node) = self.entry.get("at") {
             return self.held(cx, node);
         }
-        match self.table.get("law") {
-            Some(Node {
-                value: Value::Table(table),
-                span,
-            }) => {
+        match self.entry.get("law") {
+            Some(
+                node @ Node {
+                    value: Value::Table(_),
+                    span,
+                },
+            ) => {
                 self.idle(
                     cx,
                     &["from", "to", "speed", "acceleration", "in"],
                     "the table says it all",
                 );
-                read_table(cx, table, self.place, span, self.dimension)
+                let place = format!("the table law of {}", self.place);
+                let table = Entry::inner(cx, node, span, place, &LAW_TABLE)?;
+                read_table(cx, &table, self.dimension)
             }
             Some(Node {
                 value: Value::Array(pieces),
@@ -88,7 +68,7 @@ impl LawReader<'_> {
     }
 
     /// `at = 30`: the coordinate is held.
-    fn held(&self, cx: &mut Context<'_>, node: &Node) -> Option<Law> {
+    fn held(&self, cx: &mut Context<'_>, node: &'d Node) -> Option<Law> {
         self.idle(
             cx,
             &["from", "to", "speed", "acceleration", "law", "in"],
@@ -106,12 +86,7 @@ impl LawReader<'_> {
 
     /// Reports keys that say something a second time.
     fn idle(&self, cx: &mut Context<'_>, keys: &[&str], why: &str) {
-        for (key, _) in self
-            .table
-            .entries
-            .iter()
-            .filter(|(k, _)| keys.contains(&k.name.as_str()))
-        {
+        for key in self.entry.given(keys) {
             cx.push(
                 Diagnostic::error(
                     "over-specified",
@@ -125,20 +100,15 @@ impl LawReader<'_> {
 
     /// The start: 0 unless said otherwise; a cylinder has no such default.
     fn from(&self, cx: &mut Context<'_>) -> Option<Scalar> {
-        match self.table.get("from") {
+        match self.entry.get("from") {
             Some(node) => {
                 let from = cx.scalar(node, self.dimension)?;
                 self.check_coordinate(cx, &from, &node.span);
                 Some(from)
             }
-            None if self.kind == "cylinder" => {
-                cx.required(
-                    self.table,
-                    "from",
-                    self.place,
-                    self.span,
-                    "\"380 mm\", the length at the start",
-                );
+            None if self.entry.kind.name == "cylinder" => {
+                self.entry
+                    .required_like(cx, "from", "\"380 mm\", the length at the start");
                 None
             }
             None => Some(Expr::Const(0.0)),
@@ -147,13 +117,13 @@ impl LawReader<'_> {
 
     /// The end: one turn further unless said otherwise; lengths have no such default.
     fn to(&self, cx: &mut Context<'_>, from: Option<&Scalar>) -> Option<Scalar> {
-        match self.table.get("to") {
+        match self.entry.get("to") {
             Some(node) => {
                 let to = cx.scalar(node, self.dimension)?;
                 self.check_coordinate(cx, &to, &node.span);
                 Some(to)
             }
-            None if self.kind == "turns" => {
+            None if self.entry.kind.name == "turns" => {
                 let turn = Expr::Const(std::f64::consts::TAU);
                 match from? {
                     Expr::Const(x) => Some(Expr::Const(x + std::f64::consts::TAU)),
@@ -161,13 +131,8 @@ impl LawReader<'_> {
                 }
             }
             None => {
-                cx.required(
-                    self.table,
-                    "to",
-                    self.place,
-                    self.span,
-                    &cx.example(self.dimension),
-                );
+                let example = cx.example(self.dimension);
+                self.entry.required_like(cx, "to", &example);
                 None
             }
         }
@@ -175,7 +140,7 @@ impl LawReader<'_> {
 
     /// A cylinder's length is positive.
     fn check_coordinate(&self, cx: &mut Context<'_>, scalar: &Scalar, span: &Span) {
-        if self.kind == "cylinder" && cx.number(scalar) <= 0.0 {
+        if self.entry.kind.name == "cylinder" && cx.number(scalar) <= 0.0 {
             cx.push(
                 Diagnostic::error("bad-size", format!("{}: a cylinder's length must be positive", self.place))
                     .at(span.clone(), "")
@@ -190,10 +155,10 @@ impl LawReader<'_> {
         let (from, to) = (from?, to?);
         if cx.number(&from) == cx.number(&to) {
             let span = self
-                .table
+                .entry
                 .get("to")
-                .or(self.table.get("from"))
-                .map_or(self.span.clone(), |n| n.span.clone());
+                .or(self.entry.get("from"))
+                .map_or(self.entry.span.clone(), |n| n.span.clone());
             cx.push(
                 Diagnostic::error(
                     "no-motion",
@@ -211,13 +176,13 @@ impl LawReader<'_> {
     fn constant(&self, cx: &mut Context<'_>) -> Option<Law> {
         let limits = self.limits(cx);
         let rates = ["speed", "acceleration"];
-        if let Some(rate) = rates.into_iter().find(|key| self.table.get(key).is_some())
-            && self.table.get("in").is_some()
+        if let Some(rate) = rates.into_iter().find(|key| self.entry.get(key).is_some())
+            && self.entry.get("in").is_some()
         {
             self.idle(cx, &["in"], &format!("`{rate}` says how it moves"));
             return None;
         }
-        if let Some((key, _)) = self.table.entry("in") {
+        if let Some((key, _)) = self.entry.entry("in") {
             cx.push(
                 Diagnostic::error("missing-key", format!("{} has `in` but no `law`", self.place))
                     .at(key.span.clone(), "in this time, but how?")
@@ -225,7 +190,7 @@ impl LawReader<'_> {
             );
             return None;
         }
-        let piece = match (self.table.get("speed"), self.table.get("acceleration")) {
+        let piece = match (self.entry.get("speed"), self.entry.get("acceleration")) {
             (Some(_), Some(_)) => {
                 self.idle(cx, &["acceleration"], "`speed` says how it moves");
                 return None;
@@ -234,7 +199,7 @@ impl LawReader<'_> {
                 let unit = cx.bare_unit(rate(self.dimension, 1)).text().to_owned();
                 cx.push(
                     Diagnostic::error("missing-key", format!("{}: how fast?", self.place))
-                        .at(self.span.clone(), "`speed` is missing")
+                        .at(self.entry.span.clone(), "`speed` is missing")
                         .help(format!(
                             "add speed = \"1 {unit}\"; or acceleration = \"1 {unit}^2\" from rest; or law = \"cycloidal\" and in = \"1 s\""
                         )),
@@ -306,19 +271,15 @@ impl LawReader<'_> {
     }
 
     /// `law = "cycloidal"` with `in`.
-    fn standard(&self, cx: &mut Context<'_>, node: &Node) -> Option<Law> {
+    fn standard(&self, cx: &mut Context<'_>, node: &'d Node) -> Option<Law> {
         self.idle(
             cx,
             &["speed", "acceleration"],
             "the law and `in` say how fast",
         );
-        let by = rise_law(cx, node, &format!("`law` of {}", self.place));
+        let by = rise_law(cx, self.entry, "law", node);
         let limits = self.limits(cx);
-        let duration = cx
-            .required(self.table, "in", self.place, self.span, "\"0.2 s\"")
-            .and_then(|node| {
-                cx.positive(node, Dimension::TIME, "the time `in` which it moves", false)
-            });
+        let duration = duration(cx, self.entry);
         let (from, to) = limits?;
         Some(Law {
             pieces: vec![LawPiece::Rise {
@@ -331,27 +292,24 @@ impl LawReader<'_> {
     }
 
     /// `law = [ { dwell = … }, { rise = …, in = …, by = … } ]`.
-    fn sequence(&self, cx: &mut Context<'_>, pieces: &[Node], span: &Span) -> Option<Law> {
+    fn sequence(&self, cx: &mut Context<'_>, pieces: &'d [Node], span: &Span) -> Option<Law> {
         let start = self.from(cx)?;
         if pieces.is_empty() || pieces.len() > MAX_PIECES {
-            cx.push(
-                Diagnostic::error("bad-law", format!("{}: a sequence of {} pieces", self.place, pieces.len()))
-                    .at(span.clone(), "")
-                    .help(format!("write law = [ {{ dwell = \"0.1 s\" }}, {{ rise = \"30 deg\", in = \"0.3 s\" }} ], at most {MAX_PIECES} pieces")),
+            let message = format!("{}: a sequence of {} pieces", self.place, pieces.len());
+            let help = format!(
+                "write law = [ {{ dwell = \"0.1 s\" }}, {{ rise = \"30 deg\", in = \"0.3 s\" }} ], at most {MAX_PIECES} pieces"
             );
-            return None;
+            return cx.refuse("bad-law", message, span, help);
         }
         let mut from = start.clone();
         let mut read = Vec::with_capacity(pieces.len());
         let mut whole = true;
         for node in pieces {
             let place = format!("a piece of the law of {}", self.place);
-            let piece = cx
-                .table(node, &place, "{ rise = \"30 deg\", in = \"0.3 s\" }")
-                .and_then(|t| {
-                    cx.unknown_keys(t, &place, PIECE_KEYS);
-                    self.piece(cx, t, node, &from)
-                });
+            let piece = Entry::inner(cx, node, &node.span, place, &PIECE).and_then(|mut piece| {
+                piece.turning = self.entry.turning;
+                self.piece(cx, &piece, node, &from)
+            });
             let Some(piece) = piece else {
                 whole = false;
                 continue;
@@ -372,12 +330,12 @@ impl LawReader<'_> {
     }
 
     /// Keys of a piece that would not be looked at.
-    fn contradictions(&self, cx: &mut Context<'_>, table: &Table, end: &str) {
+    fn contradictions(&self, cx: &mut Context<'_>, piece: &Entry<'_>, end: &str) {
         let (says, idle): (&str, &[&str]) = if end == "dwell" {
             ("dwell", &["in", "by", "speed", "acceleration"])
-        } else if table.get("speed").is_some() {
+        } else if piece.has("speed") {
             ("speed", &["in", "by", "acceleration"])
-        } else if table.get("acceleration").is_some() {
+        } else if piece.has("acceleration") {
             ("acceleration", &["in", "by"])
         } else {
             return;
@@ -386,8 +344,7 @@ impl LawReader<'_> {
             "dwell" => "`dwell` is the time for which it stands still".to_owned(),
             _ => format!("`{says}` says how it moves"),
         };
-        let keys = table.entries.iter().map(|(key, _)| key);
-        for key in keys.filter(|key| idle.contains(&key.name.as_str())) {
+        for key in piece.given(idle) {
             cx.push(
                 Diagnostic::error(
                     "over-specified",
@@ -402,13 +359,13 @@ impl LawReader<'_> {
     fn piece(
         &self,
         cx: &mut Context<'_>,
-        table: &Table,
+        piece: &Entry<'_>,
         node: &Node,
         from: &Scalar,
     ) -> Option<LawPiece> {
         let ends: Vec<&str> = ["dwell", "rise", "fall", "to"]
             .into_iter()
-            .filter(|k| table.get(k).is_some())
+            .filter(|k| piece.has(k))
             .collect();
         let [end] = ends.as_slice() else {
             cx.push(
@@ -418,8 +375,8 @@ impl LawReader<'_> {
             );
             return None;
         };
-        let value = table.get(end)?;
-        self.contradictions(cx, table, end);
+        let value = piece.get(end)?;
+        self.contradictions(cx, piece, end);
         if *end == "dwell" {
             let duration = cx.positive(value, Dimension::TIME, "a dwell", false)?;
             return Some(LawPiece::Dwell { duration });
@@ -433,33 +390,26 @@ impl LawReader<'_> {
             (_, a, b) => Expr::Sub(Box::new(a.clone()), Box::new(b)),
         };
         if cx.number(&to) == cx.number(from) {
-            cx.push(
-                Diagnostic::error(
-                    "no-motion",
-                    format!(
-                        "{}: this piece starts and ends at the same place",
-                        self.place
-                    ),
-                )
-                .at(value.span.clone(), "")
-                .help("to stand still, write { dwell = \"0.1 s\" }"),
+            return cx.refuse(
+                "no-motion",
+                format!(
+                    "{}: this piece starts and ends at the same place",
+                    self.place
+                ),
+                &value.span,
+                "to stand still, write { dwell = \"0.1 s\" }",
             );
-            return None;
         }
         let limits = (from.clone(), to.clone());
-        match (table.get("speed"), table.get("acceleration")) {
+        match (piece.get("speed"), piece.get("acceleration")) {
             (Some(node), _) => return self.moving(cx, node, 1, Some(&limits)),
             (None, Some(node)) => return self.moving(cx, node, 2, Some(&limits)),
             (None, None) => {}
         }
-        let duration = cx
-            .required(table, "in", "this piece", &node.span, "\"0.3 s\"")
-            .and_then(|node| {
-                cx.positive(node, Dimension::TIME, "the time `in` which it moves", false)
-            });
-        let by = match table.get("by") {
+        let duration = duration(cx, piece);
+        let by = match piece.get("by") {
             None => Some(RiseLaw::Cycloidal),
-            Some(node) => rise_law(cx, node, "`by`"),
+            Some(node) => rise_law(cx, piece, "by", node),
         };
         Some(LawPiece::Rise {
             to,
@@ -475,14 +425,25 @@ pub(crate) fn rate(coordinate: Dimension, order: i32) -> Dimension {
     coordinate / per
 }
 
-fn rise_law(cx: &mut Context<'_>, node: &Node, place: &str) -> Option<RiseLaw> {
-    let text = cx.text(node, place, "\"cycloidal\"")?;
+/// The time in which something moves, which must be there.
+fn duration(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<Scalar> {
+    entry.required_like(cx, "in", entry.example_of("in"))?;
+    entry.needed(cx, "in")
+}
+
+fn rise_law<'d>(
+    cx: &mut Context<'_>,
+    entry: &Entry<'d>,
+    key: &str,
+    node: &'d Node,
+) -> Option<RiseLaw> {
+    let text = entry.text(cx, key, node)?;
     let name = text.content.trim();
-    if let Some(law) = RiseLaw::ALL.into_iter().find(|law| law.name() == name) {
-        return Some(law);
+    if let Some((_, law)) = LAWS.iter().find(|(word, _)| *word == name) {
+        return Some(*law);
     }
-    let names: Vec<&str> = RiseLaw::ALL.iter().map(|law| law.name()).collect();
-    let help = match kempe_units::nearest(name, names.iter().copied()) {
+    let names = LAWS.map(|(name, _)| name);
+    let help = match kempe_units::nearest(name, names) {
         Some(near) => format!("did you mean `{near}`?"),
         None => format!("the laws are {}", names.join(", ")),
     };

@@ -6,14 +6,13 @@ use kempe_units::Dimension;
 
 use crate::diagnostic::Diagnostic;
 use crate::document::{Key, Node, Value};
+use crate::key_table::LINKS;
 use crate::model::{Center, FRAME, LinkId, Place, PointId, Scalar, Side, Span};
 use crate::read::context::Context;
+use crate::read::entry::Entry;
 use crate::read::masses::{mass_of_frame, read_inertia};
 use crate::read::names::{is_point_name, pair_of};
 use crate::read::place::place_points;
-
-/// Keys of a link that are not points.
-pub(crate) const LINK_KEYS: &[&str] = &["mass", "inertia", "center", "bar", "linear_density"];
 
 /// What a link's table says about its points.
 #[derive(Default)]
@@ -76,7 +75,7 @@ pub(crate) fn read(cx: &mut Context<'_>, entries: &[&(Key, Node)], whole: bool) 
 
 fn read_link(cx: &mut Context<'_>, id: LinkId, key: &Key, node: &Node) {
     let place = format!("link `{}`", key.name);
-    let Some(table) = cx.table(node, &place, "crank = { A-B = 20 }") else {
+    let Some(table) = cx.table(node, &place, LINKS.example) else {
         return;
     };
     let mut draft = Draft::default();
@@ -91,10 +90,11 @@ fn read_link(cx: &mut Context<'_>, id: LinkId, key: &Key, node: &Node) {
         );
     }
     let points = place_points(cx, &draft, &place, &key.span);
+    let entry = Entry::of(table, &key.span, place.clone(), &LINKS);
     if id == FRAME {
-        mass_of_frame(cx, table);
+        mass_of_frame(cx, &entry);
     }
-    let inertia = read_inertia(cx, table, (&draft, &points), &place, |cx, node| {
+    let inertia = read_inertia(cx, &entry, (&draft, &points), |cx, node| {
         read_center(cx, node, &draft, &place)
     });
     if let Some(link) = cx.model.links.get_mut(id.index()) {
@@ -105,7 +105,7 @@ fn read_link(cx: &mut Context<'_>, id: LinkId, key: &Key, node: &Node) {
 
 fn read_entry(cx: &mut Context<'_>, draft: &mut Draft, place: &str, key: &Key, value: &Node) {
     let name = key.name.as_str();
-    if LINK_KEYS.contains(&name) {
+    if LINKS.key(name).is_some() {
         return;
     }
     let known = |cx: &Context<'_>, name: &str| cx.points.get(name).copied();
@@ -175,7 +175,7 @@ fn read_entry(cx: &mut Context<'_>, draft: &mut Draft, place: &str, key: &Key, v
                     .help(format!("write `{capital}`")),
             );
         } else {
-            cx.unknown_key(key, place, LINK_KEYS);
+            cx.unknown_key(key, place, &LINKS.names());
         }
     }
 }
@@ -210,29 +210,19 @@ fn read_center(cx: &mut Context<'_>, node: &Node, draft: &Draft, place: &str) ->
         return Some(Center::Centroid);
     }
     if !is_point_name(text.content.trim()) {
-        cx.push(
-            Diagnostic::error("wrong-type", format!("the center of {place} is not known"))
-                .at(node.span.clone(), "")
-                .help(
-                    "write center = \"centroid\", the name of one of the link's points, or [x, y]",
-                ),
+        return cx.refuse(
+            "wrong-type",
+            format!("the center of {place} is not known"),
+            &node.span,
+            "write center = \"centroid\", the name of one of the link's points, or [x, y]",
         );
-        return None;
     }
     let point = cx.point_text(text)?;
     if !draft.known.contains(&point) {
         let name = cx.point_name(point).to_owned();
-        cx.push(
-            Diagnostic::error(
-                "point-not-on-link",
-                format!("{name} is not a point of {place}"),
-            )
-            .at(node.span.clone(), "")
-            .help(format!(
+        return cx.refuse("point-not-on-link", format!("{name} is not a point of {place}"), &node.span, format!(
                 "name a point of the link itself, or write the center as a place on it, [x, y]; {name} is on other links"
-            )),
-        );
-        return None;
+            ));
     }
     Some(Center::Point(point))
 }

@@ -18,32 +18,19 @@
 use kempe_units::{Builtin, Dimension, Expr, Issue, check, check_as, parse};
 
 use crate::diagnostic::Diagnostic;
-use crate::document::{Key, Node, Table, Value};
+use crate::document::{Key, Node, Value};
+use crate::key_table::{CARD, FORCE, TORQUE};
 use crate::load::{Amount, Load, LoadKind};
 use crate::measure::{Leaf, Measure};
 use crate::model::{FRAME, Span};
 use crate::read::context::Context;
 use crate::read::csv::{Ask, Pick, Words, columns};
-use crate::read::entry::{Entry, link_of, moving_carrier, on_link};
+use crate::read::entry::{Entry, moving_carrier, on_link};
 use crate::read::law_table::column_name;
 use crate::read::masses::on_the_frame;
 use crate::read::measure_names::Measures;
 use crate::read::nature::{as_scalar, nature};
 use crate::read::springs::plain_name;
-
-/// Keys of a force.
-pub(crate) const FORCE_KEYS: &[&str] = &["force", "at", "on", "axes"];
-
-/// Keys of a torque.
-pub(crate) const TORQUE_KEYS: &[&str] = &["torque", "on", "against"];
-
-/// Keys of a table of loads.
-pub(crate) const LOAD_TABLE_KEYS: &[&str] =
-    &["table", "over", "argument", "value", "factor", "period"];
-
-const FORCE: &str = "hook = { force = [0, \"-100 N\"], at = \"E\" }";
-const TORQUE: &str = "brake = { torque = \"-20 N m\", on = \"drum\" }";
-const TABLE: &str = "{ table = \"card.csv\", over = \"angle(crank)\", factor = \"-area\" }";
 
 const WORDS: Words = Words {
     not_rising: "its argument is not larger than that of the row before",
@@ -82,19 +69,14 @@ pub(crate) fn read(cx: &mut Context<'_>, entries: &[&(Key, Node)]) {
 
 fn read_load(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<LoadKind> {
     let place = format!("load `{}`", entry.0.name);
-    let table = cx.table(&entry.1, &place, FORCE)?;
+    let table = cx.table(&entry.1, &place, FORCE.example)?;
     match (table.get("force"), table.entry("torque")) {
-        (Some(_), Some((key, _))) => {
-            cx.push(
-                Diagnostic::error(
-                    "over-specified",
-                    format!("{place} has both `force` and `torque`"),
-                )
-                .at(key.span.clone(), "")
-                .help("make two loads of it"),
-            );
-            None
-        }
+        (Some(_), Some((key, _))) => cx.refuse(
+            "over-specified",
+            format!("{place} has both `force` and `torque`"),
+            &key.span,
+            "make two loads of it",
+        ),
         (None, None) => {
             let near = table
                 .entries
@@ -102,21 +84,24 @@ fn read_load(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<LoadKind> {
                 .find_map(|(k, _)| kempe_units::nearest(&k.name, ["force", "torque"]));
             let help = match near {
                 Some(near) => format!("did you mean `{near}`?"),
-                None => format!("a load is a force or a torque: {FORCE} or {TORQUE}"),
+                None => format!(
+                    "a load is a force or a torque: {} or {}",
+                    FORCE.example, TORQUE.example
+                ),
             };
-            cx.push(
-                Diagnostic::error("missing-key", format!("{place}: what kind of load is it?"))
-                    .at(entry.0.span.clone(), "")
-                    .help(help),
-            );
-            None
+            cx.refuse(
+                "missing-key",
+                format!("{place}: what kind of load is it?"),
+                &entry.0.span,
+                help,
+            )
         }
         (Some(node), None) => {
-            let entry = Entry::new(cx, entry, "load", FORCE, FORCE_KEYS)?;
+            let entry = Entry::new(cx, entry, &FORCE)?;
             force(cx, &entry, node)
         }
         (None, Some((_, node))) => {
-            let entry = Entry::new(cx, entry, "load", TORQUE, TORQUE_KEYS)?;
+            let entry = Entry::new(cx, entry, &TORQUE)?;
             torque(cx, &entry, node)
         }
     }
@@ -124,19 +109,14 @@ fn read_load(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<LoadKind> {
 
 fn force<'d>(cx: &mut Context<'_>, entry: &Entry<'d>, node: &'d Node) -> Option<LoadKind> {
     let components = components(cx, entry, node);
-    let axes = match entry.table.get("axes") {
-        None => Some(FRAME),
-        Some(node) => link_of(cx, node, &format!("`axes` of {}", entry.place)),
-    };
-    let at = entry.required(cx, "at")?;
-    let text = cx.text(at, &format!("`at` of {}", entry.place), "\"E\"")?;
-    let point = cx.point_text(text)?;
-    let on = match entry.table.get("on") {
-        Some(_) => entry.link(cx, "on")?,
-        None => moving_carrier(cx, point)?,
+    let axes = entry.link_or_frame(cx, "axes");
+    let (point, at) = entry.point(cx, "at")?;
+    let on = match entry.has("on") {
+        true => entry.link(cx, "on")?,
+        false => moving_carrier(cx, point)?,
     };
     let at = on_link(cx, point, on, at)?;
-    on_the_frame(cx, on, &entry.place, &entry.key.span);
+    on_the_frame(cx, on, &entry.place, entry.span);
     Some(LoadKind::Force {
         at,
         components: components?,
@@ -147,24 +127,18 @@ fn force<'d>(cx: &mut Context<'_>, entry: &Entry<'d>, node: &'d Node) -> Option<
 fn torque(cx: &mut Context<'_>, entry: &Entry<'_>, node: &Node) -> Option<LoadKind> {
     let amount = amount(cx, entry, node, Dimension::TORQUE);
     let on = entry.link(cx, "on");
-    let against = match entry.table.get("against") {
-        None => Some(FRAME),
-        Some(node) => link_of(cx, node, &format!("`against` of {}", entry.place)),
-    };
+    let against = entry.link_or_frame(cx, "against");
     let (on, against) = (on?, against?);
     if on == against && on == FRAME {
-        on_the_frame(cx, on, &entry.place, &entry.key.span);
+        on_the_frame(cx, on, &entry.place, entry.span);
     } else if on == against {
         let name = cx.link_name(on).to_owned();
-        cx.push(
-            Diagnostic::error(
-                "same-link",
-                format!("{} turns `{name}` against itself", entry.place),
-            )
-            .at(entry.key.span.clone(), "")
-            .help("`against` names the link that takes the reaction: another one"),
+        return cx.refuse(
+            "same-link",
+            format!("{} turns `{name}` against itself", entry.place),
+            entry.span,
+            "`against` names the link that takes the reaction: another one",
         );
-        return None;
     }
     Some(LoadKind::Torque {
         on,
@@ -219,15 +193,9 @@ fn polar(
         }
         table @ Amount::Table { .. } => {
             let Some(direction) = as_scalar(direction) else {
-                cx.push(
-                    Diagnostic::error(
-                        "bad-choice",
-                        "the direction of a table's force cannot move",
-                    )
-                    .at(node.span.clone(), "")
-                    .help("give the components along the axes of the link that it turns with: axes = \"rod\""),
-                );
-                return None;
+                let message = "the direction of a table's force cannot move";
+                let help = "give the components along the axes of the link that it turns with: axes = \"rod\"";
+                return cx.refuse("bad-choice", message, &node.span, help);
             };
             let scaled = |function| {
                 let mut table = table.clone();
@@ -250,7 +218,11 @@ fn amount(
     dimension: Dimension,
 ) -> Option<Amount> {
     match &node.value {
-        Value::Table(table) => card(cx, entry, node, table, dimension),
+        Value::Table(_) => {
+            let place = format!("the table of {}", entry.place);
+            let table = Entry::inner(cx, node, &node.span, place, &CARD)?;
+            card(cx, &table, dimension)
+        }
         Value::Text(text) => {
             let unit = cx.bare_unit(dimension);
             let checked = parse(&text.content)
@@ -303,19 +275,12 @@ fn instant(cx: &mut Context<'_>, measure: &Measure, span: &Span) -> Option<()> {
 }
 
 /// A table from a file beside the model.
-fn card(
-    cx: &mut Context<'_>,
-    entry: &Entry<'_>,
-    node: &Node,
-    table: &Table,
-    dimension: Dimension,
-) -> Option<Amount> {
-    let place = format!("the table of {}", entry.place);
-    cx.unknown_keys(table, &place, LOAD_TABLE_KEYS);
-    let file = cx.required(table, "table", &place, &node.span, "\"card.csv\"");
-    let over = cx
-        .required(table, "over", &place, &node.span, "\"angle(crank)\"")
-        .and_then(|node| over(cx, node));
+fn card(cx: &mut Context<'_>, table: &Entry<'_>, dimension: Dimension) -> Option<Amount> {
+    let place = &table.place;
+    let file = table.required_like(cx, "table", table.example_of("table"));
+    let over = table
+        .required_like(cx, "over", table.example_of("over"))
+        .and_then(|node| over(cx, table, node));
     let (factor, factor_is) = match table.get("factor") {
         None => (Expr::Const(1.0), Dimension::NONE),
         Some(node) => cx.inferred(node, Dimension::NONE)?,
@@ -370,8 +335,12 @@ fn card(
 }
 
 /// What a table goes by.
-fn over(cx: &mut Context<'_>, node: &Node) -> Option<(Measure, Dimension)> {
-    let text = cx.text(node, "`over`", &format!("\"angle(crank)\", as in {TABLE}"))?;
+fn over<'d>(
+    cx: &mut Context<'_>,
+    table: &Entry<'d>,
+    node: &'d Node,
+) -> Option<(Measure, Dimension)> {
+    let text = table.text(cx, "over", node)?;
     let checked: Result<_, Vec<Issue>> =
         parse(&text.content).and_then(|tree| check(&tree, &mut Measures(cx)));
     match checked {

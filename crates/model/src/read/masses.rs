@@ -15,7 +15,8 @@
 use kempe_units::{Builtin, Dimension, Expr};
 
 use crate::diagnostic::Diagnostic;
-use crate::document::{Key, Node, Table, Value};
+use crate::document::{Key, Node, Value};
+use crate::key_table::{BAR, MASS};
 use crate::load::PointMass;
 use crate::model::{
     Center, FRAME, Inertia, JointKind, LinkId, LinkPoint, Place, PointId, Scalar, Span,
@@ -25,15 +26,6 @@ use crate::read::entry::{Entry, moving_carrier, on_link};
 use crate::read::links::Draft;
 use crate::read::names::is_point_name;
 use crate::read::springs::plain_name;
-
-/// Keys of a point mass.
-pub(crate) const MASS_KEYS: &[&str] = &["on", "at", "mass"];
-
-/// Keys of a link's bar.
-pub(crate) const BAR_KEYS: &[&str] = &["width", "thickness", "density"];
-
-const MASS: &str = "weight = { on = \"crank\", at = [-20, 0], mass = \"2 kg\" }";
-const BAR: &str = "bar = { width = \"20 mm\", thickness = \"5 mm\", density = \"7850 kg/m^3\" }";
 
 /// A file has at most so many point masses.
 const MAX: usize = 10_000;
@@ -134,15 +126,16 @@ pub(crate) fn read(cx: &mut Context<'_>, entries: &[&(Key, Node)]) {
 }
 
 fn read_mass(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<PointMass> {
-    let entry = Entry::new(cx, entry, "mass", MASS, MASS_KEYS)?;
-    let mass = entry.required_positive(cx, "mass", Dimension::MASS, true);
+    let (key, _) = entry;
+    let entry = Entry::new(cx, entry, &MASS)?;
+    let mass = entry.needed(cx, "mass");
     let at = entry.required(cx, "at")?;
     let (on, place) = match &at.value {
         Value::Text(text) if is_point_name(text.content.trim()) => {
             let point = cx.point_text(text)?;
-            let on = match entry.table.get("on") {
-                Some(_) => entry.link(cx, "on"),
-                None => moving_carrier(cx, point),
+            let on = match entry.has("on") {
+                true => entry.link(cx, "on"),
+                false => moving_carrier(cx, point),
             }?;
             on_link(cx, point, on, at)?;
             let place = cx
@@ -156,7 +149,7 @@ fn read_mass(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<PointMass> {
         Value::Text(_) => {
             cx.wrong_type(
                 at,
-                &format!("`at` of {}", entry.place),
+                &entry.place_of("at"),
                 "a point or a place",
                 "at = \"B\" or at = [-20, 0]",
             );
@@ -164,17 +157,17 @@ fn read_mass(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<PointMass> {
         }
         _ => {
             let on = entry.link(cx, "on");
-            let place = cx.place(at, &format!("`at` of {}", entry.place));
+            let place = cx.place(at, &entry.place_of("at"));
             (on?, place)
         }
     };
-    on_the_frame(cx, on, &entry.place, &entry.key.span);
+    on_the_frame(cx, on, &entry.place, &key.span);
     Some(PointMass {
-        name: entry.key.name.clone(),
+        name: key.name.clone(),
         on,
         place: place?,
         mass: mass?,
-        span: entry.key.span.clone(),
+        span: key.span.clone(),
     })
 }
 
@@ -194,9 +187,9 @@ pub(crate) fn on_the_frame(cx: &mut Context<'_>, on: LinkId, place: &str, span: 
 }
 
 /// Warns of a mass of the frame.
-pub(crate) fn mass_of_frame(cx: &mut Context<'_>, table: &Table) {
+pub(crate) fn mass_of_frame(cx: &mut Context<'_>, link: &Entry<'_>) {
     let mut keys = ["mass", "inertia", "bar", "linear_density"].iter();
-    let Some((key, _)) = keys.find_map(|key| table.entry(key)) else {
+    let Some((key, _)) = keys.find_map(|key| link.entry(key)) else {
         return;
     };
     cx.push(
@@ -209,19 +202,19 @@ pub(crate) fn mass_of_frame(cx: &mut Context<'_>, table: &Table) {
 /// The mass properties of a link.
 pub(crate) fn read_inertia(
     cx: &mut Context<'_>,
-    table: &Table,
+    link: &Entry<'_>,
     (draft, points): (&Draft, &[LinkPoint]),
-    place: &str,
     center: impl FnOnce(&mut Context<'_>, &Node) -> Option<Center>,
 ) -> Option<Inertia> {
+    let place = &link.place;
     let shape = ["bar", "linear_density"]
         .iter()
-        .find_map(|key| table.entry(key));
+        .find_map(|key| link.entry(key));
     if let Some((key, node)) = shape {
         let others = ["mass", "inertia", "center", "linear_density"];
         if let Some((other, _)) = others
             .iter()
-            .filter_map(|k| table.entry(k))
+            .filter_map(|k| link.entry(k))
             .find(|(k, _)| k.name != key.name)
         {
             cx.push(
@@ -235,24 +228,20 @@ pub(crate) fn read_inertia(
             );
             return None;
         }
-        return shaped(cx, (key, node), (draft, points), place);
+        return shaped(cx, link, (key, node), (draft, points));
     }
-    let scalar = |cx: &mut Context<'_>, name: &str, dimension: Dimension| {
-        let node = table.get(name)?;
-        cx.positive(node, dimension, &format!("the {name} of {place}"), true)
-    };
-    let mass = scalar(cx, "mass", Dimension::MASS);
-    let moment = scalar(cx, "inertia", Dimension::INERTIA);
-    if moment.is_none() && table.get("inertia").is_some() {
+    let scalar = |cx: &mut Context<'_>, name: &str| link.value(cx, name).flatten();
+    let (mass, moment) = (scalar(cx, "mass"), scalar(cx, "inertia"));
+    if moment.is_none() && link.has("inertia") {
         // told: it is not missing
         return None;
     }
-    let center = match table.entry("center") {
+    let center = match link.entry("center") {
         None => Center::Centroid,
         Some((_, node)) => center(cx, node)?,
     };
-    if table.get("mass").is_none() && table.get("inertia").is_none() {
-        if let Some((center, _)) = table.entry("center") {
+    if !link.has("mass") && !link.has("inertia") {
+        if let Some((center, _)) = link.entry("center") {
             cx.push(
                 Diagnostic::warning("idle-key", format!("{place} has a center but no mass"))
                     .at(center.span.clone(), "means nothing without `mass`")
@@ -269,31 +258,22 @@ pub(crate) fn read_inertia(
 }
 
 /// Mass properties of a bar or rod.
-fn shaped(
+fn shaped<'d>(
     cx: &mut Context<'_>,
-    (key, node): (&Key, &Node),
+    link: &Entry<'d>,
+    (key, node): (&Key, &'d Node),
     (draft, points): (&Draft, &[LinkPoint]),
-    place: &str,
 ) -> Option<Inertia> {
-    let what = format!("`{}` of {place}", key.name);
-    let (per_length, width) = if key.name == "bar" {
-        let table = cx.table(node, &what, BAR)?;
-        cx.unknown_keys(table, &what, BAR_KEYS);
-        let mut side = |key: &str, dimension: Dimension| {
-            let node = cx.required(table, key, &what, &node.span, &format!("… as in {BAR}"))?;
-            cx.positive(node, dimension, &format!("the {key} of {what}"), false)
-        };
-        let width = side("width", Dimension::LENGTH);
-        let thickness = side("thickness", Dimension::LENGTH);
-        let density = side("density", Dimension::DENSITY);
+    let what = link.place_of(&key.name);
+    let (per_length, width) = if key.name == BAR.name {
+        let bar = Entry::inner(cx, node, &node.span, what.clone(), &BAR)?;
+        let width = bar.needed(cx, "width");
+        let thickness = bar.needed(cx, "thickness");
+        let density = bar.needed(cx, "density");
         let width = width?;
         (times(times(density?, width.clone()), thickness?), width)
     } else {
-        let dimension = Dimension::MASS / Dimension::LENGTH;
-        (
-            cx.positive(node, dimension, &what, false)?,
-            Expr::Const(0.0),
-        )
+        (link.needed(cx, &key.name)?, Expr::Const(0.0))
     };
     let Some(([ax, ay], [bx, by])) = ends(draft, points) else {
         // points without a place have been told

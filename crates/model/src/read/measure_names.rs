@@ -1,17 +1,14 @@
 //! What the names and functions of a measure mean.
 
-use kempe_units::{Dimension, Expr, Issue, Kind, Node, Resolver, check, check_as, nearest};
+use kempe_units::{Dimension, Expr, Issue, Kind, Node, Resolver, check, check_as};
 
-use crate::measure::{Leaf, Measure, PoseMeasure, Statistic};
-use crate::model::{
-    DriveId, DriveKind, FRAME, JointKind, Line, LinkId, LinkPointRef, PointId, Span,
-};
+use crate::measure::{ForceMeasure, Leaf, Measure, PoseMeasure, Statistic};
+use crate::model::{FRAME, Span};
 use crate::read::context::{Context, Meaning, MeasureState};
-use crate::read::force_names::{bare, bare_names};
 use crate::read::laws::rate;
 use crate::read::nature::nature;
 use crate::read::value::ALREADY_TOLD;
-use crate::registry::Registry;
+use crate::registry::{Form, Gives, MeasureEntry, Registry};
 
 /// Names of a measure.
 pub(crate) struct Measures<'c, 'a>(pub &'c Context<'a>);
@@ -23,6 +20,15 @@ pub(crate) struct Call<'n> {
     pub function: &'n str,
     pub arguments: &'n [Node],
     pub span: Span,
+}
+
+/// The measure that a name without brackets is: one of the whole mechanism.
+pub(crate) fn bare(name: &str) -> Option<(Leaf, Dimension)> {
+    let row = Registry::find(name)?;
+    match row.forms {
+        [Form::Whole(measure)] => Some((Leaf::Force(measure.clone()), row.gives.of(false))),
+        _ => None,
+    }
 }
 
 impl Resolver<Leaf> for Measures<'_, '_> {
@@ -70,10 +76,12 @@ impl Resolver<Leaf> for Measures<'_, '_> {
                 Err(Issue::unknown_name(
                     name,
                     span,
-                    values
-                        .map(|(n, _)| n.as_str())
-                        .chain(["time"])
-                        .chain(bare_names()),
+                    values.map(|(n, _)| n.as_str()).chain(["time"]).chain(
+                        Registry::all()
+                            .iter()
+                            .map(|m| m.name)
+                            .filter(|n| bare(n).is_some()),
+                    ),
                 ))
             }
         }
@@ -90,11 +98,12 @@ impl Resolver<Leaf> for Measures<'_, '_> {
         if matches!(function, "min" | "max") && arguments.len() > 1 {
             return None;
         }
-        Some(self.resolve(&Call {
+        let call = Call {
             function: entry.name,
             arguments,
             span,
-        }))
+        };
+        Some(self.resolve(entry, &call))
     }
 
     fn declared(&self, name: &str) -> bool {
@@ -111,439 +120,162 @@ impl Resolver<Leaf> for Measures<'_, '_> {
 }
 
 impl Measures<'_, '_> {
-    fn drive_by_number(&self, i: usize) -> Option<(DriveId, Dimension)> {
-        let id = self.0.drives.get(i).copied().flatten()?;
-        Some((id, self.0.model.drives.get(id.index())?.dimension))
+    /// Reads a call by the forms of its measure; of those that a call may fit the more special stand later.
+    fn resolve(&mut self, row: &MeasureEntry, call: &Call<'_>) -> Found<(Leaf, Dimension)> {
+        for form in row.forms.iter().rev() {
+            if let Some(found) = self.read(row, form, call)? {
+                return Ok(found);
+            }
+        }
+        self.wrong(call)
     }
 
-    fn resolve(&mut self, call: &Call<'_>) -> Found<(Leaf, Dimension)> {
+    /// Reads a call by one form; `None` where its arguments are not of this form.
+    fn read(
+        &mut self,
+        row: &MeasureEntry,
+        form: &Form,
+        call: &Call<'_>,
+    ) -> Found<Option<(Leaf, Dimension)>> {
         use PoseMeasure as P;
-        if let Some(found) = self.force(call) {
-            return found;
-        }
-        let a = call.arguments;
-        let pose = |measure: P, dimension: Dimension| Ok((Leaf::Pose(measure), dimension));
-        let (length, angle) = (Dimension::LENGTH, Dimension::ANGLE);
-        match (call.function, a) {
-            ("x", [p]) => pose(P::X(self.point(p)?), length),
-            ("y", [p]) => pose(P::Y(self.point(p)?), length),
-            ("x", [p, l]) => pose(P::XOn(self.point(p)?, self.link(l)?), length),
-            ("y", [p, l]) => pose(P::YOn(self.point(p)?, self.link(l)?), length),
-            ("angle", [l]) if l.as_line().is_some() => {
-                let (from, to) = self.line(l)?;
-                pose(P::Direction(from, to), angle)
+        let is = row.gives.of(false);
+        let pose = |measure: P| (Leaf::Pose(measure), is);
+        let force = |measure| (Leaf::Force(measure), is);
+        Ok(Some(match (form, call.arguments) {
+            (Form::Point(make), [p]) => pose(make(self.point(p)?)),
+            (Form::PointLink(make), [p, l]) => pose(make(self.point(p)?, self.link(l)?)),
+            (Form::Link(make), [l]) => pose(make(self.link(l)?)),
+            (Form::LinkLink(make) | Form::LinkOrFrame(make), [l, other]) => {
+                pose(make(self.link(l)?, self.link(other)?))
             }
-            ("angle", [l]) => pose(P::Angle(self.link(l)?), angle),
-            ("angle", [l, other]) => pose(P::AngleBetween(self.link(l)?, self.link(other)?), angle),
-            ("angle", [p, q, r]) => {
-                let (a, at, b) = (self.point(p)?, self.point(q)?, self.point(r)?);
-                pose(
-                    P::TransmissionAngle {
-                        at,
-                        a,
-                        b,
-                        folded: false,
-                    },
-                    angle,
-                )
+            (Form::LinkOrFrame(make), [l]) => pose(make(self.link(l)?, FRAME)),
+            (Form::Direction, [line]) if line.as_line().is_some() => {
+                let (from, to) = self.line(line)?;
+                pose(P::Direction(from, to))
             }
-            ("distance", [pair]) if pair.as_pair().is_some() => {
-                let Kind::Binary { left, right, .. } = &pair.kind else {
-                    return self.wrong(call);
-                };
-                pose(P::Distance(self.point(left)?, self.point(right)?), length)
+            (Form::Corner, [a, at, b]) => {
+                let (a, at, b) = (self.point(a)?, self.point(at)?, self.point(b)?);
+                let folded = false;
+                pose(P::TransmissionAngle { at, a, b, folded })
             }
-            ("distance", [p, line]) if line.as_line().is_some() => {
+            (Form::Transmission, [at, a, b]) => {
+                let (at, a, b) = (self.point(at)?, self.point(a)?, self.point(b)?);
+                let folded = true;
+                pose(P::TransmissionAngle { at, a, b, folded })
+            }
+            (Form::Transmission, [node]) => {
+                let at = self.point(node)?;
+                let (a, b) = self.transmission(at, node)?;
+                let folded = true;
+                pose(P::TransmissionAngle { at, a, b, folded })
+            }
+            (Form::Distance, [pair]) => match (&pair.kind, pair.as_pair()) {
+                (Kind::Binary { left, right, .. }, Some(_)) => {
+                    pose(P::Distance(self.point(left)?, self.point(right)?))
+                }
+                _ => return Ok(None),
+            },
+            (Form::Distance, [p, q]) => pose(P::Distance(self.point(p)?, self.point(q)?)),
+            (Form::DistanceToLine, [p, line]) if line.as_line().is_some() => {
                 let point = self.point(p)?;
                 let (from, to) = self.line(line)?;
-                pose(
-                    P::DistanceToLine(point, self.link_of_line(from, to, line)?),
-                    length,
-                )
+                pose(P::DistanceToLine(point, self.link_of_line(from, to, line)?))
             }
-            ("distance", [p, q]) => pose(P::Distance(self.point(p)?, self.point(q)?), length),
-            ("travel", [slider]) => {
+            (Form::Travel, [slider]) => {
                 let (point, line) = self.guide(slider)?;
-                pose(P::Travel(point, line), length)
+                pose(P::Travel(point, line))
             }
-            ("length", [drive]) => pose(self.cylinder(drive)?, length),
-            ("transmission_angle", [p]) => {
-                let at = self.point(p)?;
-                let (a, b) = self.transmission(at, p)?;
-                pose(
-                    P::TransmissionAngle {
-                        at,
-                        a,
-                        b,
-                        folded: true,
-                    },
-                    angle,
+            (Form::Cylinder, [drive]) => pose(self.cylinder(drive)?),
+            (Form::Advantage, [m, drive]) => {
+                let (measure, of) = self.of_the_pose(m)?;
+                let (drive, per) = self.drive(drive)?;
+                let measure = P::MechanicalAdvantage(Box::new(measure), drive);
+                (Leaf::Pose(measure), per / of)
+            }
+            (Form::Effort { turning }, [drive]) => force(self.effort(call, drive, *turning)?),
+            (Form::Drive(make), [drive]) => {
+                let (id, of) = self.drive(drive)?;
+                let dimension = row.gives.of(of == Dimension::ANGLE);
+                (Leaf::Force(make(id)), dimension)
+            }
+            (Form::Pressure, [drive]) => {
+                force(ForceMeasure::Pressure(self.hydraulic(call, drive, false)?))
+            }
+            (Form::Capacity, [drive]) => {
+                let (id, of_motor) = self.capacity(call, drive)?;
+                (
+                    Leaf::Force(ForceMeasure::Capacity(id)),
+                    row.gives.of(of_motor),
                 )
             }
-            ("transmission_angle", [p, q, r]) => {
-                let (at, a, b) = (self.point(p)?, self.point(q)?, self.point(r)?);
-                pose(
-                    P::TransmissionAngle {
-                        at,
-                        a,
-                        b,
-                        folded: true,
-                    },
-                    angle,
-                )
+            (Form::Joint(make), [joint]) => force(make(self.joint(call, joint, None)?)),
+            (Form::Joint(make) | Form::JointOnLink(make), [joint, link]) => {
+                force(make(self.joint(call, joint, Some(link))?))
             }
-            ("speed", [p]) => pose(P::Speed(self.point(p)?), Dimension::SPEED),
-            ("acceleration", [p]) => pose(P::Acceleration(self.point(p)?), Dimension::ACCELERATION),
-            ("angular_speed", [l]) => {
-                pose(P::AngularSpeed(self.link(l)?), Dimension::ANGULAR_SPEED)
+            (Form::Moment, [joint, link @ ..]) if link.len() < 2 => {
+                let joint = self.moment(call, joint, link.first())?;
+                force(ForceMeasure::ReactionMoment(joint))
             }
-            ("angular_acceleration", [l]) => pose(
-                P::AngularAcceleration(self.link(l)?),
-                Dimension::ANGULAR_ACCELERATION,
-            ),
-            ("instant_center_x", [l, rest @ ..]) if rest.len() < 2 => pose(
-                P::InstantCenterX(self.link(l)?, self.link_or_frame(rest)?),
-                length,
-            ),
-            ("instant_center_y", [l, rest @ ..]) if rest.len() < 2 => pose(
-                P::InstantCenterY(self.link(l)?, self.link_or_frame(rest)?),
-                length,
-            ),
-            ("curvature", [p]) => pose(P::Curvature(self.point(p)?), Dimension::CURVATURE),
-            ("curvature_center_x", [p]) => pose(P::CurvatureCenterX(self.point(p)?), length),
-            ("curvature_center_y", [p]) => pose(P::CurvatureCenterY(self.point(p)?), length),
-            ("path_length", [p]) => pose(P::PathLength(self.point(p)?), length),
-            ("mechanical_advantage", [m, drive]) => {
+            (Form::Spring, [node]) => {
+                let (i, of) = self.acting(node, "spring", &self.0.springs)?;
+                (Leaf::Force(ForceMeasure::Spring(i)), of)
+            }
+            (Form::Damper, [node]) => {
+                let (i, of) = self.acting(node, "damper", &self.0.dampers)?;
+                (Leaf::Force(ForceMeasure::Damper(i)), of)
+            }
+            (Form::Load, [node]) => {
+                let (i, of) = self.acting(node, "load", &self.0.loads)?;
+                (Leaf::Force(ForceMeasure::Load(i)), of)
+            }
+            (Form::LoadComponent(make), [node]) => {
+                let (i, of) = self.acting(node, "load", &self.0.loads)?;
+                if of != is {
+                    let help = "a torque has one value: load(…)".to_owned();
+                    return self.argument(node, "a force", help);
+                }
+                force(make(i))
+            }
+            (Form::Rate, [m, order @ ..]) if order.len() < 2 => {
                 let (measure, of) = check(m, self)?;
-                self.of_the_pose(&measure, m)?;
+                let order = self.order(order)?;
+                (Leaf::Rate(Box::new(measure), order), rate(of, order as i32))
+            }
+            (Form::Coefficient, [m, drive, order @ ..]) if order.len() < 2 => {
+                let (measure, of) = self.of_the_pose(m)?;
                 let (drive, per) = self.drive(drive)?;
-                pose(P::MechanicalAdvantage(Box::new(measure), drive), per / of)
-            }
-            ("rate", [m, rest @ ..]) if rest.len() < 2 => {
-                let (measure, of) = check(m, self)?;
-                let order = self.order(rest)?;
-                Ok((Leaf::Rate(Box::new(measure), order), rate(of, order as i32)))
-            }
-            ("d", [m, drive, rest @ ..]) if rest.len() < 2 => {
-                let (measure, of) = check(m, self)?;
-                self.of_the_pose(&measure, m)?;
-                let (drive, per) = self.drive(drive)?;
-                let order = self.order(rest)?;
+                let order = self.order(order)?;
                 let per = per.powi(order as i32).unwrap_or(per);
-                Ok((Leaf::Coefficient(Box::new(measure), drive, order), of / per))
+                (Leaf::Coefficient(Box::new(measure), drive, order), of / per)
             }
-            ("min", [m]) => self.over(Statistic::Min, m),
-            ("max", [m]) => self.over(Statistic::Max, m),
-            ("mean", [m]) => self.over(Statistic::Mean, m),
-            ("range", [m]) => self.over(Statistic::Range, m),
-            ("stroke", [m]) => self.stroke(m),
-            ("time_ratio", [m]) => {
-                let (measure, _) = check(m, self)?;
-                Ok((
-                    Leaf::Over(Statistic::TimeRatio, Box::new(measure)),
-                    Dimension::NONE,
-                ))
-            }
-            ("at", [m, drive, value]) => self.at(m, drive, value),
-            _ => self.wrong(call),
-        }
-    }
-
-    /// Whether a measure has a derivative to a drive.
-    fn of_the_pose(&self, measure: &Measure, node: &Node) -> Found<()> {
-        if !nature(measure, &self.0.natures).forces {
-            return Ok(());
-        }
-        Err(vec![
-            Issue::new(
-                "no-derivative",
-                node.span.clone(),
-                "a force or an energy has no derivative to a drive",
-            )
-            .with_label("asks for a force")
-            .with_help("its derivative in time is rate(…)"),
-        ])
-    }
-
-    /// The function is known and called in a way it is not.
-    pub(crate) fn wrong<T>(&self, call: &Call<'_>) -> Found<T> {
-        let signatures = Registry::find(call.function).map_or(&[] as &[&str], |m| m.signatures);
-        let count = call.arguments.len();
-        let plural = if count == 1 { "argument" } else { "arguments" };
-        Err(vec![
-            Issue::new(
-                "wrong-arguments",
-                call.span.clone(),
-                format!("`{}` with {count} {plural}", call.function),
-            )
-            .with_help(format!("write it as {}", signatures.join(" or "))),
-        ])
-    }
-
-    pub(crate) fn argument<T>(&self, node: &Node, wanted: &str, help: String) -> Found<T> {
-        Err(vec![
-            Issue::new(
-                "wrong-arguments",
-                node.span.clone(),
-                format!("{wanted} expected"),
-            )
-            .with_help(help),
-        ])
-    }
-
-    pub(crate) fn point(&self, node: &Node) -> Found<PointId> {
-        let Some(name) = node.as_point() else {
-            return self.argument(
-                node,
-                "a point",
-                "points start with a capital letter".to_owned(),
-            );
-        };
-        match self.0.points.get(name) {
-            Some(id) => Ok(*id),
-            None => {
-                let mut issue = Issue::new(
-                    "unknown-name",
-                    node.span.clone(),
-                    format!("there is no point `{name}`"),
-                )
-                .with_label("not declared");
-                let near = nearest(name, self.0.points.keys().map(String::as_str));
-                issue.help = Some(match near {
-                    Some(near) => format!("did you mean `{near}`?"),
-                    None => format!(
-                        "the points are {}",
-                        self.0
-                            .points
-                            .keys()
-                            .take(20)
-                            .map(String::as_str)
-                            .collect::<Vec<_>>()
-                            .join(", ")
-                    ),
-                });
-                Err(vec![issue])
-            }
-        }
-    }
-
-    pub(crate) fn link(&self, node: &Node) -> Found<LinkId> {
-        let cx = self.0;
-        let Some(name) = node.as_name() else {
-            return self.argument(node, "a link", "name a link of the file".to_owned());
-        };
-        match cx.names.get(name) {
-            Some((Meaning::Link(id), _)) => Ok(*id),
-            other => {
-                let what =
-                    other.map_or(String::new(), |(m, _)| format!("`{name}` is {}", m.what()));
-                let mut issue = Issue::new(
-                    "unknown-name",
-                    node.span.clone(),
-                    format!("there is no link `{name}`"),
-                )
-                .with_label(what);
-                let links = cx.model.links.iter().map(|l| l.name.as_str());
-                issue.help = Some(match nearest(name, links.clone()) {
-                    Some(near) => format!("did you mean `{near}`?"),
-                    None => {
-                        let links: Vec<&str> = links.take(20).collect();
-                        format!("the links are {}", links.join(", "))
-                    }
-                });
-                Err(vec![issue])
-            }
-        }
-    }
-
-    fn link_or_frame(&self, rest: &[Node]) -> Found<LinkId> {
-        rest.first().map_or(Ok(FRAME), |node| self.link(node))
-    }
-
-    fn line(&self, node: &Node) -> Found<(PointId, PointId)> {
-        let Kind::Line { from, to } = &node.kind else {
-            return self.argument(node, "a directed line", "write A -> B".to_owned());
-        };
-        let (from, to) = (self.point(from)?, self.point(to)?);
-        if from == to {
-            return self.argument(
-                node,
-                "a line between two different points",
-                "write A -> B".to_owned(),
-            );
-        }
-        Ok((from, to))
-    }
-
-    /// The link that carries a line: the frame if it does, or else the first.
-    fn link_of_line(&self, from: PointId, to: PointId, node: &Node) -> Found<Line> {
-        let cx = self.0;
-        match cx
-            .carriers(from)
-            .iter()
-            .find(|l| cx.carriers(to).binary_search(l).is_ok())
-        {
-            Some(link) => Ok(Line {
-                link: *link,
-                from,
-                to,
-            }),
-            None => {
-                let (a, b) = (cx.point_name(from), cx.point_name(to));
-                Err(vec![
-                    Issue::new(
-                        "no-common-link",
-                        node.span.clone(),
-                        format!("no link carries both {a} and {b}"),
-                    )
-                    .with_help("name two points of one link"),
-                ])
-            }
-        }
-    }
-
-    pub(crate) fn drive(&self, node: &Node) -> Found<(DriveId, Dimension)> {
-        let cx = self.0;
-        let Some(name) = node.as_name() else {
-            return self.argument(node, "a drive", "name a drive of the file".to_owned());
-        };
-        if let Some((Meaning::Drive(i), _)) = cx.names.get(name) {
-            return self
-                .drive_by_number(*i)
-                .ok_or_else(|| vec![Issue::new(ALREADY_TOLD, node.span.clone(), "")]);
-        }
-        let mut issue = Issue::new(
-            "unknown-name",
-            node.span.clone(),
-            format!("there is no drive `{name}`"),
-        );
-        if let Some((meaning, _)) = cx.names.get(name) {
-            issue = issue.with_label(format!("`{name}` is {}", meaning.what()));
-        }
-        let drives: Vec<&str> = cx
-            .names
-            .iter()
-            .filter(|(_, (m, _))| matches!(m, Meaning::Drive(_)))
-            .map(|(n, _)| n.as_str())
-            .collect();
-        issue.help = match nearest(name, drives.iter().copied()) {
-            Some(near) => Some(format!("did you mean `{near}`?")),
-            None if drives.is_empty() => Some("the file has no drives".to_owned()),
-            None => Some(format!("the drives are {}", drives.join(", "))),
-        };
-        Err(vec![issue])
-    }
-
-    /// The point and the line of a slider or slot, by the name of the joint, of the slider or of the drive.
-    fn guide(&self, node: &Node) -> Found<(LinkPointRef, Line)> {
-        let cx = self.0;
-        let help =
-            "name a slider, its joint, the joint of a pin in a slot, or the drive that slides it";
-        let Some(name) = node.as_name() else {
-            return self.argument(node, "a slider", help.to_owned());
-        };
-        let of = |kind: &JointKind| match *kind {
-            JointKind::Slider { at, on, .. } => Some((at, on)),
-            JointKind::Slot { pin, on } => Some((pin, on)),
-            _ => None,
-        };
-        let joints = &cx.model.joints;
-        let found = match cx.names.get(name).map(|(m, _)| *m) {
-            Some(Meaning::Joint(i)) => match cx.joints.get(i) {
-                Some(Some(id)) => joints.get(id.index()).and_then(|j| of(&j.kind)),
-                _ => return Err(vec![Issue::new(ALREADY_TOLD, node.span.clone(), "")]),
+            (Form::Over(statistic), [m]) => self.over(row, *statistic, m)?,
+            (Form::Stroke, [m]) => match self.meaning(m) {
+                Some(Meaning::Link(_) | Meaning::Joint(_)) => {
+                    let (point, line) = self.guide(m)?;
+                    let travel: Measure = Expr::Leaf(Leaf::Pose(P::Travel(point, line)));
+                    let range = Leaf::Over(Statistic::Range, Box::new(travel));
+                    (range, Dimension::LENGTH)
+                }
+                _ => self.over(row, Statistic::Range, m)?,
             },
-            Some(Meaning::Link(link)) => joints
-                .iter()
-                .filter_map(|j| of(&j.kind))
-                .find(|(at, _)| at.link == link),
-            Some(Meaning::Drive(i)) => match self
-                .drive_by_number(i)
-                .and_then(|(id, _)| cx.model.drives.get(id.index()))
-            {
-                Some(drive) => match drive.kind {
-                    DriveKind::Slide { joint } => {
-                        joints.get(joint.index()).and_then(|j| of(&j.kind))
-                    }
-                    _ => None,
-                },
-                None => return Err(vec![Issue::new(ALREADY_TOLD, node.span.clone(), "")]),
-            },
-            _ => {
-                let known = cx
-                    .names
-                    .iter()
-                    .filter(|(_, (m, _))| matches!(m, Meaning::Joint(_) | Meaning::Link(_)));
-                return Err(vec![Issue::unknown_name(
-                    name,
-                    node.span.clone(),
-                    known.map(|(n, _)| n.as_str()),
-                )]);
-            }
+            (Form::At, [m, drive, place]) => self.at(m, drive, place)?,
+            _ => return Ok(None),
+        }))
+    }
+
+    /// A measure over the motion.
+    fn over(
+        &mut self,
+        row: &MeasureEntry,
+        statistic: Statistic,
+        node: &Node,
+    ) -> Found<(Leaf, Dimension)> {
+        let (measure, of) = check(node, self)?;
+        let dimension = match row.gives {
+            Gives::Follows(_) => of,
+            gives => gives.of(false),
         };
-        match found {
-            Some(found) => Ok(found),
-            // a slider with a broken joint has been told
-            None if cx.joints.iter().any(Option::is_none) => {
-                Err(vec![Issue::new(ALREADY_TOLD, node.span.clone(), "")])
-            }
-            None => Err(vec![
-                Issue::new(
-                    "not-a-slider",
-                    node.span.clone(),
-                    format!("`{name}` does not slide along a line"),
-                )
-                .with_help(help),
-            ]),
-        }
-    }
-
-    fn cylinder(&self, node: &Node) -> Found<PoseMeasure> {
-        let (id, _) = self.drive(node)?;
-        match self.0.model.drives.get(id.index()).map(|d| &d.kind) {
-            Some(DriveKind::Cylinder { a, b }) => Ok(PoseMeasure::Distance(a.point, b.point)),
-            _ => self.argument(
-                node,
-                "a cylinder",
-                "for two points write distance(A, B); for a slider travel(piston)".to_owned(),
-            ),
-        }
-    }
-
-    fn order(&self, rest: &[Node]) -> Found<u32> {
-        let Some(node) = rest.first() else {
-            return Ok(1);
-        };
-        match node.as_bare_number() {
-            Some(n) if n == n.trunc() && (1.0..=MAX_ORDER).contains(&n) => Ok(n as u32),
-            _ => self.argument(
-                node,
-                "the order of a derivative",
-                format!("a whole number from 1 to {MAX_ORDER}"),
-            ),
-        }
-    }
-
-    fn over(&mut self, statistic: Statistic, node: &Node) -> Found<(Leaf, Dimension)> {
-        let (measure, dimension) = check(node, self)?;
         Ok((Leaf::Over(statistic, Box::new(measure)), dimension))
-    }
-
-    /// The range of a measure, of a slider's travel or of a cylinder's length.
-    fn stroke(&mut self, node: &Node) -> Found<(Leaf, Dimension)> {
-        let meaning = node
-            .as_name()
-            .and_then(|name| self.0.names.get(name))
-            .map(|(m, _)| *m);
-        if !matches!(meaning, Some(Meaning::Link(_) | Meaning::Joint(_))) {
-            return self.over(Statistic::Range, node);
-        }
-        let (point, line) = self.guide(node)?;
-        let travel: Measure = Expr::Leaf(Leaf::Pose(PoseMeasure::Travel(point, line)));
-        Ok((
-            Leaf::Over(Statistic::Range, Box::new(travel)),
-            Dimension::LENGTH,
-        ))
     }
 
     fn at(&mut self, measure: &Node, drive: &Node, place: &Node) -> Found<(Leaf, Dimension)> {
@@ -568,7 +300,44 @@ impl Measures<'_, '_> {
             dimension,
         ))
     }
-}
 
-/// Derivatives go up to this order.
-const MAX_ORDER: f64 = 4.0;
+    /// A measure that has a derivative to a drive.
+    fn of_the_pose(&mut self, node: &Node) -> Found<(Measure, Dimension)> {
+        let found = check(node, self)?;
+        if !nature(&found.0, &self.0.natures).forces {
+            return Ok(found);
+        }
+        Err(vec![
+            Issue::new(
+                "no-derivative",
+                node.span.clone(),
+                "a force or an energy has no derivative to a drive",
+            )
+            .with_label("asks for a force")
+            .with_help("its derivative in time is rate(…)"),
+        ])
+    }
+
+    /// The function is known and called in a way it is not.
+    fn wrong<T>(&self, call: &Call<'_>) -> Found<T> {
+        if bare(call.function).is_some() {
+            let name = call.function;
+            let message = format!("`{name}` is one of the whole mechanism and takes no arguments");
+            return Err(vec![
+                Issue::new("wrong-arguments", call.span.clone(), message)
+                    .with_help(format!("write {name}, without brackets")),
+            ]);
+        }
+        let signatures = Registry::find(call.function).map_or(Vec::new(), |m| m.signatures());
+        let count = call.arguments.len();
+        let plural = if count == 1 { "argument" } else { "arguments" };
+        Err(vec![
+            Issue::new(
+                "wrong-arguments",
+                call.span.clone(),
+                format!("`{}` with {count} {plural}", call.function),
+            )
+            .with_help(format!("write it as {}", signatures.join(" or "))),
+        ])
+    }
+}

@@ -1,32 +1,29 @@
 //! The names of a file: collected before anything is read, so that order does not matter.
 
 use crate::diagnostic::Diagnostic;
-use crate::document::{Key, Node, Table, Value};
-use crate::model::{Link, LinkId, Point, PointId};
+use crate::document::{Key, Node, Value};
+use crate::key_table::FILE;
+use crate::keys::Takes;
+use crate::model::{Link, LinkId, ParameterId, Point, PointId};
 use crate::read::context::{Context, Meaning};
+use crate::read::entry::Entry;
+use crate::read::measure_names::bare;
 
 /// Links and points a file may have at most.
 pub(crate) const MAX_LINKS: usize = 10_000;
 /// See [`MAX_LINKS`].
 pub(crate) const MAX_POINTS: usize = 100_000;
 
-/// The sections whose names share one space.
-pub(crate) struct Sections<'d> {
-    pub parameters: Vec<&'d (Key, Node)>,
-    /// The frame first.
-    pub links: Vec<&'d (Key, Node)>,
-    pub joints: Vec<&'d (Key, Node)>,
-    pub drives: Vec<&'d (Key, Node)>,
-    pub measures: Vec<&'d (Key, Node)>,
-    pub assembly: Vec<&'d (Key, Node)>,
-    pub studies: Vec<&'d (Key, Node)>,
-    pub loads: Vec<&'d (Key, Node)>,
-    pub masses: Vec<&'d (Key, Node)>,
-    pub springs: Vec<&'d (Key, Node)>,
-    pub dampers: Vec<&'d (Key, Node)>,
-    pub friction: Vec<&'d (Key, Node)>,
-    pub cylinders: Vec<&'d (Key, Node)>,
-    pub motors: Vec<&'d (Key, Node)>,
+/// The entries of each section.
+pub(crate) struct Sections<'d>(Vec<(&'static str, Vec<&'d (Key, Node)>)>);
+
+impl<'d> Sections<'d> {
+    /// The entries of a section in the order of the file; of the links the frame first.
+    pub fn of(&self, name: &str) -> &[&'d (Key, Node)] {
+        let section = self.0.iter().find(|(known, _)| *known == name);
+        debug_assert!(section.is_some(), "no section `{name}` in the table");
+        section.map_or(&[], |(_, entries)| entries)
+    }
 }
 
 /// Whether a name is a point's: it starts with a capital letter.
@@ -53,96 +50,45 @@ pub(crate) fn pair_of(key: &str) -> Option<(&str, &str)> {
 }
 
 /// Enters all names of the file: small-letter names, links with their points.
-pub(crate) fn collect<'d>(cx: &mut Context<'_>, root: &'d Table) -> Sections<'d> {
-    let mut section = |name: &str, example: &str| -> Vec<&'d (Key, Node)> {
-        let Some(node) = root.get(name) else {
-            return Vec::new();
+pub(crate) fn collect<'d>(cx: &mut Context<'_>, file: &Entry<'d>) -> Sections<'d> {
+    let tables = FILE
+        .keys()
+        .filter(|key| matches!(key.takes, Takes::Values(_) | Takes::Entries(_)));
+    let mut sections = Vec::new();
+    for section in tables {
+        let name = section.name;
+        let example = match name {
+            "studies" => format!("[studies.turn] with the line {}", section.example),
+            _ => format!("[{name}] with lines such as {}", section.example),
         };
-        match cx.table(node, &format!("[{name}]"), example) {
-            Some(table) => table.entries.iter().collect(),
-            None => Vec::new(),
+        let node = file.get(name);
+        let table = node.and_then(|node| cx.table(node, &format!("[{name}]"), &example));
+        let mut entries: Vec<&(Key, Node)> =
+            table.map_or(Vec::new(), |table| table.entries.iter().collect());
+        if name == "links" {
+            // the frame is link 0 wherever it stands
+            entries.sort_by_key(|(k, _)| k.name != "frame");
+            let kept = cx.limited(&entries, MAX_LINKS, "links").len();
+            entries.truncate(kept);
+        }
+        sections.push((name, entries));
+    }
+    let sections = Sections(sections);
+    let mut declare_all = |section: &str, meaning: &dyn Fn(usize) -> Meaning| {
+        for (i, (key, node)) in sections.of(section).iter().enumerate() {
+            let meaning = meaning(i);
+            declare(cx, key, meaning);
+            if let Meaning::Link(link) = meaning {
+                collect_points(cx, link, key, node);
+            }
         }
     };
-    let mut sections = Sections {
-        parameters: section(
-            "parameters",
-            "[parameters] with lines such as a = \"20 mm\"",
-        ),
-        links: section(
-            "links",
-            "[links] with lines such as crank = { A-B = \"20 mm\" }",
-        ),
-        joints: section(
-            "joints",
-            "[joints] with lines such as bore = { slider = \"piston\", at = \"C\", on = \"E -> F\" }",
-        ),
-        drives: section(
-            "drives",
-            "[drives] with lines such as motor = { turns = \"crank\", from = 0, to = 360, speed = \"1 rad/s\" }",
-        ),
-        measures: section(
-            "measures",
-            "[measures] with lines such as swing = \"angle(rocker)\"",
-        ),
-        assembly: section(
-            "assembly",
-            "[assembly] with lines such as C = \"left of B -> D\"",
-        ),
-        studies: section("studies", "[studies.turn] with the line kind = \"motion\""),
-        loads: section(
-            "loads",
-            "[loads] with lines such as hook = { force = [0, \"-100 N\"], at = \"E\" }",
-        ),
-        masses: section(
-            "masses",
-            "[masses] with lines such as weight = { on = \"crank\", at = [-20, 0], mass = \"2 kg\" }",
-        ),
-        springs: section(
-            "springs",
-            "[springs] with lines such as return = { between = \"A-B\", stiffness = \"2 N/mm\", free = \"80 mm\" }",
-        ),
-        dampers: section(
-            "dampers",
-            "[dampers] with lines such as closer = { between = \"A-B\", damping = \"50 N s/m\" }",
-        ),
-        friction: section(
-            "friction",
-            "[friction] with lines such as B = { coefficient = 0.1, radius = \"10 mm\" }",
-        ),
-        cylinders: section(
-            "cylinders",
-            "[cylinders] with lines such as lift = { bore = \"80 mm\", rod = \"40 mm\" }",
-        ),
-        motors: section(
-            "motors",
-            "[motors] with lines such as motor = { curve = [[\"0 rpm\", \"12 N m\"], [\"3000 rpm\", \"0 N m\"]] }",
-        ),
-    };
-    // the frame is link 0 wherever it stands
-    sections.links.sort_by_key(|(k, _)| k.name != "frame");
-    let kept = cx.limited(&sections.links, MAX_LINKS, "links").len();
-    sections.links.truncate(kept);
     // parameters get their numbers when they are put in order
-    for (i, (key, _)) in sections.parameters.iter().enumerate() {
-        declare(
-            cx,
-            key,
-            Meaning::Parameter(crate::model::ParameterId(i as u32)),
-        );
-    }
-    for (i, (key, node)) in sections.links.iter().enumerate() {
-        declare(cx, key, Meaning::Link(LinkId(i as u32)));
-        collect_points(cx, LinkId(i as u32), key, node);
-    }
-    for (i, (key, _)) in sections.joints.iter().enumerate() {
-        declare(cx, key, Meaning::Joint(i));
-    }
-    for (i, (key, _)) in sections.drives.iter().enumerate() {
-        declare(cx, key, Meaning::Drive(i));
-    }
-    for (i, (key, _)) in sections.measures.iter().enumerate() {
-        declare(cx, key, Meaning::Measure(i));
-    }
+    declare_all("parameters", &|i| Meaning::Parameter(ParameterId(i as u32)));
+    declare_all("links", &|i| Meaning::Link(LinkId(i as u32)));
+    declare_all("joints", &Meaning::Joint);
+    declare_all("drives", &Meaning::Drive);
+    declare_all("measures", &Meaning::Measure);
     if cx.model.points.len() > MAX_POINTS {
         cx.push(
             Diagnostic::error("too-large", format!("{} points", cx.model.points.len()))
@@ -170,17 +116,10 @@ pub(crate) fn long_name(cx: &mut Context<'_>, name: &str, span: &crate::model::S
     bytes > MAX_NAME
 }
 
-/// Names the language keeps for itself.
-const RESERVED: &[&str] = &[
-    "time",
-    "pi",
-    "kinetic_energy",
-    "potential_energy",
-    "shaking_force",
-    "shaking_force_x",
-    "shaking_force_y",
-    "shaking_moment",
-];
+/// Whether the language keeps a name for itself.
+fn is_reserved(name: &str) -> bool {
+    matches!(name, "time" | "pi") || bare(name).is_some()
+}
 
 /// Columns that every table has, or every table of a circuit or of forces: what is a column itself is not called so.
 const COLUMNS: &[&str] = &[
@@ -218,7 +157,7 @@ fn declare(cx: &mut Context<'_>, key: &Key, meaning: Meaning) {
             .at(key.span.clone(), "")
             .help(help),
         );
-    } else if RESERVED.contains(&name) {
+    } else if is_reserved(name) {
         cx.push(
             Diagnostic::error(
                 "bad-name",

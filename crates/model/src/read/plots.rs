@@ -66,18 +66,22 @@ fn hodograph(cx: &mut Context<'_>, text: &Text, call: &Call<'_>, forces: bool) -
         );
         return None;
     }
-    if !matches!(call.arguments.len(), 1 | 2) {
-        cx.push(
-            Diagnostic::error(
-                "wrong-arguments",
-                "`hodograph` draws the force of one joint",
-            )
-            .at(text.span(call.span.clone()), "")
-            .help("write hodograph(B), hodograph(B, coupler) or the name of a joint for B"),
-        );
-        return None;
-    }
-    match Measures(cx).joint(call, false) {
+    let (joint, link) = match call.arguments {
+        [joint] => (joint, None),
+        [joint, link] => (joint, Some(link)),
+        _ => {
+            cx.push(
+                Diagnostic::error(
+                    "wrong-arguments",
+                    "`hodograph` draws the force of one joint",
+                )
+                .at(text.span(call.span.clone()), "")
+                .help("write hodograph(B), hodograph(B, coupler) or the name of a joint for B"),
+            );
+            return None;
+        }
+    };
+    match Measures(cx).joint(call, joint, link) {
         Ok(joint) => Some(Plot::Hodograph(Hodograph { name, joint })),
         Err(issues) => {
             cx.issues(text, issues);

@@ -1,57 +1,38 @@
 //! The file's sections, in the order in which they build on each other.
 
-use kempe_units::{Dimension, Unit};
+use kempe_units::Unit;
 
 use crate::diagnostic::Diagnostic;
-use crate::document::{Node, Table, Value};
+use crate::document::{Key, Node, Table, Value};
+use crate::key_table::{FILE, UNITS};
+use crate::keys::{self, Takes};
 use crate::model::{DriveKind, FRAME, LinkId, UnitName};
 use crate::read::context::Context;
+use crate::read::entry::Entry;
 use crate::read::{
     actuators, assembly, drives, friction, joints, links, loads, masses, measures, names,
     parameters, springs, studies,
 };
 
-/// Keys of a file.
-pub(crate) const FILE_KEYS: &[&str] = &[
-    "title",
-    "units",
-    "gravity",
-    "parameters",
-    "links",
-    "joints",
-    "drives",
-    "assembly",
-    "loads",
-    "masses",
-    "springs",
-    "dampers",
-    "friction",
-    "cylinders",
-    "motors",
-    "clearance",
-    "measures",
-    "studies",
-];
-
-/// Sections of the language that this version has not got.
-pub(crate) const ANNOUNCED_SECTIONS: &[&str] = &["clearance"];
-
 /// Reads the whole file.
 pub(crate) fn read(cx: &mut Context<'_>, root: &Table, overrides: &[(String, String)]) {
-    cx.unknown_keys(root, "the file", FILE_KEYS);
-    if let Some(node) = root.get("title")
-        && let Some(text) = cx.text(node, "`title`", "\"Crank-rocker\"")
+    cx.unknown_keys(root, "the file", &FILE.names());
+    let file = Entry::of(root, &(0..0), "the file".to_owned(), &FILE);
+    if let Some(node) = file.get("title")
+        && let Some(text) = cx.text(node, "`title`", file.example_of("title"))
     {
         cx.model.title = text.content.clone();
     }
-    if let Some(node) = root.get("units") {
-        units(cx, node);
+    if let Some((key, node)) = file.entry("units") {
+        units(cx, key, node);
     }
-    for (key, _) in root
-        .entries
-        .iter()
-        .filter(|(k, _)| ANNOUNCED_SECTIONS.contains(&k.name.as_str()))
-    {
+    let announced = |key: &keys::Key| matches!(key.takes, Takes::Announced);
+    let announced: Vec<&str> = FILE
+        .keys()
+        .filter(|k| announced(k))
+        .map(|k| k.name)
+        .collect();
+    for key in file.given(&announced) {
         cx.push(
             Diagnostic::warning(
                 "section-not-available",
@@ -64,30 +45,30 @@ pub(crate) fn read(cx: &mut Context<'_>, root: &Table, overrides: &[(String, Str
             .help("the motion of the file does not depend on it"),
         );
     }
-    let sections = names::collect(cx, root);
-    parameters::read(cx, &sections.parameters, overrides);
-    let whole = root
+    let sections = names::collect(cx, &file);
+    parameters::read(cx, sections.of("parameters"), overrides);
+    let whole = file
         .get("links")
         .is_none_or(|n| matches!(n.value, Value::Table(_)));
-    links::read(cx, &sections.links, whole);
-    joints::read(cx, &sections.joints);
-    drives::read(cx, &sections.drives);
-    assembly::read(cx, &sections.assembly);
+    links::read(cx, sections.of("links"), whole);
+    joints::read(cx, sections.of("joints"));
+    drives::read(cx, sections.of("drives"));
+    assembly::read(cx, sections.of("assembly"));
     loose_links(cx);
-    if let Some(node) = root.get("gravity") {
+    if let Some(node) = file.get("gravity") {
         masses::read_gravity(cx, node);
     }
-    masses::read(cx, &sections.masses);
+    masses::read(cx, sections.of("masses"));
     masses::without_inertia(cx);
-    springs::read_springs(cx, &sections.springs);
-    springs::read_dampers(cx, &sections.dampers);
-    friction::read(cx, &sections.friction);
-    actuators::read_cylinders(cx, &sections.cylinders);
-    actuators::read_motors(cx, &sections.motors);
-    loads::declare(cx, &sections.loads);
-    measures::read(cx, &sections.measures);
-    loads::read(cx, &sections.loads);
-    studies::read(cx, &sections.studies);
+    springs::read_springs(cx, sections.of("springs"));
+    springs::read_dampers(cx, sections.of("dampers"));
+    friction::read(cx, sections.of("friction"));
+    actuators::read_cylinders(cx, sections.of("cylinders"));
+    actuators::read_motors(cx, sections.of("motors"));
+    loads::declare(cx, sections.of("loads"));
+    measures::read(cx, sections.of("measures"));
+    loads::read(cx, sections.of("loads"));
+    studies::read(cx, sections.of("studies"));
 }
 
 /// Warns of links that nothing holds.
@@ -134,41 +115,23 @@ fn loose_links(cx: &mut Context<'_>) {
     }
 }
 
-/// Keys of `units`.
-pub(crate) const UNIT_KEYS: &[&str] = &[
-    "length", "angle", "force", "torque", "pressure", "power", "mass",
-];
-
-/// Units besides those of length and angle, with an example each.
-const MORE_UNITS: &[(&str, Dimension, &str)] = &[
-    ("force", Dimension::FORCE, "\"kN\""),
-    ("torque", Dimension::TORQUE, "\"kN m\""),
-    ("pressure", Dimension::PRESSURE, "\"bar\""),
-    ("power", Dimension::POWER, "\"kW\""),
-    ("mass", Dimension::MASS, "\"t\""),
-];
-
-fn units(cx: &mut Context<'_>, node: &Node) {
-    let Some(table) = cx.table(
-        node,
-        "`units`",
-        "units = { length = \"mm\", angle = \"deg\" }",
-    ) else {
+fn units(cx: &mut Context<'_>, key: &Key, node: &Node) {
+    let Some(table) = Entry::inner(cx, node, &key.span, "`units`".to_owned(), &UNITS) else {
         return;
     };
-    cx.unknown_keys(table, "`units`", UNIT_KEYS);
-    if let Some(unit) = unit_of(cx, table, "length", Dimension::LENGTH, "\"mm\"") {
-        cx.model.units.length = unit_name(&unit);
-        cx.preferred[0] = unit;
-    }
-    if let Some(unit) = unit_of(cx, table, "angle", Dimension::ANGLE, "\"deg\"") {
-        cx.model.units.angle = unit_name(&unit);
-        cx.preferred[1] = unit;
-    }
-    for (key, dimension, example) in MORE_UNITS {
-        if let Some(unit) = unit_of(cx, table, key, *dimension, example) {
-            cx.model.units.more.push(unit_name(&unit));
-            cx.preferred.push(unit);
+    for (i, key) in UNITS.keys().enumerate() {
+        let Some(unit) = unit_of(cx, &table, key) else {
+            continue;
+        };
+        let name = unit_name(&unit);
+        match key.name {
+            "length" => cx.model.units.length = name,
+            "angle" => cx.model.units.angle = name,
+            _ => cx.model.units.more.push(name),
+        }
+        match cx.preferred.get_mut(i).filter(|_| i < 2) {
+            Some(own) => *own = unit,
+            None => cx.preferred.push(unit),
         }
     }
 }
@@ -181,13 +144,11 @@ fn unit_name(unit: &Unit) -> UnitName {
 }
 
 /// A unit of the file, when it is given and sound.
-fn unit_of(
-    cx: &mut Context<'_>,
-    table: &Table,
-    key: &str,
-    dimension: Dimension,
-    example: &str,
-) -> Option<Unit> {
+fn unit_of(cx: &mut Context<'_>, table: &Entry<'_>, row: &keys::Key) -> Option<Unit> {
+    let (key, example) = (row.name, row.example);
+    let Takes::Unit(dimension) = row.takes else {
+        return None;
+    };
     let node = table.get(key)?;
     let text = cx.text(node, &format!("the unit of {key}"), example)?;
     match Unit::parse(&text.content) {

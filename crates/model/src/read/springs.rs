@@ -16,37 +16,14 @@
 use kempe_units::{Dimension, Expr};
 
 use crate::diagnostic::Diagnostic;
-use crate::document::{Key, Node, Value};
-use crate::load::{Acts, Between, Damper, Spring};
+use crate::document::{Key, Node};
+use crate::key_table::{ACTS, DAMPER, SPRING};
+use crate::keys::Sign;
+use crate::load::{Between, Damper, Spring};
 use crate::model::{LinkPointRef, Scalar};
 use crate::read::context::Context;
-use crate::read::entry::{Entry, link_of};
+use crate::read::entry::Entry;
 use crate::read::names::{is_small_name, long_name};
-
-/// Keys of a spring.
-pub(crate) const SPRING_KEYS: &[&str] = &[
-    "between",
-    "links",
-    "stiffness",
-    "free",
-    "preload",
-    "acts",
-    "stops",
-    "stop_stiffness",
-];
-
-/// Keys of a damper.
-pub(crate) const DAMPER_KEYS: &[&str] = &["between", "links", "damping", "closing"];
-
-/// In which sense a spring may act.
-pub(crate) const ACTS: &[(&str, Acts)] = &[
-    ("both", Acts::Both),
-    ("tension", Acts::Tension),
-    ("compression", Acts::Compression),
-];
-
-const SPRING: &str = "return = { between = \"A-B\", stiffness = \"2 N/mm\", free = \"80 mm\" }";
-const DAMPER: &str = "closer = { between = \"A-B\", damping = \"50 N s/m\" }";
 
 const TORSION_SPRING: &str =
     "door = { links = [\"frame\", \"lever\"], stiffness = \"3 N m/rad\", free = \"20 deg\" }";
@@ -101,79 +78,63 @@ pub(crate) fn plain_name(cx: &mut Context<'_>, key: &Key, what: &str) {
 }
 
 fn read_spring(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<Spring> {
-    let mut entry = Entry::new(cx, entry, "spring", SPRING, SPRING_KEYS)?;
-    let between = between(cx, &entry)?;
-    if matches!(between, Between::Links(..)) {
-        entry.example = TORSION_SPRING;
-    }
-    let (travel, per, force) = match between {
-        Between::Points(..) => (Dimension::LENGTH, Dimension::STIFFNESS, Dimension::FORCE),
-        Between::Links(..) => (
-            Dimension::ANGLE,
-            Dimension::TORSIONAL_STIFFNESS,
-            Dimension::TORQUE,
-        ),
-    };
-    let preload = entry.scalar(cx, "preload", force);
+    let (key, _) = entry;
+    let mut entry = Entry::new(cx, entry, &SPRING)?;
+    let between = between(cx, &mut entry, TORSION_SPRING)?;
+    let preload = entry.value_or(cx, "preload", 0.0);
     // without stiffness it is a constant force, but not without any
-    let constant = entry.table.get("preload").is_some();
-    let stiffness = entry.required_positive(cx, "stiffness", per, constant);
-    let no_rate = constant && stiffness.as_ref().is_some_and(|k| cx.number(k) == 0.0);
-    let free = if no_rate && entry.table.get("free").is_none() {
-        Some(Expr::Const(0.0))
-    } else if travel == Dimension::LENGTH {
-        entry.required_positive(cx, "free", travel, true)
+    let constant = entry.has("preload");
+    let sign = if constant {
+        Sign::NotNegative
     } else {
-        entry
-            .required(cx, "free")
-            .and_then(|node| cx.scalar(node, travel))
+        Sign::Positive
     };
-    let acts = entry.choice(cx, "acts", ACTS);
-    let stops = stops(cx, &entry, travel);
-    let stop_stiffness = entry.positive(cx, "stop_stiffness", per, false);
-    entry.idle(cx, &["stop_stiffness"], "stops");
-    if entry.table.get("stops").is_some() {
-        let (place, span) = (&entry.place, &entry.key.span);
-        let example = match travel == Dimension::LENGTH {
-            true => "\"500 N/mm\"",
-            false => "\"1 N m/deg\"",
+    let stiffness = entry.required(cx, "stiffness");
+    let stiffness = stiffness.and_then(|node| entry.signed(cx, "stiffness", node, sign));
+    let no_rate = constant && stiffness.as_ref().is_some_and(|k| cx.number(k) == 0.0);
+    let free = if no_rate && !entry.has("free") {
+        Some(Expr::Const(0.0))
+    } else {
+        let sign = if entry.turning {
+            Sign::Any
+        } else {
+            Sign::NotNegative
         };
-        cx.required(entry.table, "stop_stiffness", place, span, example)?;
+        let node = entry.required(cx, "free");
+        node.and_then(|node| entry.signed(cx, "free", node, sign))
+    };
+    let acts = entry.choice(cx, "acts", &ACTS);
+    let stops = stops(cx, &entry);
+    let stop_stiffness = entry.value(cx, "stop_stiffness");
+    entry.idle(cx, &["stop_stiffness"], "stops");
+    if entry.has("stops") {
+        let example = match entry.turning {
+            false => entry.example_of("stop_stiffness"),
+            true => "\"1 N m/deg\"",
+        };
+        entry.required_like(cx, "stop_stiffness", example)?;
     }
     Some(Spring {
-        name: entry.key.name.clone(),
+        name: key.name.clone(),
         between,
         stiffness: stiffness?,
         free: free?,
-        preload: preload?.unwrap_or(Expr::Const(0.0)),
+        preload: preload?,
         stops: stops?,
         stop_stiffness: stop_stiffness?,
         acts: acts?.unwrap_or_default(),
-        span: entry.key.span.clone(),
+        span: key.span.clone(),
     })
 }
 
-fn stops(
-    cx: &mut Context<'_>,
-    entry: &Entry<'_>,
-    travel: Dimension,
-) -> Option<[Option<Scalar>; 2]> {
-    let Some(node) = entry.table.get("stops") else {
-        return Some([None, None]);
-    };
-    let (low, high) = entry.two(cx, node, "stops")?;
-    let mut one = |node: &Node| match &node.value {
-        Value::Text(text) if text.content.trim() == "none" => Some(None),
-        _ => cx.scalar(node, travel).map(Some),
-    };
-    let (low, high) = (one(low), one(high));
-    let (low, high) = (low?, high?);
+fn stops(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<[Option<Scalar>; 2]> {
+    let [low, high] = entry.bounds(cx, "stops")?.unwrap_or([None, None]);
     if let (Some(low), Some(high)) = (&low, &high)
         && cx.number(low) >= cx.number(high)
     {
         entry.contradiction(
             cx,
-            ["stops", ""],
+            &["stops"],
             "the lower stop is not below the upper one",
             "the first stop is the lower one; where there is none, write \"none\"",
         );
@@ -183,86 +144,69 @@ fn stops(
 }
 
 fn read_damper(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<Damper> {
-    let mut entry = Entry::new(cx, entry, "damper", DAMPER, DAMPER_KEYS)?;
-    let between = between(cx, &entry)?;
-    if matches!(between, Between::Links(..)) {
-        entry.example = TORSION_DAMPER;
-    }
-    let per = match between {
-        Between::Points(..) => Dimension::DAMPING,
-        Between::Links(..) => Dimension::TORSIONAL_DAMPING,
-    };
+    let (key, _) = entry;
+    let mut entry = Entry::new(cx, entry, &DAMPER)?;
+    let between = between(cx, &mut entry, TORSION_DAMPER)?;
     // a closer may damp one way only
-    let one_way = entry.table.get("closing").is_some();
-    let damping = entry.required_positive(cx, "damping", per, one_way);
-    let closing = entry.positive(cx, "closing", per, true);
+    let sign = if entry.has("closing") {
+        Sign::NotNegative
+    } else {
+        Sign::Positive
+    };
+    let damping = entry.required(cx, "damping");
+    let damping = damping.and_then(|node| entry.signed(cx, "damping", node, sign));
+    let closing = entry.value(cx, "closing");
     Some(Damper {
-        name: entry.key.name.clone(),
+        name: key.name.clone(),
         between,
         damping: damping?,
         closing: closing?,
-        span: entry.key.span.clone(),
+        span: key.span.clone(),
     })
 }
 
-/// Two points that are not on one link, or two links.
-fn between(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<Between> {
+/// Two points that are not on one link, or two links: then the entry is about what turns, as `torsion` shows.
+fn between(cx: &mut Context<'_>, entry: &mut Entry<'_>, torsion: &'static str) -> Option<Between> {
     let place = &entry.place;
-    match (entry.table.get("between"), entry.table.entry("links")) {
+    match (entry.get("between"), entry.entry("links")) {
         (None, None) => {
-            cx.push(
-                Diagnostic::error("missing-key", format!("{place}: between what does it act?"))
-                    .at(entry.key.span.clone(), "")
-                    .help("between = \"A-B\" names two points; links = [\"frame\", \"lever\"] makes it act between two links, about their pin"),
-            );
-            None
+            let help = "between = \"A-B\" names two points; links = [\"frame\", \"lever\"] makes it act between two links, about their pin";
+            let message = format!("{place}: between what does it act?");
+            cx.refuse("missing-key", message, entry.span, help)
         }
         (Some(_), Some((key, _))) => {
-            cx.push(
-                Diagnostic::error(
-                    "over-specified",
-                    format!("{place} has both `between` and `links`"),
-                )
-                .at(key.span.clone(), "")
-                .help("two points for one that pulls and pushes, two links for one that turns"),
-            );
-            None
+            let help = "two points for one that pulls and pushes, two links for one that turns";
+            let message = format!("{place} has both `between` and `links`");
+            cx.refuse("over-specified", message, &key.span, help)
         }
         (Some(node), None) => points(cx, entry, node),
-        (None, Some((_, node))) => {
-            let (a, b) = entry.two(cx, node, "links")?;
-            let what = format!("`links` of {place}");
-            let (first, second) = (link_of(cx, a, &what), link_of(cx, b, &what));
-            let (first, second) = (first?, second?);
+        (None, Some(_)) => {
+            let ((first, second), node) = entry.two_links(cx, "links")?;
             if first == second {
                 let name = cx.link_name(first).to_owned();
-                cx.push(
-                    Diagnostic::error(
-                        "same-link",
-                        format!("{place} is between link `{name}` and itself"),
-                    )
-                    .at(node.span.clone(), "")
-                    .help("name two different links; the frame is one too"),
-                );
-                return None;
+                let message = format!("{place} is between link `{name}` and itself");
+                let help = "name two different links; the frame is one too";
+                return cx.refuse("same-link", message, &node.span, help);
             }
+            entry.turning = true;
+            entry.example = torsion;
             Some(Between::Links(first, second))
         }
     }
 }
 
-fn points(cx: &mut Context<'_>, entry: &Entry<'_>, node: &Node) -> Option<Between> {
+fn points<'d>(cx: &mut Context<'_>, entry: &Entry<'d>, node: &'d Node) -> Option<Between> {
     let place = &entry.place;
-    let text = cx.text(node, &format!("`between` of {place}"), "\"A-B\"")?;
+    let text = entry.text(cx, "between", node)?;
     let (a, b) = cx.pair_phrase(text)?;
     if a == b {
         let name = cx.point_name(a).to_owned();
-        cx.push(
-            Diagnostic::error("same-link", format!("{place} is between {name} and itself"))
-                .at(node.span.clone(), "")
-                .help("name two points of different links"),
+        return cx.refuse(
+            "same-link",
+            format!("{place} is between {name} and itself"),
+            &node.span,
+            "name two points of different links",
         );
-        return None;
     }
     let common = cx
         .carriers(a)
@@ -272,17 +216,12 @@ fn points(cx: &mut Context<'_>, entry: &Entry<'_>, node: &Node) -> Option<Betwee
     if let Some(link) = common {
         let (a, b) = (cx.point_name(a).to_owned(), cx.point_name(b).to_owned());
         let link = cx.link_name(link).to_owned();
-        cx.push(
-            Diagnostic::error(
-                "same-link",
-                format!(
-                    "{place}: {a} and {b} are both on `{link}`, so their distance cannot change"
-                ),
-            )
-            .at(node.span.clone(), "")
-            .help("name two points that no link has in common"),
+        return cx.refuse(
+            "same-link",
+            format!("{place}: {a} and {b} are both on `{link}`, so their distance cannot change"),
+            &node.span,
+            "name two points that no link has in common",
         );
-        return None;
     }
     let end = |point| {
         Some(LinkPointRef {

@@ -5,59 +5,23 @@ use std::collections::BTreeMap;
 use kempe_units::{Builtin, Dimension, Expr};
 
 use crate::diagnostic::Diagnostic;
-use crate::document::{Key, Node, Table, Value};
+use crate::document::{Key, Node, Value};
+use crate::key_table::{ANNOUNCED_STUDIES, DRIVES, MAX_ROWS, STUDIES};
 use crate::model::{
-    AnnouncedStudy, Column, LawPiece, Model, MotionStudy, Rows, Scalar, Study, StudyKind,
+    AnnouncedStudy, Column, LawPiece, Model, MotionStudy, Plot, Rows, Scalar, Study, StudyKind,
 };
+use crate::read::choices;
 use crate::read::context::Context;
 use crate::read::entry::Entry;
 use crate::read::measures::measure_text;
 use crate::read::names::long_name;
 use crate::read::nature::nature;
-use crate::read::{choices, plots};
-
-/// Keys of a motion study.
-pub(crate) const MOTION_KEYS: &[&str] = &["kind", "step", "rows", "columns", "plot", "circuit"];
-
-/// Keys of a study of forces.
-pub(crate) const FORCES_KEYS: &[&str] = &["kind", "step", "rows", "columns", "plot"];
-
-/// Kinds of study with their keys and a whole one.
-pub(crate) const KINDS: &[(&str, &[&str], &str)] = &[
-    ("motion", MOTION_KEYS, EXAMPLE),
-    ("forces", FORCES_KEYS, "kind = \"forces\""),
-    (
-        "balance",
-        choices::BALANCE_KEYS,
-        "kind = \"balance\", on = [\"crank\"], radius = \"60 mm\"",
-    ),
-    (
-        "spring",
-        choices::SPRING_KEYS,
-        "kind = \"spring\", spring = \"back\", drive = \"motor\"",
-    ),
-];
-
-const EXAMPLE: &str = "[studies.turn] with the line kind = \"motion\"";
-
-/// Kinds of study of the language that this version has not got.
-pub(crate) const ANNOUNCED_KINDS: &[&str] = &[
-    "simulate",
-    "clearance",
-    "sweep",
-    "tolerance",
-    "adjust",
-    "synthesize",
-    "optimize",
-];
+use crate::read::plots::plot;
 
 /// Rows of a table by default, when a step is not the thing to say.
 const DEFAULT_ROWS: usize = 181;
 /// Rows along a circuit when the file does not say.
 const CIRCUIT_ROWS: usize = 361;
-
-/// Rows a table may have.
-pub(crate) const MAX_ROWS: usize = 10_000_000;
 
 /// Reads all studies; without any, there is one motion study called `motion`.
 pub(crate) fn read(cx: &mut Context<'_>, entries: &[&(Key, Node)]) {
@@ -156,11 +120,13 @@ fn read_study(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<StudyKind> {
                 .help(help),
         );
     }
-    let table = cx.table(node, &place, EXAMPLE)?;
-    let kind = cx.required(table, "kind", &place, &key.span, "\"motion\"")?;
-    let text = cx.text(kind, "`kind`", "\"motion\"")?;
+    let motion = STUDIES[0];
+    let table = cx.table(node, &place, motion.example)?;
+    let any = Entry::of(table, &key.span, place.clone(), motion);
+    let kind = any.required_like(cx, "kind", any.example_of("kind"))?;
+    let text = any.text(cx, "kind", kind)?;
     let name = text.content.trim();
-    if ANNOUNCED_KINDS.contains(&name) {
+    if ANNOUNCED_STUDIES.contains(&name) {
         cx.push(
             Diagnostic::warning(
                 "study-not-available",
@@ -175,15 +141,13 @@ fn read_study(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<StudyKind> {
         });
         return None;
     }
-    let Some((_, keys, example)) = KINDS.iter().find(|(known, ..)| *known == name) else {
-        let known = KINDS.iter().map(|(known, ..)| *known);
-        let near = kempe_units::nearest(name, known.chain(ANNOUNCED_KINDS.iter().copied()));
+    let Some(known) = STUDIES.iter().find(|kind| kind.name == name) else {
+        let kinds = STUDIES.map(|kind| kind.name);
+        let all = kinds.iter().chain(ANNOUNCED_STUDIES).copied();
+        let near = kempe_units::nearest(name, all);
         let help = match near {
             Some(near) => format!("did you mean `{near}`?"),
-            None => {
-                let kinds: Vec<&str> = KINDS.iter().map(|(known, ..)| *known).collect();
-                format!("the kinds are {}", kinds.join(", "))
-            }
+            None => format!("the kinds are {}", kinds.join(", ")),
         };
         cx.push(
             Diagnostic::error(
@@ -193,39 +157,26 @@ fn read_study(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<StudyKind> {
             .at(text.span(0..text.content.len()), "")
             .help(help),
         );
-        of_unknown_kind(cx, table, &place, near);
+        of_unknown_kind(cx, entry, &place, near);
         return None;
     };
     if cx.drives.is_empty() {
-        cx.push(
-            Diagnostic::error("no-drive", format!("{place} has nothing that moves"))
-                .at(key.span.clone(), "")
-                .help("say what moves: [drives] motor = { turns = \"crank\", from = 0, to = 360, speed = \"1 rad/s\" }"),
-        );
-        return None;
+        let message = format!("{place} has nothing that moves");
+        let help = format!("say what moves: [drives] {}", DRIVES[0].example);
+        return cx.refuse("no-drive", message, &key.span, help);
     }
-    let entry = Entry::new(cx, entry, "study", example, keys)?;
-    let rows = rows(cx, table, &place);
+    let mut entry = Entry::new(cx, entry, known)?;
+    let rows = rows(cx, &entry);
     let forces = name != "motion";
-    let columns = entries(cx, table, "columns", COLUMNS);
-    let columns = columns
-        .into_iter()
-        .filter_map(|node| column(cx, node, forces))
-        .collect();
-    let plots = entries(cx, table, "plot", PLOTS);
-    let plots = plots
-        .into_iter()
-        .filter_map(|node| plots::plot(cx, node, forces))
-        .collect();
-    let circuit = match table.get("circuit") {
-        Some(node) if !forces => cx.flag(node, "`circuit`")?,
-        _ => false,
+    let (columns, plots) = if known.key("columns").is_some() {
+        (columns(cx, &entry, forces), plots(cx, &entry, forces))
+    } else {
+        Default::default()
     };
+    let circuit = known.key("circuit").is_some() && entry.flag(cx, "circuit")?;
     // Along a circuit the drive turns back: rows stand evenly along the arc unless a step is asked for.
     let rows = match rows? {
-        _ if circuit && table.get("step").is_none() && table.get("rows").is_none() => {
-            Rows::Count(CIRCUIT_ROWS)
-        }
+        _ if circuit && !entry.has("step") && !entry.has("rows") => Rows::Count(CIRCUIT_ROWS),
         rows => rows,
     };
     let along = MotionStudy {
@@ -238,42 +189,51 @@ fn read_study(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<StudyKind> {
         "motion" => Some(StudyKind::Motion(along)),
         "forces" => Some(StudyKind::Forces(along)),
         "balance" => choices::balance(cx, &entry, along),
-        _ => choices::spring(cx, &entry, along),
+        _ => choices::spring(cx, &mut entry, along),
     }
 }
 
 /// Tells what is wrong with a study whatever its kind may be; `near` is the kind that may be meant.
-fn of_unknown_kind(cx: &mut Context<'_>, table: &Table, place: &str, near: Option<&str>) {
-    if near.is_some_and(|near| ANNOUNCED_KINDS.contains(&near)) {
+fn of_unknown_kind(
+    cx: &mut Context<'_>,
+    (key, node): &(Key, Node),
+    place: &str,
+    near: Option<&str>,
+) {
+    if near.is_some_and(|near| ANNOUNCED_STUDIES.contains(&near)) {
         return;
     }
-    let meant = KINDS.iter().find(|(kind, ..)| Some(*kind) == near);
+    let Value::Table(table) = &node.value else {
+        return;
+    };
+    let meant = STUDIES.iter().find(|kind| Some(kind.name) == near);
     let keys: Vec<&str> = match meant {
-        Some((_, keys, _)) => keys.to_vec(),
-        None => KINDS
-            .iter()
-            .flat_map(|(_, keys, _)| *keys)
-            .copied()
-            .collect(),
+        Some(kind) => kind.names(),
+        None => STUDIES.iter().flat_map(|kind| kind.names()).collect(),
     };
     cx.unknown_keys(table, place, &keys);
     // only one kind knows no forces; what asks for them is told once the kind is known
-    for node in entries(cx, table, "columns", COLUMNS) {
-        column(cx, node, true);
-    }
-    for node in entries(cx, table, "plot", PLOTS) {
-        plots::plot(cx, node, true);
-    }
+    let any = Entry::of(table, &key.span, place.to_owned(), STUDIES[0]);
+    columns(cx, &any, true);
+    plots(cx, &any, true);
     if !cx.drives.is_empty() {
-        rows(cx, table, place);
+        rows(cx, &any);
     }
 }
 
-const COLUMNS: &str = "[\"swing\", \"rate(swing)\"]";
-const PLOTS: &str = "[\"swing\", \"path(P)\"]";
+fn columns(cx: &mut Context<'_>, entry: &Entry<'_>, forces: bool) -> Vec<Column> {
+    let nodes = entries(cx, entry, "columns").into_iter();
+    nodes.filter_map(|node| column(cx, node, forces)).collect()
+}
 
-fn entries<'n>(cx: &mut Context<'_>, table: &'n Table, key: &str, example: &str) -> Vec<&'n Node> {
-    match table.get(key) {
+fn plots(cx: &mut Context<'_>, entry: &Entry<'_>, forces: bool) -> Vec<Plot> {
+    let nodes = entries(cx, entry, "plot").into_iter();
+    nodes.filter_map(|node| plot(cx, node, forces)).collect()
+}
+
+fn entries<'d>(cx: &mut Context<'_>, entry: &Entry<'d>, key: &str) -> Vec<&'d Node> {
+    let example = entry.example_of(key);
+    match entry.get(key) {
         None => Vec::new(),
         // one alone needs no brackets
         Some(
@@ -283,9 +243,9 @@ fn entries<'n>(cx: &mut Context<'_>, table: &'n Table, key: &str, example: &str)
             },
         ) => vec![node],
         Some(node) => {
-            let items = cx.array(node, &format!("`{key}`"), example);
+            let items = cx.array(node, &entry.place_of(key), example);
             if items.is_some_and(<[Node]>::is_empty)
-                && let Some((key, _)) = table.entry(key)
+                && let Some((key, _)) = entry.entry(key)
             {
                 cx.push(
                     Diagnostic::warning("idle-key", format!("`{}` names nothing", key.name))
@@ -321,8 +281,9 @@ pub(crate) fn column(cx: &mut Context<'_>, node: &Node, forces: bool) -> Option<
 }
 
 /// Where the rows stand: `step` or `rows`, or the default.
-fn rows(cx: &mut Context<'_>, table: &Table, place: &str) -> Option<Rows> {
-    match (table.get("step"), table.entry("rows")) {
+fn rows(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<Rows> {
+    let place = &entry.place;
+    match (entry.get("step"), entry.entry("rows")) {
         (None, None) => Some(default_rows(cx)),
         (Some(_), Some((key, _))) => {
             cx.push(
@@ -347,14 +308,12 @@ fn rows(cx: &mut Context<'_>, table: &Table, place: &str) -> Option<Rows> {
                 } else {
                     ("wrong-type", format!("{place}: {n} is no number of rows"))
                 };
-                cx.push(
-                    Diagnostic::error(code, message)
-                        .at(node.span.clone(), "")
-                        .help(format!(
-                            "write a whole number from 1 to {MAX_ROWS}: rows = 361"
-                        )),
-                );
-                None
+                cx.refuse(
+                    code,
+                    message,
+                    &node.span,
+                    format!("write a whole number from 1 to {MAX_ROWS}: rows = 361"),
+                )
             }
             _ => {
                 cx.wrong_type(node, "`rows`", "a number, how many rows", "rows = 361");
@@ -394,12 +353,12 @@ fn step(cx: &mut Context<'_>, node: &Node, place: &str) -> Option<Rows> {
     let (step, dimension) = cx.inferred(node, of_drive.unwrap_or(Dimension::NONE))?;
     let size = cx.number(&step);
     if size <= 0.0 {
-        cx.push(
-            Diagnostic::error("bad-size", format!("{place}: a step must be positive"))
-                .at(node.span.clone(), "")
-                .help("write step = 1: one degree (or one unit of length) of the drive"),
+        return cx.refuse(
+            "bad-size",
+            format!("{place}: a step must be positive"),
+            &node.span,
+            "write step = 1: one degree (or one unit of length) of the drive",
         );
-        return None;
     }
     let (rows, count) = if dimension == Dimension::TIME {
         let durations = cx.model.drives.iter().map(|d| d.law.duration(&cx.values));
