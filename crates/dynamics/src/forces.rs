@@ -173,6 +173,18 @@ impl<T: ForceNumber> Forces<T> {
         }
     }
 
+    /// `m a` less what is applied, of every body, about its origin; friction left out.
+    pub(crate) fn needed_without_friction(&self) -> Vec<Wrench<T>> {
+        let mut needed = vec![[T::zero(); 3]; self.applied_on_bodies.len()];
+        let seats = self.design.mechanism.seats.iter();
+        for (seat, (applied, inertial)) in seats.zip(self.applied.iter().zip(&self.inertial)) {
+            let body = &mut needed[seat.body.index()];
+            wrench::add(body, *inertial);
+            wrench::add(body, wrench::opposite(*applied));
+        }
+        needed
+    }
+
     /// Gives every side of every joint its part, and takes friction off what the bodies need.
     fn share_out(&mut self) {
         let zero = [T::zero(); 3];

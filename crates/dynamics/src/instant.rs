@@ -30,6 +30,8 @@ pub struct Instant<T> {
     pub inputs: Vec<Input<T>>,
     /// Speeds of the drives' coordinates.
     pub drive_speeds: Vec<T>,
+    /// Accelerations of the drives' coordinates.
+    pub drive_accelerations: Vec<T>,
     /// Angles of the bodies to within half a turn, rad.
     pub near: Vec<f64>,
     /// Values of everything that varies: see [`crate::amount`].
@@ -50,6 +52,7 @@ impl<T: Number> Instant<T> {
             coefficient_rates: vec![vec![zero; bodies]; drives],
             inputs: vec![Input::length(T::zero()); drives],
             drive_speeds: vec![T::zero(); drives],
+            drive_accelerations: vec![T::zero(); drives],
             near: vec![0.0; bodies],
             amounts: vec![T::zero(); amounts],
         }
@@ -133,7 +136,9 @@ impl<B: Number> Instant<Rates<B>> {
             let id = DriveId(index as u32);
             let coordinate = state.coordinate(id);
             self.inputs[index] = input(&drive.kind, cut(coordinate));
-            self.drive_speeds[index] = cut(coordinate.differentiate());
+            let speed = coordinate.differentiate();
+            self.drive_speeds[index] = cut(speed);
+            self.drive_accelerations[index] = cut(speed.differentiate());
             let along_path = state.abscissa.drive == Some(id);
             let poses = state.along(id);
             for body in 0..self.poses.len() {
@@ -198,6 +203,10 @@ impl Instant<Rates> {
         for (from, to) in self.drive_speeds.iter().zip(&mut out.drive_speeds) {
             *to = from.value();
         }
+        let accelerations = self.drive_accelerations.iter();
+        for (from, to) in accelerations.zip(&mut out.drive_accelerations) {
+            *to = from.value();
+        }
         out.near.copy_from_slice(&self.near);
         for (from, to) in self.amounts.iter().zip(&mut out.amounts) {
             *to = from.value();
@@ -231,7 +240,9 @@ impl Instant<f64> {
                 },
                 _ => Input::length(input_in.value.value()),
             };
-            self.drive_speeds[index] = if index == drive.index() { speed } else { 0.0 };
+            let moves = index == drive.index();
+            self.drive_speeds[index] = if moves { speed } else { 0.0 };
+            self.drive_accelerations[index] = if moves { acceleration } else { 0.0 };
         }
         let square = speed * speed;
         let (first_out, second_out) = (

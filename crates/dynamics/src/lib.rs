@@ -34,6 +34,7 @@ pub mod cylinder;
 pub mod damper;
 pub mod ends;
 pub mod energy;
+pub mod equations_of_motion;
 pub mod equilibrium;
 pub mod forces;
 pub mod friction;
@@ -61,6 +62,7 @@ pub mod wrench;
 
 pub use acting::Acting;
 pub use arrow::{ForceArrow, Origin};
+pub use equations_of_motion::EquationsOfMotion;
 pub use forces::{Forces, FrictionOutcome};
 pub use instant::Instant;
 pub use note::ForceNote;

@@ -1,0 +1,82 @@
+//! The equations of motion in the coordinates of the drives: `M(q) q" + h(q, q', t) = Q`.
+//!
+//! Both sides come from the same definitions as inverse dynamics. The mass matrix is that of the kinetic energy,
+//! `T = q' M q' / 2`: `M_ij = sum of m dr/dq_i . dr/dq_j + J dtheta/dq_i dtheta/dq_j`. The bias forces `h` are what the
+//! drives would have to give if none of them accelerated: centrifugal terms, weights, loads, springs and dampers; friction
+//! is left out. `Q` is what the drives give; a drive that is let go gives nothing. (Lagrange; e.g. M. Eksergian, "Dynamical
+//! analysis of machines", 1930-31, for one coordinate.)
+
+use crate::acting::Acting;
+use crate::forces::Forces;
+use crate::instant::Instant;
+use crate::number::ForceNumber;
+use crate::vector::{add, dot, left, times};
+use crate::virtual_power;
+
+/// The equations of motion of a state.
+#[derive(Clone, Debug)]
+pub struct EquationsOfMotion<T> {
+    /// How many coordinates: one for each drive.
+    pub size: usize,
+    /// The mass matrix by rows, kg, kg m or kg m^2 as the coordinates of row and column ask.
+    pub mass: Vec<T>,
+    /// Bias forces, N or N m, along the drives' coordinates.
+    pub bias: Vec<T>,
+}
+
+impl<T: ForceNumber> EquationsOfMotion<T> {
+    /// The mass matrix at a row and a column.
+    pub fn mass_at(&self, row: usize, column: usize) -> T {
+        self.mass[row * self.size + column]
+    }
+
+    /// What the drives must give for these accelerations of their coordinates.
+    pub fn needed(&self, accelerations: &[T]) -> Vec<T> {
+        let rows = self.mass.chunks_exact(self.size).zip(&self.bias);
+        rows.map(|(row, bias)| {
+            let terms = row.iter().zip(accelerations);
+            terms.fold(*bias, |sum, (m, a)| sum + *m * *a)
+        })
+        .collect()
+    }
+}
+
+/// The mass matrix of a state by rows.
+pub fn mass_matrix<T: ForceNumber>(acting: &Acting<T>, at: &Instant<T>) -> Vec<T> {
+    let size = at.coefficients.len();
+    let mut matrix = vec![T::zero(); size * size];
+    let mut moved: Vec<([T; 2], T)> = Vec::with_capacity(size);
+    for mass in &acting.masses {
+        let arm = mass.arm(at);
+        moved.clear();
+        moved.extend(at.coefficients.iter().map(|drive| {
+            let k = drive[mass.body.index()];
+            (add([k[0], k[1]], times(left(arm), k[2])), k[2])
+        }));
+        for (row, (v, w)) in moved.iter().enumerate() {
+            for (column, (u, z)) in moved.iter().enumerate() {
+                matrix[row * size + column] += dot(*v, *u) * mass.mass + *w * *z * mass.moment;
+            }
+        }
+    }
+    matrix
+}
+
+impl<T: ForceNumber> Forces<T> {
+    /// The equations of motion of the state last solved.
+    pub fn equations_of_motion(&self, at: &Instant<T>) -> EquationsOfMotion<T> {
+        let mass = mass_matrix(&self.acting, at);
+        let size = at.coefficients.len();
+        let needed = self.needed_without_friction();
+        let bias = (at.coefficients.iter().enumerate())
+            .map(|(row, drive)| {
+                let inertia = mass[row * size..][..size].iter();
+                inertia.zip(&at.drive_accelerations).fold(
+                    virtual_power::project(&needed, drive).value,
+                    |sum, (m, a)| sum - *m * *a,
+                )
+            })
+            .collect();
+        EquationsOfMotion { size, mass, bias }
+    }
+}
