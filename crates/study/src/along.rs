@@ -4,12 +4,12 @@ use std::sync::Arc;
 
 use kempe_dynamics::{ForceArrow, ForceError, ForceEvidence, ForceNote, ForceSampler, Problem};
 use kempe_measure::force_source::NoForces;
-use kempe_measure::{Sample, Sampler};
+use kempe_measure::{Sample, Sampler, Unmeasurable, Unprepared};
 use kempe_model::{Diagnostic, DriveId, Model};
-use kempe_motion::{Motion, Unwatched, Watch};
+use kempe_motion::{Motion, Stage, Unwatched, Watch};
 
-use crate::columns::Quantity;
-use crate::motion::unprepared;
+use crate::explain::stopped;
+use crate::quantity::Quantity;
 use crate::rows::RowPlace;
 
 /// What acts on the mechanism makes no sense, as diagnostics over the model file.
@@ -111,4 +111,36 @@ impl Along {
             Self::Forces(sampler) => sampler.path_drive(),
         }
     }
+}
+
+/// Why there are no rows, as diagnostics over the model file.
+pub(crate) fn unprepared(
+    model: &Model,
+    quantities: &[&Quantity],
+    problem: Unprepared,
+) -> Vec<Diagnostic> {
+    match problem {
+        Unprepared::Unmeasurable(problems) => not_measurable(model, quantities, &problems),
+        Unprepared::Stopped => vec![stopped(Stage::Measuring)],
+    }
+}
+
+/// Measures that the mechanism cannot answer, as diagnostics over the model file.
+fn not_measurable(
+    model: &Model,
+    quantities: &[&Quantity],
+    problems: &[Unmeasurable],
+) -> Vec<Diagnostic> {
+    let told = problems.iter().map(|problem| {
+        let name = quantities.get(problem.index).map_or("", |q| &q.name);
+        let what = Diagnostic::error(
+            "not-measurable",
+            format!("`{name}` cannot be evaluated: {}", problem.reason),
+        );
+        match model.measures.iter().find(|m| m.name == name) {
+            Some(named) => what.at(named.span.clone(), ""),
+            None => what,
+        }
+    });
+    told.collect()
 }

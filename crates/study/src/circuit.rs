@@ -6,11 +6,14 @@ use kempe_motion::circuit::Circuit;
 use kempe_units::Unit;
 
 use crate::along::Row;
-use crate::columns::{Asked, Quantity};
+use crate::along::unprepared;
+use crate::columns::Asked;
+use crate::events::events;
 use crate::explain::cannot_move;
-use crate::motion::{events, unprepared, unreached_warning};
+use crate::missing::unreached_warning;
 use crate::prepared::design;
 use crate::progress::{Ear, Flow, Progress};
+use crate::quantity::Quantity;
 use crate::result::{Event, StudyResult};
 use crate::sink::RowSink;
 use crate::table::Column;

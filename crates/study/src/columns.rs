@@ -5,30 +5,10 @@ use kempe_model::{
     FRAME, ForceMeasure, Hodograph, Leaf, LinkId, Measure, Model, MotionStudy, Plot, PointId,
     PoseMeasure,
 };
-use kempe_units::{Dimension, Expr, Unit};
+use kempe_units::{Dimension, Expr};
 
 use crate::force_columns::standard;
-use crate::unit::Units;
-
-/// A quantity to evaluate.
-#[derive(Clone, Debug)]
-pub(crate) struct Quantity {
-    pub name: String,
-    pub measure: Measure,
-    pub dimension: Dimension,
-}
-
-impl Quantity {
-    /// The unit it is shown in. An energy and a torque have one dimension and two units.
-    pub fn unit(&self, units: &Units) -> Unit {
-        match self.measure {
-            Expr::Leaf(Leaf::Force(
-                ForceMeasure::KineticEnergy | ForceMeasure::PotentialEnergy,
-            )) => Unit::parse("J").unwrap_or_else(|_| units.unit(self.dimension)),
-            _ => units.unit(self.dimension),
-        }
-    }
-}
+use crate::quantity::Quantity;
 
 /// Everything to evaluate for a study, each measure once.
 #[derive(Clone, Debug, Default)]

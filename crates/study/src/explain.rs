@@ -9,9 +9,9 @@ use kempe_motion::{EndReason, Motion, MotionError, Stage};
 use kempe_number::math::hypot;
 use kempe_units::Dimension;
 
-use crate::findings::source_name;
 use crate::hints;
 use crate::unit::{Units, shown};
+use crate::words::{list, source_name};
 
 /// A motion that does not start, as a diagnostic over the model file.
 pub fn cannot_move(design: &Design<f64>, error: &MotionError) -> Diagnostic {
@@ -139,15 +139,6 @@ fn start_text(mechanism: &Mechanism, at: f64) -> String {
             Units::of(model).text(at, drive.dimension)
         ),
         _ => "where the drives start".to_owned(),
-    }
-}
-
-/// `a`, `b` and `c`.
-pub(crate) fn list(names: &[String]) -> String {
-    match names {
-        [] => String::new(),
-        [one] => one.clone(),
-        [first @ .., last] => format!("{} and {last}", first.join(", ")),
     }
 }
 

@@ -1,7 +1,7 @@
 //! What is to be known of a mechanism before it moves, in the names and units of its file.
 
 use kempe_mechanism::Design;
-use kempe_mechanism::structure::{BodyId, Source};
+use kempe_mechanism::structure::BodyId;
 use kempe_model::{Diagnostic, Drive, Model, Rows, Severity, Study, StudyKind, value};
 use kempe_motion::assemble::{Assemblies, Assembly, Shortfall};
 use kempe_motion::events::EventKind;
@@ -9,10 +9,11 @@ use kempe_motion::{EndReason, Findings};
 use kempe_units::Dimension;
 use serde::Serialize;
 
-use crate::explain::{cannot_move, list};
+use crate::explain::cannot_move;
 use crate::prepared::design;
 use crate::progress::{Ear, Progress, Silent};
 use crate::unit::Units;
+use crate::words::{list, source_name};
 use crate::{alternatives, hints};
 
 /// The answer of `check`.
@@ -206,23 +207,6 @@ pub fn check_watched(model: &Model, progress: &mut dyn Progress) -> Report {
     }
     report.diagnostics = diagnostics(model, &design, &found);
     report
-}
-
-pub(crate) fn source_name(model: &Model, source: Source) -> String {
-    match source {
-        Source::Pin { point, .. } => model
-            .points
-            .get(point.index())
-            .map_or(String::new(), |p| format!("pin {}", p.name)),
-        Source::Joint(joint) => model
-            .joints
-            .get(joint.index())
-            .map_or(String::new(), |j| j.name.clone()),
-        Source::Drive(drive) => model
-            .drives
-            .get(drive.index())
-            .map_or(String::new(), |d| d.name.clone()),
-    }
 }
 
 /// How the assembly was chosen where several agree with the file, and which hints decide nothing.

@@ -9,8 +9,8 @@ use kempe_model::{
 };
 use kempe_units::Dimension;
 
-use crate::explain::list;
 use crate::unit::Units;
+use crate::words::list;
 
 /// Digits in which gravity is told.
 const GRAVITY_DIGITS: usize = 6;

@@ -7,7 +7,7 @@ use kempe_model::{
 };
 use kempe_units::{Dimension, Expr};
 
-use crate::columns::Quantity;
+use crate::quantity::Quantity;
 
 /// Efforts and powers of all drives, the loads of all joints, shaking force and energies, named as a file would ask for
 /// them.

@@ -5,7 +5,7 @@ use kempe_mechanism::Mechanism;
 use kempe_model::{Diagnostic, DriveId, ForceMeasure, Leaf, Measure, Model};
 use kempe_motion::events::EventKind;
 
-use crate::columns::Quantity;
+use crate::quantity::Quantity;
 use crate::result::Event;
 use crate::table::Table;
 

@@ -4,7 +4,7 @@ use kempe_mechanism::Design;
 use kempe_model::{HintKind, Model, Side};
 use kempe_motion::assemble::{Assemblies, Assembly, Standing, standing};
 
-use crate::explain::list;
+use crate::words::list;
 
 /// Two assemblies are as near to the hints when their distances differ by less than this part of the mechanism's size.
 const AS_NEAR: f64 = 1e-6;

@@ -8,11 +8,11 @@ use kempe_units::{Dimension, Expr, Issue, Resolver, Span, check_as, nearest, par
 
 use crate::along::{Along, Row};
 use crate::findings_forces::something_acts;
-use crate::motion::{nothing_acts, run_motion};
 use crate::prepared::{design, motion};
 use crate::progress::Silent;
 use crate::result::Frame;
 use crate::rows::RowPlace;
+use crate::run::{nothing_acts, run_motion};
 use crate::unit::Units;
 
 /// Where to look: a drive's coordinate, or a time.
@@ -210,7 +210,7 @@ fn drives_text(model: &Model) -> String {
     match names.len() {
         0 => "are no drives".to_owned(),
         1 => format!("is {}", names[0]),
-        _ => format!("are {}", crate::explain::list(&names)),
+        _ => format!("are {}", crate::words::list(&names)),
     }
 }
 

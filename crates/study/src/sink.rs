@@ -6,8 +6,9 @@ use kempe_model::{Diagnostic, ForceMeasure, Leaf, Measure, Model, Plot};
 use kempe_units::{Expr, Unit};
 
 use crate::along::Row;
-use crate::columns::{Asked, Quantity};
+use crate::columns::Asked;
 use crate::force_notes::ForceNotes;
+use crate::quantity::Quantity;
 use crate::result::{Figure, Frame, Scalar};
 use crate::table::{Column, Table};
 use crate::unit::{Units, shown};

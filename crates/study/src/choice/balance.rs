@@ -9,9 +9,9 @@ use kempe_number::math;
 use kempe_units::Dimension;
 
 use super::{bare, constant, effort, force, set_beside, shown_by, values, weights};
-use crate::columns::Quantity;
 use crate::motion::run_along;
 use crate::progress::Progress;
+use crate::quantity::Quantity;
 use crate::result::{Figure, Listing, Scalar, StudyResult};
 use crate::unit::Units;
 

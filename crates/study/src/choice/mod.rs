@@ -17,10 +17,10 @@ use kempe_motion::Stage;
 use kempe_units::{Dimension, Expr};
 
 use crate::along::Along;
-use crate::columns::Quantity;
 use crate::explain::stopped;
 use crate::prepared::{design, motion};
 use crate::progress::{Ear, Flow, Progress};
+use crate::quantity::Quantity;
 use crate::result::{Figure, StudyResult};
 use crate::rows::{RowPlace, places_along};
 use crate::table::Column;

@@ -5,9 +5,9 @@ use kempe_model::{Acts, Diagnostic, Model, Scalar as Expression, Spring, SpringS
 use kempe_units::{Dimension, Unit};
 
 use super::{bare, constant, effort, is_zero, set_beside, shown_by, values, weights};
-use crate::columns::Quantity;
 use crate::motion::run_along;
 use crate::progress::Progress;
+use crate::quantity::Quantity;
 use crate::result::{Figure, Listing, Scalar, StudyResult};
 use crate::table::Column;
 use crate::unit::Units;

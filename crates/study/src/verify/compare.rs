@@ -10,11 +10,11 @@ use serde::Serialize;
 
 use super::case::{Case, Expected, Target};
 use crate::along::{Along, Row};
-use crate::columns::Quantity;
 use crate::findings::check;
 use crate::pose::Setting;
 use crate::prepared::{design, motion};
 use crate::progress::Silent;
+use crate::quantity::Quantity;
 use crate::rows::RowPlace;
 
 /// Ours and the reference, side by side.

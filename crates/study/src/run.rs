@@ -1,0 +1,62 @@
+//! Running a study of any kind.
+
+use kempe_model::{Diagnostic, Model, MotionStudy, Study, StudyKind};
+
+use crate::choice::{balance, spring};
+use crate::circuit::run_circuit;
+use crate::findings_forces::something_acts;
+use crate::motion::run_along;
+use crate::progress::Progress;
+use crate::result::StudyResult;
+
+/// Runs a study of a model.
+///
+/// # Errors
+///
+/// What keeps the study from starting, as diagnostics over the model file: `cannot-assemble`, `range-beyond-limit`,
+/// `undetermined`, `locked`, `not-measurable`, `stopped`. A row that cannot be reached is no error: it carries its reason.
+pub fn run(
+    model: &Model,
+    study: &Study,
+    progress: &mut dyn Progress,
+) -> Result<StudyResult, Vec<Diagnostic>> {
+    match &study.kind {
+        StudyKind::Motion(motion) => run_motion(model, &study.name, motion, progress),
+        StudyKind::Forces(forces) => {
+            let mut result = run_along(model, &study.name, forces, true, progress)?;
+            if !something_acts(model) {
+                result.warnings.push(nothing_acts());
+            }
+            Ok(result)
+        }
+        StudyKind::Balance(choice) => balance(model, &study.name, choice, progress),
+        StudyKind::Spring(choice) => spring(model, &study.name, choice, progress),
+    }
+}
+
+/// Forces are asked for where there are none.
+pub(crate) fn nothing_acts() -> Diagnostic {
+    Diagnostic::warning(
+        "nothing-acts",
+        "nothing acts on the mechanism: there are no forces",
+    )
+    .note("links have no mass unless it is given")
+    .help("say what acts: mass = \"1 kg\" of a link, or [loads], [springs], [dampers]")
+}
+
+/// Runs a motion study called `name`.
+///
+/// # Errors
+///
+/// See [`run`].
+pub fn run_motion(
+    model: &Model,
+    name: &str,
+    study: &MotionStudy,
+    progress: &mut dyn Progress,
+) -> Result<StudyResult, Vec<Diagnostic>> {
+    if study.circuit {
+        return run_circuit(model, name, study, progress);
+    }
+    run_along(model, name, study, false, progress)
+}
