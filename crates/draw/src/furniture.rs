@@ -1,11 +1,11 @@
 //! Scale bar, title and caption of a drawing.
 
-use crate::number_format::{decade, power_of_ten, significant};
 use crate::scene::{Align, Group, Item, Layer, Path, Style, Text};
 use crate::stage::Stage;
 use crate::text::shortened;
 use crate::tokens::Token;
 use crate::view::Frame;
+use kempe_number::text::{decade, power_of_ten, significant};
 
 /// About how long a scale bar is, as a share of the sheet's width.
 const BAR_SHARE: f64 = 0.22;

@@ -27,11 +27,12 @@
 
 mod context;
 pub mod dxf;
+mod escape;
 mod fit;
 mod furniture;
 mod hull;
 mod loads;
-pub mod number_format;
+mod picture;
 pub mod plot;
 #[cfg(feature = "raster")]
 pub mod raster;

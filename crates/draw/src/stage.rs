@@ -4,10 +4,9 @@ use kempe_number::math::sin_cos;
 
 use crate::context::{Anchor, Context, link_angle, point, reference_frame};
 use crate::fit::{Bounds, Fit, Margins};
-use crate::furniture;
 use crate::loads::{LEAST_SCALE, LoadSheet, SHARES};
 use crate::roles::Roles;
-use crate::scene::{Group, Layer, Point, Scene};
+use crate::scene::{Group, Layer, Point};
 use crate::symbols::{self, Part};
 use crate::trace::TracePath;
 use crate::view::{Frame, JointView, MechanismView};
@@ -182,41 +181,8 @@ impl<'a> Stage<'a> {
         self.context.fit.scale
     }
 
-    /// The picture of one pose. Past the last pose, or where a pose cannot be drawn, it shows what there is.
-    pub fn scene(&self, index: usize) -> Scene {
-        let frame = self.context.frames.get(index);
-        let mut groups = Vec::new();
-        for &ghost in &self.options.ghosts {
-            groups.extend(self.ghost(ghost));
-        }
-        for trace in &self.traces {
-            groups.extend(trace.groups(index));
-        }
-        if let Some(frame) = frame {
-            groups.extend(self.pose(frame));
-        }
-        groups.extend(furniture::groups(self, frame));
-        if let Some(loads) = &self.loads {
-            groups.extend(loads.groups(&self.context, index));
-            let furniture = self.options.scale_bar || self.options.caption;
-            groups.push(loads.legend.group(if furniture { 9.5 } else { 2.0 }));
-        }
-        groups.sort_by_key(|group| group.layer);
-        let [width, height] = self.size();
-        let mut title = self.context.view.title.clone();
-        if let Some(label) = frame.map(|f| f.label.as_str()).filter(|l| !l.is_empty()) {
-            title = format!("{title}: {label}");
-        }
-        Scene {
-            width,
-            height,
-            title,
-            groups,
-        }
-    }
-
     /// The mechanism itself in a pose, each group with the number of its part as key.
-    fn pose(&self, frame: &Frame) -> Vec<Group> {
+    pub(crate) fn pose(&self, frame: &Frame) -> Vec<Group> {
         let group = |(number, part): (usize, &Part)| {
             let place = self.context.place(frame, part.anchor)?;
             Some(Group {
@@ -229,7 +195,7 @@ impl<'a> Stage<'a> {
         self.parts.iter().enumerate().filter_map(group).collect()
     }
 
-    fn ghost(&self, index: usize) -> Vec<Group> {
+    pub(crate) fn ghost(&self, index: usize) -> Vec<Group> {
         let Some(frame) = self.context.frames.get(index) else {
             return Vec::new();
         };

@@ -2,9 +2,10 @@
 
 use std::fmt::Write as _;
 
-use crate::number_format::{escape, fixed};
+use crate::escape::escape;
 use crate::scene::{Align, Group, Item, Paint, Path, Place, Point, Scene, Style, Text, distance};
 use crate::tokens::{Theme, Token};
+use kempe_number::text::fixed;
 
 /// Fonts to try, in order.
 const FONTS: &str =

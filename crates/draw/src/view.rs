@@ -1,7 +1,7 @@
 //! What to draw: a mechanism and its poses as plain data. SI units: lengths m, angles rad counter-clockwise from +x.
 
 use crate::loads::LoadView;
-use crate::number_format::{significant, with_prefix};
+use kempe_number::text::{significant, with_prefix};
 
 /// A unit in which lengths are shown.
 #[derive(Clone, Debug, PartialEq)]

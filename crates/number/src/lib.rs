@@ -14,6 +14,7 @@ mod lanes;
 pub mod math;
 mod number;
 mod operators;
+pub mod text;
 
 pub use complex::Complex;
 pub use dispatch::InstructionSet;

@@ -1,12 +1,12 @@
 //! What acts on a mechanism, as the check tells it: what is assumed, and what makes forces meaningless.
 
-use kempe_draw::number_format::significant;
 use kempe_dynamics::Acting;
 use kempe_dynamics::acting::GRAVITY;
 use kempe_mechanism::Design;
 use kempe_model::{
     Center, Diagnostic, DriveId, Friction, FrictionAt, Model, Study, StudyKind, value,
 };
+use kempe_number::text::significant;
 use kempe_units::Dimension;
 
 use crate::unit::Units;

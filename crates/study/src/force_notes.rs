@@ -97,7 +97,7 @@ pub(crate) fn place(table: &Table, along: usize, row: usize) -> String {
         return format!("row {row}");
     };
     let at = column.values.get(row).copied().unwrap_or(f64::NAN);
-    let digits = kempe_draw::number_format::significant(at, 8);
+    let digits = kempe_number::text::significant(at, 8);
     format!("{} = {digits} {}", column.name, column.unit.text())
         .trim_end()
         .to_owned()

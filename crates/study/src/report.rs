@@ -94,7 +94,7 @@ fn listings(result: &StudyResult) -> impl Iterator<Item = Section> + '_ {
 
 fn scalar_facts(result: &StudyResult) -> Vec<(String, String)> {
     let fact = |s: &crate::result::Scalar| {
-        let value = kempe_draw::number_format::significant(s.value, 12);
+        let value = kempe_number::text::significant(s.value, 12);
         let text = format!("{value} {}", s.unit.text());
         (s.name.clone(), text.trim_end().to_owned())
     };
@@ -153,8 +153,8 @@ fn summary(result: &StudyResult) -> String {
                 "{} rows, {} from {} to {} {}",
                 result.table.rows(),
                 x.name,
-                kempe_draw::number_format::significant(*a, 8),
-                kempe_draw::number_format::significant(*b, 8),
+                kempe_number::text::significant(*a, 8),
+                kempe_number::text::significant(*b, 8),
                 x.unit.text()
             ),
             _ => String::new(),

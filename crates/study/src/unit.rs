@@ -82,7 +82,7 @@ impl Units {
         let [at, low, high] = [si, range.0, range.1].map(|v| unit.from_si(v));
         let size = [low, high].into_iter().filter(|v| v.is_finite());
         let size = size.fold(at.abs(), |size, v| size.max(v.abs()));
-        let decimals = PLACE_DIGITS - 1 - kempe_draw::number_format::decade(size);
+        let decimals = PLACE_DIGITS - 1 - kempe_number::text::decade(size);
         let rounded = match usize::try_from(decimals) {
             Ok(decimals) => format!("{at:.decimals$}").parse().unwrap_or(at),
             Err(_) => at,
@@ -105,7 +105,7 @@ pub fn shown(si: f64, unit: &Unit) -> f64 {
 
 /// A number rounded to 15 significant digits.
 pub(crate) fn rounded(value: f64) -> f64 {
-    format!("{value:.14e}").parse().unwrap_or(value)
+    kempe_number::text::rounded(value, 15)
 }
 
 #[cfg(test)]

@@ -309,7 +309,7 @@ pub fn drawing_frames(model: &Model, result: &StudyResult) -> Vec<DrawnFrame> {
         .map(|(row, frame)| {
             let label = abscissa.map(|column| {
                 let at = column.values.get(row).copied().unwrap_or(f64::NAN);
-                let digits = kempe_draw::number_format::significant(at, 6);
+                let digits = kempe_number::text::significant(at, 6);
                 format!("{} = {digits} {}", column.name, column.unit.text())
             });
             drawn(

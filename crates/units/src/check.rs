@@ -320,7 +320,7 @@ impl<R: ?Sized> Checker<'_, R> {
         let [(left, left_is), (right, right_is)] = sides;
         for (node, wanted) in [(right, left_is), (left, right_is)] {
             if let Some(value) = node.as_bare_number() {
-                let number = crate::unit::format_number(value);
+                let number = kempe_number::text::shortest(value);
                 let unit = self.unit_of(wanted);
                 return Issue::new("unit-mismatch", node.span.clone(), message)
                     .with_label("this is a number")
@@ -389,7 +389,7 @@ impl<R: ?Sized> Checker<'_, R> {
             let message = format!(
                 "{} has no power {}",
                 base_is.with_article(),
-                crate::unit::format_number(constant)
+                kempe_number::text::shortest(constant)
             );
             let help = "the exponents of a unit are whole numbers, halves, thirds or sixths";
             return one(Issue::new("bad-exponent", node.span.clone(), message).with_help(help));
@@ -573,7 +573,7 @@ const INSTEAD: &[(&str, &str)] = &[
 /// Help where a trigonometric function got no angle.
 fn angle_help(builtin: Builtin, argument: &Node, found: Dimension) -> String {
     if let Some(value) = argument.as_bare_number() {
-        let number = crate::unit::format_number(value);
+        let number = kempe_number::text::shortest(value);
         return format!(
             "give it a unit: write `{builtin}({number} deg)` or `{builtin}({number} rad)`"
         );
@@ -650,9 +650,9 @@ fn divided_unit(node: &Node, found: Dimension, expected: Dimension) -> Option<St
     }
     let (unit, below) = (
         quantity.unit.text(),
-        crate::unit::format_number(quantity.value),
+        kempe_number::text::shortest(quantity.value),
     );
-    let above = crate::unit::format_number(numerator);
+    let above = kempe_number::text::shortest(numerator);
     let value = crate::unit::format_digits(numerator / quantity.value, &Unit::one(), 12);
     Some(format!(
         "a unit binds tighter than `/`: write `{value} {unit}` or `{above}/{below} * 1 {unit}`"

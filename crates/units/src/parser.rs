@@ -42,8 +42,8 @@ use crate::Unit;
 use crate::issue::{Issue, Span, SyntaxError};
 use crate::lexer::{Token, tokens, too_large};
 use crate::syntax::{BinaryOp, CONSTANTS, Comparison, Condition, Kind, Node, Quantity};
-use crate::unit::{format_digits, format_number};
 use crate::unit_table::{find, foreign, instead_of};
+use kempe_number::text::{rounded, shortest};
 
 /// The longest text that is read, in bytes.
 pub const MAX_LENGTH: usize = 4096;
@@ -588,7 +588,7 @@ impl<'t> Parser<'t> {
         let constant = CONSTANTS.iter().any(|(constant, _)| *constant == name);
         let unit = find(&name).is_some() || instead_of(&name).is_some();
         if calls || constant || foreign(&name).is_some() || !unit {
-            let number = format_number(value);
+            let number = shortest(value);
             let product = format!("for a product write `{number}*{name}`");
             let issue = match calls || constant {
                 true => self
@@ -599,7 +599,7 @@ impl<'t> Parser<'t> {
                     match foreign(&name) {
                         Some((factor, unit_of_ours)) => unit.with_help(format!(
                             "write `{} {unit_of_ours}`",
-                            format_digits(value * factor, &Unit::one(), 6)
+                            shortest(rounded(value * factor, 6))
                         )),
                         None => unit.with_help(product),
                     }

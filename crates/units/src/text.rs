@@ -3,9 +3,9 @@
 use std::fmt;
 
 use crate::syntax::{BinaryOp, Condition, Kind, Node};
-use crate::unit::format_number;
 use crate::unit_table::find;
 use crate::{Builtin, Expr};
+use kempe_number::text::shortest;
 
 /// How tightly a text holds together.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -90,9 +90,9 @@ impl Node {
 impl fmt::Display for Node {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.kind {
-            Kind::Number(value) => f.write_str(&format_number(*value)),
+            Kind::Number(value) => f.write_str(&shortest(*value)),
             Kind::Quantity(quantity) => {
-                write!(f, "{} {}", format_number(quantity.value), quantity.unit)
+                write!(f, "{} {}", shortest(quantity.value), quantity.unit)
             }
             Kind::Name(name) | Kind::Point(name) => f.write_str(name),
             Kind::Call {
@@ -173,7 +173,7 @@ impl<L: fmt::Display> fmt::Display for Expr<L> {
             bracket(f, b.level() <= op.level(), b)
         };
         match self {
-            Self::Const(value) => f.write_str(&format_number(*value)),
+            Self::Const(value) => f.write_str(&shortest(*value)),
             Self::Leaf(leaf) => write!(f, "{leaf}"),
             Self::Neg(a) => {
                 f.write_str("-")?;
@@ -191,7 +191,7 @@ impl<L: fmt::Display> fmt::Display for Expr<L> {
             Self::Powf(a, p) => {
                 bracket(f, a.level() < Level::Atom, a)?;
                 f.write_str("^")?;
-                bracket(f, *p < 0.0, &format_number(*p))
+                bracket(f, *p < 0.0, &shortest(*p))
             }
             Self::Call(builtin, arguments) => list(f, builtin.name(), arguments),
         }

@@ -1,5 +1,6 @@
 //! Units made of the table's: products, quotients and powers, and values written in them.
 
+use kempe_number::text::{rounded, shortest};
 use std::fmt;
 use std::str::FromStr;
 
@@ -210,20 +211,10 @@ pub fn format_value(si: f64, unit: &Unit) -> String {
 
 /// The value `si` in `unit`, rounded to `digits` significant digits (at least one, at most 17), without idle zeros.
 pub fn format_digits(si: f64, unit: &Unit, digits: usize) -> String {
-    let digits = digits.clamp(1, 17);
-    let rounded = format!("{:.*e}", digits - 1, unit.from_si(si))
-        .parse()
-        .unwrap_or(f64::NAN);
-    let number = format_number(rounded);
+    let number = shortest(rounded(unit.from_si(si), digits));
     if unit.text.is_empty() {
         number
     } else {
         format!("{number} {unit}")
     }
-}
-
-/// The shortest text that reads back as `value`; never "5.0", and `e` notation where plain digits get long.
-pub(crate) fn format_number(value: f64) -> String {
-    let text = format!("{value:?}");
-    text.strip_suffix(".0").unwrap_or(&text).to_owned()
 }

@@ -367,7 +367,7 @@ fn summary(outcomes: &[StudyOutcome<'_>], folder: Option<&Path>, files: &[PathBu
             .max()
             .unwrap_or(0);
         for scalar in &result.scalars {
-            let value = kempe_draw::number_format::significant(scalar.value, 12);
+            let value = kempe_number::text::significant(scalar.value, 12);
             out.push_str(
                 format!("  {:width$}  {value} {}", scalar.name, scalar.unit.text()).trim_end(),
             );

@@ -2,11 +2,11 @@
 
 use super::arrow::{HEAD, TURN};
 use super::{LoadRole, Quantity, Shape};
-use crate::number_format::{decade, power_of_ten};
 use crate::scene::{Group, Item, Layer, Text};
 use crate::text::{shortened, width as text_width};
 use crate::tokens::Token;
 use crate::view::LoadUnit;
+use kempe_number::text::{decade, power_of_ten};
 
 /// Font size, mm.
 const SIZE: f64 = 3.0;

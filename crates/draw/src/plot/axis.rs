@@ -2,7 +2,7 @@
 
 use kempe_number::math::ln;
 
-use crate::number_format::{decade, fixed, power_of_ten, significant};
+use kempe_number::text::{decade, fixed, power_of_ten, significant};
 
 /// Values beyond this are not drawn.
 const LARGEST: f64 = 1e290;

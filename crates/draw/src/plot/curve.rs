@@ -2,7 +2,7 @@
 
 use super::Curve;
 use super::axis::Scale;
-use super::draw::Frame;
+use super::frame::Frame;
 use crate::scene::{Path, Point, distance};
 
 /// Samples closer than this on paper (mm) are drawn as one.

@@ -2,6 +2,7 @@
 
 use super::axis::{Scale, Ticks, power_text};
 use super::curve::curve_paths;
+use super::frame::Frame;
 use super::{Curve, Limit, MarkerKind, PlotPicture, PlotSpec, hodograph};
 use crate::scene::{Align, Group, Item, Layer, Path, Scene, Style, Text};
 use crate::text::{shortened, width as text_width};
@@ -11,9 +12,6 @@ use crate::tokens::Token;
 const SMALL: f64 = 2.9;
 const MEDIUM: f64 = 3.2;
 const LARGE: f64 = 3.8;
-
-/// The inside of the axes: left, bottom, right, top, mm.
-pub(super) type Frame = [f64; 4];
 
 pub(super) fn draw(plot: &PlotSpec, width: f64, height: f64) -> PlotPicture {
     let named: Vec<(usize, &Curve)> = plot

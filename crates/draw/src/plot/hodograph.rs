@@ -1,13 +1,13 @@
 //! A vector over a motion: its tail at the origin, its tip along a curve, some tips named by the drive.
 
 use super::axis::Scale;
-use super::draw::Frame;
+use super::frame::Frame;
 use super::{Curve, PlotSpec};
 use crate::loads::Quantity;
-use crate::number_format::significant;
 use crate::scene::{Align, Group, Item, Layer, Path, Point, Style, Text, distance};
 use crate::text::width as text_width;
 use crate::tokens::Token;
+use kempe_number::text::significant;
 
 /// Into how many intervals the named tips divide the motion.
 const INTERVALS: usize = 8;

@@ -3,7 +3,7 @@
 use super::Curve;
 use super::axis::Scale;
 use super::curve::{curve_paths, thinned};
-use super::draw::Frame;
+use super::frame::Frame;
 use crate::scene::{Group, Item, Layer, Path, Point, Style, Text, distance};
 use crate::text::{shortened, width as text_width};
 use crate::tokens::Token;

@@ -3,6 +3,7 @@
 mod axis;
 mod curve;
 mod draw;
+mod frame;
 mod hodograph;
 mod limit;
 

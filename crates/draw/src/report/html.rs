@@ -1,7 +1,7 @@
 //! The page: template, style and script put together.
 
 use super::{Report, motion, sections};
-use crate::number_format::escape;
+use crate::escape::escape;
 use crate::tokens;
 
 const TEMPLATE: &str = include_str!("template.html");

@@ -1,6 +1,6 @@
 //! JSON that is safe inside a `script` element.
 
-use crate::number_format::{fixed, significant};
+use kempe_number::text::{fixed, significant};
 
 /// A string literal. Nothing in it can end the script element or a line.
 pub(super) fn string(text: &str) -> String {

@@ -3,10 +3,11 @@
 use super::data::{self, Rows};
 use super::{MotionReport, loads, sections};
 use crate::context::complete;
-use crate::number_format::{escape, significant};
+use crate::escape::escape;
 use crate::plot::PlotPicture;
 use crate::stage::{DrawOptions, Stage};
 use crate::svg;
+use kempe_number::text::significant;
 
 /// Width of the stage and size of a plot, mm; the page scales them.
 const STAGE: [f64; 2] = [170.0, 150.0];

@@ -1,7 +1,8 @@
 //! Findings and evidence as HTML.
 
 use super::{Block, Check, Evidence, Level, MotionReport, Section};
-use crate::number_format::{escape, significant};
+use crate::escape::escape;
+use kempe_number::text::significant;
 
 /// Most rows of a table that are written out.
 const MOST_TABLE_ROWS: usize = 500;

@@ -353,7 +353,7 @@ fn harmonics_of(
     let (before, after) = (found(before)?, found(after)?);
     let size = |list: &[[f64; 2]], k: usize| {
         let [re, im] = list.get(k).copied().unwrap_or_default();
-        kempe_draw::number_format::significant(math::hypot(re, im), 5)
+        kempe_number::text::significant(math::hypot(re, im), 5)
     };
     let rows = (0..HARMONICS).map(|k| {
         vec![

@@ -86,22 +86,18 @@ pub fn power_of_ten(power: i32) -> f64 {
     format!("1e{power}").parse().unwrap_or(f64::INFINITY)
 }
 
-/// Text with `&`, `<`, `>`, quotes and control characters made safe for HTML and SVG, in text and in attributes.
-pub fn escape(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            '\'' => out.push_str("&#39;"),
-            '\n' | '\t' => out.push(c),
-            c if c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}') => out.push('\u{fffd}'),
-            c => out.push(c),
-        }
-    }
-    out
+/// The shortest text that reads back as `value`; never "5.0", and `e` notation where plain digits get long.
+pub fn shortest(value: f64) -> String {
+    let text = format!("{value:?}");
+    text.strip_suffix(".0").unwrap_or(&text).to_owned()
+}
+
+/// `value` rounded to `digits` significant digits (at least one, at most 17).
+pub fn rounded(value: f64, digits: usize) -> f64 {
+    let digits = digits.clamp(1, 17);
+    format!("{value:.*e}", digits - 1)
+        .parse()
+        .unwrap_or(f64::NAN)
 }
 
 #[cfg(test)]
