@@ -5,7 +5,7 @@
 
 use kempe_model::DriveId;
 
-use crate::blocks::{Block, Decomposition, Row, Unknown, decompose};
+use crate::blocks::{Block, Decomposition, Row, Unknown, by_constraint, decompose};
 use crate::mechanism::{BodyId, LineRef, Marker, Mechanism};
 use crate::recognise::recognise;
 
@@ -258,6 +258,8 @@ pub struct NewtonBlock {
     pub size: usize,
     /// Constraints with the rows used; the first `size` rows belong to the square system.
     pub rows: Vec<Row>,
+    /// The rows by constraint: its index, with the places of its two rows among `rows`.
+    pub constraints: Vec<(usize, [Option<usize>; 2])>,
 }
 
 /// How the pose is found.
@@ -349,11 +351,12 @@ fn newton_block(block: &Block) -> NewtonBlock {
         columns.push(size);
         size += unknown.size();
     }
-    let rows = block.rows.iter().chain(&block.surplus).copied().collect();
+    let rows: Vec<Row> = block.rows.iter().chain(&block.surplus).copied().collect();
     NewtonBlock {
         unknowns: block.unknowns.clone(),
-        columns,
         size,
+        constraints: by_constraint(&rows),
+        columns,
         rows,
     }
 }
