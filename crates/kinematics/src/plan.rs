@@ -7,6 +7,7 @@ use kempe_model::DriveId;
 
 use crate::blocks::{Block, Decomposition, Row, Unknown, by_constraint, decompose};
 use crate::mechanism::{BodyId, LineRef, Marker, Mechanism};
+use crate::newton::SpanningTree;
 use crate::recognise::recognise;
 
 /// A condition on a body whose other side is already placed.
@@ -260,6 +261,8 @@ pub struct NewtonBlock {
     pub rows: Vec<Row>,
     /// The rows by constraint: its index, with the places of its two rows among `rows`.
     pub constraints: Vec<(usize, [Option<usize>; 2])>,
+    /// The spanning tree of pins in whose coordinates it is solved; without one, in the poses of all its bodies.
+    pub tree: Option<SpanningTree>,
 }
 
 /// How the pose is found.
@@ -328,7 +331,7 @@ impl Plan {
             let step = match recognise(mechanism, block, plan.dyads) {
                 Some(step) => step,
                 None => {
-                    plan.newton_blocks.push(newton_block(block));
+                    plan.newton_blocks.push(newton_block(mechanism, block));
                     Step::Newton {
                         block: plan.newton_blocks.len() - 1,
                     }
@@ -344,7 +347,7 @@ impl Plan {
     }
 }
 
-fn newton_block(block: &Block) -> NewtonBlock {
+fn newton_block(mechanism: &Mechanism, block: &Block) -> NewtonBlock {
     let mut columns = Vec::new();
     let mut size = 0;
     for unknown in &block.unknowns {
@@ -356,6 +359,7 @@ fn newton_block(block: &Block) -> NewtonBlock {
         unknowns: block.unknowns.clone(),
         size,
         constraints: by_constraint(&rows),
+        tree: SpanningTree::new(mechanism, block, &columns),
         columns,
         rows,
     }
