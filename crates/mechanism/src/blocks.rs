@@ -5,7 +5,7 @@
 //! sets that must be solved at once (Dulmage and Mendelsohn 1958). For lower pairs with one drive these are the Assur
 //! groups, split further where an angle is known before a place.
 
-use std::collections::VecDeque;
+use std::collections::{BTreeMap, VecDeque};
 
 use crate::structure::{BodyId, Constraint, Marker, Structure};
 
@@ -63,27 +63,17 @@ pub struct Row {
 /// A constraint's index with the places of its two rows among those asked for.
 pub type ConstraintRows = (usize, [Option<usize>; 2]);
 
-/// Calls `f` for every constraint that has one of the rows, with the places of its rows among them.
-pub(crate) fn for_each_constraint(rows: &[Row], mut f: impl FnMut(usize, [Option<usize>; 2])) {
-    for (place, &Row { constraint, row }) in rows.iter().enumerate() {
-        if rows[..place].iter().any(|r| r.constraint == constraint) {
-            continue;
-        }
-        let mut at = [None; 2];
-        at[row] = Some(place);
-        for (later, r) in rows.iter().enumerate().skip(place + 1) {
-            if r.constraint == constraint {
-                at[r.row] = Some(later);
-            }
-        }
-        f(constraint, at);
-    }
-}
-
 /// Rows by constraint, in the order of the constraints' first rows.
 pub fn by_constraint(rows: &[Row]) -> Vec<ConstraintRows> {
-    let mut list = Vec::new();
-    for_each_constraint(rows, |constraint, at| list.push((constraint, at)));
+    let mut list: Vec<ConstraintRows> = Vec::new();
+    let mut found = BTreeMap::new();
+    for (place, row) in rows.iter().enumerate() {
+        let index = *found.entry(row.constraint).or_insert_with(|| {
+            list.push((row.constraint, [None; 2]));
+            list.len() - 1
+        });
+        list[index].1[row.row] = Some(place);
+    }
     list
 }
 

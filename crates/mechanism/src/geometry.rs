@@ -200,35 +200,50 @@ impl<T: Number> Geometry<T> {
 
     /// Every dimension through `f`.
     pub fn map<U>(&self, f: impl Fn(T) -> U) -> Geometry<U> {
-        let pair = |v: &[T; 2]| [f(v[0]), f(v[1])];
-        Geometry {
-            seats: (self.seats.iter())
-                .map(|p| Pose {
-                    x: f(p.x),
-                    y: f(p.y),
-                    c: f(p.c),
-                    s: f(p.s),
-                })
-                .collect(),
-            seat_angles: self.seat_angles.iter().map(|a| f(*a)).collect(),
-            turns: self.turns.clone(),
-            markers: self.markers.iter().map(pair).collect(),
-            lines: (self.lines.iter())
-                .map(|l| LocalLine {
-                    origin: pair(&l.origin),
-                    direction: pair(&l.direction),
-                })
-                .collect(),
-            angles: self.angles.iter().map(pair).collect(),
-            gears: (self.gears.iter())
-                .map(|g| GearConstants {
-                    first: f(g.first),
-                    second: f(g.second),
-                    constant: f(g.constant),
-                })
-                .collect(),
-        }
+        let mut it = Geometry {
+            seats: Vec::new(),
+            seat_angles: Vec::new(),
+            turns: Vec::new(),
+            markers: Vec::new(),
+            lines: Vec::new(),
+            angles: Vec::new(),
+            gears: Vec::new(),
+        };
+        it.assign(self, f);
+        it
     }
+}
+
+impl<U> Geometry<U> {
+    /// Takes over every dimension of another design of the same mechanism through `f`, in the same storage.
+    pub(crate) fn assign<T: Copy>(&mut self, other: &Geometry<T>, f: impl Fn(T) -> U) {
+        let pair = |v: &[T; 2]| [f(v[0]), f(v[1])];
+        refill(&mut self.seats, &other.seats, |p| Pose {
+            x: f(p.x),
+            y: f(p.y),
+            c: f(p.c),
+            s: f(p.s),
+        });
+        refill(&mut self.seat_angles, &other.seat_angles, |a| f(*a));
+        self.turns.clone_from(&other.turns);
+        refill(&mut self.markers, &other.markers, pair);
+        refill(&mut self.lines, &other.lines, |l| LocalLine {
+            origin: pair(&l.origin),
+            direction: pair(&l.direction),
+        });
+        refill(&mut self.angles, &other.angles, pair);
+        refill(&mut self.gears, &other.gears, |g| GearConstants {
+            first: f(g.first),
+            second: f(g.second),
+            constant: f(g.constant),
+        });
+    }
+}
+
+/// Fills a list anew from another through `f`.
+fn refill<T, U>(list: &mut Vec<U>, from: &[T], f: impl Fn(&T) -> U) {
+    list.clear();
+    list.extend(from.iter().map(f));
 }
 
 impl Geometry<f64> {

@@ -5,7 +5,8 @@
 
 use kempe_model::DriveId;
 
-use crate::blocks::{Block, Decomposition, Row, Unknown, decompose};
+use crate::blocks::{Block, Decomposition, Row, Unknown, by_constraint, decompose};
+use crate::newton::SpanningTree;
 use crate::recognise::recognise;
 use crate::structure::{BodyId, LineRef, Marker, Structure};
 
@@ -258,6 +259,10 @@ pub struct NewtonBlock {
     pub size: usize,
     /// Constraints with the rows used; the first `size` rows belong to the square system.
     pub rows: Vec<Row>,
+    /// The rows by constraint: its index, with the places of its two rows among `rows`.
+    pub constraints: Vec<(usize, [Option<usize>; 2])>,
+    /// The spanning tree of pins in whose coordinates it is solved; without one, in the poses of all its bodies.
+    pub tree: Option<SpanningTree>,
 }
 
 /// How the pose is found.
@@ -326,7 +331,7 @@ impl Plan {
             let step = match recognise(structure, block, plan.dyads) {
                 Some(step) => step,
                 None => {
-                    plan.newton_blocks.push(newton_block(block));
+                    plan.newton_blocks.push(newton_block(structure, block));
                     Step::Newton {
                         block: plan.newton_blocks.len() - 1,
                     }
@@ -342,18 +347,20 @@ impl Plan {
     }
 }
 
-fn newton_block(block: &Block) -> NewtonBlock {
+fn newton_block(structure: &Structure, block: &Block) -> NewtonBlock {
     let mut columns = Vec::new();
     let mut size = 0;
     for unknown in &block.unknowns {
         columns.push(size);
         size += unknown.size();
     }
-    let rows = block.rows.iter().chain(&block.surplus).copied().collect();
+    let rows: Vec<Row> = block.rows.iter().chain(&block.surplus).copied().collect();
     NewtonBlock {
         unknowns: block.unknowns.clone(),
-        columns,
         size,
+        constraints: by_constraint(&rows),
+        tree: SpanningTree::new(structure, block, &columns),
+        columns,
         rows,
     }
 }

@@ -10,6 +10,7 @@ use crate::closed_form::{DYAD_CONSTANTS, dyad_constants};
 use crate::constraint::{Input, Situation};
 use crate::geometry::Geometry;
 use crate::known::Known;
+use crate::newton::{ON_STACK, SpanningTree};
 use crate::plan::{DyadBody, Step};
 use crate::pose::Pose;
 use crate::qr::Qr;
@@ -148,6 +149,12 @@ pub(crate) struct Scratch<T> {
     pub inputs: Vec<Input<f64>>,
     pub rhs: Vec<f64>,
     pub wide_rhs: Vec<T>,
+    pub points: Vec<[f64; 2]>,
+    pub wide_points: Vec<[T; 2]>,
+    /// Whether determinants of Newton blocks are wanted: they cost as much as a step.
+    pub determinants: bool,
+    /// The dimensions of one lane; none on numbers without lanes.
+    pub geometry: Option<Geometry<f64>>,
     pub qr: Qr,
 }
 
@@ -161,7 +168,11 @@ impl<T: Number> State<T> {
             .map(|b| b.rows.len())
             .max()
             .unwrap_or(0);
+        // Elimination on the stack always takes whole sizes.
+        let rows = if rows > 0 { rows.max(ON_STACK) } else { 0 };
         let columns = plan.newton_blocks.iter().map(|b| b.size).max().unwrap_or(0);
+        let trees = plan.newton_blocks.iter().filter_map(|b| b.tree.as_ref());
+        let points = trees.map(SpanningTree::points).max().unwrap_or(0);
         let drives = mechanism.model.drives.len();
         Self {
             inputs: vec![Input::length(T::zero()); drives],
@@ -172,9 +183,20 @@ impl<T: Number> State<T> {
                 inputs: vec![Input::length(0.0); drives],
                 rhs: vec![0.0; rows],
                 wide_rhs: vec![T::zero(); rows],
+                points: vec![[0.0; 2]; points],
+                wide_points: vec![[T::zero(); 2]; points],
+                determinants: true,
+                geometry: (T::IN_LANES && !plan.newton_blocks.is_empty())
+                    .then(|| Geometry::new(mechanism, &mechanism.model.parameter_values())),
                 qr: Qr::with_capacity(rows, columns),
             },
         }
+    }
+
+    /// The same storage for whom the determinants of Newton blocks are of no use: they become NaN.
+    pub fn without_determinants(mut self) -> Self {
+        self.scratch.determinants = false;
+        self
     }
 
     /// Sets the drives' coordinates (SI).

@@ -1,5 +1,5 @@
 //! Time per position of the general plan, beside kernels written by hand for one mechanism with the same formula, in the
-//! same run: `cargo bench -p kempe-motion` (with `-- closed-forms` not the Newton groups). The ratios count; the
+//! same run: `cargo bench -p kempe-kinematics` (with `-- closed-forms` not the Newton groups, with `-- newton` only these). The ratios count; the
 //! nanoseconds depend on the machine. A four-bar and an eight-bar: one design over a sweep, pose by pose and in lanes,
 //! with and without rates; many designs in lanes.
 //!
@@ -517,6 +517,20 @@ fn single_design(
     }
 }
 
+/// Columns of parameters within `spread` of the given ones, from a fixed sequence.
+fn varied(parameters: &[f64], spread: f64, designs: usize) -> Vec<f64> {
+    let mut seed = 1_u64;
+    let mut columns = vec![0.0; parameters.len() * designs];
+    for (i, value) in columns.iter_mut().enumerate() {
+        seed = seed
+            .wrapping_mul(6364136223846793005)
+            .wrapping_add(1442695040888963407);
+        let unit = (seed >> 11) as f64 / (1_u64 << 53) as f64;
+        *value = parameters[i / designs] * (1.0 + spread * (2.0 * unit - 1.0));
+    }
+    columns
+}
+
 /// A kernel for columns of parameters and the drive's directions.
 type DesignsKernel = fn(InstructionSet, &[f64], &[(f64, f64)], &mut [f64]);
 
@@ -528,16 +542,7 @@ fn many_designs(title: &str, loaded: &Loaded, point: &str, spread: f64, kernel: 
         .map(|i| 0.01 + 6.2 * i as f64 / PLACES as f64)
         .collect();
     let directions: Vec<(f64, f64)> = at.iter().map(|q| Number::sin_cos(*q)).collect();
-    // From a fixed sequence.
-    let mut seed = 1_u64;
-    let mut columns = vec![0.0; loaded.parameters.len() * DESIGNS];
-    for (i, value) in columns.iter_mut().enumerate() {
-        seed = seed
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
-        let unit = (seed >> 11) as f64 / (1_u64 << 53) as f64;
-        *value = loaded.parameters[i / DESIGNS] * (1.0 + spread * (2.0 * unit - 1.0));
-    }
+    let columns = varied(&loaded.parameters, spread, DESIGNS);
     let designs = Designs {
         values: &columns,
         count: DESIGNS,
@@ -565,69 +570,115 @@ fn many_designs(title: &str, loaded: &Loaded, point: &str, spread: f64, kernel: 
     }
 }
 
+/// The door lock with its lengths as parameters, within which it can be varied.
+fn lock_with_parameters() -> String {
+    let lengths = [
+        ("O-A", 230),
+        ("A-B", 430),
+        ("A-E", 700),
+        ("B-E", 315),
+        ("D-B", 210),
+        ("D-G", 505),
+        ("B-G", 330),
+        ("F-G", 380),
+        ("E-F", 300),
+    ];
+    let mut text = example("seeds/door-lock");
+    let mut table = String::from("[parameters]\n");
+    for (k, (name, length)) in lengths.iter().enumerate() {
+        text = text.replace(&format!("{name} = {length}"), &format!("{name} = \"p{k}\""));
+        table += &format!("p{k} = \"{length} mm\"\n");
+    }
+    text.replacen("[parameters]\n", &table, 1)
+}
+
+/// A Newton group in the coordinates of its spanning tree, beside the same in the poses of all its bodies.
 fn newton() {
-    let loaded = Loaded::new("seeds/door-lock");
-    let design = loaded.design::<f64>();
-    let motion = loaded.motion(&design);
+    println!(
+        "{:<58} {:>9} {:>9} {:>8}",
+        "ns per position", "tree", "bodies", "ratio"
+    );
+    let text = lock_with_parameters();
+    let loaded = Loaded::from_text("door-lock", &text);
+    let mut slow = Loaded::from_text("door-lock", &text);
+    let mut mechanism = (*slow.mechanism).clone();
+    for block in &mut mechanism.plan.newton_blocks {
+        block.tree = None;
+    }
+    slow.mechanism = Arc::new(mechanism);
+    let motion = loaded.motion(&loaded.design());
+    let slow_motion = slow.motion(&slow.design());
+    // Short of the change point, which other lengths would make a limit.
     let (low, high) = motion.reached();
-    let rows = 512;
-    let at: Vec<f64> = (0..rows)
-        .map(|i| low + (high - low) * (i as f64 + 0.5) / rows as f64)
-        .collect();
-    let mut out = vec![0.0; 2 * 16 * rows];
-    let batch = Batch::new(&motion, &[loaded.point("G")]).expect("a point");
+    let places = |count: usize| -> Vec<f64> {
+        (0..count)
+            .map(|i| low + 0.8 * (high - low) * (i as f64 + 0.5) / count as f64)
+            .collect()
+    };
+    let at = places(512);
+    let rows = at.len();
+    let point = [loaded.point("G")];
+    let (mut tree, mut bodies) = (vec![0.0; 2 * rows], vec![0.0; 2 * rows]);
+    let batches = [&motion, &slow_motion].map(|m| Batch::new(m, &point).expect("a point"));
     let best = compare(
         rows,
-        vec![Box::new(|| {
-            black_box(batch.sweep(black_box(&at), black_box(&mut out[..2 * rows])))
-                .expect("lengths fit");
-        })],
+        vec![
+            Box::new(|| {
+                let closed = batches[0].sweep(black_box(&at), black_box(&mut tree));
+                assert_eq!(closed, Ok(rows));
+            }),
+            Box::new(|| {
+                let closed = batches[1].sweep(black_box(&at), black_box(&mut bodies));
+                assert_eq!(closed, Ok(rows));
+            }),
+        ],
     );
-    alone(
-        "door lock, a Newton group, one at a time",
-        "ns/pose",
-        best[0],
-    );
-    let values = loaded.parameters.repeat(16);
+    same(&tree, &bodies);
+    report("door lock, one at a time", best[0], best[1]);
+    let (rich, slow_rich) = (loaded.design::<Rates>(), slow.design::<Rates>());
+    let sweep = |motion: &Motion, rich: &Design<Rates>| {
+        sweep_states(motion, rich, black_box(&at), Rates::variable, |_, state| {
+            black_box(state.map(|s| s.poses[1].x));
+        });
+    };
     let best = compare(
         rows,
-        vec![Box::new(|| {
-            for chunk in at.chunks(8) {
-                let one = Designs {
-                    values: &values,
-                    count: 16,
-                    layout: Layout::ByDesign,
-                };
-                let out = &mut out[..2 * 16 * chunk.len()];
-                black_box(batch.designs(black_box(one), chunk, out)).expect("lengths fit");
-            }
-        })],
+        vec![
+            Box::new(|| sweep(&motion, &rich)),
+            Box::new(|| sweep(&slow_motion, &slow_rich)),
+        ],
     );
-    alone(
-        "door lock, a Newton group, designs in lanes",
-        "ns/pose",
-        best[0] / 16.0,
-    );
-    let rich = loaded.design::<Rates>();
-    let best = compare(
-        rows,
-        vec![Box::new(|| {
-            sweep_states(
-                &motion,
-                &rich,
-                black_box(&at),
-                Rates::variable,
-                |_, state| {
-                    black_box(state.map(|s| s.poses[1].x));
-                },
-            );
-        })],
-    );
-    alone(
-        "door lock, with velocity and acceleration",
-        "ns/pose",
-        best[0],
-    );
+    report("door lock, v and a, one at a time", best[0], best[1]);
+
+    let columns = varied(&loaded.parameters, 0.002, 128);
+    let designs = Designs {
+        values: &columns,
+        count: 128,
+        layout: Layout::ByParameter,
+    };
+    let at = places(PLACES);
+    let rows = designs.count * at.len();
+    let (mut tree, mut bodies) = (vec![0.0; 2 * rows], vec![0.0; 2 * rows]);
+    for set in sets() {
+        let batches = batches.clone().map(|batch| batch.with_instructions(set));
+        let best = compare(
+            rows,
+            vec![
+                Box::new(|| {
+                    let closed = batches[0].designs(black_box(designs), &at, black_box(&mut tree));
+                    assert_eq!(closed, Ok(rows));
+                }),
+                Box::new(|| {
+                    let closed =
+                        batches[1].designs(black_box(designs), &at, black_box(&mut bodies));
+                    assert_eq!(closed, Ok(rows));
+                }),
+            ],
+        );
+        same(&tree, &bodies);
+        let title = format!("door lock, 128 designs at {PLACES} places, {set:?}");
+        report(&title, best[0], best[1]);
+    }
 }
 
 fn motions() {
@@ -650,6 +701,11 @@ fn main() {
         return;
     }
     println!("best instruction set: {:?}", InstructionSet::detect());
+    if std::env::args().any(|a| a == "newton") {
+        newton();
+        motions();
+        return;
+    }
     println!(
         "{:<58} {:>9} {:>9} {:>8}",
         "ns per position", "plan", "by hand", "ratio"

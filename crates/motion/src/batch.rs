@@ -29,7 +29,7 @@ use kempe_mechanism::plan::Step;
 use kempe_mechanism::structure::Marker;
 
 use self::columns::{check_length, split_columns};
-use self::designs::{Places, solve_designs, solve_guessed};
+use self::designs::{Places, solve_designs, solve_guessed, solve_trees};
 use self::order::Order;
 use self::stretch::{Stretch, stretches};
 use self::sweep::{sweep_one_by_one, sweep_positions, sweep_rates};
@@ -263,10 +263,17 @@ impl Batch {
         check_length("out", designs.count * at.len() * self.columns(), out.len())?;
         let places = Places::new(self, at);
         let runs = &places.runs(self);
-        let piece = if self.needs_guess {
-            solve_guessed
-        } else {
+        let plan = &self.motion.mechanism().plan;
+        let in_lanes = |step: &Step| match step {
+            Step::Newton { block } => plan.newton_blocks[*block].tree_in_lanes().is_some(),
+            step => !step.needs_guess(),
+        };
+        let piece = if !self.needs_guess {
             solve_designs
+        } else if plan.steps.iter().all(in_lanes) {
+            solve_trees
+        } else {
+            solve_guessed
         };
         let mut closed = vec![0; designs.count.div_ceil(DESIGNS_PER_TASK)];
         let tasks = (split_columns(out, designs.count, DESIGNS_PER_TASK).into_iter())

@@ -3,7 +3,7 @@
 use kempe_number::Number;
 
 use crate::Mechanism;
-use crate::blocks::{Unknown, for_each_constraint};
+use crate::blocks::Unknown;
 use crate::constraint::Situation;
 use crate::plan::NewtonBlock;
 use crate::pose::Pose;
@@ -17,8 +17,8 @@ pub(super) fn factor_block(
     qr: &mut Qr,
 ) {
     qr.reset(block.rows.len(), block.size);
-    for_each_constraint(&block.rows, |constraint, at| {
-        situation.gradients(&mechanism.constraints[constraint].0, |gradient| {
+    for (constraint, at) in &block.constraints {
+        situation.gradients(&mechanism.constraints[*constraint].0, |gradient| {
             let Some(row) = at[gradient.row] else { return };
             for (unknown, &column) in block.unknowns.iter().zip(&block.columns) {
                 if unknown.body() != gradient.body {
@@ -33,7 +33,7 @@ pub(super) fn factor_block(
                 }
             }
         });
-    });
+    }
     qr.factor();
 }
 
@@ -44,14 +44,14 @@ pub(super) fn fill_residuals<T: Number>(
     situation: &Situation<'_, T>,
     rhs: &mut [T],
 ) {
-    for_each_constraint(&block.rows, |constraint, at| {
-        let rows = situation.residual(&mechanism.constraints[constraint].0);
+    for (constraint, at) in &block.constraints {
+        let rows = situation.residual(&mechanism.constraints[*constraint].0);
         for k in 0..2 {
             if let Some(place) = at[k] {
                 rhs[place] = rows[k];
             }
         }
-    });
+    }
 }
 
 /// Takes a step off the poses.

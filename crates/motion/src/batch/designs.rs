@@ -139,7 +139,19 @@ multiversion! {
     ) -> usize = in_lanes::<16, false>;
 }
 
-/// [`solve_designs`] for mechanisms whose branch is more than signs: what they take longest for is not done in lanes.
+multiversion! {
+    /// [`solve_designs`] for mechanisms whose branch is more than signs, but solved in lanes all the same.
+    pub(super) fn solve_trees(
+        set: InstructionSet,
+        batch: &Batch,
+        designs: Designs<'_>,
+        range: Range<usize>,
+        runs: &[Vec<Place<'_>>],
+        out: &mut [&mut [f64]],
+    ) -> usize = in_lanes::<16, true>;
+}
+
+/// [`solve_designs`] for mechanisms that take longest for what is not done in lanes.
 pub(super) fn solve_guessed(
     _: InstructionSet,
     batch: &Batch,
@@ -161,7 +173,7 @@ fn in_lanes<const W: usize, const ALL: bool>(
 ) -> usize {
     let (mechanism, order) = (batch.motion.mechanism(), &batch.order);
     let plan = &order.plan;
-    let mut states = vec![State::<Lanes<W>>::new(mechanism); STATES];
+    let mut states = vec![State::<Lanes<W>>::new(mechanism).without_determinants(); STATES];
     let design = &batch.motion.design.lift::<Lanes<W>>();
     order.solve_once(&order.fixed, design, &mut states);
     let together = PREPARED.min(range.len()).div_ceil(W);
@@ -176,11 +188,6 @@ fn in_lanes<const W: usize, const ALL: bool>(
                 *parameter = designs.lanes(k, range.start + row, &range);
             }
             design.update(&parameters);
-            if ALL {
-                // Newton's method wants each of them on its own as well.
-                let lane = |lane: usize| move |x: Lanes<W>| x.lane(lane);
-                design.plain = (0..W).map(|k| design.geometry.map(lane(k))).collect();
-            }
         }
         for run in runs {
             let states = &mut states[..run.len()];

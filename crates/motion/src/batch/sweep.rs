@@ -148,7 +148,7 @@ pub(super) fn sweep_one_by_one<T: Single>(
 fn held_states<T: Number>(motion: &Motion, count: usize) -> Vec<State<T>> {
     let mut coordinates = vec![T::zero(); motion.mechanism().model.drives.len()];
     (motion.path).coordinates(T::from_f64(motion.start), &mut coordinates);
-    let mut state = State::new(motion.mechanism());
+    let mut state = State::new(motion.mechanism()).without_determinants();
     state.set_inputs(motion.mechanism(), &coordinates);
     vec![state; count]
 }
@@ -189,7 +189,8 @@ fn set_at_times<T: Wide<W>, const W: usize>(
 /// with the row's index; `None` where the parameter is beyond the motion's ends or the pose does not close.
 ///
 /// `seed` makes the number from the path parameter: itself for positions, `Jet::variable` for rates along the path.
-/// The same solves as [`Motion::solve`], without looking up the branch anew for every row.
+/// The same solves as [`Motion::solve`], without looking up the branch anew for every row; the states hold no determinants
+/// of Newton groups.
 ///
 /// # Example
 /// Speeds and accelerations, per rad of the drive: `sweep_states(&motion, &design, &angles, Jet::<f64, 3>::variable,

@@ -30,20 +30,8 @@ impl Motion {
         let (Some(from), Some(to)) = (self.nodes.get(node), self.nodes.get(node + 1)) else {
             return;
         };
-        // Where on the cubic the path parameter is p: it is monotonic between nodes.
-        let wanted = p / self.scale;
-        let last = from.z.len() - 1;
         let cubic = Cubic::new(from, to);
-        let (mut low, mut high) = (0.0, 1.0);
-        for _ in 0..30 {
-            let middle = 0.5 * (low + high);
-            if cubic.at(middle).part(last) <= wanted {
-                low = middle
-            } else {
-                high = middle
-            }
-        }
-        let place = cubic.at(0.5 * (low + high));
+        let place = cubic.at(cubic.part_where(from.z.len() - 1, p / self.scale));
         for body in 1..self.mechanism().bodies {
             let [x, y, angle] = [0, 1, 2].map(|k| place.part(3 * (body - 1) + k));
             branch.guess[body] = Pose::from_angle(x * self.size, y * self.size, angle);

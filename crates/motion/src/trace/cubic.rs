@@ -2,6 +2,13 @@
 
 use super::{Node, norm};
 
+/// Into so many equal parts a step is cut to read off a guess: 2^30.
+const PARTS: f64 = 1_073_741_824.0;
+/// Steps of Newton's method for one of them.
+const ESTIMATES: usize = 8;
+/// A step after which the next is well below a part.
+const ESTIMATED: f64 = 1e-6;
+
 /// The cubic through two nodes with their tangents.
 pub struct Cubic<'a> {
     from: &'a Node,
@@ -24,6 +31,47 @@ impl<'a> Cubic<'a> {
             to,
             h: distance(&from.z, &to.z),
         }
+    }
+
+    /// The part of the step at which an unknown that rises all along it has the value `wanted`: the middle of one of
+    /// [`PARTS`] equal parts; beyond the ends the first or last of them.
+    pub fn part_where(&self, unknown: usize, wanted: f64) -> f64 {
+        let below = |part: f64| self.at(part / PARTS).part(unknown) <= wanted;
+        // Newton's method tells the part, nearly always, and what it tells is tried.
+        let part = (self.estimate(unknown, wanted) * PARTS)
+            .clamp(0.0, PARTS - 1.0)
+            .floor();
+        if (part == 0.0 || below(part)) && (part == PARTS - 1.0 || !below(part + 1.0)) {
+            return (part + 0.5) / PARTS;
+        }
+        let (mut low, mut high) = (0.0, PARTS);
+        while high - low > 1.0 {
+            let middle = 0.5 * (low + high);
+            if below(middle) {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        0.5 * (low + high) / PARTS
+    }
+
+    /// Newton's method for [`Cubic::part_where`]; NaN where it finds nothing.
+    fn estimate(&self, unknown: usize, wanted: f64) -> f64 {
+        let [start, end] = [self.from, self.to].map(|node| node.z[unknown]);
+        let [first, last] = [self.from, self.to].map(|node| node.tangent[unknown] * self.h);
+        let rise = end - start;
+        let (square, cube) = (3.0 * rise - 2.0 * first - last, first + last - 2.0 * rise);
+        let mut s = (wanted - start) / rise;
+        for _ in 0..ESTIMATES {
+            let above = start - wanted + s * (first + s * (square + s * cube));
+            let step = above / (first + s * (2.0 * square + s * 3.0 * cube));
+            s -= step;
+            if step.abs() <= ESTIMATED {
+                return s;
+            }
+        }
+        f64::NAN
     }
 
     /// The place at a part `s` of the step.

@@ -1,0 +1,144 @@
+//! Newton groups in the coordinates of their spanning trees: the poses, their derivatives and the determinants that the
+//! poses of all bodies as unknowns give.
+
+mod support;
+
+use std::sync::Arc;
+
+use kempe_measure::Sampler;
+use kempe_mechanism::{Branch, Design, PlanNumber, State};
+use kempe_motion::Motion;
+use kempe_number::{Dual, Jet, Number};
+use support::Case;
+use support::generate::{make, recipe};
+
+/// Mechanisms of the generator that are looked at.
+const SEEDS: u64 = 150;
+
+/// Solves at a path parameter, with the plan's trees or without.
+fn solve<T: PlanNumber>(
+    case: &Case,
+    motion: &Motion,
+    trees: bool,
+    p: f64,
+    seed: impl Fn(f64) -> T,
+) -> State<T> {
+    let mut mechanism = (*case.mechanism).clone();
+    if !trees {
+        for block in &mut mechanism.plan.newton_blocks {
+            block.tree = None;
+        }
+    }
+    let parameters: Vec<T> = case.model.parameter_values();
+    let mut design = Design::new(&Arc::new(mechanism), &parameters);
+    design.count_turns(&motion.design.geometry.turns);
+    let mut branch = Branch::neutral(&case.mechanism);
+    motion.branch_at(p, &mut branch);
+    let mut coordinates = vec![T::zero(); case.model.drives.len()];
+    motion.path.coordinates(seed(p), &mut coordinates);
+    let mut state = State::new(&case.mechanism);
+    state.set_inputs(&case.mechanism, &coordinates);
+    design.solve(&branch, &mut state);
+    state
+}
+
+/// All numbers of a state's poses, lengths in mechanism sizes.
+fn numbers<T: Number>(state: &State<T>, size: f64) -> Vec<T> {
+    (state.poses.iter())
+        .flat_map(|pose| [pose.x / size, pose.y / size, pose.c, pose.s])
+        .collect()
+}
+
+fn compare(case: &Case, name: &str) -> usize {
+    let Ok(motion) = case.motion() else { return 0 };
+    let (low, high) = motion.reached();
+    let size = motion.size();
+    for part in [0.13, 0.5, 0.87] {
+        let p = low + part * (high - low);
+        let singular = Sampler::new(&motion, &[])
+            .expect("a sampler")
+            .without_time(p)
+            .smallest_singular_value;
+        if !(singular > 1e-3)
+            || motion
+                .events
+                .iter()
+                .any(|e| (e.at - p).abs() < 2.0 * e.bridge)
+        {
+            continue;
+        }
+        // Rounding of a row moves a pose by its part over the smallest singular value, and every order once more.
+        let close = |order: i32, a: f64, b: f64, scale: f64| {
+            let allowed = 1e-13 * scale / singular.powi(order + 1);
+            assert!(
+                (a - b).abs() <= allowed,
+                "{name} at {p}, order {order}: {a:e} {b:e}, {singular:e}"
+            );
+        };
+        let [tree, bodies] = [true, false].map(|trees| solve(case, &motion, trees, p, |p| p));
+        for (a, b) in numbers(&tree, size).iter().zip(numbers(&bodies, size)) {
+            close(0, *a, b, 1.0 + b.abs());
+        }
+        for (a, b) in tree.determinants.iter().zip(&bodies.determinants) {
+            close(0, a / b, 1.0, 100.0);
+        }
+        let seed = Jet::<f64, 3>::variable;
+        let [tree, bodies] =
+            [true, false].map(|trees| numbers(&solve(case, &motion, trees, p, seed), size));
+        let largest = bodies
+            .iter()
+            .flat_map(|x| *x.coefficients())
+            .fold(1.0, f64::max);
+        for (a, b) in tree.iter().zip(&bodies) {
+            for k in 0..3 {
+                close(k as i32, a.coefficient(k), b.coefficient(k), largest);
+            }
+        }
+        let seed = |p| Dual::<f64, 1>::variable(p, 0);
+        let [tree, bodies] =
+            [true, false].map(|trees| numbers(&solve(case, &motion, trees, p, seed), size));
+        for (a, b) in tree.iter().zip(&bodies) {
+            close(1, a.eps[0], b.eps[0], largest);
+        }
+    }
+    1
+}
+
+#[test]
+fn trees_give_what_the_poses_of_all_bodies_give() {
+    let files = [
+        "seeds/door-lock",
+        "gallery/chebyshev",
+        "gallery/class-iii",
+        "gallery/scissor-lift",
+        "gallery/stephenson-ii",
+    ];
+    for file in files {
+        let case = Case::example(file);
+        assert!(
+            case.mechanism
+                .plan
+                .newton_blocks
+                .iter()
+                .any(|b| b.tree.is_some())
+        );
+        assert_eq!(compare(&case, file), 1, "{file}");
+    }
+    let mut seen = 0;
+    for seed in 0..SEEDS {
+        let case = Case::of(&make(&recipe(seed)).spec);
+        if case
+            .mechanism
+            .plan
+            .newton_blocks
+            .iter()
+            .any(|b| b.tree.is_some())
+        {
+            seen += compare(&case, &format!("seed {seed}"));
+        }
+    }
+    assert!(
+        seen > 15,
+        "only {seen} of the generator's mechanisms have a tree"
+    );
+}
