@@ -1,6 +1,8 @@
 //! Motion studies: a row for every place along the drives' laws.
 
+use kempe_measure::measure::visit_leaves;
 use kempe_measure::{Unmeasurable, Unprepared};
+use kempe_mechanism::Mechanism;
 use kempe_model::{Diagnostic, Leaf, Measure, Model, MotionStudy, Statistic, Study, StudyKind};
 use kempe_motion::drive_path::{DrivePath, is_cycle};
 use kempe_motion::events::EventKind;
@@ -122,13 +124,13 @@ pub(crate) fn run_along(
     }
     warnings.extend(rows.force_warnings(&design.mechanism, along));
     warnings.extend(without_value(&rows, along, |index| {
-        let of_cycles =
-            (asked.scalars.get(index)).is_some_and(|q| asks_time_ratio(model, &q.measure));
+        let of_cycles = (asked.scalars.get(index))
+            .is_some_and(|q| asks_time_ratio(&design.mechanism, &q.measure));
         of_cycles && !is_cycle(model, &design.parameters)
     }));
     let met = events(&motion, &units, &parameters_met);
     if forces {
-        warnings.extend(unbounded(model, &asked.scalars, &met));
+        warnings.extend(unbounded(&design.mechanism, &asked.scalars, &met));
     }
     Ok(StudyResult {
         name: name.to_owned(),
@@ -210,17 +212,12 @@ fn without_value(
 }
 
 /// Whether a measure asks for a time ratio, itself or by another measure.
-fn asks_time_ratio(model: &Model, measure: &Measure) -> bool {
-    measure.leaves().any(|leaf| match leaf {
-        Leaf::Over(statistic, inner) => {
-            *statistic == Statistic::TimeRatio || asks_time_ratio(model, inner)
-        }
-        Leaf::Named(index) => {
-            (model.measures.get(*index)).is_some_and(|m| asks_time_ratio(model, &m.measure))
-        }
-        Leaf::Rate(inner, _) | Leaf::Coefficient(inner, ..) => asks_time_ratio(model, inner),
-        _ => false,
-    })
+fn asks_time_ratio(mechanism: &Mechanism, measure: &Measure) -> bool {
+    let mut found = false;
+    visit_leaves(mechanism, measure, &mut |leaf| {
+        found |= matches!(leaf, Leaf::Over(Statistic::TimeRatio, _));
+    });
+    found
 }
 
 /// The column that rows run along: the drive that goes one way through the whole motion, or else time.
