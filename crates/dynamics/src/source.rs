@@ -1,7 +1,7 @@
 //! Forces along a motion, for the sampler of `kempe-measure`.
 
-use kempe_measure::ForceSource;
 use kempe_measure::measure::{Moment, Series};
+use kempe_measure::{Curve, ForceSource};
 use kempe_model::{ForceMeasure, Measure};
 
 use crate::forces::Forces;
@@ -30,6 +30,19 @@ impl Source {
 impl ForceSource for Source {
     fn measures(&self) -> &[Measure] {
         &self.measures
+    }
+
+    fn curves(&self) -> Vec<Curve> {
+        let amounts = self.forces.acting.amounts.iter();
+        let curves = amounts.filter_map(|amount| {
+            let (table, _) = amount.curve.as_ref()?;
+            Some(Curve {
+                over: amount.measure.clone(),
+                at: table.knots().to_vec(),
+                period: table.period(),
+            })
+        });
+        curves.collect()
     }
 
     fn solve(&mut self, moment: &Moment<'_, f64>) {

@@ -4,10 +4,26 @@ use kempe_model::{ForceMeasure, Measure};
 
 use crate::measure::{Moment, Series};
 
+/// A curve that is smooth between its knots only, over something that is measured.
+#[derive(Clone, Debug)]
+pub struct Curve {
+    /// What it runs over.
+    pub over: Measure,
+    /// Its knots, SI, rising.
+    pub at: Vec<f64>,
+    /// After how much it repeats itself, if it does.
+    pub period: Option<f64>,
+}
+
 /// Answers questions to the forces along a motion, for a [`Sampler`](crate::Sampler).
 pub trait ForceSource {
     /// What the forces themselves ask of the motion: loads that depend on it.
     fn measures(&self) -> &[Measure];
+
+    /// The curves in what acts: forces are smooth between their knots only.
+    fn curves(&self) -> Vec<Curve> {
+        Vec::new()
+    }
 
     /// Whether it needs the motion that every drive gives on its own: virtual power does.
     fn needs_drives(&self) -> bool {

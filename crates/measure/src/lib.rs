@@ -10,6 +10,6 @@ pub mod sensitivity;
 mod statistics;
 
 pub use circuit_rows::{circuit_row, circuit_samplers};
-pub use force_source::{ForceSource, NoForces};
+pub use force_source::{Curve, ForceSource, NoForces};
 pub use sampler::{CLOSURE_LIMIT, Sample, Sampler, Unmeasurable, Unprepared};
 pub use sensitivity::{Held, Sensitivities, sensitivities};

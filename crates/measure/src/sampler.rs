@@ -10,6 +10,7 @@ mod note;
 mod prepare;
 mod series;
 
+pub(crate) use self::moment::Asked;
 pub use self::prepare::{Unmeasurable, Unprepared};
 
 use std::sync::Arc;
@@ -27,6 +28,7 @@ use self::direction::Direction;
 use crate::force_source::{ForceSource, NoForces};
 use crate::measure::{Series, order_of};
 use crate::path_length::Swept;
+use crate::statistics::{At, Known};
 
 /// A closure residual (in mechanism sizes) above which a row is marked.
 pub const CLOSURE_LIMIT: f64 = 1e-9;
@@ -71,6 +73,8 @@ pub struct Sampler<F = NoForces> {
     /// Moving points whose curvature is asked for.
     curved: Vec<PointId>,
     statistics: Vec<(Statistic, Measure, f64)>,
+    /// What the statistics found of their measures.
+    known: Vec<Known>,
     system: Bordered,
 }
 
@@ -133,6 +137,7 @@ impl<F: ForceSource> Sampler<F> {
             swept: Vec::new(),
             curved: Vec::new(),
             statistics: Vec::new(),
+            known: Vec::new(),
             system: Bordered::new(mechanism),
             measures: measures.iter().map(|m| (*m).clone()).collect(),
             motion: motion.clone(),
@@ -145,6 +150,13 @@ impl<F: ForceSource> Sampler<F> {
     /// The source of forces, as it stands after the row last asked for.
     pub fn forces(&self) -> Option<&F> {
         self.forces.as_ref()
+    }
+
+    /// Smallest and largest value, each with its time, of a measure that a statistic asks for; `None` where it has no value
+    /// somewhere on the motion.
+    pub(crate) fn extremes(&self, measure: &Measure) -> Option<(At, At)> {
+        let known = self.known.iter().find(|known| known.measure == *measure);
+        known.and_then(|known| known.extremes)
     }
 
     /// Values of the parameters, SI, in the model's order.
@@ -197,8 +209,9 @@ impl<F: ForceSource> Sampler<F> {
         }
         let measures = std::mem::take(&mut self.measures);
         let curved = std::mem::take(&mut self.curved);
+        let lengths: Vec<PointId> = self.swept.iter().map(Swept::point).collect();
         let mut still = Vec::new();
-        self.with_moment(p, time, true, |moment| {
+        self.with_moment(p, time, true, &lengths, |moment| {
             still.extend(curved.iter().filter(|p| moment.stands_still(**p)));
             for (value, measure) in sample.values.iter_mut().zip(&measures) {
                 *value = moment.value(measure);

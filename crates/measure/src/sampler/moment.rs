@@ -1,6 +1,6 @@
 //! The moment last solved, as measures and forces see it.
 
-use kempe_model::{Leaf, Measure, PointId};
+use kempe_model::{Leaf, Measure, PointId, PoseMeasure};
 use kempe_motion::trace::Path;
 use kempe_number::Number;
 
@@ -9,16 +9,19 @@ use crate::force_source::ForceSource;
 use crate::measure::{Along, Moment, NamedSeries, Series, visit_leaves};
 
 impl<F: ForceSource> Sampler<F> {
-    /// Hands the moment last solved to `ask`, with its forces where they are wanted.
+    /// Hands the moment last solved to `ask`: with its forces where they are wanted, and with the lengths of the paths of
+    /// some points.
     pub(super) fn with_moment<R>(
         &mut self,
         p: f64,
         time: f64,
         with_forces: bool,
+        lengths: &[PointId],
         ask: impl FnOnce(&Moment<'_, f64>) -> R,
     ) -> R {
         let mut forces = self.forces.take();
-        let moment = self.moment(p, time);
+        let swept = self.lengths(lengths, time);
+        let moment = self.moment(p, time, swept);
         if let Some(source) = forces.as_mut().filter(|_| with_forces) {
             source.solve(&moment);
         }
@@ -36,8 +39,18 @@ impl<F: ForceSource> Sampler<F> {
         result
     }
 
+    /// Lengths of the paths of some points at a time.
+    fn lengths(&mut self, points: &[PointId], time: f64) -> Vec<(PointId, f64)> {
+        let motion = self.motion.clone();
+        let swept = self.swept.iter_mut();
+        swept
+            .filter(|s| points.contains(&s.point()))
+            .map(|s| (s.point(), s.at_time(&motion, time)))
+            .collect()
+    }
+
     /// The moment last solved, without forces.
-    fn moment(&self, p: f64, time: f64) -> Moment<'_, f64> {
+    fn moment(&self, p: f64, time: f64, swept: Vec<(PointId, f64)>) -> Moment<'_, f64> {
         let motion = &*self.motion;
         let clock = if time.is_finite() {
             let rich: Vec<Series<f64>> = self
@@ -65,11 +78,7 @@ impl<F: ForceSource> Sampler<F> {
             coordinates: &self.series.coordinates,
             near: &self.series.branch.near,
             directions: self.directions_near(p),
-            swept: self
-                .swept
-                .iter()
-                .map(|s| (s.point(), s.at_time(motion, self.parameters(), time)))
-                .collect(),
+            swept,
             forces: None,
             statistics: &self.statistics,
             named: NamedSeries::default(),
@@ -84,19 +93,56 @@ impl<F: ForceSource> Sampler<F> {
             .collect()
     }
 
-    /// Value and time derivative of a measure at a time; NaN where the motion does not reach.
-    pub(crate) fn value_and_rate(&mut self, measure: &Measure, time: f64) -> [f64; 2] {
+    /// What measures ask of a moment.
+    pub(crate) fn asked(&self, measures: &[&Measure]) -> Asked {
+        let mut asked = Asked {
+            measures: measures.iter().map(|m| (*m).clone()).collect(),
+            forces: false,
+            lengths: Vec::new(),
+        };
+        let mechanism = self.motion.mechanism();
+        let look = |asked: &mut Asked, measure: &Measure| {
+            visit_leaves(mechanism, measure, &mut |leaf| match leaf {
+                Leaf::Force(_) => asked.forces = true,
+                Leaf::Pose(PoseMeasure::PathLength(point)) if !asked.lengths.contains(point) => {
+                    asked.lengths.push(*point);
+                }
+                _ => {}
+            });
+        };
+        for measure in measures {
+            look(&mut asked, measure);
+        }
+        if let Some(forces) = self.forces.as_ref().filter(|_| asked.forces) {
+            forces.measures().iter().for_each(|m| look(&mut asked, m));
+        }
+        asked
+    }
+
+    /// What is asked for as series in time, at a time; NaN where the motion does not reach.
+    pub(crate) fn series_at(&mut self, asked: &Asked, time: f64) -> Vec<Series<f64>> {
         let p = self.parameter_at(time);
         if !self.motion.reaches(p) || !self.solve(p) {
-            return [f64::NAN; 2];
+            return vec![Series::from_f64(f64::NAN); asked.measures.len()];
         }
-        let mut asks_forces = false;
-        visit_leaves(self.motion.mechanism(), measure, &mut |leaf| {
-            asks_forces |= matches!(leaf, Leaf::Force(_));
-        });
-        let series = self.with_moment(p, time, asks_forces, |moment| {
-            moment.series(measure, Along::Time)
-        });
-        [series.derivative(0), series.derivative(1)]
+        self.with_moment(p, time, asked.forces, &asked.lengths, |moment| {
+            let measures = asked.measures.iter();
+            measures.map(|m| moment.series(m, Along::Time)).collect()
+        })
+    }
+}
+
+/// Measures with what they ask of a moment beside its poses.
+pub(crate) struct Asked {
+    measures: Vec<Measure>,
+    forces: bool,
+    /// Points whose length of path is asked for.
+    lengths: Vec<PointId>,
+}
+
+impl Asked {
+    /// Whether any of them asks for forces.
+    pub(crate) fn forces(&self) -> bool {
+        self.forces
     }
 }

@@ -8,7 +8,7 @@ use super::direction::Direction;
 use crate::force_source::ForceSource;
 use crate::measure::visit_leaves;
 use crate::path_length::Swept;
-use crate::statistics::over;
+use crate::statistics::{over_motion, rounds};
 
 /// A measure that cannot be evaluated.
 #[derive(Clone, Debug, PartialEq)]
@@ -79,10 +79,11 @@ impl<F: ForceSource> Sampler<F> {
         for point in swept {
             self.swept.push(Swept::watched(motion, point, watch)?);
         }
-        // A statistic that another contains is found before it.
-        for (statistic, measure) in statistics {
-            let value = over(self, statistic, &measure, watch)?;
-            self.statistics.push((statistic, measure, value));
+        for round in rounds(self, statistics) {
+            let (values, known) = over_motion(self, &round, watch)?;
+            let found = round.into_iter().zip(values);
+            (self.statistics).extend(found.map(|((s, measure), value)| (s, measure, value)));
+            self.known.extend(known);
         }
         Some(())
     }

@@ -1,14 +1,13 @@
 //! Statistics over a varied motion, and lengths of path.
 
 use kempe_model::{Measure, PointId, SAME_END, Statistic};
-use kempe_motion::progress::Unwatched;
 use kempe_number::Number;
 
 use super::varied::{Place, Varied};
 use super::{Base, CHUNK};
 use crate::measure::Series;
 use crate::quadrature::{graded, integrate};
-use crate::statistics::{extremes, time_ratio};
+use crate::statistics::time_ratio;
 
 /// Intervals of time over which path lengths and means are integrated, besides the breaks of the laws.
 const GRID: usize = 45;
@@ -42,8 +41,7 @@ impl Varied<'_, '_> {
                 sum / duration
             }
             Statistic::Min | Statistic::Max | Statistic::Range | Statistic::TimeRatio => {
-                let Some((low, high)) = extremes(self.sampler, measure, &mut Unwatched).flatten()
-                else {
+                let Some((low, high)) = self.sampler.extremes(measure) else {
                     return nothing;
                 };
                 let (low, high) = (self.extreme(measure, low.0), self.extreme(measure, high.0));
