@@ -1,16 +1,24 @@
 //! Statistics over a varied motion, and lengths of path.
 
+use kempe_mechanism::structure::Marker;
 use kempe_model::{Measure, PointId, SAME_END, Statistic};
 use kempe_number::Number;
 
 use super::varied::{Place, Varied};
 use super::{Base, CHUNK};
 use crate::measure::Series;
-use crate::quadrature::{graded, integrate};
+use crate::quadrature::{gauss, graded, integrate, parts};
 use crate::statistics::time_ratio;
 
 /// Intervals of time over which path lengths and means are integrated, besides the breaks of the laws.
 const GRID: usize = 45;
+
+/// The length of path that a point has swept, with its derivatives.
+pub(super) struct Cumulated {
+    point: PointId,
+    /// Times, rising, with the length swept until then.
+    marks: Vec<(Base, Base)>,
+}
 
 impl Varied<'_, '_> {
     /// A statistic of a measure over the motion.
@@ -91,49 +99,81 @@ impl Varied<'_, '_> {
         let Some(marker) = mechanism.any_marker(point) else {
             return Base::from_f64(f64::NAN);
         };
-        self.integrate(until, &mut |it, place| {
-            if !it.solve(place) {
-                return Base::from_f64(f64::NAN);
+        let known = self.lengths.iter().position(|known| known.point == point);
+        let known = known.unwrap_or_else(|| {
+            let length = self.cumulated(point, marker);
+            self.lengths.push(length);
+            self.lengths.len() - 1
+        });
+        let marks = &self.lengths[known].marks;
+        let passed = marks.partition_point(|(time, _)| time.re <= until.re);
+        let (from, length) = marks[passed.max(1) - 1];
+        let width = until - from;
+        let rest = gauss(0.0, 1.0, &mut |u| {
+            let place = self.at_time(from + width * u);
+            Some(values(self.speed(marker, place) * width))
+        });
+        length + rest.map_or(Base::from_f64(f64::NAN), base)
+    }
+
+    /// The length swept by a point, at times between which one quadrature is enough.
+    fn cumulated(&mut self, point: PointId, marker: Marker) -> Cumulated {
+        let mut marks = vec![(Base::zero(), Base::zero())];
+        let mut sum = Base::zero();
+        let duration = self.duration();
+        for [from, to] in self.cuts(duration) {
+            let width = to - from;
+            let found = parts(&graded(count(width, duration)), 0.0, &mut |u| {
+                let place = self.at_time(from + width * u);
+                Some(values(self.speed(marker, place) * width))
+            });
+            for part in found.iter().flatten() {
+                sum += base(part.integral());
+                marks.push((from + width * part.to, sum));
             }
-            let model = &it.motion.mechanism().model;
-            let rate = it
-                .motion
-                .path
-                .parameter_at(model, Series::variable(place.time), &it.rich)
-                .coefficient(1);
-            let local = it.design.geometry.marker(marker);
-            let at = it.solver.state.poses[marker.body.index()].place(local);
-            let (dx, dy) = (at[0].coefficient(1), at[1].coefficient(1));
-            ((dx.square() + dy.square()) * rate.square()).sqrt()
-        })
+        }
+        Cumulated { point, marks }
+    }
+
+    /// Speed of a point, m/s.
+    fn speed(&mut self, marker: Marker, place: Place) -> Base {
+        if !self.solve(place) {
+            return Base::from_f64(f64::NAN);
+        }
+        let model = &self.motion.mechanism().model;
+        let rate = self
+            .motion
+            .path
+            .parameter_at(model, Series::variable(place.time), &self.rich)
+            .coefficient(1);
+        let local = self.design.geometry.marker(marker);
+        let at = self.solver.state.poses[marker.body.index()].place(local);
+        let (dx, dy) = (at[0].coefficient(1), at[1].coefficient(1));
+        ((dx.square() + dy.square()) * rate.square()).sqrt()
     }
 
     /// Integral over time from the start, between the breaks of the laws and the times of an even grid.
     fn integrate(&mut self, until: Base, f: &mut dyn FnMut(&mut Self, Place) -> Base) -> Base {
-        let mut cuts = vec![Base::zero(), until];
-        cuts.extend(
-            self.breaks()
-                .into_iter()
-                .filter(|t| 0.0 < t.re && t.re < until.re),
-        );
-        cuts.sort_by(|a, b| a.re.total_cmp(&b.re));
         let mut sum = Base::zero();
-        for pair in cuts.windows(2).filter(|pair| pair[1].re > pair[0].re) {
-            let width = pair[1] - pair[0];
-            let count = (GRID as f64 * width.re / until.re).ceil() as usize;
-            let part = integrate(&graded(count), 0.0, &mut |u| {
-                let place = self.at_time(pair[0] + width * u);
-                let part = f(self, place) * width;
-                let mut values = [part.re; 1 + CHUNK];
-                values[1..].copy_from_slice(&part.eps);
-                Some(values)
+        for [from, to] in self.cuts(until) {
+            let width = to - from;
+            let part = integrate(&graded(count(width, until)), 0.0, &mut |u| {
+                let place = self.at_time(from + width * u);
+                Some(values(f(self, place) * width))
             });
-            let Some([re, eps @ ..]) = part else {
-                return Base::from_f64(f64::NAN);
-            };
-            sum += Base { re, eps };
+            sum += part.map_or(Base::from_f64(f64::NAN), base);
         }
         sum
+    }
+
+    /// Stretches of time from the start between the breaks of the laws.
+    fn cuts(&self, until: Base) -> Vec<[Base; 2]> {
+        let mut cuts = vec![Base::zero(), until];
+        let breaks = self.breaks().into_iter();
+        cuts.extend(breaks.filter(|t| 0.0 < t.re && t.re < until.re));
+        cuts.sort_by(|a, b| a.re.total_cmp(&b.re));
+        let pairs = cuts.windows(2).map(|pair| [pair[0], pair[1]]);
+        pairs.filter(|[from, to]| to.re > from.re).collect()
     }
 
     fn duration(&self) -> Base {
@@ -154,4 +194,19 @@ impl Varied<'_, '_> {
         }
         list
     }
+}
+
+/// In how many parts a stretch of so much of a time is integrated first.
+fn count(width: Base, all: Base) -> usize {
+    (GRID as f64 * width.re / all.re).ceil() as usize
+}
+
+fn values(x: Base) -> [f64; 1 + CHUNK] {
+    let mut values = [x.re; 1 + CHUNK];
+    values[1..].copy_from_slice(&x.eps);
+    values
+}
+
+fn base([re, eps @ ..]: [f64; 1 + CHUNK]) -> Base {
+    Base { re, eps }
 }

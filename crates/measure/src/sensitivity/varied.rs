@@ -8,6 +8,7 @@ use kempe_motion::motion::{Motion, Solver};
 use kempe_motion::trace::Path;
 use kempe_number::Number;
 
+use super::over::Cumulated;
 use super::{Base, Held};
 use crate::measure::{Along, Moment, NamedSeries, Series, visit_leaves};
 use crate::sampler::Sampler;
@@ -30,7 +31,7 @@ pub(super) struct Varied<'s, 'a> {
     pub drives: Vec<Option<Vec<Pose<Series<Base>>>>>,
     pub path_drive: Option<DriveId>,
     pub statistics: Vec<(Statistic, Measure, Base)>,
-    pub swept: Vec<PointId>,
+    pub lengths: Vec<Cumulated>,
 }
 
 impl<'s, 'a> Varied<'s, 'a> {
@@ -54,7 +55,7 @@ impl<'s, 'a> Varied<'s, 'a> {
             drives: vec![None; model.drives.len()],
             path_drive: sampler.path_drive(),
             statistics: Vec::new(),
-            swept: Vec::new(),
+            lengths: Vec::new(),
             parameters,
             rich,
             sampler,
@@ -111,9 +112,6 @@ impl<'s, 'a> Varied<'s, 'a> {
                         statistics.push(entry);
                     }
                 }
-                Leaf::Pose(PoseMeasure::PathLength(p)) if !self.swept.contains(p) => {
-                    self.swept.push(*p);
-                }
                 Leaf::Coefficient(_, drive, _)
                 | Leaf::Pose(PoseMeasure::MechanicalAdvantage(_, drive))
                     if Some(*drive) != self.path_drive =>
@@ -168,13 +166,8 @@ impl<'s, 'a> Varied<'s, 'a> {
 
     /// A measure as a series in time at a place.
     pub(super) fn series(&mut self, measure: &Measure, place: Place) -> Series<Base> {
-        let swept: Vec<(PointId, Base)> = match self.swept.clone() {
-            points if needs_length(self.motion, measure) => points
-                .into_iter()
-                .map(|p| (p, self.length(p, place.time)))
-                .collect(),
-            _ => Vec::new(),
-        };
+        let swept = lengths_of(self.motion, measure).into_iter();
+        let swept = swept.map(|p| (p, self.length(p, place.time))).collect();
         if !self.solve(place) {
             return Series::from_f64(f64::NAN);
         }
@@ -216,11 +209,15 @@ impl<'s, 'a> Varied<'s, 'a> {
     }
 }
 
-/// Whether a measure asks for a swept length (not inside a statistic: that has its own).
-fn needs_length(motion: &Motion, measure: &Measure) -> bool {
-    let mut found = false;
+/// The points of whose path a measure asks for the length (and a statistic inside it: that has its own).
+fn lengths_of(motion: &Motion, measure: &Measure) -> Vec<PointId> {
+    let mut points = Vec::new();
     visit_leaves(motion.mechanism(), measure, &mut |leaf| {
-        found |= matches!(leaf, Leaf::Pose(PoseMeasure::PathLength(_)));
+        if let Leaf::Pose(PoseMeasure::PathLength(point)) = leaf
+            && !points.contains(point)
+        {
+            points.push(*point);
+        }
     });
-    found
+    points
 }

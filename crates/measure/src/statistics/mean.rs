@@ -10,9 +10,10 @@ use crate::force_source::ForceSource;
 use crate::quadrature::{graded, integrate};
 use crate::sampler::{Asked, Sampler};
 
-/// An integral over two intervals at once may differ from that by each by this part of the integral of the function's size:
-/// that of each errs by less than a fifteenth of it.
-const NEIGHBOURS_AGREE: f64 = 4e-14;
+/// An integral over two intervals at once may differ from that by each by this part of the integral of the function's size.
+/// Where it is smooth most of that is then taken off (L. F. Richardson's extrapolation); a kink that is not seen counts
+/// less than that.
+const NEIGHBOURS_AGREE: f64 = 1e-12;
 /// The integral by the whole may differ from that by halves by this part.
 const AGREED: f64 = 1e-14;
 /// Halvings at most, and so many more for every interval.
@@ -77,18 +78,25 @@ impl Mean {
                 .map(|pair| hermite(&pair[0], &pair[1], known))
                 .collect();
             let mut agrees = vec![each.len() > 1; each.len()];
+            // What is left in each, by the pairs that it belongs to: one at the ends of a stretch, two elsewhere.
+            let mut left = vec![0.0; each.len()];
+            let last = each.len().max(1) - 1;
             for (index, three) in points.windows(3).enumerate() {
                 let both = hermite(&three[0], &three[2], known);
-                let gap = (both - each[index] - each[index + 1]).abs();
-                if !(gap <= NEIGHBOURS_AGREE * size) {
+                let gap = each[index] + each[index + 1] - both;
+                if !(gap.abs() <= NEIGHBOURS_AGREE * size) {
                     agrees[index..index + 2].fill(false);
+                }
+                for k in [index, index + 1] {
+                    let pairs = if k == 0 || k == last { 1.0 } else { 2.0 };
+                    left[k] += 0.5 * extrapolated(gap, three, known) / pairs;
                 }
             }
             count += each.len();
             for (index, integral) in each.into_iter().enumerate() {
                 let (a, b) = (points[index], points[index + 1]);
                 if agrees[index] {
-                    sum += integral;
+                    sum += integral + left[index];
                 } else if a.value().is_finite() && b.value().is_finite() {
                     open.push(Part::new(sampler, asked, known, [a, b], b.time - a.time));
                 } else {
@@ -111,13 +119,14 @@ impl Part {
     ) -> Self {
         let [a, b] = ends;
         let middle = Point::take(sampler, asked, 0.5 * (a.time + b.time));
-        let integral = hermite(&a, &middle, known) + hermite(&middle, &b, known);
+        let halves = hermite(&a, &middle, known) + hermite(&middle, &b, known);
+        let gap = halves - hermite(&a, &b, known);
         Self {
             ends,
             middle,
             origin,
-            integral,
-            gap: (hermite(&a, &b, known) - integral).abs(),
+            integral: halves + extrapolated(gap, &[a, middle, b], known),
+            gap: gap.abs(),
         }
     }
 }
@@ -184,13 +193,26 @@ fn unbounded<F: ForceSource>(
     found.map_or(f64::NAN, |[integral]| integral)
 }
 
+/// What is left of an integral by two steps, of the `gap` by which it is more than that by one: with m coefficients one
+/// step errs 4^m times as much as two halves.
+fn extrapolated(gap: f64, points: &[Point], known: usize) -> f64 {
+    let mut orders = points.iter().map(|p| finite(p, known));
+    let order = orders.next().unwrap_or(0);
+    if order == 0 || orders.any(|other| other != order) {
+        return 0.0;
+    }
+    gap / (f64::from(1_u32 << (2 * order)) - 1.0)
+}
+
+/// How many of the `known` first coefficients are finite.
+fn finite(point: &Point, known: usize) -> usize {
+    let coefficients = point.series.coefficients().iter().take(known);
+    coefficients.take_while(|c| c.is_finite()).count()
+}
+
 /// The integral of the polynomial that agrees with the finite ones of the `known` first coefficients at both points.
 fn hermite(a: &Point, b: &Point, known: usize) -> f64 {
-    let finite = |p: &Point| {
-        let coefficients = p.series.coefficients().iter().take(known);
-        coefficients.take_while(|c| c.is_finite()).count()
-    };
-    let order = finite(a).min(finite(b));
+    let order = finite(a, known).min(finite(b, known));
     if order == 0 {
         return f64::NAN;
     }
