@@ -99,6 +99,19 @@ impl ForceSampler {
         measures: &[&Measure],
         watch: &mut dyn Watch,
     ) -> Result<Self, ForceError> {
+        Self::with_rows(motion, measures, &[], watch)
+    }
+
+    /// As [`ForceSampler::watched`]; statistics over the motion look at the times of its rows, s, too.
+    ///
+    /// # Errors
+    /// As [`ForceSampler::watched`].
+    pub fn with_rows(
+        motion: &Arc<Motion>,
+        measures: &[&Measure],
+        rows: &[f64],
+        watch: &mut dyn Watch,
+    ) -> Result<Self, ForceError> {
         let mechanism = motion.mechanism();
         let mut forces = Forces::new(motion.design_on()).map_err(ForceError::Problems)?;
         let mut start = Branch::neutral(mechanism);
@@ -107,7 +120,7 @@ impl ForceSampler {
             spring.align(&forces.design.geometry, &start.near);
         }
         forces.equilibrium.pace = pace(&motion.design);
-        let sampler = Sampler::watched(motion, measures, Source::new(forces), watch)
+        let sampler = Sampler::with_rows(motion, measures, Source::new(forces), rows, watch)
             .map_err(ForceError::Unprepared)?;
         Ok(Self { sampler })
     }

@@ -73,6 +73,8 @@ pub struct Sampler<F = NoForces> {
     /// Moving points whose curvature is asked for.
     curved: Vec<PointId>,
     statistics: Vec<(Statistic, Measure, f64)>,
+    /// Times at which rows will be asked for, rising: statistics look there too.
+    rows: Vec<f64>,
     /// What the statistics found of their measures.
     known: Vec<Known>,
     system: Bordered,
@@ -115,6 +117,23 @@ impl<F: ForceSource> Sampler<F> {
         forces: F,
         watch: &mut dyn Watch,
     ) -> Result<Self, Unprepared> {
+        Self::with_rows(motion, measures, forces, &[], watch)
+    }
+
+    /// As [`Sampler::watched`]; statistics over the motion look at the times of its rows, s, too: no row lies beyond an
+    /// extreme.
+    ///
+    /// # Errors
+    /// As [`Sampler::watched`].
+    pub fn with_rows(
+        motion: &Arc<Motion>,
+        measures: &[&Measure],
+        forces: F,
+        rows: &[f64],
+        watch: &mut dyn Watch,
+    ) -> Result<Self, Unprepared> {
+        let mut rows: Vec<f64> = rows.iter().copied().filter(|t| t.is_finite()).collect();
+        rows.sort_by(f64::total_cmp);
         let mechanism = motion.mechanism();
         let problems: Vec<Unmeasurable> = (measures.iter().enumerate())
             .filter_map(|(index, m)| {
@@ -137,6 +156,7 @@ impl<F: ForceSource> Sampler<F> {
             swept: Vec::new(),
             curved: Vec::new(),
             statistics: Vec::new(),
+            rows,
             known: Vec::new(),
             system: Bordered::new(mechanism),
             measures: measures.iter().map(|m| (*m).clone()).collect(),
@@ -150,6 +170,11 @@ impl<F: ForceSource> Sampler<F> {
     /// The source of forces, as it stands after the row last asked for.
     pub fn forces(&self) -> Option<&F> {
         self.forces.as_ref()
+    }
+
+    /// Times at which rows will be asked for, rising.
+    pub(crate) fn rows(&self) -> &[f64] {
+        &self.rows
     }
 
     /// Smallest and largest value, each with its time, of a measure that a statistic asks for; `None` where it has no value

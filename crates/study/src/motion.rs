@@ -98,8 +98,15 @@ pub(crate) fn run_along(
         Asked::of_motion(model, &study)
     };
     let quantities: Vec<&Quantity> = asked.all().collect();
-    let mut sampler = Along::watched(model, &motion, &quantities, forces, &mut Ear(progress))?;
     let places = places_along(&motion, &study, &design.parameters);
+    let mut sampler = Along::watched(
+        model,
+        &motion,
+        &quantities,
+        forces,
+        &places,
+        &mut Ear(progress),
+    )?;
     let units = Units::of(model);
     let mut rows = RowSink::new(
         name,

@@ -14,6 +14,8 @@ use crate::sampler::{Asked, Sampler};
 /// Where it is smooth most of that is then taken off (L. F. Richardson's extrapolation); a kink that is not seen counts
 /// less than that.
 const NEIGHBOURS_AGREE: f64 = 1e-12;
+/// What is taken off may be no more than this part.
+const LEFT: f64 = 1e-13;
 /// The integral by the whole may differ from that by halves by this part.
 const AGREED: f64 = 1e-14;
 /// Halvings at most, and so many more for every interval.
@@ -84,12 +86,15 @@ impl Mean {
             for (index, three) in points.windows(3).enumerate() {
                 let both = hermite(&three[0], &three[2], known);
                 let gap = each[index] + each[index + 1] - both;
-                if !(gap.abs() <= NEIGHBOURS_AGREE * size) {
+                let rests = extrapolated(gap, [&three[0], &three[1], &three[2]], known);
+                let agree = gap.abs() <= NEIGHBOURS_AGREE * size
+                    && rests.iter().all(|rest| rest.abs() <= LEFT * size);
+                if !agree {
                     agrees[index..index + 2].fill(false);
                 }
-                for k in [index, index + 1] {
+                for (k, rest) in [index, index + 1].into_iter().zip(rests) {
                     let pairs = if k == 0 || k == last { 1.0 } else { 2.0 };
-                    left[k] += 0.5 * extrapolated(gap, three, known) / pairs;
+                    left[k] += rest / pairs;
                 }
             }
             count += each.len();
@@ -121,11 +126,12 @@ impl Part {
         let middle = Point::take(sampler, asked, 0.5 * (a.time + b.time));
         let halves = hermite(&a, &middle, known) + hermite(&middle, &b, known);
         let gap = halves - hermite(&a, &b, known);
+        let rests = extrapolated(gap, [&a, &middle, &b], known);
         Self {
             ends,
             middle,
             origin,
-            integral: halves + extrapolated(gap, &[a, middle, b], known),
+            integral: halves + rests[0] + rests[1],
             gap: gap.abs(),
         }
     }
@@ -193,15 +199,18 @@ fn unbounded<F: ForceSource>(
     found.map_or(f64::NAN, |[integral]| integral)
 }
 
-/// What is left of an integral by two steps, of the `gap` by which it is more than that by one: with m coefficients one
-/// step errs 4^m times as much as two halves.
-fn extrapolated(gap: f64, points: &[Point], known: usize) -> f64 {
-    let mut orders = points.iter().map(|p| finite(p, known));
-    let order = orders.next().unwrap_or(0);
-    if order == 0 || orders.any(|other| other != order) {
-        return 0.0;
+/// What is left of the integrals over two neighbouring steps, of the `gap` by which both are more than one step over both:
+/// with m coefficients a step errs as the 2 m + 1st power of its width.
+fn extrapolated(gap: f64, points: [&Point; 3], known: usize) -> [f64; 2] {
+    let orders = points.map(|p| finite(p, known));
+    let order = orders[0];
+    if order == 0 || orders != [order; 3] {
+        return [0.0; 2];
     }
-    gap / (f64::from(1_u32 << (2 * order)) - 1.0)
+    let [a, b, c] = points.map(|p| p.time);
+    let parts = [(b - a) / (c - a), (c - b) / (c - a)];
+    let powers = parts.map(|part| (0..2 * order).fold(part, |power, _| power * part));
+    powers.map(|power| gap * power / (1.0 - powers[0] - powers[1]))
 }
 
 /// How many of the `known` first coefficients are finite.

@@ -35,16 +35,35 @@ pub(super) struct Stretch {
 }
 
 impl Stretch {
-    /// Times at which it is sampled, rising, both ends included.
-    pub fn times(&self) -> impl Iterator<Item = f64> {
-        (0..=self.intervals).map(|k| {
+    /// Times at which it is sampled, rising, both ends included: evenly, and at those of `more` that lie on it.
+    pub fn times(&self, more: &[f64], duration: f64) -> Vec<f64> {
+        let even = (0..=self.intervals).map(|k| {
             let part = k as f64 / self.intervals as f64;
             if k == self.intervals {
                 self.to
             } else {
                 self.from + (self.to - self.from) * part
             }
-        })
+        });
+        let mut times: Vec<f64> = even.collect();
+        let beside = KNOT * duration;
+        let first = more.partition_point(|t| *t <= self.from + beside);
+        let own = more.iter().skip(first);
+        let own: Vec<f64> = own
+            .take_while(|t| **t < self.to - beside)
+            .copied()
+            .collect();
+        if !own.is_empty() {
+            let apart = |t: &f64| {
+                let next = times.partition_point(|even| even < t);
+                let near = |k: usize| times.get(k).is_some_and(|even| (even - t).abs() <= beside);
+                !near(next) && !near(next.max(1) - 1)
+            };
+            let own: Vec<f64> = own.into_iter().filter(apart).collect();
+            times.extend(own);
+            times.sort_by(f64::total_cmp);
+        }
+        times
     }
 }
 

@@ -61,7 +61,7 @@ fn undefined() -> Series<f64> {
     Series::from_coefficients([f64::NAN; crate::measure::ORDER])
 }
 
-/// Samples a motion stretch by stretch. `heard` is told each sample, with the one before it on the same stretch; what it
+/// Samples a motion stretch by stretch, and where its rows stand. `heard` is told each sample, with the one before it on the same stretch; what it
 /// answers says whether to go on. `None` when stopped.
 ///
 /// Where one of two neighbours lacks a rate that the other has, as at a limit, samples ever nearer to it are put between
@@ -74,9 +74,10 @@ pub(super) fn survey<F: ForceSource>(
     heard: &mut dyn FnMut(&mut Sampler<F>, Option<&Sample>, &Sample) -> bool,
 ) -> Option<()> {
     let duration = sampler.duration();
+    let rows = sampler.rows().to_vec();
     for stretch in stretches {
         let mut last: Option<Sample> = None;
-        for time in stretch.times() {
+        for time in stretch.times(&rows, duration) {
             watch
                 .reached(Stage::Measuring, Some(time / duration))
                 .continue_value()?;
