@@ -112,10 +112,23 @@ impl ForceSampler {
         measures: &[&Measure],
         watch: &mut dyn Watch,
     ) -> Result<Self, ForceError> {
+        Self::with_rows(motion, measures, &[], watch)
+    }
+
+    /// As [`ForceSampler::watched`]; statistics over the motion look at the times of its rows, s, too.
+    ///
+    /// # Errors
+    /// As [`ForceSampler::watched`].
+    pub fn with_rows(
+        motion: &Arc<Motion>,
+        measures: &[&Measure],
+        rows: &[f64],
+        watch: &mut dyn Watch,
+    ) -> Result<Self, ForceError> {
         let source =
             Source::new(motion, &motion.design.parameters).map_err(ForceError::Problems)?;
-        let sampler =
-            Sampler::watched(motion, measures, source, watch).map_err(ForceError::Unprepared)?;
+        let sampler = Sampler::with_rows(motion, measures, source, rows, watch)
+            .map_err(ForceError::Unprepared)?;
         Ok(Self { sampler })
     }
 

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use kempe_measure::{Base, ForceSource, Series, State};
+use kempe_measure::{Base, Curve, ForceSource, Series, State};
 use kempe_mechanism::Design;
 use kempe_mechanism::state::Branch;
 use kempe_model::{Drive, ForceMeasure, Measure};
@@ -57,6 +57,19 @@ where
 {
     fn measures(&self) -> &[Measure] {
         &self.measures
+    }
+
+    fn curves(&self) -> Vec<Curve> {
+        let amounts = self.forces.acting.amounts.iter();
+        let curves = amounts.filter_map(|amount| {
+            let (table, _) = amount.curve.as_ref()?;
+            Some(Curve {
+                over: amount.measure.clone(),
+                at: table.knots().to_vec(),
+                period: table.period(),
+            })
+        });
+        curves.collect()
     }
 
     fn solve(&mut self, state: &State<B>, amounts: &[Series<B>]) {

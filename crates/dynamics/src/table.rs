@@ -52,6 +52,16 @@ impl Table {
         })
     }
 
+    /// Abscissas of its points, rising: between them it is a cubic.
+    pub fn knots(&self) -> &[f64] {
+        &self.at
+    }
+
+    /// After how much it repeats itself, if it does.
+    pub fn period(&self) -> Option<f64> {
+        self.period
+    }
+
     /// The value at an abscissa.
     pub fn value<T: Number>(&self, x: T) -> T {
         let last = self.at.len() - 1;

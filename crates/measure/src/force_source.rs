@@ -5,10 +5,26 @@ use kempe_number::Number;
 
 use crate::state::{Series, State};
 
+/// A curve that is smooth between its knots only, over something that is measured.
+#[derive(Clone, Debug)]
+pub struct Curve {
+    /// What it runs over.
+    pub over: Measure,
+    /// Its knots, SI, rising.
+    pub at: Vec<f64>,
+    /// After how much it repeats itself, if it does.
+    pub period: Option<f64>,
+}
+
 /// Answers questions to the forces of states, on any number.
 pub trait ForceSource<B = f64> {
     /// What the forces themselves ask of a state: loads that depend on it.
     fn measures(&self) -> &[Measure];
+
+    /// The curves in what acts: forces are smooth between their knots only.
+    fn curves(&self) -> Vec<Curve> {
+        Vec::new()
+    }
 
     /// Whether it needs the motion that every drive gives on its own: virtual power does.
     fn needs_drives(&self) -> bool {
@@ -49,6 +65,10 @@ impl<B: Number> ForceSource<B> for NoForces {
 impl<B: Number, F: ForceSource<B>> ForceSource<B> for Option<F> {
     fn measures(&self) -> &[Measure] {
         self.as_ref().map_or(&[], F::measures)
+    }
+
+    fn curves(&self) -> Vec<Curve> {
+        self.as_ref().map_or_else(Vec::new, F::curves)
     }
 
     fn needs_drives(&self) -> bool {

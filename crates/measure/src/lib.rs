@@ -15,7 +15,7 @@ mod states_along;
 mod statistics;
 
 pub use circuit_rows::{circuit_row, circuit_samplers};
-pub use force_source::{ForceSource, NoForces};
+pub use force_source::{Curve, ForceSource, NoForces};
 pub use sampler::{CLOSURE_LIMIT, Sample, Sampler, Unmeasurable, Unprepared};
 pub use sensitivity::{Held, Sensitivities, Varying, sensitivities, sensitivities_with};
 pub use state::{Abscissa, ORDER, Series, State};

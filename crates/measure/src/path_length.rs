@@ -12,7 +12,7 @@ use kempe_motion::progress::{Stage, Watch};
 use kempe_motion::trace::interval;
 use kempe_number::Jet;
 
-use crate::quadrature::integrate;
+use crate::quadrature::{gauss, parts};
 
 /// Parts of a step of the trace, or of a segment of a table, in which a change of sign is looked for.
 const PARTS: usize = 8;
@@ -30,13 +30,38 @@ type Line = Jet<f64, 3>;
 #[derive(Clone, Debug)]
 pub struct Swept {
     point: PointId,
-    /// Path parameters, rising: the nodes of the trace, and where the point is slowest: it may turn back there, and its
-    /// speed has a kink.
+    /// What solves it along the path; `None` for a point that is on no link.
+    runner: Option<Runner>,
+    /// Where stretches begin, in path parameters, rising: the nodes of the trace, and where the point is slowest: it may
+    /// turn back there, and its speed has a kink.
+    starts: Vec<f64>,
+    stretches: Vec<Stretch>,
+    /// Where the motion in time may turn back: time, length from the first stretch's start, length swept since the start of
+    /// the motion.
+    turns: Vec<[f64; 3]>,
+}
+
+/// A stretch of the path, in parts on each of which one quadrature is enough.
+#[derive(Clone, Debug)]
+struct Stretch {
+    by: Variable,
+    /// Ends of its parts in that variable, rising.
     marks: Vec<f64>,
     /// Length from the first mark to each.
     cumulated: Vec<f64>,
-    /// Where the motion in time may turn back: time, length from the first mark, length swept since the start.
-    turns: Vec<[f64; 3]>,
+    /// Length from the first stretch's start to its own.
+    before: f64,
+}
+
+/// What a stretch is integrated over. Towards a limit the speed along the path grows like one over a root, which the
+/// substitution p = limit -+ w^2 takes away.
+#[derive(Clone, Copy, Debug)]
+enum Variable {
+    Path,
+    /// The root of what is left to a limit.
+    ToLimit(f64),
+    /// The root of what has passed since one.
+    FromLimit(f64),
 }
 
 impl Swept {
@@ -44,30 +69,33 @@ impl Swept {
     pub fn watched(motion: &Motion, point: PointId, watch: &mut dyn Watch) -> Option<Self> {
         let mut it = Self {
             point,
-            marks: Vec::new(),
-            cumulated: vec![0.0],
+            runner: Runner::new(motion, point),
+            starts: Vec::new(),
+            stretches: Vec::new(),
             turns: Vec::new(),
         };
-        let mut runner = Runner::new(motion, point);
-        for pair in motion.node_parameters().windows(2) {
-            it.marks.push(pair[0]);
-            if let Some(runner) = &mut runner {
-                it.marks.extend(runner.slowest(pair[0], pair[1]));
+        if let Some(runner) = &mut it.runner {
+            let mut marks = Vec::new();
+            for pair in motion.node_parameters().windows(2) {
+                marks.push(pair[0]);
+                marks.extend(runner.slowest(motion, pair[0], pair[1]));
+            }
+            marks.extend(motion.node_parameters().last());
+            let mut before = 0.0;
+            for (index, pair) in marks.windows(2).enumerate() {
+                let part = index as f64 / marks.len() as f64;
+                watch
+                    .reached(Stage::Measuring, Some(part))
+                    .continue_value()?;
+                let stretch = Stretch::new(motion, runner, [pair[0], pair[1]], before);
+                before += stretch.length();
+                it.starts.push(pair[0]);
+                it.stretches.push(stretch);
             }
         }
-        it.marks.extend(motion.node_parameters().last());
-        for index in 1..it.marks.len() {
-            let part = index as f64 / it.marks.len() as f64;
-            watch
-                .reached(Stage::Measuring, Some(part))
-                .continue_value()?;
-            let length = it.stretch(motion, &mut runner, index - 1, it.marks[index]);
-            it.cumulated.push(it.cumulated[index - 1] + length);
-        }
-        let parameters = motion.design.parameters.clone();
         let (low, high) = motion.reached();
-        for (time, p) in turns(motion, &parameters) {
-            let until = it.until(motion, &mut runner, p.clamp(low.min(high), high));
+        for (time, p) in turns(motion, &motion.design.parameters) {
+            let until = it.until(motion, p.clamp(low.min(high), high));
             let last = it.turns.last();
             let swept = last.map_or(0.0, |[_, last, swept]| swept + (until - last).abs());
             it.turns.push([time, until, swept]);
@@ -81,71 +109,107 @@ impl Swept {
     }
 
     /// Length swept from the start of the motion until a time, m.
-    pub fn at_time(&self, motion: &Motion, parameters: &[f64], time: f64) -> f64 {
+    pub fn at_time(&mut self, motion: &Motion, time: f64) -> f64 {
         let passed = self.turns.partition_point(|[t, ..]| *t <= time).max(1) - 1;
-        let Some([_, last, swept]) = self.turns.get(passed).filter(|_| time.is_finite()) else {
+        let turn = self.turns.get(passed).filter(|_| time.is_finite());
+        let Some([_, last, swept]) = turn.copied() else {
             return f64::NAN;
         };
-        let model = &motion.mechanism().model;
+        let (model, parameters) = (&motion.mechanism().model, &motion.design.parameters);
         let now = motion.path.parameter_at(model, time, parameters);
-        let mut runner = Runner::new(motion, self.point);
-        swept + (self.until(motion, &mut runner, now) - last).abs()
+        swept + (self.until(motion, now) - last).abs()
     }
 
-    /// Length from the first mark to a path parameter.
-    fn until(&self, motion: &Motion, runner: &mut Option<Runner<'_>>, p: f64) -> f64 {
-        let mark = interval(&self.marks, p);
-        match self.marks.get(mark) {
-            Some(_) => self.cumulated[mark] + self.stretch(motion, runner, mark, p),
-            None => 0.0,
+    /// Length from the first stretch's start to a path parameter.
+    fn until(&mut self, motion: &Motion, p: f64) -> f64 {
+        let place = (self.starts.partition_point(|start| *start <= p)).max(1) - 1;
+        match (&mut self.runner, self.stretches.get(place)) {
+            (Some(runner), Some(stretch)) => stretch.until(motion, runner, p),
+            _ => 0.0,
         }
     }
+}
 
-    /// Length from a mark to a path parameter before the next one. Towards a limit the speed along the path grows like one
-    /// over a root, which the substitution p = limit -+ w^2 takes away.
-    fn stretch(
-        &self,
-        motion: &Motion,
-        runner: &mut Option<Runner<'_>>,
-        mark: usize,
-        to: f64,
-    ) -> f64 {
-        let (Some(runner), Some(&from)) = (runner, self.marks.get(mark)) else {
-            return 0.0;
+impl Stretch {
+    fn new(motion: &Motion, runner: &mut Runner, [from, to]: [f64; 2], before: f64) -> Self {
+        let is_limit = |p: f64| {
+            let mut places = motion.places.iter();
+            places.any(|e| e.kind == EventKind::Limit && e.at == p)
         };
-        let limit_at = |p: Option<&f64>| {
-            let at = |p: &f64| {
-                let mut places = motion.places.iter();
-                places.any(|e| e.kind == EventKind::Limit && e.at == *p)
-            };
-            p.copied().filter(at)
+        let by = match () {
+            () if is_limit(to) => Variable::ToLimit(to),
+            () if is_limit(from) => Variable::FromLimit(from),
+            () => Variable::Path,
         };
+        let [a, b] = [by.of(from), by.of(to)];
         let floor = SHORTEST * motion.size();
-        let over = |[a, b]: [f64; 2], f: &mut dyn FnMut(f64) -> f64| {
-            let sign = if b < a { -1.0 } else { 1.0 };
-            let found = integrate(&[[a.min(b), a.max(b)]], floor, &mut |x| Some([f(x)]));
-            found.map_or(f64::NAN, |[length]| sign * length)
+        let parts = parts(&[[a.min(b), a.max(b)]], floor, &mut |x| {
+            Some([by.speed(motion, runner, x)])
+        });
+        let (mut marks, mut cumulated) = (vec![a.min(b)], vec![0.0]);
+        let mut sum = 0.0;
+        for part in parts.iter().flatten() {
+            let [length] = part.integral();
+            sum += length;
+            marks.push(part.to);
+            cumulated.push(sum);
+        }
+        Self {
+            by,
+            marks,
+            cumulated,
+            before,
+        }
+    }
+
+    /// Its whole length.
+    fn length(&self) -> f64 {
+        self.cumulated.last().copied().unwrap_or(0.0)
+    }
+
+    /// Length from the first stretch's start to a path parameter of this one.
+    fn until(&self, motion: &Motion, runner: &mut Runner, p: f64) -> f64 {
+        let x = self.by.of(p);
+        let part = interval(&self.marks, x);
+        let (Some(&mark), Some(&cumulated)) = (self.marks.get(part), self.cumulated.get(part))
+        else {
+            return self.before;
         };
-        let mut speed = |p: f64| runner.speed(p);
-        if let Some(limit) = limit_at(self.marks.get(mark + 1)) {
-            let root = |p: f64| (limit - p).max(0.0).sqrt();
-            return over([root(to), root(from)], &mut |w| {
-                2.0 * w * speed(limit - w * w)
-            });
+        let rest = match x == mark {
+            true => Some([0.0]),
+            false => gauss(mark, x, &mut |x| Some([self.by.speed(motion, runner, x)])),
+        };
+        let length = cumulated + rest.map_or(f64::NAN, |[rest]| rest);
+        self.before
+            + match self.by {
+                Variable::ToLimit(_) => self.length() - length,
+                _ => length,
+            }
+    }
+}
+
+impl Variable {
+    fn of(self, p: f64) -> f64 {
+        match self {
+            Self::Path => p,
+            Self::ToLimit(limit) => (limit - p).max(0.0).sqrt(),
+            Self::FromLimit(limit) => (p - limit).max(0.0).sqrt(),
         }
-        if let Some(limit) = limit_at(Some(&from)) {
-            let root = |p: f64| (p - limit).max(0.0).sqrt();
-            return over([root(from), root(to)], &mut |w| {
-                2.0 * w * speed(limit + w * w)
-            });
+    }
+
+    /// Length of path for each unit of the variable.
+    fn speed(self, motion: &Motion, runner: &mut Runner, x: f64) -> f64 {
+        match self {
+            Self::Path => runner.speed(motion, x),
+            Self::ToLimit(limit) => 2.0 * x * runner.speed(motion, limit - x * x),
+            Self::FromLimit(limit) => 2.0 * x * runner.speed(motion, limit + x * x),
         }
-        over([from, to], &mut speed)
     }
 }
 
 /// A point on its way along the path, with the storage to solve it.
-struct Runner<'a> {
-    motion: &'a Motion,
+#[derive(Clone, Debug)]
+struct Runner {
     marker: Marker,
     design: Design<Line>,
     side_design: Design<Side>,
@@ -153,21 +217,19 @@ struct Runner<'a> {
     side: Solver<Side>,
 }
 
-impl<'a> Runner<'a> {
-    fn new(motion: &'a Motion, point: PointId) -> Option<Self> {
+impl Runner {
+    fn new(motion: &Motion, point: PointId) -> Option<Self> {
         Some(Self {
             marker: motion.mechanism().any_marker(point)?,
             design: motion.design_on(),
             side_design: motion.design_on(),
             solver: motion.solver(),
             side: motion.solver(),
-            motion,
         })
     }
 
     /// First and second derivative of its place to the path parameter.
-    fn derivatives(&mut self, p: f64) -> [[f64; 2]; 2] {
-        let motion = self.motion;
+    fn derivatives(&mut self, motion: &Motion, p: f64) -> [[f64; 2]; 2] {
         let body = self.marker.body.index();
         let pose = match motion.bridge(p) {
             Some(event) => across(motion, &self.side_design, event, p, &mut self.side)[body],
@@ -180,17 +242,17 @@ impl<'a> Runner<'a> {
         [1, 2].map(|order| at.map(|x| x.derivative(order)))
     }
 
-    fn speed(&mut self, p: f64) -> f64 {
-        let [v, _] = self.derivatives(p);
+    fn speed(&mut self, motion: &Motion, p: f64) -> f64 {
+        let [v, _] = self.derivatives(motion, p);
         dot(v, v).sqrt()
     }
 
     /// Where between two path parameters the speed is smallest: zeros of `v . a` from below.
-    fn slowest(&mut self, from: f64, to: f64) -> Vec<f64> {
+    fn slowest(&mut self, motion: &Motion, from: f64, to: f64) -> Vec<f64> {
         let width = (to - from) / PARTS as f64;
         let mut found = Vec::new();
         let mut slope = |p: f64| {
-            let [v, a] = self.derivatives(p);
+            let [v, a] = self.derivatives(motion, p);
             let (growth, square) = (dot(v, a), dot(v, v));
             // A turning point of a steady speed is no kink; nor is the rounding of a point that stands still.
             let steady = (growth * width).abs() <= STEADY * square;

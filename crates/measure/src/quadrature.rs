@@ -28,9 +28,9 @@ const GRADING: (i32, f64) = (4, 0.125);
 
 /// A part of a stretch with its integral by halves.
 #[derive(Clone)]
-struct Part<const K: usize> {
-    from: f64,
-    to: f64,
+pub(crate) struct Part<const K: usize> {
+    pub from: f64,
+    pub to: f64,
     /// Width of the stretch that it came from.
     origin: f64,
     halves: [[f64; K]; 2],
@@ -42,6 +42,12 @@ struct Part<const K: usize> {
 }
 
 impl<const K: usize> Part<K> {
+    /// The integrals over it.
+    pub fn integral(&self) -> [f64; K] {
+        let [a, b] = &self.halves;
+        std::array::from_fn(|k| a[k] + b[k])
+    }
+
     fn middle(&self) -> f64 {
         0.5 * (self.from + self.to)
     }
@@ -59,27 +65,63 @@ pub(crate) fn graded(count: usize) -> Vec<[f64; 2]> {
     cuts.windows(2).map(|w| [w[0], w[1]]).collect()
 }
 
-/// Integrates `K` functions over stretches in rising order; `None` when `f` says so.
-///
-/// Every stretch is integrated whole and by halves, and halved again until all agree, within parts and over the seams
-/// between them, to [`AGREED`] of the integral of the functions' sizes (or of `floor`, where that is more). Kinks, jumps
-/// and roots are closed in on that way.
+/// Integrates `K` functions over stretches in rising order, as [`parts`] does; `None` when `f` says so.
 pub(crate) fn integrate<const K: usize>(
     stretches: &[[f64; 2]],
     floor: f64,
     f: &mut dyn FnMut(f64) -> Option<[f64; K]>,
 ) -> Option<[f64; K]> {
+    let mut sum = [0.0; K];
+    for half in parts(stretches, floor, f)?
+        .iter()
+        .flat_map(|part| part.halves)
+    {
+        sum.iter_mut().zip(half).for_each(|(all, h)| *all += h);
+    }
+    Some(sum)
+}
+
+/// The integral over one part, by the rule alone.
+pub(crate) fn gauss<const K: usize>(
+    from: f64,
+    to: f64,
+    f: &mut dyn FnMut(f64) -> Option<[f64; K]>,
+) -> Option<[f64; K]> {
+    gauss_with_sizes(from, to, f).map(|[sum, _]| sum)
+}
+
+/// The integral over one part, and that of the functions' sizes.
+fn gauss_with_sizes<const K: usize>(
+    from: f64,
+    to: f64,
+    f: &mut dyn FnMut(f64) -> Option<[f64; K]>,
+) -> Option<[[f64; K]; 2]> {
+    let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
+    let (mut sum, mut size) = ([0.0; K], [0.0; K]);
+    for (x, w) in GAUSS {
+        let values = f(middle + half * x)?;
+        for (k, value) in values.into_iter().enumerate() {
+            sum[k] += w * half * value;
+            size[k] += (w * half * value).abs();
+        }
+    }
+    Some([sum, size])
+}
+
+/// Parts of stretches in rising order on each of which the rule integrates `K` functions as well as they are known; `None`
+/// when `f` says so.
+///
+/// Every stretch is integrated whole and by halves, and halved again until all agree, within parts and over the seams
+/// between them, to [`AGREED`] of the integral of the functions' sizes (or of `floor`, where that is more). Kinks, jumps
+/// and roots are closed in on that way.
+pub(crate) fn parts<const K: usize>(
+    stretches: &[[f64; 2]],
+    floor: f64,
+    f: &mut dyn FnMut(f64) -> Option<[f64; K]>,
+) -> Option<Vec<Part<K>>> {
     let mut sizes = [floor; K];
     let mut gauss = |from: f64, to: f64, sizes: Option<&mut [f64; K]>| {
-        let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
-        let (mut sum, mut size) = ([0.0; K], [0.0; K]);
-        for (x, w) in GAUSS {
-            let values = f(middle + half * x)?;
-            for (k, value) in values.into_iter().enumerate() {
-                sum[k] += w * half * value;
-                size[k] += (w * half * value).abs();
-            }
-        }
+        let [sum, size] = gauss_with_sizes(from, to, f)?;
         if let Some(sizes) = sizes {
             sizes.iter_mut().zip(size).for_each(|(all, s)| *all += s);
         }
@@ -171,11 +213,7 @@ pub(crate) fn integrate<const K: usize>(
         }
         parts = finer;
     }
-    let mut sum = [0.0; K];
-    for half in parts.iter().flat_map(|part| part.halves) {
-        sum.iter_mut().zip(half).for_each(|(all, h)| *all += h);
-    }
-    Some(sum)
+    Some(parts)
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@ mod moment;
 mod note;
 mod prepare;
 
+pub(crate) use self::moment::Asked;
 pub use self::prepare::{Unmeasurable, Unprepared};
 
 use std::sync::Arc;
@@ -23,6 +24,7 @@ use crate::measure::order_of;
 use crate::measurer::Measurer;
 use crate::path_length::Swept;
 use crate::states_along::Place;
+use crate::statistics::{At, Known};
 
 /// A closure residual (in mechanism sizes) above which a row is marked.
 pub const CLOSURE_LIMIT: f64 = 1e-9;
@@ -59,6 +61,10 @@ pub struct Sampler<F = NoForces> {
     /// Moving points whose curvature is asked for.
     curved: Vec<PointId>,
     plain: Solver<f64>,
+    /// Times at which rows will be asked for, rising: statistics look there too.
+    rows: Vec<f64>,
+    /// What the statistics found of their measures.
+    known: Vec<Known>,
     system: Bordered,
 }
 
@@ -99,6 +105,23 @@ impl<F: ForceSource> Sampler<F> {
         forces: F,
         watch: &mut dyn Watch,
     ) -> Result<Self, Unprepared> {
+        Self::with_rows(motion, measures, forces, &[], watch)
+    }
+
+    /// As [`Sampler::watched`]; statistics over the motion look at the times of its rows, s, too: no row lies beyond an
+    /// extreme.
+    ///
+    /// # Errors
+    /// As [`Sampler::watched`].
+    pub fn with_rows(
+        motion: &Arc<Motion>,
+        measures: &[&Measure],
+        forces: F,
+        rows: &[f64],
+        watch: &mut dyn Watch,
+    ) -> Result<Self, Unprepared> {
+        let mut rows: Vec<f64> = rows.iter().copied().filter(|t| t.is_finite()).collect();
+        rows.sort_by(f64::total_cmp);
         let mechanism = motion.mechanism();
         let problems: Vec<Unmeasurable> = (measures.iter().enumerate())
             .filter_map(|(index, m)| {
@@ -112,6 +135,8 @@ impl<F: ForceSource> Sampler<F> {
         }
         let mut it = Self {
             measurer: Measurer::new(motion, &motion.design.parameters, forces),
+            rows,
+            known: Vec::new(),
             measures: measures.iter().map(|m| (*m).clone()).collect(),
             lengths: Vec::new(),
             curved: Vec::new(),
@@ -125,6 +150,18 @@ impl<F: ForceSource> Sampler<F> {
     /// The source of forces, as it stands after the row last asked for.
     pub fn forces(&self) -> &F {
         &self.measurer.forces
+    }
+
+    /// Times at which rows will be asked for, rising.
+    pub(crate) fn rows(&self) -> &[f64] {
+        &self.rows
+    }
+
+    /// Smallest and largest value, each with its time, of a measure that a statistic asks for; `None` where it has no value
+    /// somewhere on the motion.
+    pub(crate) fn extremes(&self, measure: &Measure) -> Option<(At, At)> {
+        let known = self.known.iter().find(|known| known.measure == *measure);
+        known.and_then(|known| known.extremes)
     }
 
     /// Values of the parameters, SI, in the model's order.
@@ -183,8 +220,9 @@ impl<F: ForceSource> Sampler<F> {
         }
         let measures = std::mem::take(&mut self.measures);
         let curved = std::mem::take(&mut self.curved);
+        let lengths: Vec<PointId> = self.lengths.iter().map(Swept::point).collect();
         let mut still = Vec::new();
-        self.with_moment(place, true, |moment| {
+        self.with_moment(place, true, &lengths, |moment| {
             still.extend(curved.iter().filter(|p| moment.stands_still(**p)));
             for (value, measure) in sample.values.iter_mut().zip(&measures) {
                 *value = moment.value(measure);

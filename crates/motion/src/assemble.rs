@@ -14,7 +14,7 @@ mod polynomial;
 mod search;
 mod turns;
 
-pub use self::hints::{Standing, standing};
+pub use self::hints::{Standing, standings};
 pub use self::polynomial::{Solutions, all_real_solutions};
 pub use self::search::{ASSEMBLY_LIMIT, CLOSED};
 

@@ -81,6 +81,8 @@ pub enum DrivePath {
         drive: usize,
         /// Coordinates of all drives (that of the moving one does not count).
         held: Vec<f64>,
+        /// Whether it is an angle; otherwise it is a length.
+        is_angle: bool,
         /// Size of a typical change: 1 rad, or the mechanism's size.
         scale: f64,
     },
@@ -119,6 +121,7 @@ impl DrivePath {
                 Self::Coordinate {
                     drive,
                     held,
+                    is_angle,
                     scale: if is_angle { 1.0 } else { size },
                 }
             }
@@ -177,7 +180,7 @@ impl DrivePath {
 
     /// Whether the path parameter is an angle (then its scale is 1).
     pub fn coordinates_are_angles(&self) -> bool {
-        matches!(self, Self::Coordinate { scale, .. } if *scale == 1.0)
+        matches!(self, Self::Coordinate { is_angle: true, .. })
     }
 
     /// Drive coordinates at the path parameter, on any number.

@@ -375,3 +375,53 @@ v = \"rate(x(B))\"
         }
     }
 }
+
+/// What a drive's coordinate is stands in the drive, however large the mechanism: here its size is exactly 1 m.
+#[test]
+fn a_slide_is_no_angle_at_any_size() {
+    for (size, drive, is_angle) in [
+        (
+            1.0,
+            "push = { slides = \"block\", from = 0.1, to = 0.2, speed = 1 }",
+            false,
+        ),
+        (
+            2.0,
+            "push = { slides = \"block\", from = 0.1, to = 0.2, speed = 1 }",
+            false,
+        ),
+        (
+            1.0,
+            "turn = { turns = \"arm\", from = 0, to = 1, speed = 1 }",
+            true,
+        ),
+        (
+            2.0,
+            "turn = { turns = \"arm\", from = 0, to = 1, speed = 1 }",
+            true,
+        ),
+    ] {
+        let other = match is_angle {
+            true => String::new(),
+            false => format!(
+                "block = {{ S = [0, 0] }}\n[joints]\nway = {{ slider = \"block\", at = \"S\", on = \"A -> D\" }}"
+            ),
+        };
+        let arm = match is_angle {
+            true => "arm = { A-P = 0.5 }\n",
+            false => "",
+        };
+        let text = format!(
+            "units = {{ length = \"m\", angle = \"rad\" }}
+[links]
+frame = {{ A = [0, 0], D = [{size}, 0] }}
+{arm}{other}
+[drives]
+{drive}
+"
+        );
+        let motion = Case::read(&text, "size.toml").must_move();
+        assert_eq!(motion.path.coordinates_are_angles(), is_angle, "{text}");
+        assert_eq!(motion.size() == 1.0, size == 1.0, "{}", motion.size());
+    }
+}

@@ -10,7 +10,7 @@ use kempe_motion::{Motion, Stage, Unwatched, Watch};
 
 use crate::explain::stopped;
 use crate::quantity::Quantity;
-use crate::rows::RowPlace;
+use crate::rows::{RowPlace, path_drive};
 
 /// What acts on the mechanism makes no sense, as diagnostics over the model file.
 pub(crate) fn force_problems(problems: Vec<Problem>) -> Vec<Diagnostic> {
@@ -47,25 +47,28 @@ impl Along {
         quantities: &[&Quantity],
         forces: bool,
     ) -> Result<Self, Vec<Diagnostic>> {
-        Self::watched(model, motion, quantities, forces, &mut Unwatched)
+        Self::watched(model, motion, quantities, forces, &[], &mut Unwatched)
     }
 
-    /// As [`Along::new`]; `watch` hears how far the statistics have come and may stop them.
+    /// As [`Along::new`], with the places of the rows that will be asked for; `watch` hears how far the statistics have come
+    /// and may stop them.
     pub fn watched(
         model: &Model,
         motion: &Arc<Motion>,
         quantities: &[&Quantity],
         forces: bool,
+        rows: &[RowPlace],
         watch: &mut dyn Watch,
     ) -> Result<Self, Vec<Diagnostic>> {
         let measures: Vec<_> = quantities.iter().map(|q| &q.measure).collect();
+        let rows = times(motion, rows);
         if !forces {
-            return match Sampler::watched(motion, &measures, NoForces, watch) {
+            return match Sampler::with_rows(motion, &measures, NoForces, &rows, watch) {
                 Ok(sampler) => Ok(Self::Motion(Box::new(sampler))),
                 Err(problem) => Err(unprepared(model, quantities, problem)),
             };
         }
-        ForceSampler::watched(motion, &measures, watch)
+        ForceSampler::with_rows(motion, &measures, &rows, watch)
             .map(|sampler| Self::Forces(Box::new(sampler)))
             .map_err(|error| match error {
                 ForceError::Unprepared(problem) => unprepared(model, quantities, problem),
@@ -143,4 +146,14 @@ fn not_measurable(
         }
     });
     told.collect()
+}
+
+/// Times of rows, s; of those at a coordinate the first time at which the drive is there.
+fn times(motion: &Motion, rows: &[RowPlace]) -> Vec<f64> {
+    let drive = motion.mechanism().model.drives.get(path_drive(motion));
+    let time = |row: &RowPlace| match row {
+        RowPlace::Time(time) => Some(*time),
+        RowPlace::Drive(p) => drive?.law.first_time(*p, &motion.design.parameters),
+    };
+    rows.iter().filter_map(time).collect()
 }

@@ -1,8 +1,9 @@
 //! What the rows of a study note about their forces, gathered into warnings: one for each kind, with where it is worst.
 
 use kempe_dynamics::ForceNote;
+use kempe_measure::measure::visit_leaves;
 use kempe_mechanism::Mechanism;
-use kempe_model::{Diagnostic, DriveId, ForceMeasure, Leaf, Measure, Model};
+use kempe_model::{Diagnostic, DriveId, ForceMeasure, Leaf, Measure};
 use kempe_motion::events::EventKind;
 
 use crate::quantity::Quantity;
@@ -105,7 +106,11 @@ pub(crate) fn place(table: &Table, along: usize, row: usize) -> String {
 
 /// Warnings of numbers over the motion that hold joint loads, where the motion meets a pose at which these grow without
 /// bound: such a number tells how near that pose was looked at.
-pub(crate) fn unbounded(model: &Model, scalars: &[Quantity], events: &[Event]) -> Vec<Diagnostic> {
+pub(crate) fn unbounded(
+    mechanism: &Mechanism,
+    scalars: &[Quantity],
+    events: &[Event],
+) -> Vec<Diagnostic> {
     let singular: Vec<&str> = (events.iter())
         .filter(|e| e.kind != EventKind::ModeChange)
         .map(|e| e.place.as_str())
@@ -115,7 +120,7 @@ pub(crate) fn unbounded(model: &Model, scalars: &[Quantity], events: &[Event]) -
     };
     let holding = scalars
         .iter()
-        .filter(|q| holds_joint_load(model, &q.measure, &mut Vec::new()));
+        .filter(|q| holds_joint_load(mechanism, &q.measure));
     let told = holding.map(|q| {
         Diagnostic::warning(
             "unbounded-load",
@@ -130,27 +135,21 @@ pub(crate) fn unbounded(model: &Model, scalars: &[Quantity], events: &[Event]) -
     told.collect()
 }
 
-/// Whether a measure asks for what a joint carries, itself or by another measure. What was looked at already
-/// is in `seen`: measures may name each other many times over.
-fn holds_joint_load(model: &Model, measure: &Measure, seen: &mut Vec<usize>) -> bool {
-    measure.leaves().any(|leaf| match leaf {
-        Leaf::Force(force) => matches!(
-            force,
-            ForceMeasure::Reaction(_)
-                | ForceMeasure::ReactionX(_)
-                | ForceMeasure::ReactionY(_)
-                | ForceMeasure::ReactionAlong(_)
-                | ForceMeasure::ReactionAcross(_)
-                | ForceMeasure::ReactionMoment(_)
-        ),
-        Leaf::Named(index) => {
-            if seen.contains(index) {
-                return false;
-            }
-            seen.push(*index);
-            (model.measures.get(*index)).is_some_and(|m| holds_joint_load(model, &m.measure, seen))
-        }
-        Leaf::Rate(inner, _) | Leaf::Over(_, inner) => holds_joint_load(model, inner, seen),
-        _ => false,
-    })
+/// Whether a measure asks for what a joint carries, itself or by another measure.
+fn holds_joint_load(mechanism: &Mechanism, measure: &Measure) -> bool {
+    let mut found = false;
+    visit_leaves(mechanism, measure, &mut |leaf| {
+        found |= matches!(
+            leaf,
+            Leaf::Force(
+                ForceMeasure::Reaction(_)
+                    | ForceMeasure::ReactionX(_)
+                    | ForceMeasure::ReactionY(_)
+                    | ForceMeasure::ReactionAlong(_)
+                    | ForceMeasure::ReactionAcross(_)
+                    | ForceMeasure::ReactionMoment(_)
+            )
+        );
+    });
+    found
 }

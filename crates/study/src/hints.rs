@@ -2,7 +2,7 @@
 
 use kempe_mechanism::Design;
 use kempe_model::{HintKind, Model, Side};
-use kempe_motion::assemble::{Assemblies, Assembly, Standing, standing};
+use kempe_motion::assemble::{Assemblies, Assembly, Standing, standings};
 
 use crate::words::list;
 
@@ -11,22 +11,12 @@ const AS_NEAR: f64 = 1e-6;
 /// Contradictions of up to so many sides are looked for; of more all are named.
 const SMALL: usize = 4;
 
-/// How one assembly stands to every hint of the file, in their order.
-fn standings(design: &Design<f64>, assembly: &Assembly) -> Vec<Option<Standing>> {
-    let mechanism = &*design.mechanism;
-    let hints = mechanism.model.assembly.iter();
-    hints
-        .map(|hint| standing(mechanism, &design.geometry, &assembly.poses, &hint.kind))
-        .collect()
-}
-
 /// The sides that decide nothing, by their place in the file, each with the reason.
 pub(crate) fn idle(design: &Design<f64>, assemblies: &Assemblies) -> Vec<(usize, String)> {
     let mechanism = &*design.mechanism;
     let model = &mechanism.model;
-    let all: Vec<Vec<Option<Standing>>> = (assemblies.list.iter().chain(&assemblies.others))
-        .map(|assembly| standings(design, assembly))
-        .collect();
+    let all = assemblies.list.iter().chain(&assemblies.others);
+    let all = standings(design, all.map(|assembly| &assembly.poses[..]));
     let idle = |index: usize| {
         let mut found = all.iter().filter_map(|s| s.get(index).copied().flatten());
         let first = found.next()?;
@@ -57,9 +47,7 @@ pub(crate) fn near_decides(design: &Design<f64>, assemblies: &Assemblies) -> boo
 
 /// The smallest set of sides that no assembly agrees with, by their place in the file.
 pub(crate) fn contradiction(design: &Design<f64>, assemblies: &Assemblies) -> Vec<usize> {
-    let fails: Vec<Vec<usize>> = (assemblies.others.iter())
-        .map(|assembly| failing(design, assembly))
-        .collect();
+    let fails = failing(design, &assemblies.others);
     let mut sides: Vec<usize> = fails.iter().flatten().copied().collect();
     sides.sort_unstable();
     sides.dedup();
@@ -90,21 +78,21 @@ fn chosen(
     None
 }
 
-/// The sides with which an assembly does not agree.
-fn failing(design: &Design<f64>, assembly: &Assembly) -> Vec<usize> {
-    let standings = standings(design, assembly).into_iter();
-    standings
-        .enumerate()
-        .filter(|(_, s)| *s == Some(Standing::Fails))
-        .map(|(index, _)| index)
-        .collect()
+/// The sides with which each assembly does not agree.
+fn failing(design: &Design<f64>, assemblies: &[Assembly]) -> Vec<Vec<usize>> {
+    let all = standings(design, assemblies.iter().map(|a| &a.poses[..]));
+    let fails = |standings: Vec<Option<Standing>>| {
+        let sides = standings.into_iter().enumerate();
+        let fails = sides.filter(|(_, s)| *s == Some(Standing::Fails));
+        fails.map(|(index, _)| index).collect()
+    };
+    all.into_iter().map(fails).collect()
 }
 
 /// How the assembly lies that agrees with most of the hints: `D left of A -> C`.
 pub(crate) fn nearest(design: &Design<f64>, assemblies: &Assemblies) -> Option<String> {
     let mechanism = &*design.mechanism;
-    let others = assemblies.others.iter();
-    let fails = others.map(|assembly| failing(design, assembly));
+    let fails = failing(design, &assemblies.others).into_iter();
     let fewest = fails.min_by_key(Vec::len)?;
     let lies: Vec<String> = (fewest.into_iter())
         .filter_map(|index| {

@@ -1,5 +1,7 @@
 //! Motion studies: a row for every place along the drives' laws.
 
+use kempe_measure::measure::visit_leaves;
+use kempe_mechanism::Mechanism;
 use kempe_model::{Diagnostic, Leaf, Measure, Model, MotionStudy, Statistic};
 use kempe_motion::drive_path::{DrivePath, is_cycle};
 use kempe_motion::{EndReason, Motion};
@@ -42,8 +44,15 @@ pub(crate) fn run_along(
         Asked::of_motion(model, &study)
     };
     let quantities: Vec<&Quantity> = asked.all().collect();
-    let mut sampler = Along::watched(model, &motion, &quantities, forces, &mut Ear(progress))?;
     let places = places_along(&motion, &study, &design.parameters);
+    let mut sampler = Along::watched(
+        model,
+        &motion,
+        &quantities,
+        forces,
+        &places,
+        &mut Ear(progress),
+    )?;
     let units = Units::of(model);
     let mut rows = RowSink::new(
         name,
@@ -68,13 +77,13 @@ pub(crate) fn run_along(
     }
     warnings.extend(rows.force_warnings(&design.mechanism, along));
     warnings.extend(without_value(&rows, along, |index| {
-        let of_cycles =
-            (asked.scalars.get(index)).is_some_and(|q| asks_time_ratio(model, &q.measure));
+        let of_cycles = (asked.scalars.get(index))
+            .is_some_and(|q| asks_time_ratio(&design.mechanism, &q.measure));
         of_cycles && !is_cycle(model, &design.parameters)
     }));
     let met = events(&motion, &units, &parameters_met);
     if forces {
-        warnings.extend(unbounded(model, &asked.scalars, &met));
+        warnings.extend(unbounded(&design.mechanism, &asked.scalars, &met));
     }
     Ok(StudyResult {
         name: name.to_owned(),
@@ -92,17 +101,12 @@ pub(crate) fn run_along(
 }
 
 /// Whether a measure asks for a time ratio, itself or by another measure.
-fn asks_time_ratio(model: &Model, measure: &Measure) -> bool {
-    measure.leaves().any(|leaf| match leaf {
-        Leaf::Over(statistic, inner) => {
-            *statistic == Statistic::TimeRatio || asks_time_ratio(model, inner)
-        }
-        Leaf::Named(index) => {
-            (model.measures.get(*index)).is_some_and(|m| asks_time_ratio(model, &m.measure))
-        }
-        Leaf::Rate(inner, _) | Leaf::Coefficient(inner, ..) => asks_time_ratio(model, inner),
-        _ => false,
-    })
+fn asks_time_ratio(mechanism: &Mechanism, measure: &Measure) -> bool {
+    let mut found = false;
+    visit_leaves(mechanism, measure, &mut |leaf| {
+        found |= matches!(leaf, Leaf::Over(Statistic::TimeRatio, _));
+    });
+    found
 }
 
 /// The column that rows run along: the drive that goes one way through the whole motion, or else time.

@@ -570,3 +570,52 @@ fn a_hodograph_of_rounding_is_a_point() {
     assert!(values(0) > 0.0);
     assert_eq!(values(1), 0.0);
 }
+
+/// A load's card with a peak narrower than any grid: its points are looked at, and nothing in the table lies beyond the
+/// extremes.
+#[test]
+fn points_of_a_card_and_rows_lie_within_the_extremes() {
+    const CARD: &str = "phi [deg],F [N]\n0,1\n100,1\n100.05,77\n100.1,1\n250,3\n360,1\n";
+    let text = FOUR_BAR.replace(
+        "[measures]\n",
+        "[loads]
+g = { force = [{ table = \"card.csv\", over = \"angle(crank)\", period = 360 }, 0], at = \"P\" }
+s = { torque = \"-1 N m * exp(-((angle(rocker) - 120 deg) / (0.02 deg))^2)\", on = \"rocker\" }
+[measures]
+peak = \"max(load(g))\"
+least = \"min(load(g))\"
+all = \"mean(load(g))\"
+most = \"max(effort)\"
+fewest = \"min(effort)\"
+work = \"mean(power(motor))\"
+",
+    ) + "[studies.loads]\nkind = \"forces\"\nstep = 0.05\ncolumns = [\"effort\"]\n";
+    let model = Model::from_toml(&text, "test", &mut |_| Ok(CARD.into()))
+        .unwrap_or_else(|found| panic!("{}", told(&found, &text)))
+        .model;
+    let result = run(&model, &model.studies[0], &mut Silent)
+        .unwrap_or_else(|found| panic!("{}", told(&found, &text)));
+    let number = |name: &str| {
+        let scalar = result.scalars.iter().find(|s| s.name == name);
+        scalar.map_or(f64::NAN, |s| s.value)
+    };
+    let near = |name: &str, truth: f64| {
+        let found = number(name);
+        assert!((found - truth).abs() < 1e-9 * truth, "{name}: {found}");
+    };
+    near("peak", 77.0);
+    near("least", 1.0);
+    // The card is flat at all of its points: every segment counts with the mean of its ends.
+    near(
+        "all",
+        (100.0 * 1.0 + 0.1 * 39.0 + 149.9 * 2.0 + 110.0 * 2.0) / 360.0,
+    );
+    let effort = column(&result, "effort");
+    let (low, high) = (number("fewest"), number("most"));
+    assert!(
+        effort.iter().all(|x| low <= *x && *x <= high),
+        "{low} {high}"
+    );
+    // What the peak does is seen in the drive.
+    assert!(high - low > 1.0, "{low} {high}");
+}

@@ -750,3 +750,50 @@ fn measures_that_name_each_other_many_times_over_are_evaluated_once() {
     };
     assert!((slope("m59") / slope("m0") - times).abs() < 1e-9 * times);
 }
+
+/// Each names the one before it twice: whoever looks into all of them anew each time does not come to an end.
+#[test]
+fn measures_may_name_each_other_many_times_over() {
+    let mut measures = String::from("m0 = \"y(P)\"\nf0 = \"torque(motor)\"\n");
+    for k in 1..60 {
+        let before = k - 1;
+        measures += &format!("m{k} = \"(m{before} + m{before}) / 2\"\n");
+        measures += &format!("f{k} = \"(f{before} + f{before}) / 2\"\n");
+    }
+    measures += "top = \"max(m59)\"\nratio = \"time_ratio(m59)\"\nload = \"max(abs(f59))\"\nslope = \"d(m59, motor)\"\n";
+    measures += "s0 = \"max(m0)\"\n";
+    for k in 1..12 {
+        measures += &format!("s{k} = \"mean(m0 - s{}) + s{}\"\n", k - 1, k - 1);
+    }
+    let text = FOUR_BAR
+        .replace("to = 360", "to = 200")
+        .replace("A-B = \"a\"", "A-B = \"a\", mass = \"1 kg\", inertia = 0")
+        .replace("[measures]\n", &format!("[measures]\n{measures}"))
+        .replace(
+            "[studies.turn]",
+            "[studies.loads]\nkind = \"forces\"\nstep = 40\n[studies.turn]",
+        )
+        .replace("step = 1\n", "step = 40\n")
+        .replace("columns = [\"swing\",", "columns = [\"m59\", \"swing\",");
+    let model = model(&text);
+    let report = check(&model);
+    assert!(report.mobility_rank == Some(1), "{report:?}");
+    for study in &model.studies {
+        let result = run(&model, study, &mut Silent).unwrap();
+        let number = |name: &str| {
+            let found = result.scalars.iter().find(|s| s.name == name);
+            found.map(|s| s.value)
+        };
+        let top = number("top").unwrap();
+        assert!((top - number("s0").unwrap()).abs() < 1e-12 * top);
+        assert!(number("ratio").unwrap().is_nan());
+        let told = told(&result.warnings, &text);
+        assert!(told.contains("this motion is none"), "{told}");
+    }
+    let found = kempe_study::sensitivities(&model, None, &mut Silent).unwrap();
+    let of = |name: &str| {
+        let measure = found.measures.iter().find(|m| m.name == name).unwrap();
+        measure.derivatives[0].value
+    };
+    assert!((of("m59") - of("m0")).abs() < 1e-12);
+}

@@ -1,39 +1,75 @@
 //! The moment last found, as measures see it, and places by time.
 
-use kempe_model::{DriveId, Measure, PointId};
+use kempe_model::{DriveId, Leaf, Measure, PointId, PoseMeasure};
+use kempe_number::Number;
 
 use super::Sampler;
 use crate::force_source::ForceSource;
-use crate::measure::{Along, Moment};
-use crate::measurer::asks_forces;
+use crate::measure::{Along, Moment, visit_leaves};
+use crate::state::Series;
 use crate::states_along::Place;
 
 impl<F: ForceSource> Sampler<F> {
-    /// Hands the moment last found to `ask`, with its forces where they are wanted.
+    /// Hands the moment last found to `ask`: with its forces where they are wanted, and with the lengths of the paths of some
+    /// points.
     pub(super) fn with_moment<R>(
         &mut self,
         place: Place<f64>,
         with_forces: bool,
+        lengths: &[PointId],
         ask: impl FnOnce(&Moment<'_, f64>) -> R,
     ) -> R {
-        let motion = self.motion();
-        let lengths: Vec<(PointId, f64)> = (self.lengths.iter())
-            .map(|s| (s.point(), s.at_time(motion, self.parameters(), place.time)))
-            .collect();
+        let lengths = self.lengths_at(lengths, place.time);
         (self.measurer).with_moment(place.path, lengths, with_forces, ask)
     }
 
-    /// Value and time derivative of a measure at a time; NaN where the motion does not reach.
-    pub(crate) fn value_and_rate(&mut self, measure: &Measure, time: f64) -> [f64; 2] {
+    /// Lengths of the paths of some points at a time.
+    fn lengths_at(&mut self, points: &[PointId], time: f64) -> Vec<(PointId, f64)> {
+        let motion = self.motion().clone();
+        let lengths = self.lengths.iter_mut();
+        lengths
+            .filter(|s| points.contains(&s.point()))
+            .map(|s| (s.point(), s.at_time(&motion, time)))
+            .collect()
+    }
+
+    /// What measures ask of a moment.
+    pub(crate) fn asked(&self, measures: &[&Measure]) -> Asked {
+        let mut asked = Asked {
+            measures: measures.iter().map(|m| (*m).clone()).collect(),
+            forces: false,
+            lengths: Vec::new(),
+        };
+        let mechanism = self.motion().mechanism();
+        let look = |asked: &mut Asked, measure: &Measure| {
+            visit_leaves(mechanism, measure, &mut |leaf| match leaf {
+                Leaf::Force(_) => asked.forces = true,
+                Leaf::Pose(PoseMeasure::PathLength(point)) if !asked.lengths.contains(point) => {
+                    asked.lengths.push(*point);
+                }
+                _ => {}
+            });
+        };
+        for measure in measures {
+            look(&mut asked, measure);
+        }
+        if asked.forces {
+            let inputs = self.measurer.forces.measures();
+            inputs.iter().for_each(|m| look(&mut asked, m));
+        }
+        asked
+    }
+
+    /// What is asked for as series in time, at a time; NaN where the motion does not reach.
+    pub(crate) fn series_at(&mut self, asked: &Asked, time: f64) -> Vec<Series<f64>> {
         let place = self.measurer.states.at_time(time);
         if !self.measurer.find(place) {
-            return [f64::NAN; 2];
+            return vec![Series::from_f64(f64::NAN); asked.measures.len()];
         }
-        let with_forces = asks_forces(self.motion(), measure);
-        let series = self.with_moment(place, with_forces, |moment| {
-            moment.series(measure, Along::Time)
-        });
-        [series.derivative(0), series.derivative(1)]
+        self.with_moment(place, asked.forces, &asked.lengths, |moment| {
+            let measures = asked.measures.iter();
+            measures.map(|m| moment.series(m, Along::Time)).collect()
+        })
     }
 
     /// Duration of the motion, s.
@@ -54,5 +90,20 @@ impl<F: ForceSource> Sampler<F> {
     /// The drive whose coordinate is the path parameter.
     pub fn path_drive(&self) -> Option<DriveId> {
         self.clock().path_drive()
+    }
+}
+
+/// Measures with what they ask of a moment beside its poses.
+pub(crate) struct Asked {
+    measures: Vec<Measure>,
+    forces: bool,
+    /// Points whose length of path is asked for.
+    lengths: Vec<PointId>,
+}
+
+impl Asked {
+    /// Whether any of them asks for forces.
+    pub(crate) fn forces(&self) -> bool {
+        self.forces
     }
 }

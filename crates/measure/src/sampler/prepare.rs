@@ -6,7 +6,7 @@ use super::Sampler;
 use crate::force_source::ForceSource;
 use crate::measurer::Needs;
 use crate::path_length::Swept;
-use crate::statistics::over;
+use crate::statistics::{over_motion, rounds};
 
 /// A measure that cannot be evaluated.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,9 +39,12 @@ impl<F: ForceSource> Sampler<F> {
         for point in needs.lengths {
             self.lengths.push(Swept::watched(&motion, point, watch)?);
         }
-        for (statistic, measure) in needs.statistics {
-            let value = over(self, statistic, &measure, watch)?;
-            self.measurer.statistics.push((statistic, measure, value));
+        for round in rounds(self, needs.statistics) {
+            let (values, known) = over_motion(self, &round, watch)?;
+            let found = round.into_iter().zip(values);
+            (self.measurer.statistics)
+                .extend(found.map(|((s, measure), value)| (s, measure, value)));
+            self.known.extend(known);
         }
         Some(())
     }

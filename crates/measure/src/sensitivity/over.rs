@@ -1,17 +1,24 @@
 //! Statistics over a varied motion, and lengths of path.
 
+use kempe_mechanism::structure::Marker;
 use kempe_model::{Measure, PointId, SAME_END, Statistic};
-use kempe_motion::progress::Unwatched;
 use kempe_number::Number;
 
 use super::varied::{Place, Varied};
 use super::{CHUNK, Varying};
 use crate::force_source::ForceSource;
-use crate::quadrature::{graded, integrate};
-use crate::statistics::{extremes, time_ratio};
+use crate::quadrature::{gauss, graded, integrate, parts};
+use crate::statistics::time_ratio;
 
 /// Intervals of time over which path lengths and means are integrated, besides the breaks of the laws.
 const GRID: usize = 45;
+
+/// The length of path that a point has swept, with its derivatives.
+pub(super) struct Cumulated {
+    point: PointId,
+    /// Times, rising, with the length swept until then.
+    marks: Vec<(Varying, Varying)>,
+}
 
 impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
     /// A statistic of a measure over the motion.
@@ -42,8 +49,7 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
                 sum / duration
             }
             Statistic::Min | Statistic::Max | Statistic::Range | Statistic::TimeRatio => {
-                let Some((low, high)) = extremes(self.sampler, measure, &mut Unwatched).flatten()
-                else {
+                let Some((low, high)) = self.sampler.extremes(measure) else {
                     return nothing;
                 };
                 let (low, high) = (self.extreme(measure, low.0), self.extreme(measure, high.0));
@@ -93,17 +99,53 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
         let Some(marker) = mechanism.any_marker(point) else {
             return Varying::from_f64(f64::NAN);
         };
-        self.integrate(until, &mut |it, place| {
-            if !it.measurer.find(place) {
-                return Varying::from_f64(f64::NAN);
+        let known = self.lengths.iter().position(|known| known.point == point);
+        let known = known.unwrap_or_else(|| {
+            let length = self.cumulated(point, marker);
+            self.lengths.push(length);
+            self.lengths.len() - 1
+        });
+        let marks = &self.lengths[known].marks;
+        let passed = marks.partition_point(|(time, _)| time.re <= until.re);
+        let (from, length) = marks[passed.max(1) - 1];
+        let width = until - from;
+        let rest = gauss(0.0, 1.0, &mut |u| {
+            let place = self.at_time(from + width * u);
+            Some(values(self.speed(marker, place) * width))
+        });
+        length + rest.map_or(Varying::from_f64(f64::NAN), base)
+    }
+
+    /// The length swept by a point, at times between which one quadrature is enough.
+    fn cumulated(&mut self, point: PointId, marker: Marker) -> Cumulated {
+        let mut marks = vec![(Varying::zero(), Varying::zero())];
+        let mut sum = Varying::zero();
+        let duration = self.duration();
+        for [from, to] in self.cuts(duration) {
+            let width = to - from;
+            let found = parts(&graded(count(width, duration)), 0.0, &mut |u| {
+                let place = self.at_time(from + width * u);
+                Some(values(self.speed(marker, place) * width))
+            });
+            for part in found.iter().flatten() {
+                sum += base(part.integral());
+                marks.push((from + width * part.to, sum));
             }
-            let rate = it.measurer.states.path_rate(place.time);
-            let state = it.measurer.state();
-            let local = state.design.geometry.marker(marker);
-            let at = state.poses[marker.body.index()].place(local);
-            let (dx, dy) = (at[0].coefficient(1), at[1].coefficient(1));
-            ((dx.square() + dy.square()) * rate.square()).sqrt()
-        })
+        }
+        Cumulated { point, marks }
+    }
+
+    /// Speed of a point, m/s.
+    fn speed(&mut self, marker: Marker, place: Place<Varying>) -> Varying {
+        if !self.measurer.find(place) {
+            return Varying::from_f64(f64::NAN);
+        }
+        let rate = self.measurer.states.path_rate(place.time);
+        let state = self.measurer.state();
+        let local = state.design.geometry.marker(marker);
+        let at = state.poses[marker.body.index()].place(local);
+        let (dx, dy) = (at[0].coefficient(1), at[1].coefficient(1));
+        ((dx.square() + dy.square()) * rate.square()).sqrt()
     }
 
     /// Integral over time from the start, between the breaks of the laws and the times of an even grid.
@@ -112,30 +154,26 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
         until: Varying,
         f: &mut dyn FnMut(&mut Self, Place<Varying>) -> Varying,
     ) -> Varying {
-        let mut cuts = vec![Varying::zero(), until];
-        cuts.extend(
-            self.breaks()
-                .into_iter()
-                .filter(|t| 0.0 < t.re && t.re < until.re),
-        );
-        cuts.sort_by(|a, b| a.re.total_cmp(&b.re));
         let mut sum = Varying::zero();
-        for pair in cuts.windows(2).filter(|pair| pair[1].re > pair[0].re) {
-            let width = pair[1] - pair[0];
-            let count = (GRID as f64 * width.re / until.re).ceil() as usize;
-            let part = integrate(&graded(count), 0.0, &mut |u| {
-                let place = self.at_time(pair[0] + width * u);
-                let part = f(self, place) * width;
-                let mut values = [part.re; 1 + CHUNK];
-                values[1..].copy_from_slice(&part.eps);
-                Some(values)
+        for [from, to] in self.cuts(until) {
+            let width = to - from;
+            let part = integrate(&graded(count(width, until)), 0.0, &mut |u| {
+                let place = self.at_time(from + width * u);
+                Some(values(f(self, place) * width))
             });
-            let Some([re, eps @ ..]) = part else {
-                return Varying::from_f64(f64::NAN);
-            };
-            sum += Varying { re, eps };
+            sum += part.map_or(Varying::from_f64(f64::NAN), base);
         }
         sum
+    }
+
+    /// Stretches of time from the start between the breaks of the laws.
+    fn cuts(&self, until: Varying) -> Vec<[Varying; 2]> {
+        let mut cuts = vec![Varying::zero(), until];
+        let breaks = self.breaks().into_iter();
+        cuts.extend(breaks.filter(|t| 0.0 < t.re && t.re < until.re));
+        cuts.sort_by(|a, b| a.re.total_cmp(&b.re));
+        let pairs = cuts.windows(2).map(|pair| [pair[0], pair[1]]);
+        pairs.filter(|[from, to]| to.re > from.re).collect()
     }
 
     fn duration(&self) -> Varying {
@@ -156,4 +194,19 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
         }
         list
     }
+}
+
+/// In how many parts a stretch of so much of a time is integrated first.
+fn count(width: Varying, all: Varying) -> usize {
+    (GRID as f64 * width.re / all.re).ceil() as usize
+}
+
+fn values(x: Varying) -> [f64; 1 + CHUNK] {
+    let mut values = [x.re; 1 + CHUNK];
+    values[1..].copy_from_slice(&x.eps);
+    values
+}
+
+fn base([re, eps @ ..]: [f64; 1 + CHUNK]) -> Varying {
+    Varying { re, eps }
 }

@@ -2,13 +2,14 @@
 
 use std::sync::Arc;
 
-use kempe_model::{DriveId, Measure, Model, ParameterId, PointId};
+use kempe_model::{DriveId, Leaf, Measure, Model, ParameterId, PointId, PoseMeasure};
 use kempe_motion::motion::Motion;
 use kempe_number::Number;
 
+use super::over::Cumulated;
 use super::{Held, Varying};
 use crate::force_source::ForceSource;
-use crate::measure::Along;
+use crate::measure::{Along, visit_leaves};
 use crate::measurer::{Measurer, Needs, asks_forces};
 use crate::sampler::Sampler;
 use crate::state::Series;
@@ -35,8 +36,8 @@ pub(super) struct Varied<'s, F, G> {
     pub motion: Arc<Motion>,
     pub sampler: &'s mut Sampler<F>,
     pub measurer: Measurer<Varying, G>,
-    /// Points whose lengths of path are asked for.
-    lengths: Vec<PointId>,
+    /// Lengths of path that were asked for.
+    pub lengths: Vec<Cumulated>,
 }
 
 impl<'s, F: ForceSource, G: ForceSource<Varying>> Varied<'s, F, G> {
@@ -94,7 +95,6 @@ impl<'s, F: ForceSource, G: ForceSource<Varying>> Varied<'s, F, G> {
         let inputs = self.measurer.forces.measures().iter();
         let needs = Needs::of(&self.motion, inputs.chain(measures.iter().copied()));
         self.measurer.take_up(&needs);
-        self.lengths = needs.lengths;
         for (statistic, measure) in needs.statistics {
             let value = self.over(statistic, &measure);
             self.measurer.statistics.push((statistic, measure, value));
@@ -103,21 +103,20 @@ impl<'s, F: ForceSource, G: ForceSource<Varying>> Varied<'s, F, G> {
 
     /// A measure as a series in time at a place.
     pub(super) fn series(&mut self, measure: &Measure, place: Place<Varying>) -> Series<Varying> {
-        // Not inside a statistic: that has its own.
-        let needs = Needs::of(&self.motion, std::iter::once(measure)).lengths;
-        let wanted = if needs.is_empty() {
-            Vec::new()
-        } else {
-            self.lengths.clone()
-        };
-        let lengths: Vec<(PointId, Varying)> = wanted
-            .into_iter()
+        let with_forces = asks_forces(&self.motion, measure);
+        let inputs = self
+            .measurer
+            .forces
+            .measures()
+            .iter()
+            .filter(|_| with_forces);
+        let points = lengths_of(&self.motion, inputs.chain([measure]));
+        let lengths: Vec<(PointId, Varying)> = (points.into_iter())
             .map(|p| (p, self.length(p, place.time)))
             .collect();
         if !self.measurer.find(place) {
             return Series::from_f64(f64::NAN);
         }
-        let with_forces = asks_forces(&self.motion, measure);
         (self.measurer).with_moment(place.path.re, lengths, with_forces, |moment| {
             moment.series(measure, Along::Time)
         })
@@ -126,4 +125,19 @@ impl<'s, F: ForceSource, G: ForceSource<Varying>> Varied<'s, F, G> {
     pub(super) fn value(&mut self, measure: &Measure, place: Place<Varying>) -> Varying {
         self.series(measure, place).coefficient(0)
     }
+}
+
+/// The points of whose path measures ask for the length (and statistics inside them: these have their own).
+fn lengths_of<'m>(motion: &Motion, measures: impl Iterator<Item = &'m Measure>) -> Vec<PointId> {
+    let mut points = Vec::new();
+    for measure in measures {
+        visit_leaves(motion.mechanism(), measure, &mut |leaf| {
+            if let Leaf::Pose(PoseMeasure::PathLength(point)) = leaf
+                && !points.contains(point)
+            {
+                points.push(*point);
+            }
+        });
+    }
+    points
 }

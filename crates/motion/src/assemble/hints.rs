@@ -22,15 +22,21 @@ pub enum Standing {
     OnTheLine,
 }
 
-/// How poses stand to a hint; `None` for hints that ask for no side.
-pub fn standing(
-    mechanism: &Mechanism,
-    geometry: &Geometry<f64>,
-    poses: &[Pose<f64>],
-    hint: &HintKind,
-) -> Option<Standing> {
-    let side = AskedSide::of(mechanism, hint)?;
-    Some(side.standing(geometry, poses, geometry.size(mechanism)))
+/// How each of several poses stands to every hint of the file, in their order; `None` for hints that ask for no side.
+pub fn standings<'a>(
+    design: &Design<f64>,
+    all: impl Iterator<Item = &'a [Pose<f64>]>,
+) -> Vec<Vec<Option<Standing>>> {
+    let (mechanism, size) = (&*design.mechanism, design.size());
+    let hints = mechanism.model.assembly.iter();
+    let sides: Vec<Option<AskedSide>> = hints
+        .map(|hint| AskedSide::of(mechanism, &hint.kind))
+        .collect();
+    let of = |poses: &[Pose<f64>]| {
+        let stand = |side: &AskedSide| side.standing(&design.geometry, poses, size);
+        sides.iter().map(|side| side.as_ref().map(stand)).collect()
+    };
+    all.map(of).collect()
 }
 
 /// A side that a file asks for: its line's two points and the point itself.

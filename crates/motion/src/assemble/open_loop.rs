@@ -61,6 +61,7 @@ pub(crate) fn candidates(
     let path = DrivePath::Coordinate {
         drive,
         held: held.clone(),
+        is_angle: true,
         scale: 1.0,
     };
     let mut follower = Follower::new(&opened, &path);

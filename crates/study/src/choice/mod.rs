@@ -75,7 +75,7 @@ fn values(
     let design = design(model);
     let motion = motion(&design, progress)?;
     let asked: Vec<&Quantity> = quantities.iter().collect();
-    let mut along = Along::watched(model, &motion, &asked, true, &mut Ear(progress))?;
+    let mut along = Along::watched(model, &motion, &asked, true, &[], &mut Ear(progress))?;
     let places: Vec<RowPlace> = places_along(&motion, study, &design.parameters);
     let mut lists = vec![Vec::with_capacity(places.len()); quantities.len()];
     let count = places.len() as f64;

@@ -1,0 +1,124 @@
+//! The samples that all numbers over a motion share: the mechanism is solved once at each, for all of them.
+
+use kempe_motion::progress::{Stage, Watch};
+
+use super::stretches::Stretch;
+use crate::force_source::ForceSource;
+use crate::measure::Series;
+use crate::sampler::{Asked, Sampler};
+
+/// Halvings of an interval by which an end without a rate of its own is approached: nearer than its 2^40th part nothing
+/// can be told from the end.
+const HALVINGS: i32 = 40;
+
+/// All measures at a time.
+pub(super) struct Sample {
+    pub time: f64,
+    pub series: Vec<Series<f64>>,
+}
+
+/// One measure at a time.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Point {
+    pub time: f64,
+    pub series: Series<f64>,
+}
+
+impl Point {
+    /// Samples the only measure asked for.
+    pub fn take<F: ForceSource>(sampler: &mut Sampler<F>, asked: &Asked, time: f64) -> Self {
+        let series = sampler.series_at(asked, time);
+        Self {
+            time,
+            series: series.first().copied().unwrap_or(undefined()),
+        }
+    }
+
+    pub fn value(&self) -> f64 {
+        self.series.coefficient(0)
+    }
+
+    pub fn rate(&self) -> f64 {
+        self.series.coefficient(1)
+    }
+}
+
+impl Sample {
+    fn take<F: ForceSource>(sampler: &mut Sampler<F>, asked: &Asked, time: f64) -> Self {
+        let series = sampler.series_at(asked, time);
+        Self { time, series }
+    }
+
+    pub fn point(&self, index: usize) -> Point {
+        Point {
+            time: self.time,
+            series: self.series.get(index).copied().unwrap_or(undefined()),
+        }
+    }
+}
+
+fn undefined() -> Series<f64> {
+    Series::from_coefficients([f64::NAN; crate::measure::ORDER])
+}
+
+/// Samples a motion stretch by stretch, and where its rows stand. `heard` is told each sample, with the one before it on the same stretch; what it
+/// answers says whether to go on. `None` when stopped.
+///
+/// Where one of two neighbours lacks a rate that the other has, as at a limit, samples ever nearer to it are put between
+/// them.
+pub(super) fn survey<F: ForceSource>(
+    sampler: &mut Sampler<F>,
+    asked: &Asked,
+    stretches: &[Stretch],
+    watch: &mut dyn Watch,
+    heard: &mut dyn FnMut(&mut Sampler<F>, Option<&Sample>, &Sample) -> bool,
+) -> Option<()> {
+    let duration = sampler.duration();
+    let rows = sampler.rows().to_vec();
+    for stretch in stretches {
+        let mut last: Option<Sample> = None;
+        for time in stretch.times(&rows, duration) {
+            watch
+                .reached(Stage::Measuring, Some(time / duration))
+                .continue_value()?;
+            let sample = Sample::take(sampler, asked, time);
+            if let Some(before) = &last {
+                for near in nearing(before, &sample) {
+                    let between = Sample::take(sampler, asked, near);
+                    if !heard(sampler, last.as_ref(), &between) {
+                        return Some(());
+                    }
+                    last = Some(between);
+                }
+            }
+            if !heard(sampler, last.as_ref(), &sample) {
+                return Some(());
+            }
+            last = Some(sample);
+        }
+    }
+    Some(())
+}
+
+/// Times between two samples, rising, ever nearer to one that lacks a rate which the other has.
+fn nearing(from: &Sample, to: &Sample) -> Vec<f64> {
+    let lacks = |a: &Sample, b: &Sample| {
+        let mut pairs = a.series.iter().zip(&b.series);
+        pairs.any(|(a, b)| {
+            let finite = |s: &Series<f64>, k| s.coefficient(k).is_finite();
+            finite(a, 0) && !finite(a, 1) && finite(b, 1)
+        })
+    };
+    let part = |k: i32| (to.time - from.time) * 2.0_f64.powi(-k);
+    let mut times = Vec::new();
+    if lacks(from, to) {
+        times.extend((1..=HALVINGS).rev().map(|k| from.time + part(k)));
+    }
+    if lacks(to, from) {
+        // The middle once only.
+        let first = if times.is_empty() { 1 } else { 2 };
+        times.extend((first..=HALVINGS).map(|k| to.time - part(k)));
+    }
+    times.retain(|t| from.time < *t && *t < to.time);
+    times
+}
