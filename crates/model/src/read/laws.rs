@@ -2,6 +2,7 @@
 
 use kempe_units::{Builtin, Dimension, Expr};
 
+use crate::bounds::Keeps;
 use crate::diagnostic::Diagnostic;
 use crate::document::{Node, Table, Value};
 use crate::model::{Law, LawPiece, RiseLaw, Scalar, Span};
@@ -175,7 +176,13 @@ impl LawReader<'_> {
 
     /// A cylinder's length is positive.
     fn check_coordinate(&self, cx: &mut Context<'_>, scalar: &Scalar, span: &Span) {
-        if self.kind == "cylinder" && cx.number(scalar) <= 0.0 {
+        if self.kind != "cylinder" {
+            return;
+        }
+        if cx.number(scalar) > 0.0 {
+            let what = format!("{}: a cylinder's length", self.place);
+            cx.bound(scalar, span, &what, self.dimension, Keeps::Positive);
+        } else {
             cx.push(
                 Diagnostic::error("bad-size", format!("{}: a cylinder's length must be positive", self.place))
                     .at(span.clone(), "")

@@ -325,7 +325,7 @@ fn card(
         None => None,
         Some(node) => {
             let period = cx.positive(node, over_dimension, "the period", false)?;
-            Some((cx.number(&period), node))
+            Some((cx.settle(&period), node))
         }
     };
     let mut ask = |key: &str, number: usize, dimension: Dimension| {
