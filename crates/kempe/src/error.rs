@@ -4,7 +4,14 @@ use std::fmt;
 
 use kempe_model::Diagnostic;
 
-/// Why something cannot be done: diagnostics over the model file, each with a stable code.
+/// Why something cannot be done: diagnostics over the model file, each with a stable code, the place, the cause and what to
+/// do about it.
+///
+/// ```
+/// let error = "[links]\nframe = { A = [0, 0], B = [1, 0] ".parse::<kempe::Model>().unwrap_err();
+/// assert_eq!(error.code(), "toml-syntax");
+/// assert!(error.to_string().contains("model:2:"));
+/// ```
 #[derive(Clone, Debug)]
 pub struct Error {
     pub(crate) name: String,

@@ -4,10 +4,13 @@ use std::io::Read as _;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
+use kempe_mechanism::Mechanism;
 use kempe_model::Diagnostic;
+use kempe_motion::Unwatched;
+use kempe_motion::temporary_drives::hold;
 use kempe_study::{CheckReport, Progress, Setting, Silent, StudyResult};
 
-use crate::Error;
+use crate::{Compiled, Error, Pose};
 
 /// A mechanism read from a model file, checked and ready to run.
 #[derive(Clone, Debug)]
@@ -140,12 +143,33 @@ impl Model {
         kempe_study::check(&self.inner)
     }
 
+    /// Compiles the model: what sessions ask, shared and owned.
+    ///
+    /// # Errors
+    ///
+    /// `no-drive`, `undetermined` and `scale`: why it cannot move at all.
+    ///
+    /// # Example
+    ///
+    /// ```
+    /// # fn main() -> Result<(), kempe::Error> {
+    /// # let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/seeds/tractor-hitch.toml");
+    /// let hitch = kempe::Model::from_path(path)?.compile()?;
+    /// let mut s = hitch.session();
+    /// assert!(s.start()?.closure() < 1e-12);
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub fn compile(&self) -> Result<Compiled, Error> {
+        Compiled::new(&self.name, &self.text, &self.inner)
+    }
+
     /// Runs the first study of the file; a file without studies moves its drives through their laws.
     ///
     /// # Errors
     ///
     /// Why it cannot start: `no-drive`, `cannot-assemble`, `range-beyond-limit`, …
-    pub fn motion(&self) -> Result<StudyResult, Error> {
+    pub fn run_first(&self) -> Result<StudyResult, Error> {
         match self.inner.studies.first() {
             Some(study) => self.run(&study.name),
             None => Err(self.error(vec![Diagnostic::error(
@@ -180,20 +204,28 @@ impl Model {
         kempe_study::run(&self.inner, found, progress).map_err(|found| self.error(found))
     }
 
-    /// The pose where drives stand as in `"motor = 30 deg"` (several between commas); the others at their start.
+    /// The pose where drives stand as in `"motor = 30 deg"` (several between commas), or at a time as in `"time = 2 s"`; drives
+    /// that are not named at their start. What too few drives leave free is held somewhere.
     ///
     /// # Errors
     ///
     /// `unknown-name`, and why the place cannot be reached.
-    pub fn pose(&self, place: &str) -> Result<Pose<'_>, Error> {
+    pub fn pose(&self, place: &str) -> Result<Pose, Error> {
         let parts = place.split(',').filter(|part| !part.trim().is_empty());
         let settings = Setting::all(&self.inner, parts).map_err(|told| self.error(vec![told]))?;
-        let (frame, _) =
-            kempe_study::pose_at(&self.inner, &settings).map_err(|found| self.error(found))?;
-        Ok(Pose {
-            model: &self.inner,
-            frame,
-        })
+        let compiled = match self.compile() {
+            Err(error) if ["no-drive", "undetermined"].contains(&error.code()) => {
+                let design = Mechanism::new(&self.inner);
+                let values: Vec<f64> = self.inner.parameter_values();
+                match hold(&design, &values, &mut Unwatched) {
+                    Some(held) => Compiled::new(&self.name, &self.text, &held.model)?,
+                    None => return Err(error),
+                }
+            }
+            compiled => compiled?,
+        };
+        let places = settings.iter().map(|s| (s.name.as_str(), s.value));
+        compiled.session().pose(places)
     }
 
     fn error(&self, diagnostics: Vec<Diagnostic>) -> Error {
@@ -223,26 +255,5 @@ impl FromStr for Model {
     type Err = Error;
     fn from_str(text: &str) -> Result<Self, Error> {
         Self::read(text.as_bytes(), "model".to_owned(), None, Vec::new())
-    }
-}
-
-/// Where everything is, SI.
-#[derive(Clone, Debug)]
-pub struct Pose<'m> {
-    model: &'m kempe_model::Model,
-    frame: kempe_study::Frame,
-}
-
-impl Pose<'_> {
-    /// x and y of a point, m.
-    pub fn point(&self, name: &str) -> Option<[f64; 2]> {
-        let index = self.model.points.iter().position(|p| p.name == name)?;
-        self.frame.points.get(index).copied()
-    }
-
-    /// The angle of a link from the frame's x axis, rad, unwrapped along the motion.
-    pub fn angle(&self, link: &str) -> Option<f64> {
-        let index = self.model.links.iter().position(|l| l.name == link)?;
-        self.frame.links.get(index).map(|l| l[2])
     }
 }

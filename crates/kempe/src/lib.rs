@@ -24,7 +24,7 @@
 //! .parse()?;
 //!
 //! // The rocker of the crank-rocker 20, 50, 40, 60 mm (closed form of Freudenstein, 1955).
-//! let motion = model.motion()?;
+//! let motion = model.run_first()?;
 //! let swing = motion.table.column("swing").unwrap();
 //! assert_eq!(swing.head(), "swing [deg]");
 //! assert!((swing.values[60] - 97.562_217_639_34).abs() < 1e-10);
@@ -37,23 +37,71 @@
 //! assert!((x - 0.032_367_945_446_74).abs() < 1e-13 && (y - 0.028_486_304_800_13).abs() < 1e-13);
 //!
 //! // Another design: with a = 25 mm the play grows.
-//! assert!(model.with("a", "25 mm")?.motion()?.scalars[0].value > 75.0);
+//! assert!(model.with("a", "25 mm")?.run_first()?.scalars[0].value > 75.0);
 //! # Ok(())
 //! # }
 //! ```
 //!
-//! Lengths are in metres and angles in radians wherever no unit stands beside them; tables carry their units. The same
+//! A program that asks more than the file does compiles the model and asks a [`Session`]: any measure at any place, other
+//! values of the parameters, derivatives, poses dragged on from the last one, many designs at once.
+//!
+//! ```
+//! # fn main() -> Result<(), kempe::Error> {
+//! # let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/seeds/tractor-hitch.toml");
+//! use kempe::{Designs, Model, linspace};
+//!
+//! let hitch = Model::from_path(path)?.compile()?;
+//! let mut s = hitch.session();
+//! s.set_text("weight", "12 kN")?; // or in SI: s.set("weight", 12_000.0)
+//! let t = s.sweep("lift", linspace(0.38, 0.52, 50), &["y(M)", "force(lift)", "reaction(K)"])?;
+//! assert!(t.columns[1].values.iter().all(|force| *force > 0.0));
+//! let j = s.derivatives(&["max(push)"], &["weight", "pace"])?;
+//! assert!((j.get(0, 0) - 5.687_030_329_81).abs() < 1e-9 && j.get(0, 1) == 0.0);
+//!
+//! let p = s.pose([("lift", 0.40)])?;
+//! let p = s.pose_near(&p, "lift", 0.41)?; // microseconds from the last pose, for dragging
+//! assert!(p.point("M")?[1] > 0.1);
+//!
+//! let designs = Designs::from_columns([("weight", linspace(8e3, 12e3, 3))])?;
+//! let v = s.many(&designs, [0.38, 0.45], &["y(S)", "push"])?;
+//! assert_eq!(v.missing, [0, 0]);
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! Everything that comes back is owned, and `Send + Sync`. Lengths are in metres and angles in radians wherever no unit stands beside them; tables carry their units. The same
 //! model gives the same bytes on every machine.
 //!
 //! The parts that this crate puts together are there under their own names: [`number`], [`units`], [`model`],
 //! [`mechanism`], [`homotopy`], [`motion`], [`measure`], [`proof`], [`dynamics`], [`study`], [`draw`].
 
+mod block;
+mod compiled;
+mod derivatives;
 mod error;
 mod facade;
+mod many;
+mod motion_data;
+mod pose;
+mod session;
+mod sweep;
+mod way;
 
+pub use block::{Block, Heading, Value, linspace};
+pub use compiled::Compiled;
+pub use derivatives::Derivatives;
 pub use error::Error;
-pub use facade::{Model, Pose};
-pub use kempe_study::{CheckReport, Column, StudyResult, Table};
+pub use facade::Model;
+pub use kempe_motion::EndReason;
+pub use kempe_motion::events::EventKind;
+pub use kempe_study::{
+    CheckReport, Column, Flow, ForceColumns, Progress, Silent, Stage, StudyResult, Table,
+};
+pub use many::{Designs, Many};
+pub use motion_data::{AssemblyData, MotionData, MotionEvent};
+pub use pose::Pose;
+pub use session::Session;
+pub use sweep::Sweep;
 
 pub use kempe_draw as draw;
 pub use kempe_dynamics as dynamics;
@@ -69,7 +117,9 @@ pub use kempe_units as units;
 
 /// What most programs need.
 pub mod prelude {
-    pub use crate::{CheckReport, Column, Error, Model, Pose, StudyResult, Table};
+    pub use crate::{
+        Block, CheckReport, Column, Compiled, Derivatives, Designs, Error, Flow, Many, Model, Pose,
+        Progress, Session, Silent, StudyResult, Sweep, Table, linspace,
+    };
     pub use kempe_model::Diagnostic;
-    pub use kempe_study::{Flow, Progress};
 }

@@ -105,7 +105,7 @@ pub fn sensitivities_with<F: ForceSource, G: ForceSource<Varying>>(
         .chunks(CHUNK)
         .chain(parameters.is_empty().then_some(parameters));
     for chunk in chunks {
-        let values = varied_parameters(&motion.mechanism().model, chunk);
+        let values = varied_parameters(motion, chunk);
         let forces = varying(&values);
         let mut varied = Varied::new(motion, &mut sampler, &values, forces);
         varied.prepare(measures);

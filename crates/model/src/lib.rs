@@ -1,5 +1,6 @@
 //! Kempe's model file and what it means.
 
+mod bounds;
 mod codes;
 mod diagnostic;
 mod document;
@@ -20,6 +21,7 @@ mod schema;
 mod spline;
 mod starter;
 
+pub use bounds::{Bound, Keeps};
 pub use codes::{CODES, Code};
 pub use diagnostic::{Diagnostic, Label, Severity, Source};
 pub use edit::set_value;

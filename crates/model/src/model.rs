@@ -7,6 +7,7 @@ use std::ops::Range;
 
 use kempe_units::{Dimension, Expr};
 
+use crate::bounds::Bound;
 use crate::measure::Measure;
 
 /// A place in the model file, in bytes.
@@ -80,6 +81,10 @@ pub struct Model {
     pub studies: Vec<Study>,
     /// Studies that are skipped: this version has not got their kind.
     pub announced: Vec<AnnouncedStudy>,
+    /// What the file's values must keep to, whatever the parameters are set to.
+    pub bounds: Vec<Bound>,
+    /// Parameters whose values went into plain numbers when the file was read (the place of an `at`, the period of a table).
+    pub settled: Vec<ParameterId>,
 }
 
 /// Units in which bare numbers of the file are read and results are shown: m and deg where the file names none.

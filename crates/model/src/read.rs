@@ -122,6 +122,7 @@ impl Model {
         if found.iter().any(|d| d.severity == Severity::Error) {
             return Err(found);
         }
+        cx.model.settled = cx.settled.into_inner().into_iter().collect();
         Ok(Checked {
             model: cx.model,
             warnings: found,

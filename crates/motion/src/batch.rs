@@ -22,7 +22,8 @@ use kempe_number::{InstructionSet, Jet};
 
 pub use self::designs::{Designs, Layout};
 #[cfg(not(target_family = "wasm"))]
-pub use self::executor::{Executor, Serial, Task, Threads};
+pub use self::executor::Threads;
+pub use self::executor::{Executor, Serial, Task};
 pub use self::sweep::sweep_states;
 
 use kempe_mechanism::plan::Step;

@@ -15,5 +15,5 @@ pub mod trace;
 
 pub use batch::{Batch, BatchError, Designs, sweep_states};
 pub use check::{Findings, Reach, check, check_watched};
-pub use motion::{Demand, EndReason, Motion, MotionError, Solver};
+pub use motion::{Demand, EndReason, Motion, MotionError, Placed, Solver};
 pub use progress::{Stage, Unwatched, Watch};

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use kempe_dynamics::{ForceArrow, ForceError, ForceEvidence, ForceNote, ForceSampler, Problem};
 use kempe_measure::force_source::NoForces;
 use kempe_measure::{Sample, Sampler, Unmeasurable, Unprepared};
+use kempe_mechanism::Mechanism;
 use kempe_model::{Diagnostic, DriveId, Model};
 use kempe_motion::{Motion, Stage, Unwatched, Watch};
 
@@ -13,34 +14,57 @@ use crate::quantity::Quantity;
 use crate::rows::{RowPlace, path_drive};
 
 /// What acts on the mechanism makes no sense, as diagnostics over the model file.
-pub(crate) fn force_problems(problems: Vec<Problem>) -> Vec<Diagnostic> {
+pub fn force_problems(problems: Vec<Problem>) -> Vec<Diagnostic> {
     let told = problems.into_iter();
     told.map(|p| Diagnostic::error(p.code, p.message).at(p.span, ""))
         .collect()
 }
 
 /// Evaluates quantities along a motion.
-pub(crate) enum Along {
+pub enum Along {
+    /// Of the motion alone.
     Motion(Box<Sampler>),
+    /// Of its forces too.
     Forces(Box<ForceSampler>),
 }
 
 /// A row with the forces in it, where they were asked for.
-pub(crate) struct Row {
+#[derive(Clone, Debug)]
+pub struct Row {
+    /// Values, poses and their evidence.
     pub sample: Sample,
+    /// The forces; `None` where they were not asked for.
     pub forces: Option<RowForces>,
 }
 
 /// Forces of a row.
-pub(crate) struct RowForces {
+#[derive(Clone, Debug)]
+pub struct RowForces {
     /// `None` where no pose was reached.
     pub evidence: Option<ForceEvidence>,
+    /// What is to be told about them.
     pub notes: Vec<ForceNote>,
+    /// What acts on the links, to be drawn.
     pub arrows: Vec<ForceArrow>,
 }
 
+impl Row {
+    /// What is to be told about the row and its forces, such as why it was not reached.
+    pub fn note(&self, mechanism: &Mechanism) -> Option<String> {
+        let of_forces = self.forces.iter().flat_map(|forces| &forces.notes);
+        let told: Vec<String> = (self.sample.note.iter().cloned())
+            .chain(of_forces.map(|note| note.text(mechanism)))
+            .collect();
+        (!told.is_empty()).then(|| told.join("; "))
+    }
+}
+
 impl Along {
-    /// Prepares quantities for evaluation.
+    /// Prepares quantities for evaluation; with their forces where `forces` says so.
+    ///
+    /// # Errors
+    ///
+    /// `not-measurable`, and what is wrong with what acts on the mechanism.
     pub fn new(
         model: &Model,
         motion: &Arc<Motion>,
@@ -52,6 +76,10 @@ impl Along {
 
     /// As [`Along::new`], with the places of the rows that will be asked for; `watch` hears how far the statistics have come
     /// and may stop them.
+    ///
+    /// # Errors
+    ///
+    /// As [`Along::new`], and `stopped`.
     pub fn watched(
         model: &Model,
         motion: &Arc<Motion>,

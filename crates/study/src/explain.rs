@@ -297,7 +297,7 @@ fn measured(
 }
 
 /// A demanded range that is not covered. `missed` are the ends that are not reached, with the reason.
-pub(crate) fn beyond_limit(motion: &Motion, missed: &[(EndReason, f64)]) -> Diagnostic {
+pub fn beyond_limit(motion: &Motion, missed: &[(EndReason, f64)]) -> Diagnostic {
     let model = &motion.mechanism().model;
     let units = Units::of(model);
     let (low, high) = motion.reached();

@@ -25,8 +25,8 @@ pub trait Progress {
     }
 }
 
-/// Passes on to a study's progress what the kinematics tell.
-pub(crate) struct Ear<'a>(pub &'a mut dyn Progress);
+/// Passes on to a study's progress what assembling, following and measuring tell.
+pub struct Ear<'a>(pub &'a mut dyn Progress);
 
 impl Watch for Ear<'_> {
     fn reached(&mut self, stage: Stage, part: Option<f64>) -> ControlFlow<()> {

@@ -7,9 +7,12 @@ use crate::unit::Units;
 
 /// A quantity to evaluate.
 #[derive(Clone, Debug)]
-pub(crate) struct Quantity {
+pub struct Quantity {
+    /// Its name: that of a named measure, or the measure as written.
     pub name: String,
+    /// What it is.
     pub measure: Measure,
+    /// Its dimension.
     pub dimension: Dimension,
 }
 

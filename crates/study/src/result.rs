@@ -9,6 +9,7 @@ use crate::table::{Column, Table};
 
 /// The answer of a motion study, with its evidence.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct StudyResult {
     /// Name of the study.
     pub name: String,
@@ -48,6 +49,7 @@ impl StudyResult {
 
 /// One number with a name.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Scalar {
     /// Name.
     pub name: String,
@@ -59,6 +61,7 @@ pub struct Scalar {
 
 /// A small table of words.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Listing {
     /// What it is.
     pub title: String,
@@ -86,6 +89,7 @@ pub enum Figure {
 
 /// Where everything is in one row, SI.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Frame {
     /// x, y (m) and angle (rad) of every link.
     pub links: Vec<[f64; 3]>,
@@ -97,6 +101,7 @@ pub struct Frame {
 
 /// A place worth knowing.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Event {
     /// What it is.
     pub kind: EventKind,

@@ -65,6 +65,7 @@ impl RowSink {
 
     /// Adds a row; `first` is its value in the first column.
     pub fn push(&mut self, mechanism: &Mechanism, first: f64, row: Row) -> Frame {
+        let note = row.note(mechanism);
         let Row { sample, forces } = row;
         let drives = sample.coordinates.iter().zip(&self.drives);
         let places = drives.map(|(si, unit)| shown(*si, unit));
@@ -92,7 +93,6 @@ impl RowSink {
         self.table
             .smallest_singular_value
             .push(sample.smallest_singular_value);
-        let mut note = sample.note;
         let mut arrows = Vec::new();
         if let Some(forces) = forces {
             let at = self.table.notes.len();
@@ -101,10 +101,6 @@ impl RowSink {
             columns.route_difference.push(of(|e| e.route_difference));
             columns.residual.push(of(|e| e.residual));
             columns.condition.push(of(|e| e.condition));
-            for told in &forces.notes {
-                let text = told.text(mechanism);
-                note = Some(note.map_or_else(|| text.clone(), |all| format!("{all}; {text}")));
-            }
             self.told.add(at, forces.notes);
             arrows = forces.arrows;
         }

@@ -4,6 +4,7 @@ use kempe_units::Unit;
 
 /// A table of results. All columns are equally long.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Table {
     /// Name of the study it answers.
     pub name: String,
@@ -22,6 +23,7 @@ pub struct Table {
 
 /// Evidence of the forces of all rows, NaN where a row was not reached.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct ForceColumns {
     /// Difference of virtual power and of equilibrium in what the drives give, in parts of the terms it is made of.
     pub route_difference: Vec<f64>,

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use kempe_model::{DriveId, Leaf, Measure, Model, ParameterId, PointId, PoseMeasure};
+use kempe_model::{DriveId, Leaf, Measure, ParameterId, PointId, PoseMeasure};
 use kempe_motion::motion::Motion;
 use kempe_number::Number;
 
@@ -15,12 +15,14 @@ use crate::sampler::Sampler;
 use crate::state::Series;
 pub(super) use crate::states_along::Place;
 
-/// The values of all parameters of a model with their derivatives to some. A varied parameter still follows those it is
+/// The values of all parameters of a motion's design with their derivatives to some. A varied parameter still follows those it is
 /// built on: d/d(each) is the same whatever else is asked for.
-pub(super) fn varied_parameters(model: &Model, chunk: &[ParameterId]) -> Vec<Varying> {
+pub(super) fn varied_parameters(motion: &Motion, chunk: &[ParameterId]) -> Vec<Varying> {
+    let model = &motion.mechanism().model;
     let mut values: Vec<Varying> = Vec::with_capacity(model.parameters.len());
     for (index, parameter) in model.parameters.iter().enumerate() {
         let mut value = kempe_model::value(&parameter.value, &values);
+        value.re = motion.design.parameters[index];
         for (eps, id) in value.eps.iter_mut().zip(chunk) {
             if id.index() == index {
                 *eps += 1.0;

@@ -2,6 +2,7 @@
 
 use kempe_units::{Builtin, Dimension, Expr};
 
+use crate::bounds::Keeps;
 use crate::diagnostic::Diagnostic;
 use crate::document::{Node, Value};
 use crate::key_table::{LAW_TABLE, LAWS, PIECE};
@@ -140,7 +141,13 @@ impl<'d> LawReader<'_, 'd> {
 
     /// A cylinder's length is positive.
     fn check_coordinate(&self, cx: &mut Context<'_>, scalar: &Scalar, span: &Span) {
-        if self.entry.kind.name == "cylinder" && cx.number(scalar) <= 0.0 {
+        if self.entry.kind.name != "cylinder" {
+            return;
+        }
+        if cx.number(scalar) > 0.0 {
+            let what = format!("{}: a cylinder's length", self.place);
+            cx.bound(scalar, span, &what, self.dimension, Keeps::Positive);
+        } else {
             cx.push(
                 Diagnostic::error("bad-size", format!("{}: a cylinder's length must be positive", self.place))
                     .at(span.clone(), "")

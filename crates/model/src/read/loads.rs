@@ -290,7 +290,7 @@ fn card(cx: &mut Context<'_>, table: &Entry<'_>, dimension: Dimension) -> Option
         None => None,
         Some(node) => {
             let period = cx.positive(node, over_dimension, "the period", false)?;
-            Some((cx.number(&period), node))
+            Some((cx.settle(&period), node))
         }
     };
     let mut ask = |key: &str, number: usize, dimension: Dimension| {

@@ -287,7 +287,7 @@ impl Measures<'_, '_> {
         let unit = self.0.bare_unit(of);
         let parameters = &mut crate::read::value::Parameters(self.0);
         let (scalar, _) = check_as(place, parameters, of, &unit)?;
-        let value = self.0.number(&scalar);
+        let value = self.0.settle(&scalar);
         if !value.is_finite() {
             return self.argument(
                 place,

@@ -2,6 +2,7 @@
 
 use kempe_units::{Dimension, Expr, Issue, Resolver, Unit, check, check_as, format_digits, parse};
 
+use crate::bounds::{Bound, Keeps};
 use crate::diagnostic::{Diagnostic, Label};
 use crate::document::{Node, Text, Value};
 use crate::geometry::value;
@@ -143,6 +144,7 @@ impl Context<'_> {
     pub fn finite(&mut self, scalar: &Scalar, span: &Span) -> Option<f64> {
         let x = self.number(scalar);
         if x.is_finite() {
+            self.bound(scalar, span, "this value", Dimension::NONE, Keeps::Finite);
             return Some(x);
         }
         let found = if x.is_nan() {
@@ -158,6 +160,32 @@ impl Context<'_> {
         None
     }
 
+    /// Notes what a value that depends on parameters must keep to.
+    pub fn bound(
+        &mut self,
+        scalar: &Scalar,
+        span: &Span,
+        what: &str,
+        dimension: Dimension,
+        keeps: Keeps,
+    ) {
+        if scalar.leaves().next().is_some() {
+            self.model.bounds.push(Bound {
+                value: scalar.clone(),
+                keeps,
+                what: what.to_owned(),
+                dimension,
+                span: span.clone(),
+            });
+        }
+    }
+
+    /// The value of a scalar that goes into the model as a plain number.
+    pub fn settle(&self, scalar: &Scalar) -> f64 {
+        self.settled.borrow_mut().extend(scalar.leaves().copied());
+        self.number(scalar)
+    }
+
     /// A scalar that must be positive (or, with `zero`, not negative).
     pub fn positive(
         &mut self,
@@ -169,6 +197,12 @@ impl Context<'_> {
         let scalar = self.scalar(node, dimension)?;
         let x = self.number(&scalar);
         if x > 0.0 || (zero && x == 0.0) {
+            let keeps = if zero {
+                Keeps::NotNegative
+            } else {
+                Keeps::Positive
+            };
+            self.bound(&scalar, &node.span, what, dimension, keeps);
             return Some(scalar);
         }
         let found = if x == 0.0 {

@@ -56,7 +56,7 @@ impl Motion {
             start,
             assemblies: mut known,
         } = demand;
-        check(design)?;
+        Self::possible(design)?;
         let scale = path.scale();
         let mut coordinates = vec![0.0; design.mechanism.model.drives.len()];
         let mut nothing: Option<Assemblies> = None;
@@ -131,6 +131,33 @@ impl Motion {
             motion.choices = motion.choices_at_start(follower);
             Ok(motion)
         })
+    }
+
+    /// Whether a mechanism can be moved at all.
+    ///
+    /// # Errors
+    /// [`MotionError::NoDrive`], [`MotionError::Undetermined`], [`MotionError::Scale`].
+    pub fn possible(design: &Design<f64>) -> Result<(), MotionError> {
+        let mechanism = &*design.mechanism;
+        let plan = &mechanism.plan;
+        if mechanism.model.drives.is_empty() {
+            return Err(MotionError::NoDrive);
+        }
+        if !plan.decomposition.undetermined.is_empty() {
+            let mut bodies: Vec<_> = plan
+                .decomposition
+                .undetermined
+                .iter()
+                .map(|u| u.body())
+                .collect();
+            bodies.dedup();
+            return Err(MotionError::Undetermined { bodies });
+        }
+        let size = design.size();
+        if !(SIZES.0..=SIZES.1).contains(&size) {
+            return Err(MotionError::Scale { size });
+        }
+        Ok(())
     }
 
     /// How many assemblies at the anchor lead to the pose at the start.
@@ -221,28 +248,4 @@ fn begin(
 /// Scaled unknowns of an assembly at a place.
 fn scaled(follower: &Follower<'_, DrivePath>, assembly: &Assembly, at: f64) -> Vec<f64> {
     follower.scaled(&assembly.poses, &assembly.branch.near, at)
-}
-
-/// Whether a mechanism can be moved at all.
-fn check(design: &Design<f64>) -> Result<(), MotionError> {
-    let mechanism = &*design.mechanism;
-    let plan = &mechanism.plan;
-    if mechanism.model.drives.is_empty() {
-        return Err(MotionError::NoDrive);
-    }
-    if !plan.decomposition.undetermined.is_empty() {
-        let mut bodies: Vec<_> = plan
-            .decomposition
-            .undetermined
-            .iter()
-            .map(|u| u.body())
-            .collect();
-        bodies.dedup();
-        return Err(MotionError::Undetermined { bodies });
-    }
-    let size = design.size();
-    if !(SIZES.0..=SIZES.1).contains(&size) {
-        return Err(MotionError::Scale { size });
-    }
-    Ok(())
 }

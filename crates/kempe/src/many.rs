@@ -1,0 +1,543 @@
+//! Many designs at once.
+
+use std::borrow::Borrow;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use kempe_model::{Diagnostic, Leaf, Measure, Model, PointId, PoseMeasure};
+use kempe_motion::Batch;
+use kempe_motion::batch::{Designs as Parameters, Executor, Layout, Serial, Task};
+use kempe_study::{Flow, Progress, Quantity, Silent};
+use kempe_units::Expr;
+
+use crate::block::{Block, Heading};
+use crate::session::Asked;
+use crate::sweep::{Sweep, rows};
+use crate::way::{Way, extent, motion_over};
+use crate::{Error, Session};
+
+/// Poses that the lanes solve between two questions to the progress.
+const POSES_TOGETHER: usize = 1 << 20;
+/// Designs that are followed one by one between two questions, for every thread.
+const DESIGNS_TOGETHER: usize = 4;
+/// Why a pose in lanes is missing.
+const OPEN: &str = "does not close here on the branch of the session's own design";
+
+/// Values of some parameters for many designs, SI. The other parameters are the session's; those that depend on these follow.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Designs {
+    names: Vec<String>,
+    /// By parameter.
+    columns: Vec<Vec<f64>>,
+    count: usize,
+}
+
+impl Designs {
+    /// Designs by parameter: a column of values for each.
+    ///
+    /// # Errors
+    ///
+    /// `wrong-length` where the columns differ in length.
+    ///
+    /// # Example
+    ///
+    /// ```
+    /// use kempe::Designs;
+    /// let three = Designs::from_columns([("a", vec![0.02, 0.03, 0.04])]).unwrap();
+    /// assert_eq!(three.count(), 3);
+    /// assert_eq!(Designs::from_columns([("a", vec![0.1]), ("b", vec![])]).unwrap_err().code(), "wrong-length");
+    /// ```
+    pub fn from_columns<N: Into<String>>(
+        columns: impl IntoIterator<Item = (N, Vec<f64>)>,
+    ) -> Result<Self, Error> {
+        let (names, columns): (Vec<String>, Vec<Vec<f64>>) =
+            columns.into_iter().map(|(n, c)| (n.into(), c)).unzip();
+        let count = columns.first().map_or(0, Vec::len);
+        let odd = names.iter().zip(&columns).find(|(_, c)| c.len() != count);
+        if let Some((name, column)) = odd {
+            return Err(wrong_length(
+                &format!("column `{name}`"),
+                count,
+                column.len(),
+            ));
+        }
+        Ok(Self {
+            names,
+            columns,
+            count,
+        })
+    }
+
+    /// Designs one by one: a row of values of the named parameters for each.
+    ///
+    /// # Errors
+    ///
+    /// `wrong-length` where a row does not have one value for each parameter.
+    ///
+    /// # Example
+    ///
+    /// ```
+    /// use kempe::Designs;
+    /// let two = Designs::from_rows(&["a", "b"], [[0.02, 0.05], [0.03, 0.06]]).unwrap();
+    /// assert_eq!(two, Designs::from_columns([("a", vec![0.02, 0.03]), ("b", vec![0.05, 0.06])]).unwrap());
+    /// ```
+    pub fn from_rows<R: AsRef<[f64]>>(
+        names: &[&str],
+        rows: impl IntoIterator<Item = R>,
+    ) -> Result<Self, Error> {
+        let mut columns = vec![Vec::new(); names.len()];
+        let mut count = 0;
+        for row in rows {
+            let row = row.as_ref();
+            if row.len() != names.len() {
+                return Err(wrong_length(
+                    &format!("design {count}"),
+                    names.len(),
+                    row.len(),
+                ));
+            }
+            for (column, value) in columns.iter_mut().zip(row) {
+                column.push(*value);
+            }
+            count += 1;
+        }
+        Ok(Self {
+            names: names.iter().map(|n| (*n).to_owned()).collect(),
+            columns,
+            count,
+        })
+    }
+
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        self.count
+    }
+}
+
+fn wrong_length(what: &str, expected: usize, found: usize) -> Error {
+    let message = format!("{what} has {found} values, and {expected} were expected");
+    Error {
+        name: String::new(),
+        text: String::new(),
+        diagnostics: vec![
+            Diagnostic::error("wrong-length", message).help("give one value for each design"),
+        ],
+    }
+}
+
+/// Measures of many designs at the same places.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Many {
+    /// How many designs.
+    pub designs: usize,
+    /// The places, SI.
+    pub places: Vec<f64>,
+    /// One column for each measure: the values of all designs at the first place, then at the second, and so on.
+    pub columns: Vec<Block>,
+    /// By measure: whether it was taken in lanes, on the branch of the session's own design. Otherwise every design was
+    /// followed from its own start.
+    pub in_lanes: Vec<bool>,
+    /// By measure: how many values are missing (NaN).
+    pub missing: Vec<usize>,
+    /// Why a design has no value at all.
+    refused: BTreeMap<usize, Arc<str>>,
+    /// Why a design that was followed has no value at a place.
+    unreached: BTreeMap<(usize, usize), Arc<str>>,
+}
+
+impl Many {
+    /// A value, by the places of measure, place and design in what was asked; NaN where it is missing.
+    pub fn get(&self, measure: usize, place: usize, design: usize) -> f64 {
+        let column = self.columns.get(measure).filter(|_| design < self.designs);
+        let value = column.and_then(|c| c.values.get(place * self.designs + design));
+        value.copied().unwrap_or(f64::NAN)
+    }
+
+    /// Why a value is missing; `None` where it is not.
+    pub fn reason(&self, measure: usize, place: usize, design: usize) -> Option<&str> {
+        if design >= self.designs || place >= self.places.len() || measure >= self.columns.len() {
+            return None;
+        }
+        if !self.get(measure, place, design).is_nan() {
+            return None;
+        }
+        let followed = || self.unreached.get(&(design, place));
+        match (self.refused.get(&design), self.in_lanes.get(measure)) {
+            (Some(reason), _) => Some(reason),
+            (None, Some(true)) => Some(OPEN),
+            _ => Some(followed().map_or("no value here", |reason| reason)),
+        }
+    }
+}
+
+impl Session {
+    /// Measures of many designs at places (SI) of the drive that moves alone, or at times (s) where several do.
+    ///
+    /// Coordinates of points (`x(P)`, `y(P)`) are taken many at a time, in vector lanes and on threads, **on the branch that
+    /// the session's own design has** at each place, with the drives where that design has them: right as long as no limit or
+    /// change point comes between a design and the session's. Every other measure takes a motion for each design, followed
+    /// from its own start: slower by far, and sure of its branch. `in_lanes` says which was which.
+    ///
+    /// # Errors
+    ///
+    /// `unknown-name`, `settled-parameter`, what is wrong with a measure, and why the session's own motion cannot start. A
+    /// design that makes no sense or does not close is no error: its values are NaN, with the reason.
+    ///
+    /// # Example
+    ///
+    /// ```
+    /// # fn main() -> Result<(), kempe::Error> {
+    /// use kempe::{Designs, Model};
+    /// let rocker: Model = r#"
+    ///     [parameters]
+    ///     a = "20 mm"
+    ///     [links]
+    ///     frame   = { A = [0, 0], D = ["60 mm", 0] }
+    ///     crank   = { A-B = "a" }
+    ///     coupler = { B-C = "50 mm" }
+    ///     rocker  = { D-C = "40 mm" }
+    ///     [drives]
+    ///     motor = { turns = "crank", from = 0, to = 360, speed = "1 rad/s" }
+    ///     [assembly]
+    ///     C = "left of B -> D"
+    /// "#.parse()?;
+    /// let mut s = rocker.compile()?.session();
+    /// let designs = Designs::from_columns([("a", vec![0.020, 0.025, 0.200])])?;
+    /// let v = s.many(&designs, [0.0, 1.0], &["x(C)", "angle(rocker)"])?;
+    /// assert_eq!((v.in_lanes.as_slice(), v.missing[0]), ([true, false].as_slice(), 2));
+    /// // Both ways agree: C lies on the rocker.
+    /// let x = 0.06 + 0.04 * v.get(1, 1, 1).cos();
+    /// assert!((v.get(0, 1, 1) - x).abs() < 1e-15);
+    /// assert!(v.get(0, 1, 2).is_nan() && v.reason(0, 1, 2).unwrap().starts_with("does not close"));
+    /// assert!(v.reason(1, 1, 2).unwrap().contains("cannot be assembled"));
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub fn many<M: AsRef<str>>(
+        &mut self,
+        designs: &Designs,
+        places: impl IntoIterator<Item = impl Borrow<f64>>,
+        measures: impl IntoIterator<Item = M>,
+    ) -> Result<Many, Error> {
+        self.many_with(designs, places, measures, &mut Silent)
+    }
+
+    /// As [`many`](Self::many); `progress` hears how many values are done and may stop it: what is then missing says so.
+    ///
+    /// # Errors
+    ///
+    /// As there.
+    pub fn many_with<M: AsRef<str>>(
+        &mut self,
+        designs: &Designs,
+        places: impl IntoIterator<Item = impl Borrow<f64>>,
+        measures: impl IntoIterator<Item = M>,
+        progress: &mut dyn Progress,
+    ) -> Result<Many, Error> {
+        let places: Vec<f64> = places.into_iter().map(|p| *p.borrow()).collect();
+        let range = extent(&self.compiled, &places)?;
+        let asked = self.quantities(measures)?;
+        let given = self.given_of(designs)?;
+        let motion = self.known_motion(progress)?;
+        let way = match motion.path {
+            kempe_motion::drive_path::DrivePath::Coordinate { drive, .. } => Way::Drive(drive),
+            kempe_motion::drive_path::DrivePath::Time { .. } => Way::Time,
+        };
+        let model = &self.design.mechanism.model;
+        let points: Vec<Option<(PointId, usize)>> = (asked.quantities.iter())
+            .map(|q| point_of(model, &q.measure))
+            .collect();
+        let units = self.compiled.units();
+        let room = places.len() * designs.count;
+        let column = |q: &Quantity| Block {
+            values: vec![f64::NAN; room],
+            ..Block::new(Heading::of(q, units), 0)
+        };
+        let mut it = Many {
+            designs: designs.count,
+            columns: asked.quantities.iter().map(column).collect(),
+            in_lanes: points.iter().map(Option::is_some).collect(),
+            missing: vec![0; points.len()],
+            refused: BTreeMap::new(),
+            unreached: BTreeMap::new(),
+            places,
+        };
+        let lanes = points.iter().any(Option::is_some);
+        let total =
+            room * usize::from(lanes) + room * usize::from(points.iter().any(Option::is_none));
+        let mut told = Told {
+            progress,
+            done: 0,
+            total,
+        };
+        let values = self.values_of(&given, &mut it);
+        let mut go_on = true;
+        if lanes {
+            let motion = self.motion_over(way, range, told.progress)?;
+            go_on = self.in_lanes(&motion, &values, &points, &mut it, &mut told);
+        }
+        let others: Vec<usize> = (0..points.len()).filter(|k| points[*k].is_none()).collect();
+        if !others.is_empty() && go_on {
+            go_on = self.one_by_one(&given, way, range, (&asked, &others), &mut it, &mut told);
+        }
+        if !go_on {
+            it.stopped();
+        }
+        for (missing, column) in it.missing.iter_mut().zip(&it.columns) {
+            *missing = column.values.iter().filter(|v| v.is_nan()).count();
+        }
+        Ok(it)
+    }
+
+    /// What is given of every design, in the model's order.
+    fn given_of(&self, designs: &Designs) -> Result<Vec<Vec<Option<f64>>>, Error> {
+        let mut given = vec![self.given.clone(); designs.count];
+        for (name, column) in designs.names.iter().zip(&designs.columns) {
+            let id = self.compiled.parameter(name)?;
+            self.may_be_set(id)?;
+            for (own, value) in given.iter_mut().zip(column) {
+                own[id.index()] = Some(*value);
+            }
+        }
+        Ok(given)
+    }
+
+    /// Parameter values of every design, one design after the other; designs that make no sense are refused.
+    fn values_of(&self, given: &[Vec<Option<f64>>], it: &mut Many) -> Vec<f64> {
+        let model = self.compiled.data();
+        let mut all = Vec::with_capacity(given.len() * model.parameters.len());
+        for (design, given) in given.iter().enumerate() {
+            let own: Vec<f64> = model.parameter_values_with(&mut |id| given[id.index()]);
+            let odd = model
+                .parameters
+                .iter()
+                .zip(&own)
+                .find(|(_, v)| !v.is_finite());
+            let reason = match odd {
+                Some((p, value)) => Some(format!("parameter `{}` is {value}", p.name)),
+                None => model.unsound(&own).into_iter().next().map(|d| d.message),
+            };
+            if let Some(reason) = reason {
+                it.refused.insert(design, reason.into());
+            }
+            all.extend(own);
+        }
+        all
+    }
+
+    /// Fills the columns of points. False when stopped.
+    fn in_lanes(
+        &self,
+        motion: &Arc<kempe_motion::Motion>,
+        values: &[f64],
+        points: &[Option<(PointId, usize)>],
+        it: &mut Many,
+        told: &mut Told<'_>,
+    ) -> bool {
+        let mut wanted: Vec<PointId> = points.iter().flatten().map(|(p, _)| *p).collect();
+        wanted.sort_unstable();
+        wanted.dedup();
+        let Ok(batch) = Batch::new(motion, &wanted) else {
+            return true;
+        };
+        let designs = Parameters {
+            values,
+            count: it.designs,
+            layout: Layout::ByDesign,
+        };
+        let together = (POSES_TOGETHER / it.designs.max(1)).max(1);
+        let mut out = Vec::new();
+        for first in (0..it.places.len()).step_by(together) {
+            let places = &it.places[first..(first + together).min(it.places.len())];
+            let model = &motion.mechanism().model;
+            let time = matches!(
+                motion.path,
+                kempe_motion::drive_path::DrivePath::Time { .. }
+            );
+            let at: Vec<f64> = match time {
+                true => (places.iter())
+                    .map(|t| {
+                        motion
+                            .path
+                            .parameter_at(model, *t, &motion.design.parameters)
+                    })
+                    .collect(),
+                false => places.to_vec(),
+            };
+            let columns = batch.columns();
+            out.clear();
+            out.resize(places.len() * columns * it.designs, f64::NAN);
+            let done = run(self.threads, |executor| {
+                batch.designs_on(executor, designs, &at, &mut out)
+            });
+            if done.is_err() {
+                return true;
+            }
+            for (block, point) in it.columns.iter_mut().zip(points) {
+                let Some((point, axis)) = point else { continue };
+                let column = 2 * wanted.binary_search(point).unwrap_or(0) + axis;
+                for (k, place) in (first..first + places.len()).enumerate() {
+                    let from = (k * columns + column) * it.designs;
+                    let own = &out[from..from + it.designs];
+                    let to = place * it.designs;
+                    block.values[to..to + it.designs].copy_from_slice(own);
+                    for design in it.refused.keys() {
+                        block.values[to + design] = f64::NAN;
+                    }
+                }
+            }
+            if !told.more(places.len() * it.designs) {
+                return false;
+            }
+        }
+        true
+    }
+
+    /// Fills the other columns, each design on its own motion. False when stopped.
+    fn one_by_one(
+        &self,
+        given: &[Vec<Option<f64>>],
+        way: Way,
+        range: (f64, f64),
+        (asked, others): (&Asked, &[usize]),
+        it: &mut Many,
+        told: &mut Told<'_>,
+    ) -> bool {
+        let own = Asked {
+            quantities: others
+                .iter()
+                .map(|k| asked.quantities[*k].clone())
+                .collect(),
+            forces: others.iter().map(|k| asked.forces[*k]).collect(),
+        };
+        let together = DESIGNS_TOGETHER * self.threads;
+        let places = it.places.clone();
+        for first in (0..given.len()).step_by(together) {
+            let last = (first + together).min(given.len());
+            let mut found: Vec<Option<Result<Sweep, String>>> = vec![None; last - first];
+            let refused = &it.refused;
+            let tasks = (found.iter_mut().zip(first..last))
+                .filter(|(_, design)| !refused.contains_key(design))
+                .map(|(slot, design)| -> Task<'_> {
+                    let (own, places, given) = (&own, &places, &given[design]);
+                    Box::new(move || *slot = Some(self.one(given, way, range, places, own)))
+                })
+                .collect();
+            run(self.threads, |executor| executor.run(tasks));
+            for (slot, design) in found.into_iter().zip(first..last) {
+                match slot {
+                    Some(Ok(sweep)) => it.take(design, others, &sweep),
+                    Some(Err(reason)) => {
+                        let reason: Arc<str> = reason.into();
+                        for place in 0..places.len() {
+                            it.unreached.insert((design, place), reason.clone());
+                        }
+                    }
+                    None => {}
+                }
+            }
+            if !told.more((last - first) * places.len()) {
+                return false;
+            }
+        }
+        true
+    }
+
+    /// One design, followed from its own start.
+    fn one(
+        &self,
+        given: &[Option<f64>],
+        way: Way,
+        range: (f64, f64),
+        places: &[f64],
+        asked: &Asked,
+    ) -> Result<Sweep, String> {
+        let design = self.compiled.design(given);
+        let motion = motion_over(&design, way, range, &mut Silent).map_err(|told| told.message)?;
+        rows(&self.compiled, &motion, way, places, asked, &mut Silent).map_err(|error| {
+            let first = error.diagnostics.into_iter().next();
+            first.map_or_else(String::new, |told| told.message)
+        })
+    }
+}
+
+impl Many {
+    /// Enters what was found of a design.
+    fn take(&mut self, design: usize, columns: &[usize], sweep: &Sweep) {
+        for (column, found) in columns.iter().zip(&sweep.columns) {
+            for (place, value) in found.values.iter().enumerate() {
+                self.columns[*column].values[place * self.designs + design] = *value;
+            }
+        }
+        for row in 0..sweep.rows() {
+            if let Some(reason) = sweep.reason(row) {
+                self.unreached.insert((design, row), reason.into());
+            }
+        }
+    }
+
+    /// Says of what is missing that it was not come to.
+    fn stopped(&mut self) {
+        let reason: Arc<str> = "stopped before this design was done".into();
+        for design in 0..self.designs {
+            let lacks = |column: &Block| {
+                (0..self.places.len()).any(|p| column.values[p * self.designs + design].is_nan())
+            };
+            let known = (0..self.places.len()).any(|p| self.unreached.contains_key(&(design, p)));
+            if self.columns.iter().any(lacks) && !known {
+                self.refused.entry(design).or_insert_with(|| reason.clone());
+            }
+        }
+    }
+}
+
+/// What the progress has heard.
+struct Told<'p> {
+    progress: &'p mut dyn Progress,
+    done: usize,
+    total: usize,
+}
+
+impl Told<'_> {
+    /// Tells that more is done; false when it is to stop.
+    fn more(&mut self, values: usize) -> bool {
+        self.done += values;
+        self.progress.tick(self.done, self.total) == Flow::Continue || self.done == self.total
+    }
+}
+
+/// The point and the axis, where a measure is a coordinate of a point.
+fn point_of(model: &Model, measure: &Measure) -> Option<(PointId, usize)> {
+    match measure {
+        Expr::Leaf(Leaf::Pose(PoseMeasure::X(point))) => Some((*point, 0)),
+        Expr::Leaf(Leaf::Pose(PoseMeasure::Y(point))) => Some((*point, 1)),
+        Expr::Leaf(Leaf::Named(index)) => point_of(model, &model.measures.get(*index)?.measure),
+        _ => None,
+    }
+}
+
+/// Runs work on as many threads as there may be.
+#[cfg(not(target_family = "wasm"))]
+fn run<R>(threads: usize, work: impl FnOnce(&AnyExecutor) -> R) -> R {
+    work(&AnyExecutor(threads))
+}
+
+#[cfg(target_family = "wasm")]
+fn run<R>(_: usize, work: impl FnOnce(&Serial) -> R) -> R {
+    work(&Serial)
+}
+
+/// Threads, or none.
+#[cfg(not(target_family = "wasm"))]
+struct AnyExecutor(usize);
+
+#[cfg(not(target_family = "wasm"))]
+impl Executor for AnyExecutor {
+    fn run(&self, tasks: Vec<Task<'_>>) {
+        match self.0 {
+            1 => Serial.run(tasks),
+            threads => kempe_motion::batch::Threads(threads).run(tasks),
+        }
+    }
+}

@@ -1,0 +1,259 @@
+//! Which way the mechanism moves, and the motion that covers it.
+
+use std::sync::Arc;
+
+use kempe_mechanism::Branch;
+use kempe_mechanism::Design;
+use kempe_model::{Diagnostic, Law, LawPiece};
+use kempe_motion::assemble::{Assemblies, Assembly};
+use kempe_motion::drive_path::{DrivePath, duration};
+use kempe_motion::trace::Path as _;
+use kempe_motion::{Demand, EndReason, Motion};
+use kempe_study::{Ear, Progress, cannot_move};
+use kempe_units::{Dimension, Expr};
+
+use crate::compiled::with_laws;
+use crate::{Compiled, Error, Pose, Session};
+
+/// What moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Way {
+    /// Every drive by its law.
+    Time,
+    /// One drive, the others held.
+    Drive(usize),
+}
+
+/// A place this near (in path scales) beyond a range still lies in it.
+const SAME_PLACE: f64 = 1e-9;
+
+/// A time this near beyond the end, in parts of the duration, is still the end.
+const SAME_TIME: f64 = 1e-9;
+
+/// How much farther than asked (in path scales: rad, or mechanism sizes) a motion is followed that continues from a pose:
+/// whoever drags a drive soon asks for the next place.
+const AHEAD: f64 = 0.25;
+
+impl Way {
+    /// The way that a name means: a drive, or `time`.
+    pub fn named(compiled: &Compiled, name: &str) -> Result<Self, Error> {
+        match compiled.drive(name) {
+            Ok(drive) => Ok(Self::Drive(drive.index())),
+            Err(_) if name == "time" => Ok(Self::Time),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// Name and dimension of the places along it.
+    pub fn places(self, compiled: &Compiled) -> (&str, Dimension) {
+        let drives = &compiled.data().drives;
+        match self {
+            Self::Drive(drive) => (&drives[drive].name, drives[drive].dimension),
+            Self::Time => ("time", Dimension::TIME),
+        }
+    }
+}
+
+/// Least and largest of some places.
+///
+/// # Errors
+///
+/// `not-finite`.
+pub(crate) fn extent(compiled: &Compiled, places: &[f64]) -> Result<(f64, f64), Error> {
+    let mut range = (f64::INFINITY, f64::NEG_INFINITY);
+    for (index, place) in places.iter().enumerate() {
+        if !place.is_finite() {
+            let told = Diagnostic::error("not-finite", format!("place {index} is {place}"));
+            return Err(compiled.error(told.help("give finite places, in SI")));
+        }
+        range = (range.0.min(*place), range.1.max(*place));
+    }
+    Ok(range)
+}
+
+/// Whether a time lies on the motion of a design.
+pub(crate) fn on_the_motion(design: &Design<f64>, time: f64) -> Result<(), Diagnostic> {
+    let duration = duration(&design.mechanism.model, &design.parameters);
+    if (0.0..=duration * (1.0 + SAME_TIME)).contains(&time) {
+        return Ok(());
+    }
+    let message = format!("the motion does not pass {time} s: it goes from 0 s to {duration} s");
+    let told = Diagnostic::error("not-on-the-motion", message);
+    Err(told.help(format!("give a time from 0 s to {duration} s")))
+}
+
+/// Whether a motion is one of the drive and was asked to cover the range.
+fn covers(motion: &Motion, drive: usize, (low, high): (f64, f64)) -> bool {
+    let own = matches!(motion.path, DrivePath::Coordinate { drive: own, .. } if own == drive);
+    let slack = SAME_PLACE * motion.path.scale();
+    own && motion.demanded.0 - slack <= low && high <= motion.demanded.1 + slack
+}
+
+/// The path of one drive, the others held.
+fn path_of(design: &Design<f64>, drive: usize, held: Vec<f64>) -> DrivePath {
+    let is_angle = design.mechanism.model.drives[drive].dimension == Dimension::ANGLE;
+    DrivePath::Coordinate {
+        drive,
+        held,
+        is_angle,
+        scale: if is_angle { 1.0 } else { design.size() },
+    }
+}
+
+/// A law that stands still.
+fn standing(at: f64) -> Law {
+    Law {
+        from: Expr::Const(at),
+        pieces: vec![LawPiece::Dwell {
+            duration: Expr::Const(0.0),
+        }],
+    }
+}
+
+/// The motion of one drive alone from where its law starts, over its law and a range besides.
+fn alone(
+    design: &Design<f64>,
+    drive: usize,
+    (low, high): (f64, f64),
+    progress: &mut dyn Progress,
+) -> Result<Arc<Motion>, Diagnostic> {
+    let model = &design.mechanism.model;
+    let drives = model.drives.iter();
+    let held: Vec<f64> = drives.map(|d| d.law.at(0.0, &design.parameters)).collect();
+    let law = &model.drives[drive].law;
+    let (from, to) = law.extent(&design.parameters);
+    let own = with_laws(design, |index| {
+        (index != drive).then(|| standing(held[index]))
+    });
+    let start = held[drive];
+    let demand = Demand {
+        path: path_of(&own, drive, held),
+        range: (from.min(low), to.max(high)),
+        start,
+        assemblies: None,
+    };
+    Motion::along(&own, demand, &mut Ear(progress))
+        .map(Arc::new)
+        .map_err(|error| cannot_move(&own, &error))
+}
+
+/// The motion of a design along a way, over a range of places.
+pub(crate) fn motion_over(
+    design: &Design<f64>,
+    way: Way,
+    range: (f64, f64),
+    progress: &mut dyn Progress,
+) -> Result<Arc<Motion>, Diagnostic> {
+    match way {
+        Way::Drive(drive) if !laws_cover(design, drive, range) => {
+            alone(design, drive, range, progress)
+        }
+        _ => {
+            Motion::watched(design, &mut Ear(progress)).map_err(|error| cannot_move(design, &error))
+        }
+    }
+}
+
+/// Whether the file's laws move this drive alone, over the range.
+fn laws_cover(design: &Design<f64>, drive: usize, (low, high): (f64, f64)) -> bool {
+    let (model, parameters) = (&design.mechanism.model, &design.parameters);
+    let path = DrivePath::new(model, parameters, design.size());
+    let own = matches!(path, DrivePath::Coordinate { drive: own, .. } if own == drive);
+    let slack = SAME_PLACE * path.scale();
+    let (from, to) = path.range(model, parameters);
+    own && from - slack <= low && high <= to + slack
+}
+
+impl Session {
+    /// The motion along a way, over a range of places: what is known already, where that covers it.
+    pub(crate) fn motion_over(
+        &mut self,
+        way: Way,
+        range: (f64, f64),
+        progress: &mut dyn Progress,
+    ) -> Result<Arc<Motion>, Error> {
+        let drive = match way {
+            Way::Drive(drive) if !laws_cover(&self.design, drive, range) => drive,
+            _ => return self.known_motion(progress),
+        };
+        if let Some(known) = self.alone[drive]
+            .as_ref()
+            .filter(|m| covers(m, drive, range))
+        {
+            return Ok(known.clone());
+        }
+        let motion = alone(&self.design, drive, range, progress)
+            .map_err(|told| self.compiled.error(told))?;
+        self.alone[drive] = Some(motion.clone());
+        Ok(motion)
+    }
+
+    /// The motion of one drive from a pose on, over a range of its coordinate, the others where the pose has them. No assembly
+    /// is searched for: the branch is the pose's.
+    pub(crate) fn motion_from(
+        &self,
+        pose: &Pose,
+        drive: usize,
+        (low, high): (f64, f64),
+        progress: &mut dyn Progress,
+    ) -> Result<Arc<Motion>, Error> {
+        let known = &pose.motion;
+        let own = matches!(known.path, DrivePath::Coordinate { drive: own, .. } if own == drive);
+        let reached = known.reached();
+        let ended = |beyond: bool, end: EndReason| beyond && end != EndReason::Covered;
+        let no_farther =
+            ended(low < reached.0, known.ends.0) || ended(high > reached.1, known.ends.1);
+        if own && (no_farther || (known.reaches(low) && known.reaches(high))) {
+            return Ok(known.clone());
+        }
+        // A motion of the drive is known: it goes on from its end, where it is regular even if the pose is not.
+        let from = match own {
+            true if high > reached.1 => reached.1,
+            true => reached.0,
+            false => pose.coordinates[drive],
+        };
+        let placed = match own {
+            true => known.placed(from, &mut known.solver()),
+            false => None,
+        };
+        let placed = placed.as_ref().unwrap_or(&pose.placed);
+        let design = with_laws(&known.design, |index| {
+            Some(match index == drive {
+                true => self.design.mechanism.model.drives[drive].law.clone(),
+                false => standing(pose.coordinates[index]),
+            })
+        });
+        let path = path_of(&design, drive, pose.coordinates.clone());
+        let ahead = AHEAD * path.scale();
+        let (first, last) = if own { reached } else { (from, from) };
+        let assembly = Assembly {
+            branch: Branch {
+                guess: placed.poses.clone(),
+                near: placed.near.clone(),
+                ..Branch::neutral(&design.mechanism)
+            },
+            poses: placed.poses.clone(),
+            distance: 0.0,
+            turns: design.geometry.turns.clone(),
+        };
+        let demand = Demand {
+            path,
+            range: (
+                if low < first { low - ahead } else { first },
+                if high > last { high + ahead } else { last },
+            ),
+            start: from,
+            assemblies: Some(Assemblies {
+                list: vec![assembly],
+                ..Assemblies::default()
+            }),
+        };
+        let mut motion = Motion::along(&design, demand, &mut Ear(progress))
+            .map_err(|error| self.compiled.error(cannot_move(&design, &error)))?;
+        if own {
+            // Directions count their turns from the start.
+            motion.start = known.start;
+        }
+        Ok(Arc::new(motion))
+    }
+}

@@ -1,0 +1,519 @@
+//! Sessions on the published systems: against the studies of the same files, against reference values of `validation/`, and
+//! against themselves asked another way.
+
+use kempe::prelude::*;
+use kempe::{AssemblyData, EventKind, ForceColumns, Heading, MotionData, MotionEvent, Value};
+
+fn model(name: &str) -> Model {
+    let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/");
+    Model::from_path(format!("{root}{name}.toml")).expect("an example")
+}
+
+fn session(name: &str) -> Session {
+    model(name).compile().expect("it moves").session()
+}
+
+fn close(a: f64, b: f64, digits: f64) -> bool {
+    (a - b).abs() <= digits * b.abs().max(1e-3)
+}
+
+const CRANK_ROCKER: &str = r#"
+units = { length = "mm", angle = "deg" }
+[parameters]
+a = "20 mm"
+b = "2.5 * a"
+[links]
+frame   = { A = [0, 0], D = [60, 0] }
+crank   = { A-B = "a" }
+coupler = { B-C = "b", P = ["b / 2", "5 mm"] }
+rocker  = { D-C = 40 }
+[drives]
+motor = { turns = "crank", from = 0, to = 360, speed = "1 rad/s" }
+[assembly]
+C = "left of B -> D"
+"#;
+
+fn crank_rocker() -> Session {
+    let model: Model = CRANK_ROCKER.parse().expect("a model");
+    model.compile().expect("it moves").session()
+}
+
+#[test]
+fn everything_that_is_handed_out_is_owned_and_goes_to_any_thread() {
+    fn owned<T: Send + Sync + Clone + 'static>() {}
+    owned::<Model>();
+    owned::<Compiled>();
+    owned::<Session>();
+    owned::<Pose>();
+    owned::<Sweep>();
+    owned::<Derivatives>();
+    owned::<Designs>();
+    owned::<Many>();
+    owned::<Block>();
+    owned::<Heading>();
+    owned::<Value>();
+    owned::<MotionData>();
+    owned::<MotionEvent>();
+    owned::<AssemblyData>();
+    owned::<ForceColumns>();
+    owned::<Error>();
+    owned::<StudyResult>();
+    owned::<Table>();
+    owned::<CheckReport>();
+    owned::<kempe::mechanism::Mechanism>();
+    owned::<kempe::motion::Motion>();
+}
+
+/// A sweep over the places of a study has the study's own numbers.
+fn same_as_study(name: &str, study: &str, drive: &str) {
+    let model = model(name);
+    let table = model.run(study).expect("it runs").table;
+    let mut s = model.compile().expect("it moves").session();
+    let places = table.column(drive).expect("the drive").si();
+    // Behind time and the drives.
+    let columns = &table.columns[2..];
+    let names: Vec<&str> = columns.iter().map(|c| c.name.as_str()).collect();
+    let swept = s.sweep(drive, &places, &names).expect("it sweeps");
+    assert_eq!(swept.rows(), table.rows());
+    for (own, theirs) in swept.columns.iter().zip(columns) {
+        assert_eq!(own.heading.unit, theirs.unit);
+        let size = theirs.values.iter().fold(1e-9, |s: f64, v| s.max(v.abs()));
+        for (row, (a, b)) in own.in_unit().iter().zip(&theirs.values).enumerate() {
+            let same = (a - b).abs() <= 1e-9 * size || (a.is_nan() && b.is_nan());
+            assert!(same, "{} row {row}: {a} {b}", own.name());
+        }
+    }
+    assert_eq!(swept.forces.is_some(), table.forces.is_some());
+    for row in 0..swept.rows() {
+        assert!(swept.closure[row] < 1e-9 && swept.reason(row).is_none());
+    }
+}
+
+#[test]
+fn a_sweep_has_the_numbers_of_the_studies() {
+    same_as_study("seeds/tractor-hitch", "lifting", "lift");
+    same_as_study("seeds/tractor-hitch", "loads", "lift");
+    same_as_study("seeds/slider-crank", "turn", "shaft");
+}
+
+#[test]
+fn a_sweep_has_the_published_numbers() {
+    // validation/s4-tractor-hitch.toml
+    let mut s = session("seeds/tractor-hitch");
+    let places = [0.38, 0.415, 0.45, 0.52];
+    let t = s
+        .sweep("lift", places, ["y(M)", "-reduced_load(lift)"])
+        .expect("it sweeps");
+    let y = [0.0590474033, 0.1527496472, 0.2635783524, 0.5397008986];
+    let push = [29188.2988831, 35129.7785439, 41043.5719108, 55789.7675354];
+    for row in 0..4 {
+        assert!((t.columns[0].values[row] - y[row]).abs() < 1e-10);
+        assert!((t.columns[1].values[row] - push[row]).abs() < 1e-6);
+    }
+    let forces = t.forces.expect("forces were asked for");
+    assert!(forces.route_difference.iter().all(|d| *d < 1e-9));
+    assert!(forces.residual.iter().all(|r| *r < 1e-9));
+
+    // validation/s3-slider-crank.toml, at 30 degrees; a number over the motion besides.
+    let mut s = session("seeds/slider-crank");
+    let measures = ["angle(rod)", "rate(y(C))", "range(y(C))"];
+    let t = s
+        .sweep("shaft", [30.0_f64.to_radians()], measures)
+        .expect("it sweeps");
+    assert!(close(t.columns[0].in_unit()[0], 100.0915332495733, 1e-13));
+    assert!(close(t.columns[1].in_unit()[0], 13728.30814008131, 1e-12));
+    assert!(close(t.columns[2].in_unit()[0], 115.2390340889153, 1e-13));
+}
+
+#[test]
+fn the_lock_is_dragged_through_its_change_point() {
+    // validation/s1-door-lock.toml
+    let mut s = session("seeds/door-lock");
+    let motion = s.motion().expect("it moves");
+    let crossing = motion
+        .events
+        .iter()
+        .find(|e| e.kind == EventKind::ChangePoint);
+    let at = crossing.expect("a change point").at.to_degrees();
+    assert!(close(at, 117.5122065166410849, 1e-13));
+
+    let mut p = s
+        .pose([("lock", (-50.0_f64).to_radians())])
+        .expect("the start");
+    for degrees in -49..=125 {
+        p = s
+            .pose_near(&p, "lock", f64::from(degrees).to_radians())
+            .expect("it goes on");
+    }
+    let angle = |link: &str| p.angle(link).expect("a link").to_degrees();
+    assert!((angle("bar2") - 196.503266969257).abs() < 1e-9);
+    assert!((angle("bar5") - 164.975506743242).abs() < 1e-9);
+    let at = crossing.expect("a change point").at;
+    let p = s.pose_near(&p, "lock", at).expect("it goes through");
+    assert!(
+        p.note()
+            .expect("a note")
+            .starts_with("change point at lock = 117.5122")
+    );
+
+    // Beyond the laws, up to the limit at 132.74 degrees, and no farther.
+    let p = s
+        .pose_near(&p, "lock", 132.0_f64.to_radians())
+        .expect("it can");
+    assert!(p.closure() < 1e-9);
+    let error = s.pose_near(&p, "lock", 133.0_f64.to_radians()).unwrap_err();
+    assert_eq!(error.code(), "range-beyond-limit");
+    assert!(error.to_string().contains("132.7"), "{error}");
+    let t = s
+        .sweep(
+            "lock",
+            [131.0_f64.to_radians(), 133.0_f64.to_radians()],
+            ["angle(bar2)"],
+        )
+        .expect("it sweeps");
+    assert!(t.reached(0) && !t.reached(1) && t.reason(0).is_none());
+    assert!(t.reason(1).expect("a reason").contains("132.7"));
+}
+
+#[test]
+fn a_dragged_pose_is_the_pose_from_scratch() {
+    for (name, drive) in [("seeds/tractor-hitch", "lift"), ("seeds/door-closer", "")] {
+        let mut s = session(name);
+        let own = s.compiled().drives().next().expect("a drive").to_owned();
+        let drive = if drive.is_empty() {
+            own.as_str()
+        } else {
+            drive
+        };
+        let (low, high) = s.motion().expect("it moves").reached;
+        let mut p = s.start().expect("a start");
+        for place in linspace(low, high, 41) {
+            p = s.pose_near(&p, drive, place).expect("on the motion");
+            let whole = s.pose([(drive, place)]).expect("on the motion");
+            for (a, b) in p.points().iter().zip(whole.points()) {
+                assert!((a[0] - b[0]).abs() < 1e-12 && (a[1] - b[1]).abs() < 1e-12);
+            }
+            assert_eq!(p.coordinate(drive).expect("the drive"), place);
+        }
+    }
+}
+
+#[test]
+fn several_drives_go_together_or_one_by_one() {
+    let mut s = session("gallery/excavator");
+    let places = [
+        ("boom_cylinder", 2.3),
+        ("stick_cylinder", 3.1),
+        ("bucket_cylinder", 2.4),
+    ];
+    let together = s.pose(places).expect("they get there");
+    let mut one_by_one = s.start().expect("a start");
+    for (drive, place) in places {
+        one_by_one = s
+            .pose_near(&one_by_one, drive, place)
+            .expect("it gets there");
+    }
+    assert_eq!(together.coordinates().len(), 3);
+    for (a, b) in together.points().iter().zip(one_by_one.points()) {
+        assert!((a[0] - b[0]).abs() < 1e-9 && (a[1] - b[1]).abs() < 1e-9);
+    }
+    // Where they all stand there is no motion, and so no force.
+    let error = together.measure("force(boom_cylinder)").unwrap_err();
+    assert_eq!(error.code(), "not-on-the-motion");
+    assert!(together.measure("y(X)").expect("a place").si.is_finite());
+    assert_eq!(together.measure("speed(X)").unwrap_err().code(), "no-value");
+
+    // One drive from a pose on, the others held there.
+    let t = s
+        .sweep_from(
+            &together,
+            "stick_cylinder",
+            [2.9, 3.0, 3.1],
+            ["y(X)", "bucket_cylinder"],
+            &mut Silent,
+        )
+        .expect("it sweeps");
+    assert!((t.columns[0].values[2] - together.point("X").expect("a point")[1]).abs() < 1e-9);
+    assert!(t.columns[1].values.iter().all(|q| *q == 2.4));
+    let error = s
+        .pose([("boom_cylinder", 2.3), ("boom_cylinder", 2.4)])
+        .unwrap_err();
+    assert_eq!(error.code(), "over-specified");
+
+    // Over time every drive moves by its law: the rows of the file's own motion.
+    let table = model("gallery/excavator")
+        .run_first()
+        .expect("it runs")
+        .table;
+    let times = table.columns[0].si();
+    let t = s.sweep("time", &times, ["y(X)"]).expect("it sweeps");
+    let own = table.column("depth").expect("a measure of the file").si();
+    for (a, b) in t.columns[0].values.iter().zip(own) {
+        assert!((a - b).abs() < 1e-12);
+    }
+    let t = s.sweep("time", [-1.0, 1e3], ["y(X)"]).expect("it sweeps");
+    assert!(t.reason(0).is_some() && t.reason(1).expect("a reason").contains("not pass"));
+}
+
+#[test]
+fn parameters_that_are_set_are_as_if_the_file_said_so() {
+    let model: Model = CRANK_ROCKER.parse().expect("a model");
+    let mut s = crank_rocker();
+    s.set_text("a", "25 mm").expect("it can be set");
+    let again = model.with("a", "25 mm").expect("it can be set");
+    let mut other = again.compile().expect("it moves").session();
+    let measures = ["x(P)", "angle(rocker)", "range(angle(rocker))", "speed(C)"];
+    let places = linspace(0.0, 6.28, 50);
+    let [a, b] = [&mut s, &mut other].map(|s| s.sweep("motor", &places, measures).expect("rows"));
+    for (a, b) in a.columns.iter().zip(&b.columns) {
+        assert_eq!(a.values, b.values);
+    }
+    // What follows is set on its own, and given back.
+    s.set("b", 0.055).expect("it can be set");
+    s.set("a", 0.02).expect("it can be set");
+    assert_eq!(s.value("b").expect("a parameter"), 0.055);
+    // It no longer follows: the derivative of what is made of it alone is zero.
+    let j = s
+        .derivatives(["distance(B, P)"], ["a", "b"])
+        .expect("derivatives");
+    assert!(j.get(0, 0).abs() < 1e-12 && j.get(0, 1) > 0.1);
+    s.reset("b").expect("it is given back");
+    assert!((s.value("b").expect("a parameter") - 0.05).abs() < 1e-16);
+    let j = s
+        .derivatives(["distance(B, P)"], ["a"])
+        .expect("derivatives");
+    assert!(j.get(0, 0) > 1.0);
+}
+
+#[test]
+fn what_makes_no_sense_is_refused_and_changes_nothing() {
+    let mut s = crank_rocker();
+    let before = s.values().to_vec();
+    for (name, value, code) in [
+        ("c", 1.0, "unknown-name"),
+        ("a", f64::NAN, "not-finite"),
+        ("a", 0.0, "bad-size"),
+        ("b", -0.01, "bad-size"),
+    ] {
+        let error = s.set(name, value).unwrap_err();
+        assert_eq!(error.code(), code);
+        assert!(!error.to_string().is_empty());
+    }
+    for (text, code) in [
+        ("3 kg", "unit-mismatch"),
+        ("3", "unit-mismatch"),
+        ("2 * q", "unknown-name"),
+        ("2 *", "syntax"),
+    ] {
+        assert_eq!(s.set_text("a", text).unwrap_err().code(), code, "{text}");
+    }
+    assert_eq!(s.values(), before);
+    s.set_text("b", "3 * a")
+        .expect("an expression of parameters");
+    assert!((s.value("b").expect("a parameter") - 0.06).abs() < 1e-16);
+    assert_eq!(
+        s.sweep("moter", [0.0], ["x(B)"]).unwrap_err().code(),
+        "unknown-name"
+    );
+    assert_eq!(
+        s.sweep("motor", [f64::INFINITY], ["x(B)"])
+            .unwrap_err()
+            .code(),
+        "not-finite"
+    );
+    assert_eq!(
+        s.sweep("motor", [0.0], ["x(Q)"]).unwrap_err().code(),
+        "unknown-name"
+    );
+    // A design that cannot be put together says why, and where in the file.
+    s.set("a", 0.5).expect("a length");
+    let error = s.sweep("motor", [0.0], ["x(B)"]).unwrap_err();
+    assert_eq!(error.code(), "cannot-assemble");
+    assert!(error.to_string().contains("model:"), "{error}");
+
+    let open: Model = "[parameters]\na = \"3 m\"\n[links]\nframe = { A = [0, 0] }\n\
+        plate = { A-B = 4, A-P = \"a\", B-P = 2, P = \"left of A -> B\" }\n\
+        [drives]\nm = { turns = \"plate\", speed = \"1 rad/s\" }\n"
+        .parse()
+        .expect("a model");
+    let mut s = open.compile().expect("it moves").session();
+    assert_eq!(s.set("a", 1.0).unwrap_err().code(), "triangle-open");
+    s.set("a", 5.0).expect("it closes");
+}
+
+#[test]
+fn parameters_that_the_reader_took_for_numbers_cannot_be_set() {
+    let text = CRANK_ROCKER.to_owned()
+        + "[measures]\nthere = \"at(x(P), motor, 1000 * a * 1 rad / (1 m))\"\n";
+    let model: Model = text.parse().expect("a model");
+    let mut s = model.compile().expect("it moves").session();
+    assert_eq!(s.set("a", 0.021).unwrap_err().code(), "settled-parameter");
+    s.set("b", 0.051).expect("nothing was settled of it");
+    // As the error says: another file.
+    let mut other = model
+        .with("a", "21 mm")
+        .and_then(|m| m.compile())
+        .expect("it moves")
+        .session();
+    assert!(other.start().is_ok());
+}
+
+#[test]
+fn every_value_that_is_missing_has_its_reason() {
+    let mut s = crank_rocker();
+    // Behind the law's end no speed is known; at a place where it divides by zero there is no value.
+    let measures = [
+        "x(C)",
+        "speed(C)",
+        "x(C) / (motor - 1 rad) * (motor - 1 rad)",
+    ];
+    let t = s.sweep("motor", [0.5, 1.0, 7.0], measures).expect("rows");
+    assert!(t.reason(0).is_none());
+    assert!(t.reason(1).expect("a reason").contains("no value here"));
+    assert!(t.columns[0].values[2].is_finite() && t.columns[1].values[2].is_nan());
+    assert!(
+        t.reason(2)
+            .expect("a reason")
+            .contains("no law of the drives passes")
+    );
+    for row in 0..t.rows() {
+        let missing = t.columns.iter().any(|c| c.values[row].is_nan());
+        assert_eq!(missing, t.reason(row).is_some());
+    }
+}
+
+#[test]
+fn derivatives_are_those_of_the_designs_beside() {
+    let mut s = crank_rocker();
+    let measures = ["range(angle(rocker))", "x(P)"];
+    let j = s
+        .derivatives_at("motor", 1.0, measures, ["a"])
+        .expect("derivatives");
+    let h = 1e-6;
+    let mut at = |a: f64| {
+        s.set("a", a).expect("it can be set");
+        let t = s.sweep("motor", [1.0], measures).expect("rows");
+        [t.columns[0].values[0], t.columns[1].values[0]]
+    };
+    let (low, high) = (at(0.02 - h), at(0.02 + h));
+    for k in 0..2 {
+        let slope = (high[k] - low[k]) / (2.0 * h);
+        assert!(close(j.get(k, 0), slope, 1e-6), "{} {slope}", j.get(k, 0));
+    }
+    assert!(j.notes.iter().all(Option::is_none) && j.get(0, 1).is_nan());
+}
+
+#[test]
+fn many_designs_are_the_designs_one_by_one_whatever_the_threads() {
+    let mut s = crank_rocker();
+    let lengths = linspace(0.015, 0.024, 37);
+    let designs = Designs::from_columns([("a", lengths.clone())]).expect("designs");
+    let places = [0.2, 1.0, 4.0];
+    let measures = ["x(P)", "y(P)", "transmission_angle(C)"];
+    let mut all = Vec::new();
+    for threads in [1, 3] {
+        s.use_threads(threads);
+        all.push(s.many(&designs, places, measures).expect("values"));
+    }
+    for (a, b) in all[0].columns.iter().zip(&all[1].columns) {
+        assert_eq!(a.values, b.values);
+    }
+    let v = &all[0];
+    assert_eq!(
+        (v.missing.as_slice(), v.in_lanes.as_slice()),
+        (&[0, 0, 0][..], &[true, true, false][..])
+    );
+    for (design, a) in lengths.iter().enumerate() {
+        s.set("a", *a).expect("it can be set");
+        let t = s.sweep("motor", places, measures).expect("rows");
+        for measure in 0..3 {
+            for place in 0..3 {
+                let (many, one) = (
+                    v.get(measure, place, design),
+                    t.columns[measure].values[place],
+                );
+                assert!((many - one).abs() < 1e-13, "{many} {one}");
+            }
+        }
+    }
+}
+
+#[test]
+fn designs_that_do_not_close_or_make_no_sense_are_counted_with_their_reasons() {
+    let mut s = crank_rocker();
+    let designs = Designs::from_rows(&["a", "b"], [[0.02, 0.05], [0.3, 0.05], [-0.02, 0.05]])
+        .expect("designs");
+    let v = s
+        .many(&designs, [1.0], ["x(C)", "angle(rocker)"])
+        .expect("values");
+    assert_eq!(v.missing, [2, 2]);
+    for measure in 0..2 {
+        assert!(v.reason(measure, 0, 0).is_none() && v.get(measure, 0, 0).is_finite());
+        assert!(v.reason(measure, 0, 1).is_some() && v.get(measure, 0, 1).is_nan());
+        assert!(
+            v.reason(measure, 0, 2)
+                .expect("a reason")
+                .contains("must be positive")
+        );
+    }
+    let mut none = |_: usize, _: usize| Flow::Stop;
+    let v = s
+        .many_with(&designs, [1.0], ["angle(rocker)", "x(C)"], &mut none)
+        .expect("values");
+    assert!(v.get(1, 0, 0).is_finite());
+    assert_eq!(
+        v.reason(0, 0, 0),
+        Some("stopped before this design was done")
+    );
+    let wrong = Designs::from_columns([("q", vec![1.0])]).expect("designs");
+    assert_eq!(
+        s.many(&wrong, [1.0], ["x(C)"]).unwrap_err().code(),
+        "unknown-name"
+    );
+}
+
+#[test]
+fn a_pose_of_another_design_is_told_from_ours() {
+    let mut s = crank_rocker();
+    let p = s.pose([("motor", 1.0)]).expect("a pose");
+    let q = s.pose_near(&p, "motor", 1.1).expect("near it");
+    s.set("a", 0.021).expect("it can be set");
+    assert_eq!(
+        s.pose_near(&p, "motor", 1.1).unwrap_err().code(),
+        "another-design"
+    );
+    s.set("a", 0.02).expect("it can be set");
+    let again = s.pose_near(&p, "motor", 1.1).expect("near it");
+    assert_eq!(again.points(), q.points());
+    assert_eq!(
+        crank_rocker()
+            .pose_near(&p, "motor", 1.0)
+            .unwrap_err()
+            .code(),
+        "another-design"
+    );
+}
+
+#[test]
+fn a_sweep_may_be_stopped_and_clones_go_their_own_way() {
+    let mut s = crank_rocker();
+    let mut five = |done: usize, _: usize| if done < 5 { Flow::Continue } else { Flow::Stop };
+    let t = s
+        .sweep_with("motor", linspace(0.0, 1.0, 100), ["x(B)"], &mut five)
+        .expect("rows");
+    assert!(t.rows() == 5 && t.interrupted());
+    let mut other = s.clone();
+    other.set("a", 0.022).expect("it can be set");
+    assert_eq!(s.value("a").expect("a parameter"), 0.02);
+}
+
+#[test]
+fn what_cannot_move_says_so_when_it_is_compiled() {
+    let text = "[links]\nframe = { A = [0, 0] }\ncrank = { A-B = 1 }\n";
+    let loose: Model = text.parse().expect("a model");
+    assert_eq!(loose.compile().unwrap_err().code(), "no-drive");
+    // A single pose is found all the same: what is free is held somewhere.
+    let pose = loose.pose("").expect("a pose");
+    let [x, y] = pose.point("B").expect("a point");
+    assert!((x * x + y * y - 1.0).abs() < 1e-12);
+}

@@ -1,0 +1,128 @@
+//! What the values of a model must keep to when its parameters are set to others than the file's.
+//!
+//! The reader refuses a file whose values break these rules. A program that sets parameters without reading the file again
+//! asks here.
+
+use kempe_number::math;
+use kempe_units::{Dimension, Unit, format_digits};
+
+use crate::diagnostic::Diagnostic;
+use crate::geometry::value;
+use crate::model::{Link, Model, Place, Scalar, Span};
+
+/// A value of the file that depends on parameters, and what it must keep to.
+#[derive(Clone, Debug)]
+pub struct Bound {
+    /// The value.
+    pub value: Scalar,
+    /// What it must keep to.
+    pub keeps: Keeps,
+    /// What it is, in words.
+    pub what: String,
+    /// Its dimension.
+    pub dimension: Dimension,
+    /// Where it stands in the file.
+    pub span: Span,
+}
+
+/// What a value must keep to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Keeps {
+    /// It is a number.
+    Finite,
+    /// It is above zero.
+    Positive,
+    /// It is not below zero.
+    NotNegative,
+}
+
+/// A corner of a triangle that misses its distance by this part of it or more does not close: rounding stays far below.
+const OPEN: f64 = 1e-9;
+
+impl Model {
+    /// What is wrong with parameter values (SI, in the model's order); nothing where a file with them would be read.
+    ///
+    /// `not-finite`, `bad-size` and `triangle-open`, each labelled where the value stands in the file.
+    pub fn unsound(&self, parameters: &[f64]) -> Vec<Diagnostic> {
+        let broken = self
+            .bounds
+            .iter()
+            .filter_map(|b| b.broken(self, parameters));
+        let open = (self.links.iter()).filter_map(|link| open_triangle(link, parameters));
+        broken.chain(open).collect()
+    }
+}
+
+impl Bound {
+    fn broken(&self, model: &Model, parameters: &[f64]) -> Option<Diagnostic> {
+        let x = value(&self.value, parameters);
+        let told = |code, message| {
+            Diagnostic::error(code, message)
+                .at(self.span.clone(), "with the parameters as they are set")
+        };
+        if !x.is_finite() {
+            let found = if x.is_nan() {
+                "not a number"
+            } else {
+                "infinite"
+            };
+            return Some(
+                told("not-finite", format!("{} is {found}", self.what)).help(
+                    "look for a division by zero, the root of a negative number or an overflow",
+                ),
+            );
+        }
+        let wanted = match self.keeps {
+            Keeps::Positive if x <= 0.0 => "must be positive",
+            Keeps::NotNegative if x < 0.0 => "must not be negative",
+            _ => return None,
+        };
+        let preferred: Vec<Unit> = [&model.units.length, &model.units.angle]
+            .into_iter()
+            .chain(&model.units.more)
+            .filter_map(|unit| Unit::parse(&unit.name).ok())
+            .collect();
+        let found = format_digits(x, &Unit::for_display(self.dimension, &preferred), 6);
+        Some(
+            told("bad-size", format!("{} {wanted}, found {found}", self.what))
+                .help("set the parameters that it is made of to values that leave it so"),
+        )
+    }
+}
+
+/// The first corner of a link that its two distances do not reach.
+fn open_triangle(link: &Link, parameters: &[f64]) -> Option<Diagnostic> {
+    let depends = |place: &Place| matches!(place, Place::Triangle { .. });
+    if !link.points.iter().any(|p| depends(&p.place)) {
+        return None;
+    }
+    let points: Vec<[f64; 2]> = link.evaluate(parameters);
+    let open = link.points.iter().zip(&points).find(|(point, at)| {
+        let Place::Triangle {
+            from,
+            to,
+            from_distance,
+            to_distance,
+            ..
+        } = &point.place
+        else {
+            return false;
+        };
+        [(from, from_distance), (to, to_distance)]
+            .into_iter()
+            .any(|(end, distance)| {
+                let wanted = value(distance, parameters);
+                let found = (points.get(*end))
+                    .map_or(f64::NAN, |p| math::hypot(at[0] - p[0], at[1] - p[1]));
+                !((found - wanted).abs() <= OPEN * found.max(wanted))
+            })
+    })?;
+    Some(
+        Diagnostic::error(
+            "triangle-open",
+            format!("link `{}`: a triangle cannot close", link.name),
+        )
+        .at(open.0.span.clone(), "with the parameters as they are set")
+        .help("each side of a triangle is shorter than the other two together"),
+    )
+}
