@@ -1,10 +1,12 @@
 //! Kempe's model file and what it means.
 
+pub mod build;
 mod codes;
 mod diagnostic;
 mod document;
 mod edit;
 mod geometry;
+mod item;
 mod law;
 mod load;
 mod measure;
@@ -12,9 +14,12 @@ mod mend;
 mod model;
 mod read;
 mod registry;
+mod same;
 mod schema;
 mod spline;
 mod starter;
+mod tables;
+mod write;
 
 pub use codes::{CODES, Code};
 pub use diagnostic::{Diagnostic, Label, Severity, Source};
@@ -28,3 +33,5 @@ pub use read::{Checked, MAX_FILE_BYTES};
 pub use registry::{MeasureEntry, Registry};
 pub use schema::schema;
 pub use starter::{STARTERS, Starter, starter};
+pub use tables::Tables;
+pub use write::ModelFile;

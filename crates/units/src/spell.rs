@@ -4,7 +4,7 @@
 //! `2*crank + 0.005`. What they measure follows from what the whole measures and from the leaves. Where it does not follow,
 //! as in a product of two constants, any choice reads back to the same numbers, and the plainest is taken.
 
-use crate::syntax::{BinaryOp, Kind, Node, Quantity};
+use crate::syntax::{BinaryOp, CONSTANTS, Kind, Node, Quantity};
 use crate::unit::format_number;
 use crate::{Builtin, Dimension, Expr, Unit};
 
@@ -66,7 +66,7 @@ impl<L> Expr<L> {
     /// The tree of a text that [`check`](crate::check()) reads as this expression, measuring `dimension`.
     ///
     /// Every constant reads back to the same bits: it is written in a preferred unit where that has a number for it, else in
-    /// SI. So the expression that is read evaluates to the same bits as this one on any number; a negative constant is read
+    /// another. So the expression that is read evaluates to the same bits as this one on any number; a negative constant is read
     /// as the negation of a positive one.
     ///
     /// # Example
@@ -280,7 +280,11 @@ fn signed(value: f64, write: impl FnOnce(f64) -> Node) -> Node {
 fn constant(si: f64, dimension: Dimension, preferred: &[Unit]) -> Node {
     signed(si, |si| {
         if dimension == Dimension::NONE {
-            return number(si);
+            let named = CONSTANTS.iter().find(|(_, value)| *value == si);
+            return named.map_or_else(
+                || number(si),
+                |(name, _)| Node::new(Kind::Name((*name).to_owned()), 0..0),
+            );
         }
         match Unit::exact(si, dimension, preferred) {
             Some((value, unit)) => quantity(value, unit),
@@ -341,12 +345,14 @@ impl Unit {
         (1..=17).filter_map(rounded).chain(neighbours).find(reads)
     }
 
-    /// The number and unit of `dimension` that are exactly `si`: a preferred unit where that has such a number of no more
-    /// digits than SI, else one of SI. `None` where no unit has the dimension.
+    /// The number and unit of `dimension` that are exactly `si`: in a preferred unit where that has such a number of no more
+    /// digits, else in SI or in units of mm and deg. `None` where no unit has the dimension.
     pub fn exact(si: f64, dimension: Dimension, preferred: &[Self]) -> Option<(f64, Self)> {
+        let drawn = ["mm", "deg"].map(|unit| Self::parse(unit).unwrap_or_else(|_| Self::one()));
         let candidates = [
             Some(Self::for_display(dimension, preferred)),
             Some(Self::for_display(dimension, &[])),
+            Some(Self::for_display(dimension, &drawn)),
             Self::of_bases(dimension),
         ];
         let digits = |x: f64| {
