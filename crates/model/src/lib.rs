@@ -12,6 +12,9 @@ mod load;
 mod measure;
 mod mend;
 mod model;
+mod outline;
+mod part;
+mod path;
 mod read;
 mod registry;
 mod same;
@@ -23,12 +26,17 @@ mod write;
 
 pub use codes::{CODES, Code};
 pub use diagnostic::{Diagnostic, Label, Severity, Source};
-pub use edit::set_value;
+pub use edit::{
+    DeleteError, Deletion, EditError, TextEdit, add_entry, apply, delete, delete_with_dependants,
+    rename, set_value, value_edit,
+};
 pub use geometry::value;
 pub use law::SAME_END;
 pub use load::*;
 pub use measure::{ForceMeasure, JointRef, Leaf, Measure, PoseMeasure, Statistic};
 pub use model::*;
+pub use part::{Naming, Part, PartKind, namings, parts};
+pub use path::{PathAt, PathPart, PathPlaces, path_at, places_of};
 pub use read::{Checked, MAX_FILE_BYTES};
 pub use registry::{MeasureEntry, Registry};
 pub use schema::schema;

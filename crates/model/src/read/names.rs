@@ -171,7 +171,7 @@ pub(crate) fn long_name(cx: &mut Context<'_>, name: &str, span: &crate::model::S
 }
 
 /// Names the language keeps for itself.
-const RESERVED: &[&str] = &[
+pub(crate) const RESERVED: &[&str] = &[
     "time",
     "pi",
     "kinetic_energy",
@@ -183,7 +183,7 @@ const RESERVED: &[&str] = &[
 ];
 
 /// Columns that every table has, or every table of a circuit or of forces: what is a column itself is not called so.
-const COLUMNS: &[&str] = &[
+pub(crate) const COLUMNS: &[&str] = &[
     "arc",
     "closure",
     "smallest_singular_value",
