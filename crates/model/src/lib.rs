@@ -2,6 +2,7 @@
 
 pub mod build;
 mod codes;
+mod complete;
 mod diagnostic;
 mod document;
 mod edit;
@@ -14,6 +15,7 @@ mod mend;
 mod model;
 mod outline;
 mod part;
+mod partial;
 mod path;
 mod read;
 mod registry;
@@ -25,6 +27,7 @@ mod tables;
 mod write;
 
 pub use codes::{CODES, Code};
+pub use complete::{Completion, CompletionKind, complete};
 pub use diagnostic::{Diagnostic, Label, Severity, Source};
 pub use edit::{
     DeleteError, Deletion, EditError, TextEdit, add_entry, apply, delete, delete_with_dependants,
@@ -36,6 +39,7 @@ pub use load::*;
 pub use measure::{ForceMeasure, JointRef, Leaf, Measure, PoseMeasure, Statistic};
 pub use model::*;
 pub use part::{Naming, Part, PartKind, namings, parts};
+pub use partial::Partial;
 pub use path::{PathAt, PathPart, PathPlaces, path_at, places_of};
 pub use read::{Checked, MAX_FILE_BYTES};
 pub use registry::{MeasureEntry, Registry};

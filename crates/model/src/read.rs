@@ -7,7 +7,7 @@ pub(crate) mod context;
 mod csv;
 pub(crate) mod drives;
 mod entry;
-mod force_names;
+pub(crate) mod force_names;
 pub(crate) mod friction;
 pub(crate) mod joints;
 pub(crate) mod law_table;
