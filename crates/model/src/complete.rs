@@ -3,7 +3,7 @@
 mod keys;
 mod values;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::edit::TextEdit;
 use crate::model::Span;
@@ -202,28 +202,36 @@ impl Known {
     fn new(text: &str, outline: &Outline) -> Self {
         let namings = Namings::new(text, outline);
         let mut parts: Vec<(Part, String)> = Vec::new();
+        let mut known: BTreeSet<&Part> = BTreeSet::new();
         let mut points: BTreeMap<String, Vec<String>> = BTreeMap::new();
+        let mut links: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+        let values: BTreeMap<&[String], &ValueMark> = outline
+            .values
+            .iter()
+            .map(|v| (v.path.as_slice(), v))
+            .collect();
         for naming in namings.all.iter().filter(|n| n.declares) {
+            let name = naming.part.name.as_str();
             if let (PartKind::Point, Some(link)) = (naming.part.kind, naming.path.get(1)) {
-                let of_link = points.entry(link.clone()).or_default();
-                if !of_link.contains(&naming.part.name) {
-                    of_link.push(naming.part.name.clone());
+                let on = links.entry(name).or_default();
+                if !on.contains(&link.as_str()) {
+                    on.push(link);
+                    points
+                        .entry(link.clone())
+                        .or_default()
+                        .push(name.to_owned());
                 }
             }
-            if !parts.iter().any(|(known, _)| *known == naming.part) {
-                let written = outline.value(&naming.path);
-                let written = written.and_then(|v| text.get(v.span.clone())).unwrap_or("");
-                let doc = match naming.part.kind {
-                    PartKind::Point => String::new(),
-                    kind => first_line(kind.word(), written),
-                };
+            if known.insert(&naming.part) {
+                let written = values.get(naming.path.as_slice());
+                let written = written.and_then(|v| text.get(v.span.clone()));
+                let doc = first_line(naming.part.kind.word(), written.unwrap_or(""));
                 parts.push((naming.part.clone(), doc));
             }
         }
         for (part, doc) in parts.iter_mut().filter(|(p, _)| p.kind == PartKind::Point) {
-            let links = points.iter().filter(|(_, of)| of.contains(&part.name));
-            let links: Vec<&str> = links.map(|(link, _)| link.as_str()).collect();
-            *doc = format!("point of {}", links.join(", "));
+            let on = links.get(part.name.as_str()).cloned().unwrap_or_default();
+            *doc = format!("point of {}", on.join(", "));
         }
         Self { parts, points }
     }

@@ -500,6 +500,7 @@ pub struct NamedMeasure {
 
 /// A study of a kind that the language keeps for later versions.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct AnnouncedStudy {
     /// Name.
     pub name: String,

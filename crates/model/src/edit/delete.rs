@@ -1,6 +1,6 @@
 //! Deleting a part, alone or with all that refers to it.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
 use crate::diagnostic::Diagnostic;
@@ -70,10 +70,9 @@ pub fn delete(text: &str, part: &Part) -> Result<Vec<TextEdit>, DeleteError> {
     let mut going = Going::new(&outline, &namings);
     going.part(part).map_err(DeleteError::Unknown)?;
     let users = going.users();
-    if users.is_empty() {
-        Ok(going.deletion(text).edits)
-    } else {
-        Err(DeleteError::InUse(users))
+    match users.is_empty() {
+        true => Ok(going.deletion(text).edits),
+        false => Err(DeleteError::InUse(users)),
     }
 }
 
@@ -102,15 +101,14 @@ pub fn delete_with_dependants(text: &str, part: &Part) -> Result<Deletion, Diagn
     let namings = Namings::new(text, &outline);
     let mut going = Going::new(&outline, &namings);
     going.part(part)?;
-    loop {
-        let users = going.users();
-        if users.is_empty() {
-            return Ok(going.deletion(text));
-        }
-        for user in users {
-            going.user(&user);
+    while let Some(part) = going.waiting.pop() {
+        for i in going.places(&part) {
+            if let Some(user) = namings.all.get(i).filter(|n| !going.goes(&n.path)) {
+                going.user(user);
+            }
         }
     }
+    Ok(going.deletion(text))
 }
 
 /// What goes so far.
@@ -119,16 +117,49 @@ struct Going<'o> {
     namings: &'o Namings,
     paths: BTreeSet<Vec<String>>,
     parts: BTreeSet<Part>,
+    /// Parts that go and whose users have not been looked at.
+    waiting: Vec<Part>,
+    /// Where each part is named.
+    places: BTreeMap<&'o Part, Vec<usize>>,
+    /// The namings that declare, by their path; those that go are taken out.
+    declaring: BTreeMap<&'o [String], Vec<usize>>,
+    /// How often each part is still declared.
+    declared: BTreeMap<&'o Part, usize>,
+    /// How many elements each list of a study still has.
+    elements: BTreeMap<&'o [String], usize>,
 }
 
 impl<'o> Going<'o> {
     fn new(outline: &'o Outline, namings: &'o Namings) -> Self {
-        Self {
+        let mut going = Self {
             outline,
             namings,
             paths: BTreeSet::new(),
             parts: BTreeSet::new(),
+            waiting: Vec::new(),
+            places: BTreeMap::new(),
+            declaring: BTreeMap::new(),
+            declared: BTreeMap::new(),
+            elements: BTreeMap::new(),
+        };
+        for (i, naming) in namings.all.iter().enumerate() {
+            going.places.entry(&naming.part).or_default().push(i);
+            if naming.declares {
+                going.declaring.entry(&naming.path).or_default().push(i);
+                *going.declared.entry(&naming.part).or_default() += 1;
+            }
         }
+        for value in outline.values.iter().filter(|v| v.path.len() == ELEMENT) {
+            if place_of(&value.path).0 == "studies" {
+                let list = value.path.get(..ELEMENT - 1).unwrap_or(&[]);
+                *going.elements.entry(list).or_default() += 1;
+            }
+        }
+        going
+    }
+
+    fn places(&self, part: &Part) -> Vec<usize> {
+        self.places.get(part).cloned().unwrap_or_default()
     }
 
     /// Deletes a part: everything that declares it.
@@ -136,31 +167,35 @@ impl<'o> Going<'o> {
         if !self.namings.declared(part) {
             return Err(unknown(self.namings, part));
         }
-        self.parts.insert(part.clone());
-        let declaring = self.namings.of(part).filter(|n| n.declares);
-        self.paths.extend(declaring.map(|n| n.path.clone()));
-        self.lost();
+        for naming in self.namings.of(part).filter(|n| n.declares) {
+            self.path(naming.path.clone());
+        }
         Ok(())
     }
 
     fn goes(&self, path: &[String]) -> bool {
-        (1..=path.len()).any(|n| path.get(..n).is_some_and(|p| self.paths.contains(p)))
+        within(&self.paths, path)
     }
 
-    /// Enters the parts all of whose declarations go.
-    fn lost(&mut self) {
-        let declared = self.namings.all.iter().filter(|n| n.declares);
-        let stay: BTreeSet<&Part> = declared
-            .clone()
-            .filter(|n| !self.goes(&n.path))
-            .map(|n| &n.part)
-            .collect();
-        let lost: Vec<Part> = declared
-            .map(|n| &n.part)
-            .filter(|p| !stay.contains(p))
-            .cloned()
-            .collect();
-        self.parts.extend(lost);
+    /// Deletes what stands at a path, and with it the parts that nothing else declares.
+    fn path(&mut self, path: Vec<String>) {
+        let under = self.declaring.range(path.as_slice()..);
+        let under = under.take_while(|(known, _)| known.starts_with(&path));
+        let keys: Vec<&[String]> = under.map(|(known, _)| *known).collect();
+        for key in keys {
+            for i in self.declaring.remove(key).unwrap_or_default() {
+                let Some(naming) = self.namings.all.get(i) else {
+                    continue;
+                };
+                let left = self.declared.entry(&naming.part).or_default();
+                *left = left.saturating_sub(1);
+                if *left == 0 {
+                    self.parts.insert(naming.part.clone());
+                    self.waiting.push(naming.part.clone());
+                }
+            }
+        }
+        self.paths.insert(path);
     }
 
     /// Where what stays names what goes.
@@ -172,36 +207,26 @@ impl<'o> Going<'o> {
     }
 
     /// Deletes what names something that goes.
-    fn user(&mut self, user: &Naming) {
+    fn user(&mut self, user: &'o Naming) {
         let (section, _) = place_of(&user.path);
-        let within = |n: usize| {
-            user.path
-                .get(..n.min(user.path.len()))
-                .unwrap_or(&[])
-                .to_vec()
-        };
+        let upto = |n: usize| user.path.get(..n.min(user.path.len())).unwrap_or(&[]);
         let list = user.path.get(2).map_or("", String::as_str);
-        let path = match section {
-            "links" if user.path.len() > 2 => within(3),
-            "studies" if matches!(list, "columns" | "plot" | "on") && user.path.len() > 3 => {
+        let depth = match (section, list) {
+            ("links", _) if user.path.len() > 2 => 3,
+            ("studies", "columns" | "plot" | "on") if user.path.len() >= ELEMENT => {
+                let left = self.elements.entry(upto(ELEMENT - 1)).or_default();
+                *left = left.saturating_sub(1);
                 // the last of a list takes the list with it, and a study of no link is none
-                let stays = |i: &ValueMark| {
-                    i.path.len() == 4 && i.path.starts_with(&within(3)) && !self.goes(&i.path)
-                };
-                match (
-                    self.outline.values.iter().filter(|v| stays(v)).count(),
-                    list,
-                ) {
-                    (0 | 1, "on") => within(2),
-                    (0 | 1, _) => within(3),
-                    _ => within(4),
+                match (*left, list) {
+                    (0, "on") => 2,
+                    (0, _) => 3,
+                    _ => ELEMENT,
                 }
             }
-            "studies" if matches!(list, "columns" | "plot") => within(3),
-            _ => within(2),
+            ("studies", "columns" | "plot") => 3,
+            _ => 2,
         };
-        self.paths.insert(path);
-        self.lost();
+        self.path(upto(depth).to_vec());
     }
 
     fn deletion(&self, text: &str) -> Deletion {
@@ -209,46 +234,45 @@ impl<'o> Going<'o> {
             let above = path.len().saturating_sub(1);
             !path.get(..above).is_some_and(|above| self.goes(above))
         };
-        let paths: Vec<Vec<String>> = self
-            .paths
-            .iter()
-            .filter(|p| outermost(p))
-            .cloned()
-            .collect();
+        let paths = self.paths.iter().filter(|p| outermost(p)).cloned();
+        let paths: BTreeSet<Vec<String>> = paths.collect();
         Deletion {
             edits: removals(text, self.outline, &paths),
-            paths,
+            paths: paths.into_iter().collect(),
             parts: self.parts.iter().cloned().collect(),
         }
     }
 }
 
+/// Parts in the path of an element of a study's list: `studies.turn.columns.0`.
+const ELEMENT: usize = 4;
+
+/// Whether a path or one above it is among the paths.
+fn within(paths: &BTreeSet<Vec<String>>, path: &[String]) -> bool {
+    (1..=path.len()).any(|n| path.get(..n).is_some_and(|p| paths.contains(p)))
+}
+
 /// The edits that take out what stands at the paths: whole lines of entries and sections, and what stands between brackets
 /// with one comma.
-fn removals(text: &str, outline: &Outline, paths: &[Vec<String>]) -> Vec<TextEdit> {
-    let goes = |path: &[String]| paths.iter().any(|p| path.starts_with(p));
-    let mut lines: Vec<Span> = Vec::new();
+fn removals(text: &str, outline: &Outline, paths: &BTreeSet<Vec<String>>) -> Vec<TextEdit> {
+    let goes = |path: &[String]| within(paths, path);
     let headers = outline.headers.iter().filter(|h| goes(&h.path));
-    lines.extend(headers.map(|h| h.span.clone()));
-    let mut taken: Vec<usize> = Vec::new();
+    let mut spans: Vec<Span> = headers.map(|h| h.span.clone()).collect();
     for (index, span) in &outline.statements {
         let statement = outline.values.get(*index);
-        if statement.is_some_and(|v| goes(&v.path)) {
-            taken.push(*index);
-            if !lines
-                .iter()
-                .any(|l| l.start <= span.start && span.end <= l.end)
-            {
-                lines.push(span.clone());
-            }
+        let before = (outline.headers).partition_point(|h| h.span.start < span.start);
+        let header = before.checked_sub(1).and_then(|i| outline.headers.get(i));
+        // what stands under a header that goes has gone
+        let gone = header.is_some_and(|h| goes(&h.path));
+        if !gone && statement.is_some_and(|v| goes(&v.path)) {
+            spans.push(span.clone());
         }
     }
-    let mut spans = lines.clone();
-    for holder in &outline.values {
-        if !matches!(holder.shape, Shape::Array | Shape::Table) || goes(&holder.path) {
-            continue;
+    for (i, holder) in outline.values.iter().enumerate() {
+        let held = outline.values.get(i + 1..).unwrap_or(&[]);
+        if matches!(holder.shape, Shape::Array | Shape::Table) && !goes(&holder.path) {
+            spans.extend(between_commas(text, holder, held, &goes));
         }
-        spans.extend(between_commas(text, outline, holder, &goes));
     }
     spans.sort_by_key(|s| s.start);
     spans
@@ -257,21 +281,17 @@ fn removals(text: &str, outline: &Outline, paths: &[Vec<String>]) -> Vec<TextEdi
         .collect()
 }
 
-/// The places between the brackets of `holder` that go, each with a comma.
+/// The places between the brackets of `holder` that go, each with a comma; `behind` are the values behind the holder.
 fn between_commas(
     text: &str,
-    outline: &Outline,
     holder: &ValueMark,
+    behind: &[ValueMark],
     goes: &dyn Fn(&[String]) -> bool,
 ) -> Vec<Span> {
-    let inside = |v: &&ValueMark| {
-        holder.span.start < v.whole.start
-            && v.whole.end <= holder.span.end
-            && v.path.len() > holder.path.len()
-    };
+    let inside = behind.iter().take_while(|v| v.whole.end <= holder.span.end);
     // those that no other holds
     let mut held: Vec<&ValueMark> = Vec::new();
-    for value in outline.values.iter().filter(inside) {
+    for value in inside {
         if held
             .last()
             .is_none_or(|last| last.whole.end <= value.whole.start)
@@ -281,25 +301,23 @@ fn between_commas(
     }
     let mut spans = Vec::new();
     let mut i = 0;
-    while i < held.len() {
-        if !goes(&held[i].path) {
+    while let Some(first) = held.get(i) {
+        let run = held.iter().skip(i).take_while(|v| goes(&v.path)).count();
+        let Some(last) = held.get((i + run).wrapping_sub(1)).filter(|_| run > 0) else {
             i += 1;
             continue;
-        }
-        let run = held[i..].iter().take_while(|v| goes(&v.path)).count();
-        let (first, last) = (&held[i].whole, &held[i + run - 1].whole);
-        spans.push(match (i.checked_sub(1), held.get(i + run)) {
-            (Some(before), _) => held[before].whole.end..last.end,
-            (None, Some(after)) => first.start..after.whole.start,
+        };
+        let (start, end) = (first.whole.start, last.whole.end);
+        let before = i.checked_sub(1).and_then(|i| held.get(i));
+        spans.push(match (before, held.get(i + run)) {
+            (Some(before), _) => before.whole.end..end,
+            (None, Some(after)) => start..after.whole.start,
             (None, None) => {
                 // a comma behind the last one goes too
-                let rest = text.get(last.end..holder.span.end).unwrap_or("");
+                let rest = text.get(end..holder.span.end).unwrap_or("");
                 let comma = rest.trim_start().starts_with(',');
-                let end = match comma {
-                    true => last.end + rest.find(',').unwrap_or(0) + 1,
-                    false => last.end,
-                };
-                first.start..end
+                let comma = rest.find(',').filter(|_| comma);
+                start..comma.map_or(end, |i| end + i + 1)
             }
         });
         i += run;

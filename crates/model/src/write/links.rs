@@ -18,17 +18,28 @@ impl Writer<'_> {
         let mut entries = Vec::new();
         let order = self.order(id, link);
         let bar = self.bar(link, &order);
+        let along = along(link, &order);
+        // the distance that numbers the along point, where one does
+        let mut numbering = None;
         if let Some((a, b, length)) = bar {
-            let key = format!("{}-{}", self.point(a), self.point(b));
-            entries.push((key, self.scalar(length, Dimension::LENGTH)));
+            entries.push(self.distance(a, b, length));
         }
         let laid = |p: &LinkPoint| bar.is_some_and(|(a, b, _)| p.point == a || p.point == b);
         for point in order.iter().filter(|p| !laid(p)) {
             let item = match &point.place {
                 Place::Triangle { from, to, side, .. } => self.side(link, (*from, *to), *side),
+                _ if along.is_some_and(|(b, _)| b == point.point) => {
+                    numbering = numbered_by(link, &order, point.point);
+                    let distance = numbering.map(|(end, d)| self.distance(point.point, end, d));
+                    entries.extend(distance);
+                    continue;
+                }
                 place => self.place(place),
             };
             entries.push((self.point(point.point).to_owned(), item));
+        }
+        if let (Some((b, length)), Some(a)) = (along, link.points.first()) {
+            entries.push(self.distance(a.point, b, length));
         }
         for point in &link.points {
             let Place::Triangle {
@@ -42,8 +53,12 @@ impl Writer<'_> {
                 continue;
             };
             for (end, distance) in [(from, from_distance), (to, to_distance)] {
-                let key = format!("{}-{}", self.end(link, *end), self.point(point.point));
-                entries.push((key, self.scalar(distance, Dimension::LENGTH)));
+                let end = link.points.get(*end).map_or(point.point, |p| p.point);
+                let told = (numbering.zip(along))
+                    .is_some_and(|((of, _), (b, _))| (of, b) == (point.point, end));
+                if !told {
+                    entries.push(self.distance(end, point.point, distance));
+                }
             }
         }
         if let Some(inertia) = &link.inertia {
@@ -98,6 +113,11 @@ impl Writer<'_> {
             .then_some((a.point, b.point, length))
     }
 
+    fn distance(&self, a: PointId, b: PointId, length: &Scalar) -> (String, Item) {
+        let key = format!("{}-{}", self.point(a), self.point(b));
+        (key, self.scalar(length, Dimension::LENGTH))
+    }
+
     fn end(&self, link: &Link, index: usize) -> &str {
         link.points.get(index).map_or("?", |p| self.point(p.point))
     }
@@ -136,6 +156,60 @@ impl Writer<'_> {
         };
         entries.push(("center".to_owned(), center));
     }
+}
+
+/// The second point of a link and its distance from the first, along the x axis, where the second has the smaller number:
+/// only a distance places a point behind one whose key comes later.
+fn along<'l>(link: &'l Link, order: &[&LinkPoint]) -> Option<(PointId, &'l Scalar)> {
+    let placed = |p: &&LinkPoint| !matches!(p.place, Place::Triangle { .. });
+    let keys = order.iter().copied().filter(placed).map(|p| p.point);
+    let in_order = keys.eq(link.points.iter().filter(placed).map(|p| p.point));
+    let [_, b, ..] = link.points.as_slice() else {
+        return None;
+    };
+    match &b.place {
+        Place::Cartesian {
+            x: Expr::Add(_, length),
+            ..
+        } if !in_order => Some((b.point, length)),
+        _ => None,
+    }
+}
+
+/// A corner with a distance to the point `b`, so that the key of that distance gives `b` its number and no corner another
+/// place: the corner has its number already or gets it here, and it is the first over its line.
+fn numbered_by<'l>(
+    link: &'l Link,
+    order: &[&LinkPoint],
+    b: PointId,
+) -> Option<(PointId, &'l Scalar)> {
+    let here = order.iter().position(|p| p.point == b)?;
+    let mut first_over_both = true;
+    for point in &link.points {
+        let Place::Triangle {
+            from,
+            to,
+            from_distance,
+            to_distance,
+            ..
+        } = &point.place
+        else {
+            continue;
+        };
+        // the point `b` is the link's second
+        let distance = match (*from, *to) {
+            (1, _) => from_distance,
+            (_, 1) => to_distance,
+            _ => continue,
+        };
+        let over_both = from + to == 1;
+        let first = !over_both || std::mem::take(&mut first_over_both);
+        let at = order.iter().position(|p| p.point == point.point)?;
+        if first && at <= here + 1 {
+            return Some((point.point, distance));
+        }
+    }
+    None
 }
 
 pub(super) fn side_word(side: Side) -> &'static str {
