@@ -275,7 +275,7 @@ impl Finder<'_> {
                 self.push(part, within(0, name), &key.path, here(entry));
             }
             [section, _, name] if section == "links" => {
-                let single = is_point_name(name).then(|| (0, name.as_str()));
+                let single = is_point_name(name).then_some((0, name.as_str()));
                 let pair = pair_of(name).map(|(a, b)| {
                     let dash = name.find('-').unwrap_or(0);
                     let behind = name.get(dash + 1..).unwrap_or("");

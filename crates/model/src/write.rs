@@ -59,11 +59,13 @@ impl Model {
     /// ```
     pub fn to_toml(&self) -> ModelFile {
         let mut writer = Writer::new(self);
-        let mut file = File::default();
-        file.head = vec![
-            ("title".to_owned(), Item::text(&self.title)),
-            ("units".to_owned(), units(&self.units)),
-        ];
+        let mut file = File {
+            head: vec![
+                ("title".to_owned(), Item::text(&self.title)),
+                ("units".to_owned(), units(&self.units)),
+            ],
+            ..File::default()
+        };
         writer.gravity(&mut file);
         let parameters = self.parameters.iter();
         *file.section("parameters") = parameters

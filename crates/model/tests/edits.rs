@@ -195,7 +195,7 @@ plot = [["one", "x(C)"], "path(C)", "hodograph(C, c)"]
     let edits = rename(text, &Part::new(PartKind::Point, "C"), "É").unwrap();
     let edited = apply(text, &edits).unwrap();
     assert!(
-        edited.contains("\"B-É\" = 5") && edited.contains("\nP-C") == false,
+        edited.contains("\"B-É\" = 5") && !edited.contains("\nP-C"),
         "{edited}"
     );
     assert!(

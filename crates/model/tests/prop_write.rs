@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 use kempe_model::build::{Entry, ModelBuilder, Value, link, study, turns};
-use kempe_model::{Checked, Model};
+use kempe_model::{Checked, Model, PathPart, path_at, set_value};
 use proptest::prelude::*;
 
 /// A positive length as somebody may write it.
@@ -158,8 +158,73 @@ fn model() -> impl Strategy<Value = ModelBuilder> {
     )
 }
 
+/// Paths to all values of a text, with their text.
+fn values(text: &str) -> Vec<(Vec<String>, String)> {
+    let mut found: Vec<(Vec<String>, String)> = Vec::new();
+    for (at, _) in text.char_indices() {
+        if let Some(here) = path_at(text, at)
+            && here.part == PathPart::Value
+            && found.last().is_none_or(|(path, _)| *path != here.path)
+        {
+            found.push((here.path, text[here.span].to_owned()));
+        }
+    }
+    found
+}
+
+fn models_of_the_tests() -> Vec<(String, Vec<(Vec<String>, String)>)> {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/good");
+    let names = [
+        "crank-rocker",
+        "door-lock",
+        "forces",
+        "joints",
+        "tractor-hitch",
+    ];
+    let read = |name| std::fs::read_to_string(format!("{folder}/{name}.toml")).unwrap();
+    let texts = names.map(read);
+    texts
+        .into_iter()
+        .map(|text| (text.clone(), values(&text)))
+        .collect()
+}
+
+/// Files of the tests, each with values that stand elsewhere in it.
+fn changed() -> impl Strategy<Value = String> {
+    let models = std::sync::Arc::new(models_of_the_tests());
+    let picks = proptest::collection::vec((0usize..1000, 0usize..1000), 1..4);
+    (0..models.len(), picks).prop_map(move |(i, picks)| {
+        let (text, values) = &models[i];
+        picks.into_iter().fold(text.clone(), |text, (to, from)| {
+            let (path, _) = &values[to % values.len()];
+            let (_, new) = &values[from % values.len()];
+            let path: Vec<&str> = path.iter().map(String::as_str).collect();
+            set_value(&text, &path, new).unwrap_or(text)
+        })
+    })
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(256))]
+
+    #[test]
+    fn a_changed_file_that_reads_is_written_so_that_it_reads_back(text in changed()) {
+        let mut tables = |name: &str| match name {
+            "measured.csv" => Ok("t [s];angle\n0;10\n0.5;20\n1;25\n2;20\n".to_owned()),
+            "card.csv" => Ok("p [bar],phi [deg]\n1,0\n50,360\n2,400\n1,719\n".to_owned()),
+            "plain.csv" => Ok("time,force\n0,10\n1,20\n".to_owned()),
+            _ => Err("no such file".to_owned()),
+        };
+        if let Ok(Checked { model, .. }) = Model::from_toml(&text, "", &mut tables) {
+            let file = model.to_toml();
+            let again = Model::from_toml(&file.toml, "", &mut file.tables.files());
+            let again = again.map_err(|found| {
+                let told: String = found.iter().map(|d| d.render_plain("", &file.toml)).collect();
+                TestCaseError::fail(told)
+            })?;
+            prop_assert!(again.model.same_as(&model), "{}\n{}", text, file.toml);
+        }
+    }
 
     #[test]
     fn built_written_and_read_it_is_the_same(builder in model()) {
