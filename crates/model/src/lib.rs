@@ -24,15 +24,15 @@ mod schema;
 mod spline;
 mod starter;
 mod tables;
+mod text_edit;
 mod write;
 
 pub use codes::{CODES, Code};
 pub use complete::{Completion, CompletionKind, complete};
 pub use diagnostic::{Diagnostic, Label, Severity, Source};
-pub use edit::{
-    DeleteError, Deletion, EditError, TextEdit, add_entry, apply, delete, delete_with_dependants,
-    rename, set_value, value_edit,
-};
+pub use edit::delete::{DeleteError, Deletion, delete, delete_with_dependants};
+pub use edit::rename::rename;
+pub use edit::{add_entry, set_value, value_edit};
 pub use geometry::value;
 pub use law::SAME_END;
 pub use load::*;
@@ -46,4 +46,5 @@ pub use registry::{MeasureEntry, Registry};
 pub use schema::schema;
 pub use starter::{STARTERS, Starter, starter};
 pub use tables::Tables;
+pub use text_edit::{EditError, TextEdit, apply};
 pub use write::ModelFile;

@@ -158,9 +158,12 @@ fn model() -> impl Strategy<Value = ModelBuilder> {
     )
 }
 
-/// Paths to all values of a text, with their text.
-fn values(text: &str) -> Vec<(Vec<String>, String)> {
-    let mut found: Vec<(Vec<String>, String)> = Vec::new();
+/// A value by its path, and its text.
+type Written = (Vec<String>, String);
+
+/// All values of a text.
+fn values(text: &str) -> Vec<Written> {
+    let mut found: Vec<Written> = Vec::new();
     for (at, _) in text.char_indices() {
         if let Some(here) = path_at(text, at)
             && here.part == PathPart::Value
@@ -172,7 +175,7 @@ fn values(text: &str) -> Vec<(Vec<String>, String)> {
     found
 }
 
-fn models_of_the_tests() -> Vec<(String, Vec<(Vec<String>, String)>)> {
+fn models_of_the_tests() -> Vec<(String, Vec<Written>)> {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/good");
     let names = [
         "crank-rocker",

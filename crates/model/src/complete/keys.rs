@@ -1,6 +1,6 @@
 //! Sections and keys that may stand at a place.
 
-use crate::complete::{Completion, CompletionKind, Cursor};
+use crate::complete::cursor::{Completion, CompletionKind, Cursor};
 use crate::outline::ValueMark;
 use crate::part::{PartKind, place_of};
 use crate::read::{

@@ -2,7 +2,7 @@
 
 use kempe_units::{Builtin, UNITS};
 
-use crate::complete::{Completion, CompletionKind, Cursor};
+use crate::complete::cursor::{Completion, CompletionKind, Cursor};
 use crate::model::RiseLaw;
 use crate::outline::{ValueMark, string};
 use crate::part::{PartKind, place_of};

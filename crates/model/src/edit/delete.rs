@@ -4,11 +4,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
 use crate::diagnostic::Diagnostic;
-use crate::edit::TextEdit;
 use crate::edit::rename::unknown;
 use crate::model::Span;
 use crate::outline::{Outline, Shape, ValueMark};
 use crate::part::{Naming, Namings, Part, place_of};
+use crate::text_edit::TextEdit;
 
 /// Why a part is not deleted.
 #[derive(Clone, Debug, PartialEq)]

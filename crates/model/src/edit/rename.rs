@@ -1,12 +1,12 @@
 //! Renaming a part wherever a text names it.
 
 use crate::diagnostic::Diagnostic;
-use crate::edit::{TextEdit, apply};
 use crate::item::{is_bare, quoted};
 use crate::outline::Outline;
 use crate::part::{Naming, Namings, Part, PartKind};
 use crate::read::names::{COLUMNS, MAX_NAME, RESERVED, is_point_name, is_small_name};
 use crate::read::studies::no_file_name;
+use crate::text_edit::{TextEdit, apply};
 
 /// The edits that give a part another name wherever the text names it: its entry, expressions and arguments of measures,
 /// lines and sides, hints, friction, columns and plots of studies.
