@@ -16,6 +16,8 @@ fuzz_target!(|data: &[u8]| {
             for drive in &checked.model.drives {
                 assert!(drive.law.at(drive.law.duration(&values), &values).is_finite());
             }
+            let file = checked.model.to_toml();
+            let _ = Model::from_toml(&file.toml, "written", &mut file.tables.files());
         }
         Err(found) => {
             assert!(!found.is_empty());

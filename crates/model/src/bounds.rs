@@ -11,7 +11,7 @@ use crate::geometry::value;
 use crate::model::{Link, Model, Place, Scalar, Span};
 
 /// A value of the file that depends on parameters, and what it must keep to.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Bound {
     /// The value.
     pub value: Scalar,

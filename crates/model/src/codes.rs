@@ -2,6 +2,7 @@
 
 /// A code with what it means.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[non_exhaustive]
 pub struct Code {
     /// The code, in kebab-case.
     pub code: &'static str,

@@ -96,7 +96,7 @@ impl Text {
         }
     }
 
-    fn new(content: String, span: &Span, source: &str) -> Self {
+    pub fn new(content: String, span: &Span, source: &str) -> Self {
         let raw = source.get(span.clone()).unwrap_or("");
         let quotes = if raw.starts_with("\"\"\"") || raw.starts_with("'''") {
             3

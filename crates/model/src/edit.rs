@@ -1,18 +1,21 @@
-//! Editing one value of a model file while every other byte of it stays.
+//! Editing a model file while every other byte of it stays: edits are places with what stands there afterwards.
+
+pub(crate) mod delete;
+pub(crate) mod rename;
 
 use crate::diagnostic::Diagnostic;
 use crate::document::{self, Node, Table, Value};
+use crate::item::key;
 use crate::model::Span;
+use crate::outline::Outline;
+use crate::text_edit::TextEdit;
 
-/// The text with the value at `path` replaced by `new`, a TOML value such as `20`, `"25 mm"` or `[0, 1]`.
-///
-/// The path goes through tables by key and through arrays by index: `["links", "frame", "D", "0"]`. Comments, order, line ends and blanks stay
-/// as they are. A path whose last part is not there yet is entered: at the end of its inline table, or as a line behind the last one
-/// of its section.
+/// The text with the value at `path` replaced by `new`, a TOML value such as `20`, `"25 mm"` or `[0, 1]`: what
+/// [`value_edit`] gives, applied.
 ///
 /// # Errors
 ///
-/// `toml-syntax` when the text or the new value is not TOML, `unknown-key` when the path leads nowhere.
+/// Those of [`value_edit`].
 ///
 /// # Example
 ///
@@ -22,24 +25,24 @@ use crate::model::Span;
 /// assert_eq!(edited, "[parameters]\na = \"25 mm\" # the crank\n");
 /// ```
 pub fn set_value(text: &str, path: &[&str], new: &str) -> Result<String, Diagnostic> {
-    let new = new.trim();
-    if let Err(error) = toml::de::DeValue::parse(new) {
-        return Err(Diagnostic::error(
-            "toml-syntax",
-            format!("`{new}` is not a TOML value: {}", error.message()),
-        )
-        .help("a value is a number, a \"string\", an [array] or a { table }"));
-    }
-    let mut found = Vec::new();
-    let (root, _) = document::parse(text, &mut found);
-    if let Some(first) = found.into_iter().next() {
-        return Err(first);
-    }
+    let edit = value_edit(text, path, new)?;
+    Ok(edited(text, &edit))
+}
+
+/// The edit that replaces the value at `path` by `new`, a TOML value such as `20`, `"25 mm"` or `[0, 1]`.
+///
+/// The path goes through tables by key and through arrays by index: `["links", "frame", "D", "0"]`. Comments, order, line ends and blanks stay
+/// as they are. A path whose last part is not there yet is entered: at the end of its inline table, or as a line behind the last one
+/// of its section.
+///
+/// # Errors
+///
+/// `toml-syntax` when the text or the new value is not TOML, `unknown-key` when the path leads nowhere.
+pub fn value_edit(text: &str, path: &[&str], new: &str) -> Result<TextEdit, Diagnostic> {
+    let new = a_value(new)?;
+    let root = read(text)?;
     let edit = match locate(&root, path) {
-        Ok(Place::Value(span)) => Edit {
-            span,
-            insert: new.to_owned(),
-        },
+        Ok(Place::Value(span)) => TextEdit::new(span, new),
         Ok(Place::Missing { table, header, key }) => entry(text, table, header, key, new),
         Err(part) => {
             return Err(Diagnostic::error(
@@ -49,16 +52,99 @@ pub fn set_value(text: &str, path: &[&str], new: &str) -> Result<String, Diagnos
             .help(format!("there is no `{part}` in the file")));
         }
     };
+    still_toml(text, edit, new)
+}
+
+/// The edit that adds an entry `name = new` to a section, which is made at the end of the text when it is not there.
+///
+/// # Errors
+///
+/// `name-clash` when the section has the name, `toml-syntax` when the text or the new value is not TOML.
+///
+/// # Example
+///
+/// ```
+/// use kempe_model::{add_entry, apply};
+/// let text = "[links]\nframe = { A = [0, 0] }\n";
+/// let edit = add_entry(text, "loads", "hook", "{ force = [0, \"-5 N\"], at = \"A\" }").unwrap();
+/// let edited = apply(text, &[edit]).unwrap();
+/// assert!(edited.ends_with("\n[loads]\nhook = { force = [0, \"-5 N\"], at = \"A\" }\n"));
+/// ```
+pub fn add_entry(text: &str, section: &str, name: &str, new: &str) -> Result<TextEdit, Diagnostic> {
+    let new = a_value(new)?;
+    let root = read(text)?;
+    let known = root.entry(section);
+    if let Some((_, node)) = known
+        && let Value::Table(table) = &node.value
+        && let Some((key, _)) = table.entry(name)
+    {
+        let message = format!("[{section}] has an entry `{name}`");
+        return Err(Diagnostic::error("name-clash", message)
+            .at(key.span.clone(), "")
+            .help("give the new one another name, or change this one"));
+    }
+    let of_its_own = match known {
+        None => false,
+        // one that only `[section.name]` makes has no lines of its own
+        Some((_, node)) => {
+            is_written_inline(text, &node.span)
+                || Outline::new(text)
+                    .headers
+                    .iter()
+                    .any(|h| h.path == [section])
+        }
+    };
+    if of_its_own {
+        return value_edit(text, &[section, name], new);
+    }
+    let line_end = if text.contains("\r\n") { "\r\n" } else { "\n" };
+    let gap = match (text.is_empty(), text.ends_with('\n')) {
+        (true, _) => String::new(),
+        (false, true) => line_end.to_owned(),
+        (false, false) => line_end.repeat(2),
+    };
+    let (section, name) = (key(section), key(name));
+    let entry = format!("{gap}[{section}]{line_end}{name} = {new}{line_end}");
+    still_toml(text, TextEdit::new(text.len()..text.len(), entry), new)
+}
+
+/// The text of a TOML value.
+fn a_value(new: &str) -> Result<&str, Diagnostic> {
+    let new = new.trim();
+    match toml::de::DeValue::parse(new) {
+        Ok(_) => Ok(new),
+        Err(error) => Err(Diagnostic::error(
+            "toml-syntax",
+            format!("`{new}` is not a TOML value: {}", error.message()),
+        )
+        .help("a value is a number, a \"string\", an [array] or a { table }")),
+    }
+}
+
+/// The tree of a text that is TOML.
+fn read(text: &str) -> Result<Table, Diagnostic> {
+    let mut found = Vec::new();
+    let (root, _) = document::parse(text, &mut found);
+    match found.into_iter().next() {
+        Some(first) => Err(first),
+        None => Ok(root),
+    }
+}
+
+fn edited(text: &str, edit: &TextEdit) -> String {
     let (before, after) = (text.get(..edit.span.start), text.get(edit.span.end..));
-    let edited = format!(
+    format!(
         "{}{}{}",
         before.unwrap_or(text),
-        edit.insert,
+        edit.text,
         after.unwrap_or("")
-    );
-    // what was to be one value must not become several
-    match toml::de::DeTable::parse(&edited) {
-        Ok(_) => Ok(edited),
+    )
+}
+
+/// The edit if the text is TOML afterwards: what was to be one value must not become several.
+fn still_toml(text: &str, edit: TextEdit, new: &str) -> Result<TextEdit, Diagnostic> {
+    match toml::de::DeTable::parse(&edited(text, &edit)) {
+        Ok(_) => Ok(edit),
         Err(error) => Err(Diagnostic::error(
             "toml-syntax",
             format!("`{new}` does not fit there: {}", error.message()),
@@ -67,9 +153,9 @@ pub fn set_value(text: &str, path: &[&str], new: &str) -> Result<String, Diagnos
     }
 }
 
-struct Edit {
-    span: Span,
-    insert: String,
+fn is_written_inline(text: &str, span: &Span) -> bool {
+    text.get(span.clone())
+        .is_some_and(|raw| raw.starts_with('{'))
 }
 
 enum Place<'t> {
@@ -139,16 +225,8 @@ fn is_inline(table: &Table, span: &Span) -> bool {
 }
 
 /// The edit that enters a key that is not there yet.
-fn entry(text: &str, table: &Table, header: Span, key: &str, new: &str) -> Edit {
-    let bare = !key.is_empty()
-        && key
-            .chars()
-            .all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-');
-    let key = if bare {
-        key.to_owned()
-    } else {
-        toml::Value::String(key.to_owned()).to_string()
-    };
+fn entry(text: &str, table: &Table, header: Span, key: &str, new: &str) -> TextEdit {
+    let key = crate::item::key(key);
     let line_end = if text.contains("\r\n") { "\r\n" } else { "\n" };
     let written = text.get(header.clone()).unwrap_or("");
     if written.starts_with('{') {
@@ -161,10 +239,7 @@ fn entry(text: &str, table: &Table, header: Span, key: &str, new: &str) -> Edit 
             (false, true) => format!(" {key} = {new}"),
             (false, false) => format!(", {key} = {new}"),
         };
-        return Edit {
-            span: at..at,
-            insert,
-        };
+        return TextEdit::new(at..at, insert);
     }
     // behind the line of the last plain entry, or of the header
     let plain = table.entries.iter().filter(|(_, node)| match &node.value {
@@ -177,18 +252,15 @@ fn entry(text: &str, table: &Table, header: Span, key: &str, new: &str) -> Edit 
         .unwrap_or(header.end);
     let rest = text.get(last..).unwrap_or("");
     match rest.find('\n') {
-        _ if last == 0 => Edit {
-            span: 0..0,
-            insert: format!("{key} = {new}{line_end}"),
-        },
-        Some(i) => Edit {
-            span: last + i + 1..last + i + 1,
-            insert: format!("{key} = {new}{line_end}"),
-        },
-        None => Edit {
-            span: text.len()..text.len(),
-            insert: format!("{line_end}{key} = {new}{line_end}"),
-        },
+        _ if last == 0 => TextEdit::new(0..0, format!("{key} = {new}{line_end}")),
+        Some(i) => TextEdit::new(
+            last + i + 1..last + i + 1,
+            format!("{key} = {new}{line_end}"),
+        ),
+        None => TextEdit::new(
+            text.len()..text.len(),
+            format!("{line_end}{key} = {new}{line_end}"),
+        ),
     }
 }
 

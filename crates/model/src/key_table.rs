@@ -57,6 +57,11 @@ const GOAL_WORDS: T = T::Words(&words(&GOALS));
 const SIDE_WORDS: T = T::Words(&words(&SIDES));
 const LAW_WORDS: T = T::Words(&words(&LAWS));
 
+/// The first word of a choice.
+pub(crate) fn word_of<W: PartialEq>(words: &[(&'static str, W)], of: &W) -> &'static str {
+    words.iter().find(|(_, known)| known == of).map_or("", |(word, _)| word)
+}
+
 type Word = &'static str;
 
 /// A key that must be there.
@@ -160,7 +165,7 @@ pub(crate) static LINKS: Kind = Kind {
     groups: &[&[
         may("mass", not_negative(D::MASS), "\"2 kg\"", "Mass of the link; 0 unless given."),
         may("inertia", not_negative(D::INERTIA), "\"0.02 kg m^2\"", "Moment of inertia about the centre of mass."),
-        may("center", T::AnyOf(&[T::Text, PLACE]), "\"centroid\"", "Centre of mass: \"centroid\", a point of the link, or a place on it."),
+        may("center", T::AnyOf(&[T::Words(&["centroid"]), POINT, PLACE]), "\"centroid\"", "Centre of mass: \"centroid\", a point of the link, or a place on it."),
         may("bar", T::Table(&BAR), "{ width = \"20 mm\", thickness = \"5 mm\", density = \"7850 kg/m^3\" }", "Mass, inertia and centre of a bar along the link's first distance."),
         may("linear_density", positive(D::LINEAR_DENSITY), "\"0.5 kg/m\"", "Mass, inertia and centre of a thin rod along the link's first distance."),
     ]],

@@ -1,12 +1,16 @@
 //! Kempe's model file and what it means.
 
 mod bounds;
+pub mod build;
 mod codes;
+mod complete;
 mod diagnostic;
 mod document;
 mod edit;
 mod geometry;
 mod help;
+mod item;
+mod key_path;
 #[rustfmt::skip]
 mod key_table;
 mod keys;
@@ -15,25 +19,42 @@ mod load;
 mod measure;
 mod mend;
 mod model;
+mod outline;
+mod part;
+mod partial;
+mod path;
 mod read;
 mod registry;
+mod same;
 mod schema;
 mod spline;
 mod starter;
+mod tables;
+mod text_edit;
+mod write;
 
 pub use bounds::{Bound, Keeps};
 pub use codes::{CODES, Code};
+pub use complete::{Completion, CompletionKind, complete};
 pub use diagnostic::{Diagnostic, Label, Severity, Source};
-pub use edit::set_value;
+pub use edit::delete::{DeleteError, Deletion, delete, delete_with_dependants};
+pub use edit::rename::rename;
+pub use edit::{add_entry, set_value, value_edit};
 pub use geometry::value;
 pub use law::SAME_END;
 pub use load::*;
 pub use measure::{ForceMeasure, JointRef, Leaf, Measure, PoseMeasure, Statistic};
 pub use model::*;
+pub use part::{Naming, Part, PartKind, namings, parts};
+pub use partial::Partial;
+pub use path::{PathAt, PathPart, PathPlaces, path_at, places_of};
 pub use read::{Checked, MAX_FILE_BYTES};
 pub use registry::{Argument, MeasureEntry, Nature, Registry};
 pub use schema::schema;
 pub use starter::{STARTERS, Starter, starter};
+pub use tables::Tables;
+pub use text_edit::{EditError, TextEdit, apply};
+pub use write::ModelFile;
 
 /// The words of the model file as data: every section, kind of entry and key, with what it takes, an example and a sentence.
 pub mod language {

@@ -9,7 +9,7 @@ use crate::measure::Measure;
 use crate::model::{DriveId, JointId, LinkId, LinkPointRef, PointId, Scalar, Span};
 
 /// Everything that acts on the mechanism.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Actions {
     /// Acceleration of gravity in the frame, m/s^2. `None`: 9.81 m/s^2 downwards (-y) wherever a mass is given.
     pub gravity: Option<[Scalar; 2]>,
@@ -30,7 +30,7 @@ pub struct Actions {
 }
 
 /// A force or a torque.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Load {
     /// Name.
     pub name: String,
@@ -41,7 +41,7 @@ pub struct Load {
 }
 
 /// The kinds of load.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum LoadKind {
     /// A force on a link at one of its points.
     Force {
@@ -64,7 +64,7 @@ pub enum LoadKind {
 }
 
 /// A value that may vary along the motion.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Amount {
     /// An expression over parameters, drives, time and measures.
     Measure(Measure),
@@ -86,7 +86,7 @@ pub enum Amount {
 }
 
 /// A mass at a point of a link, besides the link's own mass.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct PointMass {
     /// Name.
     pub name: String,
@@ -101,7 +101,7 @@ pub struct PointMass {
 }
 
 /// A spring.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Spring {
     /// Name.
     pub name: String,
@@ -136,7 +136,7 @@ pub enum Acts {
 }
 
 /// The two ends of a spring or damper.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Between {
     /// Two points.
     Points(LinkPointRef, LinkPointRef),
@@ -145,7 +145,7 @@ pub enum Between {
 }
 
 /// A damper.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Damper {
     /// Name.
     pub name: String,
@@ -160,7 +160,7 @@ pub struct Damper {
 }
 
 /// Friction at a joint.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Friction {
     /// Where.
     pub at: FrictionAt,
@@ -190,7 +190,7 @@ pub enum FrictionAt {
 }
 
 /// A hydraulic cylinder behind a cylinder drive.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct HydraulicCylinder {
     /// The drive.
     pub drive: DriveId,
@@ -215,7 +215,7 @@ pub struct HydraulicCylinder {
 }
 
 /// A motor behind a turning drive.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Motor {
     /// The drive.
     pub drive: DriveId,

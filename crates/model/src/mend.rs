@@ -132,7 +132,7 @@ fn closing_quote(rest: &[u8], quote: u8) -> Option<usize> {
 }
 
 /// Whether a line within a bracket can only be a new section or entry; `last` is the sign before it.
-fn begins_anew(line: &str, bracket: u8, last: u8) -> bool {
+pub(crate) fn begins_anew(line: &str, bracket: u8, last: u8) -> bool {
     let line = line.trim();
     if is_header(line) {
         return true;

@@ -55,7 +55,7 @@ id!(
 pub const FRAME: LinkId = LinkId(0);
 
 /// A mechanism with its drives, measures and studies.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Model {
     /// The file's title, or its name.
     pub title: String,
@@ -111,7 +111,7 @@ pub struct UnitName {
 }
 
 /// A named dimension of the design.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Parameter {
     /// Name.
     pub name: String,
@@ -124,7 +124,7 @@ pub struct Parameter {
 }
 
 /// A rigid body: a set of named points.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Link {
     /// Name; the first link is `frame`.
     pub name: String,
@@ -137,7 +137,7 @@ pub struct Link {
 }
 
 /// A point of a link.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct LinkPoint {
     /// Which named point.
     pub point: PointId,
@@ -148,7 +148,7 @@ pub struct LinkPoint {
 }
 
 /// Where a point lies in its link's own frame (lengths m, angles rad counter-clockwise).
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Place {
     /// Cartesian coordinates. The origin of a link laid out by distances is `(0, 0)`.
     Cartesian {
@@ -199,7 +199,7 @@ impl Side {
 }
 
 /// Mass properties of a link.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Inertia {
     /// Mass, kg.
     pub mass: Option<Scalar>,
@@ -210,7 +210,7 @@ pub struct Inertia {
 }
 
 /// Where a centre of mass lies.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Center {
     /// The mean of the link's points.
     Centroid,
@@ -221,7 +221,7 @@ pub enum Center {
 }
 
 /// A named point of the mechanism.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Point {
     /// Name, starting with a capital letter.
     pub name: String,
@@ -250,7 +250,7 @@ pub struct LinkPointRef {
 }
 
 /// A joint that a shared point name does not say.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Joint {
     /// Name.
     pub name: String,
@@ -261,7 +261,7 @@ pub struct Joint {
 }
 
 /// The kinds of joint.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum JointKind {
     /// A prismatic pair: `at` stays on the line, and the slider's x axis keeps the angle `angle` to it.
     Slider {
@@ -345,7 +345,7 @@ impl JointKind {
 }
 
 /// What is moved from outside.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Drive {
     /// Name.
     pub name: String,
@@ -360,7 +360,7 @@ pub struct Drive {
 }
 
 /// What a drive moves.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum DriveKind {
     /// The angle from the x axis of `relative_to` to that of `link`, rad. Either may float.
     Turn {
@@ -384,7 +384,7 @@ pub enum DriveKind {
 }
 
 /// How a drive moves in time.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Law {
     /// Pieces in order; each starts where the one before ended.
     pub pieces: Vec<LawPiece>,
@@ -393,7 +393,7 @@ pub struct Law {
 }
 
 /// A piece of a motion law. `to` is the coordinate at its end.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum LawPiece {
     /// Constant speed. The sign of the speed is the direction of travel; only its size counts.
     ConstantSpeed {
@@ -448,7 +448,7 @@ pub enum RiseLaw {
 }
 
 /// Something the user says about which assembly is meant, at the start of the drives.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct AssemblyHint {
     /// What is said.
     pub kind: HintKind,
@@ -457,7 +457,7 @@ pub struct AssemblyHint {
 }
 
 /// The kinds of assembly hint.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum HintKind {
     /// A point lies on a side of the directed line between two points.
     Side {
@@ -489,7 +489,7 @@ pub enum HintKind {
 }
 
 /// A measure with the user's name for it.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct NamedMeasure {
     /// Name.
     pub name: String,
@@ -505,6 +505,7 @@ pub struct NamedMeasure {
 
 /// A study of a kind that the language keeps for later versions.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct AnnouncedStudy {
     /// Name.
     pub name: String,
@@ -513,7 +514,7 @@ pub struct AnnouncedStudy {
 }
 
 /// A question asked of the model.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Study {
     /// Name.
     pub name: String,
@@ -524,7 +525,7 @@ pub struct Study {
 }
 
 /// The kinds of study.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum StudyKind {
     /// The motion along the drives' laws.
     Motion(MotionStudy),
@@ -537,7 +538,7 @@ pub enum StudyKind {
 }
 
 /// Which counterweights a mechanism needs.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct BalanceStudy {
     /// Where rows stand.
     pub along: MotionStudy,
@@ -559,7 +560,7 @@ pub enum BalanceGoal {
 }
 
 /// Which spring leaves a wanted effort to a drive: its stiffness and preload are chosen.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct SpringStudy {
     /// Where rows stand.
     pub along: MotionStudy,
@@ -587,7 +588,7 @@ impl StudyKind {
 }
 
 /// A motion study: rows along the drive or along time.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct MotionStudy {
     /// Where rows stand.
     pub rows: Rows,
@@ -600,7 +601,7 @@ pub struct MotionStudy {
 }
 
 /// Where the rows of a motion table stand.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Rows {
     /// Every `step` of the (single) drive's coordinate, from its start, and at its end; along a circuit at its dead points
     /// too.
@@ -612,7 +613,7 @@ pub enum Rows {
 }
 
 /// A column of a table.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Column {
     /// Heading: the measure's name or its text as written.
     pub name: String,
@@ -623,7 +624,7 @@ pub struct Column {
 }
 
 /// A plot asked for.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Plot {
     /// Measures of one dimension along the motion, in one picture.
     Curves(Vec<Column>),
@@ -634,7 +635,7 @@ pub enum Plot {
 }
 
 /// A joint's force over a motion, as the curve of its arrow's tip.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Hodograph {
     /// As written: `hodograph(B, coupler)`.
     pub name: String,

@@ -12,13 +12,13 @@ mod force_names;
 mod friction;
 mod joints;
 mod law_table;
-mod laws;
+pub(crate) mod laws;
 mod links;
 mod loads;
 mod masses;
 mod measure_names;
 mod measures;
-mod names;
+pub(crate) mod names;
 mod nature;
 mod one_measure;
 mod parameters;
@@ -26,8 +26,8 @@ mod phrase;
 mod place;
 mod plots;
 mod sections;
-mod springs;
-mod studies;
+pub(crate) mod springs;
+pub(crate) mod studies;
 mod transmission;
 mod value;
 
@@ -38,6 +38,7 @@ use context::Context;
 
 /// A model that stands, and what a careful engineer would want to be told about its file.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Checked {
     /// The model.
     pub model: Model,

@@ -11,6 +11,7 @@ use Nature::{Derivative, Forces, Geometric, InTime, WholeMotion};
 
 /// A function that measures something.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct MeasureEntry {
     /// Its name.
     pub name: &'static str,

@@ -2,6 +2,7 @@
 
 /// A starter file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Starter {
     /// Its name on the command line.
     pub name: &'static str,

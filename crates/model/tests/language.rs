@@ -25,7 +25,9 @@ fn all(found: &[Diagnostic], name: &str, text: &str) -> String {
 
 #[test]
 fn crank_rocker() {
-    let Checked { model, warnings } = read("crank-rocker");
+    let Checked {
+        model, warnings, ..
+    } = read("crank-rocker");
     assert!(warnings.is_empty(), "{warnings:#?}");
     assert_eq!(model.title, "Crank-rocker");
     let names: Vec<&str> = model.points.iter().map(|p| p.name.as_str()).collect();
@@ -57,7 +59,9 @@ fn slider_crank() {
 
 #[test]
 fn door_lock() {
-    let Checked { model, warnings } = read("door-lock");
+    let Checked {
+        model, warnings, ..
+    } = read("door-lock");
     let codes: Vec<&str> = warnings.iter().map(|d| d.code).collect();
     assert_eq!(
         codes,
@@ -74,7 +78,9 @@ fn door_lock() {
 
 #[test]
 fn tractor_hitch() {
-    let Checked { model, warnings } = read("tractor-hitch");
+    let Checked {
+        model, warnings, ..
+    } = read("tractor-hitch");
     assert_eq!(warnings.len(), 1, "{warnings:#?}");
     assert_eq!(model.measures.len(), 6);
     let inertia = model.links[4].inertia.clone().unwrap();
@@ -98,7 +104,9 @@ fn tractor_hitch() {
 
 #[test]
 fn every_joint_and_every_law() {
-    let Checked { model, warnings } = read("joints");
+    let Checked {
+        model, warnings, ..
+    } = read("joints");
     assert!(warnings.is_empty(), "{}", all(&warnings, "joints", ""));
     assert_eq!(
         (model.joints.len(), model.drives.len(), model.measures.len()),
@@ -113,7 +121,9 @@ fn every_joint_and_every_law() {
 
 #[test]
 fn everything_that_acts() {
-    let Checked { model, warnings } = read("forces");
+    let Checked {
+        model, warnings, ..
+    } = read("forces");
     assert!(warnings.is_empty(), "{}", all(&warnings, "forces", ""));
     let p: Vec<f64> = model.parameter_values();
     let near = |a: f64, b: f64| assert!((a - b).abs() <= 1e-12 * b.abs().max(1.0), "{a} != {b}");

@@ -1,8 +1,8 @@
 //! Properties of the language: texts round trip, values agree with a second evaluator, nothing panics.
 
 use kempe_units::{
-    BinaryOp, Dimension, Issue, Kind, Node, Quantity, Resolver, Span, Unit, check, check_condition,
-    nearest, parse, parse_argument, parse_condition,
+    BinaryOp, Dimension, Expr, Issue, Kind, Natural, Node, Quantity, Resolver, Span, Spelling,
+    Unit, check, check_condition, nearest, parse, parse_argument, parse_condition,
 };
 use proptest::prelude::*;
 
@@ -207,6 +207,49 @@ impl Resolver<String> for File {
     }
 }
 
+/// The names of `File`, with constants in mm and deg.
+struct Written([Unit; 2]);
+
+impl Spelling<String> for Written {
+    fn natural(&self, name: &String) -> Natural {
+        Natural::fixed(match name.as_str() {
+            "a" => Dimension::LENGTH,
+            _ => Dimension::NONE,
+        })
+    }
+
+    fn leaf(&self, name: &String, _: Dimension) -> Node {
+        node(Kind::Name(name.clone()))
+    }
+
+    fn preferred(&self) -> &[Unit] {
+        &self.0
+    }
+}
+
+/// What is checked, written and checked again is the same to the last bit of each constant.
+fn written_reads_back(expr: &Expr<String>, dimension: Dimension) -> Result<(), TestCaseError> {
+    let unit = |text: &str| Unit::parse(text).expect("a unit of the table");
+    let again = expr
+        .to_node(dimension, &Written([unit("mm"), unit("deg")]))
+        .to_string();
+    if again.len() > kempe_units::MAX_LENGTH {
+        return Ok(());
+    }
+    let read = parse(&again).and_then(|tree| check(&tree, &mut File));
+    let Ok((read, measures)) = read else {
+        return Err(TestCaseError::fail(format!("{again}: {read:?}")));
+    };
+    prop_assert_eq!(measures, dimension, "{}", &again);
+    prop_assert_eq!(
+        format!("{:?}", read.fold()),
+        format!("{:?}", expr.fold()),
+        "{}",
+        again
+    );
+    Ok(())
+}
+
 /// What stands in texts, put together at random.
 fn soup() -> impl Strategy<Value = String> {
     const PIECES: &[&str] = &[
@@ -284,6 +327,34 @@ proptest! {
     fn the_text_of_a_tree_reads_back_as_the_tree(tree in tree()) {
         let text = tree.to_string();
         prop_assert_eq!(parse(&text).map(bare), Ok(tree), "{}", text);
+    }
+
+    #[test]
+    fn a_checked_expression_is_written_so_that_it_reads_back(
+        (text, _) in prop_oneof![numbers(4), lengths(4), angles(4)],
+    ) {
+        let (expr, dimension) = check(&parse(&text).expect("sound"), &mut File).expect("sound");
+        written_reads_back(&expr, dimension)?;
+    }
+
+    #[test]
+    fn any_tree_that_checks_is_written_so_that_it_reads_back(tree in tree()) {
+        if let Ok((expr, dimension)) = check(&tree, &mut File) {
+            written_reads_back(&expr, dimension)?;
+        }
+    }
+
+    #[test]
+    fn every_constant_has_a_text_of_its_own(si in proptest::num::f64::NORMAL, pick in 0..UNIT_TEXTS.len()) {
+        let unit = Unit::parse(UNIT_TEXTS[pick]).expect("a unit of the list");
+        if let Some(x) = unit.exact_from_si(si) {
+            prop_assert_eq!(unit.to_si(x).to_bits(), si.to_bits());
+        }
+        if let Some((x, exact)) = Unit::exact(si, unit.dimension(), &[unit]) {
+            prop_assert_eq!(exact.to_si(x).to_bits(), si.to_bits());
+        } else {
+            prop_assert!(false, "SI has every number");
+        }
     }
 
     #[test]

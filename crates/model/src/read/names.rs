@@ -117,12 +117,12 @@ pub(crate) fn long_name(cx: &mut Context<'_>, name: &str, span: &crate::model::S
 }
 
 /// Whether the language keeps a name for itself.
-fn is_reserved(name: &str) -> bool {
+pub(crate) fn is_reserved(name: &str) -> bool {
     matches!(name, "time" | "pi") || bare(name).is_some()
 }
 
 /// Columns that every table has, or every table of a circuit or of forces: what is a column itself is not called so.
-const COLUMNS: &[&str] = &[
+pub(crate) const COLUMNS: &[&str] = &[
     "arc",
     "closure",
     "smallest_singular_value",

@@ -58,7 +58,7 @@ const DEVICES: &[&str] = &["con", "prn", "aux", "nul"];
 const NUMBERED_DEVICES: &[&str] = &["com", "lpt"];
 
 /// Why a study's name cannot be a file's name too, as a remedy.
-fn no_file_name(name: &str) -> Option<String> {
+pub(crate) fn no_file_name(name: &str) -> Option<String> {
     let known = |c: char| c.is_alphanumeric() || c == '_' || c == '-';
     if name.is_empty() || !name.chars().all(known) {
         return Some("its name becomes a file's name: letters, digits, _ and -".to_owned());

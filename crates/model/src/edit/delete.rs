@@ -1,0 +1,326 @@
+//! Deleting a part, alone or with all that refers to it.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt;
+
+use crate::diagnostic::Diagnostic;
+use crate::edit::rename::unknown;
+use crate::model::Span;
+use crate::outline::{Outline, Shape, ValueMark};
+use crate::part::{Naming, Namings, Part, place_of};
+use crate::text_edit::TextEdit;
+
+/// Why a part is not deleted.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum DeleteError {
+    /// The text has no such part.
+    Unknown(Diagnostic),
+    /// Others refer to it, here.
+    InUse(Vec<Naming>),
+}
+
+impl fmt::Display for DeleteError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unknown(d) => f.write_str(&d.message),
+            Self::InUse(by) => {
+                let mut paths: Vec<String> = by.iter().map(|n| n.path.join(".")).collect();
+                paths.dedup();
+                write!(f, "it is used by {}", paths.join(", "))
+            }
+        }
+    }
+}
+
+impl std::error::Error for DeleteError {}
+
+/// What is deleted.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Deletion {
+    /// The edits of the text.
+    pub edits: Vec<TextEdit>,
+    /// The paths of the entries, keys and elements that go.
+    pub paths: Vec<Vec<String>>,
+    /// The parts that go.
+    pub parts: Vec<Part>,
+}
+
+/// The edits that delete a part to which nothing else refers. A point goes with the keys of links that name it.
+///
+/// # Errors
+///
+/// [`DeleteError::InUse`] with every place that refers to the part, or to a point that only the deleted link has;
+/// [`DeleteError::Unknown`] when there is no such part.
+///
+/// # Example
+///
+/// ```
+/// use kempe_model::{DeleteError, Part, PartKind, apply, delete};
+/// let text = "[parameters]\na = 1\nb = 2\n[links]\nframe = { A = [\"a\", 0] }\n";
+/// let used = delete(text, &Part::new(PartKind::Parameter, "a")).unwrap_err();
+/// assert_eq!(used.to_string(), "it is used by links.frame.A.0");
+/// let edits = delete(text, &Part::new(PartKind::Parameter, "b")).unwrap();
+/// assert_eq!(apply(text, &edits).unwrap(), text.replace("b = 2\n", ""));
+/// ```
+pub fn delete(text: &str, part: &Part) -> Result<Vec<TextEdit>, DeleteError> {
+    let outline = Outline::new(text);
+    let namings = Namings::new(text, &outline);
+    let mut going = Going::new(&outline, &namings);
+    going.part(part).map_err(DeleteError::Unknown)?;
+    let users = going.users();
+    match users.is_empty() {
+        true => Ok(going.deletion(text).edits),
+        false => Err(DeleteError::InUse(users)),
+    }
+}
+
+/// The edits that delete a part and all that refers to it, directly or through others: entries whole, but of a link only the
+/// keys, and of a study only the columns and plots, that name what goes.
+///
+/// What is left need not be a sound model: a link may have lost what places one of its points. The reader tells.
+///
+/// # Errors
+///
+/// `unknown-name` when there is no such part.
+///
+/// # Example
+///
+/// ```
+/// use kempe_model::{Part, PartKind, apply, delete_with_dependants};
+/// let text = "[parameters]\na = 1\n[measures]\nm = \"2 * a\"\nn = \"time\"\n[studies.s]\nkind = \"motion\"\ncolumns = [\"m\", \"n\"]\n";
+/// let gone = delete_with_dependants(text, &Part::new(PartKind::Parameter, "a")).unwrap();
+/// assert_eq!(
+///     apply(text, &gone.edits).unwrap(),
+///     "[parameters]\n[measures]\nn = \"time\"\n[studies.s]\nkind = \"motion\"\ncolumns = [\"n\"]\n",
+/// );
+/// ```
+pub fn delete_with_dependants(text: &str, part: &Part) -> Result<Deletion, Diagnostic> {
+    let outline = Outline::new(text);
+    let namings = Namings::new(text, &outline);
+    let mut going = Going::new(&outline, &namings);
+    going.part(part)?;
+    while let Some(part) = going.waiting.pop() {
+        for i in going.places(&part) {
+            if let Some(user) = namings.all.get(i).filter(|n| !going.goes(&n.path)) {
+                going.user(user);
+            }
+        }
+    }
+    Ok(going.deletion(text))
+}
+
+/// What goes so far.
+struct Going<'o> {
+    outline: &'o Outline,
+    namings: &'o Namings,
+    paths: BTreeSet<Vec<String>>,
+    parts: BTreeSet<Part>,
+    /// Parts that go and whose users have not been looked at.
+    waiting: Vec<Part>,
+    /// Where each part is named.
+    places: BTreeMap<&'o Part, Vec<usize>>,
+    /// The namings that declare, by their path; those that go are taken out.
+    declaring: BTreeMap<&'o [String], Vec<usize>>,
+    /// How often each part is still declared.
+    declared: BTreeMap<&'o Part, usize>,
+    /// How many elements each list of a study still has.
+    elements: BTreeMap<&'o [String], usize>,
+}
+
+impl<'o> Going<'o> {
+    fn new(outline: &'o Outline, namings: &'o Namings) -> Self {
+        let mut going = Self {
+            outline,
+            namings,
+            paths: BTreeSet::new(),
+            parts: BTreeSet::new(),
+            waiting: Vec::new(),
+            places: BTreeMap::new(),
+            declaring: BTreeMap::new(),
+            declared: BTreeMap::new(),
+            elements: BTreeMap::new(),
+        };
+        for (i, naming) in namings.all.iter().enumerate() {
+            going.places.entry(&naming.part).or_default().push(i);
+            if naming.declares {
+                going.declaring.entry(&naming.path).or_default().push(i);
+                *going.declared.entry(&naming.part).or_default() += 1;
+            }
+        }
+        for value in outline.values.iter().filter(|v| v.path.len() == ELEMENT) {
+            if place_of(&value.path).0 == "studies" {
+                let list = value.path.get(..ELEMENT - 1).unwrap_or(&[]);
+                *going.elements.entry(list).or_default() += 1;
+            }
+        }
+        going
+    }
+
+    fn places(&self, part: &Part) -> Vec<usize> {
+        self.places.get(part).cloned().unwrap_or_default()
+    }
+
+    /// Deletes a part: everything that declares it.
+    fn part(&mut self, part: &Part) -> Result<(), Diagnostic> {
+        if !self.namings.declared(part) {
+            return Err(unknown(self.namings, part));
+        }
+        for naming in self.namings.of(part).filter(|n| n.declares) {
+            self.path(naming.path.clone());
+        }
+        Ok(())
+    }
+
+    fn goes(&self, path: &[String]) -> bool {
+        within(&self.paths, path)
+    }
+
+    /// Deletes what stands at a path, and with it the parts that nothing else declares.
+    fn path(&mut self, path: Vec<String>) {
+        let under = self.declaring.range(path.as_slice()..);
+        let under = under.take_while(|(known, _)| known.starts_with(&path));
+        let keys: Vec<&[String]> = under.map(|(known, _)| *known).collect();
+        for key in keys {
+            for i in self.declaring.remove(key).unwrap_or_default() {
+                let Some(naming) = self.namings.all.get(i) else {
+                    continue;
+                };
+                let left = self.declared.entry(&naming.part).or_default();
+                *left = left.saturating_sub(1);
+                if *left == 0 {
+                    self.parts.insert(naming.part.clone());
+                    self.waiting.push(naming.part.clone());
+                }
+            }
+        }
+        self.paths.insert(path);
+    }
+
+    /// Where what stays names what goes.
+    fn users(&self) -> Vec<Naming> {
+        let all = self.namings.all.iter();
+        all.filter(|n| self.parts.contains(&n.part) && !self.goes(&n.path))
+            .cloned()
+            .collect()
+    }
+
+    /// Deletes what names something that goes.
+    fn user(&mut self, user: &'o Naming) {
+        let (section, _) = place_of(&user.path);
+        let upto = |n: usize| user.path.get(..n.min(user.path.len())).unwrap_or(&[]);
+        let list = user.path.get(2).map_or("", String::as_str);
+        let depth = match (section, list) {
+            ("links", _) if user.path.len() > 2 => 3,
+            ("studies", "columns" | "plot" | "on") if user.path.len() >= ELEMENT => {
+                let left = self.elements.entry(upto(ELEMENT - 1)).or_default();
+                *left = left.saturating_sub(1);
+                // the last of a list takes the list with it, and a study of no link is none
+                match (*left, list) {
+                    (0, "on") => 2,
+                    (0, _) => 3,
+                    _ => ELEMENT,
+                }
+            }
+            ("studies", "columns" | "plot") => 3,
+            _ => 2,
+        };
+        self.path(upto(depth).to_vec());
+    }
+
+    fn deletion(&self, text: &str) -> Deletion {
+        let outermost = |path: &Vec<String>| {
+            let above = path.len().saturating_sub(1);
+            !path.get(..above).is_some_and(|above| self.goes(above))
+        };
+        let paths = self.paths.iter().filter(|p| outermost(p)).cloned();
+        let paths: BTreeSet<Vec<String>> = paths.collect();
+        Deletion {
+            edits: removals(text, self.outline, &paths),
+            paths: paths.into_iter().collect(),
+            parts: self.parts.iter().cloned().collect(),
+        }
+    }
+}
+
+/// Parts in the path of an element of a study's list: `studies.turn.columns.0`.
+const ELEMENT: usize = 4;
+
+/// Whether a path or one above it is among the paths.
+fn within(paths: &BTreeSet<Vec<String>>, path: &[String]) -> bool {
+    (1..=path.len()).any(|n| path.get(..n).is_some_and(|p| paths.contains(p)))
+}
+
+/// The edits that take out what stands at the paths: whole lines of entries and sections, and what stands between brackets
+/// with one comma.
+fn removals(text: &str, outline: &Outline, paths: &BTreeSet<Vec<String>>) -> Vec<TextEdit> {
+    let goes = |path: &[String]| within(paths, path);
+    let headers = outline.headers.iter().filter(|h| goes(&h.path));
+    let mut spans: Vec<Span> = headers.map(|h| h.span.clone()).collect();
+    for (index, span) in &outline.statements {
+        let statement = outline.values.get(*index);
+        let before = (outline.headers).partition_point(|h| h.span.start < span.start);
+        let header = before.checked_sub(1).and_then(|i| outline.headers.get(i));
+        // what stands under a header that goes has gone
+        let gone = header.is_some_and(|h| goes(&h.path));
+        if !gone && statement.is_some_and(|v| goes(&v.path)) {
+            spans.push(span.clone());
+        }
+    }
+    for (i, holder) in outline.values.iter().enumerate() {
+        let held = outline.values.get(i + 1..).unwrap_or(&[]);
+        if matches!(holder.shape, Shape::Array | Shape::Table) && !goes(&holder.path) {
+            spans.extend(between_commas(text, holder, held, &goes));
+        }
+    }
+    spans.sort_by_key(|s| s.start);
+    spans
+        .into_iter()
+        .map(|span| TextEdit::new(span, ""))
+        .collect()
+}
+
+/// The places between the brackets of `holder` that go, each with a comma; `behind` are the values behind the holder.
+fn between_commas(
+    text: &str,
+    holder: &ValueMark,
+    behind: &[ValueMark],
+    goes: &dyn Fn(&[String]) -> bool,
+) -> Vec<Span> {
+    let inside = behind.iter().take_while(|v| v.whole.end <= holder.span.end);
+    // those that no other holds
+    let mut held: Vec<&ValueMark> = Vec::new();
+    for value in inside {
+        if held
+            .last()
+            .is_none_or(|last| last.whole.end <= value.whole.start)
+        {
+            held.push(value);
+        }
+    }
+    let mut spans = Vec::new();
+    let mut i = 0;
+    while let Some(first) = held.get(i) {
+        let run = held.iter().skip(i).take_while(|v| goes(&v.path)).count();
+        let Some(last) = held.get((i + run).wrapping_sub(1)).filter(|_| run > 0) else {
+            i += 1;
+            continue;
+        };
+        let (start, end) = (first.whole.start, last.whole.end);
+        let before = i.checked_sub(1).and_then(|i| held.get(i));
+        spans.push(match (before, held.get(i + run)) {
+            (Some(before), _) => before.whole.end..end,
+            (None, Some(after)) => start..after.whole.start,
+            (None, None) => {
+                // a comma behind the last one goes too
+                let rest = text.get(end..holder.span.end).unwrap_or("");
+                let comma = rest.trim_start().starts_with(',');
+                let comma = rest.find(',').filter(|_| comma);
+                start..comma.map_or(end, |i| end + i + 1)
+            }
+        });
+        i += run;
+    }
+    spans
+}

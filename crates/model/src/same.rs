@@ -1,0 +1,252 @@
+//! Whether two models are the same but for how and where they are written.
+
+use crate::load::{Amount, LoadKind};
+use crate::measure::{Leaf, Measure, PoseMeasure};
+use crate::model::{
+    Center, Column, HintKind, JointKind, LawPiece, Model, Place, Plot, Rows, Scalar, Span,
+    StudyKind,
+};
+
+impl Model {
+    /// Whether two models are the same but for the places in their files and for how their constants are written.
+    ///
+    /// Names and their order count, and every expression must evaluate to the same bits on every number.
+    pub fn same_as(&self, other: &Self) -> bool {
+        self.bare() == other.bare()
+    }
+
+    /// The model without places, every part without leaves replaced by its value.
+    fn bare(&self) -> Self {
+        let mut model = self.clone();
+        model.forget_places();
+        // What values must keep to follows from the rest.
+        model.bounds.clear();
+        model.visit_scalars(&mut |scalar| *scalar = scalar.fold());
+        model.visit_measures(&mut |measure| *measure = folded(measure));
+        model
+    }
+
+    fn forget_places(&mut self) {
+        let forget = |span: &mut Span| *span = 0..0;
+        self.parameters.iter_mut().for_each(|p| forget(&mut p.span));
+        for link in &mut self.links {
+            forget(&mut link.span);
+            link.points.iter_mut().for_each(|p| forget(&mut p.span));
+        }
+        self.joints.iter_mut().for_each(|p| forget(&mut p.span));
+        self.drives.iter_mut().for_each(|p| forget(&mut p.span));
+        self.assembly.iter_mut().for_each(|p| forget(&mut p.span));
+        self.measures.iter_mut().for_each(|p| forget(&mut p.span));
+        self.studies.iter_mut().for_each(|p| forget(&mut p.span));
+        let acting = &mut self.actions;
+        acting.loads.iter_mut().for_each(|p| forget(&mut p.span));
+        acting.masses.iter_mut().for_each(|p| forget(&mut p.span));
+        acting.springs.iter_mut().for_each(|p| forget(&mut p.span));
+        acting.dampers.iter_mut().for_each(|p| forget(&mut p.span));
+        acting.friction.iter_mut().for_each(|p| forget(&mut p.span));
+        let cylinders = acting.cylinders.iter_mut();
+        cylinders.for_each(|p| forget(&mut p.span));
+        acting.motors.iter_mut().for_each(|p| forget(&mut p.span));
+    }
+
+    /// Every expression over parameters.
+    fn visit_scalars(&mut self, f: &mut dyn FnMut(&mut Scalar)) {
+        self.parameters.iter_mut().for_each(|p| f(&mut p.value));
+        for link in &mut self.links {
+            for point in &mut link.points {
+                place(&mut point.place, f);
+            }
+            if let Some(inertia) = &mut link.inertia {
+                inertia.mass.iter_mut().for_each(&mut *f);
+                inertia.moment.iter_mut().for_each(&mut *f);
+                if let Center::Place(at) = &mut inertia.center {
+                    place(at, f);
+                }
+            }
+        }
+        for joint in &mut self.joints {
+            match &mut joint.kind {
+                JointKind::Slider { angle, .. } | JointKind::Weld { angle, .. } => f(angle),
+                JointKind::Slot { .. } => {}
+                JointKind::Gears {
+                    teeth_a,
+                    teeth_b,
+                    phase,
+                    ..
+                } => [teeth_a, teeth_b, phase].into_iter().for_each(&mut *f),
+                JointKind::Rack { radius, offset, .. } => {
+                    f(radius);
+                    f(offset);
+                }
+            }
+        }
+        for drive in &mut self.drives {
+            f(&mut drive.law.from);
+            for piece in &mut drive.law.pieces {
+                match piece {
+                    LawPiece::ConstantSpeed { to, speed: rate }
+                    | LawPiece::ConstantAcceleration {
+                        to,
+                        acceleration: rate,
+                    } => {
+                        f(to);
+                        f(rate);
+                    }
+                    LawPiece::Dwell { duration } => f(duration),
+                    LawPiece::Rise { to, duration, .. } => {
+                        f(to);
+                        f(duration);
+                    }
+                    LawPiece::Table { .. } => {}
+                }
+            }
+        }
+        for hint in &mut self.assembly {
+            match &mut hint.kind {
+                HintKind::Side { .. } => {}
+                HintKind::NearPlace { x, y, .. } => {
+                    f(x);
+                    f(y);
+                }
+                HintKind::NearAngle { angle, .. } => f(angle),
+            }
+        }
+        self.visit_scalars_of_actions(f);
+        for study in &mut self.studies {
+            let along = match &mut study.kind {
+                StudyKind::Motion(along) | StudyKind::Forces(along) => along,
+                StudyKind::Balance(study) => {
+                    f(&mut study.radius);
+                    &mut study.along
+                }
+                StudyKind::Spring(study) => {
+                    let bounds = study.stiffness.iter_mut().chain(&mut study.preload);
+                    bounds.flatten().for_each(&mut *f);
+                    &mut study.along
+                }
+            };
+            match &mut along.rows {
+                Rows::DriveStep(step) | Rows::TimeStep(step) => f(step),
+                Rows::Count(_) => {}
+            }
+        }
+    }
+
+    fn visit_scalars_of_actions(&mut self, f: &mut dyn FnMut(&mut Scalar)) {
+        let acting = &mut self.actions;
+        acting.gravity.iter_mut().flatten().for_each(&mut *f);
+        for load in &mut acting.loads {
+            for amount in amounts(&mut load.kind) {
+                if let Amount::Table { factor, .. } = amount {
+                    f(factor);
+                }
+            }
+        }
+        for mass in &mut acting.masses {
+            place(&mut mass.place, f);
+            f(&mut mass.mass);
+        }
+        for spring in &mut acting.springs {
+            f(&mut spring.stiffness);
+            f(&mut spring.free);
+            f(&mut spring.preload);
+            let stops = spring.stops.iter_mut().flatten();
+            stops.chain(&mut spring.stop_stiffness).for_each(&mut *f);
+        }
+        for damper in &mut acting.dampers {
+            f(&mut damper.damping);
+            damper.closing.iter_mut().for_each(&mut *f);
+        }
+        for friction in &mut acting.friction {
+            f(&mut friction.coefficient);
+            let rest = friction.static_coefficient.iter_mut();
+            rest.chain(&mut friction.stribeck_speed)
+                .chain(&mut friction.viscous)
+                .chain(&mut friction.radius)
+                .for_each(&mut *f);
+        }
+        for cylinder in &mut acting.cylinders {
+            let given = cylinder.supply.iter_mut();
+            given
+                .chain(&mut cylinder.relief)
+                .chain(&mut cylinder.flow)
+                .for_each(&mut *f);
+            f(&mut cylinder.bore);
+            f(&mut cylinder.rod);
+            f(&mut cylinder.back);
+            f(&mut cylinder.friction);
+            f(&mut cylinder.count);
+        }
+        for (speed, torque) in acting.motors.iter_mut().flat_map(|m| &mut m.curve) {
+            f(speed);
+            f(torque);
+        }
+    }
+
+    /// Every measure.
+    fn visit_measures(&mut self, f: &mut dyn FnMut(&mut Measure)) {
+        self.measures.iter_mut().for_each(|m| f(&mut m.measure));
+        for load in &mut self.actions.loads {
+            for amount in amounts(&mut load.kind) {
+                match amount {
+                    Amount::Measure(measure) => f(measure),
+                    Amount::Table { over, .. } => f(over),
+                }
+            }
+        }
+        for study in &mut self.studies {
+            let along = match &mut study.kind {
+                StudyKind::Motion(along) | StudyKind::Forces(along) => along,
+                StudyKind::Balance(study) => &mut study.along,
+                StudyKind::Spring(study) => {
+                    f(&mut study.wanted);
+                    &mut study.along
+                }
+            };
+            let mut column = |c: &mut Column| f(&mut c.measure);
+            along.columns.iter_mut().for_each(&mut column);
+            for plot in &mut along.plots {
+                if let Plot::Curves(curves) = plot {
+                    curves.iter_mut().for_each(&mut column);
+                }
+            }
+        }
+    }
+}
+
+fn amounts(kind: &mut LoadKind) -> Vec<&mut Amount> {
+    match kind {
+        LoadKind::Force { components, .. } => components.iter_mut().collect(),
+        LoadKind::Torque { amount, .. } => vec![amount],
+    }
+}
+
+fn place(place: &mut Place, f: &mut dyn FnMut(&mut Scalar)) {
+    let (a, b) = match place {
+        Place::Cartesian { x, y } => (x, y),
+        Place::Polar { radius, angle } => (radius, angle),
+        Place::Triangle {
+            from_distance,
+            to_distance,
+            ..
+        } => (from_distance, to_distance),
+    };
+    f(a);
+    f(b);
+}
+
+/// The measure folded, and all measures within it.
+fn folded(measure: &Measure) -> Measure {
+    let within = |inner: &Measure| Box::new(folded(inner));
+    measure
+        .map_leaves(&mut |leaf| match leaf {
+            Leaf::Rate(inner, n) => Leaf::Rate(within(inner), *n),
+            Leaf::Coefficient(inner, drive, n) => Leaf::Coefficient(within(inner), *drive, *n),
+            Leaf::Over(statistic, inner) => Leaf::Over(*statistic, within(inner)),
+            Leaf::Pose(PoseMeasure::MechanicalAdvantage(inner, drive)) => {
+                Leaf::Pose(PoseMeasure::MechanicalAdvantage(within(inner), *drive))
+            }
+            other => other.clone(),
+        })
+        .fold()
+}

@@ -1,0 +1,299 @@
+//! What acts: gravity, loads, masses, springs, dampers, friction, cylinders, motors.
+
+use kempe_units::{Dimension, Unit};
+
+use crate::item::{File, Item};
+use crate::key_table::{ACTS, word_of};
+use crate::load::{
+    Acts, Amount, Between, Damper, Friction, FrictionAt, HydraulicCylinder, Load, LoadKind, Motor,
+    PointMass, Spring,
+};
+use crate::model::{FRAME, LinkId, Place, PointId, Scalar};
+use crate::read::springs::tension;
+use crate::write::mechanism::is_nothing;
+use crate::write::spelling::Writer;
+
+type Entries = Vec<(String, Item)>;
+
+impl Writer<'_> {
+    pub fn gravity(&self, file: &mut File) {
+        if let Some(gravity) = &self.model.actions.gravity {
+            let [x, y] = gravity
+                .each_ref()
+                .map(|part| self.scalar(part, Dimension::ACCELERATION));
+            file.head
+                .push(("gravity".to_owned(), Item::List(vec![x, y])));
+        }
+    }
+
+    pub fn actions(&mut self, file: &mut File) {
+        let acting = &self.model.actions;
+        for load in &acting.loads {
+            let entry = (load.name.clone(), Item::Table(self.load(load)));
+            file.section("loads").push(entry);
+        }
+        for mass in &acting.masses {
+            let entry = (mass.name.clone(), Item::Table(self.mass(mass)));
+            file.section("masses").push(entry);
+        }
+        for spring in &acting.springs {
+            let entry = (spring.name.clone(), Item::Table(self.spring(spring)));
+            file.section("springs").push(entry);
+        }
+        for damper in &acting.dampers {
+            let entry = (damper.name.clone(), Item::Table(self.damper(damper)));
+            file.section("dampers").push(entry);
+        }
+        for friction in &acting.friction {
+            let entry = self.friction(friction);
+            file.section("friction").push(entry);
+        }
+        for cylinder in &acting.cylinders {
+            let name = self.drive(cylinder.drive).to_owned();
+            let entry = (name, Item::Table(self.cylinder(cylinder)));
+            file.section("cylinders").push(entry);
+        }
+        for motor in &acting.motors {
+            let name = self.drive(motor.drive).to_owned();
+            let entry = (name, Item::Table(self.motor(motor)));
+            file.section("motors").push(entry);
+        }
+    }
+
+    fn text(&self, key: &str, text: &str) -> (String, Item) {
+        (key.to_owned(), Item::text(text))
+    }
+
+    fn value(&self, key: &str, value: &Scalar, dimension: Dimension) -> (String, Item) {
+        (key.to_owned(), self.scalar(value, dimension))
+    }
+
+    /// A value that may be given.
+    fn given(
+        &self,
+        key: &str,
+        value: &Option<Scalar>,
+        dimension: Dimension,
+    ) -> Option<(String, Item)> {
+        value.as_ref().map(|v| self.value(key, v, dimension))
+    }
+
+    fn load(&mut self, load: &Load) -> Entries {
+        match &load.kind {
+            LoadKind::Force {
+                at,
+                components,
+                axes,
+            } => {
+                let [x, y] = components;
+                let x = self.amount(&load.name, x, Dimension::FORCE);
+                let y = self.amount(&load.name, y, Dimension::FORCE);
+                let mut entries = vec![
+                    ("force".to_owned(), Item::List(vec![x, y])),
+                    self.text("at", self.point(at.point)),
+                ];
+                if self.carrier(at.point) != Some(at.link) {
+                    entries.push(self.text("on", self.link(at.link)));
+                }
+                if *axes != FRAME {
+                    entries.push(self.text("axes", self.link(*axes)));
+                }
+                entries
+            }
+            LoadKind::Torque {
+                on,
+                against,
+                amount,
+            } => {
+                let torque = self.amount(&load.name, amount, Dimension::TORQUE);
+                let mut entries = vec![
+                    ("torque".to_owned(), torque),
+                    self.text("on", self.link(*on)),
+                ];
+                if *against != FRAME {
+                    entries.push(self.text("against", self.link(*against)));
+                }
+                entries
+            }
+        }
+    }
+
+    /// The link that a force at a point acts on where none is named.
+    fn carrier(&self, point: PointId) -> Option<LinkId> {
+        let links = &self.model.points.get(point.index())?.links;
+        let moving = links.iter().find(|l| **l != FRAME);
+        moving.or(links.first()).copied()
+    }
+
+    fn amount(&mut self, name: &str, amount: &Amount, dimension: Dimension) -> Item {
+        match amount {
+            Amount::Measure(measure) => match measure.as_constant() {
+                Some(x) if x.to_bits() == 0 => Item::Number(0.0),
+                _ => self.measure(measure, dimension),
+            },
+            Amount::Table {
+                over,
+                over_dimension,
+                at,
+                values,
+                period,
+                factor,
+            } => {
+                let of_factor = self.measures(factor).dimension;
+                let is = (dimension / of_factor).without_idle_angle();
+                let columns = [head("argument", *over_dimension), head("value", is)];
+                let table = self.table(name, &[(&columns[0], at), (&columns[1], values)]);
+                let mut entries = vec![
+                    ("table".to_owned(), table),
+                    ("over".to_owned(), self.measure(over, *over_dimension)),
+                    ("factor".to_owned(), self.scalar(factor, of_factor)),
+                ];
+                let period = period.map(Scalar::Const);
+                entries.extend(self.given("period", &period, *over_dimension));
+                Item::Table(entries)
+            }
+        }
+    }
+
+    fn mass(&self, mass: &PointMass) -> Entries {
+        // one at a point of its link has that point's place
+        let link = self.model.links.get(mass.on.index());
+        let mut points = link.into_iter().flat_map(|l| &l.points);
+        let at = match points.find(|p| p.place == mass.place) {
+            Some(point) => Item::text(self.point(point.point)),
+            None => self.place(&mass.place),
+        };
+        debug_assert!(
+            !matches!((&at, &mass.place), (Item::List(_), Place::Triangle { .. })),
+            "a corner of a triangle is a point"
+        );
+        vec![
+            self.text("on", self.link(mass.on)),
+            ("at".to_owned(), at),
+            self.value("mass", &mass.mass, Dimension::MASS),
+        ]
+    }
+
+    fn between(&self, between: &Between) -> (String, Item) {
+        match between {
+            Between::Points(a, b) => {
+                let pair = format!("{}-{}", self.point(a.point), self.point(b.point));
+                self.text("between", &pair)
+            }
+            Between::Links(a, b) => {
+                let links = [a, b].map(|l| Item::text(self.link(*l)));
+                ("links".to_owned(), Item::List(links.to_vec()))
+            }
+        }
+    }
+
+    fn spring(&self, spring: &Spring) -> Entries {
+        let force = tension(&spring.between);
+        let travel = match spring.between {
+            Between::Points(..) => Dimension::LENGTH,
+            Between::Links(..) => Dimension::ANGLE,
+        };
+        let per = force / travel;
+        let mut entries = vec![
+            self.between(&spring.between),
+            self.value("stiffness", &spring.stiffness, per),
+            self.value("free", &spring.free, travel),
+        ];
+        // without stiffness its force must be told, even if it has none
+        let values = self.model.parameter_values::<f64>();
+        let limp = crate::value(&spring.stiffness, &values) == 0.0;
+        if limp || !is_nothing(&spring.preload) {
+            entries.push(self.value("preload", &spring.preload, force));
+        }
+        if spring.acts != Acts::default() {
+            entries.push(self.text("acts", word_of(&ACTS, &spring.acts)));
+        }
+        if spring.stops.iter().any(Option::is_some) {
+            let stop = |stop: &Option<Scalar>| match stop {
+                Some(stop) => self.scalar(stop, travel),
+                None => Item::text("none"),
+            };
+            let stops = spring.stops.iter().map(stop).collect();
+            entries.push(("stops".to_owned(), Item::List(stops)));
+        }
+        entries.extend(self.given("stop_stiffness", &spring.stop_stiffness, per));
+        entries
+    }
+
+    fn damper(&self, damper: &Damper) -> Entries {
+        let per = match damper.between {
+            Between::Points(..) => Dimension::DAMPING,
+            Between::Links(..) => Dimension::TORSIONAL_DAMPING,
+        };
+        let mut entries = vec![
+            self.between(&damper.between),
+            self.value("damping", &damper.damping, per),
+        ];
+        entries.extend(self.given("closing", &damper.closing, per));
+        entries
+    }
+
+    fn friction(&self, friction: &Friction) -> (String, Item) {
+        let (name, viscous) = match friction.at {
+            FrictionAt::Pin(point) => (self.point(point), Dimension::TORSIONAL_DAMPING),
+            FrictionAt::Joint(joint) => (self.joint(joint), Dimension::DAMPING),
+            FrictionAt::All => ("all", Dimension::DAMPING),
+        };
+        let number = Dimension::NONE;
+        let mut entries = vec![self.value("coefficient", &friction.coefficient, number)];
+        let more = [
+            self.given("static", &friction.static_coefficient, number),
+            self.given("stribeck", &friction.stribeck_speed, Dimension::SPEED),
+            self.given("viscous", &friction.viscous, viscous),
+            self.given("radius", &friction.radius, Dimension::LENGTH),
+        ];
+        entries.extend(more.into_iter().flatten());
+        (name.to_owned(), Item::Table(entries))
+    }
+
+    fn cylinder(&self, cylinder: &HydraulicCylinder) -> Entries {
+        let pressure = Dimension::PRESSURE;
+        let mut entries = vec![
+            self.value("bore", &cylinder.bore, Dimension::LENGTH),
+            self.value("rod", &cylinder.rod, Dimension::LENGTH),
+        ];
+        let unless = |nothing: bool, entry: (String, Item)| (!nothing).then_some(entry);
+        let one = matches!(cylinder.count, Scalar::Const(1.0));
+        let more = [
+            self.given("supply", &cylinder.supply, pressure),
+            self.given("relief", &cylinder.relief, pressure),
+            unless(
+                is_nothing(&cylinder.back),
+                self.value("back", &cylinder.back, pressure),
+            ),
+            self.given("flow", &cylinder.flow, Dimension::FLOW),
+            unless(
+                is_nothing(&cylinder.friction),
+                self.value("friction", &cylinder.friction, Dimension::FORCE),
+            ),
+            unless(one, self.value("count", &cylinder.count, Dimension::NONE)),
+        ];
+        entries.extend(more.into_iter().flatten());
+        entries
+    }
+
+    fn motor(&self, motor: &Motor) -> Entries {
+        let pair = |(speed, torque): &(Scalar, Scalar)| {
+            Item::List(vec![
+                self.scalar(speed, Dimension::ANGULAR_SPEED),
+                self.scalar(torque, Dimension::TORQUE),
+            ])
+        };
+        let curve = motor.curve.iter().map(pair).collect();
+        vec![("curve".to_owned(), Item::List(curve))]
+    }
+}
+
+/// The head of a column in SI; of what no unit measures a bare number is in SI.
+fn head(name: &str, dimension: Dimension) -> String {
+    let unit = Unit::for_display(dimension, &[]);
+    match unit.text() {
+        "" => name.to_owned(),
+        unit => format!("{name} [{unit}]"),
+    }
+}

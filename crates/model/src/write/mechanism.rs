@@ -1,0 +1,163 @@
+//! `[joints]`, `[drives]` and `[assembly]`.
+
+use kempe_units::Dimension;
+
+use crate::item::{File, Item};
+use crate::key_table::{SIDES, word_of};
+use crate::model::{Drive, DriveKind, FRAME, HintKind, JointKind, Scalar, Side};
+use crate::write::spelling::Writer;
+
+type Entries = Vec<(String, Item)>;
+
+impl Writer<'_> {
+    pub fn mechanism(&mut self, file: &mut File) {
+        let model = self.model;
+        let joints = model.joints.iter();
+        *file.section("joints") = joints
+            .map(|j| (j.name.clone(), Item::Table(self.joint_entry(&j.kind))))
+            .collect();
+        let drives = model.drives.iter();
+        *file.section("drives") = drives
+            .map(|d| (d.name.clone(), Item::Table(self.drive_entry(d))))
+            .collect();
+        let hints = model.assembly.iter();
+        *file.section("assembly") = hints.map(|h| self.hint(&h.kind)).collect();
+    }
+
+    fn joint_entry(&self, kind: &JointKind) -> Entries {
+        let text = |key: &str, text: &str| (key.to_owned(), Item::text(text));
+        let angle = |key: &str, angle: &Scalar| {
+            let given = (!is_nothing(angle)).then(|| self.scalar(angle, Dimension::ANGLE));
+            given.map(|item| (key.to_owned(), item))
+        };
+        let mut entries;
+        match kind {
+            JointKind::Slider { at, on, angle: a } => {
+                entries = vec![
+                    text("slider", self.link(at.link)),
+                    text("at", self.point(at.point)),
+                    text("on", &self.line(*on)),
+                ];
+                entries.extend(angle("angle", a));
+            }
+            JointKind::Slot { pin, on } => {
+                entries = vec![
+                    text("pin", self.point(pin.point)),
+                    text("on", &self.line(*on)),
+                ];
+            }
+            JointKind::Weld {
+                a,
+                b,
+                at,
+                angle: by,
+            } => {
+                let links = [a, b].map(|l| Item::text(self.link(*l)));
+                entries = vec![
+                    ("weld".to_owned(), Item::List(links.to_vec())),
+                    text("at", self.point(*at)),
+                ];
+                entries.extend(angle("angle", by));
+            }
+            JointKind::Gears {
+                a,
+                b,
+                arm,
+                teeth_a,
+                teeth_b,
+                internal,
+                phase,
+            } => {
+                let links = [a, b].map(|l| Item::text(self.link(*l)));
+                // numbers, unless a parameter says that they are radii
+                let is = self.together(&[teeth_a, teeth_b], Dimension::NONE);
+                let teeth = [teeth_a, teeth_b].map(|t| self.scalar(t, is));
+                entries = vec![
+                    ("gears".to_owned(), Item::List(links.to_vec())),
+                    ("teeth".to_owned(), Item::List(teeth.to_vec())),
+                ];
+                if *arm != FRAME {
+                    entries.push(text("arm", self.link(*arm)));
+                }
+                if *internal {
+                    entries.push(("internal".to_owned(), Item::Flag(true)));
+                }
+                entries.extend(angle("phase", phase));
+            }
+            JointKind::Rack {
+                rack,
+                pinion,
+                center,
+                radius,
+                side,
+                offset,
+            } => {
+                entries = vec![
+                    text("rack", self.link(*rack)),
+                    text("pinion", self.link(*pinion)),
+                    text("center", self.point(*center)),
+                    ("radius".to_owned(), self.scalar(radius, Dimension::LENGTH)),
+                ];
+                if *side == Side::Right {
+                    entries.push(text("side", word_of(&SIDES, side)));
+                }
+                if !is_nothing(offset) {
+                    entries.push(("offset".to_owned(), self.scalar(offset, Dimension::LENGTH)));
+                }
+            }
+        }
+        entries
+    }
+
+    fn drive_entry(&mut self, drive: &Drive) -> Entries {
+        let text = |key: &str, text: &str| (key.to_owned(), Item::text(text));
+        let mut entries = match drive.kind {
+            DriveKind::Turn { link, relative_to } => {
+                let mut entries = vec![text("turns", self.link(link))];
+                if relative_to != FRAME {
+                    entries.push(text("relative_to", self.link(relative_to)));
+                }
+                entries
+            }
+            DriveKind::Cylinder { a, b } => {
+                let pair = format!("{}-{}", self.point(a.point), self.point(b.point));
+                vec![text("cylinder", &pair)]
+            }
+            DriveKind::Slide { joint } => vec![text("slides", self.joint(joint))],
+        };
+        self.law(drive, &mut entries);
+        entries
+    }
+
+    fn hint(&self, kind: &HintKind) -> (String, Item) {
+        let near = |item: Item| Item::Table(vec![("near".to_owned(), item)]);
+        match kind {
+            HintKind::Side {
+                point,
+                side,
+                from,
+                to,
+            } => {
+                let (from, to) = (self.point(*from), self.point(*to));
+                let side = format!("{} of {from} -> {to}", word_of(&SIDES, side));
+                (self.point(*point).to_owned(), Item::Text(side))
+            }
+            HintKind::NearPlace { point, x, y } => {
+                let place = [x, y].map(|c| self.scalar(c, Dimension::LENGTH));
+                (
+                    self.point(*point).to_owned(),
+                    near(Item::List(place.to_vec())),
+                )
+            }
+            HintKind::NearAngle { link, angle } => {
+                let angle = self.scalar(angle, Dimension::ANGLE);
+                (self.link(*link).to_owned(), near(angle))
+            }
+        }
+    }
+}
+
+/// Whether a value is the zero that stands for one that is not given.
+pub(super) fn is_nothing(scalar: &Scalar) -> bool {
+    matches!(scalar, Scalar::Const(x) if x.to_bits() == 0)
+}

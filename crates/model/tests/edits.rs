@@ -1,0 +1,423 @@
+//! Edits as data: parts renamed and deleted, entries added, places and paths.
+#![allow(clippy::unwrap_used)]
+
+use std::path::{Path, PathBuf};
+
+use kempe_model::{
+    DeleteError, Model, ModelFile, Part, PartKind, PathPart, STARTERS, add_entry, apply, complete,
+    delete, delete_with_dependants, namings, parts, path_at, places_of, rename,
+};
+use proptest::prelude::*;
+
+/// The texts of the examples, the starters and the tests that read, each with its folder.
+fn texts() -> Vec<(String, PathBuf)> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut texts: Vec<(String, PathBuf)> = STARTERS
+        .iter()
+        .map(|s| (s.text.to_owned(), root.to_owned()))
+        .collect();
+    for folder in [
+        "../../examples/gallery",
+        "../../examples/seeds",
+        "tests/good",
+    ] {
+        let mut files: Vec<PathBuf> = std::fs::read_dir(root.join(folder))
+            .unwrap()
+            .map(|entry| entry.unwrap().path())
+            .filter(|p| p.extension().is_some_and(|e| e == "toml"))
+            .collect();
+        files.sort();
+        let read = files
+            .iter()
+            .map(|p| (std::fs::read_to_string(p).unwrap(), root.join(folder)));
+        texts.extend(read);
+    }
+    texts
+}
+
+fn read(text: &str, folder: &Path) -> Result<Model, String> {
+    let mut tables = |name: &str| match std::fs::read_to_string(folder.join(name)) {
+        Ok(text) => Ok(text),
+        Err(_) => match name {
+            "measured.csv" => Ok("t [s];angle\n0;10\n0.5;20\n1;25\n2;20\n".to_owned()),
+            "card.csv" => Ok("p [bar],phi [deg]\n1,0\n50,360\n2,400\n1,719\n".to_owned()),
+            "plain.csv" => Ok("time,force\n0,10\n1,20\n".to_owned()),
+            _ => Err("no such file".to_owned()),
+        },
+    };
+    match Model::from_toml(text, "", &mut tables) {
+        Ok(checked) => Ok(checked.model),
+        Err(found) => Err(found
+            .iter()
+            .map(|d| d.render_plain("edited", text))
+            .collect()),
+    }
+}
+
+/// A name that no text has.
+fn other_name(kind: PartKind) -> &'static str {
+    match kind {
+        PartKind::Point => "Zz_other",
+        _ => "zz_other",
+    }
+}
+
+#[test]
+fn a_part_renamed_is_the_same_part_and_renamed_back_the_same_text() {
+    let mut renamed = 0;
+    for (text, folder) in texts() {
+        let model = read(&text, &folder).unwrap();
+        let written = model.to_toml();
+        for (part, _) in parts(&text) {
+            if part.name == "frame" {
+                assert_eq!(
+                    rename(&text, &part, "zz_other").unwrap_err().code,
+                    "bad-name"
+                );
+                continue;
+            }
+            let to = other_name(part.kind);
+            let edits = rename(&text, &part, to).unwrap();
+            let edited = apply(&text, &edits).unwrap();
+            let names_of = |file: &ModelFile| file.toml.replace(to, &part.name);
+            let changed = read(&edited, &folder).unwrap_or_else(|told| panic!("{part}: {told}"));
+            assert_eq!(names_of(&changed.to_toml()), written.toml, "{part}");
+            let back = rename(&edited, &Part::new(part.kind, to), &part.name).unwrap();
+            assert_eq!(apply(&edited, &back).unwrap(), text, "{part}");
+            // only names were changed
+            for edit in &edits {
+                assert_eq!(
+                    (&text[edit.span.clone()], edit.text.as_str()),
+                    (part.name.as_str(), to)
+                );
+            }
+            renamed += 1;
+        }
+    }
+    assert!(renamed > 500, "{renamed}");
+}
+
+#[test]
+fn what_cannot_be_renamed_is_refused() {
+    let text = "[parameters]\na = 3\nlong = \"5 N/a\"\n[links]\nframe = { A = [0, 0], D = [1, 0] }\nbar = { A-B = \"a * 1 m\" }\n[drives]\nm = { turns = \"bar\", speed = 1 }\n[measures]\nw = \"m + a * 1 rad\"\n[studies.turn]\nkind = \"motion\"\n[studies.slow]\nkind = \"motion\"\n";
+    let code = |kind, name: &str, to: &str| {
+        rename(text, &Part::new(kind, name), to).map_err(|d| (d.code, d.message))
+    };
+    for (kind, name, to, wanted) in [
+        (PartKind::Parameter, "b", "c", "unknown-name"),
+        (PartKind::Point, "b", "C", "unknown-name"),
+        (PartKind::Parameter, "a", "A", "bad-name"),
+        (PartKind::Parameter, "a", "a b", "bad-name"),
+        (PartKind::Parameter, "a", "pi", "bad-name"),
+        (PartKind::Point, "A", "a", "bad-name"),
+        (PartKind::Drive, "m", "note", "bad-name"),
+        (PartKind::Link, "bar", "frame", "bad-name"),
+        (PartKind::Parameter, "a", "bar", "name-clash"),
+        (PartKind::Point, "A", "B", "name-clash"),
+        (PartKind::Study, "turn", "SLOW", "name-clash"),
+        (PartKind::Study, "turn", "con", "bad-name"),
+        // `5 N/a` would be 5 newton per metre
+        (PartKind::Parameter, "a", "mm", "bad-name"),
+    ] {
+        assert_eq!(
+            code(kind, name, to).unwrap_err().0,
+            wanted,
+            "{name} -> {to}"
+        );
+    }
+    assert!(
+        code(PartKind::Parameter, "a", "mm")
+            .unwrap_err()
+            .1
+            .contains("something else")
+    );
+    assert_eq!(code(PartKind::Study, "turn", "Turn").unwrap().len(), 1);
+    let broken = format!("{text}[loads]\nx = {{ torque = \"2 * (a\", on = \"bar\" }}\n");
+    let told = rename(&broken, &Part::new(PartKind::Parameter, "a"), "c").unwrap_err();
+    assert_eq!(&broken[told.labels[0].span.clone()], "\"2 * (a\"");
+    // what does not name it may be broken
+    assert!(rename(&broken, &Part::new(PartKind::Drive, "m"), "motor").is_ok());
+}
+
+#[test]
+fn names_are_found_wherever_they_stand() {
+    let text = r#"
+[links]
+frame = { A = [0, 0], "D" = [6, 0] }
+'b1' = { "A-B" = 2 }
+[links.c]
+B-C = 5
+P = "left of B -> C"
+B-P = 3
+P-C = 4
+center = "P"
+[links.r]
+D - C = 4
+"D-E" = 1
+[joints]
+j = { pin = "P", on = "D -> C" }
+[assembly]
+C = "left of B -> D"
+[springs]
+b1 = { between = "P-D", stiffness = 0, preload = "x * 1 N", stops = ["none", 3] }
+[parameters]
+x = "1"
+none = 3
+[friction]
+C = { coefficient = "x", radius = 1 }
+[drives]
+m = { turns = "b1", law = [ { rise = "x * 1 deg", in = "none * 1 s", by = "harmonic" } ] }
+[measures]
+one = "x(C, c) + travel(j) * x + \u0073peed(C) * 1 s"
+two = """spring_force(b1) / x \
+   + 1 N"""
+[studies.s]
+kind = "forces"
+columns = "one"
+plot = [["one", "x(C)"], "path(C)", "hodograph(C, c)"]
+"#;
+    let count = |kind, name: &str| namings(text, &Part::new(kind, name)).len();
+    assert_eq!(count(PartKind::Point, "C"), 11);
+    assert_eq!(count(PartKind::Point, "P"), 6);
+    assert_eq!(count(PartKind::Point, "D"), 6);
+    assert_eq!(count(PartKind::Link, "c"), 3);
+    assert_eq!(count(PartKind::Link, "b1"), 2);
+    assert_eq!(count(PartKind::Spring, "b1"), 2);
+    assert_eq!(count(PartKind::Parameter, "x"), 6);
+    assert_eq!(count(PartKind::Parameter, "none"), 2);
+    assert_eq!(count(PartKind::Measure, "one"), 3);
+    for (part, _) in parts(text) {
+        for naming in namings(text, &part) {
+            assert_eq!(&text[naming.span.clone()], part.name);
+        }
+    }
+    // a key gets quotes when it needs them
+    let edits = rename(text, &Part::new(PartKind::Point, "C"), "É").unwrap();
+    let edited = apply(text, &edits).unwrap();
+    assert!(
+        edited.contains("\"B-É\" = 5") && !edited.contains("\nP-C"),
+        "{edited}"
+    );
+    assert!(
+        edited.contains("\"P-É\" = 4") && edited.contains("[assembly]\n\"É\" ="),
+        "{edited}"
+    );
+}
+
+#[test]
+fn a_part_that_nothing_names_goes_and_the_rest_reads() {
+    let kinds = [
+        PartKind::Parameter,
+        PartKind::Measure,
+        PartKind::Study,
+        PartKind::Load,
+        PartKind::Mass,
+        PartKind::Spring,
+        PartKind::Damper,
+    ];
+    let (mut gone, mut used) = (0, 0);
+    for (text, folder) in texts() {
+        for (part, _) in parts(&text) {
+            match delete(&text, &part) {
+                Ok(edits) => {
+                    let left = apply(&text, &edits).unwrap();
+                    assert!(namings(&left, &part).is_empty());
+                    assert!(
+                        toml::from_str::<toml::Table>(&left).is_ok(),
+                        "{part}: {left}"
+                    );
+                    if kinds.contains(&part.kind) {
+                        read(&left, &folder).unwrap_or_else(|told| panic!("{part}: {told}"));
+                        gone += 1;
+                    }
+                }
+                Err(DeleteError::InUse(by)) => {
+                    assert!(!by.is_empty());
+                    used += 1;
+                }
+                Err(other) => panic!("{part}: {other}"),
+            }
+        }
+    }
+    assert!(gone > 50 && used > 100, "{gone} {used}");
+}
+
+#[test]
+fn with_all_that_names_it_nothing_names_it() {
+    for (text, folder) in texts() {
+        for (part, _) in parts(&text) {
+            let gone = delete_with_dependants(&text, &part).unwrap();
+            let left = apply(&text, &gone.edits).unwrap();
+            assert!(gone.parts.contains(&part));
+            for part in &gone.parts {
+                assert!(namings(&left, part).is_empty(), "{part} in {left}");
+            }
+            assert!(
+                toml::from_str::<toml::Table>(&left).is_ok(),
+                "{part}: {left}"
+            );
+            // of what is left no name is missing
+            if let Err(told) = read(&left, &folder) {
+                assert!(!told.contains("[unknown-name]"), "{part}: {told}\n{left}");
+            }
+        }
+    }
+}
+
+#[test]
+fn every_key_and_value_is_found_by_its_path() {
+    for (text, _) in texts() {
+        // every few letters are enough to meet every key and value
+        for (at, _) in text.char_indices().step_by(17) {
+            if let Some(here) = path_at(&text, at) {
+                let path: Vec<&str> = here.path.iter().map(String::as_str).collect();
+                let places = places_of(&text, &path).unwrap();
+                match here.part {
+                    PathPart::Key => assert!(places.keys.contains(&here.span)),
+                    _ => assert_eq!(places.value, Some(here.span.clone())),
+                }
+                assert!(here.span.start <= at && at <= here.span.end);
+            }
+        }
+    }
+}
+
+#[test]
+fn entries_are_added_where_they_belong() {
+    let add = |text: &str, section: &str| {
+        let edit = add_entry(text, section, "new", "{ a = 1 }").unwrap();
+        apply(text, &[edit]).unwrap()
+    };
+    assert_eq!(add("", "loads"), "[loads]\nnew = { a = 1 }\n");
+    assert_eq!(add("[loads]\n", "loads"), "[loads]\nnew = { a = 1 }\n");
+    assert_eq!(
+        add("[loads]\nx = 1 # c", "loads"),
+        "[loads]\nx = 1 # c\nnew = { a = 1 }\n"
+    );
+    assert_eq!(
+        add("loads = { x = 1 }", "loads"),
+        "loads = { x = 1, new = { a = 1 } }"
+    );
+    assert_eq!(
+        add("[studies.a]\r\nk = 1\r\n", "studies"),
+        "[studies.a]\r\nk = 1\r\n\r\n[studies]\r\nnew = { a = 1 }\r\n"
+    );
+    assert_eq!(
+        add_entry("[a]\nnew = 1", "a", "new", "1").unwrap_err().code,
+        "name-clash"
+    );
+    assert_eq!(
+        add_entry("[a]\n", "a", "new", "1\nx = 2").unwrap_err().code,
+        "toml-syntax"
+    );
+    for (text, _) in texts() {
+        for section in ["parameters", "loads", "studies", "links"] {
+            let edited = add(&text, section);
+            let table: toml::Table = toml::from_str(&edited).unwrap();
+            assert_eq!(table[section]["new"]["a"].as_integer(), Some(1));
+        }
+    }
+}
+
+#[test]
+fn large_files_are_edited_in_time() {
+    let count = 20_000;
+    let mut text = "[parameters]\np0 = 1\n".to_owned();
+    for i in 1..count {
+        text += &format!("p{i} = \"p{} + 1\"\n", i - 1);
+    }
+    text += "[links]\nframe = { ";
+    for i in 0..count {
+        text += &format!("A{i} = [{i}, \"p{i} * 1 m\"], ");
+    }
+    text += "Z = [0, 0] }\n[studies.s]\nkind = \"motion\"\ncolumns = [\"time\"";
+    for i in 0..count {
+        text += &format!(", \"x(A{i})\"");
+    }
+    text += "]\n";
+    let first = Part::new(PartKind::Parameter, "p0");
+    let gone = delete_with_dependants(&text, &first).unwrap();
+    let left = apply(&text, &gone.edits).unwrap();
+    assert_eq!(
+        left,
+        "[parameters]\n[links]\nframe = { Z = [0, 0] }\n[studies.s]\nkind = \"motion\"\ncolumns = [\"time\"]\n"
+    );
+    assert_eq!(rename(&text, &first, "q").unwrap().len(), 3);
+    assert!(!complete(&text, text.len()).is_empty());
+}
+
+/// Pieces of model files, put together at random.
+fn soup() -> impl Strategy<Value = String> {
+    const PIECES: &[&str] = &[
+        "[links]\n",
+        "[studies.a]\n",
+        "frame = { ",
+        "A-B = 2",
+        "A = [0, ",
+        "\"left of A -> B\"",
+        "\"",
+        "'''",
+        "\n",
+        "\r\n",
+        " = ",
+        "}",
+        "]",
+        ",",
+        "[measures]\n",
+        "m = \"x(A)\"\n",
+        "# c",
+        "é",
+        ".",
+        "b.c = 3\n",
+        "\\",
+        "m",
+        "A",
+        "{",
+        "[",
+        "\"\"\"",
+    ];
+    proptest::collection::vec(proptest::sample::select(PIECES), 0..40).prop_map(|p| p.concat())
+}
+
+#[test]
+fn words_and_files_name_no_part() {
+    let text = "title = \"motion\"\ngravity = \"none\"\n[parameters]\nnone = \"9.8 m/s^2\"\nmotion = 1\ncentroid = 1\n[links]\nx = { A-B = \"motion\", center = \"centroid\" }\n[springs]\ns = { stops = [\"none\", \"motion\"], stiffness = \"none\" }\n[studies.t]\nkind = \"motion\"\nlater = \"motion\"\n";
+    let paths = |name: &str| -> Vec<String> {
+        let found = namings(text, &Part::new(PartKind::Parameter, name));
+        found.iter().map(|n| n.path.join(".")).collect()
+    };
+    // a parameter may be called like a word of the language
+    assert_eq!(
+        paths("none"),
+        ["gravity", "parameters.none", "springs.s.stiffness"]
+    );
+    assert_eq!(
+        paths("motion"),
+        [
+            "parameters.motion",
+            "links.x.A-B",
+            "springs.s.stops.1",
+            "studies.t.later"
+        ]
+    );
+    assert_eq!(paths("centroid"), ["parameters.centroid"]);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(512))]
+
+    #[test]
+    fn no_text_is_too_broken(text in soup(), at in 0usize..400) {
+        let _ = path_at(&text, at);
+        for (part, span) in parts(&text) {
+            prop_assert!(text.get(span).is_some());
+            if let Ok(edits) = rename(&text, &part, other_name(part.kind)) {
+                prop_assert!(apply(&text, &edits).is_ok());
+            }
+            if let Ok(gone) = delete_with_dependants(&text, &part) {
+                let left = apply(&text, &gone.edits);
+                prop_assert!(left.is_ok(), "{:?} {:?}", text, gone);
+            }
+        }
+    }
+}
