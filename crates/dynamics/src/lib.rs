@@ -37,7 +37,6 @@ pub mod energy;
 pub mod equilibrium;
 pub mod forces;
 pub mod friction;
-pub mod gear_mesh;
 pub mod inertia;
 pub mod instant;
 pub mod load;

@@ -183,14 +183,7 @@ fn gradients_are_the_derivatives_of_residuals() {
                     analytic[3 * g.body.index() + k][g.row] += g.to[k];
                 }
             });
-            let drive = match constraint {
-                Constraint::Direction { input, .. } => *input,
-                Constraint::Distance { input, .. } | Constraint::Travel { input, .. } => {
-                    Some(*input)
-                }
-                _ => None,
-            };
-            if let Some(drive) = drive {
+            if let Some(drive) = constraint.drive() {
                 analytic[3 * m.bodies + drive.index()][0] = to_drive;
             }
             // On its surface a direction's gradient is exact; off it a sine's derivative is the cosine.

@@ -116,6 +116,19 @@ impl Structure {
         self.marker(LinkPointRef { link, point })
     }
 
+    /// The link that carries a marker.
+    pub fn link_of(&self, marker: Marker) -> LinkId {
+        self.markers[marker.index as usize].link
+    }
+
+    /// The link that carries a line.
+    pub fn link_of_line(&self, line: LineRef) -> LinkId {
+        match self.lines[line.index as usize] {
+            LineSource::Points(from, _) => self.link_of(from),
+            LineSource::AxisOf(link) => link,
+        }
+    }
+
     /// Whether a point is one of the frame.
     pub fn is_fixed(&self, point: PointId) -> bool {
         let links = self.model.points.get(point.index()).map(|p| &p.links);

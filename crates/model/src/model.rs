@@ -337,6 +337,19 @@ impl JointKind {
             Self::Rack { rack, pinion, .. } => (rack, pinion),
         }
     }
+
+    /// The point that slides along a straight guide, and the guide, of a slider or slot.
+    pub fn guide(&self) -> Option<(LinkPointRef, Line)> {
+        match *self {
+            Self::Slider { at, on, .. } | Self::Slot { pin: at, on } => Some((at, on)),
+            _ => None,
+        }
+    }
+
+    /// Whether it keeps the angle between its links and so carries a moment.
+    pub fn holds_angle(&self) -> bool {
+        matches!(self, Self::Slider { .. } | Self::Weld { .. })
+    }
 }
 
 /// What is moved from outside.

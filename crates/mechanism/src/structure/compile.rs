@@ -4,7 +4,8 @@ use kempe_model::{DriveId, DriveKind, JointId, JointKind, Line, LinkPointRef, Po
 use kempe_units::Expr;
 
 use super::sources::ZERO;
-use super::{AngleSource, BodyId, Constraint, GearSource, LineRef, LineSource, Source, Structure};
+use super::{AngleSource, BodyId, GearSource, LineRef, LineSource, Marker, Source, Structure};
+use crate::constraint::{Coincide, Direction, Distance, Gears, OnLine, Rack, Travel};
 
 impl Structure {
     /// Pins made by shared point names.
@@ -28,7 +29,7 @@ impl Structure {
                 if !pinned.contains(&b.body) {
                     pinned.push(b.body);
                     self.constraints
-                        .push((Constraint::Coincide { a, b }, Source::Pin { point, link }));
+                        .push((Coincide { a, b }.into(), Source::Pin { point, link }));
                 }
             }
         }
@@ -48,22 +49,22 @@ impl Structure {
                     b: on.link,
                 });
                 let (a, b) = (self.body_of(at.link), self.body_of(on.link));
-                let constraint = Constraint::Direction {
+                let direction = Direction {
                     a,
                     b,
                     offset,
                     input: None,
                 };
-                self.constraints.push((constraint, source));
+                self.constraints.push((direction.into(), source));
                 if let Some(point) = self.marker(at) {
                     self.constraints
-                        .push((Constraint::OnLine { point, line }, source));
+                        .push((OnLine { point, line }.into(), source));
                 }
             }
             JointKind::Slot { pin, on } => {
                 if let (Some(point), Some(line)) = (self.marker(pin), self.line(on)) {
                     self.constraints
-                        .push((Constraint::OnLine { point, line }, source));
+                        .push((OnLine { point, line }.into(), source));
                 }
             }
             // Welded links are one body: nothing is left to constrain.
@@ -86,13 +87,15 @@ impl Structure {
                     links: [a, b, arm],
                 });
                 let (a, b, arm) = (self.body_of(a), self.body_of(b), self.body_of(arm));
-                let constraint = Constraint::Gears {
+                let pins = self.pin(a, arm).zip(self.pin(b, arm));
+                let gears = Gears {
                     a,
                     b,
                     arm,
                     constants,
+                    pins: pins.map(|(a, b)| [a, b]),
                 };
-                self.constraints.push((constraint, source));
+                self.constraints.push((gears.into(), source));
             }
             JointKind::Rack {
                 rack,
@@ -117,12 +120,12 @@ impl Structure {
                     link: pinion,
                     point: center,
                 }) {
-                    let constraint = Constraint::Rack {
+                    let rack = Rack {
                         line,
                         center,
                         constants,
                     };
-                    self.constraints.push((constraint, source));
+                    self.constraints.push((rack.into(), source));
                 }
             }
         }
@@ -141,34 +144,31 @@ impl Structure {
                     b: relative_to,
                 });
                 let (a, b) = (self.body_of(link), self.body_of(relative_to));
-                let constraint = Constraint::Direction {
+                let direction = Direction {
                     a,
                     b,
                     offset,
                     input: Some(id),
                 };
-                self.constraints.push((constraint, source));
+                self.constraints.push((direction.into(), source));
             }
             DriveKind::Cylinder { a, b } => {
                 if let (Some(a), Some(b)) = (self.marker(a), self.marker(b)) {
-                    let constraint = Constraint::Distance { a, b, input: id };
-                    self.constraints.push((constraint, source));
+                    let distance = Distance { a, b, input: id };
+                    self.constraints.push((distance.into(), source));
                 }
             }
             DriveKind::Slide { joint } => {
-                let (at, on) = match &self.model.joints[joint.index()].kind {
-                    JointKind::Slider { at, on, .. } | JointKind::Slot { pin: at, on } => {
-                        (*at, *on)
-                    }
-                    _ => return,
+                let Some((at, on)) = self.model.joints[joint.index()].kind.guide() else {
+                    return;
                 };
                 if let (Some(point), Some(line)) = (self.marker(at), self.line(on)) {
-                    let constraint = Constraint::Travel {
+                    let travel = Travel {
                         point,
                         line,
                         input: id,
                     };
-                    self.constraints.push((constraint, source));
+                    self.constraints.push((travel.into(), source));
                 }
             }
         }
@@ -188,6 +188,19 @@ impl Structure {
         Some(LineRef {
             body: from.body,
             index,
+        })
+    }
+
+    /// The marker on `body` of a point that pins it to `other`.
+    fn pin(&self, body: BodyId, other: BodyId) -> Option<Marker> {
+        self.markers.iter().find_map(|at| {
+            if self.body_of(at.link) != body {
+                return None;
+            }
+            let shared = self.model.points.get(at.point.index())?;
+            (shared.links.iter())
+                .any(|link| self.body_of(*link) == other)
+                .then(|| self.marker(*at))?
         })
     }
 
