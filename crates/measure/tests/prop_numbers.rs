@@ -236,6 +236,8 @@ fn gradients_are_the_derivatives_of_residuals() {
         "Travel",
         "Gears",
         "Rack",
+        "Belt",
+        "OnArc",
     ] {
         assert!(seen.get(kind).is_some_and(|n| *n > 10), "{kind}: {seen:?}");
     }

@@ -119,7 +119,7 @@ fn felt(constraint: &Constraint, idle: &[bool]) -> Vec<Unknown> {
         let body = touch.body();
         let (place, angle) = match touch {
             Touch::Point(_) => (true, !idle[body.index()]),
-            Touch::Line(_) => (true, true),
+            Touch::Whole(_) => (true, true),
             Touch::Angle(_) => (false, true),
         };
         list.extend(angle.then_some(Unknown::Angle(body)));
@@ -138,7 +138,7 @@ fn idle_bodies(structure: &Structure) -> Vec<bool> {
     for touch in constraints.flat_map(|(c, _)| c.touches()).flatten() {
         let felt = match touch {
             Touch::Point(marker) => !structure.at_origin(marker),
-            Touch::Line(_) | Touch::Angle(_) => true,
+            Touch::Whole(_) | Touch::Angle(_) => true,
         };
         idle[touch.body().index()] &= !felt;
     }

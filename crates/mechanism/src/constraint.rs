@@ -5,6 +5,7 @@
 //! answer is [`Joint`]; here stands only the list of kinds, and the way to the one asked. Rank, Newton groups, closure
 //! evidence and joint reactions all come from there; the closed forms are held to the rows.
 
+mod belt;
 mod coincide;
 mod direction;
 mod distance;
@@ -12,11 +13,13 @@ mod gears;
 mod isotropic;
 mod joint;
 mod loads;
+mod on_arc;
 mod on_line;
 mod rack;
 mod situation;
 mod travel;
 
+pub use self::belt::{Belt, Run};
 pub use self::coincide::Coincide;
 pub use self::direction::Direction;
 pub use self::distance::Distance;
@@ -24,6 +27,7 @@ pub use self::gears::Gears;
 pub use self::isotropic::{Isotropic, Vector};
 pub use self::joint::{Gradient, InAngles, Joint, Pairs, Touch, Unit};
 pub use self::loads::{LoadPoint, Rubs, Sliding};
+pub use self::on_arc::OnArc;
 pub use self::on_line::OnLine;
 pub use self::rack::Rack;
 pub use self::situation::{Input, Situation};
@@ -91,6 +95,10 @@ kinds! {
     Gears,
     /// A pinion rolling on a rack.
     Rack,
+    /// A belt or chain over two wheels on an arm.
+    Belt,
+    /// A point lies on a circular arc.
+    OnArc,
 }
 
 impl Joint for Constraint {

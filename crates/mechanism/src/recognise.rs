@@ -106,8 +106,11 @@ fn swing(body: BodyId, constraints: &[&Constraint]) -> Option<Step> {
         })),
         // The travel depends on the angle sought.
         Condition::Roll { .. } => None,
+        // The arc's centre is no named point of the body.
+        Condition::ArcThrough { .. } => None,
         condition @ (Condition::OnLine { own: tip, .. }
         | Condition::TravelOn { own: tip, .. }
+        | Condition::OnArc { own: tip, .. }
         | Condition::Radius { own: tip, .. }) => Some(Step::Swing(Swing {
             own,
             at,

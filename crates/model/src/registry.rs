@@ -106,7 +106,7 @@ const MEASURES: &[MeasureEntry] = &[
     row("reaction_across", &["reaction_across(P, link)", "reaction_across(joint, link)"], "force",
         "the component on a link along the link's own y axis", "reaction_across(B, coupler)"),
     row("reaction_moment", &["reaction_moment(joint)", "reaction_moment(joint, link)"], "torque",
-        "the moment that a slider or a weld carries", "reaction_moment(bore)"),
+        "the moment that a slider, a weld or a belt carries", "reaction_moment(bore)"),
     row("spring_force", &["spring_force(spring)"], "force; torque of a torsion spring",
         "the tension of a spring", "spring_force(return)"),
     row("damper_force", &["damper_force(damper)"], "force; torque of a torsion damper",

@@ -231,9 +231,10 @@ fn link() -> Value {
 fn joint(kind: &str, keys: &[&str]) -> Value {
     let required: &[&str] = match kind {
         "slider" => &["slider", "at", "on"],
-        "pin" => &["pin", "on"],
+        "pin" => &["pin"],
         "weld" => &["weld"],
         "gears" => &["gears", "teeth"],
+        "belt" => &["belt"],
         _ => &["rack", "pinion", "radius"],
     };
     json!({
@@ -241,11 +242,11 @@ fn joint(kind: &str, keys: &[&str]) -> Value {
         "additionalProperties": false,
         "required": required,
         "properties": keyed(keys, &|key| match key {
-            "on" => reference("line"),
-            "angle" | "phase" | "radius" | "offset" => reference("scalar"),
-            "weld" | "gears" => two(json!({ "type": "string" })),
-            "teeth" => two(reference("scalar")),
-            "internal" => json!({ "type": "boolean" }),
+            "on" | "arc" => reference("line"),
+            "angle" | "phase" | "radius" | "offset" | "pitch" => reference("scalar"),
+            "weld" | "gears" | "belt" => two(json!({ "type": "string" })),
+            "teeth" | "radii" => two(reference("scalar")),
+            "internal" | "crossed" | "closed" => json!({ "type": "boolean" }),
             "side" => json!({ "enum": ["left", "right", "left of", "right of"] }),
             _ => json!({ "type": "string" }),
         })

@@ -54,6 +54,7 @@ mod result;
 mod rows;
 mod sensitivities;
 mod sink;
+mod slot_ends;
 mod table;
 mod unit;
 pub mod verify;

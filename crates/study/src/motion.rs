@@ -20,6 +20,7 @@ use crate::progress::{Ear, Flow, Progress};
 use crate::result::{Event, StudyResult};
 use crate::rows::places_along;
 use crate::sink::RowSink;
+use crate::slot_ends::left_slots;
 use crate::table::{Column, Table};
 use crate::unit::Units;
 
@@ -126,6 +127,8 @@ pub(crate) fn run_along(
             (asked.scalars.get(index)).is_some_and(|q| asks_time_ratio(model, &q.measure));
         of_cycles && !is_cycle(model, &design.parameters)
     }));
+    let parameters = &design.parameters;
+    warnings.extend(left_slots(model, parameters, &frames, &rows.table, along));
     let met = events(&motion, &units, &parameters_met);
     if forces {
         warnings.extend(unbounded(model, &asked.scalars, &met));

@@ -1,12 +1,13 @@
 //! From a model and its poses to what the drawings need.
 
 use kempe_draw::{
-    DriveKind as DrivenPart, DriveView, Frame as DrawnFrame, Guide, JointView, LengthUnit,
-    LinkView, LoadRole, LoadUnit, LoadUnits, LoadView, MechanismView, TraceView, Wheel,
+    ArcGuide, DriveKind as DrivenPart, DriveView, Frame as DrawnFrame, Guide, JointView,
+    LengthUnit, LinkView, LoadRole, LoadUnit, LoadUnits, LoadView, MechanismView, TraceView, Wheel,
 };
 use kempe_dynamics::{ForceArrow, Origin};
 use kempe_model::{
-    Between, DriveKind, FRAME, JointKind, Line, LinkId, Model, MotionStudy, Plot, PointId, value,
+    Between, DriveKind, FRAME, JointKind, Line, LinkId, Model, MotionStudy, Plot, PointId, Scalar,
+    value,
 };
 use kempe_units::Dimension;
 
@@ -105,6 +106,42 @@ fn joint_view(model: &Model, kind: &JointKind, parameters: &[f64]) -> Option<Joi
             pin: pin.point.index(),
             guide: guide(*on),
         },
+        JointKind::ArcSlot { pin, on } => JointView::ArcSlot {
+            pin: pin.point.index(),
+            arc: ArcGuide {
+                link: on.link.index(),
+                from: on.from.index(),
+                to: on.to.index(),
+                radius: value(&on.radius, parameters),
+                side: on.side.sign(),
+                closed: on.closed,
+            },
+        },
+        JointKind::Belt {
+            a,
+            b,
+            arm,
+            radius_a,
+            radius_b,
+            crossed,
+            chain,
+            ..
+        } => {
+            let wheel = |link: LinkId, radius: &Scalar| {
+                Some(Wheel {
+                    link: link.index(),
+                    center: shared(model, link, *arm)?.index(),
+                    radius: value(radius, parameters),
+                    teeth: 0,
+                })
+            };
+            JointView::Belt {
+                a: wheel(*a, radius_a)?,
+                b: wheel(*b, radius_b)?,
+                crossed: *crossed,
+                chain: *chain,
+            }
+        }
         JointKind::Weld { a, b, at, .. } => JointView::Weld {
             at: at.index(),
             links: [a.index(), b.index()],
@@ -278,6 +315,7 @@ fn traced(model: &Model, study: Option<&MotionStudy>) -> Vec<PointId> {
             .iter()
             .flat_map(|j| match j.kind {
                 JointKind::Slider { on, .. } | JointKind::Slot { on, .. } => vec![on.from, on.to],
+                JointKind::ArcSlot { ref on, .. } => vec![on.from, on.to],
                 _ => Vec::new(),
             })
             .collect();

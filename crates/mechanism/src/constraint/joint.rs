@@ -7,7 +7,7 @@ use super::isotropic::Isotropic;
 use super::loads::{LoadPoint, Rubs, Sliding};
 use super::situation::Situation;
 use crate::plan::{Condition, Step};
-use crate::structure::{BodyId, LineRef, Marker, Structure};
+use crate::structure::{BodyId, Marker, Structure};
 
 /// Everything that a kind of constraint says of itself. Whoever needs it asks through
 /// [`Constraint`](super::Constraint) and never looks at the kind.
@@ -144,8 +144,8 @@ impl Unit {
 pub enum Touch {
     /// A point: the body's place, and its angle unless the point lies at its origin.
     Point(Marker),
-    /// A line: place and angle.
-    Line(LineRef),
+    /// A line or curve of the body: place and angle.
+    Whole(BodyId),
     /// The angle alone.
     Angle(BodyId),
 }
@@ -155,8 +155,7 @@ impl Touch {
     pub fn body(self) -> BodyId {
         match self {
             Self::Point(marker) => marker.body,
-            Self::Line(line) => line.body,
-            Self::Angle(body) => body,
+            Self::Whole(body) | Self::Angle(body) => body,
         }
     }
 }

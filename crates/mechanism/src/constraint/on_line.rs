@@ -24,7 +24,7 @@ impl Joint for OnLine {
     fn touches(&self) -> [Option<Touch>; 3] {
         [
             Some(Touch::Point(self.point)),
-            Some(Touch::Line(self.line)),
+            Some(Touch::Whole(self.line.body)),
             None,
         ]
     }

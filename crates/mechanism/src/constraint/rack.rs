@@ -25,7 +25,7 @@ pub struct Rack {
 impl Joint for Rack {
     fn touches(&self) -> [Option<Touch>; 3] {
         [
-            Some(Touch::Line(self.line)),
+            Some(Touch::Whole(self.line.body)),
             Some(Touch::Point(self.center)),
             Some(Touch::Angle(self.center.body)),
         ]

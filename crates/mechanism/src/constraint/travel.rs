@@ -26,7 +26,7 @@ impl Joint for Travel {
     fn touches(&self) -> [Option<Touch>; 3] {
         [
             Some(Touch::Point(self.point)),
-            Some(Touch::Line(self.line)),
+            Some(Touch::Whole(self.line.body)),
             None,
         ]
     }

@@ -2,7 +2,7 @@
 
 use kempe_model::DriveId;
 
-use crate::structure::{BodyId, LineRef, Marker};
+use crate::structure::{ArcRef, BodyId, LineRef, Marker};
 
 /// A condition on a body whose other side is already placed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,6 +48,20 @@ pub enum Condition {
         /// Index into the geometry's gear constants.
         constants: u32,
     },
+    /// A point of the body lies on a placed arc.
+    OnArc {
+        /// The body's point.
+        own: Marker,
+        /// The placed arc.
+        arc: ArcRef,
+    },
+    /// An arc of the body passes through a placed point.
+    ArcThrough {
+        /// The body's arc.
+        arc: ArcRef,
+        /// The placed point.
+        point: Marker,
+    },
     /// A point of the body is at the drive's distance from a placed point.
     Radius {
         /// The body's point.
@@ -57,6 +71,16 @@ pub enum Condition {
         /// The drive.
         input: DriveId,
     },
+}
+
+impl Condition {
+    /// Whether it leaves a point on a circle, and so two places on a line.
+    fn is_circle(&self) -> bool {
+        matches!(
+            self,
+            Self::Radius { .. } | Self::OnArc { .. } | Self::ArcThrough { .. }
+        )
+    }
 }
 
 /// A translating body that carries the point sought; without a pin the point is the body's origin.
@@ -247,9 +271,7 @@ impl Step {
     pub fn has_modes(&self) -> bool {
         match self {
             Step::Dyad { .. } | Step::Swing { .. } | Step::SwingLine { .. } => true,
-            Step::Cross { conditions, .. } => conditions
-                .iter()
-                .any(|c| matches!(c, Condition::Radius { .. })),
+            Step::Cross { conditions, .. } => conditions.iter().any(Condition::is_circle),
             _ => false,
         }
     }

@@ -1,11 +1,17 @@
 //! From a model's joints and drives to constraints.
 
-use kempe_model::{DriveId, DriveKind, JointId, JointKind, Line, LinkPointRef, PointId, Scalar};
+use kempe_model::{
+    CircularArc, DriveId, DriveKind, JointId, JointKind, Line, LinkId, LinkPointRef, PointId,
+    Scalar,
+};
 use kempe_units::Expr;
 
 use super::sources::ZERO;
-use super::{AngleSource, BodyId, GearSource, LineRef, LineSource, Marker, Source, Structure};
-use crate::constraint::{Coincide, Direction, Distance, Gears, OnLine, Rack, Travel};
+use super::{
+    AngleSource, ArcRef, ArcSource, BodyId, GearSource, LineRef, LineSource, Marker, Source,
+    Structure,
+};
+use crate::constraint::{Belt, Coincide, Direction, Distance, Gears, OnArc, OnLine, Rack, Travel};
 
 impl Structure {
     /// Pins made by shared point names.
@@ -67,6 +73,11 @@ impl Structure {
                         .push((OnLine { point, line }.into(), source));
                 }
             }
+            JointKind::ArcSlot { pin, on } => {
+                if let (Some(point), Some(arc)) = (self.marker(pin), self.arc(on)) {
+                    self.constraints.push((OnArc { point, arc }.into(), source));
+                }
+            }
             // Welded links are one body: nothing is left to constrain.
             JointKind::Weld { .. } => {}
             JointKind::Gears {
@@ -78,24 +89,21 @@ impl Structure {
                 internal,
                 phase,
             } => {
-                let second = signed(teeth_b, internal);
-                let constant = Expr::Mul(Box::new(teeth_a.clone()), Box::new(phase));
-                let constants = self.gear(GearSource {
-                    first: teeth_a,
-                    second,
-                    constant,
-                    links: [a, b, arm],
-                });
-                let (a, b, arm) = (self.body_of(a), self.body_of(b), self.body_of(arm));
-                let pins = self.pin(a, arm).zip(self.pin(b, arm));
-                let gears = Gears {
-                    a,
-                    b,
-                    arm,
-                    constants,
-                    pins: pins.map(|(a, b)| [a, b]),
-                };
-                self.constraints.push((gears.into(), source));
+                let wheels = self.wheels([a, b, arm], teeth_a, signed(teeth_b, internal), phase);
+                self.constraints.push((wheels.into(), source));
+            }
+            JointKind::Belt {
+                a,
+                b,
+                arm,
+                radius_a,
+                radius_b,
+                crossed,
+                phase,
+                ..
+            } => {
+                let wheels = self.wheels([a, b, arm], radius_a, signed(radius_b, !crossed), phase);
+                self.constraints.push((Belt { wheels }.into(), source));
             }
             JointKind::Rack {
                 rack,
@@ -191,6 +199,31 @@ impl Structure {
         })
     }
 
+    /// Two wheels on an arm whose angles there are tied: `first angle_a + second angle_b = first phase`.
+    fn wheels(
+        &mut self,
+        links: [LinkId; 3],
+        first: Scalar,
+        second: Scalar,
+        phase: Scalar,
+    ) -> Gears {
+        let constants = self.gear(GearSource {
+            constant: Expr::Mul(Box::new(first.clone()), Box::new(phase)),
+            first,
+            second,
+            links,
+        });
+        let [a, b, arm] = links.map(|link| self.body_of(link));
+        let pins = self.pin(a, arm).zip(self.pin(b, arm));
+        Gears {
+            a,
+            b,
+            arm,
+            constants,
+            pins: pins.map(|(a, b)| [a, b]),
+        }
+    }
+
     /// The marker on `body` of a point that pins it to `other`.
     fn pin(&self, body: BodyId, other: BodyId) -> Option<Marker> {
         self.markers.iter().find_map(|at| {
@@ -201,6 +234,26 @@ impl Structure {
             (shared.links.iter())
                 .any(|link| self.body_of(*link) == other)
                 .then(|| self.marker(*at))?
+        })
+    }
+
+    fn arc(&mut self, arc: CircularArc) -> Option<ArcRef> {
+        let point = |point| {
+            self.marker(LinkPointRef {
+                link: arc.link,
+                point,
+            })
+        };
+        let (from, to) = (point(arc.from)?, point(arc.to)?);
+        self.arcs.push(ArcSource {
+            from,
+            to,
+            radius: arc.radius,
+            side: arc.side.sign(),
+        });
+        Some(ArcRef {
+            body: from.body,
+            index: self.arcs.len() as u32 - 1,
         })
     }
 

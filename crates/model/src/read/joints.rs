@@ -4,7 +4,10 @@ use kempe_units::{Dimension, Expr};
 
 use crate::diagnostic::Diagnostic;
 use crate::document::{Key, Node};
-use crate::model::{FRAME, Joint, JointId, JointKind, LinkId, LinkPointRef, PointId, Side};
+use crate::model::{
+    CircularArc, FRAME, Joint, JointId, JointKind, Line, LinkId, LinkPointRef, PointId, Scalar,
+    Side,
+};
 use crate::read::context::Context;
 use crate::read::entry::{Entry, link_of, on_link};
 
@@ -17,7 +20,7 @@ pub(crate) const JOINT_KEYS: &[(&str, &[&str], &str)] = &[
     ),
     (
         "pin",
-        &["pin", "on"],
+        &["pin", "on", "arc", "radius", "side", "closed"],
         "slot = { pin = \"B\", on = \"O -> P\" }",
     ),
     (
@@ -31,12 +34,19 @@ pub(crate) const JOINT_KEYS: &[(&str, &[&str], &str)] = &[
         "mesh = { gears = [\"sun\", \"planet\"], arm = \"carrier\", teeth = [20, 40] }",
     ),
     (
+        "belt",
+        &["belt", "arm", "radii", "teeth", "pitch", "crossed", "phase"],
+        "belt = { belt = [\"pulley\", \"wheel\"], radii = [20, 60] }",
+    ),
+    (
         "rack",
         &["rack", "pinion", "center", "radius", "side", "offset"],
         "rack = { rack = \"bar\", pinion = \"wheel\", radius = \"20 mm\" }",
     ),
 ];
 
+/// A radius this little, in parts of it, below half the distance of an arc's ends is that half: a semicircle.
+const FLAT: f64 = 1e-12;
 /// A file has at most so many joints of its own.
 const MAX_JOINTS: usize = 10_000;
 
@@ -95,14 +105,30 @@ fn read_joint(cx: &mut Context<'_>, key: &Key, node: &Node) -> Option<JointKind>
         "pin" => slot(cx, &entry),
         "weld" => weld(cx, &entry),
         "gears" => gears(cx, &entry),
+        "belt" => belt(cx, &entry),
         _ => rack(cx, &entry),
     }
 }
 
 impl Entry<'_> {
-    fn angle(&self, cx: &mut Context<'_>, key: &str) -> Option<crate::model::Scalar> {
+    fn angle(&self, cx: &mut Context<'_>, key: &str) -> Option<Scalar> {
         self.scalar(cx, key, Dimension::ANGLE)
             .map(|angle| angle.unwrap_or(Expr::Const(0.0)))
+    }
+
+    fn flag(&self, cx: &mut Context<'_>, key: &str) -> Option<bool> {
+        match self.table.get(key) {
+            Some(node) => cx.flag(node, &format!("`{key}`")),
+            None => Some(false),
+        }
+    }
+
+    /// The link that carries both axes of two wheels: the frame unless said otherwise.
+    fn arm(&self, cx: &mut Context<'_>) -> Option<LinkId> {
+        match self.table.get("arm") {
+            Some(node) => link_of(cx, node, &format!("`arm` of {}", self.place)),
+            None => Some(FRAME),
+        }
     }
 
     fn different(&self, cx: &mut Context<'_>, a: LinkId, b: LinkId) -> Option<()> {
@@ -148,8 +174,24 @@ fn slot(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<JointKind> {
         let text = cx.text(node, "`pin`", "\"B\"")?;
         Some((cx.point_text(text)?, node))
     });
-    let on = entry.required(cx, "on").and_then(|node| {
-        let text = cx.text(node, "`on`", "\"O -> P\"")?;
+    let (key, curved) = match (entry.table.get("on"), entry.table.get("arc")) {
+        (Some(_), Some(node)) => {
+            cx.push(
+                Diagnostic::error(
+                    "over-specified",
+                    format!("{} lies on a line and on an arc", entry.place),
+                )
+                .at(node.span.clone(), "")
+                .help("keep `on` for a straight slot, `arc` for a curved one"),
+            );
+            return None;
+        }
+        (None, Some(node)) => ("arc", Some(node)),
+        _ => ("on", None),
+    };
+    entry.idle(cx, &["radius", "side", "closed"], "arc");
+    let on = entry.required(cx, key).and_then(|node| {
+        let text = cx.text(node, &format!("`{key}`"), "\"O -> P\"")?;
         cx.line(text, None)
     });
     let ((pin, node), on) = (pin?, on?);
@@ -190,10 +232,69 @@ fn slot(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<JointKind> {
         );
         return None;
     }
-    Some(JointKind::Slot {
-        pin: LinkPointRef { link, point: pin },
-        on,
+    let pin = LinkPointRef { link, point: pin };
+    match curved {
+        None => Some(JointKind::Slot { pin, on }),
+        Some(node) => Some(JointKind::ArcSlot {
+            pin,
+            on: arc(cx, entry, node, on)?,
+        }),
+    }
+}
+
+/// The arc over a line between two points, told at `node`.
+fn arc(cx: &mut Context<'_>, entry: &Entry<'_>, node: &Node, on: Line) -> Option<CircularArc> {
+    let radius = entry.required_positive(cx, "radius", Dimension::LENGTH, false);
+    let side = match entry.table.get("side") {
+        None => Some(Side::Left),
+        Some(node) => side_word(
+            cx,
+            node,
+            "side = \"left\": the centre lies on the left of the way along the arc's ends, or side = \"right\"",
+        ),
+    };
+    let closed = entry.flag(cx, "closed");
+    let (radius, side, closed) = (radius?, side?, closed?);
+    let least = 0.5 * distance_on(cx, on.link, on.from, on.to)?;
+    let given = cx.number(&radius);
+    if !(least > 0.0 && given >= least * (1.0 - FLAT)) {
+        let (least, given) = (
+            cx.show(least, Dimension::LENGTH),
+            cx.show(given, Dimension::LENGTH),
+        );
+        cx.push(
+            Diagnostic::error(
+                "contradictory-values",
+                format!("{}: no arc with this radius joins these points", entry.place),
+            )
+            .at(
+                node.span.clone(),
+                format!("half their distance is {least}, the radius is {given}"),
+            )
+            .help("give two points apart from each other and a radius of at least half their distance"),
+        );
+        return None;
+    }
+    Some(CircularArc {
+        link: on.link,
+        from: on.from,
+        to: on.to,
+        radius,
+        side,
+        closed,
     })
+}
+
+/// Distance of two points of a link with the parameters' values, m.
+fn distance_on(cx: &Context<'_>, link: LinkId, a: PointId, b: PointId) -> Option<f64> {
+    let link = cx.model.links.get(link.index())?;
+    let places: Vec<[f64; 2]> = link.evaluate(&cx.values);
+    let at = |point: PointId| {
+        let index = link.points.iter().position(|p| p.point == point)?;
+        places.get(index).copied()
+    };
+    let (a, b) = (at(a)?, at(b)?);
+    Some(kempe_number::math::hypot(a[0] - b[0], a[1] - b[1]))
 }
 
 fn weld(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<JointKind> {
@@ -251,10 +352,7 @@ fn two_links(cx: &mut Context<'_>, entry: &Entry<'_>, key: &str) -> Option<(Link
 
 fn gears(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<JointKind> {
     let links = two_links(cx, entry, "gears");
-    let arm = match entry.table.get("arm") {
-        Some(node) => link_of(cx, node, &format!("`arm` of {}", entry.place)),
-        None => Some(FRAME),
-    };
+    let arm = entry.arm(cx);
     let teeth = entry.pair(cx, "teeth").and_then(|(a, b)| {
         // teeth are numbers, radii are lengths; both of a kind
         let what = format!("`teeth` of {}", entry.place);
@@ -270,10 +368,7 @@ fn gears(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<JointKind> {
         );
         Some((a?, b?))
     });
-    let internal = match entry.table.get("internal") {
-        Some(node) => cx.flag(node, "`internal`"),
-        None => Some(false),
-    };
+    let internal = entry.flag(cx, "internal");
     let phase = entry.angle(cx, "phase");
     let ((a, b), arm, (teeth_a, teeth_b)) = (links?, arm?, teeth?);
     for gear in [a, b] {
@@ -298,6 +393,98 @@ fn gears(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<JointKind> {
     })
 }
 
+fn belt(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<JointKind> {
+    let links = two_links(cx, entry, "belt");
+    let arm = entry.arm(cx);
+    entry.idle(cx, &["pitch"], "teeth");
+    let chain = entry.table.get("teeth");
+    if let (Some(_), Some(node)) = (chain, entry.table.get("radii")) {
+        cx.push(
+            Diagnostic::error(
+                "over-specified",
+                format!("{} has radii and teeth", entry.place),
+            )
+            .at(node.span.clone(), "")
+            .help("keep `radii` for a belt, `teeth` and `pitch` for a chain or a toothed belt"),
+        );
+        return None;
+    }
+    let both = |cx: &mut Context<'_>, key: &str, dimension| {
+        let (a, b) = entry.pair(cx, key)?;
+        let what = format!("`{key}` of {}", entry.place);
+        let (a, b) = (
+            cx.positive(a, dimension, &what, false),
+            cx.positive(b, dimension, &what, false),
+        );
+        Some((a?, b?))
+    };
+    let radii = match chain {
+        None => both(cx, "radii", Dimension::LENGTH),
+        Some(_) => {
+            let pitch = entry.required_positive(cx, "pitch", Dimension::LENGTH, false);
+            let teeth = both(cx, "teeth", Dimension::NONE);
+            // So many pitches are the way round, whatever the corners of a chain.
+            let radius = |teeth, pitch: &Scalar| {
+                let round = Expr::Mul(Box::new(teeth), Box::new(pitch.clone()));
+                Expr::Div(
+                    Box::new(round),
+                    Box::new(Expr::Const(std::f64::consts::TAU)),
+                )
+            };
+            pitch
+                .zip(teeth)
+                .map(|(pitch, (a, b))| (radius(a, &pitch), radius(b, &pitch)))
+        }
+    };
+    let crossed = entry.flag(cx, "crossed");
+    let phase = entry.angle(cx, "phase");
+    let ((a, b), arm, (radius_a, radius_b)) = (links?, arm?, radii?);
+    let mut axes = Vec::new();
+    for wheel in [a, b] {
+        entry.different(cx, wheel, arm)?;
+        let Some(axis) = shared_point(cx, wheel, arm) else {
+            let (wheel, arm) = (cx.link_name(wheel).to_owned(), cx.link_name(arm).to_owned());
+            cx.push(
+                Diagnostic::error("no-common-point", format!("{}: wheel `{wheel}` has no axis on the arm `{arm}`", entry.place))
+                    .at(entry.key.span.clone(), format!("`{wheel}` and `{arm}` share no point"))
+                    .help("one link carries both axes, so that the belt keeps its length: name each wheel's centre on it, and the link as `arm`"),
+            );
+            return None;
+        };
+        axes.push(axis);
+    }
+    let apart = distance_on(cx, arm, axes[0], axes[1])?;
+    let sum = cx.number(&radius_a) + cx.number(&radius_b);
+    if !(apart > sum) {
+        let (apart, sum) = (
+            cx.show(apart, Dimension::LENGTH),
+            cx.show(sum, Dimension::LENGTH),
+        );
+        cx.push(
+            Diagnostic::error(
+                "contradictory-values",
+                format!("{}: the wheels overlap", entry.place),
+            )
+            .at(
+                entry.key.span.clone(),
+                format!("their axes are {apart} apart, their radii are {sum} together"),
+            )
+            .help("a belt runs over two wheels beside each other: smaller wheels, or axes further apart"),
+        );
+        return None;
+    }
+    Some(JointKind::Belt {
+        a,
+        b,
+        arm,
+        radius_a,
+        radius_b,
+        crossed: crossed?,
+        chain: chain.is_some(),
+        phase: phase?,
+    })
+}
+
 fn rack(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<JointKind> {
     let rack = entry.link(cx, "rack");
     let pinion = entry.link(cx, "pinion");
@@ -311,7 +498,11 @@ fn rack(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<JointKind> {
     });
     let side = match entry.table.get("side") {
         None => Some(Side::Left),
-        Some(node) => rack_side(cx, node),
+        Some(node) => side_word(
+            cx,
+            node,
+            "side = \"left\": the pinion lies on the left of the rack's x axis, or side = \"right\"",
+        ),
     };
     let offset = match entry.table.get("offset") {
         None => Some(Expr::Const(0.0)),
@@ -337,7 +528,7 @@ fn rack(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<JointKind> {
     })
 }
 
-fn rack_side(cx: &mut Context<'_>, node: &Node) -> Option<Side> {
+fn side_word(cx: &mut Context<'_>, node: &Node, help: &str) -> Option<Side> {
     let text = cx.text(node, "`side`", "\"left\"")?;
     match text.content.trim().trim_end_matches(" of") {
         "left" => Some(Side::Left),
@@ -346,7 +537,7 @@ fn rack_side(cx: &mut Context<'_>, node: &Node) -> Option<Side> {
             cx.push(
                 Diagnostic::error("bad-side", "`left` or `right` expected")
                     .at(node.span.clone(), "")
-                    .help("side = \"left\": the pinion lies on the left of the rack's x axis, or side = \"right\""),
+                    .help(help),
             );
             None
         }
