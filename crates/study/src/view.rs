@@ -245,17 +245,13 @@ fn drives(model: &Model, parameters: &[f64]) -> Vec<DriveView> {
                 a: a.point.index(),
                 b: b.point.index(),
             },
-            DriveKind::Slide { joint } => match model.joints.get(joint.index())?.kind {
-                JointKind::Slider { at, on, .. } => DrivenPart::Slide {
+            DriveKind::Slide { joint } => {
+                let (at, on) = model.joints.get(joint.index())?.kind.guide()?;
+                DrivenPart::Slide {
                     at: at.point.index(),
                     guide: guide(on),
-                },
-                JointKind::Slot { pin, on } => DrivenPart::Slide {
-                    at: pin.point.index(),
-                    guide: guide(on),
-                },
-                _ => return None,
-            },
+                }
+            }
         };
         let (from, duration) = (
             drive.law.at(0.0, parameters),
@@ -313,10 +309,9 @@ fn traced(model: &Model, study: Option<&MotionStudy>) -> Vec<PointId> {
         let guides: Vec<PointId> = model
             .joints
             .iter()
-            .flat_map(|j| match j.kind {
-                JointKind::Slider { on, .. } | JointKind::Slot { on, .. } => vec![on.from, on.to],
-                JointKind::ArcSlot { ref on, .. } => vec![on.from, on.to],
-                _ => Vec::new(),
+            .flat_map(|j| match &j.kind {
+                JointKind::ArcSlot { on, .. } => vec![on.from, on.to],
+                kind => (kind.guide()).map_or_else(Vec::new, |(_, on)| vec![on.from, on.to]),
             })
             .collect();
         let free = model.points.iter().enumerate().filter(|(index, p)| {
