@@ -11,7 +11,8 @@ mod support;
 use std::collections::BTreeMap;
 
 use kempe_measure::Sampler;
-use kempe_mechanism::structure::{BodyId, Constraint};
+use kempe_mechanism::constraint::Joint;
+use kempe_mechanism::structure::BodyId;
 use kempe_mechanism::{Design, Geometry, Input, Pose, Situation};
 use kempe_model::{DriveKind, Measure};
 use kempe_motion::Motion;
