@@ -70,7 +70,12 @@ impl Roles {
                 self.guide(guide);
             }
             JointView::Weld { at, .. } => self.with(at, |role| role.welds += 1),
-            JointView::Gears { a, b, .. } => {
+            JointView::ArcSlot { pin, arc } => {
+                self.with(pin, |role| role.pinned = true);
+                self.with(arc.from, |role| role.guides = true);
+                self.with(arc.to, |role| role.guides = true);
+            }
+            JointView::Gears { a, b, .. } | JointView::Belt { a, b, .. } => {
                 for wheel in [a, b] {
                     self.with(wheel.center, |role| role.pinned = true);
                     self.body(wheel.link);

@@ -242,7 +242,7 @@ fn add_frame(bounds: &mut Bounds, view: &MechanismView, roles: &Roles, frame: &F
     }
     for joint in &view.joints {
         match joint {
-            JointView::Gears { a, b, .. } => {
+            JointView::Gears { a, b, .. } | JointView::Belt { a, b, .. } => {
                 for wheel in [a, b] {
                     point(frame, wheel.center)
                         .into_iter()

@@ -131,6 +131,23 @@ pub struct Guide {
     pub to: usize,
 }
 
+/// A circular arc of a link through two of its points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ArcGuide {
+    /// The link that carries it.
+    pub link: usize,
+    /// The point it starts from.
+    pub from: usize,
+    /// The point it ends at.
+    pub to: usize,
+    /// Radius, m.
+    pub radius: f64,
+    /// +1 with the centre on the left of the way from start to end, -1 on the right.
+    pub side: f64,
+    /// It is the whole circle, not only the shorter part between start and end.
+    pub closed: bool,
+}
+
 /// A gear.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wheel {
@@ -163,6 +180,13 @@ pub enum JointView {
         /// The slot.
         guide: Guide,
     },
+    /// A pin in a curved slot.
+    ArcSlot {
+        /// The pin.
+        pin: usize,
+        /// The slot.
+        arc: ArcGuide,
+    },
     /// Two links made one.
     Weld {
         /// The point they share.
@@ -178,6 +202,17 @@ pub enum JointView {
         b: Wheel,
         /// The larger of them is a ring with its teeth inside.
         internal: bool,
+    },
+    /// A belt or chain over two wheels whose centres keep their distance.
+    Belt {
+        /// First wheel.
+        a: Wheel,
+        /// Second wheel.
+        b: Wheel,
+        /// Its straight runs cross.
+        crossed: bool,
+        /// It is a chain.
+        chain: bool,
     },
     /// A pinion on a rack. The pitch line is parallel to the x axis of the rack's link and touches the pinion.
     Rack {

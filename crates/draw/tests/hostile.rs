@@ -131,6 +131,27 @@ fn joint() -> impl Strategy<Value = JointView> {
             b,
             internal
         }),
+        (wheel(), wheel(), any::<bool>(), any::<bool>()).prop_map(|(a, b, crossed, chain)| {
+            JointView::Belt {
+                a,
+                b,
+                crossed,
+                chain,
+            }
+        }),
+        (i.clone(), guide(), number(), number(), any::<bool>()).prop_map(
+            |(pin, guide, radius, side, closed)| JointView::ArcSlot {
+                pin,
+                arc: ArcGuide {
+                    link: guide.link,
+                    from: guide.from,
+                    to: guide.to,
+                    radius,
+                    side,
+                    closed,
+                },
+            }
+        ),
         (i.clone(), wheel(), number()).prop_map(|(link, pinion, side)| JointView::Rack {
             link,
             pinion,

@@ -210,7 +210,7 @@ fn inputs(at: &Instant<f64>) -> ([[f64; 4]; 6], [[f64; 4]; 6]) {
 }
 
 fn kernel_of(mechanism: &Mechanism, forces: &Forces<f64>) -> Kernel {
-    use kempe_mechanism::structure::Constraint;
+    use kempe_mechanism::constraint::{Coincide, Constraint};
     let mut bodies = [(0.0, 0.0, [0.0; 2]); 5];
     for mass in &forces.acting.masses {
         bodies[mass.body.index() - 1] = (mass.mass, mass.moment, mass.center);
@@ -218,7 +218,7 @@ fn kernel_of(mechanism: &Mechanism, forces: &Forces<f64>) -> Kernel {
     let mut pins = [(0, 0, [0.0; 2], [0.0; 2]); 7];
     let mut at = 0;
     for (constraint, _) in &mechanism.constraints {
-        if let Constraint::Coincide { a, b } = constraint {
+        if let Constraint::Coincide(Coincide { a, b }) = constraint {
             let local = |m| forces.design.geometry.marker(m);
             pins[at] = (a.body.index(), b.body.index(), local(*a), local(*b));
             at += 1;

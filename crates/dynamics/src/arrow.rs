@@ -1,7 +1,7 @@
 //! Everything that acts on the links of one instant as arrows to be drawn.
 
 use kempe_mechanism::structure::Marker;
-use kempe_model::{DriveKind, FRAME, Joint, JointKind, LinkId, LinkPointRef};
+use kempe_model::{DriveKind, FRAME, Joint, LinkId, LinkPointRef};
 
 use crate::ends::Ends;
 use crate::forces::Forces;
@@ -202,7 +202,7 @@ impl<T: ForceNumber> Forces<T> {
 
 /// Whether a joint carries a moment.
 fn holds_angle(joint: Option<&Joint>) -> bool {
-    joint.is_some_and(|j| matches!(j.kind, JointKind::Slider { .. } | JointKind::Weld { .. }))
+    joint.is_some_and(|j| j.kind.holds_angle())
 }
 
 fn is_turn(drive: Option<&kempe_model::Drive>) -> bool {

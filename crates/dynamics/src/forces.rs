@@ -1,7 +1,8 @@
 //! Forces of one instant, by both routes.
 
-use kempe_mechanism::structure::{Constraint, LineSource, Source};
-use kempe_mechanism::{BodyId, Design, Mechanism};
+use kempe_mechanism::constraint::Joint;
+use kempe_mechanism::structure::Source;
+use kempe_mechanism::{BodyId, Design};
 use kempe_model::{DriveId, LinkId};
 use kempe_number::Number as _;
 use kempe_units::Dimension;
@@ -89,7 +90,7 @@ impl<T: ForceNumber> Forces<T> {
         let (links, bodies) = (mechanism.model.links.len(), mechanism.bodies);
         let sides = (mechanism.constraints.iter())
             .map(|(constraint, _)| {
-                (links_of(mechanism, constraint).into_iter())
+                (constraint.links(mechanism).into_iter())
                     .map(|link| Side {
                         link,
                         body: mechanism.body_of(link),
@@ -279,32 +280,5 @@ impl Forces<Rates> {
         };
         let turns_about = load.value().abs() < SENSE_CHANGES * typical * per_drive.abs();
         holds && !turns_about
-    }
-}
-
-/// The links that a constraint acts on, one for each of its bodies.
-fn links_of(mechanism: &Mechanism, constraint: &Constraint) -> Vec<LinkId> {
-    let marker = |m: kempe_mechanism::structure::Marker| mechanism.markers[m.index as usize].link;
-    let line = |l: kempe_mechanism::structure::LineRef| match mechanism.lines[l.index as usize] {
-        LineSource::Points(from, _) => marker(from),
-        LineSource::AxisOf(link) => link,
-    };
-    match *constraint {
-        Constraint::Coincide { a, b } => vec![marker(b), marker(a)],
-        Constraint::Distance { a, b, .. } => vec![marker(b), marker(a)],
-        Constraint::OnLine { point, line: on }
-        | Constraint::Travel {
-            point, line: on, ..
-        } => {
-            vec![marker(point), line(on)]
-        }
-        Constraint::Direction { offset, .. } => {
-            let source = &mechanism.angles[offset as usize];
-            vec![source.a, source.b]
-        }
-        Constraint::Gears { constants, .. } => mechanism.gears[constants as usize].links.to_vec(),
-        Constraint::Rack {
-            line: on, center, ..
-        } => vec![marker(center), line(on)],
     }
 }

@@ -1,8 +1,9 @@
 //! Friction at pins and sliders: Coulomb's, with Stribeck's falling coefficient and a viscous part.
 
 use kempe_mechanism::Mechanism;
-use kempe_mechanism::structure::{Constraint, Source};
-use kempe_model::{self as model, FrictionAt, JointId, JointKind, PointId};
+use kempe_mechanism::constraint::{Joint, Rubs};
+use kempe_mechanism::structure::Source;
+use kempe_model::{self as model, FrictionAt, JointId, PointId};
 use kempe_number::Number;
 
 use crate::problem::Problem;
@@ -45,24 +46,13 @@ impl<T: Number> FrictionLaw<T> {
     }
 }
 
-/// The joint row at which friction acts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
-    /// A pin: two rows, whose size is the load.
-    Pin,
-    /// A point on a line: one row, the normal force.
-    Line,
-}
-
 /// Friction at one joint of a mechanism.
 #[derive(Clone, Copy, Debug)]
 pub struct Friction<T> {
     /// Index of the joint's constraint.
     pub constraint: usize,
-    /// What kind of joint it is.
-    pub place: Place,
-    /// Radius of the pin, m; 1 on lines.
-    pub radius: T,
+    /// Radius of the pin, m; `None` where the joint slides along a guide.
+    pub radius: Option<T>,
     /// The law.
     pub law: FrictionLaw<T>,
 }
@@ -80,14 +70,13 @@ impl<T: Number> Friction<T> {
         }
         let mut list = Vec::new();
         for (index, (constraint, source)) in mechanism.constraints.iter().enumerate() {
-            let (place, own) = match (constraint, source) {
-                (Constraint::Coincide { .. }, Source::Pin { point, .. }) => {
-                    (Place::Pin, FrictionAt::Pin(*point))
-                }
-                (Constraint::OnLine { .. }, Source::Joint(joint)) => {
-                    (Place::Line, FrictionAt::Joint(*joint))
-                }
-                _ => continue,
+            let Some(rubs) = constraint.rubs() else {
+                continue;
+            };
+            let own = match source {
+                Source::Pin { point, .. } => FrictionAt::Pin(*point),
+                Source::Joint(joint) => FrictionAt::Joint(*joint),
+                Source::Drive(_) => continue,
             };
             let of_own = given.iter().rev().find(|f| f.at == own);
             let Some(friction) =
@@ -95,14 +84,13 @@ impl<T: Number> Friction<T> {
             else {
                 continue;
             };
-            let radius = match (place, &friction.radius) {
-                (Place::Line, _) => T::one(),
-                (Place::Pin, Some(radius)) => model::value(radius, parameters),
-                (Place::Pin, None) => T::zero(),
+            let radius = match (rubs, &friction.radius) {
+                (Rubs::AlongGuide, _) => None,
+                (Rubs::AboutPin, Some(radius)) => Some(model::value(radius, parameters)),
+                (Rubs::AboutPin, None) => Some(T::zero()),
             };
             list.push(Self {
                 constraint: index,
-                place,
                 radius,
                 law: FrictionLaw::new(friction, parameters),
             });
@@ -158,10 +146,12 @@ impl<T: Number> Friction<T> {
     /// Resistance over load. The load of a line is its normal force; that of a pin is its whole force, friction included,
     /// which passes the pin's centre on the friction circle: at `r sin(atan(mu))`.
     fn per_load(&self, speed: T) -> T {
-        let coefficient = self.law.coefficient(speed.abs() * self.radius);
-        match self.place {
-            Place::Line => coefficient,
-            Place::Pin => coefficient * self.radius / (coefficient.square() + 1.0).sqrt(),
+        match self.radius {
+            None => self.law.coefficient(speed.abs()),
+            Some(radius) => {
+                let coefficient = self.law.coefficient(speed.abs() * radius);
+                coefficient * radius / (coefficient.square() + 1.0).sqrt()
+            }
         }
     }
 
@@ -185,11 +175,8 @@ pub fn direction(speed: f64, acceleration: f64, still: [f64; 2]) -> f64 {
 }
 
 fn slides(mechanism: &Mechanism, joint: JointId) -> bool {
-    mechanism
-        .model
-        .joints
-        .get(joint.index())
-        .is_some_and(|j| matches!(j.kind, JointKind::Slider { .. } | JointKind::Slot { .. }))
+    let mut constraints = mechanism.constraints.iter();
+    constraints.any(|(c, source)| *source == Source::Joint(joint) && c.rubs().is_some())
 }
 
 fn point_name(mechanism: &Mechanism, point: PointId) -> &str {

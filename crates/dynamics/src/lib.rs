@@ -38,7 +38,6 @@ pub mod equations_of_motion;
 pub mod equilibrium;
 pub mod forces;
 pub mod friction;
-pub mod gear_mesh;
 pub mod inertia;
 pub mod instant;
 pub mod load;

@@ -1,6 +1,7 @@
 //! What joints carry, as vectors on a named link.
 
 use kempe_mechanism::Mechanism;
+use kempe_mechanism::constraint::{Joint as _, LoadPoint};
 use kempe_mechanism::structure::Source;
 use kempe_model::{
     DriveId, DriveKind, JointId, JointKind, JointRef, LinkId, LinkPointRef, PointId,
@@ -133,44 +134,22 @@ impl<T: ForceNumber> Forces<T> {
         Some(self.about(at, link, self.joint_place(at, id, link)?, w))
     }
 
-    /// Where a joint's load is counted: the slider's point or pin, the centre of a gear or pinion.
+    /// Where a joint's load on a link is counted.
     fn joint_place(&self, at: &Instant<T>, id: JointId, link: LinkId) -> Option<[T; 2]> {
-        let marker = match self.design.mechanism.model.joints.get(id.index())?.kind {
-            JointKind::Slider { at, .. } | JointKind::Slot { pin: at, .. } => {
-                self.design.mechanism.marker(at)?
+        let mechanism = &self.design.mechanism;
+        let body = mechanism.body_of(link);
+        let own = (mechanism.constraints.iter()).filter(|c| c.1 == Source::Joint(id));
+        let point = own.into_iter().find_map(|(c, _)| c.load_point(body))?;
+        Some(match point {
+            LoadPoint::At(marker) => at.place(
+                marker.body,
+                at.arm(marker.body, self.design.geometry.marker(marker)),
+            ),
+            LoadPoint::Origin(body) => {
+                let pose = &at.poses[body.index()];
+                [pose.x, pose.y]
             }
-            JointKind::Rack { pinion, center, .. } => {
-                self.design.mechanism.marker(LinkPointRef {
-                    link: pinion,
-                    point: center,
-                })?
-            }
-            JointKind::Gears { .. } => {
-                let constraint = (self.design.mechanism.constraints.iter())
-                    .position(|c| c.1 == Source::Joint(id))?;
-                let mesh = crate::gear_mesh::GearMesh::new(
-                    &self.design.mechanism,
-                    &self.design.mechanism.constraints[constraint].0,
-                );
-                let body = self.design.mechanism.body_of(link);
-                match mesh {
-                    Some(mesh) if mesh.a.body == body => mesh.a,
-                    Some(mesh) => mesh.b,
-                    None => {
-                        let pose = &at.poses[body.index()];
-                        return Some([pose.x, pose.y]);
-                    }
-                }
-            }
-            JointKind::Weld { a, at, .. } => self
-                .design
-                .mechanism
-                .marker(LinkPointRef { link: a, point: at })?,
-        };
-        Some(at.place(
-            marker.body,
-            at.arm(marker.body, self.design.geometry.marker(marker)),
-        ))
+        })
     }
 
     /// Everything that constraints from one source do to a link's body.
@@ -250,12 +229,9 @@ impl<T: ForceNumber> Forces<T> {
         let marker = match &self.design.mechanism.model.drives.get(id.index())?.kind {
             DriveKind::Cylinder { b, .. } => self.design.mechanism.marker(*b),
             DriveKind::Slide { joint } => {
-                match self.design.mechanism.model.joints[joint.index()].kind {
-                    JointKind::Slider { at, .. } | JointKind::Slot { pin: at, .. } => {
-                        self.design.mechanism.marker(at)
-                    }
-                    _ => None,
-                }
+                let kind = &self.design.mechanism.model.joints[joint.index()].kind;
+                kind.guide()
+                    .and_then(|(at, _)| self.design.mechanism.marker(at))
             }
             DriveKind::Turn { link, relative_to } => self.pivot_marker(*link, *relative_to),
         }?;

@@ -426,7 +426,9 @@ proptest! {
         // What is fixed in the frame's own coordinates does not turn with it.
         let mechanism = Mechanism::new(&plain);
         let counts_turns = plain.joints.iter().any(|j| {
-            matches!(j.kind, kempe_model::JointKind::Gears { .. } | kempe_model::JointKind::Rack { .. })
+            matches!(j.kind, kempe_model::JointKind::Gears { .. }
+                | kempe_model::JointKind::Belt { .. }
+                | kempe_model::JointKind::Rack { .. })
         });
         for model in [&mut plain, &mut moved] {
             let fixed = |link: LinkId| mechanism.body_of(link) == kempe_mechanism::BodyId::GROUND;

@@ -68,7 +68,9 @@ fn check(made: &Made) -> Result<Outcome, String> {
     let by_teeth = spec.joints.iter().any(|j| {
         matches!(
             j,
-            support::SJoint::Gears { .. } | support::SJoint::Rack { .. }
+            support::SJoint::Gears { .. }
+                | support::SJoint::Belt { .. }
+                | support::SJoint::Rack { .. }
         )
     }) && !case.mechanism.plan.newton_blocks.is_empty();
     if regular && !by_teeth {
@@ -247,7 +249,9 @@ fn has_gears(spec: &Spec) -> bool {
     spec.joints.iter().any(|j| {
         matches!(
             j,
-            support::SJoint::Gears { .. } | support::SJoint::Rack { .. }
+            support::SJoint::Gears { .. }
+                | support::SJoint::Belt { .. }
+                | support::SJoint::Rack { .. }
         )
     })
 }

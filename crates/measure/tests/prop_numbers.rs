@@ -11,7 +11,8 @@ mod support;
 use std::collections::BTreeMap;
 
 use kempe_measure::Sampler;
-use kempe_mechanism::structure::{BodyId, Constraint};
+use kempe_mechanism::constraint::Joint;
+use kempe_mechanism::structure::BodyId;
 use kempe_mechanism::{Design, Geometry, Input, Pose, Situation};
 use kempe_model::{DriveKind, Measure};
 use kempe_motion::Motion;
@@ -183,14 +184,7 @@ fn gradients_are_the_derivatives_of_residuals() {
                     analytic[3 * g.body.index() + k][g.row] += g.to[k];
                 }
             });
-            let drive = match constraint {
-                Constraint::Direction { input, .. } => *input,
-                Constraint::Distance { input, .. } | Constraint::Travel { input, .. } => {
-                    Some(*input)
-                }
-                _ => None,
-            };
-            if let Some(drive) = drive {
+            if let Some(drive) = constraint.drive() {
                 analytic[3 * m.bodies + drive.index()][0] = to_drive;
             }
             // On its surface a direction's gradient is exact; off it a sine's derivative is the cosine.
@@ -243,6 +237,8 @@ fn gradients_are_the_derivatives_of_residuals() {
         "Travel",
         "Gears",
         "Rack",
+        "Belt",
+        "OnArc",
     ] {
         assert!(seen.get(kind).is_some_and(|n| *n > 10), "{kind}: {seen:?}");
     }

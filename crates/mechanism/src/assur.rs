@@ -111,6 +111,10 @@ fn describe(mechanism: &Mechanism, bodies: &[BodyId], steps: &[usize]) -> (u32, 
                 ..
             })) => (2, driven("RRR dyad of link and cylinder")),
             Some(Step::Swing(Swing {
+                condition: Condition::OnArc { .. },
+                ..
+            })) => (2, "RRR dyad of link and curved slot".into()),
+            Some(Step::Swing(Swing {
                 condition: Condition::OnLine { .. },
                 ..
             })) => (2, "RRP dyad of link and slot".into()),

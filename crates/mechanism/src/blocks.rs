@@ -7,7 +7,8 @@
 
 use std::collections::{BTreeMap, VecDeque};
 
-use crate::structure::{BodyId, Constraint, Marker, Structure};
+use crate::constraint::{Constraint, Joint, Touch};
+use crate::structure::{BodyId, Structure};
 
 /// One unknown quantity of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -104,28 +105,15 @@ pub struct Decomposition {
 /// The unknowns that a constraint feels. `idle[body]` tells that nothing feels the body's angle.
 fn felt(constraint: &Constraint, idle: &[bool]) -> Vec<Unknown> {
     let mut list = Vec::with_capacity(6);
-    let point = |list: &mut Vec<Unknown>, marker: Marker| {
-        list.push(Unknown::Place(marker.body));
-        if !idle[marker.body.index()] {
-            list.push(Unknown::Angle(marker.body));
-        }
-    };
-    match *constraint {
-        Constraint::Coincide { a, b } | Constraint::Distance { a, b, .. } => {
-            point(&mut list, a);
-            point(&mut list, b);
-        }
-        Constraint::OnLine { point: p, line } | Constraint::Travel { point: p, line, .. } => {
-            point(&mut list, p);
-            list.extend([Unknown::Place(line.body), Unknown::Angle(line.body)]);
-        }
-        Constraint::Direction { a, b, .. } => list.extend([Unknown::Angle(a), Unknown::Angle(b)]),
-        Constraint::Gears { a, b, arm, .. } => list.extend([a, b, arm].map(Unknown::Angle)),
-        Constraint::Rack { line, center, .. } => {
-            point(&mut list, center);
-            list.push(Unknown::Angle(center.body));
-            list.extend([Unknown::Place(line.body), Unknown::Angle(line.body)]);
-        }
+    for touch in constraint.touches().into_iter().flatten() {
+        let body = touch.body();
+        let (place, angle) = match touch {
+            Touch::Point(_) => (true, !idle[body.index()]),
+            Touch::Whole(_) => (true, true),
+            Touch::Angle(_) => (false, true),
+        };
+        list.extend(angle.then_some(Unknown::Angle(body)));
+        list.extend(place.then_some(Unknown::Place(body)));
     }
     list.retain(|u| u.body() != BodyId::GROUND);
     list.sort_unstable();
@@ -136,29 +124,13 @@ fn felt(constraint: &Constraint, idle: &[bool]) -> Vec<Unknown> {
 /// The bodies whose angle no constraint feels: everything that holds them acts at their origin.
 fn idle_bodies(structure: &Structure) -> Vec<bool> {
     let mut idle = vec![true; structure.bodies];
-    for (constraint, _) in &structure.constraints {
-        let mut point = |marker: Marker| {
-            if !structure.at_origin(marker) {
-                idle[marker.body.index()] = false;
-            }
+    let constraints = structure.constraints.iter();
+    for touch in constraints.flat_map(|(c, _)| c.touches()).flatten() {
+        let felt = match touch {
+            Touch::Point(marker) => !structure.at_origin(marker),
+            Touch::Whole(_) | Touch::Angle(_) => true,
         };
-        let whole: &[BodyId] = match *constraint {
-            Constraint::Coincide { a, b } | Constraint::Distance { a, b, .. } => {
-                point(a);
-                point(b);
-                &[]
-            }
-            Constraint::OnLine { point: p, line } | Constraint::Travel { point: p, line, .. } => {
-                point(p);
-                &[line.body]
-            }
-            Constraint::Direction { a, b, .. } => &[a, b],
-            Constraint::Gears { a, b, arm, .. } => &[a, b, arm],
-            Constraint::Rack { line, center, .. } => &[center.body, line.body],
-        };
-        for body in whole {
-            idle[body.index()] = false;
-        }
+        idle[touch.body().index()] &= !felt;
     }
     idle
 }

@@ -11,7 +11,7 @@ pub use self::layout::Layout;
 
 use self::layout::Seat;
 use crate::Mechanism;
-use crate::constraint::Situation;
+use crate::constraint::{Joint, Situation};
 use crate::qr::Qr;
 
 /// An entry of the Jacobian outside the diagonal blocks.
@@ -80,7 +80,7 @@ impl Bordered {
             for (constraint, at) in &block.constraints {
                 let kind = &mechanism.constraints[*constraint].0;
                 // Lengths count in mechanism sizes, directions and gear angles as they are.
-                let unit = kind.unit(size);
+                let unit = kind.unit().factor(size);
                 let value = situation.residual(kind);
                 let to_drive = situation.gradients(kind, |g| {
                     let Some(row) = at[g.row] else { return };

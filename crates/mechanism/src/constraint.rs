@@ -1,18 +1,43 @@
-//! The one definition of every joint: what it demands of the bodies it ties.
+//! Every kind of joint and drive, and who speaks for it.
 //!
-//! Its residuals over these bodies and their gradients are in `rows`: lengths in m, directions as sines, gears and racks as
-//! angles. Everything else (rank, Newton groups, closure evidence, reactions) comes from these rows; the closed forms are
-//! held to them.
+//! A kind is one file: what it demands of the bodies it ties (residuals over these bodies, their gradients beside them),
+//! in which closed forms it takes part, its equations for the homotopy, what it carries and how it rubs. What each must
+//! answer is [`Joint`]; here stands only the list of kinds, and the way to the one asked. Rank, Newton groups, closure
+//! evidence and joint reactions all come from there; the closed forms are held to the rows.
 
-mod rows;
+mod belt;
+mod coincide;
+mod direction;
+mod distance;
+mod gears;
+mod isotropic;
+mod joint;
+mod loads;
+mod on_arc;
+mod on_line;
+mod rack;
 mod situation;
+mod travel;
 
-pub use self::rows::Gradient;
+pub use self::belt::{Belt, Run};
+pub use self::coincide::Coincide;
+pub use self::direction::Direction;
+pub use self::distance::Distance;
+pub use self::gears::Gears;
+pub use self::isotropic::{Isotropic, Vector};
+pub use self::joint::{Gradient, InAngles, Joint, Pairs, Touch, Unit};
+pub use self::loads::{LoadPoint, Rubs, Sliding};
+pub use self::on_arc::OnArc;
+pub use self::on_line::OnLine;
+pub use self::rack::Rack;
 pub use self::situation::{Input, Situation};
+pub use self::travel::Travel;
 
 use kempe_model::{DriveId, JointId, LinkId, PointId};
+use kempe_number::Number;
 
-use crate::structure::{BodyId, LineRef, Marker};
+use crate::plan::{Condition, Step};
+use crate::structure::{BodyId, Marker, Structure};
 
 /// What a constraint comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,113 +55,174 @@ pub enum Source {
     Drive(DriveId),
 }
 
-/// One condition between bodies. Its residuals are [`Situation::residual`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Constraint {
+/// Declares the kinds, and [`Joint`] for the enum over them: each question goes to the kind's own file.
+macro_rules! kinds {
+    ($($(#[$doc:meta])* $kind:ident,)*) => {
+        /// One condition between bodies.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub enum Constraint {
+            $($(#[$doc])* $kind($kind),)*
+        }
+
+        $(impl From<$kind> for Constraint {
+            fn from(joint: $kind) -> Self {
+                Self::$kind(joint)
+            }
+        })*
+
+        /// Asks the kind that a constraint is of.
+        macro_rules! ask {
+            ($constraint:expr, $joint:ident => $answer:expr) => {
+                match $constraint {
+                    $(Constraint::$kind($joint) => $answer,)*
+                }
+            };
+        }
+    };
+}
+kinds! {
     /// Two points coincide: two rows.
-    Coincide {
-        /// Point of the earlier body.
-        a: Marker,
-        /// Point of the later body.
-        b: Marker,
-    },
+    Coincide,
     /// A point lies on a line.
-    OnLine {
-        /// The point.
-        point: Marker,
-        /// The line.
-        line: LineRef,
-    },
-    /// `angle(a) - angle(b) = offset (+ the drive's coordinate)`.
-    Direction {
-        /// Body whose angle is set.
-        a: BodyId,
-        /// Body against which.
-        b: BodyId,
-        /// Index into the geometry's angles.
-        offset: u32,
-        /// The drive whose coordinate is added.
-        input: Option<DriveId>,
-    },
-    /// The distance of two points is the drive's coordinate.
-    Distance {
-        /// Foot.
-        a: Marker,
-        /// Eye.
-        b: Marker,
-        /// The drive.
-        input: DriveId,
-    },
-    /// A point's coordinate along a line is the drive's coordinate.
-    Travel {
-        /// The point.
-        point: Marker,
-        /// The line.
-        line: LineRef,
-        /// The drive.
-        input: DriveId,
-    },
-    /// `ratio_a (angle_a - angle_arm) + ratio_b (angle_b - angle_arm) = phase`.
-    Gears {
-        /// First gear.
-        a: BodyId,
-        /// Second gear.
-        b: BodyId,
-        /// Arm.
-        arm: BodyId,
-        /// Index into the geometry's gear constants.
-        constants: u32,
-    },
-    /// `s + radius (angle_pinion - angle_rack) = offset`, `s` along the rack's line.
-    Rack {
-        /// Pitch line on the rack.
-        line: LineRef,
-        /// The pinion's centre.
-        center: Marker,
-        /// Index into the geometry's gear constants.
-        constants: u32,
-    },
+    OnLine,
+    /// The angle between two bodies is set.
+    Direction,
+    /// The distance of two points is a drive's coordinate.
+    Distance,
+    /// A point's coordinate along a line is a drive's coordinate.
+    Travel,
+    /// Two gears in mesh on an arm.
+    Gears,
+    /// A pinion rolling on a rack.
+    Rack,
+    /// A belt or chain over two wheels on an arm.
+    Belt,
+    /// A point lies on a circular arc.
+    OnArc,
+}
+
+impl Joint for Constraint {
+    #[inline]
+    fn rows(&self) -> usize {
+        ask!(self, joint => joint.rows())
+    }
+
+    #[inline]
+    fn unit(&self) -> Unit {
+        ask!(self, joint => joint.unit())
+    }
+
+    fn touches(&self) -> [Option<Touch>; 3] {
+        ask!(self, joint => joint.touches())
+    }
+
+    #[inline]
+    fn drive(&self) -> Option<DriveId> {
+        ask!(self, joint => joint.drive())
+    }
+
+    fn pairs(&self) -> Pairs {
+        ask!(self, joint => joint.pairs())
+    }
+
+    fn links(&self, structure: &Structure) -> Vec<LinkId> {
+        ask!(self, joint => joint.links(structure))
+    }
+
+    #[inline]
+    fn residual<T: Number>(&self, at: &Situation<'_, T>) -> [T; 2] {
+        ask!(self, joint => joint.residual(at))
+    }
+
+    #[inline]
+    fn gradients<T: Number>(&self, at: &Situation<'_, T>, emit: impl FnMut(Gradient<T>)) -> T {
+        ask!(self, joint => joint.gradients(at, emit))
+    }
+
+    fn is_reversed<T: Number>(&self, at: &Situation<'_, T>) -> bool {
+        ask!(self, joint => joint.is_reversed(at))
+    }
+
+    fn pin(&self, body: BodyId) -> Option<(Marker, Marker)> {
+        ask!(self, joint => joint.pin(body))
+    }
+
+    fn condition(&self, body: BodyId) -> Option<Condition> {
+        ask!(self, joint => joint.condition(body))
+    }
+
+    fn turn(&self, body: BodyId, index: usize) -> Option<Step> {
+        ask!(self, joint => joint.turn(body, index))
+    }
+
+    fn roll(&self, pin: (Marker, Marker), index: usize) -> Option<Step> {
+        ask!(self, joint => joint.roll(pin, index))
+    }
+
+    #[inline]
+    fn angle<T: Number>(&self, at: &Situation<'_, T>, body: BodyId) -> Option<T> {
+        ask!(self, joint => joint.angle(at, body))
+    }
+
+    fn isotropic(&self, at: &Situation<'_, f64>, scale: f64) -> Option<Isotropic> {
+        ask!(self, joint => joint.isotropic(at, scale))
+    }
+
+    fn in_angles(&self, at: &Situation<'_, f64>) -> Option<InAngles> {
+        ask!(self, joint => joint.in_angles(at))
+    }
+
+    fn counts_turns(&self) -> bool {
+        ask!(self, joint => joint.counts_turns())
+    }
+
+    fn opened_by(&self, structure: &Structure) -> Vec<(LinkId, LinkId)> {
+        ask!(self, joint => joint.opened_by(structure))
+    }
+
+    fn load_gradients<T: Number>(&self, at: &Situation<'_, T>, emit: impl FnMut(Gradient<T>)) {
+        ask!(self, joint => joint.load_gradients(at, emit))
+    }
+
+    fn load_unit(&self) -> Unit {
+        ask!(self, joint => joint.load_unit())
+    }
+
+    fn load_point(&self, body: BodyId) -> Option<LoadPoint> {
+        ask!(self, joint => joint.load_point(body))
+    }
+
+    fn rubs(&self) -> Option<Rubs> {
+        ask!(self, joint => joint.rubs())
+    }
+
+    fn sliding<T: Number>(&self, at: &Situation<'_, T>) -> Option<Sliding<T>> {
+        ask!(self, joint => joint.sliding(at))
+    }
 }
 
 impl Constraint {
-    /// How many rows it has.
-    pub fn rows(&self) -> usize {
-        match self {
-            Constraint::Coincide { .. } => 2,
-            _ => 1,
-        }
-    }
-
-    /// The drive whose coordinate it holds.
-    pub fn drive(&self) -> Option<DriveId> {
-        match self {
-            Constraint::Direction { input, .. } => *input,
-            Constraint::Distance { input, .. } | Constraint::Travel { input, .. } => Some(*input),
-            _ => None,
-        }
-    }
-
-    /// The bodies it ties.
+    /// The bodies it ties; one that it touches twice may come twice.
     pub fn bodies(&self) -> impl Iterator<Item = BodyId> {
-        let list = match *self {
-            Constraint::Coincide { a, b } | Constraint::Distance { a, b, .. } => {
-                [Some(a.body), Some(b.body), None]
-            }
-            Constraint::OnLine { point, line } | Constraint::Travel { point, line, .. } => {
-                [Some(point.body), Some(line.body), None]
-            }
-            Constraint::Direction { a, b, .. } => [Some(a), Some(b), None],
-            Constraint::Gears { a, b, arm, .. } => [Some(a), Some(b), Some(arm)],
-            Constraint::Rack { line, center, .. } => [Some(line.body), Some(center.body), None],
-        };
-        list.into_iter().flatten()
+        self.touches().into_iter().flatten().map(Touch::body)
+    }
+}
+
+impl<T: Number> Situation<'_, T> {
+    /// The residual rows of a constraint; only the first [`Joint::rows`] count.
+    #[inline]
+    pub fn residual(&self, constraint: &Constraint) -> [T; 2] {
+        constraint.residual(self)
     }
 
-    /// The factor that makes its rows comparable with others': lengths count in mechanism sizes, angles as they are.
-    pub(crate) fn unit(&self, size: f64) -> f64 {
-        match self {
-            Constraint::Direction { .. } | Constraint::Gears { .. } => 1.0,
-            _ => 1.0 / size,
-        }
+    /// The derivatives of a constraint's rows, as [`Joint::gradients`] hands them out.
+    #[inline]
+    pub fn gradients(&self, constraint: &Constraint, emit: impl FnMut(Gradient<T>)) -> T {
+        constraint.gradients(self, emit)
+    }
+
+    /// Whether a direction points the opposite way: the residual, a sine, does not tell.
+    pub fn is_reversed(&self, constraint: &Constraint) -> bool {
+        constraint.is_reversed(self)
     }
 }

@@ -1,6 +1,7 @@
 //! How far a pose can be trusted: closure residual and distance from singularity.
 
 use crate::bordered::Bordered;
+use crate::constraint::Joint;
 use crate::pose::Pose;
 use crate::state::{Branch, Design, State};
 
@@ -26,7 +27,7 @@ pub fn closure(design: &Design<f64>, branch: &Branch, state: &State<f64>, size: 
     }
     for (constraint, _) in &mechanism.constraints {
         let residual = situation.residual(constraint);
-        let unit = constraint.unit(size);
+        let unit = constraint.unit().factor(size);
         if situation.is_reversed(constraint) {
             largest = largest.max(2.0);
         }

@@ -2,8 +2,8 @@
 
 use kempe_number::Number;
 
-use crate::pose::{Pose, sub};
-use crate::structure::{LineRef, LineSource, Marker, Structure};
+use crate::pose::{Pose, dot, left, sub};
+use crate::structure::{ArcRef, LineRef, LineSource, Marker, Structure};
 
 /// A directed line of a body, in the body's own coordinates.
 #[derive(Clone, Copy, Debug)]
@@ -12,6 +12,37 @@ pub struct LocalLine<T> {
     pub origin: [T; 2],
     /// Its unit direction.
     pub direction: [T; 2],
+}
+
+/// An arc whose radius squared differs by this little, in parts of it, from that of a semicircle over its ends is one:
+/// rounding decides no shape, and a root of zero would have no derivatives.
+const SEMICIRCLE: f64 = 1e-12;
+
+/// A circular arc of a body, in the body's own coordinates.
+#[derive(Clone, Copy, Debug)]
+pub struct LocalArc<T> {
+    /// Centre.
+    pub center: [T; 2],
+    /// Radius.
+    pub radius: T,
+}
+
+impl<T: Number> LocalArc<T> {
+    /// The arc from one point to another whose centre lies on the left of the way for `side` +1, on the right for -1.
+    /// NaN where the radius is too small to reach both.
+    pub fn through(from: [T; 2], to: [T; 2], radius: T, side: f64) -> Self {
+        let half = sub(to, from).map(|x| x * 0.5);
+        let square = dot(half, half);
+        let excess = radius.square() / square - 1.0;
+        let nowhere = T::from_f64(f64::NAN);
+        let bent = (excess - SEMICIRCLE).choose(excess.sqrt(), T::zero());
+        let rise = (excess + SEMICIRCLE).choose(bent, nowhere) * side;
+        let up = left(half);
+        Self {
+            center: [0, 1].map(|i| from[i] + half[i] + up[i] * rise),
+            radius,
+        }
+    }
 }
 
 /// Constants of a gear pair or rack: `first angle_a + second angle_b - (first + second) angle_arm = constant`.
@@ -38,6 +69,8 @@ pub struct Geometry<T> {
     pub markers: Vec<[T; 2]>,
     /// Lines.
     pub lines: Vec<LocalLine<T>>,
+    /// Arcs.
+    pub arcs: Vec<LocalArc<T>>,
     /// Angle constants as unit vectors.
     pub angles: Vec<[T; 2]>,
     /// Gear constants.
@@ -52,6 +85,10 @@ impl<T: Number> Geometry<T> {
             origin: [zero; 2],
             direction: [zero; 2],
         };
+        let arc = LocalArc {
+            center: [zero; 2],
+            radius: zero,
+        };
         let gear = GearConstants {
             first: zero,
             second: zero,
@@ -63,6 +100,7 @@ impl<T: Number> Geometry<T> {
             turns: vec![0.0; structure.model.links.len()],
             markers: vec![[zero; 2]; structure.markers.len()],
             lines: vec![along; structure.lines.len()],
+            arcs: vec![arc; structure.arcs.len()],
             angles: vec![[T::one(), zero]; structure.angles.len()],
             gears: vec![gear; structure.gears.len()],
         };
@@ -77,6 +115,7 @@ impl<T: Number> Geometry<T> {
             link.evaluate_into(parameters, &mut self.markers[structure.markers_of(index)]);
         }
         let is_plain = structure.lines.is_empty()
+            && structure.arcs.is_empty()
             && structure.gears.is_empty()
             && structure.seats.iter().all(|seat| seat.weld.is_none())
             && structure
@@ -114,6 +153,10 @@ impl<T: Number> Geometry<T> {
                     }
                 }
             };
+        }
+        for (index, arc) in structure.arcs.iter().enumerate() {
+            let (from, to) = (self.marker(arc.from), self.marker(arc.to));
+            self.arcs[index] = LocalArc::through(from, to, scalar(&arc.radius), arc.side);
         }
         for (index, angle) in structure.angles.iter().enumerate() {
             if angle.is_zero(structure) {
@@ -193,6 +236,12 @@ impl<T: Number> Geometry<T> {
         self.lines[line.index as usize]
     }
 
+    /// An arc in its body.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    pub fn arc(&self, arc: ArcRef) -> LocalArc<T> {
+        self.arcs[arc.index as usize]
+    }
+
     /// The plain values.
     pub fn value(&self) -> Geometry<f64> {
         self.map(T::value)
@@ -206,6 +255,7 @@ impl<T: Number> Geometry<T> {
             turns: Vec::new(),
             markers: Vec::new(),
             lines: Vec::new(),
+            arcs: Vec::new(),
             angles: Vec::new(),
             gears: Vec::new(),
         };
@@ -230,6 +280,10 @@ impl<U> Geometry<U> {
         refill(&mut self.lines, &other.lines, |l| LocalLine {
             origin: pair(&l.origin),
             direction: pair(&l.direction),
+        });
+        refill(&mut self.arcs, &other.arcs, |a| LocalArc {
+            center: pair(&a.center),
+            radius: f(a.radius),
         });
         refill(&mut self.angles, &other.angles, pair);
         refill(&mut self.gears, &other.gears, |g| GearConstants {

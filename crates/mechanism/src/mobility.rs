@@ -1,11 +1,12 @@
 //! Freedoms counted and measured.
 
 use crate::Mechanism;
+use crate::constraint::{Joint, Pairs};
 use crate::evidence::is_finite;
 use crate::pose::Pose;
 use crate::rank::{SparseRow, rank};
 use crate::state::{Branch, Design, State};
-use crate::structure::{BodyId, Constraint};
+use crate::structure::BodyId;
 
 /// Mobility two ways.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,34 +28,22 @@ pub struct Mobility {
 /// Counts and, with a pose, measures the mobility.
 pub fn mobility(design: &Design<f64>, pose: Option<(&State<f64>, &Branch)>) -> Mobility {
     let mechanism = &*design.mechanism;
+    let mut pairs = Pairs::default();
+    for (constraint, _) in &mechanism.constraints {
+        let of = constraint.pairs();
+        pairs.links += of.links;
+        pairs.lower += of.lower;
+        pairs.higher += of.higher;
+    }
+    let links = mechanism.bodies as i64 + pairs.links;
     let mut it = Mobility {
-        links: mechanism.bodies,
-        lower_pairs: 0,
-        higher_pairs: 0,
-        count: 0,
+        links: links as usize,
+        lower_pairs: pairs.lower as usize,
+        higher_pairs: pairs.higher as usize,
+        count: 3 * (links - 1) - 2 * pairs.lower - pairs.higher,
         by_rank: None,
         redundant_rows: None,
     };
-    for (constraint, _) in &mechanism.constraints[..mechanism.joint_constraints] {
-        match constraint {
-            Constraint::Coincide { .. } => it.lower_pairs += 1,
-            // A slider's direction belongs to its own line: together one lower pair.
-            Constraint::Direction { .. } => {
-                it.lower_pairs += 1;
-                it.higher_pairs = it.higher_pairs.wrapping_sub(1);
-            }
-            _ => it.higher_pairs = it.higher_pairs.wrapping_add(1),
-        }
-    }
-    let cylinders = mechanism
-        .constraints
-        .iter()
-        .filter(|(c, _)| matches!(c, Constraint::Distance { .. }))
-        .count();
-    it.links += 2 * cylinders;
-    it.lower_pairs += 3 * cylinders;
-    it.count = 3 * (it.links as i64 - 1) - 2 * it.lower_pairs as i64 - it.higher_pairs as i64;
-
     if let Some((state, branch)) = pose.filter(|(s, _)| s.poses.iter().all(is_finite)) {
         let rows: usize = mechanism.constraints[..mechanism.joint_constraints]
             .iter()
@@ -75,7 +64,7 @@ fn joint_rank(design: &Design<f64>, branch: &Branch, state: &State<f64>) -> usiz
     let columns = 3 * (mechanism.bodies - 1);
     let mut rows: Vec<SparseRow> = Vec::new();
     for (constraint, _) in &mechanism.constraints[..mechanism.joint_constraints] {
-        let unit = constraint.unit(size);
+        let unit = constraint.unit().factor(size);
         let first = rows.len();
         rows.resize(first + constraint.rows(), Vec::with_capacity(6));
         situation.gradients(constraint, |g| {

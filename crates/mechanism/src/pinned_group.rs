@@ -45,6 +45,20 @@ fn locus_of<T: Number, const ALL: bool>(
         }
         Condition::Roll { .. } if ALL => rolling(design, branch, state, carrier, condition),
         Condition::Roll { .. } => Locus::Line([T::zero(); 2], T::from_f64(f64::NAN)),
+        Condition::OnArc { own, arc } => {
+            let circle = geometry.arc(arc);
+            let center = state.poses[arc.body.index()].place(circle.center);
+            let from = sub(center, pose.turn(sub(geometry.marker(own), pin)));
+            Locus::Circle(from, circle.radius)
+        }
+        Condition::ArcThrough { arc, point } => {
+            let circle = geometry.arc(arc);
+            let to = sub(
+                place(design, state, point),
+                pose.turn(sub(circle.center, pin)),
+            );
+            Locus::Circle(to, circle.radius)
+        }
         Condition::Radius { own, center, input } => {
             let center = sub(
                 place(design, state, center),
@@ -167,10 +181,18 @@ pub(crate) fn swing<T: Number, const ALL: bool>(
             let (origin, along) = placed_line(design, state, line);
             on_line(state, condition, along, origin)
         }
-        // Conditions with a line of the swinging body are `SwingLine`s.
+        (None, Condition::OnArc { arc, .. }) => {
+            let circle = design.geometry.arc(arc);
+            let center = state.poses[arc.body.index()].place(circle.center);
+            Locus::Circle(center, circle.radius)
+        }
+        // Conditions with a line of the swinging body are `SwingLine`s, with an arc of it a Newton block.
         (
             None,
-            Condition::Through { .. } | Condition::TravelThrough { .. } | Condition::Roll { .. },
+            Condition::Through { .. }
+            | Condition::TravelThrough { .. }
+            | Condition::Roll { .. }
+            | Condition::ArcThrough { .. },
         ) => {
             return T::from_f64(f64::NAN);
         }

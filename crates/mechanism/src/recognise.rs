@@ -1,8 +1,9 @@
 //! Which closed form solves a block: the Assur groups of class II, driven links and gears.
 
 use crate::blocks::{Block, Row, Unknown};
+use crate::constraint::{Constraint, Joint, Unit};
 use crate::plan::{Carrier, Condition, Dyad, DyadBody, Reach, Sliding, Step, Swing, SwingLine};
-use crate::structure::{BodyId, Constraint, Marker, Structure};
+use crate::structure::{BodyId, Marker, Structure};
 
 /// The constraints of a block, each once, with whether all of its rows are there.
 fn constraints_of<'m>(structure: &'m Structure, rows: &[Row]) -> Option<Vec<&'m Constraint>> {
@@ -26,7 +27,7 @@ pub(crate) fn recognise(structure: &Structure, block: &Block, dyads: usize) -> O
     let rows: Vec<Row> = block.rows.iter().chain(&block.surplus).copied().collect();
     let constraints = constraints_of(structure, &rows)?;
     match (block.unknowns.as_slice(), block.surplus.len()) {
-        ([Unknown::Angle(body)], 0) => angle_alone(*body, block, constraints[0]),
+        ([Unknown::Angle(body)], 0) => constraints[0].turn(*body, block.rows[0].constraint),
         ([Unknown::Place(body)], 0) => place_alone(*body, &constraints),
         ([Unknown::Angle(body), Unknown::Place(_)], 0) if body.index() > 0 && one_body(block) => {
             swing(*body, &constraints).or_else(|| pinion(*body, block, structure))
@@ -62,87 +63,12 @@ fn two_bodies(block: &Block) -> Option<(BodyId, BodyId)> {
     }
 }
 
-fn angle_alone(body: BodyId, block: &Block, constraint: &Constraint) -> Option<Step> {
-    match *constraint {
-        Constraint::Direction {
-            a,
-            b,
-            offset,
-            input,
-        } => {
-            let reversed = a != body;
-            Some(Step::Turn {
-                body,
-                from: if reversed { a } else { b },
-                offset,
-                input,
-                reversed,
-            })
-        }
-        Constraint::Gears { .. } | Constraint::Rack { .. } => Some(Step::Gear {
-            body,
-            constraint: block.rows[0].constraint,
-        }),
-        _ => None,
-    }
-}
-
-/// `(own, other)` of a pin between `body` and anything else.
-fn pin_of(body: BodyId, constraint: &Constraint) -> Option<(Marker, Marker)> {
-    match *constraint {
-        Constraint::Coincide { a, b } if a.body == body => Some((a, b)),
-        Constraint::Coincide { a, b } if b.body == body => Some((b, a)),
-        _ => None,
-    }
-}
-
-fn condition_of(body: BodyId, constraint: &Constraint) -> Option<Condition> {
-    match *constraint {
-        Constraint::OnLine { point, line } if point.body == body => {
-            Some(Condition::OnLine { own: point, line })
-        }
-        Constraint::OnLine { point, line } if line.body == body => {
-            Some(Condition::Through { line, point })
-        }
-        Constraint::Travel { point, line, input } if point.body == body => {
-            Some(Condition::TravelOn {
-                own: point,
-                line,
-                input,
-            })
-        }
-        Constraint::Travel { point, line, input } if line.body == body => {
-            Some(Condition::TravelThrough { line, point, input })
-        }
-        Constraint::Rack {
-            line,
-            center,
-            constants,
-        } if line.body == body => Some(Condition::Roll {
-            line,
-            center,
-            constants,
-        }),
-        Constraint::Distance { a, b, input } if a.body == body => Some(Condition::Radius {
-            own: a,
-            center: b,
-            input,
-        }),
-        Constraint::Distance { a, b, input } if b.body == body => Some(Condition::Radius {
-            own: b,
-            center: a,
-            input,
-        }),
-        _ => None,
-    }
-}
-
 fn place_alone(body: BodyId, constraints: &[&Constraint]) -> Option<Step> {
     match constraints {
-        [pin] => pin_of(body, pin).map(|(own, at)| Step::Pin { own, at }),
+        [pin] => pin.pin(body).map(|(own, at)| Step::Pin { own, at }),
         [first, second] => {
             let carrier = Carrier { body, pin: None };
-            let conditions = [condition_of(body, first)?, condition_of(body, second)?];
+            let conditions = [first.condition(body)?, second.condition(body)?];
             Some(Step::Cross {
                 carriers: [carrier; 2],
                 conditions,
@@ -157,13 +83,13 @@ fn swing(body: BodyId, constraints: &[&Constraint]) -> Option<Step> {
     let [first, second] = constraints else {
         return None;
     };
-    let (pin, other) = if pin_of(body, first).is_some() {
+    let (pin, other) = if first.pin(body).is_some() {
         (first, second)
     } else {
         (second, first)
     };
-    let (own, at) = pin_of(body, pin)?;
-    match condition_of(body, other)? {
+    let (own, at) = pin.pin(body)?;
+    match other.condition(body)? {
         Condition::Through { line, point } => Some(Step::SwingLine(SwingLine {
             own,
             at,
@@ -180,8 +106,11 @@ fn swing(body: BodyId, constraints: &[&Constraint]) -> Option<Step> {
         })),
         // The travel depends on the angle sought.
         Condition::Roll { .. } => None,
+        // The arc's centre is no named point of the body.
+        Condition::ArcThrough { .. } => None,
         condition @ (Condition::OnLine { own: tip, .. }
         | Condition::TravelOn { own: tip, .. }
+        | Condition::OnArc { own: tip, .. }
         | Condition::Radius { own: tip, .. }) => Some(Step::Swing(Swing {
             own,
             at,
@@ -198,30 +127,24 @@ fn pinion(body: BodyId, block: &Block, structure: &Structure) -> Option<Step> {
     let (own, at) = block
         .rows
         .iter()
-        .find_map(|row| pin_of(body, &constraint(row)))?;
-    block.rows.iter().find_map(|row| match constraint(row) {
-        Constraint::Rack { line, center, .. } if center == own && line.body != body => {
-            Some(Step::Roll {
-                own,
-                at,
-                constraint: row.constraint,
-            })
-        }
-        _ => None,
-    })
+        .find_map(|row| constraint(row).pin(body))?;
+    block
+        .rows
+        .iter()
+        .find_map(|row| constraint(row).roll((own, at), row.constraint))
 }
 
 fn two_pins(body: BodyId, constraints: &[&Constraint]) -> Option<Step> {
     let [first, second] = constraints else {
         return None;
     };
-    let ((a, at_a), (b, at_b)) = (pin_of(body, first)?, pin_of(body, second)?);
+    let ((a, at_a), (b, at_b)) = (first.pin(body)?, second.pin(body)?);
     Some(Step::TwoPins { a, at_a, b, at_b })
 }
 
 /// The pin between two bodies, as `(on i, on j)`.
 fn pin_between(i: BodyId, j: BodyId, constraint: &Constraint) -> Option<(Marker, Marker)> {
-    pin_of(i, constraint).filter(|(_, other)| other.body == j)
+    constraint.pin(i).filter(|(_, other)| other.body == j)
 }
 
 fn prp(i: BodyId, j: BodyId, constraints: &[&Constraint]) -> Option<Step> {
@@ -233,12 +156,12 @@ fn prp(i: BodyId, j: BodyId, constraints: &[&Constraint]) -> Option<Step> {
     let [first, second] = outer.as_slice() else {
         return None;
     };
-    let (first, second) = if condition_of(i, first).is_some() {
+    let (first, second) = if first.condition(i).is_some() {
         (first, second)
     } else {
         (second, first)
     };
-    let conditions = [condition_of(i, first)?, condition_of(j, second)?];
+    let conditions = [first.condition(i)?, second.condition(j)?];
     if touches(first, j) || touches(second, i) {
         return None;
     }
@@ -266,7 +189,7 @@ fn outer_pin(
 ) -> Option<(Marker, Marker)> {
     (constraints.iter())
         .filter(|c| !touches(c, partner))
-        .find_map(|c| pin_of(body, c))
+        .find_map(|c| c.pin(body))
 }
 
 fn touches(constraint: &Constraint, body: BodyId) -> bool {
@@ -297,7 +220,7 @@ fn rrp(block: &Block, constraints: &[&Constraint]) -> Option<Step> {
     let condition = constraints
         .iter()
         .filter(|c| !touches(c, swinging))
-        .find_map(|c| condition_of(sliding, c))?;
+        .find_map(|c| c.condition(sliding))?;
     (constraints.len() == 3).then_some(Step::Swing(Swing {
         own: outer.0,
         at: outer.1,
@@ -334,27 +257,24 @@ fn rpr(i: BodyId, j: BodyId, constraints: &[&Constraint]) -> Option<Step> {
         return None;
     }
     let (outer_i, outer_j) = (outer_pin(i, j, constraints)?, outer_pin(j, i, constraints)?);
-    let (offset, input, reversed) = constraints.iter().find_map(|c| match **c {
-        Constraint::Direction {
-            a,
-            b,
-            offset,
-            input,
-        } if a == j && b == i => Some((offset, input, false)),
-        Constraint::Direction {
-            a,
-            b,
-            offset,
-            input,
-        } if a == i && b == j => Some((offset, input, true)),
-        _ => None,
-    })?;
-    let reach = constraints.iter().find_map(|c| match **c {
-        Constraint::OnLine { point, line } if line.body == i && point.body == j => {
+    // How the second turns with the first.
+    let tied =
+        (constraints.iter()).find(|c| c.unit() == Unit::Angle && touches(c, i) && touches(c, j));
+    let Step::Turn {
+        offset,
+        input,
+        reversed,
+        ..
+    } = tied?.turn(j, 0)?
+    else {
+        return None;
+    };
+    let reach = constraints.iter().find_map(|c| match c.condition(i)? {
+        Condition::Through { line, point } if point.body == j => {
             Some(Reach::PartnerPoint { line, point })
         }
-        Constraint::OnLine { point, line } if line.body == j && point.body == i => {
-            Some(Reach::PartnerLine { point, line })
+        Condition::OnLine { own, line } if line.body == j => {
+            Some(Reach::PartnerLine { point: own, line })
         }
         _ => None,
     })?;

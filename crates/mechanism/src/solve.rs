@@ -3,16 +3,15 @@
 use kempe_model::DriveId;
 use kempe_number::Number;
 
-use crate::Mechanism;
 use crate::closed_form::direction;
-use crate::constraint::{Input, Situation};
+use crate::constraint::{Input, Joint};
 use crate::known::{DyadOf, Known};
 use crate::newton::PlanNumber;
 use crate::pinned_group::{cross_loci, swing, swing_line};
 use crate::plan::{Plan, Step};
 use crate::pose::{Pose, dot, sub};
 use crate::state::{Branch, Design, State};
-use crate::structure::{BodyId, Constraint, LineRef, Marker};
+use crate::structure::{BodyId, LineRef, Marker};
 
 /// Solves one step for every state and, in `ALL`, keeps its determinant. A macro, because a closure would not be
 /// compiled for the caller's vector instructions.
@@ -243,7 +242,7 @@ fn roll<T: Number>(
     let (body, pin) = (own.body, design.geometry.marker(own));
     state.poses[body.index()] = Pose::pinned(T::one(), T::zero(), pin, world);
     let situation = state.situation(design, branch);
-    if let Some(angle) = gear(&situation, mechanism, body, constraint) {
+    if let Some(angle) = mechanism.constraints[constraint].0.angle(&situation, body) {
         let (s, c) = angle.sin_cos();
         state.poses[body.index()] = Pose::pinned(c, s, pin, world);
     }
@@ -260,7 +259,7 @@ fn turn_gear<T: Number>(
 ) -> T {
     let mechanism = &*design.mechanism;
     let situation = state.situation(design, branch);
-    if let Some(angle) = gear(&situation, mechanism, body, constraint) {
+    if let Some(angle) = mechanism.constraints[constraint].0.angle(&situation, body) {
         let (s, c) = angle.sin_cos();
         point(state, body, [c, s]);
     }
@@ -300,44 +299,4 @@ pub(crate) fn turn_by<T: Number>(
         by[1] = -by[1];
     }
     by
-}
-
-/// Angle of a body from a gear pair or a rack; `None` when the constraint is of another kind.
-#[inline]
-pub fn gear<T: Number>(
-    situation: &Situation<'_, T>,
-    mechanism: &Mechanism,
-    body: crate::structure::BodyId,
-    constraint: usize,
-) -> Option<T> {
-    match mechanism.constraints[constraint].0 {
-        Constraint::Gears {
-            a,
-            b,
-            arm,
-            constants,
-        } => {
-            let k = &situation.geometry.gears[constants as usize];
-            let angle = |body| situation.angle(body);
-            Some(if body == a {
-                (k.constant - k.second * (angle(b) - angle(arm))) / k.first + angle(arm)
-            } else if body == b {
-                (k.constant - k.first * (angle(a) - angle(arm))) / k.second + angle(arm)
-            } else {
-                (k.first * angle(a) + k.second * angle(b) - k.constant) / (k.first + k.second)
-            })
-        }
-        Constraint::Rack {
-            line,
-            center,
-            constants,
-        } => {
-            let k = &situation.geometry.gears[constants as usize];
-            let (origin, along) = situation.line(line);
-            let turn = (k.constant - dot(along, sub(situation.place(center), origin))) / k.second;
-            // The rack itself can only be the one sought when its line's place is known without its angle.
-            (body == center.body).then(|| situation.angle(line.body) + turn)
-        }
-        _ => None,
-    }
 }

@@ -5,8 +5,8 @@ mod parts;
 mod sources;
 mod weld;
 
-pub use self::parts::{BodyId, LineRef, Marker, Spot};
-pub use self::sources::{AngleSource, GearSource, LineSource, LinkSeat};
+pub use self::parts::{ArcRef, BodyId, LineRef, Marker, Spot};
+pub use self::sources::{AngleSource, ArcSource, GearSource, LineSource, LinkSeat};
 pub use crate::constraint::{Constraint, Source};
 
 use kempe_model::{DriveId, JointId, LinkId, LinkPointRef, Model, Place, PointId};
@@ -29,6 +29,8 @@ pub struct Structure {
     first_marker: Vec<u32>,
     /// Lines used by constraints.
     pub lines: Vec<LineSource>,
+    /// Arcs used by constraints.
+    pub arcs: Vec<ArcSource>,
     /// Angle constants used by constraints.
     pub angles: Vec<AngleSource>,
     /// Gear constants used by constraints.
@@ -48,6 +50,7 @@ impl Structure {
             markers: Vec::new(),
             first_marker: Vec::new(),
             lines: Vec::new(),
+            arcs: Vec::new(),
             angles: Vec::new(),
             gears: Vec::new(),
             constraints: Vec::new(),
@@ -114,6 +117,19 @@ impl Structure {
     pub fn any_marker(&self, point: PointId) -> Option<Marker> {
         let link = *self.model.points.get(point.index())?.links.first()?;
         self.marker(LinkPointRef { link, point })
+    }
+
+    /// The link that carries a marker.
+    pub fn link_of(&self, marker: Marker) -> LinkId {
+        self.markers[marker.index as usize].link
+    }
+
+    /// The link that carries a line.
+    pub fn link_of_line(&self, line: LineRef) -> LinkId {
+        match self.lines[line.index as usize] {
+            LineSource::Points(from, _) => self.link_of(from),
+            LineSource::AxisOf(link) => link,
+        }
     }
 
     /// Whether a point is one of the frame.

@@ -181,7 +181,7 @@ pub(crate) static BAR: Kind = kind("bar", "bar",
     ]]);
 
 /// The kinds of joints.
-pub(crate) static JOINTS: [&Kind; 5] = [&SLIDER, &SLOT, &WELD, &GEARS, &RACK];
+pub(crate) static JOINTS: [&Kind; 6] = [&SLIDER, &SLOT, &WELD, &GEARS, &BELT, &RACK];
 
 static SLIDER: Kind = kind("joint", "slider",
     "bore = { slider = \"piston\", at = \"C\", on = \"E -> F\" }",
@@ -195,10 +195,14 @@ static SLIDER: Kind = kind("joint", "slider",
 
 static SLOT: Kind = kind("joint", "pin",
     "slot = { pin = \"B\", on = \"O -> P\" }",
-    "A pin in a slot: a point stays on a line of another link and may turn.",
+    "A pin in a slot: a point stays on a line or an arc of another link and may turn.",
     &[&[
         must("pin", POINT, "\"B\"", "The point in the slot."),
-        must("on", T::Line, "\"O -> P\"", "The slot, through two points of another link."),
+        one_of("on", T::Line, "\"O -> P\"", "A straight slot, through two points of another link."),
+        one_of("arc", T::Line, "\"O -> P\"", "A curved slot, from one point of another link to another of it."),
+        may("radius", positive(D::LENGTH), "40", "The arc's radius, at least half the distance of its ends; `arc` needs it."),
+        may("side", SIDE_WORDS, "\"right\"", "On which side of the way along the arc's ends its centre lies; left unless said otherwise."),
+        may("closed", T::Flag, "true", "Whether the slot goes all the way round."),
     ]]);
 
 static WELD: Kind = kind("joint", "weld",
@@ -219,6 +223,19 @@ static GEARS: Kind = kind("joint", "gears",
         must("teeth", T::Two(&T::AnyValue), "[20, 40]", "Their numbers of teeth, or their radii."),
         may("internal", T::Flag, "true", "Whether one of them is a ring."),
         may("phase", ANGLE, "\"5 deg\"", "The first gear's angle on the arm where the second's is 0; 0 unless said otherwise."),
+    ]]);
+
+static BELT: Kind = kind("joint", "belt",
+    "belt = { belt = [\"pulley\", \"wheel\"], radii = [20, 60] }",
+    "A belt or chain over two wheels whose axes sit on an arm.",
+    &[&[
+        must("belt", T::Two(&LINK), "[\"pulley\", \"wheel\"]", "The two wheels."),
+        may("arm", LINK, "\"leg\"", "The link that carries both axes; the frame unless said otherwise."),
+        one_of("radii", T::Two(&T::AnyValue), "[20, 60]", "The radii of the wheels of a belt."),
+        one_of("teeth", T::Two(&T::AnyValue), "[18, 44]", "The numbers of teeth of the wheels of a chain or a toothed belt."),
+        may("pitch", positive(D::LENGTH), "12.7", "The length from tooth to tooth; `teeth` need it."),
+        may("crossed", T::Flag, "true", "Whether the runs cross, so that the wheels turn against each other."),
+        may("phase", ANGLE, "\"5 deg\"", "The first wheel's angle on the arm where the second's is 0; 0 unless said otherwise."),
     ]]);
 
 static RACK: Kind = kind("joint", "rack",

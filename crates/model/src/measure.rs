@@ -108,7 +108,7 @@ pub enum ForceMeasure {
     ReactionAlong(JointRef),
     /// `reaction_across(P, link)`: component along the y axis of that link, N.
     ReactionAcross(JointRef),
-    /// `reaction_moment(joint)`: moment a slider or weld carries, N m.
+    /// `reaction_moment(joint)`: moment a slider, weld or belt carries, N m.
     ReactionMoment(JointRef),
     /// `power(drive)`: W.
     Power(DriveId),

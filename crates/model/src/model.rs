@@ -240,6 +240,23 @@ pub struct Line {
     pub to: PointId,
 }
 
+/// A circular arc through two points of one link.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CircularArc {
+    /// The link that carries the arc.
+    pub link: LinkId,
+    /// Start.
+    pub from: PointId,
+    /// End.
+    pub to: PointId,
+    /// Radius.
+    pub radius: Scalar,
+    /// Side of the way from start to end on which the centre lies.
+    pub side: Side,
+    /// The whole circle counts, not only its shorter part between start and end.
+    pub closed: bool,
+}
+
 /// A point as a part of one link.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LinkPointRef {
@@ -279,6 +296,13 @@ pub enum JointKind {
         /// The slot.
         on: Line,
     },
+    /// A pin in a curved slot: a point of one link stays on an arc of another.
+    ArcSlot {
+        /// The pin.
+        pin: LinkPointRef,
+        /// The slot.
+        on: CircularArc,
+    },
     /// Two links made one: they share a point and keep an angle.
     Weld {
         /// The first link.
@@ -313,6 +337,27 @@ pub enum JointKind {
         /// Angle of the first gear on the arm when that of the second is zero, rad.
         phase: Scalar,
     },
+    /// A belt or chain over two wheels whose axes sit on the arm:
+    /// `radius_a (angle_a - angle_arm) - radius_b (angle_b - angle_arm) = radius_a phase`; crossed: plus. Angles count as
+    /// those of [`JointKind::Gears`] do.
+    Belt {
+        /// First wheel.
+        a: LinkId,
+        /// Second wheel.
+        b: LinkId,
+        /// The link that carries both axes.
+        arm: LinkId,
+        /// Radius at which the belt runs on the first wheel.
+        radius_a: Scalar,
+        /// Radius at which it runs on the second wheel.
+        radius_b: Scalar,
+        /// Its straight runs cross.
+        crossed: bool,
+        /// It is a chain, its wheels given by teeth and pitch.
+        chain: bool,
+        /// Angle of the first wheel on the arm when that of the second is zero, rad.
+        phase: Scalar,
+    },
     /// A pinion rolling on a rack. With `s` the pinion centre's coordinate along the rack's x axis and `side` the
     /// side of the rack on which the pinion lies: `s + side radius (angle_pinion - angle_rack) = offset`. Angles count
     /// as those of [`JointKind::Gears`] do.
@@ -333,14 +378,31 @@ pub enum JointKind {
 }
 
 impl JointKind {
-    /// The two links that the joint joins (of gears: without the arm).
+    /// The two links that the joint joins (of gears and belts: without the arm).
     pub fn links(&self) -> (LinkId, LinkId) {
         match *self {
             Self::Slider { at, on, .. } => (at.link, on.link),
             Self::Slot { pin, on } => (pin.link, on.link),
-            Self::Weld { a, b, .. } | Self::Gears { a, b, .. } => (a, b),
+            Self::ArcSlot { pin, ref on } => (pin.link, on.link),
+            Self::Weld { a, b, .. } | Self::Gears { a, b, .. } | Self::Belt { a, b, .. } => (a, b),
             Self::Rack { rack, pinion, .. } => (rack, pinion),
         }
+    }
+
+    /// The point that slides along a straight guide, and the guide, of a slider or slot.
+    pub fn guide(&self) -> Option<(LinkPointRef, Line)> {
+        match *self {
+            Self::Slider { at, on, .. } | Self::Slot { pin: at, on } => Some((at, on)),
+            _ => None,
+        }
+    }
+
+    /// Whether it ties the angles of its links and its load has a moment about the point where it is counted.
+    pub fn holds_angle(&self) -> bool {
+        matches!(
+            self,
+            Self::Slider { .. } | Self::Weld { .. } | Self::Belt { .. }
+        )
     }
 }
 

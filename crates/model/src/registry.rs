@@ -388,7 +388,7 @@ const MEASURES: &[MeasureEntry] = &[
     row("reaction_across", &[Form::JointOnLink(F::ReactionAcross)], FORCE, Forces, "reaction_across(B, coupler)",
         "the component on a link along the link's own y axis"),
     row("reaction_moment", &[Form::Moment], TORQUE, Forces, "reaction_moment(bore)",
-        "the moment that a slider or a weld carries"),
+        "the moment that a slider, a weld or a belt carries"),
     row("spring_force", &[Form::Spring], Follows("force; torque of a torsion spring"), Forces, "spring_force(return)",
         "the tension of a spring"),
     row("damper_force", &[Form::Damper], Follows("force; torque of a torsion damper"), Forces, "damper_force(oil)",

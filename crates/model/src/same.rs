@@ -68,6 +68,13 @@ impl Model {
             match &mut joint.kind {
                 JointKind::Slider { angle, .. } | JointKind::Weld { angle, .. } => f(angle),
                 JointKind::Slot { .. } => {}
+                JointKind::ArcSlot { on, .. } => f(&mut on.radius),
+                JointKind::Belt {
+                    radius_a,
+                    radius_b,
+                    phase,
+                    ..
+                } => [radius_a, radius_b, phase].into_iter().for_each(&mut *f),
                 JointKind::Gears {
                     teeth_a,
                     teeth_b,

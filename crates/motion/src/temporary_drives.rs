@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use kempe_mechanism::Mechanism;
 use kempe_mechanism::state::Design;
-use kempe_model::{Drive, DriveKind, HintKind, JointKind, Law, LawPiece, LinkId, Model};
+use kempe_model::{Drive, DriveKind, HintKind, Law, LawPiece, LinkId, Model};
 use kempe_units::{Dimension, Expr};
 
 use crate::assemble::{Assembly, find_assemblies};
@@ -128,7 +128,7 @@ fn candidates(model: &Model) -> Vec<Drive> {
     });
     let slides = model.joints.iter().enumerate();
     let slides = slides
-        .filter(|(_, j)| matches!(j.kind, JointKind::Slider { .. } | JointKind::Slot { .. }))
+        .filter(|(_, j)| j.kind.guide().is_some())
         .map(|(index, joint)| {
             let kind = DriveKind::Slide {
                 joint: kempe_model::JointId(index as u32),

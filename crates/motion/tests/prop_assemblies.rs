@@ -203,9 +203,11 @@ fn dyads_have_the_assemblies_that_a_dense_search_finds() {
         Group::Cylinder,
         Group::OffsetSlider,
         Group::TwoSlots,
+        Group::PinInArc,
+        Group::ArcOnPin,
     ];
     let (mut all, mut met) = (0, 0);
-    for (seed, kind) in kinds.iter().cycle().take(30).enumerate() {
+    for (seed, kind) in kinds.iter().cycle().take(36).enumerate() {
         let (a, b) = agree(&recipe(seed as u64, Driver::Turn, &[*kind]), 30);
         all += a;
         met += b;

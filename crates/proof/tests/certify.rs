@@ -182,6 +182,9 @@ fn gallery_motions_are_proved_and_hold_the_plain_poses() {
         "gallery/rack-steering",
         "gallery/excavator",
         "gallery/parallelogram",
+        "gallery/belt-leg",
+        "gallery/cam-slot-latch",
+        "gallery/curved-slot-follower",
     ] {
         let case = Case::example(file);
         let motion = case.must_move();

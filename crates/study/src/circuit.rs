@@ -16,6 +16,7 @@ use crate::progress::{Ear, Flow, Progress};
 use crate::quantity::Quantity;
 use crate::result::{Event, StudyResult};
 use crate::sink::RowSink;
+use crate::slot_ends::left_slots;
 use crate::table::Column;
 use crate::unit::Units;
 
@@ -93,6 +94,13 @@ pub(crate) fn run_circuit(
     if rows.table.unreached() > 0 {
         warnings.push(unreached_warning(name, &rows.table));
     }
+    warnings.extend(left_slots(
+        model,
+        &design.parameters,
+        &frames,
+        &rows.table,
+        0,
+    ));
     if !circuit.closed {
         warnings.push(Diagnostic::warning(
             "circuit-open",

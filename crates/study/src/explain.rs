@@ -275,6 +275,26 @@ fn measured(
                 links,
             )
         }
+        Step::Swing(Swing {
+            own: pin,
+            at,
+            tip,
+            condition: Condition::OnArc { arc, .. },
+            partner: None,
+        }) => {
+            let links = vec![link(pin)?];
+            let circle = design.geometry.arc(arc);
+            let center = state.poses.get(arc.body.index())?.place(circle.center);
+            let names = [format!("`{}`", links[0]), "the slot".to_owned()];
+            (
+                (world(at)?, point(at)?),
+                (center, "the centre of the curved slot".to_owned()),
+                own(pin, tip),
+                circle.radius,
+                names,
+                links,
+            )
+        }
         _ => return None,
     };
     let distance = apart(a.0, b.0);

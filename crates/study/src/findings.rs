@@ -407,7 +407,7 @@ fn diagnostics(model: &Model, design: &Design<f64>, found: &Findings) -> Vec<Dia
         let why = match shortfall {
             Shortfall::Searched => "a group was searched by trial",
             Shortfall::Scanned => {
-                "a group with a gear or rack was followed along its curves, and a short one can be overlooked"
+                "a group with a gear, belt or rack was followed along its curves, and a short one can be overlooked"
             }
             Shortfall::LostPath => {
                 "positions of a group coincide at this start, or so nearly that not all could be told apart, as where links lie in line"

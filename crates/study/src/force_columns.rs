@@ -2,8 +2,7 @@
 
 use kempe_mechanism::Mechanism;
 use kempe_model::{
-    Column, DriveId, DriveKind, ForceMeasure, Hodograph, JointId, JointKind, JointRef, Leaf, Plot,
-    PointId,
+    Column, DriveId, DriveKind, ForceMeasure, Hodograph, JointId, JointRef, Leaf, Plot, PointId,
 };
 use kempe_units::{Dimension, Expr};
 
@@ -180,10 +179,7 @@ pub(crate) fn joints(mechanism: &Mechanism) -> Vec<(JointRef, String, bool)> {
     }
     for (index, joint) in model.joints.iter().enumerate() {
         let first = joint.kind.links().0;
-        let moment = matches!(
-            joint.kind,
-            JointKind::Slider { .. } | JointKind::Weld { .. }
-        );
+        let moment = joint.kind.holds_angle();
         list.push((
             JointRef::Joint(JointId(index as u32), Some(first)),
             format!("{}, {}", joint.name, link(first)),

@@ -58,6 +58,7 @@ mod rows;
 mod run;
 mod sensitivities;
 mod sink;
+mod slot_ends;
 mod table;
 mod unit;
 pub mod verify;

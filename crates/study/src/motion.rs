@@ -20,6 +20,7 @@ use crate::quantity::Quantity;
 use crate::result::StudyResult;
 use crate::rows::places_along;
 use crate::sink::RowSink;
+use crate::slot_ends::left_slots;
 use crate::table::Column;
 use crate::unit::Units;
 
@@ -81,6 +82,8 @@ pub(crate) fn run_along(
             .is_some_and(|q| asks_time_ratio(&design.mechanism, &q.measure));
         of_cycles && !is_cycle(model, &design.parameters)
     }));
+    let parameters = &design.parameters;
+    warnings.extend(left_slots(model, parameters, &frames, &rows.table, along));
     let met = events(&motion, &units, &parameters_met);
     if forces {
         warnings.extend(unbounded(&design.mechanism, &asked.scalars, &met));

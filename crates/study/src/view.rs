@@ -1,12 +1,13 @@
 //! From a model and its poses to what the drawings need.
 
 use kempe_draw::{
-    DriveKind as DrivenPart, DriveView, Frame as DrawnFrame, Guide, JointView, LengthUnit,
-    LinkView, LoadRole, LoadUnit, LoadUnits, LoadView, MechanismView, TraceView, Wheel,
+    ArcGuide, DriveKind as DrivenPart, DriveView, Frame as DrawnFrame, Guide, JointView,
+    LengthUnit, LinkView, LoadRole, LoadUnit, LoadUnits, LoadView, MechanismView, TraceView, Wheel,
 };
 use kempe_dynamics::{ForceArrow, Origin};
 use kempe_model::{
-    Between, DriveKind, FRAME, JointKind, Line, LinkId, Model, MotionStudy, Plot, PointId, value,
+    Between, DriveKind, FRAME, JointKind, Line, LinkId, Model, MotionStudy, Plot, PointId, Scalar,
+    value,
 };
 use kempe_units::Dimension;
 
@@ -105,6 +106,42 @@ fn joint_view(model: &Model, kind: &JointKind, parameters: &[f64]) -> Option<Joi
             pin: pin.point.index(),
             guide: guide(*on),
         },
+        JointKind::ArcSlot { pin, on } => JointView::ArcSlot {
+            pin: pin.point.index(),
+            arc: ArcGuide {
+                link: on.link.index(),
+                from: on.from.index(),
+                to: on.to.index(),
+                radius: value(&on.radius, parameters),
+                side: on.side.sign(),
+                closed: on.closed,
+            },
+        },
+        JointKind::Belt {
+            a,
+            b,
+            arm,
+            radius_a,
+            radius_b,
+            crossed,
+            chain,
+            ..
+        } => {
+            let wheel = |link: LinkId, radius: &Scalar| {
+                Some(Wheel {
+                    link: link.index(),
+                    center: shared(model, link, *arm)?.index(),
+                    radius: value(radius, parameters),
+                    teeth: 0,
+                })
+            };
+            JointView::Belt {
+                a: wheel(*a, radius_a)?,
+                b: wheel(*b, radius_b)?,
+                crossed: *crossed,
+                chain: *chain,
+            }
+        }
         JointKind::Weld { a, b, at, .. } => JointView::Weld {
             at: at.index(),
             links: [a.index(), b.index()],
@@ -208,17 +245,13 @@ fn drives(model: &Model, parameters: &[f64]) -> Vec<DriveView> {
                 a: a.point.index(),
                 b: b.point.index(),
             },
-            DriveKind::Slide { joint } => match model.joints.get(joint.index())?.kind {
-                JointKind::Slider { at, on, .. } => DrivenPart::Slide {
+            DriveKind::Slide { joint } => {
+                let (at, on) = model.joints.get(joint.index())?.kind.guide()?;
+                DrivenPart::Slide {
                     at: at.point.index(),
                     guide: guide(on),
-                },
-                JointKind::Slot { pin, on } => DrivenPart::Slide {
-                    at: pin.point.index(),
-                    guide: guide(on),
-                },
-                _ => return None,
-            },
+                }
+            }
         };
         let (from, duration) = (
             drive.law.at(0.0, parameters),
@@ -276,9 +309,9 @@ fn traced(model: &Model, study: Option<&MotionStudy>) -> Vec<PointId> {
         let guides: Vec<PointId> = model
             .joints
             .iter()
-            .flat_map(|j| match j.kind {
-                JointKind::Slider { on, .. } | JointKind::Slot { on, .. } => vec![on.from, on.to],
-                _ => Vec::new(),
+            .flat_map(|j| match &j.kind {
+                JointKind::ArcSlot { on, .. } => vec![on.from, on.to],
+                kind => (kind.guide()).map_or_else(Vec::new, |(_, on)| vec![on.from, on.to]),
             })
             .collect();
         let free = model.points.iter().enumerate().filter(|(index, p)| {

@@ -206,6 +206,11 @@ impl Brush<'_> {
     }
 }
 
+/// The sides of an arc's polygon stay this near to it, mm,
+const SAGITTA: f64 = 0.01;
+/// and turn by no more than this, rad.
+const WIDEST_STEP: f64 = 0.12;
+
 /// Points after the start along a segment: the end alone for a straight line, a fine polygon for an arc.
 pub(crate) fn arc_points(from: Point, to: Point, bulge: f64) -> Vec<Point> {
     let chord = distance(from, to);
@@ -220,7 +225,9 @@ pub(crate) fn arc_points(from: Point, to: Point, bulge: f64) -> Vec<Point> {
         (from[1] + to[1]) / 2.0 + side * dx,
     ];
     let sweep = 4.0 * kempe_number::math::atan2(bulge, 1.0);
-    let steps = (sweep.abs() / 0.12).ceil().clamp(1.0, 64.0) as usize;
+    let radius = distance(from, center);
+    let step = (8.0 * SAGITTA / radius).sqrt().min(WIDEST_STEP);
+    let steps = (sweep.abs() / step).ceil().clamp(1.0, 512.0) as usize;
     let turned = |k: usize| {
         let (s, c) = kempe_number::math::sin_cos(sweep * k as f64 / steps as f64);
         let (x, y) = (from[0] - center[0], from[1] - center[1]);

@@ -1,4 +1,4 @@
-//! Gears in mesh: toothed wheels with their pitch circles, the teeth of one in the gaps of the other.
+//! Wheels: gears in mesh, toothed wheels with their pitch circles, the teeth of one in the gaps of the other.
 
 use std::f64::consts::PI;
 
@@ -53,6 +53,17 @@ pub(super) fn parts(context: &Context) -> Vec<Part> {
                         ring: second.1,
                         phase,
                     });
+                }
+            }
+            JointView::Belt { a, b, .. } => {
+                for wheel in [a, b] {
+                    if !placed.iter().any(|p| same(&p.wheel, &wheel)) {
+                        placed.push(Placed {
+                            wheel,
+                            ring: false,
+                            phase: 0.0,
+                        });
+                    }
                 }
             }
             JointView::Rack { pinion, .. } if !placed.iter().any(|p| same(&p.wheel, &pinion)) => {

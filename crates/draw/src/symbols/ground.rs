@@ -1,7 +1,9 @@
 //! Hatching: what stands still.
 
+use kempe_number::math::sin_cos;
+
 use super::LINE;
-use crate::scene::{Item, Path, Style};
+use crate::scene::{Item, Path, Point, Style};
 use crate::tokens::Token;
 
 /// Distance of hatch lines, mm.
@@ -25,6 +27,46 @@ pub(super) fn hatched_line(x0: f64, x1: f64, y: f64, down: bool) -> Vec<Item> {
         },
         Item::path(
             Path::polyline(&[[x0, y], [x1, y]]),
+            Style::stroke(Token::Ground, LINE),
+        ),
+    ]
+}
+
+/// An arc about `center` from the angle `start` over `sweep`, `beyond` mm longer at both ends, with hatching outside or
+/// inside.
+pub(super) fn hatched_arc(
+    center: Point,
+    radius: f64,
+    start: f64,
+    sweep: f64,
+    beyond: f64,
+    outside: bool,
+) -> Vec<Item> {
+    if !(radius > DEPTH) {
+        return Vec::new();
+    }
+    let longer = beyond / radius * sweep.signum();
+    let (start, sweep) = (start - longer, sweep + 2.0 * longer);
+    let on = |r: f64, angle: f64| {
+        let (s, c) = sin_cos(angle);
+        [center[0] + r * c, center[1] + r * s]
+    };
+    let depth = if outside { DEPTH } else { -DEPTH };
+    let count = ((sweep.abs() * radius / STEP).floor().max(0.0) as usize).min(2000);
+    let hatch = |k: usize| {
+        let angle = start + sweep * (k as f64 + 0.5) / count as f64;
+        Path::polyline(&[
+            on(radius, angle + 0.5 / radius),
+            on(radius + depth, angle - 0.7 / radius),
+        ])
+    };
+    vec![
+        Item::Shape {
+            paths: (0..count).map(hatch).collect(),
+            style: Style::stroke(Token::Ground, 0.22),
+        },
+        Item::path(
+            Path::arc(center, radius, start, sweep),
             Style::stroke(Token::Ground, LINE),
         ),
     ]

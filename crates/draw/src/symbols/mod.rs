@@ -1,5 +1,7 @@
 //! The field's drawing symbols (after ISO 3952): each file draws one. Symbols keep their size on paper, bars scale.
 
+mod belt;
+mod curved_slot;
 mod cylinder;
 mod drive;
 mod gear;
@@ -65,6 +67,13 @@ pub(crate) fn parts(context: &Context, labels: bool) -> Vec<Part> {
                 parts.extend(slider::slider(context, block, at, guide))
             }
             JointView::Slot { pin, guide } => parts.extend(slider::slot(context, pin, guide)),
+            JointView::ArcSlot { pin, arc } => parts.extend(curved_slot::parts(context, pin, arc)),
+            JointView::Belt {
+                a,
+                b,
+                crossed,
+                chain,
+            } => parts.extend(belt::parts(context, [a, b], crossed, chain)),
             JointView::Weld { at, links } => parts.extend(weld::parts(context, at, links)),
             JointView::Rack { link, pinion, side } => {
                 parts.extend(rack::parts(context, link, pinion, side))

@@ -1,11 +1,11 @@
 //! Friction at the joints: it follows from the loads that it changes, so both are found together.
 
-use kempe_mechanism::structure::Constraint;
+use kempe_mechanism::constraint::{Joint, Situation, Sliding};
 use kempe_mechanism::{BodyId, Geometry, Mechanism};
 use kempe_number::Number;
 
 use super::{Equilibrium, SINGULAR};
-use crate::friction::{Friction, Place, direction};
+use crate::friction::{Friction, direction};
 use crate::instant::Instant;
 use crate::number::ForceNumber;
 use crate::vector::{cross, dot, length, sub};
@@ -81,50 +81,50 @@ impl<T: ForceNumber> Equilibrium<T> {
         let fastest = self.fastest(at);
         let still = [STILL * fastest, UNMOVED * fastest * self.pace.frequency];
         let still_sliding = still.map(|s| s * self.size);
+        let situation = Situation {
+            geometry,
+            inputs: &at.inputs,
+            poses: &at.poses,
+            near: &at.near,
+        };
         for (index, friction) in frictions.iter().enumerate() {
             let row = self.first_row[friction.constraint];
-            let one = T::one();
-            let zero = T::zero();
-            match (friction.place, mechanism.constraints[friction.constraint].0) {
-                (Place::Pin, Constraint::Coincide { a, b }) => {
-                    let (v, w) = (&at.velocities, &at.accelerations);
-                    let speed = v[b.body.index()][2] - v[a.body.index()][2];
-                    let gain = w[b.body.index()][2] - w[a.body.index()][2];
-                    self.contacts.push(FrictionContact {
-                        friction: index,
-                        row,
-                        speed,
-                        direction: direction(speed.value(), gain.value(), still),
-                        unit: [(b.body, [zero, zero, -one]), (a.body, [zero, zero, one])],
-                    });
+            let (zero, one) = (T::zero(), T::one());
+            let contact = |speed, direction, unit| FrictionContact {
+                friction: index,
+                row,
+                speed,
+                direction,
+                unit,
+            };
+            let (v, w) = (&at.velocities, &at.accelerations);
+            let constraint = &mechanism.constraints[friction.constraint].0;
+            self.contacts.extend(match constraint.sliding(&situation) {
+                Some(Sliding::Turning { a, b }) => {
+                    let speed = v[b.index()][2] - v[a.index()][2];
+                    let gain = w[b.index()][2] - w[a.index()][2];
+                    let direction = direction(speed.value(), gain.value(), still);
+                    let unit = [(b, [zero, zero, -one]), (a, [zero, zero, one])];
+                    Some(contact(speed, direction, unit))
                 }
-                (Place::Line, Constraint::OnLine { point, line }) => {
-                    let along = at.poses[line.body.index()].turn(geometry.line(line).direction);
+                Some(Sliding::Along { point, on, tangent }) => {
                     let arm = at.arm(point.body, geometry.marker(point));
-                    let guide = &at.poses[line.body.index()];
+                    let guide = &at.poses[on.index()];
                     let arm_guide = sub(at.place(point.body, arm), [guide.x, guide.y]);
-                    let parting = sub(
-                        at.velocity(point.body, arm),
-                        at.velocity(line.body, arm_guide),
-                    );
+                    let parting = sub(at.velocity(point.body, arm), at.velocity(on, arm_guide));
                     let gain = sub(
                         at.acceleration(point.body, arm),
-                        at.acceleration(line.body, arm_guide),
+                        at.acceleration(on, arm_guide),
                     );
-                    let speed = dot(along, parting);
-                    let gain = dot(along, gain).value();
-                    let own = [-along[0], -along[1], -cross(arm, along)];
-                    let other = [along[0], along[1], cross(arm_guide, along)];
-                    self.contacts.push(FrictionContact {
-                        friction: index,
-                        row,
-                        speed,
-                        direction: direction(speed.value(), gain, still_sliding),
-                        unit: [(point.body, own), (line.body, other)],
-                    });
+                    let speed = dot(tangent, parting);
+                    let gain = dot(tangent, gain).value();
+                    let own = [-tangent[0], -tangent[1], -cross(arm, tangent)];
+                    let other = [tangent[0], tangent[1], cross(arm_guide, tangent)];
+                    let direction = direction(speed.value(), gain, still_sliding);
+                    Some(contact(speed, direction, [(point.body, own), (on, other)]))
                 }
-                _ => {}
-            }
+                None => None,
+            });
         }
     }
 
@@ -160,7 +160,7 @@ impl<T: ForceNumber> Equilibrium<T> {
         }
         for contact in &self.contacts {
             let friction = &frictions[contact.friction];
-            let (_, load) = load_of(friction.place, &self.plain[contact.row..]);
+            let (_, load) = load_of(friction, &self.plain[contact.row..]);
             let viscous = (friction.law.viscous * contact.speed).value();
             let slope = friction.slope(contact.speed.value(), contact.direction);
             let resistance = (slope * load + viscous) * share;
@@ -295,10 +295,10 @@ impl<T: ForceNumber> Equilibrium<T> {
 }
 
 /// Rows and size of a joint's load at plain multipliers.
-pub(super) fn load_of(place: Place, lambda: &[f64]) -> (usize, f64) {
-    match place {
-        Place::Pin => (2, kempe_number::math::hypot(lambda[0], lambda[1])),
-        Place::Line => (1, lambda[0].abs()),
+pub(super) fn load_of<T>(friction: &Friction<T>, lambda: &[f64]) -> (usize, f64) {
+    match friction.radius {
+        Some(_) => (2, kempe_number::math::hypot(lambda[0], lambda[1])),
+        None => (1, lambda[0].abs()),
     }
 }
 
@@ -308,9 +308,9 @@ pub(super) fn resistance<T: Number>(
     lambda: &[T],
 ) -> T {
     let friction = &frictions[contact.friction];
-    let load = match friction.place {
-        Place::Pin => length([lambda[contact.row], lambda[contact.row + 1]]),
-        Place::Line => lambda[contact.row].abs(),
+    let load = match friction.radius {
+        Some(_) => length([lambda[contact.row], lambda[contact.row + 1]]),
+        None => lambda[contact.row].abs(),
     };
     friction.resistance(contact.speed, contact.direction, load)
 }

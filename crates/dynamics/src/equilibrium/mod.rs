@@ -12,15 +12,13 @@
 mod friction;
 mod order;
 
-use kempe_mechanism::constraint::Situation;
-use kempe_mechanism::structure::Constraint;
+use kempe_mechanism::constraint::{Joint, Situation};
 use kempe_mechanism::{BodyId, Geometry, Mechanism, Qr};
 
 pub use self::friction::{FRICTION_STEP, FRICTION_STEPS, FrictionOutcome, Pace, STILL, UNMOVED};
 use self::friction::{FrictionContact, load_of, resistance};
 use self::order::Order;
 use crate::friction::Friction;
-use crate::gear_mesh::GearMesh;
 use crate::instant::Instant;
 use crate::number::ForceNumber;
 use crate::wrench::Wrench;
@@ -44,7 +42,6 @@ pub struct Equilibrium<T> {
     first_row: Vec<usize>,
     /// Where rows and columns stand in the factored matrix.
     order: Order,
-    meshes: Vec<Option<GearMesh>>,
     idle: Vec<BodyId>,
     rows: usize,
     columns: usize,
@@ -81,15 +78,10 @@ impl<T: ForceNumber> Equilibrium<T> {
         let plan = &mechanism.plan;
         let mut first_row = Vec::with_capacity(mechanism.constraints.len());
         let mut unit = Vec::new();
-        let mut meshes = Vec::with_capacity(mechanism.constraints.len());
         for (constraint, _) in &mechanism.constraints {
             first_row.push(unit.len());
-            let mesh = GearMesh::new(mechanism, constraint);
-            let is_angle = matches!(constraint, Constraint::Direction { .. })
-                || matches!(constraint, Constraint::Gears { .. }) && mesh.is_none();
-            let scale = if is_angle { 1.0 } else { 1.0 / size };
+            let scale = constraint.load_unit().factor(size);
             unit.resize(unit.len() + constraint.rows(), scale);
-            meshes.push(mesh);
         }
         let idle = plan.decomposition.idle.clone();
         unit.resize(unit.len() + idle.len(), 1.0);
@@ -98,7 +90,6 @@ impl<T: ForceNumber> Equilibrium<T> {
         Self {
             order: Order::new(mechanism, &first_row, rows),
             first_row,
-            meshes,
             idle,
             rows,
             columns,
@@ -229,19 +220,13 @@ impl<T: ForceNumber> Equilibrium<T> {
         for (index, (constraint, _)) in mechanism.constraints.iter().enumerate() {
             let row = self.first_row[index];
             let entries = &mut self.entries;
-            let mut push = |g: kempe_mechanism::constraint::Gradient<T>| {
+            constraint.load_gradients(&situation, |g| {
                 entries.push(Entry {
                     row: row + g.row,
                     body: g.body,
                     to: g.to,
                 });
-            };
-            if let Some(mesh) = &self.meshes[index]
-                && mesh.gradients(&situation, &mut push)
-            {
-                continue;
-            }
-            situation.gradients(constraint, push);
+            });
         }
         for (k, body) in self.idle.iter().enumerate() {
             self.entries.push(Entry {
@@ -276,7 +261,7 @@ impl<T: ForceNumber> Equilibrium<T> {
             for contact in contacts.iter() {
                 let friction = &frictions[contact.friction];
                 let slope = friction.slope(contact.speed.value(), contact.direction) * share;
-                let (count, load) = load_of(friction.place, &lambda[contact.row..]);
+                let (count, load) = load_of(friction, &lambda[contact.row..]);
                 for k in 0..count {
                     let part = if load > 0.0 {
                         lambda[contact.row + k] / load

@@ -2,6 +2,7 @@
 
 use crate::Mechanism;
 use crate::blocks::{ConstraintRows, Row, Unknown, by_constraint};
+use crate::constraint::Joint;
 
 /// Where an unknown number of a body stands: block and first column in it.
 pub(super) type Seat = Option<(u32, u32)>;

@@ -1,6 +1,5 @@
 //! What constraints are evaluated with, and where their points and lines are then.
 
-use kempe_model::DriveId;
 use kempe_number::Number;
 
 use crate::geometry::Geometry;
@@ -80,16 +79,17 @@ impl<T: Number> Situation<'_, T> {
         self.poses[body.index()].angle_near(self.near[body.index()])
     }
 
-    /// The wanted direction of body `a` of a [`Constraint::Direction`](super::Constraint::Direction), as a unit vector.
+    /// From a body's origin to one of its own points, along the frame's axes (intervals stay narrow without the detour
+    /// over the frame).
     #[cfg_attr(not(debug_assertions), inline(always))]
-    pub fn wanted_direction(&self, b: BodyId, offset: u32, input: Option<DriveId>) -> [T; 2] {
-        let base = self.poses[b.index()].turn(self.geometry.angles[offset as usize]);
-        match input {
-            Some(drive) => {
-                let q = &self.inputs[drive.index()];
-                [base[0] * q.c - base[1] * q.s, base[1] * q.c + base[0] * q.s]
-            }
-            None => base,
-        }
+    pub(super) fn arm(&self, marker: Marker) -> [T; 2] {
+        self.poses[marker.body.index()].turn(self.geometry.marker(marker))
+    }
+
+    /// From a body's origin to any place of the frame.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    pub(super) fn arm_to(&self, body: BodyId, place: [T; 2]) -> [T; 2] {
+        let pose = &self.poses[body.index()];
+        [place[0] - pose.x, place[1] - pose.y]
     }
 }

@@ -11,7 +11,7 @@ use super::SpanningTree;
 use super::elimination::{Elimination, Matrix};
 use super::rows::factor_block;
 use crate::Mechanism;
-use crate::constraint::{Constraint, Input, Situation};
+use crate::constraint::{Coincide, Constraint, Input, Situation};
 use crate::geometry::Geometry;
 use crate::pose::Pose;
 use crate::qr::Qr;
@@ -215,15 +215,15 @@ fn jacobians_are_the_derivatives_of_the_joints_own_rows() {
         let (hung, _) = case.hung(tree);
         let situation = case.situation(&hung);
         for pin in &tree.hung {
-            let gap = situation.residual(&Constraint::Coincide {
+            let gap = situation.residual(&Constraint::Coincide(Coincide {
                 a: pin.own,
                 b: pin.at,
-            });
+            }));
             assert!(gap[0].abs().max(gap[1].abs()) < 1e-14, "{file}");
         }
         for (closure, ends) in tree.closures.iter().zip(tree.tips.as_chunks().0) {
             let &[a, b] = ends;
-            let gap = situation.residual(&Constraint::Coincide { a, b });
+            let gap = situation.residual(&Constraint::Coincide(Coincide { a, b }));
             assert_eq!(gap, [rhs[closure.row], rhs[closure.row + 1]], "{file}");
         }
     });

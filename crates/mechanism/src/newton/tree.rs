@@ -11,7 +11,7 @@
 //! ways are the *levers*.
 
 use crate::blocks::{Block, Unknown, by_constraint};
-use crate::constraint::Constraint;
+use crate::constraint::{Coincide, Constraint};
 use crate::structure::{BodyId, Marker, Structure};
 
 /// A spanning tree of a block's pins, with the rows that it leaves.
@@ -107,7 +107,7 @@ impl SpanningTree {
         }
         let rows = by_constraint(&block.rows);
         let pin = |index: usize| match structure.constraints[index].0 {
-            Constraint::Coincide { a, b } => Some((a, b)),
+            Constraint::Coincide(Coincide { a, b }) => Some((a, b)),
             _ => None,
         };
 

@@ -1,10 +1,17 @@
 //! From a model's joints and drives to constraints.
 
-use kempe_model::{DriveId, DriveKind, JointId, JointKind, Line, LinkPointRef, PointId, Scalar};
+use kempe_model::{
+    CircularArc, DriveId, DriveKind, JointId, JointKind, Line, LinkId, LinkPointRef, PointId,
+    Scalar,
+};
 use kempe_units::Expr;
 
 use super::sources::ZERO;
-use super::{AngleSource, BodyId, Constraint, GearSource, LineRef, LineSource, Source, Structure};
+use super::{
+    AngleSource, ArcRef, ArcSource, BodyId, GearSource, LineRef, LineSource, Marker, Source,
+    Structure,
+};
+use crate::constraint::{Belt, Coincide, Direction, Distance, Gears, OnArc, OnLine, Rack, Travel};
 
 impl Structure {
     /// Pins made by shared point names.
@@ -28,7 +35,7 @@ impl Structure {
                 if !pinned.contains(&b.body) {
                     pinned.push(b.body);
                     self.constraints
-                        .push((Constraint::Coincide { a, b }, Source::Pin { point, link }));
+                        .push((Coincide { a, b }.into(), Source::Pin { point, link }));
                 }
             }
         }
@@ -48,22 +55,27 @@ impl Structure {
                     b: on.link,
                 });
                 let (a, b) = (self.body_of(at.link), self.body_of(on.link));
-                let constraint = Constraint::Direction {
+                let direction = Direction {
                     a,
                     b,
                     offset,
                     input: None,
                 };
-                self.constraints.push((constraint, source));
+                self.constraints.push((direction.into(), source));
                 if let Some(point) = self.marker(at) {
                     self.constraints
-                        .push((Constraint::OnLine { point, line }, source));
+                        .push((OnLine { point, line }.into(), source));
                 }
             }
             JointKind::Slot { pin, on } => {
                 if let (Some(point), Some(line)) = (self.marker(pin), self.line(on)) {
                     self.constraints
-                        .push((Constraint::OnLine { point, line }, source));
+                        .push((OnLine { point, line }.into(), source));
+                }
+            }
+            JointKind::ArcSlot { pin, on } => {
+                if let (Some(point), Some(arc)) = (self.marker(pin), self.arc(on)) {
+                    self.constraints.push((OnArc { point, arc }.into(), source));
                 }
             }
             // Welded links are one body: nothing is left to constrain.
@@ -77,22 +89,21 @@ impl Structure {
                 internal,
                 phase,
             } => {
-                let second = signed(teeth_b, internal);
-                let constant = Expr::Mul(Box::new(teeth_a.clone()), Box::new(phase));
-                let constants = self.gear(GearSource {
-                    first: teeth_a,
-                    second,
-                    constant,
-                    links: [a, b, arm],
-                });
-                let (a, b, arm) = (self.body_of(a), self.body_of(b), self.body_of(arm));
-                let constraint = Constraint::Gears {
-                    a,
-                    b,
-                    arm,
-                    constants,
-                };
-                self.constraints.push((constraint, source));
+                let wheels = self.wheels([a, b, arm], teeth_a, signed(teeth_b, internal), phase);
+                self.constraints.push((wheels.into(), source));
+            }
+            JointKind::Belt {
+                a,
+                b,
+                arm,
+                radius_a,
+                radius_b,
+                crossed,
+                phase,
+                ..
+            } => {
+                let wheels = self.wheels([a, b, arm], radius_a, signed(radius_b, !crossed), phase);
+                self.constraints.push((Belt { wheels }.into(), source));
             }
             JointKind::Rack {
                 rack,
@@ -117,12 +128,12 @@ impl Structure {
                     link: pinion,
                     point: center,
                 }) {
-                    let constraint = Constraint::Rack {
+                    let rack = Rack {
                         line,
                         center,
                         constants,
                     };
-                    self.constraints.push((constraint, source));
+                    self.constraints.push((rack.into(), source));
                 }
             }
         }
@@ -141,34 +152,31 @@ impl Structure {
                     b: relative_to,
                 });
                 let (a, b) = (self.body_of(link), self.body_of(relative_to));
-                let constraint = Constraint::Direction {
+                let direction = Direction {
                     a,
                     b,
                     offset,
                     input: Some(id),
                 };
-                self.constraints.push((constraint, source));
+                self.constraints.push((direction.into(), source));
             }
             DriveKind::Cylinder { a, b } => {
                 if let (Some(a), Some(b)) = (self.marker(a), self.marker(b)) {
-                    let constraint = Constraint::Distance { a, b, input: id };
-                    self.constraints.push((constraint, source));
+                    let distance = Distance { a, b, input: id };
+                    self.constraints.push((distance.into(), source));
                 }
             }
             DriveKind::Slide { joint } => {
-                let (at, on) = match &self.model.joints[joint.index()].kind {
-                    JointKind::Slider { at, on, .. } | JointKind::Slot { pin: at, on } => {
-                        (*at, *on)
-                    }
-                    _ => return,
+                let Some((at, on)) = self.model.joints[joint.index()].kind.guide() else {
+                    return;
                 };
                 if let (Some(point), Some(line)) = (self.marker(at), self.line(on)) {
-                    let constraint = Constraint::Travel {
+                    let travel = Travel {
                         point,
                         line,
                         input: id,
                     };
-                    self.constraints.push((constraint, source));
+                    self.constraints.push((travel.into(), source));
                 }
             }
         }
@@ -188,6 +196,64 @@ impl Structure {
         Some(LineRef {
             body: from.body,
             index,
+        })
+    }
+
+    /// Two wheels on an arm whose angles there are tied: `first angle_a + second angle_b = first phase`.
+    fn wheels(
+        &mut self,
+        links: [LinkId; 3],
+        first: Scalar,
+        second: Scalar,
+        phase: Scalar,
+    ) -> Gears {
+        let constants = self.gear(GearSource {
+            constant: Expr::Mul(Box::new(first.clone()), Box::new(phase)),
+            first,
+            second,
+            links,
+        });
+        let [a, b, arm] = links.map(|link| self.body_of(link));
+        let pins = self.pin(a, arm).zip(self.pin(b, arm));
+        Gears {
+            a,
+            b,
+            arm,
+            constants,
+            pins: pins.map(|(a, b)| [a, b]),
+        }
+    }
+
+    /// The marker on `body` of a point that pins it to `other`.
+    fn pin(&self, body: BodyId, other: BodyId) -> Option<Marker> {
+        self.markers.iter().find_map(|at| {
+            if self.body_of(at.link) != body {
+                return None;
+            }
+            let shared = self.model.points.get(at.point.index())?;
+            (shared.links.iter())
+                .any(|link| self.body_of(*link) == other)
+                .then(|| self.marker(*at))?
+        })
+    }
+
+    fn arc(&mut self, arc: CircularArc) -> Option<ArcRef> {
+        let point = |point| {
+            self.marker(LinkPointRef {
+                link: arc.link,
+                point,
+            })
+        };
+        let (from, to) = (point(arc.from)?, point(arc.to)?);
+        self.arcs.push(ArcSource {
+            from,
+            to,
+            radius: arc.radius,
+            side: arc.side.sign(),
+        });
+        Some(ArcRef {
+            body: from.body,
+            index: self.arcs.len() as u32 - 1,
         })
     }
 

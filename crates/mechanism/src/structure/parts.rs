@@ -39,6 +39,15 @@ pub enum Spot {
     Anywhere,
 }
 
+/// A circular arc of a body: an index into the geometry's arcs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ArcRef {
+    /// The body that carries the arc.
+    pub body: BodyId,
+    /// Index into the geometry's arcs.
+    pub index: u32,
+}
+
 /// A directed line of a body: an index into the geometry's lines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LineRef {

@@ -25,6 +25,19 @@ pub enum LineSource {
     AxisOf(LinkId),
 }
 
+/// A circular arc by its ends, two markers of one body.
+#[derive(Clone, Debug)]
+pub struct ArcSource {
+    /// Where it starts.
+    pub from: Marker,
+    /// Where it ends.
+    pub to: Marker,
+    /// Radius, m.
+    pub radius: Scalar,
+    /// +1 with its centre on the left of the way from start to end, -1 on the right.
+    pub side: f64,
+}
+
 /// An angle constant between two bodies: `value + direction of the line + seat(b) - seat(a)`.
 #[derive(Clone, Debug)]
 pub struct AngleSource {

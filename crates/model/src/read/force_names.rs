@@ -131,7 +131,7 @@ impl Measures<'_, '_> {
                 if let Some(joint) = cx.model.joints.get(id.index()) {
                     let (a, b) = joint.kind.links();
                     let mut links = vec![a, b];
-                    if let JointKind::Gears { arm, .. } = joint.kind {
+                    if let JointKind::Gears { arm, .. } | JointKind::Belt { arm, .. } = joint.kind {
                         links.push(arm);
                     }
                     joins(&links, &format!("joint `{name}`"))?;
@@ -163,7 +163,7 @@ impl Measures<'_, '_> {
         let mut joints = self.0.model.joints.iter();
         let found = joints.find(|j| match j.kind {
             JointKind::Slider { at, .. } => at.point == point,
-            JointKind::Slot { pin, .. } => pin.point == point,
+            JointKind::Slot { pin, .. } | JointKind::ArcSlot { pin, .. } => pin.point == point,
             _ => false,
         })?;
         Some(&found.name)
@@ -188,16 +188,16 @@ impl Measures<'_, '_> {
         let found = self.joint(call, node, link)?;
         let carries = match found {
             JointRef::Pin(..) => false,
-            JointRef::Joint(id, _) => matches!(
-                self.0.model.joints.get(id.index()).map(|j| &j.kind),
-                Some(JointKind::Slider { .. } | JointKind::Weld { .. })
-            ),
+            JointRef::Joint(id, _) => {
+                let joint = self.0.model.joints.get(id.index());
+                joint.is_some_and(|j| j.kind.holds_angle())
+            }
         };
         if carries {
             return Ok(found);
         }
         let help = "pins, slots, gears and racks carry no moment".to_owned();
-        self.argument(node, "a slider or a weld", help)
+        self.argument(node, "a slider, a weld or a belt", help)
     }
 
     /// A cylinder with its entry under `[cylinders]`; with `limited`, one whose pressure has a limit.

@@ -124,6 +124,9 @@ fn place(cx: &mut Context<'_>, key: &Key) -> Option<FrictionAt> {
             Some(JointKind::Gears { .. }) => {
                 Some("a gear pair, whose friction this version does not know")
             }
+            Some(JointKind::Belt { .. }) => {
+                Some("a belt, whose friction this version does not know")
+            }
             Some(JointKind::Rack { .. }) => {
                 Some("a rack, whose friction this version does not know")
             }
@@ -175,7 +178,7 @@ fn slides(cx: &Context<'_>, joint: usize) -> bool {
     };
     matches!(
         cx.model.joints.get(id.index()).map(|j| &j.kind),
-        Some(JointKind::Slider { .. } | JointKind::Slot { .. })
+        Some(JointKind::Slider { .. } | JointKind::Slot { .. } | JointKind::ArcSlot { .. })
     )
 }
 

@@ -1,14 +1,18 @@
 //! `[joints]`: what a shared point name does not say.
 
-use kempe_units::Dimension;
+use kempe_units::{Dimension, Expr};
 
 use crate::diagnostic::Diagnostic;
 use crate::document::{Key, Node};
 use crate::key_table::{JOINTS, SIDES};
-use crate::model::{Joint, JointId, JointKind, LinkId, LinkPointRef, PointId, Side};
+use crate::model::{
+    CircularArc, Joint, JointId, JointKind, Line, LinkId, LinkPointRef, PointId, Scalar, Side,
+};
 use crate::read::context::Context;
 use crate::read::entry::{Entry, on_link};
 
+/// A radius this little, in parts of it, below half the distance of an arc's ends is that half: a semicircle.
+const FLAT: f64 = 1e-12;
 /// A file has at most so many joints of its own.
 const MAX_JOINTS: usize = 10_000;
 
@@ -59,6 +63,7 @@ fn read_joint(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<JointKind> {
         "pin" => slot(cx, &entry),
         "weld" => weld(cx, &entry),
         "gears" => gears(cx, &entry),
+        "belt" => belt(cx, &entry),
         _ => rack(cx, &entry),
     }
 }
@@ -98,8 +103,19 @@ fn slider(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<JointKind> {
 
 fn slot(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<JointKind> {
     let pin = entry.point(cx, "pin");
-    let on = entry.required(cx, "on").and_then(|node| {
-        let text = entry.text(cx, "on", node)?;
+    let (key, curved) = match (entry.get("on"), entry.get("arc")) {
+        (Some(_), Some(_)) => {
+            let message = format!("{} lies on a line and on an arc", entry.place);
+            let help = "keep `on` for a straight slot, `arc` for a curved one";
+            entry.contradiction(cx, &["arc"], &message, help);
+            return None;
+        }
+        (None, Some(node)) => ("arc", Some(node)),
+        _ => ("on", None),
+    };
+    entry.idle(cx, &["radius", "side", "closed"], "arc");
+    let on = entry.required(cx, key).and_then(|node| {
+        let text = entry.text(cx, key, node)?;
         cx.line(text, None)
     });
     let ((pin, node), on) = (pin?, on?);
@@ -137,10 +153,70 @@ fn slot(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<JointKind> {
         );
         return None;
     }
-    Some(JointKind::Slot {
-        pin: LinkPointRef { link, point: pin },
-        on,
+    let pin = LinkPointRef { link, point: pin };
+    match curved {
+        None => Some(JointKind::Slot { pin, on }),
+        Some(node) => Some(JointKind::ArcSlot {
+            pin,
+            on: arc(cx, entry, node, on)?,
+        }),
+    }
+}
+
+/// The arc over a line between two points, told at `node`.
+fn arc(cx: &mut Context<'_>, entry: &Entry<'_>, node: &Node, on: Line) -> Option<CircularArc> {
+    let radius = entry.needed(cx, "radius");
+    let side = match entry.get("side") {
+        None => Some(Side::Left),
+        Some(node) => side_word(
+            cx,
+            entry,
+            node,
+            "side = \"left\": the centre lies on the left of the way along the arc's ends, or side = \"right\"",
+        ),
+    };
+    let closed = entry.flag(cx, "closed");
+    let (radius, side, closed) = (radius?, side?, closed?);
+    let least = 0.5 * distance_on(cx, on.link, on.from, on.to)?;
+    let given = cx.number(&radius);
+    if !(least > 0.0 && given >= least * (1.0 - FLAT)) {
+        let (least, given) = (
+            cx.show(least, Dimension::LENGTH),
+            cx.show(given, Dimension::LENGTH),
+        );
+        cx.push(
+            Diagnostic::error(
+                "contradictory-values",
+                format!("{}: no arc with this radius joins these points", entry.place),
+            )
+            .at(
+                node.span.clone(),
+                format!("half their distance is {least}, the radius is {given}"),
+            )
+            .help("give two points apart from each other and a radius of at least half their distance"),
+        );
+        return None;
+    }
+    Some(CircularArc {
+        link: on.link,
+        from: on.from,
+        to: on.to,
+        radius,
+        side,
+        closed,
     })
+}
+
+/// Distance of two points of a link with the parameters' values, m.
+fn distance_on(cx: &Context<'_>, link: LinkId, a: PointId, b: PointId) -> Option<f64> {
+    let link = cx.model.links.get(link.index())?;
+    let places: Vec<[f64; 2]> = link.evaluate(&cx.values);
+    let at = |point: PointId| {
+        let index = link.points.iter().position(|p| p.point == point)?;
+        places.get(index).copied()
+    };
+    let (a, b) = (at(a)?, at(b)?);
+    Some(kempe_number::math::hypot(a[0] - b[0], a[1] - b[1]))
 }
 
 fn weld(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<JointKind> {
@@ -233,13 +309,111 @@ fn gears(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<JointKind> {
     })
 }
 
+fn belt(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<JointKind> {
+    let links = two_links(cx, entry, "belt");
+    let arm = entry.link_or_frame(cx, "arm");
+    entry.idle(cx, &["pitch"], "teeth");
+    let chain = entry.get("teeth");
+    if let (Some(_), Some(node)) = (chain, entry.get("radii")) {
+        cx.push(
+            Diagnostic::error(
+                "over-specified",
+                format!("{} has radii and teeth", entry.place),
+            )
+            .at(node.span.clone(), "")
+            .help("keep `radii` for a belt, `teeth` and `pitch` for a chain or a toothed belt"),
+        );
+        return None;
+    }
+    let both = |cx: &mut Context<'_>, key: &str, dimension| {
+        let node = entry.required(cx, key)?;
+        let (a, b) = entry.two(cx, node, key)?;
+        let what = entry.place_of(key);
+        let (a, b) = (
+            cx.positive(a, dimension, &what, false),
+            cx.positive(b, dimension, &what, false),
+        );
+        Some((a?, b?))
+    };
+    let radii = match chain {
+        None => both(cx, "radii", Dimension::LENGTH),
+        Some(_) => {
+            let pitch = entry.needed(cx, "pitch");
+            let teeth = both(cx, "teeth", Dimension::NONE);
+            // So many pitches are the way round, whatever the corners of a chain.
+            let radius = |teeth, pitch: &Scalar| {
+                let round = Expr::Mul(Box::new(teeth), Box::new(pitch.clone()));
+                Expr::Div(
+                    Box::new(round),
+                    Box::new(Expr::Const(std::f64::consts::TAU)),
+                )
+            };
+            pitch
+                .zip(teeth)
+                .map(|(pitch, (a, b))| (radius(a, &pitch), radius(b, &pitch)))
+        }
+    };
+    let crossed = entry.flag(cx, "crossed");
+    let phase = entry.value_or(cx, "phase", 0.0);
+    let ((a, b), arm, (radius_a, radius_b)) = (links?, arm?, radii?);
+    let mut axes = Vec::new();
+    for wheel in [a, b] {
+        entry.different(cx, wheel, arm)?;
+        let Some(axis) = shared_point(cx, wheel, arm) else {
+            let (wheel, arm) = (cx.link_name(wheel).to_owned(), cx.link_name(arm).to_owned());
+            cx.push(
+                Diagnostic::error("no-common-point", format!("{}: wheel `{wheel}` has no axis on the arm `{arm}`", entry.place))
+                    .at(entry.span.clone(), format!("`{wheel}` and `{arm}` share no point"))
+                    .help("one link carries both axes, so that the belt keeps its length: name each wheel's centre on it, and the link as `arm`"),
+            );
+            return None;
+        };
+        axes.push(axis);
+    }
+    let apart = distance_on(cx, arm, axes[0], axes[1])?;
+    let sum = cx.number(&radius_a) + cx.number(&radius_b);
+    if !(apart > sum) {
+        let (apart, sum) = (
+            cx.show(apart, Dimension::LENGTH),
+            cx.show(sum, Dimension::LENGTH),
+        );
+        cx.push(
+            Diagnostic::error(
+                "contradictory-values",
+                format!("{}: the wheels overlap", entry.place),
+            )
+            .at(
+                entry.span.clone(),
+                format!("their axes are {apart} apart, their radii are {sum} together"),
+            )
+            .help("a belt runs over two wheels beside each other: smaller wheels, or axes further apart"),
+        );
+        return None;
+    }
+    Some(JointKind::Belt {
+        a,
+        b,
+        arm,
+        radius_a,
+        radius_b,
+        crossed: crossed?,
+        chain: chain.is_some(),
+        phase: phase?,
+    })
+}
+
 fn rack(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<JointKind> {
     let rack = entry.link(cx, "rack");
     let pinion = entry.link(cx, "pinion");
     let radius = entry.needed(cx, "radius");
     let side = match entry.get("side") {
         None => Some(Side::Left),
-        Some(node) => rack_side(cx, entry, node),
+        Some(node) => side_word(
+            cx,
+            entry,
+            node,
+            "side = \"left\": the pinion lies on the left of the rack's x axis, or side = \"right\"",
+        ),
     };
     let offset = entry.value_or(cx, "offset", 0.0);
     let (rack, pinion) = (rack?, pinion?);
@@ -261,15 +435,20 @@ fn rack(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<JointKind> {
     })
 }
 
-fn rack_side<'d>(cx: &mut Context<'_>, entry: &Entry<'d>, node: &'d Node) -> Option<Side> {
+fn side_word<'d>(
+    cx: &mut Context<'_>,
+    entry: &Entry<'d>,
+    node: &'d Node,
+    help: &str,
+) -> Option<Side> {
     let text = entry.text(cx, "side", node)?;
-    let word = text.content.trim();
+    let word = text.content.trim().trim_end_matches(" of");
     let side = SIDES.iter().find(|(name, _)| *name == word).map(|w| w.1);
     if side.is_none() {
         cx.push(
             Diagnostic::error("bad-side", "`left` or `right` expected")
                 .at(node.span.clone(), "")
-                .help("side = \"left\": the pinion lies on the left of the rack's x axis, or side = \"right\""),
+                .help(help),
         );
     }
     side

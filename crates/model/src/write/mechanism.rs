@@ -1,10 +1,10 @@
 //! `[joints]`, `[drives]` and `[assembly]`.
 
-use kempe_units::Dimension;
+use kempe_units::{Dimension, Expr};
 
 use crate::item::{File, Item};
 use crate::key_table::{SIDES, word_of};
-use crate::model::{Drive, DriveKind, FRAME, HintKind, JointKind, Scalar, Side};
+use crate::model::{Drive, DriveKind, FRAME, HintKind, JointKind, Line, Scalar, Side};
 use crate::write::spelling::Writer;
 
 type Entries = Vec<(String, Item)>;
@@ -45,6 +45,59 @@ impl Writer<'_> {
                     text("pin", self.point(pin.point)),
                     text("on", &self.line(*on)),
                 ];
+            }
+            JointKind::ArcSlot { pin, on } => {
+                let ends = Line {
+                    link: on.link,
+                    from: on.from,
+                    to: on.to,
+                };
+                entries = vec![
+                    text("pin", self.point(pin.point)),
+                    text("arc", &self.line(ends)),
+                    (
+                        "radius".to_owned(),
+                        self.scalar(&on.radius, Dimension::LENGTH),
+                    ),
+                ];
+                if on.side == Side::Right {
+                    entries.push(text("side", word_of(&SIDES, &on.side)));
+                }
+                if on.closed {
+                    entries.push(("closed".to_owned(), Item::Flag(true)));
+                }
+            }
+            JointKind::Belt {
+                a,
+                b,
+                arm,
+                radius_a,
+                radius_b,
+                crossed,
+                chain,
+                phase,
+            } => {
+                let links = [a, b].map(|l| Item::text(self.link(*l)));
+                entries = vec![("belt".to_owned(), Item::List(links.to_vec()))];
+                match teeth(radius_a).zip(teeth(radius_b)).filter(|_| *chain) {
+                    Some(((teeth_a, pitch), (teeth_b, _))) => {
+                        let teeth = [teeth_a, teeth_b].map(|t| self.scalar(t, Dimension::NONE));
+                        entries.push(("teeth".to_owned(), Item::List(teeth.to_vec())));
+                        entries.push(("pitch".to_owned(), self.scalar(pitch, Dimension::LENGTH)));
+                    }
+                    None => {
+                        let radii = [radius_a, radius_b];
+                        let radii = radii.map(|r| self.scalar(r, Dimension::LENGTH));
+                        entries.push(("radii".to_owned(), Item::List(radii.to_vec())));
+                    }
+                }
+                if *arm != FRAME {
+                    entries.push(text("arm", self.link(*arm)));
+                }
+                if *crossed {
+                    entries.push(("crossed".to_owned(), Item::Flag(true)));
+                }
+                entries.extend(angle("phase", phase));
             }
             JointKind::Weld {
                 a,
@@ -160,4 +213,15 @@ impl Writer<'_> {
 /// Whether a value is the zero that stands for one that is not given.
 pub(super) fn is_nothing(scalar: &Scalar) -> bool {
     matches!(scalar, Scalar::Const(x) if x.to_bits() == 0)
+}
+
+/// Teeth and pitch of a wheel of a chain, from its radius as the reader makes it of them.
+fn teeth(radius: &Scalar) -> Option<(&Scalar, &Scalar)> {
+    let Expr::Div(round, _) = radius else {
+        return None;
+    };
+    match &**round {
+        Expr::Mul(teeth, pitch) => Some((teeth, pitch)),
+        _ => None,
+    }
 }

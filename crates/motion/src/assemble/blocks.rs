@@ -4,6 +4,7 @@ use std::cmp::Ordering;
 
 use kempe_homotopy::Random;
 use kempe_mechanism::blocks::Unknown;
+use kempe_mechanism::constraint::Joint;
 use kempe_mechanism::plan::NewtonBlock;
 use kempe_mechanism::pose::Pose;
 use kempe_mechanism::state::{Branch, State};
@@ -140,7 +141,7 @@ impl Search<'_> {
         state: &State<f64>,
     ) -> Option<Vec<Vec<Pose<f64>>>> {
         let mut gears = (block.rows.iter().map(|row| row.constraint))
-            .filter(|index| is_gear(&self.mechanism.constraints[*index].0));
+            .filter(|index| self.mechanism.constraints[*index].0.counts_turns());
         let (Some(gear), None) = (gears.next(), gears.next()) else {
             return Some(Vec::new());
         };
@@ -193,7 +194,7 @@ impl Search<'_> {
             .iter()
             .map(|row| &self.mechanism.constraints[row.constraint].0);
         constraints
-            .filter(|c| is_gear(c))
+            .filter(|c| c.counts_turns())
             .flat_map(Constraint::bodies)
             .all(|body| {
                 let index = body.index();
@@ -225,11 +226,4 @@ fn random_starts(block: &NewtonBlock, poses: &[Pose<f64>], size: f64) -> Vec<Vec
         starts.push(poses);
     }
     starts
-}
-
-fn is_gear(constraint: &Constraint) -> bool {
-    matches!(
-        constraint,
-        Constraint::Gears { .. } | Constraint::Rack { .. }
-    )
 }

@@ -3,9 +3,9 @@
 use kempe_homotopy::{Affine, Bilinear, C};
 use kempe_mechanism::Mechanism;
 use kempe_mechanism::blocks::Unknown;
-use kempe_mechanism::constraint::Situation;
+use kempe_mechanism::constraint::{Isotropic, Joint, Situation, Vector};
 use kempe_mechanism::plan::NewtonBlock;
-use kempe_mechanism::structure::{BodyId, Constraint, LineRef, Marker};
+use kempe_mechanism::structure::BodyId;
 use kempe_number::Complex;
 
 pub(super) struct Builder<'a> {
@@ -63,18 +63,12 @@ impl Builder<'_> {
         f
     }
 
-    fn marker(&self, marker: Marker) -> Affine {
-        self.point(marker.body, self.known.geometry.marker(marker))
-    }
-
-    /// Direction of a line, and the vector from its origin to a point.
-    fn along(&self, line: LineRef, point: Marker) -> (Affine, Affine) {
-        let local = self.known.geometry.line(line);
-        let origin = self.point(line.body, local.origin);
-        (
-            self.vector(line.body, local.direction, 1.0),
-            self.marker(point).minus(&origin),
-        )
+    /// What a constraint's vector is.
+    fn affine(&self, vector: Vector) -> Affine {
+        match vector {
+            Vector::Between([(from, a), (to, b)]) => self.point(to, b).minus(&self.point(from, a)),
+            Vector::Fixed(body, local) => self.vector(body, local, 1.0),
+        }
     }
 
     fn one(&self) -> Affine {
@@ -86,7 +80,7 @@ impl Builder<'_> {
     }
 }
 
-/// The block's equations, or `None` when it holds a joint that is not algebraic in these coordinates (gears, racks).
+/// The block's equations, or `None` when it holds a joint that is not algebraic in these coordinates.
 pub(super) fn equations(b: &Builder<'_>) -> Option<(Vec<Affine>, Vec<Bilinear>)> {
     let mut linear = Vec::new();
     let mut bilinear = Vec::new();
@@ -101,62 +95,41 @@ pub(super) fn equations(b: &Builder<'_>) -> Option<(Vec<Affine>, Vec<Bilinear>)>
         if rows[..place].iter().any(|r| r.constraint == row.constraint) {
             continue;
         }
-        match b.mechanism.constraints[row.constraint].0 {
-            Constraint::Coincide { a, b: c } => {
-                let gap = b.marker(c).minus(&b.marker(a));
-                if both {
-                    linear.push(gap);
-                } else {
-                    // One row only: real or imaginary part, gap -/+ conjugate gap.
-                    let sign = if row.row == 0 { 1.0 } else { -1.0 };
-                    let conjugate = gap.conj();
-                    bilinear.push(Bilinear(vec![(gap, b.one()), (b.number(sign), conjugate)]));
-                }
+        let constraint = &b.mechanism.constraints[row.constraint].0;
+        match constraint.isotropic(b.known, b.scale)? {
+            Isotropic::Vanishes(vector) if both => linear.push(b.affine(vector)),
+            Isotropic::Vanishes(vector) => {
+                // One row only: real or imaginary part, gap -/+ conjugate gap.
+                let gap = b.affine(vector);
+                let sign = if row.row == 0 { 1.0 } else { -1.0 };
+                let conjugate = gap.conj();
+                bilinear.push(Bilinear(vec![(gap, b.one()), (b.number(sign), conjugate)]));
             }
-            Constraint::Direction {
-                a,
-                b: from,
-                offset,
-                input,
-            } => {
-                // u_a = u_b * turn: linear, and it replaces the unit-length equation of one body.
-                let mut by = b.known.geometry.angles[offset as usize];
-                if let Some(drive) = input {
-                    let q = &b.known.inputs[drive.index()];
-                    by = [by[0] * q.c - by[1] * q.s, by[1] * q.c + by[0] * q.s];
-                }
-                linear.push(b.direction(a).minus(&b.vector(from, by, 1.0)));
-                let of = [a, from].into_iter().find(|body| {
+            Isotropic::Same { directions, bodies } => {
+                // Linear, and it replaces the unit-length equation of one body.
+                let [u, v] = directions.map(|d| b.affine(d));
+                linear.push(u.minus(&v));
+                let of = bodies.into_iter().find(|body| {
                     *body != BodyId::GROUND
                         && b.variable(Unknown::Angle(*body)).is_some()
                         && !tied.contains(body)
                 })?;
                 tied.push(of);
             }
-            Constraint::OnLine { point, line } => {
-                let (t, w) = b.along(line, point);
-                let minus = Affine(t.0.iter().map(|c| -*c).collect());
-                bilinear.push(Bilinear(vec![(w.clone(), t.conj()), (minus, w.conj())]));
-            }
-            Constraint::Travel { point, line, input } => {
-                let (t, w) = b.along(line, point);
-                let q = b.known.inputs[input.index()].value / b.scale;
-                let terms = vec![
-                    (w.clone(), t.conj()),
-                    (t, w.conj()),
-                    (b.number(-2.0 * q), b.one()),
-                ];
+            Isotropic::Bilinear { products, constant } => {
+                let product = |(sign, v, w): (f64, Vector, Vector)| {
+                    let mut v = b.affine(v);
+                    if sign < 0.0 {
+                        v = Affine(v.0.iter().map(|c| -*c).collect());
+                    }
+                    (v, b.affine(w).conj())
+                };
+                let mut terms: Vec<_> = products.into_iter().map(product).collect();
+                if constant != 0.0 {
+                    terms.push((b.number(constant), b.one()));
+                }
                 bilinear.push(Bilinear(terms));
             }
-            Constraint::Distance { a, b: c, input } => {
-                let w = b.marker(c).minus(&b.marker(a));
-                let q = b.known.inputs[input.index()].value / b.scale;
-                bilinear.push(Bilinear(vec![
-                    (w.clone(), w.conj()),
-                    (b.number(-q * q), b.one()),
-                ]));
-            }
-            Constraint::Gears { .. } | Constraint::Rack { .. } => return None,
         }
     }
     for unknown in &b.block.unknowns {

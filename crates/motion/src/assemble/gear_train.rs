@@ -1,12 +1,12 @@
 //! Trains of gears: their angles are linear in each other.
 
 use kempe_mechanism::blocks::Unknown;
+use kempe_mechanism::constraint::{InAngles, Joint, Situation};
 use kempe_mechanism::plan::NewtonBlock;
 use kempe_mechanism::pose::Pose;
 use kempe_mechanism::qr::Qr;
 use kempe_mechanism::state::{Branch, Design, State};
-use kempe_mechanism::structure::{BodyId, Constraint};
-use kempe_number::math;
+use kempe_mechanism::structure::BodyId;
 
 /// Angles of a block of gears and angle drives alone: linear equations, one solution.
 pub(super) fn gear_train(
@@ -33,35 +33,16 @@ pub(super) fn gear_train(
     let mut qr = Qr::with_capacity(block.size, block.size);
     qr.reset(block.size, block.size);
     let mut rhs = vec![0.0; block.size];
+    let near = branch.near.clone();
+    let situation = Situation {
+        geometry: &design.geometry,
+        inputs: &state.inputs,
+        poses: &state.poses,
+        near: &near,
+    };
     for (row, entry) in block.rows.iter().enumerate() {
-        let (terms, constant) = match mechanism.constraints[entry.constraint].0 {
-            Constraint::Gears {
-                a,
-                b,
-                arm,
-                constants,
-            } => {
-                let k = &design.geometry.gears[constants as usize];
-                (
-                    [(a, k.first), (b, k.second), (arm, -k.first - k.second)],
-                    k.constant,
-                )
-            }
-            Constraint::Direction {
-                a,
-                b,
-                offset,
-                input,
-            } => {
-                let by = design.geometry.angles[offset as usize];
-                let drive = input.map_or(0.0, |d| state.inputs[d.index()].value);
-                (
-                    [(a, 1.0), (b, -1.0), (b, 0.0)],
-                    math::atan2(by[1], by[0]) + drive,
-                )
-            }
-            _ => return None,
-        };
+        let constraint = &mechanism.constraints[entry.constraint].0;
+        let InAngles { terms, constant } = constraint.in_angles(&situation)?;
         rhs[row] = constant;
         for (body, factor) in terms {
             match column(body) {

@@ -10,13 +10,13 @@
 use std::ops::ControlFlow;
 
 use kempe_mechanism::blocks::{Block, Unknown};
-use kempe_mechanism::constraint::Situation;
+use kempe_mechanism::constraint::{Joint, Situation};
 use kempe_mechanism::plan::Plan;
 use kempe_mechanism::pose::Pose;
 use kempe_mechanism::state::Design;
 use kempe_mechanism::structure::Source;
 use kempe_mechanism::{Mechanism, Structure};
-use kempe_model::{Drive, DriveKind, JointKind, Law, LinkId};
+use kempe_model::{Drive, DriveKind, Law};
 use kempe_units::{Dimension, Expr};
 
 use super::search::Search;
@@ -151,11 +151,9 @@ fn open(design: &Design<f64>, gear: &Gear<'_>) -> Option<Design<f64>> {
     };
     let placed = Placed::until(plan, gear.step);
     let joint = mechanism.model.joints.get(joint.index())?;
-    let turning: Vec<(LinkId, LinkId)> = match joint.kind {
-        JointKind::Gears { a, b, arm, .. } => vec![(a, arm), (b, arm)],
-        JointKind::Rack { rack, pinion, .. } => vec![(pinion, rack)],
-        _ => return None,
-    };
+    let turning = mechanism.constraints[gear.constraint]
+        .0
+        .opened_by(mechanism);
     turning.into_iter().find_map(|(link, relative_to)| {
         let mut model = mechanism.model.clone();
         model.assembly.clear();

@@ -5,10 +5,10 @@ use std::ops::ControlFlow;
 use kempe_homotopy::{PathReport, WORK_LIMIT};
 use kempe_mechanism::Mechanism;
 use kempe_mechanism::blocks::Unknown;
+use kempe_mechanism::constraint::Joint;
 use kempe_mechanism::evidence::{closure, is_finite};
 use kempe_mechanism::plan::{Plan, Step};
 use kempe_mechanism::pose::Pose;
-use kempe_mechanism::solve::gear;
 use kempe_mechanism::state::{Branch, Design, State};
 use kempe_model::LinkId;
 
@@ -230,7 +230,10 @@ impl<'a> Search<'a> {
             _ => return,
         };
         let situation = state.situation(self.design, branch);
-        if let Some(angle) = gear(&situation, self.mechanism, body, constraint) {
+        if let Some(angle) = self.mechanism.constraints[constraint]
+            .0
+            .angle(&situation, body)
+        {
             branch.near[body.index()] = angle;
         }
     }

@@ -6,6 +6,7 @@
 use std::f64::consts::{PI, TAU};
 
 use kempe_mechanism::Mechanism;
+use kempe_mechanism::constraint::Joint;
 use kempe_mechanism::plan::Step;
 use kempe_mechanism::state::Design;
 use kempe_mechanism::structure::BodyId;
@@ -68,7 +69,6 @@ pub(super) fn counted_turns(
 /// Which bodies are turned by a gear or rack.
 fn meshed(mechanism: &Mechanism) -> Vec<bool> {
     let plan = &mechanism.plan;
-    use kempe_mechanism::structure::Constraint::{Gears, Rack};
     let mut meshed = vec![false; mechanism.bodies];
     let mut mark = |body: BodyId| meshed[body.index()] = true;
     for step in &plan.steps {
@@ -79,7 +79,7 @@ fn meshed(mechanism: &Mechanism) -> Vec<bool> {
                 let block = &plan.newton_blocks[*block];
                 let of = |row: usize| &mechanism.constraints[row].0;
                 let mut rows = block.rows.iter().map(|row| of(row.constraint));
-                if rows.any(|c| matches!(c, Gears { .. } | Rack { .. })) {
+                if rows.any(Joint::counts_turns) {
                     block.unknowns.iter().for_each(|u| mark(u.body()));
                 }
             }

@@ -16,6 +16,12 @@ pub enum Group {
     PinInSlot,
     /// A bar with a slot over a placed point.
     SlotOnPin,
+    /// A bar whose pin is in a curved slot.
+    PinInArc,
+    /// A plate with a curved slot over a placed point.
+    ArcOnPin,
+    /// A wheel turned over a belt by a link that is pinned to the same arm.
+    Belt,
     /// Two sliders pinned together.
     Prp,
     /// Pinned, sliding, sliding.
@@ -43,7 +49,7 @@ pub enum Group {
     OffsetSlider,
 }
 
-pub const GROUPS: [Group; 20] = [
+pub const GROUPS: [Group; 23] = [
     Group::Rrr,
     Group::Sliver,
     Group::Rpr,
@@ -64,6 +70,9 @@ pub const GROUPS: [Group; 20] = [
     Group::Triad,
     Group::Roller,
     Group::OffsetSlider,
+    Group::PinInArc,
+    Group::ArcOnPin,
+    Group::Belt,
 ];
 
 /// What moves the first link.
@@ -247,6 +256,22 @@ impl Maker {
         [from.name, to.name]
     }
 
+    /// Ends of an arc on a link that passes a place with a tangent of this angle; its radius and whether its centre lies
+    /// on the left of the way.
+    fn arc(&mut self, link: usize, through: V, tangent: f64) -> ([String; 2], f64, bool) {
+        let radius = self.rng.range(0.2, 1.0) * self.unit;
+        let left = self.rng.chance(0.5);
+        let side = if left { 1.0 } else { -1.0 };
+        let out = tangent - side * std::f64::consts::FRAC_PI_2;
+        let center = add(through, polar(-radius, out));
+        let (back, ahead) = (self.rng.range(0.2, 1.3), self.rng.range(0.2, 1.3));
+        let ends = [-back, ahead].map(|by| {
+            let at = add(center, polar(radius, out + side * by));
+            self.mark(link, at).name
+        });
+        (ends, radius, left)
+    }
+
     /// A slider of `link` at a point named there, on a new line of `on` with the direction `angle`.
     fn slide(&mut self, link: usize, at: &At, on: usize, angle: f64) -> usize {
         let line = self.line(on, at.world, angle);
@@ -392,6 +417,79 @@ impl Maker {
                     pin: b.name,
                     on: first,
                     line,
+                });
+            }
+            Group::PinInArc => {
+                let (a, _) = self.two_ends();
+                let on = self.any_link();
+                let inner = self.clear_of(&[a.world]);
+                let c = At {
+                    name: self.name(),
+                    link: 0,
+                    world: inner,
+                };
+                let rod = self.rod(&a, &c);
+                let v = sub(inner, a.world);
+                let angle = v[1].atan2(v[0]) + self.rng.range(-1.2, 1.2);
+                let (ends, radius, left) = self.arc(on, inner, angle);
+                self.spec.joints.push(SJoint::Arc {
+                    link: rod,
+                    pin: c.name,
+                    on,
+                    ends,
+                    radius,
+                    left,
+                });
+            }
+            Group::ArcOnPin => {
+                let (a, b) = self.two_ends();
+                let first = self.plate(&[&a]);
+                let v = sub(b.world, a.world);
+                let angle = v[1].atan2(v[0]) + self.rng.range(-1.2, 1.2);
+                let (ends, radius, left) = self.arc(first, b.world, angle);
+                self.spec.joints.push(SJoint::Arc {
+                    link: b.link,
+                    pin: b.name,
+                    on: first,
+                    ends,
+                    radius,
+                    left,
+                });
+            }
+            Group::Belt => {
+                // The first pin, from somewhere on, of two links.
+                let links = &self.spec.links;
+                let pins: Vec<(usize, usize, V)> = (0..links.len())
+                    .flat_map(|arm| (0..links.len()).map(move |other| (arm, other)))
+                    .filter(|(arm, other)| arm != other)
+                    .filter_map(|(arm, other)| {
+                        let mut own = links[arm].points.iter();
+                        let shared = own.find(|p| links[other].point(&p.0).is_some())?;
+                        Some((arm, other, links[arm].world(shared.1)))
+                    })
+                    .collect();
+                if pins.is_empty() {
+                    return;
+                }
+                let (arm, other, axis) = pins[self.rng.below(pins.len())];
+                let center = self.clear_of(&[axis]);
+                let center = self.mark(arm, center);
+                let wheel = self.plate(&[&center]);
+                let end = self.clear_of(&[center.world]);
+                self.mark(wheel, end);
+                let apart = norm(sub(center.world, axis));
+                let radii = [0, 1].map(|_| self.rng.range(0.1, 0.45) * apart);
+                let crossed = self.rng.chance(0.5);
+                let second = if crossed { radii[1] } else { -radii[1] };
+                let on_arm = |l: usize| self.spec.links[l].pose[2] - self.spec.links[arm].pose[2];
+                let phase = (radii[0] * on_arm(wheel) + second * on_arm(other)) / radii[0];
+                self.spec.joints.push(SJoint::Belt {
+                    a: wheel,
+                    b: other,
+                    arm,
+                    radii,
+                    crossed,
+                    phase,
                 });
             }
             Group::Prp => {

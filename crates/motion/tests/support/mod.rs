@@ -125,6 +125,23 @@ pub enum SJoint {
         on: usize,
         line: [String; 2],
     },
+    /// `link`'s point `pin` on an arc of the link `on`.
+    Arc {
+        link: usize,
+        pin: String,
+        on: usize,
+        ends: [String; 2],
+        radius: f64,
+        left: bool,
+    },
+    Belt {
+        a: usize,
+        b: usize,
+        arm: usize,
+        radii: [f64; 2],
+        crossed: bool,
+        phase: f64,
+    },
     Weld {
         a: usize,
         b: usize,
@@ -230,6 +247,33 @@ impl Spec {
                 SJoint::Slot { pin, line, .. } => {
                     format!("pin = \"{pin}\", on = \"{} -> {}\"", line[0], line[1])
                 }
+                SJoint::Arc {
+                    pin,
+                    ends,
+                    radius,
+                    left,
+                    ..
+                } => format!(
+                    "pin = \"{pin}\", arc = \"{} -> {}\", radius = {radius:e}, side = \"{}\"",
+                    ends[0],
+                    ends[1],
+                    if *left { "left" } else { "right" }
+                ),
+                SJoint::Belt {
+                    a,
+                    b,
+                    arm,
+                    radii,
+                    crossed,
+                    phase,
+                } => format!(
+                    "belt = [\"{}\", \"{}\"], arm = \"{}\", radii = [{:e}, {:e}], crossed = {crossed}, phase = {phase:e}",
+                    name(*a),
+                    name(*b),
+                    name(*arm),
+                    radii[0],
+                    radii[1]
+                ),
                 SJoint::Weld { a, b, at, angle } => format!(
                     "weld = [\"{}\", \"{}\"], at = \"{at}\", angle = {angle:e}",
                     name(*a),
@@ -332,8 +376,8 @@ impl Spec {
         for joint in &mut it.joints {
             match joint {
                 SJoint::Slider { angle, .. } | SJoint::Weld { angle, .. } => *angle = -*angle,
-                SJoint::Gears { phase, .. } => *phase = -*phase,
-                SJoint::Rack { left, .. } => *left = !*left,
+                SJoint::Gears { phase, .. } | SJoint::Belt { phase, .. } => *phase = -*phase,
+                SJoint::Rack { left, .. } | SJoint::Arc { left, .. } => *left = !*left,
                 SJoint::Slot { .. } => {}
             }
         }
@@ -357,9 +401,14 @@ impl Spec {
             }
         }
         for joint in &mut it.joints {
-            if let SJoint::Rack { radius, offset, .. } = joint {
-                *radius *= k;
-                *offset *= k;
+            match joint {
+                SJoint::Rack { radius, offset, .. } => {
+                    *radius *= k;
+                    *offset *= k;
+                }
+                SJoint::Arc { radius, .. } => *radius *= k,
+                SJoint::Belt { radii, .. } => *radii = radii.map(|r| r * k),
+                _ => {}
             }
         }
         for drive in &mut it.drives {
@@ -396,6 +445,20 @@ impl Spec {
                     (_, 0) => -angle,
                     _ => 0.0,
                 };
+            }
+            if let SJoint::Belt {
+                a,
+                b,
+                arm,
+                radii,
+                crossed,
+                phase,
+            } = joint
+            {
+                let second = if *crossed { radii[1] } else { -radii[1] };
+                let by = |l: usize| if l == 0 { 0.0 } else { angle };
+                *phase +=
+                    (radii[0] * (by(*a) - by(*arm)) + second * (by(*b) - by(*arm))) / radii[0];
             }
             if let SJoint::Gears {
                 a,
@@ -505,6 +568,34 @@ impl Spec {
                 } => {
                     let (a, t) = line(*on, names);
                     see(cross(t, sub(point(*link, pin), a)) / size);
+                }
+                SJoint::Arc {
+                    link,
+                    pin,
+                    on,
+                    ends,
+                    radius,
+                    left,
+                } => {
+                    let (a, b) = (point(*on, &ends[0]), point(*on, &ends[1]));
+                    let (half, middle) = (times(sub(b, a), 0.5), times(add(a, b), 0.5));
+                    let rise = (radius * radius - dot(half, half)).sqrt() / norm(half);
+                    let up = times([-half[1], half[0]], if *left { rise } else { -rise });
+                    see((norm(sub(point(*link, pin), add(middle, up))) - radius) / size);
+                }
+                SJoint::Belt {
+                    a,
+                    b,
+                    arm,
+                    radii,
+                    crossed,
+                    phase,
+                } => {
+                    let second = if *crossed { radii[1] } else { -radii[1] };
+                    let arm = poses[*arm][2];
+                    let sum = radii[0] * (poses[*a][2] - arm) + second * (poses[*b][2] - arm)
+                        - radii[0] * phase;
+                    see(sum / (radii[0] + radii[1]));
                 }
                 SJoint::Weld { a, b, angle, .. } => {
                     see(wrapped(poses[*b][2] - poses[*a][2] - angle));

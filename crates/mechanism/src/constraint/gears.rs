@@ -1,0 +1,162 @@
+//! Two gears in mesh on an arm. Its row is an angle: the teeth passed, over those of both wheels.
+//!
+//! The row ties angles only; its multiplier is a torque on each gear and on the arm. With the gears' pins on the arm known,
+//! the same condition is that both pitch circles have the same speed at the pitch point `P = A + (B - A) z_a / (z_a + z_b)`
+//! (`z_b` negative for a ring). Its multiplier is the tangential tooth force, and the pins carry its reaction. The radial
+//! part of a real tooth force depends on the pressure angle and is left out.
+
+use kempe_model::LinkId;
+use kempe_number::Number;
+
+use super::isotropic::Isotropic;
+use super::joint::{Gradient, InAngles, Joint, Pairs, Touch, Unit};
+use super::loads::LoadPoint;
+use super::situation::Situation;
+use crate::plan::Step;
+use crate::pose::{cross, dot, left, sub};
+use crate::structure::{BodyId, Marker, Structure};
+
+/// `ratio_a (angle_a - angle_arm) + ratio_b (angle_b - angle_arm) = phase`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gears {
+    /// First gear.
+    pub a: BodyId,
+    /// Second gear.
+    pub b: BodyId,
+    /// Arm.
+    pub arm: BodyId,
+    /// Index into the geometry's gear constants.
+    pub constants: u32,
+    /// Pins of the gears on the arm, where both are pinned to it.
+    pub pins: Option<[Marker; 2]>,
+}
+
+impl Gears {
+    /// The pitch point; `None` for gears not pinned to their arm, or on one axis.
+    pub fn pitch_point<T: Number>(&self, at: &Situation<'_, T>) -> Option<[T; 2]> {
+        let k = &at.geometry.gears[self.constants as usize];
+        let (a, axis) = self.axes(at)?;
+        let teeth = k.first + k.second;
+        let part = k.first / teeth;
+        (teeth.value() != 0.0).then(|| [a[0] + axis[0] * part, a[1] + axis[1] * part])
+    }
+
+    /// Centre of the first gear and the way from there to that of the second; `None` on one axis.
+    pub(super) fn axes<T: Number>(&self, at: &Situation<'_, T>) -> Option<([T; 2], [T; 2])> {
+        let [a, b] = self.pins?.map(|pin| at.place(pin));
+        let axis = sub(b, a);
+        (dot(axis, axis).value() > 0.0).then_some((a, axis))
+    }
+}
+
+impl Joint for Gears {
+    fn unit(&self) -> Unit {
+        Unit::Angle
+    }
+
+    fn touches(&self) -> [Option<Touch>; 3] {
+        [self.a, self.b, self.arm].map(|body| Some(Touch::Angle(body)))
+    }
+
+    fn pairs(&self) -> Pairs {
+        Pairs::HIGHER
+    }
+
+    fn links(&self, structure: &Structure) -> Vec<LinkId> {
+        structure.gears[self.constants as usize].links.to_vec()
+    }
+
+    #[inline]
+    fn residual<T: Number>(&self, at: &Situation<'_, T>) -> [T; 2] {
+        let k = &at.geometry.gears[self.constants as usize];
+        let arm = at.angle(self.arm);
+        let row = (k.first * (at.angle(self.a) - arm) + k.second * (at.angle(self.b) - arm)
+            - k.constant)
+            / (k.first.abs() + k.second.abs());
+        [row, T::zero()]
+    }
+
+    #[inline]
+    fn gradients<T: Number>(&self, at: &Situation<'_, T>, mut emit: impl FnMut(Gradient<T>)) -> T {
+        let k = &at.geometry.gears[self.constants as usize];
+        let size = k.first.abs() + k.second.abs();
+        let arm = -k.first - k.second;
+        for (body, factor) in [(self.a, k.first), (self.b, k.second), (self.arm, arm)] {
+            emit(Gradient::to_angle(body, factor / size));
+        }
+        T::zero()
+    }
+
+    fn turn(&self, body: BodyId, constraint: usize) -> Option<Step> {
+        Some(Step::Gear { body, constraint })
+    }
+
+    #[inline]
+    fn angle<T: Number>(&self, at: &Situation<'_, T>, body: BodyId) -> Option<T> {
+        let Self { a, b, arm, .. } = *self;
+        let k = &at.geometry.gears[self.constants as usize];
+        let angle = |body| at.angle(body);
+        Some(if body == a {
+            (k.constant - k.second * (angle(b) - angle(arm))) / k.first + angle(arm)
+        } else if body == b {
+            (k.constant - k.first * (angle(a) - angle(arm))) / k.second + angle(arm)
+        } else {
+            (k.first * angle(a) + k.second * angle(b) - k.constant) / (k.first + k.second)
+        })
+    }
+
+    fn isotropic(&self, _: &Situation<'_, f64>, _: f64) -> Option<Isotropic> {
+        None
+    }
+
+    fn in_angles(&self, at: &Situation<'_, f64>) -> Option<InAngles> {
+        let k = &at.geometry.gears[self.constants as usize];
+        let arm = -k.first - k.second;
+        Some(InAngles {
+            terms: [(self.a, k.first), (self.b, k.second), (self.arm, arm)],
+            constant: k.constant,
+        })
+    }
+
+    fn counts_turns(&self) -> bool {
+        true
+    }
+
+    fn opened_by(&self, structure: &Structure) -> Vec<(LinkId, LinkId)> {
+        let [a, b, arm] = structure.gears[self.constants as usize].links;
+        vec![(a, arm), (b, arm)]
+    }
+
+    fn load_gradients<T: Number>(&self, at: &Situation<'_, T>, mut emit: impl FnMut(Gradient<T>)) {
+        let (Some(point), Some((_, axis))) = (self.pitch_point(at), self.axes(at)) else {
+            self.gradients(at, emit);
+            return;
+        };
+        // Equal speeds, positive to the left of the line from the first axis to the second.
+        let along = T::one() / dot(axis, axis).sqrt();
+        let tangent = left([axis[0] * along, axis[1] * along]);
+        for (body, sign) in [(self.a, 1.0), (self.b, -1.0)] {
+            let turn = cross(at.arm_to(body, point), tangent);
+            emit(Gradient {
+                row: 0,
+                body,
+                to: [tangent[0] * sign, tangent[1] * sign, turn * sign],
+            });
+        }
+    }
+
+    fn load_unit(&self) -> Unit {
+        match self.pins {
+            Some(_) => Unit::Length,
+            None => Unit::Angle,
+        }
+    }
+
+    fn load_point(&self, body: BodyId) -> Option<LoadPoint> {
+        Some(match self.pins {
+            Some([a, _]) if a.body == body => LoadPoint::At(a),
+            Some([_, b]) => LoadPoint::At(b),
+            None => LoadPoint::Origin(body),
+        })
+    }
+}

@@ -1,0 +1,124 @@
+//! A point on a circular arc of another link: a pin in a curved slot. Its row is how far the point lies outside the arc's
+//! circle, to first order.
+//!
+//! In isotropic coordinates the row is a distance, so a curved slot moves as a bar between the pin and the arc's centre. The
+//! circle goes on past the ends of the slot; whoever shows a motion tells where the pin leaves it.
+
+use kempe_model::LinkId;
+use kempe_number::Number;
+
+use super::isotropic::{Isotropic, Vector};
+use super::joint::{Gradient, Joint, Pairs, Touch};
+use super::loads::{LoadPoint, Rubs, Sliding};
+use super::situation::Situation;
+use crate::plan::Condition;
+use crate::pose::{cross, dot, left, sub};
+use crate::structure::{ArcRef, BodyId, Marker, Structure};
+
+/// A point lies on the circle of an arc.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OnArc {
+    /// The point.
+    pub point: Marker,
+    /// The arc.
+    pub arc: ArcRef,
+}
+
+impl OnArc {
+    /// From the arc's centre to the point, in the frame, and the arc's radius.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn span<T: Number>(&self, at: &Situation<'_, T>) -> ([T; 2], T) {
+        let arc = at.geometry.arc(self.arc);
+        let center = at.poses[self.arc.body.index()].place(arc.center);
+        (sub(at.place(self.point), center), arc.radius)
+    }
+}
+
+impl Joint for OnArc {
+    fn touches(&self) -> [Option<Touch>; 3] {
+        let arc = self.arc.body;
+        [
+            Some(Touch::Point(self.point)),
+            Some(Touch::Whole(arc)),
+            None,
+        ]
+    }
+
+    fn pairs(&self) -> Pairs {
+        Pairs::HIGHER
+    }
+
+    fn links(&self, structure: &Structure) -> Vec<LinkId> {
+        let arc = &structure.arcs[self.arc.index as usize];
+        vec![structure.link_of(self.point), structure.link_of(arc.from)]
+    }
+
+    #[inline]
+    fn residual<T: Number>(&self, at: &Situation<'_, T>) -> [T; 2] {
+        let (span, radius) = self.span(at);
+        // (|span|^2 - radius^2) / (2 radius): a length, and smooth at the centre.
+        let row = (dot(span, span) - radius.square()) / (radius * 2.0);
+        [row, T::zero()]
+    }
+
+    #[inline]
+    fn gradients<T: Number>(&self, at: &Situation<'_, T>, mut emit: impl FnMut(Gradient<T>)) -> T {
+        let (span, radius) = self.span(at);
+        let normal = [span[0] / radius, span[1] / radius];
+        emit(Gradient {
+            row: 0,
+            body: self.point.body,
+            to: [normal[0], normal[1], cross(at.arm(self.point), normal)],
+        });
+        // The radius vector turns nothing about the centre: the arm of the arc's body is that of its centre.
+        let center = at.geometry.arc(self.arc).center;
+        let arm = at.poses[self.arc.body.index()].turn(center);
+        emit(Gradient {
+            row: 0,
+            body: self.arc.body,
+            to: [-normal[0], -normal[1], -cross(arm, normal)],
+        });
+        T::zero()
+    }
+
+    fn condition(&self, body: BodyId) -> Option<Condition> {
+        let Self { point, arc } = *self;
+        if point.body == body {
+            Some(Condition::OnArc { own: point, arc })
+        } else if arc.body == body {
+            Some(Condition::ArcThrough { arc, point })
+        } else {
+            None
+        }
+    }
+
+    fn isotropic(&self, at: &Situation<'_, f64>, scale: f64) -> Option<Isotropic> {
+        let arc = at.geometry.arc(self.arc);
+        let w = Vector::Between([
+            (self.arc.body, arc.center),
+            (self.point.body, at.geometry.marker(self.point)),
+        ]);
+        let r = arc.radius / scale;
+        Some(Isotropic::Bilinear {
+            products: vec![(1.0, w, w)],
+            constant: -r * r,
+        })
+    }
+
+    fn load_point(&self, _: BodyId) -> Option<LoadPoint> {
+        Some(LoadPoint::At(self.point))
+    }
+
+    fn rubs(&self) -> Option<Rubs> {
+        Some(Rubs::AlongGuide)
+    }
+
+    fn sliding<T: Number>(&self, at: &Situation<'_, T>) -> Option<Sliding<T>> {
+        let (span, radius) = self.span(at);
+        Some(Sliding::Along {
+            point: self.point,
+            on: self.arc.body,
+            tangent: left(span).map(|x| x / radius),
+        })
+    }
+}

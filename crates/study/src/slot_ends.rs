@@ -1,0 +1,124 @@
+//! Where a pin leaves the ends of its curved slot: the motion goes on along the slot's circle, the part would not.
+
+use kempe_model::{CircularArc, Diagnostic, JointKind, LinkPointRef, Model, value};
+use kempe_number::math::{atan2, hypot, sin_cos};
+use kempe_units::Dimension;
+
+use crate::force_notes::place;
+use crate::result::Frame;
+use crate::table::Table;
+use crate::unit::Units;
+
+/// A pin this little, in radii, beyond the end of its slot stands at it.
+const AT_END: f64 = 1e-9;
+
+/// A warning for each curved slot whose pin is beyond its ends in some row, with where it is farthest.
+pub(crate) fn left_slots(
+    model: &Model,
+    parameters: &[f64],
+    frames: &[Frame],
+    table: &Table,
+    along: usize,
+) -> Vec<Diagnostic> {
+    let unit = Units::of(model).unit(Dimension::LENGTH);
+    let length = |si: f64| {
+        let value = kempe_number::text::significant(unit.from_si(si), 3);
+        format!("{value} {}", unit.text())
+    };
+    let told = model.joints.iter().filter_map(|joint| {
+        let JointKind::ArcSlot { pin, on } = &joint.kind else {
+            return None;
+        };
+        if on.closed {
+            return None;
+        }
+        let radius = value(&on.radius, parameters);
+        let mut beyond: Vec<(usize, f64)> = Vec::new();
+        for (row, frame) in frames.iter().enumerate() {
+            let far = past_ends(frame, *pin, on, radius).filter(|far| *far > AT_END * radius);
+            beyond.extend(far.map(|far| (row, far)));
+        }
+        let (row, far) = *beyond.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
+        let point = model.points.get(pin.point.index())?;
+        Some(
+            Diagnostic::warning(
+                "leaves-slot",
+                format!(
+                    "study `{}`: {} leaves the curved slot `{}` in {} of {} rows, farthest at {}, by {}",
+                    table.name,
+                    point.name,
+                    joint.name,
+                    beyond.len(),
+                    table.rows(),
+                    place(table, along, row),
+                    length(far)
+                ),
+            )
+            .at(joint.span.clone(), "")
+            .help("move the ends of the arc apart, or say `closed = true` where the slot is the whole circle"),
+        )
+    });
+    told.collect()
+}
+
+/// How far along its circle a pin is beyond the end of a slot that is nearer, m; negative between the ends, `None` without a pose.
+fn past_ends(frame: &Frame, pin: LinkPointRef, on: &CircularArc, radius: f64) -> Option<f64> {
+    let at = |point: kempe_model::PointId| frame.points.get(point.index()).copied();
+    let (a, b, p) = (at(on.from)?, at(on.to)?, at(pin.point)?);
+    let half = [0.5 * (b[0] - a[0]), 0.5 * (b[1] - a[1])];
+    let reach = hypot(half[0], half[1]);
+    let rise = (radius * radius - reach * reach).max(0.0).sqrt();
+    // Seen from the centre, the slot's middle lies away from the side on which the centre is.
+    let out = [half[1] * on.side.sign(), -half[0] * on.side.sign()].map(|x| x / reach);
+    let center = [0, 1].map(|i| a[i] + half[i] - out[i] * rise);
+    let middle = atan2(out[1], out[0]);
+    let off = atan2(p[1] - center[1], p[0] - center[0]) - middle;
+    let (s, c) = sin_cos(off);
+    let off = atan2(s, c).abs();
+    let spread = atan2(reach, rise);
+    let past = off - spread;
+    past.is_finite().then_some(past * radius)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::PI;
+
+    use kempe_model::{LinkId, PointId, Side};
+    use kempe_units::Expr;
+
+    #[test]
+    fn beyond_and_between_the_ends() {
+        let arc = |side| CircularArc {
+            link: LinkId(0),
+            from: PointId(0),
+            to: PointId(1),
+            radius: Expr::Const(2.0_f64.sqrt()),
+            side,
+            closed: false,
+        };
+        let pin = LinkPointRef {
+            link: LinkId(1),
+            point: PointId(2),
+        };
+        let past = |p: [f64; 2], side| {
+            let frame = Frame {
+                links: Vec::new(),
+                points: vec![[1.0, 0.0], [-1.0, 0.0], p],
+                arrows: Vec::new(),
+            };
+            past_ends(&frame, pin, &arc(side), 2.0_f64.sqrt()).map(|far| far / 2.0_f64.sqrt())
+        };
+        // From (1, 0) to (-1, 0) the left is below: centre (0, -1), the slot's middle on top.
+        let top = [0.0, 2.0_f64.sqrt() - 1.0];
+        assert!((past(top, Side::Left).unwrap_or(f64::NAN) + PI / 4.0).abs() < 1e-12);
+        let right = [2.0_f64.sqrt(), -1.0];
+        assert!((past(right, Side::Left).unwrap_or(f64::NAN) - PI / 4.0).abs() < 1e-12);
+        assert!((past([1.0, 0.0], Side::Left).unwrap_or(f64::NAN)).abs() < 1e-12);
+        // The other way round the centre is above.
+        let bottom = [0.0, 1.0 - 2.0_f64.sqrt()];
+        assert!((past(bottom, Side::Right).unwrap_or(f64::NAN) + PI / 4.0).abs() < 1e-12);
+        assert!(past([f64::NAN; 2], Side::Left).is_none());
+    }
+}
