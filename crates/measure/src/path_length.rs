@@ -136,10 +136,12 @@ impl Stretch {
             let mut places = motion.places.iter();
             places.any(|e| e.kind == EventKind::Limit && e.at == p)
         };
-        let by = match () {
-            () if is_limit(to) => Variable::ToLimit(to),
-            () if is_limit(from) => Variable::FromLimit(from),
-            () => Variable::Path,
+        let by = if is_limit(to) {
+            Variable::ToLimit(to)
+        } else if is_limit(from) {
+            Variable::FromLimit(from)
+        } else {
+            Variable::Path
         };
         let [a, b] = [by.of(from), by.of(to)];
         let floor = SHORTEST * motion.size();
