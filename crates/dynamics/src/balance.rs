@@ -76,7 +76,7 @@ pub fn crank_counterweight(samples: &[[f64; 2]], start: f64, speed: f64) -> Coun
             (u[0] * s + u[1] * c) * square,
         ];
         before += v[0] * v[0] + v[1] * v[1];
-        after += (v[0] + taken[0]).powi(2) + (v[1] + taken[1]).powi(2);
+        after += kempe_number::powi(v[0] + taken[0], 2) + kempe_number::powi(v[1] + taken[1], 2);
     }
     Counterweight {
         first_moment: u,

@@ -45,7 +45,7 @@ pub fn choose_spring(
         sum(&|r| r[1] * r[1]),
     );
     let (u, v) = (sum(&|r| r[0] * r[2]), sum(&|r| r[1] * r[2]));
-    let square = |k: f64, p: f64| sum(&|r| (k * r[0] + p * r[1] - r[2]).powi(2));
+    let square = |k: f64, p: f64| sum(&|r| kempe_number::powi(k * r[0] + p * r[1] - r[2], 2));
     let best_preload = |k: f64| {
         let free = if c > 0.0 { (v - k * b) / c } else { 0.0 };
         free.clamp(preload.0, preload.1)

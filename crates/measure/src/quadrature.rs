@@ -58,7 +58,7 @@ pub(crate) fn graded(count: usize) -> Vec<[f64; 2]> {
     let width = 1.0 / count.max(1) as f64;
     let mut cuts: Vec<f64> = (0..=count.max(1)).map(|k| k as f64 * width).collect();
     for step in 1..=GRADING.0 {
-        let inward = width * GRADING.1.powi(step);
+        let inward = width * kempe_number::powi(GRADING.1, step);
         cuts.extend([inward, 1.0 - inward]);
     }
     cuts.sort_by(f64::total_cmp);

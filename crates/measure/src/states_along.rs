@@ -133,7 +133,8 @@ where
         if time.value().is_finite() {
             (motion.path).parameter_at(model, Series::variable(time), &self.rich)
         } else {
-            Series::from_f64(f64::NAN)
+            // Nothing is known of how it runs.
+            only_value(B::from_f64(f64::NAN))
         }
     }
 

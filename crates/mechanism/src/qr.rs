@@ -164,7 +164,7 @@ impl Qr {
         let m = self.rows;
         let above = |k: usize| self.a[k * m..k * m + k].iter();
         let sum: f64 = (0..self.columns)
-            .map(|k| self.diagonal[k].powi(2) + above(k).map(|x| x * x).sum::<f64>())
+            .map(|k| kempe_number::powi(self.diagonal[k], 2) + above(k).map(|x| x * x).sum::<f64>())
             .sum();
         sum.sqrt()
     }

@@ -137,13 +137,13 @@ fn everything_that_acts() {
     near(value(bar.mass.as_ref().unwrap(), &p), mass);
     near(
         value(bar.moment.as_ref().unwrap(), &p),
-        mass * (0.02f64.powi(2) + 0.02f64.powi(2)) / 12.0,
+        mass * (0.02 * 0.02 + 0.02 * 0.02) / 12.0,
     );
     assert_eq!(model.links[1].center_of_mass(&p), Some([0.01, 0.0]));
     let rod = model.links[2].inertia.as_ref().unwrap();
     near(
         value(rod.moment.as_ref().unwrap(), &p),
-        0.05f64.powi(3) / 12.0,
+        0.05 * 0.05 * 0.05 / 12.0,
     );
     assert!(matches!(
         model.links[3].inertia.as_ref().unwrap().center,

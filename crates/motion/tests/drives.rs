@@ -403,9 +403,7 @@ fn a_slide_is_no_angle_at_any_size() {
     ] {
         let other = match is_angle {
             true => String::new(),
-            false => format!(
-                "block = {{ S = [0, 0] }}\n[joints]\nway = {{ slider = \"block\", at = \"S\", on = \"A -> D\" }}"
-            ),
+            false => "block = { S = [0, 0] }\n[joints]\nway = { slider = \"block\", at = \"S\", on = \"A -> D\" }".to_string(),
         };
         let arm = match is_angle {
             true => "arm = { A-P = 0.5 }\n",

@@ -69,7 +69,7 @@ fn compare(case: &Case, name: &str) -> usize {
         }
         // Rounding of a row moves a pose by its part over the smallest singular value, and every order once more.
         let close = |order: i32, a: f64, b: f64, scale: f64| {
-            let allowed = 1e-13 * scale / singular.powi(order + 1);
+            let allowed = 1e-13 * scale / kempe_number::powi(singular, order + 1);
             assert!(
                 (a - b).abs() <= allowed,
                 "{name} at {p}, order {order}: {a:e} {b:e}, {singular:e}"

@@ -14,6 +14,7 @@ mod lanes;
 pub mod math;
 mod number;
 mod operators;
+mod power;
 pub mod text;
 
 pub use complex::Complex;
@@ -23,3 +24,4 @@ pub use interval::Interval;
 pub use jet::Jet;
 pub use lanes::{Lanes, Lanes4, Lanes8};
 pub use number::Number;
+pub use power::powi;

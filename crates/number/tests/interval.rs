@@ -2,14 +2,14 @@
 
 use std::f64::consts::PI;
 
-use kempe_number::{Dual, Interval, Jet, Number, math};
+use kempe_number::{Dual, Interval, Jet, Number, math, powi};
 use proptest::prelude::*;
 
 /// A finite number of any size, often with a small exponent, sometimes an exact special.
 fn number() -> impl Strategy<Value = f64> {
     prop_oneof![
         6 => -10.0..10.0,
-        2 => (-1.0..1.0, -300..300).prop_map(|(m, e)| m * 10.0_f64.powi(e)),
+        2 => (-1.0..1.0, -300..300).prop_map(|(m, e)| m * powi(10.0, e)),
         1 => prop::num::f64::ANY.prop_filter("finite", |x| x.is_finite()),
         1 => prop::sample::select(vec![0.0, -0.0, 1.0, -1.0, f64::MAX, f64::MIN, f64::MIN_POSITIVE, 5e-324, PI]),
     ]
@@ -21,7 +21,7 @@ fn member() -> impl Strategy<Value = (Interval, f64)> {
         let mut three = [a, b, c];
         three.sort_by(f64::total_cmp);
         let [lo, middle, hi] = three;
-        let narrow = b.abs().min(1.0) * 10.0_f64.powi(scale);
+        let narrow = b.abs().min(1.0) * powi(10.0, scale);
         match kind {
             0 => (Interval::from_f64(a), a),
             1 | 2 => (Interval::new(a - narrow, a + narrow), a),
@@ -88,7 +88,7 @@ proptest! {
 
     #[test]
     fn sine_and_cosine_over_many_widths(start in -1e4..1e4_f64, scale in -16..3, part in 0.0..1.0_f64) {
-        let width = 10.0_f64.powi(scale);
+        let width = powi(10.0, scale);
         let a = Interval::new(start, start + width);
         let (s, c) = a.sin_cos();
         for k in 0..=32 {

@@ -102,7 +102,7 @@ fn places(design: &Design<f64>, assemblies: &[Assembly]) -> Vec<String> {
         return Vec::new();
     };
     let unit = Units::of(model).unit(Dimension::LENGTH);
-    let step = 10f64.powi(log10(ROUND * unit.from_si(size)).floor() as i32);
+    let step = kempe_number::powi(10.0, log10(ROUND * unit.from_si(size)).floor() as i32);
     let written = |si: f64| rounded((shown(si, &unit) / step).round() * step);
     let name = &model.points[index].name;
     (places.iter())

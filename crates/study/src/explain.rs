@@ -416,7 +416,7 @@ pub fn beyond_limit(motion: &Motion, missed: &[(EndReason, f64)]) -> Diagnostic 
 fn inside(demanded: f64, low: f64, high: f64, lower: bool) -> f64 {
     let margin = 1e-2 * (high - low).abs();
     let step = if margin > 0.0 {
-        10f64.powi(kempe_number::math::log10(margin).floor() as i32)
+        kempe_number::powi(10.0, kempe_number::math::log10(margin).floor() as i32)
     } else {
         return demanded;
     };

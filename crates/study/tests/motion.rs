@@ -702,7 +702,7 @@ C = \"left of B -> D\"
     let at = |name: &str| frame.points[bare.points.iter().position(|p| p.name == name).unwrap()];
     let apart = |a: &str, b: &str| {
         let (a, b) = (at(a), at(b));
-        ((a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2)).sqrt()
+        kempe_number::math::hypot(a[0] - b[0], a[1] - b[1])
     };
     for (a, b, length) in [("A", "B", 0.02), ("B", "C", 0.05), ("D", "C", 0.04)] {
         assert!((apart(a, b) - length).abs() < 1e-12, "{a} {b}");
@@ -722,7 +722,7 @@ fn measures_that_name_each_other_many_times_over_are_evaluated_once() {
         .replace("columns = [", "columns = [\"m0\", \"rate(m59)\", ");
     let result = ran(&text);
     let column = |name: &str| &result.table.column(name).expect("a column").values;
-    let times = 2f64.powi(59);
+    let times = kempe_number::powi(2.0, 59);
     for (m0, (slope, rate)) in column("m0")
         .iter()
         .zip(column("rate(x(P))").iter().zip(column("rate(m59)")))

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use kempe_number::Number;
+use kempe_number::{Number, powi};
 
 use crate::{Builtin, Expr};
 
@@ -108,28 +108,6 @@ impl<L> Expr<L> {
             false => fault(EvalFault::Overflow),
         }
     }
-}
-
-/// `x^n` by repeated squaring.
-fn powi<T: Number>(x: T, n: i32) -> T {
-    let mut rest = n.unsigned_abs();
-    if rest == 0 {
-        return T::one();
-    }
-    let mut square = x;
-    let mut product: Option<T> = None;
-    loop {
-        if rest & 1 == 1 {
-            product = Some(product.map_or(square, |p| p * square));
-        }
-        rest >>= 1;
-        if rest == 0 {
-            break;
-        }
-        square = square.square();
-    }
-    let product = product.unwrap_or(T::one());
-    if n < 0 { T::one() / product } else { product }
 }
 
 /// `x^p`: by the square root where `2 p` is a small whole number, else `exp(p ln x)`.

@@ -170,7 +170,7 @@ impl<B: Number> Moment<'_, B> {
     fn is_still(&self, p: [Series<B>; 2]) -> bool {
         let size = |order: usize| {
             let [x, y] = [0, 1].map(|k| p[k].derivative(order).value());
-            math::hypot(x, y) * self.state.abscissa.unit.powi(order as i32)
+            math::hypot(x, y) * kempe_number::powi(self.state.abscissa.unit, order as i32)
         };
         let speed = size(1) / self.size();
         speed <= NO_SPEED || (speed <= SLOW && size(1) <= REVERSAL * size(2))
@@ -198,7 +198,7 @@ impl<B: Number> Moment<'_, B> {
             (
                 math::hypot(x, y),
                 size * w.abs(),
-                self.state.abscissa.unit.powi(order as i32 + 1),
+                kempe_number::powi(self.state.abscissa.unit, order as i32 + 1),
             )
         });
         match speeds.find(|(slide, turn, unit)| !(slide.max(*turn) * unit <= NO_SPEED * size)) {

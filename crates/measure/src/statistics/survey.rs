@@ -61,6 +61,9 @@ fn undefined() -> Series<f64> {
     Series::from_coefficients([f64::NAN; crate::measure::ORDER])
 }
 
+/// Hears a sample, with the one before it where nothing lies between; tells whether it wants more.
+pub(super) type Heard<'h, F> = dyn FnMut(&mut Sampler<F>, Option<&Sample>, &Sample) -> bool + 'h;
+
 /// Samples a motion stretch by stretch, and where its rows stand. `heard` is told each sample, with the one before it on the same stretch; what it
 /// answers says whether to go on. `None` when stopped.
 ///
@@ -71,7 +74,7 @@ pub(super) fn survey<F: ForceSource>(
     asked: &Asked,
     stretches: &[Stretch],
     watch: &mut dyn Watch,
-    heard: &mut dyn FnMut(&mut Sampler<F>, Option<&Sample>, &Sample) -> bool,
+    heard: &mut Heard<'_, F>,
 ) -> Option<()> {
     let duration = sampler.duration();
     let rows = sampler.rows().to_vec();
@@ -109,7 +112,7 @@ fn nearing(from: &Sample, to: &Sample) -> Vec<f64> {
             finite(a, 0) && !finite(a, 1) && finite(b, 1)
         })
     };
-    let part = |k: i32| (to.time - from.time) * 2.0_f64.powi(-k);
+    let part = |k: i32| (to.time - from.time) * kempe_number::powi(2.0, -k);
     let mut times = Vec::new();
     if lacks(from, to) {
         times.extend((1..=HALVINGS).rev().map(|k| from.time + part(k)));

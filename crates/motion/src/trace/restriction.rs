@@ -27,7 +27,7 @@ impl<P: Path> Follower<'_, P> {
             .restrictions
             .iter()
             .filter(|c| apart(&c.z, &z) < SAME_PLACE);
-        let part = 0.5_f64.powi(again.count().min(30) as i32);
+        let part = kempe_number::powi(0.5, again.count().min(30) as i32);
         self.restrictions
             .push(StepRestriction { z, residual, part });
     }
@@ -55,7 +55,7 @@ pub(crate) fn apart(a: &[f64], b: &[f64]) -> f64 {
         } else {
             0.0
         };
-        (gap - turns * std::f64::consts::TAU).powi(2)
+        kempe_number::powi(gap - turns * std::f64::consts::TAU, 2)
     });
     squares.sum::<f64>().sqrt()
 }
