@@ -19,8 +19,9 @@ impl Model {
     fn bare(&self) -> Self {
         let mut model = self.clone();
         model.forget_places();
-        // What values must keep to follows from the rest.
+        // What values must keep to follows from the rest; what was put into numbers is in them.
         model.bounds.clear();
+        model.settled.clear();
         model.visit_scalars(&mut |scalar| *scalar = scalar.fold());
         model.visit_measures(&mut |measure| *measure = folded(measure));
         model

@@ -44,6 +44,7 @@ fn entry(section: &str, kind: &Kind) -> (&'static str, Vec<(&'static str, &'stat
             "j",
             vec![("gears", "['sun', 'wheel']"), ("teeth", "[20, 40]")],
         ),
+        ("joints", "belt") => ("j", vec![("belt", "['sun', 'wheel']"), ("radii", "[1, 2]")]),
         ("joints", _) => (
             "j",
             vec![("rack", "'bar'"), ("pinion", "'wheel'"), ("radius", "60")],

@@ -105,9 +105,9 @@ fn slot(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<JointKind> {
     let pin = entry.point(cx, "pin");
     let (key, curved) = match (entry.get("on"), entry.get("arc")) {
         (Some(_), Some(_)) => {
-            let message = format!("{} lies on a line and on an arc", entry.place);
+            let message = "a pin lies on a line or on an arc, not on both";
             let help = "keep `on` for a straight slot, `arc` for a curved one";
-            entry.contradiction(cx, &["arc"], &message, help);
+            entry.contradiction(cx, &["arc", "on"], message, help);
             return None;
         }
         (None, Some(node)) => ("arc", Some(node)),
@@ -314,15 +314,10 @@ fn belt(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<JointKind> {
     let arm = entry.link_or_frame(cx, "arm");
     entry.idle(cx, &["pitch"], "teeth");
     let chain = entry.get("teeth");
-    if let (Some(_), Some(node)) = (chain, entry.get("radii")) {
-        cx.push(
-            Diagnostic::error(
-                "over-specified",
-                format!("{} has radii and teeth", entry.place),
-            )
-            .at(node.span.clone(), "")
-            .help("keep `radii` for a belt, `teeth` and `pitch` for a chain or a toothed belt"),
-        );
+    if chain.is_some() && entry.has("radii") {
+        let message = "the wheels have radii or teeth, not both";
+        let help = "keep `radii` for a belt, `teeth` and `pitch` for a chain or a toothed belt";
+        entry.contradiction(cx, &["teeth", "radii"], message, help);
         return None;
     }
     let both = |cx: &mut Context<'_>, key: &str, dimension| {
