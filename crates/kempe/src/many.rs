@@ -410,6 +410,7 @@ impl Session {
                 .map(|k| asked.quantities[*k].clone())
                 .collect(),
             forces: others.iter().map(|k| asked.forces[*k]).collect(),
+            timed: others.iter().map(|k| asked.timed[*k]).collect(),
         };
         let together = DESIGNS_TOGETHER * self.threads;
         let places = it.places.clone();

@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use kempe_mechanism::Design;
-use kempe_model::{Diagnostic, Label, NamedMeasure, ParameterId, Source};
+use kempe_model::{
+    Diagnostic, Label, Leaf, Measure, NamedMeasure, ParameterId, PoseMeasure, Source,
+};
 use kempe_motion::Motion;
 use kempe_study::{Ear, Progress, Quantity, Silent, cannot_move};
 use kempe_units::{Dimension, Issue, Resolver, Span, check, parse};
@@ -336,6 +338,8 @@ pub(crate) struct Asked {
     pub quantities: Vec<Quantity>,
     /// By measure: whether it asks for forces.
     pub forces: Vec<bool>,
+    /// By measure: whether it asks when the motion is there: speeds, rates, forces.
+    pub timed: Vec<bool>,
 }
 
 impl Asked {
@@ -349,7 +353,9 @@ impl Asked {
         let mut it = Self {
             quantities: Vec::new(),
             forces: Vec::new(),
+            timed: Vec::new(),
         };
+        let mut known = vec![None; model.measures.len()];
         for text in measures {
             match model.measure(text.as_ref()) {
                 Ok(NamedMeasure {
@@ -360,6 +366,7 @@ impl Asked {
                     ..
                 }) => {
                     it.forces.push(needs_forces);
+                    it.timed.push(asks_time(model, &measure, &mut known));
                     it.quantities.push(Quantity {
                         name,
                         measure,
@@ -378,6 +385,33 @@ impl Asked {
     pub fn any_forces(&self) -> bool {
         self.forces.contains(&true)
     }
+}
+
+/// Whether a measure asks when the motion is at a pose. Numbers over the whole motion do not. Named measures are looked into
+/// once: `known`.
+fn asks_time(model: &kempe_model::Model, measure: &Measure, known: &mut [Option<bool>]) -> bool {
+    measure.leaves().any(|leaf| match leaf {
+        Leaf::Time | Leaf::Rate(..) | Leaf::Force(_) => true,
+        Leaf::Pose(pose) => matches!(
+            pose,
+            PoseMeasure::Speed(_)
+                | PoseMeasure::Acceleration(_)
+                | PoseMeasure::AngularSpeed(_)
+                | PoseMeasure::AngularAcceleration(_)
+                | PoseMeasure::PathLength(_)
+        ),
+        Leaf::Coefficient(inner, ..) => asks_time(model, inner, known),
+        Leaf::Named(index) => match (known.get(*index), model.measures.get(*index)) {
+            (Some(Some(known)), _) => *known,
+            (Some(None), Some(named)) => {
+                let found = asks_time(model, &named.measure, known);
+                known[*index] = Some(found);
+                found
+            }
+            _ => false,
+        },
+        Leaf::Parameter(_) | Leaf::Drive(_) | Leaf::Over(..) => false,
+    })
 }
 
 /// Parameters by their names.

@@ -3,6 +3,7 @@
 use std::borrow::Borrow;
 use std::sync::Arc;
 
+use kempe_measure::Sample;
 use kempe_motion::Motion;
 use kempe_study::{Along, Ear, Flow, ForceColumns, Progress, RowPlace, Silent};
 use kempe_units::Dimension;
@@ -249,8 +250,9 @@ pub(crate) fn rows(
         match beyond {
             Some(told) => sweep.push_unreached(format!("not reached: {}", told.message)),
             None => {
-                let row = along.row(rows[done]);
+                let mut row = along.row(rows[done]);
                 let note = row.note(mechanism);
+                asked.without_time(&mut row.sample);
                 sweep.push(row, note);
             }
         }
@@ -301,6 +303,19 @@ impl Sweep {
             columns.condition.push(of(|e| e.condition));
         }
         self.notes.push(note);
+    }
+}
+
+impl Asked {
+    /// Where no law passes a place, what asks for time has no value.
+    pub(crate) fn without_time(&self, sample: &mut Sample) {
+        if sample.time.is_finite() {
+            return;
+        }
+        let values = sample.values.iter_mut().zip(&self.timed);
+        for (value, _) in values.filter(|(_, timed)| **timed) {
+            *value = f64::NAN;
+        }
     }
 }
 

@@ -509,11 +509,12 @@ fn a_sweep_may_be_stopped_and_clones_go_their_own_way() {
 
 #[test]
 fn what_cannot_move_says_so_when_it_is_compiled() {
-    let text = "[links]\nframe = { A = [0, 0] }\ncrank = { A-B = 1 }\n";
+    let text = "[links]\nframe = { A = [0, 0], D = [3, 0] }\ncrank = { A-B = 1 }\n\
+        coupler = { B-C = 3 }\nrocker = { D-C = 2 }\n";
     let loose: Model = text.parse().expect("a model");
     assert_eq!(loose.compile().unwrap_err().code(), "no-drive");
     // A single pose is found all the same: what is free is held somewhere.
     let pose = loose.pose("").expect("a pose");
-    let [x, y] = pose.point("B").expect("a point");
-    assert!((x * x + y * y - 1.0).abs() < 1e-12);
+    let [b, c] = ["B", "C"].map(|name| pose.point(name).expect("a point"));
+    assert!((kempe::number::math::hypot(b[0] - c[0], b[1] - c[1]) - 3.0).abs() < 1e-12);
 }
