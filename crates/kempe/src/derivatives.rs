@@ -88,9 +88,15 @@ impl Session {
     /// // The piston's force of massless links grows with the weight as the transfer function says.
     /// let j = s.derivatives_at("lift", 0.45, &["push"], &["weight"])?;
     /// assert!((j.get(0, 0) - 4.183_850_347_69).abs() < 1e-11);
-    /// // And so does the cylinder, whose work is all that lifts it.
+    /// // Forces have derivatives as well: those of new designs.
     /// let j = s.derivatives_at("lift", 0.45, &["force(lift)"], &["weight"])?;
-    /// assert!((j.get(0, 0) - 4.183_850_347_69).abs() < 1e-9);
+    /// let weight = s.value("weight")?;
+    /// let mut force = |weight: f64| -> Result<f64, kempe::Error> {
+    ///     s.set("weight", weight)?;
+    ///     Ok(s.sweep("lift", [0.45], ["force(lift)"])?.columns[0].values[0])
+    /// };
+    /// let difference = (force(weight + 1.0)? - force(weight - 1.0)?) / 2.0;
+    /// assert!((j.get(0, 0) / difference - 1.0).abs() < 1e-9);
     /// # Ok(())
     /// # }
     /// ```

@@ -154,7 +154,7 @@ impl Batch {
     /// Returns how many poses do close.
     ///
     /// Redundant constraints are not looked at, and nothing is smoothed at change points: see
-    /// [`Sampler`](kempe_measure::Sampler) for rows with evidence. Rising or falling parameters are the fastest. Mechanisms
+    /// `Sampler` of `kempe-measure` for rows with evidence. Rising or falling parameters are the fastest. Mechanisms
     /// with Newton groups, gears or racks run pose by pose.
     ///
     /// # Errors

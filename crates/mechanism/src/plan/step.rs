@@ -162,7 +162,7 @@ pub enum Step {
     Dyad(Dyad),
     /// Everything else: Newton's method on the block's rows.
     Newton {
-        /// Index into [`Plan::newton_blocks`].
+        /// Index into [`Plan::newton_blocks`](crate::Plan::newton_blocks).
         block: usize,
     },
 }

@@ -34,7 +34,7 @@ impl<'a> Cubic<'a> {
     }
 
     /// The part of the step at which an unknown that rises all along it has the value `wanted`: the middle of one of
-    /// [`PARTS`] equal parts; beyond the ends the first or last of them.
+    /// `PARTS` equal parts; beyond the ends the first or last of them.
     pub fn part_where(&self, unknown: usize, wanted: f64) -> f64 {
         let below = |part: f64| self.at(part / PARTS).part(unknown) <= wanted;
         // Newton's method tells the part, nearly always, and what it tells is tried.
