@@ -8,7 +8,7 @@ use std::hint::black_box;
 use std::time::Instant as Clock;
 
 use kempe_dynamics::{Forces, Instant};
-use kempe_mechanism::{Branch, Design, Mechanism, State};
+use kempe_mechanism::{Branch, Configuration, Design, Mechanism};
 use kempe_model::{DriveId, Model};
 use kempe_motion::Motion;
 use kempe_number::{Jet, Number};
@@ -123,9 +123,9 @@ fn main() {
         .collect();
 
     let kernel = kernel_of(&mechanism, &forces);
-    let mut plain: State<f64> = State::new(&mechanism);
-    let mut series: State<Series> = State::new(&mechanism);
-    let mut states: Vec<State<Series>> = Vec::with_capacity(ROWS);
+    let mut plain: Configuration<f64> = Configuration::new(&mechanism);
+    let mut series: Configuration<Series> = Configuration::new(&mechanism);
+    let mut states: Vec<Configuration<Series>> = Vec::with_capacity(ROWS);
     for (p, branch) in places.iter().zip(&branches) {
         series.set_inputs(&mechanism, &[Series::variable(*p)]);
         rich.solve(branch, &mut series);

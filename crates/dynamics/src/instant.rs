@@ -2,7 +2,7 @@
 
 use kempe_measure::{Series, State};
 use kempe_mechanism::constraint::Input;
-use kempe_mechanism::{BodyId, Mechanism, Pose, State as Solved};
+use kempe_mechanism::{BodyId, Configuration, Mechanism, Pose};
 use kempe_model::{DriveId, DriveKind};
 use kempe_number::{Jet, Number};
 
@@ -220,7 +220,7 @@ impl Instant<f64> {
     pub fn set_along(
         &mut self,
         mechanism: &Mechanism,
-        state: &Solved<Rates>,
+        state: &Configuration<Rates>,
         near: &[f64],
         drive: DriveId,
         [speed, acceleration]: [f64; 2],

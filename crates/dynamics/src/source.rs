@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use kempe_measure::{Base, Curve, ForceSource, Series, State};
+use kempe_mechanism::Branch;
 use kempe_mechanism::Design;
-use kempe_mechanism::state::Branch;
 use kempe_model::{Drive, ForceMeasure, Measure};
 use kempe_motion::Motion;
 

@@ -1,7 +1,7 @@
 //! Directions between two points along a motion, without jumps.
 
+use kempe_mechanism::Design;
 use kempe_mechanism::pose::{Pose, sub};
-use kempe_mechanism::state::Design;
 use kempe_model::PointId;
 use kempe_motion::motion::Motion;
 use kempe_motion::trace::interval;

@@ -1,7 +1,7 @@
 //! Length of path that a point has swept.
 
+use kempe_mechanism::Design;
 use kempe_mechanism::pose::dot;
-use kempe_mechanism::state::Design;
 use kempe_mechanism::structure::Marker;
 use kempe_model::{LawPiece, PointId};
 use kempe_motion::bridge::{Side, across};

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use kempe_mechanism::state::{Branch, Design};
 use kempe_mechanism::{BodyId, Mechanism, PlanNumber, Pose};
+use kempe_mechanism::{Branch, Design};
 use kempe_model::DriveId;
 use kempe_number::{Jet, Number};
 
@@ -120,7 +120,7 @@ where
         let mut it = Self::empty(design.clone(), Abscissa::time(time, 1.0));
         it.near.copy_from_slice(&branch.near);
         it.coordinates.copy_from_slice(coordinates);
-        let mut solved = kempe_mechanism::State::new(it.mechanism());
+        let mut solved = kempe_mechanism::Configuration::new(it.mechanism());
         let mut solve = |coordinates: &[Series<B>]| {
             solved.set_inputs(&design.mechanism, coordinates);
             design.solve(branch, &mut solved);

@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
+use kempe_mechanism::Design;
 use kempe_mechanism::PlanNumber;
 use kempe_mechanism::evidence::is_finite;
-use kempe_mechanism::state::Design;
 use kempe_model::DriveId;
 use kempe_motion::bridge::{Side, across};
 use kempe_motion::drive_path::DrivePath;

@@ -1,8 +1,9 @@
 //! Assur groups: what the plan's blocks mean in the language of the field.
 
 use crate::Mechanism;
+use crate::constraint::Constraint;
+use crate::ids::BodyId;
 use crate::plan::{Condition, Step, Swing};
-use crate::structure::{BodyId, Constraint};
 
 /// A group of bodies that are determined together.
 #[derive(Clone, Debug, PartialEq)]

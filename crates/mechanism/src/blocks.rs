@@ -8,7 +8,8 @@
 use std::collections::{BTreeMap, VecDeque};
 
 use crate::constraint::{Constraint, Joint, Touch};
-use crate::structure::{BodyId, Structure};
+use crate::ids::BodyId;
+use crate::structure::Structure;
 
 /// One unknown quantity of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

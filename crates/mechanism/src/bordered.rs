@@ -260,7 +260,9 @@ impl Bordered {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::state::{Branch, Design, State};
+    use crate::branch::Branch;
+    use crate::configuration::Configuration;
+    use crate::design::Design;
 
     /// Two parallelograms on one crank: at zero all their links lie in one line.
     const TWINS: &str = r#"
@@ -285,7 +287,7 @@ motor = { turns = "crank", from = 0.3, to = 1, speed = "1 rad/s" }
         let design = Design::new(&mechanism, &[]);
         let size = design.geometry.size(&mechanism);
         for back in [1e-2, 1e-4, 1e-6, 1e-8, 1e-10] {
-            let mut state: State<f64> = State::new(&mechanism);
+            let mut state: Configuration<f64> = Configuration::new(&mechanism);
             state.set_inputs(&mechanism, &[back]);
             let mut branch = Branch::neutral(&mechanism);
             for sign in &mut branch.signs {

@@ -36,8 +36,9 @@ pub use self::travel::Travel;
 use kempe_model::{DriveId, JointId, LinkId, PointId};
 use kempe_number::Number;
 
-use crate::plan::{Condition, Step};
-use crate::structure::{BodyId, Marker, Structure};
+use crate::ids::{BodyId, Marker};
+use crate::parts::Parts;
+use crate::step::{Condition, Step};
 
 /// What a constraint comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -125,8 +126,8 @@ impl Joint for Constraint {
         ask!(self, joint => joint.pairs())
     }
 
-    fn links(&self, structure: &Structure) -> Vec<LinkId> {
-        ask!(self, joint => joint.links(structure))
+    fn links(&self, parts: &Parts) -> Vec<LinkId> {
+        ask!(self, joint => joint.links(parts))
     }
 
     #[inline]
@@ -176,8 +177,8 @@ impl Joint for Constraint {
         ask!(self, joint => joint.counts_turns())
     }
 
-    fn opened_by(&self, structure: &Structure) -> Vec<(LinkId, LinkId)> {
-        ask!(self, joint => joint.opened_by(structure))
+    fn opened_by(&self, parts: &Parts) -> Vec<(LinkId, LinkId)> {
+        ask!(self, joint => joint.opened_by(parts))
     }
 
     fn load_gradients<T: Number>(&self, at: &Situation<'_, T>, emit: impl FnMut(Gradient<T>)) {

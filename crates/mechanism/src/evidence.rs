@@ -1,9 +1,11 @@
 //! How far a pose can be trusted: closure residual and distance from singularity.
 
 use crate::bordered::Bordered;
+use crate::branch::Branch;
+use crate::configuration::Configuration;
 use crate::constraint::Joint;
+use crate::design::Design;
 use crate::pose::Pose;
-use crate::state::{Branch, Design, State};
 
 /// What tells how good a pose is. Lengths are counted in mechanism sizes, angles in rad.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,7 +17,12 @@ pub struct Evidence {
 }
 
 /// The largest residual of all joints and drives at a pose, and of every body's length.
-pub fn closure(design: &Design<f64>, branch: &Branch, state: &State<f64>, size: f64) -> f64 {
+pub fn closure(
+    design: &Design<f64>,
+    branch: &Branch,
+    state: &Configuration<f64>,
+    size: f64,
+) -> f64 {
     let mechanism = &*design.mechanism;
     let situation = state.situation(design, branch);
     // Directions that are no unit vectors stretch their bodies: poses that were joined from two sides may have them.
@@ -45,7 +52,7 @@ pub fn closure(design: &Design<f64>, branch: &Branch, state: &State<f64>, size: 
 pub fn evidence(
     design: &Design<f64>,
     branch: &Branch,
-    state: &State<f64>,
+    state: &Configuration<f64>,
     size: f64,
     system: &mut Bordered,
 ) -> Evidence {

@@ -2,8 +2,10 @@
 
 use kempe_number::Number;
 
+use crate::ids::{ArcRef, LineRef, Marker};
+use crate::parts::Parts;
 use crate::pose::{Pose, dot, left, sub};
-use crate::structure::{ArcRef, LineRef, LineSource, Marker, Structure};
+use crate::sources::LineSource;
 
 /// A directed line of a body, in the body's own coordinates.
 #[derive(Clone, Copy, Debug)]
@@ -79,7 +81,7 @@ pub struct Geometry<T> {
 
 impl<T: Number> Geometry<T> {
     /// Evaluates a mechanism's dimensions for parameter values (SI, in the model's order).
-    pub fn new(structure: &Structure, parameters: &[T]) -> Self {
+    pub fn new(parts: &Parts, parameters: &[T]) -> Self {
         let zero = T::zero();
         let along = LocalLine {
             origin: [zero; 2],
@@ -95,46 +97,43 @@ impl<T: Number> Geometry<T> {
             constant: zero,
         };
         let mut it = Self {
-            seats: vec![Pose::identity(); structure.model.links.len()],
-            seat_angles: vec![zero; structure.model.links.len()],
-            turns: vec![0.0; structure.model.links.len()],
-            markers: vec![[zero; 2]; structure.markers.len()],
-            lines: vec![along; structure.lines.len()],
-            arcs: vec![arc; structure.arcs.len()],
-            angles: vec![[T::one(), zero]; structure.angles.len()],
-            gears: vec![gear; structure.gears.len()],
+            seats: vec![Pose::identity(); parts.model.links.len()],
+            seat_angles: vec![zero; parts.model.links.len()],
+            turns: vec![0.0; parts.model.links.len()],
+            markers: vec![[zero; 2]; parts.markers.len()],
+            lines: vec![along; parts.lines.len()],
+            arcs: vec![arc; parts.arcs.len()],
+            angles: vec![[T::one(), zero]; parts.angles.len()],
+            gears: vec![gear; parts.gears.len()],
         };
-        it.update(structure, parameters);
+        it.update(parts, parameters);
         it
     }
 
     /// Evaluates the dimensions anew, in the same storage.
     #[cfg_attr(not(debug_assertions), inline(always))]
-    pub(crate) fn update(&mut self, structure: &Structure, parameters: &[T]) {
-        for (index, link) in structure.model.links.iter().enumerate() {
-            link.evaluate_into(parameters, &mut self.markers[structure.markers_of(index)]);
+    pub(crate) fn update(&mut self, parts: &Parts, parameters: &[T]) {
+        for (index, link) in parts.model.links.iter().enumerate() {
+            link.evaluate_into(parameters, &mut self.markers[parts.markers_of(index)]);
         }
-        let is_plain = structure.lines.is_empty()
-            && structure.arcs.is_empty()
-            && structure.gears.is_empty()
-            && structure.seats.iter().all(|seat| seat.weld.is_none())
-            && structure
-                .angles
-                .iter()
-                .all(|angle| angle.is_zero(structure));
+        let is_plain = parts.lines.is_empty()
+            && parts.arcs.is_empty()
+            && parts.gears.is_empty()
+            && parts.seats.iter().all(|seat| seat.weld.is_none())
+            && parts.angles.iter().all(|angle| parts.is_zero(angle));
         if !is_plain {
-            self.update_relations(structure, parameters);
+            self.update_relations(parts, parameters);
         }
     }
 
     /// Evaluates what stands between links: welds, lines, angles and gears.
     #[inline(never)]
-    fn update_relations(&mut self, structure: &Structure, parameters: &[T]) {
+    fn update_relations(&mut self, parts: &Parts, parameters: &[T]) {
         let scalar = |expr: &kempe_model::Scalar| kempe_model::value(expr, parameters);
-        if structure.seats.iter().any(|seat| seat.weld.is_some()) {
-            self.seat_links(structure, &scalar);
+        if parts.seats.iter().any(|seat| seat.weld.is_some()) {
+            self.seat_links(parts, &scalar);
         }
-        for (index, line) in structure.lines.iter().enumerate() {
+        for (index, line) in parts.lines.iter().enumerate() {
             self.lines[index] = match *line {
                 LineSource::Points(from, to) => {
                     let origin = self.marker(from);
@@ -154,12 +153,12 @@ impl<T: Number> Geometry<T> {
                 }
             };
         }
-        for (index, arc) in structure.arcs.iter().enumerate() {
+        for (index, arc) in parts.arcs.iter().enumerate() {
             let (from, to) = (self.marker(arc.from), self.marker(arc.to));
             self.arcs[index] = LocalArc::through(from, to, scalar(&arc.radius), arc.side);
         }
-        for (index, angle) in structure.angles.iter().enumerate() {
-            if angle.is_zero(structure) {
+        for (index, angle) in parts.angles.iter().enumerate() {
+            if parts.is_zero(angle) {
                 // As it was made.
                 continue;
             }
@@ -173,7 +172,7 @@ impl<T: Number> Geometry<T> {
             };
             self.angles[index] = self.seats[angle.a.index()].unturn(value.turn(base));
         }
-        for (index, gear) in structure.gears.iter().enumerate() {
+        for (index, gear) in parts.gears.iter().enumerate() {
             let (first, second) = (scalar(&gear.first), scalar(&gear.second));
             let seat = gear.links.map(|link| self.seat_angles[link.index()]);
             let constant =
@@ -187,29 +186,29 @@ impl<T: Number> Geometry<T> {
     }
 
     /// Places welded links in their bodies, and their markers with them.
-    fn seat_links(&mut self, structure: &Structure, scalar: &impl Fn(&kempe_model::Scalar) -> T) {
-        let count = structure.model.links.len();
+    fn seat_links(&mut self, parts: &Parts, scalar: &impl Fn(&kempe_model::Scalar) -> T) {
+        let count = parts.model.links.len();
         let mut seats: Vec<Option<(Pose<T>, T)>> = vec![None; count];
         for link in 0..count {
-            seat(structure, &self.markers, scalar, link, &mut seats);
+            seat(parts, &self.markers, scalar, link, &mut seats);
         }
         for (link, seat) in seats.into_iter().enumerate() {
             let Some((pose, angle)) = seat else {
                 continue;
             };
             self.seat_angles[link] = angle + self.turns[link];
-            if structure.seats[link].weld.is_none() {
+            if parts.seats[link].weld.is_none() {
                 continue;
             }
             self.seats[link] = pose;
-            for marker in &mut self.markers[structure.markers_of(link)] {
+            for marker in &mut self.markers[parts.markers_of(link)] {
                 *marker = pose.place(*marker);
             }
         }
     }
 
     /// Counts every link's angle by these whole turns, rad, further than its weld says.
-    pub fn count_turns(&mut self, structure: &Structure, turns: &[f64]) {
+    pub fn count_turns(&mut self, parts: &Parts, turns: &[f64]) {
         if self.turns == turns {
             return;
         }
@@ -217,7 +216,7 @@ impl<T: Number> Geometry<T> {
         for (link, angle) in self.seat_angles.iter_mut().enumerate() {
             *angle = *angle + further(link);
         }
-        for (gear, source) in self.gears.iter_mut().zip(&structure.gears) {
+        for (gear, source) in self.gears.iter_mut().zip(&parts.gears) {
             let [a, b, arm] = source.links.map(|link| further(link.index()));
             gear.constant = gear.constant - gear.first * (a - arm) - gear.second * (b - arm);
         }
@@ -302,11 +301,11 @@ fn refill<T, U>(list: &mut Vec<U>, from: &[T], f: impl Fn(&T) -> U) {
 
 impl Geometry<f64> {
     /// A characteristic length of the mechanism, m: the largest distance of two markers of one body.
-    pub fn size(&self, structure: &Structure) -> f64 {
-        let mut low = vec![[f64::INFINITY; 2]; structure.bodies];
-        let mut high = vec![[f64::NEG_INFINITY; 2]; structure.bodies];
-        for (at, p) in structure.markers.iter().zip(&self.markers) {
-            let body = structure.body_of(at.link).index();
+    pub fn size(&self, parts: &Parts) -> f64 {
+        let mut low = vec![[f64::INFINITY; 2]; parts.bodies];
+        let mut high = vec![[f64::NEG_INFINITY; 2]; parts.bodies];
+        for (at, p) in parts.markers.iter().zip(&self.markers) {
+            let body = parts.body_of(at.link).index();
             for k in 0..2 {
                 low[body][k] = low[body][k].min(p[k]);
                 high[body][k] = high[body][k].max(p[k]);
@@ -326,7 +325,7 @@ impl Geometry<f64> {
 
 /// Places a link in its body: welded links hang on the link they are welded to.
 fn seat<T: Number>(
-    structure: &Structure,
+    parts: &Parts,
     local: &[[T; 2]],
     scalar: &impl Fn(&kempe_model::Scalar) -> T,
     link: usize,
@@ -335,16 +334,16 @@ fn seat<T: Number>(
     if let Some(known) = seats[link] {
         return known;
     }
-    let seated = match &structure.seats[link].weld {
+    let seated = match &parts.seats[link].weld {
         None => (Pose::identity(), T::zero()),
         Some((parent, point, angle)) => {
-            let (base, base_angle) = seat(structure, local, scalar, parent.index(), seats);
+            let (base, base_angle) = seat(parts, local, scalar, parent.index(), seats);
             let find = |l: usize| {
-                let points = &structure.model.links[l].points;
+                let points = &parts.model.links[l].points;
                 points
                     .iter()
                     .position(|p| p.point == *point)
-                    .map_or([T::zero(); 2], |i| local[structure.markers_of(l)][i])
+                    .map_or([T::zero(); 2], |i| local[parts.markers_of(l)][i])
             };
             let angle = scalar(angle);
             let turn = Pose::from_angle(T::zero(), T::zero(), angle);

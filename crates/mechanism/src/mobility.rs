@@ -1,12 +1,14 @@
 //! Freedoms counted and measured.
 
 use crate::Mechanism;
+use crate::branch::Branch;
+use crate::configuration::Configuration;
 use crate::constraint::{Joint, Pairs};
+use crate::design::Design;
 use crate::evidence::is_finite;
+use crate::ids::BodyId;
 use crate::pose::Pose;
 use crate::rank::{SparseRow, rank};
-use crate::state::{Branch, Design, State};
-use crate::structure::BodyId;
 
 /// Mobility two ways.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,7 +28,7 @@ pub struct Mobility {
 }
 
 /// Counts and, with a pose, measures the mobility.
-pub fn mobility(design: &Design<f64>, pose: Option<(&State<f64>, &Branch)>) -> Mobility {
+pub fn mobility(design: &Design<f64>, pose: Option<(&Configuration<f64>, &Branch)>) -> Mobility {
     let mechanism = &*design.mechanism;
     let mut pairs = Pairs::default();
     for (constraint, _) in &mechanism.constraints {
@@ -57,7 +59,7 @@ pub fn mobility(design: &Design<f64>, pose: Option<(&State<f64>, &Branch)>) -> M
 }
 
 /// Rank of the joints' scaled constraint Jacobian at a pose.
-fn joint_rank(design: &Design<f64>, branch: &Branch, state: &State<f64>) -> usize {
+fn joint_rank(design: &Design<f64>, branch: &Branch, state: &Configuration<f64>) -> usize {
     let mechanism = &*design.mechanism;
     let size = design.size();
     let situation = state.situation(design, branch);
@@ -91,8 +93,12 @@ fn joint_rank(design: &Design<f64>, branch: &Branch, state: &State<f64>) -> usiz
 }
 
 /// A state at given poses, ready for residuals and gradients.
-pub fn state_at(mechanism: &Mechanism, poses: &[Pose<f64>], coordinates: &[f64]) -> State<f64> {
-    let mut state = State::new(mechanism);
+pub fn state_at(
+    mechanism: &Mechanism,
+    poses: &[Pose<f64>],
+    coordinates: &[f64],
+) -> Configuration<f64> {
+    let mut state = Configuration::new(mechanism);
     state.poses.copy_from_slice(poses);
     state.set_inputs(mechanism, coordinates);
     state

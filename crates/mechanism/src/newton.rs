@@ -26,12 +26,14 @@ use self::plain::plain_newton;
 use self::rows::{apply_step, fill_residuals};
 use crate::Mechanism;
 use crate::blocks::Unknown;
+use crate::branch::Branch;
+use crate::configuration::Configuration;
 use crate::constraint::{Input, Situation};
+use crate::design::Design;
 use crate::geometry::Geometry;
 use crate::plan::NewtonBlock;
 use crate::pose::Pose;
 use crate::qr::Qr;
-use crate::state::{Branch, Design, State};
 
 /// Largest number of tree coordinates for which elimination runs on the stack, and in lanes.
 pub(crate) const ON_STACK: usize = 8;
@@ -50,7 +52,7 @@ pub trait PlanNumber: Number {
         block: &NewtonBlock,
         design: &Design<Self>,
         branch: &Branch,
-        state: &mut State<Self>,
+        state: &mut Configuration<Self>,
     ) -> Self;
 }
 
@@ -59,7 +61,7 @@ impl PlanNumber for f64 {
         block: &NewtonBlock,
         design: &Design<f64>,
         branch: &Branch,
-        state: &mut State<f64>,
+        state: &mut Configuration<f64>,
     ) -> f64 {
         let mechanism = &*design.mechanism;
         let scratch = &mut state.scratch;
@@ -84,7 +86,7 @@ impl<const W: usize> PlanNumber for Lanes<W> {
         block: &NewtonBlock,
         design: &Design<Self>,
         branch: &Branch,
-        state: &mut State<Self>,
+        state: &mut Configuration<Self>,
     ) -> Self {
         match block.tree_in_lanes() {
             Some(tree) => lanes_together(tree, block, design, branch, state),
@@ -101,7 +103,7 @@ macro_rules! plan_number {
                 block: &NewtonBlock,
                 design: &Design<Self>,
                 branch: &Branch,
-                state: &mut State<Self>) -> Self {
+                state: &mut Configuration<Self>) -> Self {
                 $solve(block, design, branch, state, $($more),*)
             }
         }
@@ -121,7 +123,7 @@ fn carry_over<T: PlanNumber>(
     block: &NewtonBlock,
     design: &Design<T>,
     branch: &Branch,
-    state: &mut State<T>,
+    state: &mut Configuration<T>,
     passes: usize,
 ) -> T {
     let mechanism = &*design.mechanism;
@@ -146,10 +148,10 @@ fn plain_part<'b, T: Number>(
     mechanism: &Mechanism,
     geometry: &Geometry<f64>,
     branch: &Branch,
-    state: &mut State<T>,
+    state: &mut Configuration<T>,
     part: impl Fn(T) -> f64,
 ) -> (f64, Option<&'b SpanningTree>) {
-    let State {
+    let Configuration {
         inputs,
         poses,
         scratch,
@@ -258,12 +260,12 @@ fn sharpen<T: Number>(
     (block, tree): (&NewtonBlock, Option<&SpanningTree>),
     design: &Design<T>,
     branch: &Branch,
-    state: &mut State<T>,
+    state: &mut Configuration<T>,
     passes: usize,
     take: impl Fn(T) -> T,
 ) {
     let mechanism = &*design.mechanism;
-    let State {
+    let Configuration {
         inputs,
         poses,
         scratch,

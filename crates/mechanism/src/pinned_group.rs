@@ -2,19 +2,20 @@
 
 use kempe_number::Number;
 
+use crate::branch::Branch;
 use crate::closed_form::{Locus, direction, meet, reach_locus};
+use crate::configuration::Configuration;
+use crate::design::Design;
+use crate::ids::Marker;
 use crate::plan::{Carrier, Condition, Reach, Swing, SwingLine};
 use crate::pose::{Pose, cross, dot, left, sub};
-use crate::solve::{placed_line, turn_by};
-use crate::state::{Branch, Design, State};
-use crate::structure::Marker;
 
 /// What a condition says about the point its carrier holds. The carrier's angle must be known.
 #[cfg_attr(not(debug_assertions), inline(always))]
 fn locus_of<T: Number, const ALL: bool>(
     design: &Design<T>,
     branch: &Branch,
-    state: &State<T>,
+    state: &Configuration<T>,
     carrier: Carrier,
     condition: Condition,
 ) -> Locus<T> {
@@ -25,7 +26,7 @@ fn locus_of<T: Number, const ALL: bool>(
         .map_or([T::zero(); 2], |pin| geometry.marker(pin));
     match condition {
         Condition::OnLine { own, line } | Condition::TravelOn { own, line, .. } => {
-            let (origin, along) = placed_line(design, state, line);
+            let (origin, along) = state.placed_line(design, line);
             let from = sub(origin, pose.turn(sub(geometry.marker(own), pin)));
             on_line(state, condition, along, from)
         }
@@ -75,7 +76,7 @@ fn locus_of<T: Number, const ALL: bool>(
 fn rolling<T: Number>(
     design: &Design<T>,
     branch: &Branch,
-    state: &State<T>,
+    state: &Configuration<T>,
     carrier: Carrier,
     condition: Condition,
 ) -> Locus<T> {
@@ -107,7 +108,7 @@ fn rolling<T: Number>(
 /// A point on the line through `from` along `along`, or with the drive's coordinate along it.
 #[cfg_attr(not(debug_assertions), inline(always))]
 fn on_line<T: Number>(
-    state: &State<T>,
+    state: &Configuration<T>,
     condition: Condition,
     along: [T; 2],
     from: [T; 2],
@@ -122,7 +123,7 @@ fn on_line<T: Number>(
 
 /// Places a translating body by the point it carries.
 #[cfg_attr(not(debug_assertions), inline(always))]
-fn carry<T: Number>(design: &Design<T>, state: &mut State<T>, carrier: Carrier, x: [T; 2]) {
+fn carry<T: Number>(design: &Design<T>, state: &mut Configuration<T>, carrier: Carrier, x: [T; 2]) {
     let pin = carrier
         .pin
         .map_or([T::zero(); 2], |pin| design.geometry.marker(pin));
@@ -135,7 +136,7 @@ fn carry<T: Number>(design: &Design<T>, state: &mut State<T>, carrier: Carrier, 
 pub(crate) fn cross_loci<T: Number, const ALL: bool>(
     design: &Design<T>,
     branch: &Branch,
-    state: &mut State<T>,
+    state: &mut Configuration<T>,
     (carriers, conditions): (&[Carrier; 2], &[Condition; 2]),
     sign: f64,
 ) -> T {
@@ -155,7 +156,7 @@ pub(crate) fn cross_loci<T: Number, const ALL: bool>(
 pub(crate) fn swing<T: Number, const ALL: bool>(
     design: &Design<T>,
     branch: &Branch,
-    state: &mut State<T>,
+    state: &mut Configuration<T>,
     step: &Swing,
     sign: f64,
 ) -> T {
@@ -178,7 +179,7 @@ pub(crate) fn swing<T: Number, const ALL: bool>(
             state.inputs[input.index()].value,
         ),
         (None, Condition::OnLine { line, .. } | Condition::TravelOn { line, .. }) => {
-            let (origin, along) = placed_line(design, state, line);
+            let (origin, along) = state.placed_line(design, line);
             on_line(state, condition, along, origin)
         }
         (None, Condition::OnArc { arc, .. }) => {
@@ -215,7 +216,7 @@ pub(crate) fn swing<T: Number, const ALL: bool>(
 #[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn swing_line<T: Number>(
     design: &Design<T>,
-    state: &mut State<T>,
+    state: &mut Configuration<T>,
     step: &SwingLine,
     sign: f64,
 ) -> T {
@@ -232,7 +233,7 @@ pub(crate) fn swing_line<T: Number>(
     let v = sub(far, center);
     // Turn of the partner against the body, as a unit vector.
     let relative = partner.map(|p| {
-        let by = turn_by(design, state, p.offset, p.input, p.reversed);
+        let by = state.turn_by(design, p.offset, p.input, p.reversed);
         Pose {
             x: T::zero(),
             y: T::zero(),
@@ -284,6 +285,6 @@ pub(crate) fn swing_line<T: Number>(
 
 /// A marker in the frame.
 #[cfg_attr(not(debug_assertions), inline(always))]
-fn place<T: Number>(design: &Design<T>, state: &State<T>, marker: Marker) -> [T; 2] {
+fn place<T: Number>(design: &Design<T>, state: &Configuration<T>, marker: Marker) -> [T; 2] {
     state.poses[marker.body.index()].place(design.geometry.marker(marker))
 }

@@ -3,9 +3,7 @@
 //! A plan is made once for a topology. Its steps hold indices only; dimensions live in [`Design`](crate::Design), the
 //! choice between assemblies in [`Branch`](crate::Branch), so one plan serves every design on every kind of number.
 
-mod step;
-
-pub use self::step::{Carrier, Condition, Dyad, DyadBody, Reach, Sliding, Step, Swing, SwingLine};
+pub use crate::step::{Carrier, Condition, Dyad, DyadBody, Reach, Sliding, Step, Swing, SwingLine};
 
 use crate::blocks::{Block, Decomposition, Row, Unknown, by_constraint, decompose};
 use crate::newton::SpanningTree;

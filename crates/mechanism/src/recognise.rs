@@ -2,8 +2,9 @@
 
 use crate::blocks::{Block, Row, Unknown};
 use crate::constraint::{Constraint, Joint, Unit};
-use crate::plan::{Carrier, Condition, Dyad, DyadBody, Reach, Sliding, Step, Swing, SwingLine};
-use crate::structure::{BodyId, Marker, Structure};
+use crate::ids::{BodyId, Marker};
+use crate::step::{Carrier, Condition, Dyad, DyadBody, Reach, Sliding, Step, Swing, SwingLine};
+use crate::structure::Structure;
 
 /// The constraints of a block, each once, with whether all of its rows are there.
 fn constraints_of<'m>(structure: &'m Structure, rows: &[Row]) -> Option<Vec<&'m Constraint>> {

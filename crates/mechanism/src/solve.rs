@@ -1,17 +1,19 @@
 //! Running a plan: from drive coordinates to poses.
 
-use kempe_model::DriveId;
 use kempe_number::Number;
 
+use crate::bound_dyad::BoundDyad;
+use crate::branch::Branch;
 use crate::closed_form::direction;
+use crate::configuration::Configuration;
 use crate::constraint::{Input, Joint};
-use crate::known::{DyadOf, Known};
+use crate::design::Design;
+use crate::ids::{BodyId, Marker};
+use crate::local_marker::LocalMarker;
 use crate::newton::PlanNumber;
 use crate::pinned_group::{cross_loci, swing, swing_line};
 use crate::plan::{Plan, Step};
 use crate::pose::{Pose, dot, sub};
-use crate::state::{Branch, Design, State};
-use crate::structure::{BodyId, LineRef, Marker};
 
 /// Solves one step for every state and, in `ALL`, keeps its determinant. A macro, because a closure would not be
 /// compiled for the caller's vector instructions.
@@ -36,7 +38,7 @@ impl<T: PlanNumber> Design<T> {
     /// `state.determinants`. Where the mechanism cannot be assembled the poses become NaN (empty for intervals).
     ///
     /// Allocates nothing.
-    pub fn solve(&self, branch: &Branch, state: &mut State<T>) {
+    pub fn solve(&self, branch: &Branch, state: &mut Configuration<T>) {
         let plan = &self.mechanism.plan;
         let states = std::slice::from_mut(state);
         plan.solve_all::<T, true>(0..plan.steps.len(), self, branch, states);
@@ -55,7 +57,7 @@ impl Plan {
         steps: impl IntoIterator<Item = usize>,
         design: &Design<T>,
         branch: &Branch,
-        states: &mut [State<T>],
+        states: &mut [Configuration<T>],
     ) {
         for index in steps {
             let sign = branch.signs[index];
@@ -70,7 +72,7 @@ impl Plan {
         sign: f64,
         design: &Design<T>,
         branch: &Branch,
-        state: &mut State<T>,
+        state: &mut Configuration<T>,
     ) {
         let states = std::slice::from_mut(state);
         self.run_step::<T, true>(index, sign, design, branch, states);
@@ -83,7 +85,7 @@ impl Plan {
         sign: f64,
         design: &Design<T>,
         branch: &Branch,
-        states: &mut [State<T>],
+        states: &mut [Configuration<T>],
     ) {
         let mechanism = &*design.mechanism;
         match &self.steps[index] {
@@ -94,7 +96,7 @@ impl Plan {
                 input,
                 reversed,
             } => {
-                let no_offset = mechanism.angles[offset as usize].is_zero(mechanism);
+                let no_offset = mechanism.is_zero(&mechanism.angles[offset as usize]);
                 match (input, from) {
                     (Some(drive), BodyId::GROUND) if no_offset => {
                         for_each!(states, index, |state| {
@@ -107,7 +109,7 @@ impl Plan {
                             Some(drive) if no_offset => {
                                 driven(&state.inputs[drive.index()], reversed)
                             }
-                            _ => turn_by(design, state, offset, input, reversed),
+                            _ => state.turn_by(design, offset, input, reversed),
                         };
                         let direction = match from {
                             BodyId::GROUND => by,
@@ -118,7 +120,7 @@ impl Plan {
                 }
             }
             &Step::Pin { own, at } => {
-                let (pin, at) = (Known::new(design, own), Known::new(design, at));
+                let (pin, at) = (LocalMarker::new(design, own), LocalMarker::new(design, at));
                 for_each!(states, index, |state| {
                     let world = at.place(&state.poses);
                     let pose = &mut state.poses[own.body.index()];
@@ -127,7 +129,7 @@ impl Plan {
                 });
             }
             Step::Dyad(step) => {
-                let step = DyadOf::new(design, step);
+                let step = BoundDyad::new(design, step);
                 for_each!(states, index, |state| step.solve(state, sign));
             }
             _ if const { size_of::<T>() > IN_PLACE } => {
@@ -145,7 +147,7 @@ impl Plan {
         sign: f64,
         design: &Design<T>,
         branch: &Branch,
-        states: &mut [State<T>],
+        states: &mut [Configuration<T>],
     ) {
         self.run_rarer::<T, ALL>(index, sign, design, branch, states);
     }
@@ -158,7 +160,7 @@ impl Plan {
         sign: f64,
         design: &Design<T>,
         branch: &Branch,
-        states: &mut [State<T>],
+        states: &mut [Configuration<T>],
     ) {
         match &self.steps[index] {
             Step::Swing(step) => {
@@ -209,7 +211,7 @@ impl Plan {
 /// Leaves no pose standing.
 #[cold]
 #[inline(never)]
-fn lose<T: Number>(state: &mut State<T>) {
+fn lose<T: Number>(state: &mut Configuration<T>) {
     let nowhere = T::from_f64(f64::NAN);
     (state.poses.iter_mut()).for_each(|pose| (pose.x, pose.c) = (nowhere, nowhere));
 }
@@ -222,7 +224,7 @@ fn driven<T: Number>(input: &Input<T>, reversed: bool) -> [T; 2] {
 
 /// Turns a body into a direction; its determinant is one.
 #[cfg_attr(not(debug_assertions), inline(always))]
-fn point<T: Number>(state: &mut State<T>, body: BodyId, [c, s]: [T; 2]) -> T {
+fn point<T: Number>(state: &mut Configuration<T>, body: BodyId, [c, s]: [T; 2]) -> T {
     let pose = &mut state.poses[body.index()];
     (pose.c, pose.s) = (c, s);
     T::one()
@@ -233,7 +235,7 @@ fn point<T: Number>(state: &mut State<T>, body: BodyId, [c, s]: [T; 2]) -> T {
 fn roll<T: Number>(
     design: &Design<T>,
     branch: &Branch,
-    state: &mut State<T>,
+    state: &mut Configuration<T>,
     (own, at, constraint): (Marker, Marker, usize),
 ) -> T {
     let mechanism = &*design.mechanism;
@@ -254,7 +256,7 @@ fn roll<T: Number>(
 fn turn_gear<T: Number>(
     design: &Design<T>,
     branch: &Branch,
-    state: &mut State<T>,
+    state: &mut Configuration<T>,
     (body, constraint): (BodyId, usize),
 ) -> T {
     let mechanism = &*design.mechanism;
@@ -264,39 +266,4 @@ fn turn_gear<T: Number>(
         point(state, body, [c, s]);
     }
     T::one()
-}
-
-/// Origin and unit direction of a line in the frame.
-#[cfg_attr(not(debug_assertions), inline(always))]
-pub(crate) fn placed_line<T: Number>(
-    design: &Design<T>,
-    state: &State<T>,
-    line: LineRef,
-) -> ([T; 2], [T; 2]) {
-    let local = design.geometry.line(line);
-    if line.body == BodyId::GROUND {
-        return (local.origin, local.direction);
-    }
-    let pose = &state.poses[line.body.index()];
-    (pose.place(local.origin), pose.turn(local.direction))
-}
-
-/// The turn by an angle constant and a drive, as a unit vector.
-#[cfg_attr(not(debug_assertions), inline(always))]
-pub(crate) fn turn_by<T: Number>(
-    design: &Design<T>,
-    state: &State<T>,
-    offset: u32,
-    input: Option<DriveId>,
-    reversed: bool,
-) -> [T; 2] {
-    let mut by = design.geometry.angles[offset as usize];
-    if let Some(drive) = input {
-        let q = &state.inputs[drive.index()];
-        by = [by[0] * q.c - by[1] * q.s, by[1] * q.c + by[0] * q.s];
-    }
-    if reversed {
-        by[1] = -by[1];
-    }
-    by
 }

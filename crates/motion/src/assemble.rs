@@ -22,7 +22,7 @@ use std::borrow::Cow;
 
 use kempe_homotopy::PathReport;
 use kempe_mechanism::pose::Pose;
-use kempe_mechanism::state::{Branch, Design};
+use kempe_mechanism::{Branch, Design};
 
 use self::search::Search;
 use self::turns::counted_turns;

@@ -3,8 +3,8 @@
 //! The series on both sides are joined by the polynomial that agrees with all their coefficients (Hermite
 //! interpolation, divided differences with repeated points).
 
+use kempe_mechanism::Design;
 use kempe_mechanism::pose::Pose;
-use kempe_mechanism::state::Design;
 use kempe_number::Jet;
 
 use crate::events::Event;

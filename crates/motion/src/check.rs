@@ -2,8 +2,8 @@
 
 use kempe_mechanism::assur::{AssurGroup, assur_groups};
 use kempe_mechanism::mobility::{Mobility, mobility, state_at};
-use kempe_mechanism::state::{Branch, Design};
 use kempe_mechanism::structure::{BodyId, Source};
+use kempe_mechanism::{Branch, Design};
 
 use crate::assemble::Assemblies;
 use crate::drive_path::DrivePath;

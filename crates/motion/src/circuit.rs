@@ -11,7 +11,7 @@ pub(crate) use self::round::go_round;
 
 use std::sync::Arc;
 
-use kempe_mechanism::state::Design;
+use kempe_mechanism::Design;
 
 use crate::assemble::Assemblies;
 use crate::motion::{EndReason, Motion, MotionError, Unlocated, restricting_steps};

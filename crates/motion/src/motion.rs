@@ -25,9 +25,9 @@ pub use self::start::SIZES;
 
 use std::sync::Arc;
 
+use kempe_mechanism::Design;
 use kempe_mechanism::Mechanism;
 use kempe_mechanism::pose::Pose;
-use kempe_mechanism::state::Design;
 
 use self::branch::Patch;
 use crate::assemble::Assemblies;

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
+use kempe_mechanism::Design;
 use kempe_mechanism::Mechanism;
-use kempe_mechanism::state::Design;
 use kempe_model::{Drive, DriveKind, HintKind, Law, LawPiece, LinkId, Model};
 use kempe_units::{Dimension, Expr};
 

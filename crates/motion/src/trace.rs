@@ -15,10 +15,10 @@ pub(crate) use self::step::{WIGGLE, hides_limits};
 
 use self::restriction::StepRestriction;
 pub(crate) use self::restriction::apart;
+use kempe_mechanism::Design;
 use kempe_mechanism::bordered::Bordered;
 use kempe_mechanism::constraint::{Input, Situation};
 use kempe_mechanism::pose::Pose;
-use kempe_mechanism::state::Design;
 
 /// Part of a unit of travel that may be left over by the redundant constraints.
 const LOCKED: f64 = 1e-6;
@@ -165,7 +165,7 @@ impl<'a, P: Path> Follower<'a, P> {
             .zip(&self.design.mechanism.model.drives)
             .zip(&self.coordinates)
         {
-            *input = kempe_mechanism::state::input_of(drive, value);
+            *input = kempe_mechanism::configuration::input_of(drive, value);
         }
         let scale = self.path.scale();
         self.rates.iter_mut().for_each(|rate| *rate *= scale);

@@ -108,7 +108,8 @@ fn a_gear_in_a_loop_without_hints_is_assembled() {
     let case = Case::read(include_str!("models/gear-in-loop.toml"), "gear-in-loop");
     let motion = case.must_move();
     assert_eq!(motion.assemblies.list.len(), 4);
-    let mut state: kempe_mechanism::State<f64> = kempe_mechanism::State::new(&case.mechanism);
+    let mut state: kempe_mechanism::Configuration<f64> =
+        kempe_mechanism::Configuration::new(&case.mechanism);
     let start: Vec<f64> = (case.model.drives.iter())
         .map(|d| d.law.at(0.0, &case.parameters))
         .collect();

@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 
 use kempe_homotopy::WORK_LIMIT;
 use kempe_mechanism::mobility::mobility;
-use kempe_mechanism::{Branch, Pose, State};
+use kempe_mechanism::{Branch, Configuration, Pose};
 use kempe_motion::assemble::{Solutions, all_real_solutions};
 use support::Case;
 
@@ -22,7 +22,7 @@ fn two_triads() -> Case {
 fn solved(case: &Case, work: &mut f64, told: &mut dyn FnMut(f64) -> ControlFlow<()>) -> Solutions {
     let mechanism = &case.mechanism;
     let plan = &mechanism.plan;
-    let mut state: State<f64> = State::new(mechanism);
+    let mut state: Configuration<f64> = Configuration::new(mechanism);
     let start: Vec<f64> = (case.model.drives.iter())
         .map(|d| d.law.at(0.0, &case.parameters))
         .collect();
@@ -119,7 +119,7 @@ fn the_rank_of_a_large_mechanism_is_found() {
     let case = ladder(400);
     let mechanism = &case.mechanism;
     assert!(mechanism.bodies > 800);
-    let mut state: State<f64> = State::new(mechanism);
+    let mut state: Configuration<f64> = Configuration::new(mechanism);
     let mut rng = support::Rng(3);
     for (link, seat) in case.model.links.iter().zip(&mechanism.seats) {
         let angle = match link.name.as_str() {

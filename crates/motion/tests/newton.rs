@@ -6,7 +6,7 @@ mod support;
 use std::sync::Arc;
 
 use kempe_measure::Sampler;
-use kempe_mechanism::{Branch, Design, PlanNumber, State};
+use kempe_mechanism::{Branch, Configuration, Design, PlanNumber};
 use kempe_motion::Motion;
 use kempe_number::{Dual, Jet, Number};
 use support::Case;
@@ -22,7 +22,7 @@ fn solve<T: PlanNumber>(
     trees: bool,
     p: f64,
     seed: impl Fn(f64) -> T,
-) -> State<T> {
+) -> Configuration<T> {
     let mut mechanism = (*case.mechanism).clone();
     if !trees {
         for block in &mut mechanism.plan.newton_blocks {
@@ -36,14 +36,14 @@ fn solve<T: PlanNumber>(
     motion.branch_at(p, &mut branch);
     let mut coordinates = vec![T::zero(); case.model.drives.len()];
     motion.path.coordinates(seed(p), &mut coordinates);
-    let mut state = State::new(&case.mechanism);
+    let mut state = Configuration::new(&case.mechanism);
     state.set_inputs(&case.mechanism, &coordinates);
     design.solve(&branch, &mut state);
     state
 }
 
 /// All numbers of a state's poses, lengths in mechanism sizes.
-fn numbers<T: Number>(state: &State<T>, size: f64) -> Vec<T> {
+fn numbers<T: Number>(state: &Configuration<T>, size: f64) -> Vec<T> {
     (state.poses.iter())
         .flat_map(|pose| [pose.x / size, pose.y / size, pose.c, pose.s])
         .collect()

@@ -30,10 +30,10 @@ pub use self::found::{Cell, Certificate, CertifiedMotion, Gap};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
+use kempe_mechanism::Design;
 use kempe_mechanism::blocks::Row;
 use kempe_mechanism::geometry::Geometry;
 use kempe_mechanism::pose::Pose;
-use kempe_mechanism::state::Design;
 use kempe_mechanism::structure::BodyId;
 use kempe_motion::bridge::Side;
 use kempe_motion::motion::{Motion, Solver};

@@ -27,11 +27,11 @@ pub(crate) use self::block::enclose_block;
 pub(crate) use self::system::System;
 pub(crate) use self::tube::{Curve, Tube};
 
+use kempe_mechanism::Design;
 use kempe_mechanism::Mechanism;
 use kempe_mechanism::constraint::{Input, Situation};
 use kempe_mechanism::geometry::Geometry;
 use kempe_mechanism::pose::Pose;
-use kempe_mechanism::state::Design;
 use kempe_number::{Interval, Number};
 
 use self::contract::multiply;

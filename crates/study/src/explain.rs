@@ -2,7 +2,7 @@
 
 use kempe_mechanism::plan::{Condition, Dyad, Step, Swing};
 use kempe_mechanism::structure::Marker;
-use kempe_mechanism::{Branch, Design, Mechanism, State};
+use kempe_mechanism::{Branch, Configuration, Design, Mechanism};
 use kempe_model::{Diagnostic, Model};
 use kempe_motion::drive_path::DrivePath;
 use kempe_motion::{EndReason, Motion, MotionError, Stage};
@@ -155,7 +155,7 @@ fn gap(design: &Design<f64>, at: f64, step: usize) -> Gap {
     let size = design.size();
     let mut coordinates = vec![0.0; mechanism.model.drives.len()];
     DrivePath::new(&mechanism.model, &parameters, size).coordinates(at, &mut coordinates);
-    let mut state = State::new(mechanism);
+    let mut state = Configuration::new(mechanism);
     state.set_inputs(mechanism, &coordinates);
     let mut branch = Branch::neutral(mechanism);
     // Modes before the open step are free: those under which all points before it are placed are right enough.
@@ -207,7 +207,7 @@ fn gap(design: &Design<f64>, at: f64, step: usize) -> Gap {
 /// The distances that contradict each other, where the step is of a kind that has them.
 fn measured(
     design: &Design<f64>,
-    state: &State<f64>,
+    state: &Configuration<f64>,
     coordinates: &[f64],
     step: &Step,
 ) -> Option<Gap> {

@@ -14,9 +14,10 @@ use super::isotropic::Isotropic;
 use super::joint::{Gradient, InAngles, Joint, Pairs, Touch, Unit};
 use super::loads::LoadPoint;
 use super::situation::Situation;
-use crate::plan::Step;
+use crate::ids::BodyId;
+use crate::parts::Parts;
 use crate::pose::{cross, dot, left};
-use crate::structure::{BodyId, Structure};
+use crate::step::Step;
 
 /// `radius_a (angle_a - angle_arm) - radius_b (angle_b - angle_arm) = radius_a phase`; crossed: plus.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -77,8 +78,8 @@ impl Joint for Belt {
         self.wheels.pairs()
     }
 
-    fn links(&self, structure: &Structure) -> Vec<LinkId> {
-        self.wheels.links(structure)
+    fn links(&self, parts: &Parts) -> Vec<LinkId> {
+        self.wheels.links(parts)
     }
 
     #[inline]
@@ -112,8 +113,8 @@ impl Joint for Belt {
         true
     }
 
-    fn opened_by(&self, structure: &Structure) -> Vec<(LinkId, LinkId)> {
-        self.wheels.opened_by(structure)
+    fn opened_by(&self, parts: &Parts) -> Vec<(LinkId, LinkId)> {
+        self.wheels.opened_by(parts)
     }
 
     fn load_gradients<T: Number>(&self, at: &Situation<'_, T>, mut emit: impl FnMut(Gradient<T>)) {

@@ -7,8 +7,9 @@ use super::isotropic::{Isotropic, Vector};
 use super::joint::{Gradient, Joint, Pairs, Touch};
 use super::loads::{LoadPoint, Rubs, Sliding};
 use super::situation::Situation;
+use crate::ids::{BodyId, Marker};
+use crate::parts::Parts;
 use crate::pose::sub;
-use crate::structure::{BodyId, Marker, Structure};
 
 /// Two points coincide: two rows.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,8 +36,8 @@ impl Joint for Coincide {
         }
     }
 
-    fn links(&self, structure: &Structure) -> Vec<LinkId> {
-        vec![structure.link_of(self.b), structure.link_of(self.a)]
+    fn links(&self, parts: &Parts) -> Vec<LinkId> {
+        vec![parts.link_of(self.b), parts.link_of(self.a)]
     }
 
     #[inline]

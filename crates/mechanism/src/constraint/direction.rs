@@ -7,9 +7,10 @@ use super::isotropic::{Isotropic, Vector};
 use super::joint::{Gradient, InAngles, Joint, Pairs, Touch, Unit};
 use super::loads::LoadPoint;
 use super::situation::Situation;
-use crate::plan::Step;
+use crate::ids::BodyId;
+use crate::parts::Parts;
 use crate::pose::{cross, dot};
-use crate::structure::{BodyId, Structure};
+use crate::step::Step;
 
 /// `angle(a) - angle(b) = offset (+ the drive's coordinate)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -70,8 +71,8 @@ impl Joint for Direction {
         }
     }
 
-    fn links(&self, structure: &Structure) -> Vec<LinkId> {
-        let source = &structure.angles[self.offset as usize];
+    fn links(&self, parts: &Parts) -> Vec<LinkId> {
+        let source = &parts.angles[self.offset as usize];
         vec![source.a, source.b]
     }
 

@@ -7,9 +7,10 @@ use super::isotropic::{Isotropic, Vector};
 use super::joint::{Gradient, Joint, Pairs, Touch};
 use super::loads::LoadPoint;
 use super::situation::Situation;
-use crate::plan::Condition;
+use crate::ids::{BodyId, Marker};
+use crate::parts::Parts;
 use crate::pose::{cross, dot, sub};
-use crate::structure::{BodyId, Marker, Structure};
+use crate::step::Condition;
 
 /// The distance of two points is the drive's coordinate.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,8 +41,8 @@ impl Joint for Distance {
         }
     }
 
-    fn links(&self, structure: &Structure) -> Vec<LinkId> {
-        vec![structure.link_of(self.b), structure.link_of(self.a)]
+    fn links(&self, parts: &Parts) -> Vec<LinkId> {
+        vec![parts.link_of(self.b), parts.link_of(self.a)]
     }
 
     #[inline]

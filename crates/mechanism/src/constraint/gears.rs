@@ -12,9 +12,10 @@ use super::isotropic::Isotropic;
 use super::joint::{Gradient, InAngles, Joint, Pairs, Touch, Unit};
 use super::loads::LoadPoint;
 use super::situation::Situation;
-use crate::plan::Step;
+use crate::ids::{BodyId, Marker};
+use crate::parts::Parts;
 use crate::pose::{cross, dot, left, sub};
-use crate::structure::{BodyId, Marker, Structure};
+use crate::step::Step;
 
 /// `ratio_a (angle_a - angle_arm) + ratio_b (angle_b - angle_arm) = phase`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,8 +63,8 @@ impl Joint for Gears {
         Pairs::HIGHER
     }
 
-    fn links(&self, structure: &Structure) -> Vec<LinkId> {
-        structure.gears[self.constants as usize].links.to_vec()
+    fn links(&self, parts: &Parts) -> Vec<LinkId> {
+        parts.gears[self.constants as usize].links.to_vec()
     }
 
     #[inline]
@@ -122,8 +123,8 @@ impl Joint for Gears {
         true
     }
 
-    fn opened_by(&self, structure: &Structure) -> Vec<(LinkId, LinkId)> {
-        let [a, b, arm] = structure.gears[self.constants as usize].links;
+    fn opened_by(&self, parts: &Parts) -> Vec<(LinkId, LinkId)> {
+        let [a, b, arm] = parts.gears[self.constants as usize].links;
         vec![(a, arm), (b, arm)]
     }
 

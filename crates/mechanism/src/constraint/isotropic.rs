@@ -5,7 +5,7 @@
 //! Bezout numbers).
 
 use super::situation::Situation;
-use crate::structure::{BodyId, LineRef, Marker};
+use crate::ids::{BodyId, LineRef, Marker};
 
 /// A vector of the plane, by what it hangs on.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -6,8 +6,9 @@ use kempe_number::Number;
 use super::isotropic::Isotropic;
 use super::loads::{LoadPoint, Rubs, Sliding};
 use super::situation::Situation;
-use crate::plan::{Condition, Step};
-use crate::structure::{BodyId, Marker, Structure};
+use crate::ids::{BodyId, Marker};
+use crate::parts::Parts;
+use crate::step::{Condition, Step};
 
 /// Everything that a kind of constraint says of itself. Whoever needs it asks through
 /// [`Constraint`](super::Constraint) and never looks at the kind.
@@ -37,7 +38,7 @@ pub trait Joint {
     fn pairs(&self) -> Pairs;
 
     /// The links that it acts on, one for each of its bodies, the link that feels its load first.
-    fn links(&self, structure: &Structure) -> Vec<LinkId>;
+    fn links(&self, parts: &Parts) -> Vec<LinkId>;
 
     /// The residual rows; only the first [`Joint::rows`] count.
     fn residual<T: Number>(&self, at: &Situation<'_, T>) -> [T; 2];
@@ -91,7 +92,7 @@ pub trait Joint {
 
     /// Pairs of links, the first turning against the second, by whose angle a loop that this constraint closes can be
     /// swept through with the constraint left out; none where the loop is solved otherwise.
-    fn opened_by(&self, _: &Structure) -> Vec<(LinkId, LinkId)> {
+    fn opened_by(&self, _: &Parts) -> Vec<(LinkId, LinkId)> {
         Vec::new()
     }
 

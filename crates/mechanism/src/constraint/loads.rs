@@ -1,6 +1,6 @@
 //! Where joints carry their loads and where they rub, as data for whoever computes forces.
 
-use crate::structure::{BodyId, Marker};
+use crate::ids::{BodyId, Marker};
 
 /// Where a joint's load on a body is counted.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -11,9 +11,10 @@ use super::isotropic::{Isotropic, Vector};
 use super::joint::{Gradient, Joint, Pairs, Touch};
 use super::loads::{LoadPoint, Rubs, Sliding};
 use super::situation::Situation;
-use crate::plan::Condition;
+use crate::ids::{ArcRef, BodyId, Marker};
+use crate::parts::Parts;
 use crate::pose::{cross, dot, left, sub};
-use crate::structure::{ArcRef, BodyId, Marker, Structure};
+use crate::step::Condition;
 
 /// A point lies on the circle of an arc.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,9 +49,9 @@ impl Joint for OnArc {
         Pairs::HIGHER
     }
 
-    fn links(&self, structure: &Structure) -> Vec<LinkId> {
-        let arc = &structure.arcs[self.arc.index as usize];
-        vec![structure.link_of(self.point), structure.link_of(arc.from)]
+    fn links(&self, parts: &Parts) -> Vec<LinkId> {
+        let arc = &parts.arcs[self.arc.index as usize];
+        vec![parts.link_of(self.point), parts.link_of(arc.from)]
     }
 
     #[inline]

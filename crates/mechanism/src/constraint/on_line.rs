@@ -7,9 +7,10 @@ use super::isotropic::{Isotropic, Vector};
 use super::joint::{Gradient, Joint, Pairs, Touch};
 use super::loads::{LoadPoint, Rubs, Sliding};
 use super::situation::Situation;
-use crate::plan::Condition;
+use crate::ids::{BodyId, LineRef, Marker};
+use crate::parts::Parts;
 use crate::pose::{cross, dot, sub};
-use crate::structure::{BodyId, LineRef, Marker, Structure};
+use crate::step::Condition;
 
 /// A point lies on a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,11 +34,8 @@ impl Joint for OnLine {
         Pairs::HIGHER
     }
 
-    fn links(&self, structure: &Structure) -> Vec<LinkId> {
-        vec![
-            structure.link_of(self.point),
-            structure.link_of_line(self.line),
-        ]
+    fn links(&self, parts: &Parts) -> Vec<LinkId> {
+        vec![parts.link_of(self.point), parts.link_of_line(self.line)]
     }
 
     #[inline]

@@ -8,8 +8,9 @@ use super::joint::{Gradient, Joint, Pairs, Touch};
 use super::loads::LoadPoint;
 use super::situation::Situation;
 use super::travel::{travel_gradients, travelled};
-use crate::plan::{Condition, Step};
-use crate::structure::{BodyId, LineRef, Marker, Structure};
+use crate::ids::{BodyId, LineRef, Marker};
+use crate::parts::Parts;
+use crate::step::{Condition, Step};
 
 /// `s + radius (angle_pinion - angle_rack) = offset`, `s` along the rack's line.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,11 +36,8 @@ impl Joint for Rack {
         Pairs::HIGHER
     }
 
-    fn links(&self, structure: &Structure) -> Vec<LinkId> {
-        vec![
-            structure.link_of(self.center),
-            structure.link_of_line(self.line),
-        ]
+    fn links(&self, parts: &Parts) -> Vec<LinkId> {
+        vec![parts.link_of(self.center), parts.link_of_line(self.line)]
     }
 
     #[inline]
@@ -101,8 +99,8 @@ impl Joint for Rack {
         true
     }
 
-    fn opened_by(&self, structure: &Structure) -> Vec<(LinkId, LinkId)> {
-        let [rack, pinion, _] = structure.gears[self.constants as usize].links;
+    fn opened_by(&self, parts: &Parts) -> Vec<(LinkId, LinkId)> {
+        let [rack, pinion, _] = parts.gears[self.constants as usize].links;
         vec![(pinion, rack)]
     }
 

@@ -3,8 +3,8 @@
 use kempe_number::Number;
 
 use crate::geometry::Geometry;
+use crate::ids::{BodyId, LineRef, Marker};
 use crate::pose::Pose;
-use crate::structure::{BodyId, LineRef, Marker};
 
 /// A drive's coordinate, with the unit vector of that angle for drives that turn.
 #[derive(Clone, Copy, Debug)]

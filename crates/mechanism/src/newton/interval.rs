@@ -4,8 +4,10 @@ use kempe_number::Interval;
 
 use super::PlanNumber;
 use crate::blocks::Unknown;
+use crate::branch::Branch;
+use crate::configuration::Configuration;
+use crate::design::Design;
 use crate::plan::NewtonBlock;
-use crate::state::{Branch, Design, State};
 
 impl PlanNumber for Interval {
     /// Iterations prove nothing: the block's poses and its determinant become empty. Whoever runs a plan on intervals
@@ -14,7 +16,7 @@ impl PlanNumber for Interval {
         block: &NewtonBlock,
         _: &Design<Self>,
         _: &Branch,
-        state: &mut State<Self>,
+        state: &mut Configuration<Self>,
     ) -> Self {
         for unknown in &block.unknowns {
             let pose = &mut state.poses[unknown.body().index()];

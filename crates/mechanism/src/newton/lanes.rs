@@ -5,8 +5,10 @@ use kempe_number::{Jet, Lanes, Number};
 use super::iterate::Iteration;
 use super::{Plain, SpanningTree, plain_part, sharpen};
 use crate::blocks::Unknown;
+use crate::branch::Branch;
+use crate::configuration::Configuration;
+use crate::design::Design;
 use crate::plan::NewtonBlock;
-use crate::state::{Branch, Design, State};
 
 /// A number whose parts are lanes, so that one lane can be looked at alone.
 pub(super) trait Laned<const W: usize>: Number {
@@ -59,7 +61,7 @@ pub(super) fn lanes_together<const W: usize>(
     block: &NewtonBlock,
     design: &Design<Lanes<W>>,
     branch: &Branch,
-    state: &mut State<Lanes<W>>,
+    state: &mut Configuration<Lanes<W>>,
 ) -> Lanes<W> {
     let mechanism = &*design.mechanism;
     let scratch = &mut state.scratch;
@@ -88,7 +90,7 @@ fn solve_lost<const W: usize>(
     block: &NewtonBlock,
     design: &Design<Lanes<W>>,
     branch: &Branch,
-    state: &mut State<Lanes<W>>,
+    state: &mut Configuration<Lanes<W>>,
     (mut determinant, lost): (Lanes<W>, Lanes<W>),
 ) -> Lanes<W> {
     for lane in (0..W).filter(|lane| lost.0[*lane] > 0.0) {
@@ -103,7 +105,7 @@ pub(super) fn lane_by_lane<T: Laned<W>, const W: usize>(
     block: &NewtonBlock,
     design: &Design<T>,
     branch: &Branch,
-    state: &mut State<T>,
+    state: &mut Configuration<T>,
     passes: usize,
 ) -> T {
     let mut determinant = T::from_f64(f64::NAN);
@@ -119,7 +121,7 @@ fn solve_lane<T: Laned<W>, const W: usize>(
     block: &NewtonBlock,
     design: &Design<T>,
     branch: &Branch,
-    state: &mut State<T>,
+    state: &mut Configuration<T>,
     lane: usize,
     passes: usize,
 ) -> f64 {

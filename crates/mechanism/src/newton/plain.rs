@@ -3,12 +3,12 @@
 use super::rows::{apply_step, factor_block, fill_residuals};
 use crate::Mechanism;
 use crate::blocks::Unknown;
+use crate::branch::Branch;
 use crate::constraint::{Input, Situation};
 use crate::geometry::Geometry;
 use crate::plan::NewtonBlock;
 use crate::pose::Pose;
 use crate::qr::Qr;
-use crate::state::Branch;
 
 /// A scaled step below this is taken as converged (one more step is made after it).
 pub const NEWTON_STEP: f64 = 1e-9;

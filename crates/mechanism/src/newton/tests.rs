@@ -76,7 +76,7 @@ impl Case {
             })
             .collect();
         let inputs = (checked.model.drives.iter())
-            .map(|drive| crate::state::input_of(drive, 0.6 * size))
+            .map(|drive| crate::configuration::input_of(drive, 0.6 * size))
             .collect();
         Self {
             mechanism,

@@ -12,7 +12,8 @@
 
 use crate::blocks::{Block, Unknown, by_constraint};
 use crate::constraint::{Coincide, Constraint};
-use crate::structure::{BodyId, Marker, Structure};
+use crate::ids::{BodyId, Marker};
+use crate::structure::Structure;
 
 /// A spanning tree of a block's pins, with the rows that it leaves.
 #[derive(Clone, Debug)]

@@ -1,17 +1,12 @@
 //! From a model's joints and drives to constraints.
 
-use kempe_model::{
-    CircularArc, DriveId, DriveKind, JointId, JointKind, Line, LinkId, LinkPointRef, PointId,
-    Scalar,
-};
+use kempe_model::{DriveId, DriveKind, JointId, JointKind, LinkId, LinkPointRef, PointId, Scalar};
 use kempe_units::Expr;
 
-use super::sources::ZERO;
-use super::{
-    AngleSource, ArcRef, ArcSource, BodyId, GearSource, LineRef, LineSource, Marker, Source,
-    Structure,
-};
+use super::{Source, Structure};
 use crate::constraint::{Belt, Coincide, Direction, Distance, Gears, OnArc, OnLine, Rack, Travel};
+use crate::ids::{BodyId, LineRef};
+use crate::sources::{AngleSource, GearSource, LineSource, ZERO};
 
 impl Structure {
     /// Pins made by shared point names.
@@ -182,23 +177,6 @@ impl Structure {
         }
     }
 
-    fn line(&mut self, line: Line) -> Option<LineRef> {
-        let from = self.marker(LinkPointRef {
-            link: line.link,
-            point: line.from,
-        })?;
-        let to = self.marker(LinkPointRef {
-            link: line.link,
-            point: line.to,
-        })?;
-        let index = self.lines.len() as u32;
-        self.lines.push(LineSource::Points(from, to));
-        Some(LineRef {
-            body: from.body,
-            index,
-        })
-    }
-
     /// Two wheels on an arm whose angles there are tied: `first angle_a + second angle_b = first phase`.
     fn wheels(
         &mut self,
@@ -222,49 +200,6 @@ impl Structure {
             constants,
             pins: pins.map(|(a, b)| [a, b]),
         }
-    }
-
-    /// The marker on `body` of a point that pins it to `other`.
-    fn pin(&self, body: BodyId, other: BodyId) -> Option<Marker> {
-        self.markers.iter().find_map(|at| {
-            if self.body_of(at.link) != body {
-                return None;
-            }
-            let shared = self.model.points.get(at.point.index())?;
-            (shared.links.iter())
-                .any(|link| self.body_of(*link) == other)
-                .then(|| self.marker(*at))?
-        })
-    }
-
-    fn arc(&mut self, arc: CircularArc) -> Option<ArcRef> {
-        let point = |point| {
-            self.marker(LinkPointRef {
-                link: arc.link,
-                point,
-            })
-        };
-        let (from, to) = (point(arc.from)?, point(arc.to)?);
-        self.arcs.push(ArcSource {
-            from,
-            to,
-            radius: arc.radius,
-            side: arc.side.sign(),
-        });
-        Some(ArcRef {
-            body: from.body,
-            index: self.arcs.len() as u32 - 1,
-        })
-    }
-
-    fn angle(&mut self, angle: AngleSource) -> u32 {
-        self.angles.push(angle);
-        self.angles.len() as u32 - 1
-    }
-
-    fn gear(&mut self, gear: GearSource) -> u32 {
-        self.gears.push(gear);
-        self.gears.len() as u32 - 1
     }
 }
 

@@ -7,8 +7,8 @@ use kempe_mechanism::blocks::Unknown;
 use kempe_mechanism::constraint::Joint;
 use kempe_mechanism::plan::NewtonBlock;
 use kempe_mechanism::pose::Pose;
-use kempe_mechanism::state::{Branch, State};
 use kempe_mechanism::structure::Constraint;
+use kempe_mechanism::{Branch, Configuration};
 use kempe_number::math;
 
 use super::Shortfall;
@@ -34,7 +34,7 @@ impl Search<'_> {
         &mut self,
         step: usize,
         block: usize,
-        state: State<f64>,
+        state: Configuration<f64>,
         mut branch: Branch,
         wanted: bool,
     ) {
@@ -51,7 +51,7 @@ impl Search<'_> {
             self.stopped = true;
             return;
         };
-        let mut found: Vec<(State<f64>, Branch)> = Vec::new();
+        let mut found: Vec<(Configuration<f64>, Branch)> = Vec::new();
         for candidate in candidates {
             let (mut state, mut branch) = (state.clone(), branch.clone());
             branch.guess.clone_from(&candidate);
@@ -71,7 +71,7 @@ impl Search<'_> {
             }
         }
         // In a fixed order: by the angles of the block's bodies.
-        let angles = |(state, _): &(State<f64>, Branch)| -> Vec<f64> {
+        let angles = |(state, _): &(Configuration<f64>, Branch)| -> Vec<f64> {
             let poses = block
                 .unknowns
                 .iter()
@@ -94,7 +94,7 @@ impl Search<'_> {
         &mut self,
         block: &NewtonBlock,
         step: usize,
-        state: &State<f64>,
+        state: &Configuration<f64>,
         branch: &Branch,
     ) -> Option<Vec<Vec<Pose<f64>>>> {
         let situation = state.situation(self.design, branch);
@@ -138,7 +138,7 @@ impl Search<'_> {
         &mut self,
         block: &NewtonBlock,
         step: usize,
-        state: &State<f64>,
+        state: &Configuration<f64>,
     ) -> Option<Vec<Vec<Pose<f64>>>> {
         let mut gears = (block.rows.iter().map(|row| row.constraint))
             .filter(|index| self.mechanism.constraints[*index].0.counts_turns());
@@ -177,7 +177,7 @@ impl Search<'_> {
     }
 
     /// Whether the block's rows hold.
-    fn closes(&self, block: &NewtonBlock, state: &State<f64>, branch: &Branch) -> bool {
+    fn closes(&self, block: &NewtonBlock, state: &Configuration<f64>, branch: &Branch) -> bool {
         let situation = state.situation(self.design, branch);
         let enough = (ROW_CLOSED * self.size.max(f64::MIN_POSITIVE)).max(ROW_CLOSED_ANYWAY);
         block.rows.iter().all(|row| {
@@ -188,7 +188,12 @@ impl Search<'_> {
     }
 
     /// Whether the wheels of the block's gears and racks stand within half a turn of the angles they are counted from.
-    fn counts_from(&self, block: &NewtonBlock, state: &State<f64>, branch: &Branch) -> bool {
+    fn counts_from(
+        &self,
+        block: &NewtonBlock,
+        state: &Configuration<f64>,
+        branch: &Branch,
+    ) -> bool {
         let constraints = block
             .rows
             .iter()

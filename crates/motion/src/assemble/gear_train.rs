@@ -5,14 +5,14 @@ use kempe_mechanism::constraint::{InAngles, Joint, Situation};
 use kempe_mechanism::plan::NewtonBlock;
 use kempe_mechanism::pose::Pose;
 use kempe_mechanism::qr::Qr;
-use kempe_mechanism::state::{Branch, Design, State};
 use kempe_mechanism::structure::BodyId;
+use kempe_mechanism::{Branch, Configuration, Design};
 
 /// Angles of a block of gears and angle drives alone: linear equations, one solution.
 pub(super) fn gear_train(
     design: &Design<f64>,
     block: &NewtonBlock,
-    state: &State<f64>,
+    state: &Configuration<f64>,
     branch: &mut Branch,
 ) -> Option<Vec<Pose<f64>>> {
     let mechanism = &*design.mechanism;

@@ -1,9 +1,9 @@
 //! What a file says about the assembly that is meant: on which side points lie, and near what they are.
 
+use kempe_mechanism::Design;
 use kempe_mechanism::Mechanism;
 use kempe_mechanism::geometry::Geometry;
 use kempe_mechanism::pose::{Pose, cross, sub};
-use kempe_mechanism::state::Design;
 use kempe_mechanism::structure::{BodyId, Marker};
 use kempe_model::{HintKind, LinkPointRef, PointId, Scalar};
 use kempe_number::math;

@@ -9,11 +9,11 @@
 
 use std::ops::ControlFlow;
 
+use kempe_mechanism::Design;
 use kempe_mechanism::blocks::{Block, Unknown};
 use kempe_mechanism::constraint::{Joint, Situation};
 use kempe_mechanism::plan::Plan;
 use kempe_mechanism::pose::Pose;
-use kempe_mechanism::state::Design;
 use kempe_mechanism::structure::Source;
 use kempe_mechanism::{Mechanism, Structure};
 use kempe_model::{Drive, DriveKind, Law};

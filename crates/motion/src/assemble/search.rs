@@ -9,7 +9,7 @@ use kempe_mechanism::constraint::Joint;
 use kempe_mechanism::evidence::{closure, is_finite};
 use kempe_mechanism::plan::{Plan, Step};
 use kempe_mechanism::pose::Pose;
-use kempe_mechanism::state::{Branch, Design, State};
+use kempe_mechanism::{Branch, Configuration, Design};
 use kempe_model::LinkId;
 
 use super::hints::Hints;
@@ -76,7 +76,7 @@ impl<'a> Search<'a> {
 
     /// Finds all assemblies, the one meant first; `None` when stopped.
     pub fn run(mut self) -> Option<Assemblies> {
-        let mut state = State::new(self.mechanism);
+        let mut state = Configuration::new(self.mechanism);
         state.set_inputs(self.mechanism, self.coordinates);
         let branch = Branch::neutral(self.mechanism);
         self.descend(0, state, branch, true);
@@ -102,7 +102,7 @@ impl<'a> Search<'a> {
     pub(super) fn descend(
         &mut self,
         mut step: usize,
-        mut state: State<f64>,
+        mut state: Configuration<f64>,
         mut branch: Branch,
         mut wanted: bool,
     ) {
@@ -154,7 +154,13 @@ impl<'a> Search<'a> {
         }
     }
 
-    fn descend_modes(&mut self, step: usize, state: State<f64>, branch: Branch, wanted: bool) {
+    fn descend_modes(
+        &mut self,
+        step: usize,
+        state: Configuration<f64>,
+        branch: Branch,
+        wanted: bool,
+    ) {
         let mut first: Option<Vec<Pose<f64>>> = None;
         for sign in [1.0, -1.0] {
             let (mut state, mut branch) = (state.clone(), branch.clone());
@@ -183,7 +189,7 @@ impl<'a> Search<'a> {
         &mut self,
         step: usize,
         sign: f64,
-        state: &mut State<f64>,
+        state: &mut Configuration<f64>,
         branch: &mut Branch,
     ) -> bool {
         self.plan.solve_step(step, sign, self.design, branch, state);
@@ -206,7 +212,7 @@ impl<'a> Search<'a> {
     }
 
     /// Sets the angles that count turns: those of driven bodies and of wheels.
-    fn count_turns(&self, step: usize, state: &State<f64>, branch: &mut Branch) {
+    fn count_turns(&self, step: usize, state: &Configuration<f64>, branch: &mut Branch) {
         let (body, constraint) = match self.plan.steps[step] {
             Step::Turn {
                 body,

@@ -5,10 +5,10 @@
 
 use std::f64::consts::{PI, TAU};
 
+use kempe_mechanism::Design;
 use kempe_mechanism::Mechanism;
 use kempe_mechanism::constraint::Joint;
 use kempe_mechanism::plan::Step;
-use kempe_mechanism::state::Design;
 use kempe_mechanism::structure::BodyId;
 use kempe_model::{DriveKind, HintKind};
 

@@ -1,6 +1,6 @@
 //! From solved states to columns of numbers.
 
-use kempe_mechanism::state::{Design, State};
+use kempe_mechanism::{Configuration, Design};
 use kempe_number::{Lanes, Number};
 
 use crate::batch::wide::Wide;
@@ -22,7 +22,7 @@ pub(super) struct Target {
 pub(super) fn write_places<T: Wide<W>, const W: usize>(
     batch: &Batch,
     design: &Design<T>,
-    states: &[State<T>],
+    states: &[Configuration<T>],
     targets: &[Target],
     columns: &mut [&mut [f64]],
 ) -> usize {
@@ -59,7 +59,7 @@ pub(super) fn write_places<T: Wide<W>, const W: usize>(
 fn write_wanted<T: Wide<W>, const W: usize>(
     batch: &Batch,
     design: &Design<T>,
-    states: &[State<T>],
+    states: &[Configuration<T>],
     targets: &[Target],
     columns: &mut [&mut [f64]],
 ) -> usize {
@@ -93,7 +93,7 @@ fn write_wanted<T: Wide<W>, const W: usize>(
 
 /// Finite in every lane in which the bodies that somebody looks at have a pose.
 #[cfg_attr(not(debug_assertions), inline(always))]
-fn closing_wanted<T: Wide<W>, const W: usize>(batch: &Batch, state: &State<T>) -> Lanes<W> {
+fn closing_wanted<T: Wide<W>, const W: usize>(batch: &Batch, state: &Configuration<T>) -> Lanes<W> {
     let mut sum = Lanes([0.0; W]);
     for body in &batch.order.wanted {
         let pose = &state.poses[*body];
@@ -169,7 +169,7 @@ pub(super) fn check_length(
 
 /// Whether every body has a pose.
 #[cfg_attr(not(debug_assertions), inline(always))]
-pub(super) fn closes<T: Number>(state: &State<T>) -> bool {
+pub(super) fn closes<T: Number>(state: &Configuration<T>) -> bool {
     let mut sum = 0.0;
     for pose in &state.poses[1..] {
         sum += pose.x.value() + pose.c.value();

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use kempe_mechanism::constraint::Input;
-use kempe_mechanism::state::{Branch, State, input_of};
+use kempe_mechanism::{Branch, Configuration, configuration::input_of};
 use kempe_number::{InstructionSet, Lanes, Number, multiversion};
 
 use crate::batch::Batch;
@@ -173,7 +173,7 @@ fn in_lanes<const W: usize, const ALL: bool>(
 ) -> usize {
     let (mechanism, order) = (batch.motion.mechanism(), &batch.order);
     let plan = &order.plan;
-    let mut states = vec![State::<Lanes<W>>::new(mechanism).without_determinants(); STATES];
+    let mut states = vec![Configuration::<Lanes<W>>::new(mechanism).without_determinants(); STATES];
     let design = &batch.motion.design.lift::<Lanes<W>>();
     order.solve_once(&order.fixed, design, &mut states);
     let together = PREPARED.min(range.len()).div_ceil(W);

@@ -3,8 +3,8 @@
 use kempe_mechanism::Mechanism;
 use kempe_mechanism::newton::PlanNumber;
 use kempe_mechanism::plan::{Plan, Step};
-use kempe_mechanism::state::{Branch, Design, State};
 use kempe_mechanism::structure::{BodyId, Marker, Spot};
+use kempe_mechanism::{Branch, Configuration, Design};
 use kempe_model::{Place, Scalar};
 
 /// A plan whose branch is signs alone, in the order in which a batch runs it.
@@ -49,7 +49,7 @@ impl Order {
                 }
                 Step::Turn { from, offset, .. }
                     if from == BodyId::GROUND
-                        && mechanism.angles[offset as usize].is_zero(mechanism) =>
+                        && mechanism.is_zero(&mechanism.angles[offset as usize]) =>
                 {
                     &mut it.driven
                 }
@@ -68,7 +68,7 @@ impl Order {
         &self,
         steps: &[usize],
         design: &Design<T>,
-        states: &mut [State<T>],
+        states: &mut [Configuration<T>],
     ) {
         let steps = steps.iter().copied();
         (self.plan).solve_all::<T, false>(steps, design, &self.neutral, states);

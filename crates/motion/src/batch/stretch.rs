@@ -1,6 +1,6 @@
 //! Where on a motion which assembly modes hold.
 
-use kempe_mechanism::state::Branch;
+use kempe_mechanism::Branch;
 
 use crate::batch::columns::lanes_where;
 use crate::motion::Motion;

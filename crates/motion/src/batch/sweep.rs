@@ -3,7 +3,7 @@
 use kempe_mechanism::Mechanism;
 use kempe_mechanism::newton::PlanNumber;
 use kempe_mechanism::plan::Step;
-use kempe_mechanism::state::{Branch, Design, State, input_of};
+use kempe_mechanism::{Branch, Configuration, Design, configuration::input_of};
 use kempe_number::{InstructionSet, Jet, Lanes, Number, multiversion};
 
 use crate::batch::Batch;
@@ -145,17 +145,17 @@ pub(super) fn sweep_one_by_one<T: Single>(
 
 /// States with all drives where they are at the start of the motion.
 #[inline(never)]
-fn held_states<T: Number>(motion: &Motion, count: usize) -> Vec<State<T>> {
+fn held_states<T: Number>(motion: &Motion, count: usize) -> Vec<Configuration<T>> {
     let mut coordinates = vec![T::zero(); motion.mechanism().model.drives.len()];
     (motion.path).coordinates(T::from_f64(motion.start), &mut coordinates);
-    let mut state = State::new(motion.mechanism()).without_determinants();
+    let mut state = Configuration::new(motion.mechanism()).without_determinants();
     state.set_inputs(motion.mechanism(), &coordinates);
     vec![state; count]
 }
 
 /// Sets the moving drive.
 #[cfg_attr(not(debug_assertions), inline(always))]
-fn set_moving<T: Number>(mechanism: &Mechanism, drive: usize, p: T, state: &mut State<T>) {
+fn set_moving<T: Number>(mechanism: &Mechanism, drive: usize, p: T, state: &mut Configuration<T>) {
     if let (Some(input), Some(drive)) = (
         state.inputs.get_mut(drive),
         mechanism.model.drives.get(drive),
@@ -171,7 +171,7 @@ fn set_at_times<T: Wide<W>, const W: usize>(
     path: &DrivePath,
     mechanism: &Mechanism,
     times: &[f64; W],
-    state: &mut State<T>,
+    state: &mut Configuration<T>,
 ) {
     let drives = state.inputs.len();
     let mut values = vec![T::zero(); drives];
@@ -201,7 +201,7 @@ pub fn sweep_states<T: PlanNumber>(
     design: &Design<T>,
     parameters: &[f64],
     seed: impl Fn(f64) -> T,
-    mut each: impl FnMut(usize, Option<&State<T>>),
+    mut each: impl FnMut(usize, Option<&Configuration<T>>),
 ) {
     let mechanism = motion.mechanism();
     let plan = &mechanism.plan;

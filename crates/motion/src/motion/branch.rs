@@ -1,7 +1,7 @@
 //! The branch of a motion anywhere on it: assembly modes, guesses and turn counts from the trace.
 
+use kempe_mechanism::Branch;
 use kempe_mechanism::pose::Pose;
-use kempe_mechanism::state::Branch;
 
 use super::Motion;
 use crate::trace::{Cubic, interval};

@@ -1,7 +1,7 @@
 //! Where the assembly modes of a motion change, and what it meets there.
 
 use kempe_mechanism::plan::Step;
-use kempe_mechanism::state::{Branch, State};
+use kempe_mechanism::{Branch, Configuration};
 
 use super::Motion;
 use super::branch::Patch;
@@ -178,7 +178,7 @@ impl Motion {
     /// The determinant of every step at a node, with the sign of its assembly mode.
     fn determinants(&self, follower: &mut Follower<'_, DrivePath>, node: &Node) -> Vec<f64> {
         let mut branch = Branch::neutral(self.mechanism());
-        let mut state: State<f64> = State::new(self.mechanism());
+        let mut state: Configuration<f64> = Configuration::new(self.mechanism());
         follower.unscaled(&node.z, &mut state.poses, &mut branch.near);
         branch.guess.clone_from(&state.poses);
         let mut coordinates = vec![0.0; self.mechanism().model.drives.len()];

@@ -1,7 +1,7 @@
 //! Poses anywhere on a motion: every row is solved by itself.
 
 use kempe_mechanism::newton::PlanNumber;
-use kempe_mechanism::state::{Branch, Design, State};
+use kempe_mechanism::{Branch, Configuration, Design};
 use kempe_number::Number;
 
 use super::Motion;
@@ -12,7 +12,7 @@ pub struct Solver<T> {
     /// The branch last used.
     pub branch: Branch,
     /// The state last solved.
-    pub state: State<T>,
+    pub state: Configuration<T>,
     /// Drive coordinates last used.
     pub coordinates: Vec<T>,
 }
@@ -44,7 +44,7 @@ impl Motion {
     pub fn solver<T: PlanNumber>(&self) -> Solver<T> {
         Solver {
             branch: Branch::neutral(self.mechanism()),
-            state: State::new(self.mechanism()),
+            state: Configuration::new(self.mechanism()),
             coordinates: vec![T::zero(); self.mechanism().model.drives.len()],
         }
     }

@@ -1,6 +1,6 @@
 //! Where a motion starts, and how it is followed from there to both ends of its range.
 
-use kempe_mechanism::state::{Branch, Design};
+use kempe_mechanism::{Branch, Design};
 
 use super::follow::follow_both;
 use super::restriction::{Unlocated, restricting_steps};

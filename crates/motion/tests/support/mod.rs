@@ -12,7 +12,7 @@ use std::fmt::Write as _;
 use std::sync::Arc;
 
 use kempe_measure::Sample;
-use kempe_mechanism::{Design, Mechanism, Pose, State};
+use kempe_mechanism::{Configuration, Design, Mechanism, Pose};
 use kempe_model::Model;
 use kempe_motion::{Motion, MotionError};
 
@@ -744,7 +744,7 @@ impl Case {
 
     /// Smallest singular value of the scaled constraint Jacobian at given link poses.
     pub fn sigma(&self, poses: &[[f64; 3]], coordinates: &[f64]) -> f64 {
-        let mut state: State<f64> = State::new(&self.mechanism);
+        let mut state: Configuration<f64> = Configuration::new(&self.mechanism);
         let mut branch = kempe_mechanism::Branch::neutral(&self.mechanism);
         state.set_inputs(&self.mechanism, coordinates);
         for (index, pose) in poses.iter().enumerate().skip(1) {

@@ -1,8 +1,8 @@
 //! One stretch of a motion, proved, and its tie to the one before.
 
+use kempe_mechanism::configuration::input_of;
 use kempe_mechanism::evidence::is_finite;
 use kempe_mechanism::pose::Pose;
-use kempe_mechanism::state::input_of;
 use kempe_motion::bridge::across;
 use kempe_number::{Interval, Number};
 

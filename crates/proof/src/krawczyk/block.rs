@@ -1,7 +1,7 @@
 //! Newton blocks on intervals: proved, not iterated.
 
 use kempe_mechanism::plan::NewtonBlock;
-use kempe_mechanism::state::{Branch, Design, State};
+use kempe_mechanism::{Branch, Configuration, Design};
 use kempe_number::{Interval, Number};
 
 use super::{Given, System, middle_of};
@@ -12,7 +12,7 @@ pub(crate) fn enclose_block(
     block: &NewtonBlock,
     design: &Design<Interval>,
     branch: &Branch,
-    state: &mut State<Interval>,
+    state: &mut Configuration<Interval>,
 ) -> Result<Interval, NotProved> {
     let mechanism = &*design.mechanism;
     let system = System::of_block(mechanism, block);

@@ -15,7 +15,7 @@ impl BodyId {
     }
 }
 
-/// A point of a body: an index into [`Structure::markers`](super::Structure::markers).
+/// A point of a body: an index into [`Parts::markers`](crate::structure::Parts::markers).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Marker {
     /// The body that carries the point.

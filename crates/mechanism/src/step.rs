@@ -2,7 +2,7 @@
 
 use kempe_model::DriveId;
 
-use crate::structure::{ArcRef, BodyId, LineRef, Marker};
+use crate::ids::{ArcRef, BodyId, LineRef, Marker};
 
 /// A condition on a body whose other side is already placed.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,7 +3,8 @@
 use kempe_model::{JointKind, LinkId, Model};
 use kempe_units::Expr;
 
-use super::{BodyId, LinkSeat};
+use crate::ids::BodyId;
+use crate::sources::LinkSeat;
 
 /// Welded links become one body; the others are bodies of their own.
 pub(super) fn seats(model: &Model) -> Vec<LinkSeat> {

@@ -3,9 +3,9 @@
 use kempe_model::{LinkId, ParameterId, PointId, Scalar};
 use kempe_units::Expr;
 
-use super::{BodyId, LineRef, Marker, Structure};
+use crate::ids::{BodyId, LineRef, Marker};
 
-pub(super) const ZERO: Expr<ParameterId> = Expr::Const(0.0);
+pub(crate) const ZERO: Expr<ParameterId> = Expr::Const(0.0);
 
 /// How a link sits in its body.
 #[derive(Clone, Debug)]
@@ -49,14 +49,6 @@ pub struct AngleSource {
     pub a: LinkId,
     /// Link whose seat angle is added.
     pub b: LinkId,
-}
-
-impl AngleSource {
-    /// Whether it is zero whatever the dimensions.
-    pub fn is_zero(&self, structure: &Structure) -> bool {
-        let is_free = |link: LinkId| structure.seats[link.index()].weld.is_none();
-        self.value == ZERO && self.along.is_none() && is_free(self.a) && is_free(self.b)
-    }
 }
 
 /// Constants of a gear pair or of a rack.

@@ -1,0 +1,101 @@
+//! A mechanism with dimensions on one kind of number.
+
+use std::sync::Arc;
+
+use kempe_number::Number;
+
+use crate::Mechanism;
+use crate::closed_form::{DYAD_CONSTANTS, dyad_constants};
+use crate::geometry::Geometry;
+use crate::plan::{DyadBody, Step};
+
+/// A design: a mechanism with dimensions on one kind of number (several designs at once in lanes), and what the plan's closed
+/// forms prepare from them.
+#[derive(Clone, Debug)]
+pub struct Design<T> {
+    /// The mechanism, shared.
+    pub mechanism: Arc<Mechanism>,
+    /// Values of the parameters, SI, in the model's order.
+    pub parameters: Vec<T>,
+    /// Where points and lines lie in their bodies.
+    pub geometry: Geometry<T>,
+    /// Constants of every dyad.
+    pub constants: Vec<[T; DYAD_CONSTANTS]>,
+    /// Plain dimensions behind `geometry`, one per lane: where Newton's method starts.
+    pub plain: Vec<Geometry<f64>>,
+}
+
+impl<T: Number> Design<T> {
+    /// Prepares a design from parameter values (SI, in the model's order).
+    pub fn new(mechanism: &Arc<Mechanism>, parameters: &[T]) -> Self {
+        let geometry = Geometry::new(mechanism, parameters);
+        let plain = vec![geometry.value()];
+        Self::from_geometry(mechanism, parameters, geometry, plain)
+    }
+
+    /// A design of a geometry already evaluated for these parameters; `plain` are the plain ones, one per lane.
+    pub fn from_geometry(
+        mechanism: &Arc<Mechanism>,
+        parameters: &[T],
+        geometry: Geometry<T>,
+        plain: Vec<Geometry<f64>>,
+    ) -> Self {
+        let mut it = Self {
+            geometry,
+            constants: vec![[T::zero(); DYAD_CONSTANTS]; mechanism.plan.dyads],
+            plain,
+            mechanism: mechanism.clone(),
+            parameters: parameters.to_vec(),
+        };
+        it.prepare();
+        it
+    }
+
+    /// Counts the angles of links by whole turns: see [`Geometry::count_turns`].
+    pub fn count_turns(&mut self, turns: &[f64]) {
+        self.geometry.count_turns(&self.mechanism, turns);
+        for plain in &mut self.plain {
+            plain.count_turns(&self.mechanism, turns);
+        }
+    }
+
+    /// Evaluates the dimensions anew for other parameter values, in the same storage; not the plain ones.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    pub fn update(&mut self, parameters: &[T]) {
+        self.parameters.copy_from_slice(parameters);
+        self.geometry.update(&self.mechanism, parameters);
+        self.prepare();
+    }
+
+    /// Fills the closed forms' constants from the geometry.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn prepare(&mut self) {
+        let geometry = &self.geometry;
+        for step in &self.mechanism.plan.steps {
+            if let Step::Dyad(dyad) = step {
+                let own =
+                    |body: DyadBody| (geometry.marker(body.outer), geometry.marker(body.inner));
+                self.constants[dyad.constants] = dyad_constants(own(dyad.a), own(dyad.b));
+            }
+        }
+    }
+}
+
+impl Design<f64> {
+    /// A characteristic length of the mechanism, m: see [`Geometry::size`].
+    pub fn size(&self) -> f64 {
+        self.geometry.size(&self.mechanism)
+    }
+
+    /// The same design as constants of a richer number.
+    #[inline(never)]
+    pub fn lift<T: Number>(&self) -> Design<T> {
+        Design {
+            mechanism: self.mechanism.clone(),
+            parameters: self.parameters.iter().map(|x| T::from_f64(*x)).collect(),
+            geometry: self.geometry.map(T::from_f64),
+            constants: self.constants.iter().map(|c| c.map(T::from_f64)).collect(),
+            plain: vec![self.geometry.clone()],
+        }
+    }
+}
