@@ -5,7 +5,7 @@
 
 use serde::Serialize;
 
-use crate::model::Span;
+use crate::ids::Span;
 
 /// How bad it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]

@@ -3,8 +3,8 @@
 use toml::de::{DeTable, DeValue};
 
 use crate::diagnostic::{Diagnostic, line_at};
+use crate::ids::Span;
 use crate::mend::{Broken, tell, unclosed, without};
-use crate::model::Span;
 
 /// A value with its place (quotes and brackets included).
 #[derive(Clone, Debug)]

@@ -5,8 +5,8 @@ pub(crate) mod rename;
 
 use crate::diagnostic::Diagnostic;
 use crate::document::{self, Node, Table, Value};
+use crate::ids::Span;
 use crate::item::key;
-use crate::model::Span;
 use crate::outline::Outline;
 use crate::text_edit::TextEdit;
 

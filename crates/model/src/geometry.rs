@@ -2,7 +2,9 @@
 
 use kempe_number::Number;
 
-use crate::model::{Center, Link, Model, ParameterId, Place, Scalar};
+use crate::ids::{ParameterId, Scalar};
+use crate::link::{Center, Link, Place};
+use crate::model::Model;
 
 /// The value of a dimension, given the parameters' values in order.
 ///

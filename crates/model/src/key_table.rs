@@ -4,7 +4,9 @@ use kempe_units::Dimension as D;
 
 use crate::keys::{Key, Kind, Named, Need, Quantity, Sign, Takes};
 use crate::load::Acts;
-use crate::model::{BalanceGoal, RiseLaw, Side};
+use crate::drive::RiseLaw;
+use crate::link::Side;
+use crate::study::BalanceGoal;
 use Takes as T;
 
 /// Rows a table may have.

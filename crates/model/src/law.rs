@@ -4,8 +4,8 @@ use std::f64::consts::{PI, TAU};
 
 use kempe_number::Number;
 
+use crate::drive::{Law, LawPiece, RiseLaw};
 use crate::geometry::value;
-use crate::model::{Law, LawPiece, RiseLaw};
 use crate::spline::spline_at;
 
 /// A time this near to the end of a law, as a part of it, is the end: sums and quotients of a file's numbers miss it by
@@ -259,7 +259,7 @@ mod tests {
     use kempe_number::Jet;
     use kempe_units::Expr;
 
-    fn c(x: f64) -> Expr<crate::model::ParameterId> {
+    fn c(x: f64) -> Expr<crate::ids::ParameterId> {
         Expr::Const(x)
     }
 

@@ -5,8 +5,8 @@
 
 use kempe_units::Dimension;
 
+use crate::ids::{DriveId, JointId, LinkId, LinkPointRef, PointId, Scalar, Span};
 use crate::measure::Measure;
-use crate::model::{DriveId, JointId, LinkId, LinkPointRef, PointId, Scalar, Span};
 
 /// Everything that acts on the mechanism.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -93,7 +93,7 @@ pub struct PointMass {
     /// The link.
     pub on: LinkId,
     /// Where on the link, in its own frame.
-    pub place: crate::model::Place,
+    pub place: crate::link::Place,
     /// Mass, kg.
     pub mass: Scalar,
     /// Where it stands in the file.

@@ -2,7 +2,7 @@
 
 use kempe_units::Expr;
 
-use crate::model::{DriveId, Line, LinkId, LinkPointRef, ParameterId, PointId};
+use crate::ids::{DriveId, Line, LinkId, LinkPointRef, ParameterId, PointId};
 
 /// An expression over parameters, names and questions to the mechanism, in SI.
 pub type Measure = Expr<Leaf>;
@@ -151,7 +151,7 @@ pub enum JointRef {
     /// A pin; on the later-named of its links unless a link is given.
     Pin(PointId, Option<LinkId>),
     /// A joint of the file; on its first-named link (the slider, the pin's link) unless a link is given.
-    Joint(crate::model::JointId, Option<LinkId>),
+    Joint(crate::ids::JointId, Option<LinkId>),
 }
 
 /// A number over a whole motion.

@@ -6,7 +6,7 @@
 use std::collections::BTreeSet;
 
 use crate::diagnostic::{Diagnostic, line_at};
-use crate::model::Span;
+use crate::ids::Span;
 
 /// Something that is opened and not closed.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -5,8 +5,8 @@
 //! believes every line by itself: what does not end on its line and should is ended there.
 
 use crate::document::Text;
+use crate::ids::Span;
 use crate::mend::begins_anew;
-use crate::model::Span;
 
 /// A key and where it is written.
 #[derive(Clone, Debug, PartialEq, Eq)]

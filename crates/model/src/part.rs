@@ -6,9 +6,9 @@ use std::fmt;
 use kempe_units::{Kind, Node, parse_argument, parse_condition};
 
 use crate::document::Text;
+use crate::ids::Span;
 use crate::key_path::takes_at;
 use crate::keys::{Named, Takes};
-use crate::model::Span;
 use crate::outline::{KeyMark, Outline, Shape, ValueMark, string};
 use crate::read::names::{is_point_name, pair_of};
 use crate::registry::{Argument, Registry};

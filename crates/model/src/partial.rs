@@ -1,7 +1,8 @@
 //! What can be read of a text that may have errors.
 
 use crate::diagnostic::Diagnostic;
-use crate::model::{Model, Span};
+use crate::ids::Span;
+use crate::model::Model;
 use crate::part::{Part, parts};
 
 /// What could be read of a text.

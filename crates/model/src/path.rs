@@ -1,6 +1,6 @@
 //! From a place of a text to a path such as `joints.bore.at`, and from a path to its places.
 
-use crate::model::Span;
+use crate::ids::Span;
 use crate::outline::Outline;
 
 /// What stands at a place.

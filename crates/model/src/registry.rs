@@ -4,8 +4,8 @@
 use kempe_units::Dimension as D;
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 
+use crate::ids::{DriveId, LinkId, PointId};
 use crate::measure::{ForceMeasure as F, JointRef, PoseMeasure as P, Statistic as S};
-use crate::model::{DriveId, LinkId, PointId};
 use Gives::{ByDrive, Follows, Is};
 use Nature::{Derivative, Forces, Geometric, InTime, WholeMotion};
 

@@ -1,11 +1,14 @@
 //! Whether two models are the same but for how and where they are written.
 
+use crate::drive::LawPiece;
+use crate::hint::HintKind;
+use crate::ids::{Scalar, Span};
+use crate::joint::JointKind;
+use crate::link::{Center, Place};
 use crate::load::{Amount, LoadKind};
 use crate::measure::{Leaf, Measure, PoseMeasure};
-use crate::model::{
-    Center, Column, HintKind, JointKind, LawPiece, Model, Place, Plot, Rows, Scalar, Span,
-    StudyKind,
-};
+use crate::model::Model;
+use crate::study::{Column, Plot, Rows, StudyKind};
 
 impl Model {
     /// Whether two models are the same but for the places in their files and for how their constants are written.

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::model::Span;
+use crate::ids::Span;
 
 /// A change of a text: what stands at `span` is replaced by `text`.
 ///

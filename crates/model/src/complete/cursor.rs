@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::model::Span;
+use crate::ids::Span;
 use crate::outline::{Outline, Shape, ValueMark};
 use crate::part::{Namings, Part, PartKind};
 use crate::text_edit::TextEdit;

@@ -5,7 +5,7 @@ use std::fmt;
 
 use crate::diagnostic::Diagnostic;
 use crate::edit::rename::unknown;
-use crate::model::Span;
+use crate::ids::Span;
 use crate::outline::{Outline, Shape, ValueMark};
 use crate::part::{Naming, Namings, Part, place_of};
 use crate::text_edit::TextEdit;

@@ -2,8 +2,10 @@
 
 use kempe_units::{Dimension, Issue, Kind, Node};
 
+use crate::drive::DriveKind;
+use crate::ids::{DriveId, Line, LinkId, LinkPointRef, PointId};
+use crate::joint::JointKind;
 use crate::measure::PoseMeasure;
-use crate::model::{DriveId, DriveKind, JointKind, Line, LinkId, LinkPointRef, PointId};
 use crate::read::context::{Meaning, near_or_all};
 use crate::read::measure_names::{Found, Measures};
 use crate::read::value::ALREADY_TOLD;

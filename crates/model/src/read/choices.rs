@@ -20,16 +20,14 @@ use kempe_units::{Dimension, Expr};
 
 use crate::diagnostic::Diagnostic;
 use crate::document::Node;
+use crate::ids::{DriveId, FRAME, LinkId, PointId, Scalar};
 use crate::key_table::GOALS;
 use crate::measure::{Leaf, Measure};
-use crate::model::{
-    BalanceGoal, BalanceStudy, DriveId, FRAME, LinkId, MotionStudy, PointId, Scalar, SpringStudy,
-    StudyKind,
-};
 use crate::read::context::{Context, Meaning};
 use crate::read::entry::{Entry, link_of};
 use crate::read::measures::measure_text;
 use crate::read::nature::nature;
+use crate::study::{BalanceGoal, BalanceStudy, MotionStudy, SpringStudy, StudyKind};
 
 /// A study of counterweights.
 pub(crate) fn balance(

@@ -7,9 +7,8 @@ use kempe_units::{Unit, nearest};
 
 use crate::diagnostic::Diagnostic;
 use crate::document::{Key, Node, Table, Text, Value};
-use crate::model::{
-    DriveId, FRAME, FileUnits, JointId, LinkId, Model, ParameterId, PointId, Span, UnitName,
-};
+use crate::ids::{DriveId, FRAME, JointId, LinkId, ParameterId, PointId, Span};
+use crate::model::{FileUnits, Model, UnitName};
 use crate::read::nature::Nature;
 
 /// Asks for a file beside the model file by its name as written.

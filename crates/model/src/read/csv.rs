@@ -4,7 +4,7 @@ use kempe_units::{Dimension, Unit, nearest};
 
 use crate::diagnostic::Diagnostic;
 use crate::document::Node;
-use crate::model::Span;
+use crate::ids::Span;
 use crate::read::context::Context;
 
 /// A table has at most so many rows.

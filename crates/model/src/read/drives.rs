@@ -2,11 +2,11 @@
 
 use crate::diagnostic::Diagnostic;
 use crate::document::{Key, Node};
+use crate::drive::{Drive, DriveKind};
+use crate::ids::{DriveId, FRAME, JointId, LinkId, LinkPointRef, PointId};
+use crate::joint::JointKind;
 use crate::key_table::DRIVES;
 use crate::keys::Kind;
-use crate::model::{
-    Drive, DriveId, DriveKind, FRAME, JointId, JointKind, LinkId, LinkPointRef, PointId,
-};
 use crate::read::context::{Context, Meaning};
 use crate::read::entry::Entry;
 use crate::read::laws::read_law;
@@ -238,7 +238,7 @@ fn joint_of_slider(
     link: LinkId,
     name: &str,
     place: &str,
-    span: crate::model::Span,
+    span: crate::ids::Span,
 ) -> Option<DriveKind> {
     let all: Vec<JointId> = (0..cx.model.joints.len())
         .map(|i| JointId(i as u32))

@@ -4,8 +4,8 @@ use kempe_units::{Dimension, Expr};
 
 use crate::diagnostic::Diagnostic;
 use crate::document::{Key, Node, Table, Text, Value};
+use crate::ids::{FRAME, LinkId, LinkPointRef, PointId, Scalar, Span};
 use crate::keys::{Kind, Quantity, Sign, Takes};
-use crate::model::{FRAME, LinkId, LinkPointRef, PointId, Scalar, Span};
 use crate::read::context::Context;
 
 /// A table of a known kind: only keys that the kind has can be read from it.

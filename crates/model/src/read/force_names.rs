@@ -4,8 +4,10 @@ use std::collections::BTreeMap;
 
 use kempe_units::{Dimension, Issue, Node, nearest};
 
+use crate::drive::DriveKind;
+use crate::ids::{DriveId, LinkId};
+use crate::joint::JointKind;
 use crate::measure::{ForceMeasure, JointRef};
-use crate::model::{DriveId, DriveKind, JointKind, LinkId};
 use crate::read::actuators::what_it_is;
 use crate::read::arguments::already_told;
 use crate::read::context::Meaning;
@@ -159,7 +161,7 @@ impl Measures<'_, '_> {
     }
 
     /// The joint that guides a point.
-    fn joint_at(&self, point: crate::model::PointId) -> Option<&str> {
+    fn joint_at(&self, point: crate::ids::PointId) -> Option<&str> {
         let mut joints = self.0.model.joints.iter();
         let found = joints.find(|j| match j.kind {
             JointKind::Slider { at, .. } => at.point == point,
@@ -170,7 +172,7 @@ impl Measures<'_, '_> {
     }
 
     /// The cylinder that ends at a point.
-    fn cylinder_at(&self, point: crate::model::PointId) -> Option<&str> {
+    fn cylinder_at(&self, point: crate::ids::PointId) -> Option<&str> {
         let mut drives = self.0.model.drives.iter();
         let found = drives.find(|d| {
             matches!(d.kind, DriveKind::Cylinder { a, b } if a.point == point || b.point == point)

@@ -14,9 +14,10 @@ use kempe_units::Expr;
 
 use crate::diagnostic::Diagnostic;
 use crate::document::{Key, Node};
+use crate::ids::PointId;
+use crate::joint::JointKind;
 use crate::key_table::{FRICTION_OF_ALL, FRICTION_OF_JOINT, FRICTION_OF_PIN};
 use crate::load::{Friction, FrictionAt};
-use crate::model::{JointKind, PointId};
 use crate::read::context::{Context, Meaning};
 use crate::read::entry::Entry;
 use crate::read::names::is_point_name;

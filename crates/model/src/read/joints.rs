@@ -4,10 +4,10 @@ use kempe_units::{Dimension, Expr};
 
 use crate::diagnostic::Diagnostic;
 use crate::document::{Key, Node};
+use crate::ids::{JointId, Line, LinkId, LinkPointRef, PointId, Scalar};
+use crate::joint::{Joint, JointKind};
 use crate::key_table::{JOINTS, SIDES};
-use crate::model::{
-    CircularArc, Joint, JointId, JointKind, Line, LinkId, LinkPointRef, PointId, Scalar, Side,
-};
+use crate::link::{CircularArc, Side};
 use crate::read::context::Context;
 use crate::read::entry::{Entry, on_link};
 

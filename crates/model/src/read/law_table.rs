@@ -2,7 +2,8 @@
 
 use kempe_units::{Dimension, Expr};
 
-use crate::model::{Law, LawPiece, Span};
+use crate::drive::{Law, LawPiece};
+use crate::ids::Span;
 use crate::read::context::Context;
 use crate::read::csv::{Ask, Pick, Words, columns};
 use crate::read::entry::Entry;

@@ -2,11 +2,12 @@
 
 use kempe_units::{Builtin, Dimension, Expr};
 
-use crate::bounds::Keeps;
+use crate::bound::Keeps;
 use crate::diagnostic::Diagnostic;
 use crate::document::{Node, Value};
+use crate::drive::{Law, LawPiece, RiseLaw};
+use crate::ids::{Scalar, Span};
 use crate::key_table::{LAW_TABLE, LAWS, PIECE};
-use crate::model::{Law, LawPiece, RiseLaw, Scalar, Span};
 use crate::read::context::Context;
 use crate::read::entry::Entry;
 use crate::read::law_table::read_table;

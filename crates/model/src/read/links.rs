@@ -6,8 +6,9 @@ use kempe_units::Dimension;
 
 use crate::diagnostic::Diagnostic;
 use crate::document::{Key, Node, Value};
+use crate::ids::{FRAME, LinkId, PointId, Scalar, Span};
 use crate::key_table::LINKS;
-use crate::model::{Center, FRAME, LinkId, Place, PointId, Scalar, Side, Span};
+use crate::link::{Center, Place, Side};
 use crate::read::context::Context;
 use crate::read::entry::Entry;
 use crate::read::masses::{mass_of_frame, read_inertia};

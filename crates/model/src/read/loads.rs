@@ -19,10 +19,10 @@ use kempe_units::{Builtin, Dimension, Expr, Issue, check, check_as, parse};
 
 use crate::diagnostic::Diagnostic;
 use crate::document::{Key, Node, Value};
+use crate::ids::{FRAME, Span};
 use crate::key_table::{CARD, FORCE, TORQUE};
 use crate::load::{Amount, Load, LoadKind};
 use crate::measure::{Leaf, Measure};
-use crate::model::{FRAME, Span};
 use crate::read::context::Context;
 use crate::read::csv::{Ask, Pick, Words, columns};
 use crate::read::entry::{Entry, moving_carrier, on_link};

@@ -16,11 +16,11 @@ use kempe_units::{Builtin, Dimension, Expr};
 
 use crate::diagnostic::Diagnostic;
 use crate::document::{Key, Node, Value};
+use crate::ids::{FRAME, LinkId, PointId, Scalar, Span};
+use crate::joint::JointKind;
 use crate::key_table::{BAR, MASS};
+use crate::link::{Center, Inertia, LinkPoint, Place};
 use crate::load::PointMass;
-use crate::model::{
-    Center, FRAME, Inertia, JointKind, LinkId, LinkPoint, Place, PointId, Scalar, Span,
-};
 use crate::read::context::Context;
 use crate::read::entry::{Entry, moving_carrier, on_link};
 use crate::read::links::Draft;

@@ -2,8 +2,8 @@
 
 use kempe_units::{Dimension, Expr, Issue, Kind, Node, Resolver, check, check_as};
 
+use crate::ids::{FRAME, Span};
 use crate::measure::{ForceMeasure, Leaf, Measure, PoseMeasure, Statistic};
-use crate::model::{FRAME, Span};
 use crate::read::context::{Context, Meaning, MeasureState};
 use crate::read::laws::rate;
 use crate::read::nature::nature;

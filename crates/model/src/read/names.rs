@@ -2,9 +2,10 @@
 
 use crate::diagnostic::Diagnostic;
 use crate::document::{Key, Node, Value};
+use crate::ids::{LinkId, ParameterId, PointId};
 use crate::key_table::FILE;
 use crate::keys::Takes;
-use crate::model::{Link, LinkId, ParameterId, Point, PointId};
+use crate::link::{Link, Point};
 use crate::read::context::{Context, Meaning};
 use crate::read::entry::Entry;
 use crate::read::measure_names::bare;
@@ -102,7 +103,7 @@ pub(crate) fn collect<'d>(cx: &mut Context<'_>, file: &Entry<'d>) -> Sections<'d
 pub(crate) const MAX_NAME: usize = 64;
 
 /// Tells a name that is too long; whether it was.
-pub(crate) fn long_name(cx: &mut Context<'_>, name: &str, span: &crate::model::Span) -> bool {
+pub(crate) fn long_name(cx: &mut Context<'_>, name: &str, span: &crate::ids::Span) -> bool {
     let bytes = name.len();
     if bytes > MAX_NAME {
         cx.push(

@@ -2,8 +2,9 @@
 
 use kempe_units::Expr;
 
+use crate::ids::Scalar;
 use crate::measure::{Leaf, Measure, PoseMeasure};
-use crate::model::{Model, Scalar};
+use crate::model::Model;
 
 /// What a measure asks for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

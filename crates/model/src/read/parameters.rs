@@ -7,7 +7,8 @@ use kempe_units::{Dimension, Expr, Issue, check, nearest, parse};
 use crate::diagnostic::{Diagnostic, Label, Source};
 use crate::document::{Key, Node, Text, Value};
 use crate::geometry::value;
-use crate::model::{Parameter, ParameterId, Span};
+use crate::ids::{ParameterId, Span};
+use crate::model::Parameter;
 use crate::read::context::{Context, Meaning};
 use crate::read::value::{ALREADY_TOLD, Parameters};
 

@@ -4,7 +4,8 @@ use kempe_units::nearest;
 
 use crate::diagnostic::Diagnostic;
 use crate::document::Text;
-use crate::model::{Line, LinkId, PointId, Side, Span};
+use crate::ids::{Line, LinkId, PointId, Span};
+use crate::link::Side;
 use crate::read::context::Context;
 use crate::read::names::is_point_name;
 

@@ -6,7 +6,8 @@ use kempe_units::{Dimension, Expr};
 
 use crate::diagnostic::Diagnostic;
 use crate::geometry::place as evaluate_place;
-use crate::model::{LinkPoint, Place, PointId, Span};
+use crate::ids::{PointId, Span};
+use crate::link::{LinkPoint, Place};
 use crate::read::context::Context;
 use crate::read::links::{Distance, Draft, SideOf};
 
@@ -202,7 +203,7 @@ impl Maker {
             to,
             from_distance: first.length.clone(),
             to_distance: second.length.clone(),
-            side: crate::model::Side::Left,
+            side: crate::link::Side::Left,
         };
         match side {
             None => cx.push(

@@ -17,10 +17,10 @@ use kempe_units::{Dimension, Expr};
 
 use crate::diagnostic::Diagnostic;
 use crate::document::{Key, Node};
+use crate::ids::{LinkPointRef, Scalar};
 use crate::key_table::{ACTS, DAMPER, SPRING};
 use crate::keys::Sign;
 use crate::load::{Between, Damper, Spring};
-use crate::model::{LinkPointRef, Scalar};
 use crate::read::context::Context;
 use crate::read::entry::Entry;
 use crate::read::names::{is_small_name, long_name};

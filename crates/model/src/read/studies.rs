@@ -6,10 +6,10 @@ use kempe_units::{Builtin, Dimension, Expr};
 
 use crate::diagnostic::Diagnostic;
 use crate::document::{Key, Node, Value};
+use crate::drive::LawPiece;
+use crate::ids::Scalar;
 use crate::key_table::{ANNOUNCED_STUDIES, DRIVES, MAX_ROWS, STUDIES};
-use crate::model::{
-    AnnouncedStudy, Column, LawPiece, Model, MotionStudy, Plot, Rows, Scalar, Study, StudyKind,
-};
+use crate::model::Model;
 use crate::read::choices;
 use crate::read::context::Context;
 use crate::read::entry::Entry;
@@ -17,6 +17,7 @@ use crate::read::measures::measure_text;
 use crate::read::names::long_name;
 use crate::read::nature::nature;
 use crate::read::plots::plot;
+use crate::study::{AnnouncedStudy, Column, MotionStudy, Plot, Rows, Study, StudyKind};
 
 /// Rows of a table by default, when a step is not the thing to say.
 const DEFAULT_ROWS: usize = 181;
@@ -327,7 +328,7 @@ fn rows(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<Rows> {
 /// The drive whose coordinate runs one way through the whole motion, when there is only one that moves.
 fn running(model: &Model) -> Option<(usize, Scalar, Scalar)> {
     let holds =
-        |d: &crate::model::Drive| matches!(d.law.pieces.as_slice(), [LawPiece::Dwell { .. }]);
+        |d: &crate::drive::Drive| matches!(d.law.pieces.as_slice(), [LawPiece::Dwell { .. }]);
     let mut moving = model.drives.iter().enumerate().filter(|(_, d)| !holds(d));
     let (i, drive) = moving.next()?;
     if moving.next().is_some() {

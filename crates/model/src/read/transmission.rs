@@ -2,7 +2,8 @@
 
 use kempe_units::{Issue, Node};
 
-use crate::model::{DriveKind, FRAME, LinkId, PointId};
+use crate::drive::DriveKind;
+use crate::ids::{FRAME, LinkId, PointId};
 use crate::read::measure_names::{Found, Measures};
 
 impl Measures<'_, '_> {

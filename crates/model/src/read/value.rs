@@ -2,11 +2,12 @@
 
 use kempe_units::{Dimension, Expr, Issue, Resolver, Unit, check, check_as, format_digits, parse};
 
-use crate::bounds::{Bound, Keeps};
+use crate::bound::{Bound, Keeps};
 use crate::diagnostic::{Diagnostic, Label};
 use crate::document::{Node, Text, Value};
 use crate::geometry::value;
-use crate::model::{ParameterId, Place, Scalar, Span};
+use crate::ids::{ParameterId, Scalar, Span};
+use crate::link::Place;
 use crate::read::context::{Context, Meaning};
 
 /// The code of an issue that follows from one already told, and is not told again.

@@ -2,13 +2,14 @@
 
 use kempe_units::{Dimension, Unit};
 
+use crate::ids::{FRAME, LinkId, PointId, Scalar};
 use crate::item::{File, Item};
 use crate::key_table::{ACTS, word_of};
+use crate::link::Place;
 use crate::load::{
     Acts, Amount, Between, Damper, Friction, FrictionAt, HydraulicCylinder, Load, LoadKind, Motor,
     PointMass, Spring,
 };
-use crate::model::{FRAME, LinkId, Place, PointId, Scalar};
 use crate::read::springs::tension;
 use crate::write::mechanism::is_nothing;
 use crate::write::spelling::Writer;

@@ -2,8 +2,9 @@
 
 use kempe_units::{Dimension, Expr};
 
+use crate::drive::{Drive, LawPiece};
+use crate::ids::Scalar;
 use crate::item::Item;
-use crate::model::{Drive, LawPiece, Scalar};
 use crate::read::laws::rate;
 use crate::write::spelling::Writer;
 

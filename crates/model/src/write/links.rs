@@ -2,9 +2,10 @@
 
 use kempe_units::{Dimension, Expr};
 
+use crate::ids::{LinkId, PointId, Scalar};
 use crate::item::{File, Item};
 use crate::key_table::{SIDES, word_of};
-use crate::model::{Center, Inertia, Link, LinkId, LinkPoint, Place, PointId, Scalar, Side};
+use crate::link::{Center, Inertia, Link, LinkPoint, Place, Side};
 use crate::write::spelling::Writer;
 
 impl Writer<'_> {

@@ -2,9 +2,13 @@
 
 use kempe_units::{Dimension, Expr};
 
+use crate::drive::{Drive, DriveKind};
+use crate::hint::HintKind;
+use crate::ids::{FRAME, Line, Scalar};
 use crate::item::{File, Item};
+use crate::joint::JointKind;
 use crate::key_table::{SIDES, word_of};
-use crate::model::{Drive, DriveKind, FRAME, HintKind, JointKind, Line, Scalar, Side};
+use crate::link::Side;
 use crate::write::spelling::Writer;
 
 type Entries = Vec<(String, Item)>;

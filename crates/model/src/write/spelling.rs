@@ -2,11 +2,11 @@
 
 use kempe_units::{Dimension, Expr, Freedom, Kind, Natural, Node, Spelling, Unit};
 
+use crate::ids::{DriveId, JointId, Line, LinkId, LinkPointRef, ParameterId, PointId, Scalar};
 use crate::item::Item;
+use crate::joint::JointKind;
 use crate::measure::{ForceMeasure, JointRef, Leaf, Measure, PoseMeasure, Statistic};
-use crate::model::{
-    DriveId, JointId, JointKind, Line, LinkId, LinkPointRef, Model, ParameterId, PointId, Scalar,
-};
+use crate::model::Model;
 use crate::read::laws::rate;
 use crate::tables::Tables;
 

@@ -2,10 +2,12 @@
 
 use kempe_units::{Dimension, Expr};
 
+use crate::drive::{Law, LawPiece};
+use crate::ids::Scalar;
 use crate::item::{File, Item};
 use crate::key_table::{GOALS, word_of};
-use crate::model::{BalanceGoal, Law, LawPiece, MotionStudy, Plot, Rows, Scalar, Study, StudyKind};
 use crate::read::springs::tension;
+use crate::study::{BalanceGoal, MotionStudy, Plot, Rows, Study, StudyKind};
 use crate::write::spelling::Writer;
 
 type Entries = Vec<(String, Item)>;

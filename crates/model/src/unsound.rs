@@ -4,37 +4,13 @@
 //! asks here.
 
 use kempe_number::math;
-use kempe_units::{Dimension, Unit, format_digits};
+use kempe_units::{Unit, format_digits};
 
+use crate::bound::{Bound, Keeps};
 use crate::diagnostic::Diagnostic;
 use crate::geometry::value;
-use crate::model::{Link, Model, Place, Scalar, Span};
-
-/// A value of the file that depends on parameters, and what it must keep to.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Bound {
-    /// The value.
-    pub value: Scalar,
-    /// What it must keep to.
-    pub keeps: Keeps,
-    /// What it is, in words.
-    pub what: String,
-    /// Its dimension.
-    pub dimension: Dimension,
-    /// Where it stands in the file.
-    pub span: Span,
-}
-
-/// What a value must keep to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Keeps {
-    /// It is a number.
-    Finite,
-    /// It is above zero.
-    Positive,
-    /// It is not below zero.
-    NotNegative,
-}
+use crate::link::{Link, Place};
+use crate::model::Model;
 
 /// A corner of a triangle that misses its distance by this part of it or more does not close: rounding stays far below.
 const OPEN: f64 = 1e-9;

@@ -1,0 +1,108 @@
+//! Drives and their motion laws.
+
+use kempe_units::Dimension;
+
+use crate::ids::{JointId, LinkId, LinkPointRef, Scalar, Span};
+
+/// What is moved from outside.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Drive {
+    /// Name.
+    pub name: String,
+    /// What it moves.
+    pub kind: DriveKind,
+    /// How it moves.
+    pub law: Law,
+    /// Dimension of its coordinate: angle or length.
+    pub dimension: Dimension,
+    /// Where it stands in the file.
+    pub span: Span,
+}
+
+/// What a drive moves.
+#[derive(Clone, Debug, PartialEq)]
+pub enum DriveKind {
+    /// The angle from the x axis of `relative_to` to that of `link`, rad. Either may float.
+    Turn {
+        /// The link that turns.
+        link: LinkId,
+        /// The link it turns against; the frame unless said otherwise.
+        relative_to: LinkId,
+    },
+    /// The distance of two points: a hydraulic cylinder.
+    Cylinder {
+        /// Foot.
+        a: LinkPointRef,
+        /// Eye.
+        b: LinkPointRef,
+    },
+    /// The travel of a slider or of a pin in its slot: the coordinate along the guide from its first point.
+    Slide {
+        /// The slider or slot joint.
+        joint: JointId,
+    },
+}
+
+/// How a drive moves in time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Law {
+    /// Pieces in order; each starts where the one before ended.
+    pub pieces: Vec<LawPiece>,
+    /// Coordinate at the start.
+    pub from: Scalar,
+}
+
+/// A piece of a motion law. `to` is the coordinate at its end.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LawPiece {
+    /// Constant speed. The sign of the speed is the direction of travel; only its size counts.
+    ConstantSpeed {
+        /// End coordinate.
+        to: Scalar,
+        /// Speed, per second, positive.
+        speed: Scalar,
+    },
+    /// Constant acceleration from rest.
+    ConstantAcceleration {
+        /// End coordinate.
+        to: Scalar,
+        /// Acceleration, per second squared, positive.
+        acceleration: Scalar,
+    },
+    /// Standing still.
+    Dwell {
+        /// How long, s.
+        duration: Scalar,
+    },
+    /// From rest to rest by a standard law.
+    Rise {
+        /// End coordinate.
+        to: Scalar,
+        /// How long, s.
+        duration: Scalar,
+        /// By which law.
+        by: RiseLaw,
+    },
+    /// Measured points joined by a smooth curve (twice continuously differentiable).
+    Table {
+        /// Times, s, increasing.
+        times: Vec<f64>,
+        /// Coordinates, SI.
+        values: Vec<f64>,
+        /// Second derivatives of the spline through them at these times, SI.
+        moments: Vec<f64>,
+    },
+}
+
+/// Standard laws from rest to rest.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RiseLaw {
+    /// s - sin(2 pi s)/(2 pi).
+    Cycloidal,
+    /// (1 - cos(pi s))/2.
+    Harmonic,
+    /// 10 s^3 - 15 s^4 + 6 s^5.
+    Polynomial345,
+    /// 35 s^4 - 84 s^5 + 70 s^6 - 20 s^7.
+    Polynomial4567,
+}
