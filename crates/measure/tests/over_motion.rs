@@ -372,6 +372,50 @@ fn a_time_ratio_asks_for_a_cycle() {
     near(ratio(back), 2.0, 1e-9, back);
 }
 
+/// Both strokes of a crank-rocker change where crank and coupler are in line: the crank's angles there follow from the law
+/// of cosines. Measured from near an extreme, too, where the angle itself is all rounding.
+#[test]
+fn time_ratios_of_crank_rockers_are_those_of_their_dead_centres() {
+    let mut rng = Rng(9);
+    for _ in 0..60 {
+        let (a, g) = (rng.range(0.1, 0.5), rng.range(0.8, 1.5));
+        let (b, c) = (rng.range(0.7, 1.6), rng.range(0.7, 1.6));
+        let (longest, all) = (g.max(b).max(c), a + g + b + c);
+        if 2.0 * (a + longest) > 0.98 * all {
+            continue;
+        }
+        let corner = |side: f64, opposite: f64| {
+            ((g * g + side * side - opposite * opposite) / (2.0 * g * side)).acos()
+        };
+        let between = (corner(b - a, c) + PI - corner(b + a, c)).abs();
+        let stroke = between.min(TAU - between);
+        let wanted = (TAU - stroke) / stroke;
+        // The rocker's angle with the crank and the coupler stretched: an exterior angle of that triangle.
+        let end = PI - ((g * g + c * c - (a + b) * (a + b)) / (2.0 * g * c)).acos();
+        let from = rng.range(-3.0, 3.0);
+        let text = format!(
+            "units = {{ length = \"m\", angle = \"rad\" }}
+[links]
+frame = {{ A = [0, 0], D = [{g:e}, 0] }}
+crank = {{ A-B = {a:e} }}
+coupler = {{ B-C = {b:e} }}
+rocker = {{ D-C = {c:e} }}
+[drives]
+motor = {{ turns = \"crank\", from = {from:e}, to = {:e}, speed = \"60 rpm\" }}
+[assembly]
+C = \"left of B -> D\"
+[measures]
+swing = \"time_ratio(angle(rocker))\"
+beside = \"time_ratio(angle(rocker) - {end:e} rad)\"
+",
+            from + TAU,
+        );
+        for ratio in &rows(&text, &[0.0])[0].values {
+            near(*ratio, wanted, 1e-12, &text);
+        }
+    }
+}
+
 /// Of a point that cannot move all sensitivities are zero, and a length of path has those of its strokes.
 #[test]
 fn sensitivities_of_fixed_points_and_of_paths() {

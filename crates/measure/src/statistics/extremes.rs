@@ -104,6 +104,7 @@ impl Extremes {
             Some(point)
         };
         let mut bisect_only = false;
+        let mut level_at = f64::NAN;
         for round in 0.. {
             let width = b.time - a.time;
             if !bisect_only {
@@ -113,7 +114,9 @@ impl Extremes {
                     let step = zero_of_rate(&point, known).filter(|s| s.abs() <= NEAR * whole);
                     if let Some(step) = step {
                         let last = look(&mut a, &mut b, point.time + step);
-                        self.take(last.unwrap_or(point));
+                        let last = last.unwrap_or(point);
+                        level_at = last.time;
+                        self.take(last);
                         break;
                     }
                 }
@@ -131,7 +134,9 @@ impl Extremes {
             }
             bisect_only |= round > 0 && b.time - a.time > SLOW * width;
         }
-        // On the way only what is more than rounding: the time of an extreme is where its rate vanishes.
+        // On the way only what is more than rounding, and nothing beside a zero of the rate, where values differ by rounding
+        // alone: the time of an extreme is where its rate vanishes.
+        met.retain(|point| !((point.time - level_at).abs() <= BESIDE * whole));
         for point in met {
             let rounding = ROUNDING * point.value().abs();
             let beyond = [self.low.1 - point.value(), point.value() - self.high.1];
