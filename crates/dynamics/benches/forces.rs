@@ -135,7 +135,7 @@ fn main() {
     let mut instant = Instant::new(&mechanism, 0);
     let mut worst = 0.0_f64;
     for ((p, branch), state) in places.iter().zip(&branches).zip(&states) {
-        instant.set_along(&mechanism, state, &branch.near, DriveId(0), rate(*p));
+        instant.set_along(state, &branch.near, DriveId(0), rate(*p));
         forces.solve(&instant);
         let by_hand = kernel.forces(&inputs(&instant).0, &inputs(&instant).1)[14];
         worst = worst.max((by_hand - forces.drives[0].value).abs() / by_hand.abs().max(1.0));
@@ -160,7 +160,7 @@ fn main() {
         });
         let alone = best(|| {
             for ((p, branch), state) in places.iter().zip(&branches).zip(&states) {
-                instant.set_along(&mechanism, state, &branch.near, DriveId(0), rate(*p));
+                instant.set_along(state, &branch.near, DriveId(0), rate(*p));
                 forces.solve(&instant);
                 black_box(&forces.drives);
             }
@@ -169,14 +169,14 @@ fn main() {
             for (p, branch) in places.iter().zip(&branches) {
                 series.set_inputs(&mechanism, &[Series::variable(*p)]);
                 rich.solve(branch, &mut series);
-                instant.set_along(&mechanism, &series, &branch.near, DriveId(0), rate(*p));
+                instant.set_along(&series, &branch.near, DriveId(0), rate(*p));
                 forces.solve(&instant);
                 black_box(&forces.drives);
             }
         });
         let by_hand = best(|| {
             for ((p, branch), state) in places.iter().zip(&branches).zip(&states) {
-                instant.set_along(&mechanism, state, &branch.near, DriveId(0), rate(*p));
+                instant.set_along(state, &branch.near, DriveId(0), rate(*p));
                 let (poses, accelerations) = inputs(&instant);
                 black_box(kernel.forces(&poses, &accelerations));
             }

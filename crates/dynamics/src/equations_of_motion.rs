@@ -6,12 +6,17 @@
 //! is left out. `Q` is what the drives give; a drive that is let go gives nothing. (Lagrange; e.g. M. Eksergian, "Dynamical
 //! analysis of machines", 1930-31, for one coordinate.)
 
+use kempe_model::DriveId;
+
 use crate::acting::Acting;
 use crate::forces::Forces;
 use crate::instant::Instant;
 use crate::number::ForceNumber;
 use crate::vector::{add, dot, left, times};
 use crate::virtual_power;
+
+/// A pivot below this part of its entry is rounding: the coordinate moves no mass that the ones before it do not move.
+const ROUNDING: f64 = 1e-12;
 
 /// The equations of motion of a state.
 #[derive(Clone, Debug)]
@@ -32,12 +37,62 @@ impl<T: ForceNumber> EquationsOfMotion<T> {
 
     /// What the drives must give for these accelerations of their coordinates.
     pub fn needed(&self, accelerations: &[T]) -> Vec<T> {
-        let rows = self.mass.chunks_exact(self.size).zip(&self.bias);
+        let rows = self.mass.chunks_exact(self.size.max(1)).zip(&self.bias);
         rows.map(|(row, bias)| {
             let terms = row.iter().zip(accelerations);
             terms.fold(*bias, |sum, (m, a)| sum + *m * *a)
         })
         .collect()
+    }
+}
+
+impl<T: ForceNumber> EquationsOfMotion<T> {
+    /// The accelerations of all coordinates where those in `free` move as forces make them (N or N m along every
+    /// coordinate; only those of free ones count) and all others accelerate as `given`. `None` where the mass of the free
+    /// ones is not positive: a coordinate that moves no mass, or a mechanism at a dead point.
+    pub fn accelerations(&self, free: &[DriveId], given: &[T], forces: &[T]) -> Option<Vec<T>> {
+        let mut accelerations = given.to_vec();
+        for drive in free {
+            accelerations[drive.index()] = T::zero();
+        }
+        let held = self.needed(&accelerations);
+        let mut right: Vec<T> = (free.iter().map(|d| d.index()))
+            .map(|d| forces[d] - held[d])
+            .collect();
+        // Cholesky, L D L' by rows: the matrix is symmetric and, where every free coordinate moves mass, positive.
+        let n = free.len();
+        let mut l = vec![T::zero(); n * n];
+        for i in 0..n {
+            for j in 0..=i {
+                let known: T = (0..j).fold(T::zero(), |sum, k| {
+                    sum + l[i * n + k] * l[j * n + k] * l[k * n + k]
+                });
+                let entry = self.mass_at(free[i].index(), free[j].index());
+                let rest = entry - known;
+                l[i * n + j] = match i == j {
+                    false => rest / l[j * n + j],
+                    true if rest.value() > ROUNDING * entry.value() => rest,
+                    true => return None,
+                };
+            }
+        }
+        for i in 0..n {
+            for k in 0..i {
+                right[i] = right[i] - l[i * n + k] * right[k];
+            }
+        }
+        for i in 0..n {
+            right[i] = right[i] / l[i * n + i];
+        }
+        for i in (0..n).rev() {
+            for k in i + 1..n {
+                right[i] = right[i] - l[k * n + i] * right[k];
+            }
+        }
+        for (drive, acceleration) in free.iter().zip(right) {
+            accelerations[drive.index()] = acceleration;
+        }
+        Some(accelerations)
     }
 }
 

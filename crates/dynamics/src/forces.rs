@@ -1,7 +1,6 @@
 //! Forces of one instant, by both routes.
 
 use kempe_mechanism::constraint::Joint;
-use kempe_mechanism::structure::Source;
 use kempe_mechanism::{BodyId, Design};
 use kempe_model::{DriveId, LinkId};
 use kempe_number::Number as _;
@@ -120,8 +119,11 @@ impl<T: ForceNumber> Forces<T> {
             needed: vec![zero; bodies],
             drive_constraints: (0..drives)
                 .map(|d| {
-                    let source = Source::Drive(DriveId(d as u32));
-                    mechanism.constraints.iter().position(|c| c.1 == source)
+                    let drive = Some(DriveId(d as u32));
+                    mechanism
+                        .constraints
+                        .iter()
+                        .position(|(c, _)| c.drive() == drive)
                 })
                 .collect(),
             acting,

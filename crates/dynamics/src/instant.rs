@@ -1,9 +1,10 @@
 //! One instant of a motion, as the forces need it.
 
 use kempe_measure::{Series, State};
+use kempe_mechanism::configuration::input_of;
 use kempe_mechanism::constraint::Input;
 use kempe_mechanism::{BodyId, Configuration, Mechanism, Pose};
-use kempe_model::{DriveId, DriveKind};
+use kempe_model::DriveId;
 use kempe_number::{Jet, Number};
 
 use crate::vector::{add, left, times};
@@ -111,13 +112,6 @@ pub(crate) fn cut<B: Number>(series: Series<B>) -> Rates<B> {
     Rates::from_coefficients([0, 1, 2].map(|k| series.coefficient(k)))
 }
 
-fn input<T: Number>(kind: &DriveKind, value: T) -> Input<T> {
-    match kind {
-        DriveKind::Turn { .. } => Input::turn(value),
-        DriveKind::Cylinder { .. } | DriveKind::Slide { .. } => Input::length(value),
-    }
-}
-
 impl<B: Number> Instant<Rates<B>> {
     /// Takes everything but the amounts from a state. Coefficients of drives other than the one along which the state's
     /// series run are known at the instant only: their rates are NaN.
@@ -135,7 +129,7 @@ impl<B: Number> Instant<Rates<B>> {
         for (index, drive) in state.mechanism().model.drives.iter().enumerate() {
             let id = DriveId(index as u32);
             let coordinate = state.coordinate(id);
-            self.inputs[index] = input(&drive.kind, cut(coordinate));
+            self.inputs[index] = input_of(drive, cut(coordinate));
             let speed = coordinate.differentiate();
             self.drive_speeds[index] = cut(speed);
             self.drive_accelerations[index] = cut(speed.differentiate());
@@ -194,11 +188,7 @@ impl Instant<Rates> {
             three(from, to);
         }
         for (from, to) in self.inputs.iter().zip(&mut out.inputs) {
-            *to = Input {
-                value: from.value.value(),
-                c: from.c.value(),
-                s: from.s.value(),
-            };
+            *to = from.plain();
         }
         for (from, to) in self.drive_speeds.iter().zip(&mut out.drive_speeds) {
             *to = from.value();
@@ -219,27 +209,14 @@ impl Instant<f64> {
     /// acceleration while the others stand still. Allocates nothing. `near` are the bodies' angles to within half a turn.
     pub fn set_along(
         &mut self,
-        mechanism: &Mechanism,
         state: &Configuration<Rates>,
         near: &[f64],
         drive: DriveId,
         [speed, acceleration]: [f64; 2],
     ) {
-        for (index, ((input_out, input_in), kind)) in self
-            .inputs
-            .iter_mut()
-            .zip(&state.inputs)
-            .zip(mechanism.model.drives.iter().map(|d| &d.kind))
-            .enumerate()
+        for (index, (input_out, input_in)) in self.inputs.iter_mut().zip(&state.inputs).enumerate()
         {
-            *input_out = match kind {
-                DriveKind::Turn { .. } => Input {
-                    value: input_in.value.value(),
-                    c: input_in.c.value(),
-                    s: input_in.s.value(),
-                },
-                _ => Input::length(input_in.value.value()),
-            };
+            *input_out = input_in.plain();
             let moves = index == drive.index();
             self.drive_speeds[index] = if moves { speed } else { 0.0 };
             self.drive_accelerations[index] = if moves { acceleration } else { 0.0 };

@@ -63,7 +63,7 @@ pub use acting::Acting;
 pub use arrow::{ForceArrow, Origin};
 pub use equations_of_motion::EquationsOfMotion;
 pub use forces::{Forces, FrictionOutcome};
-pub use instant::Instant;
+pub use instant::{Instant, Rates};
 pub use note::ForceNote;
 pub use number::ForceNumber;
 pub use problem::Problem;

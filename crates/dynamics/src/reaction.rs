@@ -234,6 +234,8 @@ impl<T: ForceNumber> Forces<T> {
                     .and_then(|(at, _)| self.design.mechanism.marker(at))
             }
             DriveKind::Turn { link, relative_to } => self.pivot_marker(*link, *relative_to),
+            // Its constraints are the joint's, and so is its load.
+            DriveKind::Release { .. } => None,
         }?;
         let place = at.place(
             marker.body,

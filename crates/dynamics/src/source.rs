@@ -33,18 +33,28 @@ where
     /// All problems of what acts on the mechanism.
     pub fn new(motion: &Arc<Motion>, parameters: &[B]) -> Result<Self, Vec<Problem>> {
         let rich: Vec<Rates<B>> = parameters.iter().map(|x| Rates::constant(*x)).collect();
-        let mut forces = Forces::new(motion.design_of(&rich))?;
         let mut start = Branch::neutral(motion.mechanism());
         motion.branch_at(motion.start, &mut start);
+        let mut it = Self::of(motion.design_of(&rich), &start.near)?;
+        it.forces.equilibrium.pace = pace(&motion.design);
+        Ok(it)
+    }
+
+    /// Prepares the forces of a design whose states come from anywhere; `near` are the bodies' angles to within half a turn
+    /// where springs about pins begin to count turns, rad.
+    ///
+    /// # Errors
+    /// All problems of what acts on the mechanism.
+    pub fn of(design: Design<Rates<B>>, near: &[f64]) -> Result<Self, Vec<Problem>> {
+        let mut forces = Forces::new(design)?;
         for spring in &mut forces.acting.springs {
-            spring.align(&forces.design.geometry, &start.near);
+            spring.align(&forces.design.geometry, near);
         }
-        forces.equilibrium.pace = pace(&motion.design);
         let measures: Vec<Measure> = (forces.acting.amounts.iter())
             .map(|a| a.measure.clone())
             .collect();
         Ok(Self {
-            instant: Instant::new(motion.mechanism(), measures.len()),
+            instant: Instant::new(&forces.design.mechanism, measures.len()),
             measures,
             forces,
         })

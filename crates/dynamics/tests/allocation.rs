@@ -56,7 +56,7 @@ fn forces_of_the_door_lock_allocate_nothing() {
     motion.solve(&rich, Jet::variable(0.3), &mut solver);
     let mut once = |speed: f64| {
         let near = &solver.branch.near;
-        instant.set_along(&mechanism, &solver.state, near, DriveId(0), [speed, 2.0]);
+        instant.set_along(&solver.state, near, DriveId(0), [speed, 2.0]);
         forces.solve(&instant);
         forces.drives[0].value
     };

@@ -1,7 +1,8 @@
 //! What a position solve fills: the poses at given inputs, with its storage.
 
-use kempe_model::{DriveId, DriveKind};
+use kempe_model::DriveId;
 use kempe_number::Number;
+use kempe_units::Dimension;
 
 use crate::Mechanism;
 use crate::branch::Branch;
@@ -147,8 +148,8 @@ impl<T: Number> Configuration<T> {
 /// A drive's coordinate as the constraints see it.
 #[inline(always)]
 pub fn input_of<T: Number>(drive: &kempe_model::Drive, value: T) -> Input<T> {
-    match drive.kind {
-        DriveKind::Turn { .. } => Input::turn(value),
-        DriveKind::Cylinder { .. } | DriveKind::Slide { .. } => Input::length(value),
+    match drive.dimension {
+        Dimension::ANGLE => Input::turn(value),
+        _ => Input::length(value),
     }
 }

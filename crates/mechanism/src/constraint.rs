@@ -16,6 +16,7 @@ mod loads;
 mod on_arc;
 mod on_line;
 mod rack;
+mod released;
 mod situation;
 mod travel;
 
@@ -30,6 +31,7 @@ pub use self::loads::{LoadPoint, Rubs, Sliding};
 pub use self::on_arc::OnArc;
 pub use self::on_line::OnLine;
 pub use self::rack::Rack;
+pub use self::released::Released;
 pub use self::situation::{Input, Situation};
 pub use self::travel::Travel;
 
@@ -56,13 +58,29 @@ pub enum Source {
     Drive(DriveId),
 }
 
+impl From<kempe_model::Released> for Source {
+    fn from(joint: kempe_model::Released) -> Self {
+        match joint {
+            kempe_model::Released::Pin { point, link } => Self::Pin { point, link },
+            kempe_model::Released::Joint(joint) => Self::Joint(joint),
+        }
+    }
+}
+
 /// Declares the kinds, and [`Joint`] for the enum over them: each question goes to the kind's own file.
 macro_rules! kinds {
-    ($($(#[$doc:meta])* $kind:ident,)*) => {
+    (
+        joints_and_drives { $($(#[$doc:meta])* $kind:ident,)* }
+        joints_let_go { $($held:ident as $released:ident,)* }
+    ) => {
         /// One condition between bodies.
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub enum Constraint {
             $($(#[$doc])* $kind($kind),)*
+            $(
+                /// A row of this joint that is let go.
+                $released(Released<$held>),
+            )*
         }
 
         $(impl From<$kind> for Constraint {
@@ -71,35 +89,62 @@ macro_rules! kinds {
             }
         })*
 
+        impl Constraint {
+            /// The constraint that holds one row of this joint at the coordinate of a drive in place of zero. `None` for a
+            /// constraint that holds a drive already.
+            pub fn releasing(self, row: u8, input: DriveId) -> Option<Self> {
+                match self {
+                    // An angle that is let go is a driven angle: whole turns, and a closed form.
+                    Self::Direction(joint @ Direction { input: None, .. }) => {
+                        let input = Some(input);
+                        Some(Direction { input, ..joint }.into())
+                    }
+                    $(Self::$held(joint) => Some(Self::$released(Released { joint, row, input })),)*
+                    _ => None,
+                }
+            }
+        }
+
         /// Asks the kind that a constraint is of.
         macro_rules! ask {
             ($constraint:expr, $joint:ident => $answer:expr) => {
                 match $constraint {
                     $(Constraint::$kind($joint) => $answer,)*
+                    $(Constraint::$released($joint) => $answer,)*
                 }
             };
         }
     };
 }
 kinds! {
-    /// Two points coincide: two rows.
-    Coincide,
-    /// A point lies on a line.
-    OnLine,
-    /// The angle between two bodies is set.
-    Direction,
-    /// The distance of two points is a drive's coordinate.
-    Distance,
-    /// A point's coordinate along a line is a drive's coordinate.
-    Travel,
-    /// Two gears in mesh on an arm.
-    Gears,
-    /// A pinion rolling on a rack.
-    Rack,
-    /// A belt or chain over two wheels on an arm.
-    Belt,
-    /// A point lies on a circular arc.
-    OnArc,
+    joints_and_drives {
+        /// Two points coincide: two rows.
+        Coincide,
+        /// A point lies on a line.
+        OnLine,
+        /// The angle between two bodies is set.
+        Direction,
+        /// The distance of two points is a drive's coordinate.
+        Distance,
+        /// A point's coordinate along a line is a drive's coordinate.
+        Travel,
+        /// Two gears in mesh on an arm.
+        Gears,
+        /// A pinion rolling on a rack.
+        Rack,
+        /// A belt or chain over two wheels on an arm.
+        Belt,
+        /// A point lies on a circular arc.
+        OnArc,
+    }
+    joints_let_go {
+        Coincide as ReleasedPin,
+        OnLine as ReleasedSlot,
+        OnArc as ReleasedArcSlot,
+        Gears as ReleasedGears,
+        Rack as ReleasedRack,
+        Belt as ReleasedBelt,
+    }
 }
 
 impl Joint for Constraint {
@@ -179,6 +224,10 @@ impl Joint for Constraint {
 
     fn opened_by(&self, parts: &Parts) -> Vec<(LinkId, LinkId)> {
         ask!(self, joint => joint.opened_by(parts))
+    }
+
+    fn needs_pins(&self) -> Option<[Marker; 2]> {
+        ask!(self, joint => joint.needs_pins())
     }
 
     fn load_gradients<T: Number>(&self, at: &Situation<'_, T>, emit: impl FnMut(Gradient<T>)) {

@@ -3,7 +3,7 @@
 use std::ops::Deref;
 use std::sync::Arc;
 
-use kempe_model::Model;
+use kempe_model::{DriveId, Model};
 
 use crate::plan::Plan;
 use crate::structure::Structure;
@@ -16,6 +16,8 @@ pub struct Mechanism {
     pub structure: Structure,
     /// How its poses are found for given coordinates of the drives.
     pub plan: Plan,
+    /// Coordinates that are let go: no law gives them, they move as forces make them.
+    pub released: Vec<DriveId>,
 }
 
 impl Mechanism {
@@ -26,8 +28,16 @@ impl Mechanism {
 
     /// Plans a structure.
     pub fn of(structure: Structure) -> Arc<Self> {
+        Arc::new(Self::planned(structure))
+    }
+
+    pub(crate) fn planned(structure: Structure) -> Self {
         let plan = Plan::new(&structure);
-        Arc::new(Self { structure, plan })
+        Self {
+            structure,
+            plan,
+            released: Vec::new(),
+        }
     }
 }
 

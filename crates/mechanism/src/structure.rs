@@ -34,9 +34,10 @@ impl Structure {
         for index in 0..model.joints.len() {
             it.add_joint(JointId(index as u32));
         }
+        let opened = it.open_joints();
         it.joint_constraints = it.constraints.len();
         for index in 0..model.drives.len() {
-            it.add_drive(DriveId(index as u32));
+            it.add_drive(DriveId(index as u32), &opened);
         }
         it
     }

@@ -2,7 +2,7 @@
 
 use kempe_units::Dimension;
 
-use crate::ids::{JointId, LinkId, LinkPointRef, Scalar, Span};
+use crate::ids::{JointId, LinkId, LinkPointRef, PointId, Scalar, Span};
 
 /// What is moved from outside.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,6 +41,28 @@ pub enum DriveKind {
         /// The slider or slot joint.
         joint: JointId,
     },
+    /// A joint that is let go, by one of its rows: how far it stands open there. Files cannot say it, and a model written as a
+    /// file leaves it out.
+    Release {
+        /// The joint.
+        of: Released,
+        /// Which of its rows.
+        row: u8,
+    },
+}
+
+/// A joint that can be let go.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Released {
+    /// The pin between a point's first link and a later one.
+    Pin {
+        /// The point.
+        point: PointId,
+        /// The later link.
+        link: LinkId,
+    },
+    /// A joint of the file.
+    Joint(JointId),
 }
 
 /// How a drive moves in time.

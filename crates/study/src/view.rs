@@ -252,6 +252,7 @@ fn drives(model: &Model, parameters: &[f64]) -> Vec<DriveView> {
                     guide: guide(on),
                 }
             }
+            DriveKind::Release { .. } => return None,
         };
         let (from, duration) = (
             drive.law.at(0.0, parameters),

@@ -14,7 +14,7 @@ use super::isotropic::Isotropic;
 use super::joint::{Gradient, InAngles, Joint, Pairs, Touch, Unit};
 use super::loads::LoadPoint;
 use super::situation::Situation;
-use crate::ids::BodyId;
+use crate::ids::{BodyId, Marker};
 use crate::parts::Parts;
 use crate::pose::{cross, dot, left};
 use crate::step::Step;
@@ -115,6 +115,10 @@ impl Joint for Belt {
 
     fn opened_by(&self, parts: &Parts) -> Vec<(LinkId, LinkId)> {
         self.wheels.opened_by(parts)
+    }
+
+    fn needs_pins(&self) -> Option<[Marker; 2]> {
+        self.wheels.pins
     }
 
     fn load_gradients<T: Number>(&self, at: &Situation<'_, T>, mut emit: impl FnMut(Gradient<T>)) {

@@ -128,6 +128,10 @@ impl Joint for Gears {
         vec![(a, arm), (b, arm)]
     }
 
+    fn needs_pins(&self) -> Option<[Marker; 2]> {
+        self.pins
+    }
+
     fn load_gradients<T: Number>(&self, at: &Situation<'_, T>, mut emit: impl FnMut(Gradient<T>)) {
         let (Some(point), Some((_, axis))) = (self.pitch_point(at), self.axes(at)) else {
             self.gradients(at, emit);

@@ -96,6 +96,11 @@ pub trait Joint {
         Vec::new()
     }
 
+    /// The pins by which its wheels turn on their arm: its rows tell the angles of wheels whose pins hold, and no others.
+    fn needs_pins(&self) -> Option<[Marker; 2]> {
+        None
+    }
+
     /// Hands out the derivatives of the rows whose multipliers are the loads it carries: those of the residual, unless a
     /// condition that says the same of a motion tells better where the load acts.
     fn load_gradients<T: Number>(&self, at: &Situation<'_, T>, emit: impl FnMut(Gradient<T>)) {

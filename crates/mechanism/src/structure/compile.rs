@@ -4,7 +4,9 @@ use kempe_model::{DriveId, DriveKind, JointId, JointKind, LinkId, LinkPointRef, 
 use kempe_units::Expr;
 
 use super::{Source, Structure};
-use crate::constraint::{Belt, Coincide, Direction, Distance, Gears, OnArc, OnLine, Rack, Travel};
+use crate::constraint::{
+    Belt, Coincide, Constraint, Direction, Distance, Gears, Joint, OnArc, OnLine, Rack, Travel,
+};
 use crate::ids::{BodyId, LineRef};
 use crate::sources::{AngleSource, GearSource, LineSource, ZERO};
 
@@ -134,8 +136,23 @@ impl Structure {
         }
     }
 
-    /// What a drive demands.
-    pub(super) fn add_drive(&mut self, id: DriveId) {
+    /// Takes the constraints of joints that drives let go out of the joints'.
+    pub(super) fn open_joints(&mut self) -> Vec<(Constraint, Source)> {
+        let drives = self.model.drives.iter();
+        let released: Vec<Source> = drives
+            .filter_map(|drive| match drive.kind {
+                DriveKind::Release { of, .. } => Some(of.into()),
+                _ => None,
+            })
+            .collect();
+        let all = std::mem::take(&mut self.constraints).into_iter();
+        let (opened, kept) = all.partition(|(_, source)| released.contains(source));
+        self.constraints = kept;
+        opened
+    }
+
+    /// What a drive demands; `opened` are the constraints of joints that are let go.
+    pub(super) fn add_drive(&mut self, id: DriveId, opened: &[(Constraint, Source)]) {
         let drive = self.model.drives[id.index()].clone();
         let source = Source::Drive(id);
         match drive.kind {
@@ -172,6 +189,17 @@ impl Structure {
                         input: id,
                     };
                     self.constraints.push((travel.into(), source));
+                }
+            }
+            DriveKind::Release { of, row } => {
+                let opened = opened.iter().filter(|(_, source)| *source == of.into());
+                let mut rows = opened.flat_map(|(constraint, source)| {
+                    (0..constraint.rows() as u8).map(move |row| (*constraint, row, *source))
+                });
+                if let Some((constraint, row, source)) = rows.nth(usize::from(row))
+                    && let Some(released) = constraint.releasing(row, id)
+                {
+                    self.constraints.push((released, source));
                 }
             }
         }

@@ -52,7 +52,7 @@ fn drive(cx: &mut Context<'_>, key: &Key, cylinder: bool) -> Option<DriveId> {
     let fits = |kind: &DriveKind| match kind {
         DriveKind::Cylinder { .. } => cylinder,
         DriveKind::Turn { .. } => !cylinder,
-        DriveKind::Slide { .. } => false,
+        DriveKind::Slide { .. } | DriveKind::Release { .. } => false,
     };
     let section = if cylinder { "cylinders" } else { "motors" };
     if let Some((Meaning::Drive(i), declared)) = cx.names.get(name) {
@@ -109,6 +109,7 @@ pub(crate) fn what_it_is(kind: &DriveKind) -> &'static str {
         DriveKind::Turn { .. } => "turns a link",
         DriveKind::Cylinder { .. } => "is a cylinder",
         DriveKind::Slide { .. } => "slides along a line",
+        DriveKind::Release { .. } => "lets go of a joint",
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::diagnostic::Diagnostic;
 use crate::document::{Key, Node};
-use crate::drive::{Drive, DriveKind};
+use crate::drive::{Drive, DriveKind, Released};
 use crate::ids::{DriveId, FRAME, JointId, LinkId, LinkPointRef, PointId};
 use crate::joint::JointKind;
 use crate::key_table::DRIVES;
@@ -285,6 +285,14 @@ fn same_coordinate(cx: &mut Context<'_>, drive: &Drive) {
         }
         DriveKind::Cylinder { a, b } => (1, a.point.0.min(b.point.0), a.point.0.max(b.point.0)),
         DriveKind::Slide { joint } => (2, joint.0, 0),
+        DriveKind::Release {
+            of: Released::Joint(joint),
+            row,
+        } => (3 + row, joint.0, 0),
+        DriveKind::Release {
+            of: Released::Pin { point, link },
+            row,
+        } => (5 + row, point.0, link.0),
     };
     let Some(other) = cx
         .model

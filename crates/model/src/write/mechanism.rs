@@ -22,7 +22,7 @@ impl Writer<'_> {
             .collect();
         let drives = model.drives.iter();
         *file.section("drives") = drives
-            .map(|d| (d.name.clone(), Item::Table(self.drive_entry(d))))
+            .filter_map(|d| Some((d.name.clone(), Item::Table(self.drive_entry(d)?))))
             .collect();
         let hints = model.assembly.iter();
         *file.section("assembly") = hints.map(|h| self.hint(&h.kind)).collect();
@@ -166,7 +166,8 @@ impl Writer<'_> {
         entries
     }
 
-    fn drive_entry(&mut self, drive: &Drive) -> Entries {
+    /// `None` for a joint that is let go: files cannot say it.
+    fn drive_entry(&mut self, drive: &Drive) -> Option<Entries> {
         let text = |key: &str, text: &str| (key.to_owned(), Item::text(text));
         let mut entries = match drive.kind {
             DriveKind::Turn { link, relative_to } => {
@@ -181,9 +182,10 @@ impl Writer<'_> {
                 vec![text("cylinder", &pair)]
             }
             DriveKind::Slide { joint } => vec![text("slides", self.joint(joint))],
+            DriveKind::Release { .. } => return None,
         };
         self.law(drive, &mut entries);
-        entries
+        Some(entries)
     }
 
     fn hint(&self, kind: &HintKind) -> (String, Item) {

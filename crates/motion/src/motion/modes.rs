@@ -1,7 +1,6 @@
 //! Where the assembly modes of a motion change, and what it meets there.
 
-use kempe_mechanism::plan::Step;
-use kempe_mechanism::{Branch, Configuration};
+use kempe_mechanism::Configuration;
 
 use super::Motion;
 use super::branch::Patch;
@@ -177,56 +176,14 @@ impl Motion {
 
     /// The determinant of every step at a node, with the sign of its assembly mode.
     fn determinants(&self, follower: &mut Follower<'_, DrivePath>, node: &Node) -> Vec<f64> {
-        let mut branch = Branch::neutral(self.mechanism());
         let mut state: Configuration<f64> = Configuration::new(self.mechanism());
-        follower.unscaled(&node.z, &mut state.poses, &mut branch.near);
-        branch.guess.clone_from(&state.poses);
+        let mut near = vec![0.0; self.mechanism().bodies];
+        follower.unscaled(&node.z, &mut state.poses, &mut near);
         let mut coordinates = vec![0.0; self.mechanism().model.drives.len()];
         self.path
             .coordinates(follower.parameter(&node.z), &mut coordinates);
         state.set_inputs(self.mechanism(), &coordinates);
-        let truth = state.poses.clone();
-        let mut list = Vec::with_capacity(self.mechanism().plan.steps.len());
-        for (index, step) in self.mechanism().plan.steps.iter().enumerate() {
-            let unknowns = &self.mechanism().plan.blocks[index].unknowns;
-            let mut best = (f64::INFINITY, 1.0);
-            let trials: &[f64] = if step.has_modes() {
-                &[1.0, -1.0]
-            } else {
-                &[1.0]
-            };
-            for &sign in trials {
-                self.mechanism()
-                    .plan
-                    .solve_step(index, sign, &self.design, &branch, &mut state);
-                let gap: f64 = unknowns
-                    .iter()
-                    .map(|u| {
-                        let (a, b) = (&state.poses[u.body().index()], &truth[u.body().index()]);
-                        ((a.x - b.x).abs() + (a.y - b.y).abs()) / self.size
-                            + (a.c - b.c).abs()
-                            + (a.s - b.s).abs()
-                    })
-                    .sum();
-                if gap < best.0 {
-                    best = (gap, state.determinants[index]);
-                }
-            }
-            // The next steps build on the true pose.
-            for unknown in unknowns {
-                state.poses[unknown.body().index()] = truth[unknown.body().index()];
-            }
-            let relevant =
-                step.has_modes() || matches!(step, Step::Newton { .. } | Step::Cross { .. });
-            list.push(if relevant && best.0.is_finite() {
-                best.1
-            } else if relevant {
-                0.0
-            } else {
-                1.0
-            });
-        }
-        list
+        self.design.determinants(&mut state, &near, self.size)
     }
 }
 

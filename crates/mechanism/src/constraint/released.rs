@@ -1,0 +1,85 @@
+//! A row of a joint that is let go: it is held at the coordinate of a drive in place of zero, or moves freely, by whatever
+//! that coordinate does.
+//!
+//! What the drive gives then is what the row carried: the load of a joint is the generalised force of the coordinate that
+//! lets it go.
+
+use kempe_model::{DriveId, LinkId};
+use kempe_number::Number;
+
+use super::isotropic::Isotropic;
+use super::joint::{Gradient, InAngles, Joint, Pairs, Touch, Unit};
+use super::loads::LoadPoint;
+use super::situation::Situation;
+use crate::ids::BodyId;
+use crate::parts::Parts;
+
+/// One row of a joint, off by the coordinate of a drive.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Released<J> {
+    /// The joint.
+    pub joint: J,
+    /// Which of its rows.
+    pub row: u8,
+    /// The drive whose coordinate the row has, in the row's unit.
+    pub input: DriveId,
+}
+
+impl<J: Joint> Joint for Released<J> {
+    fn unit(&self) -> Unit {
+        self.joint.unit()
+    }
+
+    fn touches(&self) -> [Option<Touch>; 3] {
+        self.joint.touches()
+    }
+
+    fn drive(&self) -> Option<DriveId> {
+        Some(self.input)
+    }
+
+    fn pairs(&self) -> Pairs {
+        Pairs::default()
+    }
+
+    fn links(&self, parts: &Parts) -> Vec<LinkId> {
+        self.joint.links(parts)
+    }
+
+    #[inline]
+    fn residual<T: Number>(&self, at: &Situation<'_, T>) -> [T; 2] {
+        let row = self.joint.residual(at)[usize::from(self.row)];
+        [row - at.inputs[self.input.index()].value, T::zero()]
+    }
+
+    #[inline]
+    fn gradients<T: Number>(&self, at: &Situation<'_, T>, mut emit: impl FnMut(Gradient<T>)) -> T {
+        self.joint.gradients(at, |gradient| {
+            if gradient.row == usize::from(self.row) {
+                emit(Gradient { row: 0, ..gradient });
+            }
+        });
+        -T::one()
+    }
+
+    /// Never: assemblies are those of the joint that holds.
+    fn isotropic(&self, _: &Situation<'_, f64>, _: f64) -> Option<Isotropic> {
+        None
+    }
+
+    fn in_angles(&self, at: &Situation<'_, f64>) -> Option<InAngles> {
+        let it = self.joint.in_angles(at)?;
+        Some(InAngles {
+            constant: it.constant + at.inputs[self.input.index()].value,
+            ..it
+        })
+    }
+
+    fn counts_turns(&self) -> bool {
+        self.joint.counts_turns()
+    }
+
+    fn load_point(&self, body: BodyId) -> Option<LoadPoint> {
+        self.joint.load_point(body)
+    }
+}
