@@ -74,7 +74,7 @@ impl<T: ForceNumber> Forces<T> {
                 Some(motor) => {
                     let speed = at.drive_speeds[d.index()];
                     let torque = motor.torque(speed);
-                    Some(if speed.value() < 0.0 { -torque } else { torque })
+                    Some(speed.choose(torque, -torque))
                 }
                 None => self.cylinder(*d).and_then(|c| {
                     let force = drive(d)?.value;

@@ -84,11 +84,10 @@ impl<T: Number> Cylinder<T> {
     /// areas exchanged.
     pub fn pressure(&self, force: T, direction: f64) -> T {
         let one = force / self.count + self.friction * direction;
-        if one.value() >= 0.0 {
-            (one + self.back * self.ring_area) / self.bore_area
-        } else {
-            (self.back * self.bore_area - one) / self.ring_area
-        }
+        one.choose_with(
+            || (one + self.back * self.ring_area) / self.bore_area,
+            || (self.back * self.bore_area - one) / self.ring_area,
+        )
     }
 
     /// What all cylinders together can give along the coordinate at their highest pressure, N, moving in the sense
@@ -96,21 +95,16 @@ impl<T: Number> Cylinder<T> {
     /// without a pressure.
     pub fn capacity(&self, force: T, direction: f64) -> Option<T> {
         let highest = self.highest?;
-        let one = if force.value() >= 0.0 {
-            highest * self.bore_area - self.back * self.ring_area
-        } else {
-            self.back * self.bore_area - highest * self.ring_area
-        };
+        let one = force.choose_with(
+            || highest * self.bore_area - self.back * self.ring_area,
+            || self.back * self.bore_area - highest * self.ring_area,
+        );
         Some((one - self.friction * direction) * self.count)
     }
 
     /// Oil that all cylinders together take in at a speed, m^3/s.
     pub fn flow_at(&self, speed: T) -> T {
-        let area = if speed.value() >= 0.0 {
-            self.bore_area
-        } else {
-            self.ring_area
-        };
+        let area = speed.choose(self.bore_area, self.ring_area);
         speed.abs() * area * self.count
     }
 

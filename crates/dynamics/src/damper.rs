@@ -60,12 +60,7 @@ impl<T: Number> Damper<T> {
     }
 
     fn tension(&self, stretch: &Stretch<T>) -> T {
-        let damping = if stretch.rate.value() < 0.0 {
-            self.closing
-        } else {
-            self.parting
-        };
-        damping * stretch.rate
+        stretch.rate.choose(self.parting, self.closing) * stretch.rate
     }
 
     /// Its tension at an instant, N or N m.
@@ -85,8 +80,7 @@ impl<T: Number> Damper<T> {
         let tension = self.tension(&stretch);
         let pull = match self.ends {
             Ends::Links(_) => tension,
-            Ends::Points(_) if stretch.length.value() == 0.0 => T::zero(),
-            Ends::Points(_) => tension / stretch.length,
+            Ends::Points(_) => (-stretch.length).choose_with(T::zero, || tension / stretch.length),
         };
         self.ends.pull(geometry, at, &stretch, pull, on_links);
     }

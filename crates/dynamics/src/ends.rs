@@ -73,11 +73,7 @@ impl Ends {
                 let span = sub(at.place(b.body, arm_b), at.place(a.body, arm_a));
                 let parting = sub(at.velocity(b.body, arm_b), at.velocity(a.body, arm_a));
                 let distance = length(span);
-                let rate = if distance.value() == 0.0 {
-                    T::zero()
-                } else {
-                    dot(span, parting) / distance
-                };
+                let rate = (-distance).choose_with(T::zero, || dot(span, parting) / distance);
                 Stretch {
                     length: distance,
                     rate,

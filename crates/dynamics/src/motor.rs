@@ -40,24 +40,29 @@ impl<T: Number> Motor<T> {
     pub fn torque(&self, speed: T) -> T {
         let one_sided = self.curve.first().is_some_and(|p| p.0.value() >= 0.0);
         let x = if one_sided { speed.abs() } else { speed };
-        let plain = x.value();
-        let after = self.curve.partition_point(|p| p.0.value() <= plain);
-        match (
-            after.checked_sub(1).and_then(|i| self.curve.get(i)),
-            self.curve.get(after),
-        ) {
-            (Some(low), Some(high)) => low.1 + (high.1 - low.1) * ((x - low.0) / (high.0 - low.0)),
-            (None, Some(first)) => first.1,
-            (Some(last), None) if last.0.value() == plain => last.1,
-            _ => T::zero(),
+        match self.curve.as_slice() {
+            [] => T::zero(),
+            [first, ..] => (x - first.0).choose_with(|| beyond(&self.curve, x), || first.1),
         }
     }
 
     /// What it has left, N m, when it must give `needed` at a speed: negative when it is too weak. Braking takes nothing
     /// from it.
     pub fn margin(&self, needed: T, speed: T) -> T {
-        let along = if speed.value() < 0.0 { -needed } else { needed };
+        let along = speed.choose(needed, -needed);
         self.torque(speed) - along.max(T::zero())
+    }
+}
+
+/// The torque at a speed that is not below the first of these points.
+fn beyond<T: Number>(curve: &[(T, T)], x: T) -> T {
+    match curve {
+        [low, high, ..] => (x - high.0).choose_with(
+            || beyond(&curve[1..], x),
+            || low.1 + (high.1 - low.1) * ((x - low.0) / (high.0 - low.0)),
+        ),
+        [last] => (last.0 - x).choose_with(|| last.1, T::zero),
+        [] => T::zero(),
     }
 }
 

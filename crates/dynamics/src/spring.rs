@@ -46,27 +46,32 @@ impl<T: Number> SpringLaw<T> {
         }
     }
 
-    fn is_slack(&self, tension: T) -> bool {
+    /// `taut` where the spring bears this tension, zero where it goes slack.
+    fn unless_slack(&self, tension: T, taut: impl FnOnce() -> T) -> T {
         match self.acts {
-            Acts::Both => false,
-            Acts::Tension => tension.value() < 0.0,
-            Acts::Compression => tension.value() > 0.0,
+            Acts::Both => taut(),
+            Acts::Tension => tension.choose_with(taut, T::zero),
+            Acts::Compression => (-tension).choose_with(taut, T::zero),
         }
     }
 
     /// How far a length is beyond a stop; negative below the lower one, zero between them.
     fn beyond(&self, length: T) -> T {
-        match self.stops {
-            [Some(low), _] if length.value() < low.value() => length - low,
-            [_, Some(high)] if length.value() > high.value() => length - high,
-            _ => T::zero(),
+        let above = || {
+            self.stops[1].map_or(T::zero(), |high| {
+                (high - length).choose_with(T::zero, || length - high)
+            })
+        };
+        match self.stops[0] {
+            Some(low) => (length - low).choose_with(above, || length - low),
+            None => above(),
         }
     }
 
     /// Tension at a length, N or N m.
     pub fn tension(&self, length: T) -> T {
         let own = self.preload + self.stiffness * (length - self.free);
-        let own = if self.is_slack(own) { T::zero() } else { own };
+        let own = self.unless_slack(own, || own);
         own + self.stop_stiffness * self.beyond(length)
     }
 
@@ -77,13 +82,12 @@ impl<T: Number> SpringLaw<T> {
             Acts::Both => self.preload * x + self.stiffness * x.square() / 2.0,
             _ => {
                 let tension = self.preload + self.stiffness * x;
-                if self.is_slack(tension) {
-                    T::zero()
-                } else if self.stiffness.value() == 0.0 {
-                    self.preload * x
-                } else {
-                    tension.square() / self.stiffness / 2.0
-                }
+                self.unless_slack(tension, || {
+                    (-self.stiffness.abs()).choose_with(
+                        || self.preload * x,
+                        || tension.square() / self.stiffness / 2.0,
+                    )
+                })
             }
         };
         own + self.stop_stiffness * self.beyond(length).square() / 2.0
@@ -93,16 +97,9 @@ impl<T: Number> SpringLaw<T> {
     fn pull(&self, length: T) -> T {
         let rest = self.preload - self.stiffness * self.free;
         if self.acts == Acts::Both && self.stops.iter().all(Option::is_none) {
-            if length.value() == 0.0 || rest.value() == 0.0 {
-                return self.stiffness;
-            }
-            return self.stiffness + rest / length;
+            return (-length).choose_with(|| self.stiffness, || self.stiffness + rest / length);
         }
-        if length.value() == 0.0 {
-            T::zero()
-        } else {
-            self.tension(length) / length
-        }
+        (-length).choose_with(T::zero, || self.tension(length) / length)
     }
 }
 

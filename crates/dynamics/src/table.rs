@@ -1,6 +1,6 @@
 //! Measured curves: smooth, monotone where the data is, periodic where it repeats.
 
-use kempe_number::Number;
+use kempe_number::{Number, piecewise};
 
 /// A curve through measured points.
 ///
@@ -66,27 +66,30 @@ impl Table {
     pub fn value<T: Number>(&self, x: T) -> T {
         let last = self.at.len() - 1;
         let x = match self.period {
-            Some(period) => x + -period * ((x.value() - self.at[0]) / period).floor(),
+            Some(period) => x + ((x - self.at[0]) / period).floor() * -period,
             None => x,
         };
-        let plain = x.value();
-        if plain.is_nan() {
-            return T::from_f64(f64::NAN);
+        let held = |k: usize| T::from_f64(self.values[k]);
+        if last == 0 {
+            return x.choose_with(|| held(0), || held(0));
         }
-        if last == 0 || plain < self.at[0] {
-            return T::from_f64(self.values[0]);
-        }
-        if plain > self.at[last] {
-            return T::from_f64(self.values[last]);
-        }
-        let k = self.at.partition_point(|a| *a <= plain).clamp(1, last) - 1;
-        let h = self.at[k + 1] - self.at[k];
-        let rise = (self.values[k + 1] - self.values[k]) / h;
-        let (low, high) = (self.slopes[k], self.slopes[k + 1]);
-        let s = x + -self.at[k];
-        let square = (3.0 * rise - 2.0 * low - high) / h;
-        let cube = (low + high - 2.0 * rise) / (h * h);
-        ((s * cube + square) * s + low) * s + self.values[k]
+        (x - self.at[0]).choose_with(
+            || (-x + self.at[last]).choose_with(|| self.inside(x), || held(last)),
+            || held(0),
+        )
+    }
+
+    /// The value at an abscissa between the first point and the last, of several.
+    fn inside<T: Number>(&self, x: T) -> T {
+        piecewise(&self.at, x, &|k| {
+            let h = self.at[k + 1] - self.at[k];
+            let rise = (self.values[k + 1] - self.values[k]) / h;
+            let (low, high) = (self.slopes[k], self.slopes[k + 1]);
+            let s = x + -self.at[k];
+            let square = (3.0 * rise - 2.0 * low - high) / h;
+            let cube = (low + high - 2.0 * rise) / (h * h);
+            ((s * cube + square) * s + low) * s + self.values[k]
+        })
     }
 }
 
@@ -142,6 +145,8 @@ fn end_slope(h0: f64, h1: f64, d0: f64, d1: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use kempe_number::{Interval, Lanes};
+
     use super::*;
 
     #[test]
@@ -167,6 +172,16 @@ mod tests {
             assert!((a - b).abs() < 1e-12);
         }
         assert!((table.value(-1.0) - 2.0_f64).abs() < 1e-14);
+        // Every part of a number is in its own piece and period.
+        let at: [f64; 8] = std::array::from_fn(|k| 1.7 * k as f64 - 5.0);
+        let lanes: Lanes<8> = table.value(Lanes(at));
+        for (lane, x) in at.iter().enumerate() {
+            assert_eq!(lanes.lane(lane), table.value(*x));
+            let bounds: Interval = table.value(Interval::new(*x, x + 1.1));
+            for k in 0..=10 {
+                assert!(bounds.contains(table.value(x + 0.11 * f64::from(k))));
+            }
+        }
         assert!(Table::new(&[0.0, 5.0], &[1.0, 4.0], Some(4.0)).is_err());
         assert!(Table::new(&[0.0, 0.0], &[1.0, 4.0], None).is_err());
     }

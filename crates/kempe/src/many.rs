@@ -4,9 +4,12 @@ use std::borrow::Borrow;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use kempe_measure::{DesignsInLanes, is_of_poses};
 use kempe_model::{Diagnostic, Leaf, Measure, Model, PointId, PoseMeasure};
-use kempe_motion::Batch;
 use kempe_motion::batch::{Designs as Parameters, Executor, Layout, Serial, Task};
+use kempe_motion::drive_path::DrivePath;
+use kempe_motion::{Batch, Motion};
+use kempe_number::Lanes;
 use kempe_study::{Flow, Progress, Quantity, Silent};
 use kempe_units::Expr;
 
@@ -18,6 +21,10 @@ use crate::{Error, Session};
 
 /// Poses that the lanes solve between two questions to the progress.
 const POSES_TOGETHER: usize = 1 << 20;
+/// Designs that are measured together, in the lanes of one number.
+const LANES: usize = 8;
+/// Groups of designs that are measured between two questions, for every thread.
+const GROUPS_TOGETHER: usize = 64;
 /// Designs that are followed one by one between two questions, for every thread.
 const DESIGNS_TOGETHER: usize = 4;
 /// Why a pose in lanes is missing.
@@ -174,10 +181,11 @@ impl Many {
 impl Session {
     /// Measures of many designs at places (SI) of the drive that moves alone, or at times (s) where several do.
     ///
-    /// Coordinates of points (`x(P)`, `y(P)`) are taken many at a time, in vector lanes and on threads, **on the branch that
-    /// the session's own design has** at each place, with the drives where that design has them: right as long as no limit or
-    /// change point comes between a design and the session's. Every other measure takes a motion for each design, followed
-    /// from its own start: slower by far, and sure of its branch. `in_lanes` says which was which.
+    /// Measures of poses (`x(P)`, `angle(rocker)`, `d(y(P), motor)`) are taken many at a time, in vector lanes and on threads,
+    /// coordinates of points fastest, **on the branch that the session's own design has** at each place, with the drives where
+    /// that design has them: right as long as no limit or change point comes between a design and the session's. Every other
+    /// measure (of time, of forces, over the motion, with turns to be counted) takes a motion for each design, followed from
+    /// its own start: slower by far, and sure of its branch. `in_lanes` says which was which.
     ///
     /// # Errors
     ///
@@ -204,13 +212,13 @@ impl Session {
     /// "#.parse()?;
     /// let mut s = rocker.compile()?.session();
     /// let designs = Designs::from_columns([("a", vec![0.020, 0.025, 0.200])])?;
-    /// let v = s.many(&designs, [0.0, 1.0], &["x(C)", "angle(rocker)"])?;
-    /// assert_eq!((v.in_lanes.as_slice(), v.missing[0]), ([true, false].as_slice(), 2));
+    /// let v = s.many(&designs, [0.0, 1.0], &["x(C)", "angle(rocker)", "angular_speed(rocker)"])?;
+    /// assert_eq!((v.in_lanes.as_slice(), v.missing[0]), ([true, true, false].as_slice(), 2));
     /// // Both ways agree: C lies on the rocker.
     /// let x = 0.06 + 0.04 * v.get(1, 1, 1).cos();
     /// assert!((v.get(0, 1, 1) - x).abs() < 1e-15);
     /// assert!(v.get(0, 1, 2).is_nan() && v.reason(0, 1, 2).unwrap().starts_with("does not close"));
-    /// assert!(v.reason(1, 1, 2).unwrap().contains("cannot be assembled"));
+    /// assert!(v.reason(2, 1, 2).unwrap().contains("cannot be assembled"));
     /// # Ok(())
     /// # }
     /// ```
@@ -241,13 +249,23 @@ impl Session {
         let given = self.given_of(designs)?;
         let motion = self.known_motion(progress)?;
         let way = match motion.path {
-            kempe_motion::drive_path::DrivePath::Coordinate { drive, .. } => Way::Drive(drive),
-            kempe_motion::drive_path::DrivePath::Time { .. } => Way::Time,
+            DrivePath::Coordinate { drive, .. } => Way::Drive(drive),
+            DrivePath::Time { .. } => Way::Time,
         };
         let model = &self.design.mechanism.model;
-        let points: Vec<Option<(PointId, usize)>> = (asked.quantities.iter())
-            .map(|q| point_of(model, &q.measure))
+        let routes: Vec<Route> = (asked.quantities.iter())
+            .map(|q| match point_of(model, &q.measure) {
+                Some((point, axis)) => Route::Point(point, axis),
+                None if is_of_poses(&motion, &q.measure) => Route::Lanes,
+                None => Route::Motion,
+            })
             .collect();
+        let of = |route: fn(&Route) -> bool| -> Vec<usize> {
+            (0..routes.len()).filter(|k| route(&routes[*k])).collect()
+        };
+        let points = of(|route| matches!(route, Route::Point(..)));
+        let measured = of(|route| matches!(route, Route::Lanes));
+        let followed = of(|route| matches!(route, Route::Motion));
         let units = self.compiled.units();
         let room = places.len() * designs.count;
         let column = |q: &Quantity| Block {
@@ -257,15 +275,14 @@ impl Session {
         let mut it = Many {
             designs: designs.count,
             columns: asked.quantities.iter().map(column).collect(),
-            in_lanes: points.iter().map(Option::is_some).collect(),
-            missing: vec![0; points.len()],
+            in_lanes: routes.iter().map(|r| !matches!(r, Route::Motion)).collect(),
+            missing: vec![0; routes.len()],
             refused: BTreeMap::new(),
             unreached: BTreeMap::new(),
             places,
         };
-        let lanes = points.iter().any(Option::is_some);
-        let total =
-            room * usize::from(lanes) + room * usize::from(points.iter().any(Option::is_none));
+        let ways = [&points, &measured, &followed];
+        let total = room * ways.iter().filter(|list| !list.is_empty()).count();
         let mut told = Told {
             progress,
             done: 0,
@@ -273,13 +290,19 @@ impl Session {
         };
         let values = self.values_of(&given, &mut it);
         let mut go_on = true;
-        if lanes {
+        if !(points.is_empty() && measured.is_empty()) {
             let motion = self.motion_over(way, range, told.progress)?;
-            go_on = self.in_lanes(&motion, &values, &points, &mut it, &mut told);
+            let at = path_parameters(&motion, &it.places);
+            if !points.is_empty() {
+                go_on = self.points_in_lanes(&motion, &values, (&routes, &at), &mut it, &mut told);
+            }
+            if !measured.is_empty() && go_on {
+                let wanted = (&asked, measured.as_slice());
+                go_on = self.measured_in_lanes(&motion, &values, (wanted, &at), &mut it, &mut told);
+            }
         }
-        let others: Vec<usize> = (0..points.len()).filter(|k| points[*k].is_none()).collect();
-        if !others.is_empty() && go_on {
-            go_on = self.one_by_one(&given, way, range, (&asked, &others), &mut it, &mut told);
+        if !followed.is_empty() && go_on {
+            go_on = self.one_by_one(&given, way, range, (&asked, &followed), &mut it, &mut told);
         }
         if !go_on {
             it.stopped();
@@ -327,15 +350,20 @@ impl Session {
     }
 
     /// Fills the columns of points. False when stopped.
-    fn in_lanes(
+    fn points_in_lanes(
         &self,
-        motion: &Arc<kempe_motion::Motion>,
+        motion: &Arc<Motion>,
         values: &[f64],
-        points: &[Option<(PointId, usize)>],
+        (routes, at): (&[Route], &[f64]),
         it: &mut Many,
         told: &mut Told<'_>,
     ) -> bool {
-        let mut wanted: Vec<PointId> = points.iter().flatten().map(|(p, _)| *p).collect();
+        let mut wanted: Vec<PointId> = (routes.iter())
+            .filter_map(|route| match route {
+                Route::Point(point, _) => Some(*point),
+                _ => None,
+            })
+            .collect();
         wanted.sort_unstable();
         wanted.dedup();
         let Ok(batch) = Batch::new(motion, &wanted) else {
@@ -348,34 +376,20 @@ impl Session {
         };
         let together = (POSES_TOGETHER / it.designs.max(1)).max(1);
         let mut out = Vec::new();
-        for first in (0..it.places.len()).step_by(together) {
-            let places = &it.places[first..(first + together).min(it.places.len())];
-            let model = &motion.mechanism().model;
-            let time = matches!(
-                motion.path,
-                kempe_motion::drive_path::DrivePath::Time { .. }
-            );
-            let at: Vec<f64> = match time {
-                true => (places.iter())
-                    .map(|t| {
-                        motion
-                            .path
-                            .parameter_at(model, *t, &motion.design.parameters)
-                    })
-                    .collect(),
-                false => places.to_vec(),
-            };
+        for (first, places) in (0..).step_by(together).zip(at.chunks(together)) {
             let columns = batch.columns();
             out.clear();
             out.resize(places.len() * columns * it.designs, f64::NAN);
             let done = run(self.threads, |executor| {
-                batch.designs_on(executor, designs, &at, &mut out)
+                batch.designs_on(executor, designs, places, &mut out)
             });
             if done.is_err() {
                 return true;
             }
-            for (block, point) in it.columns.iter_mut().zip(points) {
-                let Some((point, axis)) = point else { continue };
+            for (block, route) in it.columns.iter_mut().zip(routes) {
+                let Route::Point(point, axis) = route else {
+                    continue;
+                };
                 let column = 2 * wanted.binary_search(point).unwrap_or(0) + axis;
                 for (k, place) in (first..first + places.len()).enumerate() {
                     let from = (k * columns + column) * it.designs;
@@ -388,6 +402,58 @@ impl Session {
                 }
             }
             if !told.more(places.len() * it.designs) {
+                return false;
+            }
+        }
+        true
+    }
+
+    /// Fills the columns of other measures of poses. False when stopped.
+    fn measured_in_lanes(
+        &self,
+        motion: &Arc<Motion>,
+        values: &[f64],
+        ((asked, columns), at): ((&Asked, &[usize]), &[f64]),
+        it: &mut Many,
+        told: &mut Told<'_>,
+    ) -> bool {
+        let parameters = motion.mechanism().model.parameters.len();
+        let measures: Vec<&Measure> = columns
+            .iter()
+            .map(|k| &asked.quantities[*k].measure)
+            .collect();
+        let groups: Vec<usize> = (0..it.designs).step_by(LANES).collect();
+        for some in groups.chunks(GROUPS_TOGETHER * self.threads) {
+            // By group, place and measure.
+            let mut found: Vec<Vec<Vec<Lanes<LANES>>>> = vec![Vec::new(); some.len()];
+            let last = it.designs - 1;
+            let tasks = (found.iter_mut().zip(some))
+                .map(|(slot, first)| -> Task<'_> {
+                    let measures = measures.clone();
+                    Box::new(move || {
+                        let own: Vec<Lanes<LANES>> = (0..parameters)
+                            .map(|p| {
+                                Lanes::from_fn(|k| values[(first + k).min(last) * parameters + p])
+                            })
+                            .collect();
+                        let mut lanes = DesignsInLanes::new(motion, measures, &own);
+                        *slot = at.iter().map(|p| lanes.at(*p)).collect();
+                    })
+                })
+                .collect();
+            run(self.threads, |executor| executor.run(tasks));
+            for (places, first) in found.iter().zip(some) {
+                let designs = *first..(first + LANES).min(it.designs);
+                for (place, row) in places.iter().enumerate() {
+                    for (column, value) in columns.iter().zip(row) {
+                        let block = &mut it.columns[*column];
+                        for design in designs.clone().filter(|d| !it.refused.contains_key(d)) {
+                            block.values[place * it.designs + design] = value.lane(design - first);
+                        }
+                    }
+                }
+            }
+            if !told.more(some.len() * LANES * at.len()) {
                 return false;
             }
         }
@@ -506,6 +572,26 @@ impl Told<'_> {
         self.done += values;
         self.progress.tick(self.done, self.total) == Flow::Continue || self.done == self.total
     }
+}
+
+/// How the values of a measure are found.
+enum Route {
+    /// A coordinate of a point, in lanes.
+    Point(PointId, usize),
+    /// Another measure of poses, in lanes.
+    Lanes,
+    /// On a motion of each design's own.
+    Motion,
+}
+
+/// The path parameters of places of a sweep.
+fn path_parameters(motion: &Motion, places: &[f64]) -> Vec<f64> {
+    let (model, parameters) = (&motion.mechanism().model, &motion.design.parameters);
+    let at = |place: &f64| match motion.path {
+        DrivePath::Time { .. } => motion.path.parameter_at(model, *place, parameters),
+        DrivePath::Coordinate { .. } => *place,
+    };
+    places.iter().map(at).collect()
 }
 
 /// The point and the axis, where a measure is a coordinate of a point.

@@ -409,7 +409,13 @@ fn many_designs_are_the_designs_one_by_one_whatever_the_threads() {
     let lengths = linspace(0.015, 0.024, 37);
     let designs = Designs::from_columns([("a", lengths.clone())]).expect("designs");
     let places = [0.2, 1.0, 4.0];
-    let measures = ["x(P)", "y(P)", "transmission_angle(C)"];
+    let measures = [
+        "x(P)",
+        "y(P)",
+        "transmission_angle(C)",
+        "d(y(P), motor)",
+        "speed(P)",
+    ];
     let mut all = Vec::new();
     for threads in [1, 3] {
         s.use_threads(threads);
@@ -421,12 +427,12 @@ fn many_designs_are_the_designs_one_by_one_whatever_the_threads() {
     let v = &all[0];
     assert_eq!(
         (v.missing.as_slice(), v.in_lanes.as_slice()),
-        (&[0, 0, 0][..], &[true, true, false][..])
+        (&[0; 5][..], &[true, true, true, true, false][..])
     );
     for (design, a) in lengths.iter().enumerate() {
         s.set("a", *a).expect("it can be set");
         let t = s.sweep("motor", places, measures).expect("rows");
-        for measure in 0..3 {
+        for measure in 0..measures.len() {
             for place in 0..3 {
                 let (many, one) = (
                     v.get(measure, place, design),

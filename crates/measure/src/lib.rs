@@ -2,6 +2,7 @@
 
 pub mod circuit_rows;
 mod clock;
+mod designs_in_lanes;
 mod direction;
 pub mod force_source;
 pub mod measure;
@@ -15,6 +16,7 @@ mod states_along;
 mod statistics;
 
 pub use circuit_rows::{circuit_row, circuit_samplers};
+pub use designs_in_lanes::{DesignsInLanes, is_of_poses};
 pub use force_source::{Curve, ForceSource, NoForces};
 pub use sampler::{CLOSURE_LIMIT, Sample, Sampler, Unmeasurable, Unprepared};
 pub use sensitivity::{Held, Sensitivities, Varying, sensitivities, sensitivities_with};

@@ -34,24 +34,8 @@ impl Law {
     /// With a Taylor number that runs in `t` this gives speed, acceleration and jerk as well. Where two pieces meet, the
     /// later one is meant; at the end the last piece, to within [`SAME_END`]: rates there are those of the motion.
     pub fn at<T: Number>(&self, t: T, parameters: &[T]) -> T {
-        let mut end = value(&self.from, parameters);
-        if t.value() < 0.0 {
-            return end;
-        }
-        let stretches = self.stretches(parameters);
-        let count = stretches.len();
-        for (i, stretch) in stretches.iter().enumerate() {
-            let until = (stretch.start + stretch.duration).value();
-            let last = i + 1 == count && stretch.duration.value() > 0.0;
-            if last && (t.value() - until).abs() <= SAME_END * until {
-                return stretch.at_end(t);
-            }
-            if t.value() < until {
-                return stretch.at(t - stretch.start);
-            }
-            end = stretch.to;
-        }
-        end
+        let start = value(&self.from, parameters);
+        t.choose_with(|| after(&self.stretches(parameters), t, start), || start)
     }
 
     /// The times at which one piece ends and the next begins, both ends of the motion included, s.
@@ -131,6 +115,28 @@ impl Law {
     }
 }
 
+/// The coordinate at a time that is not before the first of these stretches; `end` is where they begin.
+fn after<T: Number>(stretches: &[Stretch<'_, T>], t: T, end: T) -> T {
+    let Some((stretch, later)) = stretches.split_first() else {
+        return end;
+    };
+    let until = (stretch.start + stretch.duration).constant_part();
+    let by_time = || {
+        (t - until).choose_with(
+            || after(later, t, stretch.to),
+            || stretch.at(t - stretch.start),
+        )
+    };
+    if !later.is_empty() {
+        return by_time();
+    }
+    // A last stretch without duration is none.
+    (-stretch.duration).choose_with(by_time, || {
+        let off = (t.constant_part() - until).abs();
+        (until * SAME_END - off).choose_with(|| stretch.at_end(t), by_time)
+    })
+}
+
 impl<T: Number> Stretch<'_, T> {
     /// The coordinate at a time counted from the stretch's start.
     fn at(&self, t: T) -> T {
@@ -155,8 +161,8 @@ impl<T: Number> Stretch<'_, T> {
     /// The coordinate at the end of the stretch, exactly; with its rates where `t` is a series.
     fn at_end(&self, t: T) -> T {
         let local = t - self.start;
-        let reached = self.at(local + (self.duration.value() - local.value()));
-        reached + (self.to.value() - reached.value())
+        let reached = self.at(local + (self.duration.constant_part() - local.constant_part()));
+        reached + (self.to.constant_part() - reached.constant_part())
     }
 }
 
@@ -256,7 +262,7 @@ impl RiseLaw {
 mod tests {
     use super::*;
     use crate::spline::moments;
-    use kempe_number::Jet;
+    use kempe_number::{Interval, Jet, Lanes};
     use kempe_units::Expr;
 
     fn c(x: f64) -> Expr<crate::ids::ParameterId> {
@@ -369,6 +375,33 @@ mod tests {
             ),
             (0.0, 3.0, 3.0)
         );
+    }
+
+    /// Times in several pieces at once: each lane has the bits of its own, an interval holds all between.
+    #[test]
+    fn every_part_of_a_time_is_in_its_own_piece() {
+        for law in laws() {
+            let end = law.duration::<f64>(&[]);
+            let times: [f64; 16] = std::array::from_fn(|k| end * (k as f64 / 12.0 - 0.1));
+            let lanes: Jet<Lanes<16>, 3> = law.at(Jet::variable(Lanes(times)), &[]);
+            for (lane, t) in times.iter().enumerate() {
+                let alone: Jet<f64, 3> = law.at(Jet::variable(*t), &[]);
+                let found = lanes.coefficients().map(|c| c.lane(lane));
+                assert_eq!(found, *alone.coefficients(), "{law:?} {t}");
+            }
+            for (k, low) in times.iter().enumerate() {
+                for high in &times[k..] {
+                    let bounds = law.at(Interval::new(*low, *high), &[]);
+                    for i in 0..=20 {
+                        let t = low + (high - low) * f64::from(i) / 20.0;
+                        let x: f64 = law.at(t, &[]);
+                        // A number is held with the rounding of its own evaluation.
+                        let near = bounds + Interval::new(-1e-14, 1e-14);
+                        assert!(near.contains(x), "{law:?} {t}: {x} not in {bounds:?}");
+                    }
+                }
+            }
+        }
     }
 
     #[test]

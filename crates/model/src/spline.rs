@@ -1,6 +1,6 @@
 //! A cubic spline through measured points, twice continuously differentiable.
 
-use kempe_number::Number;
+use kempe_number::{Number, piecewise};
 
 /// The spline's second derivatives at its knots, for `times` that increase.
 ///
@@ -53,21 +53,18 @@ pub(crate) fn moments(times: &[f64], values: &[f64]) -> Vec<f64> {
 
 /// The spline's value at `t`, by its second derivatives at the knots.
 pub(crate) fn spline_at<T: Number>(times: &[f64], values: &[f64], moments: &[f64], t: T) -> T {
-    let segments = times.len().saturating_sub(1);
-    let i = times
-        .partition_point(|x| *x <= t.value())
-        .saturating_sub(1)
-        .min(segments.saturating_sub(1));
-    let pair = |list: &[f64]| match (list.get(i), list.get(i + 1)) {
-        (Some(a), Some(b)) => (*a, *b),
-        _ => (f64::NAN, f64::NAN),
-    };
-    let ((t0, t1), (y0, y1), (m0, m1)) = (pair(times), pair(values), pair(moments));
-    let h = t1 - t0;
-    let b = (t - t0) / h;
-    let a = -b + 1.0;
-    let cubic = |s: T, m: f64| (s.square() * s - s) * (m * h * h / 6.0);
-    a * y0 + b * y1 + cubic(a, m0) + cubic(b, m1)
+    piecewise(times, t, &|i| {
+        let pair = |list: &[f64]| match (list.get(i), list.get(i + 1)) {
+            (Some(a), Some(b)) => (*a, *b),
+            _ => (f64::NAN, f64::NAN),
+        };
+        let ((t0, t1), (y0, y1), (m0, m1)) = (pair(times), pair(values), pair(moments));
+        let h = t1 - t0;
+        let b = (t - t0) / h;
+        let a = -b + 1.0;
+        let cubic = |s: T, m: f64| (s.square() * s - s) * (m * h * h / 6.0);
+        a * y0 + b * y1 + cubic(a, m0) + cubic(b, m1)
+    })
 }
 
 #[cfg(test)]

@@ -229,6 +229,27 @@ impl<T: Number, const K: usize> Number for Dual<T, K> {
         nonnegative.combine(negative, re, |a, b| self.re.choose(a, b))
     }
 
+    #[inline(always)]
+    fn nonnegative(self) -> Option<bool> {
+        self.re.nonnegative()
+    }
+
+    #[inline(always)]
+    fn constant_part(self) -> Self {
+        Self {
+            re: self.re.constant_part(),
+            eps: [T::zero(); K],
+        }
+    }
+
+    #[inline(always)]
+    fn floor(self) -> Self {
+        Self {
+            re: self.re.floor(),
+            eps: [T::zero(); K],
+        }
+    }
+
     #[inline]
     fn is_finite(self) -> bool {
         self.re.is_finite() && self.eps.iter().all(|e| e.is_finite())

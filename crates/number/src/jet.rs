@@ -411,6 +411,21 @@ impl<T: Number, const N: usize> Number for Jet<T, N> {
         nonnegative.pairwise(negative, |a, b| self.0[0].choose(a, b))
     }
 
+    #[inline(always)]
+    fn nonnegative(self) -> Option<bool> {
+        self.0[0].nonnegative()
+    }
+
+    #[inline(always)]
+    fn constant_part(self) -> Self {
+        Self::constant(self.0[0].constant_part())
+    }
+
+    #[inline(always)]
+    fn floor(self) -> Self {
+        Self::constant(self.0[0].floor())
+    }
+
     #[inline]
     fn is_finite(self) -> bool {
         self.0.iter().all(|c| c.is_finite())

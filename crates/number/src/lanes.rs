@@ -185,6 +185,26 @@ impl<const W: usize> Number for Lanes<W> {
     }
 
     #[inline(always)]
+    fn nonnegative(self) -> Option<bool> {
+        let (mut all, mut none) = (true, true);
+        for k in 0..W {
+            all &= self.0[k] >= 0.0;
+            none &= self.0[k] < 0.0;
+        }
+        (all || none).then_some(all)
+    }
+
+    #[inline(always)]
+    fn constant_part(self) -> Self {
+        self
+    }
+
+    #[inline(always)]
+    fn floor(self) -> Self {
+        self.each(f64::floor)
+    }
+
+    #[inline(always)]
     fn is_finite(self) -> bool {
         let mut finite = true;
         for k in 0..W {

@@ -14,6 +14,7 @@ mod lanes;
 pub mod math;
 mod number;
 mod operators;
+mod piecewise;
 mod power;
 pub mod text;
 
@@ -24,4 +25,5 @@ pub use interval::Interval;
 pub use jet::Jet;
 pub use lanes::{Lanes, Lanes4, Lanes8};
 pub use number::Number;
+pub use piecewise::piecewise;
 pub use power::powi;

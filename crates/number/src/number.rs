@@ -72,6 +72,30 @@ pub trait Number:
     /// The branch for formulas that may not branch. Only the value of `self` is looked at, not its derivatives.
     fn choose(self, nonnegative: Self, negative: Self) -> Self;
 
+    /// Whether the value is at least zero in every part (lane, bound), or below zero in every part; `None` where parts
+    /// differ or have no sign (NaN).
+    fn nonnegative(self) -> Option<bool>;
+
+    /// The value as a constant: derivatives are gone, lanes and bounds stay.
+    fn constant_part(self) -> Self;
+
+    /// The largest whole number that is not above the value, a constant.
+    fn floor(self) -> Self;
+
+    /// [`choose`](Number::choose) that works out a side only where it is chosen.
+    #[inline(always)]
+    fn choose_with(
+        self,
+        nonnegative: impl FnOnce() -> Self,
+        negative: impl FnOnce() -> Self,
+    ) -> Self {
+        match self.nonnegative() {
+            Some(true) => nonnegative(),
+            Some(false) => negative(),
+            None => self.choose(nonnegative(), negative()),
+        }
+    }
+
     /// Whether every part of the number (coefficients, lanes, bounds) is finite.
     fn is_finite(self) -> bool;
 
@@ -145,6 +169,21 @@ impl Number for f64 {
             f64::NAN
         }
     }
+    #[inline(always)]
+    fn nonnegative(self) -> Option<bool> {
+        (!self.is_nan()).then_some(self >= 0.0)
+    }
+
+    #[inline(always)]
+    fn constant_part(self) -> Self {
+        self
+    }
+
+    #[inline(always)]
+    fn floor(self) -> Self {
+        f64::floor(self)
+    }
+
     #[inline(always)]
     fn is_finite(self) -> bool {
         f64::is_finite(self)

@@ -2,7 +2,7 @@
 
 use kempe_mechanism::pose::{Pose, cross, dot, left, sub};
 use kempe_model::{Line, LinkId, LinkPointRef, PointId, PoseMeasure};
-use kempe_number::{Number, math};
+use kempe_number::Number;
 
 use super::{Along, Moment, Series, only_value, undefined};
 
@@ -164,16 +164,19 @@ impl<B: Number> Moment<'_, B> {
 
     /// Whether a point of the mechanism stands still here, as at the end of a stroke: its path has no direction then.
     pub fn stands_still(&self, point: PointId) -> bool {
-        self.is_still(self.point(&self.state.poses, point))
+        let stillness = self.stillness(self.point(&self.state.poses, point));
+        stillness.nonnegative() == Some(true)
     }
 
-    fn is_still(&self, p: [Series<B>; 2]) -> bool {
+    /// At least zero where a moving point stands still, below where it moves.
+    fn stillness(&self, p: [Series<B>; 2]) -> B {
         let size = |order: usize| {
-            let [x, y] = [0, 1].map(|k| p[k].derivative(order).value());
-            math::hypot(x, y) * kempe_number::powi(self.state.abscissa.unit, order as i32)
+            let [x, y] = [0, 1].map(|k| p[k].derivative(order));
+            length([x, y]) * kempe_number::powi(self.state.abscissa.unit, order as i32)
         };
         let speed = size(1) / self.size();
-        speed <= NO_SPEED || (speed <= SLOW && size(1) <= REVERSAL * size(2))
+        let turns_back = (-speed + SLOW).min(size(2) * REVERSAL - size(1));
+        (-speed + NO_SPEED).choose_with(B::one, || turns_back)
     }
 
     /// Instant centre of two links: the point where both have the same velocity. Infinite, in both coordinates, when they
@@ -192,41 +195,50 @@ impl<B: Number> Moment<'_, B> {
         let ((va, wa), (vb, wb)) = (motion(a), motion(b));
         let (v, w) = (sub(vb, va), wa - wb);
         let size = self.size();
-        // Where the links are at rest for a moment, what they do next decides.
-        let mut speeds = (0..2).map(|order| {
-            let [x, y, w] = [v[0], v[1], w].map(|s| s.coefficient(order).value());
-            (
-                math::hypot(x, y),
-                size * w.abs(),
-                kempe_number::powi(self.state.abscissa.unit, order as i32 + 1),
-            )
-        });
-        match speeds.find(|(slide, turn, unit)| !(slide.max(*turn) * unit <= NO_SPEED * size)) {
-            None => [undefined(); 2],
-            Some((slide, turn, _)) if turn <= TRANSLATION * slide => [infinite(); 2],
-            Some(_) => [v[1] / w, -v[0] / w],
-        }
+        // How fast they slide and turn; where they are at rest for a moment, what they do next decides.
+        let speeds = |order: usize| {
+            let [x, y, w] = [v[0], v[1], w].map(|s| s.coefficient(order));
+            let (slide, turn) = (length([x, y]), w.abs() * size);
+            let unit = kempe_number::powi(self.state.abscissa.unit, order as i32 + 1);
+            let rests = -(slide.max(turn) * unit) + NO_SPEED * size;
+            (rests, slide * TRANSLATION - turn)
+        };
+        let ((rests, translates), (rests_on, translates_next)) = (speeds(0), speeds(1));
+        let translates = rests.choose(translates_next, translates);
+        let rests = rests.choose(rests_on, rests);
+        [v[1] / w, -v[0] / w].map(|place| {
+            let at_work = choose(translates, infinite(), place);
+            choose(rests, undefined(), at_work)
+        })
     }
 
     /// Curvature of a path and its centre, from the first two derivatives along the path parameter; none where the point
     /// stands still, and an infinite centre where the path is straight.
     fn curvature(&self, p: [Series<B>; 2]) -> (Series<B>, [Series<B>; 2]) {
-        let nothing = undefined();
-        if self.is_still(p) {
-            return (nothing, [nothing; 2]);
-        }
+        let still = self.stillness(p);
         let d = [p[0].differentiate(), p[1].differentiate()];
         let dd = [d[0].differentiate(), d[1].differentiate()];
         let square = dot(d, d);
         let bend = cross(d, dd);
-        let speed = math::hypot(d[0].coefficient(0).value(), d[1].coefficient(0).value());
-        let straight = bend.value().abs() * self.size() <= TRANSLATION * speed * speed * speed;
-        let curvature = bend / (square * square.sqrt());
+        let speed = length([d[0].coefficient(0), d[1].coefficient(0)]);
+        let straight =
+            speed * speed * speed * TRANSLATION - bend.coefficient(0).abs() * self.size();
         let reach = square / bend;
-        if straight {
-            return (curvature, [infinite(); 2]);
-        }
         let n = left(d);
-        (curvature, [p[0] + n[0] * reach, p[1] + n[1] * reach])
+        let center = [0, 1].map(|k| {
+            let center = choose(straight, infinite(), p[k] + n[k] * reach);
+            choose(still, undefined(), center)
+        });
+        let curvature = bend / (square * square.sqrt());
+        (choose(still, undefined(), curvature), center)
     }
+}
+
+fn length<B: Number>([x, y]: [B; 2]) -> B {
+    (x.square() + y.square()).sqrt()
+}
+
+/// One of two series by the sign of a number, lane by lane.
+fn choose<B: Number>(sign: B, nonnegative: Series<B>, negative: Series<B>) -> Series<B> {
+    Series::constant(sign).choose(nonnegative, negative)
 }

@@ -170,6 +170,24 @@ impl Number for Interval {
     }
 
     #[inline(always)]
+    fn nonnegative(self) -> Option<bool> {
+        (self.lo >= 0.0 || self.hi < 0.0).then_some(self.lo >= 0.0)
+    }
+
+    #[inline(always)]
+    fn constant_part(self) -> Self {
+        self
+    }
+
+    #[inline(always)]
+    fn floor(self) -> Self {
+        Self {
+            lo: self.lo.floor(),
+            hi: self.hi.floor(),
+        }
+    }
+
+    #[inline(always)]
     fn is_finite(self) -> bool {
         self.lo.is_finite() && self.hi.is_finite()
     }
