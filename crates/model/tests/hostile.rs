@@ -2,7 +2,6 @@
 #![allow(clippy::unwrap_used)]
 
 use std::fmt::Write as _;
-use std::time::{Duration, Instant};
 
 use kempe_model::{Amount, Checked, Diagnostic, LoadKind, Model, set_value, value};
 
@@ -12,20 +11,11 @@ fn read(text: &str) -> Result<Checked, Vec<Diagnostic>> {
     })
 }
 
-/// Reading takes no longer than this on a slow machine in a debug build.
-const PATIENCE: Duration = Duration::from_secs(20);
-
 fn refused(what: &str, text: &str, code: &str) {
-    let start = Instant::now();
     let found = match read(text) {
         Ok(checked) => checked.warnings,
         Err(found) => found,
     };
-    assert!(
-        start.elapsed() < PATIENCE,
-        "{what} took {:?}",
-        start.elapsed()
-    );
     assert!(
         found.iter().any(|d| d.code == code),
         "{what}: {:?}",
