@@ -1,15 +1,20 @@
 //! Developer tasks: `cargo xtask test`, what people and CI run before a change goes in.
 
+mod fuzz;
 mod shell;
+mod slim;
 mod tasks;
+mod wasm;
 
 use std::process::ExitCode;
 
 const HELP: &str = "\
 Developer tasks.
 
-  cargo xtask test         format, lints, docs, all tests and doctests; installs cargo-nextest where it can
-  cargo xtask test --fast  the same without lints and docs
+  cargo xtask test         everything below but bench and fuzz: format, lints, docs, all tests and doctests, slim, wasm
+  cargo xtask test --fast  format, all tests and doctests
+  cargo xtask slim         the library without default features builds and pulls nothing it should not
+  cargo xtask wasm         the WebAssembly module gives the native bytes under node; installs its target where it can
   cargo xtask bench        all benchmarks, ratios printed
   cargo xtask fuzz [SECS]  every fuzz target for SECS seconds (30); needs a nightly toolchain and cargo-fuzz
 ";
@@ -21,9 +26,11 @@ fn main() -> ExitCode {
         ["test"] => tasks::test(false),
         ["test", "--fast"] => tasks::test(true),
         ["bench", rest @ ..] => tasks::bench(rest),
-        ["fuzz"] => tasks::fuzz(30),
+        ["slim"] => slim::slim(),
+        ["wasm"] => wasm::wasm(),
+        ["fuzz"] => fuzz::fuzz(30),
         ["fuzz", seconds] => match seconds.parse() {
-            Ok(seconds) => tasks::fuzz(seconds),
+            Ok(seconds) => fuzz::fuzz(seconds),
             Err(_) => Err(format!("`{seconds}` is no number of seconds")),
         },
         [] | ["help" | "--help" | "-h"] => {

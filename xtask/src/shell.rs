@@ -1,5 +1,6 @@
 //! Running programs and telling how long they took.
 
+use std::ffi::OsString;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 use std::time::Instant;
@@ -11,21 +12,39 @@ pub fn root() -> PathBuf {
         .map_or(own.clone(), std::borrow::ToOwned::to_owned)
 }
 
+/// The folder that cargo builds in.
+pub fn target_folder() -> PathBuf {
+    std::env::var_os("CARGO_TARGET_DIR")
+        .map_or_else(|| root().join("target"), |dir| root().join(dir))
+}
+
+/// The cargo that runs this.
+pub fn cargo_program() -> OsString {
+    std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into())
+}
+
 /// Runs cargo in the root of the repository.
 ///
 /// # Errors
 ///
 /// What failed, in one line.
 pub fn cargo(arguments: &[&str], variables: &[(&str, &str)]) -> Result<(), String> {
-    let shown = format!("cargo {}", arguments.join(" "));
+    let mut command = Command::new(cargo_program());
+    command.args(arguments);
+    command.envs(variables.iter().copied());
+    run(&mut command, &format!("cargo {}", arguments.join(" ")))
+}
+
+/// Runs a program in the root of the repository and shows it as `shown`.
+///
+/// # Errors
+///
+/// What failed, in one line.
+pub fn run(command: &mut Command, shown: &str) -> Result<(), String> {
     println!("\n> {shown}");
     let start = Instant::now();
-    let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    command.args(arguments).current_dir(root());
-    for (name, value) in variables {
-        command.env(name, value);
-    }
     let status = command
+        .current_dir(root())
         .status()
         .map_err(|error| format!("{shown}: {error}"))?;
     println!("> {shown}: {:.0} s", start.elapsed().as_secs_f64());
@@ -36,13 +55,37 @@ pub fn cargo(arguments: &[&str], variables: &[(&str, &str)]) -> Result<(), Strin
     }
 }
 
-/// Whether a cargo subcommand is there.
-pub fn has(subcommand: &str) -> bool {
-    let program = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+/// What a program prints on its standard output, run in the root of the repository.
+///
+/// # Errors
+///
+/// What failed, in one line.
+pub fn output(command: &mut Command, shown: &str) -> Result<Vec<u8>, String> {
+    let output = command
+        .current_dir(root())
+        .stderr(Stdio::inherit())
+        .output()
+        .map_err(|error| format!("{shown}: {error}"))?;
+    match output.status.success() {
+        true => Ok(output.stdout),
+        false => Err(format!("{shown} failed")),
+    }
+}
+
+/// Whether a program is there and answers `--version`.
+pub fn answers(program: &str, arguments: &[&str]) -> bool {
     Command::new(program)
-        .args([subcommand, "--version"])
+        .args(arguments)
         .stdout(Stdio::null())
         .stderr(Stdio::null())
         .status()
         .is_ok_and(|status| status.success())
+}
+
+/// Whether a cargo subcommand is there.
+pub fn has(subcommand: &str) -> bool {
+    answers(
+        &cargo_program().to_string_lossy(),
+        &[subcommand, "--version"],
+    )
 }

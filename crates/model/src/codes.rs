@@ -14,6 +14,12 @@ const fn code(code: &'static str, meaning: &'static str) -> Code {
     Code { code, meaning }
 }
 
+/// Whether a code stands in one of the lists.
+pub(crate) fn known(code: &str) -> bool {
+    let within = |list: &[Code]| list.binary_search_by(|c| c.code.cmp(code)).is_ok();
+    within(CODES) || within(LATER_CODES)
+}
+
 /// All codes that reading a model file may give, in alphabetical order.
 #[rustfmt::skip]
 pub const CODES: &[Code] = &[
@@ -80,4 +86,84 @@ pub const CODES: &[Code] = &[
     code("wrong-direction", "the sign of a speed contradicts the limits of its drive"),
     code("wrong-drive", "a drive of another kind is meant"),
     code("wrong-type", "a value of another type was expected"),
+];
+
+/// All further codes, in alphabetical order: what comes once a model is read, from checks, studies, sessions, results and
+/// requests.
+#[rustfmt::skip]
+pub const LATER_CODES: &[Code] = &[
+    code("another-design", "a pose was found for other parameters than those that are set"),
+    code("assemblies-incomplete", "the search for assemblies left something out"),
+    code("bad-case", "a file of reference values cannot be read"),
+    code("bad-request", "a request to the WebAssembly module cannot be read"),
+    code("bad-table", "the table of a load cannot be used: its places must rise and its values be finite"),
+    code("branches-entangled", "branches come so near each other that the motion could not be kept on one of them"),
+    code("cannot-assemble", "the mechanism does not close where its drive starts, or not as the hints ask"),
+    code("cannot-draw", "a picture cannot be made as it is asked for"),
+    code("cannot-write", "a file or folder cannot be written"),
+    code("circuit-open", "a circuit does not come back to its start"),
+    code("circuit-without-time", "steps of time are asked for along a circuit"),
+    code("contradictory-pressures", "a cylinder drains against more pressure than it is fed with"),
+    code("cylinder-count", "fewer than one cylinder"),
+    code("cylinder-too-weak", "a cylinder cannot give the force at its highest pressure"),
+    code("damper-ends", "an end of a damper is on no link"),
+    code("damper-idle", "the ends of a damper can never part"),
+    code("file-exists", "a file would be overwritten"),
+    code("flow-too-small", "the flow does not move a cylinder as fast as its drive"),
+    code("friction-at-rest", "nothing moves at a joint, so that its friction is not determined"),
+    code("friction-not-converged", "loads and friction did not become consistent"),
+    code("friction-place", "friction at a joint where nothing slides"),
+    code("friction-radius", "friction at a pin needs the pin's radius"),
+    code("idle-body-driven", "something would turn a link whose angle nothing determines"),
+    code("idle-freedom", "a link can turn by itself without moving anything else"),
+    code("jammed", "no finite force moves the mechanism against its friction"),
+    code("leaves-slot", "a pin leaves the drawn part of its curved slot"),
+    code("load-measure", "a load depends on a measure that has no value here"),
+    code("load-of-force", "a load depends on a force"),
+    code("load-on-nothing", "a load acts at a point that its link does not carry"),
+    code("load-without-value", "a load has no value in some rows"),
+    code("locked", "the drive cannot move the mechanism from where it starts"),
+    code("motion-runs-away", "a part runs away to infinity within the range of a drive"),
+    code("motion-stuck", "the motion could not be followed over the range of a drive"),
+    code("motor-curve", "the curve of a motor does not rise in speed"),
+    code("motor-too-weak", "a motor gives less than its drive needs"),
+    code("nearly-singular", "joint loads near a pose where they are without bound"),
+    code("negative-damping", "a damper that would add energy"),
+    code("negative-friction", "friction that would add energy"),
+    code("negative-mass", "a mass or a moment of inertia below zero"),
+    code("negative-radius", "the radius of a pin is below zero"),
+    code("negative-stiffness", "the stiffness of a spring is below zero"),
+    code("no-file", "a file cannot be opened"),
+    code("no-time", "forces are asked for where there is no time, and so no speed"),
+    code("no-value", "a measure has no finite value"),
+    code("not-balanced", "what was found for the forces does not meet equilibrium"),
+    code("not-measurable", "a measure cannot be evaluated on this motion"),
+    code("not-on-the-motion", "a place that the motion does not pass, or that is on none"),
+    code("not-reached", "a pose was not found where the motion passes"),
+    code("not-the-path", "a drive that does not move the mechanism alone"),
+    code("not-written", "some results were not written, because others failed"),
+    code("nothing-acts", "forces are asked for where nothing acts"),
+    code("nothing-to-differentiate", "sensitivities without measures or without parameters"),
+    code("overconstrained", "some constraints repeat others: the mobility by count is not that by rank"),
+    code("overdriven", "more drives than freedoms"),
+    code("range-beyond-limit", "a drive is asked to go beyond what the mechanism allows"),
+    code("range-too-long", "a drive is asked to go further than can be followed"),
+    code("reactions-not-unique", "equilibrium does not determine the loads of some joints"),
+    code("rod-too-thick", "the rod of a cylinder is no thinner than its bore"),
+    code("routes-differ", "forces by virtual power and by equilibrium do not agree"),
+    code("rows-not-reached", "a study has rows without a pose"),
+    code("scale", "a mechanism too large or too small to be computed with"),
+    code("self-locking", "friction holds a drive against its load"),
+    code("settled-parameter", "a parameter that a session cannot set, because the reader has used its value"),
+    code("several-assemblies", "more than one way to put the mechanism together agrees with the file"),
+    code("singular-pose", "joint loads are not defined in a pose"),
+    code("spring-ends", "an end of a spring is on no link"),
+    code("spring-idle", "the ends of a spring can never part"),
+    code("spring-not-linear", "a chosen spring acts one way or has stops"),
+    code("stopped", "the work was stopped before it was done"),
+    code("stops-crossed", "the lower stop of a spring lies above the upper one"),
+    code("unbounded-load", "a number over the motion is taken over a pose where joint loads are without bound"),
+    code("undetermined", "the drives do not determine the motion"),
+    code("unknown-picture", "a picture's name ends in none of the endings that are known"),
+    code("wrong-length", "lists that belong together are not equally long"),
 ];

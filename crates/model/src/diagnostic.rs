@@ -5,6 +5,7 @@
 
 use serde::Serialize;
 
+use crate::codes::known;
 use crate::ids::Span;
 
 /// How bad it is.
@@ -22,7 +23,7 @@ pub enum Severity {
 pub struct Diagnostic {
     /// How bad it is.
     pub severity: Severity,
-    /// Stable kebab-case code, one of [`CODES`](crate::CODES).
+    /// Stable kebab-case code, one of [`CODES`](crate::CODES) or [`LATER_CODES`](crate::LATER_CODES).
     pub code: &'static str,
     /// What is wrong, in one short sentence.
     pub message: String,
@@ -59,6 +60,10 @@ pub struct Source {
 impl Diagnostic {
     /// An error without a place.
     pub fn error(code: &'static str, message: impl Into<String>) -> Self {
+        debug_assert!(
+            known(code),
+            "`{code}` stands in no list of codes: see codes.rs"
+        );
         Self {
             severity: Severity::Error,
             code,
@@ -357,7 +362,7 @@ mod tests {
 
     #[test]
     fn places_beyond_the_end_and_inside_characters_are_harmless() {
-        let d = Diagnostic::error("toml", "x")
+        let d = Diagnostic::error("toml-syntax", "x")
             .at(1..900, "")
             .see(77..78, "end");
         assert!(d.render_plain("f", "é\r\nz").contains("f:1:1"));

@@ -41,7 +41,7 @@ mod unsound;
 mod write;
 
 pub use bound::{Bound, Keeps};
-pub use codes::{CODES, Code};
+pub use codes::{CODES, Code, LATER_CODES};
 pub use complete::{Completion, CompletionKind, complete};
 pub use diagnostic::{Diagnostic, Label, Severity, Source};
 pub use drive::*;
