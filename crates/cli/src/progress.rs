@@ -1,10 +1,11 @@
 //! A progress bar on the error stream, where that is a terminal and the work is long.
 
 use std::io::IsTerminal;
+use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
-use kempe_study::{Flow, Progress, Stage};
+use kempe_study::{Done, Progress, Stage};
 
 use crate::interrupt;
 
@@ -36,11 +37,11 @@ impl Bar {
     }
 
     /// The bar, once the work is long; a new one for every stage.
-    fn bar(&mut self, stage: Option<Stage>, length: u64, template: &str) -> Option<&ProgressBar> {
+    fn bar(&mut self, stage: Stage, length: u64, template: &str) -> Option<&ProgressBar> {
         if !self.wanted || self.since.elapsed() <= PATIENCE {
             return None;
         }
-        if self.stage != stage || self.bar.is_none() {
+        if self.stage != Some(stage) || self.bar.is_none() {
             if let Some(old) = self.bar.take() {
                 old.finish_and_clear();
             }
@@ -48,49 +49,37 @@ impl Bar {
             if let Ok(style) = ProgressStyle::with_template(template) {
                 bar.set_style(style);
             }
-            bar.set_message(match stage {
-                Some(stage) => format!("{}: {}", self.name, stage.text()),
-                None => self.name.clone(),
-            });
-            (self.bar, self.stage) = (Some(bar), stage);
+            bar.set_message(format!("{}: {}", self.name, stage.text()));
+            (self.bar, self.stage) = (Some(bar), Some(stage));
         }
         self.bar.as_ref()
     }
 }
 
-/// Stops on Ctrl-C.
-fn flow() -> Flow {
-    if interrupt::stopped() {
-        Flow::Stop
-    } else {
-        Flow::Continue
-    }
-}
-
 impl Progress for Bar {
-    fn tick(&mut self, done: usize, total: usize) -> Flow {
-        let rows = "{msg} {bar:40} {pos}/{len} rows, {eta} left";
-        if let Some(bar) = self.bar(None, total as u64, rows) {
-            bar.set_position(done as u64);
-            if done == total {
-                bar.finish_and_clear();
-            }
-        }
-        flow()
-    }
-
-    fn stage(&mut self, stage: Stage, part: Option<f64>) -> Flow {
-        let template = match part {
-            Some(_) => "{msg} {bar:40} {percent} %",
-            None => "{msg}, {elapsed}",
+    /// Stops on Ctrl-C.
+    fn reached(&mut self, stage: Stage, done: Done) -> ControlFlow<()> {
+        let (length, template) = match done {
+            Done::Of(_, all) => (all as u64, "{msg} {bar:40} {pos}/{len}, {eta} left"),
+            Done::Part(_) => (STEPS, "{msg} {bar:40} {percent} %"),
+            Done::Unknown => (STEPS, "{msg}, {elapsed}"),
         };
-        if let Some(bar) = self.bar(Some(stage), STEPS, template) {
-            match part {
-                Some(part) => bar.set_position((part.clamp(0.0, 1.0) * STEPS as f64) as u64),
-                None => bar.tick(),
+        if let Some(bar) = self.bar(stage, length, template) {
+            match (done, done.part()) {
+                (Done::Of(done, all), _) => {
+                    bar.set_position(done as u64);
+                    if done == all {
+                        bar.finish_and_clear();
+                    }
+                }
+                (_, Some(part)) => bar.set_position((part * STEPS as f64) as u64),
+                (_, None) => bar.tick(),
             }
         }
-        flow()
+        match interrupt::stopped() {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        }
     }
 }
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use kempe_measure::{Sample, Sampler, Unmeasurable, Unprepared};
 use kempe_model::{DriveId, Measure};
-use kempe_motion::{Motion, Unwatched, Watch};
+use kempe_motion::{Motion, Progress, Silent};
 
 use crate::equilibrium::FrictionOutcome;
 use crate::forces::Forces;
@@ -100,34 +100,34 @@ impl ForceSampler {
     /// # Errors
     /// Problems of what acts on the mechanism, or measures that cannot be evaluated.
     pub fn new(motion: &Arc<Motion>, measures: &[&Measure]) -> Result<Self, ForceError> {
-        Self::watched(motion, measures, &mut Unwatched)
+        Self::with_progress(motion, measures, &mut Silent)
     }
 
-    /// As [`ForceSampler::new`]; `watch` hears how far the statistics over the motion have come and may stop them.
+    /// As [`ForceSampler::new`]; `progress` hears how far the statistics over the motion have come and may stop them.
     ///
     /// # Errors
     /// As [`ForceSampler::new`], and that it was stopped.
-    pub fn watched(
+    pub fn with_progress(
         motion: &Arc<Motion>,
         measures: &[&Measure],
-        watch: &mut dyn Watch,
+        progress: &mut dyn Progress,
     ) -> Result<Self, ForceError> {
-        Self::with_rows(motion, measures, &[], watch)
+        Self::with_rows(motion, measures, &[], progress)
     }
 
-    /// As [`ForceSampler::watched`]; statistics over the motion look at the times of its rows, s, too.
+    /// As [`ForceSampler::with_progress`]; statistics over the motion look at the times of its rows, s, too.
     ///
     /// # Errors
-    /// As [`ForceSampler::watched`].
+    /// As [`ForceSampler::with_progress`].
     pub fn with_rows(
         motion: &Arc<Motion>,
         measures: &[&Measure],
         rows: &[f64],
-        watch: &mut dyn Watch,
+        progress: &mut dyn Progress,
     ) -> Result<Self, ForceError> {
         let source =
             Source::new(motion, &motion.design.parameters).map_err(ForceError::Problems)?;
-        let sampler = Sampler::with_rows(motion, measures, source, rows, watch)
+        let sampler = Sampler::with_rows(motion, measures, source, rows, progress)
             .map_err(ForceError::Unprepared)?;
         Ok(Self { sampler })
     }

@@ -6,7 +6,6 @@ use std::str::FromStr;
 
 use kempe_mechanism::Mechanism;
 use kempe_model::Diagnostic;
-use kempe_motion::Unwatched;
 use kempe_motion::temporary_drives::hold;
 use kempe_study::{CheckReport, Progress, Setting, Silent, StudyResult};
 
@@ -217,7 +216,7 @@ impl Model {
             Err(error) if ["no-drive", "undetermined"].contains(&error.code()) => {
                 let design = Mechanism::new(&self.inner);
                 let values: Vec<f64> = self.inner.parameter_values();
-                match hold(&design, &values, &mut Unwatched) {
+                match hold(&design, &values, &mut Silent) {
                     Some(held) => Compiled::new(&self.name, &self.text, &held.model)?,
                     None => return Err(error),
                 }

@@ -95,7 +95,7 @@ pub use facade::Model;
 pub use kempe_motion::EndReason;
 pub use kempe_motion::events::EventKind;
 pub use kempe_study::{
-    CheckReport, Column, Flow, ForceColumns, Progress, Silent, Stage, StudyResult, Table,
+    CheckReport, Column, Done, ForceColumns, Progress, Silent, Stage, StudyResult, Table,
 };
 pub use many::{Designs, Many};
 pub use motion_data::{AssemblyData, MotionData, MotionEvent};
@@ -118,7 +118,7 @@ pub use kempe_units as units;
 /// What most programs need.
 pub mod prelude {
     pub use crate::{
-        Block, CheckReport, Column, Compiled, Derivatives, Designs, Error, Flow, Many, Model, Pose,
+        Block, CheckReport, Column, Compiled, Derivatives, Designs, Done, Error, Many, Model, Pose,
         Progress, Session, Silent, StudyResult, Sweep, Table, linspace,
     };
     pub use kempe_model::Diagnostic;

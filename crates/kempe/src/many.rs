@@ -10,7 +10,7 @@ use kempe_motion::batch::{Designs as Parameters, Executor, Layout, Serial, Task}
 use kempe_motion::drive_path::DrivePath;
 use kempe_motion::{Batch, Motion};
 use kempe_number::Lanes;
-use kempe_study::{Flow, Progress, Quantity, Silent};
+use kempe_study::{Done, Progress, Quantity, Silent, Stage};
 use kempe_units::Expr;
 
 use crate::block::{Block, Heading};
@@ -570,7 +570,8 @@ impl Told<'_> {
     /// Tells that more is done; false when it is to stop.
     fn more(&mut self, values: usize) -> bool {
         self.done += values;
-        self.progress.tick(self.done, self.total) == Flow::Continue || self.done == self.total
+        let done = Done::Of(self.done, self.total);
+        self.progress.reached(Stage::Rows, done).is_continue() || self.done == self.total
     }
 }
 

@@ -9,7 +9,7 @@ use kempe_model::{Diagnostic, Law, LawPiece, RiseLaw, Severity};
 use kempe_motion::drive_path::DrivePath;
 use kempe_motion::events::EventKind;
 use kempe_motion::{EndReason, Motion, Placed, Solver};
-use kempe_study::{Along, Ear, Progress, RowPlace, Silent, beyond_limit, cannot_move};
+use kempe_study::{Along, Progress, RowPlace, Silent, beyond_limit, cannot_move};
 use kempe_units::Expr;
 
 use crate::block::{Heading, Value};
@@ -395,7 +395,7 @@ impl Session {
                 pieces: vec![piece],
             })
         });
-        Motion::watched(&design, &mut Ear(progress))
+        Motion::with_progress(&design, progress)
             .map_err(|error| self.compiled.error(cannot_move(&design, &error)))
     }
 

@@ -7,7 +7,7 @@ use kempe_model::{
     Diagnostic, Label, Leaf, Measure, NamedMeasure, ParameterId, PoseMeasure, Source,
 };
 use kempe_motion::Motion;
-use kempe_study::{Ear, Progress, Quantity, Silent, cannot_move};
+use kempe_study::{Progress, Quantity, Silent, cannot_move};
 use kempe_units::{Dimension, Issue, Resolver, Span, check, parse};
 
 use crate::{Compiled, Error};
@@ -297,7 +297,7 @@ impl Session {
         if let Some(motion) = &self.motion {
             return Ok(motion.clone());
         }
-        let motion = Motion::watched(&self.design, &mut Ear(progress))
+        let motion = Motion::with_progress(&self.design, progress)
             .map_err(|error| self.compiled.error(cannot_move(&self.design, &error)))?;
         self.motion = Some(motion.clone());
         Ok(motion)

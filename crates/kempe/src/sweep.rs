@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use kempe_measure::Sample;
 use kempe_motion::Motion;
-use kempe_study::{Along, Ear, Flow, ForceColumns, Progress, RowPlace, Silent};
+use kempe_study::{Along, Done, ForceColumns, Progress, RowPlace, Silent, Stage};
 use kempe_units::Dimension;
 
 use crate::block::{Block, Heading};
@@ -132,9 +132,13 @@ impl Session {
     /// ```
     /// # fn main() -> Result<(), kempe::Error> {
     /// # let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/seeds/tractor-hitch.toml");
-    /// use kempe::{Flow, linspace};
+    /// use kempe::{Done, Stage, linspace};
+    /// use std::ops::ControlFlow::{Break, Continue};
     /// let mut s = kempe::Model::from_path(path)?.compile()?.session();
-    /// let mut ten = |done: usize, _: usize| if done < 10 { Flow::Continue } else { Flow::Stop };
+    /// let mut ten = |_: Stage, done: Done| match done {
+    ///     Done::Of(rows, _) if rows >= 10 => Break(()),
+    ///     _ => Continue(()),
+    /// };
     /// let t = s.sweep_with("lift", linspace(0.38, 0.52, 1000), &["y(M)"], &mut ten)?;
     /// assert!(t.interrupted() && t.rows() == 10);
     /// # Ok(())
@@ -218,13 +222,13 @@ pub(crate) fn rows(
             Way::Drive(_) => RowPlace::Drive(*place),
         })
         .collect();
-    let mut along = Along::watched(
+    let mut along = Along::with_progress(
         &mechanism.model,
         motion,
         &quantities,
         forces,
         &rows,
-        &mut Ear(progress),
+        progress,
     )
     .map_err(|told| compiled.errors(told))?;
     let (name, dimension) = way.places(compiled);
@@ -256,7 +260,10 @@ pub(crate) fn rows(
                 sweep.push(row, note);
             }
         }
-        if progress.tick(done + 1, places.len()) == Flow::Stop {
+        if progress
+            .reached(Stage::Rows, Done::Of(done + 1, places.len()))
+            .is_break()
+        {
             break;
         }
     }

@@ -9,7 +9,7 @@ use kempe_motion::assemble::{Assemblies, Assembly};
 use kempe_motion::drive_path::{DrivePath, duration};
 use kempe_motion::trace::Path as _;
 use kempe_motion::{Demand, EndReason, Motion};
-use kempe_study::{Ear, Progress, cannot_move};
+use kempe_study::{Progress, cannot_move};
 use kempe_units::{Dimension, Expr};
 
 use crate::compiled::with_laws;
@@ -132,7 +132,7 @@ fn alone(
         start,
         assemblies: None,
     };
-    Motion::along(&own, demand, &mut Ear(progress))
+    Motion::along(&own, demand, progress)
         .map(Arc::new)
         .map_err(|error| cannot_move(&own, &error))
 }
@@ -148,9 +148,7 @@ pub(crate) fn motion_over(
         Way::Drive(drive) if !laws_cover(design, drive, range) => {
             alone(design, drive, range, progress)
         }
-        _ => {
-            Motion::watched(design, &mut Ear(progress)).map_err(|error| cannot_move(design, &error))
-        }
+        _ => Motion::with_progress(design, progress).map_err(|error| cannot_move(design, &error)),
     }
 }
 
@@ -248,7 +246,7 @@ impl Session {
                 ..Assemblies::default()
             }),
         };
-        let mut motion = Motion::along(&design, demand, &mut Ear(progress))
+        let mut motion = Motion::along(&design, demand, progress)
             .map_err(|error| self.compiled.error(cannot_move(&design, &error)))?;
         if own {
             // Directions count their turns from the start.

@@ -1,7 +1,10 @@
 //! Sessions on the published systems: against the studies of the same files, against reference values of `validation/`, and
 //! against themselves asked another way.
 
+use kempe::Stage;
 use kempe::prelude::*;
+use std::ops::ControlFlow;
+
 use kempe::{AssemblyData, EventKind, ForceColumns, Heading, MotionData, MotionEvent, Value};
 
 fn model(name: &str) -> Model {
@@ -462,7 +465,10 @@ fn designs_that_do_not_close_or_make_no_sense_are_counted_with_their_reasons() {
                 .contains("must be positive")
         );
     }
-    let mut none = |_: usize, _: usize| Flow::Stop;
+    let mut none = |_: Stage, done: Done| match done {
+        Done::Of(..) => ControlFlow::Break(()),
+        _ => ControlFlow::Continue(()),
+    };
     let v = s
         .many_with(&designs, [1.0], ["angle(rocker)", "x(C)"], &mut none)
         .expect("values");
@@ -503,7 +509,10 @@ fn a_pose_of_another_design_is_told_from_ours() {
 #[test]
 fn a_sweep_may_be_stopped_and_clones_go_their_own_way() {
     let mut s = crank_rocker();
-    let mut five = |done: usize, _: usize| if done < 5 { Flow::Continue } else { Flow::Stop };
+    let mut five = |_: Stage, done: Done| match done {
+        Done::Of(rows, _) if rows >= 5 => ControlFlow::Break(()),
+        _ => ControlFlow::Continue(()),
+    };
     let t = s
         .sweep_with("motor", linspace(0.0, 1.0, 100), ["x(B)"], &mut five)
         .expect("rows");

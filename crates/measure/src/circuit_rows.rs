@@ -1,7 +1,7 @@
 //! Rows of a whole circuit, by arc length.
 
 use kempe_model::Measure;
-use kempe_motion::Watch;
+use kempe_motion::Progress;
 use kempe_motion::circuit::Circuit;
 
 use crate::force_source::NoForces;
@@ -10,15 +10,15 @@ use crate::sampler::{Sample, Sampler, Unprepared};
 /// Prepares measures for rows of a circuit: a sampler for each of its stretches.
 ///
 /// # Errors
-/// All measures that cannot be evaluated, or that `watch` stopped it.
+/// All measures that cannot be evaluated, or that `progress` stopped it.
 pub fn circuit_samplers(
     circuit: &Circuit,
     measures: &[&Measure],
-    watch: &mut dyn Watch,
+    progress: &mut dyn Progress,
 ) -> Result<Vec<Sampler>, Unprepared> {
     let stretches = circuit.stretches.iter();
     stretches
-        .map(|s| Sampler::watched(&s.motion, measures, NoForces, watch))
+        .map(|s| Sampler::with_progress(&s.motion, measures, NoForces, progress))
         .collect()
 }
 

@@ -8,7 +8,7 @@ use kempe_motion::bridge::{Side, across};
 use kempe_motion::drive_path::DrivePath;
 use kempe_motion::events::EventKind;
 use kempe_motion::motion::{Motion, Solver};
-use kempe_motion::progress::{Stage, Watch};
+use kempe_motion::progress::{Done, Progress, Stage};
 use kempe_motion::trace::interval;
 use kempe_number::Jet;
 
@@ -66,7 +66,11 @@ enum Variable {
 
 impl Swept {
     /// Integrates over a motion; `None` when stopped.
-    pub fn watched(motion: &Motion, point: PointId, watch: &mut dyn Watch) -> Option<Self> {
+    pub fn with_progress(
+        motion: &Motion,
+        point: PointId,
+        progress: &mut dyn Progress,
+    ) -> Option<Self> {
         let mut it = Self {
             point,
             runner: Runner::new(motion, point),
@@ -84,8 +88,8 @@ impl Swept {
             let mut before = 0.0;
             for (index, pair) in marks.windows(2).enumerate() {
                 let part = index as f64 / marks.len() as f64;
-                watch
-                    .reached(Stage::Measuring, Some(part))
+                progress
+                    .reached(Stage::Measuring, Done::Part(part))
                     .continue_value()?;
                 let stretch = Stretch::new(motion, runner, [pair[0], pair[1]], before);
                 before += stretch.length();

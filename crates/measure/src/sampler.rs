@@ -16,7 +16,7 @@ use kempe_mechanism::bordered::Bordered;
 use kempe_mechanism::evidence::evidence;
 use kempe_model::{Measure, PointId};
 use kempe_motion::motion::{Motion, Solver};
-use kempe_motion::progress::{Unwatched, Watch};
+use kempe_motion::progress::{Progress, Silent};
 
 use crate::clock::Clock;
 use crate::force_source::{ForceSource, NoForces};
@@ -88,37 +88,39 @@ impl<F: ForceSource> Sampler<F> {
         measures: &[&Measure],
         forces: F,
     ) -> Result<Self, Vec<Unmeasurable>> {
-        Self::watched(motion, measures, forces, &mut Unwatched).map_err(|problem| match problem {
-            Unprepared::Unmeasurable(list) => list,
-            // Unwatched, it is never stopped.
-            Unprepared::Stopped => Vec::new(),
-        })
+        Self::with_progress(motion, measures, forces, &mut Silent).map_err(
+            |problem| match problem {
+                Unprepared::Unmeasurable(list) => list,
+                // Silent, it is never stopped.
+                Unprepared::Stopped => Vec::new(),
+            },
+        )
     }
 
-    /// As [`Sampler::with_forces`]; `watch` hears how far the statistics over the motion have come.
+    /// As [`Sampler::with_forces`]; `progress` hears how far the statistics over the motion have come.
     ///
     /// # Errors
     /// As [`Sampler::with_forces`], and [`Unprepared::Stopped`].
-    pub fn watched(
+    pub fn with_progress(
         motion: &Arc<Motion>,
         measures: &[&Measure],
         forces: F,
-        watch: &mut dyn Watch,
+        progress: &mut dyn Progress,
     ) -> Result<Self, Unprepared> {
-        Self::with_rows(motion, measures, forces, &[], watch)
+        Self::with_rows(motion, measures, forces, &[], progress)
     }
 
-    /// As [`Sampler::watched`]; statistics over the motion look at the times of its rows, s, too: no row lies beyond an
+    /// As [`Sampler::with_progress`]; statistics over the motion look at the times of its rows, s, too: no row lies beyond an
     /// extreme.
     ///
     /// # Errors
-    /// As [`Sampler::watched`].
+    /// As [`Sampler::with_progress`].
     pub fn with_rows(
         motion: &Arc<Motion>,
         measures: &[&Measure],
         forces: F,
         rows: &[f64],
-        watch: &mut dyn Watch,
+        progress: &mut dyn Progress,
     ) -> Result<Self, Unprepared> {
         let mut rows: Vec<f64> = rows.iter().copied().filter(|t| t.is_finite()).collect();
         rows.sort_by(f64::total_cmp);
@@ -143,7 +145,7 @@ impl<F: ForceSource> Sampler<F> {
             plain: motion.solver(),
             system: Bordered::new(mechanism),
         };
-        it.prepare(watch).ok_or(Unprepared::Stopped)?;
+        it.prepare(progress).ok_or(Unprepared::Stopped)?;
         Ok(it)
     }
 

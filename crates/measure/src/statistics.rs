@@ -18,7 +18,7 @@ pub(crate) use self::rounds::rounds;
 pub(crate) use self::time_ratio::time_ratio;
 
 use kempe_model::{Measure, Statistic};
-use kempe_motion::progress::Watch;
+use kempe_motion::progress::Progress;
 
 use self::extremes::Extremes;
 use self::mean::Mean;
@@ -53,7 +53,7 @@ struct Course {
 pub(crate) fn over_motion<F: ForceSource>(
     sampler: &mut Sampler<F>,
     statistics: &[(Statistic, Measure)],
-    watch: &mut dyn Watch,
+    progress: &mut dyn Progress,
 ) -> Option<(Vec<f64>, Vec<Known>)> {
     let mut measures: Vec<&Measure> = Vec::new();
     let mut courses: Vec<Course> = Vec::new();
@@ -79,14 +79,14 @@ pub(crate) fn over_motion<F: ForceSource>(
         let mut stretches = stretches(sampler);
         if together.forces() {
             let curves = sampler.forces().curves();
-            let knots = knots::passed(sampler, &curves, &stretches, watch)?;
+            let knots = knots::passed(sampler, &curves, &stretches, progress)?;
             stretches = parted(&stretches, &knots, duration);
         }
         survey(
             sampler,
             &together,
             &stretches,
-            watch,
+            progress,
             &mut |sampler, before, now| {
                 for (index, course) in courses.iter_mut().enumerate() {
                     let before = before.map(|sample| sample.point(index));

@@ -21,7 +21,7 @@ use support::{Case, SKind, Spec, bits, difference, spread, turn};
 const CLOSED: f64 = 1e-12;
 /// A mechanism nearer to singular than this at its start need not be found.
 const REGULAR: f64 = 1e-4;
-/// No motion may take more work than this, counted in how often its watch hears of it.
+/// No motion may take more work than this, counted in how often its progress hears of it.
 const MOST_WORK: usize = 20_000;
 
 /// What happened, for the hunt's statistics.
@@ -50,7 +50,7 @@ fn check(made: &Made) -> Result<Outcome, String> {
             false => ControlFlow::Break(()),
         }
     };
-    let motion = match Motion::watched(&case.design, &mut bounded) {
+    let motion = match Motion::with_progress(&case.design, &mut bounded) {
         Ok(motion) => motion,
         Err(MotionError::CannotAssemble { .. } | MotionError::Locked { .. }) if !regular => {
             return Ok(Outcome::NotRegular);

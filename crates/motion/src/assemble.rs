@@ -26,7 +26,7 @@ use kempe_mechanism::{Branch, Design};
 
 use self::search::Search;
 use self::turns::counted_turns;
-use crate::progress::{Unwatched, Watch};
+use crate::progress::{Progress, Silent};
 
 /// How often the turns of links may change those of links further on.
 const TURNS_SETTLE: usize = 8;
@@ -94,21 +94,21 @@ pub struct Assemblies {
 
 /// Finds all assemblies at the drive coordinates (SI).
 pub fn all_assemblies(design: &Design<f64>, coordinates: &[f64]) -> Assemblies {
-    // Unwatched, it is never stopped.
-    find_assemblies(design, coordinates, &mut Unwatched).unwrap_or_default()
+    // Silent, it is never stopped.
+    find_assemblies(design, coordinates, &mut Silent).unwrap_or_default()
 }
 
-/// As [`all_assemblies`]; `watch` hears how far it has come. `None` when it stops the search: a part of the list could
+/// As [`all_assemblies`]; `progress` hears how far it has come. `None` when it stops the search: a part of the list could
 /// lack the assembly that is meant.
 pub fn find_assemblies(
     design: &Design<f64>,
     coordinates: &[f64],
-    watch: &mut dyn Watch,
+    progress: &mut dyn Progress,
 ) -> Option<Assemblies> {
     // A gear meshes by the angle of its own link: where links of one body count from different turns, which shows in an
     // assembly, what hangs on such gears is found with these turns.
     let mut design = Cow::Borrowed(design);
-    let mut found = Search::new(&design, coordinates, watch).run()?;
+    let mut found = Search::new(&design, coordinates, progress).run()?;
     for _ in 0..TURNS_SETTLE {
         let Some(chosen) = found.list.first() else {
             break;
@@ -118,7 +118,7 @@ pub fn find_assemblies(
             break;
         }
         design.to_mut().count_turns(&turns);
-        found = Search::new(&design, coordinates, watch).run()?;
+        found = Search::new(&design, coordinates, progress).run()?;
     }
     Some(found)
 }

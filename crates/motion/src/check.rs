@@ -10,7 +10,7 @@ use crate::drive_path::DrivePath;
 use crate::events::Event;
 use crate::four_bar::{FourBar, four_bars};
 use crate::motion::{Demand, EndReason, Motion, MotionError};
-use crate::progress::{Unwatched, Watch};
+use crate::progress::{Progress, Silent};
 use crate::temporary_drives::hold;
 
 /// A cylinder or slide is followed this many mechanism sizes from its start when its reach is asked for.
@@ -58,12 +58,12 @@ pub struct Reach {
 
 /// Checks a mechanism for the model's parameter values.
 pub fn check(design: &Design<f64>) -> Findings {
-    check_watched(design, &mut Unwatched)
+    check_with_progress(design, &mut Silent)
 }
 
-/// As [`check`]; `watch` hears how far it has come. Stopped, it returns what it found until then, with
+/// As [`check`]; `progress` hears how far it has come. Stopped, it returns what it found until then, with
 /// [`MotionError::Stopped`] as the problem.
-pub fn check_watched(design: &Design<f64>, watch: &mut dyn Watch) -> Findings {
+pub fn check_with_progress(design: &Design<f64>, progress: &mut dyn Progress) -> Findings {
     let mechanism = &*design.mechanism;
     let plan = &mechanism.plan;
     let mut findings = Findings {
@@ -84,7 +84,7 @@ pub fn check_watched(design: &Design<f64>, watch: &mut dyn Watch) -> Findings {
             findings.redundant.push(source);
         }
     }
-    match Motion::watched(design, watch) {
+    match Motion::with_progress(design, progress) {
         Ok(motion) => {
             if let Some(chosen) = motion.assemblies.list.first() {
                 let mut coordinates = vec![0.0; mechanism.model.drives.len()];
@@ -92,7 +92,7 @@ pub fn check_watched(design: &Design<f64>, watch: &mut dyn Watch) -> Findings {
                 let state = state_at(mechanism, &chosen.poses, &coordinates);
                 findings.mobility = mobility(design, Some((&state, &chosen.branch)));
             }
-            match reach(&motion, watch) {
+            match reach(&motion, progress) {
                 Ok(reach) => findings.reach = Some(reach),
                 Err(stopped) => findings.problem = Some(stopped),
             }
@@ -108,7 +108,7 @@ pub fn check_watched(design: &Design<f64>, watch: &mut dyn Watch) -> Findings {
             ) {
                 findings.searched = false;
                 // The bodies and what joins them are the same however they are held.
-                if let Some(held) = hold(mechanism, &design.parameters, watch) {
+                if let Some(held) = hold(mechanism, &design.parameters, progress) {
                     let coordinates = vec![0.0; mechanism.model.drives.len()];
                     let state = state_at(mechanism, &held.assembly.poses, &coordinates);
                     let mut branch = Branch::neutral(mechanism);
@@ -123,7 +123,7 @@ pub fn check_watched(design: &Design<f64>, watch: &mut dyn Watch) -> Findings {
 }
 
 /// How far the moving drive can go from its start, beyond what the file demands.
-fn reach(motion: &Motion, watch: &mut dyn Watch) -> Result<Reach, MotionError> {
+fn reach(motion: &Motion, progress: &mut dyn Progress) -> Result<Reach, MotionError> {
     let own = || Reach {
         range: motion.reached(),
         ends: motion.ends,
@@ -156,7 +156,7 @@ fn reach(motion: &Motion, watch: &mut dyn Watch) -> Result<Reach, MotionError> {
         start: motion.anchor,
         assemblies: Some(motion.assemblies.clone()),
     };
-    match Motion::along(&motion.design, demand, watch) {
+    match Motion::along(&motion.design, demand, progress) {
         Ok(wide) => Ok(Reach {
             range: wide.reached(),
             ends: wide.ends,

@@ -15,7 +15,7 @@ use kempe_mechanism::Design;
 
 use crate::assemble::Assemblies;
 use crate::motion::{EndReason, Motion, MotionError, Unlocated, restricting_steps};
-use crate::progress::{Stage, Unwatched, Watch};
+use crate::progress::{Progress, Silent, Stage};
 use crate::trace::{Follower, Node, Path, distance};
 
 /// A stretch of a circuit on which the drive's coordinate runs one way.
@@ -51,16 +51,19 @@ impl Circuit {
     /// # Errors
     /// When it cannot start; see [`Motion::new`].
     pub fn new(design: &Design<f64>) -> Result<Self, MotionError> {
-        Self::watched(design, &mut Unwatched)
+        Self::with_progress(design, &mut Silent)
     }
 
-    /// As [`Circuit::new`]; `watch` hears how far it has come and may stop it.
+    /// As [`Circuit::new`]; `progress` hears how far it has come and may stop it.
     ///
     /// # Errors
     /// As [`Circuit::new`], and [`MotionError::Stopped`].
-    pub fn watched(design: &Design<f64>, watch: &mut dyn Watch) -> Result<Self, MotionError> {
+    pub fn with_progress(
+        design: &Design<f64>,
+        progress: &mut dyn Progress,
+    ) -> Result<Self, MotionError> {
         // The demanded motion finds the start, with all its checks.
-        let motion = Motion::watched(design, watch)?;
+        let motion = Motion::with_progress(design, progress)?;
         let (low, high) = motion.demanded;
         let direction = if motion.start == low { 1.0 } else { -1.0 };
         let (path, assemblies) = (motion.path.clone(), motion.assemblies.clone());
@@ -80,7 +83,7 @@ impl Circuit {
                 &design.mechanism,
                 &path,
                 high,
-                watch,
+                progress,
             )
             .ok_or(Unlocated::Stopped(Stage::Following))?;
             let mut stretches = Vec::new();
@@ -93,7 +96,7 @@ impl Circuit {
                 let assemblies = assemblies.clone();
                 let mut motion = Motion::of_nodes(design, path, assemblies, rising);
                 motion.ends = (EndReason::Limit, EndReason::Limit);
-                motion.find_events(follower, watch)?;
+                motion.find_events(follower, progress)?;
                 stretches.push(Stretch {
                     motion: Arc::new(motion),
                     forward,

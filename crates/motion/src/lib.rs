@@ -14,6 +14,6 @@ pub mod temporary_drives;
 pub mod trace;
 
 pub use batch::{Batch, BatchError, Designs, sweep_states};
-pub use check::{Findings, Reach, check, check_watched};
+pub use check::{Findings, Reach, check, check_with_progress};
 pub use motion::{Demand, EndReason, Motion, MotionError, Placed, Solver};
-pub use progress::{Stage, Unwatched, Watch};
+pub use progress::{Done, Progress, Silent, Stage};

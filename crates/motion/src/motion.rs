@@ -33,7 +33,7 @@ use self::branch::Patch;
 use crate::assemble::Assemblies;
 use crate::drive_path::DrivePath;
 use crate::events::{Event, EventKind};
-use crate::progress::{Unwatched, Watch};
+use crate::progress::{Progress, Silent};
 use crate::trace::{Node, Path, unscale};
 
 /// A motion may end this close to a limit (in path scales) and still count as reaching it.
@@ -96,14 +96,17 @@ impl Motion {
     /// # Errors
     /// When it cannot start. A range that is cut short by a limit is not an error here: see [`Motion::ends`].
     pub fn new(design: &Design<f64>) -> Result<Arc<Self>, MotionError> {
-        Self::watched(design, &mut Unwatched)
+        Self::with_progress(design, &mut Silent)
     }
 
-    /// As [`Motion::new`]; `watch` hears how far it has come and may stop it.
+    /// As [`Motion::new`]; `progress` hears how far it has come and may stop it.
     ///
     /// # Errors
     /// As [`Motion::new`], and [`MotionError::Stopped`].
-    pub fn watched(design: &Design<f64>, watch: &mut dyn Watch) -> Result<Arc<Self>, MotionError> {
+    pub fn with_progress(
+        design: &Design<f64>,
+        progress: &mut dyn Progress,
+    ) -> Result<Arc<Self>, MotionError> {
         let (model, parameters) = (&design.mechanism.model, &design.parameters);
         let size = design.size();
         let path = DrivePath::new(model, parameters, size);
@@ -115,7 +118,7 @@ impl Motion {
             start,
             assemblies: None,
         };
-        Self::along(design, stretch, watch).map(Arc::new)
+        Self::along(design, stretch, progress).map(Arc::new)
     }
 
     /// A motion over given nodes, rising in the path parameter; it covers just them.

@@ -1,11 +1,12 @@
 //! How long work tells how far it has come, and how it is stopped.
 //!
-//! Nothing here knows a clock, a thread or a terminal: whoever starts the work brings an ear.
+//! Nothing here knows a clock, a thread or a terminal: whoever starts the work brings what hears it.
 
 use std::ops::ControlFlow;
 
 /// What the work is at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Stage {
     /// All ways to put the mechanism together are looked for.
     Assembling,
@@ -19,6 +20,8 @@ pub enum Stage {
     Proving,
     /// What could be put on the mechanism is tried, unit by unit.
     Trying,
+    /// Rows of a table are computed, or values of many designs.
+    Rows,
 }
 
 impl Stage {
@@ -31,30 +34,60 @@ impl Stage {
             Self::Measuring => "measuring over the motion",
             Self::Proving => "proving the motion",
             Self::Trying => "trying what each unit does",
+            Self::Rows => "computing rows",
         }
     }
 }
 
-/// Hears how far long work has come, and says whether it may go on.
+/// How much of a stage is done.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Done {
+    /// It is not known how much there is.
+    Unknown,
+    /// This part of it, 0 to 1.
+    Part(f64),
+    /// So many of so many.
+    Of(usize, usize),
+}
+
+impl Done {
+    /// The part that is done, 0 to 1, where it is known.
+    pub fn part(self) -> Option<f64> {
+        match self {
+            Self::Unknown => None,
+            Self::Part(part) => Some(part.clamp(0.0, 1.0)),
+            Self::Of(done, all) => Some(done as f64 / all.max(1) as f64),
+        }
+    }
+}
+
+impl From<Option<f64>> for Done {
+    fn from(part: Option<f64>) -> Self {
+        part.map_or(Self::Unknown, Self::Part)
+    }
+}
+
+/// Hears how far long work has come, and says whether it may go on. What is finished when it is stopped is kept where it
+/// means something by itself: rows of a table.
 ///
 /// It is asked often, and its answer must not change what is computed, only whether it goes on.
-pub trait Watch {
-    /// `part` of the stage is done, 0 to 1; `None` where it is not known how much there is.
-    fn reached(&mut self, stage: Stage, part: Option<f64>) -> ControlFlow<()>;
+pub trait Progress {
+    /// The work has come so far.
+    fn reached(&mut self, stage: Stage, done: Done) -> ControlFlow<()>;
 }
 
 /// Hears nothing and never stops.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Unwatched;
+pub struct Silent;
 
-impl Watch for Unwatched {
-    fn reached(&mut self, _: Stage, _: Option<f64>) -> ControlFlow<()> {
+impl Progress for Silent {
+    fn reached(&mut self, _: Stage, _: Done) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }
 }
 
-impl<F: FnMut(Stage, Option<f64>) -> ControlFlow<()>> Watch for F {
-    fn reached(&mut self, stage: Stage, part: Option<f64>) -> ControlFlow<()> {
-        self(stage, part)
+impl<F: FnMut(Stage, Done) -> ControlFlow<()>> Progress for F {
+    fn reached(&mut self, stage: Stage, done: Done) -> ControlFlow<()> {
+        self(stage, done)
     }
 }

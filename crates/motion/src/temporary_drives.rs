@@ -9,7 +9,7 @@ use kempe_units::{Dimension, Expr};
 
 use crate::assemble::{Assembly, find_assemblies};
 use crate::drive_path::DrivePath;
-use crate::progress::Watch;
+use crate::progress::Progress;
 
 /// Places at which held drives are tried, one after the other.
 const TRIALS: usize = 24;
@@ -29,7 +29,11 @@ pub struct Held {
 
 /// Finds a pose of a mechanism with too few drives: those that it lacks are held near the file's hints, or anywhere.
 /// `None` where no angle of a link and no travel of a slider determines the rest, or nothing closes at the places tried.
-pub fn hold(mechanism: &Mechanism, parameters: &[f64], watch: &mut dyn Watch) -> Option<Held> {
+pub fn hold(
+    mechanism: &Mechanism,
+    parameters: &[f64],
+    progress: &mut dyn Progress,
+) -> Option<Held> {
     let own = mechanism.model.drives.len();
     let mut model = mechanism.model.clone();
     let mut state = Determined::of(&model);
@@ -65,7 +69,7 @@ pub fn hold(mechanism: &Mechanism, parameters: &[f64], watch: &mut dyn Watch) ->
         let path = DrivePath::new(&model, parameters, size);
         let mut coordinates = vec![0.0; model.drives.len()];
         path.coordinates(path.start(&model, parameters), &mut coordinates);
-        let found = find_assemblies(&design, &coordinates, watch)?;
+        let found = find_assemblies(&design, &coordinates, progress)?;
         let Some(assembly) = found.list.into_iter().next() else {
             continue;
         };

@@ -20,7 +20,7 @@ fn has_dead_points(text: &str, dead: &[f64]) {
     let circuit = Circuit::new(&case.design).unwrap();
     assert!(circuit.closed, "{text}");
     let mut samplers =
-        kempe_measure::circuit_samplers(&circuit, &[], &mut kempe_motion::Unwatched).unwrap();
+        kempe_measure::circuit_samplers(&circuit, &[], &mut kempe_motion::Silent).unwrap();
     for k in 0..=360 {
         let arc = circuit.length * f64::from(k) / 360.0;
         let row = kempe_measure::circuit_row(&circuit, &mut samplers, arc).unwrap();

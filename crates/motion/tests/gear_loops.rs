@@ -9,6 +9,7 @@ use std::ops::ControlFlow;
 use kempe_mechanism::evidence::closure;
 use kempe_motion::Stage;
 use kempe_motion::assemble::{Shortfall, all_assemblies, find_assemblies};
+use kempe_motion::progress::Done;
 use support::{Case, Rng, V, add, norm, polar, sub};
 
 /// A geared five-bar whose couplers are held at an angle to each other, so that they tie the tips of the two geared
@@ -130,11 +131,11 @@ fn what_comes_after_a_gear_loop_is_no_work_in_it() {
         .map(|d| d.law.at(0.0, &case.parameters))
         .collect();
     let mut told = 0;
-    let mut watch = |_: Stage, _: Option<f64>| {
+    let mut progress = |_: Stage, _: Done| {
         told += 1;
         ControlFlow::Continue(())
     };
-    let found = find_assemblies(&case.design, &start, &mut watch);
+    let found = find_assemblies(&case.design, &start, &mut progress);
     assert_eq!(found.unwrap().list.len(), 2);
     assert!(told < 20_000, "{told}");
 }

@@ -1,4 +1,4 @@
-//! Long work tells how far it has come, stops when told, and comes to the same result watched or not.
+//! Long work tells how far it has come, stops when told, and comes to the same result with_progress or not.
 #![allow(clippy::unwrap_used)]
 
 mod support;
@@ -8,7 +8,8 @@ use std::ops::ControlFlow;
 use kempe_measure::force_source::NoForces;
 use kempe_measure::{Sampler, Unprepared};
 use kempe_motion::circuit::Circuit;
-use kempe_motion::{Motion, MotionError, Stage, Watch, check_watched};
+use kempe_motion::progress::Done;
+use kempe_motion::{Motion, MotionError, Progress, Stage, check_with_progress};
 use support::Case;
 
 const FOUR_BAR: &str = r#"
@@ -34,12 +35,12 @@ struct Stopping {
     heard: Vec<f64>,
 }
 
-impl Watch for Stopping {
-    fn reached(&mut self, stage: Stage, part: Option<f64>) -> ControlFlow<()> {
+impl Progress for Stopping {
+    fn reached(&mut self, stage: Stage, done: Done) -> ControlFlow<()> {
         if stage != self.at {
             return ControlFlow::Continue(());
         }
-        self.heard.push(part.unwrap_or(f64::NAN));
+        self.heard.push(done.part().unwrap_or(f64::NAN));
         if self.heard.len() >= self.after {
             ControlFlow::Break(())
         } else {
@@ -60,14 +61,14 @@ fn stopping(at: Stage, after: usize) -> Stopping {
 fn a_motion_stops_in_every_stage_as_soon_as_it_is_told() {
     let case = Case::read(FOUR_BAR, "four-bar");
     for at in [Stage::Assembling, Stage::Following, Stage::Locating] {
-        let mut watch = stopping(at, 3);
-        let motion = Motion::watched(&case.design, &mut watch);
+        let mut progress = stopping(at, 3);
+        let motion = Motion::with_progress(&case.design, &mut progress);
         assert!(
             matches!(motion, Err(MotionError::Stopped { stage }) if stage == at),
             "{at:?}"
         );
         assert_eq!(
-            watch.heard.len(),
+            progress.heard.len(),
             3,
             "{at:?}: nothing is asked after the stop"
         );
@@ -77,10 +78,10 @@ fn a_motion_stops_in_every_stage_as_soon_as_it_is_told() {
 #[test]
 fn parts_of_a_stage_rise_from_zero_to_one() {
     let case = Case::read(FOUR_BAR, "four-bar");
-    let mut watch = stopping(Stage::Following, usize::MAX);
-    let motion = Motion::watched(&case.design, &mut watch).unwrap();
+    let mut progress = stopping(Stage::Following, usize::MAX);
+    let motion = Motion::with_progress(&case.design, &mut progress).unwrap();
     assert_eq!(motion.nodes(), case.motion().unwrap().nodes());
-    let heard = watch.heard;
+    let heard = progress.heard;
     assert!(heard.iter().all(|p| (0.0..=1.0).contains(p)));
     assert!(heard.is_sorted() && heard[0] == 0.0 && *heard.last().unwrap() > 0.95);
 }
@@ -90,22 +91,22 @@ fn statistics_circuits_and_checks_stop_too() {
     let case = Case::read(FOUR_BAR, "four-bar");
     let motion = case.motion().unwrap();
     for named in &case.model.measures {
-        let mut watch = stopping(Stage::Measuring, 5);
-        let sampler = Sampler::watched(&motion, &[&named.measure], NoForces, &mut watch);
+        let mut progress = stopping(Stage::Measuring, 5);
+        let sampler = Sampler::with_progress(&motion, &[&named.measure], NoForces, &mut progress);
         assert_eq!(sampler.err(), Some(Unprepared::Stopped), "{}", named.name);
-        assert_eq!(watch.heard.len(), 5);
+        assert_eq!(progress.heard.len(), 5);
     }
     // The motion that finds a circuit's start is followed first: its parts are known, those of the circuit not.
     let mut unknown = 0;
-    let mut watch = |_: Stage, part: Option<f64>| {
-        unknown += usize::from(part.is_none());
+    let mut progress = |_: Stage, done: Done| {
+        unknown += usize::from(done == Done::Unknown);
         if unknown > 20 {
             ControlFlow::Break(())
         } else {
             ControlFlow::Continue(())
         }
     };
-    let circuit = Circuit::watched(&case.design, &mut watch);
+    let circuit = Circuit::with_progress(&case.design, &mut progress);
     assert!(matches!(
         circuit,
         Err(MotionError::Stopped {
@@ -113,8 +114,8 @@ fn statistics_circuits_and_checks_stop_too() {
         })
     ));
 
-    let mut watch = stopping(Stage::Following, 1);
-    let findings = check_watched(&case.design, &mut watch);
+    let mut progress = stopping(Stage::Following, 1);
+    let findings = check_with_progress(&case.design, &mut progress);
     assert!(matches!(
         findings.problem,
         Some(MotionError::Stopped { .. })

@@ -7,7 +7,7 @@ use kempe_measure::force_source::NoForces;
 use kempe_measure::{Sample, Sampler, Unmeasurable, Unprepared};
 use kempe_mechanism::Mechanism;
 use kempe_model::{Diagnostic, DriveId, Model};
-use kempe_motion::{Motion, Stage, Unwatched, Watch};
+use kempe_motion::{Motion, Progress, Silent, Stage};
 
 use crate::explain::stopped;
 use crate::quantity::Quantity;
@@ -71,32 +71,32 @@ impl Along {
         quantities: &[&Quantity],
         forces: bool,
     ) -> Result<Self, Vec<Diagnostic>> {
-        Self::watched(model, motion, quantities, forces, &[], &mut Unwatched)
+        Self::with_progress(model, motion, quantities, forces, &[], &mut Silent)
     }
 
-    /// As [`Along::new`], with the places of the rows that will be asked for; `watch` hears how far the statistics have come
+    /// As [`Along::new`], with the places of the rows that will be asked for; `progress` hears how far the statistics have come
     /// and may stop them.
     ///
     /// # Errors
     ///
     /// As [`Along::new`], and `stopped`.
-    pub fn watched(
+    pub fn with_progress(
         model: &Model,
         motion: &Arc<Motion>,
         quantities: &[&Quantity],
         forces: bool,
         rows: &[RowPlace],
-        watch: &mut dyn Watch,
+        progress: &mut dyn Progress,
     ) -> Result<Self, Vec<Diagnostic>> {
         let measures: Vec<_> = quantities.iter().map(|q| &q.measure).collect();
         let rows = times(motion, rows);
         if !forces {
-            return match Sampler::with_rows(motion, &measures, NoForces, &rows, watch) {
+            return match Sampler::with_rows(motion, &measures, NoForces, &rows, progress) {
                 Ok(sampler) => Ok(Self::Motion(Box::new(sampler))),
                 Err(problem) => Err(unprepared(model, quantities, problem)),
             };
         }
-        ForceSampler::with_rows(motion, &measures, &rows, watch)
+        ForceSampler::with_rows(motion, &measures, &rows, progress)
             .map(|sampler| Self::Forces(Box::new(sampler)))
             .map_err(|error| match error {
                 ForceError::Unprepared(problem) => unprepared(model, quantities, problem),

@@ -12,13 +12,13 @@ use crate::events::events;
 use crate::explain::cannot_move;
 use crate::missing::unreached_warning;
 use crate::prepared::design;
-use crate::progress::{Ear, Flow, Progress};
 use crate::quantity::Quantity;
 use crate::result::{Event, StudyResult};
 use crate::sink::RowSink;
 use crate::slot_ends::left_slots;
 use crate::table::Column;
 use crate::unit::Units;
+use kempe_motion::progress::{Done, Progress, Stage};
 
 /// Rows of a circuit when the study does not say how many.
 const DEFAULT_ROWS: usize = 361;
@@ -35,12 +35,12 @@ pub(crate) fn run_circuit(
 ) -> Result<StudyResult, Vec<Diagnostic>> {
     let design = design(model);
     let mechanism = &design.mechanism;
-    let circuit = Circuit::watched(&design, &mut Ear(progress))
+    let circuit = Circuit::with_progress(&design, progress)
         .map_err(|error| vec![cannot_move(&design, &error)])?;
     let asked = Asked::of_motion(model, study);
     let quantities: Vec<&Quantity> = asked.all().collect();
     let measures: Vec<_> = quantities.iter().map(|q| &q.measure).collect();
-    let mut samplers = circuit_samplers(&circuit, &measures, &mut Ear(progress))
+    let mut samplers = circuit_samplers(&circuit, &measures, progress)
         .map_err(|problem| unprepared(model, &quantities, problem))?;
 
     let mut warnings = Vec::new();
@@ -87,7 +87,10 @@ pub(crate) fn run_circuit(
             forces: None,
         };
         frames.push(rows.push(mechanism, arc, row));
-        if progress.tick(done + 1, count) == Flow::Stop {
+        if progress
+            .reached(Stage::Rows, Done::Of(done + 1, count))
+            .is_break()
+        {
             break;
         }
     }

@@ -11,10 +11,10 @@ use serde::Serialize;
 
 use crate::explain::cannot_move;
 use crate::prepared::design;
-use crate::progress::{Ear, Progress, Silent};
 use crate::unit::Units;
 use crate::words::{list, source_name};
 use crate::{alternatives, hints};
+use kempe_motion::progress::{Progress, Silent};
 
 /// The answer of `check`.
 #[derive(Clone, Debug, Serialize)]
@@ -91,15 +91,15 @@ pub struct Grashof {
 
 /// Checks a model: mobility two ways, groups, assemblies, reach.
 pub fn check(model: &Model) -> Report {
-    check_watched(model, &mut Silent)
+    check_with_progress(model, &mut Silent)
 }
 
 /// As [`check`]; `progress` hears how far it has come (no rows). Stopped, it tells what it found until then, with the
 /// diagnostic `stopped`.
-pub fn check_watched(model: &Model, progress: &mut dyn Progress) -> Report {
+pub fn check_with_progress(model: &Model, progress: &mut dyn Progress) -> Report {
     let design = design(model);
     let mechanism = &design.mechanism;
-    let found = kempe_motion::check_watched(&design, &mut Ear(progress));
+    let found = kempe_motion::check_with_progress(&design, progress);
     let units = Units::of(model);
     let bodies = |list: &[BodyId]| {
         list.iter()

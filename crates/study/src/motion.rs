@@ -15,7 +15,6 @@ use crate::force_columns::standard_plots;
 use crate::force_notes::unbounded;
 use crate::missing::{unreached_warning, without_value};
 use crate::prepared::{design, motion};
-use crate::progress::{Ear, Flow, Progress};
 use crate::quantity::Quantity;
 use crate::result::StudyResult;
 use crate::rows::places_along;
@@ -23,6 +22,7 @@ use crate::sink::RowSink;
 use crate::slot_ends::left_slots;
 use crate::table::Column;
 use crate::unit::Units;
+use kempe_motion::progress::{Done, Progress, Stage};
 
 /// Rows along the drives' laws, with forces or without.
 pub(crate) fn run_along(
@@ -46,14 +46,7 @@ pub(crate) fn run_along(
     };
     let quantities: Vec<&Quantity> = asked.all().collect();
     let places = places_along(&motion, &study, &design.parameters);
-    let mut sampler = Along::watched(
-        model,
-        &motion,
-        &quantities,
-        forces,
-        &places,
-        &mut Ear(progress),
-    )?;
+    let mut sampler = Along::with_progress(model, &motion, &quantities, forces, &places, progress)?;
     let units = Units::of(model);
     let mut rows = RowSink::new(
         name,
@@ -68,7 +61,10 @@ pub(crate) fn run_along(
         let row = sampler.row(*place);
         parameters_met.push(row.sample.parameter);
         frames.push(rows.push(&design.mechanism, row.sample.time, row));
-        if progress.tick(done + 1, places.len()) == Flow::Stop {
+        if progress
+            .reached(Stage::Rows, Done::Of(done + 1, places.len()))
+            .is_break()
+        {
             break;
         }
     }

@@ -2,14 +2,13 @@
 
 use kempe_mechanism::Mechanism;
 use kempe_model::{Diagnostic, Law, LawPiece, Model, MotionStudy, RiseLaw, Rows, Severity};
-use kempe_motion::Unwatched;
+use kempe_motion::Silent;
 use kempe_motion::temporary_drives::hold;
 use kempe_units::{Dimension, Expr, Issue, Resolver, Span, check_as, nearest, parse};
 
 use crate::along::{Along, Row};
 use crate::findings_forces::something_acts;
 use crate::prepared::{design, motion};
-use crate::progress::Silent;
 use crate::result::Frame;
 use crate::rows::RowPlace;
 use crate::run::{nothing_acts, run_motion};
@@ -293,7 +292,7 @@ fn start_text(model: &Model, units: &Units) -> String {
 fn with_held(model: &Model, parameters: &[f64]) -> Option<Model> {
     let mechanism = Mechanism::new(model);
     let lacks = model.drives.is_empty() || !mechanism.plan.decomposition.undetermined.is_empty();
-    let held = lacks.then(|| hold(&mechanism, parameters, &mut Unwatched))??;
+    let held = lacks.then(|| hold(&mechanism, parameters, &mut Silent))??;
     Some(held.model)
 }
 

@@ -7,7 +7,7 @@ use kempe_model::{Diagnostic, Model};
 use kempe_motion::Motion;
 
 use crate::explain::cannot_move;
-use crate::progress::{Ear, Progress};
+use kempe_motion::progress::Progress;
 
 /// The design that a model describes: its mechanism with the values of its parameters.
 pub(crate) fn design(model: &Model) -> Design<f64> {
@@ -19,5 +19,5 @@ pub(crate) fn motion(
     design: &Design<f64>,
     progress: &mut dyn Progress,
 ) -> Result<Arc<Motion>, Vec<Diagnostic>> {
-    Motion::watched(design, &mut Ear(progress)).map_err(|error| vec![cannot_move(design, &error)])
+    Motion::with_progress(design, progress).map_err(|error| vec![cannot_move(design, &error)])
 }

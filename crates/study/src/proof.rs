@@ -1,7 +1,6 @@
 //! How much of the demanded motion is proved, in the words of the file.
 
 use std::fmt::Write as _;
-use std::ops::ControlFlow;
 
 use kempe_model::{Diagnostic, Model};
 use kempe_motion::Stage;
@@ -12,8 +11,8 @@ use kempe_units::Dimension;
 use serde::Serialize;
 
 use crate::prepared::{design, motion};
-use crate::progress::{Flow, Progress};
 use crate::unit::Units;
+use kempe_motion::progress::{Done, Progress};
 
 /// What is proved of a motion by interval arithmetic.
 #[derive(Clone, Debug, Serialize)]
@@ -55,10 +54,7 @@ pub fn prove(model: &Model, progress: &mut dyn Progress) -> Result<Proof, Vec<Di
     let design = design(model);
     let motion = motion(&design, progress)?;
     let found = certify_motion(&motion, Subdivision::default(), |part| {
-        match progress.stage(Stage::Proving, Some(part)) {
-            Flow::Continue => ControlFlow::Continue(()),
-            Flow::Stop => ControlFlow::Break(()),
-        }
+        progress.reached(Stage::Proving, Done::Part(part))
     });
     let units = Units::of(model);
     let drive = match motion.path {

@@ -6,8 +6,8 @@ use crate::choice::{balance, spring};
 use crate::circuit::run_circuit;
 use crate::findings_forces::something_acts;
 use crate::motion::run_along;
-use crate::progress::Progress;
 use crate::result::StudyResult;
+use kempe_motion::progress::Progress;
 
 /// Runs a study of a model.
 ///

@@ -11,8 +11,8 @@ use serde::Serialize;
 use crate::along::force_problems;
 use crate::pose::Setting;
 use crate::prepared::{design, motion};
-use crate::progress::Progress;
 use crate::unit::Units;
+use kempe_motion::progress::Progress;
 
 /// Digits that the text shows.
 const DIGITS: usize = 8;

@@ -1,7 +1,9 @@
 //! Motion studies against known numbers, and what is said when they cannot run.
 
+use std::ops::ControlFlow;
+
 use kempe_model::{Diagnostic, Model};
-use kempe_study::{Flow, Setting, Silent, StudyResult, check, encode, pose_at, run};
+use kempe_study::{Done, Setting, Silent, Stage, StudyResult, check, encode, pose_at, run};
 
 const FOUR_BAR: &str = r#"
 units = { length = "mm", angle = "deg" }
@@ -152,12 +154,9 @@ fn without_measures_the_table_says_where_everything_is() {
 #[test]
 fn stopping_keeps_the_finished_rows_and_says_so() {
     let model = model(FOUR_BAR);
-    let mut stop = |done: usize, _total: usize| {
-        if done == 100 {
-            Flow::Stop
-        } else {
-            Flow::Continue
-        }
+    let mut stop = |_: Stage, done: Done| match done {
+        Done::Of(100, _) => ControlFlow::Break(()),
+        _ => ControlFlow::Continue(()),
     };
     let result = run(&model, &model.studies[0], &mut stop).unwrap();
     assert!(result.interrupted());
@@ -281,12 +280,11 @@ fn a_circuit_goes_past_its_dead_points() {
 struct Impatient;
 
 impl kempe_study::Progress for Impatient {
-    fn tick(&mut self, _: usize, _: usize) -> Flow {
-        Flow::Continue
-    }
-
-    fn stage(&mut self, _: kempe_study::Stage, _: Option<f64>) -> Flow {
-        Flow::Stop
+    fn reached(&mut self, stage: Stage, _: Done) -> ControlFlow<()> {
+        match stage {
+            Stage::Rows => ControlFlow::Continue(()),
+            _ => ControlFlow::Break(()),
+        }
     }
 }
 
@@ -299,7 +297,7 @@ fn what_comes_before_the_rows_can_be_stopped() {
         told[0].message,
         "stopped while finding assemblies: there are no rows yet"
     );
-    let report = kempe_study::check_watched(&model, &mut Impatient);
+    let report = kempe_study::check_with_progress(&model, &mut Impatient);
     assert_eq!(report.diagnostics[0].code, "stopped");
     assert_eq!(
         report.four_bars.len(),

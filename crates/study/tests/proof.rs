@@ -1,7 +1,9 @@
 //! Proofs and sensitivities from the text of a file.
 
+use std::ops::ControlFlow;
+
 use kempe_model::Model;
-use kempe_study::{Flow, Progress, Setting, Silent, Stage, prove, sensitivities};
+use kempe_study::{Done, Progress, Setting, Silent, Stage, prove, sensitivities};
 
 /// A slider-crank that turns past its straight pose and not to its limit.
 const SLIDER: &str = r#"
@@ -39,14 +41,10 @@ fn a_regular_motion_is_proved_whole_and_stops_when_told() {
 
     struct Impatient;
     impl Progress for Impatient {
-        fn tick(&mut self, _: usize, _: usize) -> Flow {
-            Flow::Continue
-        }
-        fn stage(&mut self, stage: Stage, _: Option<f64>) -> Flow {
-            if stage == Stage::Proving {
-                Flow::Stop
-            } else {
-                Flow::Continue
+        fn reached(&mut self, stage: Stage, _: Done) -> ControlFlow<()> {
+            match stage {
+                Stage::Proving => ControlFlow::Break(()),
+                _ => ControlFlow::Continue(()),
             }
         }
     }

@@ -21,7 +21,7 @@ pub fn check(arguments: &Check) -> Exit {
     };
     interrupt::listen();
     let mut bar = Bar::new("check", arguments.json);
-    let report = kempe_study::check_watched(&loaded.checked.model, &mut bar);
+    let report = kempe_study::check_with_progress(&loaded.checked.model, &mut bar);
     // A mechanism that cannot move is told so above; there is no motion to prove.
     let proof = (arguments.certify && !report.has_errors() && !interrupt::stopped())
         .then(|| kempe_study::prove(&loaded.checked.model, &mut bar).ok())

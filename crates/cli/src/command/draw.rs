@@ -195,7 +195,7 @@ fn motion(model: &Model, forces: bool) -> Result<(MechanismView, Vec<Frame>, f64
         .table
         .column("time")
         .and_then(|c| c.values.last().copied());
-    // Real time where that can be watched.
+    // Real time where that can be with_progress.
     let period = real
         .filter(|t| (1.0..=20.0).contains(t))
         .unwrap_or(AnimationOptions::default().period);

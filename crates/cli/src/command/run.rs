@@ -267,7 +267,7 @@ fn write(
         }
     }
     // Stopped, it is not begun anew: the report says so.
-    let check = kempe_study::check_watched(model, &mut Bar::new("check", quiet));
+    let check = kempe_study::check_with_progress(model, &mut Bar::new("check", quiet));
     let mut report = kempe_study::report(
         model,
         &loaded.name,

@@ -1,6 +1,6 @@
 //! What measures need beyond the poses along the path, found before the first row.
 
-use kempe_motion::progress::Watch;
+use kempe_motion::progress::Progress;
 
 use super::Sampler;
 use crate::force_source::ForceSource;
@@ -28,7 +28,7 @@ pub enum Unprepared {
 
 impl<F: ForceSource> Sampler<F> {
     /// Finds out what the measures need beyond the poses along the path. `None` when stopped.
-    pub(super) fn prepare(&mut self, watch: &mut dyn Watch) -> Option<()> {
+    pub(super) fn prepare(&mut self, progress: &mut dyn Progress) -> Option<()> {
         let motion = self.motion().clone();
         // What the forces ask for comes first: measures of forces need its statistics.
         let inputs = self.measurer.forces.measures().iter();
@@ -37,10 +37,11 @@ impl<F: ForceSource> Sampler<F> {
         self.curved = needs.curved;
         self.curved.retain(|p| !motion.mechanism().is_fixed(*p));
         for point in needs.lengths {
-            self.lengths.push(Swept::watched(&motion, point, watch)?);
+            self.lengths
+                .push(Swept::with_progress(&motion, point, progress)?);
         }
         for round in rounds(self, needs.statistics) {
-            let (values, known) = over_motion(self, &round, watch)?;
+            let (values, known) = over_motion(self, &round, progress)?;
             let found = round.into_iter().zip(values);
             (self.measurer.statistics)
                 .extend(found.map(|((s, measure), value)| (s, measure, value)));

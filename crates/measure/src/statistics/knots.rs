@@ -1,6 +1,6 @@
 //! When a motion passes the knots of the curves that loads are made of.
 
-use kempe_motion::progress::Watch;
+use kempe_motion::progress::Progress;
 
 use super::stretches::Stretch;
 use super::survey::{Point, survey};
@@ -17,7 +17,7 @@ pub(super) fn passed<F: ForceSource>(
     sampler: &mut Sampler<F>,
     curves: &[Curve],
     stretches: &[Stretch],
-    watch: &mut dyn Watch,
+    progress: &mut dyn Progress,
 ) -> Option<Vec<f64>> {
     let mut times = Vec::new();
     if curves.is_empty() {
@@ -32,7 +32,7 @@ pub(super) fn passed<F: ForceSource>(
         sampler,
         &together,
         stretches,
-        watch,
+        progress,
         &mut |sampler, before, now| {
             let Some(before) = before else {
                 return true;

@@ -1,6 +1,6 @@
 //! The samples that all numbers over a motion share: the mechanism is solved once at each, for all of them.
 
-use kempe_motion::progress::{Stage, Watch};
+use kempe_motion::progress::{Done, Progress, Stage};
 
 use super::stretches::Stretch;
 use crate::force_source::ForceSource;
@@ -73,7 +73,7 @@ pub(super) fn survey<F: ForceSource>(
     sampler: &mut Sampler<F>,
     asked: &Asked,
     stretches: &[Stretch],
-    watch: &mut dyn Watch,
+    progress: &mut dyn Progress,
     heard: &mut Heard<'_, F>,
 ) -> Option<()> {
     let duration = sampler.duration();
@@ -81,8 +81,8 @@ pub(super) fn survey<F: ForceSource>(
     for stretch in stretches {
         let mut last: Option<Sample> = None;
         for time in stretch.times(&rows, duration) {
-            watch
-                .reached(Stage::Measuring, Some(time / duration))
+            progress
+                .reached(Stage::Measuring, Done::Part(time / duration))
                 .continue_value()?;
             let sample = Sample::take(sampler, asked, time);
             if let Some(before) = &last {

@@ -154,7 +154,7 @@ impl Search<'_> {
                     step,
                     meant: &self.hints.meant,
                 },
-                self.watch,
+                self.progress,
             )?;
             self.opened.push((gear, found));
         }

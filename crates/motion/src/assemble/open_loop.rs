@@ -22,7 +22,7 @@ use kempe_units::{Dimension, Expr};
 use super::search::Search;
 use crate::circuit::go_round;
 use crate::drive_path::DrivePath;
-use crate::progress::{Stage, Watch};
+use crate::progress::{Done, Progress, Stage};
 use crate::trace::{Cubic, Follower, Node, hermite};
 
 /// Angles of the gear at which the curves are cut.
@@ -49,7 +49,7 @@ pub(crate) fn candidates(
     design: &Design<f64>,
     coordinates: &[f64],
     gear: Gear<'_>,
-    watch: &mut dyn Watch,
+    progress: &mut dyn Progress,
 ) -> Option<Vec<Vec<Pose<f64>>>> {
     let mechanism = &*design.mechanism;
     let Some(opened) = open(design, &gear) else {
@@ -67,8 +67,8 @@ pub(crate) fn candidates(
     let mut follower = Follower::new(&opened, &path);
     let mut curves: Vec<Vec<Node>> = Vec::new();
     for cut in 0..CUTS {
-        let mut told = |_: Stage, _: Option<f64>| -> ControlFlow<()> {
-            watch.reached(Stage::Assembling, Some(cut as f64 / CUTS as f64))
+        let mut told = |_: Stage, _: Done| -> ControlFlow<()> {
+            progress.reached(Stage::Assembling, Done::Part(cut as f64 / CUTS as f64))
         };
         let angle = (cut as f64 + OFFSET) / CUTS as f64 * std::f64::consts::TAU;
         held[drive] = angle;

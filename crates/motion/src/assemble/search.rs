@@ -14,7 +14,7 @@ use kempe_model::LinkId;
 
 use super::hints::Hints;
 use super::{Assemblies, Assembly, Shortfall};
-use crate::progress::{Stage, Watch};
+use crate::progress::{Done, Progress, Stage};
 
 /// Most assemblies that are listed; a file with many dyads and no hints can have more than anyone wants to see.
 pub const ASSEMBLY_LIMIT: usize = 512;
@@ -32,7 +32,7 @@ pub(super) struct Search<'a> {
     pub coordinates: &'a [f64],
     pub size: f64,
     pub hints: Hints<'a>,
-    pub watch: &'a mut dyn Watch,
+    pub progress: &'a mut dyn Progress,
     pub stopped: bool,
     /// Why assemblies may be missing; the first reason met.
     pub shortfall: Option<Shortfall>,
@@ -49,7 +49,11 @@ pub(super) struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    pub fn new(design: &'a Design<f64>, coordinates: &'a [f64], watch: &'a mut dyn Watch) -> Self {
+    pub fn new(
+        design: &'a Design<f64>,
+        coordinates: &'a [f64],
+        progress: &'a mut dyn Progress,
+    ) -> Self {
         let mechanism = &*design.mechanism;
         let plan = &mechanism.plan;
         let size = design.size();
@@ -60,7 +64,7 @@ impl<'a> Search<'a> {
             coordinates,
             size,
             hints: Hints::new(design, size),
-            watch,
+            progress,
             stopped: false,
             shortfall: None,
             paths: Vec::new(),
@@ -246,7 +250,7 @@ impl<'a> Search<'a> {
 
     /// Says how far the search has come; how many branches there are to try is not known beforehand.
     pub(super) fn told(&mut self, part: Option<f64>) -> ControlFlow<()> {
-        let flow = self.watch.reached(Stage::Assembling, part);
+        let flow = self.progress.reached(Stage::Assembling, Done::from(part));
         self.stopped |= flow.is_break();
         flow
     }

@@ -6,7 +6,7 @@ use kempe_model::DriveKind;
 use crate::drive_path::DrivePath;
 use crate::events::locate_limit;
 use crate::motion::runs_away;
-use crate::progress::{Stage, Watch};
+use crate::progress::{Done, Progress, Stage};
 use crate::trace::{Follower, Node, WIGGLE, distance, hermite, hides_limits};
 
 /// Steps after which a circuit that has not closed is given up.
@@ -21,7 +21,7 @@ pub(crate) fn go_round(
     mechanism: &Mechanism,
     path: &DrivePath,
     end: f64,
-    watch: &mut dyn Watch,
+    progress: &mut dyn Progress,
 ) -> Option<(Vec<Node>, bool)> {
     let turning = match path {
         DrivePath::Coordinate { drive, .. } => {
@@ -51,7 +51,9 @@ pub(crate) fn go_round(
     let mut step = 0.02;
     let mut travelled = 0.0;
     for _ in 0..CIRCUIT_STEPS {
-        watch.reached(Stage::Following, None).continue_value()?;
+        progress
+            .reached(Stage::Following, Done::Unknown)
+            .continue_value()?;
         let from = nodes[nodes.len() - 1].clone();
         let Some(next) = follower.advance(&from, &mut step) else {
             return Some((nodes, false));

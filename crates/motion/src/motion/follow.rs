@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use crate::drive_path::DrivePath;
 use crate::events::locate_limit;
-use crate::progress::{Stage, Watch};
+use crate::progress::{Done, Progress, Stage};
 use crate::trace::{Follower, Node, distance};
 
 /// Steps after which a trace is given up.
@@ -43,17 +43,20 @@ pub enum EndReason {
 }
 
 /// Follows both directions, the upper one first, over a range of the scaled parameter. Returns the nodes in rising order
-/// and why they end at the low and the high end. `watch` hears the finished part of the whole range, of which `share` lies
+/// and why they end at the low and the high end. `progress` hears the finished part of the whole range, of which `share` lies
 /// above the start; `None` when it stops the work.
 pub(super) fn follow_both(
     follower: &mut Follower<'_, DrivePath>,
     [down, up]: [&Node; 2],
     (low, high): (f64, f64),
     share: f64,
-    watch: &mut dyn Watch,
+    progress: &mut dyn Progress,
 ) -> Option<(Vec<Node>, (EndReason, EndReason))> {
     let mut told = |before: f64, part: f64| {
-        watch.reached(Stage::Following, Some((before + part).clamp(0.0, 1.0)))
+        progress.reached(
+            Stage::Following,
+            Done::Part((before + part).clamp(0.0, 1.0)),
+        )
     };
     let (upper, end_high) = follow(follower, up.clone(), high, &mut |part| {
         told(0.0, part * share)

@@ -7,7 +7,7 @@ use super::branch::Patch;
 use super::restriction::{MEETING, Unlocated};
 use crate::drive_path::DrivePath;
 use crate::events::{Event, EventKind, locate_change_point};
-use crate::progress::{Stage, Watch};
+use crate::progress::{Done, Progress, Stage};
 use crate::trace::{Follower, Node, hermite};
 
 /// Pivot ratio of the bordered Jacobian below which branches are taken to cross.
@@ -37,9 +37,9 @@ impl Motion {
     pub(crate) fn find_events(
         &mut self,
         follower: &mut Follower<'_, DrivePath>,
-        watch: &mut dyn Watch,
+        progress: &mut dyn Progress,
     ) -> Result<(), Unlocated> {
-        let modes = self.modes_of_nodes(follower, watch)?;
+        let modes = self.modes_of_nodes(follower, progress)?;
         let mut nodes: Vec<Node> = Vec::with_capacity(self.nodes.len());
         let mut signs: Vec<Vec<f64>> = Vec::new();
         let old = std::mem::take(&mut self.nodes);
@@ -132,12 +132,15 @@ impl Motion {
     fn modes_of_nodes(
         &self,
         follower: &mut Follower<'_, DrivePath>,
-        watch: &mut dyn Watch,
+        progress: &mut dyn Progress,
     ) -> Result<Vec<Vec<f64>>, Unlocated> {
         let mut modes = Vec::with_capacity(self.nodes.len());
         for (done, node) in self.nodes.iter().enumerate() {
             let part = done as f64 / self.nodes.len() as f64;
-            if watch.reached(Stage::Locating, Some(part)).is_break() {
+            if progress
+                .reached(Stage::Locating, Done::Part(part))
+                .is_break()
+            {
                 return Err(Unlocated::Stopped(Stage::Locating));
             }
             modes.push(self.determinants(follower, node));

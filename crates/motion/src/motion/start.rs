@@ -7,7 +7,7 @@ use super::restriction::{Unlocated, restricting_steps};
 use super::{Demand, Motion, MotionError};
 use crate::assemble::{Assemblies, Assembly, find_assemblies};
 use crate::drive_path::DrivePath;
-use crate::progress::{Stage, Watch};
+use crate::progress::{Progress, Stage};
 use crate::trace::{Follower, Node, Path, apart};
 
 /// Sizes of mechanisms, m, whose lengths can be squared and multiplied with room to spare.
@@ -44,11 +44,11 @@ impl Motion {
     /// Follows the branch through the assembly meant by the file's hints over a demanded range.
     ///
     /// # Errors
-    /// As [`Motion::watched`].
+    /// As [`Motion::with_progress`].
     pub fn along(
         design: &Design<f64>,
         demand: Demand,
-        watch: &mut dyn Watch,
+        progress: &mut dyn Progress,
     ) -> Result<Self, MotionError> {
         let Demand {
             path,
@@ -73,7 +73,7 @@ impl Motion {
             let assemblies = match known.take().filter(|_| anchor == start) {
                 Some(known) => known,
                 None => {
-                    find_assemblies(design, &coordinates, watch).ok_or(MotionError::Stopped {
+                    find_assemblies(design, &coordinates, progress).ok_or(MotionError::Stopped {
                         stage: Stage::Assembling,
                     })?
                 }
@@ -119,7 +119,7 @@ impl Motion {
         let mut follower = Follower::new(&design, &path);
         restricting_steps(&mut follower, |follower| {
             let range = (demanded.0 / scale, demanded.1 / scale);
-            let (nodes, ends) = follow_both(follower, [&down, &up], range, share, watch)
+            let (nodes, ends) = follow_both(follower, [&down, &up], range, share, progress)
                 .ok_or(Unlocated::Stopped(Stage::Following))?;
             let (design, path, assemblies) = (design.clone(), path.clone(), assemblies.clone());
             let mut motion = Self::of_nodes(design, path, assemblies, nodes);
@@ -127,7 +127,7 @@ impl Motion {
             motion.start = start;
             motion.demanded = demanded;
             motion.ends = ends;
-            motion.find_events(follower, watch)?;
+            motion.find_events(follower, progress)?;
             motion.choices = motion.choices_at_start(follower);
             Ok(motion)
         })

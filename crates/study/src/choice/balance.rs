@@ -10,10 +10,10 @@ use kempe_units::Dimension;
 
 use super::{bare, constant, effort, force, set_beside, shown_by, values, weights};
 use crate::motion::run_along;
-use crate::progress::Progress;
 use crate::quantity::Quantity;
 use crate::result::{Figure, Listing, Scalar, StudyResult};
 use crate::unit::Units;
+use kempe_motion::progress::Progress;
 
 /// A mass below this part of all masses on the links is none.
 const NO_MASS: f64 = 1e-12;

@@ -19,11 +19,11 @@ use kempe_units::{Dimension, Expr};
 use crate::along::Along;
 use crate::explain::stopped;
 use crate::prepared::{design, motion};
-use crate::progress::{Ear, Flow, Progress};
 use crate::quantity::Quantity;
 use crate::result::{Figure, StudyResult};
 use crate::rows::{RowPlace, places_along};
 use crate::table::Column;
+use kempe_motion::progress::{Done, Progress};
 
 /// The mechanism with nothing on it but gravity.
 fn bare(model: &Model) -> Model {
@@ -75,13 +75,13 @@ fn values(
     let design = design(model);
     let motion = motion(&design, progress)?;
     let asked: Vec<&Quantity> = quantities.iter().collect();
-    let mut along = Along::watched(model, &motion, &asked, true, &[], &mut Ear(progress))?;
+    let mut along = Along::with_progress(model, &motion, &asked, true, &[], progress)?;
     let places: Vec<RowPlace> = places_along(&motion, study, &design.parameters);
     let mut lists = vec![Vec::with_capacity(places.len()); quantities.len()];
-    let count = places.len() as f64;
+    let count = places.len();
     for (done, place) in places.into_iter().enumerate() {
-        let part = Some(done as f64 / count);
-        if progress.stage(Stage::Trying, part) == Flow::Stop {
+        let part = Done::Of(done, count);
+        if progress.reached(Stage::Trying, part).is_break() {
             return Err(vec![stopped(Stage::Trying)]);
         }
         let row = along.row(place);

@@ -6,11 +6,11 @@ use kempe_units::{Dimension, Unit};
 
 use super::{bare, constant, effort, is_zero, set_beside, shown_by, values, weights};
 use crate::motion::run_along;
-use crate::progress::Progress;
 use crate::quantity::Quantity;
 use crate::result::{Figure, Listing, Scalar, StudyResult};
 use crate::table::Column;
 use crate::unit::Units;
+use kempe_motion::progress::Progress;
 
 /// Chooses a spring's stiffness and preload and shows the motion with it.
 pub(crate) fn spring(

@@ -13,9 +13,9 @@ use crate::along::{Along, Row};
 use crate::findings::check;
 use crate::pose::Setting;
 use crate::prepared::{design, motion};
-use crate::progress::Silent;
 use crate::quantity::Quantity;
 use crate::rows::RowPlace;
+use kempe_motion::progress::Silent;
 
 /// Ours and the reference, side by side.
 #[derive(Clone, Debug, Serialize)]

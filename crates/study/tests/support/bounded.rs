@@ -1,8 +1,10 @@
 //! What holds of the check and the studies of any text, with bounded work: for the test of mutants and for the fuzz target
 //! `studies`.
 
+use std::ops::ControlFlow;
+
 use kempe_model::{Checked, Diagnostic, Model, Severity, Study};
-use kempe_study::{Flow, Progress, Stage, StudyResult, check_watched, encode, run};
+use kempe_study::{Done, Progress, Stage, StudyResult, check_with_progress, encode, run};
 
 /// Links, joints, drives, measures and actions that a model may have; what comes before the first word of progress grows
 /// with them.
@@ -13,22 +15,13 @@ const MOST_STUDIES: usize = 2;
 /// Stops work after it has told of its progress so many times.
 struct Budget(usize);
 
-impl Budget {
-    fn spend(&mut self) -> Flow {
+impl Progress for Budget {
+    fn reached(&mut self, _: Stage, _: Done) -> ControlFlow<()> {
         self.0 = self.0.saturating_sub(1);
         match self.0 {
-            0 => Flow::Stop,
-            _ => Flow::Continue,
+            0 => ControlFlow::Break(()),
+            _ => ControlFlow::Continue(()),
         }
-    }
-}
-
-impl Progress for Budget {
-    fn tick(&mut self, _: usize, _: usize) -> Flow {
-        self.spend()
-    }
-    fn stage(&mut self, _: Stage, _: Option<f64>) -> Flow {
-        self.spend()
     }
 }
 
@@ -61,7 +54,7 @@ pub fn check_and_run(
         return reached;
     }
     let text = String::from_utf8_lossy(data);
-    let report = check_watched(&model, &mut Budget(budget));
+    let report = check_with_progress(&model, &mut Budget(budget));
     sound(&report.diagnostics, &text);
     assert!(serde_json::to_string(&report).is_ok());
     for study in model.studies.iter().take(MOST_STUDIES) {
