@@ -5,7 +5,8 @@ use kempe_motion::Progress;
 use kempe_motion::circuit::Circuit;
 
 use crate::force_source::NoForces;
-use crate::sampler::{Sample, Sampler, Unprepared};
+use crate::prepare::Unprepared;
+use crate::sampler::{Sample, Sampler};
 
 /// Prepares measures for rows of a circuit: a sampler for each of its stretches.
 ///

@@ -1,14 +1,12 @@
 //! Rows of a motion: measures, poses and evidence at any place or time.
 //!
-//! What the measures need is found first (`prepare`). Then a row is its place on the path, the state there, the measures of
+//! What the measures need is found first (`prepare.rs`). Then a row is its place on the path, the state there, the measures of
 //! that moment (`moment`) and a note where there is something to say (`note`).
 
 mod moment;
 mod note;
-mod prepare;
 
 pub(crate) use self::moment::Asked;
-pub use self::prepare::{Unmeasurable, Unprepared};
 
 use std::sync::Arc;
 
@@ -16,15 +14,13 @@ use kempe_mechanism::bordered::Bordered;
 use kempe_mechanism::evidence::evidence;
 use kempe_model::{Measure, PointId};
 use kempe_motion::motion::{Motion, Solver};
-use kempe_motion::progress::{Progress, Silent};
 
 use crate::clock::Clock;
+use crate::extremes::{At, Extremes};
 use crate::force_source::{ForceSource, NoForces};
-use crate::measure::order_of;
 use crate::measurer::Measurer;
 use crate::path_length::Swept;
 use crate::states_along::Place;
-use crate::statistics::{At, Known};
 
 /// A closure residual (in mechanism sizes) above which a row is marked.
 pub const CLOSURE_LIMIT: f64 = 1e-9;
@@ -55,100 +51,20 @@ pub struct Sample {
 /// Evaluates measures along a motion; those of forces too where it is given their source.
 pub struct Sampler<F = NoForces> {
     pub(crate) measurer: Measurer<f64, F>,
-    measures: Vec<Measure>,
+    pub(crate) measures: Vec<Measure>,
     /// Lengths of path that are asked for.
-    lengths: Vec<Swept>,
+    pub(crate) lengths: Vec<Swept>,
     /// Moving points whose curvature is asked for.
-    curved: Vec<PointId>,
-    plain: Solver<f64>,
+    pub(crate) curved: Vec<PointId>,
+    pub(crate) plain: Solver<f64>,
     /// Times at which rows will be asked for, rising: statistics look there too.
-    rows: Vec<f64>,
+    pub(crate) rows: Vec<f64>,
     /// What the statistics found of their measures.
-    known: Vec<Known>,
-    system: Bordered,
-}
-
-impl Sampler {
-    /// Prepares measures for evaluation along a motion; statistics over the motion are computed here.
-    ///
-    /// # Errors
-    /// All measures that cannot be evaluated, each with its reason.
-    pub fn new(motion: &Arc<Motion>, measures: &[&Measure]) -> Result<Self, Vec<Unmeasurable>> {
-        Self::with_forces(motion, measures, NoForces)
-    }
+    pub(crate) known: Vec<Extremes>,
+    pub(crate) system: Bordered,
 }
 
 impl<F: ForceSource> Sampler<F> {
-    /// As [`Sampler::new`], with a source of forces.
-    ///
-    /// # Errors
-    /// All measures that cannot be evaluated, each with its reason.
-    pub fn with_forces(
-        motion: &Arc<Motion>,
-        measures: &[&Measure],
-        forces: F,
-    ) -> Result<Self, Vec<Unmeasurable>> {
-        Self::with_progress(motion, measures, forces, &mut Silent).map_err(
-            |problem| match problem {
-                Unprepared::Unmeasurable(list) => list,
-                // Silent, it is never stopped.
-                Unprepared::Stopped => Vec::new(),
-            },
-        )
-    }
-
-    /// As [`Sampler::with_forces`]; `progress` hears how far the statistics over the motion have come.
-    ///
-    /// # Errors
-    /// As [`Sampler::with_forces`], and [`Unprepared::Stopped`].
-    pub fn with_progress(
-        motion: &Arc<Motion>,
-        measures: &[&Measure],
-        forces: F,
-        progress: &mut dyn Progress,
-    ) -> Result<Self, Unprepared> {
-        Self::with_rows(motion, measures, forces, &[], progress)
-    }
-
-    /// As [`Sampler::with_progress`]; statistics over the motion look at the times of its rows, s, too: no row lies beyond an
-    /// extreme.
-    ///
-    /// # Errors
-    /// As [`Sampler::with_progress`].
-    pub fn with_rows(
-        motion: &Arc<Motion>,
-        measures: &[&Measure],
-        forces: F,
-        rows: &[f64],
-        progress: &mut dyn Progress,
-    ) -> Result<Self, Unprepared> {
-        let mut rows: Vec<f64> = rows.iter().copied().filter(|t| t.is_finite()).collect();
-        rows.sort_by(f64::total_cmp);
-        let mechanism = motion.mechanism();
-        let problems: Vec<Unmeasurable> = (measures.iter().enumerate())
-            .filter_map(|(index, m)| {
-                order_of(mechanism, m)
-                    .err()
-                    .map(|reason| Unmeasurable { index, reason })
-            })
-            .collect();
-        if !problems.is_empty() {
-            return Err(Unprepared::Unmeasurable(problems));
-        }
-        let mut it = Self {
-            measurer: Measurer::new(motion, &motion.design.parameters, forces),
-            rows,
-            known: Vec::new(),
-            measures: measures.iter().map(|m| (*m).clone()).collect(),
-            lengths: Vec::new(),
-            curved: Vec::new(),
-            plain: motion.solver(),
-            system: Bordered::new(mechanism),
-        };
-        it.prepare(progress).ok_or(Unprepared::Stopped)?;
-        Ok(it)
-    }
-
     /// The source of forces, as it stands after the row last asked for.
     pub fn forces(&self) -> &F {
         &self.measurer.forces
@@ -163,7 +79,7 @@ impl<F: ForceSource> Sampler<F> {
     /// somewhere on the motion.
     pub(crate) fn extremes(&self, measure: &Measure) -> Option<(At, At)> {
         let known = self.known.iter().find(|known| known.measure == *measure);
-        known.and_then(|known| known.extremes)
+        known.and_then(|known| known.found)
     }
 
     /// Values of the parameters, SI, in the model's order.

@@ -30,7 +30,8 @@ use kempe_number::Dual;
 
 use self::varied::{Varied, varied_parameters};
 use crate::force_source::{ForceSource, NoForces};
-use crate::sampler::{Sampler, Unmeasurable};
+use crate::prepare::Unmeasurable;
+use crate::sampler::Sampler;
 
 /// Parameters differentiated to at once.
 const CHUNK: usize = 4;

@@ -13,28 +13,20 @@ mod stretches;
 mod survey;
 mod time_ratio;
 
-pub(crate) use self::extremes::At;
 pub(crate) use self::rounds::rounds;
 pub(crate) use self::time_ratio::time_ratio;
 
 use kempe_model::{Measure, Statistic};
 use kempe_motion::progress::Progress;
 
-use self::extremes::Extremes;
+use self::extremes::Search;
 use self::mean::Mean;
 use self::stretches::{parted, stretches};
 use self::survey::{Point, survey};
+use crate::extremes::Extremes;
 use crate::force_source::ForceSource;
 use crate::measure::{ORDER, order_of};
 use crate::sampler::{Asked, Sampler};
-
-/// What is known of a measure over the motion.
-#[derive(Clone, Debug)]
-pub(crate) struct Known {
-    pub measure: Measure,
-    /// Its smallest and largest value with their times; `None` where it has no value somewhere, or was not asked for them.
-    pub extremes: Option<(At, At)>,
-}
 
 /// A measure on its way over the motion.
 struct Course {
@@ -42,7 +34,7 @@ struct Course {
     asked: Asked,
     /// How many coefficients of its series are known.
     known: usize,
-    extremes: Option<Extremes>,
+    extremes: Option<Search>,
     mean: Option<Mean>,
 }
 
@@ -54,7 +46,7 @@ pub(crate) fn over_motion<F: ForceSource>(
     sampler: &mut Sampler<F>,
     statistics: &[(Statistic, Measure)],
     progress: &mut dyn Progress,
-) -> Option<(Vec<f64>, Vec<Known>)> {
+) -> Option<(Vec<f64>, Vec<Extremes>)> {
     let mut measures: Vec<&Measure> = Vec::new();
     let mut courses: Vec<Course> = Vec::new();
     for (statistic, measure) in statistics {
@@ -70,7 +62,7 @@ pub(crate) fn over_motion<F: ForceSource>(
         let course = &mut courses[place];
         match statistic {
             Statistic::Mean => course.mean = Some(Mean::default()),
-            _ => course.extremes = Some(Extremes::new()),
+            _ => course.extremes = Some(Search::new()),
         }
     }
     let duration = sampler.duration();
@@ -114,7 +106,7 @@ pub(crate) fn over_motion<F: ForceSource>(
             if let (Statistic::Mean, Some(mean)) = (statistic, &course.mean) {
                 return mean.finish(sampler, &course.asked, course.known, duration);
             }
-            let Some((low, high)) = course.extremes.as_ref().and_then(Extremes::found) else {
+            let Some((low, high)) = course.extremes.as_ref().and_then(Search::found) else {
                 return f64::NAN;
             };
             match statistic {
@@ -126,9 +118,9 @@ pub(crate) fn over_motion<F: ForceSource>(
         })
         .collect();
     let known = (measures.iter().zip(&courses))
-        .map(|(measure, course)| Known {
+        .map(|(measure, course)| Extremes {
             measure: (*measure).clone(),
-            extremes: course.extremes.as_ref().and_then(Extremes::found),
+            found: course.extremes.as_ref().and_then(Search::found),
         })
         .collect();
     Some((values, known))

@@ -1,6 +1,7 @@
 //! Smallest and largest value of a measure: the samples, and the zeros of the rate between them.
 
 use super::survey::Point;
+use crate::extremes::At;
 use crate::force_source::ForceSource;
 use crate::measure::ORDER;
 use crate::sampler::{Asked, Sampler};
@@ -16,19 +17,16 @@ const BESIDE: f64 = 1e-4;
 /// Where series do not close in on a place by this factor in two rounds, only bisections follow.
 const SLOW: f64 = 1e-2;
 
-/// A time with a value.
-pub(crate) type At = (f64, f64);
-
 /// The extremes of a measure as far as it was looked at.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Extremes {
+pub(super) struct Search {
     low: At,
     high: At,
     /// Somewhere it has no value.
     pub missing: bool,
 }
 
-impl Extremes {
+impl Search {
     pub fn new() -> Self {
         Self {
             low: (f64::NAN, f64::INFINITY),

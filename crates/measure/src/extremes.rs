@@ -1,0 +1,14 @@
+//! Smallest and largest value of a measure, as whoever found them hands them on.
+
+use kempe_model::Measure;
+
+/// A time with a value.
+pub(crate) type At = (f64, f64);
+
+/// The extremes of a measure over the motion.
+#[derive(Clone, Debug)]
+pub(crate) struct Extremes {
+    pub measure: Measure,
+    /// Its smallest and largest value with their times; `None` where it has no value somewhere, or was not asked for them.
+    pub found: Option<(At, At)>,
+}
