@@ -11,9 +11,9 @@ use crate::design::Design;
 use crate::geometry::Geometry;
 use crate::ids::{BodyId, LineRef, Marker};
 use crate::local_marker::LocalMarker;
-use crate::newton::{ON_STACK, SpanningTree};
 use crate::pose::Pose;
 use crate::qr::Qr;
+use crate::spanning_tree::{ON_STACK, SpanningTree};
 
 /// Inputs and poses at one instant, and the storage a solve needs.
 #[derive(Clone, Debug)]

@@ -27,6 +27,7 @@ mod recognise;
 mod releasing;
 pub mod solve;
 mod sources;
+mod spanning_tree;
 mod step;
 pub mod structure;
 

@@ -6,8 +6,8 @@
 pub use crate::step::{Carrier, Condition, Dyad, DyadBody, Reach, Sliding, Step, Swing, SwingLine};
 
 use crate::blocks::{Block, Decomposition, Row, Unknown, by_constraint, decompose};
-use crate::newton::SpanningTree;
 use crate::recognise::recognise;
+use crate::spanning_tree::{ON_STACK, SpanningTree};
 use crate::structure::Structure;
 
 /// A block left to Newton's method.
@@ -40,6 +40,13 @@ pub struct Plan {
     pub dyads: usize,
     /// The decomposition it was made from.
     pub decomposition: Decomposition,
+}
+
+impl NewtonBlock {
+    /// Its tree, if all lanes of a number can be solved at once in the coordinates of that.
+    pub fn tree_in_lanes(&self) -> Option<&SpanningTree> {
+        (self.tree.as_ref()).filter(|tree| tree.size() <= ON_STACK)
+    }
 }
 
 impl Plan {

@@ -4,7 +4,7 @@ use kempe_mechanism::structure::Marker;
 use kempe_model::{Measure, PointId, SAME_END, Statistic};
 use kempe_number::Number;
 
-use super::varied::{Place, Varied};
+use super::varied::{Cumulated, Place, Varied};
 use super::{CHUNK, Varying};
 use crate::force_source::ForceSource;
 use crate::quadrature::{gauss, graded, integrate, parts};
@@ -12,13 +12,6 @@ use crate::statistics::time_ratio;
 
 /// Intervals of time over which path lengths and means are integrated, besides the breaks of the laws.
 const GRID: usize = 45;
-
-/// The length of path that a point has swept, with its derivatives.
-pub(super) struct Cumulated {
-    point: PointId,
-    /// Times, rising, with the length swept until then.
-    marks: Vec<(Varying, Varying)>,
-}
 
 impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
     /// A statistic of a measure over the motion.

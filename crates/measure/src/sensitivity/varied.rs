@@ -6,7 +6,6 @@ use kempe_model::{DriveId, Leaf, Measure, ParameterId, PointId, PoseMeasure};
 use kempe_motion::motion::Motion;
 use kempe_number::Number;
 
-use super::over::Cumulated;
 use super::{Held, Varying};
 use crate::force_source::ForceSource;
 use crate::measure::{Along, visit_leaves};
@@ -17,6 +16,13 @@ pub(super) use crate::states_along::Place;
 
 /// The values of all parameters of a motion's design with their derivatives to some. A varied parameter still follows those it is
 /// built on: d/d(each) is the same whatever else is asked for.
+/// The length of path that a point has swept, with its derivatives.
+pub(super) struct Cumulated {
+    pub point: PointId,
+    /// Times, rising, with the length swept until then.
+    pub marks: Vec<(Varying, Varying)>,
+}
+
 pub(super) fn varied_parameters(motion: &Motion, chunk: &[ParameterId]) -> Vec<Varying> {
     let model = &motion.mechanism().model;
     let mut values: Vec<Varying> = Vec::with_capacity(model.parameters.len());

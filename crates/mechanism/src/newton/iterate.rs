@@ -2,15 +2,14 @@
 
 use kempe_number::Number;
 
-use super::ON_STACK;
 use super::elimination::{Elimination, Matrix, Plain};
 use super::plain::{NEWTON_LIMIT, NEWTON_STEP};
-use super::tree::SpanningTree;
 use crate::Mechanism;
 use crate::branch::Branch;
 use crate::constraint::{Input, Situation};
 use crate::geometry::Geometry;
 use crate::pose::Pose;
+use crate::spanning_tree::{ON_STACK, SpanningTree};
 
 /// What Newton's method on a tree works on and with.
 pub(super) struct Iteration<'a, P> {

@@ -7,7 +7,6 @@ use std::sync::Arc;
 use kempe_model::Model;
 use kempe_number::{Dual, Number};
 
-use super::SpanningTree;
 use super::elimination::{Elimination, Matrix};
 use super::rows::factor_block;
 use crate::Mechanism;
@@ -15,6 +14,7 @@ use crate::constraint::{Coincide, Constraint, Input, Situation};
 use crate::geometry::Geometry;
 use crate::pose::Pose;
 use crate::qr::Qr;
+use crate::spanning_tree::SpanningTree;
 
 /// Files with Newton groups: of pins alone, with sliders, gears, racks and bodies that no pin holds.
 const FILES: [&str; 8] = [

@@ -1,58 +1,18 @@
 //! `[links]`: points by coordinates and by distances, mass properties.
 
-use std::collections::BTreeSet;
-
 use kempe_units::Dimension;
 
 use crate::diagnostic::Diagnostic;
 use crate::document::{Key, Node, Value};
-use crate::ids::{FRAME, LinkId, PointId, Scalar, Span};
+use crate::ids::{FRAME, LinkId, PointId, Span};
 use crate::key_table::LINKS;
-use crate::link::{Center, Place, Side};
+use crate::link::Center;
 use crate::read::context::Context;
+use crate::read::draft::{Coordinates, Distance, Draft, SideOf};
 use crate::read::entry::Entry;
 use crate::read::masses::{mass_of_frame, read_inertia};
 use crate::read::names::{is_point_name, pair_of};
 use crate::read::place::place_points;
-
-/// What a link's table says about its points.
-#[derive(Default)]
-pub(crate) struct Draft {
-    /// In order of first appearance.
-    pub points: Vec<(PointId, Span)>,
-    /// The same as a set.
-    pub known: BTreeSet<PointId>,
-    pub coordinates: Vec<Coordinates>,
-    pub distances: Vec<Distance>,
-    pub sides: Vec<SideOf>,
-    /// Something of it could not be read: do not complain about what is missing.
-    pub broken: bool,
-}
-
-/// A point by its coordinates.
-pub(crate) struct Coordinates {
-    pub point: PointId,
-    pub place: Place,
-    pub span: Span,
-}
-
-/// Two points by their distance.
-pub(crate) struct Distance {
-    pub a: PointId,
-    pub b: PointId,
-    pub length: Scalar,
-    pub key: Span,
-    pub span: Span,
-}
-
-/// A point by its side of a line.
-pub(crate) struct SideOf {
-    pub point: PointId,
-    pub side: Side,
-    pub from: PointId,
-    pub to: PointId,
-    pub span: Span,
-}
 
 /// Reads all links; without `whole` the section itself could not be read, and is not to be missed.
 pub(crate) fn read(cx: &mut Context<'_>, entries: &[&(Key, Node)], whole: bool) {

@@ -22,8 +22,8 @@ use crate::key_table::{BAR, MASS};
 use crate::link::{Center, Inertia, LinkPoint, Place};
 use crate::load::PointMass;
 use crate::read::context::Context;
+use crate::read::draft::Draft;
 use crate::read::entry::{Entry, moving_carrier, on_link};
-use crate::read::links::Draft;
 use crate::read::names::is_point_name;
 use crate::read::springs::plain_name;
 

@@ -9,7 +9,7 @@ use crate::geometry::place as evaluate_place;
 use crate::ids::{PointId, Span};
 use crate::link::{LinkPoint, Place};
 use crate::read::context::Context;
-use crate::read::links::{Distance, Draft, SideOf};
+use crate::read::draft::{Distance, Draft, SideOf};
 
 /// Places the points of a link: first those with coordinates and the pair that lays the x axis, then, round after round, those with two
 /// distances to points already placed.

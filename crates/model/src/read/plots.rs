@@ -4,9 +4,9 @@ use kempe_units::{Kind, parse};
 
 use crate::diagnostic::Diagnostic;
 use crate::document::{Node, Text, Value};
+use crate::read::column::column;
 use crate::read::context::Context;
 use crate::read::measure_names::{Call, Measures};
-use crate::read::studies::column;
 use crate::study::{Column, Hodograph, Plot};
 
 /// A plot: a measure, several of one dimension in brackets, `path(P)` or `hodograph(B)`.

@@ -11,11 +11,10 @@ use crate::ids::Scalar;
 use crate::key_table::{ANNOUNCED_STUDIES, DRIVES, MAX_ROWS, STUDIES};
 use crate::model::Model;
 use crate::read::choices;
+use crate::read::column::column;
 use crate::read::context::Context;
 use crate::read::entry::Entry;
-use crate::read::measures::measure_text;
 use crate::read::names::long_name;
-use crate::read::nature::nature;
 use crate::read::plots::plot;
 use crate::study::{AnnouncedStudy, Column, MotionStudy, Plot, Rows, Study, StudyKind};
 
@@ -260,25 +259,6 @@ fn entries<'d>(cx: &mut Context<'_>, entry: &Entry<'d>, key: &str) -> Vec<&'d No
             items.map_or(Vec::new(), |a| a.iter().collect())
         }
     }
-}
-
-pub(crate) fn column(cx: &mut Context<'_>, node: &Node, forces: bool) -> Option<Column> {
-    let text = cx.text(node, "a column", "\"angle(rocker)\"")?;
-    let name = text.content.trim().to_owned();
-    let (measure, dimension) = measure_text(cx, text)?;
-    if !forces && nature(&measure, &cx.natures).forces {
-        cx.push(
-            Diagnostic::error("needs-forces-study", format!("a motion study does not know `{name}`"))
-                .at(node.span.clone(), "asks for a force")
-                .help("forces belong to a study of their own: kind = \"forces\"; or leave it out of this one"),
-        );
-        return None;
-    }
-    Some(Column {
-        name,
-        measure,
-        dimension,
-    })
 }
 
 /// Where the rows stand: `step` or `rows`, or the default.

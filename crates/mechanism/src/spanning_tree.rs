@@ -15,34 +15,37 @@ use crate::constraint::{Coincide, Constraint};
 use crate::ids::{BodyId, Marker};
 use crate::structure::Structure;
 
+/// Largest number of tree coordinates for which elimination runs on the stack, and in lanes.
+pub(crate) const ON_STACK: usize = 8;
+
 /// A spanning tree of a block's pins, with the rows that it leaves.
 #[derive(Clone, Debug)]
 pub struct SpanningTree {
     /// Bodies whose angles are sought: the first columns.
-    pub(super) angles: Vec<BodyId>,
+    pub(crate) angles: Vec<BodyId>,
     /// Bodies whose places no pin of the block gives: two columns each, after the angles.
-    pub(super) places: Vec<BodyId>,
+    pub(crate) places: Vec<BodyId>,
     /// How many numbers are sought.
-    pub(super) size: usize,
+    pub(crate) size: usize,
     /// Bodies placed by a pin, each after the body it hangs on. Their pins are the first points.
-    pub(super) hung: Vec<Hung>,
+    pub(crate) hung: Vec<Hung>,
     /// Bodies that do not hang and whose angles are sought: their origins are the points after the pins.
-    pub(super) roots: Vec<BodyId>,
+    pub(crate) roots: Vec<BodyId>,
     /// Pins that close loops.
-    pub(super) closures: Vec<Closure>,
+    pub(crate) closures: Vec<Closure>,
     /// Both points of every one of them: the points after the origins.
-    pub(super) tips: Vec<Marker>,
+    pub(crate) tips: Vec<Marker>,
     /// The rows of all other constraints.
-    pub(super) others: Vec<OtherRow>,
+    pub(crate) others: Vec<OtherRow>,
     /// How every body of the mechanism is reached; only those of the block are.
-    pub(super) reached: Vec<Option<Reached>>,
+    pub(crate) reached: Vec<Option<Reached>>,
     /// The block's determinant over the tree's: 1 or -1.
-    pub(super) sign: f64,
+    pub(crate) sign: f64,
 }
 
 /// A body placed by a pin.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Hung {
+pub(crate) struct Hung {
     /// Its point at the pin.
     pub own: Marker,
     /// The point it hangs on, of a body placed before.
@@ -51,7 +54,7 @@ pub(super) struct Hung {
 
 /// The way between two points, whose quarter turn is the derivative of all that hangs beyond to an angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Lever {
+pub(crate) struct Lever {
     /// Column of the angle.
     pub column: usize,
     /// The point at which the turning body hangs, or its origin.
@@ -62,7 +65,7 @@ pub(super) struct Lever {
 
 /// How a body's pose depends on the coordinates of the tree.
 #[derive(Clone, Debug)]
-pub(super) struct Reached {
+pub(crate) struct Reached {
     /// Column of its own angle, if that is sought.
     pub angle: Option<usize>,
     /// The pin it hangs by.
@@ -77,7 +80,7 @@ pub(super) struct Reached {
 
 /// A row that is not of a pin that closes a loop with both of its rows.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct OtherRow {
+pub(crate) struct OtherRow {
     /// Index of the constraint.
     pub constraint: usize,
     /// Which of its rows.
@@ -88,7 +91,7 @@ pub(super) struct OtherRow {
 
 /// A pin that closes a loop.
 #[derive(Clone, Debug)]
-pub(super) struct Closure {
+pub(crate) struct Closure {
     /// The first of its two rows in the tree.
     pub row: usize,
     /// Its points: the residual is the second less the first.
