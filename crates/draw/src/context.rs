@@ -4,7 +4,7 @@ use kempe_number::math::{atan2, sin_cos};
 
 use crate::fit::{Fit, drawable};
 use crate::roles::Roles;
-use crate::scene::{Place, Point, distance};
+use crate::scene::{Placement, Point, distance};
 use crate::view::{Frame, Guide, MechanismView};
 
 /// To what a part of the drawing is fixed.
@@ -69,8 +69,11 @@ impl Context<'_> {
     }
 
     /// Where a part with this anchor lies in a pose.
-    pub fn place(&self, frame: &Frame, anchor: Anchor) -> Option<Place> {
-        let place = |p, angle, stretch| self.paper(frame, p).map(|at| Place { at, angle, stretch });
+    pub fn place(&self, frame: &Frame, anchor: Anchor) -> Option<Placement> {
+        let place = |p, angle, stretch| {
+            self.paper(frame, p)
+                .map(|at| Placement { at, angle, stretch })
+        };
         match anchor {
             Anchor::Point(p) => place(p, 0.0, 1.0),
             Anchor::On(p, link, offset) => place(p, link_angle(frame, link)? + offset, 1.0),

@@ -3,7 +3,9 @@
 use std::fmt::Write as _;
 
 use crate::escape::escape;
-use crate::scene::{Align, Group, Item, Paint, Path, Place, Point, Scene, Style, Text, distance};
+use crate::scene::{
+    Align, Group, Item, Paint, Path, Placement, Point, Scene, Style, Text, distance,
+};
 use crate::tokens::{Theme, Token};
 use kempe_number::text::fixed;
 
@@ -51,7 +53,7 @@ fn write_group(out: &mut String, group: &Group, height: f64, theme: Theme) {
     if let Some(key) = &group.key {
         let _ = write!(out, " data-part=\"{}\"", escape(key));
     }
-    let moved = group.place != Place::PAPER;
+    let moved = group.place != Placement::PAPER;
     if moved {
         let [x, y] = group.place.at;
         let _ = write!(

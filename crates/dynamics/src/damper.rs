@@ -4,7 +4,7 @@ use kempe_mechanism::{Geometry, Mechanism};
 use kempe_model as model;
 use kempe_number::Number;
 
-use crate::ends::{Ends, Stretch};
+use crate::ends::{Ends, Extension};
 use crate::instant::Instant;
 use crate::problem::Problem;
 use crate::wrench::Wrench;
@@ -59,7 +59,7 @@ impl<T: Number> Damper<T> {
         list
     }
 
-    fn tension(&self, stretch: &Stretch<T>) -> T {
+    fn tension(&self, stretch: &Extension<T>) -> T {
         stretch.rate.choose(self.parting, self.closing) * stretch.rate
     }
 

@@ -21,7 +21,7 @@ pub enum Ends {
 
 /// How far apart the ends are.
 #[derive(Clone, Copy, Debug)]
-pub struct Stretch<T> {
+pub struct Extension<T> {
     /// Distance (m), or angle of the second link against the first (rad).
     pub length: T,
     /// Its rate.
@@ -65,7 +65,7 @@ impl Ends {
     }
 
     /// How far apart the ends are at an instant.
-    pub fn stretch<T: Number>(&self, geometry: &Geometry<T>, at: &Instant<T>) -> Stretch<T> {
+    pub fn stretch<T: Number>(&self, geometry: &Geometry<T>, at: &Instant<T>) -> Extension<T> {
         match self {
             Self::Points([(_, a), (_, b)]) => {
                 let arm = |m: &Marker| at.arm(m.body, geometry.marker(*m));
@@ -74,7 +74,7 @@ impl Ends {
                 let parting = sub(at.velocity(b.body, arm_b), at.velocity(a.body, arm_a));
                 let distance = length(span);
                 let rate = (-distance).choose_with(T::zero, || dot(span, parting) / distance);
-                Stretch {
+                Extension {
                     length: distance,
                     rate,
                     span,
@@ -84,7 +84,7 @@ impl Ends {
                 let angle = |link: &LinkId, body: &BodyId| {
                     at.angles[body.index()] + geometry.seat_angles[link.index()]
                 };
-                Stretch {
+                Extension {
                     length: angle(link_b, b) - angle(link_a, a),
                     rate: at.velocities[b.index()][2] - at.velocities[a.index()][2],
                     span: [T::zero(); 2],
@@ -99,7 +99,7 @@ impl Ends {
         &self,
         geometry: &Geometry<T>,
         at: &Instant<T>,
-        stretch: &Stretch<T>,
+        stretch: &Extension<T>,
         pull: T,
         on_links: &mut [Wrench<T>],
     ) {

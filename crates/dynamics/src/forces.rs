@@ -25,7 +25,7 @@ const SENSE_CHANGES: f64 = 0.25;
 
 /// What a joint or drive does to one of its links.
 #[derive(Clone, Copy, Debug)]
-pub struct Side<T> {
+pub struct LinkLoad<T> {
     /// The link.
     pub link: LinkId,
     /// Its body.
@@ -60,7 +60,7 @@ pub struct Forces<T> {
     /// Welds whose loads can be told.
     pub welds: Vec<Weld>,
     /// What every constraint does to its links.
-    pub sides: Vec<Vec<Side<T>>>,
+    pub sides: Vec<Vec<LinkLoad<T>>>,
     /// What every drive gives.
     pub drives: Vec<DriveForce<T>>,
     /// Weights, loads, springs and dampers on every link, about its body's origin.
@@ -90,7 +90,7 @@ impl<T: ForceNumber> Forces<T> {
         let sides = (mechanism.constraints.iter())
             .map(|(constraint, _)| {
                 (constraint.links(mechanism).into_iter())
-                    .map(|link| Side {
+                    .map(|link| LinkLoad {
                         link,
                         body: mechanism.body_of(link),
                         wrench: zero,

@@ -10,7 +10,7 @@ use crate::direction::Direction;
 use crate::force_source::ForceSource;
 use crate::measure::{Along, History, KnownStatistic, Moment, visit_leaves};
 use crate::state::{Series, State};
-use crate::states_along::{Base, Place, StatesAlong};
+use crate::states_along::{Base, PathPlace, StatesAlong};
 
 /// What measures need beyond the poses along the path.
 #[derive(Debug, Default)]
@@ -137,7 +137,7 @@ where
     }
 
     /// Finds the state at a place; false where there is none.
-    pub fn find(&mut self, place: Place<B>) -> bool {
+    pub fn find(&mut self, place: PathPlace<B>) -> bool {
         self.states.find(place)
     }
 }

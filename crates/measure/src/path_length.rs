@@ -23,7 +23,7 @@ const STEADY: f64 = 1e-9;
 /// A length, in mechanism sizes, of which no more digits are asked for.
 const SHORTEST: f64 = 1e-3;
 
-/// Place, and its first two derivatives to the path parameter.
+/// PathPlace, and its first two derivatives to the path parameter.
 type Line = Jet<f64, 3>;
 
 /// The swept length of one point, cumulated along the trace and in time.
@@ -35,7 +35,7 @@ pub struct Swept {
     /// Where stretches begin, in path parameters, rising: the nodes of the trace, and where the point is slowest: it may
     /// turn back there, and its speed has a kink.
     starts: Vec<f64>,
-    stretches: Vec<Stretch>,
+    stretches: Vec<SweptPart>,
     /// Where the motion in time may turn back: time, length from the first stretch's start, length swept since the start of
     /// the motion.
     turns: Vec<[f64; 3]>,
@@ -43,7 +43,7 @@ pub struct Swept {
 
 /// A stretch of the path, in parts on each of which one quadrature is enough.
 #[derive(Clone, Debug)]
-struct Stretch {
+struct SweptPart {
     by: Variable,
     /// Ends of its parts in that variable, rising.
     marks: Vec<f64>,
@@ -91,7 +91,7 @@ impl Swept {
                 progress
                     .reached(Stage::Measuring, Done::Part(part))
                     .continue_value()?;
-                let stretch = Stretch::new(motion, runner, [pair[0], pair[1]], before);
+                let stretch = SweptPart::new(motion, runner, [pair[0], pair[1]], before);
                 before += stretch.length();
                 it.starts.push(pair[0]);
                 it.stretches.push(stretch);
@@ -134,7 +134,7 @@ impl Swept {
     }
 }
 
-impl Stretch {
+impl SweptPart {
     fn new(motion: &Motion, runner: &mut Runner, [from, to]: [f64; 2], before: f64) -> Self {
         let is_limit = |p: f64| {
             let mut places = motion.places.iter();

@@ -20,7 +20,7 @@ use crate::extremes::{At, Extremes};
 use crate::force_source::{ForceSource, NoForces};
 use crate::measurer::Measurer;
 use crate::path_length::Swept;
-use crate::states_along::Place;
+use crate::states_along::PathPlace;
 
 /// A closure residual (in mechanism sizes) above which a row is marked.
 pub const CLOSURE_LIMIT: f64 = 1e-9;
@@ -38,7 +38,7 @@ pub struct Sample {
     pub values: Vec<f64>,
     /// x, y and unwrapped angle of every link.
     pub links: Vec<[f64; 3]>,
-    /// Place of every point of the model in the frame.
+    /// PathPlace of every point of the model in the frame.
     pub points: Vec<[f64; 2]>,
     /// Largest closure residual, in mechanism sizes (directions in rad).
     pub closure: f64,
@@ -131,7 +131,7 @@ impl<F: ForceSource> Sampler<F> {
             sample.note = Some(self.why_unreached(p));
             return sample;
         }
-        let place = Place { time, path: p };
+        let place = PathPlace { time, path: p };
         if !self.measurer.find(place) {
             sample.note = Some("no pose was found here".into());
             return sample;

@@ -40,7 +40,7 @@ impl<const K: usize> Base for Dual<f64, K> {
 
 /// A place of a motion: time and path parameter, both as they vary.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Place<B> {
+pub(crate) struct PathPlace<B> {
     /// Time, s.
     pub time: B,
     /// The path parameter.
@@ -113,10 +113,10 @@ where
     }
 
     /// The place at a time that may vary with the parameters.
-    pub fn at_time(&self, time: B) -> Place<B> {
+    pub fn at_time(&self, time: B) -> PathPlace<B> {
         let motion = self.motion();
         let model = &motion.mechanism().model;
-        Place {
+        PathPlace {
             time,
             path: motion.path.parameter_at(model, time, &self.parameters),
         }
@@ -139,7 +139,7 @@ where
     }
 
     /// Finds the state at a place. False where the motion does not reach, or no pose is found.
-    pub fn find(&mut self, place: Place<B>) -> bool {
+    pub fn find(&mut self, place: PathPlace<B>) -> bool {
         let motion = self.motion().clone();
         let p = place.path.value();
         if !motion.reaches(p) {
@@ -181,7 +181,7 @@ where
         }
     }
 
-    fn find_poses(&mut self, motion: &Motion, place: Place<B>) {
+    fn find_poses(&mut self, motion: &Motion, place: PathPlace<B>) {
         motion.branch_at(place.path.value(), &mut self.solver.branch);
         self.coordinates(motion, Series::variable(place.path));
         self.solver.run(motion, &self.state.design);
@@ -190,7 +190,7 @@ where
         self.state.coordinates.clone_from(&self.solver.coordinates);
     }
 
-    fn find_alone(&mut self, motion: &Motion, place: Place<B>) {
+    fn find_alone(&mut self, motion: &Motion, place: PathPlace<B>) {
         for index in 0..self.state.alone.len() {
             if self.state.alone[index].is_none() {
                 continue;
@@ -205,7 +205,7 @@ where
     }
 
     /// Takes the pose of the trace at a limit of the drive; rates are infinite there, or not defined.
-    fn find_at_limit(&mut self, motion: &Motion, place: Place<B>, index: usize) {
+    fn find_at_limit(&mut self, motion: &Motion, place: PathPlace<B>, index: usize) {
         let (_, poses, near) = motion.node(index);
         self.coordinates(motion, Series::variable(place.path));
         self.state.coordinates.clone_from(&self.solver.coordinates);
@@ -221,7 +221,7 @@ where
 
     /// Joins the series on both sides of a change point. How they vary is not known: a change of dimensions pulls the
     /// crossing branches apart.
-    fn find_across(&mut self, motion: &Motion, place: Place<B>, event: &Event) {
+    fn find_across(&mut self, motion: &Motion, place: PathPlace<B>, event: &Event) {
         let p = place.path.value();
         motion.branch_at(p, &mut self.solver.branch);
         self.coordinates(motion, Series::variable(place.path));

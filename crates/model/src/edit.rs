@@ -42,8 +42,8 @@ pub fn value_edit(text: &str, path: &[&str], new: &str) -> Result<TextEdit, Diag
     let new = a_value(new)?;
     let root = read(text)?;
     let edit = match locate(&root, path) {
-        Ok(Place::Value(span)) => TextEdit::new(span, new),
-        Ok(Place::Missing { table, header, key }) => entry(text, table, header, key, new),
+        Ok(Target::Value(span)) => TextEdit::new(span, new),
+        Ok(Target::Missing { table, header, key }) => entry(text, table, header, key, new),
         Err(part) => {
             return Err(Diagnostic::error(
                 "unknown-key",
@@ -158,7 +158,7 @@ fn is_written_inline(text: &str, span: &Span) -> bool {
         .is_some_and(|raw| raw.starts_with('{'))
 }
 
-enum Place<'t> {
+enum Target<'t> {
     Value(Span),
     Missing {
         table: &'t Table,
@@ -168,7 +168,7 @@ enum Place<'t> {
 }
 
 /// The place of a path; the part that is missing when it leads nowhere.
-fn locate<'t>(root: &'t Table, path: &[&'t str]) -> Result<Place<'t>, String> {
+fn locate<'t>(root: &'t Table, path: &[&'t str]) -> Result<Target<'t>, String> {
     let Some((last, way)) = path.split_last() else {
         return Err(String::new());
     };
@@ -197,9 +197,9 @@ fn locate<'t>(root: &'t Table, path: &[&'t str]) -> Result<Place<'t>, String> {
         (Some(node), _) => match &node.value {
             // a table under a [header] is not one value
             Value::Table(table) if !is_inline(table, &node.span) => Err((*last).to_owned()),
-            _ => Ok(Place::Value(node.span.clone())),
+            _ => Ok(Target::Value(node.span.clone())),
         },
-        (None, Some(table)) => Ok(Place::Missing {
+        (None, Some(table)) => Ok(Target::Missing {
             table,
             header: span,
             key: last,

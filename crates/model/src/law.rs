@@ -13,7 +13,7 @@ use crate::spline::spline_at;
 pub const SAME_END: f64 = 1e-12;
 
 /// A piece of a law with its place in time.
-struct Stretch<'a, T> {
+struct TimedPiece<'a, T> {
     piece: &'a LawPiece,
     start: T,
     from: T,
@@ -75,7 +75,7 @@ impl Law {
             .find_map(|s| Some(s.start + s.first_time(x)?))
     }
 
-    fn stretches<T: Number>(&self, parameters: &[T]) -> Vec<Stretch<'_, T>> {
+    fn stretches<T: Number>(&self, parameters: &[T]) -> Vec<TimedPiece<'_, T>> {
         let mut start = T::zero();
         let mut from = value(&self.from, parameters);
         let mut stretches = Vec::with_capacity(self.pieces.len());
@@ -101,7 +101,7 @@ impl Law {
                     (last(values), last(times))
                 }
             };
-            stretches.push(Stretch {
+            stretches.push(TimedPiece {
                 piece,
                 start,
                 from,
@@ -116,7 +116,7 @@ impl Law {
 }
 
 /// The coordinate at a time that is not before the first of these stretches; `end` is where they begin.
-fn after<T: Number>(stretches: &[Stretch<'_, T>], t: T, end: T) -> T {
+fn after<T: Number>(stretches: &[TimedPiece<'_, T>], t: T, end: T) -> T {
     let Some((stretch, later)) = stretches.split_first() else {
         return end;
     };
@@ -137,7 +137,7 @@ fn after<T: Number>(stretches: &[Stretch<'_, T>], t: T, end: T) -> T {
     })
 }
 
-impl<T: Number> Stretch<'_, T> {
+impl<T: Number> TimedPiece<'_, T> {
     /// The coordinate at a time counted from the stretch's start.
     fn at(&self, t: T) -> T {
         let travel = self.to - self.from;
@@ -157,7 +157,7 @@ impl<T: Number> Stretch<'_, T> {
     }
 }
 
-impl<T: Number> Stretch<'_, T> {
+impl<T: Number> TimedPiece<'_, T> {
     /// The coordinate at the end of the stretch, exactly; with its rates where `t` is a series.
     fn at_end(&self, t: T) -> T {
         let local = t - self.start;
@@ -166,7 +166,7 @@ impl<T: Number> Stretch<'_, T> {
     }
 }
 
-impl Stretch<'_, f64> {
+impl TimedPiece<'_, f64> {
     fn first_time(&self, x: f64) -> Option<f64> {
         if let LawPiece::Table { times, .. } = self.piece {
             let fine: Vec<f64> = fine_times(times).collect();

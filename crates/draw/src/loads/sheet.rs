@@ -7,7 +7,7 @@ use super::track::Track;
 use super::{LoadRole, LoadView, Quantity, Shape};
 use crate::context::{Context, complete};
 use crate::fit::{Bounds, Fit, drawable};
-use crate::scene::{Group, Item, Layer, Place, Point};
+use crate::scene::{Group, Item, Layer, Placement, Point};
 use crate::symbols::Part;
 use crate::text::shortened;
 use crate::tokens::Token;
@@ -286,7 +286,7 @@ fn name_room(context: &Context, frame: &Frame, part: &Part) -> Option<Box2> {
     let (Layer::Label, [Item::Text(text)]) = (part.layer, part.items.as_slice()) else {
         return None;
     };
-    let Place { at, .. } = context.place(frame, part.anchor)?;
+    let Placement { at, .. } = context.place(frame, part.anchor)?;
     let (x, y) = (at[0] + text.at[0], at[1] + text.at[1]);
     let half = crate::text::width(&text.content, text.size) / 2.0;
     Some([[x - half, y], [x + half, y + 0.8 * text.size]])

@@ -6,7 +6,9 @@ use tiny_skia::{
 };
 
 use super::{RasterError, font};
-use crate::scene::{Align, Group, Item, Paint, Path, Place, Point, Scene, Style, Text, distance};
+use crate::scene::{
+    Align, Group, Item, Paint, Path, Placement, Point, Scene, Style, Text, distance,
+};
 use crate::tokens::{Theme, Token};
 
 /// Most pixels in a picture.
@@ -46,7 +48,7 @@ impl Canvas {
             density,
             height: scene.height,
             dark,
-            place: Place::PAPER,
+            place: Placement::PAPER,
         };
         for group in &scene.groups {
             brush.group(group);
@@ -77,7 +79,7 @@ struct Brush<'a> {
     density: f64,
     height: f64,
     dark: bool,
-    place: Place,
+    place: Placement,
 }
 
 impl Brush<'_> {

@@ -130,7 +130,7 @@ impl Layer {
 
 /// Where a group lies: its own coordinates are stretched along x, turned, then moved.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Place {
+pub struct Placement {
     /// Origin, mm.
     pub at: Point,
     /// Direction of the group's x axis, rad.
@@ -139,9 +139,9 @@ pub struct Place {
     pub stretch: f64,
 }
 
-impl Place {
+impl Placement {
     /// On the paper as it is.
-    pub const PAPER: Place = Place {
+    pub const PAPER: Placement = Placement {
         at: [0.0, 0.0],
         angle: 0.0,
         stretch: 1.0,
@@ -163,7 +163,7 @@ pub struct Group {
     /// Who it is, when a script must find it again.
     pub key: Option<String>,
     /// Where it lies.
-    pub place: Place,
+    pub place: Placement,
     /// What it holds.
     pub items: Vec<Item>,
 }
@@ -174,7 +174,7 @@ impl Group {
         Group {
             layer,
             key: None,
-            place: Place::PAPER,
+            place: Placement::PAPER,
             items,
         }
     }

@@ -7,14 +7,14 @@ use super::Sampler;
 use crate::force_source::ForceSource;
 use crate::measure::{Along, Moment, visit_leaves};
 use crate::state::Series;
-use crate::states_along::Place;
+use crate::states_along::PathPlace;
 
 impl<F: ForceSource> Sampler<F> {
     /// Hands the moment last found to `ask`: with its forces where they are wanted, and with the lengths of the paths of some
     /// points.
     pub(super) fn with_moment<R>(
         &mut self,
-        place: Place<f64>,
+        place: PathPlace<f64>,
         with_forces: bool,
         lengths: &[PointId],
         ask: impl FnOnce(&Moment<'_, f64>) -> R,

@@ -4,7 +4,7 @@ use kempe_mechanism::structure::Marker;
 use kempe_model::{Measure, PointId, SAME_END, Statistic};
 use kempe_number::Number;
 
-use super::varied::{Cumulated, Place, Varied};
+use super::varied::{Cumulated, PathPlace, Varied};
 use super::{CHUNK, Varying};
 use crate::force_source::ForceSource;
 use crate::quadrature::{gauss, graded, integrate, parts};
@@ -129,7 +129,7 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
     }
 
     /// Speed of a point, m/s.
-    fn speed(&mut self, marker: Marker, place: Place<Varying>) -> Varying {
+    fn speed(&mut self, marker: Marker, place: PathPlace<Varying>) -> Varying {
         if !self.measurer.find(place) {
             return Varying::from_f64(f64::NAN);
         }
@@ -145,7 +145,7 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
     fn integrate(
         &mut self,
         until: Varying,
-        f: &mut dyn FnMut(&mut Self, Place<Varying>) -> Varying,
+        f: &mut dyn FnMut(&mut Self, PathPlace<Varying>) -> Varying,
     ) -> Varying {
         let mut sum = Varying::zero();
         for [from, to] in self.cuts(until) {

@@ -12,7 +12,7 @@ use crate::measure::{Along, visit_leaves};
 use crate::measurer::{Measurer, Needs, asks_forces};
 use crate::sampler::Sampler;
 use crate::state::Series;
-pub(super) use crate::states_along::Place;
+pub(super) use crate::states_along::PathPlace;
 
 /// The values of all parameters of a motion's design with their derivatives to some. A varied parameter still follows those it is
 /// built on: d/d(each) is the same whatever else is asked for.
@@ -68,11 +68,11 @@ impl<'s, F: ForceSource, G: ForceSource<Varying>> Varied<'s, F, G> {
     }
 
     /// The place that is held.
-    pub(super) fn place(&self, held: Held) -> Place<Varying> {
+    pub(super) fn place(&self, held: Held) -> PathPlace<Varying> {
         match (held, self.sampler.path_drive()) {
             (Held::Time(t), _) | (Held::Path(t), None) => self.at_time(Varying::from_f64(t)),
             // The first time at which the path drive has this coordinate.
-            (Held::Path(p), Some(drive)) => Place {
+            (Held::Path(p), Some(drive)) => PathPlace {
                 time: self.passing(drive, self.sampler.clock().time_at(p)),
                 path: Varying::from_f64(p),
             },
@@ -80,7 +80,7 @@ impl<'s, F: ForceSource, G: ForceSource<Varying>> Varied<'s, F, G> {
     }
 
     /// The place at a time that may move with the parameters.
-    pub(super) fn at_time(&self, time: Varying) -> Place<Varying> {
+    pub(super) fn at_time(&self, time: Varying) -> PathPlace<Varying> {
         self.measurer.states.at_time(time)
     }
 
@@ -110,7 +110,11 @@ impl<'s, F: ForceSource, G: ForceSource<Varying>> Varied<'s, F, G> {
     }
 
     /// A measure as a series in time at a place.
-    pub(super) fn series(&mut self, measure: &Measure, place: Place<Varying>) -> Series<Varying> {
+    pub(super) fn series(
+        &mut self,
+        measure: &Measure,
+        place: PathPlace<Varying>,
+    ) -> Series<Varying> {
         let with_forces = asks_forces(&self.motion, measure);
         let inputs = self
             .measurer
@@ -130,7 +134,7 @@ impl<'s, F: ForceSource, G: ForceSource<Varying>> Varied<'s, F, G> {
         })
     }
 
-    pub(super) fn value(&mut self, measure: &Measure, place: Place<Varying>) -> Varying {
+    pub(super) fn value(&mut self, measure: &Measure, place: PathPlace<Varying>) -> Varying {
         self.series(measure, place).coefficient(0)
     }
 }

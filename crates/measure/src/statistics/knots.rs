@@ -2,7 +2,7 @@
 
 use kempe_motion::progress::Progress;
 
-use super::stretches::Stretch;
+use super::stretches::SmoothStretch;
 use super::survey::{Point, survey};
 use crate::force_source::{Curve, ForceSource};
 use crate::sampler::{Asked, Sampler};
@@ -16,7 +16,7 @@ const STEPS: usize = 60;
 pub(super) fn passed<F: ForceSource>(
     sampler: &mut Sampler<F>,
     curves: &[Curve],
-    stretches: &[Stretch],
+    stretches: &[SmoothStretch],
     progress: &mut dyn Progress,
 ) -> Option<Vec<f64>> {
     let mut times = Vec::new();

@@ -26,7 +26,7 @@ const KNOT: f64 = 8.0 * f64::EPSILON;
 
 /// A stretch of time on which all laws are smooth.
 #[derive(Clone, Debug)]
-pub(super) struct Stretch {
+pub(super) struct SmoothStretch {
     /// Its ends; the law behind `from` and that before `to` are meant.
     pub from: f64,
     pub to: f64,
@@ -34,7 +34,7 @@ pub(super) struct Stretch {
     pub intervals: usize,
 }
 
-impl Stretch {
+impl SmoothStretch {
     /// Times at which it is sampled, rising, both ends included: evenly, and at those of `more` that lie on it.
     pub fn times(&self, more: &[f64], duration: f64) -> Vec<f64> {
         let even = (0..=self.intervals).map(|k| {
@@ -68,7 +68,7 @@ impl Stretch {
 }
 
 /// The stretches of a motion between the knots of its laws. However short, each is searched.
-pub(super) fn stretches<F: ForceSource>(sampler: &Sampler<F>) -> Vec<Stretch> {
+pub(super) fn stretches<F: ForceSource>(sampler: &Sampler<F>) -> Vec<SmoothStretch> {
     let model = &sampler.motion().mechanism().model;
     let parameters = sampler.parameters();
     let duration = sampler.duration();
@@ -79,7 +79,7 @@ pub(super) fn stretches<F: ForceSource>(sampler: &Sampler<F>) -> Vec<Stretch> {
     };
     let pieces = law_knots(model, parameters, true);
     let list = law_knots(model, parameters, false);
-    let mut stretches: Vec<Stretch> = (list.windows(2))
+    let mut stretches: Vec<SmoothStretch> = (list.windows(2))
         .map(|pair| {
             let ([_, from], [end, _]) = (pair[0], pair[1]);
             // The last bit before a knot: what is evaluated at the knot itself is what follows.
@@ -87,7 +87,7 @@ pub(super) fn stretches<F: ForceSource>(sampler: &Sampler<F>) -> Vec<Stretch> {
             let whole = pieces.contains(&pair[0]) && pieces.contains(&pair[1]);
             let least = if whole { LEAST } else { LEAST_IN_TABLE };
             let parts = turns(from, to).max((to - from) / duration);
-            Stretch {
+            SmoothStretch {
                 from,
                 to: to.max(from),
                 intervals: ((GRID as f64 * parts).ceil() as usize).max(least),
@@ -96,7 +96,7 @@ pub(super) fn stretches<F: ForceSource>(sampler: &Sampler<F>) -> Vec<Stretch> {
         .collect();
     coarsen(&mut stretches);
     if stretches.is_empty() {
-        stretches.push(Stretch {
+        stretches.push(SmoothStretch {
             from: 0.0,
             to: 0.0,
             intervals: 1,
@@ -106,16 +106,20 @@ pub(super) fn stretches<F: ForceSource>(sampler: &Sampler<F>) -> Vec<Stretch> {
 }
 
 /// The stretches parted at knots: rising times at which a curve goes from one cubic to the next.
-pub(super) fn parted(stretches: &[Stretch], knots: &[f64], duration: f64) -> Vec<Stretch> {
+pub(super) fn parted(
+    stretches: &[SmoothStretch],
+    knots: &[f64],
+    duration: f64,
+) -> Vec<SmoothStretch> {
     let beside = KNOT * duration;
     let mut parts = Vec::with_capacity(stretches.len() + knots.len());
     let mut knots = knots.iter().peekable();
     for stretch in stretches {
         let width = stretch.to - stretch.from;
         let mut from = stretch.from;
-        let push = |parts: &mut Vec<Stretch>, from: f64, to: f64, least: usize| {
+        let push = |parts: &mut Vec<SmoothStretch>, from: f64, to: f64, least: usize| {
             let share = stretch.intervals as f64 * ((to - from) / width);
-            parts.push(Stretch {
+            parts.push(SmoothStretch {
                 from,
                 to,
                 intervals: (share.ceil() as usize).max(least),
@@ -139,7 +143,7 @@ pub(super) fn parted(stretches: &[Stretch], knots: &[f64], duration: f64) -> Vec
     parts
 }
 
-fn coarsen(stretches: &mut [Stretch]) {
+fn coarsen(stretches: &mut [SmoothStretch]) {
     let all: usize = stretches.iter().map(|s| s.intervals).sum();
     let coarser = (all as f64 / MOST_INTERVALS as f64).max(1.0);
     for stretch in stretches {

@@ -2,7 +2,7 @@
 
 use kempe_motion::progress::{Done, Progress, Stage};
 
-use super::stretches::Stretch;
+use super::stretches::SmoothStretch;
 use crate::force_source::ForceSource;
 use crate::measure::Series;
 use crate::sampler::{Asked, Sampler};
@@ -72,7 +72,7 @@ pub(super) type Heard<'h, F> = dyn FnMut(&mut Sampler<F>, Option<&Sample>, &Samp
 pub(super) fn survey<F: ForceSource>(
     sampler: &mut Sampler<F>,
     asked: &Asked,
-    stretches: &[Stretch],
+    stretches: &[SmoothStretch],
     progress: &mut dyn Progress,
     heard: &mut Heard<'_, F>,
 ) -> Option<()> {
