@@ -102,8 +102,8 @@ fn uncoloured(line: &str) -> String {
 /// A diagnostic as text over its file.
 fn rendered(diagnostic: &Diagnostic, file: &str, text: &str) -> String {
     let level = match diagnostic.severity {
-        Severity::Error => Level::ERROR,
         Severity::Warning => Level::WARNING,
+        _ => Level::ERROR,
     };
     let mut group = Group::with_title(level.primary_title(&diagnostic.message).id(diagnostic.code));
     // One snippet for each text that labels point into, that of the primary label first.

@@ -550,9 +550,10 @@ fn a_hodograph_of_rounding_is_a_point() {
         "{FOUR_BAR}[studies.loads]\nkind = \"forces\"\nrows = 9\ncolumns = [\"reaction_x(B, coupler)\"]\n"
     );
     let (model, mut result) = (model(&text), ran(&text));
-    let noisy = |column: &kempe_study::Column| kempe_study::Column {
-        values: column.values.iter().map(|v| 1e-15 * v).collect(),
-        ..column.clone()
+    let noisy = |column: &kempe_study::Column| {
+        let mut column = column.clone();
+        column.values.iter_mut().for_each(|v| *v *= 1e-15);
+        column
     };
     let loads = column(&result, "reaction_x(B, coupler)");
     assert!(largest(&loads) > 0.0);
