@@ -3,7 +3,7 @@
 use kempe_measure::{Held, Unmeasurable, sensitivities};
 use kempe_model::{Diagnostic, ParameterId};
 use kempe_motion::drive_path::DrivePath;
-use kempe_study::{Silent, force_problems};
+use kempe_study::{Progress, Silent, force_problems};
 
 use crate::block::Heading;
 use crate::way::{Way, on_the_motion};
@@ -69,7 +69,27 @@ impl Session {
         measures: impl IntoIterator<Item = M>,
         parameters: impl IntoIterator<Item = P>,
     ) -> Result<Derivatives, Error> {
-        self.differentiate(None, measures, parameters)
+        self.differentiate(None, measures, parameters, &mut Silent)
+    }
+
+    /// As [`derivatives`](Self::derivatives), and as [`derivatives_at`](Self::derivatives_at) where `at` names a drive (or
+    /// `time`) and a place; `progress` hears how far the motion has come and may stop it.
+    ///
+    /// # Errors
+    ///
+    /// As there, and `stopped`.
+    pub fn derivatives_with<M: AsRef<str>, P: AsRef<str>>(
+        &mut self,
+        at: Option<(&str, f64)>,
+        measures: impl IntoIterator<Item = M>,
+        parameters: impl IntoIterator<Item = P>,
+        progress: &mut dyn Progress,
+    ) -> Result<Derivatives, Error> {
+        let place = match at {
+            Some((along, place)) => Some((Way::named(&self.compiled, along)?, place)),
+            None => None,
+        };
+        self.differentiate(place, measures, parameters, progress)
     }
 
     /// Exact derivatives at a place of the drive that moves (its coordinate is held, SI) or at a `time` (held, s).
@@ -108,7 +128,7 @@ impl Session {
         parameters: impl IntoIterator<Item = P>,
     ) -> Result<Derivatives, Error> {
         let way = Way::named(&self.compiled, along)?;
-        self.differentiate(Some((way, place)), measures, parameters)
+        self.differentiate(Some((way, place)), measures, parameters, &mut Silent)
     }
 
     fn differentiate<M: AsRef<str>, P: AsRef<str>>(
@@ -116,6 +136,7 @@ impl Session {
         place: Option<(Way, f64)>,
         measures: impl IntoIterator<Item = M>,
         parameters: impl IntoIterator<Item = P>,
+        progress: &mut dyn Progress,
     ) -> Result<Derivatives, Error> {
         let asked = self.quantities(measures)?;
         let ids = (parameters.into_iter())
@@ -124,7 +145,7 @@ impl Session {
         for id in &ids {
             self.may_be_set(*id)?;
         }
-        let motion = self.known_motion(&mut Silent)?;
+        let motion = self.known_motion(progress)?;
         let held = match (place, &motion.path) {
             (None, _) => Held::Path(motion.start),
             (Some((Way::Time, time)), _) => {

@@ -13,6 +13,7 @@ use kempe_model::Diagnostic;
 /// assert!(error.to_string().contains("model:2:"));
 /// ```
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Error {
     pub(crate) name: String,
     pub(crate) text: String,

@@ -478,10 +478,7 @@ fn unreached(compiled: &Compiled, motion: &Motion, at: f64) -> Diagnostic {
     }
     if reason != EndReason::Covered {
         let told = beyond_limit(motion, &[(reason, at)]);
-        return Diagnostic {
-            severity: Severity::Error,
-            ..told
-        };
+        return told.with_severity(Severity::Error);
     }
     let place = place_text(compiled, motion, at);
     Diagnostic::error("not-reached", format!("no pose was found at {place}"))

@@ -3,9 +3,7 @@
 use std::sync::Arc;
 
 use kempe_mechanism::Design;
-use kempe_model::{
-    Diagnostic, Label, Leaf, Measure, NamedMeasure, ParameterId, PoseMeasure, Source,
-};
+use kempe_model::{Diagnostic, Leaf, Measure, NamedMeasure, ParameterId, PoseMeasure};
 use kempe_motion::Motion;
 use kempe_study::{Progress, Quantity, Silent, cannot_move};
 use kempe_units::{Dimension, Issue, Resolver, Span, check, parse};
@@ -144,19 +142,7 @@ impl Session {
     pub fn set_text(&mut self, parameter: &str, text: &str) -> Result<(), Error> {
         let id = self.compiled.parameter(parameter)?;
         let wanted = self.compiled.data().parameters[id.index()].dimension;
-        let told = |issue: Issue| {
-            let mut told = Diagnostic::error(issue.code, issue.message).maybe_help(issue.help);
-            told.labels.push(Label {
-                span: issue.span,
-                text: issue.label,
-                primary: true,
-                source: Some(Source {
-                    name: parameter.to_owned(),
-                    text: text.to_owned(),
-                }),
-            });
-            told
-        };
+        let told = |issue: Issue| Diagnostic::of_issue(issue, parameter, text);
         let (expr, found) = parse(text)
             .and_then(|tree| check(&tree, &mut Parameters(&self.compiled)))
             .map_err(|issues| self.compiled.errors(issues.into_iter().map(told).collect()))?;

@@ -27,6 +27,7 @@ pub const CLOSURE_LIMIT: f64 = 1e-9;
 
 /// One row of a motion.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Sample {
     /// Path parameter: the coordinate of the only moving drive, or time.
     pub parameter: f64,

@@ -41,6 +41,7 @@ pub type Varying = Dual<f64, CHUNK>;
 
 /// What stays while a parameter changes.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Held {
     /// The path parameter: the coordinate of the only moving drive (SI), or time when several move.
     Path(f64),
@@ -50,6 +51,7 @@ pub enum Held {
 
 /// Values of measures with their derivatives to parameters, SI.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Sensitivities {
     /// Path parameter at which they were taken.
     pub parameter: f64,

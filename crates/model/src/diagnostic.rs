@@ -5,12 +5,15 @@
 
 use serde::Serialize;
 
+use kempe_units::Issue;
+
 use crate::codes::known;
 use crate::ids::Span;
 
 /// How bad it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum Severity {
     /// Something a careful engineer would want to be told; the model stands.
     Warning,
@@ -20,6 +23,7 @@ pub enum Severity {
 
 /// Something to say about a model file.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Diagnostic {
     /// How bad it is.
     pub severity: Severity,
@@ -37,6 +41,7 @@ pub struct Diagnostic {
 
 /// A place with a word about it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Label {
     /// Bytes of the model file, or of `source` when that is given.
     pub span: Span,
@@ -58,6 +63,26 @@ pub struct Source {
 }
 
 impl Diagnostic {
+    /// What is wrong with an expression that stands in no file: a text by a name of its own.
+    pub fn of_issue(issue: Issue, name: &str, text: &str) -> Self {
+        let mut it = Self::error(issue.code, issue.message).maybe_help(issue.help);
+        it.labels.push(Label {
+            span: issue.span,
+            text: issue.label,
+            primary: true,
+            source: Some(Source {
+                name: name.to_owned(),
+                text: text.to_owned(),
+            }),
+        });
+        it
+    }
+
+    /// The same, weighed otherwise: what is an error for one who asks may be a warning for another.
+    pub fn with_severity(self, severity: Severity) -> Self {
+        Self { severity, ..self }
+    }
+
     /// An error without a place.
     pub fn error(code: &'static str, message: impl Into<String>) -> Self {
         debug_assert!(

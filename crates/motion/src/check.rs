@@ -20,6 +20,7 @@ const SHORTEST: f64 = 1e-6;
 
 /// What a check found.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Findings {
     /// Freedoms, counted and measured.
     pub mobility: Mobility,
@@ -45,6 +46,7 @@ pub struct Findings {
 
 /// How far a drive can go.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Reach {
     /// Lowest and highest coordinate (or time), SI.
     pub range: (f64, f64),

@@ -18,6 +18,7 @@ use kempe_motion::progress::{Progress, Silent};
 
 /// The answer of `check`.
 #[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
 pub struct Report {
     /// Title of the mechanism.
     pub title: String,
@@ -65,6 +66,7 @@ pub struct Report {
 
 /// A group of links that are solved together.
 #[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
 pub struct Group {
     /// Its links.
     pub links: Vec<String>,
@@ -78,6 +80,7 @@ pub struct Group {
 
 /// A four-bar loop.
 #[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
 pub struct Grashof {
     /// Its links, the frame first.
     pub links: Vec<String>,
@@ -322,10 +325,7 @@ fn diagnostics(model: &Model, design: &Design<f64>, found: &Findings) -> Vec<Dia
                 Diagnostic::warning("no-drive", "nothing can move: the links hold each other")
                     .help("a mechanism has a joint more, or a link less")
             }
-            "no-drive" => Diagnostic {
-                severity: Severity::Warning,
-                ..problem
-            },
+            "no-drive" => problem.with_severity(Severity::Warning),
             _ => problem,
         });
     }

@@ -190,7 +190,7 @@ pub(crate) fn warnings_section(diagnostics: &[Diagnostic]) -> Option<Section> {
     let finding = |d: &Diagnostic| Block::Finding {
         level: match d.severity {
             Severity::Warning => Level::Warning,
-            Severity::Error => Level::Error,
+            _ => Level::Error,
         },
         code: d.code.to_owned(),
         message: std::iter::once(d.message.as_str())

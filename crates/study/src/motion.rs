@@ -145,8 +145,5 @@ fn range_warnings(motion: &Motion) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> {
     if one_drive && missed.iter().any(|(r, _)| *r == EndReason::Limit) {
         return Err(vec![told]);
     }
-    Ok(vec![Diagnostic {
-        severity: kempe_model::Severity::Warning,
-        ..told
-    }])
+    Ok(vec![told.with_severity(kempe_model::Severity::Warning)])
 }

@@ -16,6 +16,7 @@ use kempe_motion::progress::{Done, Progress};
 
 /// What is proved of a motion by interval arithmetic.
 #[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
 pub struct Proof {
     /// What runs: the drive's name, or `time`.
     pub along: String,
@@ -35,6 +36,7 @@ pub struct Proof {
 
 /// A stretch that is not proved.
 #[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
 pub struct Unproved {
     /// Where, with units.
     pub place: String,

@@ -73,6 +73,7 @@ pub struct Listing {
 
 /// A plot that a study asks for.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Figure {
     /// Quantities of one dimension along the motion, and what they should stay below.
     Curves {

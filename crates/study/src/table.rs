@@ -35,6 +35,7 @@ pub struct ForceColumns {
 
 /// A quantity over the rows of a table.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Column {
     /// Name: a named measure, or the measure as written.
     pub name: String,

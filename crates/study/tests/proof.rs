@@ -63,10 +63,8 @@ fn a_change_point_is_a_gap_and_nothing_proved_is_zero() {
     assert!(proof.gaps.iter().all(|gap| gap.expected), "{proof:?}");
     assert!(!proof.gaps.is_empty() && !proof.is_whole(), "{proof:?}");
 
-    let nothing = kempe_study::Proof {
-        fraction: 0.0,
-        ..proof
-    };
+    let mut nothing = proof;
+    nothing.fraction = 0.0;
     let text = nothing.to_text();
     assert!(text.contains("Proved    0 % of motor"), "{text}");
 }

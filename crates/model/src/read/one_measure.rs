@@ -2,7 +2,7 @@
 
 use kempe_units::{Dimension, check, parse};
 
-use crate::diagnostic::{Diagnostic, Label, Source};
+use crate::diagnostic::Diagnostic;
 use crate::ids::{DriveId, JointId, LinkId, ParameterId, PointId};
 use crate::load::LoadKind;
 use crate::model::Model;
@@ -41,20 +41,7 @@ impl Model {
             }),
             Err(issues) => Err(issues
                 .into_iter()
-                .map(|issue| {
-                    let mut told =
-                        Diagnostic::error(issue.code, issue.message).maybe_help(issue.help);
-                    told.labels.push(Label {
-                        span: issue.span,
-                        text: issue.label,
-                        primary: true,
-                        source: Some(Source {
-                            name: "measure".to_owned(),
-                            text: text.to_owned(),
-                        }),
-                    });
-                    told.tamed()
-                })
+                .map(|issue| Diagnostic::of_issue(issue, "measure", text).tamed())
                 .collect()),
         }
     }
