@@ -117,7 +117,7 @@ fn describe(mechanism: &Mechanism, bodies: &[BodyId], steps: &[usize]) -> (u32, 
                 ..
             })) => (2, driven("RRR dyad of link and cylinder")),
             Some(Step::Swing(Swing {
-                condition: Condition::OnArc { .. },
+                condition: Condition::OnArc { .. } | Condition::ArcThrough { .. },
                 ..
             })) => (2, "RRR dyad of link and curved slot".into()),
             Some(Step::Swing(Swing {

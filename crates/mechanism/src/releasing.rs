@@ -117,7 +117,10 @@ impl Mechanism {
             .constraints
             .iter()
             .filter(|(_, from)| *from == of.into());
-        if own.clone().any(|(it, _)| it.releasing(0, DriveId(0)).is_none()) {
+        if own
+            .clone()
+            .any(|(it, _)| it.releasing(0, DriveId(0)).is_none())
+        {
             return Err(NotReleased::OnCurve(of.into()));
         }
         let units = own.flat_map(|(constraint, _)| vec![constraint.unit(); constraint.rows()]);
