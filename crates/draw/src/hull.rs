@@ -14,7 +14,19 @@ pub fn convex_hull(points: &[Point]) -> Vec<Point> {
         .copied()
         .filter(|p| p[0].is_finite() && p[1].is_finite())
         .collect();
-    sorted.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
+    // On an upright line rounding of x decides nothing.
+    let (low, high) = (sorted.iter()).fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| {
+        (low.min(p[0]), high.max(p[0]))
+    });
+    let upright = high - low < SAME_PLACE;
+    sorted.sort_by(|a, b| {
+        let by_x = if upright {
+            std::cmp::Ordering::Equal
+        } else {
+            a[0].total_cmp(&b[0])
+        };
+        by_x.then(a[1].total_cmp(&b[1]))
+    });
     sorted.dedup_by(|a, b| distance(*a, *b) < SAME_PLACE);
     if sorted.len() < 3 {
         return sorted;
@@ -123,6 +135,8 @@ mod tests {
         );
         let line = [[0.0, 0.0], [1.0, 1.0], [2.0, 2.0], [7.0, 7.0]];
         assert_eq!(convex_hull(&line), [[0.0, 0.0], [7.0, 7.0]]);
+        let upright = [[1e-15, 0.0], [0.0, -7.0], [-1e-15, 5.0], [2e-15, 1.0]];
+        assert_eq!(convex_hull(&upright), [[0.0, -7.0], [-1e-15, 5.0]]);
         assert_eq!(convex_hull(&[[f64::NAN, 0.0]]), Vec::<Point>::new());
     }
 

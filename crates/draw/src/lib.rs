@@ -52,6 +52,6 @@ pub use loads::{LoadRole, LoadView};
 pub use stage::{DrawOptions, Stage};
 pub use tokens::Theme;
 pub use view::{
-    ArcGuide, DriveKind, DriveView, Frame, Guide, JointView, LengthUnit, LinkView, LoadUnit,
-    LoadUnits, MechanismView, TraceView, Wheel,
+    ArcGuide, CurveGuide, DriveKind, DriveView, Frame, Guide, JointView, LengthUnit, LinkView,
+    LoadUnit, LoadUnits, MechanismView, TraceView, Wheel,
 };

@@ -75,6 +75,12 @@ impl Roles {
                 self.with(arc.from, |role| role.guides = true);
                 self.with(arc.to, |role| role.guides = true);
             }
+            JointView::CurveSlot { pin, ref curve } => {
+                self.with(pin, |role| role.pinned = true);
+                for &point in &curve.through {
+                    self.with(point, |role| role.guides = true);
+                }
+            }
             JointView::Gears { a, b, .. } | JointView::Belt { a, b, .. } => {
                 for wheel in [a, b] {
                     self.with(wheel.center, |role| role.pinned = true);

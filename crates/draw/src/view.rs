@@ -148,6 +148,19 @@ pub struct ArcGuide {
     pub closed: bool,
 }
 
+/// A smooth curve through points of a link.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CurveGuide {
+    /// The link that carries it.
+    pub link: usize,
+    /// The points it goes through, its first one first.
+    pub through: Vec<usize>,
+    /// Places along it in the link's axes, seen from its first point, m, each with the direction of the curve there, rad.
+    pub along: Vec<([f64; 2], f64)>,
+    /// It comes back to its first point.
+    pub closed: bool,
+}
+
 /// A gear.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wheel {
@@ -186,6 +199,13 @@ pub enum JointView {
         pin: usize,
         /// The slot.
         arc: ArcGuide,
+    },
+    /// A pin in a slot along a smooth curve.
+    CurveSlot {
+        /// The pin.
+        pin: usize,
+        /// The slot.
+        curve: CurveGuide,
     },
     /// Two links made one.
     Weld {

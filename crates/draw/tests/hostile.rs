@@ -152,6 +152,22 @@ fn joint() -> impl Strategy<Value = JointView> {
                 },
             }
         ),
+        (
+            i.clone(),
+            i.clone(),
+            proptest::collection::vec(i.clone(), 0..4),
+            proptest::collection::vec((number(), number(), number()), 0..6),
+            any::<bool>()
+        )
+            .prop_map(|(pin, link, through, along, closed)| JointView::CurveSlot {
+                pin,
+                curve: CurveGuide {
+                    link,
+                    through,
+                    along: along.into_iter().map(|(x, y, a)| ([x, y], a)).collect(),
+                    closed,
+                },
+            }),
         (i.clone(), wheel(), number()).prop_map(|(link, pinion, side)| JointView::Rack {
             link,
             pinion,

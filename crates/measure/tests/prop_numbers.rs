@@ -99,14 +99,17 @@ proptest! {
             return Ok(());
         }
         let (first, second) = differences(&|p| plain_at(&motion, p), p, h);
+        // At the points of a smooth curve third derivatives jump, in the midst of the differences.
+        let has_curves = !case.mechanism.curves.is_empty();
+        let (off_first, off_second) = if has_curves { (1e-6, 1e-6) } else { (1e-10, 1e-9) };
         for (i, x) in rich.iter().enumerate() {
             let (a, b) = (x.derivative(1), x.derivative(2));
             prop_assert!(
-                (a - first[i]).abs() * h <= 1e-10,
+                (a - first[i]).abs() * h <= off_first,
                 "first {i}: {a} {} h {h:e}\n{}", first[i], case.text
             );
             prop_assert!(
-                (b - second[i]).abs() * h * h <= 1e-9,
+                (b - second[i]).abs() * h * h <= off_second,
                 "second {i}: {b} {} h {h:e}\n{}", second[i], case.text
             );
         }
@@ -239,6 +242,8 @@ fn gradients_are_the_derivatives_of_residuals() {
         "Rack",
         "Belt",
         "OnArc",
+        "OnCurve",
+        "Shoe",
     ] {
         assert!(seen.get(kind).is_some_and(|n| *n > 10), "{kind}: {seen:?}");
     }

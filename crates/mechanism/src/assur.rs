@@ -95,7 +95,12 @@ fn describe(mechanism: &Mechanism, bodies: &[BodyId], steps: &[usize]) -> (u32, 
         names => format!("{what} with drive {}", names.join(", ")),
     };
     let kinds: Vec<&Step> = steps.iter().map(|&s| &plan.steps[s]).collect();
-    match bodies.len() {
+    let links: Vec<BodyId> = (bodies.iter().copied())
+        .filter(|body| !mechanism.is_shoe(*body))
+        .collect();
+    match links.len() {
+        0 => (1, "pin in curved slot".into()),
+        1 if links != bodies => (2, driven("link and curved slot")),
         1 if kinds.iter().any(|s| matches!(s, Step::Hold { .. })) => {
             (1, "body with an idle turn".into())
         }
@@ -112,7 +117,7 @@ fn describe(mechanism: &Mechanism, bodies: &[BodyId], steps: &[usize]) -> (u32, 
                 ..
             })) => (2, driven("RRR dyad of link and cylinder")),
             Some(Step::Swing(Swing {
-                condition: Condition::OnArc { .. },
+                condition: Condition::OnArc { .. } | Condition::ArcThrough { .. },
                 ..
             })) => (2, "RRR dyad of link and curved slot".into()),
             Some(Step::Swing(Swing {
@@ -145,7 +150,7 @@ fn describe(mechanism: &Mechanism, bodies: &[BodyId], steps: &[usize]) -> (u32, 
             (2, driven(kind))
         }
         n => {
-            let class = contour_class(mechanism, bodies);
+            let class = contour_class(mechanism, &links);
             let roman = ["I", "II", "III", "IV", "V", "VI", "VII", "VIII"]
                 .get(class as usize - 1)
                 .unwrap_or(&"higher");

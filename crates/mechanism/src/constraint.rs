@@ -14,6 +14,7 @@ mod isotropic;
 mod joint;
 mod loads;
 mod on_arc;
+mod on_curve;
 mod on_line;
 mod rack;
 mod released;
@@ -29,6 +30,7 @@ pub use self::isotropic::{Isotropic, Vector};
 pub use self::joint::{Gradient, InAngles, Joint, Pairs, Touch, Unit};
 pub use self::loads::{LoadPoint, Rubs, Sliding};
 pub use self::on_arc::OnArc;
+pub use self::on_curve::{OnCurve, Shoe};
 pub use self::on_line::OnLine;
 pub use self::rack::Rack;
 pub use self::released::Released;
@@ -136,6 +138,10 @@ kinds! {
         Belt,
         /// A point lies on a circular arc.
         OnArc,
+        /// A point lies on a smooth curve, at the place that a shoe tells: two rows.
+        OnCurve,
+        /// A shoe goes with its pin: two rows.
+        Shoe,
     }
     joints_let_go {
         Coincide as ReleasedPin,
@@ -187,6 +193,10 @@ impl Joint for Constraint {
 
     fn is_reversed<T: Number>(&self, at: &Situation<'_, T>) -> bool {
         ask!(self, joint => joint.is_reversed(at))
+    }
+
+    fn is_past_end(&self, at: &Situation<'_, f64>) -> bool {
+        ask!(self, joint => joint.is_past_end(at))
     }
 
     fn pin(&self, body: BodyId) -> Option<(Marker, Marker)> {

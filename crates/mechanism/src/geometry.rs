@@ -2,7 +2,8 @@
 
 use kempe_number::Number;
 
-use crate::ids::{ArcRef, LineRef, Marker};
+use crate::curve::LocalCurve;
+use crate::ids::{ArcRef, CurveRef, LineRef, Marker};
 use crate::parts::Parts;
 use crate::pose::{Pose, dot, left, sub};
 use crate::sources::LineSource;
@@ -73,6 +74,8 @@ pub struct Geometry<T> {
     pub lines: Vec<LocalLine<T>>,
     /// Arcs.
     pub arcs: Vec<LocalArc<T>>,
+    /// Smooth curves.
+    pub curves: Vec<LocalCurve<T>>,
     /// Angle constants as unit vectors.
     pub angles: Vec<[T; 2]>,
     /// Gear constants.
@@ -103,6 +106,9 @@ impl<T: Number> Geometry<T> {
             markers: vec![[zero; 2]; parts.markers.len()],
             lines: vec![along; parts.lines.len()],
             arcs: vec![arc; parts.arcs.len()],
+            curves: (parts.curves.iter())
+                .map(|curve| LocalCurve::unknown(curve.through.len(), curve.closed))
+                .collect(),
             angles: vec![[T::one(), zero]; parts.angles.len()],
             gears: vec![gear; parts.gears.len()],
         };
@@ -118,6 +124,7 @@ impl<T: Number> Geometry<T> {
         }
         let is_plain = parts.lines.is_empty()
             && parts.arcs.is_empty()
+            && parts.curves.is_empty()
             && parts.gears.is_empty()
             && parts.seats.iter().all(|seat| seat.weld.is_none())
             && parts.angles.iter().all(|angle| parts.is_zero(angle));
@@ -156,6 +163,10 @@ impl<T: Number> Geometry<T> {
         for (index, arc) in parts.arcs.iter().enumerate() {
             let (from, to) = (self.marker(arc.from), self.marker(arc.to));
             self.arcs[index] = LocalArc::through(from, to, scalar(&arc.radius), arc.side);
+        }
+        for (index, curve) in parts.curves.iter().enumerate() {
+            let points: Vec<[T; 2]> = curve.through.iter().map(|m| self.marker(*m)).collect();
+            self.curves[index].update(&points);
         }
         for (index, angle) in parts.angles.iter().enumerate() {
             if parts.is_zero(angle) {
@@ -241,13 +252,19 @@ impl<T: Number> Geometry<T> {
         self.arcs[arc.index as usize]
     }
 
+    /// A smooth curve in its body.
+    #[inline]
+    pub fn curve(&self, curve: CurveRef) -> &LocalCurve<T> {
+        &self.curves[curve.index as usize]
+    }
+
     /// The plain values.
     pub fn value(&self) -> Geometry<f64> {
         self.map(T::value)
     }
 
     /// Every dimension through `f`.
-    pub fn map<U>(&self, f: impl Fn(T) -> U) -> Geometry<U> {
+    pub fn map<U: Number>(&self, f: impl Fn(T) -> U) -> Geometry<U> {
         let mut it = Geometry {
             seats: Vec::new(),
             seat_angles: Vec::new(),
@@ -255,6 +272,7 @@ impl<T: Number> Geometry<T> {
             markers: Vec::new(),
             lines: Vec::new(),
             arcs: Vec::new(),
+            curves: Vec::new(),
             angles: Vec::new(),
             gears: Vec::new(),
         };
@@ -263,7 +281,7 @@ impl<T: Number> Geometry<T> {
     }
 }
 
-impl<U> Geometry<U> {
+impl<U: Number> Geometry<U> {
     /// Takes over every dimension of another design of the same mechanism through `f`, in the same storage.
     pub(crate) fn assign<T: Copy>(&mut self, other: &Geometry<T>, f: impl Fn(T) -> U) {
         let pair = |v: &[T; 2]| [f(v[0]), f(v[1])];
@@ -284,6 +302,11 @@ impl<U> Geometry<U> {
             center: pair(&a.center),
             radius: f(a.radius),
         });
+        self.curves
+            .resize_with(other.curves.len(), || LocalCurve::unknown(0, true));
+        for (curve, from) in self.curves.iter_mut().zip(&other.curves) {
+            curve.assign(from, &f);
+        }
         refill(&mut self.angles, &other.angles, pair);
         refill(&mut self.gears, &other.gears, |g| GearConstants {
             first: f(g.first),
@@ -300,15 +323,30 @@ fn refill<T, U>(list: &mut Vec<U>, from: &[T], f: impl Fn(&T) -> U) {
 }
 
 impl Geometry<f64> {
+    /// Puts every shoe where its curve is nearest to its pin, the other bodies being where they are.
+    pub fn place_shoes(&self, parts: &Parts, poses: &mut [Pose<f64>]) {
+        for (source, curve) in parts.curves.iter().zip(&self.curves) {
+            let Some(on) = source.through.first().map(|first| first.body) else {
+                continue;
+            };
+            let pin = poses[source.pin.body.index()].place(self.marker(source.pin));
+            let body = &poses[on.index()];
+            let (angle, _) = curve.nearest(body.unturn(sub(pin, [body.x, body.y])));
+            poses[source.shoe.index()] = Pose::from_angle(pin[0], pin[1], angle);
+        }
+    }
+
     /// A characteristic length of the mechanism, m: the largest distance of two markers of one body.
     pub fn size(&self, parts: &Parts) -> f64 {
         let mut low = vec![[f64::INFINITY; 2]; parts.bodies];
         let mut high = vec![[f64::NEG_INFINITY; 2]; parts.bodies];
-        for (at, p) in parts.markers.iter().zip(&self.markers) {
-            let body = parts.body_of(at.link).index();
-            for k in 0..2 {
-                low[body][k] = low[body][k].min(p[k]);
-                high[body][k] = high[body][k].max(p[k]);
+        for (link, seat) in parts.seats.iter().enumerate() {
+            let body = seat.body.index();
+            for p in &self.markers[parts.markers_of(link)] {
+                for k in 0..2 {
+                    low[body][k] = low[body][k].min(p[k]);
+                    high[body][k] = high[body][k].max(p[k]);
+                }
             }
         }
         let size = (low.iter().zip(&high))

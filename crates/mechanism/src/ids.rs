@@ -48,6 +48,15 @@ pub struct ArcRef {
     pub index: u32,
 }
 
+/// A smooth curve of a body: an index into the geometry's curves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CurveRef {
+    /// The body that carries the curve.
+    pub body: BodyId,
+    /// Index into the geometry's curves.
+    pub index: u32,
+}
+
 /// A directed line of a body: an index into the geometry's lines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LineRef {

@@ -8,6 +8,7 @@ mod branch;
 mod closed_form;
 pub mod configuration;
 pub mod constraint;
+pub mod curve;
 mod design;
 pub mod evidence;
 pub mod geometry;

@@ -2,11 +2,13 @@
 
 mod weld;
 
-use kempe_model::{CircularArc, Line, LinkId, LinkPointRef, Model, Place, PointId};
+use kempe_model::{
+    CircularArc, JointId, Line, LinkId, LinkPointRef, Model, Place, PointId, SmoothCurve,
+};
 
 use self::weld::seats;
-use crate::ids::{ArcRef, BodyId, LineRef, Marker, Spot};
-use crate::sources::{AngleSource, ArcSource, GearSource, LineSource, LinkSeat, ZERO};
+use crate::ids::{ArcRef, BodyId, CurveRef, LineRef, Marker, Spot};
+use crate::sources::{AngleSource, ArcSource, CurveSource, GearSource, LineSource, LinkSeat, ZERO};
 
 /// Bodies and what they carry, dimensions still free.
 #[derive(Clone, Debug)]
@@ -17,7 +19,7 @@ pub struct Parts {
     pub bodies: usize,
     /// Seat of every link.
     pub seats: Vec<LinkSeat>,
-    /// Every point of every link, in link order.
+    /// Every point of every link, in link order; then the origin of every shoe, named as its pin.
     pub markers: Vec<LinkPointRef>,
     /// Index of a link's first marker.
     first_marker: Vec<u32>,
@@ -25,6 +27,8 @@ pub struct Parts {
     pub lines: Vec<LineSource>,
     /// Arcs used by constraints.
     pub arcs: Vec<ArcSource>,
+    /// Smooth curves used by constraints.
+    pub curves: Vec<CurveSource>,
     /// Angle constants used by constraints.
     pub angles: Vec<AngleSource>,
     /// Gear constants used by constraints.
@@ -43,6 +47,7 @@ impl Parts {
             first_marker: Vec::new(),
             lines: Vec::new(),
             arcs: Vec::new(),
+            curves: Vec::new(),
             angles: Vec::new(),
             gears: Vec::new(),
             model: model.clone(),
@@ -117,6 +122,9 @@ impl Parts {
 
     /// Whether the marker lies at its body's origin whatever the dimensions, so that turning the body cannot move it.
     pub fn at_origin(&self, marker: Marker) -> bool {
+        if marker.spot == Spot::Origin {
+            return true;
+        }
         let at = self.markers[marker.index as usize];
         let link = &self.model.links[at.link.index()];
         self.seats[at.link.index()].weld.is_none()
@@ -126,8 +134,16 @@ impl Parts {
             })
     }
 
-    /// The name of a body: its links' names joined.
+    /// Whether a body is no link: the shoe that goes with a pin along a smooth curve.
+    pub fn is_shoe(&self, body: BodyId) -> bool {
+        self.curves.iter().any(|curve| curve.shoe == body)
+    }
+
+    /// The name of a body: its links' names joined, that of the joint for a shoe.
     pub fn body_name(&self, body: BodyId) -> String {
+        if let Some(curve) = self.curves.iter().find(|curve| curve.shoe == body) {
+            return format!("shoe of {}", self.model.joints[curve.joint.index()].name);
+        }
         let names: Vec<&str> = (self.seats.iter().zip(&self.model.links))
             .filter(|(seat, _)| seat.body == body)
             .map(|(_, link)| link.name.as_str())
@@ -189,6 +205,43 @@ impl Parts {
             body: from.body,
             index: self.arcs.len() as u32 - 1,
         })
+    }
+
+    /// The curve of a joint, with the marker at the origin of the new shoe that goes with its pin; `None` for a curve that
+    /// the reader would have refused.
+    pub(crate) fn curve(
+        &mut self,
+        joint: JointId,
+        pin: LinkPointRef,
+        on: &SmoothCurve,
+    ) -> Option<(CurveRef, Marker)> {
+        let link = on.link;
+        let points = on.through.iter();
+        let through: Option<Vec<Marker>> = points
+            .map(|&point| self.marker(LinkPointRef { link, point }))
+            .collect();
+        let through = through.filter(|markers| markers.len() >= 3)?;
+        let own = self.marker(pin)?;
+        let shoe = BodyId(self.bodies as u32);
+        self.bodies += 1;
+        let origin = Marker {
+            body: shoe,
+            index: self.markers.len() as u32,
+            spot: Spot::Origin,
+        };
+        self.markers.push(pin);
+        self.curves.push(CurveSource {
+            through,
+            closed: on.closed,
+            pin: own,
+            shoe,
+            joint,
+        });
+        let curve = CurveRef {
+            body: self.body_of(link),
+            index: self.curves.len() as u32 - 1,
+        };
+        Some((curve, origin))
     }
 
     pub(crate) fn angle(&mut self, angle: AngleSource) -> u32 {

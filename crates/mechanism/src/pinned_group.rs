@@ -169,7 +169,11 @@ pub(crate) fn swing<T: Number, const ALL: bool>(
     } = *step;
     let center = place(design, state, at);
     let pin = design.geometry.marker(own);
-    let arm = sub(design.geometry.marker(tip), pin);
+    let tip = match (partner, condition) {
+        (None, Condition::ArcThrough { arc, .. }) => design.geometry.arc(arc).center,
+        _ => design.geometry.marker(tip),
+    };
+    let arm = sub(tip, pin);
     let square = dot(arm, arm);
     // On the body itself the condition acts at the tip, whatever the body's angle.
     let locus = match (partner, condition) {
@@ -187,13 +191,13 @@ pub(crate) fn swing<T: Number, const ALL: bool>(
             let center = state.poses[arc.body.index()].place(circle.center);
             Locus::Circle(center, circle.radius)
         }
-        // Conditions with a line of the swinging body are `SwingLine`s, with an arc of it a Newton block.
+        (None, Condition::ArcThrough { arc, point }) => {
+            Locus::Circle(place(design, state, point), design.geometry.arc(arc).radius)
+        }
+        // Conditions with a line of the swinging body are `SwingLine`s.
         (
             None,
-            Condition::Through { .. }
-            | Condition::TravelThrough { .. }
-            | Condition::Roll { .. }
-            | Condition::ArcThrough { .. },
+            Condition::Through { .. } | Condition::TravelThrough { .. } | Condition::Roll { .. },
         ) => {
             return T::from_f64(f64::NAN);
         }

@@ -107,8 +107,13 @@ fn swing(body: BodyId, constraints: &[&Constraint]) -> Option<Step> {
         })),
         // The travel depends on the angle sought.
         Condition::Roll { .. } => None,
-        // The arc's centre is no named point of the body.
-        Condition::ArcThrough { .. } => None,
+        condition @ Condition::ArcThrough { .. } => Some(Step::Swing(Swing {
+            own,
+            at,
+            tip: own,
+            condition,
+            partner: None,
+        })),
         condition @ (Condition::OnLine { own: tip, .. }
         | Condition::TravelOn { own: tip, .. }
         | Condition::OnArc { own: tip, .. }

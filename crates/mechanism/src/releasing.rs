@@ -17,6 +17,8 @@ pub enum NotReleased {
     NoConstraint(Source),
     /// It is let go already, or named twice.
     Twice(Source),
+    /// Its pin runs on a smooth curve: its rows say where along the curve the pin is, not how far off it stands.
+    OnCurve(Source),
     /// A wheel of a gear pair or belt turns on this pin: how it meshes with its pin open, nobody says.
     CarriesWheel(Source),
 }
@@ -29,6 +31,10 @@ impl std::fmt::Display for NotReleased {
                 "{what:?} holds no two bodies together: name a drive, or a joint that is no weld"
             ),
             Self::Twice(what) => write!(f, "{what:?} is let go already: name it once"),
+            Self::OnCurve(what) => write!(
+                f,
+                "{what:?} is a pin on a smooth curve, which cannot be let go: let go of a drive, or of another joint"
+            ),
             Self::CarriesWheel(what) => write!(
                 f,
                 "on {what:?} turns a wheel, whose gears or belt need the pin: let go of these, too"
@@ -111,6 +117,12 @@ impl Mechanism {
             .constraints
             .iter()
             .filter(|(_, from)| *from == of.into());
+        if own
+            .clone()
+            .any(|(it, _)| it.releasing(0, DriveId(0)).is_none())
+        {
+            return Err(NotReleased::OnCurve(of.into()));
+        }
         let units = own.flat_map(|(constraint, _)| vec![constraint.unit(); constraint.rows()]);
         for (row, unit) in (0..).zip(units) {
             released.push(DriveId(model.drives.len() as u32));

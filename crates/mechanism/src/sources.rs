@@ -1,6 +1,6 @@
 //! What a mechanism's dimensions are made of: expressions over the parameters, still free.
 
-use kempe_model::{LinkId, ParameterId, PointId, Scalar};
+use kempe_model::{JointId, LinkId, ParameterId, PointId, Scalar};
 use kempe_units::Expr;
 
 use crate::ids::{BodyId, LineRef, Marker};
@@ -36,6 +36,21 @@ pub struct ArcSource {
     pub radius: Scalar,
     /// +1 with its centre on the left of the way from start to end, -1 on the right.
     pub side: f64,
+}
+
+/// A smooth curve by its points, markers of one body, with the shoe of the pin on it.
+#[derive(Clone, Debug)]
+pub struct CurveSource {
+    /// Its points in their order.
+    pub through: Vec<Marker>,
+    /// It goes on from the last point to the first.
+    pub closed: bool,
+    /// The pin on it, of another body.
+    pub pin: Marker,
+    /// The body without a link that goes with the pin: its angle tells the place on the curve.
+    pub shoe: BodyId,
+    /// The joint.
+    pub joint: JointId,
 }
 
 /// An angle constant between two bodies: `value + direction of the line + seat(b) - seat(a)`.

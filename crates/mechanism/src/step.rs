@@ -174,7 +174,7 @@ pub struct Swing {
     pub own: Marker,
     /// The placed point.
     pub at: Marker,
-    /// The body's point on which the condition acts.
+    /// The body's point on which the condition acts; the one at the pin where it acts on the centre of an arc of the body.
     pub tip: Marker,
     /// The condition, on the body itself or on its partner.
     pub condition: Condition,

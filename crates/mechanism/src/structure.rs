@@ -3,9 +3,9 @@
 mod compile;
 
 pub use crate::constraint::{Constraint, Source};
-pub use crate::ids::{ArcRef, BodyId, LineRef, Marker, Spot};
+pub use crate::ids::{ArcRef, BodyId, CurveRef, LineRef, Marker, Spot};
 pub use crate::parts::Parts;
-pub use crate::sources::{AngleSource, ArcSource, GearSource, LineSource, LinkSeat};
+pub use crate::sources::{AngleSource, ArcSource, CurveSource, GearSource, LineSource, LinkSeat};
 
 use std::ops::{Deref, DerefMut};
 

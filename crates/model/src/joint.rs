@@ -1,7 +1,7 @@
 //! Joints that a shared point name does not say.
 
 use crate::ids::{Line, LinkId, LinkPointRef, PointId, Scalar, Span};
-use crate::link::{CircularArc, Side};
+use crate::link::{CircularArc, Side, SmoothCurve};
 
 /// A joint that a shared point name does not say.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,6 +39,13 @@ pub enum JointKind {
         pin: LinkPointRef,
         /// The slot.
         on: CircularArc,
+    },
+    /// A pin in a curved slot: a point of one link stays on a smooth curve of another.
+    CurveSlot {
+        /// The pin.
+        pin: LinkPointRef,
+        /// The slot.
+        on: SmoothCurve,
     },
     /// Two links made one: they share a point and keep an angle.
     Weld {
@@ -121,6 +128,7 @@ impl JointKind {
             Self::Slider { at, on, .. } => (at.link, on.link),
             Self::Slot { pin, on } => (pin.link, on.link),
             Self::ArcSlot { pin, ref on } => (pin.link, on.link),
+            Self::CurveSlot { pin, ref on } => (pin.link, on.link),
             Self::Weld { a, b, .. } | Self::Gears { a, b, .. } | Self::Belt { a, b, .. } => (a, b),
             Self::Rack { rack, pinion, .. } => (rack, pinion),
         }

@@ -197,14 +197,15 @@ static SLIDER: Kind = kind("joint", "slider",
 
 static SLOT: Kind = kind("joint", "pin",
     "slot = { pin = \"B\", on = \"O -> P\" }",
-    "A pin in a slot: a point stays on a line or an arc of another link and may turn.",
+    "A pin in a slot: a point stays on a line, an arc or a smooth curve of another link and may turn.",
     &[&[
         must("pin", POINT, "\"B\"", "The point in the slot."),
         one_of("on", T::Line, "\"O -> P\"", "A straight slot, through two points of another link."),
         one_of("arc", T::Line, "\"O -> P\"", "A curved slot, from one point of another link to another of it."),
+        one_of("through", T::List(&POINT, 3), "[\"O\", \"P\", \"E\"]", "A curved slot along the smooth curve through at least three points of another link."),
         may("radius", positive(D::LENGTH), "40", "The arc's radius, at least half the distance of its ends; `arc` needs it."),
         may("side", SIDE_WORDS, "\"right\"", "On which side of the way along the arc's ends its centre lies; left unless said otherwise."),
-        may("closed", T::Flag, "true", "Whether the slot goes all the way round."),
+        may("closed", T::Flag, "true", "Whether the slot goes all the way round: the whole circle, or a curve back to its first point."),
     ]]);
 
 static WELD: Kind = kind("joint", "weld",

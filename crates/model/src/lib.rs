@@ -32,7 +32,7 @@ mod read;
 mod registry;
 mod same;
 mod schema;
-mod spline;
+pub mod spline;
 mod starter;
 mod study;
 mod tables;

@@ -124,3 +124,16 @@ pub struct CircularArc {
     /// The whole circle counts, not only its shorter part between start and end.
     pub closed: bool,
 }
+
+/// A smooth curve through points of one link: the cubic spline over the length of their chords (see [`spline`]).
+///
+/// [`spline`]: crate::spline
+#[derive(Clone, Debug, PartialEq)]
+pub struct SmoothCurve {
+    /// The link that carries the curve.
+    pub link: LinkId,
+    /// Its points in their order along the curve, at least three.
+    pub through: Vec<PointId>,
+    /// It goes on from the last point to the first.
+    pub closed: bool,
+}

@@ -71,7 +71,7 @@ impl Model {
         for joint in &mut self.joints {
             match &mut joint.kind {
                 JointKind::Slider { angle, .. } | JointKind::Weld { angle, .. } => f(angle),
-                JointKind::Slot { .. } => {}
+                JointKind::Slot { .. } | JointKind::CurveSlot { .. } => {}
                 JointKind::ArcSlot { on, .. } => f(&mut on.radius),
                 JointKind::Belt {
                     radius_a,

@@ -5,6 +5,7 @@
 //! it open at its gear (`open_loop`). The file's hints choose among them (`hints`) and say from where angles are counted
 //! (`turns`).
 
+mod along_curve;
 mod blocks;
 mod equations;
 mod gear_train;

@@ -124,6 +124,10 @@ fn agree(recipe: &Recipe, starts: usize) -> (usize, usize) {
         let Some(pose) = close(spec, &coordinates, start) else {
             continue;
         };
+        // Beyond its ends a curve is followed, but no assembly is looked for there.
+        if spec.is_off_curves(&pose) {
+            continue;
+        }
         // Nearly double solutions are told apart by neither.
         if case.sigma(&pose, &coordinates) < 1e-4 {
             continue;
@@ -205,6 +209,8 @@ fn dyads_have_the_assemblies_that_a_dense_search_finds() {
         Group::TwoSlots,
         Group::PinInArc,
         Group::ArcOnPin,
+        Group::PinOnCurve,
+        Group::CurveOnPin,
     ];
     let (mut all, mut met) = (0, 0);
     for (seed, kind) in kinds.iter().cycle().take(36).enumerate() {

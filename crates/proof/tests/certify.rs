@@ -185,6 +185,8 @@ fn gallery_motions_are_proved_and_hold_the_plain_poses() {
         "gallery/belt-leg",
         "gallery/cam-slot-latch",
         "gallery/curved-slot-follower",
+        "gallery/groove-cam",
+        "gallery/overhead-door",
     ] {
         let case = Case::example(file);
         let motion = case.must_move();

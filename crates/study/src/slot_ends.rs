@@ -1,6 +1,10 @@
-//! Where a pin leaves the ends of its curved slot: the motion goes on along the slot's circle, the part would not.
+//! Where a pin leaves the ends of its curved slot: the motion goes on along the slot's circle or the cubic of its end, the
+//! part would not.
 
-use kempe_model::{CircularArc, Diagnostic, JointKind, LinkPointRef, Model, value};
+use kempe_mechanism::curve::LocalCurve;
+use kempe_model::{
+    CircularArc, Diagnostic, JointKind, LinkPointRef, Model, PointId, SmoothCurve, value,
+};
 use kempe_number::math::{atan2, hypot, sin_cos};
 use kempe_units::Dimension;
 
@@ -9,7 +13,7 @@ use crate::result::Frame;
 use crate::table::Table;
 use crate::unit::Units;
 
-/// A pin this little, in radii, beyond the end of its slot stands at it.
+/// A pin this little, in radii or in lengths of the slot, beyond the end of its slot stands at it.
 const AT_END: f64 = 1e-9;
 
 /// A warning for each curved slot whose pin is beyond its ends in some row, with where it is farthest.
@@ -26,18 +30,23 @@ pub(crate) fn left_slots(
         format!("{value} {}", unit.text())
     };
     let told = model.joints.iter().filter_map(|joint| {
-        let JointKind::ArcSlot { pin, on } = &joint.kind else {
-            return None;
+        let pin = match &joint.kind {
+            JointKind::ArcSlot { pin, on } if !on.closed => pin,
+            JointKind::CurveSlot { pin, on } if !on.closed => pin,
+            _ => return None,
         };
-        if on.closed {
-            return None;
-        }
-        let radius = value(&on.radius, parameters);
-        let mut beyond: Vec<(usize, f64)> = Vec::new();
-        for (row, frame) in frames.iter().enumerate() {
-            let far = past_ends(frame, *pin, on, radius).filter(|far| *far > AT_END * radius);
-            beyond.extend(far.map(|far| (row, far)));
-        }
+        let past = |frame: &Frame| match &joint.kind {
+            JointKind::ArcSlot { pin, on } => {
+                let radius = value(&on.radius, parameters);
+                past_ends(frame, *pin, on, radius).filter(|far| *far > AT_END * radius)
+            }
+            JointKind::CurveSlot { pin, on } => off_curve(frame, *pin, on),
+            _ => None,
+        };
+        let rows = frames.iter().enumerate();
+        let beyond: Vec<(usize, f64)> = rows
+            .filter_map(|(row, frame)| Some((row, past(frame)?)))
+            .collect();
         let (row, far) = *beyond.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
         let point = model.points.get(pin.point.index())?;
         Some(
@@ -55,10 +64,21 @@ pub(crate) fn left_slots(
                 ),
             )
             .at(joint.span.clone(), "")
-            .help("move the ends of the arc apart, or say `closed = true` where the slot is the whole circle"),
+            .help("move the ends of the slot apart, or say `closed = true` where it goes all the way round"),
         )
     });
     told.collect()
+}
+
+/// How far a pin is from the nearest place of its slot, m, where it has left that; `None` in it or without a pose.
+fn off_curve(frame: &Frame, pin: LinkPointRef, on: &SmoothCurve) -> Option<f64> {
+    let at = |point: PointId| frame.points.get(point.index()).copied();
+    let points: Vec<[f64; 2]> = on.through.iter().map(|p| at(*p)).collect::<Option<_>>()?;
+    let far = LocalCurve::through(&points, on.closed).distance(at(pin.point)?);
+    let length: f64 = (points.windows(2))
+        .map(|ends| hypot(ends[1][0] - ends[0][0], ends[1][1] - ends[0][1]))
+        .sum();
+    (far.is_finite() && far > AT_END * length).then_some(far)
 }
 
 /// How far along its circle a pin is beyond the end of a slot that is nearer, m; negative between the ends, `None` without a pose.

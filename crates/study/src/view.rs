@@ -1,14 +1,17 @@
 //! From a model and its poses to what the drawings need.
 
 use kempe_draw::{
-    ArcGuide, DriveKind as DrivenPart, DriveView, Frame as DrawnFrame, Guide, JointView,
-    LengthUnit, LinkView, LoadRole, LoadUnit, LoadUnits, LoadView, MechanismView, TraceView, Wheel,
+    ArcGuide, CurveGuide, DriveKind as DrivenPart, DriveView, Frame as DrawnFrame, Guide,
+    JointView, LengthUnit, LinkView, LoadRole, LoadUnit, LoadUnits, LoadView, MechanismView,
+    TraceView, Wheel,
 };
 use kempe_dynamics::{ForceArrow, Origin};
+use kempe_mechanism::curve::LocalCurve;
 use kempe_model::{
     Between, DriveKind, FRAME, JointKind, Line, LinkId, Model, MotionStudy, Plot, PointId, Scalar,
-    value,
+    SmoothCurve, value,
 };
+use kempe_number::math::atan2;
 use kempe_units::Dimension;
 
 use crate::result::{Frame, StudyResult};
@@ -16,6 +19,8 @@ use crate::unit::Units;
 
 /// Points traced when no study names one: at most this many.
 const MOST_TRACES: usize = 3;
+/// A piece of a smooth curve is drawn as so many circular arcs.
+const DRAWN_ARCS: usize = 16;
 
 /// What is to be drawn of a model. Traced are the points that `study` plots the path of, or else the coupler points: those
 /// that one moving link alone carries.
@@ -95,6 +100,29 @@ fn guide(line: Line) -> Guide {
     }
 }
 
+/// A smooth curve with places along it in the axes of its link.
+fn curve_guide(model: &Model, on: &SmoothCurve, parameters: &[f64]) -> Option<CurveGuide> {
+    let link = model.links.get(on.link.index())?;
+    let places: Vec<[f64; 2]> = link.evaluate(parameters);
+    let at = |point: &PointId| {
+        let index = link.points.iter().position(|p| p.point == *point)?;
+        places.get(index).copied()
+    };
+    let points: Vec<[f64; 2]> = on.through.iter().map(at).collect::<Option<_>>()?;
+    let first = *points.first()?;
+    let curve = LocalCurve::through(&points, on.closed);
+    let along = curve.along(DRAWN_ARCS).into_iter().map(|on| {
+        let at = [on.place[0] - first[0], on.place[1] - first[1]];
+        (at, atan2(on.rate[1], on.rate[0]))
+    });
+    Some(CurveGuide {
+        link: on.link.index(),
+        through: on.through.iter().map(|p| p.index()).collect(),
+        along: along.collect(),
+        closed: on.closed,
+    })
+}
+
 fn joint_view(model: &Model, kind: &JointKind, parameters: &[f64]) -> Option<JointView> {
     Some(match kind {
         JointKind::Slider { at, on, .. } => JointView::Slider {
@@ -116,6 +144,10 @@ fn joint_view(model: &Model, kind: &JointKind, parameters: &[f64]) -> Option<Joi
                 side: on.side.sign(),
                 closed: on.closed,
             },
+        },
+        JointKind::CurveSlot { pin, on } => JointView::CurveSlot {
+            pin: pin.point.index(),
+            curve: curve_guide(model, on, parameters)?,
         },
         JointKind::Belt {
             a,
@@ -312,6 +344,7 @@ fn traced(model: &Model, study: Option<&MotionStudy>) -> Vec<PointId> {
             .iter()
             .flat_map(|j| match &j.kind {
                 JointKind::ArcSlot { on, .. } => vec![on.from, on.to],
+                JointKind::CurveSlot { on, .. } => on.through.clone(),
                 kind => (kind.guide()).map_or_else(Vec::new, |(_, on)| vec![on.from, on.to]),
             })
             .collect();

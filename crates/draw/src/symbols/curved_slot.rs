@@ -14,6 +14,8 @@ use crate::view::ArcGuide;
 const SLOT: f64 = 1.75;
 /// How far a link reaches around its slot, mm.
 const CHEEK: f64 = 1.6;
+/// Where the hatched walls of a slot in the frame stand, from its middle, mm.
+pub(super) const WALL: f64 = SLOT + 0.6;
 
 /// A slot in the axes of its link, mm: centre, radius, angle of its start and the way to its end.
 #[derive(Clone, Copy)]
@@ -25,14 +27,12 @@ struct Slot {
     closed: bool,
 }
 
-pub(super) fn parts(context: &Context, _: usize, arc: ArcGuide) -> Vec<Part> {
+pub(super) fn parts(context: &Context, arc: ArcGuide) -> Vec<Part> {
     let Some(slot) = placed(context, arc) else {
         return Vec::new();
     };
-    let token = link_token(arc.link);
-    let anchor = Anchor::On(arc.from, arc.link, 0.0);
-    let (layer, walls) = if arc.link == 0 {
-        let walls = [SLOT + 0.6, -SLOT - 0.6].map(|off| {
+    let walls = || {
+        let walls = [WALL, -WALL].map(|off| {
             let end = if slot.closed { 0.0 } else { 0.4 };
             ground::hatched_arc(
                 slot.center,
@@ -43,21 +43,37 @@ pub(super) fn parts(context: &Context, _: usize, arc: ArcGuide) -> Vec<Part> {
                 off > 0.0,
             )
         });
-        (Layer::Ground, walls.concat())
+        walls.concat()
+    };
+    channel(arc.link, arc.from, walls, |off| slot.outline(off))
+}
+
+/// A slot by its outline at a distance around it, the outermost path first, in the axes of its link about a point; `walls`
+/// are those in the frame.
+pub(super) fn channel(
+    link: usize,
+    origin: usize,
+    walls: impl FnOnce() -> Vec<Item>,
+    outline: impl Fn(f64) -> Vec<Path>,
+) -> Vec<Part> {
+    let token = link_token(link);
+    let anchor = Anchor::On(origin, link, 0.0);
+    let (layer, around) = if link == 0 {
+        (Layer::Ground, walls())
     } else {
         // The link reaches around its slot, wherever its named points are; a slot all the way round is a groove in a disc.
         let style = Style::stroke(token, 0.5).filled(token, 0.2);
-        let mut paths = slot.outline(SLOT + CHEEK);
+        let mut paths = outline(SLOT + CHEEK);
         paths.truncate(1);
-        (Layer::Link(arc.link), vec![Item::Shape { paths, style }])
+        (Layer::Link(link), vec![Item::Shape { paths, style }])
     };
     let style = Style::stroke(token, LINE).filled(Token::Background, 1.0);
     let channel = Item::Shape {
-        paths: slot.outline(SLOT),
+        paths: outline(SLOT),
         style,
     };
     vec![
-        Part::new(layer, anchor, walls),
+        Part::new(layer, anchor, around),
         Part::new(layer, anchor, vec![channel]),
     ]
 }

@@ -3,7 +3,7 @@
 use kempe_number::math::sin_cos;
 
 use super::LINE;
-use crate::scene::{Item, Path, Point, Style};
+use crate::scene::{Item, Path, Point, Style, distance};
 use crate::tokens::Token;
 
 /// Distance of hatch lines, mm.
@@ -69,6 +69,37 @@ pub(super) fn hatched_arc(
             Path::arc(center, radius, start, sweep),
             Style::stroke(Token::Ground, LINE),
         ),
+    ]
+}
+
+/// A wall along a path of many short arcs, hatched away from where the path is moved from: to its left for a positive `off`.
+pub(super) fn hatched_path(wall: Path, off: f64) -> Vec<Item> {
+    let side = off.signum();
+    let ends = wall.vertices.iter().zip(wall.vertices.iter().skip(1));
+    let mut hatches = Vec::new();
+    let mut left = STEP / 2.0;
+    for (a, b) in ends.map(|(a, b)| (a.at, b.at)) {
+        let length = distance(a, b);
+        let along = [0, 1].map(|k| (b[k] - a[k]) / length);
+        while left < length && hatches.len() < 2000 {
+            let at = |forth: f64, out: f64| {
+                let (x, y) = (left + forth, out * side);
+                [
+                    a[0] + along[0] * x - along[1] * y,
+                    a[1] + along[1] * x + along[0] * y,
+                ]
+            };
+            hatches.push(Path::polyline(&[at(0.5, 0.0), at(-0.7, DEPTH)]));
+            left += STEP;
+        }
+        left -= length;
+    }
+    vec![
+        Item::Shape {
+            paths: hatches,
+            style: Style::stroke(Token::Ground, 0.22),
+        },
+        Item::path(wall, Style::stroke(Token::Ground, LINE)),
     ]
 }
 

@@ -11,6 +11,7 @@ mod link;
 mod pin;
 mod rack;
 mod slider;
+mod smooth_slot;
 mod spring;
 mod weld;
 
@@ -67,7 +68,10 @@ pub(crate) fn parts(context: &Context, labels: bool) -> Vec<Part> {
                 parts.extend(slider::slider(context, block, at, guide))
             }
             JointView::Slot { pin, guide } => parts.extend(slider::slot(context, pin, guide)),
-            JointView::ArcSlot { pin, arc } => parts.extend(curved_slot::parts(context, pin, arc)),
+            JointView::ArcSlot { arc, .. } => parts.extend(curved_slot::parts(context, arc)),
+            JointView::CurveSlot { ref curve, .. } => {
+                parts.extend(smooth_slot::parts(context, curve))
+            }
             JointView::Belt {
                 a,
                 b,

@@ -52,6 +52,11 @@ pub trait Joint {
         false
     }
 
+    /// Whether its rows hold beyond where the joint ends: the motion may go there, no assembly starts there.
+    fn is_past_end(&self, _: &Situation<'_, f64>) -> bool {
+        false
+    }
+
     /// As a pin of a body: its own point and the other.
     fn pin(&self, _: BodyId) -> Option<(Marker, Marker)> {
         None

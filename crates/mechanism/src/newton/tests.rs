@@ -17,12 +17,13 @@ use crate::qr::Qr;
 use crate::spanning_tree::SpanningTree;
 
 /// Files with Newton groups: of pins alone, with sliders, gears, racks and bodies that no pin holds.
-const FILES: [&str; 8] = [
+const FILES: [&str; 9] = [
     "../../examples/seeds/door-lock",
     "../../examples/gallery/chebyshev",
     "../../examples/gallery/class-iii",
     "../../examples/gallery/scissor-lift",
     "../../examples/gallery/stephenson-ii",
+    "../../examples/gallery/groove-cam",
     "../motion/tests/models/two-triads-floating",
     "../motion/tests/models/gear-in-loop",
     "../motion/tests/models/rack-after-loop",

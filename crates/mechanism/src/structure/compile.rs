@@ -5,7 +5,8 @@ use kempe_units::Expr;
 
 use super::{Source, Structure};
 use crate::constraint::{
-    Belt, Coincide, Constraint, Direction, Distance, Gears, Joint, OnArc, OnLine, Rack, Travel,
+    Belt, Coincide, Constraint, Direction, Distance, Gears, Joint, OnArc, OnCurve, OnLine, Rack,
+    Shoe, Travel,
 };
 use crate::ids::{BodyId, LineRef};
 use crate::sources::{AngleSource, GearSource, LineSource, ZERO};
@@ -73,6 +74,24 @@ impl Structure {
             JointKind::ArcSlot { pin, on } => {
                 if let (Some(point), Some(arc)) = (self.marker(pin), self.arc(on)) {
                     self.constraints.push((OnArc { point, arc }.into(), source));
+                }
+            }
+            JointKind::CurveSlot { pin, on } => {
+                let Some(point) = self.marker(pin) else {
+                    return;
+                };
+                if let Some((curve, shoe)) = self.curve(id, pin, &on) {
+                    let on_curve = OnCurve {
+                        point,
+                        curve,
+                        shoe: shoe.body,
+                    };
+                    self.constraints.push((on_curve.into(), source));
+                    let with_pin = Shoe {
+                        own: shoe,
+                        pin: point,
+                    };
+                    self.constraints.push((with_pin.into(), source));
                 }
             }
             // Welded links are one body: nothing is left to constrain.

@@ -165,7 +165,9 @@ impl Measures<'_, '_> {
         let mut joints = self.0.model.joints.iter();
         let found = joints.find(|j| match j.kind {
             JointKind::Slider { at, .. } => at.point == point,
-            JointKind::Slot { pin, .. } | JointKind::ArcSlot { pin, .. } => pin.point == point,
+            JointKind::Slot { pin, .. }
+            | JointKind::ArcSlot { pin, .. }
+            | JointKind::CurveSlot { pin, .. } => pin.point == point,
             _ => false,
         })?;
         Some(&found.name)

@@ -179,7 +179,12 @@ fn slides(cx: &Context<'_>, joint: usize) -> bool {
     };
     matches!(
         cx.model.joints.get(id.index()).map(|j| &j.kind),
-        Some(JointKind::Slider { .. } | JointKind::Slot { .. } | JointKind::ArcSlot { .. })
+        Some(
+            JointKind::Slider { .. }
+                | JointKind::Slot { .. }
+                | JointKind::ArcSlot { .. }
+                | JointKind::CurveSlot { .. }
+        )
     )
 }
 

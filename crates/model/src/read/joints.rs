@@ -7,12 +7,16 @@ use crate::document::{Key, Node};
 use crate::ids::{JointId, Line, LinkId, LinkPointRef, PointId, Scalar};
 use crate::joint::{Joint, JointKind};
 use crate::key_table::{JOINTS, SIDES};
-use crate::link::{CircularArc, Side};
+use crate::link::{CircularArc, Side, SmoothCurve};
 use crate::read::context::Context;
 use crate::read::entry::{Entry, on_link};
 
 /// A radius this little, in parts of it, below half the distance of an arc's ends is that half: a semicircle.
 const FLAT: f64 = 1e-12;
+/// A smooth curve goes through at least so many points; two are a line.
+const LEAST_POINTS: usize = 3;
+/// A smooth curve goes through at most so many points.
+const MOST_POINTS: usize = 1000;
 /// A file has at most so many joints of its own.
 const MAX_JOINTS: usize = 10_000;
 
@@ -103,48 +107,66 @@ fn slider(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<JointKind> {
 
 fn slot(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<JointKind> {
     let pin = entry.point(cx, "pin");
-    let (key, curved) = match (entry.get("on"), entry.get("arc")) {
-        (Some(_), Some(_)) => {
-            let message = "a pin lies on a line or on an arc, not on both";
-            let help = "keep `on` for a straight slot, `arc` for a curved one";
-            entry.contradiction(cx, &["arc", "on"], message, help);
-            return None;
-        }
-        (None, Some(node)) => ("arc", Some(node)),
-        _ => ("on", None),
-    };
-    entry.idle(cx, &["radius", "side", "closed"], "arc");
+    let ways: Vec<&str> = ["through", "arc", "on"]
+        .into_iter()
+        .filter(|key| entry.has(key))
+        .collect();
+    if ways.len() > 1 {
+        let message = "a pin lies on a line, on an arc or on a smooth curve, not on several";
+        let help = "keep `on` for a straight slot, `arc` for one on an arc, `through` for one along a smooth curve";
+        entry.contradiction(cx, &ways, message, help);
+        return None;
+    }
+    entry.idle(cx, &["radius", "side"], "arc");
+    let key = ways.first().copied().unwrap_or("on");
+    if key == "through" {
+        let on = smooth_curve(cx, entry);
+        let (pin, on) = (pin?, on?);
+        let pin = pin_in_slot(cx, entry, pin, on.link)?;
+        return Some(JointKind::CurveSlot { pin, on });
+    }
+    entry.idle(cx, &["closed"], "arc");
     let on = entry.required(cx, key).and_then(|node| {
         let text = entry.text(cx, key, node)?;
-        cx.line(text, None)
+        Some((cx.line(text, None)?, node))
     });
-    let ((pin, node), on) = (pin?, on?);
-    let link = cx.carriers(pin).iter().copied().find(|l| *l != on.link);
+    let (pin, (on, node)) = (pin?, on?);
+    let pin = pin_in_slot(cx, entry, pin, on.link)?;
+    Some(match key {
+        "on" => JointKind::Slot { pin, on },
+        _ => JointKind::ArcSlot {
+            pin,
+            on: arc(cx, entry, node, on)?,
+        },
+    })
+}
+
+/// A pin, told at a node, as the point of another link than the one with its slot.
+fn pin_in_slot(
+    cx: &mut Context<'_>,
+    entry: &Entry<'_>,
+    (pin, node): (PointId, &Node),
+    slot: LinkId,
+) -> Option<LinkPointRef> {
+    let link = cx.carriers(pin).iter().copied().find(|l| *l != slot);
+    let (name, on) = (cx.point_name(pin).to_owned(), cx.link_name(slot).to_owned());
     let Some(link) = link else {
-        let (name, slot) = (
-            cx.point_name(pin).to_owned(),
-            cx.link_name(on.link).to_owned(),
-        );
         return cx.refuse(
             "same-link",
             format!(
-                "{}: the pin {name} is on `{slot}`, the link with the slot",
+                "{}: the pin {name} is on `{on}`, the link with the slot",
                 entry.place
             ),
             &node.span,
             "the pin is a point of another link than the slot",
         );
     };
-    if cx.carriers(pin).binary_search(&on.link).is_ok() {
-        let (name, slot) = (
-            cx.point_name(pin).to_owned(),
-            cx.link_name(on.link).to_owned(),
-        );
+    if cx.carriers(pin).binary_search(&slot).is_ok() {
         cx.push(
             Diagnostic::error(
                 "same-link",
                 format!(
-                    "{}: {name} is also a point of `{slot}`, so it cannot move along its slot",
+                    "{}: {name} is also a point of `{on}`, so it cannot move along its slot",
                     entry.place
                 ),
             )
@@ -153,14 +175,67 @@ fn slot(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<JointKind> {
         );
         return None;
     }
-    let pin = LinkPointRef { link, point: pin };
-    match curved {
-        None => Some(JointKind::Slot { pin, on }),
-        Some(node) => Some(JointKind::ArcSlot {
-            pin,
-            on: arc(cx, entry, node, on)?,
-        }),
+    Some(LinkPointRef { link, point: pin })
+}
+
+/// The curve through the points that `through` lists.
+fn smooth_curve(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<SmoothCurve> {
+    let list = entry.required(cx, "through")?;
+    let place = entry.place_of("through");
+    let example = entry.example_of("through");
+    let nodes = cx.array(list, &place, example)?;
+    if !(LEAST_POINTS..=MOST_POINTS).contains(&nodes.len()) {
+        return cx.refuse(
+            "wrong-type",
+            format!(
+                "{place} has {LEAST_POINTS} to {MOST_POINTS} points, found {}",
+                nodes.len()
+            ),
+            &list.span,
+            "two points are a straight slot: write on = \"O -> P\"",
+        );
     }
+    let mut through = Vec::with_capacity(nodes.len());
+    for node in nodes {
+        let text = cx.text(node, &place, example)?;
+        through.push(cx.point_text(text)?);
+    }
+    let carried = |link: &LinkId| {
+        let mut points = through.iter();
+        points.all(|p| cx.carriers(*p).binary_search(link).is_ok())
+    };
+    let link = cx.carriers(through[0]).iter().copied().find(carried);
+    let Some(link) = link else {
+        return cx.refuse(
+            "no-common-link",
+            format!("no link carries all points of {place}"),
+            &list.span,
+            "name points of one link, in their order along the slot",
+        );
+    };
+    let closed = entry.flag(cx, "closed")?;
+    let follows = |k: usize| match (k + 1 < through.len(), closed) {
+        (true, _) => Some(k + 1),
+        (false, true) => Some(0),
+        (false, false) => None,
+    };
+    for (k, node) in nodes.iter().enumerate() {
+        let Some(next) = follows(k) else { continue };
+        if !(distance_on(cx, link, through[k], through[next])? > 0.0) {
+            let [a, b] = [k, next].map(|k| cx.point_name(through[k]).to_owned());
+            return cx.refuse(
+                "contradictory-values",
+                format!("{place}: the curve goes from {a} to {b}, which lie on one spot"),
+                &node.span,
+                "leave one of them out, or set them apart; a closed curve names its first point once",
+            );
+        }
+    }
+    Some(SmoothCurve {
+        link,
+        through,
+        closed,
+    })
 }
 
 /// The arc over a line between two points, told at `node`.

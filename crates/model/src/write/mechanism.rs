@@ -71,6 +71,16 @@ impl Writer<'_> {
                     entries.push(("closed".to_owned(), Item::Flag(true)));
                 }
             }
+            JointKind::CurveSlot { pin, on } => {
+                let through = on.through.iter().map(|p| Item::text(self.point(*p)));
+                entries = vec![
+                    text("pin", self.point(pin.point)),
+                    ("through".to_owned(), Item::List(through.collect())),
+                ];
+                if on.closed {
+                    entries.push(("closed".to_owned(), Item::Flag(true)));
+                }
+            }
             JointKind::Belt {
                 a,
                 b,

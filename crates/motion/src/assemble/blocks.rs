@@ -12,6 +12,7 @@ use kempe_mechanism::{Branch, Configuration};
 use kempe_number::math;
 
 use super::Shortfall;
+use super::along_curve;
 use super::gear_train::gear_train;
 use super::open_loop::{self, Gear};
 use super::polynomial::{Solutions, all_real_solutions};
@@ -117,6 +118,10 @@ impl Search<'_> {
                 candidates.extend(poses);
             }
             Solutions::NotAlgebraic => {
+                if let Some(found) = along_curve::poses(self.design, block, state) {
+                    candidates.extend(found);
+                    return Some(candidates);
+                }
                 let opened = self.opened_at_gear(block, step, state)?;
                 self.shortfall.get_or_insert(if opened.is_empty() {
                     Shortfall::Searched
@@ -176,14 +181,16 @@ impl Search<'_> {
         Some(near.cloned().collect())
     }
 
-    /// Whether the block's rows hold.
+    /// Whether the block's rows hold, within the ends of its joints.
     fn closes(&self, block: &NewtonBlock, state: &Configuration<f64>, branch: &Branch) -> bool {
         let situation = state.situation(self.design, branch);
         let enough = (ROW_CLOSED * self.size.max(f64::MIN_POSITIVE)).max(ROW_CLOSED_ANYWAY);
         block.rows.iter().all(|row| {
             let constraint = &self.mechanism.constraints[row.constraint].0;
             let residual = situation.residual(constraint)[row.row];
-            residual.abs() <= enough && !situation.is_reversed(constraint)
+            residual.abs() <= enough
+                && !situation.is_reversed(constraint)
+                && !constraint.is_past_end(&situation)
         })
     }
 

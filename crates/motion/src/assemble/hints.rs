@@ -158,7 +158,7 @@ impl<'a> Hints<'a> {
         ready.all(|check| check.asked.standing(self.geometry, poses, self.size) != Standing::Fails)
     }
 
-    /// The pose that the `near` hints tell; what they leave open stays.
+    /// The pose that the `near` hints tell; what they leave open stays. Shoes go with their pins.
     pub fn start(&self, poses: &[Pose<f64>]) -> Vec<Pose<f64>> {
         let mut poses = poses.to_vec();
         for hint in &self.near {
@@ -178,6 +178,7 @@ impl<'a> Hints<'a> {
                 }
             }
         }
+        self.geometry.place_shoes(self.mechanism, &mut poses);
         poses
     }
 

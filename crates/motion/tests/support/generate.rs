@@ -1,6 +1,9 @@
 //! Random mechanisms: the pose first, the dimensions measured from it, so that every group closes at the start.
 
-use super::{Rng, SDrive, SJoint, SKind, SLink, Spec, V, add, cross, dot, norm, polar, sub};
+use super::{
+    Rng, SDrive, SJoint, SKind, SLink, SmoothCurve, Spec, V, add, cross, dot, norm, polar, sub,
+    times, turn,
+};
 
 /// What a step adds to a mechanism: an Assur group, or a body that an existing one carries along.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,6 +23,10 @@ pub enum Group {
     PinInArc,
     /// A plate with a curved slot over a placed point.
     ArcOnPin,
+    /// A bar whose pin is on a smooth curve.
+    PinOnCurve,
+    /// A plate with a smooth curve over a placed point.
+    CurveOnPin,
     /// A wheel turned over a belt by a link that is pinned to the same arm.
     Belt,
     /// Two sliders pinned together.
@@ -74,6 +81,22 @@ pub const GROUPS: [Group; 23] = [
     Group::ArcOnPin,
     Group::Belt,
 ];
+
+/// Every so many seeds a pin on a smooth curve comes after the groups of a recipe.
+const CURVE_EVERY: u64 = 5;
+
+/// The groups of a recipe with what its seed adds.
+fn with_curve(seed: u64, mut groups: Vec<Group>) -> Vec<Group> {
+    if seed.is_multiple_of(CURVE_EVERY) {
+        let pin_moves = (seed / CURVE_EVERY).is_multiple_of(2);
+        groups.push(if pin_moves {
+            Group::PinOnCurve
+        } else {
+            Group::CurveOnPin
+        });
+    }
+    groups
+}
 
 /// What moves the first link.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -272,6 +295,34 @@ impl Maker {
         (ends, radius, left)
     }
 
+    /// Points of `link` with a smooth curve through `through`, between two of them, that has the direction `tangent` there.
+    fn curve(&mut self, link: usize, through: V, tangent: f64) -> (Vec<String>, bool) {
+        let closed = self.rng.chance(0.5);
+        let size = self.rng.range(0.3, 1.0) * self.unit;
+        let bend = self.rng.range(-0.5, 0.5);
+        let points: Vec<V> = (0..7)
+            .map(|k| match closed {
+                true => {
+                    let angle = f64::from(k) * std::f64::consts::TAU / 7.0;
+                    let angle = angle + self.rng.range(-0.15, 0.15);
+                    polar(self.rng.range(0.8, 1.2) * size, angle)
+                }
+                false => {
+                    let x = f64::from(k - 3) * 0.4 + self.rng.range(-0.08, 0.08);
+                    times([x, bend * x * x + self.rng.range(-0.05, 0.05)], size)
+                }
+            })
+            .collect();
+        let curve = SmoothCurve::through(&points, closed);
+        let (place, along) = curve.at(2 + self.rng.below(2), self.rng.range(0.2, 0.8));
+        let by = tangent - along[1].atan2(along[0]);
+        let names = points.iter().map(|p| {
+            let at = add(through, turn(sub(*p, place), by));
+            self.mark(link, at).name
+        });
+        (names.collect(), closed)
+    }
+
     /// A slider of `link` at a point named there, on a new line of `on` with the direction `angle`.
     fn slide(&mut self, link: usize, at: &At, on: usize, angle: f64) -> usize {
         let line = self.line(on, at.world, angle);
@@ -454,6 +505,41 @@ impl Maker {
                     ends,
                     radius,
                     left,
+                });
+            }
+            Group::PinOnCurve => {
+                let (a, _) = self.two_ends();
+                let on = self.any_link();
+                let inner = self.clear_of(&[a.world]);
+                let c = At {
+                    name: self.name(),
+                    link: 0,
+                    world: inner,
+                };
+                let rod = self.rod(&a, &c);
+                let v = sub(inner, a.world);
+                let angle = v[1].atan2(v[0]) + self.rng.range(-1.2, 1.2);
+                let (through, closed) = self.curve(on, inner, angle);
+                self.spec.joints.push(SJoint::Curve {
+                    link: rod,
+                    pin: c.name,
+                    on,
+                    through,
+                    closed,
+                });
+            }
+            Group::CurveOnPin => {
+                let (a, b) = self.two_ends();
+                let first = self.plate(&[&a]);
+                let v = sub(b.world, a.world);
+                let angle = v[1].atan2(v[0]) + self.rng.range(-1.2, 1.2);
+                let (through, closed) = self.curve(first, b.world, angle);
+                self.spec.joints.push(SJoint::Curve {
+                    link: b.link,
+                    pin: b.name,
+                    on: first,
+                    through,
+                    closed,
                 });
             }
             Group::Belt => {
@@ -896,7 +982,7 @@ pub fn recipes(hints: f64) -> impl proptest::strategy::Strategy<Value = Recipe> 
         .prop_map(|(seed, driver, groups, decade, hints)| Recipe {
             seed,
             driver,
-            groups,
+            groups: with_curve(seed, groups),
             decade,
             hints,
         })
@@ -933,9 +1019,10 @@ pub fn recipe(seed: u64) -> Recipe {
     Recipe {
         seed,
         driver,
-        groups: (0..count)
-            .map(|_| GROUPS[rng.below(GROUPS.len())])
-            .collect(),
+        groups: {
+            let groups = (0..count).map(|_| GROUPS[rng.below(GROUPS.len())]);
+            with_curve(seed, groups.collect())
+        },
         decade: if rng.chance(0.5) {
             0.0
         } else {

@@ -7,6 +7,7 @@
 )]
 
 pub mod generate;
+mod smooth_curve;
 
 use std::fmt::Write as _;
 use std::sync::Arc;
@@ -15,6 +16,8 @@ use kempe_measure::Sample;
 use kempe_mechanism::{Configuration, Design, Mechanism, Pose};
 use kempe_model::Model;
 use kempe_motion::{Motion, MotionError};
+
+pub use smooth_curve::SmoothCurve;
 
 /// A small reproducible generator (splitmix64).
 #[derive(Clone, Debug)]
@@ -133,6 +136,14 @@ pub enum SJoint {
         ends: [String; 2],
         radius: f64,
         left: bool,
+    },
+    /// `link`'s point `pin` on a smooth curve of the link `on`.
+    Curve {
+        link: usize,
+        pin: String,
+        on: usize,
+        through: Vec<String>,
+        closed: bool,
     },
     Belt {
         a: usize,
@@ -259,6 +270,12 @@ impl Spec {
                     ends[1],
                     if *left { "left" } else { "right" }
                 ),
+                SJoint::Curve {
+                    pin,
+                    through,
+                    closed,
+                    ..
+                } => format!("pin = \"{pin}\", through = {through:?}, closed = {closed}"),
                 SJoint::Belt {
                     a,
                     b,
@@ -378,7 +395,7 @@ impl Spec {
                 SJoint::Slider { angle, .. } | SJoint::Weld { angle, .. } => *angle = -*angle,
                 SJoint::Gears { phase, .. } | SJoint::Belt { phase, .. } => *phase = -*phase,
                 SJoint::Rack { left, .. } | SJoint::Arc { left, .. } => *left = !*left,
-                SJoint::Slot { .. } => {}
+                SJoint::Slot { .. } | SJoint::Curve { .. } => {}
             }
         }
         for drive in &mut it.drives {
@@ -519,6 +536,27 @@ impl Spec {
         self.errors(poses, coordinates).into_iter().fold(0.0, worse)
     }
 
+    /// Whether a pin is beyond the ends of its smooth curve.
+    pub fn is_off_curves(&self, poses: &[[f64; 3]]) -> bool {
+        let point = |l: usize, name: &str| {
+            let (p, q) = (self.links[l].point(name), poses[l]);
+            add([q[0], q[1]], turn(p.expect("a point of the link"), q[2]))
+        };
+        self.joints.iter().any(|joint| match joint {
+            SJoint::Curve {
+                link,
+                pin,
+                on,
+                through,
+                closed,
+            } => {
+                let points: Vec<V> = through.iter().map(|p| point(*on, p)).collect();
+                SmoothCurve::through(&points, *closed).is_left(point(*link, pin))
+            }
+            _ => false,
+        })
+    }
+
     /// The errors of all joints and drives, each smooth in the poses.
     pub fn errors(&self, poses: &[[f64; 3]], coordinates: &[f64]) -> Vec<f64> {
         let size = self.size();
@@ -582,6 +620,17 @@ impl Spec {
                     let rise = (radius * radius - dot(half, half)).sqrt() / norm(half);
                     let up = times([-half[1], half[0]], if *left { rise } else { -rise });
                     see((norm(sub(point(*link, pin), add(middle, up))) - radius) / size);
+                }
+                SJoint::Curve {
+                    link,
+                    pin,
+                    on,
+                    through,
+                    closed,
+                } => {
+                    let points: Vec<V> = through.iter().map(|p| point(*on, p)).collect();
+                    let curve = SmoothCurve::through(&points, *closed);
+                    see(curve.distance(point(*link, pin)) / size);
                 }
                 SJoint::Belt {
                     a,
