@@ -41,7 +41,6 @@ pub type Varying = Dual<f64, CHUNK>;
 
 /// What stays while a parameter changes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
 pub enum Held {
     /// The path parameter: the coordinate of the only moving drive (SI), or time when several move.
     Path(f64),
