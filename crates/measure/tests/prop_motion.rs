@@ -12,7 +12,7 @@ mod support;
 use std::ops::ControlFlow;
 
 use kempe_measure::{Sample, Sampler};
-use kempe_motion::{Motion, MotionError};
+use kempe_motion::{EndReason, Motion, MotionError};
 use proptest::prelude::*;
 use support::generate::{Made, Recipe, config, make, recipe, recipes};
 use support::{Case, SKind, Spec, bits, difference, spread, turn};
@@ -110,12 +110,19 @@ fn check(made: &Made) -> Result<Outcome, String> {
             return Err(format!("an assembly does not close: {gap:e}"));
         }
     }
+    // Far beyond the ends of its slot a pin is on a cubic that runs away: there rows may be missing, and say so.
+    let on_curve = |j: &support::SJoint| matches!(j, support::SJoint::Curve { .. });
+    let ends = [motion.ends.0, motion.ends.1];
+    let runs_away = ends.contains(&EndReason::Runaway) && spec.joints.iter().any(on_curve);
     let mut sampler = Sampler::new(&motion, &[]).map_err(|e| format!("{e:?}"))?;
     for p in spread(&motion, 23) {
         let row = sampler.at_parameter(p);
         if let Some(note) = row.note {
             let gap = spec.gap(&row.links, &row.coordinates);
             let marked = note.contains("limit of the drive") || note.contains("change point");
+            if runs_away && row.links.iter().flatten().all(|x| x.is_nan()) {
+                continue;
+            }
             if !marked || !(gap < 1e-8) {
                 return Err(format!(
                     "row at {p}: {note}, gap {gap:e}, ends {:?}",
