@@ -103,6 +103,7 @@ pub use pose::Pose;
 pub use session::Session;
 pub use sweep::Sweep;
 
+pub use kempe_batch as batch;
 pub use kempe_draw as draw;
 pub use kempe_dynamics as dynamics;
 pub use kempe_homotopy as homotopy;

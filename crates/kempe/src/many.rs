@@ -4,11 +4,11 @@ use std::borrow::Borrow;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use kempe_batch::{Batch, Designs as Parameters, Executor, Layout, Serial, Task};
 use kempe_measure::{DesignsInLanes, is_of_poses};
 use kempe_model::{Diagnostic, Leaf, Measure, Model, PointId, PoseMeasure};
-use kempe_motion::batch::{Designs as Parameters, Executor, Layout, Serial, Task};
+use kempe_motion::Motion;
 use kempe_motion::drive_path::DrivePath;
-use kempe_motion::{Batch, Motion};
 use kempe_number::Lanes;
 use kempe_study::{Done, Progress, Quantity, Silent, Stage};
 use kempe_units::Expr;
@@ -625,7 +625,7 @@ impl Executor for AnyExecutor {
     fn run(&self, tasks: Vec<Task<'_>>) {
         match self.0 {
             1 => Serial.run(tasks),
-            threads => kempe_motion::batch::Threads(threads).run(tasks),
+            threads => kempe_batch::Threads(threads).run(tasks),
         }
     }
 }

@@ -11,30 +11,47 @@ use kempe_motion::drive_path::DrivePath;
 use kempe_motion::events::Event;
 use kempe_motion::motion::{Motion, Solver};
 use kempe_motion::trace::Path;
-use kempe_number::{Dual, Jet, Number};
+use kempe_number::{Jet, Number};
 
 use crate::clock::Clock;
 use crate::measure::only_value;
+use crate::sensitivity::Varying;
 use crate::state::{Abscissa, Series, State};
 
 /// A number on which the states of a motion are found.
 pub trait Base: Number {
     /// A value of which it is not known how it varies.
     fn unvaried(value: f64) -> Self;
+
+    /// [`Solver::run`] on series of this number. Implemented for each number by itself, so that it is compiled here and
+    /// once, not in every crate that samples a motion.
+    fn solve(solver: &mut Solver<Series<Self>>, motion: &Motion, design: &Design<Series<Self>>)
+    where
+        Series<Self>: PlanNumber;
 }
 
 impl Base for f64 {
     fn unvaried(value: f64) -> Self {
         value
     }
+
+    #[inline(never)]
+    fn solve(solver: &mut Solver<Series<Self>>, motion: &Motion, design: &Design<Series<Self>>) {
+        solver.run(motion, design);
+    }
 }
 
-impl<const K: usize> Base for Dual<f64, K> {
+impl Base for Varying {
     fn unvaried(value: f64) -> Self {
         Self {
             re: value,
-            eps: [f64::NAN; K],
+            eps: [f64::NAN; _],
         }
+    }
+
+    #[inline(never)]
+    fn solve(solver: &mut Solver<Series<Self>>, motion: &Motion, design: &Design<Series<Self>>) {
+        solver.run(motion, design);
     }
 }
 
@@ -184,7 +201,7 @@ where
     fn find_poses(&mut self, motion: &Motion, place: PathPlace<B>) {
         motion.branch_at(place.path.value(), &mut self.solver.branch);
         self.coordinates(motion, Series::variable(place.path));
-        self.solver.run(motion, &self.state.design);
+        B::solve(&mut self.solver, motion, &self.state.design);
         self.state.poses.clone_from(&self.solver.state.poses);
         self.state.near.clone_from(&self.solver.branch.near);
         self.state.coordinates.clone_from(&self.solver.coordinates);
@@ -199,7 +216,7 @@ where
             self.coordinates(motion, Series::constant(place.path));
             let q = self.solver.coordinates[index].coefficient(0);
             self.solver.coordinates[index] = Series::variable(q);
-            self.solver.run(motion, &self.state.design);
+            B::solve(&mut self.solver, motion, &self.state.design);
             self.state.alone[index] = Some(self.solver.state.poses.clone());
         }
     }

@@ -33,6 +33,12 @@ pub trait PlanNumber: Number {
         branch: &Branch,
         state: &mut Configuration<Self>,
     ) -> Self;
+
+    /// [`Design::solve`]. Numbers that are solved on in many crates implement it for themselves, so that it is compiled
+    /// here and once.
+    fn solve_plan(design: &Design<Self>, branch: &Branch, state: &mut Configuration<Self>) {
+        design.run_plan(branch, state);
+    }
 }
 
 impl PlanNumber for f64 {
@@ -56,6 +62,11 @@ impl PlanNumber for f64 {
             determinant: scratch.determinants,
         };
         given.solve(block).0
+    }
+
+    #[inline(never)]
+    fn solve_plan(design: &Design<f64>, branch: &Branch, state: &mut Configuration<f64>) {
+        design.run_plan(branch, state);
     }
 }
 

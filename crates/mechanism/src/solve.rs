@@ -39,6 +39,10 @@ impl<T: PlanNumber> Design<T> {
     ///
     /// Allocates nothing.
     pub fn solve(&self, branch: &Branch, state: &mut Configuration<T>) {
+        T::solve_plan(self, branch, state);
+    }
+
+    pub(crate) fn run_plan(&self, branch: &Branch, state: &mut Configuration<T>) {
         let plan = &self.mechanism.plan;
         let states = std::slice::from_mut(state);
         plan.solve_all::<T, true>(0..plan.steps.len(), self, branch, states);

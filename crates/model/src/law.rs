@@ -35,17 +35,13 @@ impl Law {
     /// later one is meant; at the end the last piece, to within [`SAME_END`]: rates there are those of the motion.
     pub fn at<T: Number>(&self, t: T, parameters: &[T]) -> T {
         let start = value(&self.from, parameters);
-        t.choose_with(|| after(&self.stretches(parameters), t, start), || start)
+        t.choose_with(|| after(self.stretches(parameters), t, start), || start)
     }
 
     /// The times at which one piece ends and the next begins, both ends of the motion included, s.
     pub fn breaks(&self, parameters: &[f64]) -> Vec<f64> {
         let mut breaks = vec![0.0];
-        breaks.extend(
-            self.stretches(parameters)
-                .iter()
-                .map(|s| s.start + s.duration),
-        );
+        breaks.extend(self.stretches(parameters).map(|s| s.start + s.duration));
         breaks
     }
 
@@ -71,15 +67,18 @@ impl Law {
             return Some(0.0);
         }
         self.stretches(parameters)
-            .iter()
             .find_map(|s| Some(s.start + s.first_time(x)?))
     }
 
-    fn stretches<T: Number>(&self, parameters: &[T]) -> Vec<TimedPiece<'_, T>> {
+    /// The pieces in their places, one after the other. An iterator, because laws are evaluated in every row of a motion on
+    /// several drives, which must not allocate.
+    fn stretches<'a, T: Number>(
+        &'a self,
+        parameters: &'a [T],
+    ) -> impl ExactSizeIterator<Item = TimedPiece<'a, T>> + Clone {
         let mut start = T::zero();
         let mut from = value(&self.from, parameters);
-        let mut stretches = Vec::with_capacity(self.pieces.len());
-        for piece in &self.pieces {
+        self.pieces.iter().map(move |piece| {
             let (to, duration) = match piece {
                 LawPiece::ConstantSpeed { to, speed } => {
                     let to = value(to, parameters);
@@ -101,33 +100,38 @@ impl Law {
                     (last(values), last(times))
                 }
             };
-            stretches.push(TimedPiece {
+            let stretch = TimedPiece {
                 piece,
                 start,
                 from,
                 duration,
                 to,
-            });
+            };
             start += duration;
             from = to;
-        }
-        stretches
+            stretch
+        })
     }
 }
 
 /// The coordinate at a time that is not before the first of these stretches; `end` is where they begin.
-fn after<T: Number>(stretches: &[TimedPiece<'_, T>], t: T, end: T) -> T {
-    let Some((stretch, later)) = stretches.split_first() else {
+fn after<'a, T: Number>(
+    mut stretches: impl ExactSizeIterator<Item = TimedPiece<'a, T>> + Clone,
+    t: T,
+    end: T,
+) -> T {
+    let Some(stretch) = stretches.next() else {
         return end;
     };
+    let later = stretches;
     let until = (stretch.start + stretch.duration).constant_part();
     let by_time = || {
         (t - until).choose_with(
-            || after(later, t, stretch.to),
+            || after(later.clone(), t, stretch.to),
             || stretch.at(t - stretch.start),
         )
     };
-    if !later.is_empty() {
+    if later.len() > 0 {
         return by_time();
     }
     // A last stretch without duration is none.

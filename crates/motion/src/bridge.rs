@@ -26,9 +26,7 @@ pub fn across<const N: usize>(
     solver: &mut Solver<Side>,
 ) -> Vec<Pose<Jet<f64, N>>> {
     let (at, half) = (event.at, event.bridge);
-    motion.solve(design, Jet::variable(at - half), solver);
-    let low = solver.state.poses.clone();
-    motion.solve(design, Jet::variable(at + half), solver);
+    let low = solve_sides(motion, design, [at - half, at + half], solver);
     let joined = |low: &Side, high: &Side| join(low, high, half, p - at);
     low.iter()
         .zip(&solver.state.poses)
@@ -39,6 +37,20 @@ pub fn across<const N: usize>(
             s: joined(&low.s, &high.s),
         })
         .collect()
+}
+
+/// Solves on both sides: returns the poses on the first, leaves those on the second in `solver`. Apart, so that solving is
+/// compiled here and once, not for every order in every crate that asks.
+fn solve_sides(
+    motion: &Motion,
+    design: &Design<Side>,
+    at: [f64; 2],
+    solver: &mut Solver<Side>,
+) -> Vec<Pose<Side>> {
+    motion.solve(design, Jet::variable(at[0]), solver);
+    let first = solver.state.poses.clone();
+    motion.solve(design, Jet::variable(at[1]), solver);
+    first
 }
 
 /// The series at `at_from_center` of the polynomial through two series given `half` to either side of `center`.

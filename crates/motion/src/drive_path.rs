@@ -183,8 +183,20 @@ impl DrivePath {
         matches!(self, Self::Coordinate { is_angle: true, .. })
     }
 
-    /// Drive coordinates at the path parameter, on any number.
+    /// Drive coordinates at the path parameter, on any number, for the parameters that the path was made with.
     pub fn coordinates<T: Number>(&self, p: T, out: &mut [T]) {
+        match self {
+            Self::Coordinate { .. } => self.coordinates_for(p, &[], out),
+            Self::Time { parameters, .. } => {
+                let parameters: Vec<T> = parameters.iter().map(|x| T::from_f64(*x)).collect();
+                self.coordinates_for(p, &parameters, out);
+            }
+        }
+    }
+
+    /// Drive coordinates at the path parameter for these parameters of the model, which the laws of a path along time
+    /// follow. Allocates nothing.
+    pub fn coordinates_for<T: Number>(&self, p: T, parameters: &[T], out: &mut [T]) {
         match self {
             Self::Coordinate { drive, held, .. } => {
                 for (index, (out, held)) in out.iter_mut().zip(held).enumerate() {
@@ -195,12 +207,9 @@ impl DrivePath {
                     };
                 }
             }
-            Self::Time {
-                laws, parameters, ..
-            } => {
-                let parameters: Vec<T> = parameters.iter().map(|x| T::from_f64(*x)).collect();
+            Self::Time { laws, .. } => {
                 for (out, law) in out.iter_mut().zip(laws) {
-                    *out = law.at(p, &parameters);
+                    *out = law.at(p, parameters);
                 }
             }
         }

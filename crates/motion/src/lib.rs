@@ -1,7 +1,6 @@
 //! Planar mechanisms in motion: assemblies, following, limits, dead points, change points, circuits.
 
 pub mod assemble;
-pub mod batch;
 pub mod bridge;
 pub mod check;
 pub mod circuit;
@@ -13,7 +12,6 @@ pub mod progress;
 pub mod temporary_drives;
 pub mod trace;
 
-pub use batch::{Batch, BatchError, Designs, sweep_states};
 pub use check::{Findings, Reach, check, check_with_progress};
 pub use motion::{Demand, EndReason, Motion, MotionError, Placed, Solver};
 pub use progress::{Done, Progress, Silent, Stage};

@@ -176,7 +176,7 @@ impl Motion {
     }
 
     /// How far beyond its ends the motion still counts as reaching.
-    pub(crate) fn margin(&self) -> f64 {
+    pub fn margin(&self) -> f64 {
         AT_LIMIT * self.scale
     }
 

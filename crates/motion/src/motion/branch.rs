@@ -40,7 +40,7 @@ impl Motion {
     }
 
     /// The stretches on which every assembly mode stays the same: where each begins, and the modes; rising.
-    pub(crate) fn stretches(&self) -> impl Iterator<Item = (f64, &[f64])> {
+    pub fn stretches(&self) -> impl Iterator<Item = (f64, &[f64])> {
         (self.patches.iter()).map(|patch| (self.parameters[patch.from], &patch.signs[..]))
     }
 }

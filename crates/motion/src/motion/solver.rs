@@ -49,10 +49,11 @@ impl Motion {
         }
     }
 
-    /// Solves the pose at a path parameter. The series' direction, if `T` has one, is the path's.
+    /// Solves the pose at a path parameter; several drives follow their laws for the design's parameters. The series'
+    /// direction, if `T` has one, is the path's.
     pub fn solve<T: PlanNumber>(&self, design: &Design<T>, p: T, solver: &mut Solver<T>) {
         self.branch_at(p.value(), &mut solver.branch);
-        self.path.coordinates(p, &mut solver.coordinates);
+        (self.path).coordinates_for(p, &design.parameters, &mut solver.coordinates);
         solver.run(self, design);
     }
 }

@@ -3,8 +3,8 @@
 use kempe_mechanism::{Configuration, Design};
 use kempe_number::{Lanes, Number};
 
-use crate::batch::wide::Wide;
-use crate::batch::{Batch, BatchError};
+use crate::wide::Wide;
+use crate::{Batch, BatchError};
 
 /// Where the results of one state go.
 #[derive(Clone, Copy, Default)]

@@ -1,7 +1,7 @@
 //! Time per position of the general plan, beside kernels written by hand for one mechanism with the same formula, in the
-//! same run: `cargo bench -p kempe-kinematics` (with `-- closed-forms` not the Newton groups, with `-- newton` only these). The ratios count; the
-//! nanoseconds depend on the machine. A four-bar and an eight-bar: one design over a sweep, pose by pose and in lanes,
-//! with and without rates; many designs in lanes.
+//! same run: `cargo bench -p kempe-batch` (with `-- closed-forms` not the Newton groups, with `-- newton` only these). The
+//! ratios count; the nanoseconds depend on the machine. A four-bar and an eight-bar: one design over a sweep, pose by pose and
+//! in lanes, with and without rates; many designs in lanes.
 //!
 //! Every measurement runs over a table of inputs into a table of outputs (no result feeds the next input), is repeated
 //! in turn with the one that it is compared with, and the fastest repeat counts. Before anything is timed, the plan and
@@ -11,10 +11,10 @@ use std::hint::black_box;
 use std::sync::Arc;
 use std::time::Instant;
 
+use kempe_batch::{Batch, Designs, Layout, sweep_states};
 use kempe_mechanism::{Design, Mechanism};
 use kempe_model::{Model, PointId};
 use kempe_motion::Motion;
-use kempe_motion::batch::{Batch, Designs, Layout, sweep_states};
 use kempe_number::{InstructionSet, Jet, Lanes, Lanes8, Number, multiversion};
 
 /// Rows of a table: it and its results stay in the second-level cache.

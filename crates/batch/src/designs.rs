@@ -6,9 +6,9 @@ use kempe_mechanism::constraint::Input;
 use kempe_mechanism::{Branch, Configuration, configuration::input_of};
 use kempe_number::{InstructionSet, Lanes, Number, multiversion};
 
-use crate::batch::Batch;
-use crate::batch::columns::{Target, all_lanes, write_places};
-use crate::batch::stretch::nearest_stretch;
+use crate::Batch;
+use crate::columns::{Target, all_lanes, write_places};
+use crate::stretch::nearest_stretch;
 
 /// How many designs are prepared before any is solved.
 const PREPARED: usize = 64;

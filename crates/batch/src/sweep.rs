@@ -6,12 +6,12 @@ use kempe_mechanism::plan::Step;
 use kempe_mechanism::{Branch, Configuration, Design, configuration::input_of};
 use kempe_number::{InstructionSet, Jet, Lanes, Number, multiversion};
 
-use crate::batch::Batch;
-use crate::batch::columns::{Target, all_lanes, closes, write_places};
-use crate::batch::stretch::{find_stretch, stretches};
-use crate::batch::wide::{Single, Wide};
-use crate::drive_path::DrivePath;
-use crate::motion::Motion;
+use crate::Batch;
+use crate::columns::{Target, all_lanes, closes, write_places};
+use crate::stretch::{find_stretch, stretches};
+use crate::wide::{Single, Wide};
+use kempe_motion::Motion;
+use kempe_motion::drive_path::DrivePath;
 
 /// How many plain states take every step of the plan together.
 const PLAIN_STATES: usize = 16;

@@ -34,7 +34,7 @@ use self::designs::{Places, solve_designs, solve_guessed, solve_trees};
 use self::order::Order;
 use self::stretch::{Stretch, stretches};
 use self::sweep::{sweep_one_by_one, sweep_positions, sweep_rates};
-use crate::motion::Motion;
+use kempe_motion::Motion;
 
 /// Poses of a sweep handed to an executor at a time.
 const POSES_PER_TASK: usize = 8192;
@@ -76,7 +76,7 @@ impl std::error::Error for BatchError {}
 ///
 /// # Example
 /// ```
-/// use kempe_motion::batch::{Batch, Designs, Layout};
+/// use kempe_batch::{Batch, Designs, Layout};
 /// use kempe_mechanism::{Design, Mechanism};
 /// use kempe_motion::Motion;
 ///

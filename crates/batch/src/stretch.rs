@@ -2,8 +2,8 @@
 
 use kempe_mechanism::Branch;
 
-use crate::batch::columns::lanes_where;
-use crate::motion::Motion;
+use crate::columns::lanes_where;
+use kempe_motion::Motion;
 
 /// A stretch of the path parameter with one set of assembly modes.
 #[derive(Clone, Debug)]

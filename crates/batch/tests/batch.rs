@@ -6,10 +6,10 @@
 
 use std::path::Path;
 
+use kempe_batch::{Batch, Designs, Layout, Serial, Threads, sweep_states};
 use kempe_mechanism::{Design, Mechanism};
 use kempe_model::{Model, PointId};
 use kempe_motion::Motion;
-use kempe_motion::batch::{Batch, Designs, Layout, Serial, Threads, sweep_states};
 use kempe_number::{InstructionSet, Jet};
 
 /// Every example file, in order.
