@@ -1,7 +1,7 @@
 //! Time per position of the general plan, beside kernels written by hand for one mechanism with the same formula, in the
-//! same run: `cargo bench -p kempe-batch` (with `-- closed-forms` not the Newton groups, with `-- newton` only these). The
-//! ratios count; the nanoseconds depend on the machine. A four-bar and an eight-bar: one design over a sweep, pose by pose and
-//! in lanes, with and without rates; many designs in lanes.
+//! same run: `cargo bench -p kempe-batch` (with `-- closed-forms` not the Newton groups, with `-- newton` only these, with
+//! `-- motions` only whole motions). The ratios count; the nanoseconds depend on the machine. A four-bar and an eight-bar:
+//! one design over a sweep, pose by pose and in lanes, with and without rates; many designs in lanes.
 //!
 //! Every measurement runs over a table of inputs into a table of outputs (no result feeds the next input), is repeated
 //! in turn with the one that it is compared with, and the fastest repeat counts. Before anything is timed, the plan and
@@ -15,6 +15,8 @@ use kempe_batch::{Batch, Designs, Layout, sweep_states};
 use kempe_mechanism::{Design, Mechanism};
 use kempe_model::{Model, PointId};
 use kempe_motion::Motion;
+use kempe_motion::progress::Silent;
+use kempe_motion::trace::Follower;
 use kempe_number::{InstructionSet, Jet, Lanes, Lanes8, Number, multiversion};
 
 /// Rows of a table: it and its results stay in the second-level cache.
@@ -370,10 +372,6 @@ fn report(what: &str, general: f64, hand: f64) {
     );
 }
 
-fn alone(what: &str, unit: &str, general: f64) {
-    println!("{what:<58} {general:>9.2} {unit}");
-}
-
 /// The largest difference of two tables: plan and kernel must compute the same.
 fn same(a: &[f64], b: &[f64]) {
     let gap = a
@@ -681,17 +679,73 @@ fn newton() {
     }
 }
 
+/// The trace of a motion by the bordered systems of all constraints alone, from its anchor both ways: how it was found before, without
+/// its start and events.
+fn bordered_trace(motion: &Motion) -> usize {
+    let mut follower = Follower::new(&motion.design, &motion.path).without_plan();
+    let (low, high) = motion.reached();
+    let at = motion.node_parameters();
+    let (p, poses, near) = motion.node(at.iter().position(|p| *p >= motion.anchor).unwrap_or(0));
+    let mut nodes = 0;
+    for direction in [1.0, -1.0] {
+        let z = follower.scaled(&poses, &near, p);
+        let mut node = follower.start(z, direction).expect("a start");
+        let mut step = 0.02;
+        while (low..high).contains(&follower.parameter(&node.z)) {
+            let Some(next) = follower.advance(&node, &mut step) else {
+                break;
+            };
+            node = next;
+            nodes += 1;
+        }
+    }
+    nodes
+}
+
+/// Whole motions beside their traces by the bordered systems alone, and motions of designs that differ by a thousandth in one
+/// dimension, found from the one before.
 fn motions() {
+    println!(
+        "{:<58} {:>9} {:>9} {:>8}",
+        "us per motion", "whole", "bordered", "ratio"
+    );
     for file in ["seeds/crank-rocker", "gallery/jansen", "seeds/door-lock"] {
         let loaded = Loaded::new(file);
         let design = loaded.design::<f64>();
+        let motion = loaded.motion(&design);
+        let mut other = design.clone();
+        if let Some(marker) = other.geometry.markers.iter_mut().rfind(|m| m[0] != 0.0) {
+            marker[0] *= 1.001;
+        }
+        let designs = [
+            Design::from_geometry(
+                &loaded.mechanism,
+                &loaded.parameters,
+                other.geometry.clone(),
+                vec![other.geometry],
+            ),
+            design.clone(),
+        ];
+        let mut last = motion.clone();
+        let mut turn = 0;
         let best = compare(
             1,
-            vec![Box::new(|| {
-                black_box(loaded.motion(black_box(&design)));
-            })],
+            vec![
+                Box::new(|| {
+                    black_box(loaded.motion(black_box(&design)));
+                }),
+                Box::new(|| {
+                    black_box(bordered_trace(black_box(&motion)));
+                }),
+                Box::new(|| {
+                    turn += 1;
+                    let again = last.again(black_box(&designs[turn % 2]), &mut Silent);
+                    last = again.expect("a motion");
+                }),
+            ],
         );
-        alone(&format!("whole motion of {file}"), "us", best[0] / 1e3);
+        report(file, best[0] / 1e3, best[1] / 1e3);
+        report(&format!("{file} again"), best[2] / 1e3, best[1] / 1e3);
     }
 }
 
@@ -701,6 +755,10 @@ fn main() {
         return;
     }
     println!("best instruction set: {:?}", InstructionSet::detect());
+    if std::env::args().any(|a| a == "motions") {
+        motions();
+        return;
+    }
     if std::env::args().any(|a| a == "newton") {
         newton();
         motions();

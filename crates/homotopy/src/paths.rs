@@ -27,6 +27,9 @@ pub struct PathReport {
     pub lost: usize,
     /// Whether some of these were not followed because [`WORK_LIMIT`] was reached.
     pub exhausted: bool,
+    /// The unknowns at the finite ends, plain ones and then conjugate ones: where those of a system that differs a little may be
+    /// looked for.
+    pub ends: Vec<Vec<C>>,
 }
 
 /// A solution of a system: `d` plain unknowns, then as many conjugate ones.
@@ -51,12 +54,14 @@ pub enum Outcome {
 }
 
 /// All isolated solutions of linear and bilinear equations in `variables` plain unknowns and their conjugates; the
-/// conjugate of every linear equation is taken along. `work` is what is left of [`WORK_LIMIT`]; `told` hears the finished
+/// conjugate of every linear equation is taken along. Where the paths of a system much like it all ended apart, as `earlier`
+/// tells, the solutions are found from there: as many of them as there are paths are all that there can be. `work` is what is left of [`WORK_LIMIT`]; `told` hears the finished
 /// part of the paths and may stop the work.
 pub fn all_solutions(
     linear: &[Affine],
     bilinear: &[Bilinear],
     variables: usize,
+    earlier: Option<&PathReport>,
     work: &mut f64,
     told: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> Outcome {
@@ -71,10 +76,21 @@ pub fn all_solutions(
     if count > PATH_LIMIT {
         return Outcome::TooLarge;
     }
-    let Some((found, report)) = follow_all(&system, work, told) else {
-        return Outcome::Stopped;
+    let earlier = earlier.filter(|report| report.paths == count && report.ends.len() == count);
+    let again = earlier.and_then(|report| correct_all(&system, &report.ends));
+    let report = match again {
+        Some(ends) => PathReport {
+            paths: count,
+            finite: count,
+            ends,
+            ..PathReport::default()
+        },
+        None => match follow_all(&system, work, told) {
+            Some(report) => report,
+            None => return Outcome::Stopped,
+        },
     };
-    let solutions = found.iter().map(|x| {
+    let solutions = report.ends.iter().map(|x| {
         let (y, hat) = x.split_at(d);
         let unreal = y.iter().zip(hat);
         let unreal = unreal.map(|(a, b)| (*b - a.conj()).norm() / (1.0 + a.norm()));
@@ -86,14 +102,25 @@ pub fn all_solutions(
     Outcome::Found(solutions.collect(), report)
 }
 
-/// Follows every path and returns the distinct regular end points with what the paths did; `None` when stopped.
-pub(crate) fn follow_all(
-    system: &System,
-    work: &mut f64,
-    told: &mut dyn FnMut(f64) -> ControlFlow<()>,
-) -> Option<(Vec<Vec<C>>, PathReport)> {
+/// Corrects the solutions of another system to those of this; `None` unless all come out, each by itself.
+fn correct_all(system: &System, ends: &[Vec<C>]) -> Option<Vec<Vec<C>>> {
+    let start = start_system(system);
+    let mut tracker = Tracker::new(system, &start);
+    let mut found: Vec<Vec<C>> = Vec::with_capacity(ends.len());
+    for end in ends {
+        let mut x = end.clone();
+        let ended = x.len() == 2 * system.d && tracker.correct_end(&mut x);
+        if !ended || found.iter().any(|y| is_same(&x, y)) {
+            return None;
+        }
+        found.push(x);
+    }
+    Some(found)
+}
+
+/// The product system from which the paths start: its factors are random, and always the same.
+fn start_system(system: &System) -> Start {
     let d = system.d;
-    let n = 2 * d;
     let mut random = Random(0xd134_2543_de82_ef95);
     let mut factor = |support: u32| {
         let mut f = Affine((0..=d).map(|_| random.unit()).collect());
@@ -104,11 +131,22 @@ pub(crate) fn follow_all(
         }
         f
     };
-    let start = Start {
+    Start {
         plain: system.supports.iter().map(|s| factor(s[0])).collect(),
         conjugate: system.supports.iter().map(|s| factor(s[1])).collect(),
         gamma: random.unit(),
-    };
+    }
+}
+
+/// Follows every path and returns what the paths did, with the distinct regular end points; `None` when stopped.
+pub(crate) fn follow_all(
+    system: &System,
+    work: &mut f64,
+    told: &mut dyn FnMut(f64) -> ControlFlow<()>,
+) -> Option<PathReport> {
+    let d = system.d;
+    let n = 2 * d;
+    let start = start_system(system);
     let subsets: Vec<Vec<bool>> = subsets(n, d)
         .into_iter()
         .filter(|s| system.is_start(s))
@@ -160,7 +198,8 @@ pub(crate) fn follow_all(
         }
     }
     report.finite = found.len();
-    Some((found, report))
+    report.ends = found;
+    Some(report)
 }
 
 fn is_same(x: &[C], y: &[C]) -> bool {

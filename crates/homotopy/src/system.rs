@@ -102,12 +102,12 @@ impl System {
             let mut b = Vec::with_capacity(d);
             for row in rows {
                 a.extend_from_slice(&row.0[..d]);
-                b.push(-row.0[d]);
+                b.push([-row.0[d]]);
             }
             if !solve(&mut a, &mut b, d) {
                 return None;
             }
-            x.extend(b);
+            x.extend(b.as_flattened());
         }
         Some(x)
     }

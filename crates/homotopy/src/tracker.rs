@@ -21,6 +21,12 @@ pub(crate) struct Care {
 const MEMORY: usize = 3;
 /// Steps after which a path is given up.
 const STEPS: usize = 20_000;
+/// Correction after which the next changes nothing that counts: at the end of a path, and on the way as a part of the largest first
+/// one.
+const AT_THE_END: f64 = 1e-10;
+const ON_THE_WAY: f64 = 1e-2;
+/// Largest first correction, as a part of the unknowns' size, from the end of another system's path.
+const NEARBY: f64 = 0.1;
 /// First correction aimed at, as a part of the largest.
 const AIM: f64 = 0.2;
 
@@ -66,9 +72,9 @@ pub(crate) struct Tracker {
     start: Vec<(Sparse, Sparse)>,
     target: Vec<Vec<(Sparse, Sparse)>>,
     gamma: C,
-    h: Vec<C>,
+    /// Right-hand sides: the value, and the derivative to t turned about.
+    sides: Vec<[C; 2]>,
     jacobian: Vec<C>,
-    to_t: Vec<C>,
     pub(crate) solves: usize,
 }
 
@@ -85,9 +91,8 @@ impl Tracker {
                 .map(|e| e.0.iter().map(|(l, r)| pair(l, r)).collect())
                 .collect(),
             gamma: start.gamma,
-            h: vec![C::zero(); n],
+            sides: vec![[C::zero(); 2]; n],
             jacobian: vec![C::zero(); n * n],
-            to_t: vec![C::zero(); n],
             solves: 0,
         }
     }
@@ -119,16 +124,23 @@ impl Tracker {
                     row[*j] += l * *c * t;
                 }
             }
-            self.h[k] = g * (1.0 - t) + f * t;
-            self.to_t[k] = f - g;
+            self.sides[k] = [g * (1.0 - t) + f * t, g - f];
         }
     }
 
-    fn tangent(&mut self, x: &[C], t: f64) -> Option<Vec<C>> {
+    /// Solves for the correction of `x` and the tangent there, side by side.
+    fn solve(&mut self, x: &[C], t: f64) -> bool {
         self.evaluate(x, t);
         self.solves += 1;
-        let mut rhs: Vec<C> = self.to_t.iter().map(|c| -*c).collect();
-        solve(&mut self.jacobian, &mut rhs, self.n).then_some(rhs)
+        solve(&mut self.jacobian, &mut self.sides, self.n)
+    }
+
+    fn slope(&self) -> Vec<C> {
+        self.sides.iter().map(|side| side[1]).collect()
+    }
+
+    fn tangent(&mut self, x: &[C], t: f64) -> Option<Vec<C>> {
+        self.solve(x, t).then(|| self.slope())
     }
 
     /// A step of the classical fourth-order rule: how a path begins.
@@ -146,21 +158,21 @@ impl Tracker {
         )
     }
 
-    /// Newton's method at fixed t; the first correction. `None` when it is too large (the path may have been left for
-    /// another) or the corrections do not shrink.
-    fn correct(&mut self, x: &mut [C], t: f64, care: Care) -> Option<f64> {
+    /// Newton's method at fixed t; the first correction, and the tangent but for the last one. `None` when the first is too
+    /// large (the path may have been left for another) or the corrections do not shrink.
+    fn correct(&mut self, x: &mut [C], t: f64, care: Care) -> Option<(f64, Vec<C>)> {
         const CORRECTIONS: usize = 3;
+        let enough = if is_end(t) {
+            AT_THE_END
+        } else {
+            ON_THE_WAY * care.correction
+        };
         let (mut first, mut last) = (0.0, f64::INFINITY);
         for round in 0..CORRECTIONS {
-            self.evaluate(x, t);
-            self.solves += 1;
-            if !solve(&mut self.jacobian, &mut self.h, self.n) {
+            if !self.solve(x, t) {
                 return None;
             }
-            for (a, b) in x.iter_mut().zip(&self.h) {
-                *a -= *b;
-            }
-            let change = largest(&self.h) / (1.0 + largest(x));
+            let change = self.take_correction(x);
             if !change.is_finite()
                 || (round == 0 && change > care.correction)
                 || (round > 0 && change > last)
@@ -171,11 +183,41 @@ impl Tracker {
                 first = change;
             }
             last = change;
-            if change < 1e-10 {
-                return Some(first);
+            if change < enough {
+                return Some((first, self.slope()));
             }
         }
         None
+    }
+
+    /// Newton's method at t = 1 from a point nearby; whether it comes to a regular solution there.
+    pub(crate) fn correct_end(&mut self, x: &mut [C]) -> bool {
+        const CORRECTIONS: usize = 8;
+        let mut last = NEARBY;
+        for _ in 0..CORRECTIONS {
+            if !self.solve(x, 1.0) {
+                return false;
+            }
+            let change = self.take_correction(x);
+            if !(change <= last) {
+                return false;
+            }
+            if change < AT_THE_END {
+                return true;
+            }
+            last = 0.5 * change;
+        }
+        false
+    }
+
+    /// Takes the correction last solved for off the unknowns; returns how large it is, as a part of their size.
+    fn take_correction(&self, x: &mut [C]) -> f64 {
+        let mut square = 0.0_f64;
+        for (a, [b, _]) in x.iter_mut().zip(&self.sides) {
+            *a -= *b;
+            square = square.max(b.norm_sqr());
+        }
+        square.sqrt() / (1.0 + largest(x))
     }
 
     /// Follows one path from t = 0 to 1.
@@ -198,10 +240,10 @@ impl Tracker {
                 several => Some(extrapolate(several, t + now)),
             };
             let corrected = predicted.and_then(|mut next| {
-                let first = self.correct(&mut next, t + now, care)?;
-                Some((next, first))
+                let (first, slope) = self.correct(&mut next, t + now, care)?;
+                Some((next, first, slope))
             });
-            let Some((x, first)) = corrected else {
+            let Some((x, first, slope)) = corrected else {
                 step = now * 0.4;
                 // What lies far back does not help where the path bends.
                 passed.drain(..passed.len().saturating_sub(2));
@@ -213,17 +255,13 @@ impl Tracker {
             if largest(&x) > INFINITY {
                 return End::Infinite;
             }
-            // The last step may end short of 1 by a rounding error.
-            if (1.0 - (t + now)).abs() < f64::EPSILON {
+            if is_end(t + now) {
                 return End::Finite(x);
             }
             // The predictor's error goes with the power of the step that the points passed give.
             let order = 1.0 / (2 * passed.len().max(2)) as f64;
             let room = AIM * care.correction / first.max(f64::MIN_POSITIVE);
             step = now * math::exp(order * math::ln(room)).clamp(0.3, care.growth);
-            let Some(slope) = self.tangent(&x, t + now) else {
-                break;
-            };
             if passed.len() == MEMORY {
                 passed.remove(0);
             }
@@ -240,6 +278,11 @@ impl Tracker {
             End::Lost
         }
     }
+}
+
+/// Whether a path ends there: the last step may end short of 1 by a rounding error.
+fn is_end(t: f64) -> bool {
+    (1.0 - t).abs() < f64::EPSILON
 }
 
 fn largest(v: &[C]) -> f64 {

@@ -22,6 +22,8 @@ pub struct Session {
     pub(crate) design: Design<f64>,
     /// The motion by the file's laws.
     pub(crate) motion: Option<Arc<Motion>>,
+    /// That of an earlier design, from which the next is found sooner.
+    earlier: Option<Arc<Motion>>,
     /// By drive: the motion of that drive alone, the others where their laws start.
     pub(crate) alone: Vec<Option<Arc<Motion>>>,
     pub(crate) threads: usize,
@@ -33,6 +35,7 @@ impl Session {
         Self {
             given: vec![None; compiled.data().parameters.len()],
             motion: None,
+            earlier: None,
             alone: vec![None; compiled.data().drives.len()],
             threads: threads(),
             design,
@@ -270,7 +273,7 @@ impl Session {
         }
         self.given = given;
         self.design = design;
-        self.motion = None;
+        self.earlier = self.motion.take().or(self.earlier.take());
         self.alone.fill(None);
         Ok(())
     }
@@ -283,8 +286,11 @@ impl Session {
         if let Some(motion) = &self.motion {
             return Ok(motion.clone());
         }
-        let motion = Motion::with_progress(&self.design, progress)
-            .map_err(|error| self.compiled.error(cannot_move(&self.design, &error)))?;
+        let motion = match &self.earlier {
+            Some(earlier) => earlier.again(&self.design, progress),
+            None => Motion::with_progress(&self.design, progress),
+        }
+        .map_err(|error| self.compiled.error(cannot_move(&self.design, &error)))?;
         self.motion = Some(motion.clone());
         Ok(motion)
     }

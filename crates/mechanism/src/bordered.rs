@@ -38,6 +38,11 @@ pub struct Bordered {
     last: Qr,
     rest: f64,
     rhs: Vec<f64>,
+    /// Every block's unknowns as a constant and a matrix on the kept ones: column 0, then one for each.
+    affine: Vec<Vec<f64>>,
+    known: Vec<f64>,
+    last_rhs: Vec<f64>,
+    border: Vec<f64>,
 }
 
 impl Bordered {
@@ -55,6 +60,10 @@ impl Bordered {
             last: Qr::default(),
             rest: 0.0,
             rhs: Vec::new(),
+            affine: vec![Vec::new(); count],
+            known: Vec::new(),
+            last_rhs: Vec::new(),
+            border: Vec::new(),
             layout,
         }
     }
@@ -155,23 +164,33 @@ impl Bordered {
         border_rhs: f64,
         d: &mut Vec<f64>,
     ) {
-        let layout = &self.layout;
+        let Self {
+            layout,
+            diagonal,
+            plain,
+            couplings,
+            last,
+            rhs,
+            affine,
+            known,
+            last_rhs,
+            border: row,
+            ..
+        } = self;
         let kept = layout.blocks.get(self.worst).map_or(0, |b| b.size);
         let width = kept + 1;
-        // Every block's unknowns as a constant and a matrix on the kept ones: column 0, then 1..=width.
-        let mut affine: Vec<Vec<f64>> = Vec::with_capacity(layout.blocks.len());
         let kept_rows = layout.blocks.get(self.worst).map_or(0, |b| b.rows);
-        self.last.reset(kept_rows + 1, width);
-        let mut last_rhs = vec![0.0; kept_rows + 1];
+        last.reset(kept_rows + 1, width);
+        refill(last_rhs, kept_rows + 1);
         for (index, block) in layout.blocks.iter().enumerate() {
-            let mut known = vec![0.0; block.rows * (width + 1)];
+            refill(known, block.rows * (width + 1));
             for row in 0..block.rows {
                 if with_residual {
                     known[row] = self.residual[block.first + row];
                 }
                 known[width * block.rows + row] = -self.to_parameter[block.first + row];
             }
-            for c in &self.couplings[index] {
+            for c in &couplings[index] {
                 let (home, column) = (c.block as usize, c.column as usize);
                 let size = layout.blocks[home].size;
                 for k in 0..=width {
@@ -183,33 +202,31 @@ impl Bordered {
                 for row in 0..block.rows {
                     last_rhs[row] = known[row];
                     for column in 0..block.size {
-                        self.last
-                            .add(row, column, self.plain[index][row * block.size + column]);
+                        last.add(row, column, plain[index][row * block.size + column]);
                     }
-                    self.last.add(row, kept, -known[width * block.rows + row]);
+                    last.add(row, kept, -known[width * block.rows + row]);
                 }
-                let mut own = vec![0.0; block.size * (width + 1)];
+                let own = &mut affine[index];
+                refill(own, block.size * (width + 1));
                 for column in 0..block.size {
                     own[(column + 1) * block.size + column] = 1.0;
                 }
-                affine.push(own);
                 continue;
             }
-            let mut own = Vec::with_capacity(block.size * (width + 1));
+            let own = &mut affine[index];
+            own.clear();
             for k in 0..=width {
-                self.rhs.clear();
-                self.rhs
-                    .extend_from_slice(&known[k * block.rows..(k + 1) * block.rows]);
-                if self.rhs.iter().any(|v| *v != 0.0) {
-                    self.diagonal[index].solve(&mut self.rhs);
+                rhs.clear();
+                rhs.extend_from_slice(&known[k * block.rows..(k + 1) * block.rows]);
+                if rhs.iter().any(|v| *v != 0.0) {
+                    diagonal[index].solve(rhs);
                 }
-                own.extend_from_slice(&self.rhs[..block.size]);
+                own.extend_from_slice(&rhs[..block.size]);
             }
-            affine.push(own);
         }
         let mut constant = 0.0;
         let p = border.len() - 1;
-        let mut row = vec![0.0; width];
+        refill(row, width);
         for (index, block) in layout.blocks.iter().enumerate() {
             for (column, &z) in layout.columns_in_z[index].iter().enumerate() {
                 constant += border[z] * affine[index][column];
@@ -220,11 +237,11 @@ impl Bordered {
         }
         row[kept] += border[p];
         for (k, value) in row.iter().enumerate() {
-            self.last.add(kept_rows, k, *value);
+            last.add(kept_rows, k, *value);
         }
         last_rhs[kept_rows] = border_rhs - constant;
-        self.last.factor();
-        self.last.solve(&mut last_rhs);
+        last.factor();
+        last.solve(last_rhs);
         self.rest = last_rhs[width..].iter().map(|v| v * v).sum::<f64>().sqrt();
         d.clear();
         d.resize(border.len(), 0.0);
@@ -255,6 +272,12 @@ impl Bordered {
             .map(|(_, qr)| qr.smallest_pivot_ratio())
             .fold(self.last.smallest_pivot_ratio(), f64::min)
     }
+}
+
+/// So many zeros in the same storage.
+fn refill(list: &mut Vec<f64>, count: usize) {
+    list.clear();
+    list.resize(count, 0.0);
 }
 
 #[cfg(test)]

@@ -6,6 +6,17 @@ use crate::design::Design;
 use crate::pose::Pose;
 use crate::step::Step;
 
+/// A step that does not come this near (in mechanism sizes and rad) to a pose does not have it: where a limit makes Newton's method
+/// go astray, it finds another.
+const SAME_POSE: f64 = 1e-3;
+
+impl Step {
+    /// Whether the determinant tells where assemblies meet: other steps have none, or none that vanishes.
+    pub fn tells_modes(&self) -> bool {
+        self.has_modes() || matches!(self, Step::Newton { .. } | Step::Cross { .. })
+    }
+}
+
 impl Design<f64> {
     /// The determinant of every step of the plan at a pose, with the sign of its assembly mode: 1 where a step has neither
     /// modes nor a determinant that vanishes, 0 where it has no value.
@@ -18,46 +29,65 @@ impl Design<f64> {
         near: &[f64],
         size: f64,
     ) -> Vec<f64> {
-        let plan = &self.mechanism.plan;
-        let truth = state.poses.clone();
-        let branch = Branch {
-            guess: truth.clone(),
+        let mut branch = Branch {
+            guess: state.poses.clone(),
             near: near.to_vec(),
             ..Branch::neutral(&self.mechanism)
         };
+        let mut list = Vec::with_capacity(self.mechanism.plan.steps.len());
+        self.find_modes(state, &mut branch, size, &mut list);
+        list
+    }
+
+    /// Gives a branch the modes in which every step of the plan comes nearest to the branch's guess, the steps before it being as
+    /// guessed; `state` holds the inputs, and the guess when it is done. Fills the [determinants](Design::determinants) there and
+    /// returns how far a step is from the guess, the farthest one (in mechanism sizes and rad).
+    pub fn find_modes(
+        &self,
+        state: &mut Configuration<f64>,
+        branch: &mut Branch,
+        size: f64,
+        determinants: &mut Vec<f64>,
+    ) -> f64 {
+        let plan = &self.mechanism.plan;
+        state.poses.copy_from_slice(&branch.guess);
+        determinants.clear();
         let off = |found: &Pose<f64>, wanted: &Pose<f64>| {
             ((found.x - wanted.x).abs() + (found.y - wanted.y).abs()) / size
                 + (found.c - wanted.c).abs()
                 + (found.s - wanted.s).abs()
         };
-        let mut list = Vec::with_capacity(plan.steps.len());
+        let mut farthest = 0.0_f64;
         for (index, step) in plan.steps.iter().enumerate() {
             let bodies = || (plan.blocks[index].unknowns.iter()).map(|u| u.body().index());
-            let mut best = (f64::INFINITY, 1.0);
+            let mut best = (f64::INFINITY, 1.0, 1.0);
             let trials: &[f64] = match step.has_modes() {
                 true => &[1.0, -1.0],
                 false => &[1.0],
             };
             for &sign in trials {
-                plan.solve_step(index, sign, self, &branch, state);
-                let gap: f64 = bodies().map(|b| off(&state.poses[b], &truth[b])).sum();
+                plan.solve_step(index, sign, self, branch, state);
+                let gap: f64 = bodies()
+                    .map(|b| off(&state.poses[b], &branch.guess[b]))
+                    .sum();
                 if gap < best.0 {
-                    best = (gap, state.determinants[index]);
+                    best = (gap, state.determinants[index], sign);
                 }
             }
-            // The next steps build on the true pose.
+            // The next steps build on the guess.
             for body in bodies() {
-                state.poses[body] = truth[body];
+                state.poses[body] = branch.guess[body];
             }
-            let relevant =
-                step.has_modes() || matches!(step, Step::Newton { .. } | Step::Cross { .. });
-            list.push(match (relevant, best.0.is_finite()) {
-                (true, true) => best.1,
+            let (gap, determinant, sign) = best;
+            branch.signs[index] = sign;
+            farthest = farthest.max(gap);
+            determinants.push(match (step.tells_modes(), gap <= SAME_POSE) {
+                (true, true) => determinant,
                 (true, false) => 0.0,
                 (false, _) => 1.0,
             });
         }
-        list
+        farthest
     }
 
     /// The branch through a pose at these coordinates of the drives, SI; `near` are the bodies' angles to within half a

@@ -106,10 +106,22 @@ pub fn find_assemblies(
     coordinates: &[f64],
     progress: &mut dyn Progress,
 ) -> Option<Assemblies> {
+    find_assemblies_after(design, coordinates, &[], progress)
+}
+
+/// As [`find_assemblies`], the sooner where `earlier` tells what the homotopies did for much the same dimensions; the list is
+/// the same.
+pub(crate) fn find_assemblies_after(
+    design: &Design<f64>,
+    coordinates: &[f64],
+    earlier: &[PathReport],
+    progress: &mut dyn Progress,
+) -> Option<Assemblies> {
     // A gear meshes by the angle of its own link: where links of one body count from different turns, which shows in an
     // assembly, what hangs on such gears is found with these turns.
     let mut design = Cow::Borrowed(design);
-    let mut found = Search::new(&design, coordinates, progress).run()?;
+    let search = Search::new(&design, coordinates, progress).after(earlier);
+    let mut found = search.run()?;
     for _ in 0..TURNS_SETTLE {
         let Some(chosen) = found.list.first() else {
             break;
@@ -119,7 +131,8 @@ pub fn find_assemblies(
             break;
         }
         design.to_mut().count_turns(&turns);
-        found = Search::new(&design, coordinates, progress).run()?;
+        let search = Search::new(&design, coordinates, progress).after(earlier);
+        found = search.run()?;
     }
     Some(found)
 }

@@ -1,7 +1,7 @@
 //! Limits and change points, located on the curve and not at a step.
 
 use crate::drive_path::DrivePath;
-use crate::trace::{Follower, Node, chord, hermite};
+use crate::trace::{Follower, Node, chord, distance, hermite};
 
 /// What a motion met.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,7 +37,7 @@ pub fn locate_limit(follower: &mut Follower<'_, DrivePath>, from: &Node, to: &No
         let mut z = hermite(from, to, s);
         follower.correct(&mut z, &across)?;
         let tangent = follower.tangent(&z, &across)?;
-        Some(Node { z, tangent })
+        Some(Node::new(z, tangent))
     };
     let (mut low, mut high) = (0.0, 1.0);
     let (mut f_low, mut f_high) = (from.parameter_rate(), to.parameter_rate());
@@ -79,40 +79,45 @@ pub fn locate_limit(follower: &mut Follower<'_, DrivePath>, from: &Node, to: &No
     best
 }
 
-/// Where along the step from one node to the next `measure` vanishes although no limit is met.
+/// Where along the step from one node to the next the determinant of a step of the plan vanishes although no limit is met.
 ///
 /// At the crossing itself the constraints do not determine the tangent, so the pose is not computed there: it and the
-/// measure are interpolated from four points on each side, close enough for full accuracy and far enough for good
-/// conditioning. Returns the place on the step (0 to 1) and the node.
+/// determinant are interpolated from four points on each side, close enough for full accuracy and far enough for good
+/// conditioning. With `by_plan` the plan finds them first; it may take other branches that come near. Returns the place on the step (0 to 1) and the node.
 pub fn locate_change_point(
     follower: &mut Follower<'_, DrivePath>,
     from: &Node,
     to: &Node,
-    measure: impl Fn(&mut Follower<'_, DrivePath>, &Node) -> f64,
+    step: usize,
+    by_plan: bool,
 ) -> Option<(f64, Node)> {
     const OFFSETS: [f64; 8] = [-1.0, -0.75, -0.5, -0.25, 0.25, 0.5, 0.75, 1.0];
     let across = chord(from, to);
-    let (f0, f1) = (measure(follower, from), measure(follower, to));
+    let length = distance(&from.z, &to.z);
+    let [f0, f1] = [from, to].map(|node| follower.determinants_at(node)[step]);
     let mut s = f0 / (f0 - f1);
     let mut found = None;
-    for width in [0.4, 0.2, 0.15] {
+    for (width, is_last) in [(0.4, false), (0.2, false), (0.15, true)] {
         let mut places = Vec::with_capacity(8);
         let mut values: Vec<Vec<f64>> = Vec::with_capacity(8);
         for offset in OFFSETS {
             let place = s + width * offset;
             let mut z = hermite(from, to, place);
-            if follower.correct(&mut z, &across).is_none() {
-                continue;
-            }
-            let node = Node {
-                z,
-                tangent: across.clone(),
+            let known = match by_plan {
+                true => follower.correct_by_plan(&mut z, length, step),
+                false => None,
             };
-            let mut row = vec![measure(follower, &node)];
+            let determinant = match known {
+                // The plan loses digits near a crossing.
+                Some(determinant) if !is_last => determinant,
+                _ if follower.correct(&mut z, &across).is_none() => continue,
+                _ => follower.determinants(&z)[step],
+            };
+            let mut row = vec![determinant];
             if !row[0].is_finite() || row[0] == 0.0 {
                 continue;
             }
-            row.extend(&node.z);
+            row.extend(&z);
             places.push(place);
             values.push(row);
         }
@@ -140,7 +145,7 @@ pub fn locate_change_point(
         let mut tangent: Vec<f64> = z.iter().zip(&ahead).map(|(a, b)| b - a).collect();
         let length = tangent.iter().map(|t| t * t).sum::<f64>().sqrt();
         tangent.iter_mut().for_each(|t| *t /= length);
-        found = Some((s, Node { z, tangent }));
+        found = Some((s, Node::new(z, tangent)));
     }
     found
 }

@@ -25,6 +25,7 @@ pub use self::start::SIZES;
 
 use std::sync::Arc;
 
+use kempe_homotopy::PathReport;
 use kempe_mechanism::Design;
 use kempe_mechanism::Mechanism;
 use kempe_mechanism::pose::Pose;
@@ -107,6 +108,29 @@ impl Motion {
         design: &Design<f64>,
         progress: &mut dyn Progress,
     ) -> Result<Arc<Self>, MotionError> {
+        Self::whole(design, &[], progress)
+    }
+
+    /// The motion of a design much like this one's, such as the same mechanism after a dimension changed a little. It is the motion
+    /// that [`Motion::with_progress`] finds, and where blocks have no closed form it is found sooner: their solutions are
+    /// corrected from those known, which proves them complete as long as each leads to another.
+    ///
+    /// # Errors
+    /// As [`Motion::with_progress`].
+    pub fn again(
+        &self,
+        design: &Design<f64>,
+        progress: &mut dyn Progress,
+    ) -> Result<Arc<Self>, MotionError> {
+        Self::whole(design, &self.assemblies.paths, progress)
+    }
+
+    /// The motion by the laws of the file.
+    fn whole(
+        design: &Design<f64>,
+        earlier: &[PathReport],
+        progress: &mut dyn Progress,
+    ) -> Result<Arc<Self>, MotionError> {
         let (model, parameters) = (&design.mechanism.model, &design.parameters);
         let size = design.size();
         let path = DrivePath::new(model, parameters, size);
@@ -118,7 +142,7 @@ impl Motion {
             start,
             assemblies: None,
         };
-        Self::along(design, stretch, progress).map(Arc::new)
+        Self::along_after(design, stretch, earlier, progress).map(Arc::new)
     }
 
     /// A motion over given nodes, rising in the path parameter; it covers just them.

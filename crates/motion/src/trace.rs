@@ -1,9 +1,11 @@
-//! Following the motion: pseudo-arc-length continuation of all constraints at once.
+//! Following the motion: continuation along the arc, by the plan (`by_plan`) or, near where branches meet and at limits, with all
+//! constraints at once.
 //!
 //! The step depends on the mechanism alone, never on the rows that a study wants, so the branch that comes out cannot
 //! depend on them either. Every step is accepted only if the cubic through its ends, with their tangents, agrees with a
 //! corrected point in the middle: a jump to another branch would show there.
 
+mod by_plan;
 mod cubic;
 mod restriction;
 mod step;
@@ -13,6 +15,7 @@ pub use self::cubic::{chord, hermite};
 pub use self::step::{MIDDLE_TOLERANCE, TURN_LIMIT};
 pub(crate) use self::step::{WIGGLE, hides_limits};
 
+use self::by_plan::PlanSteps;
 use self::restriction::StepRestriction;
 pub(crate) use self::restriction::apart;
 use kempe_mechanism::Design;
@@ -46,9 +49,20 @@ pub struct Node {
     pub z: Vec<f64>,
     /// Unit tangent, in the direction of travel.
     pub tangent: Vec<f64>,
+    /// Determinant of every step of the plan, where the step of the trace told them.
+    determinants: Vec<f64>,
 }
 
 impl Node {
+    /// A node.
+    pub(crate) fn new(z: Vec<f64>, tangent: Vec<f64>) -> Self {
+        Self {
+            z,
+            tangent,
+            determinants: Vec::new(),
+        }
+    }
+
     /// Rate of the path parameter along the arc; zero at a limit.
     pub fn parameter_rate(&self) -> f64 {
         self.tangent[self.tangent.len() - 1]
@@ -81,7 +95,8 @@ pub struct Follower<'a, P> {
     coordinates: Vec<f64>,
     rates: Vec<f64>,
     restrictions: Vec<StepRestriction>,
-    determined: f64,
+    determined: Option<f64>,
+    by_plan: PlanSteps,
 }
 
 impl<'a, P: Path> Follower<'a, P> {
@@ -101,7 +116,8 @@ impl<'a, P: Path> Follower<'a, P> {
             coordinates: vec![0.0; drives],
             rates: vec![0.0; drives],
             restrictions: Vec::new(),
-            determined: 0.0,
+            determined: None,
+            by_plan: PlanSteps::new(design),
         }
     }
 
@@ -150,6 +166,11 @@ impl<'a, P: Path> Follower<'a, P> {
         unscale(z, self.size, poses, near);
     }
 
+    /// Sets the drives' coordinates and rates at a path parameter.
+    fn set_coordinates(&mut self, p: f64) {
+        self.path.at(p, &mut self.coordinates, &mut self.rates);
+    }
+
     /// Fills and factors the Jacobian and residuals at a point.
     fn linearise(&mut self, z: &[f64]) {
         let p = self.parameter(z);
@@ -158,7 +179,7 @@ impl<'a, P: Path> Follower<'a, P> {
             std::mem::take(&mut self.near),
         );
         self.unscaled(z, &mut poses, &mut near);
-        self.path.at(p, &mut self.coordinates, &mut self.rates);
+        self.set_coordinates(p);
         for ((input, drive), &value) in self
             .inputs
             .iter_mut()
@@ -203,9 +224,13 @@ impl<'a, P: Path> Follower<'a, P> {
         self.system.conditioning()
     }
 
-    /// [`Follower::conditioning`] at the node that the trace last began at or stepped to.
-    pub fn determined(&self) -> f64 {
-        self.determined
+    /// [`Follower::conditioning`] at a node that the trace last began at or stepped to.
+    pub fn determined(&mut self, at: &Node) -> f64 {
+        if let Some(determined) = self.determined {
+            return determined;
+        }
+        let tangent = self.tangent(&at.z, &at.tangent);
+        tangent.map_or(0.0, |_| self.conditioning())
     }
 
     /// Corrects a point within the hyperplane across `border` through it. Returns the length of the first correction.
@@ -243,8 +268,9 @@ impl<'a, P: Path> Follower<'a, P> {
         border[last] = direction.signum();
         self.correct(&mut z, &border)?;
         let tangent = self.tangent(&z, &border)?;
-        self.determined = self.conditioning();
-        (self.determined > 1e-9 && tangent[last].abs() > 1e-7).then_some(Node { z, tangent })
+        let determined = self.conditioning();
+        self.determined = Some(determined);
+        (determined > 1e-9 && tangent[last].abs() > 1e-7).then_some(Node::new(z, tangent))
     }
 }
 

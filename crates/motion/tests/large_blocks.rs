@@ -37,6 +37,7 @@ fn solved(case: &Case, work: &mut f64, told: &mut dyn FnMut(f64) -> ControlFlow<
         mechanism,
         &situation,
         size,
+        None,
         work,
         told,
     )

@@ -413,19 +413,23 @@ fn work_can_be_stopped() {
 
 #[test]
 fn random_mechanisms_are_enclosed() {
-    let (mut proved, mut tried) = (0, 0);
+    // Without and with a slot along a smooth curve, whose bends cost an interval more of its width.
+    let (mut proved, mut tried) = ([0; 2], [0; 2]);
     for seed in 0..60 {
-        let case = Case::of(&make(&recipe(seed)).spec);
+        let spec = make(&recipe(seed)).spec;
+        let curved = |j: &support::SJoint| matches!(j, support::SJoint::Curve { .. });
+        let kind = usize::from(spec.joints.iter().any(curved));
+        let case = Case::of(&spec);
         let Ok(motion) = case.motion() else { continue };
         let mut certifier = Certifier::new(&motion);
         for p in spread(&motion, 4) {
             let truth = plain(&motion, p);
             let certificate = certifier.pose(Interval::from_f64(p));
-            tried += 1;
+            tried[kind] += 1;
             if !certificate.unique {
                 continue;
             }
-            proved += 1;
+            proved[kind] += 1;
             let off = outside(&certificate.poses, &truth, motion.size());
             assert!(off <= 1e-9, "seed {seed} at {p}: {off:e}");
             // All bodies at once say the same.
@@ -442,7 +446,7 @@ fn random_mechanisms_are_enclosed() {
         }
     }
     assert!(
-        tried > 100 && proved * 10 > tried * 9,
-        "{proved} of {tried}"
+        tried[0] > 100 && proved[0] * 10 > tried[0] * 9 && proved[1] * 10 > tried[1] * 6,
+        "{proved:?} of {tried:?}"
     );
 }

@@ -103,8 +103,10 @@ impl Search<'_> {
         let mut candidates = vec![self.hints.start(&state.poses)];
         let (mechanism, size) = (self.mechanism, self.size);
         let mut work = self.work;
+        let earlier = self.earlier.get(self.paths.len());
         let told = &mut |part| self.told(Some(part));
-        let solutions = all_real_solutions(block, mechanism, &situation, size, &mut work, told);
+        let solutions =
+            all_real_solutions(block, mechanism, &situation, size, earlier, &mut work, told);
         self.work = work;
         match solutions {
             Solutions::Stopped => return None,

@@ -26,12 +26,14 @@ pub enum Solutions {
     Stopped,
 }
 
-/// All real solutions of a block. `work` is what is left of [`WORK_LIMIT`](kempe_homotopy::WORK_LIMIT); `told` hears the finished part of the paths and may stop the work.
+/// All real solutions of a block. `earlier` is what the paths did for much the same dimensions, if that is known; `work` is what is
+/// left of [`WORK_LIMIT`](kempe_homotopy::WORK_LIMIT); `told` hears the finished part of the paths and may stop the work.
 pub fn all_real_solutions(
     block: &NewtonBlock,
     mechanism: &Mechanism,
     known: &Situation<'_, f64>,
     scale: f64,
+    earlier: Option<&PathReport>,
     work: &mut f64,
     told: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> Solutions {
@@ -45,7 +47,9 @@ pub fn all_real_solutions(
     let Some((linear, bilinear)) = equations(&builder) else {
         return Solutions::NotAlgebraic;
     };
-    let (found, report) = match all_solutions(&linear, &bilinear, builder.variables, work, told) {
+    let variables = builder.variables;
+    let outcome = all_solutions(&linear, &bilinear, variables, earlier, work, told);
+    let (found, report) = match outcome {
         Outcome::Found(found, report) => (found, report),
         Outcome::TooLarge => return Solutions::NotAlgebraic,
         Outcome::Stopped => return Solutions::Stopped,

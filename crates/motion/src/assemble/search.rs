@@ -37,6 +37,8 @@ pub(super) struct Search<'a> {
     /// Why assemblies may be missing; the first reason met.
     pub shortfall: Option<Shortfall>,
     pub paths: Vec<PathReport>,
+    /// What they did for much the same dimensions, if that is known.
+    pub earlier: &'a [PathReport],
     /// What the homotopies may still cost.
     pub work: f64,
     /// What was found by cutting the mechanism open at a gear (its constraint): the same for every branch before it.
@@ -68,6 +70,7 @@ impl<'a> Search<'a> {
             stopped: false,
             shortfall: None,
             paths: Vec::new(),
+            earlier: &[],
             work: WORK_LIMIT,
             opened: Vec::new(),
             found: Vec::new(),
@@ -76,6 +79,12 @@ impl<'a> Search<'a> {
             trials: 0,
             furthest: 0,
         }
+    }
+
+    /// The same, with what the homotopies did for much the same dimensions.
+    pub fn after(mut self, earlier: &'a [PathReport]) -> Self {
+        self.earlier = earlier;
+        self
     }
 
     /// Finds all assemblies, the one meant first; `None` when stopped.

@@ -74,10 +74,7 @@ pub(crate) fn go_round(
             .sum();
         let reached = travelled > 2.0 * h && (0.0..=1.05 * h).contains(&ahead) && same_way > 0.9;
         if reached && distance(&hermite_home(&from, &next, &home, h), &home) < 0.02 * h.max(1e-6) {
-            let home = Node {
-                z: home,
-                tangent: start.tangent.clone(),
-            };
+            let home = Node::new(home, start.tangent.clone());
             // Dead points just before the start.
             let rest = distance(&from.z, &home.z);
             if from.parameter_rate() * home.parameter_rate() < 0.0 {

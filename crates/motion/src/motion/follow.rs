@@ -98,7 +98,7 @@ fn follow(
         // on to its other side, so that rows there are joined from both sides.
         let past = (from.z[last] - target) * direction > 1e-9;
         if past {
-            if follower.determined() > WELL_DETERMINED || beyond == STEPS_BEYOND {
+            if follower.determined(from) > WELL_DETERMINED || beyond == STEPS_BEYOND {
                 return Some((nodes, EndReason::Covered));
             }
             beyond += 1;

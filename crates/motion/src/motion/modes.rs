@@ -1,7 +1,5 @@
 //! Where the assembly modes of a motion change, and what it meets there.
 
-use kempe_mechanism::Configuration;
-
 use super::Motion;
 use super::branch::Patch;
 use super::restriction::{MEETING, Unlocated};
@@ -143,7 +141,7 @@ impl Motion {
             {
                 return Err(Unlocated::Stopped(Stage::Locating));
             }
-            modes.push(self.determinants(follower, node));
+            modes.push(follower.determinants_at(node));
         }
         Ok(modes)
     }
@@ -158,16 +156,20 @@ impl Motion {
     ) -> Result<Vec<Change>, Unlocated> {
         let mut found: Vec<Change> = Vec::new();
         for step in flipped {
-            let measure = |follower: &mut Follower<'_, DrivePath>, node: &Node| {
-                self.determinants(follower, node)[step]
+            let mut locate = |by_plan: bool| {
+                let located = locate_change_point(follower, node, next, step, by_plan);
+                // Where nothing is located the middle of the step stands for it: a sign does not change without a place.
+                let z = match &located {
+                    Some((_, at)) => at.z.clone(),
+                    None => hermite(node, next, 0.5),
+                };
+                let residual = follower.residual(&z);
+                (located, z, residual)
             };
-            let located = locate_change_point(follower, node, next, measure);
-            // Where nothing is located the middle of the step stands for it: a sign does not change without a place.
-            let z = match &located {
-                Some((_, at)) => at.z.clone(),
-                None => hermite(node, next, 0.5),
-            };
-            let residual = follower.residual(&z);
+            let (mut located, mut z, mut residual) = locate(true);
+            if located.is_none() || !(residual <= MEETING) {
+                (located, z, residual) = locate(false);
+            }
             if !(residual <= MEETING) {
                 return Err(Unlocated::Missed { z, residual });
             }
@@ -175,18 +177,6 @@ impl Motion {
         }
         found.sort_by(|a, b| a.s.total_cmp(&b.s));
         Ok(found)
-    }
-
-    /// The determinant of every step at a node, with the sign of its assembly mode.
-    fn determinants(&self, follower: &mut Follower<'_, DrivePath>, node: &Node) -> Vec<f64> {
-        let mut state: Configuration<f64> = Configuration::new(self.mechanism());
-        let mut near = vec![0.0; self.mechanism().bodies];
-        follower.unscaled(&node.z, &mut state.poses, &mut near);
-        let mut coordinates = vec![0.0; self.mechanism().model.drives.len()];
-        self.path
-            .coordinates(follower.parameter(&node.z), &mut coordinates);
-        state.set_inputs(self.mechanism(), &coordinates);
-        self.design.determinants(&mut state, &near, self.size)
     }
 }
 

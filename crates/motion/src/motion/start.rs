@@ -1,11 +1,12 @@
 //! Where a motion starts, and how it is followed from there to both ends of its range.
 
+use kempe_homotopy::PathReport;
 use kempe_mechanism::{Branch, Design};
 
 use super::follow::follow_both;
 use super::restriction::{Unlocated, restricting_steps};
 use super::{Demand, Motion, MotionError};
-use crate::assemble::{Assemblies, Assembly, find_assemblies};
+use crate::assemble::{Assemblies, Assembly, find_assemblies_after};
 use crate::drive_path::DrivePath;
 use crate::progress::{Progress, Stage};
 use crate::trace::{Follower, Node, Path, apart};
@@ -50,6 +51,16 @@ impl Motion {
         demand: Demand,
         progress: &mut dyn Progress,
     ) -> Result<Self, MotionError> {
+        Self::along_after(design, demand, &[], progress)
+    }
+
+    /// As [`Motion::along`]; `earlier` is what the homotopies did for much the same dimensions, if that is known.
+    pub(super) fn along_after(
+        design: &Design<f64>,
+        demand: Demand,
+        earlier: &[PathReport],
+        progress: &mut dyn Progress,
+    ) -> Result<Self, MotionError> {
         let Demand {
             path,
             range: demanded,
@@ -72,11 +83,11 @@ impl Motion {
             path.coordinates(anchor, &mut coordinates);
             let assemblies = match known.take().filter(|_| anchor == start) {
                 Some(known) => known,
-                None => {
-                    find_assemblies(design, &coordinates, progress).ok_or(MotionError::Stopped {
+                None => find_assemblies_after(design, &coordinates, earlier, progress).ok_or(
+                    MotionError::Stopped {
                         stage: Stage::Assembling,
-                    })?
-                }
+                    },
+                )?,
             };
             if assemblies.list.is_empty() {
                 missed += 1;
@@ -231,9 +242,9 @@ fn begin(
     let mut follower = Follower::new(&design, path);
     let z = scaled(&follower, first, anchor);
     at_start.get_or_insert_with(|| z.clone());
-    let up = follower.start(z.clone(), 1.0)?;
-    let down = follower.start(z, -1.0)?;
-    let determined = follower.determined();
+    let up = follower.start(z, 1.0)?;
+    let down = up.clone().turned();
+    let determined = follower.determined(&up);
     drop(follower);
     Some(Beginning {
         anchor,

@@ -1,9 +1,12 @@
 //! Steps of a trace: along the arc, and onto a given path parameter.
 
+use super::by_plan::ByPlan;
 use super::{Follower, Node, Path, chord, distance, dot, hermite};
 
 /// How far the corrected middle of a step may lie from the cubic through its ends, as a part of the step.
 pub const MIDDLE_TOLERANCE: f64 = 1e-3;
+/// How far the end of a step may lie from the tangent at its start, as a part of the step.
+pub(super) const CORRECTION_LIMIT: f64 = 0.3;
 /// Smallest cosine between the tangents at the ends of a step.
 pub const TURN_LIMIT: f64 = 0.97;
 /// Steps shorter than this are not held to a path parameter that runs one way: rounding would decide.
@@ -11,7 +14,7 @@ pub(crate) const WIGGLE: f64 = 1e-6;
 /// Longest step, in mechanism sizes and rad over all bodies (root of the sum of squares).
 const LONGEST_STEP: f64 = 0.5;
 /// Shortest step: below it the motion is stuck.
-const SHORTEST_STEP: f64 = 1e-9;
+pub(super) const SHORTEST_STEP: f64 = 1e-9;
 
 impl<P: Path> Follower<'_, P> {
     /// One step along the arc; `step` is the length to try and is adapted for the next. `None` when stuck.
@@ -21,15 +24,37 @@ impl<P: Path> Follower<'_, P> {
         let mut odd = 0;
         while *step > SHORTEST_STEP {
             let h = step.min(longest);
+            // The cubic's error goes with the fourth power of the step.
+            let grown = |gap: f64| {
+                let grow = (0.5 * MIDDLE_TOLERANCE * h / gap.max(1e-18)).sqrt().sqrt();
+                (h * grow.clamp(0.5, 2.0)).min(longest)
+            };
+            match self.step_by_plan(from, h) {
+                ByPlan::Reached(to, _) if hides_limits(from, &to) && h > WIGGLE => {
+                    *step = 0.5 * h;
+                    continue;
+                }
+                ByPlan::Reached(to, gap) => {
+                    self.determined = None;
+                    *step = grown(gap);
+                    return Some(to);
+                }
+                ByPlan::Bent => {
+                    *step = 0.5 * h;
+                    continue;
+                }
+                ByPlan::Unfit => {}
+            }
             let mut z = from.ahead(h);
             let outcome = self
                 .correct(&mut z, &from.tangent)
-                .filter(|first| *first <= 0.3 * h)
+                .filter(|first| *first <= CORRECTION_LIMIT * h)
                 .and_then(|_| {
                     let tangent = self.tangent(&z, &from.tangent)?;
                     // Right on a crossing of branches the tangent is not determined: step elsewhere.
-                    self.determined = self.conditioning();
-                    if self.determined < 1e-10 {
+                    let determined = self.conditioning();
+                    self.determined = Some(determined);
+                    if determined < 1e-10 {
                         odd += 1;
                         return None;
                     }
@@ -39,7 +64,7 @@ impl<P: Path> Follower<'_, P> {
                 *step = h * if odd > 0 { 0.71 } else { 0.5 };
                 continue;
             };
-            let to = Node { z, tangent };
+            let to = Node::new(z, tangent);
             if hides_limits(from, &to) && h > WIGGLE {
                 *step = 0.5 * h;
                 continue;
@@ -49,9 +74,7 @@ impl<P: Path> Follower<'_, P> {
             let gap = self.correct(&mut middle, &chord);
             match gap {
                 Some(gap) if gap <= MIDDLE_TOLERANCE * h => {
-                    // The cubic's error goes with the fourth power of the step.
-                    let grow = (0.5 * MIDDLE_TOLERANCE * h / gap.max(1e-18)).sqrt().sqrt();
-                    *step = (h * grow.clamp(0.5, 2.0)).min(longest);
+                    *step = grown(gap);
                     return Some(to);
                 }
                 _ => *step = 0.6 * h,
@@ -72,7 +95,7 @@ impl<P: Path> Follower<'_, P> {
         border[last] = rate.signum();
         let gap = self.correct(&mut z, &border)?;
         let tangent = self.tangent(&z, &border)?;
-        (far >= 0.0).then_some((Node { z, tangent }, gap))
+        (far >= 0.0).then_some((Node::new(z, tangent), gap))
     }
 
     /// The node at a scaled path parameter a little ahead, over a place where the drives' rates jump. `None` when it lies
