@@ -73,7 +73,8 @@ impl Circuit {
             return Err(locked);
         };
         let design = chosen.count_in(design);
-        let mut follower = Follower::new(&design, &path);
+        // Arc lengths are counted along its nodes: steps as even as the bordered systems take them keep rows where they are.
+        let mut follower = Follower::new(&design, &path).without_plan();
         let z = follower.scaled(&chosen.poses, &chosen.branch.near, anchor);
         let start = follower.start(z, direction).ok_or(locked)?;
         restricting_steps(&mut follower, |follower| {
