@@ -33,7 +33,7 @@ impl Request {
     ///
     /// # Errors
     ///
-    /// What is wrong with it, as an [answer](refusal) with the code `bad-request`: a mistake of the host, not of the model.
+    /// What is wrong with it, as an answer with the code `bad-request`: a mistake of the host, not of the model.
     pub fn from_json(bytes: &[u8]) -> Result<Self, Value> {
         serde_json::from_slice(bytes).map_err(|error| {
             let message = format!("the request cannot be read: {error}");
