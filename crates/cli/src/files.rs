@@ -26,9 +26,9 @@ pub fn load(model: &ModelFile, speaker: &mut Speaker) -> Result<Loaded, Exit> {
     let name = model.file.display().to_string();
     let bytes = match read_bytes(&model.file) {
         Ok(bytes) => bytes,
-        Err(told) => {
+        Err(diagnostic) => {
             speaker.name_file(&name, "");
-            speaker.tell(&[*told]);
+            speaker.tell(&[*diagnostic]);
             return Err(Exit::Usage);
         }
     };
@@ -38,8 +38,8 @@ pub fn load(model: &ModelFile, speaker: &mut Speaker) -> Result<Loaded, Exit> {
         .file
         .file_stem()
         .map_or(name.clone(), |s| s.to_string_lossy().into_owned());
-    if let Some(told) = set_twice(&model.set) {
-        speaker.tell(&[told]);
+    if let Some(diagnostic) = set_twice(&model.set) {
+        speaker.tell(&[diagnostic]);
         return Err(Exit::Usage);
     }
     let folder = model.file.parent().unwrap_or(Path::new("")).to_owned();
@@ -99,7 +99,7 @@ pub fn read_table(folder: &Path, name: &str) -> Result<String, String> {
     if path.exists() && !path.is_file() && !path.is_dir() {
         return Err(format!("{} is not a plain file", path.display()));
     }
-    let bytes = read_bytes(&path).map_err(|told| told.message)?;
+    let bytes = read_bytes(&path).map_err(|diagnostic| diagnostic.message)?;
     String::from_utf8(bytes).map_err(|_| format!("{} is not UTF-8 text", path.display()))
 }
 
@@ -107,10 +107,10 @@ pub fn read_table(folder: &Path, name: &str) -> Result<String, String> {
 fn unreadable(path: &Path, error: &io::Error) -> Diagnostic {
     let shown = path.display();
     if error.kind() == io::ErrorKind::NotFound {
-        let told = Diagnostic::error("no-file", format!("there is no file {shown}"));
+        let diagnostic = Diagnostic::error("no-file", format!("there is no file {shown}"));
         return match near_file(path) {
-            Some(near) => told.help(format!("did you mean {near}?")),
-            None => told.help("kempe new writes a file to start from"),
+            Some(near) => diagnostic.help(format!("did you mean {near}?")),
+            None => diagnostic.help("kempe new writes a file to start from"),
         };
     }
     if path.is_dir() {

@@ -13,7 +13,7 @@ pub struct Speaker {
     quiet: bool,
     file: String,
     text: String,
-    told: Vec<Value>,
+    diagnostics: Vec<Value>,
 }
 
 impl Speaker {
@@ -24,7 +24,7 @@ impl Speaker {
             quiet,
             file: String::new(),
             text: String::new(),
-            told: Vec::new(),
+            diagnostics: Vec::new(),
         }
     }
 
@@ -38,7 +38,8 @@ impl Speaker {
     pub fn tell(&mut self, diagnostics: &[Diagnostic]) {
         for diagnostic in diagnostics {
             if self.json {
-                self.told.push(kempe_study::encode::diagnostic(diagnostic));
+                self.diagnostics
+                    .push(kempe_study::encode::diagnostic(diagnostic));
             } else if !self.quiet || diagnostic.severity == Severity::Error {
                 complain(&format!(
                     "{}\n\n",
@@ -49,14 +50,14 @@ impl Speaker {
     }
 
     /// What was said, for the JSON output.
-    pub fn told(&self) -> Value {
-        Value::Array(self.told.clone())
+    pub fn diagnostics(&self) -> Value {
+        Value::Array(self.diagnostics.clone())
     }
 
     /// Prints the JSON object of a command that could not be finished.
     pub fn print_failure(&self) {
         if self.json {
-            print_json(&serde_json::json!({ "diagnostics": self.told() }));
+            print_json(&serde_json::json!({ "diagnostics": self.diagnostics() }));
         }
     }
 }

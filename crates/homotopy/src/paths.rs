@@ -63,7 +63,7 @@ pub fn all_solutions(
     variables: usize,
     earlier: Option<&PathReport>,
     work: &mut f64,
-    told: &mut dyn FnMut(f64) -> ControlFlow<()>,
+    progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> Outcome {
     let Some(solved) = eliminate(linear, variables) else {
         return Outcome::Found(Vec::new(), PathReport::default());
@@ -85,7 +85,7 @@ pub fn all_solutions(
             ends,
             ..PathReport::default()
         },
-        None => match follow_all(&system, work, told) {
+        None => match follow_all(&system, work, progress) {
             Some(report) => report,
             None => return Outcome::Stopped,
         },
@@ -142,7 +142,7 @@ fn start_system(system: &System) -> Start {
 pub(crate) fn follow_all(
     system: &System,
     work: &mut f64,
-    told: &mut dyn FnMut(f64) -> ControlFlow<()>,
+    progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> Option<PathReport> {
     let d = system.d;
     let n = 2 * d;
@@ -166,7 +166,7 @@ pub(crate) fn follow_all(
         }
     };
     for (done, subset) in subsets.iter().enumerate() {
-        told(done as f64 / subsets.len() as f64).continue_value()?;
+        progress(done as f64 / subsets.len() as f64).continue_value()?;
         ends.push(follow(&mut tracker, subset, CARES[0], work));
     }
     // Paths that were lost, and all that ended at one point, are followed again with more care.
@@ -179,7 +179,7 @@ pub(crate) fn follow_all(
         })
         .collect();
     for i in again {
-        told(1.0).continue_value()?;
+        progress(1.0).continue_value()?;
         ends[i] = follow(&mut tracker, &subsets[i], CARES[1], work);
     }
     let mut report = PathReport {

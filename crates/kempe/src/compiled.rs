@@ -154,12 +154,12 @@ impl Compiled {
             None if known.is_empty() => format!("the file has no {kind}s"),
             None => format!("the {kind}s are {}", known.join(", ")),
         };
-        let told = Diagnostic::error("unknown-name", format!("there is no {kind} `{name}`"));
-        Err(self.error(told.help(help)))
+        let diagnostic = Diagnostic::error("unknown-name", format!("there is no {kind} `{name}`"));
+        Err(self.error(diagnostic.help(help)))
     }
 
-    pub(crate) fn error(&self, told: Diagnostic) -> Error {
-        self.errors(vec![told])
+    pub(crate) fn error(&self, diagnostic: Diagnostic) -> Error {
+        self.errors(vec![diagnostic])
     }
 
     pub(crate) fn errors(&self, diagnostics: Vec<Diagnostic>) -> Error {

@@ -149,7 +149,8 @@ impl Session {
         let held = match (place, &motion.path) {
             (None, _) => Held::Path(motion.start),
             (Some((Way::Time, time)), _) => {
-                on_the_motion(&self.design, time).map_err(|told| self.compiled.error(told))?;
+                on_the_motion(&self.design, time)
+                    .map_err(|diagnostic| self.compiled.error(diagnostic))?;
                 Held::Time(time)
             }
             (Some((Way::Drive(drive), at)), DrivePath::Coordinate { drive: own, .. })
@@ -160,18 +161,18 @@ impl Session {
             (Some((way, _)), _) => {
                 let (name, _) = way.places(&self.compiled);
                 let message = format!("`{name}` does not move the mechanism alone");
-                let told = Diagnostic::error("not-the-path", message);
-                return Err(self.compiled.error(told.help("give a time")));
+                let diagnostic = Diagnostic::error("not-the-path", message);
+                return Err(self.compiled.error(diagnostic.help("give a time")));
             }
         };
         let wanted: Vec<_> = asked.quantities.iter().map(|q| &q.measure).collect();
         let unmeasurable = |problems: Vec<Unmeasurable>| {
-            let told = problems.iter().map(|problem| {
+            let diagnostic = problems.iter().map(|problem| {
                 let name = &asked.quantities[problem.index].name;
                 let message = format!("`{name}` cannot be evaluated: {}", problem.reason);
                 Diagnostic::error("not-measurable", message)
             });
-            self.compiled.errors(told.collect())
+            self.compiled.errors(diagnostic.collect())
         };
         let found = if asked.any_forces() {
             kempe_dynamics::sensitivities(&motion, held, &wanted, &ids).map_err(
@@ -186,10 +187,10 @@ impl Session {
         if !motion.reaches(found.parameter) {
             let message = format!("the motion does not reach {}", found.parameter);
             let (low, high) = motion.reached();
-            let told = Diagnostic::error("not-reached", message);
+            let diagnostic = Diagnostic::error("not-reached", message);
             return Err(self
                 .compiled
-                .error(told.help(format!("it goes from {low} to {high}, SI"))));
+                .error(diagnostic.help(format!("it goes from {low} to {high}, SI"))));
         }
         let units = self.compiled.units();
         let declared = &self.compiled.data().parameters;

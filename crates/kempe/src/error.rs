@@ -34,8 +34,8 @@ impl Error {
 
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let told = self.diagnostics.iter();
-        let lines: Vec<String> = told
+        let diagnostic = self.diagnostics.iter();
+        let lines: Vec<String> = diagnostic
             .map(|d| d.render_plain(&self.name, &self.text))
             .collect();
         f.write_str(lines.join("\n").trim_end())

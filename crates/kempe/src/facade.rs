@@ -195,9 +195,10 @@ impl Model {
     pub fn run_with(&self, study: &str, progress: &mut dyn Progress) -> Result<StudyResult, Error> {
         let Some(found) = self.inner.studies.iter().find(|s| s.name == study) else {
             let known: Vec<&str> = self.studies().collect();
-            let told = Diagnostic::error("unknown-study", format!("there is no study `{study}`"));
+            let diagnostic =
+                Diagnostic::error("unknown-study", format!("there is no study `{study}`"));
             return Err(self.error(vec![
-                told.help(format!("the file has: {}", known.join(", "))),
+                diagnostic.help(format!("the file has: {}", known.join(", "))),
             ]));
         };
         kempe_study::run(&self.inner, found, progress).map_err(|found| self.error(found))
@@ -211,7 +212,8 @@ impl Model {
     /// `unknown-name`, and why the place cannot be reached.
     pub fn pose(&self, place: &str) -> Result<Pose, Error> {
         let parts = place.split(',').filter(|part| !part.trim().is_empty());
-        let settings = Setting::all(&self.inner, parts).map_err(|told| self.error(vec![told]))?;
+        let settings =
+            Setting::all(&self.inner, parts).map_err(|diagnostic| self.error(vec![diagnostic]))?;
         let compiled = match self.compile() {
             Err(error) if ["no-drive", "undetermined"].contains(&error.code()) => {
                 let design = Mechanism::new(&self.inner);

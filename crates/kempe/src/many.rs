@@ -283,7 +283,7 @@ impl Session {
         };
         let ways = [&points, &measured, &followed];
         let total = room * ways.iter().filter(|list| !list.is_empty()).count();
-        let mut told = Told {
+        let mut tally = Tally {
             progress,
             done: 0,
             total,
@@ -291,18 +291,19 @@ impl Session {
         let values = self.values_of(&given, &mut it);
         let mut go_on = true;
         if !(points.is_empty() && measured.is_empty()) {
-            let motion = self.motion_over(way, range, told.progress)?;
+            let motion = self.motion_over(way, range, tally.progress)?;
             let at = path_parameters(&motion, &it.places);
             if !points.is_empty() {
-                go_on = self.points_in_lanes(&motion, &values, (&routes, &at), &mut it, &mut told);
+                go_on = self.points_in_lanes(&motion, &values, (&routes, &at), &mut it, &mut tally);
             }
             if !measured.is_empty() && go_on {
                 let wanted = (&asked, measured.as_slice());
-                go_on = self.measured_in_lanes(&motion, &values, (wanted, &at), &mut it, &mut told);
+                go_on =
+                    self.measured_in_lanes(&motion, &values, (wanted, &at), &mut it, &mut tally);
             }
         }
         if !followed.is_empty() && go_on {
-            go_on = self.one_by_one(&given, way, range, (&asked, &followed), &mut it, &mut told);
+            go_on = self.one_by_one(&given, way, range, (&asked, &followed), &mut it, &mut tally);
         }
         if !go_on {
             it.stopped();
@@ -356,7 +357,7 @@ impl Session {
         values: &[f64],
         (routes, at): (&[Route], &[f64]),
         it: &mut Many,
-        told: &mut Told<'_>,
+        tally: &mut Tally<'_>,
     ) -> bool {
         let mut wanted: Vec<PointId> = (routes.iter())
             .filter_map(|route| match route {
@@ -401,7 +402,7 @@ impl Session {
                     }
                 }
             }
-            if !told.more(places.len() * it.designs) {
+            if !tally.more(places.len() * it.designs) {
                 return false;
             }
         }
@@ -415,7 +416,7 @@ impl Session {
         values: &[f64],
         ((asked, columns), at): ((&Asked, &[usize]), &[f64]),
         it: &mut Many,
-        told: &mut Told<'_>,
+        tally: &mut Tally<'_>,
     ) -> bool {
         let parameters = motion.mechanism().model.parameters.len();
         let measures: Vec<&Measure> = columns
@@ -453,7 +454,7 @@ impl Session {
                     }
                 }
             }
-            if !told.more(some.len() * LANES * at.len()) {
+            if !tally.more(some.len() * LANES * at.len()) {
                 return false;
             }
         }
@@ -468,7 +469,7 @@ impl Session {
         range: (f64, f64),
         (asked, others): (&Asked, &[usize]),
         it: &mut Many,
-        told: &mut Told<'_>,
+        tally: &mut Tally<'_>,
     ) -> bool {
         let own = Asked {
             quantities: others
@@ -504,7 +505,7 @@ impl Session {
                     None => {}
                 }
             }
-            if !told.more((last - first) * places.len()) {
+            if !tally.more((last - first) * places.len()) {
                 return false;
             }
         }
@@ -521,10 +522,11 @@ impl Session {
         asked: &Asked,
     ) -> Result<Sweep, String> {
         let design = self.compiled.design(given);
-        let motion = motion_over(&design, way, range, &mut Silent).map_err(|told| told.message)?;
+        let motion =
+            motion_over(&design, way, range, &mut Silent).map_err(|tally| tally.message)?;
         rows(&self.compiled, &motion, way, places, asked, &mut Silent).map_err(|error| {
             let first = error.diagnostics.into_iter().next();
-            first.map_or_else(String::new, |told| told.message)
+            first.map_or_else(String::new, |tally| tally.message)
         })
     }
 }
@@ -560,13 +562,13 @@ impl Many {
 }
 
 /// What the progress has heard.
-struct Told<'p> {
+struct Tally<'p> {
     progress: &'p mut dyn Progress,
     done: usize,
     total: usize,
 }
 
-impl Told<'_> {
+impl Tally<'_> {
     /// Tells that more is done; false when it is to stop.
     fn more(&mut self, values: usize) -> bool {
         self.done += values;

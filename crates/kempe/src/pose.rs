@@ -237,12 +237,12 @@ impl Pose {
         let quantities: Vec<_> = asked.quantities.iter().collect();
         let (si, note, time) = match (self.passed, asked.any_forces()) {
             (Passed::Never, true) => {
-                let told = Diagnostic::error(
+                let diagnostic = Diagnostic::error(
                     "not-on-the-motion",
                     "forces depend on speeds: they are known on a motion, not where several drives were set",
                 );
                 return Err(self.compiled.error(
-                    told.help(
+                    diagnostic.help(
                         "sweep over time, or move one drive from here: pose_near, sweep_from",
                     ),
                 ));
@@ -250,10 +250,10 @@ impl Pose {
             (Passed::Never, false) => {
                 let measures: Vec<_> = quantities.iter().map(|q| &q.measure).collect();
                 let mut sampler = Sampler::new(&self.motion, &measures).map_err(|problems| {
-                    let told = problems.iter().map(|p| {
+                    let diagnostic = problems.iter().map(|p| {
                         Diagnostic::error("not-measurable", format!("`{text}`: {}", p.reason))
                     });
-                    self.compiled.errors(told.collect())
+                    self.compiled.errors(diagnostic.collect())
                 })?;
                 let mut sample = sampler.without_time(self.at);
                 asked.without_time(&mut sample);
@@ -261,7 +261,7 @@ impl Pose {
             }
             (passed, forces) => {
                 let mut along = Along::new(model, &self.motion, &quantities, forces)
-                    .map_err(|told| self.compiled.errors(told))?;
+                    .map_err(|diagnostic| self.compiled.errors(diagnostic))?;
                 let row = along.row(match passed {
                     Passed::At(time) => RowPlace::Time(time),
                     _ => RowPlace::Drive(self.at),
@@ -328,14 +328,16 @@ impl Session {
                 |(other, _): &(Way, f64)| *other == way || *other == Way::Time || way == Way::Time;
             if set.iter().any(clash) {
                 let message = format!("`{name}` is set besides what says the same");
-                let told = Diagnostic::error("over-specified", message);
+                let diagnostic = Diagnostic::error("over-specified", message);
                 return Err(self
                     .compiled
-                    .error(told.help("give the time alone, or every drive once")));
+                    .error(diagnostic.help("give the time alone, or every drive once")));
             }
             if !value.is_finite() {
-                let told = Diagnostic::error("not-finite", format!("`{name}` is {value}"));
-                return Err(self.compiled.error(told.help("give a finite place, in SI")));
+                let diagnostic = Diagnostic::error("not-finite", format!("`{name}` is {value}"));
+                return Err(self
+                    .compiled
+                    .error(diagnostic.help("give a finite place, in SI")));
             }
             set.push((way, value));
         }
@@ -352,7 +354,8 @@ impl Session {
                 (motion, start, Passed::At(0.0))
             }
             [(Way::Time, time)] => {
-                on_the_motion(&self.design, *time).map_err(|told| self.compiled.error(told))?;
+                on_the_motion(&self.design, *time)
+                    .map_err(|diagnostic| self.compiled.error(diagnostic))?;
                 let motion = self.known_motion(progress)?;
                 let (model, parameters) = (&self.design.mechanism.model, &self.design.parameters);
                 let at = motion.path.parameter_at(model, *time, parameters);
@@ -368,7 +371,8 @@ impl Session {
                 (motion, end, Passed::Never)
             }
         };
-        Pose::on(&self.compiled, &motion, at, passed).map_err(|told| self.compiled.error(told))
+        Pose::on(&self.compiled, &motion, at, passed)
+            .map_err(|diagnostic| self.compiled.error(diagnostic))
     }
 
     /// The motion of several drives from their start to their places, all at once, in a second.
@@ -428,12 +432,14 @@ impl Session {
         self.of_this_design(pose)?;
         let drive = self.compiled.drive(drive)?.index();
         if !place.is_finite() {
-            let told = Diagnostic::error("not-finite", format!("the place is {place}"));
-            return Err(self.compiled.error(told.help("give a finite place, in SI")));
+            let diagnostic = Diagnostic::error("not-finite", format!("the place is {place}"));
+            return Err(self
+                .compiled
+                .error(diagnostic.help("give a finite place, in SI")));
         }
         let motion = self.motion_from(pose, drive, (place, place), &mut Silent)?;
         Pose::on(&self.compiled, &motion, place, Passed::First)
-            .map_err(|told| self.compiled.error(told))
+            .map_err(|diagnostic| self.compiled.error(diagnostic))
     }
 
     /// Whether a pose is one of the design as it is set now.
@@ -443,9 +449,9 @@ impl Session {
         {
             return Ok(());
         }
-        let told = Diagnostic::error("another-design", "the pose is one of another design");
+        let diagnostic = Diagnostic::error("another-design", "the pose is one of another design");
         Err(self.compiled.error(
-            told.help(
+            diagnostic.help(
                 "find it anew: a pose holds for the parameters that were set when it was found",
             ),
         ))
@@ -477,8 +483,8 @@ fn unreached(compiled: &Compiled, motion: &Motion, at: f64) -> Diagnostic {
             .help("move them one by one on another way: pose_near");
     }
     if reason != EndReason::Covered {
-        let told = beyond_limit(motion, &[(reason, at)]);
-        return told.with_severity(Severity::Error);
+        let diagnostic = beyond_limit(motion, &[(reason, at)]);
+        return diagnostic.with_severity(Severity::Error);
     }
     let place = place_text(compiled, motion, at);
     Diagnostic::error("not-reached", format!("no pose was found at {place}"))

@@ -112,11 +112,11 @@ impl Session {
             let id = self.compiled.parameter(name)?;
             self.may_be_set(id)?;
             if !value.is_finite() {
-                let told =
+                let diagnostic =
                     Diagnostic::error("not-finite", format!("parameter `{name}` is {value}"));
                 return Err(self
                     .compiled
-                    .error(told.help("give it a finite value, in SI")));
+                    .error(diagnostic.help("give it a finite value, in SI")));
             }
             given[id.index()] = Some(value);
         }
@@ -145,10 +145,13 @@ impl Session {
     pub fn set_text(&mut self, parameter: &str, text: &str) -> Result<(), Error> {
         let id = self.compiled.parameter(parameter)?;
         let wanted = self.compiled.data().parameters[id.index()].dimension;
-        let told = |issue: Issue| Diagnostic::of_issue(issue, parameter, text);
+        let diagnostic = |issue: Issue| Diagnostic::of_issue(issue, parameter, text);
         let (expr, found) = parse(text)
             .and_then(|tree| check(&tree, &mut Parameters(&self.compiled)))
-            .map_err(|issues| self.compiled.errors(issues.into_iter().map(told).collect()))?;
+            .map_err(|issues| {
+                self.compiled
+                    .errors(issues.into_iter().map(diagnostic).collect())
+            })?;
         if !found.compatible(wanted) {
             let message = format!("{wanted} expected, found {}", found.with_article());
             let unit = self.compiled.units().unit(wanted);
@@ -158,7 +161,7 @@ impl Session {
                     "" => "give a plain number".to_owned(),
                     unit => format!("give it a unit, such as {unit}"),
                 });
-            return Err(self.compiled.error(told(issue)));
+            return Err(self.compiled.error(diagnostic(issue)));
         }
         self.set(
             parameter,
@@ -239,7 +242,7 @@ impl Session {
         let Some(settled) = settled else {
             return Ok(());
         };
-        let told = Diagnostic::error(
+        let diagnostic = Diagnostic::error(
             "settled-parameter",
             format!(
                 "`{}` cannot be set in a session: the place of an `at` or the period of a table is made of `{}`",
@@ -248,7 +251,7 @@ impl Session {
             ),
         );
         let span = model.parameters[settled.index()].span.clone();
-        Err(self.compiled.error(told.at(span, "taken for a number when the file was read").help(
+        Err(self.compiled.error(diagnostic.at(span, "taken for a number when the file was read").help(
             "read the model with another value: Model::with(parameter, value), and compile that",
         )))
     }
@@ -257,7 +260,7 @@ impl Session {
     fn take(&mut self, given: Vec<Option<f64>>) -> Result<(), Error> {
         let design = self.compiled.design(&given);
         let model = &design.mechanism.model;
-        let mut told: Vec<Diagnostic> = (model.parameters.iter().zip(&design.parameters))
+        let mut diagnostic: Vec<Diagnostic> = (model.parameters.iter().zip(&design.parameters))
             .filter(|(_, value)| !value.is_finite())
             .map(|(p, value)| {
                 Diagnostic::error("not-finite", format!("parameter `{}` is {value}", p.name))
@@ -267,9 +270,9 @@ impl Session {
                     )
             })
             .collect();
-        told.extend(model.unsound(&design.parameters));
-        if !told.is_empty() {
-            return Err(self.compiled.errors(told));
+        diagnostic.extend(model.unsound(&design.parameters));
+        if !diagnostic.is_empty() {
+            return Err(self.compiled.errors(diagnostic));
         }
         self.given = given;
         self.design = design;
@@ -341,7 +344,7 @@ impl Asked {
         model: &kempe_model::Model,
         measures: impl IntoIterator<Item = M>,
     ) -> Result<Self, Error> {
-        let mut told = Vec::new();
+        let mut diagnostic = Vec::new();
         let mut it = Self {
             quantities: Vec::new(),
             forces: Vec::new(),
@@ -365,12 +368,12 @@ impl Asked {
                         dimension,
                     });
                 }
-                Err(problems) => told.extend(problems),
+                Err(problems) => diagnostic.extend(problems),
             }
         }
-        match told.is_empty() {
+        match diagnostic.is_empty() {
             true => Ok(it),
-            false => Err(compiled.errors(told)),
+            false => Err(compiled.errors(diagnostic)),
         }
     }
 

@@ -230,7 +230,7 @@ pub(crate) fn rows(
         &rows,
         progress,
     )
-    .map_err(|told| compiled.errors(told))?;
+    .map_err(|diagnostic| compiled.errors(diagnostic))?;
     let (name, dimension) = way.places(compiled);
     let column = |heading: Heading| Block::new(heading, places.len());
     let mut sweep = Sweep {
@@ -252,7 +252,9 @@ pub(crate) fn rows(
         };
         sweep.along.values.push(*place);
         match beyond {
-            Some(told) => sweep.push_unreached(format!("not reached: {}", told.message)),
+            Some(diagnostic) => {
+                sweep.push_unreached(format!("not reached: {}", diagnostic.message))
+            }
             None => {
                 let mut row = along.row(rows[done]);
                 let note = row.note(mechanism);

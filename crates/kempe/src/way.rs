@@ -63,8 +63,8 @@ pub(crate) fn extent(compiled: &Compiled, places: &[f64]) -> Result<(f64, f64), 
     let mut range = (f64::INFINITY, f64::NEG_INFINITY);
     for (index, place) in places.iter().enumerate() {
         if !place.is_finite() {
-            let told = Diagnostic::error("not-finite", format!("place {index} is {place}"));
-            return Err(compiled.error(told.help("give finite places, in SI")));
+            let diagnostic = Diagnostic::error("not-finite", format!("place {index} is {place}"));
+            return Err(compiled.error(diagnostic.help("give finite places, in SI")));
         }
         range = (range.0.min(*place), range.1.max(*place));
     }
@@ -78,8 +78,8 @@ pub(crate) fn on_the_motion(design: &Design<f64>, time: f64) -> Result<(), Diagn
         return Ok(());
     }
     let message = format!("the motion does not pass {time} s: it goes from 0 s to {duration} s");
-    let told = Diagnostic::error("not-on-the-motion", message);
-    Err(told.help(format!("give a time from 0 s to {duration} s")))
+    let diagnostic = Diagnostic::error("not-on-the-motion", message);
+    Err(diagnostic.help(format!("give a time from 0 s to {duration} s")))
 }
 
 /// Whether a motion is one of the drive and was asked to cover the range.
@@ -181,7 +181,7 @@ impl Session {
             return Ok(known.clone());
         }
         let motion = alone(&self.design, drive, range, progress)
-            .map_err(|told| self.compiled.error(told))?;
+            .map_err(|diagnostic| self.compiled.error(diagnostic))?;
         self.alone[drive] = Some(motion.clone());
         Ok(motion)
     }

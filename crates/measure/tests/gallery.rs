@@ -41,11 +41,11 @@ fn every_example_closes_over_its_whole_range() {
             for p in spread(&motion, 25) {
                 let row = sampler.at_parameter(p);
                 assert!(row.closure < 1e-12, "{name} at {p}: {:e}", row.closure);
-                let told = row.note.as_deref().unwrap_or("");
-                let fine = told.is_empty()
-                    || told.starts_with("change point")
-                    || told.starts_with("limit");
-                assert!(fine, "{name} at {p}: {told}");
+                let diagnostic = row.note.as_deref().unwrap_or("");
+                let fine = diagnostic.is_empty()
+                    || diagnostic.starts_with("change point")
+                    || diagnostic.starts_with("limit");
+                assert!(fine, "{name} at {p}: {diagnostic}");
             }
             count += 1;
         }

@@ -278,7 +278,7 @@ fn turns(spec: &Spec) -> Option<bool> {
         .map(|d| matches!(d.kind, SKind::Turn { .. }))
 }
 
-fn told(recipe: Recipe) -> Made {
+fn with_hints(recipe: Recipe) -> Made {
     make(&Recipe {
         hints: true,
         ..recipe
@@ -315,7 +315,7 @@ proptest! {
 
     #[test]
     fn the_mirror_image_moves_as_the_mirror_image(recipe in recipes(1.0)) {
-        let made = told(recipe);
+        let made = with_hints(recipe);
         let turns = turns(&made.spec) == Some(true);
         let p = move |p: f64| if turns { -p } else { p };
         compare(&made, &made.spec.mirrored(), &p, &|_, [x, y, a]| [x, -y, -a], 1.0)?;
@@ -323,7 +323,7 @@ proptest! {
 
     #[test]
     fn size_changes_nothing(recipe in recipes(1.0), power in proptest::sample::select(vec![1e-6, 1e6, 0.3, 1e3])) {
-        let made = told(Recipe { decade: 0.0, ..recipe });
+        let made = with_hints(Recipe { decade: 0.0, ..recipe });
         let turns = turns(&made.spec) == Some(true);
         let p = move |p: f64| if turns { p } else { p * power };
         let length = if turns { 1.0 } else { power };
@@ -337,7 +337,7 @@ proptest! {
         y in -50.0..50.0_f64,
         angle in -3.0..3.0_f64,
     ) {
-        let made = told(Recipe { decade: 0.0, ..recipe });
+        let made = with_hints(Recipe { decade: 0.0, ..recipe });
         // Teeth mesh by angles counted from -pi to pi at the start: turned, they may mesh one turn on.
         let angle = if has_gears(&made.spec) { 0.0 } else { angle };
         let moved = made.spec.moved([x, y], angle);
@@ -353,7 +353,7 @@ proptest! {
     /// starts where it ended, on the assembly it ended on.
     #[test]
     fn going_back_gives_the_same_poses(recipe in recipes(1.0)) {
-        let made = told(recipe);
+        let made = with_hints(recipe);
         let case = Case::of(&made.spec);
         let Ok(motion) = case.motion() else { return Ok(()) };
         let (low, high) = motion.reached();

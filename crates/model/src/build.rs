@@ -425,11 +425,11 @@ pub struct BuildError {
 
 impl fmt::Display for BuildError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let told = self.diagnostics.iter();
-        let told: Vec<String> = told
+        let messages = self.diagnostics.iter();
+        let messages: Vec<String> = messages
             .map(|d| d.render_plain("the model built", &self.file.toml))
             .collect();
-        f.write_str(told.join("\n").trim_end())
+        f.write_str(messages.join("\n").trim_end())
     }
 }
 

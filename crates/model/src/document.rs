@@ -197,17 +197,17 @@ fn read(
     broken: &mut Broken,
 ) -> Table {
     // one error to a line: the others of the line follow from it
-    let mut told = None;
+    let mut last_line = None;
     for error in errors.iter().take(MAX_SYNTAX_ERRORS) {
         let diagnostic = syntax_error(error, text);
         let line = line_at(text, diagnostic.start()).number;
         if diagnostic.code == "toml-syntax" {
             broken.add(text, diagnostic.start()..diagnostic.start());
         }
-        if diagnostic.code != "toml-syntax" || told != Some(line) {
+        if diagnostic.code != "toml-syntax" || last_line != Some(line) {
             diagnostics.push(diagnostic);
         }
-        told = Some(line);
+        last_line = Some(line);
     }
     let mut table = table(root.get_ref(), text);
     if !broken.is_empty() {

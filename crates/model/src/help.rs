@@ -14,10 +14,10 @@ use crate::keys::{Key, Kind, Need, Takes};
 /// assert!(kempe_model::language::help("bor").is_none());
 /// ```
 pub fn help(word: &str) -> Option<String> {
-    let mut told = Vec::new();
+    let mut diagnostics = Vec::new();
     visit_keys(&mut |path, kind, key| {
         if key.name == word {
-            told.push(of_key(path, kind, key));
+            diagnostics.push(of_key(path, kind, key));
         }
     });
     let mut kinds: Vec<&Kind> = Vec::new();
@@ -27,8 +27,8 @@ pub fn help(word: &str) -> Option<String> {
             kinds.push(kind);
         }
     });
-    told.extend(kinds.into_iter().map(of_kind));
-    (!told.is_empty()).then(|| told.join("\n"))
+    diagnostics.extend(kinds.into_iter().map(of_kind));
+    (!diagnostics.is_empty()).then(|| diagnostics.join("\n"))
 }
 
 /// Calls `f` with every key of the language, the section in which it stands and its kind of table.

@@ -102,7 +102,7 @@ mod tests {
 
     const FILE: &str = "[links]\nframe = { A = [0, 0] }\ncrank = { A-B = 1 }\n[drives]\nm = { turns = \"crank\", law = { table = \"t.csv\" } }\n";
 
-    fn told(tables: &Tables) -> Vec<(&'static str, String)> {
+    fn listed(tables: &Tables) -> Vec<(&'static str, String)> {
         let found = Model::from_toml(FILE, "", &mut tables.files()).unwrap_err();
         found.into_iter().map(|d| (d.code, d.message)).collect()
     }
@@ -125,9 +125,9 @@ mod tests {
     #[test]
     fn what_is_wrong_is_told_as_of_a_file() {
         let mut tables = Tables::new();
-        assert_eq!(told(&tables)[0].0, "table-unreadable");
+        assert_eq!(listed(&tables)[0].0, "table-unreadable");
         tables.insert_columns("t.cvs", &[("t", &[0.0, 1.0]), ("value", &[0.0, 1.0])]);
-        assert!(told(&tables)[0].1.contains("but `t.cvs`"));
+        assert!(listed(&tables)[0].1.contains("but `t.cvs`"));
         for (columns, code) in [
             (
                 &[("t", &[0.0, 1.0][..]), ("value", &[0.0])][..],
@@ -149,7 +149,7 @@ mod tests {
             (&[], "table-column"),
         ] {
             tables.insert_columns("t.csv", columns);
-            assert_eq!(told(&tables)[0].0, code, "{columns:?}");
+            assert_eq!(listed(&tables)[0].0, code, "{columns:?}");
         }
     }
 }

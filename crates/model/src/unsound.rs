@@ -32,7 +32,7 @@ impl Model {
 impl Bound {
     fn broken(&self, model: &Model, parameters: &[f64]) -> Option<Diagnostic> {
         let x = value(&self.value, parameters);
-        let told = |code, message| {
+        let finding = |code, message| {
             Diagnostic::error(code, message)
                 .at(self.span.clone(), "with the parameters as they are set")
         };
@@ -43,7 +43,7 @@ impl Bound {
                 "infinite"
             };
             return Some(
-                told("not-finite", format!("{} is {found}", self.what)).help(
+                finding("not-finite", format!("{} is {found}", self.what)).help(
                     "look for a division by zero, the root of a negative number or an overflow",
                 ),
             );
@@ -60,7 +60,7 @@ impl Bound {
             .collect();
         let found = format_digits(x, &Unit::for_display(self.dimension, &preferred), 6);
         Some(
-            told("bad-size", format!("{} {wanted}, found {found}", self.what))
+            finding("bad-size", format!("{} {wanted}, found {found}", self.what))
                 .help("set the parameters that it is made of to values that leave it so"),
         )
     }

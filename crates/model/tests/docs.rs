@@ -193,7 +193,7 @@ fn the_language_page_leaves_nothing_out() {
     let page = page("docs/language.md");
     let all = words();
     // the page writes "shaking_force (also _x, _y)"
-    let told = |word: &str| {
+    let diagnostic = |word: &str| {
         let stem = word.strip_suffix("_x").or(word.strip_suffix("_y"));
         let word = stem.filter(|w| *w == "shaking_force").unwrap_or(word);
         let letter = |c: char| c.is_alphanumeric() || c == '_';
@@ -202,7 +202,7 @@ fn the_language_page_leaves_nothing_out() {
             !before.ends_with(letter) && !after.starts_with(letter)
         })
     };
-    let missing: Vec<&String> = all.iter().filter(|w| !told(w)).collect();
+    let missing: Vec<&String> = all.iter().filter(|w| !diagnostic(w)).collect();
     assert!(all.len() > 150, "{all:?}");
     assert!(
         missing.is_empty(),

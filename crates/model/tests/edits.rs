@@ -80,7 +80,8 @@ fn a_part_renamed_is_the_same_part_and_renamed_back_the_same_text() {
             let edits = rename(&text, &part, to).unwrap();
             let edited = apply(&text, &edits).unwrap();
             let names_of = |file: &ModelFile| file.toml.replace(to, &part.name);
-            let changed = read(&edited, &folder).unwrap_or_else(|told| panic!("{part}: {told}"));
+            let changed =
+                read(&edited, &folder).unwrap_or_else(|diagnostic| panic!("{part}: {diagnostic}"));
             assert_eq!(names_of(&changed.to_toml()), written.toml, "{part}");
             let back = rename(&edited, &Part::new(part.kind, to), &part.name).unwrap();
             assert_eq!(apply(&edited, &back).unwrap(), text, "{part}");
@@ -133,8 +134,8 @@ fn what_cannot_be_renamed_is_refused() {
     );
     assert_eq!(code(PartKind::Study, "turn", "Turn").unwrap().len(), 1);
     let broken = format!("{text}[loads]\nx = {{ torque = \"2 * (a\", on = \"bar\" }}\n");
-    let told = rename(&broken, &Part::new(PartKind::Parameter, "a"), "c").unwrap_err();
-    assert_eq!(&broken[told.labels[0].span.clone()], "\"2 * (a\"");
+    let diagnostic = rename(&broken, &Part::new(PartKind::Parameter, "a"), "c").unwrap_err();
+    assert_eq!(&broken[diagnostic.labels[0].span.clone()], "\"2 * (a\"");
     // what does not name it may be broken
     assert!(rename(&broken, &Part::new(PartKind::Drive, "m"), "motor").is_ok());
 }
@@ -227,7 +228,8 @@ fn a_part_that_nothing_names_goes_and_the_rest_reads() {
                         "{part}: {left}"
                     );
                     if kinds.contains(&part.kind) {
-                        read(&left, &folder).unwrap_or_else(|told| panic!("{part}: {told}"));
+                        read(&left, &folder)
+                            .unwrap_or_else(|diagnostic| panic!("{part}: {diagnostic}"));
                         gone += 1;
                     }
                 }
@@ -257,8 +259,11 @@ fn with_all_that_names_it_nothing_names_it() {
                 "{part}: {left}"
             );
             // of what is left no name is missing
-            if let Err(told) = read(&left, &folder) {
-                assert!(!told.contains("[unknown-name]"), "{part}: {told}\n{left}");
+            if let Err(diagnostic) = read(&left, &folder) {
+                assert!(
+                    !diagnostic.contains("[unknown-name]"),
+                    "{part}: {diagnostic}\n{left}"
+                );
             }
         }
     }

@@ -94,9 +94,9 @@ fn a_measure_that_does_not_fit_the_model_is_told_in_its_own_text() {
     let model = Model::from_toml(file, "", &mut |_| Err(String::new()))
         .unwrap()
         .model;
-    let told = model.measure("2 * x(C)").unwrap_err();
-    assert_eq!(told[0].code, "unknown-name");
-    let label = &told[0].labels[0];
+    let diagnostic = model.measure("2 * x(C)").unwrap_err();
+    assert_eq!(diagnostic[0].code, "unknown-name");
+    let label = &diagnostic[0].labels[0];
     let source = label.source.as_ref().unwrap();
     assert_eq!(&source.text[label.span.clone()], "C");
 }

@@ -52,11 +52,11 @@ fn messages_are_short_whatever_a_table_holds() {
         + "[drives]\nmotor = { turns = \"crank\", law = { table = \"zeros.csv\" } }\n";
     let found = Model::from_toml(&text, "zeros", &mut |_| Ok(zeros.clone())).unwrap_err();
     for d in &found {
-        let told = d.render_plain("zeros.toml", &text);
+        let diagnostic = d.render_plain("zeros.toml", &text);
         assert!(
-            told.len() < 2000 && !told.contains('\0'),
+            diagnostic.len() < 2000 && !diagnostic.contains('\0'),
             "{} bytes",
-            told.len()
+            diagnostic.len()
         );
     }
     let found = Model::from_toml(&text, "large", &mut |_| Ok(" ".repeat(70 << 20))).unwrap_err();

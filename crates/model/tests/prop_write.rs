@@ -222,8 +222,8 @@ proptest! {
             let file = model.to_toml();
             let again = Model::from_toml(&file.toml, "", &mut file.tables.files());
             let again = again.map_err(|found| {
-                let told: String = found.iter().map(|d| d.render_plain("", &file.toml)).collect();
-                TestCaseError::fail(told)
+                let diagnostic: String = found.iter().map(|d| d.render_plain("", &file.toml)).collect();
+                TestCaseError::fail(diagnostic)
             })?;
             prop_assert!(again.model.same_as(&model), "{}\n{}", text, file.toml);
         }
@@ -232,14 +232,14 @@ proptest! {
     #[test]
     fn built_written_and_read_it_is_the_same(builder in model()) {
         let Ok(Checked { model, .. }) = builder.build() else {
-            let told = builder.build().unwrap_err().to_string();
-            return Err(TestCaseError::fail(told));
+            let diagnostic = builder.build().unwrap_err().to_string();
+            return Err(TestCaseError::fail(diagnostic));
         };
         let file = model.to_toml();
         let again = Model::from_toml(&file.toml, "", &mut file.tables.files());
         let again = again.map_err(|found| {
-            let told: String = found.iter().map(|d| d.render_plain("", &file.toml)).collect();
-            TestCaseError::fail(told)
+            let diagnostic: String = found.iter().map(|d| d.render_plain("", &file.toml)).collect();
+            TestCaseError::fail(diagnostic)
         })?;
         prop_assert!(again.model.same_as(&model), "{}\n{}", builder.file().toml, file.toml);
         // to the last bit of every place

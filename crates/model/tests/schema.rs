@@ -122,7 +122,7 @@ fn files_of_the_wrong_shape_are_not() {
 /// Every key of the table of keys is in the schema with its sentence and its example, and nothing else is.
 #[test]
 fn the_schema_describes_every_key() {
-    fn told(schema: &Value, all: &mut Vec<(String, String)>) {
+    fn described(schema: &Value, all: &mut Vec<(String, String)>) {
         for (key, value) in schema.as_object().into_iter().flatten() {
             for (name, property) in value.as_object().into_iter().flatten() {
                 if matches!(key.as_str(), "properties" | "patternProperties") {
@@ -130,16 +130,16 @@ fn the_schema_describes_every_key() {
                     all.push((name.trim_start_matches('^').to_owned(), about));
                 }
             }
-            told(value, all);
+            described(value, all);
         }
         schema
             .as_array()
             .into_iter()
             .flatten()
-            .for_each(|item| told(item, all));
+            .for_each(|item| described(item, all));
     }
     let mut all = Vec::new();
-    told(&schema(), &mut all);
+    described(&schema(), &mut all);
     let mut known = Vec::new();
     kempe_model::language::visit_keys(&mut |_, _, key| known.push((key.name, key.about)));
     for (name, about) in &known {

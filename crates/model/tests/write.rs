@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use kempe_model::{Checked, Diagnostic, Model, STARTERS};
 
-fn told(found: &[Diagnostic], text: &str) -> String {
+fn rendered(found: &[Diagnostic], text: &str) -> String {
     found
         .iter()
         .map(|d| d.render_plain("written", text))
@@ -17,7 +17,7 @@ fn reads_back(name: &str, checked: &Checked) {
     let model = &checked.model;
     let file = model.to_toml();
     let again = Model::from_toml(&file.toml, "other", &mut file.tables.files())
-        .unwrap_or_else(|found| panic!("{name}: {}\n{}", told(&found, &file.toml), file.toml));
+        .unwrap_or_else(|found| panic!("{name}: {}\n{}", rendered(&found, &file.toml), file.toml));
     assert!(
         again.model.same_as(model),
         "{name}: {}\n{model:#?}\n{:#?}",
@@ -40,7 +40,7 @@ fn reads_back(name: &str, checked: &Checked) {
         assert!(
             before.contains(&code),
             "{name}: new warning {}",
-            told(&again.warnings, &file.toml)
+            rendered(&again.warnings, &file.toml)
         );
     }
 }
@@ -264,7 +264,7 @@ fn every_word_of_the_language_reads_back() {
         ),
     };
     let checked = Model::from_toml(EVERYTHING, "", &mut tables)
-        .unwrap_or_else(|found| panic!("{}", told(&found, EVERYTHING)));
+        .unwrap_or_else(|found| panic!("{}", rendered(&found, EVERYTHING)));
     reads_back("everything", &checked);
     let file = checked.model.to_toml();
     for part in [

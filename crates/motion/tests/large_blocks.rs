@@ -19,7 +19,11 @@ fn two_triads() -> Case {
 }
 
 /// Solves the one Newton block of a mechanism whose drives are at their start, with so much work allowed.
-fn solved(case: &Case, work: &mut f64, told: &mut dyn FnMut(f64) -> ControlFlow<()>) -> Solutions {
+fn solved(
+    case: &Case,
+    work: &mut f64,
+    progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
+) -> Solutions {
     let mechanism = &case.mechanism;
     let plan = &mechanism.plan;
     let mut state: Configuration<f64> = Configuration::new(mechanism);
@@ -39,7 +43,7 @@ fn solved(case: &Case, work: &mut f64, told: &mut dyn FnMut(f64) -> ControlFlow<
         size,
         None,
         work,
-        told,
+        progress,
     )
 }
 

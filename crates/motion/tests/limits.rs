@@ -125,12 +125,12 @@ fn rows_to_the_end(motion: &std::sync::Arc<Motion>) {
             low + (high - low) * f64::from(k) / 12.0
         };
         let row = sampler.at_parameter(p);
-        let told = row.note.as_deref().unwrap_or("limit");
+        let diagnostic = row.note.as_deref().unwrap_or("limit");
         assert!(
-            told.starts_with("limit") || told.starts_with("change"),
-            "{p}: {told}"
+            diagnostic.starts_with("limit") || diagnostic.starts_with("change"),
+            "{p}: {diagnostic}"
         );
-        assert!(row.closure < 1e-11, "{p}: {:e} {told}", row.closure);
+        assert!(row.closure < 1e-11, "{p}: {:e} {diagnostic}", row.closure);
     }
 }
 
@@ -287,14 +287,16 @@ fn follow_through(l: [f64; 4], from: f64, to: f64, side: &str) {
             low + (high - low) * f64::from(k) / 40.0
         };
         let row = sampler.at_parameter(p);
-        let told = row.note.clone().unwrap_or_default();
+        let diagnostic = row.note.clone().unwrap_or_default();
         assert!(
-            told.is_empty() || told.starts_with("change") || told.starts_with("limit"),
-            "{l:?} at {p}: {told}"
+            diagnostic.is_empty()
+                || diagnostic.starts_with("change")
+                || diagnostic.starts_with("limit"),
+            "{l:?} at {p}: {diagnostic}"
         );
         assert!(
             row.closure < 1e-10,
-            "{l:?} at {p}: {:e} {told}",
+            "{l:?} at {p}: {:e} {diagnostic}",
             row.closure
         );
         let got = times(point(&case, &row.points, "C"), 1e3);
@@ -303,7 +305,7 @@ fn follow_through(l: [f64; 4], from: f64, to: f64, side: &str) {
         let off = norm(sub(got, truth)) / a.max(b).max(c).max(d);
         if !(off < if near_end { 1e-5 } else { 1e-8 }) && norm(sub(polar(a, p), [d, 0.0])) > 1e-3 {
             panic!(
-                "{l:?} {side} from {from}, at {p}: C at {got:?}, not {truth:?}: {off:e} {told} {:?}",
+                "{l:?} {side} from {from}, at {p}: C at {got:?}, not {truth:?}: {off:e} {diagnostic} {:?}",
                 motion.events
             );
         }

@@ -146,14 +146,14 @@ fn is_fresh(again: &Motion, fresh: &Motion, what: &str) {
         "{what}"
     );
     assert_eq!(again.ends, fresh.ends, "{what}");
-    let told = |motion: &Motion| -> Vec<_> {
+    let diagnostic = |motion: &Motion| -> Vec<_> {
         motion
             .events
             .iter()
             .map(|e| (e.kind, e.steps.clone()))
             .collect()
     };
-    assert_eq!(told(again), told(fresh), "{what}");
+    assert_eq!(diagnostic(again), diagnostic(fresh), "{what}");
     for (a, b) in again.events.iter().zip(&fresh.events) {
         assert!((a.at - b.at).abs() < 1e-9, "{what}: {} {}", a.at, b.at);
     }

@@ -123,7 +123,7 @@ fn flat_four_bars_start_on_one_of_the_branches_through_the_pose() {
                 continue;
             };
             let l = [a, b, c, d];
-            let told = format!("{l:?} from {from}");
+            let diagnostic = format!("{l:?} from {from}");
             let expected = slopes(l, [crank, coupler, rocker]);
             tried += 1;
             for to in [from + 10.0, from - 10.0] {
@@ -132,26 +132,29 @@ fn flat_four_bars_start_on_one_of_the_branches_through_the_pose() {
                 assert_eq!(
                     motion.ends,
                     (EndReason::Covered, EndReason::Covered),
-                    "{told}"
+                    "{diagnostic}"
                 );
-                assert_eq!(change_points(&motion), [from * DEG], "{told}");
-                assert_eq!(motion.choices, 2, "{told}");
+                assert_eq!(change_points(&motion), [from * DEG], "{diagnostic}");
+                assert_eq!(motion.choices, 2, "{diagnostic}");
                 let first = row(&case, &motion, from * DEG);
                 let note = first.note.unwrap();
-                assert!(note.contains("2 branches"), "{told}: {note}");
+                assert!(note.contains("2 branches"), "{diagnostic}: {note}");
                 let (angle, slope) = (first.values[0], first.values[1]);
-                assert!((angle.cos() - rocker).abs() < 1e-15, "{told}: {angle}");
-                assert!(angle.sin().abs() < 1e-10, "{told}: {angle}");
+                assert!(
+                    (angle.cos() - rocker).abs() < 1e-15,
+                    "{diagnostic}: {angle}"
+                );
+                assert!(angle.sin().abs() < 1e-10, "{diagnostic}: {angle}");
                 let off = expected
                     .map(|e| (slope - e).abs())
                     .into_iter()
                     .fold(1.0, f64::min);
-                assert!(off < 1e-7, "{told}: {slope} of {expected:?}");
+                assert!(off < 1e-7, "{diagnostic}: {slope} of {expected:?}");
                 // The rows go on as the first ones say.
                 let h = (to - from).signum() * 1e-3;
                 let next = row(&case, &motion, from * DEG + h);
                 let guess = angle + slope * h + 0.5 * first.values[2] * h * h;
-                assert!((next.values[0] - guess).abs() < 1e-5, "{told}");
+                assert!((next.values[0] - guess).abs() < 1e-5, "{diagnostic}");
             }
         }
     }

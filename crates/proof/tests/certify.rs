@@ -379,9 +379,9 @@ motor = { turns = \"crank\", from = 0, to = 360, speed = \"60 rpm\" }
         "rounded.toml",
     );
     let motion = case.must_move();
-    let mut told = 0;
+    let mut progress = 0;
     let proof = certify_motion(&motion, Subdivision::default(), |_| {
-        told += 1;
+        progress += 1;
         ControlFlow::Continue(())
     });
     assert!(
@@ -391,16 +391,16 @@ motor = { turns = \"crank\", from = 0, to = 360, speed = \"60 rpm\" }
     );
     let (first, last) = (proof.gaps.first().unwrap(), proof.gaps.last().unwrap());
     assert_eq!((first.from, last.to), proof.range);
-    assert!(told < 10_000, "{told}");
+    assert!(progress < 10_000, "{progress}");
 }
 
 #[test]
 fn work_can_be_stopped() {
     let case = Case::example("seeds/crank-rocker");
     let motion = case.must_move();
-    let mut told = Vec::new();
+    let mut progress = Vec::new();
     let proof = certify_motion(&motion, Subdivision::default(), |part| {
-        told.push(part);
+        progress.push(part);
         if part > 0.5 {
             ControlFlow::Break(())
         } else {
@@ -408,7 +408,7 @@ fn work_can_be_stopped() {
         }
     });
     assert!(!proof.finished && proof.fraction > 0.4 && proof.fraction < 0.9);
-    assert!(told.windows(2).all(|w| w[0] < w[1]));
+    assert!(progress.windows(2).all(|w| w[0] < w[1]));
 }
 
 #[test]

@@ -15,8 +15,9 @@ use crate::rows::{RowPlace, path_drive};
 
 /// What acts on the mechanism makes no sense, as diagnostics over the model file.
 pub fn force_problems(problems: Vec<Problem>) -> Vec<Diagnostic> {
-    let told = problems.into_iter();
-    told.map(|p| Diagnostic::error(p.code, p.message).at(p.span, ""))
+    let diagnostics = problems.into_iter();
+    diagnostics
+        .map(|p| Diagnostic::error(p.code, p.message).at(p.span, ""))
         .collect()
 }
 
@@ -52,10 +53,10 @@ impl Row {
     /// What is to be told about the row and its forces, such as why it was not reached.
     pub fn note(&self, mechanism: &Mechanism) -> Option<String> {
         let of_forces = self.forces.iter().flat_map(|forces| &forces.notes);
-        let told: Vec<String> = (self.sample.note.iter().cloned())
+        let diagnostics: Vec<String> = (self.sample.note.iter().cloned())
             .chain(of_forces.map(|note| note.text(mechanism)))
             .collect();
-        (!told.is_empty()).then(|| told.join("; "))
+        (!diagnostics.is_empty()).then(|| diagnostics.join("; "))
     }
 }
 
@@ -162,7 +163,7 @@ fn not_measurable(
     quantities: &[&Quantity],
     problems: &[Unmeasurable],
 ) -> Vec<Diagnostic> {
-    let told = problems.iter().map(|problem| {
+    let diagnostics = problems.iter().map(|problem| {
         let name = quantities.get(problem.index).map_or("", |q| &q.name);
         let what = Diagnostic::error(
             "not-measurable",
@@ -173,7 +174,7 @@ fn not_measurable(
             None => what,
         }
     });
-    told.collect()
+    diagnostics.collect()
 }
 
 /// Times of rows, s; of those at a coordinate the first time at which the drive is there.

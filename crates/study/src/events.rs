@@ -26,22 +26,23 @@ pub(crate) fn events(motion: &Motion, units: &Units, parameters: &[f64]) -> Vec<
             .min_by(|a, b| gap(a).total_cmp(&gap(b)))
             .unwrap_or(0)
     };
-    let told = motion
+    let diagnostic = motion
         .events
         .iter()
         .filter(|e| e.kind != EventKind::ModeChange);
-    told.map(|event| Event {
-        kind: event.kind,
-        at: event.at,
-        place: format!(
-            "{name} = {}",
-            units.place_text(event.at, dimension, motion.demanded)
-        ),
-        label: match event.kind {
-            EventKind::Limit => "limit of the drive".to_owned(),
-            _ => "change point: branches cross, the motion goes on smoothly".to_owned(),
-        },
-        row: nearest(event.at),
-    })
-    .collect()
+    diagnostic
+        .map(|event| Event {
+            kind: event.kind,
+            at: event.at,
+            place: format!(
+                "{name} = {}",
+                units.place_text(event.at, dimension, motion.demanded)
+            ),
+            label: match event.kind {
+                EventKind::Limit => "limit of the drive".to_owned(),
+                _ => "change point: branches cross, the motion goes on smoothly".to_owned(),
+            },
+            row: nearest(event.at),
+        })
+        .collect()
 }

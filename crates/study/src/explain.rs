@@ -23,20 +23,20 @@ pub fn cannot_move(design: &Design<f64>, error: &MotionError) -> Diagnostic {
             .help("say what moves: [drives] motor = { turns = \"crank\", from = 0, to = 360, speed = \"1 rad/s\" }"),
         MotionError::Undetermined { bodies } => {
             let names: Vec<String> = bodies.iter().map(|b| format!("`{}`", mechanism.body_name(*b))).collect();
-            let mut told = Diagnostic::error(
+            let mut diagnostic = Diagnostic::error(
                 "undetermined",
                 format!("no drive determines where {} {}", list(&names), if names.len() == 1 { "is" } else { "are" }),
             )
             .help("every freedom needs a drive: add one, or a joint that holds the links");
             for link in model.links.iter().zip(&mechanism.seats).filter(|(_, seat)| bodies.contains(&seat.body)) {
-                told = told.at(link.0.span.clone(), "free");
+                diagnostic = diagnostic.at(link.0.span.clone(), "free");
             }
-            told
+            diagnostic
         }
         MotionError::CannotAssemble { at, assemblies } => {
             let place = start_text(mechanism, *at);
             if assemblies.rejected > 0 {
-                let told = Diagnostic::error(
+                let diagnostic = Diagnostic::error(
                     "cannot-assemble",
                     format!(
                         "{place} no assembly agrees with [assembly], though there {}",
@@ -44,9 +44,9 @@ pub fn cannot_move(design: &Design<f64>, error: &MotionError) -> Diagnostic {
                     ),
                 )
                 .help("change a side, or leave the sides out to see what `kempe check` finds");
-                let told = match hints::nearest( design, assemblies) {
-                    Some(lies) => told.note(format!("the one that agrees with most of them has {lies}")),
-                    None => told,
+                let diagnostic = match hints::nearest( design, assemblies) {
+                    Some(lies) => diagnostic.note(format!("the one that agrees with most of them has {lies}")),
+                    None => diagnostic,
                 };
                 let against = hints::contradiction( design, assemblies);
                 let label = match against.len() {
@@ -54,7 +54,7 @@ pub fn cannot_move(design: &Design<f64>, error: &MotionError) -> Diagnostic {
                     _ => "no assembly agrees with these together",
                 };
                 let labelled = against.iter().enumerate();
-                return labelled.fold(told, |d, (k, index)| {
+                return labelled.fold(diagnostic, |d, (k, index)| {
                     let span = model.assembly[*index].span.clone();
                     d.at(span, if k == 0 { label } else { "" })
                 });
@@ -62,7 +62,7 @@ pub fn cannot_move(design: &Design<f64>, error: &MotionError) -> Diagnostic {
             let step = assemblies.open_step.unwrap_or(0);
             let gap = gap( design, *at, step);
             let links = gap.links;
-            let mut told = Diagnostic::error(
+            let mut diagnostic = Diagnostic::error(
                 "cannot-assemble",
                 format!("{place} the mechanism cannot be assembled: {}", gap.message),
             );
@@ -73,10 +73,10 @@ pub fn cannot_move(design: &Design<f64>, error: &MotionError) -> Diagnostic {
                 .map(|(_, source)| format!("`{}`", source_name(model, *source)))
                 .collect();
             named.dedup();
-            told = if named.is_empty() {
-                told.help("change a length, or start the drive where the loop closes")
+            diagnostic = if named.is_empty() {
+                diagnostic.help("change a length, or start the drive where the loop closes")
             } else {
-                told.note(format!(
+                diagnostic.note(format!(
                     "by count the links are fixed more often than they can move: without {} the rest decides everything",
                     list(&named)
                 ))
@@ -84,10 +84,10 @@ pub fn cannot_move(design: &Design<f64>, error: &MotionError) -> Diagnostic {
             };
             for link in links {
                 if let Some(link) = model.links.iter().find(|l| l.name == link) {
-                    told = told.at(link.span.clone(), "");
+                    diagnostic = diagnostic.at(link.span.clone(), "");
                 }
             }
-            model.drives.iter().fold(told, |d, drive| d.see(drive.span.clone(), "where it starts"))
+            model.drives.iter().fold(diagnostic, |d, drive| d.see(drive.span.clone(), "where it starts"))
         }
         MotionError::Entangled { at } => Diagnostic::error(
             "branches-entangled",
@@ -111,12 +111,12 @@ pub fn cannot_move(design: &Design<f64>, error: &MotionError) -> Diagnostic {
             model.units.length.name
         )),
         MotionError::Locked { at } => {
-            let told = Diagnostic::error(
+            let diagnostic = Diagnostic::error(
                 "locked",
                 format!("{} the mechanism is locked: the drive cannot move it in any direction", start_text(mechanism, *at)),
             )
             .help("start the drive elsewhere: here it stands at a dead point");
-            model.drives.iter().fold(told, |d, drive| d.at(drive.span.clone(), ""))
+            model.drives.iter().fold(diagnostic, |d, drive| d.at(drive.span.clone(), ""))
         }
     }
 }
@@ -373,13 +373,13 @@ pub fn beyond_limit(motion: &Motion, missed: &[(EndReason, f64)]) -> Diagnostic 
             format!("{name} cannot cover its range: {}, its limit", list(&ends)),
         )
     };
-    let mut told = Diagnostic::error(code, message).note(format!(
+    let mut diagnostic = Diagnostic::error(code, message).note(format!(
         "from {} to {} can be reached, on the circuit of this assembly",
         text(low),
         text(high)
     ));
     if too_long {
-        return told.help("ask for a shorter range: every turn of a cycle is like the first");
+        return diagnostic.help("ask for a shorter range: every turn of a cycle is like the first");
     }
     if limited
         && let Some(group) = limiting_group(
@@ -391,25 +391,25 @@ pub fn beyond_limit(motion: &Motion, missed: &[(EndReason, f64)]) -> Diagnostic 
             },
         )
     {
-        told = told.note(format!("at the limit {group}"));
+        diagnostic = diagnostic.note(format!("at the limit {group}"));
     }
     if let Some(span) = span {
-        told = told.at(span, "the demanded range goes further than the mechanism");
+        diagnostic = diagnostic.at(span, "the demanded range goes further than the mechanism");
         if !stuck {
             let unit = units.unit(dimension);
             let [a, b, low, high] =
                 [motion.demanded.0, motion.demanded.1, low, high].map(|x| shown(x, &unit));
             let text = |x: f64| units.text(unit.to_si(x), dimension);
-            told = told.help(format!(
+            diagnostic = diagnostic.help(format!(
                 "ask for no more than \"{}\" to \"{}\"",
                 text(inside(a, low, high, true)),
                 text(inside(b, low, high, false))
             ));
         }
     } else {
-        told = told.help("the rows beyond carry the reason in their note; change the drives' laws or the lengths");
+        diagnostic = diagnostic.help("the rows beyond carry the reason in their note; change the drives' laws or the lengths");
     }
-    told
+    diagnostic
 }
 
 /// A demanded end (in the unit shown), or where it is not reached a round place a little inside the limit.

@@ -21,7 +21,7 @@ const NO_GRAVITY: f64 = 1e-12;
 pub(crate) fn assumptions(model: &Model, units: &Units) -> Vec<String> {
     let parameters: Vec<f64> = model.parameter_values();
     let actions = &model.actions;
-    let mut told = acting(model);
+    let mut diagnostics = acting(model);
     let own = model
         .links
         .iter()
@@ -30,9 +30,9 @@ pub(crate) fn assumptions(model: &Model, units: &Units) -> Vec<String> {
     let masses = own.chain(actions.masses.iter().map(|m| &m.mass));
     let total: f64 = masses.map(|m| value(m, &parameters)).sum();
     if total == 0.0 {
-        return told;
+        return diagnostics;
     }
-    told.push(format!(
+    diagnostics.push(format!(
         "mass: {} in all",
         units.text(total, Dimension::MASS)
     ));
@@ -40,7 +40,7 @@ pub(crate) fn assumptions(model: &Model, units: &Units) -> Vec<String> {
         None => [0.0, -GRAVITY],
         Some(g) => [&g[0], &g[1]].map(|g| value(g, &parameters)),
     };
-    told.push(match gravity {
+    diagnostics.push(match gravity {
         [0.0, 0.0] => "gravity: none".to_owned(),
         [0.0, y] if y < 0.0 => format!(
             "gravity: {} m/s^2 along -y",
@@ -64,27 +64,27 @@ pub(crate) fn assumptions(model: &Model, units: &Units) -> Vec<String> {
         inertia.is_some_and(|i| i.mass.is_some() && matches!(i.center, Center::Centroid))
     });
     if !centroid.is_empty() {
-        told.push(format!(
+        diagnostics.push(format!(
             "centre of mass at the mean of its points: {}",
             list(&centroid)
         ));
     }
     let massless = named(&|l| l.inertia.as_ref().is_none_or(|i| i.mass.is_none()));
     if !massless.is_empty() {
-        told.push(format!("without mass: {}", list(&massless)));
+        diagnostics.push(format!("without mass: {}", list(&massless)));
     }
-    told
+    diagnostics
 }
 
 /// What acts besides weights, and that no study asks for it.
 fn acting(model: &Model) -> Vec<String> {
     let actions = &model.actions;
-    let mut told = Vec::new();
+    let mut diagnostics = Vec::new();
     let of_drive =
         |drive: DriveId| (model.drives.get(drive.index())).map_or("", |d| d.name.as_str());
     let mut add = |what: &str, names: Vec<&str>| {
         if !names.is_empty() {
-            told.push(format!("{what}: {}", names.join(", ")));
+            diagnostics.push(format!("{what}: {}", names.join(", ")));
         }
     };
     add(
@@ -124,12 +124,12 @@ fn acting(model: &Model) -> Vec<String> {
         actions.motors.iter().map(|m| of_drive(m.drive)).collect(),
     );
     let asks = |s: &Study| !matches!(s.kind, StudyKind::Motion(_));
-    if !told.is_empty() && !model.studies.iter().any(asks) {
-        told.push(
+    if !diagnostics.is_empty() && !model.studies.iter().any(asks) {
+        diagnostics.push(
             "forces: no study asks for them; add [studies.loads] kind = \"forces\"".to_owned(),
         );
     }
-    told
+    diagnostics
 }
 
 /// What a friction is said of, as in the file.

@@ -60,16 +60,16 @@ pub(crate) fn without_value(
     let numbers = rows.scalars.iter().enumerate();
     let numbers = numbers.filter(|(_, s)| !s.value.is_finite());
     let numbers = numbers.map(|(index, scalar)| {
-        let told = Diagnostic::warning(
+        let diagnostic = Diagnostic::warning(
             "no-value",
             format!("study `{}`: `{}` has no finite value", table.name, scalar.name),
         );
         if lacks_cycle(index) {
-            return told
+            return diagnostic
                 .note("a time ratio compares both strokes of a cycle, and this motion is none")
                 .help("let the drives end where they started, or whole turns from there");
         }
-        told.help("what it is taken of has none somewhere, or the place that it asks for is not on the motion")
+        diagnostic.help("what it is taken of has none somewhere, or the place that it asks for is not on the motion")
     });
     let all_reached = table.unreached() == 0;
     columns.chain(numbers.filter(|_| all_reached)).collect()

@@ -140,10 +140,12 @@ fn range_warnings(motion: &Motion) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> {
     if missed.is_empty() {
         return Ok(Vec::new());
     }
-    let told = beyond_limit(motion, &missed);
+    let diagnostic = beyond_limit(motion, &missed);
     let one_drive = matches!(motion.path, DrivePath::Coordinate { .. });
     if one_drive && missed.iter().any(|(r, _)| *r == EndReason::Limit) {
-        return Err(vec![told]);
+        return Err(vec![diagnostic]);
     }
-    Ok(vec![told.with_severity(kempe_model::Severity::Warning)])
+    Ok(vec![
+        diagnostic.with_severity(kempe_model::Severity::Warning),
+    ])
 }

@@ -38,16 +38,21 @@ impl Resolver<()> for NoNames {
 const SAME_TIME: f64 = 1e-9;
 
 /// A diagnostic that points into the text of a setting.
-fn pointing(told: Diagnostic, text: &str, span: Span, label: impl Into<String>) -> Diagnostic {
-    let before = told.labels.len();
-    let mut told = told.at(span, label.into());
-    for label in told.labels.iter_mut().skip(before) {
+fn pointing(
+    diagnostic: Diagnostic,
+    text: &str,
+    span: Span,
+    label: impl Into<String>,
+) -> Diagnostic {
+    let before = diagnostic.labels.len();
+    let mut diagnostic = diagnostic.at(span, label.into());
+    for label in diagnostic.labels.iter_mut().skip(before) {
         label.source = Some(kempe_model::Source {
             name: "--at".to_owned(),
             text: text.to_owned(),
         });
     }
-    told
+    diagnostic
 }
 
 impl Setting {
@@ -88,9 +93,9 @@ impl Setting {
                         "give the time, or places of the drives",
                     )
                 };
-                let told = Diagnostic::error("over-specified", message).help(help);
-                let told = pointing(told, text, 0..text.len(), "");
-                return Err(pointing(told, &other.text, 0..other.text.len(), ""));
+                let diagnostic = Diagnostic::error("over-specified", message).help(help);
+                let diagnostic = pointing(diagnostic, text, 0..text.len(), "");
+                return Err(pointing(diagnostic, &other.text, 0..other.text.len(), ""));
             }
             known.push(setting);
         }
@@ -106,8 +111,9 @@ impl Setting {
     pub fn parse(model: &Model, text: &str) -> Result<Self, Diagnostic> {
         let source = |d: Diagnostic, span: Span, label: String| pointing(d, text, span, label);
         let Some((name, number)) = text.split_once('=') else {
-            let told = Diagnostic::error("syntax", "a drive and its coordinate were expected");
-            return Err(source(told, 0..text.len(), String::new()).help("write motor=30deg"));
+            let diagnostic =
+                Diagnostic::error("syntax", "a drive and its coordinate were expected");
+            return Err(source(diagnostic, 0..text.len(), String::new()).help("write motor=30deg"));
         };
         let offset = name.len() + 1;
         let name = name.trim();
@@ -120,8 +126,9 @@ impl Setting {
                     Some(near) => format!("did you mean `{near}`?"),
                     None => format!("there {}", drives_text(model)),
                 };
-                let told = Diagnostic::error("unknown-name", format!("there is no drive `{name}`"));
-                return Err(source(told, 0..name.len(), String::new()).help(help));
+                let diagnostic =
+                    Diagnostic::error("unknown-name", format!("there is no drive `{name}`"));
+                return Err(source(diagnostic, 0..name.len(), String::new()).help(help));
             }
         };
         let unit = Units::of(model).unit(dimension);
@@ -131,14 +138,14 @@ impl Setting {
             Ok((expr, _)) => {
                 let value = expr.eval(&mut |()| f64::NAN);
                 if !value.is_finite() {
-                    let told = Diagnostic::error("not-finite", "this value is not finite");
-                    let told = told.help("look for a division by zero or an overflow");
-                    return Err(source(told, offset..text.len(), String::new()));
+                    let diagnostic = Diagnostic::error("not-finite", "this value is not finite");
+                    let diagnostic = diagnostic.help("look for a division by zero or an overflow");
+                    return Err(source(diagnostic, offset..text.len(), String::new()));
                 }
                 if name == "time"
-                    && let Some(told) = off_the_motion(model, value)
+                    && let Some(diagnostic) = off_the_motion(model, value)
                 {
-                    return Err(source(told, offset..text.len(), String::new()));
+                    return Err(source(diagnostic, offset..text.len(), String::new()));
                 }
                 Ok(Self {
                     name: name.to_owned(),
@@ -147,13 +154,14 @@ impl Setting {
                 })
             }
             Err(issues) => {
-                let mut told = Diagnostic::error("syntax", "the value cannot be read");
+                let mut diagnostic = Diagnostic::error("syntax", "the value cannot be read");
                 if let Some(issue) = issues.into_iter().next() {
                     let span = issue.span.start + offset..issue.span.end + offset;
-                    told = Diagnostic::error(issue.code, issue.message).maybe_help(issue.help);
-                    told = source(told, span, issue.label);
+                    diagnostic =
+                        Diagnostic::error(issue.code, issue.message).maybe_help(issue.help);
+                    diagnostic = source(diagnostic, span, issue.label);
                 }
-                Err(told)
+                Err(diagnostic)
             }
         }
     }
@@ -177,7 +185,7 @@ fn off_the_motion(model: &Model, time: f64) -> Option<Diagnostic> {
 }
 
 /// What keeps the drives from going to a place, told of the place that was asked for.
-fn at_the_settings(told: Vec<Diagnostic>, settings: &[Setting]) -> Vec<Diagnostic> {
+fn at_the_settings(diagnostic: Vec<Diagnostic>, settings: &[Setting]) -> Vec<Diagnostic> {
     let of_the_way = |d: &Diagnostic| {
         [
             "range-beyond-limit",
@@ -187,7 +195,7 @@ fn at_the_settings(told: Vec<Diagnostic>, settings: &[Setting]) -> Vec<Diagnosti
         ]
         .contains(&d.code)
     };
-    let moved = told.into_iter().map(|mut d| {
+    let moved = diagnostic.into_iter().map(|mut d| {
         if !of_the_way(&d) || settings.is_empty() {
             return d;
         }
@@ -269,7 +277,7 @@ pub fn pose_at(model: &Model, settings: &[Setting]) -> Result<(Frame, String), V
         };
     }
     let result = run_motion(&moved, "pose", &study(Rows::Count(2)), &mut Silent)
-        .map_err(|told| at_the_settings(told, settings))?;
+        .map_err(|diagnostic| at_the_settings(diagnostic, settings))?;
     let last = result.frames.into_iter().next_back();
     let reached = result.table.closure.last().is_some_and(|c| c.is_finite());
     match last {

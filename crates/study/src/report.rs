@@ -38,20 +38,20 @@ pub fn report(
         .flat_map(|r| values_section(r).into_iter().chain(listings(r)))
         .collect();
     sections.extend(check.sections());
-    let mut told: Vec<Diagnostic> = warnings.to_vec();
+    let mut findings: Vec<Diagnostic> = warnings.to_vec();
     let more = studies.iter().flat_map(|s| match &s.result {
         Ok(result) => result.warnings.iter(),
         Err(errors) => errors.iter(),
     });
     for diagnostic in check.diagnostics.iter().chain(more) {
-        if told
+        if findings
             .iter()
             .all(|d| d.code != diagnostic.code || d.message != diagnostic.message)
         {
-            told.push(diagnostic.clone());
+            findings.push(diagnostic.clone());
         }
     }
-    sections.extend(warnings_section(&told));
+    sections.extend(warnings_section(&findings));
     let motions = studies.iter().filter_map(|outcome| {
         let study = outcome.study.kind.along();
         outcome

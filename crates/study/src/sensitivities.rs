@@ -65,11 +65,11 @@ pub fn sensitivities(
     progress: &mut dyn Progress,
 ) -> Result<Sensitivities, Vec<Diagnostic>> {
     if model.measures.is_empty() || model.parameters.is_empty() {
-        let told = Diagnostic::error(
+        let diagnostic = Diagnostic::error(
             "nothing-to-differentiate",
             "sensitivities are those of [measures] to [parameters]: the file lacks one of them",
         );
-        return Err(vec![told.help("name what is asked for: [measures] swing = \"angle(rocker)\", [parameters] a = \"20 mm\"")]);
+        return Err(vec![diagnostic.help("name what is asked for: [measures] swing = \"angle(rocker)\", [parameters] a = \"20 mm\"")]);
     }
     let design = design(model);
     let motion = motion(&design, progress)?;
@@ -84,11 +84,13 @@ pub fn sensitivities(
         Some(setting) if setting.name == "time" => Held::Time(setting.value),
         Some(setting) if setting.name == path_name => Held::Path(setting.value),
         Some(setting) => {
-            let told = Diagnostic::error(
+            let diagnostic = Diagnostic::error(
                 "not-the-path",
                 format!("`{}` does not move the mechanism alone", setting.name),
             );
-            return Err(vec![told.help(format!("give a place of `{path_name}`"))]);
+            return Err(vec![
+                diagnostic.help(format!("give a place of `{path_name}`")),
+            ]);
         }
     };
     let ids: Vec<ParameterId> = (0..model.parameters.len() as u32)
@@ -129,8 +131,9 @@ pub fn sensitivities(
             (low, high),
             drive.map_or(Dimension::TIME, |d| d.dimension),
         );
-        let told = Diagnostic::error("not-reached", format!("the motion does not reach {place}"));
-        return Err(vec![told.note(format!("it goes from {range}"))]);
+        let diagnostic =
+            Diagnostic::error("not-reached", format!("the motion does not reach {place}"));
+        return Err(vec![diagnostic.note(format!("it goes from {range}"))]);
     }
     let rows = asked
         .iter()

@@ -10,11 +10,11 @@ use kempe_study::{Silent, StudyResult, run};
 fn model(text: &str) -> Model {
     match Model::from_toml(text, "test", &mut |_| Err("no files".into())) {
         Ok(checked) => checked.model,
-        Err(found) => panic!("{}", told(&found, text)),
+        Err(found) => panic!("{}", rendered(&found, text)),
     }
 }
 
-fn told(found: &[Diagnostic], text: &str) -> String {
+fn rendered(found: &[Diagnostic], text: &str) -> String {
     let lines = found.iter().map(|d| d.render_plain("test.toml", text));
     lines.collect()
 }
@@ -23,7 +23,7 @@ fn ran(text: &str) -> StudyResult {
     let model = model(text);
     match run(&model, &model.studies[0], &mut Silent) {
         Ok(result) => result,
-        Err(found) => panic!("{}", told(&found, text)),
+        Err(found) => panic!("{}", rendered(&found, text)),
     }
 }
 
@@ -215,10 +215,10 @@ fn bounds_and_a_wanted_effort_are_kept() {
     );
     assert!((wanted[0] - 10.0).abs() < 1e-12);
     let gap: Vec<f64> = after.iter().zip(&wanted).map(|(a, w)| a - w).collect();
-    let told = scalar(&result, "mean square after");
+    let diagnostic = scalar(&result, "mean square after");
     assert!(
-        (root_mean_square(&gap) - told).abs() < 1e-9 * told,
-        "{told}"
+        (root_mean_square(&gap) - diagnostic).abs() < 1e-9 * diagnostic,
+        "{diagnostic}"
     );
     // A stop makes the spring another one than was chosen: that is said.
     let text = text.replace("free = 0,", "free = 0, acts = \"tension\",");

@@ -25,7 +25,7 @@ fn examples() -> Vec<PathBuf> {
 
 #[test]
 fn every_example_runs() {
-    let mut told = Vec::new();
+    let mut diagnostic = Vec::new();
     for path in examples() {
         let name = path.display().to_string();
         let text = fs::read_to_string(&path).expect("text");
@@ -35,7 +35,7 @@ fn every_example_runs() {
         let checked = match Model::from_toml(&text, &name, &mut files) {
             Ok(checked) => checked,
             Err(found) => {
-                told.extend(found.iter().map(|d| d.render_plain(&name, &text)));
+                diagnostic.extend(found.iter().map(|d| d.render_plain(&name, &text)));
                 continue;
             }
         };
@@ -45,7 +45,7 @@ fn every_example_runs() {
             .diagnostics
             .iter()
             .filter(|d| d.severity == Severity::Error);
-        told.extend(errors.map(|d| d.render_plain(&name, &text)));
+        diagnostic.extend(errors.map(|d| d.render_plain(&name, &text)));
         let mut outcomes = Vec::new();
         for study in &model.studies {
             let result = run(&model, study, &mut Silent);
@@ -54,12 +54,12 @@ fn every_example_runs() {
                     let table = &result.table;
                     let closed = table.worst_closure() < 1e-10;
                     if table.unreached() > 0 || table.rows() == 0 || !closed {
-                        told.push(format!("{name}: {:?}", table.noted().first()));
+                        diagnostic.push(format!("{name}: {:?}", table.noted().first()));
                     }
                     if let Some((row, difference)) = table.worst_route_difference()
                         && !(difference < ROUTES_AGREE)
                     {
-                        told.push(format!(
+                        diagnostic.push(format!(
                             "{name}: routes differ by {difference:.1e} in row {row}"
                         ));
                     }
@@ -69,7 +69,7 @@ fn every_example_runs() {
                         "{name}"
                     );
                 }
-                Err(found) => told.extend(found.iter().map(|d| d.render_plain(&name, &text))),
+                Err(found) => diagnostic.extend(found.iter().map(|d| d.render_plain(&name, &text))),
             }
             outcomes.push(StudyOutcome { study, result });
         }
@@ -84,5 +84,5 @@ fn every_example_runs() {
         .to_html();
         assert!(html.contains("</html>"), "{name}");
     }
-    assert!(told.is_empty(), "{}", told.join("\n"));
+    assert!(diagnostic.is_empty(), "{}", diagnostic.join("\n"));
 }

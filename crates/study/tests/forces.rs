@@ -32,11 +32,11 @@ heavy  = "max(reaction(B))"
 fn model(text: &str) -> Model {
     match Model::from_toml(text, "test", &mut |_| Err("no files".into())) {
         Ok(checked) => checked.model,
-        Err(found) => panic!("{}", told(&found, text)),
+        Err(found) => panic!("{}", rendered(&found, text)),
     }
 }
 
-fn told(found: &[Diagnostic], text: &str) -> String {
+fn rendered(found: &[Diagnostic], text: &str) -> String {
     let lines = found.iter().map(|d| d.render_plain("test.toml", text));
     lines.collect()
 }
@@ -45,7 +45,7 @@ fn ran(text: &str) -> StudyResult {
     let model = model(text);
     match run(&model, &model.studies[0], &mut Silent) {
         Ok(result) => result,
-        Err(found) => panic!("{}", told(&found, text)),
+        Err(found) => panic!("{}", rendered(&found, text)),
     }
 }
 
@@ -513,13 +513,15 @@ fn a_peak_over_a_singular_pose_is_told_as_one() {
             .find(|s| s.name == "ideal")
             .expect("forces");
         let warnings = run(&model, study, &mut Silent).expect("rows").warnings;
-        let told = warnings.into_iter().filter(|d| d.code == "unbounded-load");
-        told.map(|d| d.message).collect::<Vec<_>>()
+        let diagnostic = warnings.into_iter().filter(|d| d.code == "unbounded-load");
+        diagnostic.map(|d| d.message).collect::<Vec<_>>()
     };
-    let told = run_to(&text);
+    let diagnostic = run_to(&text);
     assert!(
-        told.len() == 1 && told[0].contains("`peak`") && told[0].contains("117.51220651664"),
-        "{told:?}"
+        diagnostic.len() == 1
+            && diagnostic[0].contains("`peak`")
+            && diagnostic[0].contains("117.51220651664"),
+        "{diagnostic:?}"
     );
     assert!(run_to(&text.replace("to = 125", "to = 110")).is_empty());
 }
@@ -592,10 +594,10 @@ work = \"mean(power(motor))\"
 ",
     ) + "[studies.loads]\nkind = \"forces\"\nstep = 0.05\ncolumns = [\"effort\"]\n";
     let model = Model::from_toml(&text, "test", &mut |_| Ok(CARD.into()))
-        .unwrap_or_else(|found| panic!("{}", told(&found, &text)))
+        .unwrap_or_else(|found| panic!("{}", rendered(&found, &text)))
         .model;
     let result = run(&model, &model.studies[0], &mut Silent)
-        .unwrap_or_else(|found| panic!("{}", told(&found, &text)));
+        .unwrap_or_else(|found| panic!("{}", rendered(&found, &text)));
     let number = |name: &str| {
         let scalar = result.scalars.iter().find(|s| s.name == name);
         scalar.map_or(f64::NAN, |s| s.value)

@@ -32,11 +32,11 @@ plot = ["swing", "path(P)"]
 fn model(text: &str) -> Model {
     match Model::from_toml(text, "test", &mut |_| Err("no files".into())) {
         Ok(checked) => checked.model,
-        Err(found) => panic!("{}", told(&found, text)),
+        Err(found) => panic!("{}", rendered(&found, text)),
     }
 }
 
-fn told(found: &[Diagnostic], text: &str) -> String {
+fn rendered(found: &[Diagnostic], text: &str) -> String {
     found
         .iter()
         .map(|d| d.render_plain("test.toml", text))
@@ -47,14 +47,14 @@ fn ran(text: &str) -> StudyResult {
     let model = model(text);
     match run(&model, &model.studies[0], &mut Silent) {
         Ok(result) => result,
-        Err(found) => panic!("{}", told(&found, text)),
+        Err(found) => panic!("{}", rendered(&found, text)),
     }
 }
 
 fn fails(text: &str) -> (Vec<Diagnostic>, String) {
     let model = model(text);
     let found = run(&model, &model.studies[0], &mut Silent).expect_err("it cannot run");
-    let text = told(&found, text);
+    let text = rendered(&found, text);
     (found, text)
 }
 
@@ -291,10 +291,10 @@ impl kempe_study::Progress for Impatient {
 #[test]
 fn what_comes_before_the_rows_can_be_stopped() {
     let model = model(FOUR_BAR);
-    let told = run(&model, &model.studies[0], &mut Impatient).unwrap_err();
-    assert_eq!(told[0].code, "stopped");
+    let diagnostic = run(&model, &model.studies[0], &mut Impatient).unwrap_err();
+    assert_eq!(diagnostic[0].code, "stopped");
     assert_eq!(
-        told[0].message,
+        diagnostic[0].message,
         "stopped while finding assemblies: there are no rows yet"
     );
     let report = kempe_study::check_with_progress(&model, &mut Impatient);
@@ -358,7 +358,7 @@ fn run_ok(text: &str) -> StudyResult {
     let model = model(text);
     match run(&model, &model.studies[0], &mut Silent) {
         Ok(result) => result,
-        Err(found) => panic!("{}", told(&found, text)),
+        Err(found) => panic!("{}", rendered(&found, text)),
     }
 }
 
@@ -368,11 +368,11 @@ fn several_assemblies_are_told_apart_in_the_words_of_the_file() {
     assert_ne!(open, FOUR_BAR);
     let lines = |text: &str| -> Vec<String> {
         let report = check(&model(text));
-        let told = report
+        let diagnostic = report
             .diagnostics
             .iter()
             .find(|d| d.code == "several-assemblies");
-        let notes = &told.expect("it asks which is meant").notes;
+        let notes = &diagnostic.expect("it asks which is meant").notes;
         notes
             .iter()
             .map(|n| n.split_once(": ").unwrap().1.to_owned())
@@ -395,10 +395,10 @@ bore = { slider = "block", at = "C", on = "A -> D" }
 [drives]
 motor = { turns = "crank", from = 60, to = 61, speed = 10 }
 "#;
-    let told = lines(slots);
-    assert_eq!(told.len(), 2, "{told:?}");
+    let diagnostic = lines(slots);
+    assert_eq!(diagnostic.len(), 2, "{diagnostic:?}");
     let mut chosen = Vec::new();
-    for line in &told {
+    for line in &diagnostic {
         assert!(line.contains("= { near = ["), "{line}");
         let text = format!("{slots}\n[assembly]\n{line}\n");
         let one = model(&text);
@@ -430,9 +430,9 @@ fn lengths_beyond_numbers_are_told_as_such() {
             )
             .replace("D-C = 40", &format!("D-C = \"0.4 * {length} mm\""));
         let model = model(&text);
-        let told = run(&model, &model.studies[0], &mut Silent).unwrap_err();
-        assert_eq!(told[0].code, "scale", "{}", told[0].message);
-        assert!(told[0].help.as_ref().unwrap().contains("mm"));
+        let diagnostic = run(&model, &model.studies[0], &mut Silent).unwrap_err();
+        assert_eq!(diagnostic[0].code, "scale", "{}", diagnostic[0].message);
+        assert!(diagnostic[0].help.as_ref().unwrap().contains("mm"));
     }
 }
 
@@ -446,8 +446,8 @@ fn places_in_notes_and_warnings_have_the_units_of_the_file() {
         )
         .replace("circuit = true\n", "");
     let model_ = model(&text);
-    let told = run(&model_, &model_.studies[0], &mut Silent).unwrap_err();
-    assert_eq!(told[0].code, "range-beyond-limit");
+    let diagnostic = run(&model_, &model_.studies[0], &mut Silent).unwrap_err();
+    assert_eq!(diagnostic[0].code, "range-beyond-limit");
     let report = check(&model_);
     assert!(
         report.assumptions[0].contains("speeds in mm/s and deg/s"),
@@ -593,10 +593,10 @@ fn settings_hold_together_and_are_told_of_where_they_stand() {
         );
     }
     for text in ["time=200s", "time=-1s"] {
-        let told = all(&[text]).expect_err("refused");
-        assert_eq!(told.code, "not-on-the-motion");
+        let diagnostic = all(&[text]).expect_err("refused");
+        assert_eq!(diagnostic.code, "not-on-the-motion");
         assert_eq!(
-            told.labels[0].source.as_ref().expect("a source").name,
+            diagnostic.labels[0].source.as_ref().expect("a source").name,
             "--at"
         );
     }
@@ -657,11 +657,17 @@ fn a_hint_that_decides_nothing_asks_as_if_it_were_not_there() {
     ] {
         let report = hinted(hint);
         assert_eq!(report.assemblies, Some(2));
-        let told = report.diagnostics.iter();
-        let told: Vec<_> = told.filter(|d| d.code == "several-assemblies").collect();
-        assert_eq!(told.len(), 1, "{hint}");
-        assert_eq!(told[0].notes.len(), 2);
-        assert!(told[0].labels[0].text.contains(why), "{:?}", told[0].labels);
+        let diagnostic = report.diagnostics.iter();
+        let diagnostic: Vec<_> = diagnostic
+            .filter(|d| d.code == "several-assemblies")
+            .collect();
+        assert_eq!(diagnostic.len(), 1, "{hint}");
+        assert_eq!(diagnostic[0].notes.len(), 2);
+        assert!(
+            diagnostic[0].labels[0].text.contains(why),
+            "{:?}",
+            diagnostic[0].labels
+        );
         assert!(
             report.to_text().contains("decides nothing"),
             "{}",
@@ -785,8 +791,8 @@ fn measures_may_name_each_other_many_times_over() {
         let top = number("top").unwrap();
         assert!((top - number("s0").unwrap()).abs() < 1e-12 * top);
         assert!(number("ratio").unwrap().is_nan());
-        let told = told(&result.warnings, &text);
-        assert!(told.contains("this motion is none"), "{told}");
+        let diagnostic = rendered(&result.warnings, &text);
+        assert!(diagnostic.contains("this motion is none"), "{diagnostic}");
     }
     let found = kempe_study::sensitivities(&model, None, &mut Silent).unwrap();
     let of = |name: &str| {

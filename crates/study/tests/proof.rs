@@ -101,12 +101,13 @@ fn derivatives_carry_the_units_of_the_file() {
 #[test]
 fn what_cannot_be_differentiated_is_told() {
     let beyond = Setting::new("motor", 3.0);
-    let told = sensitivities(&model(SLIDER), Some(&beyond), &mut Silent).expect_err("not there");
-    assert_eq!(told[0].code, "not-reached");
+    let diagnostic =
+        sensitivities(&model(SLIDER), Some(&beyond), &mut Silent).expect_err("not there");
+    assert_eq!(diagnostic[0].code, "not-reached");
     let bare = SLIDER.replace(
         "[measures]\ntravel = \"x(C)\"\nswing = \"angle(rod)\"\n",
         "",
     );
-    let told = sensitivities(&model(&bare), None, &mut Silent).expect_err("nothing to ask");
-    assert_eq!(told[0].code, "nothing-to-differentiate");
+    let diagnostic = sensitivities(&model(&bare), None, &mut Silent).expect_err("nothing to ask");
+    assert_eq!(diagnostic[0].code, "nothing-to-differentiate");
 }

@@ -465,7 +465,7 @@ impl<'t> Parser<'t> {
 
     /// The `)` that belongs to the bracket at `open`; what stands before it is reported and skipped.
     fn close(&mut self, open: Span) {
-        let mut told = false;
+        let mut diagnostic = false;
         loop {
             match self.peek() {
                 Token::Close => {
@@ -476,8 +476,8 @@ impl<'t> Parser<'t> {
                     let issue = Issue::new("syntax", open, "this bracket is not closed");
                     return self.push(issue.with_help("add the `)` that belongs to it"));
                 }
-                _ if !told => {
-                    told = true;
+                _ if !diagnostic => {
+                    diagnostic = true;
                     self.unexpected();
                 }
                 _ => {}

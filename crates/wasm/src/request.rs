@@ -63,10 +63,10 @@ fn refusal(found: &[Diagnostic]) -> Value {
 pub fn check(request: &Request) -> Result<Value, Value> {
     let checked = request.read()?;
     let report = kempe_study::check(&checked.model);
-    let told = checked.warnings.iter().chain(&report.diagnostics);
-    let told: Vec<Value> = told.map(encode::diagnostic).collect();
+    let finding = checked.warnings.iter().chain(&report.diagnostics);
+    let finding: Vec<Value> = finding.map(encode::diagnostic).collect();
     let mut answer = serde_json::to_value(&report).unwrap_or_default();
-    answer["diagnostics"] = Value::Array(told);
+    answer["diagnostics"] = Value::Array(finding);
     Ok(answer)
 }
 
@@ -95,10 +95,10 @@ fn no_study(model: &Model, asked: Option<&str>) -> Diagnostic {
         let message = "there is nothing to run: the file has no study and no drive";
         return Diagnostic::error("no-drive", message);
     };
-    let told = Diagnostic::error("unknown-study", format!("there is no study `{name}`"));
+    let finding = Diagnostic::error("unknown-study", format!("there is no study `{name}`"));
     let known: Vec<&str> = model.studies.iter().map(|s| s.name.as_str()).collect();
     match known.is_empty() {
-        true => told,
-        false => told.help(format!("the file has: {}", known.join(", "))),
+        true => finding,
+        false => finding.help(format!("the file has: {}", known.join(", "))),
     }
 }

@@ -31,7 +31,7 @@ pub fn check(arguments: &Check) -> Exit {
         speaker.tell(&report.diagnostics);
         let mut value = serde_json::to_value(&report).unwrap_or_default();
         value["file"] = json!(loaded.name);
-        value["diagnostics"] = speaker.told();
+        value["diagnostics"] = speaker.diagnostics();
         if let Some(proof) = &proof {
             value["proof"] = serde_json::to_value(proof).unwrap_or_default();
         }

@@ -37,8 +37,8 @@ pub fn draw(arguments: &Draw) -> Exit {
     let mut speaker = Speaker::new(false, false);
     let kind = match kind(arguments) {
         Ok(kind) => kind,
-        Err(told) => {
-            speaker.tell(&[*told]);
+        Err(diagnostic) => {
+            speaker.tell(&[*diagnostic]);
             return Exit::Usage;
         }
     };
@@ -63,12 +63,12 @@ pub fn draw(arguments: &Draw) -> Exit {
                 }
             }
         }
-        Err(Failure::Usage(told)) => {
-            speaker.tell(&[told]);
+        Err(Failure::Usage(diagnostic)) => {
+            speaker.tell(&[diagnostic]);
             Exit::Usage
         }
-        Err(Failure::Unsolved(told)) => {
-            speaker.tell(&told);
+        Err(Failure::Unsolved(diagnostic)) => {
+            speaker.tell(&diagnostic);
             Exit::CannotSolve
         }
         Err(Failure::Interrupted) => Exit::Interrupted,
@@ -88,9 +88,9 @@ fn kind(arguments: &Draw) -> Result<Kind, Box<Diagnostic>> {
         Some("apng") => Kind::Apng,
         _ => {
             let message = format!("{} is no kind of picture", arguments.output.display());
-            let told = Diagnostic::error("unknown-picture", message);
+            let diagnostic = Diagnostic::error("unknown-picture", message);
             return Err(Box::new(
-                told.help("its name ends in .svg, .png, .dxf, .gif or .apng"),
+                diagnostic.help("its name ends in .svg, .png, .dxf, .gif or .apng"),
             ));
         }
     })
@@ -115,9 +115,9 @@ fn picture(
         |error: RasterError| Failure::Usage(Diagnostic::error("cannot-draw", error.to_string()));
     let moving = matches!(kind, Kind::Gif | Kind::Apng);
     if moving && !arguments.at.is_empty() {
-        let told = Diagnostic::error("cannot-draw", "--at shows one pose, GIF and APNG move");
+        let diagnostic = Diagnostic::error("cannot-draw", "--at shows one pose, GIF and APNG move");
         return Err(Failure::Usage(
-            told.help("leave out --at, or write .svg, .png or .dxf"),
+            diagnostic.help("leave out --at, or write .svg, .png or .dxf"),
         ));
     }
     if moving {

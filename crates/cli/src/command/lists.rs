@@ -20,14 +20,15 @@ pub fn measures(arguments: &Measures) -> Exit {
     if let Some(name) = &arguments.name {
         entries.retain(|e| e.name == name);
         if entries.is_empty() {
-            let told = Diagnostic::error("unknown-name", format!("there is no measure `{name}`"));
+            let diagnostic =
+                Diagnostic::error("unknown-name", format!("there is no measure `{name}`"));
             let near = nearest(name, Registry::all().iter().map(|e| e.name));
             let help = match near {
                 Some(near) => format!("did you mean `{near}`?"),
                 None => "kempe measures lists them all".to_owned(),
             };
             let mut speaker = Speaker::new(arguments.json, false);
-            speaker.tell(&[told.help(help)]);
+            speaker.tell(&[diagnostic.help(help)]);
             speaker.print_failure();
             return Exit::Usage;
         }

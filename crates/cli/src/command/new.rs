@@ -27,19 +27,19 @@ pub fn new(arguments: &New) -> Exit {
     }
     let shown = path.display();
     if path.exists() {
-        let told = Diagnostic::error("file-exists", format!("{shown} is already there"));
-        speaker.tell(&[told.help("give another name: kempe new NAME")]);
+        let diagnostic = Diagnostic::error("file-exists", format!("{shown} is already there"));
+        speaker.tell(&[diagnostic.help("give another name: kempe new NAME")]);
         return Exit::Usage;
     }
     let text = starter.text.replace("FILE", &shown.to_string());
     let mut batch = Batch::new();
     let written = batch.add(&path, text.as_bytes());
     if let Err(error) = written.and_then(|()| Ok(batch.publish()?)) {
-        let told = Diagnostic::error(
+        let diagnostic = Diagnostic::error(
             "cannot-write",
             format!("{shown} cannot be written: {}", plain(&error)),
         );
-        speaker.tell(&[told]);
+        speaker.tell(&[diagnostic]);
         return Exit::Usage;
     }
     put(&format!(

@@ -32,8 +32,8 @@ pub fn run(arguments: &Run) -> Exit {
     let model = &loaded.checked.model;
     let studies = match chosen(model, &arguments.studies, &loaded.name) {
         Ok(studies) => studies,
-        Err(told) => {
-            speaker.tell(&[*told]);
+        Err(diagnostic) => {
+            speaker.tell(&[*diagnostic]);
             return failed(&speaker, Exit::Usage);
         }
     };
@@ -71,8 +71,8 @@ pub fn run(arguments: &Run) -> Exit {
                 arguments.quiet || arguments.json,
             ) {
                 Ok(written) => files = written,
-                Err(told) => {
-                    speaker.tell(&[*told]);
+                Err(diagnostic) => {
+                    speaker.tell(&[*diagnostic]);
                     return failed(&speaker, Exit::Usage);
                 }
             }
@@ -185,9 +185,9 @@ fn unknown_study(model: &Model, name: &str, file: &str) -> Diagnostic {
         );
         return Diagnostic::error("study-not-available", message).help(others(model));
     }
-    let told = Diagnostic::error("unknown-study", format!("there is no study `{name}`"));
+    let diagnostic = Diagnostic::error("unknown-study", format!("there is no study `{name}`"));
     if Path::new(name).extension().is_some_and(|e| e == "toml") || Path::new(name).is_file() {
-        return told
+        return diagnostic
             .note(format!(
                 "what follows the model file {file} are its studies"
             ))
@@ -195,8 +195,8 @@ fn unknown_study(model: &Model, name: &str, file: &str) -> Diagnostic {
     }
     let known = model.studies.iter().map(|s| s.name.as_str());
     match nearest(name, known) {
-        Some(near) => told.help(format!("did you mean `{near}`?")),
-        None => told.help(others(model)),
+        Some(near) => diagnostic.help(format!("did you mean `{near}`?")),
+        None => diagnostic.help(others(model)),
     }
 }
 
@@ -217,16 +217,18 @@ fn write(
     missing: &[&str],
     quiet: bool,
 ) -> Result<Vec<PathBuf>, Box<Diagnostic>> {
-    let told = |path: &Path, reason: &str| {
+    let diagnostic = |path: &Path, reason: &str| {
         let message = format!("{} cannot be written: {reason}", path.display());
         Box::new(
             Diagnostic::error("cannot-write", message).note("earlier results are as they were"),
         )
     };
-    let mut batch = Batch::in_folder(folder).map_err(|e| told(folder, &plain(&e)))?;
+    let mut batch = Batch::in_folder(folder).map_err(|e| diagnostic(folder, &plain(&e)))?;
     let mut add = |name: String, bytes: &[u8]| {
         let path = folder.join(name);
-        batch.add(&path, bytes).map_err(|e| told(&path, &plain(&e)))
+        batch
+            .add(&path, bytes)
+            .map_err(|e| diagnostic(&path, &plain(&e)))
     };
     let model = &loaded.checked.model;
     let origin = vec![
@@ -246,8 +248,8 @@ fn write(
         let name = &result.name;
         add(format!("{name}.csv"), encode::csv(&result.table).as_bytes())?;
         let bytes = encode::parquet(&result.table, &origin);
-        let bytes =
-            bytes.map_err(|e| told(&folder.join(format!("{name}.parquet")), &e.to_string()))?;
+        let bytes = bytes
+            .map_err(|e| diagnostic(&folder.join(format!("{name}.parquet")), &e.to_string()))?;
         add(format!("{name}.parquet"), &bytes)?;
         add(
             names::picture(model, name, MECHANISM),
@@ -280,7 +282,7 @@ fn write(
     add("report.html".to_owned(), report.to_html().as_bytes())?;
     batch.publish().map_err(|unpublished| {
         if unpublished.kept.is_empty() {
-            return told(folder, &plain(&unpublished.error));
+            return diagnostic(folder, &plain(&unpublished.error));
         }
         let kept = unpublished.kept.iter().map(|p| p.display().to_string());
         let message = format!(
@@ -298,14 +300,14 @@ fn write(
 
 /// What a report says of studies that Ctrl-C kept from running.
 fn stopped_before(missing: &[&str]) -> Option<Section> {
-    let told = |name: &&str| {
+    let diagnostic = |name: &&str| {
         format!(
             "{name}: not run; its files in this folder, if there are any, are those of an earlier run"
         )
     };
     (!missing.is_empty()).then(|| Section {
         title: "Stopped by Ctrl-C".to_owned(),
-        blocks: vec![Block::List(missing.iter().map(told).collect())],
+        blocks: vec![Block::List(missing.iter().map(diagnostic).collect())],
     })
 }
 
@@ -431,6 +433,6 @@ fn summary_json(
         "title": loaded.checked.model.title,
         "studies": studies.collect::<Vec<_>>(),
         "files": files.iter().map(|f| f.display().to_string()).collect::<Vec<_>>(),
-        "diagnostics": speaker.told(),
+        "diagnostics": speaker.diagnostics(),
     })
 }

@@ -27,8 +27,8 @@ pub fn sensitivities(arguments: &Sensitivities) -> Exit {
         .as_deref()
         .map(|text| Setting::parse(model, text))
     {
-        Some(Err(told)) => {
-            speaker.tell(&[told]);
+        Some(Err(diagnostic)) => {
+            speaker.tell(&[diagnostic]);
             return fail(&speaker, Exit::Usage);
         }
         Some(Ok(setting)) => Some(setting),
@@ -42,7 +42,7 @@ pub fn sensitivities(arguments: &Sensitivities) -> Exit {
         Ok(found) if arguments.json => {
             let mut value = serde_json::to_value(&found).unwrap_or_default();
             value["file"] = json!(loaded.name);
-            value["diagnostics"] = speaker.told();
+            value["diagnostics"] = speaker.diagnostics();
             print_json(&value);
             Exit::Ok
         }
@@ -50,8 +50,8 @@ pub fn sensitivities(arguments: &Sensitivities) -> Exit {
             put(&found.to_text());
             Exit::Ok
         }
-        Err(told) => {
-            speaker.tell(&told);
+        Err(diagnostic) => {
+            speaker.tell(&diagnostic);
             let exit = if interrupt::stopped() {
                 Exit::Interrupted
             } else {

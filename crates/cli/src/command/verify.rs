@@ -63,8 +63,8 @@ pub fn verify(arguments: &Verify) -> Exit {
     let mut speaker = Speaker::new(arguments.json, false);
     let cases = match gather(&arguments.paths) {
         Ok(cases) => cases,
-        Err(told) => {
-            speaker.tell(&[*told]);
+        Err(diagnostic) => {
+            speaker.tell(&[*diagnostic]);
             speaker.print_failure();
             return Exit::Usage;
         }
@@ -76,7 +76,7 @@ pub fn verify(arguments: &Verify) -> Exit {
     for found in &cases {
         match run_case(found, &mut speaker) {
             Ok(comparisons) => {
-                out.push_str(&told(found, &comparisons, arguments.all));
+                out.push_str(&summary(found, &comparisons, arguments.all));
                 all.extend(comparisons);
             }
             Err(exit) => {
@@ -94,7 +94,7 @@ pub fn verify(arguments: &Verify) -> Exit {
             "compared": all.len(),
             "missed": missed,
             "comparisons": all,
-            "diagnostics": speaker.told(),
+            "diagnostics": speaker.diagnostics(),
         }));
     } else {
         put(&format!(
@@ -187,7 +187,7 @@ fn run_case(found: &Found, speaker: &mut Speaker) -> Result<Vec<Comparison>, Exi
 }
 
 /// A case in one line, with its misses or all its values.
-fn told(found: &Found, comparisons: &[Comparison], all: bool) -> String {
+fn summary(found: &Found, comparisons: &[Comparison], all: bool) -> String {
     let missed = comparisons.iter().filter(|c| !c.passed).count();
     let title = comparisons.first().map_or("", |c| c.case.as_str());
     let worst = comparisons

@@ -73,7 +73,7 @@ impl Cursor<'_> {
         path.push("kind".to_owned());
         let word = self.outline.value(&path);
         let word = word.and_then(|value| string(self.text, value));
-        let told = |kind: &Kind| match place_of(entry) {
+        let diagnostic = |kind: &Kind| match place_of(entry) {
             ("friction", name) if is_point_name(name) => kind.name == "pin",
             ("friction", name) if name == FRICTION_OF_ALL.name => kind.name == name,
             ("friction", _) => kind.name == "joint",
@@ -82,7 +82,7 @@ impl Cursor<'_> {
                 of_word || there.contains(kind.name)
             }
         };
-        if let Some(kind) = kinds.iter().find(|kind| told(kind)) {
+        if let Some(kind) = kinds.iter().find(|kind| diagnostic(kind)) {
             return vec![kind];
         }
         // those that know the most of the keys

@@ -186,10 +186,11 @@ fn same_names(
     let at = before
         .all
         .get(differs.unwrap_or(found.len().min(wanted.len())));
-    let mut told = Diagnostic::error("bad-name", format!("`{to}` would mean something else here"))
-        .help("choose a name that is no unit");
+    let mut finding =
+        Diagnostic::error("bad-name", format!("`{to}` would mean something else here"))
+            .help("choose a name that is no unit");
     if let Some(at) = at {
-        told = told.at(at.span.clone(), "");
+        finding = finding.at(at.span.clone(), "");
     }
-    Err(told)
+    Err(finding)
 }

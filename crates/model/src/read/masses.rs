@@ -344,7 +344,7 @@ pub(crate) fn without_inertia(cx: &mut Context<'_>) {
             |j| matches!(j.kind, JointKind::Slider { at, on, .. } if at.link == link && on.link == FRAME),
         )
     };
-    let mut told = Vec::new();
+    let mut messages = Vec::new();
     for (i, link) in cx.model.links.iter().enumerate().skip(1) {
         let Some(Inertia {
             mass: Some(mass),
@@ -355,10 +355,10 @@ pub(crate) fn without_inertia(cx: &mut Context<'_>) {
             continue;
         };
         if cx.number(mass) > 0.0 && !slides_on_frame(LinkId(i as u32)) {
-            told.push((link.name.clone(), link.span.clone()));
+            messages.push((link.name.clone(), link.span.clone()));
         }
     }
-    for (name, span) in told {
+    for (name, span) in messages {
         cx.push(
             Diagnostic::warning(
                 "no-inertia",

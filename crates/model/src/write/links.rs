@@ -56,9 +56,9 @@ impl Writer<'_> {
             };
             for (end, distance) in [(from, from_distance), (to, to_distance)] {
                 let end = link.points.get(*end).map_or(point.point, |p| p.point);
-                let told = (numbering.zip(along))
+                let diagnostic = (numbering.zip(along))
                     .is_some_and(|((of, _), (b, _))| (of, b) == (point.point, end));
-                if !told {
+                if !diagnostic {
                     entries.push(self.distance(end, point.point, distance));
                 }
             }

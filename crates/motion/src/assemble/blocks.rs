@@ -104,9 +104,10 @@ impl Search<'_> {
         let (mechanism, size) = (self.mechanism, self.size);
         let mut work = self.work;
         let earlier = self.earlier.get(self.paths.len());
-        let told = &mut |part| self.told(Some(part));
-        let solutions =
-            all_real_solutions(block, mechanism, &situation, size, earlier, &mut work, told);
+        let diagnostic = &mut |part| self.tell(Some(part));
+        let solutions = all_real_solutions(
+            block, mechanism, &situation, size, earlier, &mut work, diagnostic,
+        );
         self.work = work;
         match solutions {
             Solutions::Stopped => return None,

@@ -35,7 +35,7 @@ pub fn all_real_solutions(
     scale: f64,
     earlier: Option<&PathReport>,
     work: &mut f64,
-    told: &mut dyn FnMut(f64) -> ControlFlow<()>,
+    progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> Solutions {
     let builder = Builder {
         block,
@@ -48,7 +48,7 @@ pub fn all_real_solutions(
         return Solutions::NotAlgebraic;
     };
     let variables = builder.variables;
-    let outcome = all_solutions(&linear, &bilinear, variables, earlier, work, told);
+    let outcome = all_solutions(&linear, &bilinear, variables, earlier, work, progress);
     let (found, report) = match outcome {
         Outcome::Found(found, report) => (found, report),
         Outcome::TooLarge => return Solutions::NotAlgebraic,

@@ -125,7 +125,7 @@ impl<'a> Search<'a> {
                 self.shortfall.get_or_insert(Shortfall::TooMany);
                 return;
             }
-            if self.stopped || self.told(None).is_break() {
+            if self.stopped || self.tell(None).is_break() {
                 return;
             }
             let Some(kind) = self.plan.steps.get(step) else {
@@ -258,7 +258,7 @@ impl<'a> Search<'a> {
     }
 
     /// Says how far the search has come; how many branches there are to try is not known beforehand.
-    pub(super) fn told(&mut self, part: Option<f64>) -> ControlFlow<()> {
+    pub(super) fn tell(&mut self, part: Option<f64>) -> ControlFlow<()> {
         let flow = self.progress.reached(Stage::Assembling, Done::from(part));
         self.stopped |= flow.is_break();
         flow

@@ -52,17 +52,17 @@ pub(super) fn follow_both(
     share: f64,
     progress: &mut dyn Progress,
 ) -> Option<(Vec<Node>, (EndReason, EndReason))> {
-    let mut told = |before: f64, part: f64| {
+    let mut heard = |before: f64, part: f64| {
         progress.reached(
             Stage::Following,
             Done::Part((before + part).clamp(0.0, 1.0)),
         )
     };
     let (upper, end_high) = follow(follower, up.clone(), high, &mut |part| {
-        told(0.0, part * share)
+        heard(0.0, part * share)
     })?;
     let (lower, end_low) = follow(follower, down.clone(), low, &mut |part| {
-        told(share, part * (1.0 - share))
+        heard(share, part * (1.0 - share))
     })?;
     // From the low end to the high one.
     let turned = lower.into_iter().skip(1).map(Node::turned);
@@ -77,7 +77,7 @@ fn follow(
     follower: &mut Follower<'_, DrivePath>,
     start: Node,
     target: f64,
-    told: &mut dyn FnMut(f64) -> ControlFlow<()>,
+    heard: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> Option<(Vec<Node>, EndReason)> {
     let last = start.z.len() - 1;
     let direction = start.tangent[last].signum();
@@ -93,7 +93,7 @@ fn follow(
     for _ in 0..STEP_LIMIT {
         let from = &nodes[nodes.len() - 1];
         let whole = (target - nodes[0].z[last]).abs().max(f64::MIN_POSITIVE);
-        told((from.z[last] - nodes[0].z[last]).abs() / whole).continue_value()?;
+        heard((from.z[last] - nodes[0].z[last]).abs() / whole).continue_value()?;
         // A margin beyond the target, so that it lies inside a patch and not at the rim; and near a crossing of branches
         // on to its other side, so that rows there are joined from both sides.
         let past = (from.z[last] - target) * direction > 1e-9;

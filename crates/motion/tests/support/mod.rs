@@ -364,8 +364,8 @@ impl Spec {
                 let _ = writeln!(text, "{} = {{ near = {:e} }}", link.name, link.pose[2]);
                 if let Some((name, p)) = link.points.first() {
                     let on_frame = self.links[0].point(name).is_some();
-                    let told = text.contains(&format!("\n{name} = {{ near"));
-                    if !on_frame && !told {
+                    let diagnostic = text.contains(&format!("\n{name} = {{ near"));
+                    if !on_frame && !diagnostic {
                         let w = link.world(*p);
                         let _ = writeln!(text, "{name} = {{ near = [{:e}, {:e}] }}", w[0], w[1]);
                     }
