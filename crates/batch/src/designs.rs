@@ -58,7 +58,7 @@ impl Designs<'_> {
 }
 
 /// What designs take from the motion at one path parameter.
-pub(super) struct Place<'b> {
+pub(super) struct MotionPlace<'b> {
     /// Its index.
     index: usize,
     branch: &'b Branch,
@@ -102,16 +102,16 @@ impl Places {
     }
 
     /// Runs of places on one branch, not too long to be solved together.
-    pub(super) fn runs<'b>(&'b self, batch: &'b Batch) -> Vec<Vec<Place<'b>>> {
+    pub(super) fn runs<'b>(&'b self, batch: &'b Batch) -> Vec<Vec<MotionPlace<'b>>> {
         let drives = batch.motion.mechanism().model.drives.len();
-        let mut runs: Vec<Vec<Place<'b>>> = Vec::new();
+        let mut runs: Vec<Vec<MotionPlace<'b>>> = Vec::new();
         for (index, &p) in self.parameters.iter().enumerate() {
             let guessed = &self.branches[index.min(self.branches.len() - 1)];
             let branch = match nearest_stretch(&batch.stretches, p) {
                 Some(stretch) if !batch.needs_guess => &stretch.branch,
                 _ => guessed,
             };
-            let place = Place {
+            let place = MotionPlace {
                 index,
                 branch,
                 inputs: &self.inputs[index * drives..(index + 1) * drives],
@@ -134,7 +134,7 @@ multiversion! {
         batch: &Batch,
         designs: Designs<'_>,
         range: Range<usize>,
-        runs: &[Vec<Place<'_>>],
+        runs: &[Vec<MotionPlace<'_>>],
         out: &mut [&mut [f64]],
     ) -> usize = in_lanes::<16, false>;
 }
@@ -146,7 +146,7 @@ multiversion! {
         batch: &Batch,
         designs: Designs<'_>,
         range: Range<usize>,
-        runs: &[Vec<Place<'_>>],
+        runs: &[Vec<MotionPlace<'_>>],
         out: &mut [&mut [f64]],
     ) -> usize = in_lanes::<16, true>;
 }
@@ -157,7 +157,7 @@ pub(super) fn solve_guessed(
     batch: &Batch,
     designs: Designs<'_>,
     range: Range<usize>,
-    runs: &[Vec<Place<'_>>],
+    runs: &[Vec<MotionPlace<'_>>],
     out: &mut [&mut [f64]],
 ) -> usize {
     in_lanes::<4, true>(batch, designs, range, runs, out)
@@ -168,7 +168,7 @@ fn in_lanes<const W: usize, const ALL: bool>(
     batch: &Batch,
     designs: Designs<'_>,
     range: Range<usize>,
-    runs: &[Vec<Place<'_>>],
+    runs: &[Vec<MotionPlace<'_>>],
     out: &mut [&mut [f64]],
 ) -> usize {
     let (mechanism, order) = (batch.motion.mechanism(), &batch.order);

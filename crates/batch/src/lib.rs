@@ -32,7 +32,7 @@ use kempe_mechanism::structure::Marker;
 use self::columns::{check_length, split_columns};
 use self::designs::{Places, solve_designs, solve_guessed, solve_trees};
 use self::order::Order;
-use self::stretch::{Stretch, stretches};
+use self::stretch::{ModeStretch, stretches};
 use self::sweep::{sweep_one_by_one, sweep_positions, sweep_rates};
 use kempe_motion::Motion;
 
@@ -113,7 +113,7 @@ pub struct Batch {
     motion: Arc<Motion>,
     markers: Vec<Marker>,
     set: InstructionSet,
-    stretches: Vec<Stretch>,
+    stretches: Vec<ModeStretch>,
     needs_guess: bool,
     order: Order,
 }

@@ -7,7 +7,7 @@ use kempe_motion::Motion;
 
 /// A stretch of the path parameter with one set of assembly modes.
 #[derive(Clone, Debug)]
-pub(super) struct Stretch {
+pub(super) struct ModeStretch {
     from: f64,
     /// First parameter beyond it.
     to: f64,
@@ -15,17 +15,17 @@ pub(super) struct Stretch {
 }
 
 /// The motion's stretches with a margin at both ends; together they cover what the motion reaches.
-pub(super) fn stretches(motion: &Motion) -> Vec<Stretch> {
+pub(super) fn stretches(motion: &Motion) -> Vec<ModeStretch> {
     let margin = motion.margin();
     let last = motion.node_parameters().last().copied();
-    let mut list: Vec<Stretch> = Vec::new();
+    let mut list: Vec<ModeStretch> = Vec::new();
     for (from, signs) in motion.stretches() {
         let mut branch = Branch::neutral(motion.mechanism());
         branch.signs.copy_from_slice(signs);
         if let Some(before) = list.last_mut() {
             before.to = from;
         }
-        list.push(Stretch {
+        list.push(ModeStretch {
             from,
             to: f64::INFINITY,
             branch,
@@ -40,7 +40,7 @@ pub(super) fn stretches(motion: &Motion) -> Vec<Stretch> {
     list
 }
 
-impl Stretch {
+impl ModeStretch {
     #[cfg_attr(not(debug_assertions), inline(always))]
     pub(super) fn holds(&self, p: f64) -> bool {
         (self.from <= p) & (p < self.to)
@@ -64,8 +64,8 @@ impl Stretch {
 
 /// The stretch in which `p` lies, tried at `cursor` first.
 #[cfg_attr(not(debug_assertions), inline(always))]
-pub(super) fn find_stretch(stretches: &[Stretch], p: f64, cursor: &mut usize) -> bool {
-    let within = |s: &Stretch| s.holds(p);
+pub(super) fn find_stretch(stretches: &[ModeStretch], p: f64, cursor: &mut usize) -> bool {
+    let within = |s: &ModeStretch| s.holds(p);
     if stretches.get(*cursor).is_some_and(within) {
         return true;
     }
@@ -74,6 +74,6 @@ pub(super) fn find_stretch(stretches: &[Stretch], p: f64, cursor: &mut usize) ->
 }
 
 /// The stretch in which `p` lies; beyond the ends the first or the last.
-pub(super) fn nearest_stretch(stretches: &[Stretch], p: f64) -> Option<&Stretch> {
+pub(super) fn nearest_stretch(stretches: &[ModeStretch], p: f64) -> Option<&ModeStretch> {
     stretches.get(stretches.partition_point(|s| s.from <= p).max(1) - 1)
 }

@@ -4,7 +4,7 @@ use kempe_mechanism::Design;
 use kempe_mechanism::pose::dot;
 use kempe_mechanism::structure::Marker;
 use kempe_model::{LawPiece, PointId};
-use kempe_motion::bridge::{Side, across};
+use kempe_motion::bridge::{SideSeries, across};
 use kempe_motion::drive_path::DrivePath;
 use kempe_motion::events::EventKind;
 use kempe_motion::motion::{Motion, Solver};
@@ -218,9 +218,9 @@ impl Variable {
 struct Runner {
     marker: Marker,
     design: Design<Line>,
-    side_design: Design<Side>,
+    side_design: Design<SideSeries>,
     solver: Solver<Line>,
-    side: Solver<Side>,
+    side: Solver<SideSeries>,
 }
 
 impl Runner {

@@ -6,7 +6,7 @@ use kempe_mechanism::Design;
 use kempe_mechanism::PlanNumber;
 use kempe_mechanism::evidence::is_finite;
 use kempe_model::DriveId;
-use kempe_motion::bridge::{Side, across};
+use kempe_motion::bridge::{SideSeries, across};
 use kempe_motion::drive_path::DrivePath;
 use kempe_motion::events::Event;
 use kempe_motion::motion::{Motion, Solver};
@@ -72,8 +72,8 @@ pub(crate) struct StatesAlong<B> {
     /// Values of the parameters.
     parameters: Vec<B>,
     solver: Solver<Series<B>>,
-    side_design: Design<Side>,
-    side: Solver<Side>,
+    side_design: Design<SideSeries>,
+    side: Solver<SideSeries>,
     state: State<B>,
 }
 

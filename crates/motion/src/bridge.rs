@@ -14,20 +14,20 @@ use crate::motion::{Motion, Solver};
 const SIDE_ORDER: usize = 6;
 
 /// The series on one side.
-pub type Side = Jet<f64, SIDE_ORDER>;
+pub type SideSeries = Jet<f64, SIDE_ORDER>;
 
 /// The poses at a path parameter within the bridge of a change point, as series joined from both sides. `solver` is
 /// storage.
 pub fn across<const N: usize>(
     motion: &Motion,
-    design: &Design<Side>,
+    design: &Design<SideSeries>,
     event: &Event,
     p: f64,
-    solver: &mut Solver<Side>,
+    solver: &mut Solver<SideSeries>,
 ) -> Vec<Pose<Jet<f64, N>>> {
     let (at, half) = (event.at, event.bridge);
     let low = solve_sides(motion, design, [at - half, at + half], solver);
-    let joined = |low: &Side, high: &Side| join(low, high, half, p - at);
+    let joined = |low: &SideSeries, high: &SideSeries| join(low, high, half, p - at);
     low.iter()
         .zip(&solver.state.poses)
         .map(|(low, high)| Pose {
@@ -43,10 +43,10 @@ pub fn across<const N: usize>(
 /// compiled here and once, not for every order in every crate that asks.
 fn solve_sides(
     motion: &Motion,
-    design: &Design<Side>,
+    design: &Design<SideSeries>,
     at: [f64; 2],
-    solver: &mut Solver<Side>,
-) -> Vec<Pose<Side>> {
+    solver: &mut Solver<SideSeries>,
+) -> Vec<Pose<SideSeries>> {
     motion.solve(design, Jet::variable(at[0]), solver);
     let first = solver.state.poses.clone();
     motion.solve(design, Jet::variable(at[1]), solver);
@@ -54,7 +54,12 @@ fn solve_sides(
 }
 
 /// The series at `at_from_center` of the polynomial through two series given `half` to either side of `center`.
-fn join<const N: usize>(low: &Side, high: &Side, half: f64, at_from_center: f64) -> Jet<f64, N> {
+fn join<const N: usize>(
+    low: &SideSeries,
+    high: &SideSeries,
+    half: f64,
+    at_from_center: f64,
+) -> Jet<f64, N> {
     const M: usize = 2 * SIDE_ORDER;
     // In the variable u = (p - center) / half the points are -1 and +1.
     let mut scaled = [[0.0; SIDE_ORDER]; 2];

@@ -20,7 +20,7 @@ use crate::trace::{Follower, Node, Path, distance};
 
 /// A stretch of a circuit on which the drive's coordinate runs one way.
 #[derive(Clone, Debug)]
-pub struct Stretch {
+pub struct Stroke {
     /// The motion, over rising coordinates.
     pub motion: Arc<Motion>,
     /// Whether the circuit travels it upwards.
@@ -35,7 +35,7 @@ pub struct Stretch {
 #[derive(Clone, Debug)]
 pub struct Circuit {
     /// Its stretches in the order of travel.
-    pub stretches: Vec<Stretch>,
+    pub stretches: Vec<Stroke>,
     /// Whether it came back to its start.
     pub closed: bool,
     /// Whole arc length, in mechanism sizes and rad over all bodies.
@@ -98,7 +98,7 @@ impl Circuit {
                 let mut motion = Motion::of_nodes(design, path, assemblies, rising);
                 motion.ends = (EndReason::Limit, EndReason::Limit);
                 motion.find_events(follower, progress)?;
-                stretches.push(Stretch {
+                stretches.push(Stroke {
                     motion: Arc::new(motion),
                     forward,
                     arcs,

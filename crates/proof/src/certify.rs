@@ -35,7 +35,7 @@ use kempe_mechanism::blocks::Row;
 use kempe_mechanism::geometry::Geometry;
 use kempe_mechanism::pose::Pose;
 use kempe_mechanism::structure::BodyId;
-use kempe_motion::bridge::Side;
+use kempe_motion::bridge::SideSeries;
 use kempe_motion::motion::{Motion, Solver};
 use kempe_number::{Interval, Number};
 
@@ -53,7 +53,7 @@ pub struct Certifier {
     motion: Arc<Motion>,
     design: Design<Interval>,
     rich: Geometry<Curve>,
-    side: Design<Side>,
+    side: Design<SideSeries>,
     system: System,
     idle: Vec<BodyId>,
     surplus: Vec<Row>,

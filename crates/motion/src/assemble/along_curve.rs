@@ -30,9 +30,9 @@ pub(super) fn poses(
     state: &Configuration<f64>,
 ) -> Option<Vec<Vec<Pose<f64>>>> {
     let held = Held::of(design, block, &state.poses)?;
-    let plain = Side::new(&held, &design.geometry);
+    let plain = OtherSide::new(&held, &design.geometry);
     let geometry: Geometry<Interval> = design.geometry.map(Interval::from_f64);
-    let wide = Side::new(&held, &geometry);
+    let wide = OtherSide::new(&held, &geometry);
     let closed = design.mechanism.curves[held.on.curve.index as usize].closed;
     let reach = if closed { PI } else { FRAC_PI_2 };
 
@@ -133,13 +133,13 @@ impl<'a> Held<'a> {
 }
 
 /// The contact of pin and curve by the angle of the shoe, on one kind of number.
-struct Side<'a, T> {
+struct OtherSide<'a, T> {
     held: &'a Held<'a>,
     curve: &'a LocalCurve<T>,
     pin: [T; 2],
 }
 
-impl<'a, T: Number> Side<'a, T> {
+impl<'a, T: Number> OtherSide<'a, T> {
     fn new(held: &'a Held<'a>, geometry: &'a Geometry<T>) -> Self {
         Self {
             held,
@@ -187,7 +187,7 @@ impl<'a, T: Number> Side<'a, T> {
     }
 }
 
-impl Side<'_, f64> {
+impl OtherSide<'_, f64> {
     /// The body and the shoe put where the contact is.
     fn poses(&self, angle: f64, before: &[Pose<f64>]) -> Vec<Pose<f64>> {
         let [[own, _], [world, _]] = self.contact(angle);

@@ -86,14 +86,14 @@ pub(super) struct Hints<'a> {
     geometry: &'a Geometry<f64>,
     /// Size of the mechanism, m.
     size: f64,
-    sides: Vec<Side>,
+    sides: Vec<SideHint>,
     near: Vec<Near>,
     /// Angles of the bodies by the file's hints, zero without: angles count within half a turn of these.
     pub meant: Vec<f64>,
 }
 
 /// A side that can be checked once its points are placed.
-struct Side {
+struct SideHint {
     asked: AskedSide,
     after_step: usize,
 }
@@ -142,7 +142,7 @@ impl<'a> Hints<'a> {
         let placed = placed_after(mechanism);
         Self {
             sides: hints()
-                .filter_map(|hint| Side::new(hint, mechanism, &placed))
+                .filter_map(|hint| SideHint::new(hint, mechanism, &placed))
                 .collect(),
             mechanism,
             geometry,
@@ -211,7 +211,7 @@ impl<'a> Hints<'a> {
     }
 }
 
-impl Side {
+impl SideHint {
     /// `None` for other hints. `placed` tells after which step each body is placed.
     fn new(hint: &HintKind, mechanism: &Mechanism, placed: &[usize]) -> Option<Self> {
         let asked = AskedSide::of(mechanism, hint)?;

@@ -1,6 +1,6 @@
 //! Places on a circuit by arc length, and the rows there.
 
-use super::{Circuit, Stretch};
+use super::{Circuit, Stroke};
 use crate::trace::{Cubic, interval};
 
 /// A multiple of a step this near (in steps) to a place is that place.
@@ -69,7 +69,7 @@ impl Circuit {
     }
 }
 
-impl Stretch {
+impl Stroke {
     /// Path parameter at a node, in the order of travel.
     fn parameter_at(&self, node: usize, scale: f64) -> Option<f64> {
         self.nodes

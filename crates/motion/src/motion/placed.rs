@@ -4,7 +4,7 @@ use kempe_mechanism::evidence::is_finite;
 use kempe_mechanism::pose::Pose;
 
 use super::{Motion, Solver};
-use crate::bridge::{Side, across};
+use crate::bridge::{SideSeries, across};
 
 /// Where the bodies are at a place of a motion.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,7 +29,7 @@ impl Motion {
         let poses: Vec<Pose<f64>> = match self.bridge(p) {
             Some(event) => {
                 self.branch_at(p, &mut solver.branch);
-                let (design, mut sides) = (self.design_on::<Side>(), self.solver());
+                let (design, mut sides) = (self.design_on::<SideSeries>(), self.solver());
                 let joined = across::<1>(self, &design, event, p, &mut sides);
                 joined.iter().map(Pose::value).collect()
             }

@@ -75,7 +75,7 @@ impl Motion {
         let mut best: Option<Beginning> = None;
         let mut compared = 0;
         let mut missed = 0;
-        for Place { anchor, inside } in places(&path, demanded, start) {
+        for Anchor { anchor, inside } in places(&path, demanded, start) {
             // A start right at a limit may miss closure by a rounding error: look a little inside, and no farther.
             if nothing.is_some() && best.is_none() && (missed > TRIES || !inside) {
                 continue;
@@ -190,13 +190,13 @@ impl Motion {
 }
 
 /// Where the branch of a motion may be looked for, and whether that is within its range.
-struct Place {
+struct Anchor {
     anchor: f64,
     inside: bool,
 }
 
 /// The start, places near it on the way of the motion, and places farther on.
-fn places(path: &DrivePath, (low, high): (f64, f64), start: f64) -> Vec<Place> {
+fn places(path: &DrivePath, (low, high): (f64, f64), start: f64) -> Vec<Anchor> {
     let far = if (start - low).abs() > (high - start).abs() {
         low
     } else {
@@ -210,7 +210,7 @@ fn places(path: &DrivePath, (low, high): (f64, f64), start: f64) -> Vec<Place> {
     let mut places = vec![0.0];
     places.extend(near.into_iter().filter(|d| beyond || *d < along));
     places.extend(PARTS.map(|part| part * along));
-    let place = |d: f64| Place {
+    let place = |d: f64| Anchor {
         anchor: start + d * direction,
         inside: d <= along,
     };

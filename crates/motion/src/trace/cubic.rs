@@ -18,7 +18,7 @@ pub struct Cubic<'a> {
 }
 
 /// A place on a cubic.
-pub struct Place<'a> {
+pub struct CubicPoint<'a> {
     cubic: &'a Cubic<'a>,
     weights: [f64; 4],
 }
@@ -75,8 +75,8 @@ impl<'a> Cubic<'a> {
     }
 
     /// The place at a part `s` of the step.
-    pub fn at(&self, s: f64) -> Place<'_> {
-        Place {
+    pub fn at(&self, s: f64) -> CubicPoint<'_> {
+        CubicPoint {
             cubic: self,
             weights: [
                 (1.0 + 2.0 * s) * (1.0 - s) * (1.0 - s),
@@ -88,7 +88,7 @@ impl<'a> Cubic<'a> {
     }
 }
 
-impl Place<'_> {
+impl CubicPoint<'_> {
     /// The `i`-th unknown there.
     pub fn part(&self, i: usize) -> f64 {
         let ([a, b, c, d], Cubic { from, to, .. }) = (self.weights, self.cubic);
