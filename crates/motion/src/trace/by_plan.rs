@@ -162,8 +162,6 @@ impl<P: Path> Follower<'_, P> {
             it.signs.clone_from(&it.branch.signs);
             it.at.clone_from(&it.near);
             it.note_largest();
-            it.signs.clone_from(&it.branch.signs);
-            it.at.clone_from(&it.near);
         }
         &self.by_plan.determinants
     }
