@@ -18,30 +18,10 @@ impl Step {
 }
 
 impl Design<f64> {
-    /// The determinant of every step of the plan at a pose, with the sign of its assembly mode: 1 where a step has neither
-    /// modes nor a determinant that vanishes, 0 where it has no value.
-    ///
-    /// `state` holds the pose with its inputs, and again when it is done; `near` are the bodies' angles to within half a
-    /// turn, rad.
-    pub fn determinants(
-        &self,
-        state: &mut Configuration<f64>,
-        near: &[f64],
-        size: f64,
-    ) -> Vec<f64> {
-        let mut branch = Branch {
-            guess: state.poses.clone(),
-            near: near.to_vec(),
-            ..Branch::neutral(&self.mechanism)
-        };
-        let mut list = Vec::with_capacity(self.mechanism.plan.steps.len());
-        self.find_modes(state, &mut branch, size, &mut list);
-        list
-    }
-
     /// Gives a branch the modes in which every step of the plan comes nearest to the branch's guess, the steps before it being as
-    /// guessed; `state` holds the inputs, and the guess when it is done. Fills the [determinants](Design::determinants) there and
-    /// returns how far a step is from the guess, the farthest one (in mechanism sizes and rad).
+    /// guessed; `state` holds the inputs, and the guess when it is done. Fills the determinants there, with the signs of the modes:
+    /// 1 where a step has neither modes nor a determinant that vanishes, 0 where it has no value. Returns how far a step is from
+    /// the guess, the farthest one (in mechanism sizes and rad).
     pub fn find_modes(
         &self,
         state: &mut Configuration<f64>,
@@ -94,13 +74,13 @@ impl Design<f64> {
     /// turn, rad.
     pub fn branch_through(&self, poses: &[Pose<f64>], near: &[f64], coordinates: &[f64]) -> Branch {
         let mut state = Configuration::new(&self.mechanism);
-        state.poses.copy_from_slice(poses);
         state.set_inputs(&self.mechanism, coordinates);
-        let determinants = self.determinants(&mut state, near, self.size());
-        Branch {
-            signs: determinants.iter().map(|d| d.signum()).collect(),
+        let mut branch = Branch {
             guess: poses.to_vec(),
             near: near.to_vec(),
-        }
+            ..Branch::neutral(&self.mechanism)
+        };
+        self.find_modes(&mut state, &mut branch, self.size(), &mut Vec::new());
+        branch
     }
 }
