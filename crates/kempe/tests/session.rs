@@ -447,6 +447,40 @@ fn many_designs_are_the_designs_one_by_one_whatever_the_threads() {
     }
 }
 
+/// Along time the drives of many designs stand where those of the session's own design do, whichever lanes are taken.
+#[test]
+fn both_ways_in_lanes_follow_the_laws_of_the_session() {
+    let text = "[parameters]
+w = \"1 rad/s\"
+a = \"30 mm\"
+[links]
+frame = { A = [0, 0], E = [\"100 mm\", 0] }
+left  = { A-B = \"a\" }
+up    = { B-C = \"70 mm\" }
+down  = { C-D = \"70 mm\" }
+right = { E-D = \"30 mm\" }
+[drives]
+one = { turns = \"left\", from = \"90 deg\", to = \"120 deg\", speed = \"w\" }
+two = { turns = \"right\", from = \"80 deg\", to = \"60 deg\", speed = \"1 rad/s\" }
+[assembly]
+C = \"left of B -> D\"
+";
+    let model: Model = text.parse().expect("a model");
+    let mut s = model.compile().expect("it moves").session();
+    let designs = Designs::from_rows(&["w", "a"], [[1.0, 0.03], [0.8, 0.03], [1.2, 0.031]]);
+    let designs = designs.expect("designs");
+    let v = s.many(&designs, [0.1, 0.3], ["x(C)", "2 * x(C)", "angle(left)"]);
+    let v = v.expect("values");
+    assert_eq!(v.in_lanes, [true; 3]);
+    for place in 0..2 {
+        for design in 0..3 {
+            let (plain, twice) = (v.get(0, place, design), v.get(1, place, design));
+            assert!((twice - 2.0 * plain).abs() < 1e-15, "{plain} {twice}");
+            assert_eq!(v.get(2, place, design), v.get(2, place, 0));
+        }
+    }
+}
+
 #[test]
 fn designs_that_do_not_close_or_make_no_sense_are_counted_with_their_reasons() {
     let mut s = crank_rocker();

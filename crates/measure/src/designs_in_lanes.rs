@@ -12,8 +12,8 @@ use kempe_number::{Lanes, Number};
 use crate::measure::{History, Moment, only_value, order_of, visit_leaves};
 use crate::state::{Abscissa, Series, State};
 
-/// Measures of `W` designs at once, at places of a motion, on the branch that the motion's own design has there: right as
-/// long as no limit or change point comes between a design and the motion's.
+/// Measures of `W` designs at once, at places of a motion, on the branch and with the drives that the motion's own design has
+/// there: right as long as no limit or change point comes between a design and the motion's.
 ///
 /// Lane k of a measure has the bits that the design of lane k gives alone on that branch.
 pub struct DesignsInLanes<'m, const W: usize> {
@@ -50,7 +50,10 @@ impl<'m, const W: usize> DesignsInLanes<'m, W> {
     pub fn at(&mut self, p: f64) -> Vec<Lanes<W>> {
         let at = Series::variable(Lanes::from_f64(p));
         let design = self.state.design.clone();
-        self.motion.solve(&design, at, &mut self.solver);
+        // The drives stand where the motion has them, whatever the laws of the designs are.
+        self.motion.branch_at(p, &mut self.solver.branch);
+        (self.motion.path).coordinates(at, &mut self.solver.coordinates);
+        self.solver.run(self.motion, &design);
         self.state.poses.clone_from(&self.solver.state.poses);
         (self.state.coordinates).clone_from(&self.solver.coordinates);
         self.state.near.clone_from(&self.solver.branch.near);
