@@ -1,5 +1,6 @@
 //! Balancing masses: rest at any pose, no shaking force, or as little of it as a counterweight can leave.
 
+use kempe_linear::independent_least_squares;
 use kempe_number::math;
 
 use crate::acting::Acting;
@@ -84,9 +85,6 @@ pub fn crank_counterweight(samples: &[[f64; 2]], start: f64, speed: f64) -> Coun
     }
 }
 
-/// A column whose part that no earlier column explains is this small, over the column itself, explains nothing more.
-const DEPENDENT: f64 = 1e-9;
-
 /// The first moments (kg m, along the axes of their links) of counterweights on links that turn about fixed pivots,
 /// chosen together: what is left of a quantity over a motion is least in the sense of least squares.
 ///
@@ -96,51 +94,8 @@ const DEPENDENT: f64 = 1e-9;
 /// the links that help most get the weight and the others none.
 pub fn counterweights(before: &[f64], units: &[[Vec<f64>; 2]]) -> Vec<[f64; 2]> {
     let columns: Vec<&[f64]> = units.iter().flatten().map(Vec::as_slice).collect();
-    let found = least_squares(&columns, before);
+    let found = independent_least_squares(&columns, before);
     found.chunks_exact(2).map(|u| [-u[0], -u[1]]).collect()
-}
-
-/// Factors of the columns whose sum is nearest to `target`: Gram and Schmidt with pivoting, each column cleaned twice.
-/// Columns that others explain get the factor 0.
-fn least_squares(columns: &[&[f64]], target: &[f64]) -> Vec<f64> {
-    let n = columns.len();
-    let sum = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
-    let mut rest: Vec<Vec<f64>> = columns.iter().map(|c| c.to_vec()).collect();
-    let sizes: Vec<f64> = columns.iter().map(|c| sum(c, c).sqrt()).collect();
-    let mut order: Vec<usize> = Vec::with_capacity(n);
-    let mut basis: Vec<Vec<f64>> = Vec::with_capacity(n);
-    loop {
-        let open = (0..n).filter(|k| !order.contains(k));
-        let part = |k: usize| sum(&rest[k], &rest[k]).sqrt();
-        let Some(next) = open.max_by(|a, b| part(*a).total_cmp(&part(*b))) else {
-            break;
-        };
-        let norm = part(next);
-        if !(norm > DEPENDENT * sizes[next]) {
-            break;
-        }
-        let q: Vec<f64> = rest[next].iter().map(|x| x / norm).collect();
-        order.push(next);
-        for k in (0..n).filter(|k| !order.contains(k)) {
-            for _ in 0..2 {
-                let along = sum(&q, &rest[k]);
-                for (x, y) in rest[k].iter_mut().zip(&q) {
-                    *x -= along * y;
-                }
-            }
-        }
-        basis.push(q);
-    }
-    // R x = Q^T target, from the last column back.
-    let mut factors = vec![0.0; n];
-    for (place, column) in order.iter().enumerate().rev() {
-        let q = &basis[place];
-        let later: f64 = (order[place + 1..].iter())
-            .map(|k| factors[*k] * sum(q, columns[*k]))
-            .sum();
-        factors[*column] = (sum(q, target) - later) / sum(q, columns[*column]);
-    }
-    factors
 }
 
 /// The total mass (kg) and the common centre of all moving masses (m): a mechanism whose centre stands still has no

@@ -9,14 +9,11 @@
 //! homotopies for polynomial systems", SIAM J. Numer. Anal. 1993), which has a start point, and a path, for every choice
 //! of factors that the unknowns can be matched to.
 
-mod complex_linear;
 mod paths;
-mod random;
 mod sparsest;
 mod system;
 mod tracker;
 
-pub use complex_linear::{Affine, C};
+pub use kempe_linear::{Affine, C};
 pub use paths::{Outcome, PATH_LIMIT, PathReport, Solution, WORK_LIMIT, all_solutions};
-pub use random::Random;
 pub use system::Bilinear;

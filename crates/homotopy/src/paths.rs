@@ -2,11 +2,11 @@
 
 use std::ops::ControlFlow;
 
-use crate::complex_linear::{Affine, C, eliminate};
-use crate::random::Random;
 use crate::sparsest::sparsest;
 use crate::system::{Bilinear, LARGEST, Start, System, subsets};
 use crate::tracker::{CARES, Care, End, Tracker};
+use kempe_linear::{Affine, C, eliminate};
+use kempe_number::Random;
 
 /// Largest number of paths followed.
 pub const PATH_LIMIT: usize = 3432;
@@ -123,7 +123,7 @@ fn start_system(system: &System) -> Start {
     let d = system.d;
     let mut random = Random(0xd134_2543_de82_ef95);
     let mut factor = |support: u32| {
-        let mut f = Affine((0..=d).map(|_| random.unit()).collect());
+        let mut f = Affine((0..=d).map(|_| random.complex()).collect());
         for (j, c) in f.0[..d].iter_mut().enumerate() {
             if support >> j & 1 == 0 {
                 *c = C::zero();
@@ -134,7 +134,7 @@ fn start_system(system: &System) -> Start {
     Start {
         plain: system.supports.iter().map(|s| factor(s[0])).collect(),
         conjugate: system.supports.iter().map(|s| factor(s[1])).collect(),
-        gamma: random.unit(),
+        gamma: random.complex(),
     }
 }
 

@@ -1,7 +1,7 @@
 //! The choice of free variables that needs the fewest paths.
 
-use crate::complex_linear::{Affine, C};
 use crate::system::{Bilinear, System};
+use kempe_linear::{Affine, C};
 
 /// Most swaps of dependent and free unknowns.
 const SWAPS: usize = 8;

@@ -1,6 +1,6 @@
 //! The bilinear system of a block, and the product system from which its paths start.
 
-use crate::complex_linear::{Affine, C, solve};
+use kempe_linear::{Affine, C, solve_complex};
 
 /// Most plain unknowns of a system for which paths are counted.
 pub(crate) const LARGEST: usize = 8;
@@ -104,7 +104,7 @@ impl System {
                 a.extend_from_slice(&row.0[..d]);
                 b.push([-row.0[d]]);
             }
-            if !solve(&mut a, &mut b, d) {
+            if !solve_complex(&mut a, &mut b, d) {
                 return None;
             }
             x.extend(b.as_flattened());

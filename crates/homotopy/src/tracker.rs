@@ -2,8 +2,8 @@
 
 use kempe_number::math;
 
-use crate::complex_linear::{Affine, C, solve};
 use crate::system::{Start, System};
+use kempe_linear::{Affine, C, solve_complex};
 
 /// Size of the unknowns (in units of the mechanism) beyond which a path counts as gone to infinity.
 const INFINITY: f64 = 1e7;
@@ -132,7 +132,7 @@ impl Tracker {
     fn solve(&mut self, x: &[C], t: f64) -> bool {
         self.evaluate(x, t);
         self.solves += 1;
-        solve(&mut self.jacobian, &mut self.sides, self.n)
+        solve_complex(&mut self.jacobian, &mut self.sides, self.n)
     }
 
     fn slope(&self) -> Vec<C> {

@@ -5,7 +5,7 @@
 //! sets that must be solved at once (Dulmage and Mendelsohn 1958). For lower pairs with one drive these are the Assur
 //! groups, split further where an angle is known before a place.
 
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::VecDeque;
 
 use crate::constraint::{Constraint, Joint, Touch};
 use crate::ids::BodyId;
@@ -60,23 +60,6 @@ pub struct Row {
     pub constraint: usize,
     /// Row of that constraint.
     pub row: usize,
-}
-
-/// A constraint's index with the places of its two rows among those asked for.
-pub type ConstraintRows = (usize, [Option<usize>; 2]);
-
-/// Rows by constraint, in the order of the constraints' first rows.
-pub fn by_constraint(rows: &[Row]) -> Vec<ConstraintRows> {
-    let mut list: Vec<ConstraintRows> = Vec::new();
-    let mut found = BTreeMap::new();
-    for (place, row) in rows.iter().enumerate() {
-        let index = *found.entry(row.constraint).or_insert_with(|| {
-            list.push((row.constraint, [None; 2]));
-            list.len() - 1
-        });
-        list[index].1[row.row] = Some(place);
-    }
-    list
 }
 
 /// A smallest set of unknowns that is solved at once.

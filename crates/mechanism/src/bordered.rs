@@ -9,10 +9,10 @@ mod singular;
 
 pub use self::layout::Layout;
 
-use self::layout::Seat;
 use crate::Mechanism;
 use crate::constraint::{Joint, Situation};
-use crate::qr::Qr;
+use crate::layout::To;
+use kempe_linear::Qr;
 
 /// An entry of the Jacobian outside the diagonal blocks.
 #[derive(Clone, Copy, Debug)]
@@ -86,43 +86,35 @@ impl Bordered {
             plain.resize(block.rows * block.size, 0.0);
             self.to_parameter[block.first..block.first + block.rows].fill(0.0);
             self.residual[block.first..block.first + block.rows].fill(0.0);
-            for (constraint, at) in &block.constraints {
-                let kind = &mechanism.constraints[*constraint].0;
-                // Lengths count in mechanism sizes, directions and gear angles as they are.
-                let unit = kind.unit().factor(size);
-                let value = situation.residual(kind);
-                let to_drive = situation.gradients(kind, |g| {
-                    let Some(row) = at[g.row] else { return };
-                    let mut put = |seat: Seat, offset: usize, value: f64| {
-                        // A row that does not feel an unknown says so with a zero.
-                        let Some((home, column)) = seat.filter(|_| value != 0.0) else {
-                            return;
-                        };
-                        let column = column as usize + offset;
-                        if home as usize == index {
-                            plain[row * block.size + column] += value;
-                        } else {
-                            couplings.push(Coupling {
-                                row: row as u32,
-                                block: home,
-                                column: column as u32,
-                                value,
-                            });
-                        }
-                    };
-                    let body = g.body.index();
-                    put(layout.place[body], 0, g.to[0] * size * unit);
-                    put(layout.place[body], 1, g.to[1] * size * unit);
-                    put(layout.angle[body], 0, g.to[2] * unit);
-                });
-                for k in 0..2 {
-                    let Some(row) = at[k] else { continue };
-                    self.residual[block.first + row] = value[k] * unit;
-                    if let Some(drive) = layout.drive_of[*constraint] {
-                        self.to_parameter[block.first + row] = to_drive * rates[drive] * unit;
+            // Lengths count in mechanism sizes, directions and gear angles as they are.
+            let unit = |constraint: usize| mechanism.constraints[constraint].0.unit().factor(size);
+            let (residual, to_parameter) = (&mut self.residual, &mut self.to_parameter);
+            let rows = &block.equations;
+            rows.residuals(mechanism, situation, |row, constraint, value| {
+                residual[block.first + row] = value * unit(constraint);
+            });
+            let unknowns = &layout.unknowns;
+            rows.scaled_jacobian(unknowns, mechanism, situation, size, |row, to, value| {
+                let column = match to {
+                    To::Length(column) | To::Angle(column) => column,
+                    To::Drive(drive) => {
+                        to_parameter[block.first + row] = value * rates[drive.index()];
+                        return;
                     }
+                };
+                let (home, column) = layout.home[column];
+                if home as usize == index {
+                    plain[row * block.size + column as usize] += value;
+                } else if value != 0.0 {
+                    // A row that does not feel an unknown says so with a zero.
+                    couplings.push(Coupling {
+                        row: row as u32,
+                        block: home,
+                        column,
+                        value,
+                    });
                 }
-            }
+            });
             if let Some((column, row)) = block.held {
                 plain[row * block.size + column] = 1.0;
             }

@@ -12,8 +12,8 @@ use crate::geometry::Geometry;
 use crate::ids::{BodyId, LineRef, Marker};
 use crate::local_marker::LocalMarker;
 use crate::pose::Pose;
-use crate::qr::Qr;
 use crate::spanning_tree::{ON_STACK, SpanningTree};
+use kempe_linear::Qr;
 
 /// Inputs and poses at one instant, and the storage a solve needs.
 #[derive(Clone, Debug)]

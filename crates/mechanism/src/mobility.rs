@@ -6,9 +6,9 @@ use crate::configuration::Configuration;
 use crate::constraint::{Joint, Pairs};
 use crate::design::Design;
 use crate::evidence::is_finite;
-use crate::ids::BodyId;
+use crate::layout::{Columns, Rows, rows_of, unknowns_of};
 use crate::pose::Pose;
-use crate::rank::{SparseRow, rank};
+use kempe_linear::{SparseRow, rank};
 
 /// Mobility two ways.
 #[derive(Clone, Debug, PartialEq)]
@@ -63,33 +63,22 @@ fn joint_rank(design: &Design<f64>, branch: &Branch, state: &Configuration<f64>)
     let mechanism = &*design.mechanism;
     let size = design.size();
     let situation = state.situation(design, branch);
-    let columns = 3 * (mechanism.bodies - 1);
-    let mut rows: Vec<SparseRow> = Vec::new();
-    for (constraint, _) in &mechanism.constraints[..mechanism.joint_constraints] {
-        let unit = constraint.unit().factor(size);
-        let first = rows.len();
-        rows.resize(first + constraint.rows(), Vec::with_capacity(6));
-        situation.gradients(constraint, |g| {
-            if g.body != BodyId::GROUND {
-                let column = 3 * (g.body.index() - 1);
-                let row = &mut rows[first + g.row];
-                for (k, value) in [g.to[0] * size * unit, g.to[1] * size * unit, g.to[2] * unit]
-                    .into_iter()
-                    .enumerate()
-                {
-                    match row.iter_mut().find(|(c, _)| *c == column + k) {
-                        Some((_, sum)) => *sum += value,
-                        None if value != 0.0 => row.push((column + k, value)),
-                        None => {}
-                    }
-                }
-            }
-        });
-    }
+    let joints = Rows::new(rows_of(mechanism, mechanism.joint_constraints));
+    let columns = Columns::new(unknowns_of(mechanism));
+    let mut rows: Vec<SparseRow> = vec![Vec::with_capacity(6); joints.count];
+    joints.scaled_jacobian(&columns, mechanism, &situation, size, |row, to, value| {
+        let Some(column) = to.column() else { return };
+        let row = &mut rows[row];
+        match row.iter_mut().find(|(c, _)| *c == column) {
+            Some((_, sum)) => *sum += value,
+            None if value != 0.0 => row.push((column, value)),
+            None => {}
+        }
+    });
     for row in &mut rows {
         row.sort_unstable_by_key(|(column, _)| *column);
     }
-    rank(rows, columns)
+    rank(rows, columns.count)
 }
 
 /// A state at given poses, ready for residuals and gradients.

@@ -4,7 +4,6 @@
 //! does not fit or cannot solve in the poses of all its bodies (`rows`, `plain`).
 
 mod carry_over;
-mod elimination;
 mod interval;
 mod iterate;
 mod lanes;

@@ -5,7 +5,8 @@
 
 pub use crate::step::{Carrier, Condition, Dyad, DyadBody, Reach, Sliding, Step, Swing, SwingLine};
 
-use crate::blocks::{Block, Decomposition, Row, Unknown, by_constraint, decompose};
+use crate::blocks::{Block, Decomposition, Row, Unknown, decompose};
+use crate::layout::{Columns, Rows};
 use crate::recognise::recognise;
 use crate::spanning_tree::{ON_STACK, SpanningTree};
 use crate::structure::Structure;
@@ -15,14 +16,14 @@ use crate::structure::Structure;
 pub struct NewtonBlock {
     /// Its unknowns.
     pub unknowns: Vec<Unknown>,
-    /// Column of each unknown's first number.
-    pub columns: Vec<usize>,
     /// How many numbers are sought.
     pub size: usize,
     /// Constraints with the rows used; the first `size` rows belong to the square system.
     pub rows: Vec<Row>,
-    /// The rows by constraint: its index, with the places of its two rows among `rows`.
-    pub constraints: Vec<(usize, [Option<usize>; 2])>,
+    /// Where its unknowns stand in its Jacobian ...
+    pub columns: Columns,
+    /// ... and its rows.
+    pub equations: Rows,
     /// The spanning tree of pins in whose coordinates it is solved; without one, in the poses of all its bodies.
     pub tree: Option<SpanningTree>,
 }
@@ -93,17 +94,12 @@ impl Plan {
 }
 
 fn newton_block(structure: &Structure, block: &Block) -> NewtonBlock {
-    let mut columns = Vec::new();
-    let mut size = 0;
-    for unknown in &block.unknowns {
-        columns.push(size);
-        size += unknown.size();
-    }
+    let columns = Columns::new(block.unknowns.iter().copied());
     let rows: Vec<Row> = block.rows.iter().chain(&block.surplus).copied().collect();
     NewtonBlock {
         unknowns: block.unknowns.clone(),
-        size,
-        constraints: by_constraint(&rows),
+        size: columns.count,
+        equations: Rows::new(rows.iter().copied()),
         tree: SpanningTree::new(structure, block, &columns),
         columns,
         rows,

@@ -10,9 +10,10 @@
 //! body between is the way from that body's own pin to the pin by which the rest hangs on it, turned by a quarter. These
 //! ways are the *levers*.
 
-use crate::blocks::{Block, Unknown, by_constraint};
+use crate::blocks::{Block, Unknown};
 use crate::constraint::{Coincide, Constraint};
 use crate::ids::{BodyId, Marker};
+use crate::layout::{Columns, Rows};
 use crate::structure::Structure;
 
 /// Largest number of tree coordinates for which elimination runs on the stack, and in lanes.
@@ -105,11 +106,11 @@ pub(crate) struct Closure {
 impl SpanningTree {
     /// Chooses the tree of a block whose unknowns have these first columns: every body as few pins as possible away from a
     /// placed one. `None` where no pin saves anything, or redundant rows have to be held as well.
-    pub(crate) fn new(structure: &Structure, block: &Block, columns: &[usize]) -> Option<Self> {
+    pub(crate) fn new(structure: &Structure, block: &Block, columns: &Columns) -> Option<Self> {
         if !block.surplus.is_empty() {
             return None;
         }
-        let rows = by_constraint(&block.rows);
+        let rows = Rows::new(block.rows.iter().copied()).by_constraint;
         let pin = |index: usize| match structure.constraints[index].0 {
             Constraint::Coincide(Coincide { a, b }) => Some((a, b)),
             _ => None,
@@ -209,23 +210,12 @@ impl SpanningTree {
                 }
             }
         }
-        let column = |wanted: Unknown| {
-            (block.unknowns.iter().zip(columns))
-                .find(|(unknown, _)| **unknown == wanted)
-                .map(|(_, column)| *column)
-        };
-        let mut column_order: Vec<usize> = Vec::new();
-        for hung in &it.hung {
-            let first = column(Unknown::Place(hung.own.body))?;
-            column_order.extend([first, first + 1]);
-        }
-        for body in &it.angles {
-            column_order.push(column(Unknown::Angle(*body))?);
-        }
-        for body in &it.places {
-            let first = column(Unknown::Place(*body))?;
-            column_order.extend([first, first + 1]);
-        }
+        let place = |body: BodyId| columns.of(body).into_iter().take(2);
+        let hung = it.hung.iter().flat_map(|hung| place(hung.own.body));
+        let angles = it.angles.iter().map(|body| columns.of(*body)[2]);
+        let places = it.places.iter().flat_map(|body| place(*body));
+        let column_order: Option<Vec<usize>> = hung.chain(angles).chain(places).collect();
+        let column_order = column_order?;
         it.sign = parity(&row_order) * parity(&column_order);
         (row == size).then_some(it)
     }

@@ -2,6 +2,7 @@
 //!
 //! Source: C. de Boor, A Practical Guide to Splines (1978), chapter IV.
 
+use kempe_linear::{Tridiagonal, solve_tridiagonal};
 use kempe_number::{Number, piecewise};
 
 /// A spline's second derivatives at its knots, for `times` that increase.
@@ -25,8 +26,8 @@ pub fn moments<T: Number>(times: &[T], values: &[T]) -> Vec<T> {
     // rows 1..n-1: h[i-1] M[i-1] + 2 (h[i-1] + h[i]) M[i] + h[i] M[i+1] = 6 (slope[i] - slope[i-1]);
     // the end conditions M[0] = M[1] - h0/h1 (M[2] - M[1]), and alike at the far end, are put into the first and last row
     let last = n - 2;
-    let mut rows: Vec<Row<T>> = (1..=last)
-        .map(|i| Row::between([step[i - 1], step[i]], [slope[i - 1], slope[i]]))
+    let mut rows: Vec<Tridiagonal<T>> = (1..=last)
+        .map(|i| between([step[i - 1], step[i]], [slope[i - 1], slope[i]]))
         .collect();
     let first_ratio = step[0] / step[1];
     let first = &mut rows[0];
@@ -36,7 +37,7 @@ pub fn moments<T: Number>(times: &[T], values: &[T]) -> Vec<T> {
     let end = &mut rows[last - 1];
     end.diagonal += end.upper * (last_ratio + 1.0);
     end.lower -= end.upper * last_ratio;
-    let inner = solve(rows);
+    let inner = solve_tridiagonal(rows);
     let mut m = vec![T::zero(); n];
     m[1..=last].copy_from_slice(&inner);
     m[0] = m[1] - first_ratio * (m[2] - m[1]);
@@ -56,18 +57,18 @@ pub fn closed_moments<T: Number>(steps: &[T], values: &[T]) -> Vec<T> {
         .collect();
     let row = |i: usize| {
         let before = (i + n - 1) % n;
-        Row::between([steps[before], steps[i]], [slope[before], slope[i]])
+        between([steps[before], steps[i]], [slope[before], slope[i]])
     };
     // The last moment is M: the others are those of a chain, once for the right-hand sides and once for what M gives the
     // chain's ends; the last row then tells M.
     let inner = || (0..n - 1).map(row);
-    let still = solve(inner().collect());
-    let mut for_last: Vec<Row<T>> = inner().collect();
+    let still = solve_tridiagonal(inner().collect());
+    let mut for_last: Vec<Tridiagonal<T>> = inner().collect();
     for_last.iter_mut().for_each(|row| row.right = T::zero());
     let (first, end) = (for_last[0], for_last[n - 2]);
     for_last[0].right -= first.lower;
     for_last[n - 2].right -= end.upper;
-    let with_last = solve(for_last);
+    let with_last = solve_tridiagonal(for_last);
     let end = row(n - 1);
     let m = (end.right - end.lower * still[n - 2] - end.upper * still[0])
         / (end.diagonal + end.lower * with_last[n - 2] + end.upper * with_last[0]);
@@ -75,50 +76,14 @@ pub fn closed_moments<T: Number>(steps: &[T], values: &[T]) -> Vec<T> {
     chain.chain([m]).collect()
 }
 
-/// A row of a tridiagonal system.
-#[derive(Clone, Copy)]
-struct Row<T> {
-    lower: T,
-    diagonal: T,
-    upper: T,
-    right: T,
-}
-
-impl<T: Number> Row<T> {
-    /// At a knot between these steps and slopes: the first derivative does not jump.
-    fn between(steps: [T; 2], slopes: [T; 2]) -> Self {
-        Self {
-            lower: steps[0],
-            diagonal: (steps[0] + steps[1]) * 2.0,
-            upper: steps[1],
-            right: (slopes[1] - slopes[0]) * 6.0,
-        }
+/// The row at a knot between these steps and slopes: the first derivative does not jump.
+fn between<T: Number>(steps: [T; 2], slopes: [T; 2]) -> Tridiagonal<T> {
+    Tridiagonal {
+        lower: steps[0],
+        diagonal: (steps[0] + steps[1]) * 2.0,
+        upper: steps[1],
+        right: (slopes[1] - slopes[0]) * 6.0,
     }
-}
-
-/// Solves a tridiagonal system by elimination: the rows of splines are dominated by their diagonals.
-fn solve<T: Number>(mut rows: Vec<Row<T>>) -> Vec<T> {
-    for i in 1..rows.len() {
-        let above = rows[i - 1];
-        let row = &mut rows[i];
-        let factor = row.lower / above.diagonal;
-        row.diagonal -= factor * above.upper;
-        row.right -= factor * above.right;
-    }
-    let mut below: Option<T> = None;
-    let mut found: Vec<T> = rows
-        .iter()
-        .rev()
-        .map(|row| {
-            let right = match below {
-                None => row.right,
-                Some(next) => row.right - row.upper * next,
-            };
-            *below.insert(right / row.diagonal)
-        })
-        .collect();
-    found.reverse();
-    found
 }
 
 /// The cubic of one piece about its first knot, by rising powers: `step` is its length in time, `values` and `moments`

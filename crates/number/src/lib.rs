@@ -16,6 +16,7 @@ mod number;
 mod operators;
 mod piecewise;
 mod power;
+mod random;
 pub mod text;
 
 pub use complex::Complex;
@@ -27,3 +28,4 @@ pub use lanes::{Lanes, Lanes4, Lanes8};
 pub use number::Number;
 pub use piecewise::piecewise;
 pub use power::powi;
+pub use random::Random;

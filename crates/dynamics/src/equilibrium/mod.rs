@@ -12,8 +12,9 @@
 mod friction;
 mod order;
 
+use kempe_linear::Qr;
 use kempe_mechanism::constraint::{Joint, Situation};
-use kempe_mechanism::{BodyId, Geometry, Mechanism, Qr};
+use kempe_mechanism::{BodyId, Geometry, Mechanism};
 
 pub use self::friction::{FRICTION_STEP, FRICTION_STEPS, FrictionOutcome, Pace, STILL, UNMOVED};
 use self::friction::{FrictionContact, load_of, resistance};

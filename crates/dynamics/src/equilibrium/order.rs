@@ -1,7 +1,7 @@
 //! The order in which the equations of equilibrium are solved: block by block, the last group of links first.
 
-use kempe_mechanism::Mechanism;
-use kempe_mechanism::blocks::Unknown;
+use kempe_mechanism::layout::{Columns, Rows, rows_of, unknowns_of};
+use kempe_mechanism::{BodyId, Mechanism};
 
 /// Where every row and every column of J stands in the matrix that is factored.
 ///
@@ -16,40 +16,27 @@ pub(crate) struct Order {
 }
 
 impl Order {
-    /// The order for constraints whose rows start at `first_row`, with `rows` rows in all.
+    /// The order for constraints whose rows start at `first_row`, with `rows` rows in all: those after the constraints' hold
+    /// idle bodies and come last.
     pub fn new(mechanism: &Mechanism, first_row: &[usize], rows: usize) -> Self {
-        let plan = &mechanism.plan;
-        let parts = &plan.decomposition;
-        let (mut row_list, mut column_list) = (Vec::new(), Vec::new());
-        for block in parts.blocks.iter().rev() {
-            let own = block.rows.iter().chain(&block.surplus);
-            row_list.extend(own.map(|r| first_row[r.constraint] + r.row));
-            for unknown in &block.unknowns {
-                let first = 3 * (unknown.body().index() - 1);
-                match unknown {
-                    Unknown::Place(_) => column_list.extend([first, first + 1]),
-                    Unknown::Angle(_) => column_list.push(first + 2),
+        let blocks = || mechanism.plan.decomposition.blocks.iter().rev();
+        let in_blocks = blocks().flat_map(|block| block.rows.iter().chain(&block.surplus));
+        let all = rows_of(mechanism, mechanism.constraints.len());
+        let order = Rows::new(in_blocks.copied().chain(all));
+        let mut places: Vec<usize> = (0..rows).collect();
+        for (constraint, at) in &order.by_constraint {
+            for (part, place) in at.iter().enumerate() {
+                if let Some(place) = place {
+                    places[first_row[*constraint] + part] = *place;
                 }
             }
         }
+        let in_blocks = blocks().flat_map(|block| block.unknowns.iter().copied());
+        let order = Columns::new(in_blocks.chain(unknowns_of(mechanism)));
+        let bodies = (1..mechanism.bodies).map(|index| BodyId(index as u32));
         Self {
-            rows: places(row_list, rows),
-            columns: places(column_list, 3 * (mechanism.bodies - 1)),
+            rows: places,
+            columns: bodies.flat_map(|body| order.of(body)).flatten().collect(),
         }
     }
-}
-
-/// Places by index, from indices in their order; what the list leaves out comes last.
-fn places(list: Vec<usize>, count: usize) -> Vec<usize> {
-    let mut places = vec![usize::MAX; count];
-    let mut next = 0;
-    for index in list.into_iter().chain(0..count) {
-        if let Some(place) = places.get_mut(index)
-            && *place == usize::MAX
-        {
-            *place = next;
-            next += 1;
-        }
-    }
-    places
 }

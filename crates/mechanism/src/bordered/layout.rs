@@ -1,11 +1,8 @@
 //! Which rows and unknowns belong to which block of the linear systems.
 
 use crate::Mechanism;
-use crate::blocks::{ConstraintRows, Row, Unknown, by_constraint};
-use crate::constraint::Joint;
-
-/// Where an unknown number of a body stands: block and first column in it.
-pub(super) type Seat = Option<(u32, u32)>;
+use crate::blocks::{Row, Unknown};
+use crate::layout::{Columns, Rows};
 
 /// One block of the layout.
 #[derive(Clone, Debug)]
@@ -16,8 +13,8 @@ pub(super) struct Block {
     pub size: usize,
     /// How many rows; more than columns in an overconstrained block.
     pub rows: usize,
-    /// The constraints with the places of their rows in the block.
-    pub constraints: Vec<ConstraintRows>,
+    /// Which rows.
+    pub equations: Rows,
     /// Idle angles held here: (column, row).
     pub held: Option<(usize, usize)>,
 }
@@ -26,13 +23,13 @@ pub(super) struct Block {
 #[derive(Clone, Debug)]
 pub struct Layout {
     pub(super) blocks: Vec<Block>,
-    pub(super) angle: Vec<Seat>,
-    pub(super) place: Vec<Seat>,
+    /// The unknowns of all blocks, one after the other.
+    pub(super) unknowns: Columns,
+    /// Block of every column, and column in it.
+    pub(super) home: Vec<(u32, u32)>,
     /// Column of every block's unknowns among the scaled unknowns of a trace, block after block.
     pub(super) columns_in_z: Vec<Vec<usize>>,
     pub(super) rows: usize,
-    pub(super) columns: usize,
-    pub(super) drive_of: Vec<Option<usize>>,
 }
 
 impl Layout {
@@ -53,50 +50,40 @@ impl Layout {
         }
         let mut it = Self {
             blocks: Vec::with_capacity(blocks.len()),
-            angle: vec![None; mechanism.bodies],
-            place: vec![None; mechanism.bodies],
+            unknowns: Columns::default(),
+            home: Vec::new(),
             columns_in_z: Vec::with_capacity(blocks.len()),
             rows: 0,
-            columns: 0,
-            drive_of: mechanism
-                .constraints
-                .iter()
-                .map(|(c, _)| c.drive().map(|d| d.index()))
-                .collect(),
         };
+        it.unknowns = Columns::new(blocks.iter().flat_map(|(u, _)| u.iter().copied()));
         for (index, (unknowns, rows)) in blocks.into_iter().enumerate() {
             let mut columns = Vec::new();
             let mut idle = None;
             for unknown in &unknowns {
                 let size = columns.len();
-                let seat = Some((index as u32, size as u32));
                 let z = 3 * (unknown.body().index() - 1);
                 match unknown {
                     Unknown::Angle(body) => {
-                        it.angle[body.index()] = seat;
                         columns.push(z + 2);
                         if plan.decomposition.idle.contains(body) {
                             idle = Some(size);
                         }
                     }
-                    Unknown::Place(body) => {
-                        it.place[body.index()] = seat;
-                        columns.extend([z, z + 1]);
-                    }
+                    Unknown::Place(_) => columns.extend([z, z + 1]),
                 }
             }
             let size = columns.len();
+            (it.home).extend((0..size).map(|column| (index as u32, column as u32)));
             let height = rows.len() + usize::from(idle.is_some());
             let held = idle.map(|column| (column, rows.len()));
             it.blocks.push(Block {
                 first: it.rows,
                 size,
                 rows: height.max(size),
-                constraints: by_constraint(&rows),
+                equations: Rows::new(rows),
                 held,
             });
             it.rows += height.max(size);
-            it.columns += size;
             it.columns_in_z.push(columns);
         }
         it

@@ -1,9 +1,11 @@
 //! The distance of a pose from a singular one.
 
+use kempe_linear::smallest_singular_value;
+
 use super::Bordered;
 
 impl Bordered {
-    /// The smallest singular value of the Jacobian without its parameter column, by inverse iteration.
+    /// The smallest singular value of the Jacobian without its parameter column.
     pub fn smallest_singular_value(&mut self) -> f64 {
         let layout = &self.layout;
         if self
@@ -22,16 +24,10 @@ impl Bordered {
                 Some(first)
             })
             .collect();
-        // Uneven entries, so that no singular vector is missed by symmetry.
-        let mut x: Vec<f64> = (0..layout.columns)
-            .map(|i| 1.0 + 0.37 * ((i * 7) % 11) as f64)
-            .collect();
-        let mut value = f64::INFINITY;
-        for _ in 0..60 {
-            let length = x.iter().map(|v| v * v).sum::<f64>().sqrt();
-            x.iter_mut().for_each(|v| *v /= length);
+        let mut y = vec![0.0; layout.rows];
+        smallest_singular_value(layout.unknowns.count, |x| {
             // y = J^-T x, last block first.
-            let mut y: Vec<f64> = vec![0.0; layout.rows];
+            y.fill(0.0);
             for (index, block) in layout.blocks.iter().enumerate().rev() {
                 let own = &mut y[block.first..block.first + block.rows];
                 own[..block.size].copy_from_slice(&x[at[index]..at[index] + block.size]);
@@ -41,7 +37,6 @@ impl Bordered {
                         c.value * y[block.first + c.row as usize];
                 }
             }
-            let next = 1.0 / y.iter().map(|v| v * v).sum::<f64>().sqrt();
             // x = J^-1 y, first block first.
             for (index, block) in layout.blocks.iter().enumerate() {
                 self.rhs.clear();
@@ -54,12 +49,7 @@ impl Bordered {
                 self.diagonal[index].solve(&mut self.rhs);
                 x[at[index]..at[index] + block.size].copy_from_slice(&self.rhs[..block.size]);
             }
-            let settled = (next - value).abs() <= 1e-9 * next;
-            value = next;
-            if settled || !value.is_finite() {
-                break;
-            }
-        }
-        value
+            y.iter().map(|v| v * v).sum::<f64>().sqrt()
+        })
     }
 }

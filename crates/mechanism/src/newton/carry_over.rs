@@ -3,7 +3,6 @@
 use kempe_number::Number;
 
 use super::PlanNumber;
-use super::elimination::{Matrix, Plain};
 use super::iterate::Iteration;
 use super::plain::plain_newton;
 use super::rows::{apply_step, fill_residuals};
@@ -16,8 +15,9 @@ use crate::design::Design;
 use crate::geometry::Geometry;
 use crate::plan::NewtonBlock;
 use crate::pose::Pose;
-use crate::qr::Qr;
 use crate::spanning_tree::{ON_STACK, SpanningTree};
+use kempe_linear::Qr;
+use kempe_linear::{Matrix, Plain};
 
 /// Solves on plain numbers, then makes the higher parts exact.
 pub(super) fn carry_over<T: PlanNumber>(

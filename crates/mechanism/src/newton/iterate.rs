@@ -2,7 +2,6 @@
 
 use kempe_number::Number;
 
-use super::elimination::{Elimination, Matrix, Plain};
 use super::plain::{NEWTON_LIMIT, NEWTON_STEP};
 use crate::Mechanism;
 use crate::branch::Branch;
@@ -10,6 +9,7 @@ use crate::constraint::{Input, Situation};
 use crate::geometry::Geometry;
 use crate::pose::Pose;
 use crate::spanning_tree::{ON_STACK, SpanningTree};
+use kempe_linear::{Elimination, Matrix, Plain};
 
 /// What Newton's method on a tree works on and with.
 pub(super) struct Iteration<'a, P> {
@@ -71,7 +71,7 @@ impl<P: Plain> Iteration<'_, P> {
             rhs: &mut rhs[..N],
             determinant,
         };
-        sized.solve(&mut Elimination::<P, N>::new())
+        sized.solve(&mut Elimination::<P, N>::storage())
     }
 
     /// Solves from the branch's guess. Returns the determinant, and a number that is positive where the iteration did not

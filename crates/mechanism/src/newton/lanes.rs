@@ -3,7 +3,6 @@
 use kempe_number::{Jet, Lanes, Number};
 
 use super::carry_over::{plain_part, sharpen};
-use super::elimination::Plain;
 use super::iterate::Iteration;
 use crate::blocks::Unknown;
 use crate::branch::Branch;
@@ -11,6 +10,7 @@ use crate::configuration::Configuration;
 use crate::design::Design;
 use crate::plan::NewtonBlock;
 use crate::spanning_tree::SpanningTree;
+use kempe_linear::Plain;
 
 /// A number whose parts are lanes, so that one lane can be looked at alone.
 pub(super) trait Laned<const W: usize>: Number {

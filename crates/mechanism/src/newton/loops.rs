@@ -3,12 +3,12 @@
 
 use kempe_number::Number;
 
-use super::elimination::Matrix;
 use crate::Mechanism;
 use crate::constraint::Situation;
 use crate::geometry::Geometry;
 use crate::pose::{Pose, cross, left, sub};
 use crate::spanning_tree::{OtherRow, SpanningTree};
+use kempe_linear::Matrix;
 
 impl SpanningTree {
     /// Places all bodies that hang by pins, and fills the points of the tree: its pins, the origins of its roots, and the

@@ -8,7 +8,7 @@ use crate::constraint::{Input, Situation};
 use crate::geometry::Geometry;
 use crate::plan::NewtonBlock;
 use crate::pose::Pose;
-use crate::qr::Qr;
+use kempe_linear::Qr;
 
 /// A scaled step below this is taken as converged (one more step is made after it).
 pub const NEWTON_STEP: f64 = 1e-9;
@@ -94,7 +94,7 @@ fn scaled_size(block: &NewtonBlock, poses: &[Pose<f64>], step: &[f64]) -> f64 {
     let mut reach = f64::MIN_POSITIVE;
     let mut angle = 0.0_f64;
     let mut bad = false;
-    for (unknown, &column) in block.unknowns.iter().zip(&block.columns) {
+    for &(unknown, column) in &block.columns.unknowns {
         match unknown {
             Unknown::Angle(_) => {
                 bad |= !step[column].is_finite();

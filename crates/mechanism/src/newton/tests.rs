@@ -7,14 +7,14 @@ use std::sync::Arc;
 use kempe_model::Model;
 use kempe_number::{Dual, Number};
 
-use super::elimination::{Elimination, Matrix};
 use super::rows::factor_block;
 use crate::Mechanism;
 use crate::constraint::{Coincide, Constraint, Input, Situation};
 use crate::geometry::Geometry;
 use crate::pose::Pose;
-use crate::qr::Qr;
 use crate::spanning_tree::SpanningTree;
+use kempe_linear::Qr;
+use kempe_linear::{Elimination, Matrix};
 
 /// Files with Newton groups: of pins alone, with sliders, gears, racks and bodies that no pin holds.
 const FILES: [&str; 9] = [
@@ -258,7 +258,7 @@ fn the_determinant_of_a_tree_is_that_of_its_block() {
 #[test]
 fn elimination_solves_what_needs_rows_swapped() {
     fn check<const N: usize>(size: usize) {
-        let mut matrix = Elimination::<f64, N>::new();
+        let mut matrix = Elimination::<f64, N>::storage();
         let entry = |r: usize, c: usize| {
             ((31 * r + 17 * c + 7) * 2_654_435_761 % 1009) as f64 / 500.0 - 1.0
         };

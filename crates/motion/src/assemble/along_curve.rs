@@ -89,7 +89,7 @@ struct Held<'a> {
 impl<'a> Held<'a> {
     fn of(design: &Design<f64>, block: &NewtonBlock, poses: &'a [Pose<f64>]) -> Option<Self> {
         let of = |index: usize| &design.mechanism.constraints[index].0;
-        let [(a, _), (b, _)] = block.constraints[..] else {
+        let [(a, _), (b, _)] = block.equations.by_constraint[..] else {
             return None;
         };
         let (on, other) = match (of(a), of(b)) {

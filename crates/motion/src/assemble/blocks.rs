@@ -2,14 +2,13 @@
 
 use std::cmp::Ordering;
 
-use kempe_homotopy::Random;
 use kempe_mechanism::blocks::Unknown;
 use kempe_mechanism::constraint::Joint;
 use kempe_mechanism::plan::NewtonBlock;
 use kempe_mechanism::pose::Pose;
 use kempe_mechanism::structure::Constraint;
 use kempe_mechanism::{Branch, Configuration};
-use kempe_number::math;
+use kempe_number::{Random, math};
 
 use super::Shortfall;
 use super::along_curve;

@@ -1,10 +1,10 @@
 //! Trains of gears: their angles are linear in each other.
 
+use kempe_linear::Qr;
 use kempe_mechanism::blocks::Unknown;
 use kempe_mechanism::constraint::{InAngles, Joint, Situation};
 use kempe_mechanism::plan::NewtonBlock;
 use kempe_mechanism::pose::Pose;
-use kempe_mechanism::qr::Qr;
 use kempe_mechanism::structure::BodyId;
 use kempe_mechanism::{Branch, Configuration, Design};
 

@@ -15,7 +15,7 @@ pub(crate) fn enclose_block(
     state: &mut Configuration<Interval>,
 ) -> Result<Interval, NotProved> {
     let mechanism = &*design.mechanism;
-    let system = System::of_block(mechanism, block);
+    let system = System::of_block(block);
     let plain = design.plain.first().ok_or(NotProved::NoPose)?;
     let size = plain.size(mechanism);
     let given = Given::new(design, &state.inputs, &branch.near, size);

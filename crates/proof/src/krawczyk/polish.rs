@@ -1,10 +1,10 @@
 //! The middle of a box: Newton's method on plain numbers.
 
+use kempe_linear::Qr;
 use kempe_mechanism::Mechanism;
 use kempe_mechanism::blocks::Unknown;
 use kempe_mechanism::constraint::{Input, Situation};
 use kempe_mechanism::pose::Pose;
-use kempe_mechanism::qr::Qr;
 use kempe_number::{Interval, math};
 
 use super::{Given, Middle, System};
@@ -57,7 +57,7 @@ impl System {
             self.factor(given.mechanism, &situation, &mut qr);
             qr.solve(&mut step);
             let mut length = 0.0_f64;
-            for &(unknown, column) in &self.unknowns {
+            for &(unknown, column) in &self.columns.unknowns {
                 let at = &mut middle[unknown.body().index()];
                 match unknown {
                     Unknown::Place(_) => {
@@ -85,7 +85,7 @@ impl System {
 
     /// Plain poses of a middle; bodies that are not sought keep the pose they have.
     fn plain_poses(&self, middle: &Middle, poses: &mut [Pose<f64>]) {
-        for (unknown, _) in &self.unknowns {
+        for (unknown, _) in &self.columns.unknowns {
             let body = unknown.body().index();
             let [x, y, angle] = middle[body];
             let pose = &mut poses[body];

@@ -53,7 +53,7 @@ impl System {
 
         let mut series: Vec<Pose<Curve>> = poses.iter().map(constant_pose).collect();
         let mut along = |rates: &[f64], h: Interval, inputs: &[Input<Curve>]| {
-            for &(unknown, column) in &self.unknowns {
+            for &(unknown, column) in &self.columns.unknowns {
                 let body = unknown.body().index();
                 let line = |column: usize, from: f64| {
                     let rate = Interval::from_f64(rates[column]);
@@ -119,7 +119,7 @@ impl System {
             let u = offset + image[column] - h * tube.rates[column];
             u.is_inside(Interval::new(-tube.radii[column], tube.radii[column]))
         };
-        self.unknowns.iter().all(|&(unknown, column)| {
+        self.columns.unknowns.iter().all(|&(unknown, column)| {
             let body = unknown.body().index();
             let offset = |k: usize| {
                 Interval::from_f64(middle[body][k]) - Interval::from_f64(tube.middle[body][k])

@@ -5,6 +5,8 @@
 
 use kempe_number::Number;
 
+use crate::smallest_singular_value;
+
 /// A factored matrix of `rows >= columns`. Square systems are solved, taller ones in the least-squares sense.
 #[derive(Clone, Debug, Default)]
 pub struct Qr {
@@ -169,7 +171,7 @@ impl Qr {
         sum.sqrt()
     }
 
-    /// The smallest singular value, by inverse iteration on R^T R from a fixed start.
+    /// The smallest singular value, with those of R.
     pub fn smallest_singular_value(&self) -> f64 {
         let (m, n) = (self.rows, self.columns);
         if n == 0 {
@@ -185,29 +187,18 @@ impl Qr {
                 self.a[j * m + i]
             }
         };
-        // Uneven entries, so that no singular vector is missed by symmetry.
-        let mut x: Vec<f64> = (0..n).map(|i| 1.0 + 0.37 * ((i * 7) % 11) as f64).collect();
-        let mut value = f64::INFINITY;
-        for _ in 0..60 {
-            let length = x.iter().map(|v| v * v).sum::<f64>().sqrt();
-            x.iter_mut().for_each(|v| *v /= length);
+        smallest_singular_value(n, |x| {
             for i in 0..n {
                 let sum: f64 = (0..i).map(|k| r(k, i) * x[k]).sum();
                 x[i] = (x[i] - sum) / r(i, i);
             }
-            // With y = R^-T x, |y| grows to 1 / sigma.
-            let next = 1.0 / x.iter().map(|v| v * v).sum::<f64>().sqrt();
+            let between = x.iter().map(|v| v * v).sum::<f64>().sqrt();
             for i in (0..n).rev() {
                 let sum: f64 = (i + 1..n).map(|k| r(i, k) * x[k]).sum();
                 x[i] = (x[i] - sum) / r(i, i);
             }
-            let settled = (next - value).abs() <= 1e-9 * next;
-            value = next;
-            if settled {
-                break;
-            }
-        }
-        value
+            between
+        })
     }
 
     /// Smallest over largest diagonal entry of R: a cheap measure of how near the matrix is to losing rank.

@@ -1,10 +1,8 @@
 //! Numbers that are generic and the same everywhere.
 
-use kempe_number::{Complex, math};
+use crate::{Complex, math};
 
-use crate::complex_linear::C;
-
-/// A small reproducible generator (splitmix64): the start systems must be generic, not secret.
+/// A small reproducible generator (splitmix64): what it serves must be generic, not secret.
 pub struct Random(pub u64);
 
 impl Random {
@@ -18,7 +16,7 @@ impl Random {
     }
 
     /// A complex number of size between 1/2 and 3/2.
-    pub(super) fn unit(&mut self) -> C {
+    pub fn complex(&mut self) -> Complex<f64> {
         let (s, c) = math::sin_cos(self.uniform() * std::f64::consts::TAU);
         let size = 0.5 + self.uniform();
         Complex::new(c * size, s * size)

@@ -7,14 +7,14 @@
 use std::collections::BTreeSet;
 
 /// Pivots below this part of the matrix's largest entry count as zero.
-pub const RANK_TOLERANCE: f64 = 1e-9;
+const RANK_TOLERANCE: f64 = 1e-9;
 /// Smallest part of the largest entry of its row and of its column that a pivot may be: bounds the growth of errors.
 const THRESHOLD: f64 = 0.3;
 /// Rows with the fewest entries among which a pivot is looked for.
 const CANDIDATES: usize = 12;
 
 /// A row: columns, rising, with their entries.
-pub(crate) type SparseRow = Vec<(usize, f64)>;
+pub type SparseRow = Vec<(usize, f64)>;
 
 struct Elimination {
     rows: Vec<SparseRow>,
@@ -25,7 +25,7 @@ struct Elimination {
 }
 
 /// The rank of a matrix given by its rows.
-pub(crate) fn rank(rows: Vec<SparseRow>, columns: usize) -> usize {
+pub fn rank(rows: Vec<SparseRow>, columns: usize) -> usize {
     let largest = rows
         .iter()
         .flatten()
@@ -186,7 +186,7 @@ fn combined(row: &SparseRow, pivot: &SparseRow, factor: f64, without: usize) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use kempe_homotopy::Random;
+    use kempe_number::Random;
 
     /// Random sparse rows, and combinations of them: the rank is known as long as the rows are few enough.
     #[test]

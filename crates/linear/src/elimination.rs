@@ -2,10 +2,10 @@
 
 use kempe_number::{Lanes, Number};
 
-use crate::qr::Qr;
+use crate::Qr;
 
 /// A plain number, or several: each lane decides for itself.
-pub(super) trait Plain: Number {
+pub trait Plain: Number {
     /// Largest matrix whose elimination is compiled for its very size. In lanes the work of an entry outweighs a loop's, and
     /// the code for every size, lane and instruction set would be large.
     const UNROLLED: usize;
@@ -71,7 +71,7 @@ impl<const W: usize> Plain for Lanes<W> {
 }
 
 /// A square matrix that is filled, factored and solved with, again and again.
-pub(super) trait Matrix<P> {
+pub trait Matrix<P> {
     /// Begins a matrix of zeros.
     fn clear(&mut self, size: usize);
 
@@ -111,7 +111,7 @@ impl Matrix<f64> for Qr {
 }
 
 /// A matrix of at most `N` rows; where its elimination is compiled for `N`, made up to that with ones on its diagonal.
-pub(super) struct Elimination<P, const N: usize> {
+pub struct Elimination<P, const N: usize> {
     /// How many rows are worked on.
     rows: usize,
     /// L below the diagonal, U on and above it.
@@ -126,7 +126,7 @@ pub(super) struct Elimination<P, const N: usize> {
 impl<P: Plain, const N: usize> Elimination<P, N> {
     /// Storage.
     #[cfg_attr(not(debug_assertions), inline(always))]
-    pub(super) fn new() -> Self {
+    pub fn storage() -> Self {
         let zeros = [[P::zero(); N]; N];
         Self {
             rows: N,

@@ -1,0 +1,29 @@
+//! Linear systems, each kind in its file: what mechanisms, motions, forces and homotopies solve with.
+//!
+//! | file | for |
+//! | --- | --- |
+//! | `qr.rs` | dense systems and least squares on plain numbers, solved for any number |
+//! | `elimination.rs` | small systems on the stack, one matrix per lane |
+//! | `complex.rs`, `affine.rs` | complex systems, and linear equations that leave variables free |
+//! | `tridiagonal.rs` | splines |
+//! | `rank.rs` | the rank of large sparse matrices |
+//! | `singular.rs` | how near to losing rank a matrix is |
+//! | `dependent.rs` | least squares with columns that may explain each other |
+
+mod affine;
+mod complex;
+mod dependent;
+mod elimination;
+mod qr;
+mod rank;
+mod singular;
+mod tridiagonal;
+
+pub use affine::{Affine, eliminate};
+pub use complex::{C, solve_complex};
+pub use dependent::independent_least_squares;
+pub use elimination::{Elimination, Matrix, Plain};
+pub use qr::Qr;
+pub use rank::{SparseRow, rank};
+pub use singular::smallest_singular_value;
+pub use tridiagonal::{Tridiagonal, solve_tridiagonal};
