@@ -257,7 +257,10 @@ impl Pose {
                 })?;
                 let mut sample = sampler.without_time(self.at);
                 asked.without_time(&mut sample);
-                (sample.values.first().copied(), sample.note, sample.time)
+                {
+                    let note = (sample.note).map(|note| note.text(self.motion.mechanism()));
+                    (sample.values.first().copied(), note, sample.time)
+                }
             }
             (passed, forces) => {
                 let mut along = Along::new(model, &self.motion, &quantities, forces)

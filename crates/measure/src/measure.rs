@@ -10,7 +10,7 @@ mod named;
 mod needs;
 
 use self::named::NamedSeries;
-pub use self::needs::{order_of, visit_leaves};
+pub use self::needs::{NoMeasure, order_of, visit_leaves};
 
 use kempe_mechanism::pose::Pose;
 use kempe_model::{DriveId, ForceMeasure, Leaf, Measure, PointId, PoseMeasure, Statistic};

@@ -8,7 +8,7 @@ use kempe_motion::motion::Motion;
 use kempe_motion::progress::{Progress, Silent};
 
 use crate::force_source::{ForceSource, NoForces};
-use crate::measure::order_of;
+use crate::measure::{NoMeasure, order_of};
 use crate::measurer::{Measurer, Needs};
 use crate::path_length::Swept;
 use crate::sampler::Sampler;
@@ -20,7 +20,7 @@ pub struct Unmeasurable {
     /// Which of the measures asked for.
     pub index: usize,
     /// Why.
-    pub reason: String,
+    pub reason: NoMeasure,
 }
 
 /// Why a sampler is not ready.

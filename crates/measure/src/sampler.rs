@@ -20,6 +20,7 @@ use crate::extremes::{At, Extremes};
 use crate::force_source::{ForceSource, NoForces};
 use crate::measurer::Measurer;
 use crate::path_length::Swept;
+use crate::row_note::RowNote;
 use crate::states_along::PathPlace;
 
 /// A closure residual (in mechanism sizes) above which a row is marked.
@@ -46,7 +47,7 @@ pub struct Sample {
     /// Smallest singular value of the scaled constraint Jacobian.
     pub smallest_singular_value: f64,
     /// What a careful engineer would want to be told about this row, such as why it could not be reached.
-    pub note: Option<String>,
+    pub note: Option<RowNote>,
 }
 
 /// Evaluates measures along a motion; those of forces too where it is given their source.
@@ -134,7 +135,7 @@ impl<F: ForceSource> Sampler<F> {
         }
         let place = PathPlace { time, path: p };
         if !self.measurer.find(place) {
-            sample.note = Some("no pose was found here".into());
+            sample.note = Some(RowNote::NoPose);
             return sample;
         }
         let measures = std::mem::take(&mut self.measures);
@@ -169,7 +170,7 @@ impl<F: ForceSource> Sampler<F> {
         sample.closure = found.closure;
         sample.smallest_singular_value = found.smallest_singular_value;
         self.fill_places(&mut sample);
-        sample.note = self.note(p, &sample, &still);
+        sample.note = self.note(p, &sample, still);
         sample
     }
 

@@ -41,7 +41,10 @@ fn every_example_closes_over_its_whole_range() {
             for p in spread(&motion, 25) {
                 let row = sampler.at_parameter(p);
                 assert!(row.closure < 1e-12, "{name} at {p}: {:e}", row.closure);
-                let diagnostic = row.note.as_deref().unwrap_or("");
+                let diagnostic = row
+                    .note
+                    .as_ref()
+                    .map_or_else(String::new, |note| note.text(motion.mechanism()));
                 let fine = diagnostic.is_empty()
                     || diagnostic.starts_with("change point")
                     || diagnostic.starts_with("limit");

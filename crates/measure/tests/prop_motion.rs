@@ -11,7 +11,7 @@ mod support;
 
 use std::ops::ControlFlow;
 
-use kempe_measure::{Sample, Sampler};
+use kempe_measure::{RowNote, Sample, Sampler};
 use kempe_motion::assemble::Shortfall;
 use kempe_motion::{EndReason, Motion, MotionError};
 use proptest::prelude::*;
@@ -127,13 +127,16 @@ fn check(made: &Made) -> Result<Outcome, String> {
         let row = sampler.at_parameter(p);
         if let Some(note) = row.note {
             let gap = spec.gap(&row.links, &row.coordinates);
-            let marked = note.contains("limit of the drive") || note.contains("change point");
+            let marked = matches!(
+                note,
+                RowNote::AtLimit | RowNote::ChangePoint(_) | RowNote::StartsOnChangePoint { .. }
+            );
             if runs_away && row.links.iter().flatten().all(|x| x.is_nan()) {
                 continue;
             }
             if !marked || !(gap < 1e-8) {
                 return Err(format!(
-                    "row at {p}: {note}, gap {gap:e}, ends {:?}",
+                    "row at {p}: {note:?}, gap {gap:e}, ends {:?}",
                     motion.ends
                 ));
             }

@@ -1,9 +1,12 @@
 //! Assur groups: what the plan's blocks mean in the language of the field.
 
+use kempe_model::DriveId;
+
 use crate::Mechanism;
 use crate::constraint::Constraint;
 use crate::ids::BodyId;
 use crate::plan::{Condition, Step, Swing};
+use crate::structure::Source;
 
 /// A group of bodies that are determined together.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,12 +16,58 @@ pub struct AssurGroup {
     /// The class after Artobolevsky: 1 for a driven link, 2 for a dyad, 3 when a body of three pairs joins the others,
     /// higher for closed contours with that many sides.
     pub class: u32,
-    /// The kind in words, such as `RRR dyad`.
-    pub kind: String,
+    /// What it is.
+    pub kind: GroupKind,
+    /// The drives among its rows.
+    pub drives: Vec<DriveId>,
     /// Solved in closed form.
     pub closed_form: bool,
     /// Indices of its steps in the plan.
     pub steps: Vec<usize>,
+}
+
+/// What a group is. R stands for a pin, P for a slider, in the order of the joints.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum GroupKind {
+    /// A pin that runs in a slot along a smooth curve, its link placed before.
+    PinInSlot,
+    /// A link with a pin in such a slot.
+    LinkInSlot,
+    /// A body whose turn nothing determines.
+    Idle,
+    /// A link turned by a drive or, without one, with another link.
+    Turned,
+    /// A gear.
+    Gear,
+    /// A bar between two pins that are placed already.
+    RedundantBar,
+    /// A link and a cylinder.
+    RrrOfCylinder,
+    /// A link and a slot along an arc.
+    RrrOfSlot,
+    /// A link and a straight slot of another.
+    RrpOfSlot,
+    /// A link with a straight slot.
+    RprOfSlot,
+    /// A link held otherwise.
+    Link,
+    /// A slider.
+    Slider,
+    /// A dyad of two links.
+    Rrr,
+    /// A dyad of two links.
+    Rrp,
+    /// A dyad of two links.
+    Rpr,
+    /// A dyad of two links.
+    Prp,
+    /// A dyad of two links.
+    Rpp,
+    /// Two links that are solved together.
+    Pair,
+    /// So many links, more than two.
+    Larger(usize),
 }
 
 /// The groups of a plan, in the order in which they are solved.
@@ -65,7 +114,12 @@ pub fn assur_groups(mechanism: &Mechanism) -> Vec<AssurGroup> {
                     .any(|u| bodies.contains(&u.body()))
             })
             .collect();
-        let (class, kind) = describe(mechanism, &bodies, &steps);
+        let (class, kind) = classify(mechanism, &bodies, &steps);
+        let rows = steps.iter().flat_map(|&s| &plan.blocks[s].rows);
+        let drives = rows.filter_map(|row| match mechanism.constraints[row.constraint].1 {
+            Source::Drive(drive) => Some(drive),
+            _ => None,
+        });
         let closed_form = steps
             .iter()
             .all(|&s| !matches!(plan.steps[s], Step::Newton { .. }));
@@ -73,6 +127,7 @@ pub fn assur_groups(mechanism: &Mechanism) -> Vec<AssurGroup> {
             bodies,
             class,
             kind,
+            drives: drives.collect(),
             closed_form,
             steps,
         });
@@ -80,85 +135,58 @@ pub fn assur_groups(mechanism: &Mechanism) -> Vec<AssurGroup> {
     groups
 }
 
-fn describe(mechanism: &Mechanism, bodies: &[BodyId], steps: &[usize]) -> (u32, String) {
-    let plan = &mechanism.plan;
-    let drives: Vec<&str> = (steps.iter().flat_map(|&s| &plan.blocks[s].rows))
-        .filter_map(|row| match mechanism.constraints[row.constraint].1 {
-            crate::structure::Source::Drive(d) => {
-                Some(mechanism.model.drives[d.index()].name.as_str())
-            }
-            _ => None,
-        })
-        .collect();
-    let driven = |what: &str| match drives.as_slice() {
-        [] => what.to_owned(),
-        names => format!("{what} with drive {}", names.join(", ")),
-    };
-    let kinds: Vec<&Step> = steps.iter().map(|&s| &plan.steps[s]).collect();
+/// Class and kind of a group with these bodies, solved in these steps.
+fn classify(mechanism: &Mechanism, bodies: &[BodyId], steps: &[usize]) -> (u32, GroupKind) {
     let links: Vec<BodyId> = (bodies.iter().copied())
         .filter(|body| !mechanism.is_shoe(*body))
         .collect();
+    let steps: Vec<&Step> = steps.iter().map(|&s| &mechanism.plan.steps[s]).collect();
     match links.len() {
-        0 => (1, "pin in curved slot".into()),
-        1 if links != bodies => (2, driven("link and curved slot")),
-        1 if kinds.iter().any(|s| matches!(s, Step::Hold { .. })) => {
-            (1, "body with an idle turn".into())
-        }
-        1 => match kinds
-            .iter()
-            .find(|s| !matches!(s, Step::Turn { .. } | Step::Pin { .. }))
-        {
-            None if drives.is_empty() => (1, "link turned with another".into()),
-            None => (1, driven("link")),
-            Some(Step::Gear { .. }) => (1, "gear".into()),
-            Some(Step::TwoPins { .. }) => (2, "bar between two placed pins (redundant)".into()),
-            Some(Step::Swing(Swing {
-                condition: Condition::Radius { .. },
-                ..
-            })) => (2, driven("RRR dyad of link and cylinder")),
-            Some(Step::Swing(Swing {
-                condition: Condition::OnArc { .. } | Condition::ArcThrough { .. },
-                ..
-            })) => (2, "RRR dyad of link and curved slot".into()),
-            Some(Step::Swing(Swing {
-                condition: Condition::OnLine { .. },
-                ..
-            })) => (2, "RRP dyad of link and slot".into()),
-            Some(Step::SwingLine { .. }) => (2, driven("RPR dyad of link and slot")),
-            Some(Step::Swing { .. }) => (2, driven("link")),
-            Some(Step::Cross { .. }) => (1, driven("slider")),
-            Some(_) => (2, driven("link")),
+        0 => (1, GroupKind::PinInSlot),
+        1 if links != bodies => (2, GroupKind::LinkInSlot),
+        1 => of_one_link(&steps),
+        2 => (2, of_two_links(&steps)),
+        n => (contour_class(mechanism, &links), GroupKind::Larger(n)),
+    }
+}
+
+fn of_one_link(steps: &[&Step]) -> (u32, GroupKind) {
+    if steps.iter().any(|s| matches!(s, Step::Hold { .. })) {
+        return (1, GroupKind::Idle);
+    }
+    let mut telling = steps
+        .iter()
+        .filter(|s| !matches!(s, Step::Turn { .. } | Step::Pin { .. }));
+    match telling.next() {
+        None => (1, GroupKind::Turned),
+        Some(Step::Gear { .. }) => (1, GroupKind::Gear),
+        Some(Step::TwoPins { .. }) => (2, GroupKind::RedundantBar),
+        Some(Step::Swing(Swing { condition, .. })) => match condition {
+            Condition::Radius { .. } => (2, GroupKind::RrrOfCylinder),
+            Condition::OnArc { .. } | Condition::ArcThrough { .. } => (2, GroupKind::RrrOfSlot),
+            Condition::OnLine { .. } => (2, GroupKind::RrpOfSlot),
+            _ => (2, GroupKind::Link),
         },
-        2 => {
-            let kind = if kinds.iter().any(|s| matches!(s, Step::Dyad { .. })) {
-                "RRR dyad"
-            } else if (kinds.iter()).any(|s| matches!(s, Step::Swing(s) if s.partner.is_some())) {
-                "RRP dyad"
-            } else if (kinds.iter()).any(|s| matches!(s, Step::SwingLine(s) if s.partner.is_some()))
-            {
-                "RPR dyad"
-            } else if kinds
-                .iter()
-                .any(|s| matches!(s, Step::Cross { carriers: [a, b], .. } if a.body != b.body))
-            {
-                "PRP dyad"
-            } else if kinds.iter().any(|s| matches!(s, Step::Newton { .. })) {
-                "pair of links"
-            } else {
-                "RPP dyad"
-            };
-            (2, driven(kind))
-        }
-        n => {
-            let class = contour_class(mechanism, &links);
-            let roman = ["I", "II", "III", "IV", "V", "VI", "VII", "VIII"]
-                .get(class as usize - 1)
-                .unwrap_or(&"higher");
-            (
-                class,
-                driven(&format!("Assur group of class {roman} with {n} links")),
-            )
-        }
+        Some(Step::SwingLine { .. }) => (2, GroupKind::RprOfSlot),
+        Some(Step::Cross { .. }) => (1, GroupKind::Slider),
+        Some(_) => (2, GroupKind::Link),
+    }
+}
+
+fn of_two_links(steps: &[&Step]) -> GroupKind {
+    let any = |is: &dyn Fn(&Step) -> bool| steps.iter().any(|step| is(step));
+    if any(&|s| matches!(s, Step::Dyad { .. })) {
+        GroupKind::Rrr
+    } else if any(&|s| matches!(s, Step::Swing(s) if s.partner.is_some())) {
+        GroupKind::Rrp
+    } else if any(&|s| matches!(s, Step::SwingLine(s) if s.partner.is_some())) {
+        GroupKind::Rpr
+    } else if any(&|s| matches!(s, Step::Cross { carriers: [a, b], .. } if a.body != b.body)) {
+        GroupKind::Prp
+    } else if any(&|s| matches!(s, Step::Newton { .. })) {
+        GroupKind::Pair
+    } else {
+        GroupKind::Rpp
     }
 }
 

@@ -5,7 +5,7 @@ mod support;
 
 use std::f64::consts::{PI, TAU};
 
-use kempe_measure::Sampler;
+use kempe_measure::{RowNote, Sampler};
 use kempe_model::Measure;
 use kempe_motion::EndReason;
 use kempe_motion::circuit::Circuit;
@@ -176,8 +176,8 @@ fn random_mechanisms_close_along_time() {
             let row = sampler.at_time(t);
             if let Some(note) = &row.note {
                 assert!(
-                    note.starts_with("limit") || note.starts_with("change"),
-                    "seed {seed} at {t}: {note}"
+                    matches!(note, RowNote::AtLimit | RowNote::ChangePoint(_)),
+                    "seed {seed} at {t}: {note:?}"
                 );
                 continue;
             }

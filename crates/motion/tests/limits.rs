@@ -125,7 +125,8 @@ fn rows_to_the_end(motion: &std::sync::Arc<Motion>) {
             low + (high - low) * f64::from(k) / 12.0
         };
         let row = sampler.at_parameter(p);
-        let diagnostic = row.note.as_deref().unwrap_or("limit");
+        let diagnostic =
+            (row.note.as_ref()).map_or_else(|| "limit".to_owned(), |n| n.text(motion.mechanism()));
         assert!(
             diagnostic.starts_with("limit") || diagnostic.starts_with("change"),
             "{p}: {diagnostic}"
@@ -287,7 +288,8 @@ fn follow_through(l: [f64; 4], from: f64, to: f64, side: &str) {
             low + (high - low) * f64::from(k) / 40.0
         };
         let row = sampler.at_parameter(p);
-        let diagnostic = row.note.clone().unwrap_or_default();
+        let diagnostic =
+            (row.note.as_ref()).map_or_else(String::new, |n| n.text(motion.mechanism()));
         assert!(
             diagnostic.is_empty()
                 || diagnostic.starts_with("change")

@@ -53,7 +53,7 @@ impl Row {
     /// What is to be told about the row and its forces, such as why it was not reached.
     pub fn note(&self, mechanism: &Mechanism) -> Option<String> {
         let of_forces = self.forces.iter().flat_map(|forces| &forces.notes);
-        let diagnostics: Vec<String> = (self.sample.note.iter().cloned())
+        let diagnostics: Vec<String> = (self.sample.note.iter().map(|note| note.text(mechanism)))
             .chain(of_forces.map(|note| note.text(mechanism)))
             .collect();
         (!diagnostics.is_empty()).then(|| diagnostics.join("; "))

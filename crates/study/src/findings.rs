@@ -10,6 +10,7 @@ use kempe_units::Dimension;
 use serde::Serialize;
 
 use crate::explain::cannot_move;
+use crate::findings_text::kind_text;
 use crate::prepared::design;
 use crate::unit::Units;
 use crate::words::{list, source_name};
@@ -137,7 +138,7 @@ pub fn check_with_progress(model: &Model, progress: &mut dyn Progress) -> Report
             .map(|g| Group {
                 links: bodies(&g.bodies),
                 class: g.class,
-                kind: g.kind.clone(),
+                kind: kind_text(model, g),
                 closed_form: g.closed_form,
             })
             .collect(),

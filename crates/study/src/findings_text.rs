@@ -3,7 +3,8 @@
 use std::fmt::Write as _;
 
 use kempe_draw::report::{Block, Level, Section};
-use kempe_model::{Diagnostic, Severity};
+use kempe_mechanism::assur::{AssurGroup, GroupKind};
+use kempe_model::{Diagnostic, Model, Severity};
 
 use crate::findings::Report;
 
@@ -210,6 +211,52 @@ fn or_none(names: &[String]) -> String {
         "none".to_owned()
     } else {
         names.join(", ")
+    }
+}
+
+/// What a group is, with its drives.
+pub(crate) fn kind_text(model: &Model, group: &AssurGroup) -> String {
+    let kind = match group.kind {
+        GroupKind::PinInSlot => "pin in curved slot",
+        GroupKind::LinkInSlot => "link and curved slot",
+        GroupKind::Idle => "body with an idle turn",
+        GroupKind::Turned if group.drives.is_empty() => "link turned with another",
+        GroupKind::Turned | GroupKind::Link => "link",
+        GroupKind::Gear => "gear",
+        GroupKind::RedundantBar => "bar between two placed pins (redundant)",
+        GroupKind::RrrOfCylinder => "RRR dyad of link and cylinder",
+        GroupKind::RrrOfSlot => "RRR dyad of link and curved slot",
+        GroupKind::RrpOfSlot => "RRP dyad of link and slot",
+        GroupKind::RprOfSlot => "RPR dyad of link and slot",
+        GroupKind::Slider => "slider",
+        GroupKind::Rrr => "RRR dyad",
+        GroupKind::Rrp => "RRP dyad",
+        GroupKind::Rpr => "RPR dyad",
+        GroupKind::Prp => "PRP dyad",
+        GroupKind::Rpp => "RPP dyad",
+        GroupKind::Pair => "pair of links",
+        GroupKind::Larger(links) => {
+            let roman = ["I", "II", "III", "IV", "V", "VI", "VII", "VIII"];
+            let class = roman.get(group.class as usize - 1).unwrap_or(&"higher");
+            return with_drives(
+                model,
+                group,
+                &format!("Assur group of class {class} with {links} links"),
+            );
+        }
+        _ => "group",
+    };
+    with_drives(model, group, kind)
+}
+
+fn with_drives(model: &Model, group: &AssurGroup, kind: &str) -> String {
+    let drives = group.drives.iter();
+    let names: Vec<&str> = drives
+        .filter_map(|drive| Some(model.drives.get(drive.index())?.name.as_str()))
+        .collect();
+    match names.as_slice() {
+        [] => kind.to_owned(),
+        names => format!("{kind} with drive {}", names.join(", ")),
     }
 }
 

@@ -383,9 +383,10 @@ fn on_motion(
     let at = place(&along)?;
     let Row { sample, forces } = along.row(at);
     if !sample.closure.is_finite() {
-        let reason = sample
-            .note
-            .unwrap_or_else(|| "no pose was found".to_owned());
+        let reason = sample.note.map_or_else(
+            || "no pose was found".to_owned(),
+            |note| note.text(motion.mechanism()),
+        );
         return Err(vec![Diagnostic::error(
             "not-reached",
             format!("{label}: {reason}"),

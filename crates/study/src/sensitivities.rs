@@ -114,7 +114,7 @@ pub fn sensitivities(
                 // From the last on, so that the places before stay.
                 for problem in problems.iter().rev() {
                     let measure = asked.remove(problem.index);
-                    left_out.insert(0, (measure.name.clone(), problem.reason.clone()));
+                    left_out.insert(0, (measure.name.clone(), problem.reason.to_string()));
                 }
             }
         }

@@ -5,18 +5,51 @@ use kempe_model::{Leaf, Measure, Nature, PoseMeasure};
 
 use super::ORDER;
 
-/// How often a measure must be differentiated to be evaluated, or why it cannot be.
+/// Why a measure has no value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum NoMeasure {
+    /// It needs derivatives of this order, beyond what the series carry.
+    Order(u32),
+    /// A force inside a kinematic coefficient.
+    ForceByDrive,
+    /// A rate in time inside a kinematic coefficient.
+    RateByDrive,
+    /// A length of path inside a kinematic coefficient.
+    PathLengthByDrive,
+    /// A speed or an acceleration inside a kinematic coefficient.
+    SpeedByDrive,
+}
+
+impl std::fmt::Display for NoMeasure {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Order(order) => {
+                let highest = ORDER - 1;
+                return write!(f, "needs derivatives of order {order}; the highest available is {highest}");
+            }
+            Self::ForceByDrive => "a force has no derivative to a drive",
+            Self::RateByDrive => {
+                "a rate in time has no derivative to a drive: take rate() of the coefficient instead"
+            }
+            Self::PathLengthByDrive => {
+                "a length of path depends on the whole way since the start, not on where a drive is: divide its rate() by \
+                 that of the drive"
+            }
+            Self::SpeedByDrive => "a speed or acceleration in time has no derivative to a drive",
+        })
+    }
+}
+
+/// How often a measure must be differentiated to be evaluated.
 ///
 /// # Errors
-/// A sentence for the user: a rate inside a kinematic coefficient, or an order beyond what the series carry.
-pub fn order_of(mechanism: &Mechanism, measure: &Measure) -> Result<u32, String> {
+/// Why it cannot be: a rate inside a kinematic coefficient, or an order beyond what the series carry.
+pub fn order_of(mechanism: &Mechanism, measure: &Measure) -> Result<u32, NoMeasure> {
     let mut known = vec![[None; 2]; mechanism.model.measures.len()];
     let order = depth(mechanism, measure, false, &mut known)?;
     if order as usize >= ORDER {
-        return Err(format!(
-            "needs derivatives of order {order}; the highest available is {}",
-            ORDER - 1
-        ));
+        return Err(NoMeasure::Order(order));
     }
     Ok(order)
 }
@@ -27,13 +60,13 @@ fn depth(
     measure: &Measure,
     in_coefficient: bool,
     known: &mut [[Option<u32>; 2]],
-) -> Result<u32, String> {
+) -> Result<u32, NoMeasure> {
     let mut deepest = 0;
     for leaf in measure.leaves() {
         let own = match leaf {
             Leaf::Parameter(_) | Leaf::Drive(_) | Leaf::Time => 0,
             Leaf::Force(_) if in_coefficient => {
-                return Err("a force has no derivative to a drive".into());
+                return Err(NoMeasure::ForceByDrive);
             }
             Leaf::Force(_) => Nature::Forces.order(),
             Leaf::Named(index) => match mechanism.model.measures.get(*index) {
@@ -48,7 +81,7 @@ fn depth(
                 None => 0,
             },
             Leaf::Rate(_, _) if in_coefficient => {
-                return Err("a rate in time has no derivative to a drive: take rate() of the coefficient instead".into());
+                return Err(NoMeasure::RateByDrive);
             }
             Leaf::Rate(inner, order) => order + depth(mechanism, inner, false, known)?,
             Leaf::Coefficient(inner, _, order) => order + depth(mechanism, inner, true, known)?,
@@ -57,10 +90,10 @@ fn depth(
                 0
             }
             Leaf::Pose(PoseMeasure::PathLength(_)) if in_coefficient => {
-                return Err("a length of path depends on the whole way since the start, not on where a drive is: divide its rate() by that of the drive".into());
+                return Err(NoMeasure::PathLengthByDrive);
             }
             Leaf::Pose(pose) if in_coefficient && matches!(pose.nature(), Nature::InTime(_)) => {
-                return Err("a speed or acceleration in time has no derivative to a drive".into());
+                return Err(NoMeasure::SpeedByDrive);
             }
             Leaf::Pose(pose) => {
                 let inner = match pose {

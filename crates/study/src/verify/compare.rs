@@ -203,7 +203,10 @@ fn measured(
     };
     let Row { sample, .. } = subject.sampler.row(place_of_row);
     if !sample.closure.is_finite() {
-        return Err(sample.note.unwrap_or_else(|| "not reached".to_owned()));
+        return Err((sample.note).map_or_else(
+            || "not reached".to_owned(),
+            |note| note.text(subject.motion.mechanism()),
+        ));
     }
     *last = Some((place.to_owned(), sample.values.clone()));
     Ok(sample.values)
