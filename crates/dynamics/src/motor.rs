@@ -1,7 +1,7 @@
 //! Motors: what a torque-speed curve leaves over what is needed.
 
 use kempe_model::{self as model, DriveId};
-use kempe_number::Number;
+use kempe_number::{Number, piecewise};
 
 use crate::problem::Problem;
 
@@ -40,10 +40,21 @@ impl<T: Number> Motor<T> {
     pub fn torque(&self, speed: T) -> T {
         let one_sided = self.curve.first().is_some_and(|p| p.0.value() >= 0.0);
         let x = if one_sided { speed.abs() } else { speed };
-        match self.curve.as_slice() {
-            [] => T::zero(),
-            [first, ..] => (x - first.0).choose_with(|| beyond(&self.curve, x), || first.1),
-        }
+        let points = &self.curve;
+        let Some(last) = points.last() else {
+            return T::zero();
+        };
+        // What lies below the first point is a piece, too.
+        let past = |k: usize| x - points[k - 1].0;
+        let piece = |k: usize| match k {
+            0 => [points[0].1],
+            _ => {
+                let (low, high) = (points[k - 1], points[k]);
+                [low.1 + (high.1 - low.1) * ((x - low.0) / (high.0 - low.0))]
+            }
+        };
+        let [torque] = piecewise(points.len(), &past, &piece);
+        (last.0 - x).choose(torque, T::zero())
     }
 
     /// What it has left, N m, when it must give `needed` at a speed: negative when it is too weak. Braking takes nothing
@@ -51,18 +62,6 @@ impl<T: Number> Motor<T> {
     pub fn margin(&self, needed: T, speed: T) -> T {
         let along = speed.choose(needed, -needed);
         self.torque(speed) - along.max(T::zero())
-    }
-}
-
-/// The torque at a speed that is not below the first of these points.
-fn beyond<T: Number>(curve: &[(T, T)], x: T) -> T {
-    match curve {
-        [low, high, ..] => (x - high.0).choose_with(
-            || beyond(&curve[1..], x),
-            || low.1 + (high.1 - low.1) * ((x - low.0) / (high.0 - low.0)),
-        ),
-        [last] => (last.0 - x).choose_with(|| last.1, T::zero),
-        [] => T::zero(),
     }
 }
 

@@ -81,15 +81,17 @@ impl Table {
 
     /// The value at an abscissa between the first point and the last, of several.
     fn inside<T: Number>(&self, x: T) -> T {
-        piecewise(&self.at, x, &|k| {
+        let past = |k: usize| x - self.at[k];
+        let [value] = piecewise(self.at.len() - 1, &past, &|k| {
             let h = self.at[k + 1] - self.at[k];
             let rise = (self.values[k + 1] - self.values[k]) / h;
             let (low, high) = (self.slopes[k], self.slopes[k + 1]);
             let s = x + -self.at[k];
             let square = (3.0 * rise - 2.0 * low - high) / h;
             let cube = (low + high - 2.0 * rise) / (h * h);
-            ((s * cube + square) * s + low) * s + self.values[k]
-        })
+            [((s * cube + square) * s + low) * s + self.values[k]]
+        });
+        value
     }
 }
 

@@ -12,7 +12,7 @@
 use std::f64::consts::TAU;
 
 use kempe_model::spline::{closed_moments, moments, piece};
-use kempe_number::{Number, math};
+use kempe_number::{Number, math, piecewise};
 
 use crate::pose::{Pose, dot, sub};
 
@@ -123,43 +123,24 @@ impl<T: Number> LocalCurve<T> {
 
     /// The curve at a parameter that lies in these turns of the first piece.
     fn evaluate(&self, parameter: T, turns: std::ops::Range<i32>) -> CurvePlace<T> {
-        let value = parameter.value();
-        let last = self.pieces.len() - 1;
-        let found = self.starts.partition_point(|start| start.value() <= value);
-        let found = found.saturating_sub(1).min(last);
-        if self.is_inside(parameter, found) {
-            return self.on_piece(found, parameter);
-        }
-        // Lanes on several pieces, an interval across a joint of two: every number by the pieces that it is on.
-        let ordered = turns.flat_map(|turn| (0..=last).map(move |piece| (turn, piece)));
-        let mut joined: Option<CurvePlace<T>> = None;
-        for (turn, piece) in ordered {
-            let parameter = parameter - TAU * f64::from(turn);
-            let here = self.on_piece(piece, parameter);
-            let Some(CurvePlace { place, rate }) = &mut joined else {
-                joined = Some(here);
-                continue;
-            };
-            let from = parameter - self.starts[piece];
-            for axis in 0..2 {
-                place[axis] = from.choose(here.place[axis], place[axis]);
-                rate[axis] = from.choose(here.rate[axis], rate[axis]);
-            }
-        }
-        joined.unwrap_or_else(|| self.on_piece(found, parameter))
-    }
-
-    /// Whether all of a number lies on a piece; the end pieces of an open curve go on.
-    fn is_inside(&self, parameter: T, piece: usize) -> bool {
-        let (zero, nowhere) = (T::zero(), T::from_f64(f64::NAN));
-        let is_first = piece == 0 && !self.closed;
-        let from = (parameter - self.starts[piece]).choose(zero, nowhere);
-        let to = match self.starts.get(piece + 1) {
-            Some(end) => (*end - parameter).choose(zero, nowhere),
-            None if self.closed => (-(parameter - TAU)).choose(zero, nowhere),
-            None => zero,
+        let count = self.pieces.len();
+        let place = |k: usize| {
+            let turn = turns.start + (k / count) as i32;
+            (k % count, parameter - TAU * f64::from(turn))
         };
-        (is_first || from.is_finite()) && to.is_finite()
+        let past = |k: usize| {
+            let (piece, parameter) = place(k);
+            parameter - self.starts[piece]
+        };
+        let [x, y, dx, dy] = piecewise(count * turns.len(), &past, &|k| {
+            let (piece, parameter) = place(k);
+            let CurvePlace { place, rate } = self.on_piece(piece, parameter);
+            [place[0], place[1], rate[0], rate[1]]
+        });
+        CurvePlace {
+            place: [x, y],
+            rate: [dx, dy],
+        }
     }
 
     fn on_piece(&self, piece: usize, parameter: T) -> CurvePlace<T> {

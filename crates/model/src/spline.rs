@@ -101,7 +101,8 @@ pub fn piece<T: Number>(step: T, values: [T; 2], moments: [T; 2]) -> [T; 4] {
 
 /// The spline's value at `t`, by its second derivatives at the knots.
 pub(crate) fn spline_at<T: Number>(times: &[f64], values: &[f64], moments: &[f64], t: T) -> T {
-    piecewise(times, t, &|i| {
+    let past = |k: usize| t - times[k];
+    let [value] = piecewise(times.len().saturating_sub(1), &past, &|i| {
         let pair = |list: &[f64]| match (list.get(i), list.get(i + 1)) {
             (Some(a), Some(b)) => (*a, *b),
             _ => (f64::NAN, f64::NAN),
@@ -111,8 +112,9 @@ pub(crate) fn spline_at<T: Number>(times: &[f64], values: &[f64], moments: &[f64
         let b = (t - t0) / h;
         let a = -b + 1.0;
         let cubic = |s: T, m: f64| (s.square() * s - s) * (m * h * h / 6.0);
-        a * y0 + b * y1 + cubic(a, m0) + cubic(b, m1)
-    })
+        [a * y0 + b * y1 + cubic(a, m0) + cubic(b, m1)]
+    });
+    value
 }
 
 #[cfg(test)]

@@ -2,27 +2,36 @@
 
 use crate::Number;
 
-/// A function that is `piece(k)` between the knots `k` and `k + 1` (rising), and goes on as its outer pieces beyond them. A
-/// number whose parts lie in several pieces (lanes, the bounds of an interval) takes each from its own.
-///
-/// With fewer than two knots there is one piece, `piece(0)`.
-pub fn piecewise<T: Number>(knots: &[f64], x: T, piece: &impl Fn(usize) -> T) -> T {
-    between(knots, (0, knots.len().saturating_sub(1).max(1)), x, piece)
+/// Functions given by so many pieces, that go on as their outer pieces beyond them. `past(k)` is how far the number lies past
+/// the start of piece `k`, rising from piece to piece; `piece(k)` is what the functions are there. A number whose parts lie
+/// in several pieces (lanes, the bounds of an interval) takes each from its own.
+pub fn piecewise<T: Number, const N: usize>(
+    pieces: usize,
+    past: &impl Fn(usize) -> T,
+    piece: &impl Fn(usize) -> [T; N],
+) -> [T; N] {
+    between((0, pieces.max(1)), past, piece)
 }
 
 /// The pieces from `first` until before `end`.
-fn between<T: Number>(
-    knots: &[f64],
+fn between<T: Number, const N: usize>(
     (first, end): (usize, usize),
-    x: T,
-    piece: &impl Fn(usize) -> T,
-) -> T {
+    past: &impl Fn(usize) -> T,
+    piece: &impl Fn(usize) -> [T; N],
+) -> [T; N] {
     if end - first <= 1 {
         return piece(first);
     }
     let middle = first.midpoint(end);
-    (x - knots[middle]).choose_with(
-        || between(knots, (middle, end), x, piece),
-        || between(knots, (first, middle), x, piece),
-    )
+    let from = past(middle);
+    let upper = || between((middle, end), past, piece);
+    let lower = || between((first, middle), past, piece);
+    match from.nonnegative() {
+        Some(true) => upper(),
+        Some(false) => lower(),
+        None => {
+            let (upper, lower) = (upper(), lower());
+            std::array::from_fn(|k| from.choose(upper[k], lower[k]))
+        }
+    }
 }
