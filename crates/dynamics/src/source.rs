@@ -32,10 +32,10 @@ where
     /// # Errors
     /// All problems of what acts on the mechanism.
     pub fn new(motion: &Arc<Motion>, parameters: &[B]) -> Result<Self, Vec<Problem>> {
-        let rich: Vec<Rates<B>> = parameters.iter().map(|x| Rates::constant(*x)).collect();
+        let design = motion.design_of(parameters).lift(Rates::constant);
         let mut start = Branch::neutral(motion.mechanism());
         motion.branch_at(motion.start, &mut start);
-        let mut it = Self::of(motion.design_of(&rich), &start.near)?;
+        let mut it = Self::of(design, &start.near)?;
         it.forces.equilibrium.pace = pace(&motion.design);
         Ok(it)
     }

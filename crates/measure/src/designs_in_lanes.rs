@@ -30,7 +30,7 @@ impl<'m, const W: usize> DesignsInLanes<'m, W> {
         measures: Vec<&'m Measure>,
         parameters: &[Lanes<W>],
     ) -> Self {
-        let rich: Vec<Series<Lanes<W>>> = parameters.iter().map(|x| Series::constant(*x)).collect();
+        let design = motion.design_of(parameters).lift(Series::constant);
         let nothing = Lanes::from_f64(f64::NAN);
         let abscissa = Abscissa {
             drive: path_drive(motion),
@@ -39,7 +39,7 @@ impl<'m, const W: usize> DesignsInLanes<'m, W> {
             unit: motion.path.scale(),
         };
         Self {
-            state: State::empty(Arc::new(motion.design_of(&rich)), abscissa),
+            state: State::empty(Arc::new(design), abscissa),
             solver: motion.solver(),
             motion,
             measures,

@@ -84,6 +84,7 @@ where
     /// Prepares to find the states of a motion for these parameter values.
     pub fn new(motion: &Arc<Motion>, parameters: &[B]) -> Self {
         let rich: Vec<Series<B>> = parameters.iter().map(|x| Series::constant(*x)).collect();
+        let design = motion.design_of(parameters).lift(Series::constant);
         let clock = Clock::new(motion.clone());
         let abscissa = Abscissa {
             drive: clock.path_drive(),
@@ -92,7 +93,7 @@ where
             unit: motion.path.scale(),
         };
         Self {
-            state: State::empty(Arc::new(motion.design_of(&rich)), abscissa),
+            state: State::empty(Arc::new(design), abscissa),
             solver: motion.solver(),
             side_design: motion.design_on(),
             side: motion.solver(),

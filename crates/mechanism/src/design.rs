@@ -59,6 +59,21 @@ impl<T: Number> Design<T> {
         }
     }
 
+    /// The same design on a richer number, of which `constant` makes constants: dimensions do not vary along a series, and
+    /// nothing of them is computed on it.
+    #[inline(never)]
+    pub fn lift<R: Number>(&self, constant: impl Fn(T) -> R) -> Design<R> {
+        Design {
+            mechanism: self.mechanism.clone(),
+            parameters: self.parameters.iter().map(|x| constant(*x)).collect(),
+            geometry: self.geometry.map(&constant),
+            constants: (self.constants.iter())
+                .map(|c| c.map(&constant))
+                .collect(),
+            plain: vec![self.geometry.value()],
+        }
+    }
+
     /// Evaluates the dimensions anew for other parameter values, in the same storage; not the plain ones.
     #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn update(&mut self, parameters: &[T]) {
@@ -85,17 +100,5 @@ impl Design<f64> {
     /// A characteristic length of the mechanism, m: see [`Geometry::size`].
     pub fn size(&self) -> f64 {
         self.geometry.size(&self.mechanism)
-    }
-
-    /// The same design as constants of a richer number.
-    #[inline(never)]
-    pub fn lift<T: Number>(&self) -> Design<T> {
-        Design {
-            mechanism: self.mechanism.clone(),
-            parameters: self.parameters.iter().map(|x| T::from_f64(*x)).collect(),
-            geometry: self.geometry.map(T::from_f64),
-            constants: self.constants.iter().map(|c| c.map(T::from_f64)).collect(),
-            plain: vec![self.geometry.clone()],
-        }
     }
 }

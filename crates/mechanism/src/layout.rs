@@ -10,7 +10,7 @@ use kempe_number::Number;
 
 use crate::Mechanism;
 use crate::blocks::{Row, Unknown};
-use crate::constraint::{Joint, Situation};
+use crate::constraint::{Gradient, Joint, Situation};
 use crate::ids::BodyId;
 
 /// Place and angle of every body but the frame, in their order.
@@ -154,7 +154,7 @@ impl Rows {
     ) {
         for &(constraint, at) in &self.by_constraint {
             let kind = &mechanism.constraints[constraint].0;
-            let to_drive = situation.gradients(kind, |gradient| {
+            let mut take = |gradient: Gradient<T>| {
                 let Some(row) = at[gradient.row] else { return };
                 let [x, y, angle] = columns.of(gradient.body);
                 let to = [x.map(To::Length), y.map(To::Length), angle.map(To::Angle)];
@@ -163,7 +163,12 @@ impl Rows {
                         put(row, constraint, to, value);
                     }
                 }
-            });
+            };
+            let to_drive = match const { size_of::<T>() == size_of::<f64>() } {
+                true => situation.gradients(kind, take),
+                // Called: no joint is compiled once more for these entries.
+                false => situation.gradients(kind, &mut take as &mut dyn FnMut(Gradient<T>)),
+            };
             if let (Some(row), Some(drive)) = (at[0], kind.drive()) {
                 put(row, constraint, To::Drive(drive), to_drive);
             }

@@ -11,8 +11,35 @@ use crate::plan::{Carrier, Condition, Reach, Swing, SwingLine};
 use crate::pose::{Pose, cross, dot, left, sub};
 
 /// What a condition says about the point its carrier holds. The carrier's angle must be known.
+///
+/// Called for numbers that need not be compiled into their caller: it is the larger part of two kinds of steps.
 #[cfg_attr(not(debug_assertions), inline(always))]
 fn locus_of<T: Number, const ALL: bool>(
+    design: &Design<T>,
+    branch: &Branch,
+    state: &Configuration<T>,
+    carrier: Carrier,
+    condition: Condition,
+) -> Locus<T> {
+    match const { T::IN_LANES || size_of::<T>() == size_of::<f64>() } {
+        true => locus_in_place::<T, ALL>(design, branch, state, carrier, condition),
+        false => locus_called::<T, ALL>(design, branch, state, carrier, condition),
+    }
+}
+
+#[inline(never)]
+fn locus_called<T: Number, const ALL: bool>(
+    design: &Design<T>,
+    branch: &Branch,
+    state: &Configuration<T>,
+    carrier: Carrier,
+    condition: Condition,
+) -> Locus<T> {
+    locus_in_place::<T, ALL>(design, branch, state, carrier, condition)
+}
+
+#[cfg_attr(not(debug_assertions), inline(always))]
+fn locus_in_place<T: Number, const ALL: bool>(
     design: &Design<T>,
     branch: &Branch,
     state: &Configuration<T>,

@@ -54,19 +54,27 @@ impl<T: Number, const K: usize> Dual<T, K> {
     /// The chain rule for f(self): value `re`, slope f'(self.re).
     #[inline]
     fn chain(self, re: T, slope: T) -> Self {
-        Self {
-            re,
-            eps: self.eps.map(|e| e * slope),
+        self.each(re, |e| e * slope)
+    }
+
+    /// The value `re` with every derivative through `f`.
+    #[inline]
+    fn each(mut self, re: T, f: impl Fn(T) -> T) -> Self {
+        self.re = re;
+        for k in 0..K {
+            self.eps[k] = f(self.eps[k]);
         }
+        self
     }
 
     /// Combines both derivatives direction by direction.
     #[inline]
-    fn combine(self, other: Self, re: T, f: impl Fn(T, T) -> T) -> Self {
-        Self {
-            re,
-            eps: std::array::from_fn(|k| f(self.eps[k], other.eps[k])),
+    fn combine(mut self, other: Self, re: T, f: impl Fn(T, T) -> T) -> Self {
+        self.re = re;
+        for k in 0..K {
+            self.eps[k] = f(self.eps[k], other.eps[k]);
         }
+        self
     }
 }
 
@@ -107,10 +115,7 @@ impl<T: Number, const K: usize> Neg for Dual<T, K> {
     type Output = Self;
     #[inline]
     fn neg(self) -> Self {
-        Self {
-            re: -self.re,
-            eps: self.eps.map(|e| -e),
-        }
+        self.each(-self.re, |e| -e)
     }
 }
 
@@ -129,10 +134,7 @@ impl<T: Number, const K: usize> Mul<f64> for Dual<T, K> {
     type Output = Self;
     #[inline]
     fn mul(self, other: f64) -> Self {
-        Self {
-            re: self.re * other,
-            eps: self.eps.map(|e| e * other),
-        }
+        self.each(self.re * other, |e| e * other)
     }
 }
 
@@ -140,10 +142,7 @@ impl<T: Number, const K: usize> Div<f64> for Dual<T, K> {
     type Output = Self;
     #[inline]
     fn div(self, other: f64) -> Self {
-        Self {
-            re: self.re / other,
-            eps: self.eps.map(|e| e / other),
-        }
+        self.each(self.re / other, |e| e / other)
     }
 }
 
@@ -165,10 +164,7 @@ impl<T: Number, const K: usize> Number for Dual<T, K> {
     fn sqrt(self) -> Self {
         let root = self.re.sqrt();
         let twice = root * 2.0;
-        Self {
-            re: root,
-            eps: self.eps.map(|e| e / twice),
-        }
+        self.each(root, |e| e / twice)
     }
 
     #[inline]
@@ -193,10 +189,7 @@ impl<T: Number, const K: usize> Number for Dual<T, K> {
 
     #[inline]
     fn ln(self) -> Self {
-        Self {
-            re: self.re.ln(),
-            eps: self.eps.map(|e| e / self.re),
-        }
+        self.each(self.re.ln(), |e| e / self.re)
     }
 
     #[inline]

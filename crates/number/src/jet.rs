@@ -136,7 +136,14 @@ impl<T: Number, const N: usize> Jet<T, N> {
 
     /// Whether products and the like are compiled into their caller: always for numbers in lanes, which need the vector
     /// instructions that the caller is compiled for, and for short series; longer ones are called.
-    const IN_PLACE: bool = T::IN_LANES || N <= 3 && size_of::<T>() == size_of::<f64>();
+    const IN_PLACE: bool = T::IN_LANES || N <= 3 && Self::IS_PLAIN;
+
+    /// Whether sums are: called where a coefficient is more than one number, because dozens of additions in every place that
+    /// adds make programs several times as large, and no faster.
+    const SUMS_IN_PLACE: bool = T::IN_LANES || Self::IS_PLAIN;
+
+    /// Whether a coefficient is one plain number.
+    const IS_PLAIN: bool = size_of::<T>() == size_of::<f64>();
 
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn product(self, other: Self) -> Self {
@@ -150,7 +157,7 @@ impl<T: Number, const N: usize> Jet<T, N> {
         Self(c)
     }
 
-    #[inline]
+    #[inline(never)]
     fn product_called(self, other: Self) -> Self {
         self.product(other)
     }
@@ -167,7 +174,7 @@ impl<T: Number, const N: usize> Jet<T, N> {
         Self(q)
     }
 
-    #[inline]
+    #[inline(never)]
     fn quotient_called(self, other: Self) -> Self {
         self.quotient(other)
     }
@@ -187,7 +194,7 @@ impl<T: Number, const N: usize> Jet<T, N> {
         Self(s)
     }
 
-    #[inline]
+    #[inline(never)]
     fn root_called(self) -> Self {
         self.root()
     }
@@ -210,7 +217,7 @@ impl<T: Number, const N: usize> Jet<T, N> {
         (Self(s), Self(c))
     }
 
-    #[inline]
+    #[inline(never)]
     fn sine_cosine_called(self) -> (Self, Self) {
         self.sine_cosine()
     }
@@ -232,7 +239,7 @@ impl<T: Number, const N: usize> Jet<T, N> {
         Self(c)
     }
 
-    #[inline]
+    #[inline(never)]
     fn own_product_called(self) -> Self {
         self.own_product()
     }
@@ -240,13 +247,45 @@ impl<T: Number, const N: usize> Jet<T, N> {
     /// Applies `f` to every coefficient.
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn each(self, f: impl Fn(T) -> T) -> Self {
-        Self(self.0.map(f))
+        match Self::SUMS_IN_PLACE {
+            true => self.each_in_place(f),
+            false => self.each_called(f),
+        }
+    }
+
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn each_in_place(mut self, f: impl Fn(T) -> T) -> Self {
+        for k in 0..N {
+            self.0[k] = f(self.0[k]);
+        }
+        self
+    }
+
+    #[inline(never)]
+    fn each_called(self, f: impl Fn(T) -> T) -> Self {
+        self.each_in_place(f)
     }
 
     /// Applies `f` to the coefficients of both series in pairs.
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn pairwise(self, other: Self, f: impl Fn(T, T) -> T) -> Self {
-        Self(std::array::from_fn(|k| f(self.0[k], other.0[k])))
+        match Self::SUMS_IN_PLACE {
+            true => self.pairwise_in_place(other, f),
+            false => self.pairwise_called(other, f),
+        }
+    }
+
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn pairwise_in_place(mut self, other: Self, f: impl Fn(T, T) -> T) -> Self {
+        for k in 0..N {
+            self.0[k] = f(self.0[k], other.0[k]);
+        }
+        self
+    }
+
+    #[inline(never)]
+    fn pairwise_called(self, other: Self, f: impl Fn(T, T) -> T) -> Self {
+        self.pairwise_in_place(other, f)
     }
 }
 

@@ -81,7 +81,9 @@ impl Certifier {
     pub fn new(motion: &Arc<Motion>) -> Self {
         let mechanism = motion.mechanism();
         let decomposition = &mechanism.plan.decomposition;
-        let design: Design<Interval> = motion.design_on();
+        let given = motion.design.parameters.iter();
+        let parameters: Vec<Interval> = given.map(|x| Interval::from_f64(*x)).collect();
+        let design = motion.design_of(&parameters);
         Self {
             // Not computed as series: a triangle whose points lie in line would divide by the interval of its height, which
             // holds zero.

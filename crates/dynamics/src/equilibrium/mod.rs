@@ -13,7 +13,7 @@ mod friction;
 mod order;
 
 use kempe_linear::Qr;
-use kempe_mechanism::constraint::{Joint, Situation};
+use kempe_mechanism::constraint::{Gradient, Joint, Situation};
 use kempe_mechanism::{BodyId, Geometry, Mechanism};
 
 pub use self::friction::{FRICTION_STEP, FRICTION_STEPS, FrictionOutcome, Pace, STILL, UNMOVED};
@@ -221,13 +221,15 @@ impl<T: ForceNumber> Equilibrium<T> {
         for (index, (constraint, _)) in mechanism.constraints.iter().enumerate() {
             let row = self.first_row[index];
             let entries = &mut self.entries;
-            constraint.load_gradients(&situation, |g| {
+            let take: &mut dyn FnMut(Gradient<T>) = &mut |g| {
                 entries.push(Entry {
                     row: row + g.row,
                     body: g.body,
                     to: g.to,
                 });
-            });
+            };
+            // Called: no joint is compiled once more for these entries.
+            constraint.load_gradients(&situation, take);
         }
         for (k, body) in self.idle.iter().enumerate() {
             self.entries.push(Entry {

@@ -26,11 +26,14 @@ impl<T: PlanNumber> Solver<T> {
 }
 
 impl Motion {
-    /// The motion's design on the number `T`: its dimensions evaluated anew, its angles counted as here.
+    /// The motion's design as constants of the number `T`.
     pub fn design_on<T: Number>(&self) -> Design<T> {
-        let given = self.design.parameters.iter();
-        let parameters: Vec<T> = given.map(|x| T::from_f64(*x)).collect();
-        self.design_of(&parameters)
+        self.plain_design().lift(T::from_f64)
+    }
+
+    /// The motion's design, prepared anew.
+    fn plain_design(&self) -> Design<f64> {
+        self.design_of(&self.design.parameters)
     }
 
     /// The design of parameter values on the number `T`, its angles counted as this motion counts them.

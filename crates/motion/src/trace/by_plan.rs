@@ -304,7 +304,7 @@ impl<P: Path> Follower<'_, P> {
             for (rich, plain) in state.poses.iter_mut().zip(&it.plain.poses) {
                 *rich = plain.map(Series::constant);
             }
-            (self.design.lift(), state)
+            (self.design.lift(Series::constant), state)
         });
         it.inputs.clear();
         for (q, rate) in self.coordinates.iter().zip(&self.rates) {
