@@ -174,7 +174,7 @@ fn in_lanes<const W: usize, const ALL: bool>(
     let (mechanism, order) = (batch.motion.mechanism(), &batch.order);
     let plan = &order.plan;
     let mut states = vec![Configuration::<Lanes<W>>::new(mechanism).without_determinants(); STATES];
-    let design = &batch.motion.design.lift::<Lanes<W>>();
+    let design = &batch.motion.design.lift(Lanes::<W>::from_f64);
     order.solve_once(&order.fixed, design, &mut states);
     let together = PREPARED.min(range.len()).div_ceil(W);
     let mut prepared = vec![design.clone(); together];

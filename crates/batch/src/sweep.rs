@@ -46,7 +46,7 @@ fn sweep_lanes<T: Wide<W>, const W: usize, const M: usize>(
     columns: &mut [&mut [f64]],
 ) -> usize {
     let motion = &*batch.motion;
-    let (mechanism, design) = (motion.mechanism(), &motion.design.lift::<T>());
+    let (mechanism, design) = (motion.mechanism(), &motion.design.lift(T::from_f64));
     let order = &batch.order;
     let mut states = held_states::<T>(motion, M);
     order.solve_once(&order.fixed, design, &mut states);
@@ -128,7 +128,7 @@ pub(super) fn sweep_one_by_one<T: Single>(
     out: &mut [&mut [f64]],
 ) -> usize {
     let motion = &*batch.motion;
-    let design = motion.design.lift::<T>();
+    let design = motion.design.lift(T::from_f64);
     let mut closed = 0;
     sweep_states(motion, &design, parameters, T::seed, |row, state| {
         closed += usize::from(state.is_some());

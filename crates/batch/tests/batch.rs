@@ -147,7 +147,7 @@ fn rates_have_the_same_bits_one_by_one_and_in_lanes() {
         let batch = Batch::new(&motion, &points).unwrap();
         let parameters = parameters(&motion, 21);
         let n = parameters.len();
-        let rich = design.lift::<Jet<f64, 3>>();
+        let rich = design.lift(Jet::<f64, 3>::constant);
         let mut expected = vec![f64::NAN; 3 * n * batch.columns()];
         sweep_states(
             &motion,

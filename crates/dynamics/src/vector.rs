@@ -2,16 +2,7 @@
 
 use kempe_number::Number;
 
-#[inline(always)]
-pub(crate) fn dot<T: Number>(a: [T; 2], b: [T; 2]) -> T {
-    a[0] * b[0] + a[1] * b[1]
-}
-
-/// Positive when `b` lies counter-clockwise of `a`.
-#[inline(always)]
-pub(crate) fn cross<T: Number>(a: [T; 2], b: [T; 2]) -> T {
-    a[0] * b[1] - a[1] * b[0]
-}
+pub(crate) use kempe_mechanism::pose::{cross, dot, left, sub};
 
 #[inline(always)]
 pub(crate) fn add<T: Number>(a: [T; 2], b: [T; 2]) -> [T; 2] {
@@ -19,19 +10,8 @@ pub(crate) fn add<T: Number>(a: [T; 2], b: [T; 2]) -> [T; 2] {
 }
 
 #[inline(always)]
-pub(crate) fn sub<T: Number>(a: [T; 2], b: [T; 2]) -> [T; 2] {
-    [a[0] - b[0], a[1] - b[1]]
-}
-
-#[inline(always)]
 pub(crate) fn times<T: Number>(a: [T; 2], k: T) -> [T; 2] {
     [a[0] * k, a[1] * k]
-}
-
-/// Quarter turn to the left.
-#[inline(always)]
-pub(crate) fn left<T: Number>(a: [T; 2]) -> [T; 2] {
-    [-a[1], a[0]]
 }
 
 /// The length of a vector. Its derivatives are zero, not NaN, where it vanishes in all parts.

@@ -40,7 +40,7 @@ impl Bench {
         plain.count_turns(turns);
         let branch = plain.branch_through(&solver.state.poses, &solver.branch.near, &q);
         Self {
-            design: Arc::new(plain.lift()),
+            design: Arc::new(plain.lift(Series::constant)),
             branch,
             q,
         }

@@ -37,13 +37,26 @@ impl<T: Number> Pose<T> {
     /// A vector of the body seen from the frame.
     #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn turn(&self, v: [T; 2]) -> [T; 2] {
+        match T::IN_PLACE {
+            true => self.turn_in_place(&v),
+            false => self.turn_called(&v),
+        }
+    }
+
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn turn_in_place(&self, v: &[T; 2]) -> [T; 2] {
         [self.c * v[0] - self.s * v[1], self.s * v[0] + self.c * v[1]]
+    }
+
+    #[inline(never)]
+    fn turn_called(&self, v: &[T; 2]) -> [T; 2] {
+        self.turn_in_place(v)
     }
 
     /// A vector of the frame seen from the body.
     #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn unturn(&self, v: [T; 2]) -> [T; 2] {
-        [self.c * v[0] + self.s * v[1], self.c * v[1] - self.s * v[0]]
+        [dot([self.c, self.s], v), cross([self.c, self.s], v)]
     }
 
     /// A point of the body seen from the frame.
@@ -56,12 +69,16 @@ impl<T: Number> Pose<T> {
     /// This pose with its origin moved so that the body's point `p` lies at `world`.
     #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn pinned(c: T, s: T, p: [T; 2], world: [T; 2]) -> Self {
-        Self {
-            x: world[0] - (c * p[0] - s * p[1]),
-            y: world[1] - (s * p[0] + c * p[1]),
+        let mut pose = Self {
+            x: world[0],
+            y: world[1],
             c,
             s,
-        }
+        };
+        let arm = pose.turn(p);
+        pose.x -= arm[0];
+        pose.y -= arm[1];
+        pose
     }
 
     /// The pose moved by (`dx`, `dy`) and turned further by `turn` rad.
@@ -108,13 +125,39 @@ impl<T: Number> Pose<T> {
 /// Dot product.
 #[cfg_attr(not(debug_assertions), inline(always))]
 pub fn dot<T: Number>(a: [T; 2], b: [T; 2]) -> T {
+    match T::IN_PLACE {
+        true => dot_in_place(&a, &b),
+        false => dot_called(&a, &b),
+    }
+}
+
+#[cfg_attr(not(debug_assertions), inline(always))]
+fn dot_in_place<T: Number>(a: &[T; 2], b: &[T; 2]) -> T {
     a[0] * b[0] + a[1] * b[1]
+}
+
+#[inline(never)]
+fn dot_called<T: Number>(a: &[T; 2], b: &[T; 2]) -> T {
+    dot_in_place(a, b)
 }
 
 /// Cross product: positive when `b` lies counter-clockwise of `a`.
 #[cfg_attr(not(debug_assertions), inline(always))]
 pub fn cross<T: Number>(a: [T; 2], b: [T; 2]) -> T {
+    match T::IN_PLACE {
+        true => cross_in_place(&a, &b),
+        false => cross_called(&a, &b),
+    }
+}
+
+#[cfg_attr(not(debug_assertions), inline(always))]
+fn cross_in_place<T: Number>(a: &[T; 2], b: &[T; 2]) -> T {
     a[0] * b[1] - a[1] * b[0]
+}
+
+#[inline(never)]
+fn cross_called<T: Number>(a: &[T; 2], b: &[T; 2]) -> T {
+    cross_in_place(a, b)
 }
 
 /// Difference of two vectors.

@@ -134,24 +134,21 @@ impl<T: Number, const N: usize> Jet<T, N> {
         sum
     }
 
-    /// Whether products and the like are compiled into their caller: always for numbers in lanes, which need the vector
-    /// instructions that the caller is compiled for, and for short series; longer ones are called.
-    const IN_PLACE: bool = T::IN_LANES || N <= 3 && Self::IS_PLAIN;
+    /// Whether sums are compiled into their caller. Those of series of plain numbers are, whatever their length: they take few
+    /// instructions.
+    const SUMS_IN_PLACE: bool = T::IN_LANES || size_of::<T>() == size_of::<f64>();
 
-    /// Whether sums are: called where a coefficient is more than one number, because dozens of additions in every place that
-    /// adds make programs several times as large, and no faster.
-    const SUMS_IN_PLACE: bool = T::IN_LANES || Self::IS_PLAIN;
-
-    /// Whether a coefficient is one plain number.
-    const IS_PLAIN: bool = size_of::<T>() == size_of::<f64>();
+    // The recurrences' inner loops all run to `N`: the compiler unrolls loops of known length.
 
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn product(self, other: Self) -> Self {
         let mut c = self.0;
         for k in 0..N {
             c[k] = self.0[0] * other.0[k];
-            for i in 1..=k {
-                c[k] += self.0[i] * other.0[k - i];
+            for i in 1..N {
+                if i <= k {
+                    c[k] += self.0[i] * other.0[k - i];
+                }
             }
         }
         Self(c)
@@ -166,8 +163,10 @@ impl<T: Number, const N: usize> Jet<T, N> {
     fn quotient(self, other: Self) -> Self {
         let mut q = self.0;
         for k in 0..N {
-            for i in 0..k {
-                q[k] -= q[i] * other.0[k - i];
+            for i in 0..N {
+                if i < k {
+                    q[k] -= q[i] * other.0[k - i];
+                }
             }
             q[k] = q[k] / other.0[0];
         }
@@ -186,8 +185,10 @@ impl<T: Number, const N: usize> Jet<T, N> {
         s[0] = self.0[0].sqrt();
         let twice = s[0] * 2.0;
         for k in 1..N {
-            for i in 1..k {
-                s[k] -= s[i] * s[k - i];
+            for i in 1..N {
+                if i < k {
+                    s[k] -= s[i] * s[k - i];
+                }
             }
             s[k] = s[k] / twice;
         }
@@ -207,9 +208,11 @@ impl<T: Number, const N: usize> Jet<T, N> {
         let slope = self.differentiate().0;
         for k in 1..N {
             let (mut sum_s, mut sum_c) = (T::zero(), T::zero());
-            for i in 0..k {
-                sum_s += slope[i] * c[k - 1 - i];
-                sum_c += slope[i] * s[k - 1 - i];
+            for i in 0..N {
+                if i < k {
+                    sum_s += slope[i] * c[k - 1 - i];
+                    sum_c += slope[i] * s[k - 1 - i];
+                }
             }
             s[k] = sum_s / k as f64;
             c[k] = -(sum_c / k as f64);
@@ -228,8 +231,10 @@ impl<T: Number, const N: usize> Jet<T, N> {
         let mut c = self.0;
         for k in 0..N {
             let mut sum = T::zero();
-            for i in 0..k.div_ceil(2) {
-                sum += self.0[i] * self.0[k - i];
+            for i in 0..N {
+                if 2 * i < k {
+                    sum += self.0[i] * self.0[k - i];
+                }
             }
             c[k] = sum * 2.0;
             if k % 2 == 0 {

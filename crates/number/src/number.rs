@@ -35,6 +35,10 @@ pub trait Number:
     /// instructions.
     const IN_LANES: bool = false;
 
+    /// Whether formulas of it are compiled into their caller: always for numbers in lanes, and for short ones, whose operations
+    /// take no more instructions than a call. Formulas of others are called, which keeps programs small.
+    const IN_PLACE: bool = Self::IN_LANES || size_of::<Self>() <= size_of::<[f64; 3]>();
+
     /// The constant `x`: no derivatives, the same in every lane, a degenerate interval.
     fn from_f64(x: f64) -> Self;
 

@@ -28,6 +28,9 @@ fn meets_quarter(lo: f64, hi: f64, residue: f64) -> bool {
 }
 
 impl Number for Interval {
+    /// An operation is a call.
+    const IN_PLACE: bool = false;
+
     /// The degenerate interval [x, x]; empty for NaN, beyond the largest finite number for an infinity.
     #[inline(always)]
     fn from_f64(x: f64) -> Self {
