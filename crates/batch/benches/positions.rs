@@ -253,7 +253,7 @@ impl<T: Number> Jansen<T> {
 
 #[inline(always)]
 fn jansen_lanes(k: &Jansen<f64>, angles: &[f64], out: &mut [f64]) {
-    let k = k.lift(Lanes8::from_f64);
+    let k = k.lift::<Lanes8>();
     let (xs, ys) = out.split_at_mut(angles.len());
     let columns = (xs.as_chunks_mut::<8>().0.iter_mut()).zip(ys.as_chunks_mut::<8>().0);
     for (angles, (xs, ys)) in angles.as_chunks::<8>().0.iter().zip(columns) {
@@ -264,7 +264,7 @@ fn jansen_lanes(k: &Jansen<f64>, angles: &[f64], out: &mut [f64]) {
 
 #[inline(always)]
 fn jansen_rates(k: &Jansen<f64>, angles: &[f64], out: &mut [f64]) {
-    let k = k.lift(LaneRates::from_f64);
+    let k = k.lift::<LaneRates>();
     for (block, angles) in angles.as_chunks::<8>().0.iter().enumerate() {
         write_rates(
             k.foot(LaneRates::variable(Lanes(*angles)).sin_cos()),
@@ -789,7 +789,7 @@ fn main() {
         &|set, angles, out| hand_four_bar_rates(set, &k, angles, out),
     );
     let k = Jansen::new(JANSEN.map(|cm| 0.01 * cm));
-    let rich = k.lift(Rates::from_f64);
+    let rich = k.lift::<Rates>();
     single_design(
         "eight-bar (Jansen), foot",
         "gallery/jansen",

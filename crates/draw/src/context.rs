@@ -35,6 +35,7 @@ pub struct Context<'a> {
 }
 
 /// A point of a pose, when it can be drawn.
+#[inline]
 pub fn point(frame: &Frame, index: usize) -> Option<Point> {
     frame.points.get(index).copied().filter(|&p| drawable(p))
 }
@@ -64,6 +65,7 @@ pub fn reference_frame<'a>(view: &MechanismView, frames: &'a [Frame]) -> Option<
 
 impl Context<'_> {
     /// Where a point lies on paper in a pose.
+    #[inline]
     pub fn paper(&self, frame: &Frame, index: usize) -> Option<Point> {
         point(frame, index).and_then(|p| self.fit.paper(p))
     }

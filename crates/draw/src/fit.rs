@@ -6,6 +6,7 @@ use crate::scene::Point;
 pub const LARGEST: f64 = 1e12;
 
 /// Whether a point can be drawn.
+#[inline]
 pub fn drawable(p: Point) -> bool {
     p[0].abs() < LARGEST && p[1].abs() < LARGEST
 }
@@ -108,6 +109,7 @@ impl Fit {
     }
 
     /// From the model (m) to paper (mm); `None` for a point that cannot be drawn.
+    #[inline]
     pub fn paper(&self, p: Point) -> Option<Point> {
         let at = |k: usize| (p[k] - self.middle[k]) * self.scale + self.paper_middle[k];
         drawable(p).then(|| [at(0), at(1)])

@@ -14,6 +14,8 @@ mod rows;
 #[cfg(test)]
 mod tests;
 
+use std::any::Any;
+
 use kempe_number::{Dual, Jet, Lanes, Number};
 
 use self::carry_over::{PlainState, carry_over};
@@ -84,6 +86,37 @@ impl<const W: usize> PlanNumber for Lanes<W> {
     }
 }
 
+impl<const N: usize> PlanNumber for Jet<f64, N> {
+    // Every pass makes one more coefficient exact.
+    fn solve_newton(
+        block: &NewtonBlock,
+        design: &Design<Self>,
+        branch: &Branch,
+        state: &mut Configuration<Self>,
+    ) -> Self {
+        carry_over(block, design, branch, state, N)
+    }
+
+    /// Series with two derivatives are solved on in many crates: their solution is compiled here, the others' where they are
+    /// asked for.
+    fn solve_plan(design: &Design<Self>, branch: &Branch, state: &mut Configuration<Self>) {
+        let rates = (design as &dyn Any).downcast_ref();
+        match (rates, (state as &mut dyn Any).downcast_mut()) {
+            (Some(design), Some(state)) => solve_rates(design, branch, state),
+            _ => design.run_plan(branch, state),
+        }
+    }
+}
+
+#[inline(never)]
+fn solve_rates(
+    design: &Design<Jet<f64, 3>>,
+    branch: &Branch,
+    state: &mut Configuration<Jet<f64, 3>>,
+) {
+    design.run_plan(branch, state);
+}
+
 /// Numbers whose block is solved elsewhere: `passes` more after the plain solve, or lane by lane.
 macro_rules! plan_number {
     ($([$($generics:tt)*] $type:ty = $solve:ident($($more:expr),*);)*) => {$(
@@ -101,7 +134,6 @@ macro_rules! plan_number {
 
 // Every pass makes one more coefficient exact.
 plan_number! {
-    [const N: usize] Jet<f64, N> = carry_over(N);
     [const K: usize, const N: usize] Jet<Dual<f64, K>, N> = carry_over(N + 1);
     [const K: usize] Dual<f64, K> = carry_over(1);
     [const W: usize, const N: usize] Jet<Lanes<W>, N> = lane_by_lane(N);

@@ -102,6 +102,7 @@ impl Path {
 }
 
 /// Distance of two points.
+#[inline]
 pub(crate) fn distance(a: Point, b: Point) -> f64 {
     hypot(b[0] - a[0], b[1] - a[1])
 }
