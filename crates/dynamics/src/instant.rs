@@ -146,7 +146,7 @@ impl<B: Number> Instant<Rates<B>> {
                         let second = first.map(|s| s.differentiate());
                         let in_time = |s: Series<B>| {
                             if along_path {
-                                cut(s.compose(&state.abscissa.clock))
+                                s.compose_to(&state.abscissa.clock)
                             } else {
                                 Rates::from_coefficients([s.coefficient(0), unknown, unknown])
                             }

@@ -67,9 +67,7 @@ impl<T: Number> Design<T> {
             mechanism: self.mechanism.clone(),
             parameters: self.parameters.iter().map(|x| constant(*x)).collect(),
             geometry: self.geometry.map(&constant),
-            constants: (self.constants.iter())
-                .map(|c| c.map(&constant))
-                .collect(),
+            constants: (self.constants.iter()).map(|c| c.map(&constant)).collect(),
             plain: vec![self.geometry.value()],
         }
     }

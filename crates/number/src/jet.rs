@@ -113,9 +113,18 @@ impl<T: Number, const N: usize> Jet<T, N> {
     /// The constant term of `inner` must be q0; it is not looked at.
     #[inline]
     pub fn compose(&self, inner: &Self) -> Self {
-        let mut step = *inner;
-        step.0[0] = T::zero();
-        let mut sum = Self::constant(self.0[N - 1]);
+        self.compose_to(inner)
+    }
+
+    /// The first `M` coefficients of [`Jet::compose`]: to them only as many of `inner` contribute.
+    ///
+    /// # Panics
+    /// When `M > N`.
+    #[inline]
+    pub fn compose_to<const M: usize>(&self, inner: &Self) -> Jet<T, M> {
+        let mut step = Jet([T::zero(); M]);
+        step.0[1..].copy_from_slice(&inner.0[1..M]);
+        let mut sum = Jet::constant(self.0[N - 1]);
         for k in (0..N - 1).rev() {
             // The product starts with zero, whatever higher coefficients are not known.
             sum *= step;
