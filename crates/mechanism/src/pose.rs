@@ -62,8 +62,21 @@ impl<T: Number> Pose<T> {
     /// A point of the body seen from the frame.
     #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn place(&self, p: [T; 2]) -> [T; 2] {
-        let v = self.turn(p);
+        match T::IN_PLACE {
+            true => self.place_in_place(&p),
+            false => self.place_called(&p),
+        }
+    }
+
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn place_in_place(&self, p: &[T; 2]) -> [T; 2] {
+        let v = self.turn_in_place(p);
         [self.x + v[0], self.y + v[1]]
+    }
+
+    #[inline(never)]
+    fn place_called(&self, p: &[T; 2]) -> [T; 2] {
+        self.place_in_place(p)
     }
 
     /// This pose with its origin moved so that the body's point `p` lies at `world`.

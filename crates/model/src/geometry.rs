@@ -11,6 +11,14 @@ use crate::model::Model;
 /// Shape: one number in SI. A parameter the slice does not hold counts as NaN.
 #[cfg_attr(not(debug_assertions), inline(always))]
 pub fn value<T: Number>(scalar: &Scalar, parameters: &[T]) -> T {
+    match T::IN_PLACE {
+        true => value_in_place(scalar, parameters),
+        false => value_called(scalar, parameters),
+    }
+}
+
+#[cfg_attr(not(debug_assertions), inline(always))]
+fn value_in_place<T: Number>(scalar: &Scalar, parameters: &[T]) -> T {
     match scalar {
         Scalar::Const(value) => T::from_f64(*value),
         Scalar::Leaf(id) => match parameters.get(id.index()) {
@@ -19,6 +27,11 @@ pub fn value<T: Number>(scalar: &Scalar, parameters: &[T]) -> T {
         },
         _ => computed(scalar, parameters),
     }
+}
+
+#[inline(never)]
+fn value_called<T: Number>(scalar: &Scalar, parameters: &[T]) -> T {
+    value_in_place(scalar, parameters)
 }
 
 /// [`value`] of an expression that is more than a number or a parameter.

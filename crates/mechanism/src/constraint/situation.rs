@@ -68,6 +68,19 @@ impl<T: Number> Situation<'_, T> {
     /// Origin and unit direction of a line in the frame.
     #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn line(&self, line: LineRef) -> ([T; 2], [T; 2]) {
+        match T::IN_PLACE {
+            true => self.line_in_place(line),
+            false => self.line_called(line),
+        }
+    }
+
+    #[inline(never)]
+    fn line_called(&self, line: LineRef) -> ([T; 2], [T; 2]) {
+        self.line_in_place(line)
+    }
+
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn line_in_place(&self, line: LineRef) -> ([T; 2], [T; 2]) {
         let local = self.geometry.line(line);
         let pose = &self.poses[line.body.index()];
         (pose.place(local.origin), pose.turn(local.direction))
