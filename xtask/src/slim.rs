@@ -12,7 +12,6 @@ const RICH: &[(&str, &str)] = &[
     ("png", "raster"),
     ("gif", "raster"),
     ("ttf-parser", "raster"),
-    ("dejavu", "raster"),
 ];
 
 /// The crates that have features.

@@ -6,10 +6,15 @@ use std::sync::OnceLock;
 use tiny_skia::{Path, PathBuilder, Transform};
 use ttf_parser::{Face, OutlineBuilder};
 
+/// The font, deflated by the build script.
+const STORED: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/font.deflate"));
+
 fn face() -> Option<&'static Face<'static>> {
+    static FONT: OnceLock<Vec<u8>> = OnceLock::new();
     static FACE: OnceLock<Option<Face<'static>>> = OnceLock::new();
-    FACE.get_or_init(|| Face::parse(dejavu::sans_condensed::regular(), 0).ok())
-        .as_ref()
+    let font =
+        FONT.get_or_init(|| miniz_oxide::inflate::decompress_to_vec(STORED).unwrap_or_default());
+    FACE.get_or_init(|| Face::parse(font, 0).ok()).as_ref()
 }
 
 struct Pen<'a> {
