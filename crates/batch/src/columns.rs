@@ -26,19 +26,19 @@ pub(super) fn write_places<T: Wide<W>, const W: usize>(
     targets: &[Target],
     columns: &mut [&mut [f64]],
 ) -> usize {
-    let spares = closing_spares(batch, design);
-    let mut together = spares;
+    let mut together = closing_spares(batch, design);
     let mut wanted = all_lanes(W);
     for (state, target) in states.iter().zip(targets) {
-        together += closing_wanted(batch, state);
+        together += closing(state, &batch.order.watched);
         wanted &= target.wanted;
     }
-    if wanted != all_lanes(W) || !all_zero(&(together * 0.0).0) {
+    if wanted != all_lanes(W) {
         return write_wanted(batch, design, states, targets, columns);
     }
     for (j, marker) in batch.markers.iter().enumerate() {
         for (state, target) in states.iter().zip(targets) {
             let place = state.place(design, *marker);
+            together += place[0].order(0);
             for order in 0..T::ORDERS {
                 for axis in 0..2 {
                     let column = target.column + order * batch.columns() + 2 * j + axis;
@@ -49,6 +49,10 @@ pub(super) fn write_places<T: Wide<W>, const W: usize>(
                 }
             }
         }
+    }
+    // What does not close is rare: it is found out behind what is written, and written again.
+    if !all_zero(&(together * 0.0).0) {
+        return write_wanted(batch, design, states, targets, columns);
     }
     W * states.len()
 }
@@ -65,7 +69,7 @@ fn write_wanted<T: Wide<W>, const W: usize>(
 ) -> usize {
     let mut closed = 0;
     for (state, target) in states.iter().zip(targets) {
-        let closing = closing_spares(batch, design) + closing_wanted(batch, state);
+        let closing = closing_spares(batch, design) + closing(state, &batch.order.wanted);
         let closes = lanes_where(|lane| closing.0[lane].is_finite(), W);
         closed += (target.wanted & closes).count_ones() as usize;
         for (j, marker) in batch.markers.iter().enumerate() {
@@ -91,11 +95,11 @@ fn write_wanted<T: Wide<W>, const W: usize>(
     closed
 }
 
-/// Finite in every lane in which the bodies that somebody looks at have a pose.
+/// Finite in every lane in which these bodies have a pose.
 #[cfg_attr(not(debug_assertions), inline(always))]
-fn closing_wanted<T: Wide<W>, const W: usize>(batch: &Batch, state: &Configuration<T>) -> Lanes<W> {
+fn closing<T: Wide<W>, const W: usize>(state: &Configuration<T>, bodies: &[usize]) -> Lanes<W> {
     let mut sum = Lanes([0.0; W]);
-    for body in &batch.order.wanted {
+    for body in bodies {
         let pose = &state.poses[*body];
         sum += pose.x.order(0) + pose.c.order(0);
     }

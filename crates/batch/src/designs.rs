@@ -127,9 +127,45 @@ impl Places {
     }
 }
 
+/// Solves some of the designs at runs of places, lanes over the designs; returns how many poses close.
+pub(super) fn solve_designs(
+    set: InstructionSet,
+    batch: &Batch,
+    designs: Designs<'_>,
+    range: Range<usize>,
+    runs: &[Vec<MotionPlace<'_>>],
+    out: &mut [&mut [f64]],
+) -> usize {
+    if has_wide_registers(set) {
+        solve_widely(set, batch, designs, range, runs, out)
+    } else {
+        in_lanes::<8, false>(batch, designs, range, runs, out)
+    }
+}
+
+/// [`solve_designs`] for mechanisms whose branch is more than signs, but solved in lanes all the same.
+pub(super) fn solve_trees(
+    set: InstructionSet,
+    batch: &Batch,
+    designs: Designs<'_>,
+    range: Range<usize>,
+    runs: &[Vec<MotionPlace<'_>>],
+    out: &mut [&mut [f64]],
+) -> usize {
+    if has_wide_registers(set) {
+        solve_trees_widely(set, batch, designs, range, runs, out)
+    } else {
+        in_lanes::<8, true>(batch, designs, range, runs, out)
+    }
+}
+
+/// Whether sixteen lanes are few enough registers to work in.
+fn has_wide_registers(set: InstructionSet) -> bool {
+    cfg!(target_arch = "x86_64") && set.min(InstructionSet::detect()) > InstructionSet::Baseline
+}
+
 multiversion! {
-    /// Solves some of the designs at runs of places, lanes over the designs; returns how many poses close.
-    pub(super) fn solve_designs(
+    fn solve_widely(
         set: InstructionSet,
         batch: &Batch,
         designs: Designs<'_>,
@@ -140,8 +176,7 @@ multiversion! {
 }
 
 multiversion! {
-    /// [`solve_designs`] for mechanisms whose branch is more than signs, but solved in lanes all the same.
-    pub(super) fn solve_trees(
+    fn solve_trees_widely(
         set: InstructionSet,
         batch: &Batch,
         designs: Designs<'_>,

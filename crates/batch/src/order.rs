@@ -24,6 +24,8 @@ pub(super) struct Order {
     neutral: Branch,
     /// The moving bodies whose poses somebody looks at.
     pub wanted: Vec<usize>,
+    /// Those of them that may have no pose though all the markers have a place and all the others have one.
+    pub watched: Vec<usize>,
     /// The others, each as the index of its dyad's constants and the first of its own there.
     pub spares: Vec<(usize, usize)>,
 }
@@ -40,6 +42,7 @@ impl Order {
             moving: Vec::new(),
             neutral: Branch::neutral(mechanism),
             wanted: (1..mechanism.bodies).collect(),
+            watched: Vec::new(),
             spares: Vec::new(),
         };
         for (index, step) in plan.steps.iter().enumerate() {
@@ -59,7 +62,23 @@ impl Order {
         }
         it.moving = [&it.driven[..], &it.rest].concat();
         it.leave_out(mechanism, markers);
+        let watched = it.wanted.iter().filter(|body| !it.shows(**body, markers));
+        it.watched = watched.copied().collect();
         it
+    }
+
+    /// Whether a body without a pose leaves one of the markers without a place, or the body of a later step without a pose:
+    /// whatever is off the body's origin is nowhere if the body's direction is none.
+    fn shows(&self, body: usize, markers: &[Marker]) -> bool {
+        let off = |marker: &Marker| {
+            marker.body.index() == body && matches!(marker.spot, Spot::Axis | Spot::Anywhere)
+        };
+        markers.iter().any(off)
+            || self.plan.steps.iter().any(|step| match step {
+                Step::Dyad(dyad) => off(&dyad.a.at) || off(&dyad.b.at),
+                Step::Pin { at, .. } => off(at),
+                _ => false,
+            })
     }
 
     /// Solves steps without assembly modes once for many poses. Called, so that the loops over poses stay small.

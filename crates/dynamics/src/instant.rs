@@ -116,7 +116,8 @@ impl<B: Number> Instant<Rates<B>> {
     /// Takes everything but the amounts from a state. Coefficients of drives other than the one along which the state's
     /// series run are known at the instant only: their rates are NaN.
     pub fn set(&mut self, state: &State<B>) {
-        for body in 0..state.poses.len() {
+        // The frame stands still, as it was made.
+        for body in 1..state.poses.len() {
             let pose = state.pose(BodyId(body as u32));
             let velocity = slopes(&pose);
             self.poses[body] = pose.map(cut);
@@ -135,7 +136,7 @@ impl<B: Number> Instant<Rates<B>> {
             self.drive_accelerations[index] = cut(speed.differentiate());
             let along_path = state.abscissa.drive == Some(id);
             let poses = state.along(id);
-            for body in 0..self.poses.len() {
+            for body in 1..self.poses.len() {
                 let (first, second) = match poses {
                     None => (
                         [Rates::from_f64(f64::NAN); 3],

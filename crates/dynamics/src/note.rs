@@ -240,8 +240,8 @@ fn short(x: f64) -> String {
     format!("{x:.decimals$}")
 }
 
-/// What is to be told about the forces of an instant.
-pub(crate) fn notes(forces: &Forces<Rates>, at: &Instant<Rates>) -> Vec<ForceNote> {
+/// What is to be told about the forces of an instant, whose equations are conditioned like this.
+pub(crate) fn notes(forces: &Forces<Rates>, at: &Instant<Rates>, condition: f64) -> Vec<ForceNote> {
     use kempe_number::Number as _;
     let equilibrium = &forces.equilibrium;
     let mut notes = Vec::new();
@@ -256,7 +256,6 @@ pub(crate) fn notes(forces: &Forces<Rates>, at: &Instant<Rates>) -> Vec<ForceNot
         notes.push(ForceNote::NoLoad { load });
         return notes;
     }
-    let condition = equilibrium.condition();
     if equilibrium.singular {
         notes.push(ForceNote::Singular);
         return notes;

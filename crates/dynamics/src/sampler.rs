@@ -169,6 +169,16 @@ impl ForceSampler {
         self.with_evidence(sample)
     }
 
+    /// The measures (SI) of the row at a path parameter alone, without any evidence; NaN where it is not reached.
+    pub fn values_at_parameter(&mut self, p: f64) -> Vec<f64> {
+        self.sampler.values_at_parameter(p)
+    }
+
+    /// The measures (SI) of the row at a time, s, alone, without any evidence; NaN where it is not reached.
+    pub fn values_at_time(&mut self, t: f64) -> Vec<f64> {
+        self.sampler.values_at_time(t)
+    }
+
     /// The loads of all joints and drives of the row last asked for: what arrows and hodographs are drawn from.
     pub fn joint_loads(&self) -> Vec<JointLoad> {
         let (forces, at) = self.solved();
@@ -191,7 +201,11 @@ impl ForceSampler {
         let (forces, at) = self.solved();
         let reached = sample.closure.is_finite();
         let (evidence, notes) = match reached && sample.time.is_finite() {
-            true => (Some(evidence(forces, at)), notes(forces, at)),
+            true => {
+                let evidence = evidence(forces, at);
+                let notes = notes(forces, at, evidence.condition);
+                (Some(evidence), notes)
+            }
             false if reached => (None, vec![ForceNote::NoTime]),
             false => (None, Vec::new()),
         };

@@ -1,7 +1,8 @@
 //! Least squares by Householder reflections, with storage that is reused from solve to solve.
 //!
 //! Zeros below the last entry of a column are left out of its reflection and of all that it acts on, so a matrix whose
-//! rows and columns are in the order of its blocks costs little more than its blocks.
+//! rows and columns are in the order of its blocks costs little more than its blocks. Nor are zeros above the first entry of
+//! a column of R looked at where columns are gone through.
 
 use kempe_number::Number;
 
@@ -20,6 +21,8 @@ pub struct Qr {
     scale: Vec<f64>,
     /// Row behind the last entry of every column: of its reflector.
     end: Vec<usize>,
+    /// Row of the first entry of every column of R.
+    begin: Vec<usize>,
 }
 
 impl Qr {
@@ -32,6 +35,7 @@ impl Qr {
             diagonal: Vec::with_capacity(columns),
             scale: Vec::with_capacity(columns),
             end: Vec::with_capacity(columns),
+            begin: Vec::with_capacity(columns),
         }
     }
 
@@ -83,6 +87,12 @@ impl Qr {
                 }
             }
         }
+        self.begin.clear();
+        for k in 0..self.columns {
+            let above = &self.a[k * m..k * m + k];
+            self.begin
+                .push(above.iter().position(|x| *x != 0.0).unwrap_or(k));
+        }
     }
 
     /// Solves in place: on return the first `columns` entries of `rhs` are the solution.
@@ -114,9 +124,10 @@ impl Qr {
         let m = self.rows;
         // R^T w = rhs, then x = Q w.
         for i in 0..self.columns {
-            let column = &self.a[i * m..i * m + i];
+            let begin = self.begin[i];
+            let column = &self.a[i * m + begin..i * m + i];
             let mut sum = rhs[i];
-            for (r, w) in column.iter().zip(rhs.iter()) {
+            for (r, w) in column.iter().zip(&rhs[begin..]) {
                 sum -= *w * *r;
             }
             rhs[i] = sum / self.diagonal[i];
@@ -180,22 +191,22 @@ impl Qr {
         if self.diagonal.contains(&0.0) {
             return 0.0;
         }
-        let r = |i: usize, j: usize| {
-            if i == j {
-                self.diagonal[i]
-            } else {
-                self.a[j * m + i]
-            }
-        };
         smallest_singular_value(n, |x| {
             for i in 0..n {
-                let sum: f64 = (0..i).map(|k| r(k, i) * x[k]).sum();
-                x[i] = (x[i] - sum) / r(i, i);
+                let begin = self.begin[i];
+                let column = &self.a[i * m + begin..i * m + i];
+                let sum: f64 = column.iter().zip(&x[begin..]).map(|(r, x)| r * x).sum();
+                x[i] = (x[i] - sum) / self.diagonal[i];
             }
             let between = x.iter().map(|v| v * v).sum::<f64>().sqrt();
             for i in (0..n).rev() {
-                let sum: f64 = (i + 1..n).map(|k| r(i, k) * x[k]).sum();
-                x[i] = (x[i] - sum) / r(i, i);
+                let begin = self.begin[i];
+                let found = x[i] / self.diagonal[i];
+                let column = &self.a[i * m + begin..i * m + i];
+                for (r, x) in column.iter().zip(&mut x[begin..]) {
+                    *x -= r * found;
+                }
+                x[i] = found;
             }
             between
         })

@@ -13,12 +13,15 @@ const AT_REST: f64 = 1e-9;
 #[derive(Clone, Debug)]
 pub(crate) struct Clock {
     motion: Arc<Motion>,
+    /// Duration of the motion, s: every state found asks for it.
+    duration: f64,
 }
 
 impl Clock {
     /// The clock of a motion.
     pub fn new(motion: Arc<Motion>) -> Self {
-        Self { motion }
+        let duration = duration(&motion.mechanism().model, &motion.design.parameters);
+        Self { motion, duration }
     }
 
     /// The motion.
@@ -32,7 +35,7 @@ impl Clock {
 
     /// Duration of the motion, s.
     pub fn duration(&self) -> f64 {
-        duration(&self.motion.mechanism().model, self.parameters())
+        self.duration
     }
 
     /// Times at which some drive's law goes from one piece to the next, both ends of the motion included.

@@ -114,6 +114,42 @@ impl<F: ForceSource> Sampler<F> {
         self.row(p, f64::NAN)
     }
 
+    /// The measures (SI) of the row at a path parameter alone, without its poses and evidence; NaN where it is not reached.
+    pub fn values_at_parameter(&mut self, p: f64) -> Vec<f64> {
+        self.values(p, self.clock().time_at(p))
+    }
+
+    /// The measures (SI) of the row at a time, s, alone, without its poses and evidence; NaN where it is not reached.
+    pub fn values_at_time(&mut self, t: f64) -> Vec<f64> {
+        self.values(self.clock().parameter_at(t), t)
+    }
+
+    fn values(&mut self, p: f64, time: f64) -> Vec<f64> {
+        let place = PathPlace { time, path: p };
+        let mut values = vec![f64::NAN; self.measures.len()];
+        if self.measurer.find(place) {
+            self.measure(place, &mut values);
+        }
+        values
+    }
+
+    /// Measures the state last found, at this place. Returns the points that stand still of those whose curvature is asked
+    /// for.
+    fn measure(&mut self, place: PathPlace<f64>, values: &mut [f64]) -> Vec<PointId> {
+        let measures = std::mem::take(&mut self.measures);
+        let curved = std::mem::take(&mut self.curved);
+        let lengths: Vec<PointId> = self.lengths.iter().map(Swept::point).collect();
+        let mut still = Vec::new();
+        self.with_moment(place, true, &lengths, |moment| {
+            still.extend(curved.iter().filter(|p| moment.stands_still(**p)));
+            for (value, measure) in values.iter_mut().zip(&measures) {
+                *value = moment.value(measure);
+            }
+        });
+        (self.measures, self.curved) = (measures, curved);
+        still
+    }
+
     fn row(&mut self, p: f64, time: f64) -> Sample {
         let motion = &*self.motion().clone();
         let model = &motion.mechanism().model;
@@ -138,17 +174,7 @@ impl<F: ForceSource> Sampler<F> {
             sample.note = Some(RowNote::NoPose);
             return sample;
         }
-        let measures = std::mem::take(&mut self.measures);
-        let curved = std::mem::take(&mut self.curved);
-        let lengths: Vec<PointId> = self.lengths.iter().map(Swept::point).collect();
-        let mut still = Vec::new();
-        self.with_moment(place, true, &lengths, |moment| {
-            still.extend(curved.iter().filter(|p| moment.stands_still(**p)));
-            for (value, measure) in sample.values.iter_mut().zip(&measures) {
-                *value = moment.value(measure);
-            }
-        });
-        (self.measures, self.curved) = (measures, curved);
+        let still = self.measure(place, &mut sample.values);
 
         let found = self.measurer.state();
         for (pose, series) in self.plain.state.poses.iter_mut().zip(&found.poses) {

@@ -22,7 +22,7 @@ use kempe_motion::progress::Progress;
 use self::extremes::Search;
 use self::mean::Mean;
 use self::stretches::{parted, stretches};
-use self::survey::{Point, survey};
+use self::survey::{Closely, Point, survey};
 use crate::extremes::Extremes;
 use crate::force_source::ForceSource;
 use crate::measure::{ORDER, order_of};
@@ -62,7 +62,15 @@ pub(crate) fn over_motion<F: ForceSource>(
         let course = &mut courses[place];
         match statistic {
             Statistic::Mean => course.mean = Some(Mean::default()),
-            _ => course.extremes = Some(Search::new()),
+            _ => {
+                let wanted = match statistic {
+                    Statistic::Min => [true, false],
+                    Statistic::Max => [false, true],
+                    _ => [true; 2],
+                };
+                let search = course.extremes.get_or_insert_with(Search::new);
+                (search.wanted.iter_mut().zip(wanted)).for_each(|(all, own)| *all |= own);
+            }
         }
     }
     let duration = sampler.duration();
@@ -88,6 +96,13 @@ pub(crate) fn over_motion<F: ForceSource>(
             },
         )?;
     }
+    // Means that ask for forces look at the same places closely, and so do those that do not.
+    let mut closely = [true, false].map(|forces| {
+        let means = measures.iter().zip(&courses);
+        let own =
+            means.filter(|(_, course)| course.mean.is_some() && course.asked.forces() == forces);
+        Closely::new(sampler, own.map(|(measure, _)| *measure).collect())
+    });
     let values = (statistics.iter())
         .map(|(statistic, measure)| {
             if let Statistic::At { drive, value } = statistic {
@@ -104,7 +119,9 @@ pub(crate) fn over_motion<F: ForceSource>(
                 return f64::NAN;
             };
             if let (Statistic::Mean, Some(mean)) = (statistic, &course.mean) {
-                return mean.finish(sampler, &course.asked, course.known, duration);
+                let closely = &mut closely[usize::from(!course.asked.forces())];
+                let mut take = |time| closely.take(sampler, measure, time);
+                return mean.finish(&mut take, course.known, duration);
             }
             let Some((low, high)) = course.extremes.as_ref().and_then(Search::found) else {
                 return f64::NAN;

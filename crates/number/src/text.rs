@@ -95,6 +95,10 @@ pub fn shortest(value: f64) -> String {
 /// `value` rounded to `digits` significant digits (at least one, at most 17).
 pub fn rounded(value: f64, digits: usize) -> f64 {
     let digits = digits.clamp(1, 17);
+    // Most places on a motion are numbers of few digits: five before the point and ten halvings behind it are 15 at most.
+    if digits >= 15 && value.abs() < 1e5 && (value * 1024.0).fract() == 0.0 {
+        return value;
+    }
     format!("{value:.*e}", digits - 1)
         .parse()
         .unwrap_or(f64::NAN)

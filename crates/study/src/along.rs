@@ -136,6 +136,16 @@ impl Along {
         }
     }
 
+    /// The values (SI) of the row at a place alone; NaN where it is not reached.
+    pub fn values(&mut self, place: RowPlace) -> Vec<f64> {
+        match (self, place) {
+            (Self::Motion(sampler), RowPlace::Drive(p)) => sampler.values_at_parameter(p),
+            (Self::Motion(sampler), RowPlace::Time(t)) => sampler.values_at_time(t),
+            (Self::Forces(sampler), RowPlace::Drive(p)) => sampler.values_at_parameter(p),
+            (Self::Forces(sampler), RowPlace::Time(t)) => sampler.values_at_time(t),
+        }
+    }
+
     /// The drive that the rows go by; none where several move.
     pub fn path_drive(&self) -> Option<DriveId> {
         match self {

@@ -293,8 +293,10 @@ impl<T: ForceNumber> Equilibrium<T> {
 
     /// Carries the multipliers over to every part of the number, with the matrix last factored.
     fn refine(&mut self, frictions: &[Friction<T>], needed: &[Wrench<T>]) {
-        for _ in 0..T::PASSES {
-            self.fill_rest(frictions, needed);
+        for pass in 0..T::PASSES {
+            // Without friction there are no multipliers yet.
+            let loaded = pass > 0 || !frictions.is_empty();
+            self.fill_rest(frictions, needed, loaded);
             for (k, (place, rest)) in self.order.columns.iter().zip(&self.rest).enumerate() {
                 self.wide[*place] = if k % 3 < 2 { *rest * self.size } else { *rest };
             }
@@ -306,10 +308,13 @@ impl<T: ForceNumber> Equilibrium<T> {
         }
     }
 
-    /// What is left of every body's equilibrium at the multipliers.
-    fn fill_rest(&mut self, frictions: &[Friction<T>], needed: &[Wrench<T>]) {
+    /// What is left of every body's equilibrium at the multipliers, which are all zero where it is not `loaded`.
+    fn fill_rest(&mut self, frictions: &[Friction<T>], needed: &[Wrench<T>], loaded: bool) {
         for (rest, w) in self.rest.chunks_exact_mut(3).zip(&needed[1..]) {
             rest.copy_from_slice(w);
+        }
+        if !loaded {
+            return;
         }
         for entry in self.entries.iter().filter(|e| e.body != BodyId::GROUND) {
             let rest = &mut self.rest[3 * (entry.body.index() - 1)..][..3];
@@ -329,22 +334,39 @@ impl<T: ForceNumber> Equilibrium<T> {
     }
 
     fn measure_residual(&mut self, frictions: &[Friction<T>], needed: &[Wrench<T>]) {
-        self.fill_rest(frictions, needed);
-        let scale = |k: usize| if k % 3 < 2 { self.size } else { 1.0 };
+        let size = self.size;
+        let scale = |k: usize| if k < 2 { size } else { 1.0 };
         let mut largest = 0.0_f64;
+        let left = &mut self.right;
+        for (left, w) in left.chunks_exact_mut(3).zip(&needed[1..]) {
+            for k in 0..3 {
+                left[k] = w[k].value();
+                largest = largest.max((left[k] * scale(k)).abs());
+            }
+        }
+        let mut take = |body: BodyId, k: usize, term: f64| {
+            if body != BodyId::GROUND {
+                left[3 * (body.index() - 1) + k] -= term;
+            }
+        };
         for entry in &self.entries {
+            let lambda = self.lambda[entry.row].value();
             for k in 0..3 {
-                let term = (entry.to[k] * self.lambda[entry.row]).value() * scale(k);
-                largest = largest.max(term.abs());
+                let term = entry.to[k].value() * lambda;
+                largest = largest.max((term * scale(k)).abs());
+                take(entry.body, k, term);
             }
         }
-        for w in &needed[1..] {
-            for k in 0..3 {
-                largest = largest.max((w[k].value() * scale(k)).abs());
+        for contact in &self.contacts {
+            let resistance = resistance(frictions, contact, &self.lambda).value();
+            for (body, unit) in &contact.unit {
+                for k in 0..3 {
+                    take(*body, k, unit[k].value() * resistance);
+                }
             }
         }
-        let left = (self.rest.iter().enumerate())
-            .map(|(k, r)| (r.value() * scale(k)).abs())
+        let left = (left.iter().enumerate())
+            .map(|(k, r)| (r * scale(k % 3)).abs())
             .fold(0.0, |a: f64, b| if b.is_nan() { b } else { a.max(b) });
         self.largest = largest;
         self.residual = if largest > 0.0 { left / largest } else { left };

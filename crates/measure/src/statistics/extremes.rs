@@ -22,6 +22,8 @@ const SLOW: f64 = 1e-2;
 pub(super) struct Search {
     low: At,
     high: At,
+    /// Whether the smallest, and the largest, is closed in on between samples.
+    pub wanted: [bool; 2],
     /// Somewhere it has no value.
     pub missing: bool,
 }
@@ -31,11 +33,12 @@ impl Search {
         Self {
             low: (f64::NAN, f64::INFINITY),
             high: (f64::NAN, f64::NEG_INFINITY),
+            wanted: [false; 2],
             missing: false,
         }
     }
 
-    /// Smallest and largest with their times; `None` where it has no value somewhere.
+    /// Smallest and largest with their times, of samples only where not wanted; `None` where it has no value somewhere.
     pub fn found(&self) -> Option<(At, At)> {
         (!self.missing && self.low.1.is_finite()).then_some((self.low, self.high))
     }
@@ -63,7 +66,12 @@ impl Search {
         };
         let steepest = before.rate().abs().max(now.rate().abs());
         let rounding = ROUNDING * now.value().abs();
-        if before.rate() * now.rate() < 0.0 && steepest * (now.time - before.time) > rounding {
+        let [lows, highs] = self.wanted;
+        let wanted = if before.rate() < 0.0 { lows } else { highs };
+        if wanted
+            && before.rate() * now.rate() < 0.0
+            && steepest * (now.time - before.time) > rounding
+        {
             self.close_in(sampler, asked, known, before, now);
         }
     }

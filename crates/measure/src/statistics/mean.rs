@@ -6,9 +6,7 @@
 //! agree.
 
 use super::survey::Point;
-use crate::force_source::ForceSource;
 use crate::quadrature::{graded, integrate};
-use crate::sampler::{Asked, Sampler};
 
 /// An integral over two intervals at once may differ from that by each by this part of the integral of the function's size.
 /// Where it is smooth most of that is then taken off (L. F. Richardson's extrapolation); a kink that is not seen counts
@@ -25,6 +23,9 @@ const HALVINGS: (usize, usize) = (4000, 64);
 const LEFT_BY_ROUNDING: f64 = 0.7;
 /// A part this much narrower than the interval that it came from is not halved further.
 const NARROWEST: f64 = 1e-15;
+
+/// Takes a sample at a time.
+type Take<'t> = dyn FnMut(f64) -> Point + 't;
 
 /// A measure's samples, stretch by stretch.
 #[derive(Clone, Debug, Default)]
@@ -53,14 +54,8 @@ impl Mean {
         }
     }
 
-    /// The mean over the samples' time; `known` coefficients of the series are known.
-    pub fn finish<F: ForceSource>(
-        &self,
-        sampler: &mut Sampler<F>,
-        asked: &Asked,
-        known: usize,
-        duration: f64,
-    ) -> f64 {
+    /// The mean over the samples' time; `known` coefficients of the series are known, and `take` takes more samples.
+    pub fn finish(&self, take: &mut Take<'_>, known: usize, duration: f64) -> f64 {
         if duration <= 0.0 {
             let first = self.stretches.first().and_then(|points| points.first());
             return first.map_or(f64::NAN, Point::value);
@@ -103,27 +98,21 @@ impl Mean {
                 if agrees[index] {
                     sum += integral + left[index];
                 } else if a.value().is_finite() && b.value().is_finite() {
-                    open.push(Part::new(sampler, asked, known, [a, b], b.time - a.time));
+                    open.push(Part::new(take, known, [a, b], b.time - a.time));
                 } else {
-                    sum += unbounded(sampler, asked, [a.time, b.time], size);
+                    sum += unbounded(take, [a.time, b.time], size);
                 }
             }
         }
-        sum += closer(sampler, asked, known, size, open, count);
+        sum += closer(take, known, size, open, count);
         sum / duration
     }
 }
 
 impl Part {
-    fn new<F: ForceSource>(
-        sampler: &mut Sampler<F>,
-        asked: &Asked,
-        known: usize,
-        ends: [Point; 2],
-        origin: f64,
-    ) -> Self {
+    fn new(take: &mut Take<'_>, known: usize, ends: [Point; 2], origin: f64) -> Self {
         let [a, b] = ends;
-        let middle = Point::take(sampler, asked, 0.5 * (a.time + b.time));
+        let middle = take(0.5 * (a.time + b.time));
         let halves = hermite(&a, &middle, known) + hermite(&middle, &b, known);
         let gap = halves - hermite(&a, &b, known);
         let rests = extrapolated(gap, [&a, &middle, &b], known);
@@ -138,9 +127,8 @@ impl Part {
 }
 
 /// The integral over parts, each halved until whole and halves agree.
-fn closer<F: ForceSource>(
-    sampler: &mut Sampler<F>,
-    asked: &Asked,
+fn closer(
+    take: &mut Take<'_>,
     known: usize,
     size: f64,
     mut open: Vec<Part>,
@@ -171,11 +159,11 @@ fn closer<F: ForceSource>(
         for part in &open {
             let [a, b] = part.ends;
             if !part.middle.value().is_finite() {
-                sum += unbounded(sampler, asked, [a.time, b.time], size);
+                sum += unbounded(take, [a.time, b.time], size);
                 continue;
             }
             for ends in [[a, part.middle], [part.middle, b]] {
-                finer.push(Part::new(sampler, asked, known, ends, part.origin));
+                finer.push(Part::new(take, known, ends, part.origin));
             }
         }
         open = finer;
@@ -184,17 +172,12 @@ fn closer<F: ForceSource>(
 }
 
 /// The integral over an interval with no finite value at an end, or in its middle: ever closer steps towards both ends.
-fn unbounded<F: ForceSource>(
-    sampler: &mut Sampler<F>,
-    asked: &Asked,
-    [from, to]: [f64; 2],
-    size: f64,
-) -> f64 {
+fn unbounded(take: &mut Take<'_>, [from, to]: [f64; 2], size: f64) -> f64 {
     let width = to - from;
     let found = integrate(&graded(2), size, &mut |u| {
         let time = from + width * (u * u * (3.0 - 2.0 * u));
         let weight = width * 6.0 * u * (1.0 - u);
-        Some([weight * Point::take(sampler, asked, time).value()])
+        Some([weight * take(time).value()])
     });
     found.map_or(f64::NAN, |[integral]| integral)
 }

@@ -1,5 +1,8 @@
 //! The samples that all numbers over a motion share: the mechanism is solved once at each, for all of them.
 
+use std::collections::BTreeMap;
+
+use kempe_model::Measure;
 use kempe_motion::progress::{Done, Progress, Stage};
 
 use super::stretches::SmoothStretch;
@@ -59,6 +62,42 @@ impl Sample {
 
 fn undefined() -> Series<f64> {
     Series::from_coefficients([f64::NAN; crate::measure::ORDER])
+}
+
+/// Measures that are looked at one after the other at many of the same times: what one of them asks of a state is kept for
+/// the others.
+pub(super) struct Closely<'m> {
+    measures: Vec<&'m Measure>,
+    asked: Asked,
+    /// By the bits of the time.
+    known: BTreeMap<u64, Vec<Series<f64>>>,
+}
+
+impl<'m> Closely<'m> {
+    pub fn new<F: ForceSource>(sampler: &Sampler<F>, measures: Vec<&'m Measure>) -> Self {
+        Self {
+            asked: sampler.asked(&measures),
+            measures,
+            known: BTreeMap::new(),
+        }
+    }
+
+    /// Samples one of them.
+    pub fn take<F: ForceSource>(
+        &mut self,
+        sampler: &mut Sampler<F>,
+        measure: &Measure,
+        time: f64,
+    ) -> Point {
+        let at = (self.known.entry(time.to_bits()))
+            .or_insert_with(|| sampler.series_at(&self.asked, time));
+        let place = self.measures.iter().position(|m| *m == measure);
+        let series = place.and_then(|place| at.get(place).copied());
+        Point {
+            time,
+            series: series.unwrap_or(undefined()),
+        }
+    }
 }
 
 /// Hears a sample, with the one before it where nothing lies between; tells whether it wants more.

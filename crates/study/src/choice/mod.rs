@@ -84,8 +84,7 @@ fn values(
         if progress.reached(Stage::Trying, part).is_break() {
             return Err(vec![stopped(Stage::Trying)]);
         }
-        let row = along.row(place);
-        for (list, value) in lists.iter_mut().zip(row.sample.values) {
+        for (list, value) in lists.iter_mut().zip(along.values(place)) {
             list.push(value);
         }
     }
