@@ -7,8 +7,11 @@
 //! two-homogeneous Bezout number. All of them are reached from a start system of products of linear functions in just the
 //! unknowns that every equation feels (Verschelde and Haegemans, "The GBQ-algorithm for constructing start systems of
 //! homotopies for polynomial systems", SIAM J. Numer. Anal. 1993), which has a start point, and a path, for every choice
-//! of factors that the unknowns can be matched to.
+//! of factors that the unknowns can be matched to. As many regular solutions as there are paths are all, whatever led to them: those
+//! known of a system much like it, or, with two plain unknowns, an eigenvalue problem. Only where these are too few are paths
+//! followed.
 
+mod hidden;
 mod paths;
 mod sparsest;
 mod system;

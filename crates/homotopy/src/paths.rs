@@ -2,6 +2,7 @@
 
 use std::ops::ControlFlow;
 
+use crate::hidden::guess_all;
 use crate::sparsest::sparsest;
 use crate::system::{Bilinear, LARGEST, Start, System, subsets};
 use crate::tracker::{CARES, Care, End, Tracker};
@@ -17,7 +18,7 @@ pub const WORK_LIMIT: f64 = 3e9;
 /// What the paths found.
 #[derive(Clone, Debug, Default)]
 pub struct PathReport {
-    /// How many paths were followed.
+    /// How many paths there are, followed or not.
     pub paths: usize,
     /// How many ended at a regular finite solution, real or not.
     pub finite: usize,
@@ -55,8 +56,9 @@ pub enum Outcome {
 
 /// All isolated solutions of linear and bilinear equations in `variables` plain unknowns and their conjugates; the
 /// conjugate of every linear equation is taken along. Where the paths of a system much like it all ended apart, as `earlier`
-/// tells, the solutions are found from there: as many of them as there are paths are all that there can be. `work` is what is left of [`WORK_LIMIT`]; `told` hears the finished
-/// part of the paths and may stop the work.
+/// tells, the solutions are looked for from there, and those of two plain unknowns by linear algebra: as many of them as there are
+/// paths are all that there can be. `work` is what is left of [`WORK_LIMIT`]; `told` hears the finished part of the paths, where any
+/// are followed, and may stop the work.
 pub fn all_solutions(
     linear: &[Affine],
     bilinear: &[Bilinear],
@@ -77,8 +79,10 @@ pub fn all_solutions(
         return Outcome::TooLarge;
     }
     let earlier = earlier.filter(|report| report.paths == count && report.ends.len() == count);
-    let again = earlier.and_then(|report| correct_all(&system, &report.ends));
-    let report = match again {
+    let known = earlier
+        .and_then(|report| correct_all(&system, &report.ends, count))
+        .or_else(|| correct_all(&system, &guess_all(&system)?, count));
+    let report = match known {
         Some(ends) => PathReport {
             paths: count,
             finite: count,
@@ -102,20 +106,22 @@ pub fn all_solutions(
     Outcome::Found(solutions.collect(), report)
 }
 
-/// Corrects the solutions of another system to those of this; `None` unless all come out, each by itself.
-fn correct_all(system: &System, ends: &[Vec<C>]) -> Option<Vec<Vec<C>>> {
+/// Corrects points nearby to the solutions of a system; `None` unless as many as it can have come out.
+pub(crate) fn correct_all(system: &System, near: &[Vec<C>], count: usize) -> Option<Vec<Vec<C>>> {
     let start = start_system(system);
     let mut tracker = Tracker::new(system, &start);
-    let mut found: Vec<Vec<C>> = Vec::with_capacity(ends.len());
-    for end in ends {
-        let mut x = end.clone();
+    let mut found: Vec<Vec<C>> = Vec::with_capacity(near.len());
+    for (place, point) in near.iter().enumerate() {
+        let mut x = point.clone();
         let ended = x.len() == 2 * system.d && tracker.correct_end(&mut x);
-        if !ended || found.iter().any(|y| is_same(&x, y)) {
+        if ended && found.iter().all(|y| !is_same(&x, y)) {
+            found.push(x);
+        }
+        if found.len() + near.len() - place <= count {
             return None;
         }
-        found.push(x);
     }
-    Some(found)
+    (found.len() == count).then_some(found)
 }
 
 /// The product system from which the paths start: its factors are random, and always the same.

@@ -14,6 +14,9 @@ use crate::constraint::{Joint, Situation};
 use crate::layout::To;
 use kempe_linear::Qr;
 
+/// Most entries outside its block that a row of a joint between two bodies has.
+const COUPLINGS: usize = 6;
+
 /// An entry of the Jacobian outside the diagonal blocks.
 #[derive(Clone, Copy, Debug)]
 struct Coupling {
@@ -35,6 +38,8 @@ pub struct Bordered {
     to_parameter: Vec<f64>,
     residual: Vec<f64>,
     worst: usize,
+    /// Whether that block is not factored yet.
+    waits: bool,
     last: Qr,
     rest: f64,
     rhs: Vec<f64>,
@@ -53,10 +58,15 @@ impl Bordered {
         Self {
             diagonal: vec![Qr::default(); count],
             plain: vec![Vec::new(); count],
-            couplings: vec![Vec::new(); count],
+            couplings: (layout
+                .blocks
+                .iter()
+                .map(|b| Vec::with_capacity(COUPLINGS * b.rows)))
+            .collect(),
             to_parameter: vec![0.0; layout.rows],
             residual: vec![0.0; layout.rows],
             worst: 0,
+            waits: false,
             last: Qr::default(),
             rest: 0.0,
             rhs: Vec::new(),
@@ -122,23 +132,49 @@ impl Bordered {
         self.factor();
     }
 
+    /// Factors the blocks and tells which is nearest to losing rank. Beside blocks that are as regular as can be that is the largest
+    /// one: it is factored with the border alone.
     fn factor(&mut self) {
+        let sizes = self.layout.blocks.iter().map(|block| block.size);
+        // The first of them.
+        let largest = sizes.enumerate().rev().max_by_key(|(_, size)| *size);
+        let Some((largest, _)) = largest else { return };
         let mut worst = (f64::INFINITY, 0);
-        for (index, block) in self.layout.blocks.iter().enumerate() {
-            let qr = &mut self.diagonal[index];
-            qr.reset(block.rows, block.size);
-            for row in 0..block.rows {
-                for column in 0..block.size {
-                    qr.add(row, column, self.plain[index][row * block.size + column]);
-                }
-            }
-            qr.factor();
-            let ratio = qr.smallest_pivot_ratio();
+        for index in (0..self.layout.blocks.len()).filter(|index| *index != largest) {
+            let ratio = self.factor_block(index);
             if ratio < worst.0 {
                 worst = (ratio, index);
             }
         }
-        self.worst = worst.1;
+        self.waits = worst.0 >= 1.0;
+        self.worst = largest;
+        if !self.waits {
+            let ratio = self.factor_block(largest);
+            // Of blocks alike the first.
+            if ratio > worst.0 || (ratio == worst.0 && worst.1 < largest) {
+                self.worst = worst.1;
+            }
+        }
+    }
+
+    /// Factors a block; returns its smallest pivot ratio.
+    fn factor_block(&mut self, index: usize) -> f64 {
+        let (block, qr) = (&self.layout.blocks[index], &mut self.diagonal[index]);
+        qr.reset(block.rows, block.size);
+        for row in 0..block.rows {
+            for column in 0..block.size {
+                qr.add(row, column, self.plain[index][row * block.size + column]);
+            }
+        }
+        qr.factor();
+        qr.smallest_pivot_ratio()
+    }
+
+    /// Factors the block that [`Bordered::factor`] left.
+    fn factor_rest(&mut self) {
+        if std::mem::take(&mut self.waits) {
+            self.factor_block(self.worst);
+        }
     }
 
     /// The largest scaled residual at the situation last filled.

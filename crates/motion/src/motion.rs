@@ -2,8 +2,10 @@
 //!
 //! It begins at an assembly (`start`) and is followed from there both ways (`follow`), with restricted steps where branches come
 //! near each other (`restriction`). Where modes change between nodes of the trace it is split (`modes`). From then on the branch is
-//! known everywhere (`branch`), and rows are solved on any number (`solver`).
+//! known everywhere (`branch`), and rows are solved on any number (`solver`). That of a design much like one known is found from it
+//! (`again`).
 
+mod again;
 mod branch;
 mod error;
 mod follow;
@@ -25,7 +27,6 @@ pub use self::start::SIZES;
 
 use std::sync::Arc;
 
-use kempe_homotopy::PathReport;
 use kempe_mechanism::Design;
 use kempe_mechanism::Mechanism;
 use kempe_mechanism::pose::Pose;
@@ -85,6 +86,8 @@ pub struct Motion {
     /// All those on the trace, which goes a little beyond the demanded range.
     pub places: Vec<Event>,
     nodes: Vec<Node>,
+    /// How many nodes the trace had from which they come.
+    traced: usize,
     parameters: Vec<f64>,
     patches: Vec<Patch>,
     scale: f64,
@@ -108,41 +111,19 @@ impl Motion {
         design: &Design<f64>,
         progress: &mut dyn Progress,
     ) -> Result<Arc<Self>, MotionError> {
-        Self::whole(design, &[], progress)
+        Self::along(design, Self::demand(design), progress).map(Arc::new)
     }
 
-    /// The motion of a design much like this one's, such as the same mechanism after a dimension changed a little. It is the motion
-    /// that [`Motion::with_progress`] finds, and where blocks have no closed form it is found sooner: their solutions are
-    /// corrected from those known, which proves them complete as long as each leads to another.
-    ///
-    /// # Errors
-    /// As [`Motion::with_progress`].
-    pub fn again(
-        &self,
-        design: &Design<f64>,
-        progress: &mut dyn Progress,
-    ) -> Result<Arc<Self>, MotionError> {
-        Self::whole(design, &self.assemblies.paths, progress)
-    }
-
-    /// The motion by the laws of the file.
-    fn whole(
-        design: &Design<f64>,
-        earlier: &[PathReport],
-        progress: &mut dyn Progress,
-    ) -> Result<Arc<Self>, MotionError> {
+    /// What is asked of the motion by the laws of the file.
+    fn demand(design: &Design<f64>) -> Demand {
         let (model, parameters) = (&design.mechanism.model, &design.parameters);
-        let size = design.size();
-        let path = DrivePath::new(model, parameters, size);
-        let demanded = path.range(model, parameters);
-        let start = path.start(model, parameters);
-        let stretch = Demand {
-            path,
-            range: demanded,
-            start,
+        let path = DrivePath::new(model, parameters, design.size());
+        Demand {
+            range: path.range(model, parameters),
+            start: path.start(model, parameters),
             assemblies: None,
-        };
-        Self::along_after(design, stretch, earlier, progress).map(Arc::new)
+            path,
+        }
     }
 
     /// A motion over given nodes, rising in the path parameter; it covers just them.
@@ -169,6 +150,7 @@ impl Motion {
             places: Vec::new(),
             parameters: Vec::new(),
             patches: Vec::new(),
+            traced: nodes.len(),
             nodes,
             scale,
             size: design.size(),

@@ -16,6 +16,7 @@ pub use self::step::{MIDDLE_TOLERANCE, TURN_LIMIT};
 pub(crate) use self::step::{WIGGLE, hides_limits};
 
 use self::by_plan::PlanSteps;
+pub(crate) use self::by_plan::is_steady;
 use self::restriction::StepRestriction;
 pub(crate) use self::restriction::apart;
 use kempe_mechanism::Design;
@@ -49,8 +50,8 @@ pub struct Node {
     pub z: Vec<f64>,
     /// Unit tangent, in the direction of travel.
     pub tangent: Vec<f64>,
-    /// Determinant of every step of the plan, where the step of the trace told them.
-    determinants: Vec<f64>,
+    /// Determinant of every step of the plan, where they are known.
+    pub(crate) determinants: Vec<f64>,
 }
 
 impl Node {
@@ -74,6 +75,15 @@ impl Node {
         self
     }
 
+    /// Scaled unknowns along the tangent, where the path parameter over its scale is this.
+    pub(crate) fn toward(&self, parameter: f64) -> impl Iterator<Item = f64> {
+        let h = (parameter - self.z[self.z.len() - 1]) / self.parameter_rate();
+        self.z
+            .iter()
+            .zip(&self.tangent)
+            .map(move |(z, t)| z + h * t)
+    }
+
     /// Scaled unknowns at a length `h` along the tangent.
     fn ahead(&self, h: f64) -> Vec<f64> {
         let unknowns = self.z.iter().zip(&self.tangent);
@@ -87,7 +97,8 @@ pub struct Follower<'a, P> {
     path: &'a P,
     /// Mechanism size, m.
     pub size: f64,
-    system: Bordered,
+    /// The systems of all constraints; not where the plan leads all the way.
+    system: Option<Bordered>,
     step: Vec<f64>,
     poses: Vec<Pose<f64>>,
     near: Vec<f64>,
@@ -99,16 +110,31 @@ pub struct Follower<'a, P> {
     by_plan: PlanSteps,
 }
 
+/// What a follower has stored, for another one of the same mechanism.
+pub(crate) struct Storage {
+    system: Option<Bordered>,
+    by_plan: PlanSteps,
+}
+
 impl<'a, P: Path> Follower<'a, P> {
     /// A follower for a design.
     pub fn new(design: &'a Design<f64>, path: &'a P) -> Self {
+        let storage = Storage {
+            system: None,
+            by_plan: PlanSteps::new(design),
+        };
+        Self::reusing(storage, design, path)
+    }
+
+    /// A follower with the storage of another one that has not stepped by the plan.
+    pub(crate) fn reusing(storage: Storage, design: &'a Design<f64>, path: &'a P) -> Self {
         let mechanism = &*design.mechanism;
         let drives = mechanism.model.drives.len();
         Self {
             design,
             path,
             size: design.size(),
-            system: Bordered::new(mechanism),
+            system: storage.system,
             step: Vec::new(),
             poses: vec![Pose::identity(); mechanism.bodies],
             near: vec![0.0; mechanism.bodies],
@@ -117,14 +143,27 @@ impl<'a, P: Path> Follower<'a, P> {
             rates: vec![0.0; drives],
             restrictions: Vec::new(),
             determined: None,
-            by_plan: PlanSteps::new(design),
+            by_plan: storage.by_plan,
         }
+    }
+
+    /// What it has stored.
+    pub(crate) fn into_storage(self) -> Storage {
+        Storage {
+            system: self.system,
+            by_plan: self.by_plan,
+        }
+    }
+
+    fn system(&mut self) -> &mut Bordered {
+        let mechanism = &self.design.mechanism;
+        self.system.get_or_insert_with(|| Bordered::new(mechanism))
     }
 
     /// The largest residual at a point, in mechanism sizes and rad.
     pub fn residual(&mut self, z: &[f64]) -> f64 {
         self.linearise(z);
-        self.system.largest_residual()
+        self.system().largest_residual()
     }
 
     /// How many unknowns, the path parameter included.
@@ -196,8 +235,13 @@ impl<'a, P: Path> Follower<'a, P> {
             poses: &poses,
             near: &near,
         };
-        self.system
-            .fill(&self.design.mechanism, &situation, self.size, &self.rates);
+        let mechanism = &*self.design.mechanism;
+        (self.system.get_or_insert_with(|| Bordered::new(mechanism))).fill(
+            mechanism,
+            &situation,
+            self.size,
+            &self.rates,
+        );
         (self.poses, self.near) = (poses, near);
     }
 
@@ -205,9 +249,10 @@ impl<'a, P: Path> Follower<'a, P> {
     pub fn tangent(&mut self, z: &[f64], toward: &[f64]) -> Option<Vec<f64>> {
         self.linearise(z);
         let mut t = Vec::new();
-        self.system.solve(false, toward, 1.0, &mut t);
+        let system = self.system();
+        system.solve(false, toward, 1.0, &mut t);
         // With redundant constraints the least squares leave a rest where there is no way to move at all.
-        let rest = self.system.rest();
+        let rest = system.rest();
         let length = norm(&t);
         if !length.is_finite() || length == 0.0 || rest > LOCKED {
             return None;
@@ -221,7 +266,7 @@ impl<'a, P: Path> Follower<'a, P> {
     /// Smallest over largest pivot of the bordered Jacobian at the point last linearised: how well the tangent is
     /// determined.
     pub fn conditioning(&self) -> f64 {
-        self.system.conditioning()
+        self.system.as_ref().map_or(0.0, Bordered::conditioning)
     }
 
     /// [`Follower::conditioning`] at a node that the trace last began at or stepped to.
@@ -240,7 +285,7 @@ impl<'a, P: Path> Follower<'a, P> {
         for _ in 0..CORRECTIONS {
             self.linearise(z);
             let mut step = std::mem::take(&mut self.step);
-            self.system.solve(true, border, 0.0, &mut step);
+            self.system().solve(true, border, 0.0, &mut step);
             let length = norm(&step);
             for (z, d) in z.iter_mut().zip(&step) {
                 *z -= d;

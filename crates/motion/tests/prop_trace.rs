@@ -4,7 +4,9 @@
 mod support;
 
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
+use kempe_mechanism::Design;
 use kempe_motion::Motion;
 use kempe_motion::events::EventKind;
 use kempe_motion::progress::{Done, Silent, Stage};
@@ -146,6 +148,8 @@ fn is_fresh(again: &Motion, fresh: &Motion, what: &str) {
         "{what}"
     );
     assert_eq!(again.ends, fresh.ends, "{what}");
+    assert_eq!(again.choices, fresh.choices, "{what}");
+    assert_eq!(again.anchor, fresh.anchor, "{what}");
     let diagnostic = |motion: &Motion| -> Vec<_> {
         motion
             .events
@@ -222,4 +226,103 @@ fn another_mechanisms_motion_misleads_nobody() {
             (again, fresh) => assert_eq!(again.is_ok(), fresh.is_ok()),
         }
     }
+}
+
+/// The design with its points moved by up to a part of their distance from their bodies' origins.
+fn moved(design: &Design<f64>, part: f64, rng: &mut Rng) -> Design<f64> {
+    let mut geometry = design.geometry.clone();
+    for marker in &mut geometry.markers {
+        let by = rng.range(1.0 - part, 1.0 + part);
+        marker.iter_mut().for_each(|x| *x *= by);
+    }
+    let plain = vec![geometry.clone()];
+    Design::from_geometry(&design.mechanism, &design.parameters, geometry, plain)
+}
+
+/// Whether a motion was found over the nodes of another.
+fn led(again: &Motion, known: &Motion) -> bool {
+    let same = |p: f64, q: &f64| (p - q).abs() <= 1e-12 * again.path.scale();
+    let mut at = known.node_parameters().iter();
+    at.all(|p| again.node_parameters().iter().any(|q| same(*p, q)))
+}
+
+/// Random mechanisms, their points moved by little and by much, one change after the other.
+#[test]
+fn random_designs_followed_again_are_on_the_branch_of_a_fresh_motion() {
+    let (mut over, mut met, mut rng) = (0, 0, Rng(9));
+    for seed in 0..60 {
+        let case = Case::of(&make(&recipe(seed ^ 0x00a9_a111)).spec);
+        let Ok(mut known) = case.motion() else {
+            continue;
+        };
+        let mut design = case.design.clone();
+        for round in 0..4 {
+            design = moved(&design, [1e-4, 1e-3, 0.01, 0.1][round], &mut rng);
+            let again = known.again(&design, &mut Silent);
+            match (again, Motion::new(&design)) {
+                (Ok(again), Ok(fresh)) => {
+                    is_fresh(&again, &fresh, &case.text);
+                    over += usize::from(led(&again, &known));
+                    met += usize::from(!again.places.is_empty());
+                    known = again;
+                }
+                (again, fresh) => assert_eq!(again.is_ok(), fresh.is_ok(), "{}", case.text),
+            }
+        }
+    }
+    assert!(over > 20 && met > 20, "{over} {met}");
+}
+
+/// Four-bars whose crank turns all the way round, or no longer, and back again: limits appear, vanish, and change points open.
+#[test]
+fn a_four_bar_followed_again_notices_limits_and_change_points() {
+    let text = four_bar([1.0; 4], "left").replace(
+        "[links]",
+        "[parameters]\na = \"2 mm\"\nb = \"5 mm\"\nc = \"4 mm\"\nd = \"6 mm\"\n[links]",
+    );
+    let text = ["a", "b", "c"].iter().fold(text, |text, name| {
+        text.replacen("= 1e0 }", &format!("= \"{name}\" }}"), 1)
+    });
+    let text = text.replace("D = [1e0, 0]", "D = [\"d\", 0]");
+    let case = Case::read(&text, "four-bar.toml");
+    let mut rng = Rng(17);
+    let mut known: Option<Arc<Motion>> = None;
+    let mut at = [2.0, 5.0, 4.0, 6.0];
+    let (mut over, mut appeared, mut vanished, mut crossed) = (0, 0, 0, 0);
+    for round in 0..400 {
+        // Mostly small changes; now and then one on, or all but on, a change point: the crank with one of the others as long as
+        // the rest.
+        let by = [1e-4, 1e-3, 1e-2, 0.1][rng.below(4)];
+        at = std::array::from_fn(|k| {
+            let home = [2.0, 5.0, 4.0, 6.0][k];
+            (at[k] * rng.range(1.0 - by, 1.0 + by)).clamp(0.6 * home, 1.4 * home)
+        });
+        let mut lengths = at;
+        if round % 5 == 4 {
+            let off = [0.0, 0.0, 0.0, 1e-9, -1e-9, 1e-6, -1e-6, 1e-3, -1e-3][rng.below(9)];
+            lengths[0] = at[1] + at[2] - at[3] + off;
+        }
+        if lengths[0] < 0.2 {
+            continue;
+        }
+        let design = Design::new(&case.mechanism, &lengths.map(|x| 1e-3 * x));
+        let fresh = Motion::new(&design);
+        let Some(before) = &known else {
+            known = fresh.ok();
+            continue;
+        };
+        match (before.again(&design, &mut Silent), fresh) {
+            (Ok(again), Ok(fresh)) => {
+                is_fresh(&again, &fresh, &format!("{lengths:?}"));
+                over += usize::from(led(&again, before));
+                let limits = |m: &Motion| m.places.iter().any(|e| e.kind == EventKind::Limit);
+                appeared += usize::from(limits(&again) && !limits(before));
+                vanished += usize::from(!limits(&again) && limits(before));
+                crossed += again.places.len() - usize::from(limits(&again));
+                known = Some(again);
+            }
+            (again, fresh) => assert_eq!(again.is_ok(), fresh.is_ok(), "{lengths:?}"),
+        }
+    }
+    assert!(over > 50 && appeared > 10 && vanished > 10 && crossed > 10);
 }

@@ -7,6 +7,7 @@ use super::Bordered;
 impl Bordered {
     /// The smallest singular value of the Jacobian without its parameter column.
     pub fn smallest_singular_value(&mut self) -> f64 {
+        self.factor_rest();
         let layout = &self.layout;
         if self
             .diagonal

@@ -14,7 +14,7 @@ pub const FAR: f64 = 1e3;
 /// A body that turns on by this much, rad, while the drive all but stands still is taken to run away too.
 pub const WHIRLING: f64 = 300.0;
 /// Rate of the scaled path parameter along the arc below which the drive all but stands still.
-const STANDING: f64 = 1e-4;
+pub(super) const STANDING: f64 = 1e-4;
 /// Rate below which it stands still, as far as rounding lets tell: such a place is a limit only where the rate changes sign
 /// from what is more than rounding.
 const STILL: f64 = 1e-10;

@@ -37,19 +37,21 @@ impl Motion {
         follower: &mut Follower<'_, DrivePath>,
         progress: &mut dyn Progress,
     ) -> Result<(), Unlocated> {
-        let modes = self.modes_of_nodes(follower, progress)?;
-        let mut nodes: Vec<Node> = Vec::with_capacity(self.nodes.len());
-        let mut signs: Vec<Vec<f64>> = Vec::new();
+        self.note_determinants(follower, progress)?;
         let old = std::mem::take(&mut self.nodes);
+        // What is found between two nodes, with the index of the first.
+        let mut between: Vec<(usize, Node)> = Vec::new();
+        let mut count = 0;
+        let mut current: Vec<f64> = Vec::new();
         for (index, node) in old.iter().enumerate() {
-            nodes.push(node.clone());
             let at_limit = node.parameter_rate().abs() < STATIONARY;
             // Only a limit that was located has no rate at all.
             if node.parameter_rate() == 0.0 {
+                let regular = index.checked_sub(1).map(|before| &old[before].determinants);
                 self.places.push(Event {
                     kind: EventKind::Limit,
                     at: follower.parameter(&node.z),
-                    steps: vanishing(&modes[index], index.checked_sub(1).map(|i| &modes[i])),
+                    steps: vanishing(&node.determinants, regular),
                     bridge: 0.0,
                 });
             }
@@ -58,10 +60,12 @@ impl Motion {
             };
             let next_limit = next.parameter_rate().abs() < STATIONARY;
             // Next to a limit the sign of the regular end counts.
-            let here = &modes[if at_limit { index + 1 } else { index }];
-            let there = &modes[if next_limit { index } else { index + 1 }];
-            let mut current: Vec<f64> = here.iter().map(|d| d.signum()).collect();
-            signs.push(current.clone());
+            let here = &(if at_limit { next } else { node }).determinants;
+            let there = &(if next_limit { node } else { next }).determinants;
+            current.clear();
+            current.extend(here.iter().map(|d| d.signum()));
+            self.begin_patch(count, &current);
+            count += 1;
             if at_limit || next_limit {
                 continue;
             }
@@ -72,9 +76,11 @@ impl Motion {
                 current[step] = -current[step];
                 if s - last_s < ONE_POSE {
                     // Several groups change at one pose.
-                    if let (Some(event), Some(now)) = (self.places.last_mut(), signs.last_mut()) {
+                    if let (Some(event), Some(patch)) =
+                        (self.places.last_mut(), self.patches.last_mut())
+                    {
                         event.steps.push(step);
-                        now.clone_from(&current);
+                        patch.signs.clone_from(&current);
                     }
                     continue;
                 }
@@ -92,20 +98,25 @@ impl Motion {
                     steps: vec![step],
                     bridge: BRIDGE * spacing,
                 });
-                nodes.push(at);
-                signs.push(current.clone());
+                between.push((index, at));
+                self.begin_patch(count, &current);
+                count += 1;
             }
         }
         self.snap();
         self.events = self.met(self.demanded);
-        self.parameters = nodes.iter().map(|n| follower.parameter(&n.z)).collect();
-        self.nodes = nodes;
-        for (from, signs) in signs.into_iter().enumerate() {
-            if self.patches.last().is_none_or(|last| last.signs != signs) {
-                self.patches.push(Patch { from, signs });
-            }
-        }
+        self.nodes = insert(old, between);
+        let parameters = self.nodes.iter().map(|n| follower.parameter(&n.z));
+        self.parameters = parameters.collect();
         Ok(())
+    }
+
+    /// From this node on the modes are these.
+    fn begin_patch(&mut self, from: usize, signs: &[f64]) {
+        if self.patches.last().is_none_or(|last| last.signs != signs) {
+            let signs = signs.to_vec();
+            self.patches.push(Patch { from, signs });
+        }
     }
 
     /// Puts change points that lie at an end of the demanded range to rounding right there.
@@ -126,24 +137,26 @@ impl Motion {
         }
     }
 
-    /// The determinants of all steps at every node.
-    fn modes_of_nodes(
-        &self,
+    /// Notes at every node the determinants of all steps.
+    fn note_determinants(
+        &mut self,
         follower: &mut Follower<'_, DrivePath>,
         progress: &mut dyn Progress,
-    ) -> Result<Vec<Vec<f64>>, Unlocated> {
-        let mut modes = Vec::with_capacity(self.nodes.len());
-        for (done, node) in self.nodes.iter().enumerate() {
-            let part = done as f64 / self.nodes.len() as f64;
+    ) -> Result<(), Unlocated> {
+        let count = self.nodes.len();
+        for (done, node) in self.nodes.iter_mut().enumerate() {
+            let part = done as f64 / count as f64;
             if progress
                 .reached(Stage::Locating, Done::Part(part))
                 .is_break()
             {
                 return Err(Unlocated::Stopped(Stage::Locating));
             }
-            modes.push(follower.determinants_at(node));
+            if node.determinants.is_empty() {
+                node.determinants = follower.determinants(&node.z).to_vec();
+            }
         }
-        Ok(modes)
+        Ok(())
     }
 
     /// Where between two nodes the modes of the `flipped` steps change, in the order of travel.
@@ -178,6 +191,22 @@ impl Motion {
         found.sort_by(|a, b| a.s.total_cmp(&b.s));
         Ok(found)
     }
+}
+
+/// Nodes with others behind those of these indices, rising.
+fn insert(nodes: Vec<Node>, between: Vec<(usize, Node)>) -> Vec<Node> {
+    if between.is_empty() {
+        return nodes;
+    }
+    let mut all = Vec::with_capacity(nodes.len() + between.len());
+    let mut between = between.into_iter().peekable();
+    for (index, node) in nodes.into_iter().enumerate() {
+        all.push(node);
+        while let Some((_, more)) = between.next_if(|(before, _)| *before == index) {
+            all.push(more);
+        }
+    }
+    all
 }
 
 /// Steps whose determinant is all but zero, compared with a regular neighbour.

@@ -9,7 +9,7 @@ use super::{Demand, Motion, MotionError};
 use crate::assemble::{Assemblies, Assembly, find_assemblies_after};
 use crate::drive_path::DrivePath;
 use crate::progress::{Progress, Stage};
-use crate::trace::{Follower, Node, Path, apart};
+use crate::trace::{Follower, Node, Path, Storage, apart};
 
 /// Sizes of mechanisms, m, whose lengths can be squared and multiplied with room to spare.
 pub const SIZES: (f64, f64) = (1e-100, 1e100);
@@ -39,6 +39,7 @@ struct Beginning {
     down: Node,
     /// How well the tangent is determined.
     determined: f64,
+    storage: Storage,
 }
 
 impl Motion {
@@ -113,6 +114,7 @@ impl Motion {
             assemblies,
             up,
             down,
+            storage,
             ..
         }) = best
         else {
@@ -127,7 +129,7 @@ impl Motion {
         // The share of the range that lies above it.
         let whole = (demanded.1 - demanded.0).max(f64::MIN_POSITIVE);
         let share = ((demanded.1 - anchor) / whole).clamp(0.0, 1.0);
-        let mut follower = Follower::new(&design, &path);
+        let mut follower = Follower::reusing(storage, &design, &path);
         restricting_steps(&mut follower, |follower| {
             let range = (demanded.0 / scale, demanded.1 / scale);
             let (nodes, ends) = follow_both(follower, [&down, &up], range, share, progress)
@@ -245,7 +247,7 @@ fn begin(
     let up = follower.start(z, 1.0)?;
     let down = up.clone().turned();
     let determined = follower.determined(&up);
-    drop(follower);
+    let storage = follower.into_storage();
     Some(Beginning {
         anchor,
         design,
@@ -253,6 +255,7 @@ fn begin(
         up,
         down,
         determined,
+        storage,
     })
 }
 

@@ -10,8 +10,8 @@ use kempe_mechanism::pose::Pose;
 use kempe_mechanism::{Branch, Configuration, Design};
 use kempe_number::Jet;
 
-use super::step::{CORRECTION_LIMIT, MIDDLE_TOLERANCE, SHORTEST_STEP, TURN_LIMIT};
-use super::{Cubic, Follower, Node, Path, chord, dot, norm, unscale};
+use super::step::{CORRECTION_LIMIT, MIDDLE_TOLERANCE, SHORTEST_STEP, TURN_LIMIT, hides_limits};
+use super::{Cubic, Follower, Node, Path, distance, dot, norm, unscale};
 
 /// Series in the scaled path parameter, of which two coefficients count; of a length that is compiled already.
 type Series = Jet<f64, 3>;
@@ -105,6 +105,14 @@ impl PlanSteps {
     /// Length of the gap across a unit vector.
     fn gap_across(&self, direction: &[f64]) -> f64 {
         let along = dot(&self.gap, direction);
+        (dot(&self.gap, &self.gap) - along * along).max(0.0).sqrt()
+    }
+
+    /// Length of the gap across the chord of a step.
+    fn gap_beside(&self, step: &Cubic<'_>) -> f64 {
+        let along: f64 = (self.gap.iter().zip(step.chord()))
+            .map(|(x, y)| x * y)
+            .sum();
         (dot(&self.gap, &self.gap) - along * along).max(0.0).sqrt()
     }
 
@@ -252,21 +260,29 @@ impl<P: Path> Follower<'_, P> {
     }
 
     fn try_by_plan(&mut self, from: &Node, h: f64, modes: Modes) -> ByPlan {
-        let Some(to) = self.land_by_plan(from, h, modes) else {
+        let near = &mut self.by_plan.near;
+        near.clear();
+        near.extend(from.z.iter().zip(&from.tangent).map(|(z, t)| z + h * t));
+        let Some(to) = self.land_by_plan(from, modes) else {
             return ByPlan::Unfit;
         };
         // Across the way: along it the path parameter decides, which says nothing of how much it bends.
         let first = self.by_plan.gap_across(&from.tangent);
-        if !(first <= CORRECTION_LIMIT * h) || dot(&to.tangent, &from.tangent) < TURN_LIMIT {
+        if !(first <= CORRECTION_LIMIT * h) {
+            return ByPlan::Bent;
+        }
+        self.middle_by_plan(from, to, h, modes)
+    }
+
+    /// Holds a step of length `h` by the plan to what its ends and its middle must be like.
+    fn middle_by_plan(&mut self, from: &Node, to: Node, h: f64, modes: Modes) -> ByPlan {
+        if dot(&to.tangent, &from.tangent) < TURN_LIMIT {
             return ByPlan::Bent;
         }
         let cubic = Cubic::new(from, &to);
-        let middle = cubic.at(0.5);
-        let near = &mut self.by_plan.near;
-        near.clear();
-        near.extend((0..from.z.len()).map(|i| middle.part(i)));
+        cubic.at(0.5).put(&mut self.by_plan.near);
         self.solve_plain(modes);
-        let gap = self.by_plan.gap_across(&chord(from, &to));
+        let gap = self.by_plan.gap_beside(&cubic);
         let it = &mut self.by_plan;
         let steps = self.design.mechanism.plan.steps.iter().enumerate();
         let mut telling = steps.filter(|(_, step)| step.tells_modes());
@@ -287,12 +303,53 @@ impl<P: Path> Follower<'_, P> {
         ByPlan::Reached(to, gap)
     }
 
-    /// The node that the plan has at the path parameter to which the tangent at `from` leads over a length `h`; the storage then
-    /// holds how far the one lies from the other. `None` where there is none, or modes change and are to be kept.
-    fn land_by_plan(&mut self, from: &Node, h: f64, modes: Modes) -> Option<Node> {
+    /// The node of a motion at a path parameter from which steps by the plan may begin, the pose being that of scaled unknowns;
+    /// `None` where the plan does not lead there.
+    pub(crate) fn begin_by_plan(&mut self, z: &[f64], direction: f64) -> Option<Node> {
+        if !self.by_plan.whole {
+            return None;
+        }
+        self.determinants(z);
+        if !(self.by_plan.apart <= SAME_POSE) {
+            return None;
+        }
         let near = &mut self.by_plan.near;
         near.clear();
-        near.extend(from.z.iter().zip(&from.tangent).map(|(z, t)| z + h * t));
+        near.extend_from_slice(z);
+        let node = self.land_with(direction, Modes::Kept)?;
+        (norm(&self.by_plan.gap) <= SAME_POSE).then_some(node)
+    }
+
+    /// Goes on from a node of the motion that the plan led to, in the modes that it led there in.
+    pub(crate) fn resume_by_plan(&mut self, at: &Node) {
+        let it = &mut self.by_plan;
+        it.at.clone_from(&at.z);
+        it.determinants.clone_from(&at.determinants);
+        it.note_largest();
+    }
+
+    /// The step from a node just reached by the plan to the path parameter of scaled unknowns that are expected there, in the
+    /// same modes, held to what holds all steps; `None` where it is not fit, and any way over a limit.
+    pub(crate) fn step_by_plan_to(&mut self, from: &Node, expected: &[f64]) -> Option<Node> {
+        let near = &mut self.by_plan.near;
+        near.clear();
+        near.extend_from_slice(expected);
+        let to = self.land_by_plan(from, Modes::Kept)?;
+        let h = distance(&from.z, &to.z);
+        match self.middle_by_plan(from, to, h, Modes::Kept) {
+            ByPlan::Reached(to, _) if !hides_limits(from, &to) => Some(to),
+            _ => None,
+        }
+    }
+
+    /// The node that the plan has at the path parameter of the pose expected ahead of `from`; see [`Follower::land_with`].
+    fn land_by_plan(&mut self, from: &Node, modes: Modes) -> Option<Node> {
+        self.land_with(from.parameter_rate().signum(), modes)
+    }
+
+    /// The node that the plan has at the path parameter of the pose expected, which then runs in this direction; the storage then
+    /// holds how far the one lies from the other. `None` where there is none, or modes change and are to be kept.
+    fn land_with(&mut self, direction: f64, modes: Modes) -> Option<Node> {
         self.set_branch(modes);
         let scale = self.path.scale();
         let mechanism = &*self.design.mechanism;
@@ -328,7 +385,7 @@ impl<P: Path> Follower<'_, P> {
             }
             determinants.push(now);
         }
-        let last = from.z.len() - 1;
+        let last = it.near.len() - 1;
         let mut tangent = vec![0.0; last + 1];
         for unknown in mechanism
             .plan
@@ -351,7 +408,7 @@ impl<P: Path> Follower<'_, P> {
             }
         }
         tangent[last] = 1.0;
-        let length = norm(&tangent) * from.tangent[last].signum();
+        let length = norm(&tangent) * direction;
         tangent.iter_mut().for_each(|t| *t /= length);
         it.take(&mechanism.plan, self.size, |it, body| match &it.rich {
             Some((_, state)) => state.poses[body].map(|part| part.coefficient(0)),
@@ -367,7 +424,7 @@ impl<P: Path> Follower<'_, P> {
 }
 
 /// Whether two determinants have one sign and one size, about.
-fn is_steady(a: f64, b: f64) -> bool {
+pub(crate) fn is_steady(a: f64, b: f64) -> bool {
     a * b > 0.0 && a.abs() <= STEADY * b.abs() && b.abs() <= STEADY * a.abs()
 }
 

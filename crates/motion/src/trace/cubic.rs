@@ -33,6 +33,12 @@ impl<'a> Cubic<'a> {
         }
     }
 
+    /// Unit vector from the one to the other.
+    pub fn chord(&self) -> impl Iterator<Item = f64> {
+        let ends = self.from.z.iter().zip(&self.to.z);
+        ends.map(|(a, b)| (b - a) / self.h)
+    }
+
     /// The part of the step at which an unknown that rises all along it has the value `wanted`: the middle of one of
     /// `PARTS` equal parts; beyond the ends the first or last of them.
     pub fn part_where(&self, unknown: usize, wanted: f64) -> f64 {
@@ -93,6 +99,15 @@ impl CubicPoint<'_> {
     pub fn part(&self, i: usize) -> f64 {
         let ([a, b, c, d], Cubic { from, to, .. }) = (self.weights, self.cubic);
         a * from.z[i] + b * to.z[i] + c * from.tangent[i] + d * to.tangent[i]
+    }
+
+    /// All of them, in the same storage.
+    pub fn put(&self, all: &mut Vec<f64>) {
+        let ([a, b, c, d], Cubic { from, to, .. }) = (self.weights, self.cubic);
+        let ends = from.z.iter().zip(&to.z);
+        let tangents = from.tangent.iter().zip(&to.tangent);
+        all.clear();
+        all.extend((ends.zip(tangents)).map(|((p, q), (r, s))| a * p + b * q + c * r + d * s));
     }
 }
 
