@@ -42,13 +42,18 @@ fn the_smallest_singular_value_is_that_of_jacobi() {
         let mut matrix: Vec<Vec<f64>> = (0..columns)
             .map(|_| (0..rows).map(|_| 2.0 * random.uniform() - 1.0).collect())
             .collect();
-        // Some columns nearly explain each other, some pairs of small values lie near each other.
+        // Some columns nearly explain each other, some pairs are small alike.
         for k in 1..columns {
             if (round + k) % 5 == 0 {
                 let by = 1e-3 * (1.0 + 1e-2 * random.uniform());
                 for row in 0..rows {
                     matrix[k][row] = matrix[k - 1][row] + by * matrix[k][row];
                 }
+            }
+        }
+        if round % 4 == 0 {
+            for column in matrix.iter_mut().take(2) {
+                column.iter_mut().for_each(|x| *x *= 1e-3);
             }
         }
         let mut qr = Qr::default();
@@ -62,11 +67,11 @@ fn the_smallest_singular_value_is_that_of_jacobi() {
         let found = qr.smallest_singular_value();
         let mut all = by_jacobi(matrix);
         all.sort_by(f64::total_cmp);
-        near += usize::from(all.get(1).is_some_and(|next| *next < 1.1 * all[0]));
+        near += usize::from(all.get(1).is_some_and(|next| *next < 1.3 * all[0]));
         assert!(
             (found - all[0]).abs() <= 1e-9 * all[0] + 1e-14,
             "{rows} x {columns}: {found:e} {all:?}"
         );
     }
-    assert!(near > 3, "{near} with two values near each other");
+    assert!(near > 10, "{near} with two values near each other");
 }
