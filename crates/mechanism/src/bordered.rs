@@ -4,10 +4,10 @@
 //! proportion to the mechanism. One block may be singular without harm, the one where a limit or a crossing of
 //! branches lies: its unknowns and the path parameter are kept together and solved last, with the border row.
 
-mod layout;
+mod block_layout;
 mod singular;
 
-pub use self::layout::Layout;
+use self::block_layout::BlockLayout;
 
 use crate::Mechanism;
 use crate::constraint::{Joint, Situation};
@@ -30,7 +30,7 @@ struct Coupling {
 /// A bordered system ready to be solved.
 #[derive(Clone, Debug)]
 pub struct Bordered {
-    layout: Layout,
+    layout: BlockLayout,
     diagonal: Vec<Qr>,
     /// Entries of the singular candidate's own block, kept unfactored: row-major.
     plain: Vec<Vec<f64>>,
@@ -53,7 +53,7 @@ pub struct Bordered {
 impl Bordered {
     /// Storage for a mechanism's systems.
     pub fn new(mechanism: &Mechanism) -> Self {
-        let layout = Layout::new(mechanism);
+        let layout = BlockLayout::new(mechanism);
         let count = layout.blocks.len();
         Self {
             diagonal: vec![Qr::default(); count],

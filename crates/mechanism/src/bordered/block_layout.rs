@@ -21,7 +21,7 @@ pub(super) struct Block {
 
 /// Which rows and unknowns belong to which block.
 #[derive(Clone, Debug)]
-pub struct Layout {
+pub struct BlockLayout {
     pub(super) blocks: Vec<Block>,
     /// The unknowns of all blocks, one after the other.
     pub(super) unknowns: Columns,
@@ -32,7 +32,7 @@ pub struct Layout {
     pub(super) rows: usize,
 }
 
-impl Layout {
+impl BlockLayout {
     /// The blocks of a plan. An overconstrained mechanism is one block: what is redundant in one place keeps another
     /// regular.
     pub fn new(mechanism: &Mechanism) -> Self {
