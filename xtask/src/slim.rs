@@ -12,6 +12,8 @@ const RICH: &[(&str, &str)] = &[
     ("png", "raster"),
     ("gif", "raster"),
     ("ttf-parser", "raster"),
+    ("miniz_oxide", "raster"),
+    ("dejavu", "raster"),
 ];
 
 /// The crates that have features.
