@@ -127,36 +127,36 @@ impl Places {
     }
 }
 
-/// Solves some of the designs at runs of places, lanes over the designs; returns how many poses close.
-pub(super) fn solve_designs(
-    set: InstructionSet,
-    batch: &Batch,
-    designs: Designs<'_>,
-    range: Range<usize>,
-    runs: &[Vec<MotionPlace<'_>>],
-    out: &mut [&mut [f64]],
-) -> usize {
+/// Some of the designs at runs of places.
+pub(super) struct Work<'a> {
+    pub batch: &'a Batch,
+    pub designs: Designs<'a>,
+    /// Which designs.
+    pub range: Range<usize>,
+    pub runs: &'a [Vec<MotionPlace<'a>>],
+}
+
+/// Solves designs, lanes over them; returns how many poses close.
+pub(super) fn solve_designs(set: InstructionSet, work: &Work<'_>, out: &mut [&mut [f64]]) -> usize {
     if has_wide_registers(set) {
-        solve_widely(set, batch, designs, range, runs, out)
+        solve_widely(set, work, out)
     } else {
-        in_lanes::<8, false>(batch, designs, range, runs, out)
+        in_lanes::<8, false>(work, out)
     }
 }
 
 /// [`solve_designs`] for mechanisms whose branch is more than signs, but solved in lanes all the same.
-pub(super) fn solve_trees(
-    set: InstructionSet,
-    batch: &Batch,
-    designs: Designs<'_>,
-    range: Range<usize>,
-    runs: &[Vec<MotionPlace<'_>>],
-    out: &mut [&mut [f64]],
-) -> usize {
+pub(super) fn solve_trees(set: InstructionSet, work: &Work<'_>, out: &mut [&mut [f64]]) -> usize {
     if has_wide_registers(set) {
-        solve_trees_widely(set, batch, designs, range, runs, out)
+        solve_trees_widely(set, work, out)
     } else {
-        in_lanes::<8, true>(batch, designs, range, runs, out)
+        in_lanes::<8, true>(work, out)
     }
+}
+
+/// [`solve_designs`] for mechanisms that take longest for what is not done in lanes.
+pub(super) fn solve_guessed(_: InstructionSet, work: &Work<'_>, out: &mut [&mut [f64]]) -> usize {
+    in_lanes::<4, true>(work, out)
 }
 
 /// Whether sixteen lanes are few enough registers to work in.
@@ -165,47 +165,21 @@ fn has_wide_registers(set: InstructionSet) -> bool {
 }
 
 multiversion! {
-    fn solve_widely(
-        set: InstructionSet,
-        batch: &Batch,
-        designs: Designs<'_>,
-        range: Range<usize>,
-        runs: &[Vec<MotionPlace<'_>>],
-        out: &mut [&mut [f64]],
-    ) -> usize = in_lanes::<16, false>;
+    fn solve_widely(set: InstructionSet, work: &Work<'_>, out: &mut [&mut [f64]]) -> usize = in_lanes::<16, false>;
 }
 
 multiversion! {
-    fn solve_trees_widely(
-        set: InstructionSet,
-        batch: &Batch,
-        designs: Designs<'_>,
-        range: Range<usize>,
-        runs: &[Vec<MotionPlace<'_>>],
-        out: &mut [&mut [f64]],
-    ) -> usize = in_lanes::<16, true>;
-}
-
-/// [`solve_designs`] for mechanisms that take longest for what is not done in lanes.
-pub(super) fn solve_guessed(
-    _: InstructionSet,
-    batch: &Batch,
-    designs: Designs<'_>,
-    range: Range<usize>,
-    runs: &[Vec<MotionPlace<'_>>],
-    out: &mut [&mut [f64]],
-) -> usize {
-    in_lanes::<4, true>(batch, designs, range, runs, out)
+    fn solve_trees_widely(set: InstructionSet, work: &Work<'_>, out: &mut [&mut [f64]]) -> usize = in_lanes::<16, true>;
 }
 
 #[cfg_attr(not(debug_assertions), inline(always))]
-fn in_lanes<const W: usize, const ALL: bool>(
-    batch: &Batch,
-    designs: Designs<'_>,
-    range: Range<usize>,
-    runs: &[Vec<MotionPlace<'_>>],
-    out: &mut [&mut [f64]],
-) -> usize {
+fn in_lanes<const W: usize, const ALL: bool>(work: &Work<'_>, out: &mut [&mut [f64]]) -> usize {
+    let Work {
+        batch,
+        designs,
+        range,
+        runs,
+    } = work;
     let (mechanism, order) = (batch.motion.mechanism(), &batch.order);
     let plan = &order.plan;
     let mut states = vec![Configuration::<Lanes<W>>::new(mechanism).without_determinants(); STATES];
@@ -220,11 +194,11 @@ fn in_lanes<const W: usize, const ALL: bool>(
         let rows = (block..range.len()).step_by(W);
         for (row, design) in rows.clone().zip(&mut prepared) {
             for (k, parameter) in parameters.iter_mut().enumerate() {
-                *parameter = designs.lanes(k, range.start + row, &range);
+                *parameter = designs.lanes(k, range.start + row, range);
             }
             design.update(&parameters);
         }
-        for run in runs {
+        for run in *runs {
             let states = &mut states[..run.len()];
             let mut targets = [Target::default(); STATES];
             for ((state, target), place) in states.iter_mut().zip(&mut targets).zip(run) {

@@ -30,7 +30,7 @@ use kempe_mechanism::plan::Step;
 use kempe_mechanism::structure::Marker;
 
 use self::columns::{check_length, split_columns};
-use self::designs::{Places, solve_designs, solve_guessed, solve_trees};
+use self::designs::{Places, Work, solve_designs, solve_guessed, solve_trees};
 use self::order::Order;
 use self::stretch::{ModeStretch, stretches};
 use self::sweep::{sweep_one_by_one, sweep_positions, sweep_rates};
@@ -283,10 +283,13 @@ impl Batch {
             .map(|(task, (mut out, closed))| -> Task<'_> {
                 let first = task * DESIGNS_PER_TASK;
                 let count = DESIGNS_PER_TASK.min(designs.count - first);
-                let range = first..first + count;
-                Box::new(move || {
-                    *closed = piece(self.set, self, designs, range, runs, &mut out);
-                })
+                let work = Work {
+                    batch: self,
+                    designs,
+                    range: first..first + count,
+                    runs,
+                };
+                Box::new(move || *closed = piece(self.set, &work, &mut out))
             })
             .collect();
         executor.run(tasks);
