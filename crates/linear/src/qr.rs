@@ -98,17 +98,7 @@ impl Qr {
     /// Solves in place: on return the first `columns` entries of `rhs` are the solution.
     pub fn solve<T: Number>(&self, rhs: &mut [T]) {
         let m = self.rows;
-        for k in 0..self.columns {
-            let v = &self.a[k * m + k..k * m + self.end[k]];
-            let mut sum = T::zero();
-            for (x, y) in v.iter().zip(&rhs[k..]) {
-                sum += *y * *x;
-            }
-            sum = sum * self.scale[k];
-            for (x, y) in v.iter().zip(&mut rhs[k..]) {
-                *y -= sum * *x;
-            }
-        }
+        (0..self.columns).for_each(|k| self.reflect(k, rhs));
         for k in (0..self.columns).rev() {
             let mut sum = rhs[k];
             for j in k + 1..self.columns {
@@ -138,17 +128,21 @@ impl Qr {
 
     /// Multiplies a vector of `rows` numbers by Q.
     pub fn rotate<T: Number>(&self, x: &mut [T]) {
-        let m = self.rows;
-        for k in (0..self.columns).rev() {
-            let v = &self.a[k * m + k..k * m + self.end[k]];
-            let mut sum = T::zero();
-            for (a, b) in v.iter().zip(&x[k..]) {
-                sum += *b * *a;
-            }
-            sum = sum * self.scale[k];
-            for (a, b) in v.iter().zip(&mut x[k..]) {
-                *b -= sum * *a;
-            }
+        (0..self.columns).rev().for_each(|k| self.reflect(k, x));
+    }
+
+    /// The reflection that made one column.
+    #[inline]
+    fn reflect<T: Number>(&self, k: usize, x: &mut [T]) {
+        let at = k * self.rows;
+        let v = &self.a[at + k..at + self.end[k]];
+        let mut sum = T::zero();
+        for (a, b) in v.iter().zip(&x[k..]) {
+            sum += *b * *a;
+        }
+        sum = sum * self.scale[k];
+        for (a, b) in v.iter().zip(&mut x[k..]) {
+            *b -= sum * *a;
         }
     }
 
