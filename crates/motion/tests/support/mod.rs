@@ -16,20 +16,20 @@ use kempe_measure::Sample;
 use kempe_mechanism::{Configuration, Design, Mechanism, Pose};
 use kempe_model::Model;
 use kempe_motion::{Motion, MotionError};
+use kempe_number::Random;
 
 pub use smooth_curve::SmoothCurve;
 
-/// A small reproducible generator (splitmix64).
+/// Draws of many kinds, the same everywhere.
 #[derive(Clone, Debug)]
 pub struct Rng(pub u64);
 
 impl Rng {
     pub fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
+        let mut random = Random(self.0);
+        let bits = random.bits();
+        self.0 = random.0;
+        bits
     }
 
     /// In [low, high).
@@ -364,8 +364,8 @@ impl Spec {
                 let _ = writeln!(text, "{} = {{ near = {:e} }}", link.name, link.pose[2]);
                 if let Some((name, p)) = link.points.first() {
                     let on_frame = self.links[0].point(name).is_some();
-                    let diagnostic = text.contains(&format!("\n{name} = {{ near"));
-                    if !on_frame && !diagnostic {
+                    let label = text.contains(&format!("\n{name} = {{ near"));
+                    if !on_frame && !label {
                         let w = link.world(*p);
                         let _ = writeln!(text, "{name} = {{ near = [{:e}, {:e}] }}", w[0], w[1]);
                     }
