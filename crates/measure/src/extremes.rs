@@ -9,6 +9,6 @@ pub(crate) type At = (f64, f64);
 #[derive(Clone, Debug)]
 pub(crate) struct Extremes {
     pub measure: Measure,
-    /// Its smallest and largest value with their times; `None` where it has no value somewhere, or was not asked for them.
+    /// Its smallest and largest value with their times, of samples only where no statistic asks for the one; `None` where it has no value somewhere, or was not asked for them.
     pub found: Option<(At, At)>,
 }

@@ -45,12 +45,16 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
                 let Some((low, high)) = self.sampler.extremes(measure) else {
                     return nothing;
                 };
-                let (low, high) = (self.extreme(measure, low.0), self.extreme(measure, high.0));
+                // One that no statistic asks for is not closed in on: nothing is taken from there.
                 match statistic {
-                    Statistic::Min => low.1,
-                    Statistic::Max => high.1,
-                    Statistic::Range => high.1 - low.1,
+                    Statistic::Min => self.extreme(measure, low.0).1,
+                    Statistic::Max => self.extreme(measure, high.0).1,
                     _ => {
+                        let (low, high) =
+                            (self.extreme(measure, low.0), self.extreme(measure, high.0));
+                        if statistic == Statistic::Range {
+                            return high.1 - low.1;
+                        }
                         let duration = self.duration();
                         time_ratio(self.sampler, high.0 - low.0, duration)
                     }
