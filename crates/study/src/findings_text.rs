@@ -236,8 +236,7 @@ pub(crate) fn kind_text(model: &Model, group: &AssurGroup) -> String {
         GroupKind::Rpp => "RPP dyad",
         GroupKind::Pair => "pair of links",
         GroupKind::Larger(links) => {
-            let roman = ["I", "II", "III", "IV", "V", "VI", "VII", "VIII"];
-            let class = roman.get(group.class as usize - 1).unwrap_or(&"higher");
+            let class = roman(group.class);
             return with_drives(
                 model,
                 group,
@@ -270,12 +269,7 @@ fn group_text(class: u32, kind: &str, closed_form: bool) -> String {
 }
 
 fn roman(n: u32) -> String {
-    match n {
-        1 => "I".into(),
-        2 => "II".into(),
-        3 => "III".into(),
-        4 => "IV".into(),
-        5 => "V".into(),
-        n => n.to_string(),
-    }
+    let known = ["I", "II", "III", "IV", "V", "VI", "VII", "VIII"];
+    let found = n.checked_sub(1).and_then(|k| known.get(k as usize));
+    found.map_or_else(|| n.to_string(), |found| (*found).to_owned())
 }
