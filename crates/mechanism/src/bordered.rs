@@ -7,12 +7,13 @@
 mod block_layout;
 mod singular;
 
+use kempe_linear::Qr;
+
 use self::block_layout::BlockLayout;
 
 use crate::Mechanism;
 use crate::constraint::{Joint, Situation};
 use crate::layout::To;
-use kempe_linear::Qr;
 
 /// Most entries outside its block that a row of a joint between two bodies has.
 const COUPLINGS: usize = 6;

@@ -1,5 +1,6 @@
 //! What a position solve fills: the poses at given inputs, with its storage.
 
+use kempe_linear::Qr;
 use kempe_model::DriveId;
 use kempe_number::Number;
 use kempe_units::Dimension;
@@ -13,7 +14,6 @@ use crate::ids::{BodyId, LineRef, Marker};
 use crate::local_marker::LocalMarker;
 use crate::pose::Pose;
 use crate::spanning_tree::{ON_STACK, SpanningTree};
-use kempe_linear::Qr;
 
 /// Inputs and poses at one instant, and the storage a solve needs.
 #[derive(Clone, Debug)]

@@ -1,5 +1,7 @@
 //! Freedoms counted and measured.
 
+use kempe_linear::{SparseRow, rank};
+
 use crate::Mechanism;
 use crate::branch::Branch;
 use crate::configuration::Configuration;
@@ -8,7 +10,6 @@ use crate::design::Design;
 use crate::evidence::is_finite;
 use crate::layout::{Columns, Rows, rows_of, unknowns_of};
 use crate::pose::Pose;
-use kempe_linear::{SparseRow, rank};
 
 /// Mobility two ways.
 #[derive(Clone, Debug, PartialEq)]

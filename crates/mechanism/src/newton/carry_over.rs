@@ -1,5 +1,6 @@
 //! Newton blocks on plain numbers, and from there on richer ones.
 
+use kempe_linear::{Matrix, Plain, Qr};
 use kempe_number::Number;
 
 use super::PlanNumber;
@@ -16,8 +17,6 @@ use crate::geometry::Geometry;
 use crate::plan::NewtonBlock;
 use crate::pose::Pose;
 use crate::spanning_tree::{ON_STACK, SpanningTree};
-use kempe_linear::Qr;
-use kempe_linear::{Matrix, Plain};
 
 /// Solves on plain numbers, then makes the higher parts exact.
 pub(super) fn carry_over<T: PlanNumber>(

@@ -1,5 +1,6 @@
 //! Newton's method in the coordinates of a spanning tree, on plain numbers or in lanes.
 
+use kempe_linear::{Elimination, Matrix, Plain};
 use kempe_number::Number;
 
 use super::plain::{NEWTON_LIMIT, NEWTON_STEP};
@@ -9,7 +10,6 @@ use crate::constraint::{Input, Situation};
 use crate::geometry::Geometry;
 use crate::pose::Pose;
 use crate::spanning_tree::{ON_STACK, SpanningTree};
-use kempe_linear::{Elimination, Matrix, Plain};
 
 /// What Newton's method on a tree works on and with.
 pub(super) struct Iteration<'a, P> {

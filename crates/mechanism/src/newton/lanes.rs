@@ -1,5 +1,6 @@
 //! Blocks of several designs: solved in lanes, or lane by lane.
 
+use kempe_linear::Plain;
 use kempe_number::{Jet, Lanes, Number};
 
 use super::carry_over::{plain_part, sharpen};
@@ -10,7 +11,6 @@ use crate::configuration::Configuration;
 use crate::design::Design;
 use crate::plan::NewtonBlock;
 use crate::spanning_tree::SpanningTree;
-use kempe_linear::Plain;
 
 /// A number whose parts are lanes, so that one lane can be looked at alone.
 pub(super) trait Laned<const W: usize>: Number {

@@ -1,6 +1,7 @@
 //! The equations of a spanning tree: where its bodies hang, how far its loops stand open, and the derivatives to its
 //! coordinates.
 
+use kempe_linear::Matrix;
 use kempe_number::Number;
 
 use crate::Mechanism;
@@ -8,7 +9,6 @@ use crate::constraint::Situation;
 use crate::geometry::Geometry;
 use crate::pose::{Pose, cross, left, sub};
 use crate::spanning_tree::{OtherRow, SpanningTree};
-use kempe_linear::Matrix;
 
 impl SpanningTree {
     /// Places all bodies that hang by pins, and fills the points of the tree: its pins, the origins of its roots, and the

@@ -1,5 +1,7 @@
 //! Newton's method on plain numbers.
 
+use kempe_linear::Qr;
+
 use super::rows::{apply_step, factor_block, fill_residuals};
 use crate::Mechanism;
 use crate::blocks::Unknown;
@@ -8,7 +10,6 @@ use crate::constraint::{Input, Situation};
 use crate::geometry::Geometry;
 use crate::plan::NewtonBlock;
 use crate::pose::Pose;
-use kempe_linear::Qr;
 
 /// A scaled step below this is taken as converged (one more step is made after it).
 pub const NEWTON_STEP: f64 = 1e-9;

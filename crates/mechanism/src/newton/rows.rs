@@ -1,5 +1,6 @@
 //! The rows of a block: residuals, Jacobian, and the step they ask for.
 
+use kempe_linear::Qr;
 use kempe_number::Number;
 
 use crate::Mechanism;
@@ -7,7 +8,6 @@ use crate::blocks::Unknown;
 use crate::constraint::Situation;
 use crate::plan::NewtonBlock;
 use crate::pose::Pose;
-use kempe_linear::Qr;
 
 /// Fills the block's Jacobian into `qr` and factors it.
 pub(super) fn factor_block(

@@ -4,6 +4,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use kempe_linear::{Elimination, Matrix, Qr};
 use kempe_model::Model;
 use kempe_number::{Dual, Number};
 
@@ -13,8 +14,6 @@ use crate::constraint::{Coincide, Constraint, Input, Situation};
 use crate::geometry::Geometry;
 use crate::pose::Pose;
 use crate::spanning_tree::SpanningTree;
-use kempe_linear::Qr;
-use kempe_linear::{Elimination, Matrix};
 
 /// Files with Newton groups: of pins alone, with sliders, gears, racks and bodies that no pin holds.
 const FILES: [&str; 9] = [
