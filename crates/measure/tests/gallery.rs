@@ -7,6 +7,7 @@ mod support;
 use kempe_measure::Sampler;
 use kempe_model::Measure;
 use kempe_motion::EndReason;
+use kempe_motion::trace::Path;
 use support::{Case, spread};
 
 #[test]
@@ -41,17 +42,32 @@ fn every_example_closes_over_its_whole_range() {
             for p in spread(&motion, 25) {
                 let row = sampler.at_parameter(p);
                 assert!(row.closure < 1e-12, "{name} at {p}: {:e}", row.closure);
-                let diagnostic = row
+                assert_eq!(
+                    bits(&sampler.values_at_parameter(p)),
+                    bits(&row.values),
+                    "{name} at {p}: values alone"
+                );
+                let label = row
                     .note
                     .as_ref()
                     .map_or_else(String::new, |note| note.text(motion.mechanism()));
-                let fine = diagnostic.is_empty()
-                    || diagnostic.starts_with("change point")
-                    || diagnostic.starts_with("limit");
-                assert!(fine, "{name} at {p}: {diagnostic}");
+                let fine = label.is_empty()
+                    || label.starts_with("change point")
+                    || label.starts_with("limit");
+                assert!(fine, "{name} at {p}: {label}");
             }
+            // Beyond the motion there is nothing to measure.
+            let beyond = motion.reached().1 + motion.path.scale();
+            let values = sampler.values_at_parameter(beyond);
+            assert!(values.iter().all(|v| v.is_nan()), "{name}: {values:?}");
             count += 1;
         }
     }
     assert!(count >= 27, "{count} examples");
+}
+
+/// The bits of numbers; those that are none are all alike.
+fn bits(values: &[f64]) -> Vec<u64> {
+    let one = |v: &f64| if v.is_nan() { u64::MAX } else { v.to_bits() };
+    values.iter().map(one).collect()
 }

@@ -282,11 +282,14 @@ fn a_point_that_turns_back_has_no_curvature() {
         1.0,
         "k = \"curvature(C)\"\ncx = \"curvature_center_x(C)\"\ncircle = \"curvature(B)\"\nix = \"instant_center_x(block)\"\niy = \"instant_center_y(block)\"",
     );
+    let motion = Case::read(&text, "over.toml").must_move();
     for row in rows(&text, &[0.0, 0.5, 1.0]) {
         assert!(row.values[0].is_nan() && row.values[1].is_nan(), "{row:?}");
-        assert!(
-            matches!(&row.note, Some(RowNote::Still(points)) if points.len() == 1),
-            "{row:?}"
+        let note = row.note.unwrap();
+        assert!(matches!(&note, RowNote::Still(points) if points.len() == 1));
+        assert_eq!(
+            note.text(motion.mechanism()),
+            "C stands still: no curvature of path here"
         );
         near(row.values[2], -50.0, 1e-12, "circle");
         assert_eq!(row.values[3..], [f64::INFINITY; 2]);

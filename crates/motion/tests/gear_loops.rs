@@ -130,14 +130,14 @@ fn what_comes_after_a_gear_loop_is_no_work_in_it() {
     let start: Vec<f64> = (case.model.drives.iter())
         .map(|d| d.law.at(0.0, &case.parameters))
         .collect();
-    let mut diagnostic = 0;
+    let mut label = 0;
     let mut progress = |_: Stage, _: Done| {
-        diagnostic += 1;
+        label += 1;
         ControlFlow::Continue(())
     };
     let found = find_assemblies(&case.design, &start, &mut progress);
     assert_eq!(found.unwrap().list.len(), 2);
-    assert!(diagnostic < 20_000, "{diagnostic}");
+    assert!(label < 20_000, "{label}");
 }
 
 /// The angles that a gear ties count from the hints: the same five-bar with its wheel hinted a turn further on has another

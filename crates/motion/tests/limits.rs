@@ -125,13 +125,13 @@ fn rows_to_the_end(motion: &std::sync::Arc<Motion>) {
             low + (high - low) * f64::from(k) / 12.0
         };
         let row = sampler.at_parameter(p);
-        let diagnostic =
+        let label =
             (row.note.as_ref()).map_or_else(|| "limit".to_owned(), |n| n.text(motion.mechanism()));
         assert!(
-            diagnostic.starts_with("limit") || diagnostic.starts_with("change"),
-            "{p}: {diagnostic}"
+            label.starts_with("limit") || label.starts_with("change"),
+            "{p}: {label}"
         );
-        assert!(row.closure < 1e-11, "{p}: {:e} {diagnostic}", row.closure);
+        assert!(row.closure < 1e-11, "{p}: {:e} {label}", row.closure);
     }
 }
 
@@ -288,17 +288,14 @@ fn follow_through(l: [f64; 4], from: f64, to: f64, side: &str) {
             low + (high - low) * f64::from(k) / 40.0
         };
         let row = sampler.at_parameter(p);
-        let diagnostic =
-            (row.note.as_ref()).map_or_else(String::new, |n| n.text(motion.mechanism()));
+        let label = (row.note.as_ref()).map_or_else(String::new, |n| n.text(motion.mechanism()));
         assert!(
-            diagnostic.is_empty()
-                || diagnostic.starts_with("change")
-                || diagnostic.starts_with("limit"),
-            "{l:?} at {p}: {diagnostic}"
+            label.is_empty() || label.starts_with("change") || label.starts_with("limit"),
+            "{l:?} at {p}: {label}"
         );
         assert!(
             row.closure < 1e-10,
-            "{l:?} at {p}: {:e} {diagnostic}",
+            "{l:?} at {p}: {:e} {label}",
             row.closure
         );
         let got = times(point(&case, &row.points, "C"), 1e3);
@@ -307,7 +304,7 @@ fn follow_through(l: [f64; 4], from: f64, to: f64, side: &str) {
         let off = norm(sub(got, truth)) / a.max(b).max(c).max(d);
         if !(off < if near_end { 1e-5 } else { 1e-8 }) && norm(sub(polar(a, p), [d, 0.0])) > 1e-3 {
             panic!(
-                "{l:?} {side} from {from}, at {p}: C at {got:?}, not {truth:?}: {off:e} {diagnostic} {:?}",
+                "{l:?} {side} from {from}, at {p}: C at {got:?}, not {truth:?}: {off:e} {label} {:?}",
                 motion.events
             );
         }

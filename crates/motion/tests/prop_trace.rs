@@ -150,14 +150,14 @@ fn is_fresh(again: &Motion, fresh: &Motion, what: &str) {
     assert_eq!(again.ends, fresh.ends, "{what}");
     assert_eq!(again.choices, fresh.choices, "{what}");
     assert_eq!(again.anchor, fresh.anchor, "{what}");
-    let diagnostic = |motion: &Motion| -> Vec<_> {
+    let label = |motion: &Motion| -> Vec<_> {
         motion
             .events
             .iter()
             .map(|e| (e.kind, e.steps.clone()))
             .collect()
     };
-    assert_eq!(diagnostic(again), diagnostic(fresh), "{what}");
+    assert_eq!(label(again), label(fresh), "{what}");
     for (a, b) in again.events.iter().zip(&fresh.events) {
         assert!((a.at - b.at).abs() < 1e-9, "{what}: {} {}", a.at, b.at);
     }

@@ -123,7 +123,7 @@ fn flat_four_bars_start_on_one_of_the_branches_through_the_pose() {
                 continue;
             };
             let l = [a, b, c, d];
-            let diagnostic = format!("{l:?} from {from}");
+            let label = format!("{l:?} from {from}");
             let expected = slopes(l, [crank, coupler, rocker]);
             tried += 1;
             for to in [from + 10.0, from - 10.0] {
@@ -132,32 +132,31 @@ fn flat_four_bars_start_on_one_of_the_branches_through_the_pose() {
                 assert_eq!(
                     motion.ends,
                     (EndReason::Covered, EndReason::Covered),
-                    "{diagnostic}"
+                    "{label}"
                 );
-                assert_eq!(change_points(&motion), [from * DEG], "{diagnostic}");
-                assert_eq!(motion.choices, 2, "{diagnostic}");
+                assert_eq!(change_points(&motion), [from * DEG], "{label}");
+                assert_eq!(motion.choices, 2, "{label}");
                 let first = row(&case, &motion, from * DEG);
                 let note = first.note.unwrap();
                 assert!(
                     matches!(note, RowNote::StartsOnChangePoint { choices: 2, .. }),
-                    "{diagnostic}: {note:?}"
+                    "{label}: {note:?}"
                 );
+                let text = note.text(motion.mechanism());
+                assert!(text.contains("2 branches"), "{label}: {text}");
                 let (angle, slope) = (first.values[0], first.values[1]);
-                assert!(
-                    (angle.cos() - rocker).abs() < 1e-15,
-                    "{diagnostic}: {angle}"
-                );
-                assert!(angle.sin().abs() < 1e-10, "{diagnostic}: {angle}");
+                assert!((angle.cos() - rocker).abs() < 1e-15, "{label}: {angle}");
+                assert!(angle.sin().abs() < 1e-10, "{label}: {angle}");
                 let off = expected
                     .map(|e| (slope - e).abs())
                     .into_iter()
                     .fold(1.0, f64::min);
-                assert!(off < 1e-7, "{diagnostic}: {slope} of {expected:?}");
+                assert!(off < 1e-7, "{label}: {slope} of {expected:?}");
                 // The rows go on as the first ones say.
                 let h = (to - from).signum() * 1e-3;
                 let next = row(&case, &motion, from * DEG + h);
                 let guess = angle + slope * h + 0.5 * first.values[2] * h * h;
-                assert!((next.values[0] - guess).abs() < 1e-5, "{diagnostic}");
+                assert!((next.values[0] - guess).abs() < 1e-5, "{label}");
             }
         }
     }
@@ -175,13 +174,13 @@ fn hints_choose_the_branch_at_a_flat_start() {
             let motion = case.must_move();
             assert_eq!(motion.choices, 1, "{l:?}");
             let first = row(&case, &motion, 0.0);
+            let note = first.note.unwrap();
             assert!(
-                matches!(
-                    first.note,
-                    Some(RowNote::StartsOnChangePoint { choices: 1, .. })
-                ),
+                matches!(note, RowNote::StartsOnChangePoint { choices: 1, .. }),
                 "{l:?}"
             );
+            let text = note.text(motion.mechanism());
+            assert!(text.contains("fits the hints"), "{l:?}: {text}");
             found.push(first.values[1]);
         }
         let mut expected = slopes(l, [1.0, -1.0, -1.0]);
