@@ -264,7 +264,7 @@ impl Pose {
             }
             (passed, forces) => {
                 let mut along = Along::new(model, &self.motion, &quantities, forces)
-                    .map_err(|diagnostic| self.compiled.errors(diagnostic))?;
+                    .map_err(|diagnostics| self.compiled.errors(diagnostics))?;
                 let row = along.row(match passed {
                     Passed::At(time) => RowPlace::Time(time),
                     _ => RowPlace::Drive(self.at),

@@ -260,7 +260,7 @@ impl Session {
     fn take(&mut self, given: Vec<Option<f64>>) -> Result<(), Error> {
         let design = self.compiled.design(&given);
         let model = &design.mechanism.model;
-        let mut diagnostic: Vec<Diagnostic> = (model.parameters.iter().zip(&design.parameters))
+        let mut diagnostics: Vec<Diagnostic> = (model.parameters.iter().zip(&design.parameters))
             .filter(|(_, value)| !value.is_finite())
             .map(|(p, value)| {
                 Diagnostic::error("not-finite", format!("parameter `{}` is {value}", p.name))
@@ -270,9 +270,9 @@ impl Session {
                     )
             })
             .collect();
-        diagnostic.extend(model.unsound(&design.parameters));
-        if !diagnostic.is_empty() {
-            return Err(self.compiled.errors(diagnostic));
+        diagnostics.extend(model.unsound(&design.parameters));
+        if !diagnostics.is_empty() {
+            return Err(self.compiled.errors(diagnostics));
         }
         self.given = given;
         self.design = design;
@@ -344,7 +344,7 @@ impl Asked {
         model: &kempe_model::Model,
         measures: impl IntoIterator<Item = M>,
     ) -> Result<Self, Error> {
-        let mut diagnostic = Vec::new();
+        let mut diagnostics = Vec::new();
         let mut it = Self {
             quantities: Vec::new(),
             forces: Vec::new(),
@@ -368,12 +368,12 @@ impl Asked {
                         dimension,
                     });
                 }
-                Err(problems) => diagnostic.extend(problems),
+                Err(problems) => diagnostics.extend(problems),
             }
         }
-        match diagnostic.is_empty() {
+        match diagnostics.is_empty() {
             true => Ok(it),
-            false => Err(compiled.errors(diagnostic)),
+            false => Err(compiled.errors(diagnostics)),
         }
     }
 

@@ -230,7 +230,7 @@ pub(crate) fn rows(
         &rows,
         progress,
     )
-    .map_err(|diagnostic| compiled.errors(diagnostic))?;
+    .map_err(|diagnostics| compiled.errors(diagnostics))?;
     let (name, dimension) = way.places(compiled);
     let column = |heading: Heading| Block::new(heading, places.len());
     let mut sweep = Sweep {

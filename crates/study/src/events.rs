@@ -26,11 +26,11 @@ pub(crate) fn events(motion: &Motion, units: &Units, parameters: &[f64]) -> Vec<
             .min_by(|a, b| gap(a).total_cmp(&gap(b)))
             .unwrap_or(0)
     };
-    let diagnostic = motion
+    let shown = motion
         .events
         .iter()
         .filter(|e| e.kind != EventKind::ModeChange);
-    diagnostic
+    shown
         .map(|event| Event {
             kind: event.kind,
             at: event.at,

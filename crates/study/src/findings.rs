@@ -216,11 +216,11 @@ pub fn check_with_progress(model: &Model, progress: &mut dyn Progress) -> Report
 /// How the assembly was chosen where several agree with the file, and which hints decide nothing.
 fn chosen(design: &Design<f64>, assemblies: &Assemblies, units: &Units) -> Vec<String> {
     let mechanism = &*design.mechanism;
-    let mut diagnostic = Vec::new();
+    let mut words = Vec::new();
     if let [first, second, ..] = assemblies.list.as_slice() {
         let text = |a: &Assembly| units.text(a.distance, Dimension::LENGTH);
         let decided = hints::near_decides(design, assemblies);
-        diagnostic.push(match decided {
+        words.push(match decided {
             true => format!(
                 "the nearest to [assembly], {} from it; the next is {} away",
                 text(first),
@@ -230,13 +230,13 @@ fn chosen(design: &Design<f64>, assemblies: &Assemblies, units: &Units) -> Vec<S
         });
     }
     let idle = hints::idle(design, assemblies).into_iter();
-    diagnostic.extend(idle.map(|(index, why)| {
+    words.extend(idle.map(|(index, why)| {
         format!(
             "{} decides nothing: {why}",
             hints::text(&mechanism.model, index)
         )
     }));
-    diagnostic
+    words
 }
 
 /// Whether the file leaves open which assembly is meant.
@@ -250,14 +250,14 @@ fn open_choice(design: &Design<f64>, assemblies: &Assemblies) -> bool {
 /// What Kempe takes for granted where the file is silent.
 fn assumptions(model: &Model, units: &Units) -> Vec<String> {
     let parameters: Vec<f64> = model.parameter_values();
-    let mut diagnostic = vec![format!(
+    let mut assumed = vec![format!(
         "bare numbers: lengths in {0}, angles in {1}, speeds in {0}/s and {1}/s",
         model.units.length.name, model.units.angle.name
     )];
     for drive in &model.drives {
         let law = &drive.law;
         let (low, high) = law.extent(&parameters);
-        diagnostic.push(format!(
+        assumed.push(format!(
             "drive {}: {} to {} in {}",
             drive.name,
             units.text(low, drive.dimension),
@@ -265,18 +265,18 @@ fn assumptions(model: &Model, units: &Units) -> Vec<String> {
             units.text(law.duration(&parameters), Dimension::TIME)
         ));
     }
-    diagnostic.extend(crate::findings_forces::assumptions(model, units));
+    assumed.extend(crate::findings_forces::assumptions(model, units));
     if model.assembly.is_empty() {
-        diagnostic.push("assembly: the first found, as the file names none".to_owned());
+        assumed.push("assembly: the first found, as the file names none".to_owned());
     }
-    diagnostic.extend(model.studies.iter().map(|study| {
+    assumed.extend(model.studies.iter().map(|study| {
         format!(
             "study {}: {}",
             study.name,
             study_text(model, study, &parameters, units)
         )
     }));
-    diagnostic
+    assumed
 }
 
 /// What a study is, and where its rows stand.
@@ -317,11 +317,11 @@ fn study_text(model: &Model, study: &Study, parameters: &[f64], units: &Units) -
 
 fn diagnostics(model: &Model, design: &Design<f64>, found: &Findings) -> Vec<Diagnostic> {
     let mechanism = &*design.mechanism;
-    let mut diagnostic = crate::findings_forces::problems(design);
+    let mut diagnostics = crate::findings_forces::problems(design);
     if let Some(problem) = &found.problem {
         let problem = cannot_move(design, problem);
         // A file need not say what moves it: only what asks for a motion cannot do without.
-        diagnostic.push(match problem.code {
+        diagnostics.push(match problem.code {
             "no-drive" if found.mobility.by_rank == Some(0) => {
                 Diagnostic::warning("no-drive", "nothing can move: the links hold each other")
                     .help("a mechanism has a joint more, or a link less")
@@ -334,7 +334,7 @@ fn diagnostics(model: &Model, design: &Design<f64>, found: &Findings) -> Vec<Dia
     if let (Some(rank), true) = (found.mobility.by_rank, whole) {
         let free = rank.saturating_sub(found.idle.len());
         if free < found.drives {
-            diagnostic.push(
+            diagnostics.push(
                 Diagnostic::warning(
                     "overdriven",
                     format!("{} drives move {free} freedoms at the start", found.drives),
@@ -344,7 +344,7 @@ fn diagnostics(model: &Model, design: &Design<f64>, found: &Findings) -> Vec<Dia
         }
         if found.mobility.count != rank as i64 {
             let redundant = found.mobility.redundant_rows.unwrap_or(0);
-            diagnostic.push(
+            diagnostics.push(
                 Diagnostic::warning(
                     "overconstrained",
                     format!(
@@ -362,7 +362,7 @@ fn diagnostics(model: &Model, design: &Design<f64>, found: &Findings) -> Vec<Dia
             .iter()
             .map(|b| format!("`{}`", mechanism.body_name(*b)))
             .collect();
-        diagnostic.push(Diagnostic::warning(
+        diagnostics.push(Diagnostic::warning(
             "idle-freedom",
             format!(
                 "{} can turn by itself without moving anything else",
@@ -376,7 +376,7 @@ fn diagnostics(model: &Model, design: &Design<f64>, found: &Findings) -> Vec<Dia
             true => "fit the file",
             false => "agree with the file",
         };
-        let told_now = Diagnostic::warning(
+        let warning = Diagnostic::warning(
             "several-assemblies",
             format!(
                 "{} assemblies {agree}: the first was chosen",
@@ -392,16 +392,16 @@ fn diagnostics(model: &Model, design: &Design<f64>, found: &Findings) -> Vec<Dia
             (false, false) => "write the line of the one that is meant under [assembly] too",
         };
         let lines = lines.into_iter().enumerate();
-        let told_now = lines.fold(told_now, |diagnostic, (k, line)| match k {
+        let warning = lines.fold(warning, |diagnostic, (k, line)| match k {
             0 => diagnostic.note(format!("the first: {line}")),
             _ => diagnostic.note(format!("number {}: {line}", k + 1)),
         });
         let idle = hints::idle(design, &found.assemblies).into_iter();
-        let told_now = idle.fold(told_now, |diagnostic, (index, why)| {
+        let warning = idle.fold(warning, |diagnostic, (index, why)| {
             let span = model.assembly[index].span.clone();
             diagnostic.at(span, format!("decides nothing: {why}"))
         });
-        diagnostic.push(told_now.help(help));
+        diagnostics.push(warning.help(help));
     }
     // Where hints have chosen one, what may be missing is not it.
     if let (Some(shortfall), None, true) = (found.assemblies.shortfall, &found.problem, open) {
@@ -416,7 +416,7 @@ fn diagnostics(model: &Model, design: &Design<f64>, found: &Findings) -> Vec<Dia
             Shortfall::Exhausted => "a group has more of them than could be followed",
             Shortfall::TooMany => "there are too many to list",
         };
-        diagnostic.push(
+        diagnostics.push(
             Diagnostic::warning(
                 "assemblies-incomplete",
                 format!("some assemblies may be missing: {why}"),
@@ -433,7 +433,7 @@ fn diagnostics(model: &Model, design: &Design<f64>, found: &Findings) -> Vec<Dia
             let beyond =
                 (below && low < reach.range.0 - slack) || (above && high > reach.range.1 + slack);
             if beyond {
-                diagnostic.push(
+                diagnostics.push(
                     Diagnostic::error(
                         "range-beyond-limit",
                         format!(
@@ -451,5 +451,5 @@ fn diagnostics(model: &Model, design: &Design<f64>, found: &Findings) -> Vec<Dia
             }
         }
     }
-    diagnostic
+    diagnostics
 }

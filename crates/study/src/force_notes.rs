@@ -61,7 +61,7 @@ impl ForceNotes {
 
     /// A warning for each kind; rows are told by their value in the column `along`.
     pub fn warnings(&self, mechanism: &Mechanism, table: &Table, along: usize) -> Vec<Diagnostic> {
-        let diagnostic = self.kinds.iter().map(|kind| {
+        let warnings = self.kinds.iter().map(|kind| {
             let text = kind.worst.1.text(mechanism);
             let everywhere = kind.count == table.rows();
             let message = if everywhere && kind.worst.1.severity() == 0.0 {
@@ -88,7 +88,7 @@ impl ForceNotes {
                 ))
             }
         });
-        diagnostic.collect()
+        warnings.collect()
     }
 }
 
@@ -121,7 +121,7 @@ pub(crate) fn unbounded(
     let holding = scalars
         .iter()
         .filter(|q| holds_joint_load(mechanism, &q.measure));
-    let diagnostic = holding.map(|q| {
+    let warnings = holding.map(|q| {
         Diagnostic::warning(
             "unbounded-load",
             format!(
@@ -132,7 +132,7 @@ pub(crate) fn unbounded(
         .note("its value tells how near that pose was looked at; the condition of every row stands in the table")
         .help("ask for it over a motion that keeps away from that pose")
     });
-    diagnostic.collect()
+    warnings.collect()
 }
 
 /// Whether a measure asks for what a joint carries, itself or by another measure.

@@ -185,7 +185,7 @@ fn off_the_motion(model: &Model, time: f64) -> Option<Diagnostic> {
 }
 
 /// What keeps the drives from going to a place, told of the place that was asked for.
-fn at_the_settings(diagnostic: Vec<Diagnostic>, settings: &[Setting]) -> Vec<Diagnostic> {
+fn at_the_settings(diagnostics: Vec<Diagnostic>, settings: &[Setting]) -> Vec<Diagnostic> {
     let of_the_way = |d: &Diagnostic| {
         [
             "range-beyond-limit",
@@ -195,7 +195,7 @@ fn at_the_settings(diagnostic: Vec<Diagnostic>, settings: &[Setting]) -> Vec<Dia
         ]
         .contains(&d.code)
     };
-    let moved = diagnostic.into_iter().map(|mut d| {
+    let moved = diagnostics.into_iter().map(|mut d| {
         if !of_the_way(&d) || settings.is_empty() {
             return d;
         }
@@ -277,7 +277,7 @@ pub fn pose_at(model: &Model, settings: &[Setting]) -> Result<(Frame, String), V
         };
     }
     let result = run_motion(&moved, "pose", &study(Rows::Count(2)), &mut Silent)
-        .map_err(|diagnostic| at_the_settings(diagnostic, settings))?;
+        .map_err(|diagnostics| at_the_settings(diagnostics, settings))?;
     let last = result.frames.into_iter().next_back();
     let reached = result.table.closure.last().is_some_and(|c| c.is_finite());
     match last {

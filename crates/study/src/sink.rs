@@ -19,7 +19,7 @@ pub(crate) struct RowSink {
     drives: Vec<Unit>,
     columns: usize,
     curves: Vec<Column>,
-    diagnostic: ForceNotes,
+    force_notes: ForceNotes,
     pub scalars: Vec<Scalar>,
 }
 
@@ -55,7 +55,7 @@ impl RowSink {
                 forces: None,
                 notes: Vec::new(),
             },
-            diagnostic: ForceNotes::default(),
+            force_notes: ForceNotes::default(),
             drives,
             columns: asked.columns.len(),
             curves: asked.curves.iter().map(column).collect(),
@@ -101,7 +101,7 @@ impl RowSink {
             columns.route_difference.push(of(|e| e.route_difference));
             columns.residual.push(of(|e| e.residual));
             columns.condition.push(of(|e| e.condition));
-            self.diagnostic.add(at, forces.notes);
+            self.force_notes.add(at, forces.notes);
             arrows = forces.arrows;
         }
         self.table.notes.push(note);
@@ -133,7 +133,7 @@ impl RowSink {
 
     /// What was noted about the forces, as warnings.
     pub fn force_warnings(&self, mechanism: &Mechanism, along: usize) -> Vec<Diagnostic> {
-        self.diagnostic.warnings(mechanism, &self.table, along)
+        self.force_notes.warnings(mechanism, &self.table, along)
     }
 }
 

@@ -29,7 +29,7 @@ pub(crate) fn left_slots(
         let value = kempe_number::text::significant(unit.from_si(si), 3);
         format!("{value} {}", unit.text())
     };
-    let diagnostic = model.joints.iter().filter_map(|joint| {
+    let warnings = model.joints.iter().filter_map(|joint| {
         let pin = match &joint.kind {
             JointKind::ArcSlot { pin, on } if !on.closed => pin,
             JointKind::CurveSlot { pin, on } if !on.closed => pin,
@@ -67,7 +67,7 @@ pub(crate) fn left_slots(
             .help("move the ends of the slot apart, or say `closed = true` where it goes all the way round"),
         )
     });
-    diagnostic.collect()
+    warnings.collect()
 }
 
 /// How far a pin is from the nearest place of its slot, m, where it has left that; `None` in it or without a pose.

@@ -103,9 +103,9 @@ impl Search<'_> {
         let (mechanism, size) = (self.mechanism, self.size);
         let mut work = self.work;
         let earlier = self.earlier.get(self.paths.len());
-        let diagnostic = &mut |part| self.tell(Some(part));
+        let hears = &mut |part| self.tell(Some(part));
         let solutions = all_real_solutions(
-            block, mechanism, &situation, size, earlier, &mut work, diagnostic,
+            block, mechanism, &situation, size, earlier, &mut work, hears,
         );
         self.work = work;
         match solutions {

@@ -67,12 +67,12 @@ pub(crate) fn candidates(
     let mut follower = Follower::new(&opened, &path);
     let mut curves: Vec<Vec<Node>> = Vec::new();
     for cut in 0..CUTS {
-        let mut diagnostic = |_: Stage, _: Done| -> ControlFlow<()> {
+        let mut hears = |_: Stage, _: Done| -> ControlFlow<()> {
             progress.reached(Stage::Assembling, Done::Part(cut as f64 / CUTS as f64))
         };
         let angle = (cut as f64 + OFFSET) / CUTS as f64 * std::f64::consts::TAU;
         held[drive] = angle;
-        let found = Search::new(&opened, &held, &mut diagnostic).run()?;
+        let found = Search::new(&opened, &held, &mut hears).run()?;
         for assembly in &found.list {
             let z = follower.scaled(&assembly.poses, &assembly.branch.near, angle);
             if curves.iter().any(|curve| passes(curve, &z)) {
@@ -88,7 +88,7 @@ pub(crate) fn candidates(
                     &opened.mechanism,
                     &path,
                     f64::INFINITY,
-                    &mut diagnostic,
+                    &mut hears,
                 )?;
                 curves.push(nodes);
                 if closed {
