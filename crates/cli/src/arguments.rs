@@ -11,9 +11,9 @@ use clap::{Args, Parser, Subcommand};
     version,
     propagate_version = true,
     after_help = "Start here:\n  kempe new my-linkage.toml\n  kempe run my-linkage.toml --out results\n\n\
-                  Exit codes:\n  0    all is well\n  1    something was found: a warning of check, a miss of verify, rows that were not reached\n  \
+                  Exit codes:\n  0    all is well\n  1    done, and something was found: a warning, a miss of verify, a gap in a proof\n  \
                   2    the command line or the model file is wrong, or a file cannot be read or written\n  \
-                  3    the mechanism cannot be assembled or moved as asked\n  130  stopped by Ctrl-C: finished rows and studies are kept, a check tells what it found"
+                  3    the mechanism cannot be assembled or moved as asked, or a warning with --strict\n  130  stopped by Ctrl-C: finished rows and studies are kept, a check tells what it found"
 )]
 pub struct Arguments {
     /// What to do.
@@ -53,6 +53,9 @@ pub struct ModelFile {
     /// Set a parameter, as in --set a=25mm; may be repeated
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = name_and_value)]
     pub set: Vec<(String, String)>,
+    /// Take every warning for an error: exit code 3, and nothing is written
+    #[arg(long)]
+    pub strict: bool,
 }
 
 fn name_and_value(text: &str) -> Result<(String, String), String> {

@@ -7,13 +7,17 @@ use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use kempe_model::{Diagnostic, Severity};
 use serde_json::Value;
 
+use crate::exit::Exit;
+
 /// Says diagnostics about one file.
 pub struct Speaker {
     json: bool,
     quiet: bool,
+    strict: bool,
     file: String,
     text: String,
-    diagnostics: Vec<Value>,
+    /// What was said: nothing is said twice.
+    told: Vec<Diagnostic>,
 }
 
 impl Speaker {
@@ -22,10 +26,17 @@ impl Speaker {
         Self {
             json,
             quiet,
+            strict: false,
             file: String::new(),
             text: String::new(),
-            diagnostics: Vec::new(),
+            told: Vec::new(),
         }
+    }
+
+    /// As it is, but every warning is an error.
+    pub fn strictly(mut self, strict: bool) -> Self {
+        self.strict = strict;
+        self
     }
 
     /// The file that diagnostics are about from now on.
@@ -37,21 +48,39 @@ impl Speaker {
     /// Says diagnostics.
     pub fn tell(&mut self, diagnostics: &[Diagnostic]) {
         for diagnostic in diagnostics {
-            if self.json {
-                self.diagnostics
-                    .push(kempe_study::encode::diagnostic(diagnostic));
-            } else if !self.quiet || diagnostic.severity == Severity::Error {
+            let mut diagnostic = diagnostic.clone();
+            if self.strict {
+                diagnostic.severity = Severity::Error;
+            }
+            if self.told.contains(&diagnostic) {
+                continue;
+            }
+            if !self.json && (!self.quiet || diagnostic.severity == Severity::Error) {
                 complain(&format!(
                     "{}\n\n",
-                    rendered(diagnostic, &self.file, &self.text)
+                    rendered(&diagnostic, &self.file, &self.text)
                 ));
             }
+            self.told.push(diagnostic);
         }
     }
 
     /// What was said, for the JSON output.
     pub fn diagnostics(&self) -> Value {
-        Value::Array(self.diagnostics.clone())
+        let told = self.told.iter().map(kempe_study::encode::diagnostic);
+        Value::Array(told.collect())
+    }
+
+    /// How a command ends that did its work and said this: found something, or did not find what was asked for.
+    pub fn exit(&self) -> Exit {
+        let worst = |severity| self.told.iter().any(|d| d.severity == severity);
+        if worst(Severity::Error) {
+            Exit::CannotSolve
+        } else if worst(Severity::Warning) {
+            Exit::Finding
+        } else {
+            Exit::Ok
+        }
     }
 
     /// Prints the JSON object of a command that could not be finished.

@@ -42,7 +42,7 @@ fn evil_report() -> Report {
             plot.markers.iter_mut().for_each(|m| m.label = text());
         }
     }
-    for section in &mut report.sections {
+    for section in report.first.iter_mut().chain(&mut report.sections) {
         section.title = text();
         section.blocks = vec![Block::Paragraph(text()), Block::List(vec![text()])];
     }

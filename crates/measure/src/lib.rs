@@ -21,7 +21,7 @@ mod statistics;
 pub use circuit_rows::{circuit_row, circuit_samplers};
 pub use designs_in_lanes::{DesignsInLanes, is_of_poses};
 pub use force_source::{Curve, ForceSource, NoForces};
-pub use prepare::{Unmeasurable, Unprepared};
+pub use prepare::{Unmeasurable, Unprepared, unmeasurable};
 pub use row_note::RowNote;
 pub use sampler::{CLOSURE_LIMIT, Sample, Sampler};
 pub use sensitivity::{Held, Sensitivities, Varying, sensitivities, sensitivities_with};

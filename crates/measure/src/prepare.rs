@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use kempe_mechanism::Mechanism;
 use kempe_mechanism::bordered::Bordered;
 use kempe_model::Measure;
 use kempe_motion::motion::Motion;
@@ -40,6 +41,15 @@ impl Sampler {
     pub fn new(motion: &Arc<Motion>, measures: &[&Measure]) -> Result<Self, Vec<Unmeasurable>> {
         Self::with_forces(motion, measures, NoForces)
     }
+}
+
+/// Which of the measures a mechanism cannot answer, whatever its dimensions and wherever it goes.
+pub fn unmeasurable(mechanism: &Mechanism, measures: &[&Measure]) -> Vec<Unmeasurable> {
+    let problem = |(index, measure): (usize, &&Measure)| {
+        let reason = order_of(mechanism, measure).err()?;
+        Some(Unmeasurable { index, reason })
+    };
+    measures.iter().enumerate().filter_map(problem).collect()
 }
 
 impl<F: ForceSource> Sampler<F> {
@@ -89,13 +99,7 @@ impl<F: ForceSource> Sampler<F> {
         let mut rows: Vec<f64> = rows.iter().copied().filter(|t| t.is_finite()).collect();
         rows.sort_by(f64::total_cmp);
         let mechanism = motion.mechanism();
-        let problems: Vec<Unmeasurable> = (measures.iter().enumerate())
-            .filter_map(|(index, m)| {
-                order_of(mechanism, m)
-                    .err()
-                    .map(|reason| Unmeasurable { index, reason })
-            })
-            .collect();
+        let problems = unmeasurable(mechanism, measures);
         if !problems.is_empty() {
             return Err(Unprepared::Unmeasurable(problems));
         }

@@ -114,6 +114,7 @@ pub const LATER_CODES: &[Code] = &[
     code("friction-not-converged", "loads and friction did not become consistent"),
     code("friction-place", "friction at a joint where nothing slides"),
     code("friction-radius", "friction at a pin needs the pin's radius"),
+    code("hint-missed", "no assembly is near what [assembly] asks for"),
     code("idle-body-driven", "something would turn a link whose angle nothing determines"),
     code("idle-freedom", "a link can turn by itself without moving anything else"),
     code("jammed", "no finite force moves the mechanism against its friction"),

@@ -15,7 +15,7 @@ mod polynomial;
 mod search;
 mod turns;
 
-pub use self::hints::{Standing, standings};
+pub use self::hints::{Found, Standing, found_near, standings};
 pub use self::polynomial::{Solutions, all_real_solutions};
 pub use self::search::{ASSEMBLY_LIMIT, CLOSED};
 

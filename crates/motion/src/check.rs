@@ -1,5 +1,7 @@
 //! Everything worth knowing about a mechanism before it moves.
 
+use std::sync::Arc;
+
 use kempe_mechanism::assur::{AssurGroup, assur_groups};
 use kempe_mechanism::mobility::{Mobility, mobility, state_at};
 use kempe_mechanism::structure::{BodyId, Source};
@@ -40,6 +42,8 @@ pub struct Findings {
     pub searched: bool,
     /// How far the drive can go on this circuit.
     pub reach: Option<Reach>,
+    /// The motion that the drives' laws demand, as far as it goes.
+    pub motion: Option<Arc<Motion>>,
     /// Why there is no motion, if there is none.
     pub problem: Option<MotionError>,
 }
@@ -54,7 +58,7 @@ pub struct Reach {
     pub ends: (EndReason, EndReason),
     /// The drive can turn on without end.
     pub full_turn: bool,
-    /// Dead points and change points met where the file demands the drive to go.
+    /// Dead points and change points of the demanded motion.
     pub events: Vec<Event>,
 }
 
@@ -78,6 +82,7 @@ pub fn check_with_progress(design: &Design<f64>, progress: &mut dyn Progress) ->
         assemblies: Assemblies::default(),
         searched: true,
         reach: None,
+        motion: None,
         problem: None,
     };
     for row in &plan.decomposition.surplus {
@@ -88,17 +93,13 @@ pub fn check_with_progress(design: &Design<f64>, progress: &mut dyn Progress) ->
     }
     match Motion::with_progress(design, progress) {
         Ok(motion) => {
-            if let Some(chosen) = motion.assemblies.list.first() {
-                let mut coordinates = vec![0.0; mechanism.model.drives.len()];
-                motion.path.coordinates(motion.anchor, &mut coordinates);
-                let state = state_at(mechanism, &chosen.poses, &coordinates);
-                findings.mobility = mobility(design, Some((&state, &chosen.branch)));
-            }
+            findings.mobility = mobility_at_start(&motion);
             match reach(&motion, progress) {
                 Ok(reach) => findings.reach = Some(reach),
                 Err(stopped) => findings.problem = Some(stopped),
             }
             findings.assemblies = motion.assemblies.clone();
+            findings.motion = Some(motion);
         }
         Err(problem) => {
             if let MotionError::CannotAssemble { assemblies, .. } = &problem {
@@ -124,19 +125,33 @@ pub fn check_with_progress(design: &Design<f64>, progress: &mut dyn Progress) ->
     findings
 }
 
-/// How far the moving drive can go from its start, beyond what the file demands.
+/// Freedoms in the assembly from which a motion starts.
+pub fn mobility_at_start(motion: &Motion) -> Mobility {
+    let (mechanism, design) = (motion.mechanism(), &motion.design);
+    let Some(chosen) = motion.assemblies.list.first() else {
+        return mobility(design, None);
+    };
+    let mut coordinates = vec![0.0; mechanism.model.drives.len()];
+    motion.path.coordinates(motion.anchor, &mut coordinates);
+    let state = state_at(mechanism, &chosen.poses, &coordinates);
+    mobility(design, Some((&state, &chosen.branch)))
+}
+
+/// How far the moving drive can go from its start. Where the demanded motion ends by itself, that is its end; beyond an end
+/// that was only asked for it is followed on.
 fn reach(motion: &Motion, progress: &mut dyn Progress) -> Result<Reach, MotionError> {
-    let own = || Reach {
+    let mut reach = Reach {
         range: motion.reached(),
         ends: motion.ends,
         full_turn: false,
         events: motion.events.clone(),
     };
+    let open = [motion.ends.0, motion.ends.1].map(|end| end == EndReason::Covered);
     let DrivePath::Coordinate { drive, .. } = &motion.path else {
-        return Ok(own());
+        return Ok(reach);
     };
     let Some(law) = motion.mechanism().model.drives.get(*drive) else {
-        return Ok(own());
+        return Ok(reach);
     };
     let turning = matches!(law.kind, kempe_model::DriveKind::Turn { .. });
     let far = if turning {
@@ -158,14 +173,22 @@ fn reach(motion: &Motion, progress: &mut dyn Progress) -> Result<Reach, MotionEr
         start: motion.anchor,
         assemblies: Some(motion.assemblies.clone()),
     };
+    if open == [false, false] {
+        return Ok(reach);
+    }
     match Motion::along(&motion.design, demand, progress) {
-        Ok(wide) => Ok(Reach {
-            range: wide.reached(),
-            ends: wide.ends,
-            full_turn: turning && wide.ends == (EndReason::Covered, EndReason::Covered),
-            events: wide.met(motion.demanded),
-        }),
+        Ok(wide) => {
+            let (low, high) = wide.reached();
+            if open[0] {
+                (reach.range.0, reach.ends.0) = (low.min(reach.range.0), wide.ends.0);
+            }
+            if open[1] {
+                (reach.range.1, reach.ends.1) = (high.max(reach.range.1), wide.ends.1);
+            }
+            reach.full_turn = turning && reach.ends == (EndReason::Covered, EndReason::Covered);
+            Ok(reach)
+        }
         Err(stopped @ MotionError::Stopped { .. }) => Err(stopped),
-        Err(_) => Ok(own()),
+        Err(_) => Ok(reach),
     }
 }

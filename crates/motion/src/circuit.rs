@@ -42,6 +42,8 @@ pub struct Circuit {
     pub length: f64,
     /// All assemblies at the start.
     pub assemblies: Assemblies,
+    /// The motion that the drives' laws demand, as far as it goes: where the circuit starts.
+    pub demanded: Arc<Motion>,
     scale: f64,
 }
 
@@ -110,6 +112,7 @@ impl Circuit {
                 closed,
                 length,
                 assemblies: assemblies.clone(),
+                demanded: motion.clone(),
                 scale: path.scale(),
             })
         })

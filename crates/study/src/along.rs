@@ -4,11 +4,12 @@ use std::sync::Arc;
 
 use kempe_dynamics::{ForceArrow, ForceError, ForceEvidence, ForceNote, ForceSampler, Problem};
 use kempe_measure::force_source::NoForces;
-use kempe_measure::{Sample, Sampler, Unmeasurable, Unprepared};
+use kempe_measure::{Sample, Sampler, Unmeasurable, Unprepared, unmeasurable};
 use kempe_mechanism::Mechanism;
-use kempe_model::{Diagnostic, DriveId, Model};
+use kempe_model::{Diagnostic, DriveId, Model, Study, StudyKind};
 use kempe_motion::{Motion, Progress, Silent, Stage};
 
+use crate::columns::Asked;
 use crate::explain::stopped;
 use crate::quantity::Quantity;
 use crate::rows::{RowPlace, path_drive};
@@ -165,6 +166,20 @@ pub(crate) fn unprepared(
         Unprepared::Unmeasurable(problems) => not_measurable(model, quantities, &problems),
         Unprepared::Stopped => vec![stopped(Stage::Measuring)],
     }
+}
+
+/// What a study asks for that no motion of the mechanism can answer, as diagnostics over the model file.
+pub(crate) fn not_answerable(mechanism: &Mechanism, study: &Study) -> Vec<Diagnostic> {
+    let asked = match &study.kind {
+        StudyKind::Motion(along) => Asked::of_motion(&mechanism.model, along),
+        StudyKind::Forces(along) => Asked::of_forces(mechanism, along),
+        // They ask for columns of their own, which every mechanism answers.
+        StudyKind::Balance(_) | StudyKind::Spring(_) => return Vec::new(),
+    };
+    let quantities: Vec<&Quantity> = asked.all().collect();
+    let measures: Vec<_> = quantities.iter().map(|q| &q.measure).collect();
+    let problems = unmeasurable(mechanism, &measures);
+    not_measurable(&mechanism.model, &quantities, &problems)
 }
 
 /// Measures that the mechanism cannot answer, as diagnostics over the model file.

@@ -11,6 +11,7 @@ use crate::columns::Asked;
 use crate::events::events;
 use crate::explain::cannot_move;
 use crate::missing::unreached_warning;
+use crate::motion_findings::of_mechanism;
 use crate::prepared::design;
 use crate::quantity::Quantity;
 use crate::result::{Event, StudyResult};
@@ -43,7 +44,7 @@ pub(crate) fn run_circuit(
     let mut samplers = circuit_samplers(&circuit, &measures, progress)
         .map_err(|problem| unprepared(model, &quantities, problem))?;
 
-    let mut warnings = Vec::new();
+    let mut diagnostics = of_mechanism(&circuit.demanded);
     let evenly = |count: usize| -> Vec<f64> {
         (0..count)
             .map(|k| circuit.length * (k as f64 / (count - 1) as f64))
@@ -61,7 +62,7 @@ pub(crate) fn run_circuit(
             }
         }
         Rows::TimeStep(_) => {
-            warnings.push(
+            diagnostics.push(
                 Diagnostic::warning(
                     "circuit-without-time",
                     format!("study `{name}` asks for steps of time, but time does not run along a circuit"),
@@ -95,9 +96,9 @@ pub(crate) fn run_circuit(
         }
     }
     if rows.table.unreached() > 0 {
-        warnings.push(unreached_warning(name, &rows.table));
+        diagnostics.push(unreached_warning(name, &rows.table));
     }
-    warnings.extend(left_slots(
+    diagnostics.extend(left_slots(
         model,
         &design.parameters,
         &frames,
@@ -105,7 +106,7 @@ pub(crate) fn run_circuit(
         0,
     ));
     if !circuit.closed {
-        warnings.push(Diagnostic::warning(
+        diagnostics.push(Diagnostic::warning(
             "circuit-open",
             format!("the circuit of study `{name}` does not come back to its start"),
         ));
@@ -137,7 +138,7 @@ pub(crate) fn run_circuit(
         listings: Vec::new(),
         along: 0,
         assemblies: (circuit.assemblies.list.len(), circuit.assemblies.rejected),
-        warnings,
+        diagnostics,
         demanded_rows: count,
     })
 }

@@ -373,10 +373,14 @@ pub fn beyond_limit(motion: &Motion, missed: &[(EndReason, f64)]) -> Diagnostic 
             format!("{name} cannot cover its range: {}, its limit", list(&ends)),
         )
     };
+    let falls = falls(motion);
+    let ordered = |low: String, high: String| match falls {
+        true => (high, low),
+        false => (low, high),
+    };
+    let (from, to) = ordered(text(low), text(high));
     let mut diagnostic = Diagnostic::error(code, message).note(format!(
-        "from {} to {} can be reached, on the circuit of this assembly",
-        text(low),
-        text(high)
+        "from {from} to {to} can be reached, on the circuit of this assembly"
     ));
     if too_long {
         return diagnostic.help("ask for a shorter range: every turn of a cycle is like the first");
@@ -400,16 +404,28 @@ pub fn beyond_limit(motion: &Motion, missed: &[(EndReason, f64)]) -> Diagnostic 
             let [a, b, low, high] =
                 [motion.demanded.0, motion.demanded.1, low, high].map(|x| shown(x, &unit));
             let text = |x: f64| units.text(unit.to_si(x), dimension);
-            diagnostic = diagnostic.help(format!(
-                "ask for no more than \"{}\" to \"{}\"",
+            let (from, to) = ordered(
                 text(inside(a, low, high, true)),
-                text(inside(b, low, high, false))
-            ));
+                text(inside(b, low, high, false)),
+            );
+            diagnostic = diagnostic.help(format!("ask for no more than \"{from}\" to \"{to}\""));
         }
     } else {
         diagnostic = diagnostic.help("the rows beyond carry the reason in their note; change the drives' laws or the lengths");
     }
     diagnostic
+}
+
+/// Whether a motion goes from the high end of its range to the low one.
+fn falls(motion: &Motion) -> bool {
+    let DrivePath::Coordinate { drive, .. } = motion.path else {
+        return false;
+    };
+    let parameters = &motion.design.parameters;
+    (motion.mechanism().model.drives.get(drive)).is_some_and(|drive| {
+        let law = &drive.law;
+        law.at(law.duration(parameters), parameters) < law.at(0.0, parameters)
+    })
 }
 
 /// A demanded end (in the unit shown), or where it is not reached a round place a little inside the limit.

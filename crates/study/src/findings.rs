@@ -1,20 +1,24 @@
 //! What is to be known of a mechanism before it moves, in the names and units of its file.
 
 use kempe_mechanism::Design;
+use kempe_mechanism::mobility::Mobility;
 use kempe_mechanism::structure::BodyId;
 use kempe_model::{Diagnostic, Drive, Model, Rows, Severity, Study, StudyKind, value};
-use kempe_motion::assemble::{Assemblies, Assembly, Shortfall};
+use kempe_motion::assemble::{Assemblies, Assembly};
+use kempe_motion::drive_path::DrivePath;
 use kempe_motion::events::EventKind;
 use kempe_motion::{EndReason, Findings};
 use kempe_units::Dimension;
 use serde::Serialize;
 
+use crate::along::not_answerable;
 use crate::explain::cannot_move;
 use crate::findings_text::kind_text;
+use crate::hints;
+use crate::motion_findings::{motion_findings, of_freedoms, of_mechanism};
 use crate::prepared::design;
 use crate::unit::Units;
-use crate::words::{list, source_name};
-use crate::{alternatives, hints};
+use crate::words::source_name;
 use kempe_motion::progress::{Progress, Silent};
 
 /// The answer of `check`.
@@ -116,7 +120,10 @@ pub fn check_with_progress(model: &Model, progress: &mut dyn Progress) -> Report
             .get(index)
             .map_or(String::new(), |p| p.name.clone())
     };
-    let single = (model.drives.len() == 1).then(|| &model.drives[0]);
+    let moving = found.motion.as_ref().and_then(|motion| match motion.path {
+        DrivePath::Coordinate { drive, .. } => model.drives.get(drive),
+        DrivePath::Time { .. } => None,
+    });
     let mut report = Report {
         title: model.title.clone(),
         links: found.mobility.links,
@@ -167,7 +174,7 @@ pub fn check_with_progress(model: &Model, progress: &mut dyn Progress) -> Report
         diagnostics: Vec::new(),
     };
     if let Some(reach) = &found.reach {
-        let (name, dimension) = single.map_or(("time", Dimension::TIME), |d| {
+        let (name, dimension) = moving.map_or(("time", Dimension::TIME), |d| {
             (d.name.as_str(), d.dimension)
         });
         report.reach = Some(if reach.full_turn {
@@ -217,16 +224,23 @@ pub fn check_with_progress(model: &Model, progress: &mut dyn Progress) -> Report
 fn chosen(design: &Design<f64>, assemblies: &Assemblies, units: &Units) -> Vec<String> {
     let mechanism = &*design.mechanism;
     let mut words = Vec::new();
-    if let [first, second, ..] = assemblies.list.as_slice() {
-        let text = |a: &Assembly| units.text(a.distance, Dimension::LENGTH);
-        let decided = hints::near_decides(design, assemblies);
-        words.push(match decided {
-            true => format!(
-                "the nearest to [assembly], {} from it; the next is {} away",
-                text(first),
-                text(second)
+    if let [first, ..] = assemblies.list.as_slice()
+        && assemblies.list.len() > 1
+    {
+        let alike = hints::as_near(design, assemblies).len();
+        let off = |a: &Assembly| hints::off(design, units, &a.poses);
+        words.push(match assemblies.list.get(alike) {
+            None => "the first of them: nothing in [assembly] decides".to_owned(),
+            Some(next) if alike == 1 => format!(
+                "the nearest to [assembly]: {} off; in the next {}",
+                off(first),
+                off(next)
             ),
-            false => "the first of them: nothing in [assembly] decides".to_owned(),
+            Some(next) => format!(
+                "the first of {alike} that are as near to [assembly]: {} off; in the next {}",
+                off(first),
+                off(next)
+            ),
         });
     }
     let idle = hints::idle(design, assemblies).into_iter();
@@ -239,14 +253,6 @@ fn chosen(design: &Design<f64>, assemblies: &Assemblies, units: &Units) -> Vec<S
     words
 }
 
-/// Whether the file leaves open which assembly is meant.
-fn open_choice(design: &Design<f64>, assemblies: &Assemblies) -> bool {
-    let mechanism = &*design.mechanism;
-    let hints = &mechanism.model.assembly;
-    let idle = hints::idle(design, assemblies).len();
-    idle == hints.len() || !hints::near_decides(design, assemblies)
-}
-
 /// What Kempe takes for granted where the file is silent.
 fn assumptions(model: &Model, units: &Units) -> Vec<String> {
     let parameters: Vec<f64> = model.parameter_values();
@@ -256,12 +262,10 @@ fn assumptions(model: &Model, units: &Units) -> Vec<String> {
     )];
     for drive in &model.drives {
         let law = &drive.law;
-        let (low, high) = law.extent(&parameters);
         assumed.push(format!(
-            "drive {}: {} to {} in {}",
+            "drive {}: {} in {}",
             drive.name,
-            units.text(low, drive.dimension),
-            units.text(high, drive.dimension),
+            law_text(drive, &parameters, units),
             units.text(law.duration(&parameters), Dimension::TIME)
         ));
     }
@@ -277,6 +281,31 @@ fn assumptions(model: &Model, units: &Units) -> Vec<String> {
         )
     }));
     assumed
+}
+
+/// From where to where a law goes, the way that it goes.
+fn law_text(drive: &Drive, parameters: &[f64], units: &Units) -> String {
+    let law = &drive.law;
+    let (low, high) = law.extent(parameters);
+    let text = |x: f64| units.text(x, drive.dimension);
+    if low == high {
+        return format!("held at {}", text(low));
+    }
+    let (first, last) = (
+        law.at(0.0, parameters),
+        law.at(law.duration(parameters), parameters),
+    );
+    match (first, last) {
+        ends if ends == (low, high) => format!("{} to {}", text(low), text(high)),
+        ends if ends == (high, low) => format!("{} to {}", text(high), text(low)),
+        _ => format!(
+            "{} to {}, between {} and {}",
+            text(first),
+            text(last),
+            text(low),
+            text(high)
+        ),
+    }
 }
 
 /// What a study is, and where its rows stand.
@@ -316,8 +345,10 @@ fn study_text(model: &Model, study: &Study, parameters: &[f64], units: &Units) -
 }
 
 fn diagnostics(model: &Model, design: &Design<f64>, found: &Findings) -> Vec<Diagnostic> {
-    let mechanism = &*design.mechanism;
-    let mut diagnostics = crate::findings_forces::problems(design);
+    let mut diagnostics = match &found.motion {
+        Some(_) => Vec::new(),
+        None => crate::findings_forces::problems(design),
+    };
     if let Some(problem) = &found.problem {
         let problem = cannot_move(design, problem);
         // A file need not say what moves it: only what asks for a motion cannot do without.
@@ -330,126 +361,28 @@ fn diagnostics(model: &Model, design: &Design<f64>, found: &Findings) -> Vec<Dia
             _ => problem,
         });
     }
-    let whole = found.problem.is_none() || !found.searched;
-    if let (Some(rank), true) = (found.mobility.by_rank, whole) {
-        let free = rank.saturating_sub(found.idle.len());
-        if free < found.drives {
-            diagnostics.push(
-                Diagnostic::warning(
-                    "overdriven",
-                    format!("{} drives move {free} freedoms at the start", found.drives),
-                )
-                .help("drives that depend on each other must agree exactly: leave one out"),
-            );
-        }
-        if found.mobility.count != rank as i64 {
-            let redundant = found.mobility.redundant_rows.unwrap_or(0);
-            diagnostics.push(
-                Diagnostic::warning(
-                    "overconstrained",
-                    format!(
-                        "by count the mobility is {}, by the rank of its constraints {rank}: {redundant} of them repeat others",
-                        found.mobility.count
-                    ),
-                )
-                .note("it moves because of its special dimensions; real links of other lengths would jam"),
-            );
-        }
+    match &found.motion {
+        // A circuit goes wherever it leads, whatever the drives' laws demand.
+        Some(motion) if asks_only_for_circuits(model) => diagnostics.extend(of_mechanism(motion)),
+        Some(motion) => diagnostics.extend(motion_findings(motion)),
+        None if found.searched => diagnostics.extend(of_freedoms(
+            design,
+            &Mobility {
+                by_rank: None,
+                ..found.mobility
+            },
+        )),
+        None => diagnostics.extend(of_freedoms(design, &found.mobility)),
     }
-    if !found.idle.is_empty() {
-        let names: Vec<String> = found
-            .idle
-            .iter()
-            .map(|b| format!("`{}`", mechanism.body_name(*b)))
-            .collect();
-        diagnostics.push(Diagnostic::warning(
-            "idle-freedom",
-            format!(
-                "{} can turn by itself without moving anything else",
-                list(&names)
-            ),
-        ));
-    }
-    let open = open_choice(design, &found.assemblies);
-    if found.assemblies.list.len() > 1 && open {
-        let agree = match model.assembly.is_empty() {
-            true => "fit the file",
-            false => "agree with the file",
-        };
-        let warning = Diagnostic::warning(
-            "several-assemblies",
-            format!(
-                "{} assemblies {agree}: the first was chosen",
-                found.assemblies.list.len()
-            ),
-        );
-        let lines = alternatives::hints(design, &found.assemblies.list);
-        let help = match (lines.is_empty(), model.assembly.is_empty()) {
-            (true, _) => {
-                "say under [assembly] near which angle a link is meant: rocker = { near = \"30 deg\" }"
-            }
-            (false, true) => "write the line of the one that is meant under [assembly]",
-            (false, false) => "write the line of the one that is meant under [assembly] too",
-        };
-        let lines = lines.into_iter().enumerate();
-        let warning = lines.fold(warning, |diagnostic, (k, line)| match k {
-            0 => diagnostic.note(format!("the first: {line}")),
-            _ => diagnostic.note(format!("number {}: {line}", k + 1)),
-        });
-        let idle = hints::idle(design, &found.assemblies).into_iter();
-        let warning = idle.fold(warning, |diagnostic, (index, why)| {
-            let span = model.assembly[index].span.clone();
-            diagnostic.at(span, format!("decides nothing: {why}"))
-        });
-        diagnostics.push(warning.help(help));
-    }
-    // Where hints have chosen one, what may be missing is not it.
-    if let (Some(shortfall), None, true) = (found.assemblies.shortfall, &found.problem, open) {
-        let why = match shortfall {
-            Shortfall::Searched => "a group was searched by trial",
-            Shortfall::Scanned => {
-                "a group with a gear, belt or rack was followed along its curves, and a short one can be overlooked"
-            }
-            Shortfall::LostPath => {
-                "positions of a group coincide at this start, or so nearly that not all could be told apart, as where links lie in line"
-            }
-            Shortfall::Exhausted => "a group has more of them than could be followed",
-            Shortfall::TooMany => "there are too many to list",
-        };
-        diagnostics.push(
-            Diagnostic::warning(
-                "assemblies-incomplete",
-                format!("some assemblies may be missing: {why}"),
-            )
-            .help("say where points of the one that is meant are, [assembly] C = { near = [x, y] }: it is looked for there too; or start the drive a little elsewhere"),
-        );
-    }
-    if let Some(reach) = &found.reach {
-        let parameters: Vec<f64> = model.parameter_values();
-        if let [drive] = model.drives.as_slice() {
-            let (low, high) = drive.law.extent(&parameters);
-            let slack = 1e-12 * (high - low).abs().max(reach.range.1 - reach.range.0);
-            let [below, above] = [reach.ends.0, reach.ends.1].map(|end| end == EndReason::Limit);
-            let beyond =
-                (below && low < reach.range.0 - slack) || (above && high > reach.range.1 + slack);
-            if beyond {
-                diagnostics.push(
-                    Diagnostic::error(
-                        "range-beyond-limit",
-                        format!(
-                            "drive `{}` is asked for {}, but can only go {}",
-                            drive.name,
-                            crate::explain::reach_text(model, (low, high), drive.dimension),
-                            crate::explain::reach_text(model, reach.range, drive.dimension)
-                        ),
-                    )
-                    .at(
-                        drive.span.clone(),
-                        "the demanded range goes further than the mechanism",
-                    ),
-                );
-            }
+    for problem in (model.studies.iter()).flat_map(|s| not_answerable(&design.mechanism, s)) {
+        if !diagnostics.contains(&problem) {
+            diagnostics.push(problem);
         }
     }
     diagnostics
+}
+
+fn asks_only_for_circuits(model: &Model) -> bool {
+    let circuit = |study: &Study| study.kind.along().circuit;
+    !model.studies.is_empty() && model.studies.iter().all(circuit)
 }

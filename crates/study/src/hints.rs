@@ -1,9 +1,12 @@
 //! What the hints of a file decide: which of them do nothing, which contradict each other, and whether one assembly is left.
 
-use kempe_mechanism::Design;
+use kempe_mechanism::{Design, Pose};
 use kempe_model::{HintKind, Model, Side};
-use kempe_motion::assemble::{Assemblies, Assembly, Standing, standings};
+use kempe_motion::assemble::{Assemblies, Assembly, Found, Standing, found_near, standings};
+use kempe_number::math::hypot;
+use kempe_units::Dimension;
 
+use crate::unit::Units;
 use crate::words::list;
 
 /// Two assemblies are as near to the hints when their distances differ by less than this part of the mechanism's size.
@@ -36,13 +39,37 @@ pub(crate) fn idle(design: &Design<f64>, assemblies: &Assemblies) -> Vec<(usize,
         .collect()
 }
 
-/// Whether places and angles near which things are leave one assembly only.
-pub(crate) fn near_decides(design: &Design<f64>, assemblies: &Assemblies) -> bool {
-    let size = design.size();
-    match assemblies.list.as_slice() {
-        [first, second, ..] => second.distance - first.distance > AS_NEAR * size,
-        _ => true,
-    }
+/// The assemblies that agree with the file's sides and are as near to its places and angles as the chosen one, that one first.
+pub(crate) fn as_near<'a>(design: &Design<f64>, assemblies: &'a Assemblies) -> &'a [Assembly] {
+    let list = &assemblies.list;
+    let nearest = list.first().map_or(0.0, |first| first.distance);
+    let farther = |a: &Assembly| a.distance - nearest > AS_NEAR * design.size();
+    let alike = list.iter().position(farther).unwrap_or(list.len());
+    &list[..alike]
+}
+
+/// How far poses are from every place and angle that the file asks for: `C 12 mm and rocker 3 deg`.
+pub(crate) fn off(design: &Design<f64>, units: &Units, poses: &[Pose<f64>]) -> String {
+    let model = &design.mechanism.model;
+    let found = found_near(design, poses).into_iter().zip(&model.assembly);
+    let parts: Vec<String> = found
+        .filter_map(|(found, hint)| {
+            Some(match (found?, &hint.kind) {
+                (Found::Place { off, .. }, HintKind::NearPlace { point, .. }) => format!(
+                    "{} {}",
+                    model.points.get(point.index())?.name,
+                    units.text(hypot(off[0], off[1]), Dimension::LENGTH)
+                ),
+                (Found::Angle { off, .. }, HintKind::NearAngle { link, .. }) => format!(
+                    "{} {}",
+                    model.links.get(link.index())?.name,
+                    units.text(off.abs(), Dimension::ANGLE)
+                ),
+                _ => return None,
+            })
+        })
+        .collect();
+    list(&parts)
 }
 
 /// The smallest set of sides that no assembly agrees with, by their place in the file.

@@ -3,17 +3,17 @@
 use kempe_measure::measure::visit_leaves;
 use kempe_mechanism::Mechanism;
 use kempe_model::{Diagnostic, Leaf, Measure, Model, MotionStudy, Statistic};
+use kempe_motion::Motion;
 use kempe_motion::drive_path::{DrivePath, is_cycle};
-use kempe_motion::{EndReason, Motion};
 use kempe_units::Dimension;
 
 use crate::along::Along;
 use crate::columns::Asked;
 use crate::events::events;
-use crate::explain::beyond_limit;
 use crate::force_columns::standard_plots;
 use crate::force_notes::unbounded;
 use crate::missing::{unreached_warning, without_value};
+use crate::motion_findings::{motion_findings, refused};
 use crate::prepared::{design, motion};
 use crate::quantity::Quantity;
 use crate::result::StudyResult;
@@ -34,7 +34,10 @@ pub(crate) fn run_along(
 ) -> Result<StudyResult, Vec<Diagnostic>> {
     let design = design(model);
     let motion = motion(&design, progress)?;
-    let mut warnings = range_warnings(&motion)?;
+    let mut diagnostics = motion_findings(&motion);
+    if refused(&motion) {
+        return Err(diagnostics);
+    }
     let mut study = study.clone();
     if forces && study.plots.is_empty() {
         study.plots = standard_plots(&design.mechanism);
@@ -70,19 +73,19 @@ pub(crate) fn run_along(
     }
     let along = abscissa(&motion, &design.parameters);
     if rows.table.unreached() > 0 {
-        warnings.push(unreached_warning(name, &rows.table));
+        diagnostics.push(unreached_warning(name, &rows.table));
     }
-    warnings.extend(rows.force_warnings(&design.mechanism, along));
-    warnings.extend(without_value(&rows, along, |index| {
+    diagnostics.extend(rows.force_warnings(&design.mechanism, along));
+    diagnostics.extend(without_value(&rows, along, |index| {
         let of_cycles = (asked.scalars.get(index))
             .is_some_and(|q| asks_time_ratio(&design.mechanism, &q.measure));
         of_cycles && !is_cycle(model, &design.parameters)
     }));
     let parameters = &design.parameters;
-    warnings.extend(left_slots(model, parameters, &frames, &rows.table, along));
+    diagnostics.extend(left_slots(model, parameters, &frames, &rows.table, along));
     let met = events(&motion, &units, &parameters_met);
     if forces {
-        warnings.extend(unbounded(&design.mechanism, &asked.scalars, &met));
+        diagnostics.extend(unbounded(&design.mechanism, &asked.scalars, &met));
     }
     Ok(StudyResult {
         name: name.to_owned(),
@@ -94,7 +97,7 @@ pub(crate) fn run_along(
         listings: Vec::new(),
         along,
         assemblies: (motion.assemblies.list.len(), motion.assemblies.rejected),
-        warnings,
+        diagnostics,
         demanded_rows: places.len(),
     })
 }
@@ -124,28 +127,4 @@ fn abscissa(motion: &Motion, parameters: &[f64]) -> usize {
         covers && (at.is_sorted_by(|a, b| a < b) || at.is_sorted_by(|a, b| a > b))
     });
     if goes_one_way { 1 + drive } else { 0 }
-}
-
-/// Nothing, where the demanded range is covered. An error where one drive alone is asked to go beyond its limit; a warning
-/// where several drives meet a limit on their way, or the motion could not be followed.
-fn range_warnings(motion: &Motion) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> {
-    let missed = [
-        (motion.ends.0, motion.demanded.0),
-        (motion.ends.1, motion.demanded.1),
-    ];
-    let missed: Vec<_> = missed
-        .into_iter()
-        .filter(|(reason, at)| *reason != EndReason::Covered && !motion.reaches(*at))
-        .collect();
-    if missed.is_empty() {
-        return Ok(Vec::new());
-    }
-    let diagnostic = beyond_limit(motion, &missed);
-    let one_drive = matches!(motion.path, DrivePath::Coordinate { .. });
-    if one_drive && missed.iter().any(|(r, _)| *r == EndReason::Limit) {
-        return Err(vec![diagnostic]);
-    }
-    Ok(vec![
-        diagnostic.with_severity(kempe_model::Severity::Warning),
-    ])
 }

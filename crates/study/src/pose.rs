@@ -8,6 +8,7 @@ use kempe_units::{Dimension, Expr, Issue, Resolver, Span, check_as, nearest, par
 
 use crate::along::{Along, Row};
 use crate::findings_forces::something_acts;
+use crate::motion_findings::motion_findings;
 use crate::prepared::{design, motion};
 use crate::result::Frame;
 use crate::rows::RowPlace;
@@ -228,7 +229,7 @@ fn drives_text(model: &Model) -> String {
 /// # Errors
 ///
 /// Those of [`run`](crate::run); `range-beyond-limit` when the place cannot be reached.
-pub fn pose_at(model: &Model, settings: &[Setting]) -> Result<(Frame, String), Vec<Diagnostic>> {
+pub fn pose_at(model: &Model, settings: &[Setting]) -> Result<ShownPose, Vec<Diagnostic>> {
     let parameters: Vec<f64> = model.parameter_values();
     let units = Units::of(model);
     let held;
@@ -281,8 +282,12 @@ pub fn pose_at(model: &Model, settings: &[Setting]) -> Result<(Frame, String), V
     let last = result.frames.into_iter().next_back();
     let reached = result.table.closure.last().is_some_and(|c| c.is_finite());
     match last {
-        Some(frame) if reached => Ok((frame, label.join(", "))),
-        _ => Err(at_the_settings(result.warnings, settings)),
+        Some(frame) if reached => Ok(ShownPose {
+            frame,
+            label: label.join(", "),
+            diagnostics: result.diagnostics,
+        }),
+        _ => Err(at_the_settings(result.diagnostics, settings)),
     }
 }
 
@@ -305,21 +310,20 @@ fn with_held(model: &Model, parameters: &[f64]) -> Option<Model> {
 }
 
 /// The pose of the motion at a time, s.
-fn pose_at_time(model: &Model, time: f64) -> Result<(Frame, String), Vec<Diagnostic>> {
+fn pose_at_time(model: &Model, time: f64) -> Result<ShownPose, Vec<Diagnostic>> {
     let label = format!("time = {}", Units::of(model).text(time, Dimension::TIME));
-    let on_motion = on_motion(model, &|_| Ok(RowPlace::Time(time)), false, &label)?;
-    Ok((on_motion.frame, label))
+    on_motion(model, &|_| Ok(RowPlace::Time(time)), false, &label)
 }
 
-/// A row of the motion with its forces.
+/// A pose to be shown.
 #[derive(Clone, Debug)]
-pub struct Loaded {
-    /// The pose and what acts in it.
+pub struct ShownPose {
+    /// The pose and, where forces were asked for, what acts in it.
     pub frame: Frame,
     /// Where it is.
     pub label: String,
-    /// What is to be told about the forces there.
-    pub warnings: Vec<Diagnostic>,
+    /// What is to be told about the mechanism, and about the forces there.
+    pub diagnostics: Vec<Diagnostic>,
 }
 
 /// The forces of the motion at a coordinate of the drive that moves, or at a time; at the start when nothing is said.
@@ -329,7 +333,7 @@ pub struct Loaded {
 /// # Errors
 ///
 /// Those of [`run`](crate::run); `not-reached` and `not-on-the-motion` when the motion does not come there.
-pub fn loaded_at(model: &Model, settings: &[Setting]) -> Result<Loaded, Vec<Diagnostic>> {
+pub fn loaded_at(model: &Model, settings: &[Setting]) -> Result<ShownPose, Vec<Diagnostic>> {
     let units = Units::of(model);
     let label = match settings {
         [] => start_text(model, &units),
@@ -354,7 +358,7 @@ pub fn loaded_at(model: &Model, settings: &[Setting]) -> Result<Loaded, Vec<Diag
     };
     let mut loaded = on_motion(model, &place, true, &label)?;
     if !something_acts(model) {
-        loaded.warnings.push(nothing_acts());
+        loaded.diagnostics.push(nothing_acts());
     }
     Ok(loaded)
 }
@@ -376,7 +380,7 @@ fn on_motion(
     place: &dyn Fn(&Along) -> Result<RowPlace, Vec<Diagnostic>>,
     forces: bool,
     label: &str,
-) -> Result<Loaded, Vec<Diagnostic>> {
+) -> Result<ShownPose, Vec<Diagnostic>> {
     let design = design(model);
     let motion = motion(&design, &mut Silent)?;
     let mut along = Along::new(model, &motion, &[], forces)?;
@@ -393,16 +397,19 @@ fn on_motion(
         )]);
     }
     let (arrows, notes) = forces.map_or_else(Default::default, |f| (f.arrows, f.notes));
-    let warnings = notes
-        .iter()
-        .map(|n| Diagnostic::warning(n.code(), format!("{label}: {}", n.text(&design.mechanism))));
-    Ok(Loaded {
+    let mut diagnostics = motion_findings(&motion);
+    diagnostics.extend(
+        notes.iter().map(|n| {
+            Diagnostic::warning(n.code(), format!("{label}: {}", n.text(&design.mechanism)))
+        }),
+    );
+    Ok(ShownPose {
         frame: Frame {
             links: sample.links,
             points: sample.points,
             arrows,
         },
         label: label.to_owned(),
-        warnings: warnings.collect(),
+        diagnostics,
     })
 }

@@ -40,7 +40,7 @@ pub fn report(
     sections.extend(check.sections());
     let mut findings: Vec<Diagnostic> = warnings.to_vec();
     let more = studies.iter().flat_map(|s| match &s.result {
-        Ok(result) => result.warnings.iter(),
+        Ok(result) => result.diagnostics.iter(),
         Err(errors) => errors.iter(),
     });
     for diagnostic in check.diagnostics.iter().chain(more) {
@@ -51,7 +51,6 @@ pub fn report(
             findings.push(diagnostic.clone());
         }
     }
-    sections.extend(warnings_section(&findings));
     let motions = studies.iter().filter_map(|outcome| {
         let study = outcome.study.kind.along();
         outcome
@@ -64,6 +63,7 @@ pub fn report(
         title: model.title.clone(),
         file_name: file_name.to_owned(),
         motions: motions.collect(),
+        first: warnings_section(&findings).into_iter().collect(),
         sections,
         generator: generator.to_owned(),
     }

@@ -29,8 +29,9 @@ pub struct StudyResult {
     pub along: usize,
     /// How many assemblies agree with the file's hints at the start, and how many do not.
     pub assemblies: (usize, usize),
-    /// What a careful engineer would want to be told.
-    pub warnings: Vec<Diagnostic>,
+    /// What a careful engineer would want to be told of the mechanism, its motion and these rows; errors where the motion does
+    /// not go as far as it should.
+    pub diagnostics: Vec<Diagnostic>,
     /// Rows that were asked for; the table has fewer when the study was stopped.
     pub demanded_rows: usize,
 }

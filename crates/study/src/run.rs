@@ -25,7 +25,7 @@ pub fn run(
         StudyKind::Forces(forces) => {
             let mut result = run_along(model, &study.name, forces, true, progress)?;
             if !something_acts(model) {
-                result.warnings.push(nothing_acts());
+                result.diagnostics.push(nothing_acts());
             }
             Ok(result)
         }

@@ -9,6 +9,7 @@ use kempe_units::{Dimension, format_digits};
 use serde::Serialize;
 
 use crate::along::force_problems;
+use crate::motion_findings::motion_findings;
 use crate::pose::Setting;
 use crate::prepared::{design, motion};
 use crate::unit::Units;
@@ -26,6 +27,8 @@ pub struct Sensitivities {
     pub measures: Vec<MeasureSensitivity>,
     /// Measures left out, with the reason.
     pub left_out: Vec<(String, String)>,
+    /// What is to be told of the mechanism and its motion.
+    pub diagnostics: Vec<Diagnostic>,
 }
 
 /// A measure with its derivatives.
@@ -173,6 +176,7 @@ pub fn sensitivities(
         place,
         measures,
         left_out,
+        diagnostics: motion_findings(&motion),
     })
 }
 

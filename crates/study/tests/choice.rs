@@ -224,7 +224,7 @@ fn bounds_and_a_wanted_effort_are_kept() {
     let text = text.replace("free = 0,", "free = 0, acts = \"tension\",");
     assert!(
         ran(&text)
-            .warnings
+            .diagnostics
             .iter()
             .any(|d| d.code == "spring-not-linear")
     );

@@ -131,7 +131,7 @@ fn without_columns_everything_that_joints_and_drives_carry_is_there() {
         head.ends_with("closure [1],smallest_singular_value [1],route_difference [1],equilibrium_residual [1],condition [1],note"),
         "{head}"
     );
-    assert!(result.warnings.is_empty(), "{:?}", result.warnings);
+    assert!(result.diagnostics.is_empty(), "{:?}", result.diagnostics);
 }
 
 /// What acts on every body of every row adds up to `m a`: arrows, weights and springs against the table's accelerations.
@@ -233,11 +233,11 @@ kind = "forces"
 fn a_cylinder_that_is_too_weak_is_told_once_with_the_worst_place() {
     let result = ran(LIFT);
     let weak: Vec<_> = result
-        .warnings
+        .diagnostics
         .iter()
         .filter(|d| d.code == "cylinder-too-weak")
         .collect();
-    assert_eq!(weak.len(), 1, "{:?}", result.warnings);
+    assert_eq!(weak.len(), 1, "{:?}", result.diagnostics);
     let force = column(&result, "force(lift)");
     let capacity = column(&result, "capacity(lift)");
     let pressure = column(&result, "pressure(lift)");
@@ -307,11 +307,11 @@ kind = "forces"
 "#;
     let result = ran(text);
     let loose: Vec<_> = result
-        .warnings
+        .diagnostics
         .iter()
         .filter(|d| d.code == "reactions-not-unique")
         .collect();
-    assert_eq!(loose.len(), 1, "{:?}", result.warnings);
+    assert_eq!(loose.len(), 1, "{:?}", result.diagnostics);
     assert!(
         loose[0].message.contains("overconstrained") && loose[0].message.contains('H'),
         "{}",
@@ -353,11 +353,11 @@ fn at_a_change_point_the_torque_is_finite_and_the_rows_say_why_joints_are_not() 
     assert!(first.contains("singular"), "{first}");
     assert!(
         result
-            .warnings
+            .diagnostics
             .iter()
             .any(|d| d.code == "singular-pose" || d.code == "nearly-singular"),
         "{:?}",
-        result.warnings
+        result.diagnostics
     );
 }
 
@@ -484,7 +484,7 @@ fn values_that_are_missing_are_told() {
     let result = ran(&format!(
         "{text}[studies.t]\nkind = \"forces\"\nrows = 13\ncolumns = [\"log\", \"effort\"]\n"
     ));
-    let codes: Vec<&str> = result.warnings.iter().map(|d| d.code).collect();
+    let codes: Vec<&str> = result.diagnostics.iter().map(|d| d.code).collect();
     assert!(
         codes.contains(&"no-value") && codes.contains(&"load-without-value"),
         "{codes:?}"
@@ -512,7 +512,7 @@ fn a_peak_over_a_singular_pose_is_told_as_one() {
             .iter()
             .find(|s| s.name == "ideal")
             .expect("forces");
-        let warnings = run(&model, study, &mut Silent).expect("rows").warnings;
+        let warnings = run(&model, study, &mut Silent).expect("rows").diagnostics;
         let diagnostic = warnings.into_iter().filter(|d| d.code == "unbounded-load");
         diagnostic.map(|d| d.message).collect::<Vec<_>>()
     };

@@ -3,7 +3,9 @@
 use std::ops::ControlFlow;
 
 use kempe_model::{Diagnostic, Model};
-use kempe_study::{Done, Setting, Silent, Stage, StudyResult, check, encode, pose_at, run};
+use kempe_study::{
+    Done, Setting, ShownPose, Silent, Stage, StudyResult, check, encode, pose_at, run,
+};
 
 const FOUR_BAR: &str = r#"
 units = { length = "mm", angle = "deg" }
@@ -56,6 +58,11 @@ fn fails(text: &str) -> (Vec<Diagnostic>, String) {
     let found = run(&model, &model.studies[0], &mut Silent).expect_err("it cannot run");
     let text = rendered(&found, text);
     (found, text)
+}
+
+/// Whether something of this kind is told.
+fn has(diagnostics: &[Diagnostic], code: &str) -> bool {
+    diagnostics.iter().any(|d| d.code == code)
 }
 
 #[test]
@@ -220,13 +227,13 @@ fn sides_that_contradict_each_other_are_told() {
 fn a_pose_is_found_where_it_is_asked_for() {
     let model = model(FOUR_BAR);
     let setting = Setting::parse(&model, "motor = 60deg").unwrap();
-    let (frame, label) = pose_at(&model, &[setting]).unwrap();
+    let ShownPose { frame, label, .. } = pose_at(&model, &[setting]).unwrap();
     let p = frame.points[model.points.iter().position(|p| p.name == "P").unwrap()];
     assert!(
         (p[0] - 0.032_367_945_446_74).abs() < 1e-14 && (p[1] - 0.028_486_304_800_13).abs() < 1e-14
     );
     assert_eq!(label, "motor = 60 deg");
-    let (start, _) = pose_at(&model, &[]).unwrap();
+    let start = pose_at(&model, &[]).unwrap().frame;
     assert!((start.points[0][0]).abs() < 1e-15);
     for (text, code) in [
         ("motr=3", "unknown-name"),
@@ -349,7 +356,7 @@ fn a_circuit_has_rows_at_the_steps_of_its_drive() {
     assert_eq!(result.table.unreached(), 0);
     // A step of time means nothing here, and that is told.
     let timed = run_ok(&ROCKER_DRIVEN.replace("step = 5", "step = \"0.1 s\""));
-    assert_eq!(timed.warnings[0].code, "circuit-without-time");
+    assert!(has(&timed.diagnostics, "circuit-without-time"));
     let plain = run_ok(&ROCKER_DRIVEN.replace("step = 5", ""));
     assert_eq!(plain.table.rows(), 361);
 }
@@ -411,7 +418,7 @@ motor = { turns = "crank", from = 60, to = 61, speed = 10 }
             .trim()
             .parse()
             .unwrap();
-        let x = pose.0.points[index][0] * 1e3;
+        let x = pose.frame.points[index][0] * 1e3;
         assert!((x - near).abs() < 1.0, "{line}: {x}");
         chosen.push(x);
     }
@@ -447,7 +454,7 @@ fn places_in_notes_and_warnings_have_the_units_of_the_file() {
         .replace("circuit = true\n", "");
     let model_ = model(&text);
     let diagnostic = run(&model_, &model_.studies[0], &mut Silent).unwrap_err();
-    assert_eq!(diagnostic[0].code, "range-beyond-limit");
+    assert!(has(&diagnostic, "range-beyond-limit"));
     let report = check(&model_);
     assert!(
         report.assumptions[0].contains("speeds in mm/s and deg/s"),
@@ -481,7 +488,7 @@ step = 10
 "#;
     let model = model(text);
     let result = run(&model, &model.studies[0], &mut Silent).unwrap();
-    assert_eq!(result.warnings[0].code, "motion-runs-away");
+    assert!(has(&result.diagnostics, "motion-runs-away"));
     let note = result.table.notes.iter().flatten().next().unwrap();
     assert!(
         note.contains("runs away to infinity beyond") && note.ends_with(" deg"),
@@ -702,7 +709,7 @@ C = \"left of B -> D\"
     assert_eq!(report.mobility_rank, Some(1));
     assert_eq!(report.assemblies, None);
     assert!(!report.has_errors(), "{:?}", report.diagnostics);
-    let (frame, _) = pose_at(&bare, &[]).unwrap();
+    let frame = pose_at(&bare, &[]).unwrap().frame;
     let at = |name: &str| frame.points[bare.points.iter().position(|p| p.name == name).unwrap()];
     let apart = |a: &str, b: &str| {
         let (a, b) = (at(a), at(b));
@@ -791,7 +798,7 @@ fn measures_may_name_each_other_many_times_over() {
         let top = number("top").unwrap();
         assert!((top - number("s0").unwrap()).abs() < 1e-12 * top);
         assert!(number("ratio").unwrap().is_nan());
-        let diagnostic = rendered(&result.warnings, &text);
+        let diagnostic = rendered(&result.diagnostics, &text);
         assert!(diagnostic.contains("this motion is none"), "{diagnostic}");
     }
     let found = kempe_study::sensitivities(&model, None, &mut Silent).unwrap();

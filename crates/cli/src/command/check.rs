@@ -11,7 +11,7 @@ use crate::say::{Speaker, complain, print_json, put};
 
 /// Runs `kempe check`.
 pub fn check(arguments: &Check) -> Exit {
-    let mut speaker = Speaker::new(arguments.json, false);
+    let mut speaker = Speaker::new(arguments.json, false).strictly(arguments.model.strict);
     let loaded = match load(&arguments.model, &mut speaker) {
         Ok(loaded) => loaded,
         Err(exit) => {
@@ -46,16 +46,9 @@ pub fn check(arguments: &Check) -> Exit {
         }
         speaker.tell(&report.diagnostics);
     }
-    if interrupt::stopped() {
-        Exit::Interrupted
-    } else if report.has_errors() {
-        Exit::CannotSolve
-    } else if proof.is_some_and(|proof| !proof.is_whole())
-        || report.has_findings()
-        || !loaded.checked.warnings.is_empty()
-    {
-        Exit::Finding
-    } else {
-        Exit::Ok
+    match proof {
+        _ if interrupt::stopped() => Exit::Interrupted,
+        Some(proof) if !proof.is_whole() => speaker.exit().max(Exit::Finding),
+        _ => speaker.exit(),
     }
 }

@@ -3,11 +3,11 @@
 use kempe_draw::raster::animation::{self, AnimationOptions};
 use kempe_draw::raster::{self, RasterError};
 use kempe_draw::{DrawOptions, Frame, MechanismView, Stage, Theme, dxf, svg};
-use kempe_model::{Diagnostic, Model, MotionStudy, Study, StudyKind};
+use kempe_model::{Diagnostic, Model, MotionStudy, Severity, Study, StudyKind};
 use kempe_study::{Setting, drawing_frames, drawn, loaded_at, mechanism_view, pose_at};
 
 use crate::arguments::Draw;
-use crate::command::run::nothing_to_run;
+use crate::command::run::{nothing_to_run, warned};
 use crate::exit::Exit;
 use crate::files::{load, plain};
 use crate::interrupt;
@@ -34,7 +34,7 @@ enum Failure {
 
 /// Runs `kempe draw`.
 pub fn draw(arguments: &Draw) -> Exit {
-    let mut speaker = Speaker::new(false, false);
+    let mut speaker = Speaker::new(false, false).strictly(arguments.model.strict);
     let kind = match kind(arguments) {
         Ok(kind) => kind,
         Err(diagnostic) => {
@@ -47,11 +47,15 @@ pub fn draw(arguments: &Draw) -> Exit {
         Err(exit) => return exit,
     };
     match picture(arguments, kind, &loaded.checked.model, &mut speaker) {
+        Ok(_) if arguments.model.strict && speaker.exit() != Exit::Ok => {
+            speaker.tell(&[warned(&arguments.output)]);
+            speaker.exit()
+        }
         Ok(bytes) => {
             let mut batch = Batch::new();
             let written = batch.add(&arguments.output, &bytes);
             match written.and_then(|()| Ok(batch.publish()?)) {
-                Ok(_) => Exit::Ok,
+                Ok(_) => speaker.exit(),
                 Err(error) => {
                     let message = format!(
                         "{} cannot be written: {}",
@@ -121,7 +125,7 @@ fn picture(
         ));
     }
     if moving {
-        let (view, frames, period) = motion(model, arguments.forces)?;
+        let (view, frames, period) = motion(model, arguments.forces, speaker)?;
         let stage = Stage::new(&view, &frames, options);
         let film = AnimationOptions {
             width: arguments.width,
@@ -181,7 +185,11 @@ fn first_study(model: &Model, forces: bool) -> Option<Study> {
 }
 
 /// All poses of the first study, and how long one pass should take on the screen, s.
-fn motion(model: &Model, forces: bool) -> Result<(MechanismView, Vec<Frame>, f64), Failure> {
+fn motion(
+    model: &Model,
+    forces: bool,
+    speaker: &mut Speaker,
+) -> Result<(MechanismView, Vec<Frame>, f64), Failure> {
     let Some(study) = first_study(model, forces) else {
         return Err(Failure::Usage(nothing_to_run(model)));
     };
@@ -191,6 +199,7 @@ fn motion(model: &Model, forces: bool) -> Result<(MechanismView, Vec<Frame>, f64
     if result.interrupted() {
         return Err(Failure::Interrupted);
     }
+    speaker.tell(&drawn_all_the_same(&result.diagnostics));
     let real = result
         .table
         .column("time")
@@ -206,6 +215,12 @@ fn motion(model: &Model, forces: bool) -> Result<(MechanismView, Vec<Frame>, f64
     ))
 }
 
+/// What keeps the motion from going as far as it should keeps no picture from being drawn: it is a warning here.
+fn drawn_all_the_same(diagnostics: &[Diagnostic]) -> Vec<Diagnostic> {
+    let warning = |d: &Diagnostic| d.clone().with_severity(Severity::Warning);
+    diagnostics.iter().map(warning).collect()
+}
+
 /// The pose asked for, in front of the paths of the first study where that runs.
 fn pose(
     arguments: &Draw,
@@ -214,21 +229,24 @@ fn pose(
 ) -> Result<(MechanismView, Vec<Frame>, usize), Failure> {
     let texts = arguments.at.iter().map(String::as_str);
     let settings = Setting::all(model, texts).map_err(Failure::Usage)?;
-    let (frame, label) = if arguments.forces {
-        let loaded = loaded_at(model, &settings).map_err(Failure::Unsolved)?;
-        speaker.tell(&loaded.warnings);
-        (loaded.frame, loaded.label)
-    } else {
-        pose_at(model, &settings).map_err(Failure::Unsolved)?
+    let posed = match arguments.forces {
+        true => loaded_at(model, &settings),
+        false => pose_at(model, &settings),
     };
+    let posed = posed.map_err(Failure::Unsolved)?;
+    speaker.tell(&drawn_all_the_same(&posed.diagnostics));
     let mut frames = Vec::new();
     let study = first_study(model, arguments.forces);
-    if let Some(study) = &study
-        && let Ok(result) = kempe_study::run(model, study, &mut kempe_study::Silent)
-    {
-        frames = drawing_frames(model, &result);
+    if let Some(study) = &study {
+        match kempe_study::run(model, study, &mut kempe_study::Silent) {
+            Ok(result) => {
+                speaker.tell(&drawn_all_the_same(&result.diagnostics));
+                frames = drawing_frames(model, &result);
+            }
+            Err(errors) => speaker.tell(&drawn_all_the_same(&errors)),
+        }
     }
-    let pose = drawn(model, &frame, label);
+    let pose = drawn(model, &posed.frame, posed.label);
     let shown = place_among(&frames, &pose).unwrap_or_else(|| {
         // Off the motion. Behind a pose that is nowhere, so that no path runs on to it.
         frames.push(Frame::default());

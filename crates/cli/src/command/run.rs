@@ -24,7 +24,8 @@ const PLOT: [f64; 2] = [160.0, 100.0];
 
 /// Runs `kempe run`.
 pub fn run(arguments: &Run) -> Exit {
-    let mut speaker = Speaker::new(arguments.json, arguments.quiet);
+    let mut speaker =
+        Speaker::new(arguments.json, arguments.quiet).strictly(arguments.model.strict);
     let loaded = match load(&arguments.model, &mut speaker) {
         Ok(loaded) => loaded,
         Err(exit) => return failed(&speaker, exit),
@@ -44,7 +45,7 @@ pub fn run(arguments: &Run) -> Exit {
         let result = kempe_study::run(model, study, &mut bar);
         drop(bar);
         match &result {
-            Ok(result) => speaker.tell(&result.warnings),
+            Ok(result) => speaker.tell(&result.diagnostics),
             Err(errors) => speaker.tell(errors),
         }
         outcomes.push(StudyOutcome { study, result });
@@ -60,7 +61,9 @@ pub fn run(arguments: &Run) -> Exit {
         .filter(|name| !finished.contains(name))
         .collect();
     if let (Some(folder), false) = (&arguments.out, finished.is_empty()) {
-        if !missing.is_empty() && !interrupt::stopped() {
+        if arguments.model.strict && speaker.exit() != Exit::Ok {
+            speaker.tell(&[warned(folder)]);
+        } else if !missing.is_empty() && !interrupt::stopped() {
             speaker.tell(&[nothing_written(&loaded, folder, &finished, &missing)]);
         } else {
             match write(
@@ -89,7 +92,10 @@ pub fn run(arguments: &Run) -> Exit {
     } else if !arguments.quiet {
         put(&summary(&outcomes, arguments.out.as_deref(), &files));
     }
-    exit_of(&outcomes)
+    match interrupt::stopped() {
+        true => Exit::Interrupted,
+        false => speaker.exit(),
+    }
 }
 
 fn failed(speaker: &Speaker, exit: Exit) -> Exit {
@@ -97,17 +103,15 @@ fn failed(speaker: &Speaker, exit: Exit) -> Exit {
     exit
 }
 
-/// The worst of all studies.
-fn exit_of(outcomes: &[StudyOutcome<'_>]) -> Exit {
-    if interrupt::stopped() {
-        return Exit::Interrupted;
-    }
-    let one = |outcome: &StudyOutcome<'_>| match &outcome.result {
-        Err(_) => Exit::CannotSolve,
-        Ok(result) if result.table.unreached() > 0 => Exit::Finding,
-        Ok(_) => Exit::Ok,
-    };
-    outcomes.iter().map(one).max().unwrap_or(Exit::Ok)
+/// With `--strict` a warning keeps results from being written.
+pub fn warned(target: &Path) -> Diagnostic {
+    let message = format!(
+        "nothing was written to {}: with --strict every warning is an error",
+        target.display()
+    );
+    Diagnostic::error("not-written", message)
+        .note("earlier results are as they were")
+        .help("mend what is warned of, or leave out --strict")
 }
 
 /// A folder holds the results of one run: where a study could not run, nothing of the others is written either.
@@ -278,7 +282,7 @@ fn write(
         &check,
         outcomes,
     );
-    report.sections.splice(0..0, stopped_before(missing));
+    report.first.splice(0..0, stopped_before(missing));
     add("report.html".to_owned(), report.to_html().as_bytes())?;
     batch.publish().map_err(|unpublished| {
         if unpublished.kept.is_empty() {

@@ -12,7 +12,7 @@ use crate::say::{Speaker, print_json, put};
 
 /// Runs `kempe sensitivities`.
 pub fn sensitivities(arguments: &Sensitivities) -> Exit {
-    let mut speaker = Speaker::new(arguments.json, false);
+    let mut speaker = Speaker::new(arguments.json, false).strictly(arguments.model.strict);
     let fail = |speaker: &Speaker, exit| {
         speaker.print_failure();
         exit
@@ -40,15 +40,17 @@ pub fn sensitivities(arguments: &Sensitivities) -> Exit {
     drop(bar);
     match found {
         Ok(found) if arguments.json => {
+            speaker.tell(&found.diagnostics);
             let mut value = serde_json::to_value(&found).unwrap_or_default();
             value["file"] = json!(loaded.name);
             value["diagnostics"] = speaker.diagnostics();
             print_json(&value);
-            Exit::Ok
+            speaker.exit()
         }
         Ok(found) => {
             put(&found.to_text());
-            Exit::Ok
+            speaker.tell(&found.diagnostics);
+            speaker.exit()
         }
         Err(diagnostic) => {
             speaker.tell(&diagnostic);

@@ -222,6 +222,25 @@ pub fn report(cases: &[Case]) -> Report {
         title: "Crank-rocker".into(),
         file_name: "examples/seeds/crank-rocker.toml".into(),
         motions,
+        first: vec![Section {
+            title: "Warnings".into(),
+            blocks: vec![
+                Block::Finding {
+                    level: Level::Warning,
+                    code: text("kin/low-transmission-angle"),
+                    message: text(
+                        "The transmission angle at C falls to 22.3 deg at motor = 0 deg.",
+                    ),
+                    help: text("Longer rocker or shorter crank: above 40 deg is usual."),
+                },
+                Block::Finding {
+                    level: Level::Note,
+                    code: String::new(),
+                    message: text("Two assemblies exist; the first was chosen."),
+                    help: String::new(),
+                },
+            ],
+        }],
         sections: vec![
             Section {
                 title: "Mobility".into(),
@@ -253,25 +272,6 @@ pub fn report(cases: &[Case]) -> Report {
                     text("C left of B -> D (chosen)"),
                     text("C right of B -> D"),
                 ])],
-            },
-            Section {
-                title: "Warnings".into(),
-                blocks: vec![
-                    Block::Finding {
-                        level: Level::Warning,
-                        code: text("kin/low-transmission-angle"),
-                        message: text(
-                            "The transmission angle at C falls to 22.3 deg at motor = 0 deg.",
-                        ),
-                        help: text("Longer rocker or shorter crank: above 40 deg is usual."),
-                    },
-                    Block::Finding {
-                        level: Level::Note,
-                        code: String::new(),
-                        message: text("Two assemblies exist; the first was chosen."),
-                        help: String::new(),
-                    },
-                ],
             },
         ],
         generator: "kempe 0.1.0".into(),

@@ -1,6 +1,6 @@
 //! The page: template, style and script put together.
 
-use super::{Report, motion, sections};
+use super::{Report, Section, motion, sections};
 use crate::escape::escape;
 use crate::tokens;
 
@@ -33,12 +33,16 @@ pub(super) fn page(report: &Report) -> String {
     } else {
         tabs = format!("<div class=\"tabs\" role=\"tablist\" aria-label=\"Studies\">{tabs}</div>");
     }
-    let findings: String = report
-        .sections
-        .iter()
-        .enumerate()
-        .map(|(i, s)| sections::section(s, &format!("section-{i}")))
-        .collect();
+    let written = |list: &[Section], name: &str| -> String {
+        let numbered = list.iter().enumerate();
+        let one = |(i, s)| sections::section(s, &format!("{name}-{i}"));
+        numbered.map(one).collect()
+    };
+    let first = match report.first.as_slice() {
+        [] => String::new(),
+        list => format!("<div class=\"sections\">\n{}</div>", written(list, "first")),
+    };
+    let findings = written(&report.sections, "section");
     let title = if report.title.is_empty() {
         &report.file_name
     } else {
@@ -51,6 +55,7 @@ pub(super) fn page(report: &Report) -> String {
         "light" => tokens::css(false),
         "dark" => tokens::css(true),
         "style" => STYLE.to_string(),
+        "first" => first.clone(),
         "tabs" => tabs.clone(),
         "motions" => panels.clone(),
         "sections" => findings.clone(),

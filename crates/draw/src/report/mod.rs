@@ -23,7 +23,9 @@ pub struct Report {
     pub file_name: String,
     /// Studies with a motion, in the order of the tabs.
     pub motions: Vec<MotionReport>,
-    /// Findings, in order: mobility, groups, assemblies, warnings.
+    /// What stands above the motions: warnings.
+    pub first: Vec<Section>,
+    /// Findings, in order: mobility, groups, assemblies.
     pub sections: Vec<Section>,
     /// The program that wrote it, with its version, for the last line.
     pub generator: String,

@@ -113,26 +113,83 @@ enum Near {
     },
 }
 
+/// Where poses have what a `near` hint asks for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Found {
+    /// A point.
+    Place {
+        /// Where it is, m.
+        at: [f64; 2],
+        /// The way there from where it was asked for, m.
+        off: [f64; 2],
+    },
+    /// The angle of a link.
+    Angle {
+        /// What it is, rad.
+        at: f64,
+        /// By how much it is more than was asked for, rad.
+        off: f64,
+    },
+}
+
+/// Where poses have what the `near` hints of the file ask for: one entry for every hint, `None` for sides.
+pub fn found_near(design: &Design<f64>, poses: &[Pose<f64>]) -> Vec<Option<Found>> {
+    let (mechanism, geometry) = (&*design.mechanism, &design.geometry);
+    let hints = mechanism.model.assembly.iter();
+    let near = hints.map(|hint| Near::of(design, &hint.kind));
+    near.map(|near| near?.found(mechanism, geometry, poses))
+        .collect()
+}
+
+impl Near {
+    /// `None` for sides.
+    fn of(design: &Design<f64>, hint: &HintKind) -> Option<Self> {
+        let value = |scalar: &Scalar| kempe_model::value(scalar, &design.parameters);
+        match hint {
+            HintKind::NearPlace { point, x, y } => Some(Self::Place {
+                point: *point,
+                world: [value(x), value(y)],
+            }),
+            HintKind::NearAngle { link, angle } => Some(Self::Angle {
+                body: design.mechanism.body_of(*link),
+                wanted: value(angle),
+                seat: design.geometry.seat_angles[link.index()],
+            }),
+            HintKind::Side { .. } => None,
+        }
+    }
+
+    /// Where poses have it; `None` for a point on no link.
+    fn found(
+        &self,
+        mechanism: &Mechanism,
+        geometry: &Geometry<f64>,
+        poses: &[Pose<f64>],
+    ) -> Option<Found> {
+        match self {
+            Self::Place { point, world } => {
+                let marker = mechanism.any_marker(*point)?;
+                let at = poses[marker.body.index()].place(geometry.marker(marker));
+                let off = sub(at, *world);
+                Some(Found::Place { at, off })
+            }
+            Self::Angle { body, wanted, seat } => {
+                let at = poses[body.index()].angle_near(wanted - seat) + seat;
+                Some(Found::Angle {
+                    at,
+                    off: at - wanted,
+                })
+            }
+        }
+    }
+}
+
 impl<'a> Hints<'a> {
     /// Evaluates the hints of a mechanism's file.
     pub fn new(design: &'a Design<f64>, size: f64) -> Self {
         let (mechanism, geometry) = (&*design.mechanism, &design.geometry);
-        let value = |scalar: &Scalar| kempe_model::value(scalar, &design.parameters);
         let hints = || mechanism.model.assembly.iter().map(|hint| &hint.kind);
-        let near: Vec<Near> = hints()
-            .filter_map(|hint| match hint {
-                HintKind::NearPlace { point, x, y } => Some(Near::Place {
-                    point: *point,
-                    world: [value(x), value(y)],
-                }),
-                HintKind::NearAngle { link, angle } => Some(Near::Angle {
-                    body: mechanism.body_of(*link),
-                    wanted: value(angle),
-                    seat: geometry.seat_angles[link.index()],
-                }),
-                HintKind::Side { .. } => None,
-            })
-            .collect();
+        let near: Vec<Near> = hints().filter_map(|hint| Near::of(design, hint)).collect();
         let mut meant = vec![0.0; mechanism.bodies];
         for hint in &near {
             if let Near::Angle { body, wanted, seat } = hint {
@@ -186,20 +243,12 @@ impl<'a> Hints<'a> {
     pub fn distance(&self, poses: &[Pose<f64>]) -> f64 {
         let (mut sum, mut count) = (0.0, 0);
         for hint in &self.near {
-            match hint {
-                Near::Place { point, world } => {
-                    let Some(marker) = self.mechanism.any_marker(*point) else {
-                        continue;
-                    };
-                    let p = poses[marker.body.index()].place(self.geometry.marker(marker));
-                    let (dx, dy) = (p[0] - world[0], p[1] - world[1]);
-                    sum += dx * dx + dy * dy;
+            match hint.found(self.mechanism, self.geometry, poses) {
+                Some(Found::Place { off, .. }) => sum += off[0] * off[0] + off[1] * off[1],
+                Some(Found::Angle { off, .. }) => {
+                    sum += (off * self.size) * (off * self.size);
                 }
-                Near::Angle { body, wanted, seat } => {
-                    let angle = poses[body.index()].angle_near(wanted - seat);
-                    let off = (angle + seat - wanted) * self.size;
-                    sum += off * off;
-                }
+                None => continue,
             }
             count += 1;
         }

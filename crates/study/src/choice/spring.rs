@@ -177,7 +177,7 @@ fn tell(
         )]],
     });
     if spring.acts != Acts::Both || spring.stops.iter().any(Option::is_some) {
-        result.warnings.push(
+        result.diagnostics.push(
             Diagnostic::warning(
                 "spring-not-linear",
                 format!(

@@ -37,7 +37,7 @@ pub fn result(result: &StudyResult, with_table: bool) -> Value {
         "least_singular_value": result.table.least_singular_value(),
         "worst_route_difference": result.table.worst_route_difference().map(|(_, d)| d),
         "worst_condition": result.table.worst_condition().map(|(_, c)| c),
-        "warnings": result.warnings.iter().map(diagnostic).collect::<Vec<_>>(),
+        "diagnostics": result.diagnostics.iter().map(diagnostic).collect::<Vec<_>>(),
     });
     if with_table {
         out["table"] = table(&result.table);

@@ -60,7 +60,7 @@ pub fn check_and_run(
     for study in model.studies.iter().take(MOST_STUDIES) {
         match run(&model, study, &mut Budget(budget)) {
             Ok(result) => {
-                sound(&result.warnings, &text);
+                sound(&result.diagnostics, &text);
                 explained(&result, study);
                 reached.tables += 1;
                 reached.rows += result.table.rows() - result.table.unreached();
@@ -95,7 +95,7 @@ fn explained(result: &StudyResult, study: &Study) {
     let table = &result.table;
     let rows = table.rows();
     assert_eq!(encode::csv(table).lines().count(), rows + 1);
-    let told_once = result.warnings.iter().any(|d| d.code == "no-value");
+    let told_once = result.diagnostics.iter().any(|d| d.code == "no-value");
     for column in table.with_evidence() {
         assert_eq!(column.values.len(), rows, "{}", column.name);
         for (row, value) in column.values.iter().enumerate() {
@@ -109,7 +109,7 @@ fn explained(result: &StudyResult, study: &Study) {
     }
     for scalar in &result.scalars {
         assert!(
-            scalar.value.is_finite() || !result.warnings.is_empty() || result.interrupted(),
+            scalar.value.is_finite() || !result.diagnostics.is_empty() || result.interrupted(),
             "`{}` is {} in `{}`, and nobody says why",
             scalar.name,
             scalar.value,
