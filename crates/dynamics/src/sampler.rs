@@ -3,7 +3,7 @@
 use std::fmt;
 use std::sync::Arc;
 
-use kempe_measure::{Sample, Sampler, Unmeasurable, Unprepared};
+use kempe_measure::{Sample, Sampler, StatisticNote, Unmeasurable, Unprepared};
 use kempe_model::{DriveId, Measure};
 use kempe_motion::{Motion, Progress, Silent};
 
@@ -135,6 +135,11 @@ impl ForceSampler {
     /// The motion.
     pub fn motion(&self) -> &Arc<Motion> {
         self.sampler.motion()
+    }
+
+    /// What is to be told of the numbers over the motion that a measure contains.
+    pub fn notes_of(&self, measure: &Measure) -> Vec<StatisticNote> {
+        self.sampler.notes_of(measure)
     }
 
     /// The drive whose coordinate is the path parameter.

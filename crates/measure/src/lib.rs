@@ -16,6 +16,7 @@ mod sampler;
 pub mod sensitivity;
 pub mod state;
 mod states_along;
+mod statistic_note;
 mod statistics;
 
 pub use circuit_rows::{circuit_row, circuit_samplers};
@@ -27,3 +28,4 @@ pub use sampler::{CLOSURE_LIMIT, Sample, Sampler};
 pub use sensitivity::{Held, Sensitivities, Varying, sensitivities, sensitivities_with};
 pub use state::{Abscissa, ORDER, Series, State};
 pub use states_along::Base;
+pub use statistic_note::StatisticNote;

@@ -107,6 +107,7 @@ impl<F: ForceSource> Sampler<F> {
             measurer: Measurer::new(motion, &motion.design.parameters, forces),
             rows,
             known: Vec::new(),
+            notes: Vec::new(),
             measures: measures.iter().map(|m| (*m).clone()).collect(),
             lengths: Vec::new(),
             curved: Vec::new(),
@@ -131,11 +132,16 @@ impl<F: ForceSource> Sampler<F> {
                 .push(Swept::with_progress(&motion, point, progress)?);
         }
         for round in rounds(self, needs.statistics) {
-            let (values, known) = over_motion(self, &round, progress)?;
-            let found = round.into_iter().zip(values);
+            let found = over_motion(self, &round, progress)?;
+            self.known.extend(found.known);
+            self.notes
+                .extend(found.notes.into_iter().map(|(number, note)| {
+                    let (statistic, measure) = &round[number];
+                    (statistic.clone(), measure.clone(), note)
+                }));
+            let values = round.into_iter().zip(found.values);
             (self.measurer.statistics)
-                .extend(found.map(|((s, measure), value)| (s, measure, value)));
-            self.known.extend(known);
+                .extend(values.map(|((s, measure), value)| (s, measure, value)));
         }
         Some(())
     }

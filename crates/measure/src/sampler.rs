@@ -3,25 +3,29 @@
 //! What the measures need is found first (`prepare.rs`). Then a row is its place on the path, the state there, the measures of
 //! that moment (`moment`) and a note where there is something to say (`note`).
 
+mod between;
 mod moment;
 mod note;
 
+pub(crate) use self::between::{Between, Kept};
 pub(crate) use self::moment::Asked;
 
 use std::sync::Arc;
 
 use kempe_mechanism::bordered::Bordered;
 use kempe_mechanism::evidence::evidence;
-use kempe_model::{Measure, PointId};
+use kempe_model::{Leaf, Measure, PointId, Statistic};
 use kempe_motion::motion::{Motion, Solver};
 
 use crate::clock::Clock;
 use crate::extremes::{At, Extremes};
 use crate::force_source::{ForceSource, NoForces};
+use crate::measure::visit_leaves;
 use crate::measurer::Measurer;
 use crate::path_length::Swept;
 use crate::row_note::RowNote;
 use crate::states_along::PathPlace;
+use crate::statistic_note::StatisticNote;
 
 /// A closure residual (in mechanism sizes) above which a row is marked.
 pub const CLOSURE_LIMIT: f64 = 1e-9;
@@ -63,6 +67,8 @@ pub struct Sampler<F = NoForces> {
     pub(crate) rows: Vec<f64>,
     /// What the statistics found of their measures.
     pub(crate) known: Vec<Extremes>,
+    /// What is to be told of numbers over the motion.
+    pub(crate) notes: Vec<(Statistic, Measure, StatisticNote)>,
     pub(crate) system: Bordered,
 }
 
@@ -82,6 +88,19 @@ impl<F: ForceSource> Sampler<F> {
     pub(crate) fn extremes(&self, measure: &Measure) -> Option<(At, At)> {
         let known = self.known.iter().find(|known| known.measure == *measure);
         known.and_then(|known| known.found)
+    }
+
+    /// What is to be told of the numbers over the motion that a measure contains.
+    pub fn notes_of(&self, measure: &Measure) -> Vec<StatisticNote> {
+        let mut notes = Vec::new();
+        visit_leaves(self.motion().mechanism(), measure, &mut |leaf| {
+            if let Leaf::Over(statistic, inner) = leaf {
+                let own = self.notes.iter();
+                let own = own.filter(|(s, m, _)| s == statistic && *m == **inner);
+                notes.extend(own.map(|(.., note)| *note));
+            }
+        });
+        notes
     }
 
     /// Values of the parameters, SI, in the model's order.

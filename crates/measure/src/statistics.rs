@@ -8,10 +8,13 @@
 mod extremes;
 mod knots;
 mod mean;
+mod pole;
+mod resolve;
 mod rounds;
 mod stretches;
 mod survey;
 mod time_ratio;
+mod wild;
 
 pub(crate) use self::rounds::rounds;
 pub(crate) use self::time_ratio::time_ratio;
@@ -21,12 +24,14 @@ use kempe_motion::progress::Progress;
 
 use self::extremes::Search;
 use self::mean::Mean;
+use self::pole::Pole;
 use self::stretches::{parted, stretches};
 use self::survey::{Closely, Point, survey};
 use crate::extremes::Extremes;
 use crate::force_source::ForceSource;
 use crate::measure::{ORDER, order_of};
 use crate::sampler::{Asked, Sampler};
+use crate::statistic_note::StatisticNote;
 
 /// A measure on its way over the motion.
 struct Course {
@@ -36,17 +41,29 @@ struct Course {
     known: usize,
     extremes: Option<Search>,
     mean: Option<Mean>,
+    /// Where it is infinite.
+    poles: Vec<Pole>,
 }
 
-/// Evaluates statistics of measures over the motion, SI, each with what it is of. NaN where the motion does not reach; `None`
-/// when stopped.
+/// Numbers over the motion, with what is known and to be told of them.
+#[derive(Default)]
+pub(crate) struct Numbers {
+    /// Their values, in the order asked for; NaN where the motion does not reach.
+    pub values: Vec<f64>,
+    /// Extremes of the measures.
+    pub known: Vec<Extremes>,
+    /// What is to be told, by the index of the number.
+    pub notes: Vec<(usize, StatisticNote)>,
+}
+
+/// Evaluates statistics of measures over the motion, SI; `None` when stopped.
 ///
 /// No statistic may contain another that is not known to the sampler yet: see [`rounds`].
 pub(crate) fn over_motion<F: ForceSource>(
     sampler: &mut Sampler<F>,
     statistics: &[(Statistic, Measure)],
     progress: &mut dyn Progress,
-) -> Option<(Vec<f64>, Vec<Extremes>)> {
+) -> Option<Numbers> {
     let mut measures: Vec<&Measure> = Vec::new();
     let mut courses: Vec<Course> = Vec::new();
     for (statistic, measure) in statistics {
@@ -74,15 +91,16 @@ pub(crate) fn over_motion<F: ForceSource>(
         }
     }
     let duration = sampler.duration();
+    let mut too_fast = false;
     if !courses.is_empty() {
         let together = sampler.asked(&measures);
         let mut stretches = stretches(sampler);
-        if together.forces() {
+        if together.forces {
             let curves = sampler.forces().curves();
             let knots = knots::passed(sampler, &curves, &stretches, progress)?;
             stretches = parted(&stretches, &knots, duration);
         }
-        survey(
+        let unseen = survey(
             sampler,
             &together,
             &stretches,
@@ -95,16 +113,23 @@ pub(crate) fn over_motion<F: ForceSource>(
                 courses.iter().any(Course::goes_on)
             },
         )?;
+        too_fast = unseen.spent;
+        for (index, between) in unseen.unbounded {
+            if let Some(course) = courses.get_mut(index) {
+                course.run_away(sampler, between, duration);
+            }
+        }
     }
     // Means that ask for forces look at the same places closely, and so do those that do not.
     let mut closely = [true, false].map(|forces| {
         let means = measures.iter().zip(&courses);
         let own =
-            means.filter(|(_, course)| course.mean.is_some() && course.asked.forces() == forces);
+            means.filter(|(_, course)| course.mean.is_some() && course.asked.forces == forces);
         Closely::new(sampler, own.map(|(measure, _)| *measure).collect())
     });
-    let values = (statistics.iter())
-        .map(|(statistic, measure)| {
+    let mut notes = Vec::new();
+    let values = (statistics.iter().enumerate())
+        .map(|(number, (statistic, measure))| {
             if let Statistic::At { drive, value } = statistic {
                 let time = match drive {
                     Some(drive) => sampler.time_of(*drive, *value),
@@ -118,10 +143,26 @@ pub(crate) fn over_motion<F: ForceSource>(
             let Some(course) = place.and_then(|place| courses.get(place)) else {
                 return f64::NAN;
             };
+            let mut tell = |note| notes.push((number, note));
+            if too_fast {
+                tell(StatisticNote::TooFast);
+            }
             if let (Statistic::Mean, Some(mean)) = (statistic, &course.mean) {
-                let closely = &mut closely[usize::from(!course.asked.forces())];
+                let steep = course.poles.iter().find(|pole| !pole.is_integrable());
+                if let Some(pole) = steep {
+                    tell(StatisticNote::Diverges { time: pole.time });
+                    return f64::NAN;
+                }
+                let closely = &mut closely[usize::from(!course.asked.forces)];
                 let mut take = |time| closely.take(sampler, measure, time);
-                return mean.finish(&mut take, course.known, duration);
+                let (mean, digits) = mean.finish(&mut take, course.known, duration, &course.poles);
+                if let Some(digits) = digits {
+                    tell(StatisticNote::Unsettled { digits });
+                }
+                return mean;
+            }
+            if let Some(pole) = course.poles.first() {
+                tell(StatisticNote::Infinite { time: pole.time });
             }
             let Some((low, high)) = course.extremes.as_ref().and_then(Search::found) else {
                 return f64::NAN;
@@ -140,7 +181,11 @@ pub(crate) fn over_motion<F: ForceSource>(
             found: course.extremes.as_ref().and_then(Search::found),
         })
         .collect();
-    Some((values, known))
+    Some(Numbers {
+        values,
+        known,
+        notes,
+    })
 }
 
 impl Course {
@@ -152,6 +197,7 @@ impl Course {
             known: order.map_or(1, |order| ORDER - (order as usize).min(ORDER - 1)),
             extremes: None,
             mean: None,
+            poles: Vec::new(),
         }
     }
 
@@ -162,6 +208,30 @@ impl Course {
         if let Some(mean) = &mut self.mean {
             mean.add(before.is_none(), now);
         }
+    }
+
+    /// Looks at a place where nothing bounds it.
+    fn run_away<F: ForceSource>(
+        &mut self,
+        sampler: &mut Sampler<F>,
+        between: [f64; 2],
+        duration: f64,
+    ) {
+        let Some(pole) = Pole::at(sampler, &self.asked, between, duration) else {
+            return;
+        };
+        if self
+            .poles
+            .iter()
+            .any(|known| known.is_at(pole.time, duration))
+        {
+            return;
+        }
+        if let Some(extremes) = &mut self.extremes {
+            let infinite = pole.sides.into_iter().filter(|side| *side != 0.0);
+            infinite.for_each(|side| extremes.take_value(pole.time, side));
+        }
+        self.poles.push(pole);
     }
 
     /// Whether samples can still tell something.

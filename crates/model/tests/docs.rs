@@ -218,7 +218,7 @@ const OTHER: &[&str] = &[
     // columns that tables have of their own
     "arc", "closure", "condition", "equilibrium_residual", "note", "route_difference", "smallest_singular_value",
     // on the command line
-    "kempe", "check", "new", "run", "schema",
+    "kempe", "check", "new", "run", "draw", "schema",
     // parts of names and phrases, and names of the page's own models
     "_", "_x", "_y", "of", "a", "phi",
 ];

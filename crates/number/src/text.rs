@@ -13,10 +13,13 @@ pub fn fixed(value: f64, decimals: usize) -> String {
 }
 
 /// `value` with `digits` significant digits, in plain notation between 1e-4 and 1e6 and with an exponent elsewhere.
-/// A value that is not finite becomes `n/a`.
+/// What is infinite says so, with its sign; what is no number becomes `n/a`.
 pub fn significant(value: f64, digits: usize) -> String {
-    if !value.is_finite() {
+    if value.is_nan() {
         return "n/a".into();
+    }
+    if value.is_infinite() {
+        return if value > 0.0 { "infinite" } else { "-infinite" }.into();
     }
     if value == 0.0 {
         return "0".into();
@@ -118,7 +121,9 @@ mod tests {
         assert_eq!(significant(0.00012345, 3), "0.000123");
         assert_eq!(significant(1.5e-9, 4), "1.5e-9");
         assert_eq!(significant(2e7, 4), "2e7");
-        assert_eq!(significant(f64::INFINITY, 4), "n/a");
+        assert_eq!(significant(f64::NAN, 4), "n/a");
+        assert_eq!(significant(f64::INFINITY, 4), "infinite");
+        assert_eq!(significant(f64::NEG_INFINITY, 4), "-infinite");
         assert_eq!((decade(999.0), decade(1e-3), decade(0.0)), (2, -3, 0));
         assert_eq!(power_of_ten(-7), 1e-7);
         assert_eq!(with_prefix(500.0, "N", 3), "500 N");

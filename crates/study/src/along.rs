@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use kempe_dynamics::{ForceArrow, ForceError, ForceEvidence, ForceNote, ForceSampler, Problem};
 use kempe_measure::force_source::NoForces;
-use kempe_measure::{Sample, Sampler, Unmeasurable, Unprepared, unmeasurable};
+use kempe_measure::{Sample, Sampler, StatisticNote, Unmeasurable, Unprepared, unmeasurable};
 use kempe_mechanism::Mechanism;
-use kempe_model::{Diagnostic, DriveId, Model, Study, StudyKind};
+use kempe_model::{Diagnostic, DriveId, Measure, Model, Study, StudyKind};
 use kempe_motion::{Motion, Progress, Silent, Stage};
 
 use crate::columns::Asked;
@@ -144,6 +144,14 @@ impl Along {
             (Self::Motion(sampler), RowPlace::Time(t)) => sampler.values_at_time(t),
             (Self::Forces(sampler), RowPlace::Drive(p)) => sampler.values_at_parameter(p),
             (Self::Forces(sampler), RowPlace::Time(t)) => sampler.values_at_time(t),
+        }
+    }
+
+    /// What is to be told of the numbers over the motion that a measure contains.
+    pub fn notes_of(&self, measure: &Measure) -> Vec<StatisticNote> {
+        match self {
+            Self::Motion(sampler) => sampler.notes_of(measure),
+            Self::Forces(sampler) => sampler.notes_of(measure),
         }
     }
 

@@ -4,13 +4,15 @@ use kempe_mechanism::{Design, Pose};
 use kempe_model::{HintKind, Model, Side};
 use kempe_motion::assemble::{Assemblies, Assembly, Found, Standing, found_near, standings};
 use kempe_number::math::hypot;
-use kempe_units::Dimension;
+use kempe_units::{Dimension, format_digits};
 
 use crate::unit::Units;
 use crate::words::list;
 
 /// Two assemblies are as near to the hints when their distances differ by less than this part of the mechanism's size.
 const AS_NEAR: f64 = 1e-6;
+/// Digits in which it is told how far a hint is missed.
+const DIGITS: usize = 3;
 /// Contradictions of up to so many sides are looked for; of more all are named.
 const SMALL: usize = 4;
 
@@ -52,18 +54,19 @@ pub(crate) fn as_near<'a>(design: &Design<f64>, assemblies: &'a Assemblies) -> &
 pub(crate) fn off(design: &Design<f64>, units: &Units, poses: &[Pose<f64>]) -> String {
     let model = &design.mechanism.model;
     let found = found_near(design, poses).into_iter().zip(&model.assembly);
+    let rough = |x: f64, dimension| format_digits(x, &units.unit(dimension), DIGITS);
     let parts: Vec<String> = found
         .filter_map(|(found, hint)| {
             Some(match (found?, &hint.kind) {
                 (Found::Place { off, .. }, HintKind::NearPlace { point, .. }) => format!(
                     "{} {}",
                     model.points.get(point.index())?.name,
-                    units.text(hypot(off[0], off[1]), Dimension::LENGTH)
+                    rough(hypot(off[0], off[1]), Dimension::LENGTH)
                 ),
                 (Found::Angle { off, .. }, HintKind::NearAngle { link, .. }) => format!(
                     "{} {}",
                     model.links.get(link.index())?.name,
-                    units.text(off.abs(), Dimension::ANGLE)
+                    rough(off.abs(), Dimension::ANGLE)
                 ),
                 _ => return None,
             })

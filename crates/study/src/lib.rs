@@ -48,6 +48,7 @@ mod hints;
 mod missing;
 mod motion;
 mod motion_findings;
+mod number_notes;
 mod pose;
 mod prepared;
 mod proof;

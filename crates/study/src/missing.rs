@@ -58,7 +58,7 @@ pub(crate) fn without_value(
         )
     });
     let numbers = rows.scalars.iter().enumerate();
-    let numbers = numbers.filter(|(_, s)| !s.value.is_finite());
+    let numbers = numbers.filter(|(_, s)| s.value.is_nan());
     let numbers = numbers.map(|(index, scalar)| {
         let diagnostic = Diagnostic::warning(
             "no-value",

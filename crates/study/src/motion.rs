@@ -14,6 +14,7 @@ use crate::force_columns::standard_plots;
 use crate::force_notes::unbounded;
 use crate::missing::{unreached_warning, without_value};
 use crate::motion_findings::{motion_findings, refused};
+use crate::number_notes::number_notes;
 use crate::prepared::{design, motion};
 use crate::quantity::Quantity;
 use crate::result::StudyResult;
@@ -76,6 +77,12 @@ pub(crate) fn run_along(
         diagnostics.push(unreached_warning(name, &rows.table));
     }
     diagnostics.extend(rows.force_warnings(&design.mechanism, along));
+    diagnostics.extend(number_notes(
+        name,
+        &sampler,
+        &motion,
+        quantities.iter().copied(),
+    ));
     diagnostics.extend(without_value(&rows, along, |index| {
         let of_cycles = (asked.scalars.get(index))
             .is_some_and(|q| asks_time_ratio(&design.mechanism, &q.measure));

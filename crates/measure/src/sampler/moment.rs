@@ -24,7 +24,7 @@ impl<F: ForceSource> Sampler<F> {
     }
 
     /// Lengths of the paths of some points at a time.
-    fn lengths_at(&mut self, points: &[PointId], time: f64) -> Vec<(PointId, f64)> {
+    pub(super) fn lengths_at(&mut self, points: &[PointId], time: f64) -> Vec<(PointId, f64)> {
         let motion = self.motion().clone();
         let lengths = self.lengths.iter_mut();
         lengths
@@ -95,15 +95,9 @@ impl<F: ForceSource> Sampler<F> {
 
 /// Measures with what they ask of a moment beside its poses.
 pub(crate) struct Asked {
-    measures: Vec<Measure>,
-    forces: bool,
-    /// Points whose length of path is asked for.
-    lengths: Vec<PointId>,
-}
-
-impl Asked {
+    pub measures: Vec<Measure>,
     /// Whether any of them asks for forces.
-    pub(crate) fn forces(&self) -> bool {
-        self.forces
-    }
+    pub forces: bool,
+    /// Points whose length of path is asked for.
+    pub lengths: Vec<PointId>,
 }

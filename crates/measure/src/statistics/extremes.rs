@@ -40,7 +40,7 @@ impl Search {
 
     /// Smallest and largest with their times, of samples only where not wanted; `None` where it has no value somewhere.
     pub fn found(&self) -> Option<(At, At)> {
-        (!self.missing && self.low.1.is_finite()).then_some((self.low, self.high))
+        (!self.missing && !self.low.0.is_nan()).then_some((self.low, self.high))
     }
 
     /// Adds a sample, and what lies between it and the one before on the same stretch. `known` is how many coefficients of
@@ -77,7 +77,11 @@ impl Search {
     }
 
     fn take(&mut self, point: Point) {
-        let (time, value) = (point.time, point.value());
+        self.take_value(point.time, point.value());
+    }
+
+    /// Takes a value at a time.
+    pub fn take_value(&mut self, time: f64, value: f64) {
         // Equal to rounding is not an improvement: the first time counts.
         if value < self.low.1 {
             self.low = (time, value);

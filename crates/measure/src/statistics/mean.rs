@@ -5,8 +5,10 @@
 //! over two neighbouring intervals at once; where both differ, as at a kink, the interval is halved until whole and halves
 //! agree.
 
+use super::pole::Pole;
 use super::survey::Point;
 use crate::quadrature::{graded, integrate};
+use kempe_number::math;
 
 /// An integral over two intervals at once may differ from that by each by this part of the integral of the function's size.
 /// Where it is smooth most of that is then taken off (L. F. Richardson's extrapolation); a kink that is not seen counts
@@ -16,6 +18,8 @@ const NEIGHBOURS_AGREE: f64 = 1e-12;
 const LEFT: f64 = 1e-13;
 /// The integral by the whole may differ from that by halves by this part.
 const AGREED: f64 = 1e-14;
+/// An integral whose open parts differ by no more than this part of that of the function's size has settled.
+const SETTLED: f64 = 1e-9;
 /// Halvings at most, and so many more for every interval.
 const HALVINGS: (usize, usize) = (4000, 64);
 /// Where halving everything that is open leaves more than this part of all differences, and does so again, they are rounding
@@ -54,11 +58,18 @@ impl Mean {
         }
     }
 
-    /// The mean over the samples' time; `known` coefficients of the series are known, and `take` takes more samples.
-    pub fn finish(&self, take: &mut Take<'_>, known: usize, duration: f64) -> f64 {
+    /// The mean over the samples' time, and how many of its digits hold where it did not settle; `known` coefficients of the
+    /// series are known, `take` takes more samples, and at `poles` it is infinite.
+    pub fn finish(
+        &self,
+        take: &mut Take<'_>,
+        known: usize,
+        duration: f64,
+        poles: &[Pole],
+    ) -> (f64, Option<u32>) {
         if duration <= 0.0 {
             let first = self.stretches.first().and_then(|points| points.first());
-            return first.map_or(f64::NAN, Point::value);
+            return (first.map_or(f64::NAN, Point::value), None);
         }
         let size: f64 = (self.stretches.iter().flat_map(|points| points.windows(2)))
             .map(|pair| {
@@ -67,10 +78,19 @@ impl Mean {
             })
             .filter(|size| size.is_finite())
             .sum();
-        let mut sum = 0.0;
+        let (mut sum, mut unsure) = (0.0, 0.0);
         let mut open: Vec<Part> = Vec::new();
         let mut count = 0;
+        let mut pieces = Vec::new();
         for points in &self.stretches {
+            let (own, about_poles) = around_poles(take, points, poles, duration);
+            pieces.extend(own);
+            for (integral, doubt) in about_poles {
+                sum += integral;
+                unsure += doubt * integral.abs();
+            }
+        }
+        for points in &pieces {
             let each: Vec<f64> = (points.windows(2))
                 .map(|pair| hermite(&pair[0], &pair[1], known))
                 .collect();
@@ -104,8 +124,14 @@ impl Mean {
                 }
             }
         }
-        sum += closer(take, known, size, open, count);
-        sum / duration
+        let (rest, open) = closer(take, known, size, open, count);
+        sum += rest;
+        let open = open + unsure;
+        let digits = (open > SETTLED * size).then(|| {
+            let digits = -math::log10(open / sum.abs());
+            digits.clamp(0.0, 15.0) as u32
+        });
+        (sum / duration, digits)
     }
 }
 
@@ -113,6 +139,16 @@ impl Part {
     fn new(take: &mut Take<'_>, known: usize, ends: [Point; 2], origin: f64) -> Self {
         let [a, b] = ends;
         let middle = take(0.5 * (a.time + b.time));
+        if !(a.time < middle.time && middle.time < b.time) {
+            // There is no time between.
+            return Self {
+                ends,
+                middle,
+                origin,
+                integral: hermite(&a, &b, known),
+                gap: 0.0,
+            };
+        }
         let halves = hermite(&a, &middle, known) + hermite(&middle, &b, known);
         let gap = halves - hermite(&a, &b, known);
         let rests = extrapolated(gap, [&a, &middle, &b], known);
@@ -126,14 +162,14 @@ impl Part {
     }
 }
 
-/// The integral over parts, each halved until whole and halves agree.
+/// The integral over parts, each halved until whole and halves agree, and by how much they differ all the same.
 fn closer(
     take: &mut Take<'_>,
     known: usize,
     size: f64,
     mut open: Vec<Part>,
     intervals: usize,
-) -> f64 {
+) -> (f64, f64) {
     let mut sum = 0.0;
     let mut left = HALVINGS.0 + HALVINGS.1 * intervals;
     let (mut last, mut stalled) = (f64::INFINITY, false);
@@ -168,7 +204,65 @@ fn closer(
         }
         open = finer;
     }
-    sum + open.iter().map(|part| part.integral).sum::<f64>()
+    let gaps = open
+        .iter()
+        .map(|part| part.gap)
+        .filter(|gap| gap.is_finite());
+    let gap = gaps.sum();
+    (
+        sum + open.iter().map(|part| part.integral).sum::<f64>(),
+        gap,
+    )
+}
+
+/// A stretch's samples without those right about its poles, in pieces; and the integrals over what is left out between
+/// them, each with what part of it is in doubt.
+fn around_poles(
+    take: &mut Take<'_>,
+    points: &[Point],
+    poles: &[Pole],
+    duration: f64,
+) -> (Vec<Vec<Point>>, Vec<(f64, f64)>) {
+    let (mut pieces, mut integrals) = (vec![Vec::new()], Vec::new());
+    let [Some(first), Some(last)] = [points.first(), points.last()] else {
+        return (pieces, integrals);
+    };
+    let mut poles: Vec<&Pole> = (poles.iter())
+        .filter(|pole| {
+            let [from, to] = pole.sides(duration);
+            first.time < to && from < last.time
+        })
+        .collect();
+    poles.sort_by(|a, b| a.time.total_cmp(&b.time));
+    let mut points = points.iter().copied().peekable();
+    for pole in poles {
+        let [from, to] = pole.sides(duration);
+        let piece = pieces.last_mut();
+        if let Some(piece) = piece {
+            while let Some(point) = points.next_if(|point| point.time < from) {
+                piece.push(point);
+            }
+            if from > first.time {
+                let point = take(from);
+                integrals.push((pole.integral(from, point.value()), pole.doubt));
+                piece.push(point);
+            }
+        }
+        while points.next_if(|point| point.time <= to).is_some() {}
+        pieces.push(Vec::new());
+        if to < last.time {
+            let point = take(to);
+            integrals.push((pole.integral(to, point.value()), pole.doubt));
+            pieces
+                .last_mut()
+                .into_iter()
+                .for_each(|piece| piece.push(point));
+        }
+    }
+    if let Some(piece) = pieces.last_mut() {
+        piece.extend(points);
+    }
+    (pieces, integrals)
 }
 
 /// The integral over an interval with no finite value at an end, or in its middle: ever closer steps towards both ends.

@@ -5,10 +5,11 @@ use std::collections::BTreeMap;
 use kempe_model::Measure;
 use kempe_motion::progress::{Done, Progress, Stage};
 
+use super::resolve::{Resolution, Shown};
 use super::stretches::SmoothStretch;
 use crate::force_source::ForceSource;
 use crate::measure::Series;
-use crate::sampler::{Asked, Sampler};
+use crate::sampler::{Asked, Kept, Sampler};
 
 /// Halvings of an interval by which an end without a rate of its own is approached: nearer than its 2^40th part nothing
 /// can be told from the end.
@@ -103,8 +104,30 @@ impl<'m> Closely<'m> {
 /// Hears a sample, with the one before it where nothing lies between; tells whether it wants more.
 pub(super) type Heard<'h, F> = dyn FnMut(&mut Sampler<F>, Option<&Sample>, &Sample) -> bool + 'h;
 
-/// Samples a motion stretch by stretch, and where its rows stand. `heard` is told each sample, with the one before it on the same stretch; what it
-/// answers says whether to go on. `None` when stopped.
+/// What a survey could not look into.
+#[derive(Debug, Default)]
+pub(super) struct Unseen {
+    /// Measures, by their index, that have no bound between two samples however near.
+    pub unbounded: Vec<(usize, [f64; 2])>,
+    /// Whether more samples would have been needed than are taken.
+    pub spent: bool,
+}
+
+impl Unseen {
+    /// Takes up an interval, together with one of the same measure right before it.
+    fn take(&mut self, measure: usize, between: [f64; 2]) {
+        let known = self.unbounded.iter_mut().rev();
+        let mut known = known.filter(|(index, _)| *index == measure);
+        match known.next() {
+            Some((_, [_, to])) if *to == between[0] => *to = between[1],
+            _ => self.unbounded.push((measure, between)),
+        }
+    }
+}
+
+/// Samples a motion stretch by stretch, and where its rows stand, and as much more closely as its measures change between
+/// samples. `heard` is told each sample, with the one before it on the same stretch; what it answers says whether to go on.
+/// `None` when stopped.
 ///
 /// Where one of two neighbours lacks a rate that the other has, as at a limit, samples ever nearer to it are put between
 /// them.
@@ -114,32 +137,61 @@ pub(super) fn survey<F: ForceSource>(
     stretches: &[SmoothStretch],
     progress: &mut dyn Progress,
     heard: &mut Heard<'_, F>,
-) -> Option<()> {
+) -> Option<Unseen> {
     let duration = sampler.duration();
     let rows = sampler.rows().to_vec();
+    let mut resolution = Resolution::new(sampler, &asked.measures, asked.forces, stretches);
+    let mut unseen = Unseen::default();
     for stretch in stretches {
-        let mut last: Option<Sample> = None;
+        let mut last: Option<(Sample, Kept)> = None;
+        let mut interval = 0.0;
         for time in stretch.times(&rows, duration) {
             progress
                 .reached(Stage::Measuring, Done::Part(time / duration))
                 .continue_value()?;
-            let sample = Sample::take(sampler, asked, time);
-            if let Some(before) = &last {
-                for near in nearing(before, &sample) {
-                    let between = Sample::take(sampler, asked, near);
-                    if !heard(sampler, last.as_ref(), &between) {
-                        return Some(());
+            if let Some((before, _)) = &last {
+                interval = time - before.time;
+            }
+            let take = |sampler: &mut Sampler<F>, resolution: &mut Resolution, time: f64| {
+                let sample = Sample::take(sampler, asked, time);
+                let kept = resolution.keep(sampler, &sample.series);
+                (sample, kept)
+            };
+            // The last of them is the next to be told.
+            let mut waiting = vec![take(sampler, &mut resolution, time)];
+            while let Some((sample, kept)) = waiting.pop() {
+                if let Some((before, kept_before)) = &last {
+                    let ends = [(before.time, kept_before), (sample.time, &kept)];
+                    let middle = 0.5 * (before.time + sample.time);
+                    match resolution.shown(sampler, ends, interval) {
+                        Shown::No if before.time < middle && middle < sample.time => {
+                            waiting.push((sample, kept));
+                            waiting.push(take(sampler, &mut resolution, middle));
+                            continue;
+                        }
+                        Shown::Never(open) => {
+                            let between = [before.time, sample.time];
+                            open.into_iter().for_each(|k| unseen.take(k, between));
+                        }
+                        _ => {}
                     }
-                    last = Some(between);
+                    for near in nearing(before, &sample) {
+                        let between = take(sampler, &mut resolution, near);
+                        if !heard(sampler, last.as_ref().map(|it| &it.0), &between.0) {
+                            return Some(unseen);
+                        }
+                        last = Some(between);
+                    }
                 }
+                if !heard(sampler, last.as_ref().map(|it| &it.0), &sample) {
+                    return Some(unseen);
+                }
+                last = Some((sample, kept));
             }
-            if !heard(sampler, last.as_ref(), &sample) {
-                return Some(());
-            }
-            last = Some(sample);
         }
     }
-    Some(())
+    unseen.spent = resolution.is_spent();
+    Some(unseen)
 }
 
 /// Times between two samples, rising, ever nearer to one that lacks a rate which the other has.

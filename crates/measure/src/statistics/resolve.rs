@@ -1,0 +1,202 @@
+//! Where samples stand too far apart to show what measures do between them: a narrow peak, a pole.
+//!
+//! Between two samples every measure is bounded ([`Sampler::bounds`]). Where the bounds of a coefficient of its series
+//! let it change by more than a small part of the measure's own size, the samples do not show it: another is put in the
+//! middle, and so on, until they do.
+
+use kempe_model::Measure;
+use kempe_number::Interval;
+
+use super::stretches::SmoothStretch;
+use super::wild::is_wild;
+use crate::force_source::ForceSource;
+use crate::measure::{ORDER, Series, order_of};
+use crate::sampler::{Between, Kept, Sampler};
+
+/// What the k-th coefficient may change by between samples, times the k-th power of their distance, in parts of the measure's
+/// size: what is left of the last bounds by how much the series of the samples miss what lies between.
+const SHOWN: [f64; ORDER] = [0.5, 0.25, 0.05, 5e-3, 1e-4];
+/// Samples that tell the size of measures before any is looked at closely.
+const FIRST: usize = 48;
+/// A measure counts at least as this part of what it could be at most.
+const UNSEEN: f64 = 1e-9;
+/// Halvings of an interval at most, and of the whole motion: what is narrower still is a pole, a jump or a kink, and nearer to
+/// it the bounds of poses are rounding.
+const HALVINGS: [i32; 2] = [36, 40];
+/// Samples put between others at most, and so many more for each of them.
+const BUDGET: (usize, usize) = (20_000, 8);
+
+/// Tells where samples are put between others.
+pub(super) struct Resolution {
+    between: Between,
+    /// Which of the measures surveyed each is; none for loads.
+    surveyed: Vec<Option<usize>>,
+    /// How many coefficients of every measure are known.
+    known: Vec<usize>,
+    /// The size of every measure.
+    size: Vec<f64>,
+    budget: usize,
+    duration: f64,
+}
+
+/// How two samples stand to what lies between them.
+pub(super) enum Shown {
+    /// They show it.
+    Yes,
+    /// They do not.
+    No,
+    /// They do not, and stand as near to each other as they can; the measures surveyed that have no bound between them.
+    Never(Vec<usize>),
+}
+
+impl Resolution {
+    /// Looks at the measures from afar. Loads are looked at where forces are asked for.
+    pub fn new<F: ForceSource>(
+        sampler: &mut Sampler<F>,
+        measures: &[Measure],
+        forces: bool,
+        stretches: &[SmoothStretch],
+    ) -> Self {
+        let motion = sampler.motion().clone();
+        let mechanism = motion.mechanism();
+        let mut surveyed = Vec::new();
+        let mut own: Vec<Measure> = Vec::new();
+        let mut take = |measure: &Measure, index| {
+            if is_wild(mechanism, measure) {
+                own.push(measure.clone());
+                surveyed.push(index);
+            }
+        };
+        for (index, measure) in measures.iter().enumerate() {
+            take(measure, Some(index));
+        }
+        // What forces are between samples their loads tell.
+        if forces {
+            (sampler.forces().measures().iter()).for_each(|load| take(load, None));
+        }
+        let of: Vec<&Measure> = own.iter().collect();
+        let mut asked = sampler.asked(&of);
+        asked.forces = false;
+        let known = own.iter().map(|measure| {
+            let order = order_of(mechanism, measure).map_or(ORDER, |order| order as usize);
+            ORDER - order.min(ORDER)
+        });
+        let known = known.collect();
+        let samples: usize = stretches.iter().map(|s| s.intervals).sum();
+        let mut it = Self {
+            size: vec![0.0; own.len()],
+            known,
+            budget: BUDGET.0 + BUDGET.1 * samples,
+            duration: sampler.duration(),
+            between: sampler.between(asked),
+            surveyed,
+        };
+        it.look_from_afar(sampler, stretches);
+        it
+    }
+
+    fn look_from_afar<F: ForceSource>(
+        &mut self,
+        sampler: &mut Sampler<F>,
+        stretches: &[SmoothStretch],
+    ) {
+        if self.size.is_empty() {
+            return;
+        }
+        let mut most = vec![0.0_f64; self.size.len()];
+        let each = (FIRST / stretches.len()).max(1);
+        // Of many stretches not every one is looked at.
+        for stretch in stretches.iter().step_by(stretches.len().div_ceil(FIRST)) {
+            let mut before: Option<Kept> = None;
+            for k in 0..=each {
+                let part = k as f64 / each as f64;
+                let time = stretch.from + (stretch.to - stretch.from) * part;
+                let values = sampler.series_at(&self.between.asked, time);
+                for (size, value) in self.size.iter_mut().zip(&values) {
+                    take_up(size, value.coefficient(0));
+                }
+                let now = sampler.keep(&self.between);
+                if let Some(before) = &before {
+                    let bounds = sampler.bounds(&self.between, before, &now);
+                    for (most, bounds) in most.iter_mut().zip(&bounds) {
+                        take_up(most, bounds.coefficient(0).mag());
+                    }
+                }
+                before = Some(now);
+            }
+        }
+        for (size, most) in self.size.iter_mut().zip(most) {
+            *size = size.max(UNSEEN * most);
+        }
+    }
+
+    /// Keeps the moment last sampled; `series` are those of the measures surveyed.
+    pub fn keep<F: ForceSource>(
+        &mut self,
+        sampler: &mut Sampler<F>,
+        series: &[Series<f64>],
+    ) -> Kept {
+        for (size, index) in self.size.iter_mut().zip(&self.surveyed) {
+            if let Some(value) = index.and_then(|index| series.get(index)) {
+                take_up(size, value.coefficient(0));
+            }
+        }
+        sampler.keep(&self.between)
+    }
+
+    /// Whether two samples show what lies between them; `interval` is the distance at which samples stand without.
+    pub fn shown<F: ForceSource>(
+        &mut self,
+        sampler: &Sampler<F>,
+        [a, b]: [(f64, &Kept); 2],
+        interval: f64,
+    ) -> Shown {
+        let width = b.0 - a.0;
+        let follow = a.1.shows(b.1, sampler.motion().size());
+        if self.size.is_empty() && follow {
+            return Shown::Yes;
+        }
+        let bounds = match self.size.is_empty() {
+            true => Vec::new(),
+            false => sampler.bounds(&self.between, a.1, b.1),
+        };
+        // Of loads no series are sampled: what their bounds leave out tells their size.
+        for (size, bounds) in self.size.iter_mut().zip(&bounds) {
+            take_up(size, bounds.coefficient(0).mig());
+        }
+        let open = |(index, bounds): (usize, &Series<Interval>)| {
+            let mut power = 1.0;
+            (0..self.known[index]).any(|k| {
+                let change = bounds.coefficient(k).width() * power;
+                power *= width;
+                // Of what has no value nothing can be told.
+                change > SHOWN[k] * self.size[index]
+            })
+        };
+        if follow && !bounds.iter().enumerate().any(open) {
+            return Shown::Yes;
+        }
+        let [of_interval, of_motion] = HALVINGS.map(|n| kempe_number::powi(2.0, -n));
+        if width <= (of_interval * interval).max(of_motion * self.duration) {
+            let unbounded = self.surveyed.iter().zip(&bounds);
+            let unbounded = unbounded.filter(|(_, b)| b.coefficient(0).width() == f64::INFINITY);
+            return Shown::Never(unbounded.filter_map(|(index, _)| *index).collect());
+        }
+        if self.budget == 0 {
+            return Shown::Yes;
+        }
+        self.budget -= 1;
+        Shown::No
+    }
+
+    /// Whether more samples would have been needed than are taken.
+    pub fn is_spent(&self) -> bool {
+        self.budget == 0
+    }
+}
+
+fn take_up(size: &mut f64, value: f64) {
+    if value.is_finite() {
+        *size = size.max(value.abs());
+    }
+}

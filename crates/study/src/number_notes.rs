@@ -1,0 +1,88 @@
+//! What is to be told of numbers over a motion: where they are infinite, and how far they are to be trusted.
+
+use kempe_measure::StatisticNote;
+use kempe_model::Diagnostic;
+use kempe_motion::Motion;
+use kempe_motion::drive_path::DrivePath;
+use kempe_units::Dimension;
+
+use crate::along::Along;
+use crate::quantity::Quantity;
+use crate::unit::Units;
+
+/// Warnings of the quantities of a study that contain numbers over its motion.
+pub(crate) fn number_notes<'q>(
+    study: &str,
+    along: &Along,
+    motion: &Motion,
+    quantities: impl Iterator<Item = &'q Quantity>,
+) -> Vec<Diagnostic> {
+    let mut told = Vec::new();
+    for quantity in quantities {
+        for note in along.notes_of(&quantity.measure) {
+            let warning = warning(study, &quantity.name, note, motion);
+            if !told.contains(&warning) {
+                told.push(warning);
+            }
+        }
+    }
+    told
+}
+
+fn warning(study: &str, name: &str, note: StatisticNote, motion: &Motion) -> Diagnostic {
+    let number = format!("study `{study}`: `{name}`");
+    match note {
+        StatisticNote::Infinite { time } => Diagnostic::warning(
+            "infinite",
+            format!(
+                "{number} is infinite, or of something that is, at {}",
+                place(motion, time)
+            ),
+        )
+        .help("keep the motion away from there, or ask for what is finite there, such as the inverse"),
+        StatisticNote::Diverges { time } => Diagnostic::warning(
+            "diverges",
+            format!(
+                "{number} has no value: what is averaged runs away too fast at {}",
+                place(motion, time)
+            ),
+        )
+        .help("the mean over a range that does not hold that place has one"),
+        StatisticNote::Unsettled { digits } => Diagnostic::warning(
+            "not-settled",
+            format!("{number} did not settle: {digits} of its digits hold"),
+        )
+        .help("what is averaged jumps or oscillates too fast: take the mean over a shorter range, or of something smoother"),
+        StatisticNote::TooFast => too_fast(&number),
+        _ => too_fast(&number),
+    }
+}
+
+fn too_fast(number: &str) -> Diagnostic {
+    Diagnostic::warning(
+        "changes-too-fast",
+        format!("{number} is of something that changes faster than it was looked at: peaks may be missed"),
+    )
+    .help("look at a shorter range, where what changes fast is looked at more closely")
+}
+
+/// Where a motion is at a time, s: its drive's coordinate where one alone moves.
+fn place(motion: &Motion, time: f64) -> String {
+    let model = &motion.mechanism().model;
+    let units = Units::of(model);
+    let drive = match motion.path {
+        DrivePath::Coordinate { drive, .. } => model.drives.get(drive),
+        DrivePath::Time { .. } => None,
+    };
+    let Some(drive) = drive else {
+        return format!("time = {}", units.text(time, Dimension::TIME));
+    };
+    let at = motion
+        .path
+        .parameter_at(model, time, &motion.design.parameters);
+    format!(
+        "{} = {}",
+        drive.name,
+        units.place_text(at, drive.dimension, motion.demanded)
+    )
+}
