@@ -56,16 +56,16 @@ impl<T: ForceNumber> Cylinder<T> {
         let mut add = |code, message: &str| {
             problems.push(Problem::new(code, &cylinder.span, message));
         };
-        if self.ring_area.some(|x| !(x > 0.0)) {
+        if self.ring_area.any_lane(|x| !(x > 0.0)) {
             add(
                 "rod-too-thick",
                 "the rod is as thick as the bore: the cylinder cannot pull",
             );
         }
-        if self.count.some(|x| !(x > 0.0)) {
+        if self.count.any_lane(|x| !(x > 0.0)) {
             add("cylinder-count", "there must be at least one cylinder");
         }
-        if self.friction.some(|x| x < 0.0) {
+        if self.friction.any_lane(|x| x < 0.0) {
             add(
                 "negative-friction",
                 "friction is never negative: it would add energy",

@@ -43,7 +43,7 @@ impl<T: ForceNumber> Damper<T> {
             let parting = model::value(&damper.damping, parameters);
             let closing = (damper.closing.as_ref())
                 .map_or(parting, |scalar| model::value(scalar, parameters));
-            if parting.some(|x| x < 0.0) || closing.some(|x| x < 0.0) {
+            if parting.any_lane(|x| x < 0.0) || closing.any_lane(|x| x < 0.0) {
                 problems.push(Problem::new(
                     "negative-damping",
                     &damper.span,

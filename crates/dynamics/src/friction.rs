@@ -112,7 +112,7 @@ impl<T: ForceNumber> Friction<T> {
         let law = FrictionLaw::new(friction, parameters);
         if [law.kinetic, law.at_rest, law.viscous]
             .iter()
-            .any(|x| x.some(|x| x < 0.0))
+            .any(|x| x.any_lane(|x| x < 0.0))
         {
             add(
                 "negative-friction",
@@ -120,11 +120,11 @@ impl<T: ForceNumber> Friction<T> {
             );
         }
         let radius = (friction.radius.as_ref()).map(|scalar| model::value(scalar, parameters));
-        if radius.is_some_and(|r| r.some(|r| r < 0.0)) {
+        if radius.is_some_and(|r| r.any_lane(|r| r < 0.0)) {
             add("negative-radius", "the radius of a pin is negative".into());
         }
         match friction.at {
-            FrictionAt::Pin(point) if radius.is_none() && law.kinetic.some(|x| x > 0.0) => {
+            FrictionAt::Pin(point) if radius.is_none() && law.kinetic.any_lane(|x| x > 0.0) => {
                 let name = point_name(mechanism, point);
                 add(
                     "friction-radius",

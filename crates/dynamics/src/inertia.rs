@@ -53,7 +53,7 @@ impl<T: ForceNumber> Mass<T> {
             };
             let mass = inertia.mass.as_ref().map_or(T::zero(), of);
             let moment = inertia.moment.as_ref().map_or(T::zero(), of);
-            if mass.some(|m| m < 0.0) || moment.some(|m| m < 0.0) {
+            if mass.any_lane(|m| m < 0.0) || moment.any_lane(|m| m < 0.0) {
                 problems.push(Problem::new(
                     "negative-mass",
                     &link.span,
@@ -68,7 +68,7 @@ impl<T: ForceNumber> Mass<T> {
                 continue;
             };
             let mass = of(&extra.mass);
-            if mass.some(|m| m < 0.0) {
+            if mass.any_lane(|m| m < 0.0) {
                 problems.push(Problem::new(
                     "negative-mass",
                     &extra.span,

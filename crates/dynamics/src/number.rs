@@ -57,7 +57,7 @@ pub trait ForceNumber: Number {
 
     /// Whether the plain value of some lane is like this.
     #[inline]
-    fn some(self, is_so: impl Fn(f64) -> bool) -> bool {
+    fn any_lane(self, is_so: impl Fn(f64) -> bool) -> bool {
         (0..Self::Plain::LANES).any(|lane| is_so(self.value_in(lane)))
     }
 }

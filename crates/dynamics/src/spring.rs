@@ -136,7 +136,7 @@ impl<T: ForceNumber> Spring<T> {
                 continue;
             };
             let law = SpringLaw::new(spring, parameters);
-            if law.stiffness.some(|x| x < 0.0) || law.stop_stiffness.some(|x| x < 0.0) {
+            if law.stiffness.any_lane(|x| x < 0.0) || law.stop_stiffness.any_lane(|x| x < 0.0) {
                 problems.push(Problem::new(
                     "negative-stiffness",
                     &spring.span,

@@ -479,7 +479,8 @@ fn bounds_are_as_narrow_as_what_they_are_given() {
     );
 }
 
-/// A slider-crank, driven by its slider, with a torque on the crank: no force of the drive holds it at a dead point.
+/// A slider-crank, driven by its slider, with a torque on the crank: no force of the drive holds it at a dead point, and with
+/// friction at its pins none moves it near one.
 #[test]
 fn a_singular_pose_has_no_bounds() {
     let text = "
@@ -498,32 +499,49 @@ press = { slides = \"piston\", from = 0.30, to = 0.31, speed = \"1 mm/s\" }
 [assembly]
 B = \"left of A -> C\"
 ";
-    let motion = Case::read(text, "press.toml").must_move();
-    let bench = Bench::at(motion, 0.1);
+    let rubbing = format!("{text}[friction]\nall = {{ coefficient = 0.1, radius = \"6 mm\" }}\n");
+    for (text, speed) in [(text, 0.0), (&rubbing, 1.0), (&rubbing, -1.0)] {
+        let case = Case::read(text, "press.toml");
+        let found = near_a_dead_point(&Bench::at(case.must_move(), 0.1), speed);
+        assert!(found[0] > 150 && found[1] > 15, "{found:?}");
+        // Against the torque it jams.
+        assert_eq!(found[2] > 10, speed < 0.0, "{found:?}");
+    }
+}
+
+/// Looks at boxes of poses about a dead point of the slider-crank, its crank turning; counts those with bounds, those that
+/// hold the dead point, and those in which some pose jams.
+fn near_a_dead_point(bench: &Bench, speed: f64) -> [usize; 3] {
     let design = Arc::new(bench.motion.design_of(&[]).lift(Series::constant));
     let (a, b) = (0.1, 0.25);
-    let posed = |angle: f64| -> (State<f64>, f64) {
-        let (s, c) = kempe_number::math::sin_cos(angle);
-        let sine = -a * s / b;
-        let cosine = (1.0 - sine * sine).sqrt();
-        let place = |x: f64, y: f64, c: f64, s: f64| Pose { x, y, c, s }.map(Series::from_f64);
-        let x = a * c + b * cosine;
-        let coordinates = [Series::from_f64(x)];
-        let mut state = State::moving(&design, &bench.branch, 0.3, &coordinates);
+    let posed = |angle: f64| -> State<f64> {
+        let q: Series<f64> = Series::from_coefficients([angle, speed, 0.0, 0.0, 0.0]);
+        let (s, c) = q.sin_cos();
+        let sine = s * (-a / b);
+        let cosine = (-sine.square() + 1.0).sqrt();
+        let (zero, one) = (Series::zero(), Series::one());
+        let place = |x, y, c, s| Pose { x, y, c, s };
+        let x = c * a + cosine * b;
+        let mut state = State::moving(&design, &bench.branch, 0.3, &[x]);
         state.poses = vec![
             Pose::identity(),
-            place(0.0, 0.0, c, s),
-            place(a * c, a * s, cosine, sine),
-            place(x, 0.0, 1.0, 0.0),
+            place(zero, zero, c, s),
+            place(c * a, s * a, cosine, sine),
+            place(x, zero, one, zero),
         ];
-        // Of how it moves nothing is known.
+        // Of how the drive moves it nothing is known.
         let unknown = Pose::identity().map(|_: Series<f64>| Series::from_f64(f64::NAN));
         state.alone = vec![Some(vec![unknown; 4])];
-        let slope = -a * s + a * c * sine / cosine;
-        (state, -2.0 / slope)
+        state
+    };
+    // By virtual work, without friction.
+    let holding = |angle: f64| {
+        let (s, c) = kempe_number::math::sin_cos(angle);
+        let sine = -a * s / b;
+        -2.0 / (-a * s + a * c * sine / (1.0 - sine * sine).sqrt())
     };
     let asked = kempe_model::ForceMeasure::Drive(kempe_model::DriveId(0));
-    let (mut bounded, mut unbounded) = (0, 0);
+    let [mut bounded, mut singular, mut jammed] = [0; 3];
     let mut rng = Rng(5);
     for k in -30..=30 {
         let middle = 0.01 * f64::from(k);
@@ -532,28 +550,43 @@ B = \"left of A -> C\"
             let (low, high) = (middle - radius, middle + radius);
             let mut angles: Vec<f64> = (0..20).map(|_| rng.range(low, high)).collect();
             angles.extend([low, high]);
-            let singular = low <= 0.0 && 0.0 <= high;
-            if singular {
+            let has_dead_point = low <= 0.0 && 0.0 <= high;
+            if has_dead_point {
                 angles.push(0.0);
             }
-            let (states, forces): (Vec<_>, Vec<_>) = angles.iter().map(|q| posed(*q)).unzip();
-            let all = together(&bench, &[], &states, |of| hull(states.len(), of));
+            let states: Vec<_> = angles.iter().map(|q| posed(*q)).collect();
+            let all = together(bench, &[], &states, |of| hull(states.len(), of));
             let all = bench.forces::<Interval>(&[], &all);
             let bounds = all.answer(&asked).coefficient(0);
-            if singular {
+            let forces = states.iter().map(|state| {
+                let alone = bench.forces(&[], state);
+                alone.answer(&asked).coefficient(0)
+            });
+            let forces: Vec<f64> = forces.collect();
+            let jams = !has_dead_point && forces.iter().any(|f| !f.is_finite());
+            if has_dead_point || jams {
                 assert!(!bounds.is_finite(), "{middle} {radius} {bounds:?}");
-                unbounded += 1;
-                continue;
             }
-            for (angle, force) in angles.iter().zip(forces) {
-                let rounding = Interval::around(0.0, 1e-12 * force.abs() / angle.abs());
-                assert!((bounds + rounding).contains(force), "{force} {bounds:?}");
-            }
+            singular += usize::from(has_dead_point);
+            jammed += usize::from(jams);
             bounded += usize::from(bounds.is_finite());
-            assert!(bounds.is_finite() || middle.abs() < 4.0 * radius);
+            for (angle, force) in angles.iter().zip(forces).filter(|f| f.1.is_finite()) {
+                let force = if speed == 0.0 { holding(*angle) } else { force };
+                if *angle != 0.0 {
+                    let rounding = Interval::around(0.0, 1e-11 * force.abs() / angle.abs());
+                    assert!((bounds + rounding).contains(force), "{force} {bounds:?}");
+                }
+            }
+            let far = middle.abs()
+                > if speed == 0.0 {
+                    4.0 * radius
+                } else {
+                    0.2 + radius
+                };
+            assert!(bounds.is_finite() || !far, "{middle} {radius}");
         }
     }
-    assert!(bounded > 150 && unbounded > 15, "{bounded} {unbounded}");
+    [bounded, singular, jammed]
 }
 
 /// What equilibrium does not determine has no bounds; what the drive gives by virtual power has.

@@ -111,7 +111,7 @@ impl PlainEquilibrium {
     }
 
     /// Factors the scaled matrix; with multipliers, friction's derivatives at them and its share are added.
-    fn factor<T: ForceNumber>(
+    pub(super) fn factor<T: ForceNumber>(
         &mut self,
         equations: &Equations<'_, T>,
         friction_at: Option<(&[f64], f64)>,
@@ -248,7 +248,8 @@ impl PlainEquilibrium {
         FrictionOutcome::Consistent { steps }
     }
 
-    fn refactor<T: ForceNumber>(&mut self, equations: &Equations<'_, T>, share: f64) {
+    /// Factors the matrix with friction's derivatives at the plain multipliers and this share of the friction.
+    pub(super) fn refactor<T: ForceNumber>(&mut self, equations: &Equations<'_, T>, share: f64) {
         let lambda = std::mem::take(&mut self.lambda);
         self.factor(equations, Some((&lambda, share)));
         self.lambda = lambda;

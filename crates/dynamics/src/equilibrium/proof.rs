@@ -26,11 +26,6 @@ const WIDENING: f64 = 0.1;
 /// Part of the largest multiplier by which every bound of a box is widened: it has to hold rounding, too.
 const ROUNDING: f64 = 1e-15;
 
-/// All from -1 to 1.
-fn any_sense() -> Interval {
-    Interval::new(-1.0, 1.0)
-}
-
 impl<T: ForceNumber<Plain = Interval>> Equilibrium<T> {
     /// Proves bounds of the multipliers; the whole line where there is no proof, and where equilibrium does not determine
     /// them: no bounds are told of the shortest of many solutions.
@@ -44,63 +39,78 @@ impl<T: ForceNumber<Plain = Interval>> Equilibrium<T> {
 
     /// Enters the bounds that can be proved; `None` where there are none of the values.
     fn bounds(&mut self, frictions: &[Friction<T>], needed: &[Wrench<T>]) -> Option<()> {
-        let rows = self.layout.rows;
-        if rows != self.layout.columns || !self.lanes[0].is_settled() {
+        if self.redundant_rows() > 0 || !self.lanes[0].is_settled() {
             return None;
         }
         let equations = equations!(self, frictions, needed);
         let plain = &mut self.lanes[0];
+        plain.factor(&equations, None);
         if frictions.is_empty() {
             plain.step(&equations, 0.0);
             plain.frictionless.copy_from_slice(&plain.lambda);
+        } else {
+            // A pose between that is singular without friction has no load, whatever friction may hold there.
+            let inverse = self.inverse();
+            let free = self.defect(&inverse, None, frictions);
+            let ones = vec![Interval::from_f64(1.0); free.len()];
+            enclose(&ones, 1.0, |_| free.clone())?;
+            let equations = equations!(self, frictions, needed);
+            self.lanes[0].refactor(&equations, 1.0);
         }
-        let start = plain.lambda.clone();
         let inverse = self.inverse();
-        for (lambda, start) in self.lambda.iter_mut().zip(&start) {
-            *lambda = T::zero().plus(0, Interval::from_f64(*start));
-        }
-        let rest = self.rest_of(0, frictions, needed);
-        let proof = Proof {
-            left: inverse.iter().map(|row| dot(row, &rest)).collect(),
-            rows,
-        };
-        // The derivatives of friction depend on the box.
-        let moved = |beside: &[Interval]| -> Vec<Interval> {
-            (0..rows)
-                .map(|k| self.scaled(k, beside[k]) + start[k])
-                .collect()
-        };
-        let plain: Vec<Interval> = start.iter().map(|x| Interval::from_f64(*x)).collect();
-        let factor = |beside: &[Interval]| {
-            let between: Vec<Interval> = (moved(beside).iter().zip(&plain))
-                .map(|(lambda, start)| lambda.hull(*start))
-                .collect();
-            self.defect(&inverse, &between, frictions)
-        };
-        let size = (0..rows).map(|k| (start[k] / self.lanes[0].unit[k]).abs());
-        let largest = size.fold(0.0, f64::max);
-        let beside = proof.enclose(largest, factor)?;
-        let lambda = moved(&beside);
-        let defect = self.defect(&inverse, &lambda, frictions);
-        for (to, lambda) in self.lambda.iter_mut().zip(lambda) {
-            *to = T::zero().plus(0, lambda);
+        let values = self.values(&inverse, frictions, needed)?;
+        let defect = self.defect(&inverse, Some(&values), frictions);
+        for (to, value) in self.lambda.iter_mut().zip(values) {
+            *to = T::zero().plus(0, value);
         }
         for order in 1..T::ORDER {
-            let rest = self.rest_of(order, frictions, needed);
-            let left: Vec<Interval> = inverse.iter().map(|row| dot(row, &rest)).collect();
-            let unknown = left.iter().any(|x| x.is_empty());
-            let proof = Proof { left, rows };
-            let found = proof.enclose(0.0, |_| defect.clone());
-            for k in 0..rows {
-                let more = match &found {
-                    Some(found) => self.scaled(k, found[k]),
-                    None if unknown => Interval::EMPTY,
-                    None => Interval::WHOLE,
-                };
+            let left = self.left(order, &inverse, frictions, needed);
+            let found = enclose(&left, 0.0, |_| defect.clone());
+            let unknown = match left.iter().any(|x| x.is_empty()) {
+                true => Interval::EMPTY,
+                false => Interval::WHOLE,
+            };
+            for k in 0..left.len() {
+                let more = found.as_ref().map_or(unknown, |x| self.scaled(k, x[k]));
                 self.lambda[k] = self.lambda[k].plus(order, more);
             }
         }
         Some(())
+    }
+
+    /// Bounds of the values of the multipliers.
+    fn values(
+        &mut self,
+        inverse: &[Vec<f64>],
+        frictions: &[Friction<T>],
+        needed: &[Wrench<T>],
+    ) -> Option<Vec<Interval>> {
+        let plain = &self.lanes[0];
+        let start: Vec<Interval> = plain
+            .lambda
+            .iter()
+            .map(|x| Interval::from_f64(*x))
+            .collect();
+        let size = (plain.lambda.iter().zip(&plain.unit)).fold(0.0, |size: f64, (lambda, unit)| {
+            size.max((lambda / unit).abs())
+        });
+        for (lambda, start) in self.lambda.iter_mut().zip(&start) {
+            *lambda = T::zero().plus(0, *start);
+        }
+        let left = self.left(0, inverse, frictions, needed);
+        let moved = |beside: &[Interval]| -> Vec<Interval> {
+            let list = start.iter().zip(beside).enumerate();
+            list.map(|(k, (start, beside))| *start + self.scaled(k, *beside))
+                .collect()
+        };
+        // Friction's derivatives depend on the box: on all between it and the start.
+        let beside = enclose(&left, size, |beside| {
+            let between: Vec<Interval> = (moved(beside).iter().zip(&start))
+                .map(|(lambda, start)| lambda.hull(*start))
+                .collect();
+            self.defect(inverse, Some(&between), frictions)
+        })?;
+        Some(moved(&beside))
     }
 
     /// A multiplier in its own unit.
@@ -129,24 +139,26 @@ impl<T: ForceNumber<Plain = Interval>> Equilibrium<T> {
         if k % 3 < 2 { self.lanes[0].size } else { 1.0 }
     }
 
-    /// A coefficient of what is left of the equilibrium at the multipliers, scaled.
-    fn rest_of(
+    /// `R G`: the inverse times a coefficient of what is left of the equilibrium at the multipliers.
+    fn left(
         &mut self,
         order: usize,
+        inverse: &[Vec<f64>],
         frictions: &[Friction<T>],
         needed: &[Wrench<T>],
     ) -> Vec<Interval> {
         self.fill_rest(frictions, needed, true);
-        let rest = self.rest.iter().enumerate();
-        rest.map(|(k, rest)| rest.coefficient_of(order) * self.column_scale(k))
-            .collect()
+        let rest: Vec<Interval> = (self.rest.iter().enumerate())
+            .map(|(k, rest)| rest.coefficient_of(order) * self.column_scale(k))
+            .collect();
+        inverse.iter().map(|row| dot(row, &rest)).collect()
     }
 
-    /// `I - R A` by rows, with all derivatives `A` at multipliers in a box.
+    /// `I - R A` by rows, with all derivatives `A` at multipliers in a box; without friction's where there is none.
     fn defect(
         &self,
         inverse: &[Vec<f64>],
-        lambda: &[Interval],
+        lambda: Option<&[Interval]>,
         frictions: &[Friction<T>],
     ) -> Vec<Vec<Interval>> {
         let n = self.layout.rows;
@@ -163,23 +175,8 @@ impl<T: ForceNumber<Plain = Interval>> Equilibrium<T> {
         for entry in &self.entries {
             add(entry.row, entry.body, entry.to.map(T::plain));
         }
-        for contact in &self.contacts {
-            let friction = &frictions[contact.friction];
-            let slope = friction.per_load(contact.speed).plain() * contact.direction;
-            let rows = contact.row..contact.row + if friction.radius.is_some() { 2 } else { 1 };
-            let load = match &lambda[rows.clone()] {
-                [x, y] => length([*x, *y]),
-                one => one[0].abs(),
-            };
-            for row in rows {
-                let part = match load.contains_zero() {
-                    true => any_sense(),
-                    false => (lambda[row] / load).intersect(any_sense()),
-                };
-                for (body, unit) in &contact.unit {
-                    add(row, *body, unit.map(|u| u.plain() * slope * part));
-                }
-            }
+        if let Some(lambda) = lambda {
+            self.each_derivative(lambda, frictions, &mut add);
         }
         let mut defect = vec![vec![Interval::from_f64(0.0); n]; n];
         for (i, (defect, inverse)) in defect.iter_mut().zip(inverse).enumerate() {
@@ -190,59 +187,71 @@ impl<T: ForceNumber<Plain = Interval>> Equilibrium<T> {
         }
         defect
     }
-}
 
-/// What is to be proved of `x = left + defect(x) x`.
-struct Proof {
-    left: Vec<Interval>,
-    rows: usize,
-}
-
-impl Proof {
-    /// A box that holds exactly one solution for every value in the intervals; `size` is that of the numbers beside which the
-    /// solution is counted.
-    fn enclose(
+    /// Hands out the derivatives of what friction does, at multipliers in a box.
+    fn each_derivative(
         &self,
-        size: f64,
-        defect: impl Fn(&[Interval]) -> Vec<Vec<Interval>>,
-    ) -> Option<Vec<Interval>> {
-        let image = |x: &[Interval]| -> Vec<Interval> {
-            let defect = defect(x);
-            (0..self.rows)
-                .map(|k| self.left[k] + dot(&defect[k], x))
-                .collect()
-        };
-        let mut found = self.left.clone();
-        let mut proved = false;
-        for _ in 0..BOXES {
-            if !found.iter().all(|x| x.is_finite()) {
-                return None;
-            }
-            let largest = found.iter().fold(size, |m, x| m.max(x.mag()));
-            let wider: Vec<Interval> = (found.iter())
-                .map(|x| {
-                    let more = WIDENING * x.width() + ROUNDING * largest + f64::MIN_POSITIVE;
-                    Interval::new(x.lo() - more, x.hi() + more)
-                })
-                .collect();
-            found = image(&wider);
-            if found
-                .iter()
-                .zip(&wider)
-                .all(|(x, w)| x.is_inside_interior(*w))
-            {
-                proved = true;
-                break;
+        lambda: &[Interval],
+        frictions: &[Friction<T>],
+        add: &mut impl FnMut(usize, BodyId, [Interval; 3]),
+    ) {
+        let any_sense = Interval::new(-1.0, 1.0);
+        for contact in &self.contacts {
+            let friction = &frictions[contact.friction];
+            let slope = friction.per_load(contact.speed).plain() * contact.direction;
+            let rows = contact.row..contact.row + if friction.radius.is_some() { 2 } else { 1 };
+            let load = match &lambda[rows.clone()] {
+                [x, y] => length([*x, *y]),
+                one => one[0].abs(),
+            };
+            for row in rows {
+                let part = match load.contains_zero() {
+                    true => any_sense,
+                    false => (lambda[row] / load).intersect(any_sense),
+                };
+                for (body, unit) in &contact.unit {
+                    add(row, *body, unit.map(|u| u.plain() * slope * part));
+                }
             }
         }
-        for _ in 0..NARROWING {
-            let again = image(&found);
-            found = (found.iter().zip(&again))
-                .map(|(x, y)| x.intersect(*y))
-                .collect();
-        }
-        proved.then_some(found)
     }
+}
+
+/// A box that holds exactly one solution of `x = left + defect x` for every value in the intervals, where `defect` is that of
+/// a box; `size` is that of the numbers beside which the solution is counted. `None` where there is no proof.
+fn enclose(
+    left: &[Interval],
+    size: f64,
+    defect: impl Fn(&[Interval]) -> Vec<Vec<Interval>>,
+) -> Option<Vec<Interval>> {
+    let image = |x: &[Interval]| -> Vec<Interval> {
+        let rows = left.iter().zip(defect(x));
+        rows.map(|(left, row)| *left + dot(&row, x)).collect()
+    };
+    let mut found = left.to_vec();
+    for _ in 0..BOXES {
+        if !found.iter().all(|x| x.is_finite()) {
+            return None;
+        }
+        let largest = found.iter().fold(size, |m, x| m.max(x.mag()));
+        let wider: Vec<Interval> = (found.iter())
+            .map(|x| {
+                let more = WIDENING * x.width() + ROUNDING * largest + f64::MIN_POSITIVE;
+                Interval::new(x.lo() - more, x.hi() + more)
+            })
+            .collect();
+        found = image(&wider);
+        if (found.iter().zip(&wider)).all(|(x, w)| x.is_inside_interior(*w)) {
+            for _ in 0..NARROWING {
+                let again = image(&found);
+                found = (found.iter().zip(&again))
+                    .map(|(x, y)| x.intersect(*y))
+                    .collect();
+            }
+            return Some(found);
+        }
+    }
+    None
 }
 
 /// A row times a column.
