@@ -2,7 +2,6 @@
 
 use kempe_mechanism::{Geometry, Mechanism};
 use kempe_model as model;
-use kempe_number::Number;
 
 use crate::amount::Amount;
 use crate::cylinder::Cylinder;
@@ -12,6 +11,7 @@ use crate::inertia::Mass;
 use crate::instant::Instant;
 use crate::load::Load;
 use crate::motor::Motor;
+use crate::number::ForceNumber;
 use crate::problem::Problem;
 use crate::spring::Spring;
 use crate::wrench::{self, Wrench};
@@ -21,7 +21,7 @@ pub const GRAVITY: f64 = 9.81;
 
 /// What acts on a mechanism, for one design.
 #[derive(Clone, Debug)]
-pub struct Acting<T> {
+pub struct Acting<T: ForceNumber> {
     /// Acceleration of gravity, m/s^2.
     pub gravity: [T; 2],
     /// Masses that move.
@@ -42,19 +42,18 @@ pub struct Acting<T> {
     pub motors: Vec<Motor<T>>,
 }
 
-impl<T: Number> Acting<T> {
+impl<T: ForceNumber> Acting<T> {
     /// Evaluates what acts for parameter values (SI, in the model's order).
     ///
     /// # Errors
     /// Everything that makes forces meaningless: negative masses, springs between a point and itself, loads that depend
-    /// on forces, contradictory pressures, and the like.
+    /// on forces, contradictory pressures, and the like. In lanes: in any of them; of intervals: at their midpoints.
     pub fn new(
         mechanism: &Mechanism,
         geometry: &Geometry<T>,
         parameters: &[T],
     ) -> Result<Self, Vec<Problem>> {
         let actions = &mechanism.model.actions;
-        let plain_geometry = geometry.value();
         let mut problems = Vec::new();
         let mut amounts = Vec::new();
         let loads = Load::all(mechanism, parameters, &mut amounts, &mut problems);
@@ -72,8 +71,8 @@ impl<T: Number> Acting<T> {
         let it = Self {
             gravity,
             masses: Mass::all(mechanism, geometry, parameters, &mut problems),
-            springs: Spring::all(mechanism, &plain_geometry, parameters, &mut problems),
-            dampers: Damper::all(mechanism, &plain_geometry, parameters, &mut problems),
+            springs: Spring::all(mechanism, geometry, parameters, &mut problems),
+            dampers: Damper::all(mechanism, geometry, parameters, &mut problems),
             friction: Friction::all(mechanism, parameters, &mut problems),
             motors: (actions.motors.iter())
                 .map(|m| Motor::new(m, parameters, &mut problems))

@@ -1,16 +1,17 @@
 //! Force measures evaluated.
 
 use kempe_model::{DriveId, ForceMeasure, JointRef};
+use kempe_number::Number;
 
 use crate::cylinder::Cylinder;
 use crate::equilibrium::STILL;
 use crate::forces::Forces;
 use crate::instant::Instant;
 use crate::load::Load;
-use crate::number::ForceNumber;
+use crate::number::{ForceNumber, PlainNumber};
 use crate::reaction::Reaction;
 use crate::shaking::shaking;
-use crate::vector::{length, sign};
+use crate::vector::length;
 use crate::{energy, reduced};
 
 /// A load at an instant: a force along the frame's axes, N, or a torque, N m.
@@ -112,14 +113,11 @@ impl<T: ForceNumber> Forces<T> {
         self.acting.cylinders.iter().find(|c| c.drive == drive)
     }
 
-    /// The sense in which a drive moves: -1, 0 or 1.
-    pub fn drive_direction(&self, at: &Instant<T>, drive: DriveId) -> f64 {
-        let speed = at.drive_speeds[drive.index()].value();
+    /// The sense in which a drive moves: -1, 0 or 1; of an interval that may move either way all between.
+    pub fn drive_direction(&self, at: &Instant<T>, drive: DriveId) -> T::Plain {
+        let speed = at.drive_speeds[drive.index()].plain();
         let usual = self.equilibrium.pace.speeds.get(drive.index());
-        if speed.abs() <= STILL * usual.copied().unwrap_or(0.0) {
-            0.0
-        } else {
-            sign(speed)
-        }
+        let still = T::Plain::from_f64(STILL * usual.copied().unwrap_or(0.0));
+        speed.direction(T::Plain::zero(), [still, T::Plain::zero()])
     }
 }

@@ -45,7 +45,7 @@ pub struct ForceArrow {
     pub moment: f64,
 }
 
-impl<T: ForceNumber> Forces<T> {
+impl<T: ForceNumber<Plain = f64>> Forces<T> {
     /// What acts on the links at the instant last solved: joints and drives as in [`Forces::joint_loads`], then loads,
     /// weights, springs and dampers on everything but the frame.
     pub fn arrows(&self, at: &Instant<T>) -> Vec<ForceArrow> {

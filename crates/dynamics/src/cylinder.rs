@@ -3,8 +3,8 @@
 //! Pushing, oil presses on the whole bore; pulling, on the ring that the rod leaves free.
 
 use kempe_model::{self as model, DriveId, HydraulicCylinder};
-use kempe_number::Number;
 
+use crate::number::{ForceNumber, PlainNumber};
 use crate::problem::Problem;
 use crate::vector::sign;
 
@@ -29,7 +29,7 @@ pub struct Cylinder<T> {
     pub count: T,
 }
 
-impl<T: Number> Cylinder<T> {
+impl<T: ForceNumber> Cylinder<T> {
     /// Evaluates a cylinder's data.
     pub fn new(cylinder: &HydraulicCylinder, parameters: &[T]) -> Self {
         let of = |scalar: &model::Scalar| model::value(scalar, parameters);
@@ -56,22 +56,26 @@ impl<T: Number> Cylinder<T> {
         let mut add = |code, message: &str| {
             problems.push(Problem::new(code, &cylinder.span, message));
         };
-        if !(self.ring_area.value() > 0.0) {
+        if self.ring_area.any_lane(|x| !(x > 0.0)) {
             add(
                 "rod-too-thick",
                 "the rod is as thick as the bore: the cylinder cannot pull",
             );
         }
-        if !(self.count.value() > 0.0) {
+        if self.count.any_lane(|x| !(x > 0.0)) {
             add("cylinder-count", "there must be at least one cylinder");
         }
-        if self.friction.value() < 0.0 {
+        if self.friction.any_lane(|x| x < 0.0) {
             add(
                 "negative-friction",
                 "friction is never negative: it would add energy",
             );
         }
-        if self.highest.is_some_and(|p| p.value() <= self.back.value()) {
+        let not_above = |p: T| {
+            let mut lanes = 0..T::Plain::LANES;
+            lanes.any(|lane| p.value_in(lane) <= self.back.value_in(lane))
+        };
+        if self.highest.is_some_and(not_above) {
             add(
                 "contradictory-pressures",
                 "the pressure on the side that drains is not below that of the supply or relief",
@@ -82,8 +86,8 @@ impl<T: Number> Cylinder<T> {
     /// Pressure in the chamber that moves the load, Pa, when all cylinders together give `force` (N, positive pushing)
     /// at a speed whose sign is `direction`. Pushing: `p A = F + friction + back A_ring`; pulling: likewise with the
     /// areas exchanged.
-    pub fn pressure(&self, force: T, direction: f64) -> T {
-        let one = force / self.count + self.friction * direction;
+    pub fn pressure(&self, force: T, direction: T::Plain) -> T {
+        let one = force / self.count + self.friction.times(direction);
         one.choose_with(
             || (one + self.back * self.ring_area) / self.bore_area,
             || (self.back * self.bore_area - one) / self.ring_area,
@@ -93,13 +97,13 @@ impl<T: Number> Cylinder<T> {
     /// What all cylinders together can give along the coordinate at their highest pressure, N, moving in the sense
     /// `direction`: the push where a push is asked for (`force >= 0`), the pull (negative) where a pull is. `None`
     /// without a pressure.
-    pub fn capacity(&self, force: T, direction: f64) -> Option<T> {
+    pub fn capacity(&self, force: T, direction: T::Plain) -> Option<T> {
         let highest = self.highest?;
         let one = force.choose_with(
             || highest * self.bore_area - self.back * self.ring_area,
             || self.back * self.bore_area - highest * self.ring_area,
         );
-        Some((one - self.friction * direction) * self.count)
+        Some((one - self.friction.times(direction)) * self.count)
     }
 
     /// Oil that all cylinders together take in at a speed, m^3/s.

@@ -2,10 +2,10 @@
 
 use kempe_mechanism::{Geometry, Mechanism};
 use kempe_model as model;
-use kempe_number::Number;
 
 use crate::ends::{Ends, Extension};
 use crate::instant::Instant;
+use crate::number::ForceNumber;
 use crate::problem::Problem;
 use crate::wrench::Wrench;
 
@@ -20,11 +20,11 @@ pub struct Damper<T> {
     pub closing: T,
 }
 
-impl<T: Number> Damper<T> {
+impl<T: ForceNumber> Damper<T> {
     /// Compiles the model's dampers.
     pub(crate) fn all(
         mechanism: &Mechanism,
-        geometry: &Geometry<f64>,
+        geometry: &Geometry<T>,
         parameters: &[T],
         problems: &mut Vec<Problem>,
     ) -> Vec<Self> {
@@ -43,7 +43,7 @@ impl<T: Number> Damper<T> {
             let parting = model::value(&damper.damping, parameters);
             let closing = (damper.closing.as_ref())
                 .map_or(parting, |scalar| model::value(scalar, parameters));
-            if parting.value() < 0.0 || closing.value() < 0.0 {
+            if parting.any_lane(|x| x < 0.0) || closing.any_lane(|x| x < 0.0) {
                 problems.push(Problem::new(
                     "negative-damping",
                     &damper.span,

@@ -6,6 +6,7 @@ use kempe_model::{Between, LinkId, Span};
 use kempe_number::Number;
 
 use crate::instant::Instant;
+use crate::number::{ForceNumber, PlainNumber};
 use crate::problem::Problem;
 use crate::vector::{dot, length, sub, times};
 use crate::wrench::{self, Wrench};
@@ -44,9 +45,9 @@ impl Ends {
 
     /// Finds the ends of something with a name; tells (by the codes given) when one is on no link, or when they can never
     /// part.
-    pub(crate) fn checked(
+    pub(crate) fn checked<T: ForceNumber>(
         mechanism: &Mechanism,
-        geometry: &Geometry<f64>,
+        geometry: &Geometry<T>,
         between: &Between,
         ([lost, idle], name, span): ([&'static str; 2], String, &Span),
         problems: &mut Vec<Problem>,
@@ -124,11 +125,15 @@ impl Ends {
         }
     }
 
-    /// Whether the ends can never part: the same point of the same body, or links of one body.
-    pub fn is_idle(&self, geometry: &Geometry<f64>) -> bool {
+    /// Whether the ends can never part: the same point of the same body, or links of one body. In lanes: whether any can.
+    pub fn is_idle<T: ForceNumber>(&self, geometry: &Geometry<T>) -> bool {
         match self {
             Self::Points([(_, a), (_, b)]) => {
-                a.body == b.body && length(sub(geometry.marker(*a), geometry.marker(*b))) == 0.0
+                let apart = |lane: usize| {
+                    let place = |m: &Marker| geometry.marker(*m).map(|x| x.value_in(lane));
+                    length(sub(place(a), place(b)))
+                };
+                a.body == b.body && (0..T::Plain::LANES).any(|lane| apart(lane) == 0.0)
             }
             Self::Links([(_, a), (_, b)]) => a == b,
         }

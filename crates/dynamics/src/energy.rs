@@ -1,19 +1,19 @@
 //! Energy and power.
 
 use kempe_mechanism::Geometry;
-use kempe_number::Number;
 
 use crate::acting::Acting;
 use crate::instant::Instant;
+use crate::number::ForceNumber;
 use crate::vector::dot;
 
 /// Kinetic energy of all links, J.
-pub fn kinetic<T: Number>(acting: &Acting<T>, at: &Instant<T>) -> T {
+pub fn kinetic<T: ForceNumber>(acting: &Acting<T>, at: &Instant<T>) -> T {
     (acting.masses.iter()).fold(T::zero(), |sum, mass| sum + mass.kinetic_energy(at))
 }
 
 /// Potential energy of gravity (zero at the frame's origin) and of springs (zero at their free length), J.
-pub fn potential<T: Number>(acting: &Acting<T>, geometry: &Geometry<T>, at: &Instant<T>) -> T {
+pub fn potential<T: ForceNumber>(acting: &Acting<T>, geometry: &Geometry<T>, at: &Instant<T>) -> T {
     let weights = (acting.masses.iter()).fold(T::zero(), |sum, mass| {
         let place = at.place(mass.body, mass.arm(at));
         sum - dot(acting.gravity, place) * mass.mass
@@ -22,6 +22,10 @@ pub fn potential<T: Number>(acting: &Acting<T>, geometry: &Geometry<T>, at: &Ins
 }
 
 /// Power that the dampers take from the mechanism, W, never negative.
-pub fn dissipation<T: Number>(acting: &Acting<T>, geometry: &Geometry<T>, at: &Instant<T>) -> T {
+pub fn dissipation<T: ForceNumber>(
+    acting: &Acting<T>,
+    geometry: &Geometry<T>,
+    at: &Instant<T>,
+) -> T {
     (acting.dampers.iter()).fold(T::zero(), |sum, d| sum + d.dissipation(geometry, at))
 }

@@ -7,11 +7,12 @@
 //! analysis of machines", 1930-31, for one coordinate.)
 
 use kempe_model::DriveId;
+use kempe_number::Number;
 
 use crate::acting::Acting;
 use crate::forces::Forces;
 use crate::instant::Instant;
-use crate::number::ForceNumber;
+use crate::number::{ForceNumber, PlainNumber};
 use crate::vector::{add, dot, left, times};
 use crate::virtual_power;
 
@@ -49,7 +50,8 @@ impl<T: ForceNumber> EquationsOfMotion<T> {
 impl<T: ForceNumber> EquationsOfMotion<T> {
     /// The accelerations of all coordinates where those in `free` move as forces make them (N or N m along every
     /// coordinate; only those of free ones count) and all others accelerate as `given`. `None` where the mass of the free
-    /// ones is not positive: a coordinate that moves no mass, or a mechanism at a dead point.
+    /// ones is not positive: a coordinate that moves no mass, or a mechanism at a dead point. NaN in lanes where only there it
+    /// is not.
     pub fn accelerations(&self, free: &[DriveId], given: &[T], forces: &[T]) -> Option<Vec<T>> {
         let mut accelerations = given.to_vec();
         for drive in free {
@@ -68,12 +70,23 @@ impl<T: ForceNumber> EquationsOfMotion<T> {
                     sum + l[i * n + k] * l[j * n + k] * l[k * n + k]
                 });
                 let entry = self.mass_at(free[i].index(), free[j].index());
-                let rest = entry - known;
-                l[i * n + j] = match i == j {
-                    false => rest / l[j * n + j],
-                    true if rest.value() > ROUNDING * entry.value() => rest,
-                    true => return None,
-                };
+                let mut rest = entry - known;
+                if i == j {
+                    let mut moves = false;
+                    for lane in 0..T::Plain::LANES {
+                        if rest.value_in(lane) > ROUNDING * entry.value_in(lane) {
+                            moves = true;
+                        } else {
+                            rest = rest.with_lane(lane, T::InLane::from_f64(f64::NAN));
+                        }
+                    }
+                    if !moves {
+                        return None;
+                    }
+                    l[i * n + j] = rest;
+                } else {
+                    l[i * n + j] = rest / l[j * n + j];
+                }
             }
         }
         for i in 0..n {

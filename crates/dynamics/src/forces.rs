@@ -10,7 +10,7 @@ use crate::acting::Acting;
 use crate::equilibrium::Equilibrium;
 pub use crate::equilibrium::FrictionOutcome;
 use crate::instant::{Instant, Rates};
-use crate::number::ForceNumber;
+use crate::number::{ForceNumber, PlainNumber};
 use crate::problem::Problem;
 use crate::virtual_power::{self, ByPower};
 use crate::weld::Weld;
@@ -36,21 +36,19 @@ pub struct LinkLoad<T> {
 
 /// What a drive gives, both ways.
 #[derive(Clone, Copy, Debug)]
-pub struct DriveForce<T> {
+pub struct DriveForce<T: ForceNumber> {
     /// By virtual power.
     pub by_power: ByPower<T>,
     /// By equilibrium.
     pub by_equilibrium: T,
     /// The answer: by virtual power; rates that it does not know by equilibrium.
     pub value: T,
-    /// What it would give without friction.
-    pub frictionless: f64,
 }
 
 /// Forces of a mechanism at one instant, with storage that is reused from instant to instant: [`Forces::solve`]
 /// allocates nothing.
 #[derive(Clone, Debug)]
-pub struct Forces<T> {
+pub struct Forces<T: ForceNumber> {
     /// The design.
     pub design: Design<T>,
     /// What acts on it.
@@ -84,7 +82,10 @@ impl<T: ForceNumber> Forces<T> {
         let mechanism = &design.mechanism.clone();
         let parameters = &design.parameters;
         let acting = Acting::new(mechanism, &design.geometry, parameters)?;
-        let size = design.geometry.value().size(mechanism);
+        let size = |lane: usize| {
+            let geometry = design.geometry.map(|x| x.value_in(lane));
+            geometry.size(mechanism)
+        };
         let zero = [T::zero(); 3];
         let (links, bodies) = (mechanism.model.links.len(), mechanism.bodies);
         let sides = (mechanism.constraints.iter())
@@ -102,11 +103,10 @@ impl<T: ForceNumber> Forces<T> {
         let nothing = DriveForce {
             by_power: ByPower {
                 value: T::zero(),
-                scale: 0.0,
+                scale: T::Plain::zero(),
             },
             by_equilibrium: T::zero(),
             value: T::zero(),
-            frictionless: 0.0,
         };
         Ok(Self {
             equilibrium: Equilibrium::new(mechanism, size, acting.friction.len()),
@@ -171,7 +171,6 @@ impl<T: ForceNumber> Forces<T> {
                 by_power,
                 by_equilibrium,
                 value: by_power.value.completed(by_equilibrium),
-                frictionless: row.map_or(f64::NAN, |row| self.equilibrium.frictionless[row]),
             };
         }
     }
@@ -209,14 +208,19 @@ impl<T: ForceNumber> Forces<T> {
             });
     }
 
-    /// The largest difference of both routes over all drives, in parts of the terms that make up each drive's force (at
-    /// least of [`FLOOR`] of the largest load anywhere, so that a drive that gives nothing is not counted in rounding).
-    pub fn route_difference(&self) -> f64 {
+    /// The largest difference of both routes over all drives in a lane, in parts of the terms that make up each drive's
+    /// force (at least of [`FLOOR`] of the largest load anywhere, so that a drive that gives nothing is not counted in
+    /// rounding).
+    pub fn route_difference(&self, lane: usize) -> f64 {
         let mut largest = 0.0_f64;
         for (drive, constraint) in self.drives.iter().zip(&self.drive_constraints) {
-            let (a, b) = (drive.by_power.value.value(), drive.by_equilibrium.value());
-            let floor = constraint.map_or(0.0, |c| FLOOR * self.equilibrium.largest_at(c));
-            let scale = drive.by_power.scale.max(a.abs()).max(floor);
+            let by_power = &drive.by_power;
+            let (a, b) = (
+                by_power.value.value_in(lane),
+                drive.by_equilibrium.value_in(lane),
+            );
+            let floor = constraint.map_or(0.0, |c| FLOOR * self.equilibrium.largest_at(c, lane));
+            let scale = by_power.scale.lane_value(lane).max(a.abs()).max(floor);
             let difference = (a - b).abs();
             let relative = if difference == 0.0 {
                 0.0
@@ -229,6 +233,14 @@ impl<T: ForceNumber> Forces<T> {
             largest = largest.max(relative);
         }
         largest
+    }
+
+    /// What a drive would give without friction, in a lane, by equilibrium.
+    pub fn frictionless(&self, drive: usize, lane: usize) -> f64 {
+        let constraint = self.drive_constraints.get(drive).copied().flatten();
+        constraint.map_or(f64::NAN, |constraint| {
+            self.equilibrium.lanes[lane].frictionless[self.equilibrium.row(constraint)]
+        })
     }
 
     /// Everything that joints, drives and friction do to a link, about its body's origin.
@@ -272,8 +284,8 @@ impl Forces<Rates> {
             &needed,
         );
         let (row, speed) = (resting.row(constraint), at.drive_speeds[drive].value());
-        let holds =
-            resting.frictionless[row] * speed < 0.0 && resting.lambda[row].value() * speed > 0.0;
+        let holds = resting.lanes[0].frictionless[row] * speed < 0.0
+            && resting.lambda[row].value() * speed > 0.0;
         let load = virtual_power::project(&needed, &at.coefficients[drive]).value;
         let per_drive = load.coefficient(1) / speed;
         let typical = match self.design.mechanism.model.drives[drive].dimension {

@@ -4,8 +4,9 @@ use kempe_mechanism::Mechanism;
 use kempe_mechanism::constraint::{Joint, Rubs};
 use kempe_mechanism::structure::Source;
 use kempe_model::{self as model, FrictionAt, JointId, PointId};
-use kempe_number::Number;
+use kempe_number::{Interval, Number};
 
+use crate::number::{ForceNumber, PlainNumber};
 use crate::problem::Problem;
 use crate::vector::sign;
 
@@ -36,13 +37,14 @@ impl<T: Number> FrictionLaw<T> {
 
     /// The coefficient at a sliding speed: `k + (s - k) exp(-(v / v_s)^2)`.
     pub fn coefficient(&self, speed: T) -> T {
-        match self.stribeck_speed {
-            Some(scale) if scale.value() > 0.0 => {
-                let part = (-(speed / scale).square()).exp();
-                self.kinetic + (self.at_rest - self.kinetic) * part
-            }
-            _ => self.kinetic,
-        }
+        let Some(scale) = self.stribeck_speed else {
+            return self.kinetic;
+        };
+        let falling = || {
+            let part = (-(speed / scale).square()).exp();
+            self.kinetic + (self.at_rest - self.kinetic) * part
+        };
+        (-scale).choose_with(|| self.kinetic, falling)
     }
 }
 
@@ -57,7 +59,7 @@ pub struct Friction<T> {
     pub law: FrictionLaw<T>,
 }
 
-impl<T: Number> Friction<T> {
+impl<T: ForceNumber> Friction<T> {
     /// Compiles the model's friction: what is said of one joint goes before what is said of all.
     pub(crate) fn all(
         mechanism: &Mechanism,
@@ -108,19 +110,21 @@ impl<T: Number> Friction<T> {
             problems.push(Problem::new(code, &friction.span, message));
         };
         let law = FrictionLaw::new(friction, parameters);
-        if law.kinetic.value() < 0.0 || law.at_rest.value() < 0.0 || law.viscous.value() < 0.0 {
+        if [law.kinetic, law.at_rest, law.viscous]
+            .iter()
+            .any(|x| x.any_lane(|x| x < 0.0))
+        {
             add(
                 "negative-friction",
                 "friction is never negative: it would add energy".into(),
             );
         }
-        let radius =
-            (friction.radius.as_ref()).map(|scalar| model::value(scalar, parameters).value());
-        if radius.is_some_and(|r| r < 0.0) {
+        let radius = (friction.radius.as_ref()).map(|scalar| model::value(scalar, parameters));
+        if radius.is_some_and(|r| r.any_lane(|r| r < 0.0)) {
             add("negative-radius", "the radius of a pin is negative".into());
         }
         match friction.at {
-            FrictionAt::Pin(point) if radius.is_none() && law.kinetic.value() > 0.0 => {
+            FrictionAt::Pin(point) if radius.is_none() && law.kinetic.any_lane(|x| x > 0.0) => {
                 let name = point_name(mechanism, point);
                 add(
                     "friction-radius",
@@ -139,13 +143,13 @@ impl<T: Number> Friction<T> {
     /// Resistance (N m at a pin, N on a line) to a relative speed (rad/s or m/s) under a load (N), with the sign of
     /// `direction`; what it does is the opposite of its sign. Viscous resistance included.
     #[inline]
-    pub fn resistance(&self, speed: T, direction: f64, load: T) -> T {
-        self.per_load(speed) * load * direction + self.law.viscous * speed
+    pub fn resistance(&self, speed: T, direction: T::Plain, load: T) -> T {
+        (self.per_load(speed) * load).times(direction) + self.law.viscous * speed
     }
 
     /// Resistance over load. The load of a line is its normal force; that of a pin is its whole force, friction included,
     /// which passes the pin's centre on the friction circle: at `r sin(atan(mu))`.
-    fn per_load(&self, speed: T) -> T {
+    pub(crate) fn per_load(&self, speed: T) -> T {
         match self.radius {
             None => self.law.coefficient(speed.abs()),
             Some(radius) => {
@@ -155,10 +159,11 @@ impl<T: Number> Friction<T> {
         }
     }
 
-    /// Derivative of the resistance to the load.
+    /// Derivative of the resistance to the load, in a lane.
     #[inline]
-    pub(crate) fn slope(&self, speed: f64, direction: f64) -> f64 {
-        self.per_load(T::from_f64(speed)).value() * direction
+    pub(crate) fn slope(&self, speed: T, direction: T::Plain, lane: usize) -> f64 {
+        let speed = T::from_f64(speed.value_in(lane));
+        self.per_load(speed).value_in(lane) * direction.lane_value(lane)
     }
 }
 
@@ -172,6 +177,30 @@ pub fn direction(speed: f64, acceleration: f64, still: [f64; 2]) -> f64 {
     } else {
         0.0
     }
+}
+
+/// The senses in which joints slide whose speeds and accelerations lie in these bounds: all from -1 to 1 where there are
+/// several. What counts as none is told by the size of the middle design: that of the others is taken to be half as large at
+/// least, and twice as large at most.
+pub(crate) fn directions(
+    speed: Interval,
+    acceleration: Interval,
+    still: [Interval; 2],
+) -> Interval {
+    let sense = |x: Interval, still: Interval| {
+        let (least, most) = (still.lo() / 2.0, still.hi() * 2.0);
+        if x.lo() > most || x.hi() < -most {
+            Some(sign(x.lo()))
+        } else {
+            (x.mag() <= least).then_some(0.0)
+        }
+    };
+    let of_speed = sense(speed, still[0]);
+    let found = match of_speed {
+        Some(0.0) => sense(acceleration, still[1]),
+        _ => of_speed,
+    };
+    found.map_or(Interval::new(-1.0, 1.0), Interval::from_f64)
 }
 
 fn slides(mechanism: &Mechanism, joint: JointId) -> bool {

@@ -2,9 +2,9 @@
 
 use kempe_mechanism::{BodyId, Geometry, Mechanism};
 use kempe_model::{self as model, LinkId};
-use kempe_number::Number;
 
 use crate::instant::Instant;
+use crate::number::ForceNumber;
 use crate::problem::Problem;
 use crate::vector::{cross, sub};
 use crate::wrench::{self, Wrench};
@@ -24,7 +24,7 @@ pub struct Mass<T> {
     pub moment: T,
 }
 
-impl<T: Number> Mass<T> {
+impl<T: ForceNumber> Mass<T> {
     /// All masses of a mechanism that can move; those of the frame feel nothing.
     pub(crate) fn all(
         mechanism: &Mechanism,
@@ -53,7 +53,7 @@ impl<T: Number> Mass<T> {
             };
             let mass = inertia.mass.as_ref().map_or(T::zero(), of);
             let moment = inertia.moment.as_ref().map_or(T::zero(), of);
-            if mass.value() < 0.0 || moment.value() < 0.0 {
+            if mass.any_lane(|m| m < 0.0) || moment.any_lane(|m| m < 0.0) {
                 problems.push(Problem::new(
                     "negative-mass",
                     &link.span,
@@ -68,7 +68,7 @@ impl<T: Number> Mass<T> {
                 continue;
             };
             let mass = of(&extra.mass);
-            if mass.value() < 0.0 {
+            if mass.any_lane(|m| m < 0.0) {
                 problems.push(Problem::new(
                     "negative-mass",
                     &extra.span,

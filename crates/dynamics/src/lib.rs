@@ -23,7 +23,13 @@
 //! difference stands in every row. What a drive gives is taken from virtual power (it stays finite at a singular pose),
 //! what a joint carries from the multipliers.
 //!
-//! The core is generic over the number it runs on: plain numbers for one value, Taylor series in time for rates.
+//! # Numbers
+//! The core is generic over the number it runs on ([`ForceNumber`]): plain numbers for one value, Taylor series in time for
+//! rates, dual numbers for derivatives to parameters, lanes for many designs or instants, intervals for bounds. What has to
+//! branch is decided in every lane by itself: a lane has the bits that its numbers give alone, and is NaN alone where friction
+//! jams or the pose is singular. Bounds of multipliers are proved; they are the whole line where they cannot be, as near a
+//! singular pose or a jam, and where equilibrium does not determine the loads. What intervals do not tell counts as not known:
+//! a joint that always rests rubs in any sense where the speeds of its bodies are told as intervals with width.
 
 pub mod acting;
 pub mod amount;
@@ -65,7 +71,7 @@ pub use equations_of_motion::EquationsOfMotion;
 pub use forces::{Forces, FrictionOutcome};
 pub use instant::{Instant, Rates};
 pub use note::ForceNote;
-pub use number::ForceNumber;
+pub use number::{ForceNumber, PlainNumber};
 pub use problem::Problem;
 pub use reaction::{Carrier, JointLoad, Reaction};
 pub use sampler::{ForceError, ForceEvidence, ForceSample, ForceSampler};

@@ -1,8 +1,9 @@
 //! Motors: what a torque-speed curve leaves over what is needed.
 
 use kempe_model::{self as model, DriveId};
-use kempe_number::{Number, piecewise};
+use kempe_number::piecewise;
 
+use crate::number::{ForceNumber, PlainNumber};
 use crate::problem::Problem;
 
 /// A motor behind a turning drive.
@@ -14,14 +15,17 @@ pub struct Motor<T> {
     pub curve: Vec<(T, T)>,
 }
 
-impl<T: Number> Motor<T> {
+impl<T: ForceNumber> Motor<T> {
     /// Evaluates a motor's curve.
     pub(crate) fn new(motor: &model::Motor, parameters: &[T], problems: &mut Vec<Problem>) -> Self {
         let of = |scalar: &model::Scalar| model::value(scalar, parameters);
         let curve: Vec<(T, T)> = (motor.curve.iter())
             .map(|(speed, torque)| (of(speed), of(torque)))
             .collect();
-        let rises = |w: &[(T, T)]| w[1].0.value() > w[0].0.value();
+        let rises = |w: &[(T, T)]| {
+            let mut lanes = 0..T::Plain::LANES;
+            lanes.all(|lane| w[1].0.value_in(lane) > w[0].0.value_in(lane))
+        };
         if curve.is_empty() || !curve.windows(2).all(rises) {
             problems.push(Problem::new(
                 "motor-curve",
@@ -38,12 +42,11 @@ impl<T: Number> Motor<T> {
     /// The torque it can give at a speed, N m: linear between the curve's points, none beyond its last one. A curve of
     /// positive speeds holds for both senses of turning.
     pub fn torque(&self, speed: T) -> T {
-        let one_sided = self.curve.first().is_some_and(|p| p.0.value() >= 0.0);
-        let x = if one_sided { speed.abs() } else { speed };
         let points = &self.curve;
-        let Some(last) = points.last() else {
+        let [Some(first), Some(last)] = [points.first(), points.last()] else {
             return T::zero();
         };
+        let x = first.0.choose_with(|| speed.abs(), || speed);
         // What lies below the first point is a piece, too.
         let past = |k: usize| x - points[k - 1].0;
         let piece = |k: usize| match k {

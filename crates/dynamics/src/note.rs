@@ -244,6 +244,7 @@ fn short(x: f64) -> String {
 pub(crate) fn notes(forces: &Forces<Rates>, at: &Instant<Rates>, condition: f64) -> Vec<ForceNote> {
     use kempe_number::Number as _;
     let equilibrium = &forces.equilibrium;
+    let plain = &equilibrium.lanes[0];
     let mut notes = Vec::new();
     let without_value = forces.acting.loads.iter().position(|load| {
         let amounts = match *load {
@@ -256,14 +257,14 @@ pub(crate) fn notes(forces: &Forces<Rates>, at: &Instant<Rates>, condition: f64)
         notes.push(ForceNote::NoLoad { load });
         return notes;
     }
-    if equilibrium.singular {
+    if plain.singular {
         notes.push(ForceNote::Singular);
         return notes;
     }
     if !(condition <= ILL_CONDITIONED) {
         notes.push(ForceNote::IllConditioned { condition });
     }
-    match equilibrium.friction {
+    match plain.friction {
         FrictionOutcome::Jammed { part } => {
             notes.push(ForceNote::Jammed { part });
             return notes;
@@ -274,13 +275,13 @@ pub(crate) fn notes(forces: &Forces<Rates>, at: &Instant<Rates>, condition: f64)
         }
         FrictionOutcome::None | FrictionOutcome::Consistent { .. } => {}
     }
-    let difference = forces.route_difference();
+    let difference = forces.route_difference(0);
     if !(difference <= ROUTES_AGREE) {
         notes.push(ForceNote::RoutesDiffer { difference });
     }
-    if !(equilibrium.residual <= EQUILIBRIUM_LIMIT) {
+    if !(plain.residual <= EQUILIBRIUM_LIMIT) {
         notes.push(ForceNote::Unbalanced {
-            residual: equilibrium.residual,
+            residual: plain.residual,
         });
     }
     if equilibrium.rests(&forces.acting.friction) {
@@ -288,7 +289,8 @@ pub(crate) fn notes(forces: &Forces<Rates>, at: &Instant<Rates>, condition: f64)
     }
     for (index, drive) in forces.drives.iter().enumerate() {
         let speed = at.drive_speeds[index].value();
-        let braked = drive.frictionless * speed < 0.0 && drive.value.value() * speed > 0.0;
+        let braked =
+            forces.frictionless(index, 0) * speed < 0.0 && drive.value.value() * speed > 0.0;
         // What the masses do on their way is no load: friction holds what pushes at rest too.
         if braked && forces.holds_at_rest(at, index) {
             notes.push(ForceNote::SelfLocking(DriveId(index as u32)));

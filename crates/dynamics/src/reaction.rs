@@ -184,7 +184,9 @@ impl<T: ForceNumber> Forces<T> {
         let x = body.turn([seat.c, seat.s]);
         [dot(x, force), dot([-x[1], x[0]], force)]
     }
+}
 
+impl<T: ForceNumber<Plain = f64>> Forces<T> {
     /// The loads of all joints and drives in plain numbers: pins on every later link, joints on their first-named link,
     /// drives on the link they move (the eye of a cylinder).
     pub fn joint_loads(&self, at: &Instant<T>) -> Vec<JointLoad> {

@@ -7,12 +7,13 @@ use kempe_number::Number;
 
 use crate::acting::Acting;
 use crate::instant::Instant;
+use crate::number::ForceNumber;
 use crate::vector::{add, dot, left, times};
 use crate::wrench::{self, Wrench};
 
 /// Equivalent mass (kg) or moment of inertia (kg m^2) at a drive, and its derivative to the drive's coordinate, the other
 /// drives at rest.
-pub fn mass<T: Number>(acting: &Acting<T>, at: &Instant<T>, drive: usize) -> [T; 2] {
+pub fn mass<T: ForceNumber>(acting: &Acting<T>, at: &Instant<T>, drive: usize) -> [T; 2] {
     let (first, second) = (&at.coefficients[drive], &at.coefficient_rates[drive]);
     let mut sum = [T::zero(); 2];
     for mass in &acting.masses {

@@ -225,11 +225,12 @@ impl ForceSampler {
 fn evidence(forces: &Forces<Rates>, at: &Instant<Rates>) -> ForceEvidence {
     use kempe_number::Number as _;
     let equilibrium = &forces.equilibrium;
+    let plain = &equilibrium.lanes[0];
     ForceEvidence {
-        route_difference: forces.route_difference(),
-        residual: equilibrium.residual,
-        condition: equilibrium.condition(),
-        friction: equilibrium.friction,
+        route_difference: forces.route_difference(0),
+        residual: plain.residual,
+        condition: plain.condition(),
+        friction: plain.friction,
         drive_power: (forces.drives.iter().zip(&at.drive_speeds))
             .map(|(drive, speed)| drive.value.value() * speed.value())
             .sum(),

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use kempe_measure::{Base, Curve, ForceSource, Series, State};
+use kempe_measure::{Curve, ForceSource, Series, State};
 use kempe_mechanism::Branch;
 use kempe_mechanism::Design;
 use kempe_model::{Drive, ForceMeasure, Measure};
@@ -15,7 +15,7 @@ use crate::number::ForceNumber;
 use crate::problem::Problem;
 
 /// The forces of the state last solved, as series in time.
-pub struct Source<B> {
+pub struct Source<B: ForceNumber> {
     /// The forces.
     pub forces: Forces<Rates<B>>,
     /// What they were solved for.
@@ -23,10 +23,7 @@ pub struct Source<B> {
     measures: Vec<Measure>,
 }
 
-impl<B: Base> Source<B>
-where
-    Rates<B>: ForceNumber,
-{
+impl<B: ForceNumber> Source<B> {
     /// Prepares the forces of a motion for these parameter values.
     ///
     /// # Errors
@@ -61,10 +58,7 @@ where
     }
 }
 
-impl<B: Base> ForceSource<B> for Source<B>
-where
-    Rates<B>: ForceNumber,
-{
+impl<B: ForceNumber> ForceSource<B> for Source<B> {
     fn measures(&self) -> &[Measure] {
         &self.measures
     }

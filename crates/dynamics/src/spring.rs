@@ -6,6 +6,7 @@ use kempe_number::Number;
 
 use crate::ends::Ends;
 use crate::instant::Instant;
+use crate::number::{ForceNumber, PlainNumber};
 use crate::problem::Problem;
 use crate::wrench::Wrench;
 
@@ -105,20 +106,20 @@ impl<T: Number> SpringLaw<T> {
 
 /// A spring in a mechanism.
 #[derive(Clone, Debug)]
-pub struct Spring<T> {
+pub struct Spring<T: ForceNumber> {
     /// Its ends.
     pub ends: Ends,
     /// Its law.
     pub law: SpringLaw<T>,
     /// Added to the angle of its links, rad: whole turns (see [`Spring::align`]).
-    pub turns: f64,
+    pub turns: T::Plain,
 }
 
-impl<T: Number> Spring<T> {
+impl<T: ForceNumber> Spring<T> {
     /// Compiles the model's springs.
     pub(crate) fn all(
         mechanism: &Mechanism,
-        geometry: &Geometry<f64>,
+        geometry: &Geometry<T>,
         parameters: &[T],
         problems: &mut Vec<Problem>,
     ) -> Vec<Self> {
@@ -135,7 +136,7 @@ impl<T: Number> Spring<T> {
                 continue;
             };
             let law = SpringLaw::new(spring, parameters);
-            if law.stiffness.value() < 0.0 || law.stop_stiffness.value() < 0.0 {
+            if law.stiffness.any_lane(|x| x < 0.0) || law.stop_stiffness.any_lane(|x| x < 0.0) {
                 problems.push(Problem::new(
                     "negative-stiffness",
                     &spring.span,
@@ -143,7 +144,7 @@ impl<T: Number> Spring<T> {
                 ));
             }
             if let [Some(low), Some(high)] = &law.stops
-                && low.value() > high.value()
+                && (0..T::Plain::LANES).any(|lane| low.value_in(lane) > high.value_in(lane))
             {
                 problems.push(Problem::new(
                     "stops-crossed",
@@ -154,7 +155,7 @@ impl<T: Number> Spring<T> {
             list.push(Self {
                 ends,
                 law,
-                turns: 0.0,
+                turns: T::Plain::zero(),
             });
         }
         list
@@ -165,16 +166,16 @@ impl<T: Number> Spring<T> {
     pub fn align(&mut self, geometry: &Geometry<T>, angles: &[f64]) {
         if let Ends::Links([(link_a, a), (link_b, b)]) = self.ends {
             let of = |link: kempe_model::LinkId, body: kempe_mechanism::BodyId| {
-                angles[body.index()] + geometry.seat_angles[link.index()].value()
+                geometry.seat_angles[link.index()].plain() + angles[body.index()]
             };
-            let apart = self.law.free.value() - (of(link_b, b) - of(link_a, a));
-            self.turns = (apart / std::f64::consts::TAU).round() * std::f64::consts::TAU;
+            let apart = self.law.free.plain() - (of(link_b, b) - of(link_a, a));
+            self.turns = (apart / std::f64::consts::TAU).rising(f64::round) * std::f64::consts::TAU;
         }
     }
 
     /// Its length (m) or angle (rad) at an instant.
     pub fn length(&self, geometry: &Geometry<T>, at: &Instant<T>) -> T {
-        self.ends.stretch(geometry, at).length + self.turns
+        self.ends.stretch(geometry, at).length.plus(0, self.turns)
     }
 
     /// Its tension at an instant, N or N m.
@@ -192,7 +193,7 @@ impl<T: Number> Spring<T> {
         let stretch = self.ends.stretch(geometry, at);
         let pull = match self.ends {
             Ends::Points(_) => self.law.pull(stretch.length),
-            Ends::Links(_) => self.law.tension(stretch.length + self.turns),
+            Ends::Links(_) => self.law.tension(stretch.length.plus(0, self.turns)),
         };
         self.ends.pull(geometry, at, &stretch, pull, on_links);
     }

@@ -14,15 +14,11 @@ pub(crate) fn times<T: Number>(a: [T; 2], k: T) -> [T; 2] {
     [a[0] * k, a[1] * k]
 }
 
-/// The length of a vector. Its derivatives are zero, not NaN, where it vanishes in all parts.
+/// The length of a vector. Its derivatives are zero, not NaN, where it vanishes.
 #[inline(always)]
 pub(crate) fn length<T: Number>(a: [T; 2]) -> T {
     let square = dot(a, a);
-    if square.value() == 0.0 {
-        T::zero()
-    } else {
-        square.sqrt()
-    }
+    (-square).choose_with(T::zero, || square.sqrt())
 }
 
 /// The sign of the plain value: -1, 0 or 1.

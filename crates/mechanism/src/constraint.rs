@@ -21,7 +21,7 @@ mod released;
 mod situation;
 mod travel;
 
-pub use self::belt::{Belt, Run};
+pub use self::belt::Belt;
 pub use self::coincide::Coincide;
 pub use self::direction::Direction;
 pub use self::distance::Distance;

@@ -1,13 +1,13 @@
-//! Friction at the joints: it follows from the loads that it changes, so both are found together.
+//! Friction at the joints: where it acts and in which sense, and what it does at given multipliers.
 
 use kempe_mechanism::constraint::{Joint, Situation, Sliding};
 use kempe_mechanism::{BodyId, Geometry, Mechanism};
 use kempe_number::Number;
 
-use super::{Equilibrium, SINGULAR};
-use crate::friction::{Friction, direction};
+use super::Equilibrium;
+use crate::friction::Friction;
 use crate::instant::Instant;
-use crate::number::ForceNumber;
+use crate::number::{ForceNumber, PlainNumber};
 use crate::vector::{cross, dot, length, sub};
 use crate::wrench::Wrench;
 
@@ -15,10 +15,6 @@ use crate::wrench::Wrench;
 pub const STILL: f64 = 1e-12;
 /// Accelerations below this part of those that the fastest speed would have over the whole motion count as none.
 pub const UNMOVED: f64 = 1e-9;
-/// Newton steps of the friction loop before it is given up.
-pub const FRICTION_STEPS: usize = 60;
-/// A step of the friction loop below this part of the largest multiplier ends it.
-pub const FRICTION_STEP: f64 = 1e-13;
 
 /// How fast a motion usually is, so that rest can be told from a slow moment.
 #[derive(Clone, Debug, Default)]
@@ -31,7 +27,7 @@ pub struct Pace {
 
 /// Friction at one joint at an instant.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct FrictionContact<T> {
+pub(crate) struct FrictionContact<T: ForceNumber> {
     /// Which friction.
     pub friction: usize,
     /// First row of the joint.
@@ -39,7 +35,7 @@ pub(crate) struct FrictionContact<T> {
     /// Relative speed, rad/s or m/s.
     pub speed: T,
     /// Sense of sliding.
-    pub direction: f64,
+    pub direction: T::Plain,
     /// What a unit of resistance does: to the body that slides and to the other.
     pub unit: [(BodyId, Wrench<T>); 2],
 }
@@ -78,9 +74,10 @@ impl<T: ForceNumber> Equilibrium<T> {
         if frictions.is_empty() {
             return;
         }
-        let fastest = self.fastest(at);
-        let still = [STILL * fastest, UNMOVED * fastest * self.pace.frequency];
-        let still_sliding = still.map(|s| s * self.size);
+        let size = T::Plain::of_lanes(|lane| self.lanes[lane].size);
+        let fastest = self.fastest(at, size);
+        let still = [fastest * STILL, fastest * UNMOVED * self.pace.frequency];
+        let still_sliding = still.map(|s| s * size);
         let situation = Situation {
             geometry,
             inputs: &at.inputs,
@@ -88,7 +85,7 @@ impl<T: ForceNumber> Equilibrium<T> {
             near: &at.near,
         };
         for (index, friction) in frictions.iter().enumerate() {
-            let row = self.first_row[friction.constraint];
+            let row = self.layout.first_row[friction.constraint];
             let (zero, one) = (T::zero(), T::one());
             let contact = |speed, direction, unit| FrictionContact {
                 friction: index,
@@ -103,7 +100,7 @@ impl<T: ForceNumber> Equilibrium<T> {
                 Some(Sliding::Turning { a, b }) => {
                     let speed = v[b.index()][2] - v[a.index()][2];
                     let gain = w[b.index()][2] - w[a.index()][2];
-                    let direction = direction(speed.value(), gain.value(), still);
+                    let direction = speed.plain().direction(gain.plain(), still);
                     let unit = [(b, [zero, zero, -one]), (a, [zero, zero, one])];
                     Some(contact(speed, direction, unit))
                 }
@@ -117,10 +114,10 @@ impl<T: ForceNumber> Equilibrium<T> {
                         at.acceleration(on, arm_guide),
                     );
                     let speed = dot(tangent, parting);
-                    let gain = dot(tangent, gain).value();
+                    let gain = dot(tangent, gain);
                     let own = [-tangent[0], -tangent[1], -cross(arm, tangent)];
                     let other = [tangent[0], tangent[1], cross(arm_guide, tangent)];
-                    let direction = direction(speed.value(), gain, still_sliding);
+                    let direction = speed.plain().direction(gain.plain(), still_sliding);
                     Some(contact(speed, direction, [(point.body, own), (on, other)]))
                 }
                 None => None,
@@ -129,137 +126,13 @@ impl<T: ForceNumber> Equilibrium<T> {
     }
 
     /// The fastest that any body moves now, or would move at the usual speeds of the drives, 1/s.
-    fn fastest(&self, at: &Instant<T>) -> f64 {
-        let in_sizes = |v: [f64; 3]| v[2].max(v[0] / self.size).max(v[1] / self.size);
-        let now = (at.velocities.iter()).map(|v| in_sizes(v.map(|x| x.value().abs())));
+    fn fastest(&self, at: &Instant<T>, size: T::Plain) -> T::Plain {
+        let in_sizes = |v: [T::Plain; 3]| v[2].larger(v[0] / size).larger(v[1] / size);
+        let now = (at.velocities.iter()).map(|v| in_sizes(v.map(|x| x.plain().abs())));
         let usual = (at.coefficients.iter().zip(&self.pace.speeds))
             .flat_map(|(bodies, speed)| bodies.iter().map(move |c| (c, *speed)))
-            .map(|(c, speed)| in_sizes(c.map(|x| (x.value() * speed).abs())));
-        now.chain(usual).fold(0.0, f64::max)
-    }
-
-    /// One Newton step on the plain multipliers with this share of the friction; returns its relative size.
-    pub(super) fn step(
-        &mut self,
-        frictions: &[Friction<T>],
-        needed: &[Wrench<T>],
-        share: f64,
-    ) -> f64 {
-        let right = &mut self.right;
-        right.fill(0.0);
-        for (body, w) in needed.iter().enumerate().skip(1) {
-            for k in 0..3 {
-                right[3 * (body - 1) + k] = w[k].value();
-            }
-        }
-        for entry in self.entries.iter().filter(|e| e.body != BodyId::GROUND) {
-            for k in 0..3 {
-                right[3 * (entry.body.index() - 1) + k] -=
-                    entry.to[k].value() * self.plain[entry.row];
-            }
-        }
-        for contact in &self.contacts {
-            let friction = &frictions[contact.friction];
-            let (_, load) = load_of(friction, &self.plain[contact.row..]);
-            let viscous = (friction.law.viscous * contact.speed).value();
-            let slope = friction.slope(contact.speed.value(), contact.direction);
-            let resistance = (slope * load + viscous) * share;
-            for (body, unit) in contact.unit.iter().filter(|u| u.0 != BodyId::GROUND) {
-                for k in 0..3 {
-                    right[3 * (body.index() - 1) + k] -= unit[k].value() * resistance;
-                }
-            }
-        }
-        let wide = &mut self.wide_plain;
-        for (k, value) in right[..self.columns].iter().enumerate() {
-            let scale = if k % 3 < 2 { self.size } else { 1.0 };
-            wide[self.order.columns[k]] = value * scale;
-        }
-        self.qr.solve_transposed(wide);
-        let (mut largest, mut step) = (0.0_f64, 0.0_f64);
-        let places = self.order.rows.iter().zip(&self.unit);
-        for (lambda, (place, unit)) in self.plain.iter_mut().zip(places) {
-            let delta = wide[*place];
-            *lambda += delta * unit;
-            largest = largest.max((*lambda / unit).abs());
-            step = step.max(delta.abs());
-        }
-        if largest > 0.0 { step / largest } else { step }
-    }
-
-    /// Newton's method with friction fed back, from the frictionless multipliers.
-    pub(super) fn iterate(
-        &mut self,
-        frictions: &[Friction<T>],
-        needed: &[Wrench<T>],
-    ) -> FrictionOutcome {
-        let free = self.qr.determinant();
-        let square = self.rows == self.columns;
-        let (mut last, mut steps) = (f64::INFINITY, 0);
-        while steps < FRICTION_STEPS {
-            self.refactor(frictions, 1.0);
-            if !(self.qr.smallest_pivot_ratio() > SINGULAR) {
-                break;
-            }
-            last = self.step(frictions, needed, 1.0);
-            steps += 1;
-            if last <= FRICTION_STEP {
-                break;
-            }
-        }
-        self.refactor(frictions, 1.0);
-        let turned = square && !(self.qr.determinant() * free.signum() > 0.0);
-        if turned || !(last <= FRICTION_STEP.sqrt()) {
-            let jam = if square {
-                self.find_jam(frictions, needed, free)
-            } else {
-                None
-            };
-            return match jam {
-                Some(part) => FrictionOutcome::Jammed { part },
-                None => FrictionOutcome::NotConverged { step: last },
-            };
-        }
-        FrictionOutcome::Consistent { steps }
-    }
-
-    fn refactor(&mut self, frictions: &[Friction<T>], share: f64) {
-        let plain = std::mem::take(&mut self.plain);
-        self.factor(frictions, Some((&plain, share)));
-        self.plain = plain;
-    }
-
-    /// The part of the friction with which the loads go to infinity: followed from none in steps that shrink on it.
-    fn find_jam(
-        &mut self,
-        frictions: &[Friction<T>],
-        needed: &[Wrench<T>],
-        free: f64,
-    ) -> Option<f64> {
-        let (mut done, mut advance) = (0.0, 0.125);
-        let mut good = self.frictionless.clone();
-        while done < 1.0 && advance > 1e-6 {
-            let share = f64::min(done + advance, 1.0);
-            self.plain.copy_from_slice(&good);
-            let mut settled = false;
-            for _ in 0..FRICTION_STEPS {
-                self.refactor(frictions, share);
-                if !(self.qr.determinant() * free.signum() > 0.0) {
-                    break;
-                }
-                if self.step(frictions, needed, share) <= FRICTION_STEP {
-                    settled = true;
-                    break;
-                }
-            }
-            if settled {
-                done = share;
-                good.copy_from_slice(&self.plain);
-            } else {
-                advance *= 0.5;
-            }
-        }
-        (done < 1.0).then_some(done)
+            .map(|(c, speed)| in_sizes(c.map(|x| (x.plain() * speed).abs())));
+        now.chain(usual).fold(T::Plain::zero(), T::Plain::larger)
     }
 
     /// Hands out what friction does: constraint, body, wrench about the body's origin; the sliding body comes first.
@@ -286,23 +159,19 @@ impl<T: ForceNumber> Equilibrium<T> {
         sum
     }
 
-    /// Whether friction acts at a joint that does not move and is not about to: its size is not determined there.
+    /// Whether friction acts at a joint that does not move and is not about to: its size is not determined there. In lanes:
+    /// in any of them.
     pub fn rests(&self, frictions: &[Friction<T>]) -> bool {
         self.contacts.iter().any(|contact| {
-            contact.direction == 0.0 && frictions[contact.friction].law.kinetic.value() > 0.0
+            let kinetic = frictions[contact.friction].law.kinetic;
+            (0..T::Plain::LANES).any(|lane| {
+                contact.direction.lane_value(lane) == 0.0 && kinetic.value_in(lane) > 0.0
+            })
         })
     }
 }
 
-/// Rows and size of a joint's load at plain multipliers.
-pub(super) fn load_of<T>(friction: &Friction<T>, lambda: &[f64]) -> (usize, f64) {
-    match friction.radius {
-        Some(_) => (2, kempe_number::math::hypot(lambda[0], lambda[1])),
-        None => (1, lambda[0].abs()),
-    }
-}
-
-pub(super) fn resistance<T: Number>(
+pub(super) fn resistance<T: ForceNumber>(
     frictions: &[Friction<T>],
     contact: &FrictionContact<T>,
     lambda: &[T],

@@ -8,26 +8,33 @@
 //!
 //! With more rows than unknowns the loads of some joints are not determined by equilibrium; the shortest solution is
 //! given (moments counted over the mechanism's size) and those joints are named.
+//!
+//! What has to branch is decided on plain numbers, for every lane by itself ([`PlainEquilibrium`]). From there multipliers
+//! are carried over to series and derivatives by refinement, and bounds of them are proved.
 
 mod friction;
 mod order;
+mod plain;
+mod proof;
 
-use kempe_linear::Qr;
-use kempe_mechanism::constraint::{Gradient, Joint, Situation};
+use kempe_mechanism::constraint::{Gradient, Joint, Situation, Unit};
 use kempe_mechanism::{BodyId, Geometry, Mechanism};
+use kempe_number::Number;
 
-pub use self::friction::{FRICTION_STEP, FRICTION_STEPS, FrictionOutcome, Pace, STILL, UNMOVED};
-use self::friction::{FrictionContact, load_of, resistance};
+use self::friction::{FrictionContact, resistance};
+pub use self::friction::{FrictionOutcome, Pace, STILL, UNMOVED};
 use self::order::Order;
+pub use self::plain::{FRICTION_STEP, FRICTION_STEPS, PlainEquilibrium};
 use crate::friction::Friction;
 use crate::instant::Instant;
-use crate::number::ForceNumber;
+use crate::number::{ForceNumber, PlainNumber};
 use crate::wrench::Wrench;
 
 /// Smallest over largest pivot below which a pose counts as singular: joint loads are not defined there.
 pub const SINGULAR: f64 = 1e-12;
 /// A joint's part in a direction of undetermined loads above which its load is not unique.
 pub const UNIQUE: f64 = 1e-9;
+
 /// One entry of J: derivatives of a row to a body's x, y and angle.
 #[derive(Clone, Copy, Debug)]
 struct Entry<T> {
@@ -36,131 +43,128 @@ struct Entry<T> {
     to: [T; 3],
 }
 
-/// The equilibrium of a mechanism, with storage that is reused from instant to instant.
+/// Which row and column is what.
 #[derive(Clone, Debug)]
-pub struct Equilibrium<T> {
+struct Layout {
     /// First row of every constraint.
     first_row: Vec<usize>,
+    /// In what the multiplier of every row is counted.
+    units: Vec<Unit>,
     /// Where rows and columns stand in the factored matrix.
     order: Order,
+    /// Bodies whose angle nothing determines: the last rows hold them.
     idle: Vec<BodyId>,
     rows: usize,
     columns: usize,
-    size: f64,
+}
+
+/// The equations of an instant, put together.
+struct Equations<'a, T: ForceNumber> {
+    layout: &'a Layout,
+    entries: &'a [Entry<T>],
+    contacts: &'a [FrictionContact<T>],
+    frictions: &'a [Friction<T>],
+    /// `m a - applied` of every body, about its origin.
+    needed: &'a [Wrench<T>],
+}
+
+/// The equations of an equilibrium, whose other fields stay free to be changed.
+macro_rules! equations {
+    ($equilibrium:expr, $frictions:expr, $needed:expr) => {
+        Equations {
+            layout: &$equilibrium.layout,
+            entries: &$equilibrium.entries,
+            contacts: &$equilibrium.contacts,
+            frictions: $frictions,
+            needed: $needed,
+        }
+    };
+}
+use equations;
+
+/// The equilibrium of a mechanism, with storage that is reused from instant to instant.
+#[derive(Clone, Debug)]
+pub struct Equilibrium<T: ForceNumber> {
+    layout: Layout,
     /// What counts as moving.
     pub pace: Pace,
-    /// Scale of every row.
-    unit: Vec<f64>,
     entries: Vec<Entry<T>>,
     contacts: Vec<FrictionContact<T>>,
-    qr: Qr,
-    right: Vec<f64>,
-    wide_plain: Vec<f64>,
-    wide: Vec<T>,
+    wide: Vec<T::InLane>,
     rest: Vec<T>,
-    plain: Vec<f64>,
-    /// Multipliers: joints and drives in the mechanism's order, then the torques that hold idle bodies.
+    /// Multipliers: joints and drives in the mechanism's order, then the torques that hold idle bodies. NaN in lanes where
+    /// the pose is singular or friction jams; intervals without bounds where none are proved.
     pub lambda: Vec<T>,
-    /// Multipliers as they would be without friction.
-    pub frictionless: Vec<f64>,
-    /// How friction ended.
-    pub friction: FrictionOutcome,
-    /// Whether the pose is singular.
-    pub singular: bool,
-    /// What is left of the equilibrium of the worst body, over the largest term in it.
-    pub residual: f64,
-    /// The largest term in the equilibrium of any body, forces counted over the mechanism's size, N m.
-    pub largest: f64,
+    /// What was found in plain numbers, lane by lane.
+    pub lanes: Vec<PlainEquilibrium>,
 }
 
 impl<T: ForceNumber> Equilibrium<T> {
-    /// Storage for a mechanism of this size (m).
-    pub fn new(mechanism: &Mechanism, size: f64, frictions: usize) -> Self {
-        let plan = &mechanism.plan;
+    /// Storage for a mechanism of this size (m) in every lane.
+    pub fn new(mechanism: &Mechanism, size: impl Fn(usize) -> f64, frictions: usize) -> Self {
         let mut first_row = Vec::with_capacity(mechanism.constraints.len());
-        let mut unit = Vec::new();
+        let mut units = Vec::new();
         for (constraint, _) in &mechanism.constraints {
-            first_row.push(unit.len());
-            let scale = constraint.load_unit().factor(size);
-            unit.resize(unit.len() + constraint.rows(), scale);
+            first_row.push(units.len());
+            units.resize(units.len() + constraint.rows(), constraint.load_unit());
         }
-        let idle = plan.decomposition.idle.clone();
-        unit.resize(unit.len() + idle.len(), 1.0);
-        let (rows, columns) = (unit.len(), 3 * (mechanism.bodies - 1));
-        let longest = rows.max(columns);
-        Self {
+        let idle = mechanism.plan.decomposition.idle.clone();
+        units.resize(units.len() + idle.len(), Unit::Angle);
+        let (rows, columns) = (units.len(), 3 * (mechanism.bodies - 1));
+        let layout = Layout {
             order: Order::new(mechanism, &first_row, rows),
             first_row,
+            units,
             idle,
             rows,
             columns,
-            size,
+        };
+        Self {
+            lanes: (0..T::Plain::LANES)
+                .map(|lane| PlainEquilibrium::new(&layout, lane, size(lane)))
+                .collect(),
+            layout,
             pace: Pace::default(),
-            unit,
             entries: Vec::with_capacity(4 * rows),
             contacts: Vec::with_capacity(frictions),
-            qr: Qr::with_capacity(rows, columns),
-            right: vec![0.0; columns],
-            wide_plain: vec![0.0; longest],
-            wide: vec![T::zero(); longest],
+            wide: vec![T::InLane::zero(); rows.max(columns)],
             rest: vec![T::zero(); columns],
-            plain: vec![0.0; rows],
             lambda: vec![T::zero(); rows],
-            frictionless: vec![0.0; rows],
-            friction: FrictionOutcome::None,
-            singular: false,
-            residual: 0.0,
-            largest: 0.0,
         }
     }
 
     /// First row of a constraint.
     pub fn row(&self, constraint: usize) -> usize {
-        self.first_row[constraint]
+        self.layout.first_row[constraint]
     }
 
-    /// The largest load anywhere, in the unit of a constraint's multiplier.
-    pub fn largest_at(&self, constraint: usize) -> f64 {
-        self.largest * self.unit[self.first_row[constraint]]
+    /// The largest load anywhere in a lane, in the unit of a constraint's multiplier.
+    pub fn largest_at(&self, constraint: usize, lane: usize) -> f64 {
+        let plain = &self.lanes[lane];
+        plain.largest * plain.unit[self.row(constraint)]
     }
 
     /// Rows beyond the number of unknown motions: loads that equilibrium does not determine.
     pub fn redundant_rows(&self) -> usize {
-        self.rows.saturating_sub(self.columns)
+        self.layout.rows.saturating_sub(self.layout.columns)
     }
 
     /// Torques that hold bodies whose angle nothing determines; a true motion needs none.
     pub fn holding_torques(&self) -> &[T] {
-        &self.lambda[self.rows - self.idle.len()..]
+        &self.lambda[self.layout.rows - self.layout.idle.len()..]
     }
 
     /// Bodies whose angle nothing determines.
     pub fn idle_bodies(&self) -> &[BodyId] {
-        &self.idle
+        &self.layout.idle
     }
 
-    /// Largest over smallest singular value of the scaled equations, at least (Frobenius norm for the largest).
-    pub fn condition(&self) -> f64 {
-        self.qr.norm() / self.qr.smallest_singular_value()
-    }
-
-    /// Constraints whose loads equilibrium does not determine.
+    /// Constraints whose loads equilibrium does not determine. In lanes: in any of them.
     pub fn not_unique(&self) -> Vec<usize> {
-        let mut list = Vec::new();
-        let mut vector = vec![0.0; self.rows];
-        for k in self.columns..self.rows {
-            vector.fill(0.0);
-            vector[k] = 1.0;
-            self.qr.rotate(&mut vector);
-            for (constraint, row) in self.first_row.iter().enumerate() {
-                let end = self.first_row.get(constraint + 1).copied();
-                let end = end.unwrap_or(self.rows - self.idle.len());
-                let own = &self.order.rows[*row..end];
-                if own.iter().any(|place| vector[*place].abs() > UNIQUE) {
-                    list.push(constraint);
-                }
-            }
-        }
+        let lanes = self.lanes.iter();
+        let mut list: Vec<usize> = lanes
+            .flat_map(|lane| lane.not_unique(&self.layout))
+            .collect();
         list.sort_unstable();
         list.dedup();
         list
@@ -177,37 +181,16 @@ impl<T: ForceNumber> Equilibrium<T> {
     ) {
         self.assemble(mechanism, geometry, at);
         self.find_contacts(mechanism, geometry, frictions, at);
-        self.factor(frictions, None);
+        let equations = equations!(self, frictions, needed);
+        for lane in &mut self.lanes {
+            lane.settle(&equations);
+        }
         self.lambda.fill(T::zero());
-        self.singular = !(self.qr.smallest_pivot_ratio() > SINGULAR);
-        self.friction = FrictionOutcome::None;
-        if self.singular {
-            self.lambda.fill(T::from_f64(f64::NAN));
-            self.frictionless.fill(f64::NAN);
-            self.residual = f64::NAN;
-            return;
+        T::Plain::find_multipliers(self, frictions, needed);
+        let equations = equations!(self, frictions, needed);
+        for lane in self.lanes.iter_mut().filter(|lane| !lane.singular) {
+            lane.measure_residual(&equations, &self.lambda);
         }
-        if frictions.is_empty() {
-            self.refine(frictions, needed);
-            for (plain, lambda) in self.frictionless.iter_mut().zip(&self.lambda) {
-                *plain = lambda.value();
-            }
-        } else {
-            self.plain.fill(0.0);
-            self.step(frictions, needed, 0.0);
-            self.frictionless.copy_from_slice(&self.plain);
-            self.friction = self.iterate(frictions, needed);
-            match self.friction {
-                FrictionOutcome::Consistent { .. } => {
-                    for (lambda, plain) in self.lambda.iter_mut().zip(&self.plain) {
-                        *lambda = T::from_f64(*plain);
-                    }
-                    self.refine(frictions, needed);
-                }
-                _ => self.lambda.fill(T::from_f64(f64::NAN)),
-            }
-        }
-        self.measure_residual(frictions, needed);
     }
 
     fn assemble(&mut self, mechanism: &Mechanism, geometry: &Geometry<T>, at: &Instant<T>) {
@@ -219,7 +202,7 @@ impl<T: ForceNumber> Equilibrium<T> {
         };
         self.entries.clear();
         for (index, (constraint, _)) in mechanism.constraints.iter().enumerate() {
-            let row = self.first_row[index];
+            let row = self.layout.first_row[index];
             let entries = &mut self.entries;
             let take: &mut dyn FnMut(Gradient<T>) = &mut |g| {
                 entries.push(Entry {
@@ -231,79 +214,59 @@ impl<T: ForceNumber> Equilibrium<T> {
             // Called: no joint is compiled once more for these entries.
             constraint.load_gradients(&situation, take);
         }
-        for (k, body) in self.idle.iter().enumerate() {
+        for (k, body) in self.layout.idle.iter().enumerate() {
             self.entries.push(Entry {
-                row: self.rows - self.idle.len() + k,
+                row: self.layout.rows - self.layout.idle.len() + k,
                 body: *body,
                 to: [T::zero(), T::zero(), T::one()],
             });
         }
     }
 
-    /// Factors the scaled matrix; with multipliers, friction's derivatives at them and its share are added.
-    fn factor(&mut self, frictions: &[Friction<T>], friction_at: Option<(&[f64], f64)>) {
-        let Self {
-            qr,
-            entries,
-            unit,
-            size,
-            contacts,
-            order,
-            ..
-        } = self;
-        let column_scale = [*size, *size, 1.0];
-        qr.reset(self.rows, self.columns);
-        for entry in entries.iter().filter(|e| e.body != BodyId::GROUND) {
-            let column = 3 * (entry.body.index() - 1);
-            for k in 0..3 {
-                let value = entry.to[k].value() * unit[entry.row] * column_scale[k];
-                qr.add(order.rows[entry.row], order.columns[column + k], value);
+    /// Carries the plain multipliers over to every coefficient and derivative, lane by lane with the matrix last factored;
+    /// NaN where there are none.
+    pub(crate) fn refine(&mut self, frictions: &[Friction<T>], needed: &[Wrench<T>]) {
+        for (index, lane) in self.lanes.iter().enumerate() {
+            let known = lane.is_settled();
+            if known && frictions.is_empty() {
+                continue;
+            }
+            for (lambda, plain) in self.lambda.iter_mut().zip(&lane.lambda) {
+                let start = if known { *plain } else { f64::NAN };
+                *lambda = lambda.with_lane(index, T::InLane::from_f64(start));
             }
         }
-        if let Some((lambda, share)) = friction_at {
-            for contact in contacts.iter() {
-                let friction = &frictions[contact.friction];
-                let slope = friction.slope(contact.speed.value(), contact.direction) * share;
-                let (count, load) = load_of(friction, &lambda[contact.row..]);
-                for k in 0..count {
-                    let part = if load > 0.0 {
-                        lambda[contact.row + k] / load
-                    } else {
-                        0.0
-                    };
-                    for (body, unit_wrench) in &contact.unit {
-                        if *body == BodyId::GROUND {
-                            continue;
-                        }
-                        let column = 3 * (body.index() - 1);
-                        for j in 0..3 {
-                            let value = unit_wrench[j].value() * slope * part;
-                            qr.add(
-                                order.rows[contact.row + k],
-                                order.columns[column + j],
-                                value * unit[contact.row + k] * column_scale[j],
-                            );
-                        }
-                    }
-                }
-            }
+        if !self.lanes.iter().any(PlainEquilibrium::is_settled) {
+            return;
         }
-        qr.factor();
-    }
-
-    /// Carries the multipliers over to every part of the number, with the matrix last factored.
-    fn refine(&mut self, frictions: &[Friction<T>], needed: &[Wrench<T>]) {
         for pass in 0..T::PASSES {
             // Without friction there are no multipliers yet.
             let loaded = pass > 0 || !frictions.is_empty();
             self.fill_rest(frictions, needed, loaded);
-            for (k, (place, rest)) in self.order.columns.iter().zip(&self.rest).enumerate() {
-                self.wide[*place] = if k % 3 < 2 { *rest * self.size } else { *rest };
+            let order = &self.layout.order;
+            for (index, lane) in self.lanes.iter().enumerate().filter(|l| l.1.is_settled()) {
+                for (k, (place, rest)) in order.columns.iter().zip(&self.rest).enumerate() {
+                    let rest = rest.in_lane(index);
+                    self.wide[*place] = if k % 3 < 2 { rest * lane.size } else { rest };
+                }
+                lane.qr.solve_transposed(&mut self.wide);
+                let places = order.rows.iter().zip(&lane.unit);
+                for (lambda, (place, unit)) in self.lambda.iter_mut().zip(places) {
+                    let more = self.wide[*place] * *unit;
+                    *lambda = lambda.with_lane(index, lambda.in_lane(index) + more);
+                }
             }
-            self.qr.solve_transposed(&mut self.wide);
-            let places = self.order.rows.iter().zip(&self.unit);
-            for (lambda, (place, unit)) in self.lambda.iter_mut().zip(places) {
-                *lambda += self.wide[*place] * *unit;
+        }
+        if frictions.is_empty() {
+            for (index, lane) in self
+                .lanes
+                .iter_mut()
+                .enumerate()
+                .filter(|l| l.1.is_settled())
+            {
+                for (plain, lambda) in lane.frictionless.iter_mut().zip(&self.lambda) {
+                    *plain = lambda.value_in(index);
+                }
             }
         }
     }
@@ -333,51 +296,13 @@ impl<T: ForceNumber> Equilibrium<T> {
         }
     }
 
-    fn measure_residual(&mut self, frictions: &[Friction<T>], needed: &[Wrench<T>]) {
-        let size = self.size;
-        let scale = |k: usize| if k < 2 { size } else { 1.0 };
-        let mut largest = 0.0_f64;
-        let left = &mut self.right;
-        for (left, w) in left.chunks_exact_mut(3).zip(&needed[1..]) {
-            for k in 0..3 {
-                left[k] = w[k].value();
-                largest = largest.max((left[k] * scale(k)).abs());
-            }
-        }
-        let mut take = |body: BodyId, k: usize, term: f64| {
-            if body != BodyId::GROUND {
-                left[3 * (body.index() - 1) + k] -= term;
-            }
-        };
-        for entry in &self.entries {
-            let lambda = self.lambda[entry.row].value();
-            for k in 0..3 {
-                let term = entry.to[k].value() * lambda;
-                largest = largest.max((term * scale(k)).abs());
-                take(entry.body, k, term);
-            }
-        }
-        for contact in &self.contacts {
-            let resistance = resistance(frictions, contact, &self.lambda).value();
-            for (body, unit) in &contact.unit {
-                for k in 0..3 {
-                    take(*body, k, unit[k].value() * resistance);
-                }
-            }
-        }
-        let left = (left.iter().enumerate())
-            .map(|(k, r)| (r * scale(k % 3)).abs())
-            .fold(0.0, |a: f64, b| if b.is_nan() { b } else { a.max(b) });
-        self.largest = largest;
-        self.residual = if largest > 0.0 { left / largest } else { left };
-    }
-
     /// Hands out what every constraint does to each of its bodies: constraint, body, wrench about the body's origin.
     pub(crate) fn each_reaction(&self, mut take: impl FnMut(usize, BodyId, Wrench<T>)) {
         let mut constraint = 0;
-        let held = self.rows - self.idle.len();
+        let held = self.layout.rows - self.layout.idle.len();
         for entry in self.entries.iter().filter(|e| e.row < held) {
             while self
+                .layout
                 .first_row
                 .get(constraint + 1)
                 .is_some_and(|next| *next <= entry.row)

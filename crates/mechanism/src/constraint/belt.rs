@@ -14,6 +14,7 @@ use super::isotropic::Isotropic;
 use super::joint::{Gradient, InAngles, Joint, Pairs, Touch, Unit};
 use super::loads::LoadPoint;
 use super::situation::Situation;
+use crate::geometry::GearConstants;
 use crate::ids::{BodyId, Marker};
 use crate::parts::Parts;
 use crate::pose::{cross, dot, left};
@@ -28,32 +29,26 @@ pub struct Belt {
 
 /// A straight run of a belt.
 #[derive(Clone, Copy, Debug)]
-pub struct Run<T> {
+struct Run<T> {
     /// Where it leaves the first wheel, in the frame.
-    pub from: [T; 2],
+    from: [T; 2],
     /// Where it meets the second wheel.
-    pub to: [T; 2],
+    to: [T; 2],
     /// Unit vector from there to here.
-    pub along: [T; 2],
+    along: [T; 2],
 }
 
 impl Belt {
-    /// The straight runs, that on the left of the way from the first axis to the second first; `None` where the wheels
-    /// leave no room for them.
-    pub fn runs<T: Number>(&self, at: &Situation<'_, T>) -> Option<[Run<T>; 2]> {
-        let k = &at.geometry.gears[self.wheels.constants as usize];
-        let (a, axis) = self.wheels.axes(at)?;
+    /// The straight runs, that on the left of the way from the first axis to the second first, where the wheels leave room
+    /// for them.
+    fn runs<T: Number>(k: &GearConstants<T>, a: [T; 2], axis: [T; 2]) -> [Run<T>; 2] {
         let distance = dot(axis, axis).sqrt();
         let ahead = axis.map(|x| x / distance);
         // The common normal of a run and both wheels; of a crossed belt it points away from the second wheel's centre.
         let cosine = (k.first + k.second) / distance;
-        let square = -cosine.square() + 1.0;
-        if !(square.value() > 0.0) {
-            return None;
-        }
-        let sine = square.sqrt();
+        let sine = (-cosine.square() + 1.0).sqrt();
         let b = [a[0] + axis[0], a[1] + axis[1]];
-        Some([1.0, -1.0].map(|side| {
+        [1.0, -1.0].map(|side| {
             let up = left(ahead);
             let normal = [0, 1].map(|i| ahead[i] * cosine + up[i] * (sine * side));
             Run {
@@ -61,7 +56,7 @@ impl Belt {
                 to: [0, 1].map(|i| b[i] - normal[i] * k.second),
                 along: left(normal).map(|x| x * -side),
             }
-        }))
+        })
     }
 }
 
@@ -122,24 +117,29 @@ impl Joint for Belt {
     }
 
     fn load_gradients<T: Number>(&self, at: &Situation<'_, T>, mut emit: impl FnMut(Gradient<T>)) {
-        let Some(runs) = self.runs(at) else {
+        let Some((a, axis)) = self.wheels.axes(at) else {
             self.gradients(at, emit);
             return;
         };
-        // A positive multiplier pulls more in the run on the right, and turns the first wheel counter-clockwise.
-        for (run, pull) in runs.iter().zip([-0.5, 0.5]) {
-            for (body, place, sign) in [
-                (self.wheels.a, run.from, pull),
-                (self.wheels.b, run.to, -pull),
-            ] {
-                let turn = cross(at.arm_to(body, place), run.along);
-                emit(Gradient {
-                    row: 0,
-                    body,
-                    to: [run.along[0] * sign, run.along[1] * sign, turn * sign],
-                });
+        let k = &at.geometry.gears[self.wheels.constants as usize];
+        let by_pins = |emit: &mut dyn FnMut(Gradient<T>)| {
+            // A positive multiplier pulls more in the run on the right, and turns the first wheel counter-clockwise.
+            for (run, pull) in Self::runs(k, a, axis).iter().zip([-0.5, 0.5]) {
+                for (body, place, sign) in [
+                    (self.wheels.a, run.from, pull),
+                    (self.wheels.b, run.to, -pull),
+                ] {
+                    let turn = cross(at.arm_to(body, place), run.along);
+                    emit(Gradient {
+                        row: 0,
+                        body,
+                        to: [run.along[0] * sign, run.along[1] * sign, turn * sign],
+                    });
+                }
             }
-        }
+        };
+        let room = dot(axis, axis) - (k.first + k.second).square();
+        self.wheels.with_room(at, room, by_pins, &mut emit);
     }
 
     fn load_unit(&self) -> Unit {

@@ -33,20 +33,39 @@ pub struct Gears {
 }
 
 impl Gears {
-    /// The pitch point; `None` for gears not pinned to their arm, or on one axis.
-    pub fn pitch_point<T: Number>(&self, at: &Situation<'_, T>) -> Option<[T; 2]> {
-        let k = &at.geometry.gears[self.constants as usize];
-        let (a, axis) = self.axes(at)?;
-        let teeth = k.first + k.second;
-        let part = k.first / teeth;
-        (teeth.value() != 0.0).then(|| [a[0] + axis[0] * part, a[1] + axis[1] * part])
-    }
-
-    /// Centre of the first gear and the way from there to that of the second; `None` on one axis.
+    /// Centre of the first wheel and the way from there to that of the second; `None` for wheels not pinned to their arm.
     pub(super) fn axes<T: Number>(&self, at: &Situation<'_, T>) -> Option<([T; 2], [T; 2])> {
         let [a, b] = self.pins?.map(|pin| at.place(pin));
-        let axis = sub(b, a);
-        (dot(axis, axis).value() > 0.0).then_some((a, axis))
+        Some((a, sub(b, a)))
+    }
+
+    /// Hands out derivatives found from the pins where `room` is positive, and those to the angles alone elsewhere: every
+    /// part of a number as it asks.
+    pub(super) fn with_room<T: Number>(
+        &self,
+        at: &Situation<'_, T>,
+        room: T,
+        by_pins: impl FnOnce(&mut dyn FnMut(Gradient<T>)),
+        mut emit: impl FnMut(Gradient<T>),
+    ) {
+        let none = -room;
+        match none.nonnegative() {
+            Some(true) => {
+                self.gradients(at, emit);
+            }
+            Some(false) => by_pins(&mut emit),
+            None => {
+                let zero = T::zero();
+                by_pins(&mut |g| {
+                    let to = g.to.map(|x| none.choose(zero, x));
+                    emit(Gradient { to, ..g });
+                });
+                self.gradients(at, |g| {
+                    let to = g.to.map(|x| none.choose(x, zero));
+                    emit(Gradient { to, ..g });
+                });
+            }
+        }
     }
 }
 
@@ -133,21 +152,29 @@ impl Joint for Gears {
     }
 
     fn load_gradients<T: Number>(&self, at: &Situation<'_, T>, mut emit: impl FnMut(Gradient<T>)) {
-        let (Some(point), Some((_, axis))) = (self.pitch_point(at), self.axes(at)) else {
+        let Some((a, axis)) = self.axes(at) else {
             self.gradients(at, emit);
             return;
         };
-        // Equal speeds, positive to the left of the line from the first axis to the second.
-        let along = T::one() / dot(axis, axis).sqrt();
-        let tangent = left([axis[0] * along, axis[1] * along]);
-        for (body, sign) in [(self.a, 1.0), (self.b, -1.0)] {
-            let turn = cross(at.arm_to(body, point), tangent);
-            emit(Gradient {
-                row: 0,
-                body,
-                to: [tangent[0] * sign, tangent[1] * sign, turn * sign],
-            });
-        }
+        let k = &at.geometry.gears[self.constants as usize];
+        let (teeth, square) = (k.first + k.second, dot(axis, axis));
+        let by_pins = |emit: &mut dyn FnMut(Gradient<T>)| {
+            let part = k.first / teeth;
+            let point = [a[0] + axis[0] * part, a[1] + axis[1] * part];
+            // Equal speeds, positive to the left of the line from the first axis to the second.
+            let along = T::one() / square.sqrt();
+            let tangent = left([axis[0] * along, axis[1] * along]);
+            for (body, sign) in [(self.a, 1.0), (self.b, -1.0)] {
+                let turn = cross(at.arm_to(body, point), tangent);
+                emit(Gradient {
+                    row: 0,
+                    body,
+                    to: [tangent[0] * sign, tangent[1] * sign, turn * sign],
+                });
+            }
+        };
+        // None on one axis, and none for wheels that turn alike.
+        self.with_room(at, teeth.abs().min(square), by_pins, &mut emit);
     }
 
     fn load_unit(&self) -> Unit {
