@@ -196,7 +196,7 @@ fn everything_that_acts() {
     else {
         panic!()
     };
-    assert_eq!(model.links[hinge.link.index()].name, "rod");
+    assert_eq!(model.links[hinge.link.index()].name, "piston");
     near(at[1], std::f64::consts::TAU);
     near(values[1], 5e6);
     near(period.unwrap(), 2.0 * std::f64::consts::TAU);

@@ -4,7 +4,8 @@ use kempe_dynamics::Acting;
 use kempe_dynamics::acting::GRAVITY;
 use kempe_mechanism::Design;
 use kempe_model::{
-    Center, Diagnostic, DriveId, Friction, FrictionAt, Model, Study, StudyKind, value,
+    Center, Diagnostic, DriveId, FRAME, Friction, FrictionAt, Load, LoadKind, Model, Study,
+    StudyKind, value,
 };
 use kempe_number::text::significant;
 use kempe_units::Dimension;
@@ -80,35 +81,40 @@ pub(crate) fn assumptions(model: &Model, units: &Units) -> Vec<String> {
 fn acting(model: &Model) -> Vec<String> {
     let actions = &model.actions;
     let mut diagnostics = Vec::new();
-    let of_drive =
-        |drive: DriveId| (model.drives.get(drive.index())).map_or("", |d| d.name.as_str());
-    let mut add = |what: &str, names: Vec<&str>| {
+    let of_drive = |drive: DriveId| {
+        (model.drives.get(drive.index())).map_or(String::new(), |d| d.name.clone())
+    };
+    let mut add = |what: &str, names: Vec<String>| {
         if !names.is_empty() {
             diagnostics.push(format!("{what}: {}", names.join(", ")));
         }
     };
     add(
         "loads",
-        actions.loads.iter().map(|l| l.name.as_str()).collect(),
+        actions
+            .loads
+            .iter()
+            .map(|load| acting_on(model, load))
+            .collect(),
     );
     add(
         "point masses",
-        actions.masses.iter().map(|m| m.name.as_str()).collect(),
+        actions.masses.iter().map(|m| m.name.clone()).collect(),
     );
     add(
         "springs",
-        actions.springs.iter().map(|s| s.name.as_str()).collect(),
+        actions.springs.iter().map(|s| s.name.clone()).collect(),
     );
     add(
         "dampers",
-        actions.dampers.iter().map(|d| d.name.as_str()).collect(),
+        actions.dampers.iter().map(|d| d.name.clone()).collect(),
     );
     add(
         "friction",
         actions
             .friction
             .iter()
-            .map(|f| friction_name(model, f))
+            .map(|f| friction_name(model, f).to_owned())
             .collect(),
     );
     add(
@@ -130,6 +136,21 @@ fn acting(model: &Model) -> Vec<String> {
         );
     }
     diagnostics
+}
+
+/// A load, with the link on which it acts where its point is one of several that move.
+fn acting_on(model: &Model, load: &Load) -> String {
+    let LoadKind::Force { at, .. } = &load.kind else {
+        return load.name.clone();
+    };
+    let point = model.points.get(at.point.index());
+    let moving = point.map_or(0, |p| p.links.iter().filter(|l| **l != FRAME).count());
+    match (moving > 1, point, model.links.get(at.link.index())) {
+        (true, Some(point), Some(link)) => {
+            format!("{} (at {} on {})", load.name, point.name, link.name)
+        }
+        _ => load.name.clone(),
+    }
 }
 
 /// What a friction is said of, as in the file.

@@ -5,7 +5,7 @@
 )]
 
 use kempe_model::{Diagnostic, Model};
-use kempe_study::{Figure, Silent, StudyResult, encode, run};
+use kempe_study::{Figure, Silent, StudyResult, check, encode, run};
 
 /// A crank-rocker of steel bars, upright, with a spring to the frame.
 const FOUR_BAR: &str = r#"
@@ -621,4 +621,66 @@ work = \"mean(power(motor))\"
     );
     // What the peak does is seen in the drive.
     assert!(high - low > 1.0, "{low} {high}");
+}
+
+/// A gas force at a wrist pin presses the piston, whatever the order of the links; at other pins of several links the file is
+/// asked which is meant.
+#[test]
+fn a_load_at_a_pin_acts_on_the_slider_or_the_file_is_asked() {
+    let text = |links: &str, load: &str| {
+        format!(
+            "units = {{ length = \"mm\", angle = \"deg\" }}\n[links]\nframe = {{ O = [0, 0], G = [0, 300] }}\n\
+             crank = {{ O-A = 50 }}\n{links}\n[joints]\nbore = {{ slider = \"piston\", at = \"B\", on = \"O -> G\" }}\n\
+             [drives]\nmotor = {{ turns = \"crank\", from = 30, to = 90, speed = \"60 rpm\" }}\n\
+             [assembly]\nB = {{ near = [0, 200] }}\n[loads]\ngas = {{ force = [0, \"-10 kN\"], {load} }}\n\
+             [studies.f]\nkind = \"forces\"\ncolumns = [\"reaction(B, rod)\"]\n"
+        )
+    };
+    let rod_first = "rod = { A-B = 150 }\npiston = { B = [0, 0] }";
+    let piston_first = "piston = { B = [0, 0] }\nrod = { A-B = 150 }";
+    let told = |text: &str| {
+        let read = Model::from_toml(text, "pin", &mut |_| Err("no files".into())).unwrap();
+        let codes: Vec<&str> = read.warnings.iter().map(|d| d.code).collect();
+        let result = run(&read.model, &read.model.studies[0], &mut Silent).unwrap();
+        let report = check(&read.model);
+        (
+            codes,
+            result.table.columns[2].values.clone(),
+            report.assumptions.join("\n"),
+        )
+    };
+    let (codes, named, _) = told(&text(rod_first, "at = \"B\", on = \"piston\""));
+    assert!(codes.is_empty(), "{codes:?}");
+    // The rod carries the gas force over its slope.
+    assert!(named.iter().all(|f| *f > 9_999.9), "{named:?}");
+    for links in [rod_first, piston_first] {
+        let (codes, values, assumed) = told(&text(links, "at = \"B\""));
+        assert!(codes.is_empty(), "{codes:?}");
+        assert_eq!(values, named);
+        assert!(assumed.contains("gas (at B on piston)"), "{assumed}");
+    }
+    // On the rod itself the pin carries what presses the rod against the bore alone.
+    let (_, on_rod, _) = told(&text(rod_first, "at = \"B\", on = \"rod\""));
+    assert!(on_rod.iter().all(|f| *f < 5_000.0), "{on_rod:?}");
+    let (codes, values, assumed) = told(&text(rod_first, "at = \"A\""));
+    assert_eq!(codes, ["link-not-named"]);
+    assert_eq!(
+        values,
+        told(&text(rod_first, "at = \"A\", on = \"crank\"")).1
+    );
+    assert!(assumed.contains("gas (at A on crank)"), "{assumed}");
+    // Links that are welded together are one.
+    let welded = text(
+        &format!("{rod_first}\nplate = {{ O = [0, 0], A = [50, 0] }}"),
+        "at = \"A\"",
+    );
+    let welded = welded
+        .replace(
+            "[drives]",
+            "fast = { weld = [\"crank\", \"plate\"], at = \"O\" }\n[drives]",
+        )
+        .replace("rod = { A-B", "rod = { E-B")
+        .replace("crank = { O-A = 50 }", "crank = { O-A = 50, E = [50, 0] }");
+    let (codes, ..) = told(&welded);
+    assert!(codes.is_empty(), "{codes:?}");
 }

@@ -13,7 +13,8 @@
 //! table goes by the measure `over`; its columns are the first and second, or those that `argument` and `value` name; their
 //! heads may hold units; `factor` turns its values into forces. With `period` it repeats.
 //!
-//! A force acts on the link `on`; without it, on the first-named moving link that carries the point.
+//! A force acts on the link `on`; without it on the slider whose pin the point is, or else on the first-named moving link that
+//! carries the point, with a warning where there are several.
 
 use kempe_units::{Builtin, Dimension, Expr, Issue, check, check_as, parse};
 
@@ -113,7 +114,7 @@ fn force<'d>(cx: &mut Context<'_>, entry: &Entry<'d>, node: &'d Node) -> Option<
     let (point, at) = entry.point(cx, "at")?;
     let on = match entry.has("on") {
         true => entry.link(cx, "on")?,
-        false => moving_carrier(cx, point)?,
+        false => moving_carrier(cx, point, &entry.place, entry.span)?,
     };
     let at = on_link(cx, point, on, at)?;
     on_the_frame(cx, on, &entry.place, entry.span);

@@ -135,7 +135,7 @@ fn read_mass(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<PointMass> {
             let point = cx.point_text(text)?;
             let on = match entry.has("on") {
                 true => entry.link(cx, "on"),
-                false => moving_carrier(cx, point),
+                false => moving_carrier(cx, point, &entry.place, &key.span),
             }?;
             on_link(cx, point, on, at)?;
             let place = cx
