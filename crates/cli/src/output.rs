@@ -75,6 +75,13 @@ impl Output {
                 diagnostic.help("give another name: --out results"),
             ));
         }
+        if fs::metadata(folder).is_err() && fs::symlink_metadata(folder).is_ok() {
+            let message = format!("{} is a link that leads nowhere", folder.display());
+            let diagnostic = Diagnostic::error("cannot-write", message);
+            return Err(Box::new(
+                diagnostic.help("remove it, or give another name: --out results"),
+            ));
+        }
         let missing: Vec<&Path> = (folder.ancestors())
             .take_while(|a| !a.as_os_str().is_empty() && fs::symlink_metadata(a).is_err())
             .collect();
@@ -131,6 +138,11 @@ impl Output {
     ) -> Result<(), Box<Diagnostic>> {
         let mut names = names.into_iter();
         names.try_for_each(|name| stand::may_write(&self.folder, name, &self.inputs, &self.record))
+    }
+
+    /// The files of the folder that Kempe wrote and somebody changed.
+    pub fn changed(&self) -> impl Iterator<Item = &str> {
+        self.record.changed(&self.folder)
     }
 
     /// Writes a file under a hidden name.
@@ -278,7 +290,6 @@ pub fn create(path: &Path, bytes: &[u8]) -> Result<(), Box<Diagnostic>> {
         io::ErrorKind::AlreadyExists => stand::already_there(path),
         _ => cannot_write(path, &error),
     };
-    let _lock = Lock::take(&folder, FILE_WAITS).map_err(|taken| not_had(&folder, taken))?;
     let (hidden, mut file) = hidden::create(&folder).map_err(failed)?;
     let written = file
         .write_all(bytes)
@@ -321,8 +332,16 @@ fn sync_folder(folder: &Path) {
 }
 
 fn cannot_write(path: &Path, error: &io::Error) -> Box<Diagnostic> {
+    use io::ErrorKind::{FileTooLarge, QuotaExceeded, StorageFull};
     let message = format!("{} cannot be written: {}", path.display(), plain(error));
-    Box::new(Diagnostic::error("cannot-write", message).note("earlier results are as they were"))
+    let diagnostic =
+        Diagnostic::error("cannot-write", message).note("earlier results are as they were");
+    Box::new(match error.kind() {
+        StorageFull | QuotaExceeded | FileTooLarge => {
+            diagnostic.help("make room on the disk, or write to another place")
+        }
+        _ => diagnostic.help("write to another place, or to one where you may write"),
+    })
 }
 
 /// Why a folder is not to be had.

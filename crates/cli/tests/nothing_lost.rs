@@ -174,6 +174,19 @@ fn only_what_kempe_wrote_and_nobody_changed_is_replaced() {
     assert_eq!(output.status.code(), Some(2));
     assert!(said(&output).contains("was changed since Kempe wrote it"));
     assert!(contents(&at.join("out")) == before);
+    // A picture that was touched, and what an earlier stopped run left, before anything is computed.
+    fs::write(at.join("long.toml"), long()).expect("written");
+    for name in ["turn-swing.svg", "turn.partial.csv"] {
+        let path = at.join("out").join(name);
+        fs::remove_file(at.join("out/turn.csv")).expect("removed");
+        fs::write(&path, "mine").expect("written");
+        let run = start(at, &["run", "long.toml", "--out", "out"]);
+        let output = ends(run, Duration::from_secs(5));
+        assert!(said(&output).contains(name), "{}", said(&output));
+        fs::remove_file(&path).expect("removed");
+        let output = kempe(at, &["run", "m.toml", "--out", "out"]);
+        assert!(output.status.success(), "{}", said(&output));
+    }
     // Pictures go the same way.
     fs::write(at.join("mine.svg"), "<svg/>").expect("written");
     refused(at, &["draw", "m.toml", "-o", "mine.svg"], &["file-exists"]);
@@ -219,6 +232,13 @@ fn places_that_are_none_are_refused_before_anything_is_computed() {
             "{arguments:?}: {}",
             said(&output)
         );
+    }
+    #[cfg(unix)]
+    {
+        std::os::unix::fs::symlink(at.join("nowhere"), at.join("dangling")).expect("linked");
+        let run = ["run", "long.toml", "--out", "dangling"];
+        refused(at, &run, &["a link that leads nowhere"]);
+        assert!(!at.join("nowhere").exists());
     }
     assert!(!at.join("no").exists());
     assert_eq!(fs::read(at.join("file")).expect("a file"), b"mine");
@@ -717,6 +737,7 @@ fn rows_are_bounded_by_memory_before_anything_is_computed() {
         for arguments in [
             &["run", "big.toml", "--out", "out"][..],
             &["draw", "big.toml", "-o", "a.gif"],
+            &["check", "big.toml"],
         ] {
             refused_briefly(
                 at,

@@ -133,7 +133,14 @@ fn folder(
     };
     let output = Output::folder(folder, &loaded.inputs)?;
     let names = known_names(&loaded.checked.model, studies);
-    output.may_write(names.iter().map(String::as_str))?;
+    let partial: Vec<String> = names.iter().map(|n| names::of_run(n, true)).collect();
+    // What the other pictures are called, the run alone tells; those that somebody touched are looked at before.
+    let touched = output.changed().filter(|name| {
+        let mut of_study = studies.iter();
+        of_study.any(|s| name.starts_with(&s.name) && name.ends_with(".svg"))
+    });
+    let known = names.iter().chain(&partial).map(String::as_str);
+    output.may_write(known.chain(touched))?;
     Ok(Some(output))
 }
 

@@ -127,8 +127,15 @@ fn is_at(_: &File, _: &Path) -> bool {
     true
 }
 
+/// What Linux answers where a network's file system has no locks.
+#[cfg(target_os = "linux")]
+const NO_LOCKS: Option<i32> = Some(37);
+#[cfg(not(target_os = "linux"))]
+const NO_LOCKS: Option<i32> = None;
+
 fn without_locks(error: &io::Error) -> bool {
-    error.kind() == io::ErrorKind::Unsupported
+    let number = error.raw_os_error();
+    error.kind() == io::ErrorKind::Unsupported || (number.is_some() && number == NO_LOCKS)
 }
 
 /// Who holds a lock, from its file.

@@ -3,13 +3,13 @@
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::io::{self, Write as _};
+use std::io::{self, Read as _, Write as _};
 use std::path::{Path, PathBuf};
 
 use serde_json::{Map, Value, json};
 
 use super::hidden;
-use crate::fingerprint::fnv1a64;
+use crate::fingerprint::{self, fnv1a64};
 use crate::read::{Unread, read_plain};
 
 /// The file with the list.
@@ -20,6 +20,9 @@ const ABOUT: &str = "files that Kempe wrote in this folder; it replaces these al
 
 /// The largest list that is read, bytes.
 const MOST_BYTES: usize = 16 << 20;
+
+/// Bytes that are looked at together.
+const BLOCK: usize = 1 << 16;
 
 /// What a file holds.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -68,8 +71,25 @@ impl Mark {
     /// Whether a file holds what the mark says.
     pub fn is_of(&self, path: &Path) -> bool {
         let length = fs::symlink_metadata(path).map(|m| m.len());
-        length.is_ok_and(|l| l == self.bytes)
-            && fs::read(path).is_ok_and(|bytes| Self::of(&bytes) == *self)
+        length.is_ok_and(|l| l == self.bytes) && Self::of_file(path).is_ok_and(|mark| mark == *self)
+    }
+
+    /// The mark of a file, which may be larger than what there is room for.
+    fn of_file(path: &Path) -> io::Result<Self> {
+        let mut file = fs::File::open(path)?;
+        let mut block = vec![0; BLOCK];
+        let mut mark = Self {
+            bytes: 0,
+            fnv1a64: fingerprint::NOTHING,
+        };
+        loop {
+            let read = file.read(&mut block)?;
+            let Some(bytes) = block.get(..read).filter(|b| !b.is_empty()) else {
+                return Ok(mark);
+            };
+            mark.bytes += read as u64;
+            mark.fnv1a64 = fingerprint::continued(mark.fnv1a64, bytes);
+        }
     }
 
     fn json(&self) -> Value {
@@ -171,6 +191,15 @@ impl Record {
             Some(mark) if mark.is_of(&folder.join(name)) => Owner::Kempe,
             Some(_) => Owner::Changed,
         }
+    }
+
+    /// The files that somebody changed since Kempe wrote them.
+    pub fn changed<'r>(&'r self, folder: &'r Path) -> impl Iterator<Item = &'r str> {
+        let names = self.files.keys().map(String::as_str);
+        names.filter(move |name| {
+            fs::symlink_metadata(folder.join(name)).is_ok()
+                && self.owner(folder, name) == Owner::Changed
+        })
     }
 
     /// All that was about to appear has appeared.
