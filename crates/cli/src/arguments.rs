@@ -12,8 +12,8 @@ use clap::{Args, Parser, Subcommand};
     propagate_version = true,
     after_help = "Start here:\n  kempe new my-linkage.toml\n  kempe run my-linkage.toml --out results\n\n\
                   Exit codes:\n  0    all is well\n  1    done, and something was found: a warning, a miss of verify, a gap in a proof\n  \
-                  2    the command line or the model file is wrong, or a file cannot be read or written\n  \
-                  3    the mechanism cannot be assembled or moved as asked, or a warning with --strict\n  130  stopped by Ctrl-C: finished rows and studies are kept, a check tells what it found"
+                  2    the command line or the model file is wrong, or something cannot be read or written\n  \
+                  3    the mechanism cannot be assembled or moved as asked, or a warning with --strict\n  130  stopped by Ctrl-C, SIGTERM or SIGHUP: finished rows are kept as a partial result, a check tells what it found"
 )]
 pub struct Arguments {
     /// What to do.
@@ -56,6 +56,9 @@ pub struct ModelFile {
     /// Take every warning for an error: exit code 3, and nothing is written
     #[arg(long)]
     pub strict: bool,
+    /// Read tables from anywhere, not only beside and below the file
+    #[arg(long)]
+    pub allow_outside: bool,
 }
 
 fn name_and_value(text: &str) -> Result<(String, String), String> {
@@ -73,7 +76,7 @@ fn name_and_value(text: &str) -> Result<(String, String), String> {
     after_help = "Examples:\n  kempe check hitch.toml\n  kempe check hitch.toml --set k=450mm --json\n  kempe check hitch.toml --certify\n\n\
                         Exit codes: 0 nothing to say, 1 warnings or a gap in the proof (a change point is one),\n\
                         2 bad file, 3 the mechanism cannot move as asked,\n\
-                        130 stopped by Ctrl-C (what was found until then is told)."
+                        130 stopped by Ctrl-C, SIGTERM or SIGHUP (what was found until then is told)."
 )]
 pub struct Check {
     #[command(flatten)]
@@ -110,8 +113,11 @@ pub struct Sensitivities {
                         kempe run hitch.toml --json --quiet | jq .studies[0].values\n\n\
                         Writes STUDY.csv, STUDY.parquet, STUDY-*.svg and report.html. All appear at the end, each whole.\n\
                         Where a study cannot run (exit code 3) or a file cannot be written, none does, and the folder\n\
-                        stays as it was. Ctrl-C keeps finished rows; the report names the studies that did not run.\n\
-                        Earlier files of studies that are not asked for stay."
+                        stays as it was. Earlier files of studies that are not asked for stay.\n\n\
+                        Nothing is replaced but what Kempe wrote and nobody changed; .kempe-files.json in the folder\n\
+                        lists that. One run at a time writes to a folder.\n\n\
+                        Ctrl-C, SIGTERM and SIGHUP keep the finished rows beside an earlier result: STUDY.partial.csv,\n\
+                        report.partial.html and so on, which say inside how far the run came."
 )]
 pub struct Run {
     #[command(flatten)]
@@ -135,7 +141,9 @@ pub struct Run {
 #[command(
     after_help = "Examples:\n  kempe draw crank.toml -o crank.svg\n  kempe draw crank.toml --at motor=30deg -o pose.dxf\n  \
                         kempe draw crank.toml -o crank.gif --width 800\n\n\
-                        GIF and APNG move through the first study of the file. SVG, PNG and DXF show one pose."
+                        GIF and APNG move through the first study of the file. SVG, PNG and DXF show one pose.\n\
+                        Only a picture that Kempe wrote and nobody changed is replaced; .kempe-files.json beside it\n\
+                        lists those."
 )]
 pub struct Draw {
     #[command(flatten)]
@@ -206,6 +214,9 @@ pub struct Verify {
     /// Case files, or folders of them
     #[arg(value_name = "PATH")]
     pub paths: Vec<PathBuf>,
+    /// Read tables from anywhere, not only beside and below the files that name them
+    #[arg(long)]
+    pub allow_outside: bool,
     /// Print every comparison, not only one line a case and the misses
     #[arg(long)]
     pub all: bool,

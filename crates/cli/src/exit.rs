@@ -13,19 +13,24 @@ pub enum Exit {
     Usage,
     /// The mechanism cannot be solved.
     CannotSolve,
-    /// Stopped by Ctrl-C; what was finished is kept.
+    /// Stopped by Ctrl-C, SIGTERM or SIGHUP; what was finished is kept.
     Interrupted,
 }
 
 impl Exit {
     /// The process's exit code.
     pub fn code(self) -> ExitCode {
-        ExitCode::from(match self {
+        ExitCode::from(self.number())
+    }
+
+    /// The code as a number.
+    pub fn number(self) -> u8 {
+        match self {
             Self::Ok => 0,
             Self::Finding => 1,
             Self::Usage => 2,
             Self::CannotSolve => 3,
             Self::Interrupted => 130,
-        })
+        }
     }
 }

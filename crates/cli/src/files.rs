@@ -1,14 +1,15 @@
-//! Reading model files and the files they name.
+//! Reading model files.
 
 use std::fs;
-use std::io::{self, Read as _};
-use std::path::Path;
+use std::io;
+use std::path::{Path, PathBuf};
 
 use kempe_model::{Checked, Diagnostic, MAX_FILE_BYTES, Model};
 use kempe_units::nearest;
 
 use crate::arguments::ModelFile;
 use crate::exit::Exit;
+use crate::read::{Tables, Unread, read_plain};
 use crate::say::Speaker;
 
 /// A model with the text it was read from.
@@ -19,16 +20,18 @@ pub struct Loaded {
     pub text: String,
     /// The file's name as given.
     pub name: String,
+    /// All files that the model was read from: its own, and its tables.
+    pub inputs: Vec<PathBuf>,
 }
 
 /// Reads a model file, or says why not.
 pub fn load(model: &ModelFile, speaker: &mut Speaker) -> Result<Loaded, Exit> {
     let name = model.file.display().to_string();
-    let bytes = match read_bytes(&model.file) {
+    let bytes = match read_plain(&model.file, MAX_FILE_BYTES) {
         Ok(bytes) => bytes,
-        Err(diagnostic) => {
+        Err(unread) => {
             speaker.name_file(&name, "");
-            speaker.tell(&[*diagnostic]);
+            speaker.tell(&[unreadable(&model.file, &unread)]);
             return Err(Exit::Usage);
         }
     };
@@ -42,19 +45,18 @@ pub fn load(model: &ModelFile, speaker: &mut Speaker) -> Result<Loaded, Exit> {
         speaker.tell(&[diagnostic]);
         return Err(Exit::Usage);
     }
-    let folder = model.file.parent().unwrap_or(Path::new("")).to_owned();
-    match Model::from_bytes(
-        &bytes,
-        &title,
-        &mut |name| read_table(&folder, name),
-        &model.set,
-    ) {
+    let folder = model.file.parent().unwrap_or(Path::new(""));
+    let mut tables = Tables::of(folder, model.allow_outside);
+    match Model::from_bytes(&bytes, &title, &mut |name| tables.read(name), &model.set) {
         Ok(checked) => {
             speaker.tell(&checked.warnings);
+            let mut inputs = tables.read;
+            inputs.push(model.file.clone());
             Ok(Loaded {
                 checked,
                 text,
                 name,
+                inputs,
             })
         }
         Err(found) => {
@@ -74,53 +76,35 @@ fn set_twice(set: &[(String, String)]) -> Option<Diagnostic> {
     Some(Diagnostic::error("over-specified", message).help("leave one of them out"))
 }
 
-/// The bytes of a file that is not too large.
-fn read_bytes(path: &Path) -> Result<Vec<u8>, Box<Diagnostic>> {
-    let refuse = |error: io::Error| Box::new(unreadable(path, &error));
-    let file = fs::File::open(path).map_err(refuse)?;
-    // devices have no size: what is read is what counts
-    let mut bytes = Vec::new();
-    file.take(MAX_FILE_BYTES as u64 + 1)
-        .read_to_end(&mut bytes)
-        .map_err(refuse)?;
-    if bytes.len() > MAX_FILE_BYTES {
-        let message = format!("{} has more than {MAX_FILE_BYTES} bytes", path.display());
-        return Err(Box::new(
-            Diagnostic::error("too-large", message).help("no more of a file is read"),
-        ));
-    }
-    Ok(bytes)
-}
-
-/// The text of a table that a model file names, from the file's folder.
-pub fn read_table(folder: &Path, name: &str) -> Result<String, String> {
-    let path = folder.join(name);
-    // A pipe may never say anything.
-    if path.exists() && !path.is_file() && !path.is_dir() {
-        return Err(format!("{} is not a plain file", path.display()));
-    }
-    let bytes = read_bytes(&path).map_err(|diagnostic| diagnostic.message)?;
-    String::from_utf8(bytes).map_err(|_| format!("{} is not UTF-8 text", path.display()))
-}
-
 /// Why a file cannot be read; a missing one with the near name, if there is one.
-fn unreadable(path: &Path, error: &io::Error) -> Diagnostic {
+fn unreadable(path: &Path, unread: &Unread) -> Diagnostic {
     let shown = path.display();
-    if error.kind() == io::ErrorKind::NotFound {
-        let diagnostic = Diagnostic::error("no-file", format!("there is no file {shown}"));
-        return match near_file(path) {
-            Some(near) => diagnostic.help(format!("did you mean {near}?")),
-            None => diagnostic.help("kempe new writes a file to start from"),
-        };
+    match unread {
+        Unread::Failed(error) if error.kind() == io::ErrorKind::NotFound => {
+            let diagnostic = Diagnostic::error("no-file", format!("there is no file {shown}"));
+            match near_file(path) {
+                Some(near) => diagnostic.help(format!("did you mean {near}?")),
+                None => diagnostic.help("kempe new writes a file to start from"),
+            }
+        }
+        Unread::Failed(_) => {
+            let message = format!("{shown} cannot be read: {}", unread.reason());
+            Diagnostic::error("no-file", message)
+        }
+        Unread::NotPlain(what) => {
+            let diagnostic = Diagnostic::error("no-file", format!("{shown} is {what}"));
+            match path.is_dir() {
+                true => diagnostic.help("name a model file in it"),
+                false => diagnostic.help("write the model to a plain file and name that"),
+            }
+        }
+        Unread::TooLarge(limit) => {
+            let message = format!("{shown} has more than {} MiB", limit >> 20);
+            Diagnostic::error("too-large", message)
+                .note("no more of a model file is read")
+                .help("put long lists of numbers into tables beside it: law = { table = \"measured.csv\" }")
+        }
     }
-    if path.is_dir() {
-        return Diagnostic::error("no-file", format!("{shown} is a folder"))
-            .help("name a model file in it");
-    }
-    Diagnostic::error(
-        "no-file",
-        format!("{shown} cannot be read: {}", plain(error)),
-    )
 }
 
 /// A file in the same folder whose name is near.
@@ -139,13 +123,4 @@ fn near_file(path: &Path) -> Option<String> {
         .map(String::as_str)
         .or_else(|| nearest(wanted, names.iter().map(String::as_str)))?;
     Some(path.with_file_name(near).display().to_string())
-}
-
-/// An error of the operating system without its number.
-pub fn plain(error: &io::Error) -> String {
-    let text = error.to_string();
-    text.split(" (os error")
-        .next()
-        .unwrap_or(&text)
-        .to_lowercase()
 }

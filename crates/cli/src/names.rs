@@ -1,4 +1,4 @@
-//! What the pictures of studies are called, so that no two files of a model have one name.
+//! What the files of a run are called, so that no two files of a model have one name.
 
 use kempe_model::Model;
 
@@ -20,6 +20,14 @@ pub fn picture(model: &Model, study: &str, picture: &str) -> String {
         false => '-',
     };
     format!("{study}{mark}{picture}.svg")
+}
+
+/// The name of a file of a run: of one that was stopped, `turn.csv` is `turn.partial.csv`.
+pub fn of_run(name: &str, partial: bool) -> String {
+    match name.rsplit_once('.') {
+        Some((stem, ending)) if partial => format!("{stem}.partial.{ending}"),
+        _ => name.to_owned(),
+    }
 }
 
 #[cfg(test)]

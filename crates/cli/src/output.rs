@@ -1,28 +1,50 @@
-//! Writing results so that each file appears whole or not at all, and a failed run leaves an earlier result as it was.
+//! Writing results so that nothing is lost: each file appears whole or not at all, a failed run leaves an earlier result as it
+//! was, and nothing is replaced but what Kempe itself wrote.
 //!
-//! All files of a run are first written beside their places under other names and forced to the disk; only when every
-//! one is there are they renamed, one after the other, the last one being the report that points to the others. What
-//! stood there before keeps a second name until all are renamed, and is put back where one of them fails.
+//! A folder has a lock (`lock.rs`) and a list of Kempe's own files in it (`record.rs`). All files of a run are first written
+//! under hidden names (`hidden.rs`) and forced to the disk; only when every one is there does the list say what is about to
+//! appear, and they are renamed, one after the other. What stood there before keeps a second name until all are renamed; it is
+//! put back where one of them fails, and by the next run where the process is killed in between.
+
+mod hidden;
+mod lock;
+mod record;
+mod stand;
 
 use std::fs::{self, File};
-use std::io::{self, Write};
+use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// Unfinished files of this age are litter: whoever wrote them was ended. A batch takes seconds.
-const LITTER_AGE: Duration = Duration::from_secs(3600);
+use kempe_model::Diagnostic;
 
-/// Endings of the files of a run.
-const ENDINGS: &[&str] = &["csv", "parquet", "svg", "html"];
+use crate::read::plain;
+use lock::{Lock, Taken};
+use record::{Appearing, Mark, RECORD, Record};
 
-/// Files that are about to appear.
-pub struct Batch {
+pub use stand::{Stands, may_replace};
+
+/// How long a run waits for a folder where another one writes: no longer than that one would take for a single file.
+const RUN_WAITS: Duration = Duration::from_secs(1);
+
+/// How long a single file waits.
+const FILE_WAITS: Duration = Duration::from_secs(10);
+
+/// A folder that a run writes to, and no other run as long as it does.
+pub struct Output {
+    folder: PathBuf,
+    inputs: Vec<PathBuf>,
+    record: Record,
     waiting: Vec<Waiting>,
-    made: Option<PathBuf>,
+    /// Folders that were made for this run, the outermost first.
+    made: Vec<PathBuf>,
+    lock: Option<Lock>,
 }
 
 /// A file that is about to appear.
 struct Waiting {
+    name: String,
+    mark: Mark,
     /// Where it is.
     hidden: PathBuf,
     /// Where it will be.
@@ -31,113 +53,199 @@ struct Waiting {
     kept: Option<PathBuf>,
 }
 
-/// Why files did not appear.
-#[derive(Debug)]
-pub struct Unpublished {
-    /// What went wrong.
-    pub error: io::Error,
-    /// Earlier files that could not be put back, under the names by which they are kept.
-    pub kept: Vec<PathBuf>,
-}
-
-impl From<Unpublished> for io::Error {
-    fn from(unpublished: Unpublished) -> Self {
-        unpublished.error
-    }
-}
-
-impl Batch {
-    /// Files that need no folder of their own.
-    pub fn new() -> Self {
-        Self {
-            waiting: Vec::new(),
-            made: None,
-        }
-    }
-
-    /// Files in a folder, which is made if it is not there. What earlier runs left unfinished in it is removed.
+impl Output {
+    /// A folder for the results of a run, made if it is not there. What killed runs left in it is removed.
     ///
     /// # Errors
     ///
-    /// Those of the file system.
-    pub fn in_folder(folder: &Path) -> io::Result<Self> {
-        let made = (!folder.exists()).then(|| folder.to_owned());
-        fs::create_dir_all(folder)?;
-        if made.is_none() {
-            remove_litter(folder, LITTER_AGE);
+    /// `folder-busy` where another run writes to it, `cannot-write`.
+    pub fn folder(folder: &Path, inputs: &[PathBuf]) -> Result<Self, Box<Diagnostic>> {
+        if folder.as_os_str().is_empty() {
+            let diagnostic =
+                Diagnostic::error("cannot-write", "the folder for the results has no name");
+            return Err(Box::new(diagnostic.help("name one: --out results")));
         }
-        Ok(Self {
+        if fs::metadata(folder).is_ok_and(|m| !m.is_dir()) {
+            let message = format!(
+                "{} is no folder: nothing can be put into it",
+                folder.display()
+            );
+            let diagnostic = Diagnostic::error("cannot-write", message);
+            return Err(Box::new(
+                diagnostic.help("give another name: --out results"),
+            ));
+        }
+        if fs::metadata(folder).is_err() && fs::symlink_metadata(folder).is_ok() {
+            let message = format!("{} is a link that leads nowhere", folder.display());
+            let diagnostic = Diagnostic::error("cannot-write", message);
+            return Err(Box::new(
+                diagnostic.help("remove it, or give another name: --out results"),
+            ));
+        }
+        let missing: Vec<&Path> = (folder.ancestors())
+            .take_while(|a| !a.as_os_str().is_empty() && fs::symlink_metadata(a).is_err())
+            .collect();
+        let mut made: Vec<PathBuf> = missing.into_iter().map(Path::to_owned).collect();
+        made.reverse();
+        if let Err(error) = fs::create_dir_all(folder) {
+            remove_folders(&made);
+            return Err(cannot_write(folder, &error));
+        }
+        Self::open(folder, inputs, made, RUN_WAITS)
+    }
+
+    /// The folder of a single file, which is there.
+    ///
+    /// # Errors
+    ///
+    /// As of [`folder`](Self::folder).
+    pub fn beside(path: &Path, inputs: &[PathBuf]) -> Result<Self, Box<Diagnostic>> {
+        Self::open(&folder_of(path), inputs, Vec::new(), FILE_WAITS)
+    }
+
+    fn open(
+        folder: &Path,
+        inputs: &[PathBuf],
+        made: Vec<PathBuf>,
+        patience: Duration,
+    ) -> Result<Self, Box<Diagnostic>> {
+        let mut output = Self {
+            folder: folder.to_owned(),
+            inputs: inputs.to_vec(),
+            record: Record::default(),
             waiting: Vec::new(),
             made,
-        })
+            lock: None,
+        };
+        output.lock = Some(Lock::take(folder, patience).map_err(|taken| not_had(folder, taken))?);
+        output.record = Record::read(folder).map_err(|error| unreadable_list(folder, &error))?;
+        if !output.record.appearing.is_empty() {
+            let taken_back = output.record.take_back(folder);
+            taken_back.map_err(|error| cannot_write(folder, &error))?;
+        }
+        hidden::remove_leftovers(folder);
+        Ok(output)
     }
 
-    /// Writes a file under another name in its folder.
+    /// Whether files of these names may be written, so that a refusal comes before the work.
     ///
     /// # Errors
     ///
-    /// Those of the file system, and a path that was added already.
-    pub fn add(&mut self, path: &Path, bytes: &[u8]) -> io::Result<()> {
-        if path.is_dir() {
-            return Err(io::Error::other(format!("{} is a folder", path.display())));
+    /// `own-input`, `file-exists`, `cannot-write`.
+    pub fn may_write<'n>(
+        &self,
+        names: impl IntoIterator<Item = &'n str>,
+    ) -> Result<(), Box<Diagnostic>> {
+        let mut names = names.into_iter();
+        names.try_for_each(|name| stand::may_write(&self.folder, name, &self.inputs, &self.record))
+    }
+
+    /// The files of the folder that Kempe wrote and somebody changed.
+    pub fn changed(&self) -> impl Iterator<Item = &str> {
+        self.record.changed(&self.folder)
+    }
+
+    /// Writes a file under a hidden name.
+    ///
+    /// # Errors
+    ///
+    /// As of [`may_write`](Self::may_write); `cannot-write` where two files would have one name.
+    pub fn add(&mut self, name: &str, bytes: &[u8]) -> Result<(), Box<Diagnostic>> {
+        self.may_write([name])?;
+        let path = stand::place_in(&self.folder, name);
+        let lower = name.to_lowercase();
+        // Many disks do not know capitals apart.
+        if let Some(twin) = (self.waiting.iter()).find(|w| w.name.to_lowercase() == lower) {
+            let message = format!("two results would be written to {}", path.display());
+            let diagnostic = Diagnostic::error("cannot-write", message)
+                .note(format!("the other one is called {}", twin.name));
+            return Err(Box::new(
+                diagnostic.help("give the studies or their measures other names"),
+            ));
         }
-        if self.waiting.iter().any(|w| w.path == path) {
-            return Err(io::Error::other("it would be written twice"));
-        }
-        let hidden = beside(path, "part");
-        let mut file = File::create(&hidden)?;
+        let failed = |error: io::Error| cannot_write(&path, &error);
+        let (hidden, mut file) = hidden::create(&self.folder).map_err(failed)?;
         self.waiting.push(Waiting {
+            name: name.to_owned(),
+            mark: Mark::of(bytes),
             hidden,
-            path: path.to_owned(),
+            path: path.clone(),
             kept: None,
         });
-        file.write_all(bytes)?;
-        file.sync_all()
+        (file.write_all(bytes).and_then(|()| file.sync_all())).map_err(failed)
     }
 
     /// Lets all files appear. On an error none of them does, and what was there before is put back.
     ///
     /// # Errors
     ///
-    /// Those of the file system.
-    pub fn publish(mut self) -> Result<Vec<PathBuf>, Unpublished> {
+    /// As of [`add`](Self::add).
+    pub fn publish(mut self) -> Result<Vec<PathBuf>, Box<Diagnostic>> {
+        // Somebody may have put a file there in the meantime.
+        self.may_write(self.waiting.iter().map(|w| w.name.as_str()))?;
+        for waiting in &mut self.waiting {
+            let there = fs::symlink_metadata(&waiting.path).is_ok();
+            waiting.kept = there.then(|| self.folder.join(hidden::name(hidden::REPLACED)));
+            let kept = waiting.kept.as_deref().and_then(Path::file_name);
+            let entry = Appearing {
+                mark: waiting.mark.clone(),
+                kept: kept.map(|k| k.to_string_lossy().into_owned()),
+            };
+            self.record.appearing.insert(waiting.name.clone(), entry);
+        }
+        let record = self.record.write(&self.folder);
+        record.map_err(|error| cannot_write(&self.folder.join(RECORD), &error))?;
         for index in 0..self.waiting.len() {
             if let Err(error) = self.waiting[index].appear() {
-                let appeared = self.waiting[..index].iter_mut().rev();
-                let kept = appeared.filter_map(Waiting::take_back).collect();
-                return Err(Unpublished { error, kept });
+                let path = self.waiting[index].path.clone();
+                return Err(self.taken_back(index, &path, &error));
             }
         }
-        self.made = None;
+        self.record.appeared();
+        if let Err(error) = self.record.write(&self.folder) {
+            let all = self.waiting.len();
+            return Err(self.taken_back(all, &self.folder.join(RECORD), &error));
+        }
+        self.made.clear();
         let waiting = std::mem::take(&mut self.waiting);
         for kept in waiting.iter().filter_map(|w| w.kept.as_deref()) {
             let _ = fs::remove_file(kept);
         }
-        let published: Vec<PathBuf> = waiting.into_iter().map(|w| w.path).collect();
-        if let Some(folder) = published.first().and_then(|p| p.parent()) {
-            sync_folder(folder);
+        sync_folder(&self.folder);
+        Ok(waiting.into_iter().map(|w| w.path).collect())
+    }
+
+    /// Puts back what the first files replaced, after one at `path` could not appear.
+    fn taken_back(&mut self, first: usize, path: &Path, error: &io::Error) -> Box<Diagnostic> {
+        let appeared = self.waiting[..first].iter_mut().rev();
+        let kept: Vec<String> = appeared
+            .filter_map(Waiting::take_back)
+            .map(|kept| kept.display().to_string())
+            .collect();
+        if kept.is_empty() {
+            if let Ok(mut before) = Record::read(&self.folder) {
+                before.appearing.clear();
+                let _ = before.write(&self.folder);
+            }
+            return cannot_write(path, error);
         }
-        Ok(published)
+        let message = format!("{} cannot be written: {}", path.display(), plain(error));
+        let note = "earlier results could not all be put back; they are kept as";
+        Box::new(
+            Diagnostic::error("cannot-write", message).note(format!("{note} {}", kept.join(", "))),
+        )
     }
 }
 
 impl Waiting {
     /// Takes its place; what is there keeps a second name. On an error everything is as before.
     fn appear(&mut self) -> io::Result<()> {
-        if self.path.is_dir() {
-            return Err(io::Error::other(format!(
-                "{} is a folder",
-                self.path.display()
-            )));
-        }
-        if fs::symlink_metadata(&self.path).is_ok() {
-            let kept = beside(&self.path, "old");
-            let _ = fs::remove_file(&kept);
-            // With a second name the file is never missing; where there are none, it makes room.
-            if fs::hard_link(&self.path, &kept).is_err() {
-                fs::rename(&self.path, &kept)?;
-            }
-            self.kept = Some(kept);
+        let Some(kept) = &self.kept else {
+            return appear_new(&self.hidden, &self.path);
+        };
+        // With a second name the file is never missing; where there are none, it makes room.
+        if fs::hard_link(&self.path, kept).is_err() {
+            fs::rename(&self.path, kept)?;
         }
         fs::rename(&self.hidden, &self.path).inspect_err(|_| {
             if let Some(kept) = self.kept.take() {
@@ -160,170 +268,105 @@ impl Waiting {
     }
 }
 
-/// A name of this process beside a file's own.
-fn beside(path: &Path, ending: &str) -> PathBuf {
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    path.with_file_name(format!(".{name}.{}.{ending}", std::process::id()))
-}
-
-/// Removes the unfinished files that a run left which was ended.
-fn remove_litter(folder: &Path, age: Duration) {
-    let Ok(entries) = fs::read_dir(folder) else {
-        return;
-    };
-    for entry in entries.flatten() {
-        let name = entry.file_name();
-        let unfinished = name.to_str().is_some_and(is_unfinished);
-        let changed = entry.metadata().and_then(|m| m.modified()).ok();
-        let old = changed
-            .and_then(|t| t.elapsed().ok())
-            .is_some_and(|t| t >= age);
-        if unfinished && old {
-            let _ = fs::remove_file(entry.path());
-        }
-    }
-}
-
-/// Whether a file's name is that of an unfinished file of a run: `.turn.csv.4711.part`.
-fn is_unfinished(name: &str) -> bool {
-    let inner = name.strip_prefix('.').and_then(|n| n.strip_suffix(".part"));
-    let Some((file, process)) = inner.and_then(|n| n.rsplit_once('.')) else {
-        return false;
-    };
-    let ending = Path::new(file).extension().and_then(|e| e.to_str());
-    !process.is_empty()
-        && process.chars().all(|c| c.is_ascii_digit())
-        && ending.is_some_and(|e| ENDINGS.contains(&e))
-}
-
-/// Makes renames in a folder last; not every system can.
-fn sync_folder(folder: &Path) {
-    let folder = if folder.as_os_str().is_empty() {
-        Path::new(".")
-    } else {
-        folder
-    };
-    if let Ok(folder) = File::open(folder) {
-        let _ = folder.sync_all();
-    }
-}
-
-impl Drop for Batch {
+impl Drop for Output {
     /// What did not appear is taken back.
     fn drop(&mut self) {
         for waiting in &self.waiting {
             let _ = fs::remove_file(&waiting.hidden);
         }
-        if let Some(folder) = &self.made {
-            let _ = fs::remove_dir(folder);
-        }
+        self.lock = None;
+        remove_folders(&self.made);
     }
+}
+
+/// Writes a file that must be new.
+///
+/// # Errors
+///
+/// `file-exists`, `cannot-write`.
+pub fn create(path: &Path, bytes: &[u8]) -> Result<(), Box<Diagnostic>> {
+    let folder = folder_of(path);
+    let failed = |error: io::Error| match error.kind() {
+        io::ErrorKind::AlreadyExists => stand::already_there(path),
+        _ => cannot_write(path, &error),
+    };
+    let (hidden, mut file) = hidden::create(&folder).map_err(failed)?;
+    let written = file
+        .write_all(bytes)
+        .and_then(|()| file.sync_all())
+        .and_then(|()| appear_new(&hidden, path));
+    let _ = fs::remove_file(&hidden);
+    written.map_err(failed)
+}
+
+/// Gives a file its name, which nobody has: a second name is never given to two files, where a rename would replace the first.
+fn appear_new(hidden: &Path, path: &Path) -> io::Result<()> {
+    match fs::hard_link(hidden, path) {
+        Ok(()) => fs::remove_file(hidden),
+        Err(error) if error.kind() == io::ErrorKind::AlreadyExists => Err(error),
+        // A file system without second names.
+        Err(_) if fs::symlink_metadata(path).is_err() => fs::rename(hidden, path),
+        Err(error) => Err(error),
+    }
+}
+
+/// The folder of a file.
+fn folder_of(path: &Path) -> PathBuf {
+    match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder.to_owned(),
+        _ => PathBuf::from("."),
+    }
+}
+
+fn remove_folders(made: &[PathBuf]) {
+    for folder in made.iter().rev() {
+        let _ = fs::remove_dir(folder);
+    }
+}
+
+/// Makes renames in a folder last; not every system can.
+fn sync_folder(folder: &Path) {
+    if let Ok(folder) = File::open(folder) {
+        let _ = folder.sync_all();
+    }
+}
+
+fn cannot_write(path: &Path, error: &io::Error) -> Box<Diagnostic> {
+    use io::ErrorKind::{FileTooLarge, QuotaExceeded, StorageFull};
+    let message = format!("{} cannot be written: {}", path.display(), plain(error));
+    let diagnostic =
+        Diagnostic::error("cannot-write", message).note("earlier results are as they were");
+    Box::new(match error.kind() {
+        StorageFull | QuotaExceeded | FileTooLarge => {
+            diagnostic.help("make room on the disk, or write to another place")
+        }
+        _ => diagnostic.help("write to another place, or to one where you may write"),
+    })
+}
+
+/// Why a folder is not to be had.
+fn not_had(folder: &Path, taken: Taken) -> Box<Diagnostic> {
+    match taken {
+        Taken::By(who) => {
+            let message = format!("another run writes to {}: {who}", folder.display());
+            Box::new(
+                Diagnostic::error("folder-busy", message)
+                    .help("wait until it is done, or write to another folder"),
+            )
+        }
+        Taken::Failed(error) => cannot_write(folder, &error),
+    }
+}
+
+fn unreadable_list(folder: &Path, error: &io::Error) -> Box<Diagnostic> {
+    let path = folder.join(RECORD);
+    let message = format!("{} cannot be read: {}", path.display(), plain(error));
+    Box::new(
+        Diagnostic::error("cannot-write", message)
+            .note("it lists the files of the folder that Kempe wrote and may replace")
+            .help("move it away, or write to another folder"),
+    )
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn names(folder: &Path) -> Vec<String> {
-        let mut names: Vec<String> = fs::read_dir(folder)
-            .unwrap()
-            .map(|e| e.unwrap().file_name().into_string().unwrap())
-            .collect();
-        names.sort();
-        names
-    }
-
-    #[test]
-    fn files_appear_together() {
-        let folder = tempfile::tempdir().unwrap();
-        let (a, b) = (folder.path().join("a.csv"), folder.path().join("b.csv"));
-        fs::write(&a, "old").unwrap();
-        let mut batch = Batch::in_folder(folder.path()).unwrap();
-        batch.add(&a, b"new").unwrap();
-        batch.add(&b, b"new").unwrap();
-        assert_eq!(fs::read(&a).unwrap(), b"old");
-        assert!(!b.exists());
-        batch.publish().unwrap();
-        assert_eq!(
-            (fs::read(&a).unwrap(), fs::read(&b).unwrap()),
-            (b"new".to_vec(), b"new".to_vec())
-        );
-        assert_eq!(names(folder.path()), ["a.csv", "b.csv"]);
-    }
-
-    #[test]
-    fn a_failure_leaves_the_earlier_result_and_no_litter() {
-        let folder = tempfile::tempdir().unwrap();
-        let a = folder.path().join("a.csv");
-        fs::write(&a, "old").unwrap();
-        fs::create_dir(folder.path().join("b.csv")).unwrap();
-        let mut batch = Batch::in_folder(folder.path()).unwrap();
-        batch.add(&a, b"new").unwrap();
-        assert!(batch.add(&folder.path().join("b.csv"), b"new").is_err());
-        drop(batch);
-        assert_eq!(fs::read(&a).unwrap(), b"old");
-        assert_eq!(names(folder.path()), ["a.csv", "b.csv"]);
-    }
-
-    #[test]
-    fn a_failure_halfway_puts_everything_back() {
-        let folder = tempfile::tempdir().unwrap();
-        let at = |name: &str| folder.path().join(name);
-        fs::write(at("a.csv"), "old").unwrap();
-        let mut batch = Batch::in_folder(folder.path()).unwrap();
-        for name in ["a.csv", "b.csv", "c.csv"] {
-            batch.add(&at(name), b"new").unwrap();
-        }
-        // The third cannot take its place any more.
-        fs::create_dir(at("c.csv")).unwrap();
-        assert!(batch.publish().unwrap_err().kept.is_empty());
-        assert_eq!(fs::read(at("a.csv")).unwrap(), b"old");
-        assert_eq!(names(folder.path()), ["a.csv", "c.csv"]);
-    }
-
-    #[test]
-    fn a_file_is_not_written_twice() {
-        let folder = tempfile::tempdir().unwrap();
-        let a = folder.path().join("a.csv");
-        let mut batch = Batch::in_folder(folder.path()).unwrap();
-        batch.add(&a, b"one").unwrap();
-        assert!(batch.add(&a, b"two").is_err());
-        drop(batch);
-        assert!(names(folder.path()).is_empty());
-    }
-
-    #[test]
-    fn litter_of_a_run_that_was_ended_is_removed() {
-        let folder = tempfile::tempdir().unwrap();
-        let mine = [
-            ".turn.csv.4711.part",
-            "turn.csv",
-            ".turn.csv.4711",
-            ".x.bin.7.part",
-        ];
-        for name in mine {
-            fs::write(folder.path().join(name), "").unwrap();
-        }
-        remove_litter(folder.path(), LITTER_AGE);
-        assert_eq!(
-            names(folder.path()).len(),
-            4,
-            "another run may be writing it"
-        );
-        remove_litter(folder.path(), Duration::ZERO);
-        assert_eq!(
-            names(folder.path()),
-            [".turn.csv.4711", ".x.bin.7.part", "turn.csv"]
-        );
-    }
-
-    #[test]
-    fn a_folder_made_for_nothing_is_taken_back() {
-        let folder = tempfile::tempdir().unwrap();
-        let out = folder.path().join("results");
-        let batch = Batch::in_folder(&out).unwrap();
-        assert!(out.exists());
-        drop(batch);
-        assert!(!out.exists());
-    }
-}
+mod tests;

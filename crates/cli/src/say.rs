@@ -1,6 +1,7 @@
 //! What is said to people: diagnostics on the error stream, in colour on terminals, or kept for the JSON output.
 
-use std::io::IsTerminal;
+use std::io::{ErrorKind, IsTerminal, Write as _};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use annotate_snippets::renderer::DecorStyle;
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
@@ -8,6 +9,7 @@ use kempe_model::{Diagnostic, Severity};
 use serde_json::Value;
 
 use crate::exit::Exit;
+use crate::read::plain;
 
 /// Says diagnostics about one file.
 pub struct Speaker {
@@ -65,6 +67,15 @@ impl Speaker {
         }
     }
 
+    /// Says a warning on the error stream even where only errors are wanted, and keeps it for JSON.
+    pub fn insist(&mut self, diagnostic: &Diagnostic) {
+        if self.json || (self.quiet && !self.strict) {
+            let text = rendered(diagnostic, &self.file, &self.text);
+            complain(&format!("{text}\n\n"));
+        }
+        self.tell(std::slice::from_ref(diagnostic));
+    }
+
     /// What was said, for the JSON output.
     pub fn diagnostics(&self) -> Value {
         let told = self.told.iter().map(kempe_study::encode::diagnostic);
@@ -99,16 +110,46 @@ pub fn print_json(value: &Value) {
     ));
 }
 
+/// Whether something could not be put on the standard output.
+static LOST: AtomicBool = AtomicBool::new(false);
+
 /// Prints text on the standard output; a reader that went away is no error.
 pub fn put(text: &str) {
-    use std::io::Write;
     let mut out = std::io::stdout().lock();
-    let _ = out.write_all(text.as_bytes()).and_then(|()| out.flush());
+    arrived(out.write_all(text.as_bytes()).and_then(|()| out.flush()));
+}
+
+/// Says what the command line's grammar answers: the help that was asked for, or what is wrong.
+pub fn answer(answer: &clap::Error) -> Exit {
+    if answer.use_stderr() {
+        let _ = answer.print();
+        return Exit::Usage;
+    }
+    arrived(answer.print().and_then(|()| std::io::stdout().flush()));
+    Exit::Ok
+}
+
+/// Whether the standard output lost something.
+pub fn lost() -> bool {
+    LOST.load(Ordering::Relaxed)
+}
+
+/// Tells once where the standard output cannot be written.
+fn arrived(written: std::io::Result<()>) {
+    let Err(error) = written else {
+        return;
+    };
+    if error.kind() == ErrorKind::BrokenPipe || LOST.swap(true, Ordering::Relaxed) {
+        return;
+    }
+    let message = format!("the standard output cannot be written: {}", plain(&error));
+    let diagnostic = Diagnostic::error("cannot-write", message)
+        .help("make room on the disk, or send the output elsewhere");
+    complain(&format!("{}\n\n", rendered(&diagnostic, "", "")));
 }
 
 /// Prints text on the error stream; a reader that went away is no error.
 pub fn complain(text: &str) {
-    use std::io::Write;
     let _ = std::io::stderr().lock().write_all(text.as_bytes());
 }
 

@@ -6,6 +6,8 @@ use crate::tokens::Token;
 
 /// Neighbouring samples closer than this on paper (mm) are drawn as one.
 const FINEST: f64 = 0.05;
+/// A path is drawn to this many points: one that is longer has gone round hundreds of times.
+const MOST_POINTS: usize = 100_000;
 /// Opacity of the part not yet travelled.
 const REST: f64 = 0.4;
 
@@ -22,6 +24,7 @@ impl TracePath {
     pub fn all(context: &Context) -> Vec<TracePath> {
         let path = |trace: &crate::view::TraceView| {
             let mut pieces: Vec<Vec<(usize, Point)>> = vec![Vec::new()];
+            let mut left = MOST_POINTS;
             for (index, frame) in context.frames.iter().enumerate() {
                 match (context.paper(frame, trace.point), pieces.last_mut()) {
                     (Some(p), Some(piece)) => {
@@ -30,9 +33,13 @@ impl TracePath {
                             .is_none_or(|(_, last)| distance(*last, p) > FINEST)
                         {
                             piece.push((index, p));
+                            left -= 1;
                         }
                     }
                     _ => pieces.push(Vec::new()),
+                }
+                if left == 0 {
+                    break;
                 }
             }
             pieces.retain(|piece| piece.len() > 1);

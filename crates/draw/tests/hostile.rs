@@ -314,3 +314,47 @@ fn a_hundred_thousand_links_are_drawn() {
     let stage = Stage::new(&view, &frames, DrawOptions::default());
     assert!(svg::document(&stage.scene(0), Theme::Light).len() > n);
 }
+
+/// A crank that turns a thousand times: what is drawn of its path does not grow with the rows.
+#[test]
+fn a_path_of_very_many_rows_is_drawn_in_bounded_size() {
+    let link = |name: &str, points: &[usize]| LinkView {
+        name: name.into(),
+        points: points.to_vec(),
+    };
+    let view = MechanismView {
+        title: "crank".into(),
+        length_unit: LengthUnit::new("m", 1.0),
+        load_units: LoadUnits::default(),
+        points: vec!["A".into(), "B".into()],
+        links: vec![link("frame", &[0]), link("crank", &[0, 1])],
+        joints: vec![],
+        traces: vec![TraceView {
+            label: "path of B".into(),
+            point: 1,
+        }],
+        drives: vec![],
+    };
+    let frame = |row: usize| {
+        let angle = row as f64 / 100.0;
+        let (s, c) = kempe_number::math::sin_cos(angle);
+        Frame {
+            points: vec![[0.0, 0.0], [c, s]],
+            links: vec![[0.0; 3], [0.0, 0.0, angle]],
+            ..Frame::default()
+        }
+    };
+    let size = |rows: usize| {
+        let frames: Vec<Frame> = (0..rows).map(frame).collect();
+        let stage = Stage::new(&view, &frames, DrawOptions::default());
+        [
+            svg::document(&stage.scene(rows - 1), Theme::Light).len(),
+            dxf::document(&stage, rows - 1).len(),
+        ]
+    };
+    let (some, many) = (size(150_000), size(600_000));
+    assert!(some[0] > 1_000_000, "the path is drawn: {some:?}");
+    for (some, many) in some.iter().zip(many) {
+        assert!(many < some + some / 10, "{some} {many}");
+    }
+}

@@ -46,7 +46,7 @@ impl Model {
     pub fn from_path(path: impl AsRef<Path>) -> Result<Self, Error> {
         let path = path.as_ref();
         let name = path.display().to_string();
-        let bytes = read_bounded(path).map_err(|error| Error {
+        let bytes = read_bounded(path, kempe_model::MAX_FILE_BYTES).map_err(|error| Error {
             diagnostics: vec![Diagnostic::error(
                 "no-file",
                 format!("{name} cannot be read: {error}"),
@@ -71,11 +71,8 @@ impl Model {
         let mut files = |wanted: &str| match &folder {
             Some(folder) => {
                 let table = folder.join(wanted);
-                // A pipe may never say anything.
-                if table.exists() && !table.is_file() {
-                    return Err("it is not a plain file".to_owned());
-                }
-                let bytes = read_bounded(&table).map_err(|e| e.to_string())?;
+                let bytes = read_bounded(&table, kempe_model::MAX_TABLE_BYTES);
+                let bytes = bytes.map_err(|e| e.to_string())?;
                 String::from_utf8(bytes).map_err(|_| "it is not UTF-8 text".to_owned())
             }
             None => Err("a model that is no file can name none".to_owned()),
@@ -238,14 +235,17 @@ impl Model {
     }
 }
 
-/// The bytes of a file, and no more than one beyond what a model file may have: a device has no end.
-fn read_bounded(path: &Path) -> std::io::Result<Vec<u8>> {
+/// The bytes of a plain file that has no more than `limit`: a pipe may never say anything, and a device has no end.
+fn read_bounded(path: &Path, limit: usize) -> std::io::Result<Vec<u8>> {
+    if !std::fs::metadata(path)?.is_file() {
+        return Err(std::io::Error::other("it is not a plain file"));
+    }
     let mut bytes = Vec::new();
     std::fs::File::open(path)?
-        .take(kempe_model::MAX_FILE_BYTES as u64 + 1)
+        .take(limit as u64 + 1)
         .read_to_end(&mut bytes)?;
-    if bytes.len() > kempe_model::MAX_FILE_BYTES {
-        let message = format!("it has more than {} bytes", kempe_model::MAX_FILE_BYTES);
+    if bytes.len() > limit {
+        let message = format!("it has more than {} MiB", limit >> 20);
         return Err(std::io::Error::other(message));
     }
     Ok(bytes)

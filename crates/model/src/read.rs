@@ -37,6 +37,7 @@ use crate::diagnostic::{Diagnostic, Severity};
 use crate::document;
 use crate::model::Model;
 use context::Context;
+pub use csv::{MAX_TABLE_BYTES, PARTIAL_TABLE, partial_table};
 
 /// A model that stands, and what a careful engineer would want to be told about its file.
 #[derive(Clone, Debug)]

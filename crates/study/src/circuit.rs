@@ -15,6 +15,7 @@ use crate::motion_findings::of_mechanism;
 use crate::prepared::design;
 use crate::quantity::Quantity;
 use crate::result::{Event, StudyResult};
+use crate::room::{Held, has_room, row_bytes};
 use crate::sink::RowSink;
 use crate::slot_ends::left_slots;
 use crate::table::Column;
@@ -23,8 +24,6 @@ use kempe_motion::progress::{Done, Progress, Stage};
 
 /// Rows of a circuit when the study does not say how many.
 const DEFAULT_ROWS: usize = 361;
-/// Most rows that a step of the drive may make.
-const MOST_ROWS: usize = 10_000_000;
 
 /// Runs a study that traces a whole circuit. Rows stand evenly along the arc, or at steps of
 /// the drive; time does not run.
@@ -36,9 +35,9 @@ pub(crate) fn run_circuit(
 ) -> Result<StudyResult, Vec<Diagnostic>> {
     let design = design(model);
     let mechanism = &design.mechanism;
+    let asked = Asked::of_motion(model, study);
     let circuit = Circuit::with_progress(&design, progress)
         .map_err(|error| vec![cannot_move(&design, &error)])?;
-    let asked = Asked::of_motion(model, study);
     let quantities: Vec<&Quantity> = asked.all().collect();
     let measures: Vec<_> = quantities.iter().map(|q| &q.measure).collect();
     let mut samplers = circuit_samplers(&circuit, &measures, progress)
@@ -54,8 +53,11 @@ pub(crate) fn run_circuit(
         Rows::Count(count) => evenly((*count).max(2)),
         Rows::DriveStep(step) => {
             let step = kempe_model::value(step, &design.parameters).abs();
-            let travel = circuit.length * circuit.scale();
-            if step > 0.0 && travel / step <= MOST_ROWS as f64 {
+            if step > 0.0 {
+                // Each stretch has its end besides.
+                let steps = circuit.travel() / step + circuit.stretches.len() as f64 + 1.0;
+                let row = row_bytes(model, &asked, study.plots.len(), false);
+                has_room(model, name, Held { rows: steps, row })?;
                 circuit.arcs_by_step(step)
             } else {
                 evenly(DEFAULT_ROWS)

@@ -1,6 +1,6 @@
 //! Where the rows of a table stand.
 
-use kempe_model::{Model, MotionStudy, Rows, value};
+use kempe_model::{Model, MotionStudy, Rows, Scalar, value};
 use kempe_motion::Motion;
 use kempe_motion::drive_path::DrivePath;
 use kempe_units::{Dimension, Unit};
@@ -35,6 +35,24 @@ pub(crate) fn places_along(
 ) -> Vec<RowPlace> {
     let model = &motion.mechanism().model;
     places(model, &study.rows, parameters, path_drive(motion))
+}
+
+/// How many rows a study asks for at most, without their places: of the drives, the one with the most steps counts.
+pub(crate) fn most(model: &Model, rows: &Rows, parameters: &[f64]) -> f64 {
+    let duration = kempe_motion::drive_path::duration(model, parameters);
+    let parts = |travel: f64, step: &Scalar| (travel / value(step, parameters)).abs();
+    let count = match rows {
+        Rows::DriveStep(step) => {
+            let drives = model.drives.iter();
+            let travels =
+                drives.map(|d| d.law.at(duration, parameters) - d.law.at(0.0, parameters));
+            travels.map(|t| parts(t, step)).fold(0.0, f64::max)
+        }
+        Rows::TimeStep(step) => parts(duration, step),
+        Rows::Count(count) => return *count as f64,
+    };
+    // Without a finite number there is one row, as below; both ends count.
+    if count.is_finite() { count + 2.0 } else { 1.0 }
 }
 
 /// The places of all rows. `drive` is the drive that a step of the drive means.

@@ -7,6 +7,7 @@ use crate::circuit::run_circuit;
 use crate::findings_forces::something_acts;
 use crate::motion::run_along;
 use crate::result::StudyResult;
+use crate::room::{bytes_of_motion, has_room, room_for};
 use kempe_motion::progress::Progress;
 
 /// Runs a study of a model.
@@ -20,6 +21,7 @@ pub fn run(
     study: &Study,
     progress: &mut dyn Progress,
 ) -> Result<StudyResult, Vec<Diagnostic>> {
+    room_for(model, study)?;
     match &study.kind {
         StudyKind::Motion(motion) => run_motion(model, &study.name, motion, progress),
         StudyKind::Forces(forces) => {
@@ -55,6 +57,7 @@ pub fn run_motion(
     study: &MotionStudy,
     progress: &mut dyn Progress,
 ) -> Result<StudyResult, Vec<Diagnostic>> {
+    has_room(model, name, bytes_of_motion(model, study))?;
     if study.circuit {
         return run_circuit(model, name, study, progress);
     }

@@ -1,5 +1,6 @@
 //! `kempe check`: what is to be known of a mechanism before it moves.
 
+use kempe_study::room_for;
 use serde_json::json;
 
 use crate::arguments::Check;
@@ -19,12 +20,20 @@ pub fn check(arguments: &Check) -> Exit {
             return exit;
         }
     };
+    let model = &loaded.checked.model;
+    let rooms = model.studies.iter().map(|study| room_for(model, study));
+    let too_large: Vec<_> = rooms.filter_map(Result::err).flatten().collect();
+    if !too_large.is_empty() {
+        speaker.tell(&too_large);
+        speaker.print_failure();
+        return Exit::Usage;
+    }
     interrupt::listen();
     let mut bar = Bar::new("check", arguments.json);
-    let report = kempe_study::check_with_progress(&loaded.checked.model, &mut bar);
+    let report = kempe_study::check_with_progress(model, &mut bar);
     // A mechanism that cannot move is told so above; there is no motion to prove.
     let proof = (arguments.certify && !report.has_errors() && !interrupt::stopped())
-        .then(|| kempe_study::prove(&loaded.checked.model, &mut bar).ok())
+        .then(|| kempe_study::prove(model, &mut bar).ok())
         .flatten();
     drop(bar);
     if arguments.json {

@@ -4,14 +4,14 @@ use kempe_draw::raster::animation::{self, AnimationOptions};
 use kempe_draw::raster::{self, RasterError};
 use kempe_draw::{DrawOptions, Frame, MechanismView, Stage, Theme, dxf, svg};
 use kempe_model::{Diagnostic, Model, MotionStudy, Severity, Study, StudyKind};
-use kempe_study::{Setting, drawing_frames, drawn, loaded_at, mechanism_view, pose_at};
+use kempe_study::{Setting, drawing_frames, drawn, loaded_at, mechanism_view, pose_at, room_for};
 
 use crate::arguments::Draw;
 use crate::command::run::{nothing_to_run, warned};
 use crate::exit::Exit;
-use crate::files::{load, plain};
+use crate::files::{Loaded, load};
 use crate::interrupt;
-use crate::output::Batch;
+use crate::output::{Output, Stands, may_replace};
 use crate::progress::Bar;
 use crate::say::Speaker;
 
@@ -28,6 +28,7 @@ enum Kind {
 /// Why there is no picture.
 enum Failure {
     Usage(Diagnostic),
+    TooLarge(Vec<Diagnostic>),
     Unsolved(Vec<Diagnostic>),
     Interrupted,
 }
@@ -46,29 +47,33 @@ pub fn draw(arguments: &Draw) -> Exit {
         Ok(loaded) => loaded,
         Err(exit) => return exit,
     };
+    let place = Stands::at(&arguments.output)
+        .and_then(|place| may_replace(&place, &loaded.inputs).map(|()| place));
+    let place = match place {
+        Ok(place) => place,
+        Err(diagnostic) => {
+            speaker.tell(&[*diagnostic]);
+            return Exit::Usage;
+        }
+    };
     match picture(arguments, kind, &loaded.checked.model, &mut speaker) {
         Ok(_) if arguments.model.strict && speaker.exit() != Exit::Ok => {
             speaker.tell(&[warned(&arguments.output)]);
             speaker.exit()
         }
-        Ok(bytes) => {
-            let mut batch = Batch::new();
-            let written = batch.add(&arguments.output, &bytes);
-            match written.and_then(|()| Ok(batch.publish()?)) {
-                Ok(_) => speaker.exit(),
-                Err(error) => {
-                    let message = format!(
-                        "{} cannot be written: {}",
-                        arguments.output.display(),
-                        plain(&error)
-                    );
-                    speaker.tell(&[Diagnostic::error("cannot-write", message)]);
-                    Exit::Usage
-                }
+        Ok(bytes) => match write(arguments, &place, &loaded, &bytes) {
+            Ok(()) => speaker.exit(),
+            Err(diagnostic) => {
+                speaker.tell(&[*diagnostic]);
+                Exit::Usage
             }
-        }
+        },
         Err(Failure::Usage(diagnostic)) => {
             speaker.tell(&[diagnostic]);
+            Exit::Usage
+        }
+        Err(Failure::TooLarge(diagnostics)) => {
+            speaker.tell(&diagnostics);
             Exit::Usage
         }
         Err(Failure::Unsolved(diagnostic)) => {
@@ -77,6 +82,18 @@ pub fn draw(arguments: &Draw) -> Exit {
         }
         Err(Failure::Interrupted) => Exit::Interrupted,
     }
+}
+
+fn write(
+    arguments: &Draw,
+    place: &Stands,
+    loaded: &Loaded,
+    bytes: &[u8],
+) -> Result<(), Box<Diagnostic>> {
+    let mut output = Output::beside(&arguments.output, &loaded.inputs)?;
+    output.add(place.name(), bytes)?;
+    output.publish()?;
+    Ok(())
 }
 
 fn kind(arguments: &Draw) -> Result<Kind, Box<Diagnostic>> {
@@ -193,6 +210,7 @@ fn motion(
     let Some(study) = first_study(model, forces) else {
         return Err(Failure::Usage(nothing_to_run(model)));
     };
+    room_for(model, &study).map_err(Failure::TooLarge)?;
     interrupt::listen();
     let result = kempe_study::run(model, &study, &mut Bar::new(&study.name, false))
         .map_err(Failure::Unsolved)?;

@@ -2,12 +2,11 @@
 
 use std::path::PathBuf;
 
-use kempe_model::{Diagnostic, starter};
+use kempe_model::starter;
 
 use crate::arguments::New;
 use crate::exit::Exit;
-use crate::files::plain;
-use crate::output::Batch;
+use crate::output::create;
 use crate::say::{Speaker, put};
 
 /// Runs `kempe new`.
@@ -26,20 +25,9 @@ pub fn new(arguments: &New) -> Exit {
         path = PathBuf::from(name);
     }
     let shown = path.display();
-    if path.exists() {
-        let diagnostic = Diagnostic::error("file-exists", format!("{shown} is already there"));
-        speaker.tell(&[diagnostic.help("give another name: kempe new NAME")]);
-        return Exit::Usage;
-    }
     let text = starter.text.replace("FILE", &shown.to_string());
-    let mut batch = Batch::new();
-    let written = batch.add(&path, text.as_bytes());
-    if let Err(error) = written.and_then(|()| Ok(batch.publish()?)) {
-        let diagnostic = Diagnostic::error(
-            "cannot-write",
-            format!("{shown} cannot be written: {}", plain(&error)),
-        );
-        speaker.tell(&[diagnostic]);
+    if let Err(diagnostic) = create(&path, text.as_bytes()) {
+        speaker.tell(&[*diagnostic]);
         return Exit::Usage;
     }
     put(&format!(

@@ -1,26 +1,27 @@
 //! `kempe run`: the studies of a model, as tables, figures and a report.
 
+mod summary;
+mod write;
+
 use std::path::{Path, PathBuf};
 
-use kempe_draw::report::{Block, Section};
-use kempe_draw::{DrawOptions, Stage, Theme, svg};
 use kempe_model::{Diagnostic, Model, Study};
-use kempe_study::{
-    MECHANISM, StudyOutcome, StudyResult, drawing_frames, encode, figures, mechanism_view,
-};
+use kempe_study::{StudyOutcome, room_for, study_bytes};
 use kempe_units::nearest;
-use serde_json::{Value, json};
 
 use crate::arguments::Run;
 use crate::exit::Exit;
-use crate::files::{Loaded, load, plain};
-use crate::output::Batch;
+use crate::files::{Loaded, load};
+use crate::interrupt;
+use crate::names;
+use crate::output::Output;
 use crate::progress::Bar;
 use crate::say::{Speaker, print_json, put};
-use crate::{interrupt, names};
+use summary::{summary, summary_json};
+use write::{REPORT, Results, known_names};
 
-/// Width and height of a plot, mm.
-const PLOT: [f64; 2] = [160.0, 100.0];
+/// The studies of a run together hold at most so many bytes.
+const MAX_RUN_BYTES: u64 = 4 << 30;
 
 /// Runs `kempe run`.
 pub fn run(arguments: &Run) -> Exit {
@@ -30,18 +31,151 @@ pub fn run(arguments: &Run) -> Exit {
         Ok(loaded) => loaded,
         Err(exit) => return failed(&speaker, exit),
     };
-    let model = &loaded.checked.model;
-    let studies = match chosen(model, &arguments.studies, &loaded.name) {
-        Ok(studies) => studies,
-        Err(diagnostic) => {
-            speaker.tell(&[*diagnostic]);
+    let (studies, output) = match prepared(arguments, &loaded) {
+        Ok(prepared) => prepared,
+        Err(diagnostics) => {
+            speaker.tell(&diagnostics);
             return failed(&speaker, Exit::Usage);
         }
     };
     interrupt::listen();
-    let mut outcomes: Vec<StudyOutcome<'_>> = Vec::new();
-    for study in &studies {
-        let mut bar = Bar::new(&study.name, arguments.quiet || arguments.json);
+    let quiet = arguments.quiet || arguments.json;
+    let outcomes = run_all(&loaded.checked.model, &studies, quiet, &mut speaker);
+    let has_rows = |name: &str| {
+        let mut of_it = outcomes.iter().filter(|o| o.study.name == name);
+        of_it.any(|o| o.result.is_ok())
+    };
+    let (finished, missing): (Vec<&str>, Vec<&str>) =
+        (studies.iter().map(|s| s.name.as_str())).partition(|name| has_rows(name));
+    let mut stopped = interrupt::stopped();
+    let mut files = Vec::new();
+    if let (Some(output), false) = (output, finished.is_empty()) {
+        let folder = arguments.out.as_deref().unwrap_or(Path::new(""));
+        if arguments.model.strict && speaker.exit() != Exit::Ok {
+            speaker.tell(&[warned(folder)]);
+        } else if !missing.is_empty() && !stopped {
+            speaker.tell(&[nothing_written(&loaded, folder, &finished, &missing)]);
+        } else {
+            // Stopped, it is not begun anew: the report says so.
+            let check = kempe_study::check_with_progress(
+                &loaded.checked.model,
+                &mut Bar::new("check", quiet),
+            );
+            stopped = interrupt::stopped();
+            let results = Results {
+                loaded: &loaded,
+                outcomes: &outcomes,
+                check,
+                stopped: stopped.then_some(missing),
+            };
+            match results.write(output) {
+                Ok(written) => files = written,
+                Err(diagnostic) => {
+                    speaker.tell(&[*diagnostic]);
+                    return failed(&speaker, Exit::Usage);
+                }
+            }
+            if stopped {
+                speaker.insist(&partial_result(folder));
+            }
+        }
+    }
+    if arguments.json {
+        let with_tables = arguments.out.is_none();
+        print_json(&summary_json(
+            &loaded,
+            &outcomes,
+            &files,
+            stopped,
+            with_tables,
+            &speaker,
+        ));
+    } else if !arguments.quiet {
+        put(&summary(
+            &outcomes,
+            arguments.out.as_deref(),
+            &files,
+            stopped,
+        ));
+    }
+    match stopped {
+        true => Exit::Interrupted,
+        false => speaker.exit(),
+    }
+}
+
+/// The studies that are asked for and the place for their results, or why it is not begun.
+fn prepared<'l>(
+    arguments: &Run,
+    loaded: &'l Loaded,
+) -> Result<(Vec<&'l Study>, Option<Output>), Vec<Diagnostic>> {
+    let model = &loaded.checked.model;
+    let alone = |diagnostic: Box<Diagnostic>| vec![*diagnostic];
+    let studies = chosen(model, &arguments.studies, &loaded.name).map_err(alone)?;
+    let rooms = studies.iter().map(|study| room_for(model, study));
+    let too_large: Vec<Diagnostic> = rooms.filter_map(Result::err).flatten().collect();
+    if !too_large.is_empty() {
+        return Err(too_large);
+    }
+    have_room(model, &studies).map_err(alone)?;
+    let output = folder(arguments, loaded, &studies).map_err(alone)?;
+    Ok((studies, output))
+}
+
+/// The folder for the results, after a look at what stands there: a refusal comes before the work.
+fn folder(
+    arguments: &Run,
+    loaded: &Loaded,
+    studies: &[&Study],
+) -> Result<Option<Output>, Box<Diagnostic>> {
+    let Some(folder) = &arguments.out else {
+        return Ok(None);
+    };
+    let output = Output::folder(folder, &loaded.inputs)?;
+    let names = known_names(&loaded.checked.model, studies);
+    let partial: Vec<String> = names.iter().map(|n| names::of_run(n, true)).collect();
+    // What the other pictures are called, the run alone tells; those that somebody touched are looked at before.
+    let touched = output.changed().filter(|name| {
+        let mut of_study = studies.iter();
+        of_study.any(|s| name.starts_with(&s.name) && name.ends_with(".svg"))
+    });
+    let known = names.iter().chain(&partial).map(String::as_str);
+    output.may_write(known.chain(touched))?;
+    Ok(Some(output))
+}
+
+/// All studies of a run are held until the last one is done.
+fn have_room(model: &Model, studies: &[&Study]) -> Result<(), Box<Diagnostic>> {
+    let held = studies
+        .iter()
+        .map(|study| study_bytes(model, study).bytes());
+    let all: f64 = held.sum();
+    if all <= MAX_RUN_BYTES as f64 {
+        return Ok(());
+    }
+    let gib = f64::from(1 << 30);
+    let message = format!(
+        "{} studies take {:.1} GiB together",
+        studies.len(),
+        all / gib
+    );
+    let diagnostic = Diagnostic::error("too-large", message)
+        .note(format!("a run holds at most {} GiB", MAX_RUN_BYTES >> 30));
+    Err(Box::new(diagnostic.help(
+        "run them one after the other by their names, or ask for fewer rows",
+    )))
+}
+
+/// Runs one study after the other, until it is told to stop.
+fn run_all<'m>(
+    model: &'m Model,
+    studies: &[&'m Study],
+    quiet: bool,
+    speaker: &mut Speaker,
+) -> Vec<StudyOutcome<'m>> {
+    let mut outcomes = Vec::new();
+    for study in studies {
+        let mut bar = Bar::new(&study.name, quiet);
         let result = kempe_study::run(model, study, &mut bar);
         drop(bar);
         match &result {
@@ -53,49 +187,7 @@ pub fn run(arguments: &Run) -> Exit {
             break;
         }
     }
-    let mut files = Vec::new();
-    let finished: Vec<&str> = (outcomes.iter().filter(|o| o.result.is_ok()))
-        .map(|o| o.study.name.as_str())
-        .collect();
-    let missing: Vec<&str> = (studies.iter().map(|s| s.name.as_str()))
-        .filter(|name| !finished.contains(name))
-        .collect();
-    if let (Some(folder), false) = (&arguments.out, finished.is_empty()) {
-        if arguments.model.strict && speaker.exit() != Exit::Ok {
-            speaker.tell(&[warned(folder)]);
-        } else if !missing.is_empty() && !interrupt::stopped() {
-            speaker.tell(&[nothing_written(&loaded, folder, &finished, &missing)]);
-        } else {
-            match write(
-                &loaded,
-                folder,
-                &outcomes,
-                &missing,
-                arguments.quiet || arguments.json,
-            ) {
-                Ok(written) => files = written,
-                Err(diagnostic) => {
-                    speaker.tell(&[*diagnostic]);
-                    return failed(&speaker, Exit::Usage);
-                }
-            }
-        }
-    }
-    if arguments.json {
-        print_json(&summary_json(
-            &loaded,
-            &outcomes,
-            &files,
-            arguments.out.is_none(),
-            &speaker,
-        ));
-    } else if !arguments.quiet {
-        put(&summary(&outcomes, arguments.out.as_deref(), &files));
-    }
-    match interrupt::stopped() {
-        true => Exit::Interrupted,
-        false => speaker.exit(),
-    }
+    outcomes
 }
 
 fn failed(speaker: &Speaker, exit: Exit) -> Exit {
@@ -112,6 +204,18 @@ pub fn warned(target: &Path) -> Diagnostic {
     Diagnostic::error("not-written", message)
         .note("earlier results are as they were")
         .help("mend what is warned of, or leave out --strict")
+}
+
+/// What was finished of a run that was stopped stands beside the results of an earlier one.
+fn partial_result(folder: &Path) -> Diagnostic {
+    let report: PathBuf = folder.join(names::of_run(REPORT, true));
+    let message = format!(
+        "the run was stopped: what is finished is a partial result, {}",
+        report.display()
+    );
+    Diagnostic::warning("partial-result", message)
+        .note("its files have .partial in their names and say so inside; those of earlier runs are as they were")
+        .help("run it again for the whole")
 }
 
 /// A folder holds the results of one run: where a study could not run, nothing of the others is written either.
@@ -211,232 +315,4 @@ fn others(model: &Model) -> String {
         true => "the file has no other study; ask for the motion: [studies.turn] with the line kind = \"motion\"".to_owned(),
         false => format!("the file has: {}", known.join(", ")),
     }
-}
-
-/// Writes all files of a run, each whole or none.
-fn write(
-    loaded: &Loaded,
-    folder: &Path,
-    outcomes: &[StudyOutcome<'_>],
-    missing: &[&str],
-    quiet: bool,
-) -> Result<Vec<PathBuf>, Box<Diagnostic>> {
-    let diagnostic = |path: &Path, reason: &str| {
-        let message = format!("{} cannot be written: {reason}", path.display());
-        Box::new(
-            Diagnostic::error("cannot-write", message).note("earlier results are as they were"),
-        )
-    };
-    let mut batch = Batch::in_folder(folder).map_err(|e| diagnostic(folder, &plain(&e)))?;
-    let mut add = |name: String, bytes: &[u8]| {
-        let path = folder.join(name);
-        batch
-            .add(&path, bytes)
-            .map_err(|e| diagnostic(&path, &plain(&e)))
-    };
-    let model = &loaded.checked.model;
-    let origin = vec![
-        ("program".to_owned(), generator()),
-        ("model".to_owned(), loaded.name.clone()),
-        (
-            "model_hash".to_owned(),
-            format!("fnv1a64:{:016x}", hash(loaded.text.as_bytes())),
-        ),
-        ("length_unit".to_owned(), model.units.length.name.clone()),
-        ("angle_unit".to_owned(), model.units.angle.name.clone()),
-    ];
-    for outcome in outcomes {
-        let Ok(result) = &outcome.result else {
-            continue;
-        };
-        let name = &result.name;
-        add(format!("{name}.csv"), encode::csv(&result.table).as_bytes())?;
-        let bytes = encode::parquet(&result.table, &origin);
-        let bytes = bytes
-            .map_err(|e| diagnostic(&folder.join(format!("{name}.parquet")), &e.to_string()))?;
-        add(format!("{name}.parquet"), &bytes)?;
-        add(
-            names::picture(model, name, MECHANISM),
-            picture(model, outcome.study, result).as_bytes(),
-        )?;
-        for (plot, spec) in figures(model, result) {
-            let height = if spec.equal_aspect {
-                PLOT[0] * 0.8
-            } else {
-                PLOT[1]
-            };
-            let scene = spec.draw(PLOT[0], height).scene;
-            add(
-                names::picture(model, name, &plot),
-                svg::document(&scene, Theme::Light).as_bytes(),
-            )?;
-        }
-    }
-    // Stopped, it is not begun anew: the report says so.
-    let check = kempe_study::check_with_progress(model, &mut Bar::new("check", quiet));
-    let mut report = kempe_study::report(
-        model,
-        &loaded.name,
-        &generator(),
-        &loaded.checked.warnings,
-        &check,
-        outcomes,
-    );
-    report.first.splice(0..0, stopped_before(missing));
-    add("report.html".to_owned(), report.to_html().as_bytes())?;
-    batch.publish().map_err(|unpublished| {
-        if unpublished.kept.is_empty() {
-            return diagnostic(folder, &plain(&unpublished.error));
-        }
-        let kept = unpublished.kept.iter().map(|p| p.display().to_string());
-        let message = format!(
-            "{} cannot be written: {}",
-            folder.display(),
-            plain(&unpublished.error)
-        );
-        let note = "earlier results could not all be put back; they are kept as";
-        Box::new(
-            Diagnostic::error("cannot-write", message)
-                .note(format!("{note} {}", kept.collect::<Vec<_>>().join(", "))),
-        )
-    })
-}
-
-/// What a report says of studies that Ctrl-C kept from running.
-fn stopped_before(missing: &[&str]) -> Option<Section> {
-    let diagnostic = |name: &&str| {
-        format!(
-            "{name}: not run; its files in this folder, if there are any, are those of an earlier run"
-        )
-    };
-    (!missing.is_empty()).then(|| Section {
-        title: "Stopped by Ctrl-C".to_owned(),
-        blocks: vec![Block::List(missing.iter().map(diagnostic).collect())],
-    })
-}
-
-/// The mechanism at its first row that was reached.
-fn picture(model: &Model, study: &Study, result: &StudyResult) -> String {
-    let view = mechanism_view(model, Some(study.kind.along()));
-    let frames = drawing_frames(model, result);
-    let row = result
-        .table
-        .closure
-        .iter()
-        .position(|c| c.is_finite())
-        .unwrap_or(0);
-    let stage = Stage::new(&view, &frames, DrawOptions::default());
-    svg::document(&stage.scene(row), Theme::Light)
-}
-
-/// The program's name and version, for files that say where they come from.
-fn generator() -> String {
-    format!("kempe {}", env!("CARGO_PKG_VERSION"))
-}
-
-/// FNV-1a of a model's text: tells whether a table belongs to a file.
-fn hash(bytes: &[u8]) -> u64 {
-    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
-        (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3)
-    })
-}
-
-fn summary(outcomes: &[StudyOutcome<'_>], folder: Option<&Path>, files: &[PathBuf]) -> String {
-    let mut out = String::new();
-    for outcome in outcomes {
-        let Ok(result) = &outcome.result else {
-            out.push_str(&format!("{}: not run\n", outcome.study.name));
-            continue;
-        };
-        let table = &result.table;
-        out.push_str(&format!("{}: {} rows", result.name, table.rows()));
-        if result.interrupted() {
-            out.push_str(&format!(" of {}, stopped", result.demanded_rows));
-        }
-        if table.unreached() > 0 {
-            out.push_str(&format!(", {} not reached", table.unreached()));
-        }
-        out.push_str(&format!(
-            ", loops closed to {:.1e} of the mechanism's size",
-            table.worst_closure()
-        ));
-        if let Some((_, difference)) = table.worst_route_difference() {
-            out.push_str(&format!(
-                ", virtual power and Newton-Euler agree to {difference:.1e}"
-            ));
-        }
-        out.push('\n');
-        let width = result
-            .scalars
-            .iter()
-            .map(|s| s.name.chars().count())
-            .max()
-            .unwrap_or(0);
-        for scalar in &result.scalars {
-            let value = kempe_number::text::significant(scalar.value, 12);
-            out.push_str(
-                format!("  {:width$}  {value} {}", scalar.name, scalar.unit.text()).trim_end(),
-            );
-            out.push('\n');
-        }
-        for listing in &result.listings {
-            out.push_str(&format!("  {}\n", listing.title));
-            let rows = std::iter::once(&listing.head).chain(&listing.rows);
-            out.push_str(&aligned(rows.filter(|r| !r.is_empty()), 4));
-        }
-        for event in &result.events {
-            out.push_str(&format!("  {}: {}\n", event.place, event.label));
-        }
-    }
-    if let (Some(folder), false) = (folder, files.is_empty()) {
-        out.push_str(&format!(
-            "{} files in {}: open ",
-            files.len(),
-            folder.display()
-        ));
-        out.push_str(&format!("{}\n", folder.join("report.html").display()));
-    }
-    out
-}
-
-/// Rows of words with their columns below each other.
-fn aligned<'r>(rows: impl Iterator<Item = &'r Vec<String>>, indent: usize) -> String {
-    let rows: Vec<&Vec<String>> = rows.collect();
-    let columns = rows.iter().map(|r| r.len()).max().unwrap_or(0);
-    let width = |k: usize| {
-        rows.iter()
-            .filter_map(|r| r.get(k))
-            .map(|c| c.chars().count())
-            .max()
-    };
-    let widths: Vec<usize> = (0..columns).map(|k| width(k).unwrap_or(0)).collect();
-    let line = |row: &Vec<String>| {
-        let cells = row
-            .iter()
-            .zip(&widths)
-            .map(|(cell, w)| format!("{cell:w$}"));
-        let text = cells.collect::<Vec<_>>().join("  ");
-        format!("{:indent$}{}\n", "", text.trim_end())
-    };
-    rows.into_iter().map(line).collect()
-}
-
-fn summary_json(
-    loaded: &Loaded,
-    outcomes: &[StudyOutcome<'_>],
-    files: &[PathBuf],
-    with_tables: bool,
-    speaker: &Speaker,
-) -> Value {
-    let studies = outcomes.iter().map(|outcome| match &outcome.result {
-        Ok(result) => encode::result(result, with_tables),
-        Err(_) => json!({ "study": outcome.study.name, "failed": true }),
-    });
-    json!({
-        "file": loaded.name,
-        "title": loaded.checked.model.title,
-        "studies": studies.collect::<Vec<_>>(),
-        "files": files.iter().map(|f| f.display().to_string()).collect::<Vec<_>>(),
-        "diagnostics": speaker.diagnostics(),
-    })
 }

@@ -9,7 +9,7 @@ use serde_json::json;
 
 use crate::arguments::Verify;
 use crate::exit::Exit;
-use crate::files::{plain, read_table};
+use crate::read::{Tables, plain, read_named};
 use crate::say::{Speaker, print_json, put};
 
 include!(concat!(env!("OUT_DIR"), "/embedded.rs"));
@@ -18,29 +18,46 @@ include!(concat!(env!("OUT_DIR"), "/embedded.rs"));
 struct Found {
     name: String,
     text: String,
-    folder: Option<PathBuf>,
+    /// It came with this program, and so did what it names.
+    embedded: bool,
 }
 
 impl Found {
-    /// Reads a file named from the case's folder, or from that of a file named there.
-    fn read(&self, name: &str, beside: &str) -> Result<String, String> {
-        let path = Path::new(beside)
-            .parent()
-            .unwrap_or(Path::new(""))
-            .join(name);
-        match &self.folder {
-            Some(folder) => read_table(folder, &path.to_string_lossy()),
-            None => {
-                let case = Path::new(&self.name).parent().unwrap_or(Path::new(""));
-                let wanted = simplified(&case.join(path));
-                EMBEDDED
-                    .iter()
-                    .find(|(path, _)| Path::new(path) == wanted)
-                    .map(|(_, text)| (*text).to_owned())
-                    .ok_or_else(|| format!("{} did not come with this program", wanted.display()))
-            }
+    /// The folder of the case, or of a file that it names.
+    fn folder(&self, beside: &str) -> PathBuf {
+        let parent = |path: &Path| path.parent().unwrap_or(Path::new("")).to_owned();
+        parent(Path::new(&self.name)).join(parent(Path::new(beside)))
+    }
+
+    /// The model of the case, wherever it is.
+    fn model(&self, name: &str) -> Result<String, String> {
+        let path = self.folder("").join(name);
+        match self.embedded {
+            true => embedded(&path),
+            false => read_named(&path).map_err(|why| format!("{}: {why}", path.display())),
         }
     }
+
+    /// The tables beside the case, or beside a file that it names.
+    fn tables(&self, beside: &str, outside: bool) -> impl FnMut(&str) -> Result<String, String> {
+        let folder = self.folder(beside);
+        let mut tables = Tables::of(&folder, outside);
+        let embedded_too = self.embedded;
+        move |name| match embedded_too {
+            true => embedded(&folder.join(name)),
+            false => tables.read(name),
+        }
+    }
+}
+
+/// A file that came with this program.
+fn embedded(path: &Path) -> Result<String, String> {
+    let wanted = simplified(path);
+    EMBEDDED
+        .iter()
+        .find(|(path, _)| Path::new(path) == wanted)
+        .map(|(_, text)| (*text).to_owned())
+        .ok_or_else(|| format!("{} did not come with this program", wanted.display()))
 }
 
 /// A path without `..`.
@@ -74,7 +91,7 @@ pub fn verify(arguments: &Verify) -> Exit {
     let mut out = String::new();
     let mut not_run = 0;
     for found in &cases {
-        match run_case(found, &mut speaker) {
+        match run_case(found, arguments.allow_outside, &mut speaker) {
             Ok(comparisons) => {
                 out.push_str(&summary(found, &comparisons, arguments.all));
                 all.extend(comparisons);
@@ -128,20 +145,20 @@ fn gather(paths: &[PathBuf]) -> Result<Vec<Found>, Box<Diagnostic>> {
             .map(|(path, text)| Found {
                 name: (*path).to_owned(),
                 text: (*text).to_owned(),
-                folder: None,
+                embedded: true,
             })
             .collect());
     }
-    let refuse = |path: &Path, error: &std::io::Error| {
+    let refuse = |path: &Path, why: &str| {
         Box::new(Diagnostic::error(
             "no-file",
-            format!("{} cannot be read: {}", path.display(), plain(error)),
+            format!("{} cannot be read: {why}", path.display()),
         ))
     };
     let mut files: Vec<PathBuf> = Vec::new();
     for path in paths {
         if path.is_dir() {
-            let entries = fs::read_dir(path).map_err(|e| refuse(path, &e))?;
+            let entries = fs::read_dir(path).map_err(|e| refuse(path, &plain(&e)))?;
             let mut inside: Vec<PathBuf> = entries
                 .filter_map(|e| Some(e.ok()?.path()))
                 .filter(|p| p.extension().is_some_and(|e| e == "toml"))
@@ -153,32 +170,26 @@ fn gather(paths: &[PathBuf]) -> Result<Vec<Found>, Box<Diagnostic>> {
         }
     }
     let read = |path: PathBuf| {
-        let text = fs::read_to_string(&path).map_err(|e| refuse(&path, &e))?;
         Ok(Found {
+            text: read_named(&path).map_err(|why| refuse(&path, &why))?,
             name: path.display().to_string(),
-            text,
-            folder: Some(path.parent().unwrap_or(Path::new("")).to_owned()),
+            embedded: false,
         })
     };
     files.into_iter().map(read).collect()
 }
 
-fn run_case(found: &Found, speaker: &mut Speaker) -> Result<Vec<Comparison>, Exit> {
-    let case = Case::parse(&found.text, &mut |name| found.read(name, "")).map_err(|error| {
-        speaker.tell(&[Diagnostic::error(
-            "bad-case",
-            format!("{}: {error}", found.name),
-        )]);
+fn run_case(found: &Found, outside: bool, speaker: &mut Speaker) -> Result<Vec<Comparison>, Exit> {
+    let bad = |speaker: &mut Speaker, why: &dyn std::fmt::Display| {
+        let message = format!("{}: {why}", found.name);
+        speaker.tell(&[Diagnostic::error("bad-case", message)]);
         Exit::Usage
-    })?;
-    let model = found.read(&case.model, "").map_err(|error| {
-        speaker.tell(&[Diagnostic::error(
-            "bad-case",
-            format!("{}: {error}", found.name),
-        )]);
-        Exit::Usage
-    })?;
-    let compared = compare(&case, &model, &mut |name| found.read(name, &case.model));
+    };
+    let case = Case::parse(&found.text, &mut found.tables("", outside));
+    let case = case.map_err(|error| bad(speaker, &error))?;
+    let model = found.model(&case.model);
+    let model = model.map_err(|error| bad(speaker, &error))?;
+    let compared = compare(&case, &model, &mut found.tables(&case.model, outside));
     compared.map_err(|errors| {
         speaker.name_file(&case.model, &model);
         speaker.tell(&errors);

@@ -11,10 +11,19 @@ use crate::read::context::Context;
 const MAX_ROWS: usize = 1_000_000;
 
 /// A table has at most so many bytes, as many as its rows need.
-const MAX_BYTES: usize = 64 << 20;
+pub const MAX_TABLE_BYTES: usize = 64 << 20;
+
+/// How the first line of a table begins that a stopped study left. What follows tells how far it came.
+pub const PARTIAL_TABLE: &str = "# partial:";
 
 /// All tables of a model together have at most so many rows.
 const MAX_ALL_ROWS: usize = 8_000_000;
+
+/// How far a table came that a stopped study left; `None` of any other.
+pub fn partial_table(csv: &str) -> Option<&str> {
+    let first = csv.trim_start_matches('\u{feff}').lines().next()?;
+    first.strip_prefix(PARTIAL_TABLE).map(str::trim)
+}
 
 /// Which column is meant.
 pub(crate) enum Pick {
@@ -65,12 +74,20 @@ pub(crate) fn columns(
             );
         }
     };
-    if content.len() > MAX_BYTES {
+    if content.len() > MAX_TABLE_BYTES {
         return cx.refuse(
             "too-large",
             format!("`{name}` has {} bytes", content.len()),
             &file.span,
-            format!("a table has at most {MAX_BYTES} bytes: leave out rows between others"),
+            format!("a table has at most {MAX_TABLE_BYTES} bytes: leave out rows between others"),
+        );
+    }
+    if let Some(how_far) = partial_table(&content) {
+        return cx.refuse(
+            "table-partial",
+            format!("`{name}` is a partial result: {how_far}"),
+            &file.span,
+            "run its study to the end; to use the rows it has, take away its first line",
         );
     }
     let mut lines = content

@@ -28,6 +28,16 @@ impl Circuit {
         (index, place.part(from.z.len() - 1) * self.scale)
     }
 
+    /// How far the path parameter runs up and down in all, SI.
+    pub fn travel(&self) -> f64 {
+        let of_stretch = |stretch: &Stroke| -> f64 {
+            let at = |node| stretch.parameter_at(node, self.scale);
+            let parts = (1..stretch.nodes.len()).filter_map(|k| Some(at(k)? - at(k - 1)?));
+            parts.map(f64::abs).sum()
+        };
+        self.stretches.iter().map(of_stretch).sum()
+    }
+
     /// Arc lengths, rising, at the start, at every multiple of `step` (SI) of the path parameter from there on as it runs
     /// up and down, at every dead point, and at the end.
     pub fn arcs_by_step(&self, step: f64) -> Vec<f64> {

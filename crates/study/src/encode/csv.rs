@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use kempe_model::PARTIAL_TABLE;
+
 use crate::table::Table;
 
 /// The table as CSV text: every number reads back as the same `f64`. Lines end in `\n`.
@@ -23,6 +25,12 @@ pub fn csv(table: &Table) -> String {
         out.push('\n');
     }
     out
+}
+
+/// A table of a study that was stopped, with a first line that says how far it came: `# partial: 12 of 37 rows`. Whatever reads
+/// it as a whole table stumbles; Kempe's own readers tell the reason.
+pub fn marked_partial(csv: &str, how_far: &str) -> String {
+    format!("{PARTIAL_TABLE} {how_far}\n{csv}")
 }
 
 /// A number with 17 significant digits, in plain notation where that is readable; nothing for NaN.

@@ -5,7 +5,7 @@ mod json;
 #[cfg(feature = "parquet")]
 mod parquet;
 
-pub use csv::csv;
+pub use csv::{csv, marked_partial};
 pub use json::{diagnostic, result, table};
 #[cfg(feature = "parquet")]
 pub use parquet::{ParquetError, parquet};

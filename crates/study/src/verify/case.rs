@@ -1,5 +1,6 @@
 //! Reading validation cases.
 
+use kempe_model::partial_table;
 use kempe_units::Unit;
 use toml::Value;
 
@@ -122,6 +123,10 @@ impl Case {
                 (None, Some(rows)) => rows,
                 _ => return Err(CaseError("a [[table]] has either `file` or `rows`".into())),
             };
+            if let Some(how_far) = partial_table(&rows) {
+                let message = format!("its table is a partial result: {how_far}");
+                return Err(CaseError(message));
+            }
             let source = text_of(table, "source")?.unwrap_or_else(|| source.clone());
             let tolerance = number_of(table, "tolerance")?.unwrap_or(tolerance);
             case.add_rows(&rows, &source, tolerance)?;

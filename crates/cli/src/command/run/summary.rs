@@ -1,0 +1,123 @@
+//! What a run prints.
+
+use std::path::{Path, PathBuf};
+
+use kempe_study::{StudyOutcome, encode};
+use serde_json::{Value, json};
+
+use super::write::REPORT;
+use crate::files::Loaded;
+use crate::names;
+use crate::say::Speaker;
+
+/// What a run found, for people.
+pub fn summary(
+    outcomes: &[StudyOutcome<'_>],
+    folder: Option<&Path>,
+    files: &[PathBuf],
+    partial: bool,
+) -> String {
+    let mut out = String::new();
+    for outcome in outcomes {
+        let Ok(result) = &outcome.result else {
+            out.push_str(&format!("{}: not run\n", outcome.study.name));
+            continue;
+        };
+        let table = &result.table;
+        out.push_str(&format!("{}: {} rows", result.name, table.rows()));
+        if result.interrupted() {
+            out.push_str(&format!(" of {}, stopped", result.demanded_rows));
+        }
+        if table.unreached() > 0 {
+            out.push_str(&format!(", {} not reached", table.unreached()));
+        }
+        out.push_str(&format!(
+            ", loops closed to {:.1e} of the mechanism's size",
+            table.worst_closure()
+        ));
+        if let Some((_, difference)) = table.worst_route_difference() {
+            out.push_str(&format!(
+                ", virtual power and Newton-Euler agree to {difference:.1e}"
+            ));
+        }
+        out.push('\n');
+        let width = result
+            .scalars
+            .iter()
+            .map(|s| s.name.chars().count())
+            .max()
+            .unwrap_or(0);
+        for scalar in &result.scalars {
+            let value = kempe_number::text::significant(scalar.value, 12);
+            out.push_str(
+                format!("  {:width$}  {value} {}", scalar.name, scalar.unit.text()).trim_end(),
+            );
+            out.push('\n');
+        }
+        for listing in &result.listings {
+            out.push_str(&format!("  {}\n", listing.title));
+            let rows = std::iter::once(&listing.head).chain(&listing.rows);
+            out.push_str(&aligned(rows.filter(|r| !r.is_empty()), 4));
+        }
+        for event in &result.events {
+            out.push_str(&format!("  {}: {}\n", event.place, event.label));
+        }
+    }
+    if let (Some(folder), false) = (folder, files.is_empty()) {
+        out.push_str(&format!(
+            "{} files in {}: open ",
+            files.len(),
+            folder.display()
+        ));
+        out.push_str(&format!(
+            "{}\n",
+            folder.join(names::of_run(REPORT, partial)).display()
+        ));
+    }
+    out
+}
+
+/// Rows of words with their columns below each other.
+fn aligned<'r>(rows: impl Iterator<Item = &'r Vec<String>>, indent: usize) -> String {
+    let rows: Vec<&Vec<String>> = rows.collect();
+    let columns = rows.iter().map(|r| r.len()).max().unwrap_or(0);
+    let width = |k: usize| {
+        rows.iter()
+            .filter_map(|r| r.get(k))
+            .map(|c| c.chars().count())
+            .max()
+    };
+    let widths: Vec<usize> = (0..columns).map(|k| width(k).unwrap_or(0)).collect();
+    let line = |row: &Vec<String>| {
+        let cells = row
+            .iter()
+            .zip(&widths)
+            .map(|(cell, w)| format!("{cell:w$}"));
+        let text = cells.collect::<Vec<_>>().join("  ");
+        format!("{:indent$}{}\n", "", text.trim_end())
+    };
+    rows.into_iter().map(line).collect()
+}
+
+/// What a run found, for scripts.
+pub fn summary_json(
+    loaded: &Loaded,
+    outcomes: &[StudyOutcome<'_>],
+    files: &[PathBuf],
+    partial: bool,
+    with_tables: bool,
+    speaker: &Speaker,
+) -> Value {
+    let studies = outcomes.iter().map(|outcome| match &outcome.result {
+        Ok(result) => encode::result(result, with_tables),
+        Err(_) => json!({ "study": outcome.study.name, "failed": true }),
+    });
+    json!({
+        "file": loaded.name,
+        "title": loaded.checked.model.title,
+        "partial": partial,
+        "studies": studies.collect::<Vec<_>>(),
+        "files": files.iter().map(|f| f.display().to_string()).collect::<Vec<_>>(),
+        "diagnostics": speaker.diagnostics(),
+    })
+}

@@ -1,0 +1,170 @@
+//! The files of a run.
+
+use std::path::PathBuf;
+
+use kempe_draw::report::{Block, Section};
+use kempe_draw::{DrawOptions, Stage, Theme, svg};
+use kempe_model::{Diagnostic, Model, Study};
+use kempe_study::{
+    CheckReport, MECHANISM, StudyOutcome, StudyResult, drawing_frames, encode, figures,
+    mechanism_view,
+};
+
+use crate::files::Loaded;
+use crate::fingerprint::fnv1a64;
+use crate::names;
+use crate::output::Output;
+
+/// Width and height of a plot, mm.
+const PLOT: [f64; 2] = [160.0, 100.0];
+
+/// The page that shows everything.
+pub const REPORT: &str = "report.html";
+
+/// The names of a run's files that are known before it runs.
+pub fn known_names(model: &Model, studies: &[&Study]) -> Vec<String> {
+    let of_study = |study: &&Study| {
+        let name = &study.name;
+        [
+            format!("{name}.csv"),
+            format!("{name}.parquet"),
+            names::picture(model, name, MECHANISM),
+        ]
+    };
+    let own = studies.iter().flat_map(of_study);
+    own.chain([REPORT.to_owned()]).collect()
+}
+
+/// What a run has found, to be written.
+pub struct Results<'r> {
+    /// The model.
+    pub loaded: &'r Loaded,
+    /// What became of the studies.
+    pub outcomes: &'r [StudyOutcome<'r>],
+    /// What is to be known of the mechanism.
+    pub check: CheckReport,
+    /// Of a run that was stopped, the studies that have no rows; `None` of a whole one.
+    pub stopped: Option<Vec<&'r str>>,
+}
+
+impl Results<'_> {
+    /// Writes all files, each whole or none. Those of a run that was stopped have names of their own and say so inside.
+    pub fn write(&self, mut output: Output) -> Result<Vec<PathBuf>, Box<Diagnostic>> {
+        let partial = self.stopped.is_some();
+        let mut add = |name: &str, bytes: &[u8]| output.add(&names::of_run(name, partial), bytes);
+        let model = &self.loaded.checked.model;
+        for outcome in self.outcomes {
+            let Ok(result) = &outcome.result else {
+                continue;
+            };
+            let name = &result.name;
+            let (csv, parquet) = (format!("{name}.csv"), format!("{name}.parquet"));
+            let why = self.stopped.as_ref().map(|_| how_far(result));
+            let table = encode::csv(&result.table);
+            match &why {
+                Some(why) => add(&csv, encode::marked_partial(&table, why).as_bytes())?,
+                None => add(&csv, table.as_bytes())?,
+            }
+            drop(table);
+            let bytes = encode::parquet(&result.table, &origin(self.loaded, why));
+            let bytes = bytes.map_err(|error| not_encoded(&parquet, &error.to_string()))?;
+            add(&parquet, &bytes)?;
+            drop(bytes);
+            add(
+                &names::picture(model, name, MECHANISM),
+                picture(model, outcome.study, result).as_bytes(),
+            )?;
+            for (plot, spec) in figures(model, result) {
+                let height = if spec.equal_aspect {
+                    PLOT[0] * 0.8
+                } else {
+                    PLOT[1]
+                };
+                let scene = spec.draw(PLOT[0], height).scene;
+                add(
+                    &names::picture(model, name, &plot),
+                    svg::document(&scene, Theme::Light).as_bytes(),
+                )?;
+            }
+        }
+        add(REPORT, self.report().as_bytes())?;
+        output.publish()
+    }
+
+    fn report(&self) -> String {
+        let mut report = kempe_study::report(
+            &self.loaded.checked.model,
+            &self.loaded.name,
+            &generator(),
+            &self.loaded.checked.warnings,
+            &self.check,
+            self.outcomes,
+        );
+        if let Some(missing) = &self.stopped {
+            report.title = format!("{} (partial: the run was stopped)", report.title);
+            report
+                .first
+                .insert(0, partial_section(self.outcomes, missing));
+        }
+        report.to_html()
+    }
+}
+
+/// How much of a study a run has that was stopped.
+fn how_far(result: &StudyResult) -> String {
+    let (name, rows, all) = (&result.name, result.table.rows(), result.demanded_rows);
+    match result.interrupted() {
+        true => format!("{rows} of {all} rows of {name}, the run was stopped"),
+        false => format!("all {rows} rows of {name}, but the run was stopped before its end"),
+    }
+}
+
+/// What the report of a run says that was stopped.
+fn partial_section(outcomes: &[StudyOutcome<'_>], missing: &[&str]) -> Section {
+    let results = outcomes.iter().filter_map(|o| o.result.as_ref().ok());
+    let lines = results.map(how_far);
+    let without = missing.iter().map(|name| format!("{name}: no rows"));
+    Section {
+        title: "Partial result: the run was stopped".to_owned(),
+        blocks: vec![Block::List(lines.chain(without).collect())],
+    }
+}
+
+fn not_encoded(name: &str, why: &str) -> Box<Diagnostic> {
+    let message = format!("{name} cannot be written: {why}");
+    Box::new(Diagnostic::error("cannot-write", message).note("earlier results are as they were"))
+}
+
+/// Where a table comes from, for its metadata.
+fn origin(loaded: &Loaded, partial: Option<String>) -> Vec<(String, String)> {
+    let units = &loaded.checked.model.units;
+    let hash = fnv1a64(loaded.text.as_bytes());
+    let mut all = vec![
+        ("program".to_owned(), generator()),
+        ("model".to_owned(), loaded.name.clone()),
+        ("model_hash".to_owned(), format!("fnv1a64:{hash:016x}")),
+        ("length_unit".to_owned(), units.length.name.clone()),
+        ("angle_unit".to_owned(), units.angle.name.clone()),
+    ];
+    all.extend(partial.map(|why| ("partial".to_owned(), why)));
+    all
+}
+
+/// The mechanism at its first row that was reached.
+fn picture(model: &Model, study: &Study, result: &StudyResult) -> String {
+    let view = mechanism_view(model, Some(study.kind.along()));
+    let frames = drawing_frames(model, result);
+    let row = result
+        .table
+        .closure
+        .iter()
+        .position(|c| c.is_finite())
+        .unwrap_or(0);
+    let stage = Stage::new(&view, &frames, DrawOptions::default());
+    svg::document(&stage.scene(row), Theme::Light)
+}
+
+/// The program's name and version, for files that say where they come from.
+fn generator() -> String {
+    format!("kempe {}", env!("CARGO_PKG_VERSION"))
+}

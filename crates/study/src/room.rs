@@ -1,0 +1,236 @@
+//! How much a study may hold: its rows are bounded by memory, before any of it is taken.
+
+use std::mem::size_of;
+
+use kempe_dynamics::ForceArrow;
+use kempe_mechanism::Mechanism;
+use kempe_model::{Diagnostic, Model, MotionStudy, Rows, Study, StudyKind};
+
+use crate::columns::Asked;
+use crate::force_columns::standard_plots;
+use crate::result::Frame;
+use crate::rows::most;
+
+/// A study holds at most so many bytes: its table, its curves and its poses. Writing it takes about as much again.
+pub const MAX_STUDY_BYTES: usize = 2 << 30;
+
+/// Bytes of a number.
+const NUMBER: usize = size_of::<f64>();
+
+/// Columns that every table has besides those that are asked for: evidence.
+const EVIDENCE: usize = 5;
+
+/// Each curve of a plot, and each path, is held with its abscissa, in the result and in its picture.
+const HELD: usize = 4;
+
+/// Quantities that a choice shows besides those of the drives, at most.
+const SHOWN: usize = 4;
+
+/// Bytes that a row of a study takes, which asks for so many plots.
+pub(crate) fn row_bytes(model: &Model, asked: &Asked, plots: usize, forces: bool) -> usize {
+    let numbers = 1
+        + model.drives.len()
+        + asked.columns.len()
+        + EVIDENCE
+        + HELD * (asked.curves.len() + plots)
+        + 3 * model.links.len()
+        + 2 * model.points.len();
+    let note = size_of::<Option<String>>();
+    let arrows = if forces { arrows(model) } else { 0 };
+    numbers * NUMBER + note + size_of::<Frame>() + arrows * (size_of::<ForceArrow>() + 4 * NUMBER)
+}
+
+/// What may act on the links of a row: at each end of what joins them, and on them.
+fn arrows(model: &Model) -> usize {
+    let actions = &model.actions;
+    let between = model.points.len()
+        + model.joints.len()
+        + model.drives.len()
+        + actions.springs.len()
+        + actions.dampers.len();
+    2 * between + actions.loads.len() + model.links.len()
+}
+
+/// What a study holds: so many rows of so many bytes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Held {
+    /// Rows; of a circuit by steps of the drive, which tells them only once it is known, none.
+    pub rows: f64,
+    /// Bytes of a row.
+    pub row: usize,
+}
+
+impl Held {
+    /// Bytes in all.
+    pub fn bytes(self) -> f64 {
+        self.rows * self.row as f64
+    }
+}
+
+/// What a study will hold, before any of it is computed.
+pub fn study_bytes(model: &Model, study: &Study) -> Held {
+    match &study.kind {
+        StudyKind::Motion(motion) => bytes_of_motion(model, motion),
+        StudyKind::Forces(forces) => {
+            let mechanism = Mechanism::new(model);
+            let mut study = forces.clone();
+            if study.plots.is_empty() {
+                study.plots = standard_plots(&mechanism);
+            }
+            let asked = Asked::of_forces(&mechanism, &study);
+            held(
+                model,
+                &study,
+                row_bytes(model, &asked, study.plots.len(), true),
+            )
+        }
+        // Two directions of each counterweight.
+        StudyKind::Balance(choice) => bytes_of_choice(model, &choice.along, 2 * choice.on.len()),
+        // Stiffness and preload.
+        StudyKind::Spring(choice) => bytes_of_choice(model, &choice.along, 2),
+    }
+}
+
+/// What a study of motion will hold.
+pub(crate) fn bytes_of_motion(model: &Model, study: &MotionStudy) -> Held {
+    let asked = Asked::of_motion(model, study);
+    let held = held(
+        model,
+        study,
+        row_bytes(model, &asked, study.plots.len(), false),
+    );
+    match (study.circuit, &study.rows) {
+        (true, Rows::DriveStep(_)) => Held { rows: 0.0, ..held },
+        _ => held,
+    }
+}
+
+/// What a study holds that chooses something and tries so many units of it along its rows.
+fn bytes_of_choice(model: &Model, along: &MotionStudy, units: usize) -> Held {
+    // What is shown before and after, as columns and in pictures.
+    let shown = 2 * (SHOWN + model.drives.len()) * (1 + HELD);
+    let tried = units * model.drives.len().max(2);
+    let row = row_bytes(model, &Asked::default(), 0, true);
+    held(model, along, row + (shown + tried) * NUMBER)
+}
+
+fn held(model: &Model, study: &MotionStudy, row: usize) -> Held {
+    let rows = most(model, &study.rows, &model.parameter_values());
+    Held { rows, row }
+}
+
+/// Whether a study has room.
+///
+/// # Errors
+///
+/// `too-large`, with what it would take.
+pub fn room_for(model: &Model, study: &Study) -> Result<(), Vec<Diagnostic>> {
+    has_room(model, &study.name, study_bytes(model, study))
+}
+
+/// Nothing, where a study has room; or an error that says what is too much.
+pub(crate) fn has_room(model: &Model, name: &str, held: Held) -> Result<(), Vec<Diagnostic>> {
+    if held.bytes() <= MAX_STUDY_BYTES as f64 {
+        return Ok(());
+    }
+    let gib = f64::from(1 << 30);
+    let message = format!(
+        "study `{name}`: {:.0} rows of {} bytes each, with their poses, take {:.1} GiB",
+        held.rows,
+        held.row,
+        held.bytes() / gib
+    );
+    let most = MAX_STUDY_BYTES / held.row.max(1);
+    let diagnostic = Diagnostic::error("too-large", message)
+        .note(format!(
+            "a study holds at most {} GiB",
+            MAX_STUDY_BYTES >> 30
+        ))
+        .help(format!(
+            "ask for fewer rows, {most} at most, or for fewer columns and plots"
+        ));
+    let study = model.studies.iter().find(|s| s.name == name);
+    Err(vec![match study {
+        Some(study) => diagnostic.at(study.span.clone(), "this study"),
+        None => diagnostic,
+    }])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Silent, run};
+
+    fn model(studies: &str) -> Model {
+        let text = format!(
+            "units = {{ length = \"mm\", angle = \"deg\" }}\n[links]\nframe = {{ A = [0, 0], D = [60, 0] }}\n\
+             crank = {{ A-B = 20 }}\ncoupler = {{ B-C = 50, mass = 1, inertia = \"0.001 kg m^2\" }}\nrocker = {{ D-C = 40 }}\n[drives]\n\
+             motor = {{ turns = \"crank\", from = 0, to = 360, speed = \"1 rad/s\" }}\n[assembly]\n\
+             C = \"left of B -> D\"\n{studies}"
+        );
+        let checked = Model::from_toml(&text, "x", &mut |_| Err(String::new()));
+        checked.expect("a model").model
+    }
+
+    /// Bytes that a result really holds, its pictures aside.
+    fn counted(result: &crate::StudyResult) -> usize {
+        let table = &result.table;
+        let mut numbers: usize = table.with_evidence().iter().map(|c| c.values.len()).sum();
+        for figure in &result.figures {
+            numbers += match figure {
+                crate::Figure::Curves { curves, limits } => {
+                    curves.iter().chain(limits).map(|c| c.values.len()).sum()
+                }
+                crate::Figure::Hodograph(_, [x, y]) => x.values.len() + y.values.len(),
+                crate::Figure::Path(_) => 0,
+            };
+        }
+        let mut bytes = numbers * NUMBER + table.notes.len() * size_of::<Option<String>>();
+        for frame in &result.frames {
+            bytes += size_of::<Frame>();
+            bytes += (3 * frame.links.len() + 2 * frame.points.len()) * NUMBER;
+            let names: usize = frame.arrows.iter().map(|a| a.name.len()).sum();
+            bytes += frame.arrows.len() * size_of::<ForceArrow>() + names;
+        }
+        bytes
+    }
+
+    #[test]
+    fn what_is_reckoned_is_no_less_than_what_is_held_and_not_much_more() {
+        for kind in [
+            "kind = \"motion\"",
+            "kind = \"motion\"\nstep = 0.5\nplot = [\"path(C)\", \"angle(rocker)\"]",
+            "kind = \"motion\"\ncircuit = true\nrows = 500",
+            "kind = \"motion\"\nstep = \"10 ms\"",
+            "kind = \"forces\"\nrows = 100",
+        ] {
+            let model = model(&format!("[studies.a]\n{kind}\n"));
+            let study = &model.studies[0];
+            let result = run(&model, study, &mut Silent).expect("a result");
+            let (held, counted) = (study_bytes(&model, study).bytes(), counted(&result) as f64);
+            assert!(held >= counted, "{kind}: {held} < {counted}");
+            assert!(held < 4.0 * counted, "{kind}: {held} > 4 * {counted}");
+        }
+    }
+
+    #[test]
+    fn too_much_is_told_at_once() {
+        for kind in [
+            "kind = \"motion\"\nrows = 10000000",
+            "kind = \"forces\"\nrows = 5000000",
+            "kind = \"motion\"\nrows = 10000000\ncircuit = true",
+            "kind = \"motion\"\nstep = 0.00005\ncircuit = true",
+            "kind = \"balance\"\non = [\"rocker\"]\nradius = 20\nstep = 0.00005",
+        ] {
+            let model = model(&format!("[studies.a]\n{kind}\n"));
+            let refused = run(&model, &model.studies[0], &mut Silent);
+            let codes: Vec<&str> = refused
+                .err()
+                .into_iter()
+                .flatten()
+                .map(|d| d.code)
+                .collect();
+            assert_eq!(codes, ["too-large"], "{kind}");
+        }
+    }
+}
