@@ -62,7 +62,7 @@ impl<F: ForceSource> Sampler<F> {
     pub(crate) fn between(&self, asked: Asked) -> Between {
         let known = self.measurer.statistics.iter();
         let on_intervals = |(statistic, measure, value): &KnownStatistic<f64>| {
-            (statistic.clone(), measure.clone(), interval(*value))
+            (*statistic, measure.clone(), interval(*value))
         };
         Between {
             asked,
@@ -107,7 +107,7 @@ impl Between {
         let clock = bounded([&a.abscissa.clock, &b.abscissa.clock], times, over);
         let places = [a, b].map(|state| state.abscissa.clock.coefficient(0));
         let path = clock.coefficient(0);
-        let along = |from: &Series<f64>, to: &Series<f64>| bounded([from, to], places, path);
+        let along = |ends: [&Series<f64>; 2]| bounded(ends, places, path);
         let alone = a.alone.iter().zip(&b.alone).map(|(a, b)| {
             let (a, b) = (a.as_ref()?, b.as_ref()?);
             Some(between_poses(a, b, &apart))
@@ -117,7 +117,7 @@ impl Between {
             time: over,
             poses: between_poses(&a.poses, &b.poses, &along),
             coordinates: (a.coordinates.iter().zip(&b.coordinates))
-                .map(|(a, b)| along(a, b))
+                .map(|(a, b)| along([a, b]))
                 .collect(),
             near: a.near.clone(),
             alone: alone.collect(),
@@ -134,15 +134,15 @@ impl Between {
 fn between_poses(
     a: &[Pose<Series<f64>>],
     b: &[Pose<Series<f64>>],
-    along: &dyn Fn(&Series<f64>, &Series<f64>) -> Series<Interval>,
+    along: &dyn Fn([&Series<f64>; 2]) -> Series<Interval>,
 ) -> Vec<Pose<Series<Interval>>> {
     let pairs = a.iter().zip(b);
     pairs
         .map(|(a, b)| Pose {
-            x: along(&a.x, &b.x),
-            y: along(&a.y, &b.y),
-            c: along(&a.c, &b.c),
-            s: along(&a.s, &b.s),
+            x: along([&a.x, &b.x]),
+            y: along([&a.y, &b.y]),
+            c: along([&a.c, &b.c]),
+            s: along([&a.s, &b.s]),
         })
         .collect()
 }
@@ -181,7 +181,7 @@ fn bounded(series: [&Series<f64>; 2], at: [f64; 2], over: Interval) -> Series<In
 }
 
 /// Two series that run along another drive than the one by which their places differ.
-fn apart(a: &Series<f64>, b: &Series<f64>) -> Series<Interval> {
+fn apart([a, b]: [&Series<f64>; 2]) -> Series<Interval> {
     Jet::from_coefficients(std::array::from_fn(|k| {
         let (a, b) = (a.coefficient(k), b.coefficient(k));
         let differ = (a - b).abs();
