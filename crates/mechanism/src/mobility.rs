@@ -3,6 +3,7 @@
 use kempe_linear::{SparseRow, rank};
 
 use crate::Mechanism;
+use crate::blocks::Row;
 use crate::branch::Branch;
 use crate::configuration::Configuration;
 use crate::constraint::{Joint, Pairs};
@@ -26,6 +27,37 @@ pub struct Mobility {
     pub by_rank: Option<usize>,
     /// Rows of the joints' constraints beyond their rank at the pose.
     pub redundant_rows: Option<usize>,
+    /// How far redundant constraints miss each other, in mechanism sizes and rad, where they are taken to agree though they do
+    /// not quite: exactly as its dimensions are, the mechanism has less freedoms.
+    pub misfit: Option<f64>,
+}
+
+impl Mobility {
+    /// The same with the constraints that the plan leaves out taken to agree with the others, which they miss by `misfit`.
+    pub fn without_surplus(
+        mut self,
+        design: &Design<f64>,
+        (state, branch): (&Configuration<f64>, &Branch),
+        misfit: f64,
+    ) -> Self {
+        let mechanism = &*design.mechanism;
+        let surplus = surplus_of(mechanism);
+        let rows = rows_of(mechanism, mechanism.joint_constraints);
+        let total = rows_of(mechanism, mechanism.joint_constraints).count();
+        let kept = rows.filter(|row| !surplus.contains(row));
+        let rank = rank_of(design, branch, state, kept);
+        self.by_rank = Some(3 * (mechanism.bodies - 1) - rank);
+        self.redundant_rows = Some(total - rank);
+        self.misfit = Some(misfit);
+        self
+    }
+}
+
+/// The rows that the plan leaves out because others say the same.
+pub fn surplus_of(mechanism: &Mechanism) -> Vec<Row> {
+    let decomposition = &mechanism.plan.decomposition;
+    let in_blocks = decomposition.blocks.iter().flat_map(|b| &b.surplus);
+    in_blocks.chain(&decomposition.surplus).copied().collect()
 }
 
 /// Counts and, with a pose, measures the mobility.
@@ -46,6 +78,7 @@ pub fn mobility(design: &Design<f64>, pose: Option<(&Configuration<f64>, &Branch
         count: 3 * (links - 1) - 2 * pairs.lower - pairs.higher,
         by_rank: None,
         redundant_rows: None,
+        misfit: None,
     };
     if let Some((state, branch)) = pose.filter(|(s, _)| s.poses.iter().all(is_finite)) {
         let rows: usize = mechanism.constraints[..mechanism.joint_constraints]
@@ -62,9 +95,21 @@ pub fn mobility(design: &Design<f64>, pose: Option<(&Configuration<f64>, &Branch
 /// Rank of the joints' scaled constraint Jacobian at a pose.
 fn joint_rank(design: &Design<f64>, branch: &Branch, state: &Configuration<f64>) -> usize {
     let mechanism = &*design.mechanism;
+    let rows = rows_of(mechanism, mechanism.joint_constraints);
+    rank_of(design, branch, state, rows)
+}
+
+/// Rank of some rows of the scaled constraint Jacobian at a pose.
+fn rank_of(
+    design: &Design<f64>,
+    branch: &Branch,
+    state: &Configuration<f64>,
+    rows: impl IntoIterator<Item = Row>,
+) -> usize {
+    let mechanism = &*design.mechanism;
     let size = design.size();
     let situation = state.situation(design, branch);
-    let joints = Rows::new(rows_of(mechanism, mechanism.joint_constraints));
+    let joints = Rows::new(rows);
     let columns = Columns::new(unknowns_of(mechanism));
     let mut rows: Vec<SparseRow> = vec![Vec::with_capacity(6); joints.count];
     joints.scaled_jacobian(&columns, mechanism, &situation, size, |row, to, value| {

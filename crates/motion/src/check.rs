@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use kempe_mechanism::assur::{AssurGroup, assur_groups};
-use kempe_mechanism::mobility::{Mobility, mobility, state_at};
+use kempe_mechanism::mobility::{Mobility, mobility, state_at, surplus_of};
 use kempe_mechanism::structure::{BodyId, Source};
 use kempe_mechanism::{Branch, Design};
 
@@ -17,6 +17,9 @@ use crate::temporary_drives::hold;
 
 /// A cylinder or slide is followed this many mechanism sizes from its start when its reach is asked for.
 const FAR: f64 = 20.0;
+/// Constraints that miss each other by no more than this along a motion, in mechanism sizes and rad, agree as far as rows of a
+/// table are taken to close.
+const AGREED: f64 = 1e-9;
 /// Shortest length of a cylinder that is tried, in mechanism sizes.
 const SHORTEST: f64 = 1e-6;
 
@@ -134,7 +137,39 @@ pub fn mobility_at_start(motion: &Motion) -> Mobility {
     let mut coordinates = vec![0.0; mechanism.model.drives.len()];
     motion.path.coordinates(motion.anchor, &mut coordinates);
     let state = state_at(mechanism, &chosen.poses, &coordinates);
-    mobility(design, Some((&state, &chosen.branch)))
+    let found = mobility(design, Some((&state, &chosen.branch)));
+    let driven = mechanism.model.drives.len() + mechanism.plan.decomposition.idle.len();
+    match surplus_misfit(motion) {
+        // It moves all the same, as those who repeat others nearly agree with them.
+        Some(misfit) if found.by_rank.is_some_and(|rank| rank < driven) && misfit <= AGREED => {
+            found.without_surplus(design, (&state, &chosen.branch), misfit)
+        }
+        _ => found,
+    }
+}
+
+/// How far the constraints that the plan leaves out miss the others at the ends and in the middle of a motion, in mechanism
+/// sizes and rad; `None` where there are none.
+fn surplus_misfit(motion: &Motion) -> Option<f64> {
+    let (mechanism, size) = (motion.mechanism(), motion.size());
+    let surplus = surplus_of(mechanism);
+    if surplus.is_empty() {
+        return None;
+    }
+    let (low, high) = motion.reached();
+    let mut solver = motion.solver::<f64>();
+    let mut misfit = 0.0_f64;
+    for p in [low, 0.5 * (low + high), high] {
+        motion.branch_at(p, &mut solver.branch);
+        motion.path.coordinates(p, &mut solver.coordinates);
+        solver.run(motion, &motion.design);
+        let situation = solver.state.situation(&motion.design, &solver.branch);
+        for row in &surplus {
+            let residual = situation.residual(&mechanism.constraints[row.constraint].0)[row.row];
+            misfit = misfit.max(residual.abs() / size);
+        }
+    }
+    Some(misfit)
 }
 
 /// How far the moving drive can go from its start. Where the demanded motion ends by itself, that is its end; beyond an end

@@ -25,6 +25,8 @@ pub enum NotProved {
     Singular,
     /// No box was found that Krawczyk's operator maps into itself: singular, or the interval is too wide.
     Wide,
+    /// The work allowed was used up before the interval was cut narrow enough.
+    Spent,
     /// The pose is proved but for redundant constraints, whose agreement can not be proved.
     Redundant {
         /// How many rows.
@@ -42,6 +44,10 @@ impl fmt::Display for NotProved {
         match self {
             Self::NotReached => write!(f, "the motion does not reach this place"),
             Self::Break => write!(f, "a drive's law changes its piece inside the interval"),
+            Self::Spent => write!(
+                f,
+                "the work allowed for a proof is used up: prove a shorter range"
+            ),
             Self::NoPose => write!(f, "no pose was found that could be proved"),
             Self::Modes { step, .. } => {
                 write!(

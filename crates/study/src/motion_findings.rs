@@ -70,7 +70,12 @@ pub(crate) fn of_freedoms(design: &Design<f64>, mobility: &Mobility) -> Vec<Diag
                         mobility.count
                     ),
                 )
-                .note("it moves because of its special dimensions; real links of other lengths would jam"),
+                .note(match mobility.misfit {
+                    Some(misfit) => format!(
+                        "they miss each other by {misfit:.1e} of the mechanism's size: exactly as its dimensions are, it is locked"
+                    ),
+                    None => "it moves because of its special dimensions; real links of other lengths would jam".to_owned(),
+                }),
             );
         }
     }

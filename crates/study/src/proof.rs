@@ -20,7 +20,7 @@ use kempe_motion::progress::{Done, Progress};
 pub struct Proof {
     /// What runs: the drive's name, or `time`.
     pub along: String,
-    /// The range looked at, with units.
+    /// The range that the drives' laws demand, with units.
     pub range: String,
     /// Proved part of the range, 0 to 1.
     pub fraction: f64,
@@ -85,13 +85,26 @@ pub fn prove(model: &Model, progress: &mut dyn Progress) -> Result<Proof, Vec<Di
             expected: gap.event.is_some(),
         }
     });
+    let (low, high) = motion.demanded;
+    let reached = match high > low {
+        true => (found.range.1 - found.range.0) / (high - low),
+        false => 1.0,
+    };
+    let beyond = [(low, found.range.0), (found.range.1, high)].into_iter();
+    let beyond =
+        beyond.filter(|(from, to)| from < to && !(motion.reaches(*from) && motion.reaches(*to)));
+    let beyond = beyond.map(|(from, to)| Unproved {
+        place: range(from, to),
+        reason: "the motion does not come there".to_owned(),
+        expected: false,
+    });
     Ok(Proof {
         along: along.to_owned(),
-        range: range(found.range.0, found.range.1),
+        range: range(low, high),
         // Nothing proved is a plain 0, however it was summed up.
-        fraction: found.fraction.clamp(0.0, 1.0) + 0.0,
+        fraction: (found.fraction * reached).clamp(0.0, 1.0) + 0.0,
         runs: found.runs.iter().map(|(a, b)| range(*a, *b)).collect(),
-        gaps: gaps.collect(),
+        gaps: gaps.chain(beyond).collect(),
         redundant: found.redundant,
         finished: found.finished,
     })

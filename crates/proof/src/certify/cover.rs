@@ -6,6 +6,7 @@ use kempe_motion::trace::Path;
 
 use super::{CertifiedMotion, Certifier};
 use crate::krawczyk::Tube;
+use crate::not_proved::NotProved;
 
 /// How finely a motion is cut up for its proof.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,12 +72,14 @@ impl Certifier {
                 }
                 Err(_)
                     if to - from > subdivision.narrowest * scale
-                        && tries < TRIES
                         && from < middle
                         && middle < to =>
                 {
-                    stack.extend([(middle, to), (from, middle)]);
-                    continue;
+                    if tries < TRIES {
+                        stack.extend([(middle, to), (from, middle)]);
+                        continue;
+                    }
+                    it.take_gap(from, to, NotProved::Spent);
                 }
                 Err(reason) => it.take_gap(from, to, reason),
             }
