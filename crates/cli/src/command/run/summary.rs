@@ -2,13 +2,19 @@
 
 use std::path::{Path, PathBuf};
 
-use kempe_study::{StudyOutcome, encode};
+use kempe_number::text::significant;
+use kempe_study::{StudyOutcome, StudyResult, encode};
 use serde_json::{Value, json};
 
 use super::write::REPORT;
 use crate::files::Loaded;
 use crate::names;
 use crate::say::Speaker;
+
+/// Digits of what people read; files and JSON have all.
+const DIGITS: usize = 6;
+/// What is less than this part of the largest of its column is rounding.
+const NOTHING: f64 = 1e-12;
 
 /// What a run found, for people.
 pub fn summary(
@@ -48,11 +54,14 @@ pub fn summary(
             .max()
             .unwrap_or(0);
         for scalar in &result.scalars {
-            let value = kempe_number::text::significant(scalar.value, 12);
+            let value = significant(scalar.value, DIGITS);
             out.push_str(
                 format!("  {:width$}  {value} {}", scalar.name, scalar.unit.text()).trim_end(),
             );
             out.push('\n');
+        }
+        if folder.is_none() {
+            out.push_str(&aligned(extremes(result).iter(), 2));
         }
         for listing in &result.listings {
             out.push_str(&format!("  {}\n", listing.title));
@@ -62,6 +71,9 @@ pub fn summary(
         for event in &result.events {
             out.push_str(&format!("  {}: {}\n", event.place, event.label));
         }
+    }
+    if folder.is_none() && outcomes.iter().any(|o| o.result.is_ok()) {
+        out.push_str("nothing written: --out FOLDER keeps tables, pictures and a report\n");
     }
     if let (Some(folder), false) = (folder, files.is_empty()) {
         out.push_str(&format!(
@@ -75,6 +87,44 @@ pub fn summary(
         ));
     }
     out
+}
+
+/// The smallest and largest value of every column in its rows, and where they stand.
+fn extremes(result: &StudyResult) -> Vec<Vec<String>> {
+    let Some(along) = result.abscissa() else {
+        return Vec::new();
+    };
+    let at = format!("at {}", along.head());
+    let head = ["in the rows", "smallest", &at, "largest", &at];
+    let mut rows = vec![head.map(str::to_owned).to_vec()];
+    for column in result
+        .table
+        .columns
+        .iter()
+        .filter(|c| c.name != along.name && c.name != "time")
+    {
+        let size = column
+            .values
+            .iter()
+            .fold(0.0, |size: f64, v| size.max(v.abs()));
+        let text = |value: f64| match value.abs() <= NOTHING * size {
+            true => "0".to_owned(),
+            false => significant(value, DIGITS),
+        };
+        let mut row = vec![column.head()];
+        for best in [f64::lt, f64::gt] {
+            let values = column.values.iter().copied().enumerate();
+            let found = values.filter(|(_, v)| !v.is_nan());
+            let found = found.reduce(|a, b| if best(&b.1, &a.1) { b } else { a });
+            let place = |row: usize| along.values.get(row).copied().unwrap_or(f64::NAN);
+            row.extend(match found {
+                Some((index, value)) => [text(value), significant(place(index), DIGITS)],
+                None => ["n/a", ""].map(str::to_owned),
+            });
+        }
+        rows.push(row);
+    }
+    rows
 }
 
 /// Rows of words with their columns below each other.
