@@ -3,6 +3,7 @@
 use kempe_units::{Dimension, Expr, Issue, Resolver, Unit, check, check_as, format_digits, parse};
 
 use crate::bound::{Bound, Keeps};
+use crate::decimal::torn;
 use crate::diagnostic::{Diagnostic, Label};
 use crate::document::{Node, Text, Value};
 use crate::geometry::value;
@@ -241,15 +242,27 @@ impl Context<'_> {
         }
     }
 
+    /// Tells that a list has not two entries.
+    pub fn not_two(&mut self, node: &Node, items: &[Node], message: String, help: &str) {
+        let d = Diagnostic::error("wrong-type", format!("{message}, found {}", items.len()));
+        let torn = torn(items).filter(|_| items.len() > 2);
+        self.push(match torn {
+            Some((at, meant)) => d
+                .at(at, "two values")
+                .help(format!("decimals have a point: {meant}")),
+            None => d.at(node.span.clone(), "").help(help),
+        });
+    }
+
     /// A pair: `[x, y]`, or `[r, angle]` when the second is an angle.
     pub fn place(&mut self, node: &Node, what: &str) -> Option<Place> {
         let items = self.array(node, what, "[0, 20] or [\"20 mm\", \"30 deg\"]")?;
         let [first, second] = items else {
-            let count = items.len();
-            self.push(
-                Diagnostic::error("wrong-type", format!("{what} has two values, found {count}"))
-                    .at(node.span.clone(), "")
-                    .help("write [x, y], or [radius, angle] with the angle as a string such as \"30 deg\""),
+            self.not_two(
+                node,
+                items,
+                format!("{what} has two values"),
+                "write [x, y], or [radius, angle] with the angle as a string such as \"30 deg\"",
             );
             return None;
         };
