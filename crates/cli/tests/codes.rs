@@ -20,7 +20,8 @@ const GUARD: &str = "no small file is known to come to it";
 #[rustfmt::skip]
 const WITHOUT: &[(&str, &[&str])] = &[
     (COMMAND_LINE, &[
-        "bad-case", "bad-request", "cannot-draw", "cannot-write", "file-exists", "no-file", "not-written", "stopped",
+        "bad-case", "bad-request", "cannot-draw", "cannot-write", "file-exists", "folder-busy", "no-file", "not-written", "own-input", "partial-result",
+        "stopped",
         "unknown-picture",
     ]),
     (BUILT, &[
@@ -33,8 +34,8 @@ const WITHOUT: &[(&str, &[&str])] = &[
         "another-design", "no-time", "not-on-the-motion", "not-reached", "not-the-path", "settled-parameter", "wrong-length",
     ]),
     (GUARD, &[
-        "assemblies-incomplete", "branches-entangled", "circuit-open", "friction-at-rest", "friction-not-converged",
-        "jammed", "locked", "not-balanced", "routes-differ", "rows-open", "self-locking",
+        "assemblies-incomplete", "branches-entangled", "changes-too-fast", "circuit-open", "friction-at-rest", "friction-not-converged",
+        "jammed", "locked", "not-balanced", "not-settled", "routes-differ", "rows-open", "self-locking",
     ]),
 ];
 

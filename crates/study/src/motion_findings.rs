@@ -102,7 +102,7 @@ pub(crate) fn of_freedoms(design: &Design<f64>, mobility: &Mobility) -> Vec<Diag
             finding,
             &mechanism.model,
             mechanism,
-            &idle,
+            idle,
             otherwise,
         ));
     }
