@@ -6,6 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use annotate_snippets::renderer::DecorStyle;
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use kempe_model::{Diagnostic, Severity};
+use kempe_number::text::{is_hidden, visible};
 use serde_json::Value;
 
 use crate::exit::Exit;
@@ -58,10 +59,8 @@ impl Speaker {
                 continue;
             }
             if !self.json && (!self.quiet || diagnostic.severity == Severity::Error) {
-                complain(&format!(
-                    "{}\n\n",
-                    rendered(&diagnostic, &self.file, &self.text)
-                ));
+                let text = rendered(&diagnostic, &self.file, &self.text);
+                put_error(&format!("{text}\n\n"));
             }
             self.told.push(diagnostic);
         }
@@ -71,7 +70,7 @@ impl Speaker {
     pub fn insist(&mut self, diagnostic: &Diagnostic) {
         if self.json || (self.quiet && !self.strict) {
             let text = rendered(diagnostic, &self.file, &self.text);
-            complain(&format!("{text}\n\n"));
+            put_error(&format!("{text}\n\n"));
         }
         self.tell(std::slice::from_ref(diagnostic));
     }
@@ -102,19 +101,29 @@ impl Speaker {
     }
 }
 
-/// Prints JSON on the standard output.
+/// Prints JSON on the standard output, what a terminal would obey escaped as JSON does.
 pub fn print_json(value: &Value) {
-    put(&format!(
-        "{}\n",
-        serde_json::to_string_pretty(value).unwrap_or_default()
-    ));
+    let text = serde_json::to_string_pretty(value).unwrap_or_default();
+    let mut out = String::with_capacity(text.len() + 1);
+    for c in text.chars() {
+        match is_hidden(c) {
+            true => out.push_str(&format!("\\u{:04x}", u32::from(c))),
+            false => out.push(c),
+        }
+    }
+    put_whole(&(out + "\n"));
 }
 
 /// Whether something could not be put on the standard output.
 static LOST: AtomicBool = AtomicBool::new(false);
 
-/// Prints text on the standard output; a reader that went away is no error.
+/// Prints text for people on the standard output, nothing in it that a terminal obeys; a reader that went away is no error.
 pub fn put(text: &str) {
+    put_whole(&visible(text));
+}
+
+/// Prints text on the standard output as it is.
+fn put_whole(text: &str) {
     let mut out = std::io::stdout().lock();
     arrived(out.write_all(text.as_bytes()).and_then(|()| out.flush()));
 }
@@ -145,12 +154,45 @@ fn arrived(written: std::io::Result<()>) {
     let message = format!("the standard output cannot be written: {}", plain(&error));
     let diagnostic = Diagnostic::error("cannot-write", message)
         .help("make room on the disk, or send the output elsewhere");
-    complain(&format!("{}\n\n", rendered(&diagnostic, "", "")));
+    put_error(&format!("{}\n\n", rendered(&diagnostic, "", "")));
 }
 
-/// Prints text on the error stream; a reader that went away is no error.
+/// Prints text for people on the error stream, nothing in it that a terminal obeys; a reader that went away is no error.
 pub fn complain(text: &str) {
+    put_error(&visible(text));
+}
+
+/// Prints text with the colours that we gave it on the error stream.
+fn put_error(text: &str) {
     let _ = std::io::stderr().lock().write_all(text.as_bytes());
+}
+
+/// A diagnostic in which everything shows.
+fn shown(diagnostic: &Diagnostic) -> Diagnostic {
+    let mut it = diagnostic.clone();
+    let tame = |text: &mut String| *text = visible(text).into_owned();
+    tame(&mut it.message);
+    it.help.iter_mut().for_each(tame);
+    it.notes.iter_mut().for_each(tame);
+    for label in &mut it.labels {
+        tame(&mut label.text);
+        if let Some(source) = &mut label.source {
+            tame(&mut source.name);
+            source.text = in_place(&source.text);
+        }
+    }
+    it
+}
+
+/// A text into which places point: what does not show gives way to signs of as many bytes.
+fn in_place(text: &str) -> String {
+    let stand_in = |c: char| match c.len_utf8() {
+        _ if !is_hidden(c) || c == '\r' => c,
+        1 => '?',
+        2 => '¿',
+        _ => '\u{fffd}',
+    };
+    text.chars().map(stand_in).collect()
 }
 
 /// Whether the error stream is a terminal that takes colours.
@@ -170,8 +212,12 @@ fn uncoloured(line: &str) -> String {
     plain.collect()
 }
 
-/// A diagnostic as text over its file.
+/// A diagnostic as text over its file, nothing in it that a terminal obeys but our colours.
 fn rendered(diagnostic: &Diagnostic, file: &str, text: &str) -> String {
+    drawn(&shown(diagnostic), &visible(file), &in_place(text))
+}
+
+fn drawn(diagnostic: &Diagnostic, file: &str, text: &str) -> String {
     let level = match diagnostic.severity {
         Severity::Warning => Level::WARNING,
         _ => Level::ERROR,

@@ -117,6 +117,40 @@ impl ForceNote {
         }
     }
 
+    /// What to do about it.
+    pub fn remedy(&self) -> &'static str {
+        match self {
+            Self::Singular | Self::IllConditioned { .. } => {
+                "keep the drive away from that place, or let another drive or spring carry the mechanism through it"
+            }
+            Self::NotUnique(_) => {
+                "take out what is said twice, such as a parallel link, if the load of each joint is wanted; their sum is right"
+            }
+            Self::RoutesDiffer { .. } | Self::Unbalanced { .. } => {
+                "do not rely on these rows: look for loads of very different size, or a pose near a singular one"
+            }
+            Self::Jammed { .. } | Self::SelfLocking(_) => {
+                "lessen the friction, or let the load act under a better angle"
+            }
+            Self::FrictionNotConverged { .. } => {
+                "do not rely on these rows: lessen the friction, or take smaller steps in what loads depend on"
+            }
+            Self::AtRest => "give the drive a speed, so that friction knows its way",
+            Self::IdleBodyDriven { .. } => {
+                "hold the link by another joint, or leave out what turns it"
+            }
+            Self::MotorTooWeak { .. } => "choose a stronger motor, a lower speed or a smaller load",
+            Self::CylinderTooWeak { .. } => {
+                "choose a larger bore or a higher supply pressure, or a smaller load"
+            }
+            Self::FlowTooSmall { .. } => "choose a larger flow, a smaller bore or a lower speed",
+            Self::NoLoad { .. } => {
+                "give the load a value everywhere: look for a quotient by zero, or a root or an arc of a number outside its range"
+            }
+            Self::NoTime => "ask for forces where the drives move in time",
+        }
+    }
+
     /// How bad it is among notes of its code; 0 where there is no more or less.
     pub fn severity(&self) -> f64 {
         match self {

@@ -40,6 +40,10 @@ pub enum GroupKind {
     Turned,
     /// A gear.
     Gear,
+    /// A wheel of a belt or chain.
+    BeltWheel,
+    /// A pinion turned by its rack, or a rack's other side.
+    Pinion,
     /// A bar between two pins that are placed already.
     RedundantBar,
     /// A link and a cylinder.
@@ -144,13 +148,13 @@ fn classify(mechanism: &Mechanism, bodies: &[BodyId], steps: &[usize]) -> (u32, 
     match links.len() {
         0 => (1, GroupKind::PinInSlot),
         1 if links != bodies => (2, GroupKind::LinkInSlot),
-        1 => of_one_link(&steps),
+        1 => of_one_link(mechanism, &steps),
         2 => (2, of_two_links(&steps)),
         n => (contour_class(mechanism, &links), GroupKind::Larger(n)),
     }
 }
 
-fn of_one_link(steps: &[&Step]) -> (u32, GroupKind) {
+fn of_one_link(mechanism: &Mechanism, steps: &[&Step]) -> (u32, GroupKind) {
     if steps.iter().any(|s| matches!(s, Step::Hold { .. })) {
         return (1, GroupKind::Idle);
     }
@@ -159,7 +163,11 @@ fn of_one_link(steps: &[&Step]) -> (u32, GroupKind) {
         .filter(|s| !matches!(s, Step::Turn { .. } | Step::Pin { .. }));
     match telling.next() {
         None => (1, GroupKind::Turned),
-        Some(Step::Gear { .. }) => (1, GroupKind::Gear),
+        Some(Step::Gear { constraint, .. }) => match mechanism.constraints[*constraint].0 {
+            Constraint::Belt(_) => (1, GroupKind::BeltWheel),
+            Constraint::Rack(_) => (1, GroupKind::Pinion),
+            _ => (1, GroupKind::Gear),
+        },
         Some(Step::TwoPins { .. }) => (2, GroupKind::RedundantBar),
         Some(Step::Swing(Swing { condition, .. })) => match condition {
             Condition::Radius { .. } => (2, GroupKind::RrrOfCylinder),

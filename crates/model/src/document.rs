@@ -2,7 +2,8 @@
 
 use toml::de::{DeTable, DeValue};
 
-use crate::diagnostic::{Diagnostic, line_at};
+use crate::decimal::comma;
+use crate::diagnostic::Diagnostic;
 use crate::ids::Span;
 use crate::mend::{Broken, tell, unclosed, without};
 
@@ -22,8 +23,6 @@ pub(crate) enum Value {
     Date,
     Array(Vec<Node>),
     Table(Table),
-    /// On a line that is not TOML.
-    Broken,
 }
 
 /// A string, with the way back from its characters to the file's bytes.
@@ -59,7 +58,6 @@ impl Node {
             Value::Date => "a date",
             Value::Array(_) => "an array",
             Value::Table(_) => "a table",
-            Value::Broken => "what is not TOML",
         }
     }
 }
@@ -161,75 +159,61 @@ fn hex_width(digits: Option<&str>) -> usize {
 
 /// Reads a TOML text. What is wrong with its syntax goes to `diagnostics`; the tree is what could be read anyway, and what could not
 /// is told besides.
-pub(crate) fn parse(text: &str, diagnostics: &mut Vec<Diagnostic>) -> (Table, Broken) {
-    let (root, errors) = DeTable::parse_recoverable(text);
+pub(crate) fn parse(text: &str, diagnostics: &mut Vec<Diagnostic>, broken: &mut Broken) -> Table {
     let twice = |e: &toml::de::Error| e.message().starts_with(DUPLICATE);
-    let open = match errors.iter().all(twice) {
-        true => Vec::new(),
-        false => unclosed(text),
-    };
-    let mut broken = Broken::default();
-    if open.len() > MAX_SYNTAX_ERRORS {
-        broken.beyond_telling();
+    let (mut root, mut errors) = DeTable::parse_recoverable(text);
+    let mut rest;
+    // what is not TOML is set aside, until the rest is
+    for round in 0..=ROUNDS {
+        if errors.iter().all(twice) {
+            break;
+        }
+        if round == ROUNDS {
+            broken.beyond_telling();
+            break;
+        }
+        let open = match round {
+            0 => unclosed(text),
+            _ => Vec::new(),
+        };
+        let count = match open.len() {
+            0 => errors.len(),
+            open => open,
+        };
+        if count > MAX_SYNTAX_ERRORS {
+            broken.beyond_telling();
+        }
+        for entry in open.iter().take(MAX_SYNTAX_ERRORS) {
+            broken.add(text, entry.lines.clone());
+            diagnostics.push(tell(entry, text));
+        }
+        let others = errors.iter().filter(|e| open.is_empty() && !twice(e));
+        for error in others.take(MAX_SYNTAX_ERRORS) {
+            let diagnostic = syntax_error(error, text);
+            let at = diagnostic.start();
+            // one error to an entry: the others follow from it
+            if !broken.holds(at) {
+                broken.add(text, at..at);
+                diagnostics.push(diagnostic);
+            }
+        }
+        let open = open.iter().map(|entry| &entry.lines);
+        rest = without(text, broken.lines().iter().chain(open));
+        (root, errors) = DeTable::parse_recoverable(&rest);
     }
-    for entry in open.iter().take(MAX_SYNTAX_ERRORS) {
-        broken.add(text, entry.lines.clone());
-        diagnostics.push(tell(entry, text));
+    // where a section's name is broken, its entries stand in another one
+    if !broken.in_doubt() {
+        let doubles = errors.iter().filter(|e| twice(e)).take(MAX_SYNTAX_ERRORS);
+        diagnostics.extend(doubles.map(|error| syntax_error(error, text)));
     }
-    if open.is_empty() {
-        let table = read(&root, &errors, text, diagnostics, &mut broken);
-        return (table, broken);
-    }
-    let rest = without(text, &open);
-    let (root, errors) = DeTable::parse_recoverable(&rest);
-    let table = read(&root, &errors, text, diagnostics, &mut broken);
-    (table, broken)
+    table(root.get_ref(), text)
 }
+
+/// A text is read so often at most, each time without the lines that could not be read before.
+const ROUNDS: usize = 4;
 
 /// How the message on a key that is given twice starts.
 const DUPLICATE: &str = "duplicate key";
-
-fn read(
-    root: &toml::Spanned<DeTable<'_>>,
-    errors: &[toml::de::Error],
-    text: &str,
-    diagnostics: &mut Vec<Diagnostic>,
-    broken: &mut Broken,
-) -> Table {
-    // one error to a line: the others of the line follow from it
-    let mut last_line = None;
-    for error in errors.iter().take(MAX_SYNTAX_ERRORS) {
-        let diagnostic = syntax_error(error, text);
-        let line = line_at(text, diagnostic.start()).number;
-        if diagnostic.code == "toml-syntax" {
-            broken.add(text, diagnostic.start()..diagnostic.start());
-        }
-        if diagnostic.code != "toml-syntax" || last_line != Some(line) {
-            diagnostics.push(diagnostic);
-        }
-        last_line = Some(line);
-    }
-    let mut table = table(root.get_ref(), text);
-    if !broken.is_empty() {
-        forget(&mut table, broken);
-    }
-    table
-}
-
-/// What stands on a broken line is not what was meant.
-fn forget(table: &mut Table, broken: &Broken) {
-    fn forget_node(node: &mut Node, broken: &Broken) {
-        match &mut node.value {
-            Value::Table(table) => forget(table, broken),
-            Value::Array(items) => items.iter_mut().for_each(|item| forget_node(item, broken)),
-            _ if broken.holds(node.span.start) => node.value = Value::Broken,
-            _ => {}
-        }
-    }
-    for (_, node) in &mut table.entries {
-        forget_node(node, broken);
-    }
-}
 
 /// Syntax errors shown at most: after a few, the rest are consequences.
 const MAX_SYNTAX_ERRORS: usize = 20;
@@ -282,7 +266,7 @@ fn syntax_error(error: &toml::de::Error, text: &str) -> Diagnostic {
             .at(span, "the second one")
             .help("a name may be given once in a table: rename one of them, or join the two");
     }
-    if let Some(d) = strange_sign(&span, text) {
+    if let Some(d) = strange_sign(&span, text).or_else(|| comma(text, span.start)) {
         return d;
     }
     let quoted;
@@ -361,7 +345,7 @@ mod tests {
     use super::*;
 
     fn text_of(source: &str) -> (Text, String) {
-        let (root, _) = parse(source, &mut Vec::new());
+        let root = parse(source, &mut Vec::new(), &mut Broken::default());
         match &root.entries[0].1.value {
             Value::Text(t) => (t.clone(), source.to_owned()),
             other => panic!("{other:?}"),
@@ -390,10 +374,8 @@ mod tests {
     #[test]
     fn a_broken_line_does_not_hide_the_others() {
         let mut diagnostics = Vec::new();
-        let (root, _) = parse(
-            "a = 1\nb = \nc = 3\nc = 4\n[d]\ne = \"x\n f = 2\n",
-            &mut diagnostics,
-        );
+        let text = "a = 1\nb = \nc = 3\nc = 4\n[d]\ne = \"x\n f = 2\n";
+        let root = parse(text, &mut diagnostics, &mut Broken::default());
         assert!(diagnostics.len() >= 3, "{diagnostics:#?}");
         assert!(root.get("a").is_some() && root.get("d").is_some());
     }
@@ -402,7 +384,7 @@ mod tests {
     fn deep_nesting_is_refused_without_a_stack_overflow() {
         let mut diagnostics = Vec::new();
         let deep = format!("a = {}{}", "[".repeat(200_000), "]".repeat(200_000));
-        parse(&deep, &mut diagnostics);
+        parse(&deep, &mut diagnostics, &mut Broken::default());
         assert!(!diagnostics.is_empty());
     }
 }

@@ -7,6 +7,7 @@ use crate::diagnostic::Diagnostic;
 use crate::document::{self, Node, Table, Value};
 use crate::ids::Span;
 use crate::item::key;
+use crate::mend::Broken;
 use crate::outline::Outline;
 use crate::text_edit::TextEdit;
 
@@ -124,7 +125,7 @@ fn a_value(new: &str) -> Result<&str, Diagnostic> {
 /// The tree of a text that is TOML.
 fn read(text: &str) -> Result<Table, Diagnostic> {
     let mut found = Vec::new();
-    let (root, _) = document::parse(text, &mut found);
+    let root = document::parse(text, &mut found, &mut Broken::default());
     match found.into_iter().next() {
         Some(first) => Err(first),
         None => Ok(root),

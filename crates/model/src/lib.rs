@@ -4,6 +4,7 @@ mod bound;
 pub mod build;
 mod codes;
 mod complete;
+mod decimal;
 mod diagnostic;
 mod document;
 mod drive;

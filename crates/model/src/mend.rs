@@ -1,4 +1,4 @@
-//! What can be read of a file that is not TOML, and what must not be said of the rest.
+//! What can be read of a file of which a part is not TOML or is misnamed, and what must not be said of the rest.
 //!
 //! A bracket that is not closed swallows the lines behind it. Where a line shows that a new entry or section begins, the entry before
 //! it is set aside, and the rest of the file is read without it.
@@ -26,7 +26,13 @@ pub(crate) fn unclosed(text: &str) -> Vec<Unclosed> {
     let mut last = b' ';
     let mut many_lines: Option<&str> = None;
     let mut start = 0;
+    let mut behind = 0;
     for line in text.split_inclusive('\n') {
+        if start < behind {
+            // the rest of an entry that is set aside
+            start += line.len();
+            continue;
+        }
         let entry = |open: &[(u8, usize)]| {
             open.first().map_or(start, |(_, at)| {
                 text[..*at].rfind('\n').map_or(0, |i| i + 1)
@@ -68,8 +74,9 @@ pub(crate) fn unclosed(text: &str) -> Vec<Unclosed> {
                     match closing_quote(&line.as_bytes()[at + 1..], sign) {
                         Some(length) => at += length + 1,
                         None => {
-                            let lines = entry(&open)..start + line.len();
+                            let lines = entry(&open)..next_entry(text, start + line.len());
                             let at = start + at;
+                            behind = lines.end;
                             found.push(Unclosed {
                                 at: at..at + 1,
                                 lines,
@@ -85,7 +92,8 @@ pub(crate) fn unclosed(text: &str) -> Vec<Unclosed> {
                     let fits = |bracket: u8| (bracket == b'[') == (sign == b']');
                     match open.last().copied() {
                         Some((bracket, opened)) if !fits(bracket) => {
-                            let lines = entry(&open)..start + line.len();
+                            let lines = entry(&open)..next_entry(text, start + line.len());
+                            behind = lines.end;
                             found.push(Unclosed {
                                 at: opened..opened + 1,
                                 lines,
@@ -131,6 +139,33 @@ fn closing_quote(rest: &[u8], quote: u8) -> Option<usize> {
     None
 }
 
+/// Where the next entry or section begins, at this line or behind it: the lines up to there go on with one that is broken.
+pub(crate) fn next_entry(text: &str, mut at: usize) -> usize {
+    for line in text.get(at..).unwrap_or("").split_inclusive('\n') {
+        if begins_anew(line, b'[', b' ') {
+            break;
+        }
+        at += line.len();
+    }
+    at
+}
+
+/// Where the entry begins that a line goes on with: a line that is indented and begins nothing itself.
+fn entry_of(text: &str, mut at: usize) -> usize {
+    let start = at;
+    loop {
+        let line = text.get(at..).and_then(|rest| rest.lines().next());
+        let line = line.unwrap_or("");
+        if begins_anew(line, b'[', b' ') {
+            return at;
+        }
+        if at == 0 || !(line.starts_with([' ', '\t']) || line.is_empty()) {
+            return start;
+        }
+        at = text[..at - 1].rfind('\n').map_or(0, |i| i + 1);
+    }
+}
+
 /// Whether a line within a bracket can only be a new section or entry; `last` is the sign before it.
 pub(crate) fn begins_anew(line: &str, bracket: u8, last: u8) -> bool {
     let line = line.trim();
@@ -168,10 +203,10 @@ fn is_header(line: &str) -> bool {
 }
 
 /// The text without these entries: blanks stand in their place, so that every other byte keeps its own.
-pub(crate) fn without(text: &str, entries: &[Unclosed]) -> String {
+pub(crate) fn without<'a>(text: &str, entries: impl IntoIterator<Item = &'a Span>) -> String {
     let mut bytes = text.as_bytes().to_vec();
-    for entry in entries {
-        for byte in bytes.get_mut(entry.lines.clone()).into_iter().flatten() {
+    for lines in entries {
+        for byte in bytes.get_mut(lines.clone()).into_iter().flatten() {
             if !matches!(byte, b'\n' | b'\r') {
                 *byte = b' ';
             }
@@ -180,41 +215,45 @@ pub(crate) fn without(text: &str, entries: &[Unclosed]) -> String {
     String::from_utf8(bytes).unwrap_or_default()
 }
 
-/// The parts of a file that could not be read.
+/// The parts of a file that could not be read, or not as what they are meant to be.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Broken {
     /// Whole lines.
     lines: Vec<Span>,
     /// Tables of their own, `[studies.turn]`, with a broken line; any of their keys may be missing for it.
     tables: Vec<Span>,
-    /// Sections with a broken line.
-    sections: BTreeSet<String>,
     /// Names that stand on broken lines.
     words: BTreeSet<String>,
     /// The line of a section's name is broken: what follows stands in no section, or in another one.
     header: bool,
+    /// Names that are told to be wrong where they are declared.
+    misnamed: BTreeSet<String>,
+    /// A section is misspelt, so that all it says is lost.
+    section: bool,
+    /// No link stands for the frame, so that its points are lost.
+    frame: bool,
+    /// A link has not the points that it should have.
+    points: bool,
 }
 
 impl Broken {
-    /// Sets lines aside.
-    pub fn add(&mut self, text: &str, lines: Span) {
+    /// Sets lines aside, with those behind them that go on with the same entry; answers which.
+    pub fn add(&mut self, text: &str, lines: Span) -> Span {
         let start = text
             .get(..lines.start)
             .map_or(0, |before| before.rfind('\n').map_or(0, |i| i + 1));
-        let end = text
-            .get(lines.end..)
-            .and_then(|rest| rest.find('\n'))
-            .map_or(text.len(), |i| lines.end + i);
-        let end = if lines.end > start && text.as_bytes().get(lines.end - 1) == Some(&b'\n') {
-            lines.end
-        } else {
-            end
+        let whole = lines.end > start && text.as_bytes().get(lines.end - 1) == Some(&b'\n');
+        let line_end = || {
+            let rest = text.get(lines.end..).and_then(|rest| rest.find('\n'));
+            rest.map_or(text.len(), |i| lines.end + i + 1)
         };
+        let start = entry_of(text, start);
+        let end = next_entry(text, if whole { lines.end } else { line_end() });
         let here = text.get(start..end).unwrap_or("");
-        let is_name = |c: char| c.is_alphanumeric() || c == '_';
-        let words = here.split(|c| !is_name(c)).filter(|word| !word.is_empty());
-        self.words.extend(words.map(str::to_owned));
-        self.header |= here.trim_start().starts_with('[') && !here.contains('=');
+        self.words.extend(words(here).map(str::to_owned));
+        let first = here.lines().next().unwrap_or("");
+        let first = first.split('#').next().unwrap_or("").trim();
+        self.header |= (first.starts_with('[') || first.ends_with(']')) && !first.contains('=');
         self.lines.push(start..end);
         let (mut at, mut header, mut next) = (0, None, text.len());
         for line in text.split_inclusive('\n') {
@@ -227,17 +266,22 @@ impl Broken {
             }
             at += line.len();
         }
-        if let Some((at, name)) = header {
-            let name = name.split(']').next().unwrap_or("");
-            let (section, of_table) = match name.split_once('.') {
-                Some((section, _)) => (section, true),
-                None => (name, false),
-            };
-            self.sections.insert(section.trim().to_owned());
-            if of_table {
-                self.tables.push(at..next);
-            }
+        if let Some((at, name)) = header
+            && name.split(']').next().unwrap_or("").contains('.')
+        {
+            self.tables.push(at..next);
         }
+        start..end
+    }
+
+    /// What is set aside.
+    pub fn lines(&self) -> &[Span] {
+        &self.lines
+    }
+
+    /// Whether it is not sure in which section an entry stands.
+    pub fn in_doubt(&self) -> bool {
+        self.header
     }
 
     /// More is broken than is set aside here: nothing is sure that may follow from it.
@@ -245,9 +289,30 @@ impl Broken {
         self.header = true;
     }
 
-    /// Whether all could be read.
-    pub fn is_empty(&self) -> bool {
-        self.lines.is_empty()
+    /// A name is wrong where it is declared: those who use it as it is are not wrong besides.
+    pub fn misname(&mut self, name: &str) {
+        self.misnamed.extend(words(name).map(str::to_owned));
+    }
+
+    /// A section with these names is skipped for its own.
+    pub fn skip_section<'n>(&mut self, names: impl Iterator<Item = &'n str>) {
+        self.section = true;
+        self.words.extend(names.flat_map(words).map(str::to_owned));
+    }
+
+    /// No link stands for the frame.
+    pub fn lose_frame(&mut self) {
+        self.frame = true;
+    }
+
+    /// The points of a link could not be placed.
+    pub fn lose_points(&mut self) {
+        self.points = true;
+    }
+
+    /// Whether lines could not be read.
+    pub fn has_lines(&self) -> bool {
+        !self.lines.is_empty()
     }
 
     /// Whether a byte stands on a line that could not be read.
@@ -255,66 +320,96 @@ impl Broken {
         self.lines.iter().any(|lines| lines.contains(&at))
     }
 
-    /// Whether something said of the rest may be true only because of what could not be read.
+    /// Whether something said of the rest may be true only because of what could not be read. In doubt it may: the reader tells it
+    /// again, if it is true, once the file is TOML.
     pub fn may_cause(&self, d: &Diagnostic, text: &str) -> bool {
         let at = d.start();
         if at < text.len() && self.holds(at) {
             return true;
         }
-        let missing = MISSING.contains(&d.code);
-        if self.header && (missing || d.code == "unknown-key") {
+        if OF_A_TEXT.contains(&d.code) {
+            return false;
+        }
+        if OF_NAMES.contains(&d.code) && self.mention(&self.misnamed, d, text) {
             return true;
         }
-        if (missing || OF_A_TABLE.contains(&d.code)) && self.tables.iter().any(|t| t.contains(&at))
+        if (self.frame || self.points) && OF_POINTS.contains(&d.code)
+            || self.frame && d.message.starts_with("there is no point `")
         {
             return true;
         }
-        let in_section = |names: &[&str]| names.iter().any(|name| self.sections.contains(*name));
-        match d.code {
-            "no-frame" => in_section(&["links"]),
-            "no-drive" => in_section(&["drives"]),
-            "loose-link" => in_section(&["links", "joints", "drives"]),
-            "not-a-slider" => in_section(&["joints"]),
-            // these are told of a link by what stands in the link
-            "empty-link" | "not-placed" | "side-missing" => false,
-            _ if missing => self.names(d, text),
-            _ => false,
+        if self.lines.is_empty() && !self.section {
+            return false;
         }
+        let in_table = || self.tables.iter().any(|t| t.contains(&at));
+        self.header
+            || match d.code {
+                code if OF_AN_ENTRY.contains(&code) => false,
+                code if OF_A_TABLE.contains(&code) => in_table(),
+                code if OF_NAMES.contains(&code) => {
+                    in_table() || self.mention(&self.words, d, text)
+                }
+                _ => true,
+            }
     }
 
-    /// Whether a diagnostic names what stands on a broken line.
-    fn names(&self, d: &Diagnostic, text: &str) -> bool {
-        let is_name = |c: char| c.is_alphanumeric() || c == '_';
+    /// Whether a diagnostic names one of some words.
+    fn mention(&self, some: &BTreeSet<String>, d: &Diagnostic, text: &str) -> bool {
         let places = d.labels.iter().filter(|l| l.source.is_none());
         let marked = places.filter_map(|l| text.get(l.span.clone()));
         marked
             .chain([d.message.as_str()])
-            .flat_map(|text| text.split(|c| !is_name(c)))
-            .any(|word| self.words.contains(word))
+            .flat_map(words)
+            .any(|word| some.contains(word))
     }
 }
 
-/// Codes of what something missing may cause.
-const MISSING: &[&str] = &[
-    "ambiguous-transmission",
-    "empty-link",
-    "loose-link",
-    "missing-key",
-    "no-common-link",
-    "no-common-point",
-    "no-drive",
-    "no-frame",
-    "not-a-pin",
-    "not-a-slider",
-    "not-placed",
-    "point-not-on-link",
-    "side-missing",
-    "unknown-name",
-    "wrong-drive",
+/// The names in a text.
+fn words(text: &str) -> impl Iterator<Item = &str> {
+    let is_name = |c: char| c.is_alphanumeric() || c == '_';
+    text.split(move |c| !is_name(c)).filter(|w| !w.is_empty())
+}
+
+/// Codes of what is wrong with a text by itself, whatever stands around it.
+const OF_A_TEXT: &[&str] = &[
+    "bad-exponent",
+    "syntax",
+    "too-deep",
+    "too-long",
+    "unknown-function",
+    "unknown-unit",
 ];
 
-/// Codes of what a missing key of the same table may cause.
-const OF_A_TABLE: &[&str] = &["bad-law", "idle-key", "no-inertia"];
+/// Codes of what is wrong with an entry by itself, where its section is sure.
+const OF_AN_ENTRY: &[&str] = &[
+    "bad-choice",
+    "bad-name",
+    "bad-size",
+    "duplicate-name",
+    "unit-mismatch",
+    "unknown-key",
+    "unknown-study",
+    "wrong-arguments",
+    "wrong-type",
+];
+
+/// Codes of what is wrong with the entries of one table together.
+const OF_A_TABLE: &[&str] = &["empty-link", "not-placed", "side-missing"];
+
+/// Codes of what names something, and so may miss what stands on a broken line.
+const OF_NAMES: &[&str] = &["not-a-value", "unknown-name"];
+
+/// Codes of what is said of points and of the links that carry them, where names are right.
+const OF_POINTS: &[&str] = &[
+    "ambiguous-transmission",
+    "loose-link",
+    "no-common-link",
+    "no-common-point",
+    "not-a-pin",
+    "not-a-slider",
+    "point-not-on-link",
+    "same-link",
+];
 
 /// The error of what is not closed.
 pub(crate) fn tell(unclosed: &Unclosed, text: &str) -> Diagnostic {
@@ -382,6 +477,10 @@ mod tests {
     fn hostile_texts_are_walked_once() {
         let text = "[".repeat(100_000) + &"\na = {".repeat(1000) + "\"ä\n'";
         assert!(!unclosed(&text).is_empty());
-        assert_eq!(without(&text, &unclosed(&text)).len(), text.len());
+        let open = unclosed(&text);
+        assert_eq!(
+            without(&text, open.iter().map(|u| &u.lines)).len(),
+            text.len()
+        );
     }
 }

@@ -348,6 +348,7 @@ fn key_name(raw: &str) -> String {
 mod tests {
     use super::*;
     use crate::document::{Node, Table, Value, parse};
+    use crate::mend::Broken;
 
     /// Paths and places of the reader's tree, of what is no table under a header.
     fn tree(table: &Table, path: &[String], out: &mut Vec<(Vec<String>, Span)>) {
@@ -372,7 +373,7 @@ mod tests {
 
     fn as_the_reader(text: &str) {
         let mut found = Vec::new();
-        let (root, _) = parse(text, &mut found);
+        let root = parse(text, &mut found, &mut Broken::default());
         assert!(found.is_empty(), "{found:?}");
         let mut wanted = Vec::new();
         tree(&root, &[], &mut wanted);

@@ -102,16 +102,17 @@ impl Model {
             return Err(vec![too_large(text.len())]);
         }
         let mut cx = Context::new(name, files);
-        let (root, broken) = document::parse(text, &mut cx.found);
+        let root = document::parse(text, &mut cx.found, &mut cx.broken);
         let own = cx.found.len();
         sections::read(&mut cx, &root, overrides);
-        let mut found = cx.found;
-        if !broken.is_empty() {
-            // what may follow from a line that is not TOML is not told
-            let rest = found.split_off(own).into_iter();
-            let rest = rest.filter(|d| !broken.may_cause(d, text));
-            found.extend(rest.map(of_a_broken_file));
-        }
+        let (mut found, broken) = (cx.found, cx.broken);
+        // what may follow from what could not be read is not told
+        let rest = found.split_off(own).into_iter();
+        let rest = rest.filter(|d| !broken.may_cause(d, text));
+        found.extend(rest.map(|d| match broken.has_lines() {
+            true => of_a_broken_file(d),
+            false => d,
+        }));
         for label in found
             .iter_mut()
             .flat_map(|d| &mut d.labels)

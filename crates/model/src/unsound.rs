@@ -6,7 +6,7 @@
 use kempe_number::math;
 use kempe_units::{Unit, format_digits};
 
-use crate::bound::{Bound, Keeps};
+use crate::bound::{Bound, Keeps, beyond, remedy};
 use crate::diagnostic::Diagnostic;
 use crate::geometry::value;
 use crate::link::{Link, Place};
@@ -18,7 +18,7 @@ const OPEN: f64 = 1e-9;
 impl Model {
     /// What is wrong with parameter values (SI, in the model's order); nothing where a file with them would be read.
     ///
-    /// `not-finite`, `bad-size` and `triangle-open`, each labelled where the value stands in the file.
+    /// `not-finite`, `out-of-range`, `bad-size` and `triangle-open`, each labelled where the value stands in the file.
     pub fn unsound(&self, parameters: &[f64]) -> Vec<Diagnostic> {
         let broken = self
             .bounds
@@ -47,6 +47,11 @@ impl Bound {
                     "look for a division by zero, the root of a negative number or an overflow",
                 ),
             );
+        }
+        let positive = matches!(self.keeps, Keeps::Positive) && x > 0.0;
+        if let Some(how) = beyond(x, self.dimension).filter(|_| positive || x.abs() > 1.0) {
+            let message = format!("{} is {how} to be computed with", self.what);
+            return Some(finding("out-of-range", message).help(remedy(self.dimension)));
         }
         let wanted = match self.keeps {
             Keeps::Positive if x <= 0.0 => "must be positive",

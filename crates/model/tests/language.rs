@@ -258,3 +258,19 @@ fn everything_that_acts() {
     assert!(matches!(&study.plots[2], Plot::Hodograph(h) if h.name == "hodograph(C, coupler)"));
     assert!(matches!(&study.plots[3], Plot::Curves(both) if both.len() == 2));
 }
+
+/// The place of `at` is a value like any other: a bare number is in the file's unit.
+#[test]
+fn the_place_of_a_number_over_the_motion_is_in_the_files_unit() {
+    let measure = |angle: &str, place: &str| {
+        let text = format!(
+            "units = {{ angle = \"{angle}\" }}\n[links]\nframe = {{ A = [0, 0] }}\ncrank = {{ A-B = 1 }}\n\
+             [drives]\nmotor = {{ turns = \"crank\", speed = \"1 rad/s\" }}\n[measures]\nm = \"at(y(B), motor, {place})\"\n"
+        );
+        let read = kempe_model::Model::from_toml(&text, "at", &mut |_| Err(String::new()));
+        read.unwrap().model.measures[0].measure.clone()
+    };
+    assert_eq!(measure("rad", "0.5"), measure("deg", "0.5 rad"));
+    assert_eq!(measure("deg", "90"), measure("rad", "90 deg"));
+    assert_ne!(measure("rad", "90"), measure("deg", "90"));
+}

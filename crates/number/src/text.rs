@@ -1,5 +1,29 @@
 //! Numbers as text, the same on every target: short, without a negative zero, never `NaN`.
 
+use std::borrow::Cow;
+
+/// Text for people to read: signs that a terminal obeys or that do not show, besides line ends and tabulators, are written out as
+/// `\u{1b}`.
+pub fn visible(text: &str) -> Cow<'_, str> {
+    if !text.chars().any(is_hidden) {
+        return Cow::Borrowed(text);
+    }
+    let mut out = String::with_capacity(text.len() + 16);
+    for c in text.chars() {
+        match is_hidden(c) {
+            true => out.extend(c.escape_unicode()),
+            false => out.push(c),
+        }
+    }
+    Cow::Owned(out)
+}
+
+/// Whether a sign moves what is shown instead of being shown: control characters, and those that turn the direction of writing.
+pub fn is_hidden(c: char) -> bool {
+    let turns = matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    turns || (c.is_control() && c != '\n' && c != '\t')
+}
+
 /// `value` with at most `decimals` digits after the point, trailing zeros dropped; 0 when not finite.
 pub fn fixed(value: f64, decimals: usize) -> String {
     if !value.is_finite() {

@@ -201,7 +201,8 @@ fn not_measurable(
         let what = Diagnostic::error(
             "not-measurable",
             format!("`{name}` cannot be evaluated: {}", problem.reason),
-        );
+        )
+        .help("ask for less of it: a derivative of lower order, or something that this motion has");
         match model.measures.iter().find(|m| m.name == name) {
             Some(named) => what.at(named.span.clone(), ""),
             None => what,

@@ -10,7 +10,7 @@ use crate::along::unprepared;
 use crate::columns::Asked;
 use crate::events::events;
 use crate::explain::cannot_move;
-use crate::missing::unreached_warning;
+use crate::missing::row_warnings;
 use crate::motion_findings::of_mechanism;
 use crate::prepared::design;
 use crate::quantity::Quantity;
@@ -97,9 +97,7 @@ pub(crate) fn run_circuit(
             break;
         }
     }
-    if rows.table.unreached() > 0 {
-        diagnostics.push(unreached_warning(name, &rows.table));
-    }
+    diagnostics.extend(row_warnings(name, &rows.table, 0));
     diagnostics.extend(left_slots(
         model,
         &design.parameters,
@@ -111,7 +109,8 @@ pub(crate) fn run_circuit(
         diagnostics.push(Diagnostic::warning(
             "circuit-open",
             format!("the circuit of study `{name}` does not come back to its start"),
-        ));
+        )
+        .help("it was followed as far as could be: look at its last row, where the mechanism may run away or stand still"));
     }
     let mut met: Vec<Event> = Vec::new();
     for (index, stretch) in circuit.stretches.iter().enumerate() {

@@ -23,7 +23,7 @@ impl Asked {
     /// measures, where everything is.
     pub fn of_motion(model: &Model, study: &MotionStudy) -> Self {
         let mut asked = Self::of(model, study, false);
-        if asked.columns.is_empty() && model.measures.is_empty() {
+        if asked.columns.is_empty() && study.columns.is_empty() {
             places(model).into_iter().for_each(|q| asked.add(q));
         }
         asked

@@ -5,11 +5,12 @@ use kempe_mechanism::structure::Marker;
 use kempe_mechanism::{Branch, Configuration, Design, Mechanism};
 use kempe_model::{Diagnostic, Model};
 use kempe_motion::drive_path::DrivePath;
-use kempe_motion::{EndReason, Motion, MotionError, Stage};
+use kempe_motion::{EndReason, Motion, MotionError, SIZES, Stage};
 use kempe_number::math::hypot;
 use kempe_units::Dimension;
 
 use crate::hints;
+use crate::lone_points::with_lone_points;
 use crate::unit::{Units, shown};
 use crate::words::{list, source_name};
 
@@ -26,12 +27,12 @@ pub fn cannot_move(design: &Design<f64>, error: &MotionError) -> Diagnostic {
             let mut diagnostic = Diagnostic::error(
                 "undetermined",
                 format!("no drive determines where {} {}", list(&names), if names.len() == 1 { "is" } else { "are" }),
-            )
-            .help("every freedom needs a drive: add one, or a joint that holds the links");
+            );
             for link in model.links.iter().zip(&mechanism.seats).filter(|(_, seat)| bodies.contains(&seat.body)) {
                 diagnostic = diagnostic.at(link.0.span.clone(), "free");
             }
-            diagnostic
+            let otherwise = "every freedom needs a drive: add one, or a joint that holds the links";
+            with_lone_points(diagnostic, model, mechanism, bodies, otherwise)
         }
         MotionError::CannotAssemble { at, assemblies } => {
             let place = start_text(mechanism, *at);
@@ -105,7 +106,7 @@ pub fn cannot_move(design: &Design<f64>, error: &MotionError) -> Diagnostic {
             "scale",
             format!("the mechanism measures {size:.1e} m: lengths of this size cannot be computed with"),
         )
-        .note("squares of lengths must neither overflow nor vanish: from 1e-100 m to 1e100 m there is room")
+        .note(format!("products of lengths must neither overflow nor vanish: from {:e} m to {:e} m there is room", SIZES.0, SIZES.1))
         .help(format!(
             "check the units: a bare length is in {}",
             model.units.length.name
@@ -409,6 +410,8 @@ pub fn beyond_limit(motion: &Motion, missed: &[(EndReason, f64)]) -> Diagnostic 
                 text(inside(b, low, high, false)),
             );
             diagnostic = diagnostic.help(format!("ask for no more than \"{from}\" to \"{to}\""));
+        } else {
+            diagnostic = diagnostic.help("start the drive elsewhere or change a length a little: branches may meet where it stopped");
         }
     } else {
         diagnostic = diagnostic.help("the rows beyond carry the reason in their note; change the drives' laws or the lengths");

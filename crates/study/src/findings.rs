@@ -3,7 +3,7 @@
 use kempe_mechanism::Design;
 use kempe_mechanism::mobility::Mobility;
 use kempe_mechanism::structure::BodyId;
-use kempe_model::{Diagnostic, Drive, Model, Rows, Severity, Study, StudyKind, value};
+use kempe_model::{Diagnostic, Drive, JointKind, Model, Rows, Severity, Study, StudyKind, value};
 use kempe_motion::assemble::{Assemblies, Assembly};
 use kempe_motion::drive_path::DrivePath;
 use kempe_motion::events::EventKind;
@@ -270,6 +270,19 @@ fn assumptions(model: &Model, units: &Units) -> Vec<String> {
         ));
     }
     assumed.extend(crate::findings_forces::assumptions(model, units));
+    let endless = model.joints.iter().filter(|joint| {
+        matches!(
+            joint.kind,
+            JointKind::Slider { .. } | JointKind::Slot { .. }
+        )
+    });
+    let endless: Vec<String> = endless.map(|joint| format!("`{}`", joint.name)).collect();
+    if !endless.is_empty() {
+        assumed.push(format!(
+            "straight slots and guides: {} without ends, beyond the points that name their line too",
+            endless.join(", ")
+        ));
+    }
     if model.assembly.is_empty() {
         assumed.push("assembly: the first found, as the file names none".to_owned());
     }

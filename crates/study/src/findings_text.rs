@@ -223,6 +223,8 @@ pub(crate) fn kind_text(model: &Model, group: &AssurGroup) -> String {
         GroupKind::Turned if group.drives.is_empty() => "link turned with another",
         GroupKind::Turned | GroupKind::Link => "link",
         GroupKind::Gear => "gear",
+        GroupKind::BeltWheel => "belt wheel",
+        GroupKind::Pinion => "pinion",
         GroupKind::RedundantBar => "bar between two placed pins (redundant)",
         GroupKind::RrrOfCylinder => "RRR dyad of link and cylinder",
         GroupKind::RrrOfSlot => "RRR dyad of link and curved slot",

@@ -73,7 +73,7 @@ impl ForceNotes {
                     place(table, along, kind.worst.0)
                 )
             };
-            let warning = Diagnostic::warning(kind.code, message);
+            let warning = Diagnostic::warning(kind.code, message).help(kind.worst.1.remedy());
             if kind.count == 1 {
                 warning
             } else if everywhere {

@@ -45,6 +45,7 @@ mod findings_text;
 mod force_columns;
 mod force_notes;
 mod hints;
+mod lone_points;
 mod missing;
 mod motion;
 mod motion_findings;

@@ -1,12 +1,13 @@
 //! Rows that were not reached and values that are not there, as warnings.
 
+use kempe_measure::CLOSURE_LIMIT;
 use kempe_model::Diagnostic;
 
 use crate::force_notes::place;
 use crate::sink::RowSink;
 use crate::table::Table;
 
-pub(crate) fn unreached_warning(name: &str, table: &Table) -> Diagnostic {
+fn unreached_warning(name: &str, table: &Table) -> Diagnostic {
     let reason = table.notes.iter().zip(&table.closure);
     let reason = reason
         .filter(|(_, closure)| !closure.is_finite())
@@ -21,6 +22,35 @@ pub(crate) fn unreached_warning(name: &str, table: &Table) -> Diagnostic {
         ),
     )
     .help("the column `note` says why, row by row")
+}
+
+/// Rows that are missing, and rows whose loops do not close; `along` is the column that they run along.
+pub(crate) fn row_warnings(name: &str, table: &Table, along: usize) -> Vec<Diagnostic> {
+    let unreached = (table.unreached() > 0).then(|| unreached_warning(name, table));
+    unreached
+        .into_iter()
+        .chain(open_warning(name, table, along))
+        .collect()
+}
+
+/// Rows whose loops do not close as well as every row should.
+fn open_warning(name: &str, table: &Table, along: usize) -> Option<Diagnostic> {
+    let open: Vec<usize> = (0..table.rows())
+        .filter(|row| table.closure.get(*row).is_some_and(|c| *c > CLOSURE_LIMIT))
+        .collect();
+    let first = *open.first()?;
+    let message = format!(
+        "{} of {} rows of study `{name}` do not close: up to {} of the mechanism's size is left open, first at {}",
+        open.len(),
+        table.rows(),
+        kempe_number::text::significant(table.worst_closure(), 2),
+        place(table, along, first)
+    );
+    Some(
+        Diagnostic::warning("rows-open", message)
+            .note(format!("a pose counts as closed up to {CLOSURE_LIMIT:e} of the mechanism's size"))
+            .help("do not rely on these rows: start or stop the drive short of that place, or change a length a little"),
+    )
 }
 
 /// Columns and numbers over the motion that have no value where the pose is known and no note says why. `lacks_cycle` tells
@@ -73,4 +103,43 @@ pub(crate) fn without_value(
     });
     let all_reached = table.unreached() == 0;
     columns.chain(numbers.filter(|_| all_reached)).collect()
+}
+
+/// A single pose whose loops do not close.
+pub(crate) fn open_pose(label: &str, closure: f64) -> Diagnostic {
+    let part = kempe_number::text::significant(closure, 2);
+    let message =
+        format!("{label}: the loops do not close: {part} of the mechanism's size is left open");
+    Diagnostic::warning("rows-open", message)
+        .note(format!("a pose counts as closed up to {CLOSURE_LIMIT:e} of the mechanism's size"))
+        .help("do not rely on this pose: choose another place of the drive, or change a length a little")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_that_do_not_close_are_told() {
+        let table = |closure: Vec<f64>| Table {
+            name: "turn".to_owned(),
+            columns: Vec::new(),
+            smallest_singular_value: vec![1.0; closure.len()],
+            forces: None,
+            notes: vec![None; closure.len()],
+            closure,
+        };
+        let told = |closure| {
+            let found = row_warnings("turn", &table(closure), 0);
+            found.iter().map(|d| d.message.clone()).collect::<Vec<_>>()
+        };
+        assert!(told(vec![1e-15, 9e-10]).is_empty());
+        let found = told(vec![1e-15, 2e-7, 3e-8]);
+        assert_eq!(
+            found,
+            [
+                "2 of 3 rows of study `turn` do not close: up to 2e-7 of the mechanism's size is left open, first at row 1"
+            ]
+        );
+    }
 }

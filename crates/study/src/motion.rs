@@ -12,7 +12,7 @@ use crate::columns::Asked;
 use crate::events::events;
 use crate::force_columns::standard_plots;
 use crate::force_notes::unbounded;
-use crate::missing::{unreached_warning, without_value};
+use crate::missing::{row_warnings, without_value};
 use crate::motion_findings::{motion_findings, refused};
 use crate::number_notes::number_notes;
 use crate::prepared::{design, motion};
@@ -73,9 +73,7 @@ pub(crate) fn run_along(
         }
     }
     let along = abscissa(&motion, &design.parameters);
-    if rows.table.unreached() > 0 {
-        diagnostics.push(unreached_warning(name, &rows.table));
-    }
+    diagnostics.extend(row_warnings(name, &rows.table, along));
     diagnostics.extend(rows.force_warnings(&design.mechanism, along));
     diagnostics.extend(number_notes(
         name,

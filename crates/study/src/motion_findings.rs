@@ -11,6 +11,7 @@ use kempe_number::math::hypot;
 use kempe_units::Dimension;
 
 use crate::explain::beyond_limit;
+use crate::lone_points::with_lone_points;
 use crate::unit::Units;
 use crate::words::list;
 use crate::{alternatives, findings_forces, hints};
@@ -75,7 +76,8 @@ pub(crate) fn of_freedoms(design: &Design<f64>, mobility: &Mobility) -> Vec<Diag
                         "they miss each other by {misfit:.1e} of the mechanism's size: exactly as its dimensions are, it is locked"
                     ),
                     None => "it moves because of its special dimensions; real links of other lengths would jam".to_owned(),
-                }),
+                })
+                .help("where that is not meant, take out the link or joint that repeats others; their loads are told together only"),
             );
         }
     }
@@ -84,7 +86,7 @@ pub(crate) fn of_freedoms(design: &Design<f64>, mobility: &Mobility) -> Vec<Diag
             .iter()
             .map(|b| format!("`{}`", mechanism.body_name(*b)))
             .collect();
-        findings.push(Diagnostic::warning(
+        let mut finding = Diagnostic::warning(
             "idle-freedom",
             format!(
                 "{} can turn by {} without moving anything else",
@@ -95,6 +97,18 @@ pub(crate) fn of_freedoms(design: &Design<f64>, mobility: &Mobility) -> Vec<Diag
                     "themselves"
                 }
             ),
+        );
+        let links = mechanism.model.links.iter().zip(&mechanism.seats);
+        for (link, _) in links.filter(|(_, seat)| idle.contains(&seat.body)) {
+            finding = finding.at(link.span.clone(), "turns by itself");
+        }
+        let otherwise = "where that is not meant, name a pin of it on the link that should hold it, or add a joint";
+        findings.push(with_lone_points(
+            finding,
+            &mechanism.model,
+            mechanism,
+            idle,
+            otherwise,
         ));
     }
     findings

@@ -1,5 +1,6 @@
 //! One pose at given coordinates of the drives, reached from the start without leaving the branch.
 
+use kempe_measure::CLOSURE_LIMIT;
 use kempe_mechanism::Mechanism;
 use kempe_model::{Diagnostic, Law, LawPiece, Model, MotionStudy, RiseLaw, Rows, Severity};
 use kempe_motion::Silent;
@@ -8,6 +9,7 @@ use kempe_units::{Dimension, Expr, Issue, Resolver, Span, check_as, nearest, par
 
 use crate::along::{Along, Row};
 use crate::findings_forces::something_acts;
+use crate::missing::open_pose;
 use crate::motion_findings::motion_findings;
 use crate::prepared::{design, motion};
 use crate::result::Frame;
@@ -398,11 +400,13 @@ fn on_motion(
     }
     let (arrows, notes) = forces.map_or_else(Default::default, |f| (f.arrows, f.notes));
     let mut diagnostics = motion_findings(&motion);
-    diagnostics.extend(
-        notes.iter().map(|n| {
-            Diagnostic::warning(n.code(), format!("{label}: {}", n.text(&design.mechanism)))
-        }),
-    );
+    if sample.closure > CLOSURE_LIMIT {
+        diagnostics.push(open_pose(label, sample.closure));
+    }
+    diagnostics.extend(notes.iter().map(|n| {
+        Diagnostic::warning(n.code(), format!("{label}: {}", n.text(&design.mechanism)))
+            .help(n.remedy())
+    }));
     Ok(ShownPose {
         frame: Frame {
             links: sample.links,

@@ -67,12 +67,24 @@ pub fn sensitivities(
     setting: Option<&Setting>,
     progress: &mut dyn Progress,
 ) -> Result<Sensitivities, Vec<Diagnostic>> {
-    if model.measures.is_empty() || model.parameters.is_empty() {
-        let diagnostic = Diagnostic::error(
-            "nothing-to-differentiate",
-            "sensitivities are those of [measures] to [parameters]: the file lacks one of them",
-        );
-        return Err(vec![diagnostic.help("name what is asked for: [measures] swing = \"angle(rocker)\", [parameters] a = \"20 mm\"")]);
+    let measures =
+        "name what is asked for: [measures] with a line such as swing = \"angle(rocker)\"";
+    let parameters = "name what it depends on: [parameters] with a line such as a = \"20 mm\", and \"a\" where it is used";
+    let lacks = match (model.measures.is_empty(), model.parameters.is_empty()) {
+        (true, true) => Some((
+            "no [measures] and no [parameters]",
+            format!("{measures}; and {parameters}"),
+        )),
+        (true, false) => Some(("no [measures]", measures.to_owned())),
+        (false, true) => Some(("no [parameters]", parameters.to_owned())),
+        (false, false) => None,
+    };
+    if let Some((lacks, help)) = lacks {
+        let message =
+            format!("sensitivities are those of [measures] to [parameters]: the file has {lacks}");
+        return Err(vec![
+            Diagnostic::error("nothing-to-differentiate", message).help(help),
+        ]);
     }
     let design = design(model);
     let motion = motion(&design, progress)?;

@@ -191,10 +191,17 @@ impl<'t> Parser<'t> {
                 "a bracket is closed that was not opened",
                 "leave it out, or open one with `(` before it".to_owned(),
             ),
-            Token::Comma => (
-                "a comma stands outside of a call",
-                "a decimal point is written `.`".to_owned(),
-            ),
+            Token::Comma => match self.decimal() {
+                Some((span, number)) => {
+                    let issue = Issue::new("syntax", span, "a comma stands in a number")
+                        .with_help(format!("decimals have a point: {number}"));
+                    return self.push(issue);
+                }
+                None => (
+                    "a comma stands outside of a call",
+                    "decimals have a point; commas part the arguments of a call".to_owned(),
+                ),
+            },
             Token::Arrow => (
                 "a directed line stands only as an argument",
                 "such as in `angle(A -> B)`".to_owned(),
@@ -203,6 +210,20 @@ impl<'t> Parser<'t> {
         };
         let issue = self.issue_here(message);
         self.push(issue.with_help(help));
+    }
+
+    /// The number that is meant by `20,5` around the comma here, and where it stands.
+    fn decimal(&self) -> Option<(Span, String)> {
+        let comma = self.span();
+        let before = self.at.checked_sub(1)?;
+        let [(whole, a), (part, b)] = [before, self.at + 1].map(|at| {
+            let span = self.tokens.get(at).map_or(0..0, |(_, span)| span.clone());
+            (self.written(at), span)
+        });
+        let number = |at: usize| matches!(self.tokens.get(at), Some((Token::Number(_), _)));
+        let joined = a.end == comma.start && comma.end == b.start;
+        let fits = number(before) && number(self.at + 1) && !whole.contains('.');
+        (joined && fits).then(|| (a.start..b.end, format!("{whole}.{part}")))
     }
 
     /// What to write where two values stand side by side.

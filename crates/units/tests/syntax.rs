@@ -256,8 +256,8 @@ fn errors_say_where_and_what() {
         (
             "1,5",
             "syntax",
-            ",",
-            "a comma stands outside of a call (a decimal point is written `.`)",
+            "1,5",
+            "a comma stands in a number (decimals have a point: 1.5)",
         ),
         (
             "a ** 2",

@@ -54,8 +54,14 @@ pub fn sensitivities(arguments: &Sensitivities) -> Exit {
         }
         Err(diagnostic) => {
             speaker.tell(&diagnostic);
+            // a file that names nothing to differentiate is wrong, whatever its mechanism does
+            let of_file = diagnostic
+                .iter()
+                .all(|d| d.code == "nothing-to-differentiate");
             let exit = if interrupt::stopped() {
                 Exit::Interrupted
+            } else if of_file {
+                Exit::Usage
             } else {
                 Exit::CannotSolve
             };

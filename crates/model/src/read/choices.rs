@@ -140,6 +140,10 @@ fn drive_named(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<(DriveId, Dime
     if !entry.has("drive") && cx.model.drives.len() == 1 {
         return found(cx, DriveId(0));
     }
+    if !entry.has("drive") && cx.drives.len() == 1 {
+        // the only drive is wrong, and told to be
+        return None;
+    }
     let node = entry.required(cx, "drive")?;
     let text = entry.text(cx, "drive", node)?;
     let name = text.content.trim();

@@ -8,6 +8,7 @@ use kempe_units::{Unit, nearest};
 use crate::diagnostic::Diagnostic;
 use crate::document::{Key, Node, Table, Text, Value};
 use crate::ids::{DriveId, FRAME, JointId, LinkId, ParameterId, PointId, Span};
+use crate::mend::Broken;
 use crate::model::{FileUnits, Model, UnitName};
 use crate::read::nature::Nature;
 
@@ -45,6 +46,8 @@ pub(crate) struct Context<'a> {
     pub files: Files<'a>,
     /// All that is to be said so far.
     pub found: Vec<Diagnostic>,
+    /// What could not be read, or not as what it is meant to be.
+    pub broken: Broken,
     /// The file's units: of length, of angle, and those it names besides.
     pub preferred: Vec<Unit>,
     /// Small-letter names: what they mean and where they are declared.
@@ -105,6 +108,7 @@ impl<'a> Context<'a> {
         Self {
             files,
             found: Vec::new(),
+            broken: Broken::default(),
             preferred: vec![unit("m"), unit("deg")],
             names: BTreeMap::new(),
             points: BTreeMap::new(),

@@ -2,6 +2,7 @@
 
 use kempe_units::{Dimension, Unit, nearest};
 
+use crate::bound::{beyond, remedy};
 use crate::diagnostic::Diagnostic;
 use crate::document::Node;
 use crate::ids::Span;
@@ -127,51 +128,39 @@ pub(crate) fn columns(
     let (mut abscissas, mut values) = (Vec::new(), Vec::new());
     for (number, line) in lines {
         let cells: Vec<&str> = line.split(separator).map(unquoted).collect();
-        let cell = |i: usize| {
-            cells
-                .get(i)
-                .and_then(|c| c.parse::<f64>().ok())
-                .filter(|x| x.is_finite())
-        };
         let filled = cells.len() - cells.iter().rev().take_while(|c| c.is_empty()).count();
         let room = abscissas.len() < MAX_ROWS && cx.table_rows < MAX_ALL_ROWS;
-        let mut help = format!("{}, at most {MAX_ROWS} of them", words.order);
-        let trouble = match (cell(first), cell(second)) {
-            (Some(t), Some(x)) if filled <= heads.len() => {
-                let t = first_unit.to_si(t);
-                if abscissas.last().is_none_or(|last| t > *last) && room {
-                    abscissas.push(t);
-                    values.push(second_unit.to_si(x));
-                    cx.table_rows += 1;
-                    continue;
-                }
-                if room {
-                    words.not_rising.to_owned()
-                } else {
-                    "one row too many".to_owned()
-                }
-            }
+        let read = |i: usize, unit: &Unit| cell(cells.get(i).copied().unwrap_or(""), unit);
+        let (trouble, help) = match (read(first, &first_unit), read(second, &second_unit)) {
             _ if filled > heads.len() => {
-                let part = match separator {
+                let help = match separator {
                     ',' => "a decimal point is written `.`; or part the columns by a semicolon",
                     _ => "each row has as many cells as the first line has heads",
                 };
-                help = part.to_owned();
-                cells_and_heads(filled, heads.len())
+                (cells_and_heads(filled, heads.len()), help.to_owned())
             }
-            _ if filled <= first.max(second) => {
-                help = "each row has a cell under each head".to_owned();
-                cells_and_heads(filled, heads.len())
-            }
-            _ => {
-                let decimal = |i: usize| {
-                    let cell = cells.get(i).copied().unwrap_or("");
-                    cell.contains(',') && cell.replace(',', ".").parse::<f64>().is_ok()
-                };
-                if decimal(first) || decimal(second) {
-                    help = "a decimal point is written `.`".to_owned();
+            _ if filled <= first.max(second) => (
+                cells_and_heads(filled, heads.len()),
+                "each row has a cell under each head".to_owned(),
+            ),
+            (Err((trouble, help)), _) => (in_column(&heads, first, &trouble), help),
+            (_, Err((trouble, help))) => (in_column(&heads, second, &trouble), help),
+            _ if !room => (
+                "one row too many".to_owned(),
+                format!("{}, at most {MAX_ROWS} of them", words.order),
+            ),
+            (Ok(t), Ok(x)) => {
+                if abscissas.last().is_none_or(|last| t - last > NEAREST) {
+                    abscissas.push(t);
+                    values.push(x);
+                    cx.table_rows += 1;
+                    continue;
                 }
-                "a cell is not a number".to_owned()
+                let trouble = in_column(&heads, first, words.not_rising);
+                (
+                    trouble,
+                    format!("{}, at most {MAX_ROWS} of them", words.order),
+                )
             }
         };
         cx.push(
@@ -197,6 +186,50 @@ pub(crate) fn columns(
         );
     }
     Some((abscissas, values))
+}
+
+/// Places nearer to each other than this, in SI, are one: no slope between them is a number.
+const NEAREST: f64 = 1e-30;
+
+/// A cell in SI, or what is wrong with it and what to do about it.
+fn cell(text: &str, unit: &Unit) -> Result<f64, (String, String)> {
+    let number = "each cell is a number, written like 20 or 0.5 or 1e-3".to_owned();
+    let x: f64 = match text.parse() {
+        Ok(x) => x,
+        Err(_) if text.is_empty() => {
+            return Err((
+                "the cell is empty".to_owned(),
+                "write its number, or leave the whole row out".to_owned(),
+            ));
+        }
+        Err(_) => {
+            let pointed = text.replace(',', ".");
+            let help = match text.contains(',') && pointed.parse::<f64>().is_ok() {
+                true => format!("decimals have a point: {pointed}"),
+                false => number,
+            };
+            return Err((format!("`{text}` is not a number"), help));
+        }
+    };
+    if x.is_nan() {
+        let help = "write its number, or leave the whole row out".to_owned();
+        return Err((format!("`{text}` is no value"), help));
+    }
+    let value = unit.to_si(x);
+    match beyond(value, unit.dimension()) {
+        _ if !x.is_finite() => Err((format!("`{text}` is not finite"), number)),
+        Some("too large") => Err((
+            format!("`{text}` is too large to be computed with"),
+            remedy(unit.dimension()),
+        )),
+        _ => Ok(value),
+    }
+}
+
+/// Trouble with a cell, and the head of its column.
+fn in_column(heads: &[&str], column: usize, trouble: &str) -> String {
+    let head = heads.get(column).copied().unwrap_or("");
+    format!("column `{head}`: {trouble}")
 }
 
 fn cells_and_heads(cells: usize, heads: usize) -> String {

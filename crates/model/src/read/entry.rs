@@ -1,6 +1,6 @@
 //! One table of the file, `name = { … }`, read by what the table of keys knows of its kind.
 
-use kempe_units::{Dimension, Expr};
+use kempe_units::{Dimension, Expr, nearest};
 
 use crate::diagnostic::Diagnostic;
 use crate::document::{Key, Node, Table, Text, Value};
@@ -19,6 +19,8 @@ pub(crate) struct Entry<'d> {
     pub place: String,
     /// A whole one of its kind.
     pub example: &'static str,
+    /// Whether unknown keys of it are told.
+    keys_told: bool,
     /// Whether it is about what turns: values have the dimensions that go with it.
     pub turning: bool,
 }
@@ -44,7 +46,11 @@ impl<'d> Entry<'d> {
     ) -> Option<Self> {
         let table = cx.table(node, &place, kind.example)?;
         cx.unknown_keys(table, &place, &kind.names());
-        Some(Self::of(table, span, place, kind))
+        let keys_told = true;
+        Some(Self {
+            keys_told,
+            ..Self::of(table, span, place, kind)
+        })
     }
 
     /// The same of a table whose unknown keys are told otherwise.
@@ -55,6 +61,7 @@ impl<'d> Entry<'d> {
             span,
             place,
             example: kind.example,
+            keys_told: false,
             turning: false,
         }
     }
@@ -101,7 +108,7 @@ impl<'d> Entry<'d> {
         example: &str,
     ) -> Option<&'d Node> {
         let node = self.get(key);
-        if node.is_none() {
+        if node.is_none() && !self.misspelt(key) {
             cx.push(
                 Diagnostic::error("missing-key", format!("{} has no `{key}`", self.place))
                     .at(self.span.clone(), format!("`{key}` is missing"))
@@ -109,6 +116,17 @@ impl<'d> Entry<'d> {
             );
         }
         node
+    }
+
+    /// Whether a key that is told to be unknown is likely this one.
+    pub fn misspelt(&self, key: &str) -> bool {
+        if !self.keys_told {
+            return false;
+        }
+        let known = self.kind.names();
+        let mut names = self.table.entries.iter().map(|(key, _)| key.name.as_str());
+        names
+            .any(|name| !known.contains(&name) && nearest(name, known.iter().copied()) == Some(key))
     }
 
     /// An example of the value of a key.
@@ -235,13 +253,9 @@ impl<'d> Entry<'d> {
         match cx.array(node, &place, self.example)? {
             [a, b] => Some((a, b)),
             items => {
-                let count = items.len();
-                cx.refuse(
-                    "wrong-type",
-                    format!("{place} has two entries, found {count}"),
-                    &node.span,
-                    format!("write it like {}", self.example),
-                )
+                let help = format!("write it like {}", self.example);
+                cx.not_two(node, items, format!("{place} has two entries"), &help);
+                None
             }
         }
     }
@@ -295,7 +309,7 @@ impl<'d> Entry<'d> {
         let found = words.iter().find(|(name, _)| *name == word).map(|w| w.1);
         if found.is_none() {
             let known: Vec<String> = words.iter().map(|(name, _)| format!("{name:?}")).collect();
-            let help = match kempe_units::nearest(word, words.iter().map(|w| w.0)) {
+            let help = match nearest(word, words.iter().map(|w| w.0)) {
                 Some(near) => format!("did you mean \"{near}\"?"),
                 None => format!("write {key} = {}", known.join(" or ")),
             };

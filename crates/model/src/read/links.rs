@@ -14,23 +14,20 @@ use crate::read::masses::{mass_of_frame, read_inertia};
 use crate::read::names::{is_point_name, pair_of};
 use crate::read::place::place_points;
 
-/// Reads all links; without `whole` the section itself could not be read, and is not to be missed.
-pub(crate) fn read(cx: &mut Context<'_>, entries: &[&(Key, Node)], whole: bool) {
+/// Reads all links, of which the entries begin with the link `first`; without `whole` the section itself could not be read, and is
+/// not to be missed.
+pub(crate) fn read(cx: &mut Context<'_>, entries: &[&(Key, Node)], first: usize, whole: bool) {
     if whole && entries.first().is_none_or(|(key, _)| key.name != "frame") {
-        let near = entries.iter().map(|(k, _)| k).find(|k| {
-            ["ground", "base", "fixed", "chassis"].contains(&k.name.as_str())
-                || kempe_units::nearest(&k.name, ["frame"]).is_some()
-        });
         let d = Diagnostic::error("no-frame", "the file has no link `frame`");
-        let d = match (near, entries.first()) {
-            (Some(key), _) => d.at(key.span.clone(), "perhaps this is meant"),
-            (None, Some((key, _))) => d.at(key.span.clone(), "the first link"),
-            (None, None) => d,
+        let d = match entries.first() {
+            Some((key, _)) if first == 0 => d.at(key.span.clone(), "perhaps this is meant"),
+            Some((key, _)) => d.at(key.span.clone(), "the first link"),
+            None => d,
         };
         cx.push(d.help("the link that stands still is called frame: frame = { A = [0, 0], D = [60, 0] } under [links]"));
     }
     for (i, (key, node)) in entries.iter().enumerate() {
-        read_link(cx, LinkId(i as u32), key, node);
+        read_link(cx, LinkId((first + i) as u32), key, node);
     }
 }
 
@@ -58,6 +55,9 @@ fn read_link(cx: &mut Context<'_>, id: LinkId, key: &Key, node: &Node) {
     let inertia = read_inertia(cx, &entry, (&draft, &points), |cx, node| {
         read_center(cx, node, &draft, &place)
     });
+    if points.len() < draft.points.len() {
+        cx.broken.lose_points();
+    }
     if let Some(link) = cx.model.links.get_mut(id.index()) {
         link.points = points;
         link.inertia = inertia;

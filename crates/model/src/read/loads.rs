@@ -232,7 +232,7 @@ fn amount(
                 Ok((measure, _)) => {
                     instant(cx, &measure, &node.span)?;
                     if let Some(scalar) = as_scalar(&measure) {
-                        cx.finite(&scalar, &node.span)?;
+                        cx.finite(&scalar, &node.span, dimension)?;
                     }
                     Some(Amount::Measure(measure))
                 }

@@ -294,8 +294,8 @@ fn shaped<'d>(
         Box::new(Expr::Powi(Box::new(width), 2)),
     );
     let moment = over(times(mass.clone(), squares), 12.0);
-    cx.finite(&mass, &node.span)?;
-    cx.finite(&moment, &node.span)?;
+    cx.finite(&mass, &node.span, Dimension::MASS)?;
+    cx.finite(&moment, &node.span, Dimension::INERTIA)?;
     let middle = |a: Scalar, b: Scalar| over(Expr::Add(Box::new(a), Box::new(b)), 2.0).fold();
     Some(Inertia {
         mass: Some(mass.fold()),

@@ -93,6 +93,9 @@ impl Resolver<Leaf> for Measures<'_, '_> {
         arguments: &[Node],
         span: Span,
     ) -> Option<Result<(Leaf, Dimension), Vec<Issue>>> {
+        if let Some(issue) = picture(function, arguments, &span) {
+            return Some(Err(vec![issue]));
+        }
         let entry = Registry::find(function)?;
         // `min(a, b)` is the smaller of two, not a question about the motion
         if matches!(function, "min" | "max") && arguments.len() > 1 {
@@ -117,6 +120,44 @@ impl Resolver<Leaf> for Measures<'_, '_> {
     fn functions(&self) -> Vec<String> {
         Registry::all().iter().map(|m| m.name.to_owned()).collect()
     }
+}
+
+/// What to say of a picture that stands where a value is needed.
+fn picture(function: &str, arguments: &[Node], span: &Span) -> Option<Issue> {
+    let of = |stand_in: &'static str| {
+        let first = arguments.first();
+        first
+            .and_then(|a| a.as_point().or(a.as_name()))
+            .map_or(stand_in, |name| name)
+            .to_owned()
+    };
+    let (call, help) = match function {
+        "path" => {
+            let p = of("P");
+            let help = format!(
+                "plot = [\"path({p})\"] draws it; x({p}), y({p}) and path_length({p}) are numbers"
+            );
+            (format!("path({p})"), help)
+        }
+        "hodograph" => {
+            let b = of("B");
+            let help = format!(
+                "plot = [\"hodograph({b})\"] in a study of forces draws it; reaction({b}), reaction_x({b}) and reaction_y({b}) are numbers"
+            );
+            (format!("hodograph({b})"), help)
+        }
+        _ => return None,
+    };
+    let issue = Issue::new(
+        "not-a-value",
+        span.clone(),
+        format!("`{call}` is a picture, not a value"),
+    );
+    Some(
+        issue
+            .with_label("only `plot` takes pictures")
+            .with_help(help),
+    )
 }
 
 impl Measures<'_, '_> {

@@ -2,7 +2,7 @@
 
 use crate::diagnostic::Diagnostic;
 use crate::document::{Key, Node, Value};
-use crate::ids::{LinkId, ParameterId, PointId};
+use crate::ids::{FRAME, LinkId, ParameterId, PointId};
 use crate::key_table::FILE;
 use crate::keys::Takes;
 use crate::link::{Link, Point};
@@ -16,15 +16,34 @@ pub(crate) const MAX_LINKS: usize = 10_000;
 pub(crate) const MAX_POINTS: usize = 100_000;
 
 /// The entries of each section.
-pub(crate) struct Sections<'d>(Vec<(&'static str, Vec<&'d (Key, Node)>)>);
+pub(crate) struct Sections<'d> {
+    entries: Vec<(&'static str, Vec<&'d (Key, Node)>)>,
+    /// The link of the first entry of `[links]`: the one behind the frame where the file has no frame.
+    pub first_link: usize,
+}
 
 impl<'d> Sections<'d> {
     /// The entries of a section in the order of the file; of the links the frame first.
     pub fn of(&self, name: &str) -> &[&'d (Key, Node)] {
-        let section = self.0.iter().find(|(known, _)| *known == name);
+        let section = self.entries.iter().find(|(known, _)| *known == name);
         debug_assert!(section.is_some(), "no section `{name}` in the table");
         section.map_or(&[], |(_, entries)| entries)
     }
+}
+
+/// Which entry of `[links]` is the frame: the one of this name, or else one that is likely meant so.
+pub(crate) fn frame_of(entries: &[&(Key, Node)]) -> Option<usize> {
+    let is = |name: &str| entries.iter().position(|(key, _)| key.name == name);
+    let near = || {
+        let mut keys = entries.iter().map(|(key, _)| key.name.as_str());
+        keys.position(|name| kempe_units::nearest(name, ["frame"]).is_some())
+    };
+    let others = || {
+        ["ground", "base", "fixed", "chassis"]
+            .into_iter()
+            .find_map(is)
+    };
+    is("frame").or_else(others).or_else(near)
 }
 
 /// Whether a name is a point's: it starts with a capital letter.
@@ -56,6 +75,7 @@ pub(crate) fn collect<'d>(cx: &mut Context<'_>, file: &Entry<'d>) -> Sections<'d
         .keys()
         .filter(|key| matches!(key.takes, Takes::Values(_) | Takes::Entries(_)));
     let mut sections = Vec::new();
+    let mut first_link = 0;
     for section in tables {
         let name = section.name;
         let example = match name {
@@ -67,14 +87,29 @@ pub(crate) fn collect<'d>(cx: &mut Context<'_>, file: &Entry<'d>) -> Sections<'d
         let mut entries: Vec<&(Key, Node)> =
             table.map_or(Vec::new(), |table| table.entries.iter().collect());
         if name == "links" {
-            // the frame is link 0 wherever it stands
-            entries.sort_by_key(|(k, _)| k.name != "frame");
+            // the frame is link 0 wherever it stands, and where it is missing nothing else is
+            match frame_of(&entries).map(|at| entries.remove(at)) {
+                Some(frame) => entries.insert(0, frame),
+                None => first_link = 1,
+            }
             let kept = cx.limited(&entries, MAX_LINKS, "links").len();
             entries.truncate(kept);
         }
         sections.push((name, entries));
     }
-    let sections = Sections(sections);
+    let sections = Sections {
+        entries: sections,
+        first_link,
+    };
+    if first_link > 0 {
+        cx.broken.lose_frame();
+        cx.model.links.push(Link {
+            name: "frame".to_owned(),
+            points: Vec::new(),
+            inertia: None,
+            span: 0..0,
+        });
+    }
     let mut declare_all = |section: &str, meaning: &dyn Fn(usize) -> Meaning| {
         for (i, (key, node)) in sections.of(section).iter().enumerate() {
             let meaning = meaning(i);
@@ -86,10 +121,14 @@ pub(crate) fn collect<'d>(cx: &mut Context<'_>, file: &Entry<'d>) -> Sections<'d
     };
     // parameters get their numbers when they are put in order
     declare_all("parameters", &|i| Meaning::Parameter(ParameterId(i as u32)));
-    declare_all("links", &|i| Meaning::Link(LinkId(i as u32)));
+    declare_all("links", &|i| Meaning::Link(LinkId((first_link + i) as u32)));
     declare_all("joints", &Meaning::Joint);
     declare_all("drives", &Meaning::Drive);
     declare_all("measures", &Meaning::Measure);
+    // named by others, it is not to be missed a second time
+    cx.names
+        .entry("frame".to_owned())
+        .or_insert((Meaning::Link(FRAME), 0..0));
     if cx.model.points.len() > MAX_POINTS {
         cx.push(
             Diagnostic::error("too-large", format!("{} points", cx.model.points.len()))
@@ -135,6 +174,7 @@ pub(crate) const COLUMNS: &[&str] = &[
 
 fn declare(cx: &mut Context<'_>, key: &Key, meaning: Meaning) {
     let name = key.name.as_str();
+    let told = cx.found.len();
     if long_name(cx, name, &key.span) {
         // the length is what is wrong, whatever else is
     } else if !is_small_name(name) {
@@ -184,7 +224,11 @@ fn declare(cx: &mut Context<'_>, key: &Key, meaning: Meaning) {
             .help(format!("choose another name, such as `my_{name}`")),
         );
     }
+    if cx.found.len() > told {
+        cx.broken.misname(name);
+    }
     if let Some((other, place)) = cx.names.get(name).cloned() {
+        cx.broken.misname(name);
         cx.push(
             Diagnostic::error(
                 "name-clash",

@@ -1,6 +1,6 @@
 //! The file's sections, in the order in which they build on each other.
 
-use kempe_units::Unit;
+use kempe_units::{Unit, nearest};
 
 use crate::diagnostic::Diagnostic;
 use crate::document::{Key, Node, Table, Value};
@@ -18,7 +18,26 @@ use crate::read::{
 
 /// Reads the whole file.
 pub(crate) fn read(cx: &mut Context<'_>, root: &Table, overrides: &[(String, String)]) {
-    cx.unknown_keys(root, "the file", &FILE.names());
+    let known = FILE.names();
+    cx.unknown_keys(root, "the file", &known);
+    for (key, node) in &root.entries {
+        let name = key.name.as_str();
+        if !known.contains(&name)
+            && nearest(name, known.iter().copied()).is_some()
+            && let Value::Table(table) = &node.value
+        {
+            let within = table
+                .entries
+                .iter()
+                .flat_map(|(_, node)| match &node.value {
+                    Value::Table(table) => table.entries.as_slice(),
+                    _ => &[],
+                });
+            let entries = table.entries.iter().chain(within);
+            cx.broken
+                .skip_section(entries.map(|(key, _)| key.name.as_str()));
+        }
+    }
     let file = Entry::of(root, &(0..0), "the file".to_owned(), &FILE);
     if let Some(node) = file.get("title")
         && let Some(text) = cx.text(node, "`title`", file.example_of("title"))
@@ -52,7 +71,7 @@ pub(crate) fn read(cx: &mut Context<'_>, root: &Table, overrides: &[(String, Str
     let whole = file
         .get("links")
         .is_none_or(|n| matches!(n.value, Value::Table(_)));
-    links::read(cx, sections.of("links"), whole);
+    links::read(cx, sections.of("links"), sections.first_link, whole);
     joints::read(cx, sections.of("joints"));
     drives::read(cx, sections.of("drives"));
     assembly::read(cx, sections.of("assembly"));

@@ -169,6 +169,7 @@ fn read_damper(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<Damper> {
 fn between(cx: &mut Context<'_>, entry: &mut Entry<'_>, torsion: &'static str) -> Option<Between> {
     let place = &entry.place;
     match (entry.get("between"), entry.entry("links")) {
+        (None, None) if entry.misspelt("between") || entry.misspelt("links") => None,
         (None, None) => {
             let help = "between = \"A-B\" names two points; links = [\"frame\", \"lever\"] makes it act between two links, about their pin";
             let message = format!("{place}: between what does it act?");

@@ -2,7 +2,8 @@
 
 use kempe_units::{Dimension, Expr, Issue, Resolver, Unit, check, check_as, format_digits, parse};
 
-use crate::bound::{Bound, Keeps};
+use crate::bound::{Bound, Keeps, beyond, remedy};
+use crate::decimal::torn;
 use crate::diagnostic::{Diagnostic, Label};
 use crate::document::{Node, Text, Value};
 use crate::geometry::value;
@@ -111,7 +112,7 @@ impl Context<'_> {
                 return None;
             }
         };
-        self.finite(&scalar, &node.span)?;
+        self.finite(&scalar, &node.span, expected)?;
         Some(scalar)
     }
 
@@ -126,7 +127,7 @@ impl Context<'_> {
         });
         match checked {
             Ok((scalar, dimension)) => {
-                self.finite(&scalar, &node.span)?;
+                self.finite(&scalar, &node.span, dimension)?;
                 Some((scalar, dimension))
             }
             Err(issues) => {
@@ -141,11 +142,16 @@ impl Context<'_> {
         value(scalar, &self.values)
     }
 
-    /// The value, or an error when it is not finite.
-    pub fn finite(&mut self, scalar: &Scalar, span: &Span) -> Option<f64> {
+    /// The value, or an error when it is not finite or beyond what can be computed with.
+    pub fn finite(&mut self, scalar: &Scalar, span: &Span, dimension: Dimension) -> Option<f64> {
         let x = self.number(scalar);
         if x.is_finite() {
-            self.bound(scalar, span, "this value", Dimension::NONE, Keeps::Finite);
+            // what comes to nearly nothing was likely to come to nothing, unless it is written so
+            let written = scalar.as_constant().is_some() || x.abs() > 1.0;
+            if written && let Some(how) = beyond(x, dimension) {
+                return self.out_of_range(how, "this value", span, dimension);
+            }
+            self.bound(scalar, span, "this value", dimension, Keeps::Finite);
             return Some(x);
         }
         let found = if x.is_nan() {
@@ -159,6 +165,18 @@ impl Context<'_> {
                 .help("look for a division by zero, the root of a negative number or an overflow"),
         );
         None
+    }
+
+    /// Tells a value that nothing can be computed with.
+    fn out_of_range<T>(
+        &mut self,
+        how: &str,
+        what: &str,
+        span: &Span,
+        dimension: Dimension,
+    ) -> Option<T> {
+        let message = format!("{what} is {how} to be computed with");
+        self.refuse("out-of-range", message, span, remedy(dimension))
     }
 
     /// Notes what a value that depends on parameters must keep to.
@@ -198,6 +216,9 @@ impl Context<'_> {
         let scalar = self.scalar(node, dimension)?;
         let x = self.number(&scalar);
         if x > 0.0 || (zero && x == 0.0) {
+            if let Some(how) = beyond(x, dimension) {
+                return self.out_of_range(how, what, &node.span, dimension);
+            }
             let keeps = if zero {
                 Keeps::NotNegative
             } else {
@@ -241,15 +262,27 @@ impl Context<'_> {
         }
     }
 
+    /// Tells that a list has not two entries.
+    pub fn not_two(&mut self, node: &Node, items: &[Node], message: String, help: &str) {
+        let d = Diagnostic::error("wrong-type", format!("{message}, found {}", items.len()));
+        let torn = torn(items).filter(|_| items.len() > 2);
+        self.push(match torn {
+            Some((at, meant)) => d
+                .at(at, "two values")
+                .help(format!("decimals have a point: {meant}")),
+            None => d.at(node.span.clone(), "").help(help),
+        });
+    }
+
     /// A pair: `[x, y]`, or `[r, angle]` when the second is an angle.
     pub fn place(&mut self, node: &Node, what: &str) -> Option<Place> {
         let items = self.array(node, what, "[0, 20] or [\"20 mm\", \"30 deg\"]")?;
         let [first, second] = items else {
-            let count = items.len();
-            self.push(
-                Diagnostic::error("wrong-type", format!("{what} has two values, found {count}"))
-                    .at(node.span.clone(), "")
-                    .help("write [x, y], or [radius, angle] with the angle as a string such as \"30 deg\""),
+            self.not_two(
+                node,
+                items,
+                format!("{what} has two values"),
+                "write [x, y], or [radius, angle] with the angle as a string such as \"30 deg\"",
             );
             return None;
         };

@@ -186,7 +186,8 @@ fn tell(
                 ),
             )
             .at(spring.span.clone(), "")
-            .note("the values after are those of the spring as the file describes it"),
+            .note("the values after are those of the spring as the file describes it")
+            .help("leave `acts` and the stops out while it is chosen, or see in the values after whether it does"),
         );
     }
 }
