@@ -7,9 +7,11 @@
 
 use std::collections::VecDeque;
 
+use kempe_model::{LinkId, Point};
+
 use crate::constraint::{Constraint, Joint, Touch};
 use crate::ids::BodyId;
-use crate::structure::Structure;
+use crate::structure::{Source, Structure};
 
 /// One unknown quantity of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -119,13 +121,33 @@ fn idle_bodies(structure: &Structure) -> Vec<bool> {
     idle
 }
 
+/// Whether a constraint is the pin of a link at a second point that it shares with an earlier one. Of links that lie upon
+/// each other one repeats the other, and the pin that repeats is surplus: both as a dyad would have no place of their own.
+fn joins_once_more(structure: &Structure, index: usize) -> bool {
+    let Source::Pin { point, link } = structure.constraints[index].1 else {
+        return false;
+    };
+    let points = &structure.model.points;
+    let on_both = |p: &Point, other: LinkId| p.links.contains(&link) && p.links.contains(&other);
+    let earlier = points[point.index()].links.iter().copied();
+    earlier
+        .take_while(|other| *other != link)
+        .filter(|other| structure.body_of(*other) != structure.body_of(link))
+        .any(|other| points[..point.index()].iter().any(|p| on_both(p, other)))
+}
+
 /// Takes a mechanism apart. `with_drives` tells whether the drives' constraints count.
 pub fn decompose(structure: &Structure, with_drives: bool) -> Decomposition {
     let nodes = 2 * (structure.bodies - 1);
     // Drives first: where the count says too much, it is a joint's row that is surplus.
     let joints = 0..structure.joint_constraints;
+    let (once_more, joints): (Vec<usize>, Vec<usize>) =
+        joints.partition(|index| joins_once_more(structure, *index));
     let drives = structure.joint_constraints..structure.constraints.len();
-    let order = drives.filter(|_| with_drives).chain(joints);
+    let order = drives
+        .filter(|_| with_drives)
+        .chain(joints)
+        .chain(once_more);
 
     let idle_angle = idle_bodies(structure);
     let mut rows: Vec<(Row, Vec<usize>)> = Vec::new();

@@ -790,3 +790,65 @@ fn measures_may_name_each_other_many_times_over() {
     };
     assert!((of("m59") - of("m0")).abs() < 1e-12);
 }
+
+/// Two couplers upon each other are one, whichever is named first and wherever the rocker stands among them.
+#[test]
+fn equal_links_upon_each_other_are_assembled_in_any_order() {
+    let links = [
+        "front = { B-C = 50, P = [10, 7] }",
+        "back = { B = [1, 1], C = [31, 41] }",
+        "rocker = { D-C = 40 }",
+    ];
+    let mut swings: Vec<Vec<f64>> = Vec::new();
+    for order in [
+        [0, 1, 2],
+        [0, 2, 1],
+        [1, 0, 2],
+        [1, 2, 0],
+        [2, 0, 1],
+        [2, 1, 0],
+    ] {
+        let [a, b, c] = order.map(|k: usize| links[k]);
+        let text = format!(
+            "units = {{ length = \"mm\", angle = \"deg\" }}\n[links]\nframe = {{ A = [0, 0], D = [60, 0] }}\n\
+             crank = {{ A-B = 20 }}\n{a}\n{b}\n{c}\n[drives]\nm = {{ turns = \"crank\", speed = \"1 rad/s\" }}\n\
+             [assembly]\nC = \"left of B -> D\"\n[measures]\nswing = \"angle(rocker)\"\n"
+        );
+        let model = model(&text);
+        let result = run(&model, &model.studies[0], &mut Silent).expect("it closes");
+        assert!(has(&result.diagnostics, "overconstrained"), "{order:?}");
+        assert_eq!(result.table.unreached(), 0);
+        swings.push(result.table.column("swing").unwrap().values.clone());
+    }
+    for other in &swings[1..] {
+        let pairs = swings[0].iter().zip(other);
+        assert!(pairs.into_iter().all(|(a, b)| (a - b).abs() < 1e-9));
+    }
+}
+
+/// A bar that nearly repeats others: one statement, of the motion that runs.
+#[test]
+fn what_nearly_repeats_others_is_told_with_how_far_it_misses() {
+    let text = r#"
+units = { length = "m", angle = "deg" }
+[links]
+frame  = { A = [0, 0], D = [1.3, 0], F = [0.6, 0.4] }
+crank  = { A-B = 0.7 }
+rod    = { B = [0, 0], C = [1.3, 0], G = [0.6, 0.40000000100000005] }
+rocker = { D-C = 0.7 }
+bar    = { F-G = 0.7 }
+[drives]
+m = { turns = "crank", from = 30, to = 150, speed = 10 }
+[assembly]
+C = { near = [1.9, 0.35] }
+"#;
+    let model = model(text);
+    let report = check(&model);
+    assert_eq!((report.mobility_rank, report.redundant), (Some(1), Some(1)));
+    let codes: Vec<&str> = report.diagnostics.iter().map(|d| d.code).collect();
+    assert_eq!(codes, ["overconstrained"]);
+    let note = &report.diagnostics[0].notes[0];
+    assert!(note.contains("miss each other by"), "{note}");
+    let result = run(&model, &model.studies[0], &mut Silent).expect("it moves");
+    assert_eq!(result.table.unreached(), 0);
+}
