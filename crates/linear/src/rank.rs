@@ -7,7 +7,7 @@
 use std::collections::BTreeSet;
 
 /// Pivots below this part of the matrix's largest entry count as zero.
-const RANK_TOLERANCE: f64 = 1e-9;
+pub const RANK_TOLERANCE: f64 = 1e-9;
 /// Smallest part of the largest entry of its row and of its column that a pivot may be: bounds the growth of errors.
 const THRESHOLD: f64 = 0.3;
 /// Rows with the fewest entries among which a pivot is looked for.
@@ -26,11 +26,16 @@ struct Elimination {
 
 /// The rank of a matrix given by its rows.
 pub fn rank(rows: Vec<SparseRow>, columns: usize) -> usize {
+    rank_within(rows, columns, RANK_TOLERANCE)
+}
+
+/// The rank of a matrix given by its rows; pivots below this part of its largest entry count as zero.
+pub fn rank_within(rows: Vec<SparseRow>, columns: usize, tolerance: f64) -> usize {
     let largest = rows
         .iter()
         .flatten()
         .fold(0.0_f64, |m, (_, v)| m.max(v.abs()));
-    let zero = RANK_TOLERANCE * largest;
+    let zero = tolerance * largest;
     let mut it = Elimination {
         in_column: vec![Vec::new(); columns],
         open: BTreeSet::new(),

@@ -1,6 +1,6 @@
 //! Freedoms counted and measured.
 
-use kempe_linear::{SparseRow, rank};
+use kempe_linear::{RANK_TOLERANCE, SparseRow, rank_within};
 
 use crate::Mechanism;
 use crate::blocks::Row;
@@ -11,6 +11,9 @@ use crate::design::Design;
 use crate::evidence::is_finite;
 use crate::layout::{Columns, Rows, rows_of, unknowns_of};
 use crate::pose::Pose;
+
+/// Constraints that others repeat to this part nearly repeat them.
+const NEARLY: f64 = 1e-6;
 
 /// Mobility two ways.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,19 +36,16 @@ pub struct Mobility {
 }
 
 impl Mobility {
-    /// The same with the constraints that the plan leaves out taken to agree with the others, which they miss by `misfit`.
-    pub fn without_surplus(
+    /// The same with constraints that nearly repeat others, which they miss by `misfit`, taken to agree with them.
+    pub fn nearly(
         mut self,
         design: &Design<f64>,
         (state, branch): (&Configuration<f64>, &Branch),
         misfit: f64,
     ) -> Self {
         let mechanism = &*design.mechanism;
-        let surplus = surplus_of(mechanism);
-        let rows = rows_of(mechanism, mechanism.joint_constraints);
         let total = rows_of(mechanism, mechanism.joint_constraints).count();
-        let kept = rows.filter(|row| !surplus.contains(row));
-        let rank = rank_of(design, branch, state, kept);
+        let rank = joint_rank(design, branch, state, NEARLY);
         self.by_rank = Some(3 * (mechanism.bodies - 1) - rank);
         self.redundant_rows = Some(total - rank);
         self.misfit = Some(misfit);
@@ -85,7 +85,7 @@ pub fn mobility(design: &Design<f64>, pose: Option<(&Configuration<f64>, &Branch
             .iter()
             .map(|(c, _)| c.rows())
             .sum();
-        let rank = joint_rank(design, branch, state);
+        let rank = joint_rank(design, branch, state, RANK_TOLERANCE);
         it.by_rank = Some(3 * (mechanism.bodies - 1) - rank);
         it.redundant_rows = Some(rows - rank);
     }
@@ -93,23 +93,16 @@ pub fn mobility(design: &Design<f64>, pose: Option<(&Configuration<f64>, &Branch
 }
 
 /// Rank of the joints' scaled constraint Jacobian at a pose.
-fn joint_rank(design: &Design<f64>, branch: &Branch, state: &Configuration<f64>) -> usize {
-    let mechanism = &*design.mechanism;
-    let rows = rows_of(mechanism, mechanism.joint_constraints);
-    rank_of(design, branch, state, rows)
-}
-
-/// Rank of some rows of the scaled constraint Jacobian at a pose.
-fn rank_of(
+fn joint_rank(
     design: &Design<f64>,
     branch: &Branch,
     state: &Configuration<f64>,
-    rows: impl IntoIterator<Item = Row>,
+    tolerance: f64,
 ) -> usize {
     let mechanism = &*design.mechanism;
     let size = design.size();
     let situation = state.situation(design, branch);
-    let joints = Rows::new(rows);
+    let joints = Rows::new(rows_of(mechanism, mechanism.joint_constraints));
     let columns = Columns::new(unknowns_of(mechanism));
     let mut rows: Vec<SparseRow> = vec![Vec::with_capacity(6); joints.count];
     joints.scaled_jacobian(&columns, mechanism, &situation, size, |row, to, value| {
@@ -124,7 +117,7 @@ fn rank_of(
     for row in &mut rows {
         row.sort_unstable_by_key(|(column, _)| *column);
     }
-    rank(rows, columns.count)
+    rank_within(rows, columns.count, tolerance)
 }
 
 /// A state at given poses, ready for residuals and gradients.

@@ -140,9 +140,13 @@ pub fn mobility_at_start(motion: &Motion) -> Mobility {
     let found = mobility(design, Some((&state, &chosen.branch)));
     let driven = mechanism.model.drives.len() + mechanism.plan.decomposition.idle.len();
     match surplus_misfit(motion) {
-        // It moves all the same, as those who repeat others nearly agree with them.
+        // It moves all the same, where constraints that repeat others nearly agree with them.
         Some(misfit) if found.by_rank.is_some_and(|rank| rank < driven) && misfit <= AGREED => {
-            found.without_surplus(design, (&state, &chosen.branch), misfit)
+            let nearly = (found.clone()).nearly(design, (&state, &chosen.branch), misfit);
+            match nearly.by_rank.is_some_and(|rank| rank >= driven) {
+                true => nearly,
+                false => found,
+            }
         }
         _ => found,
     }
