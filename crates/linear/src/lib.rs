@@ -24,6 +24,6 @@ pub use complex::{C, solve_complex};
 pub use dependent::independent_least_squares;
 pub use elimination::{Elimination, Matrix, Plain};
 pub use qr::Qr;
-pub use rank::{RANK_TOLERANCE, SparseRow, rank, rank_within};
+pub use rank::{RANK_TOLERANCE, SparseRow, rank};
 pub use singular::smallest_singular_value;
 pub use tridiagonal::{Tridiagonal, solve_tridiagonal};

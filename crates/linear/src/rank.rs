@@ -24,13 +24,8 @@ struct Elimination {
     open: BTreeSet<(usize, usize)>,
 }
 
-/// The rank of a matrix given by its rows.
-pub fn rank(rows: Vec<SparseRow>, columns: usize) -> usize {
-    rank_within(rows, columns, RANK_TOLERANCE)
-}
-
 /// The rank of a matrix given by its rows; pivots below this part of its largest entry count as zero.
-pub fn rank_within(rows: Vec<SparseRow>, columns: usize, tolerance: f64) -> usize {
+pub fn rank(rows: Vec<SparseRow>, columns: usize, tolerance: f64) -> usize {
     let largest = rows
         .iter()
         .flatten()
@@ -219,15 +214,19 @@ mod tests {
                 let (a, b) = (rows[k - 1].clone(), rows[2 * k].clone());
                 rows.push(combined(&a, &b, -0.7, usize::MAX));
             }
-            assert_eq!(rank(rows, columns), independent, "{columns}");
+            assert_eq!(
+                rank(rows, columns, RANK_TOLERANCE),
+                independent,
+                "{columns}"
+            );
         }
     }
 
     #[test]
     fn nothing_and_noise_have_no_rank() {
-        assert_eq!(rank(Vec::new(), 3), 0);
-        assert_eq!(rank(vec![Vec::new(), vec![(1, 0.0)]], 3), 0);
+        assert_eq!(rank(Vec::new(), 3, RANK_TOLERANCE), 0);
+        assert_eq!(rank(vec![Vec::new(), vec![(1, 0.0)]], 3, RANK_TOLERANCE), 0);
         let noisy = vec![vec![(0, 1.0), (1, 2.0)], vec![(0, 0.5), (1, 1.0 + 1e-12)]];
-        assert_eq!(rank(noisy, 2), 1);
+        assert_eq!(rank(noisy, 2, RANK_TOLERANCE), 1);
     }
 }

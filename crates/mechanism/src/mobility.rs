@@ -1,6 +1,6 @@
 //! Freedoms counted and measured.
 
-use kempe_linear::{RANK_TOLERANCE, SparseRow, rank_within};
+use kempe_linear::{RANK_TOLERANCE, SparseRow, rank};
 
 use crate::Mechanism;
 use crate::blocks::Row;
@@ -117,7 +117,7 @@ fn joint_rank(
     for row in &mut rows {
         row.sort_unstable_by_key(|(column, _)| *column);
     }
-    rank_within(rows, columns.count, tolerance)
+    rank(rows, columns.count, tolerance)
 }
 
 /// A state at given poses, ready for residuals and gradients.
