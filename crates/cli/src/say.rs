@@ -131,11 +131,29 @@ fn put_whole(text: &str) {
 /// Says what the command line's grammar answers: the help that was asked for, or what is wrong.
 pub fn answer(answer: &clap::Error) -> Exit {
     if answer.use_stderr() {
-        let _ = answer.print();
+        if std::env::args_os().any(|argument| argument == "--json") {
+            print_json(
+                &serde_json::json!({ "diagnostics": [kempe_study::encode::diagnostic(&refused(answer))] }),
+            );
+        } else {
+            let _ = answer.print();
+        }
         return Exit::Usage;
     }
     arrived(answer.print().and_then(|()| std::io::stdout().flush()));
     Exit::Ok
+}
+
+/// What is wrong with a command line, as a diagnostic.
+fn refused(answer: &clap::Error) -> Diagnostic {
+    let text = answer.to_string();
+    let mut lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
+    let first = lines.next().unwrap_or_default();
+    let message = first.strip_prefix("error: ").unwrap_or(first);
+    let diagnostic = Diagnostic::error("command-line", message);
+    let told = lines.take_while(|line| !line.starts_with("Usage:"));
+    let diagnostic = told.fold(diagnostic, |diagnostic, line| diagnostic.note(line));
+    diagnostic.help("kempe --help tells all commands, kempe COMMAND --help what one takes")
 }
 
 /// Whether the standard output lost something.

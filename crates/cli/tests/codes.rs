@@ -20,7 +20,7 @@ const GUARD: &str = "no small file is known to come to it";
 #[rustfmt::skip]
 const WITHOUT: &[(&str, &[&str])] = &[
     (COMMAND_LINE, &[
-        "bad-case", "bad-request", "cannot-draw", "cannot-write", "file-exists", "folder-busy", "no-file", "not-written", "own-input", "partial-result",
+        "bad-case", "bad-request", "cannot-draw", "cannot-write", "command-line", "file-exists", "folder-busy", "no-file", "not-written", "own-input", "partial-result",
         "stopped",
         "unknown-picture",
     ]),
@@ -35,7 +35,7 @@ const WITHOUT: &[(&str, &[&str])] = &[
     ]),
     (GUARD, &[
         "assemblies-incomplete", "branches-entangled", "changes-too-fast", "circuit-open", "friction-at-rest", "friction-not-converged",
-        "jammed", "locked", "not-balanced", "not-settled", "routes-differ", "rows-open", "self-locking",
+        "jammed", "locked", "not-balanced", "routes-differ", "rows-open",
     ]),
 ];
 

@@ -177,3 +177,34 @@ fn nothing_is_said_twice() {
     fs::write(at.join("m.toml"), text).expect("written");
     assert_eq!(told(&kempe(at, &["run", "m.toml"])), ["several-assemblies"]);
 }
+
+/// Whatever goes wrong, `--json` prints one JSON object with what is told.
+#[test]
+fn json_is_printed_on_errors_too() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = folder.path();
+    fs::write(at.join("bad.toml"), "links = [").expect("written");
+    fs::write(at.join("good.toml"), four_bar("B-C = 50", TURN, LEFT)).expect("written");
+    for arguments in [
+        vec!["check", "no-such-file.toml", "--json"],
+        vec!["check", "bad.toml", "--json"],
+        vec!["run", "bad.toml", "--json"],
+        vec!["run", "good.toml", "no_such_study", "--json"],
+        vec!["run", "good.toml", "--set", "nothing=1", "--json"],
+        vec!["run", "good.toml", "--json", "--no-such-option"],
+        vec!["run", "--json"],
+        vec!["sensitivities", "good.toml", "--at", "moto=1", "--json"],
+        vec!["verify", "no-such-folder", "--json"],
+        vec!["measures", "no_such_measure", "--json"],
+    ] {
+        let output = kempe(at, &arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        let value: serde_json::Value =
+            serde_json::from_slice(&output.stdout).unwrap_or_else(|e| panic!("{arguments:?}: {e}"));
+        let told = value["diagnostics"].as_array().expect("a list");
+        assert!(!told.is_empty(), "{arguments:?}");
+        for diagnostic in told {
+            assert!(diagnostic["code"].is_string() && diagnostic["message"].is_string());
+        }
+    }
+}

@@ -107,6 +107,7 @@ pub const LATER_CODES: &[Code] = &[
     code("changes-too-fast", "a number over the motion is of something with peaks that may be missed"),
     code("circuit-open", "a circuit does not come back to its start"),
     code("circuit-without-time", "steps of time are asked for along a circuit"),
+    code("command-line", "the command line cannot be read"),
     code("contradictory-pressures", "a cylinder drains against more pressure than it is fed with"),
     code("cylinder-count", "fewer than one cylinder"),
     code("cylinder-too-weak", "a cylinder cannot give the force at its highest pressure"),
