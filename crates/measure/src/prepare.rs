@@ -108,6 +108,7 @@ impl<F: ForceSource> Sampler<F> {
             rows,
             known: Vec::new(),
             notes: Vec::new(),
+            closely: Vec::new(),
             measures: measures.iter().map(|m| (*m).clone()).collect(),
             lengths: Vec::new(),
             curved: Vec::new(),
@@ -134,6 +135,8 @@ impl<F: ForceSource> Sampler<F> {
         for round in rounds(self, needs.statistics) {
             let found = over_motion(self, &round, progress)?;
             self.known.extend(found.known);
+            self.closely.extend(found.closely);
+            self.closely.sort_by(f64::total_cmp);
             self.notes
                 .extend(found.notes.into_iter().map(|(number, note)| {
                     let (statistic, measure) = &round[number];

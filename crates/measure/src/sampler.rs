@@ -69,6 +69,8 @@ pub struct Sampler<F = NoForces> {
     pub(crate) known: Vec<Extremes>,
     /// What is to be told of numbers over the motion.
     pub(crate) notes: Vec<(Statistic, Measure, StatisticNote)>,
+    /// Times, rising, at which numbers over the motion had to be looked at closely.
+    pub(crate) closely: Vec<f64>,
     pub(crate) system: Bordered,
 }
 
@@ -88,6 +90,13 @@ impl<F: ForceSource> Sampler<F> {
     pub(crate) fn extremes(&self, measure: &Measure) -> Option<(At, At)> {
         let known = self.known.iter().find(|known| known.measure == *measure);
         known.and_then(|known| known.found)
+    }
+
+    /// A number over the motion; NaN where it has no value, or is not known.
+    pub(crate) fn over_motion(&self, statistic: Statistic, measure: &Measure) -> f64 {
+        let known = self.measurer.statistics.iter();
+        let mut known = known.filter(|(s, m, _)| *s == statistic && m == measure);
+        known.next().map_or(f64::NAN, |(.., value)| *value)
     }
 
     /// What is to be told of the numbers over the motion that a measure contains.

@@ -54,6 +54,8 @@ pub(crate) struct Numbers {
     pub known: Vec<Extremes>,
     /// What is to be told, by the index of the number.
     pub notes: Vec<(usize, StatisticNote)>,
+    /// Times at which it had to be looked closely.
+    pub closely: Vec<f64>,
 }
 
 /// Evaluates statistics of measures over the motion, SI; `None` when stopped.
@@ -91,7 +93,7 @@ pub(crate) fn over_motion<F: ForceSource>(
         }
     }
     let duration = sampler.duration();
-    let mut too_fast = false;
+    let (mut too_fast, mut looked_closely) = (false, Vec::new());
     if !courses.is_empty() {
         let together = sampler.asked(&measures);
         let mut stretches = stretches(sampler);
@@ -114,6 +116,7 @@ pub(crate) fn over_motion<F: ForceSource>(
             },
         )?;
         too_fast = unseen.spent;
+        looked_closely = unseen.closely;
         for (index, between) in unseen.unbounded {
             if let Some(course) = courses.get_mut(index) {
                 course.run_away(sampler, between, duration);
@@ -185,6 +188,7 @@ pub(crate) fn over_motion<F: ForceSource>(
         values,
         known,
         notes,
+        closely: looked_closely,
     })
 }
 

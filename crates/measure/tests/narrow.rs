@@ -190,3 +190,38 @@ fn what_has_a_bound_is_not_infinite() {
         }
     }
 }
+
+/// Derivatives of numbers over narrow peaks: the same numbers, and what a change of the peak changes in them.
+#[test]
+fn derivatives_of_numbers_over_narrow_peaks_are_those_of_the_numbers() {
+    use kempe_measure::{Held, sensitivities};
+    use kempe_model::ParameterId;
+    let text = "units = { length = \"m\", angle = \"rad\" }\n\
+         [parameters]\nhigh = 2\nat = 1.23456\nwidth = 1e-5\n\
+         [links]\nframe = { A = [0, 0] }\nk = { A-B = 1 }\n\
+         [drives]\nm = { turns = \"k\", from = 0, to = \"360 deg\", speed = 1 }\n[measures]\n\
+         peak = \"max(high * exp(-((m / 1 rad - at) / width)^2))\"\n\
+         area = \"mean(high * exp(-((m / 1 rad - at) / width)^2))\"\n\
+         none = \"mean(high / (m / 1 rad - at))\"\n\
+         weak = \"mean(high * ln(abs(m / 1 rad - at)))\"\n";
+    let motion = Case::read(text, "narrow.toml").must_move();
+    let named = &motion.mechanism().model.measures;
+    let measures: Vec<_> = named.iter().map(|m| &m.measure).collect();
+    let ids = [ParameterId(0), ParameterId(1), ParameterId(2)];
+    let found = sensitivities(&motion, Held::Path(0.0), &measures, &ids).unwrap();
+    let plain = numbers(&motion);
+    for (k, (value, _)) in plain.iter().enumerate() {
+        let same = found.values[k] == *value || found.values[k].is_nan() && value.is_nan();
+        assert!(same, "{k}: {} {value}", found.values[k]);
+    }
+    let area = PI.sqrt() / TAU;
+    let near = |a: f64, b: f64| (a - b).abs() <= 1e-6 * b.abs().max(1e-6);
+    let wanted = [[1.0, 0.0, 0.0], [area * 1e-5, 0.0, 2.0 * area]];
+    for (found, wanted) in found.derivatives.iter().zip(wanted) {
+        for (a, b) in found.iter().zip(wanted) {
+            assert!(near(*a, b), "{found:?} {wanted:?}");
+        }
+    }
+    assert!(found.values[2].is_nan());
+    assert!(near(found.derivatives[3][0], found.values[3] / 2.0));
+}

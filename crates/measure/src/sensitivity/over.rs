@@ -38,8 +38,16 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
                     let place = self.at_time(Varying::zero());
                     return self.value(measure, place);
                 }
+                // Whether there is one, and what it is, is known.
+                let mean = self.sampler.over_motion(statistic, measure);
+                if mean.is_nan() {
+                    return nothing;
+                }
                 let sum = self.integrate(duration, &mut |it, place| it.value(measure, place));
-                sum / duration
+                Varying {
+                    re: mean,
+                    ..sum / duration
+                }
             }
             Statistic::Min | Statistic::Max | Statistic::Range | Statistic::TimeRatio => {
                 let Some((low, high)) = self.sampler.extremes(measure) else {
@@ -145,14 +153,22 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
         ((dx.square() + dy.square()) * rate.square()).sqrt()
     }
 
-    /// Integral over time from the start, between the breaks of the laws and the times of an even grid.
+    /// Integral over time from the start, between the breaks of the laws, the times at which it has to be looked closely, and
+    /// those of an even grid.
     fn integrate(
         &mut self,
         until: Varying,
         f: &mut dyn FnMut(&mut Self, PathPlace<Varying>) -> Varying,
     ) -> Varying {
         let mut sum = Varying::zero();
+        let mut pieces = Vec::new();
         for [from, to] in self.cuts(until) {
+            let inside = |t: &&f64| from.re < **t && **t < to.re;
+            let own = self.sampler.closely.iter().filter(inside);
+            let own = own.map(|t| Varying::from_f64(*t)).chain([to]);
+            pieces.extend(own.scan(from, |before, to| Some([std::mem::replace(before, to), to])));
+        }
+        for [from, to] in pieces {
             let width = to - from;
             let part = integrate(&graded(count(width, until)), 0.0, &mut |u| {
                 let place = self.at_time(from + width * u);

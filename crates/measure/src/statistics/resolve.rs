@@ -23,8 +23,8 @@ const UNSEEN: f64 = 1e-9;
 /// Halvings of an interval at most, and of the whole motion: what is narrower still is a pole, a jump or a kink, and nearer to
 /// it the bounds of poses are rounding.
 const HALVINGS: [i32; 2] = [36, 40];
-/// Samples put between others at most, and so many more for each of them.
-const BUDGET: (usize, usize) = (20_000, 8);
+/// Samples put between others at most, and so many more for each of the others.
+const BUDGET: (usize, usize) = (20_000, 1);
 
 /// Tells where samples are put between others.
 pub(super) struct Resolution {

@@ -111,6 +111,8 @@ pub(super) struct Unseen {
     pub unbounded: Vec<(usize, [f64; 2])>,
     /// Whether more samples would have been needed than are taken.
     pub spent: bool,
+    /// Times at which samples were put between others.
+    pub closely: Vec<f64>,
 }
 
 impl Unseen {
@@ -166,6 +168,7 @@ pub(super) fn survey<F: ForceSource>(
                     match resolution.shown(sampler, ends, interval) {
                         Shown::No if before.time < middle && middle < sample.time => {
                             waiting.push((sample, kept));
+                            unseen.closely.push(middle);
                             waiting.push(take(sampler, &mut resolution, middle));
                             continue;
                         }
