@@ -852,3 +852,29 @@ C = { near = [1.9, 0.35] }
     let result = run(&model, &model.studies[0], &mut Silent).expect("it moves");
     assert_eq!(result.table.unreached(), 0);
 }
+
+/// A pose right at a limit, which misses closure by a rounding error, and one that truly does not close.
+#[test]
+fn a_pose_at_a_limit_is_found_from_the_side_that_moves() {
+    let text = |from: f64| {
+        format!(
+            "units = {{ length = \"m\", angle = \"rad\" }}\n[links]\nframe = {{ A = [0, 0], D = [3, 0] }}\n\
+             crank = {{ A-B = 2.5 }}\ncoup = {{ B-C = 2, P = [1, 1] }}\nrock = {{ D-C = 2.2 }}\n\
+             [drives]\nm = {{ turns = \"crank\", from = {from}, to = 0, speed = 1 }}\n[assembly]\nC = \"left of B -> D\"\n"
+        )
+    };
+    // The rod and the rocker in line: 4.2^2 = 2.5^2 + 3^2 - 2 * 2.5 * 3 * cos(m).
+    let limit = kempe_number::math::acos((2.5 * 2.5 + 9.0 - 4.2 * 4.2) / 15.0);
+    for ulps in -4..=4 {
+        let at = f64::from_bits((limit.to_bits() as i64 + ulps) as u64);
+        let pose = pose_at(&model(&text(at)), &[]).unwrap();
+        let [d, b, c] = [1, 2, 3].map(|k| pose.frame.points[k]);
+        let apart = |p: [f64; 2], q: [f64; 2]| kempe_number::math::hypot(p[0] - q[0], p[1] - q[1]);
+        let found = [apart(b, c), apart(d, c), apart(b, d)];
+        for (found, wanted) in found.into_iter().zip([2.0, 2.2, 4.2]) {
+            assert!((found - wanted).abs() < 1e-9, "{ulps}: {found} {wanted}");
+        }
+    }
+    let beyond = pose_at(&model(&text(limit + 1e-3)), &[]).unwrap_err();
+    assert!(has(&beyond, "cannot-assemble"), "{beyond:?}");
+}

@@ -131,7 +131,7 @@ impl Motion {
         let whole = (demanded.1 - demanded.0).max(f64::MIN_POSITIVE);
         let share = ((demanded.1 - anchor) / whole).clamp(0.0, 1.0);
         let mut follower = Follower::reusing(storage, &design, &path);
-        restricting_steps(&mut follower, |follower| {
+        let found = restricting_steps(&mut follower, |follower| {
             let range = (demanded.0 / scale, demanded.1 / scale);
             let (nodes, ends) = follow_both(follower, [&down, &up], range, share, progress)
                 .ok_or(Unlocated::Stopped(Stage::Following))?;
@@ -144,7 +144,19 @@ impl Motion {
             motion.find_events(follower, progress)?;
             motion.choices = motion.choices_at_start(follower);
             Ok(motion)
-        })
+        });
+        match (found, nothing) {
+            // It ends before the only place that is asked for.
+            (Ok(motion), Some(assemblies))
+                if demanded.0 == demanded.1 && !motion.reaches(start) =>
+            {
+                Err(MotionError::CannotAssemble {
+                    at: start,
+                    assemblies: Box::new(assemblies),
+                })
+            }
+            (found, _) => found,
+        }
     }
 
     /// Whether a mechanism can be moved at all.
@@ -212,12 +224,22 @@ fn places(path: &DrivePath, (low, high): (f64, f64), start: f64) -> Vec<Anchor> 
     let beyond = matches!(path, DrivePath::Coordinate { .. });
     let mut places = vec![0.0];
     places.extend(near.into_iter().filter(|d| beyond || *d < along));
-    places.extend(PARTS.map(|part| part * along));
+    if along > 0.0 {
+        places.extend(PARTS.map(|part| part * along));
+    }
     let place = |d: f64| Anchor {
         anchor: start + d * direction,
         inside: d <= along,
     };
-    places.into_iter().map(place).collect()
+    let mut places: Vec<Anchor> = places.into_iter().map(place).collect();
+    if along == 0.0 && beyond {
+        // A pose right at a limit: the motion that ends there is on one of its sides.
+        places.extend([near[0], -near[0]].map(|d| Anchor {
+            anchor: start + d,
+            inside: true,
+        }));
+    }
+    places
 }
 
 /// A beginning at a place with these assemblies: with the first that leads to the pose at the start, where there is one.
