@@ -129,6 +129,15 @@ fn poles_are_infinite_and_their_place_is_told() {
             }
         }
     }
+    // A narrow peak is seen beside a pole, before it and behind it.
+    for at in [0.5, 5.0] {
+        let of = format!("1 / (q - 2)^2 - 9 * exp(-((q - {at}) / 1e-5)^2)");
+        let found =
+            numbers(&crank_rocker(&format!("a = \"max({of})\"\nb = \"min({of})\"\n")).must_move());
+        assert_eq!(found[0].0, f64::INFINITY);
+        let low = 1.0 / ((at - 2.0) * (at - 2.0)) - 9.0;
+        assert!((found[1].0 - low).abs() < 1e-4, "{at}: {found:?} {low}");
+    }
     // A toggle: the mechanical advantage of a crank-rocker where the rocker turns about, twice a turn.
     let of = "mechanical_advantage(angle(r), m)";
     let found =

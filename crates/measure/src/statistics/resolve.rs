@@ -35,6 +35,8 @@ pub(super) struct Resolution {
     known: Vec<usize>,
     /// The size of every measure.
     size: Vec<f64>,
+    /// What it can be at most, seen from afar: near a pole it grows no more.
+    most: Vec<f64>,
     budget: usize,
     duration: f64,
 }
@@ -85,6 +87,7 @@ impl Resolution {
         let samples: usize = stretches.iter().map(|s| s.intervals).sum();
         let mut it = Self {
             size: vec![0.0; own.len()],
+            most: vec![0.0; own.len()],
             known,
             budget: BUDGET.0 + BUDGET.1 * samples,
             duration: sampler.duration(),
@@ -103,7 +106,6 @@ impl Resolution {
         if self.size.is_empty() {
             return;
         }
-        let mut most = vec![0.0_f64; self.size.len()];
         let each = (FIRST / stretches.len()).max(1);
         // Of many stretches not every one is looked at.
         for stretch in stretches.iter().step_by(stretches.len().div_ceil(FIRST)) {
@@ -118,15 +120,23 @@ impl Resolution {
                 let now = sampler.keep(&self.between);
                 if let Some(before) = &before {
                     let bounds = sampler.bounds(&self.between, before, &now);
-                    for (most, bounds) in most.iter_mut().zip(&bounds) {
+                    for (most, bounds) in self.most.iter_mut().zip(&bounds) {
                         take_up(most, bounds.coefficient(0).mag());
                     }
                 }
                 before = Some(now);
             }
         }
-        for (size, most) in self.size.iter_mut().zip(most) {
-            *size = size.max(UNSEEN * most);
+        for (size, most) in self.size.iter_mut().zip(&mut self.most) {
+            *most = most.max(*size);
+            *size = size.max(UNSEEN * *most);
+        }
+    }
+
+    /// Takes up a value of a measure as its size.
+    fn take_up(&mut self, index: usize, value: f64) {
+        if value.abs() <= self.most[index] {
+            take_up(&mut self.size[index], value);
         }
     }
 
@@ -136,9 +146,9 @@ impl Resolution {
         sampler: &mut Sampler<F>,
         series: &[Series<f64>],
     ) -> Kept {
-        for (size, index) in self.size.iter_mut().zip(&self.surveyed) {
-            if let Some(value) = index.and_then(|index| series.get(index)) {
-                take_up(size, value.coefficient(0));
+        for index in 0..self.size.len() {
+            if let Some(value) = self.surveyed[index].and_then(|index| series.get(index)) {
+                self.take_up(index, value.coefficient(0));
             }
         }
         sampler.keep(&self.between)
@@ -161,16 +171,18 @@ impl Resolution {
             false => sampler.bounds(&self.between, a.1, b.1),
         };
         // Of loads no series are sampled: what their bounds leave out tells their size.
-        for (size, bounds) in self.size.iter_mut().zip(&bounds) {
-            take_up(size, bounds.coefficient(0).mig());
+        for (index, bounds) in bounds.iter().enumerate() {
+            self.take_up(index, bounds.coefficient(0).mig());
         }
         let open = |(index, bounds): (usize, &Series<Interval>)| {
             let mut power = 1.0;
+            // Beside a pole a measure counts as what it is there, and no more than from afar elsewhere.
+            let size = self.size[index].max(bounds.coefficient(0).mig());
             (0..self.known[index]).any(|k| {
                 let change = bounds.coefficient(k).width() * power;
                 power *= width;
                 // Of what has no value nothing can be told.
-                change > SHOWN[k] * self.size[index]
+                change > SHOWN[k] * size
             })
         };
         if follow && !bounds.iter().enumerate().any(open) {
