@@ -19,11 +19,19 @@ pub(crate) fn takes_at(
         let mut inner = Vec::new();
         for takes in here {
             match takes {
-                Takes::Table(kind) => {
-                    if let Some(key) = key_of(kind, name) {
-                        each(&key.takes, &mut inner);
+                Takes::Table(kind) => match (key_of(kind, name), kind.alone()) {
+                    (Some(key), _) => each(&key.takes, &mut inner),
+                    (
+                        None,
+                        Some(Key {
+                            takes: Takes::List(one, _),
+                            ..
+                        }),
+                    ) if is_index(name) => {
+                        each(one, &mut inner);
                     }
-                }
+                    _ => {}
+                },
                 Takes::Entries(kinds) => {
                     let kinds = kinds_of(path.get(..=i).unwrap_or(path), kinds);
                     inner.extend(kinds.into_iter().map(Takes::Table));
@@ -40,7 +48,7 @@ pub(crate) fn takes_at(
 }
 
 /// The place of an element of an array, as paths have it.
-fn is_index(name: &str) -> bool {
+pub(crate) fn is_index(name: &str) -> bool {
     !name.is_empty() && name.bytes().all(|b| b.is_ascii_digit())
 }
 

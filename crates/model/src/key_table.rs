@@ -25,6 +25,9 @@ pub(crate) const GOALS: [(&str, BalanceGoal); 2] = [
     ("statics", BalanceGoal::Statics),
 ];
 
+/// Where a drive is held that is held as drawn.
+pub(crate) const DRAWN: &str = "drawn";
+
 /// The sides of a rack.
 pub(crate) const SIDES: [(&str, Side); 4] = [
     ("left", Side::Left),
@@ -82,7 +85,7 @@ const fn one_of(name: Word, takes: Takes, example: Word, about: Word) -> Key {
 }
 
 const fn kind(what: Word, name: Word, example: Word, about: Word, groups: &'static [&'static [Key]]) -> Kind {
-    Kind { what, name, groups, points: &[], example, about }
+    Kind { what, name, groups, points: &[], alone: None, example, about }
 }
 
 const fn value(dimension: D, turning: D, sign: Sign) -> Takes {
@@ -126,6 +129,7 @@ pub static FILE: Kind = kind("file", "file",
         may("gravity", T::AnyOf(&[not_negative(D::ACCELERATION), T::Pair(D::ACCELERATION)]), "[0, \"-9.81 m/s^2\"]",
             "Acceleration of gravity: [x, y], or its size along -y; 9.81 m/s^2 along -y unless said otherwise."),
         may("parameters", T::Values(&T::AnyValue), "a = \"20 mm\"", "Named dimensions of the design."),
+        may("places", T::Values(&PLACE), "A = [0, 0]", "The mechanism as it is drawn: where its points lie in one of its positions, from which lengths, assembly and starts of drives follow."),
         must("links", T::Entries(&[&LINKS]), "crank = { A-B = \"20 mm\" }", "Rigid bodies as sets of points; `frame` stands still."),
         may("joints", T::Entries(&JOINTS), SLIDER.example, "Joints that a shared point name does not say."),
         may("drives", T::Entries(&DRIVES), TURNS.example, "What is moved from outside, and how."),
@@ -159,12 +163,14 @@ pub(crate) static UNITS: Kind = kind("units", "units",
 pub(crate) static LINKS: Kind = Kind {
     what: "link", name: "link",
     example: "crank = { A-B = 20 }",
-    about: "Points by coordinates (P = [x, y]), by distances (A-B = 20) and sides, and mass properties.",
+    about: "Points by coordinates (P = [x, y]), by distances (A-B = 20) and sides, or by the names of points that [places] draws ([\"A\", \"B\"]), and mass properties.",
+    alone: Some("points"),
     points: &[
         may("P", T::AnyOf(&[PLACE, T::Side]), "[0, 20]", "A point by its place on the link, or by its side of a line between two others to which it has distances."),
-        may("A-B", positive(D::LENGTH), "20", "The distance of two points."),
+        may("A-B", positive(D::LENGTH), "20", "The distance of two points; of two that are drawn it counts instead of the drawn one."),
     ],
     groups: &[&[
+        may("points", T::List(&POINT, 1), "[\"A\", \"B\"]", "Points of the link that [places] draws: the link's origin lies in the first, its x axis points to the second."),
         may("mass", not_negative(D::MASS), "\"2 kg\"", "Mass of the link; 0 unless given."),
         may("inertia", not_negative(D::INERTIA), "\"0.02 kg m^2\"", "Moment of inertia about the centre of mass."),
         may("center", T::AnyOf(&[T::Words(&["centroid"]), POINT, PLACE]), "\"centroid\"", "Centre of mass: \"centroid\", a point of the link, or a place on it."),
@@ -261,14 +267,14 @@ const HOW: T = T::AnyOf(&[LAW_WORDS, T::List(&T::Table(&PIECE), 1), T::Table(&LA
 /// How a drive moves, with examples of its coordinate at both ends, its speed and its acceleration.
 const fn law([from, to, speed, acceleration]: [&'static str; 4]) -> [Key; 7] {
     [
-        may("from", COORDINATE, from, "Where it starts; 0 unless said otherwise, and needed for a cylinder."),
+        may("from", COORDINATE, from, "Where it starts; as drawn where [places] draws it, else 0, and needed for a cylinder."),
         may("to", COORDINATE, to, "Where it ends; one turn further unless said otherwise, and needed for what does not turn."),
         may("speed", SPEED, speed, "Constant speed, without a sign."),
         may("acceleration", ACCELERATION, acceleration, "Constant acceleration from rest, without a sign."),
         may("law", HOW, "\"cycloidal\"",
             "A standard law from rest to rest, pieces one after the other, or measured points."),
         may("in", positive(D::TIME), "\"0.2 s\"", "The time in which it moves by the law."),
-        may("at", COORDINATE, from, "Where it is held."),
+        may("at", T::AnyOf(&[COORDINATE, T::Words(&[DRAWN])]), from, "Where it is held; \"drawn\" is where [places] draws it."),
     ]
 }
 static LAW_OF_TURNING: [Key; 7] = law(["30", "390", "\"60 rpm\"", "\"1 rad/s^2\""]);

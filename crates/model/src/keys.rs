@@ -127,6 +127,8 @@ pub struct Kind {
     pub groups: &'static [&'static [Key]],
     /// Keys with names of the user's choice: `P` stands for a point, `A-B` for a pair of points.
     pub points: &'static [Key],
+    /// The key whose value may stand alone for the whole table: `["A", "B"]` for `{ points = ["A", "B"] }`.
+    pub alone: Option<&'static str>,
     /// A whole one, as TOML.
     pub example: &'static str,
     /// What it is, in one sentence.
@@ -142,6 +144,11 @@ impl Kind {
     /// The key of a name.
     pub fn key(&self, name: &str) -> Option<&'static Key> {
         self.keys().find(|key| key.name == name)
+    }
+
+    /// The key whose value may stand for the whole table.
+    pub fn alone(&self) -> Option<&'static Key> {
+        self.alone.and_then(|name| self.key(name))
     }
 
     /// The names of its keys.

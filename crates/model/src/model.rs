@@ -34,6 +34,8 @@ pub struct Model {
     pub actions: crate::load::Actions,
     /// Which assembly is meant.
     pub assembly: Vec<AssemblyHint>,
+    /// Where the file draws points, and which links list them.
+    pub drawing: crate::drawing::Drawing,
     /// Named measures in file order; a measure may use earlier and later ones but not itself.
     pub measures: Vec<NamedMeasure>,
     /// Studies in file order.

@@ -7,10 +7,10 @@ use kempe_units::{Kind, Node, parse_argument, parse_condition};
 
 use crate::document::Text;
 use crate::ids::Span;
-use crate::key_path::takes_at;
+use crate::key_path::{is_index, takes_at};
 use crate::keys::{Named, Takes};
 use crate::outline::{KeyMark, Outline, Shape, ValueMark, string};
-use crate::read::names::{is_point_name, pair_of};
+use crate::read::names::{LISTED, is_point_name, pair_of};
 use crate::registry::{Argument, Registry};
 
 /// The kinds of part that have a name.
@@ -138,7 +138,7 @@ pub struct Naming {
     pub span: Span,
     /// The path of the key or the value in which it stands.
     pub path: Vec<String>,
-    /// Whether the part is described here: its entry, or a key of a link that says where a point lies.
+    /// Whether the part is described here: its entry, or what says of a point on which link or where it lies.
     pub declares: bool,
     /// The key in which the name stands, if it stands in one.
     pub(crate) key: Option<Span>,
@@ -278,7 +278,7 @@ impl Finder<'_> {
         match key.path.as_slice() {
             [section, name] => {
                 let part = match section.as_str() {
-                    "friction" | "assembly" if is_point_name(name) => {
+                    "friction" | "assembly" | "places" if is_point_name(name) => {
                         Some(Part::new(PartKind::Point, name))
                     }
                     "friction" if name == "all" => None,
@@ -289,7 +289,8 @@ impl Finder<'_> {
                     }
                 };
                 let Some(part) = part else { return };
-                let entry = SECTIONS.iter().any(|(known, _)| known == section);
+                let entry =
+                    section == "places" || SECTIONS.iter().any(|(known, _)| known == section);
                 self.push(part, within(0, name), &key.path, here(entry));
             }
             [section, _, name] if section == "links" => {
@@ -386,6 +387,17 @@ impl Finder<'_> {
         });
         tree.visit(&mut |node| {
             let part = match &node.kind {
+                Kind::Point(name) if lists_point(path) => {
+                    let span = text.span(from + node.span.start..from + node.span.end);
+                    self.out.all.push(Naming {
+                        part: Part::new(PartKind::Point, name),
+                        span,
+                        path: path.to_vec(),
+                        declares: true,
+                        key: None,
+                    });
+                    None
+                }
                 Kind::Point(name) => Some(Part::new(PartKind::Point, name)),
                 Kind::Name(name) => match own.iter().find(|(span, _)| *span == node.span) {
                     Some((_, part)) => Some(part.clone()),
@@ -398,6 +410,15 @@ impl Finder<'_> {
                 self.push(part, span, path, None);
             }
         });
+    }
+}
+
+/// Whether a path is that of a name in a link's list of points, alone or behind `points`.
+fn lists_point(path: &[String]) -> bool {
+    match path {
+        [section, _, index] => section == "links" && is_index(index),
+        [section, _, key, _] => section == "links" && key == LISTED,
+        _ => false,
     }
 }
 

@@ -1,6 +1,7 @@
 //! From the text of a model file to a [`Model`], with everything that is to be said about it.
 
 mod actuators;
+mod algebra;
 mod arguments;
 mod assembly;
 mod choices;
@@ -8,6 +9,7 @@ mod column;
 mod context;
 mod csv;
 mod draft;
+mod drawn;
 mod drives;
 mod entry;
 mod force_names;
@@ -26,6 +28,7 @@ mod one_measure;
 mod parameters;
 mod phrase;
 mod place;
+mod places;
 mod plots;
 mod sections;
 pub(crate) mod springs;

@@ -25,6 +25,8 @@ impl Model {
         // What values must keep to follows from the rest; what was put into numbers is in them.
         model.bounds.clear();
         model.settled.clear();
+        // So are links, drives and hints that were drawn.
+        model.drawing = Default::default();
         model.visit_scalars(&mut |scalar| *scalar = scalar.fold());
         model.visit_measures(&mut |measure| *measure = folded(measure));
         model

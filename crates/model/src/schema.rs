@@ -43,7 +43,7 @@ pub fn schema() -> Value {
     define(PIECE.what, table(&PIECE));
     for section in FILE.keys() {
         if let Takes::Entries(kinds) = section.takes {
-            let mut kinds_read: Vec<Value> = kinds.iter().map(|kind| table(kind)).collect();
+            let mut kinds_read: Vec<Value> = kinds.iter().map(|kind| entry(kind)).collect();
             if section.name == "studies" {
                 kinds_read.push(announced_studies());
             }
@@ -85,6 +85,14 @@ fn announced_studies() -> Value {
         "required": ["kind"],
         "properties": { "kind": { "enum": ANNOUNCED_STUDIES } }
     })
+}
+
+/// An entry of a kind: its table, or the value that may stand alone for it.
+fn entry(kind: &Kind) -> Value {
+    match kind.alone() {
+        Some(alone) => json!({ "anyOf": [table(kind), of(&alone.takes)] }),
+        None => table(kind),
+    }
 }
 
 /// A table with the keys of a kind alone.

@@ -12,6 +12,7 @@ use kempe_units::Dimension;
 use serde::Serialize;
 
 use crate::along::not_answerable;
+use crate::drawn::{self, DrawnLink};
 use crate::explain::cannot_move;
 use crate::findings_text::kind_text;
 use crate::hints;
@@ -27,6 +28,9 @@ use kempe_motion::progress::{Progress, Silent};
 pub struct Report {
     /// Title of the mechanism.
     pub title: String,
+    /// The links that the file draws, by the distances of their points.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub drawn: Vec<DrawnLink>,
     /// Links, the frame included.
     pub links: usize,
     /// Lower pairs; a multiple joint of k links counts k - 1.
@@ -126,6 +130,7 @@ pub fn check_with_progress(model: &Model, progress: &mut dyn Progress) -> Report
     });
     let mut report = Report {
         title: model.title.clone(),
+        drawn: drawn::links(&design, &units),
         links: found.mobility.links,
         lower_pairs: found.mobility.lower_pairs,
         higher_pairs: found.mobility.higher_pairs,
@@ -220,6 +225,9 @@ pub fn check_with_progress(model: &Model, progress: &mut dyn Progress) -> Report
     report
 }
 
+/// An assembly this near to the drawing, in sizes of the mechanism, is the drawn one but for digits that were left out.
+const AS_DRAWN: f64 = 1e-6;
+
 /// How the assembly was chosen where several agree with the file, and which hints decide nothing.
 fn chosen(design: &Design<f64>, assemblies: &Assemblies, units: &Units) -> Vec<String> {
     let mechanism = &*design.mechanism;
@@ -229,7 +237,12 @@ fn chosen(design: &Design<f64>, assemblies: &Assemblies, units: &Units) -> Vec<S
     {
         let alike = hints::as_near(design, assemblies).len();
         let off = |a: &Assembly| hints::off(design, units, &a.poses);
+        let model = &mechanism.model;
+        let drawn = !model.assembly.is_empty() && drawn::gives_hint(model, 0);
         words.push(match assemblies.list.get(alike) {
+            Some(_) if alike == 1 && drawn && first.distance <= AS_DRAWN * design.size() => {
+                "the one that is drawn".to_owned()
+            }
             None => "the first of them: nothing in [assembly] decides".to_owned(),
             Some(next) if alike == 1 => format!(
                 "the nearest to [assembly]: {} off; in the next {}",
@@ -244,6 +257,8 @@ fn chosen(design: &Design<f64>, assemblies: &Assemblies, units: &Units) -> Vec<S
         });
     }
     let idle = hints::idle(design, assemblies).into_iter();
+    // what is drawn need not decide
+    let idle = idle.filter(|(index, _)| !drawn::gives_hint(&mechanism.model, *index));
     words.extend(idle.map(|(index, why)| {
         format!(
             "{} decides nothing: {why}",

@@ -97,6 +97,9 @@ impl Report {
                 let _ = writeln!(out, "  {key:width$}  {value}");
             }
         };
+        let drawn = self.drawn.iter();
+        let drawn = drawn.map(|d| (d.link.clone(), d.lengths.join(", ")));
+        put("Drawn as", drawn.collect());
         put("Freedoms", self.facts());
         let groups = self.groups.iter().map(|g| {
             (
@@ -133,6 +136,14 @@ impl Report {
             title: "Freedoms".to_owned(),
             blocks: vec![Block::Facts(self.facts())],
         }];
+        if !self.drawn.is_empty() {
+            let facts = self.drawn.iter();
+            let facts = facts.map(|d| (d.link.clone(), d.lengths.join(", ")));
+            sections.push(Section {
+                title: "Drawn as".to_owned(),
+                blocks: vec![Block::Facts(facts.collect())],
+            });
+        }
         if !self.groups.is_empty() {
             let rows = self.groups.iter().map(|g| {
                 let by = if g.closed_form {

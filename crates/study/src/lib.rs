@@ -35,6 +35,7 @@ mod alternatives;
 mod choice;
 mod circuit;
 mod columns;
+mod drawn;
 pub mod encode;
 mod events;
 mod explain;

@@ -10,6 +10,7 @@ use kempe_motion::{EndReason, Motion};
 use kempe_number::math::hypot;
 use kempe_units::Dimension;
 
+use crate::drawn::gives_hint;
 use crate::explain::beyond_limit;
 use crate::lone_points::with_lone_points;
 use crate::unit::Units;
@@ -165,7 +166,7 @@ fn several(
     if !lines.is_empty() && lines.len() < alike {
         warning = warning.note(format!("and {} more", alike - lines.len()));
     }
-    for (index, why) in idle {
+    for (index, why) in idle.iter().filter(|(index, _)| !gives_hint(model, *index)) {
         let span = model.assembly[*index].span.clone();
         warning = warning.at(span, format!("decides nothing: {why}"));
     }

@@ -150,7 +150,10 @@ impl Known {
             .collect();
         for naming in namings.all.iter().filter(|n| n.declares) {
             let name = naming.part.name.as_str();
-            if let (PartKind::Point, Some(link)) = (naming.part.kind, naming.path.get(1)) {
+            if let (PartKind::Point, [section, link, ..]) =
+                (naming.part.kind, naming.path.as_slice())
+                && section == "links"
+            {
                 let on = links.entry(name).or_default();
                 if !on.contains(&link.as_str()) {
                     on.push(link);
@@ -169,7 +172,10 @@ impl Known {
         }
         for (part, doc) in parts.iter_mut().filter(|(p, _)| p.kind == PartKind::Point) {
             let on = links.get(part.name.as_str()).cloned().unwrap_or_default();
-            *doc = format!("point of {}", on.join(", "));
+            *doc = match on.as_slice() {
+                [] => "point that no link names".to_owned(),
+                on => format!("point of {}", on.join(", ")),
+            };
         }
         Self { parts, points }
     }

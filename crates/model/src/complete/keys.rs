@@ -28,6 +28,7 @@ impl Cursor<'_> {
         let there = self.keys_there(path);
         let (section, _) = place_of(path);
         let mut found = match (section, path.len()) {
+            ("places", 1) => self.parts(&[PartKind::Point]),
             ("assembly", 1) => self.parts(&[PartKind::Point, PartKind::Link]),
             ("friction", 1) => {
                 let mut found = self.parts(&[PartKind::Point, PartKind::Joint]);

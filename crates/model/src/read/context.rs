@@ -78,6 +78,8 @@ pub(crate) struct Context<'a> {
     pub measures: Vec<MeasureState>,
     /// What they ask for, in the order of the model.
     pub natures: Vec<Nature>,
+    /// Points whose place is broken, already told.
+    pub broken_places: BTreeSet<PointId>,
     /// The model as far as it is read.
     pub model: Model,
 }
@@ -124,6 +126,7 @@ impl<'a> Context<'a> {
             table_rows: 0,
             measures: Vec::new(),
             natures: Vec::new(),
+            broken_places: BTreeSet::new(),
             model: Model {
                 title: name.to_owned(),
                 units,
@@ -134,6 +137,7 @@ impl<'a> Context<'a> {
                 drives: Vec::new(),
                 actions: Default::default(),
                 assembly: Vec::new(),
+                drawing: Default::default(),
                 measures: Vec::new(),
                 studies: Vec::new(),
                 announced: Vec::new(),

@@ -15,6 +15,8 @@ pub(crate) struct Draft {
     pub coordinates: Vec<Coordinates>,
     pub distances: Vec<Distance>,
     pub sides: Vec<SideOf>,
+    /// Its first points are listed by name: `[places]` draws them.
+    pub listed: bool,
     /// Something of it could not be read: do not complain about what is missing.
     pub broken: bool,
 }

@@ -8,6 +8,7 @@ use crate::joint::JointKind;
 use crate::key_table::DRIVES;
 use crate::keys::Kind;
 use crate::read::context::{Context, Meaning};
+use crate::read::drawn;
 use crate::read::entry::Entry;
 use crate::read::laws::read_law;
 
@@ -62,7 +63,7 @@ fn read_drive(cx: &mut Context<'_>, (key, node): &(Key, Node)) -> Option<Drive> 
                 known.retain(|name| *name != kind.name);
                 known.insert(0, &written.name);
                 cx.unknown_keys(table, &place, &known);
-                read_law(cx, &Entry::of(table, &key.span, place, kind).moving());
+                read_law(cx, &Entry::of(table, &key.span, place, kind).moving(), None);
             }
             return None;
         }
@@ -81,7 +82,10 @@ fn read_drive(cx: &mut Context<'_>, (key, node): &(Key, Node)) -> Option<Drive> 
         "cylinder" => cylinder(cx, &entry),
         _ => slides(cx, &entry),
     };
-    let law = read_law(cx, &entry);
+    let drawn = kind_read
+        .as_ref()
+        .and_then(|kind| drawn::coordinate(cx, kind));
+    let law = read_law(cx, &entry, drawn);
     let lasts: Option<f64> = law.as_ref().map(|law| law.duration(&cx.values));
     if lasts.is_some_and(|t| !t.is_finite()) {
         let place = &entry.place;

@@ -8,7 +8,9 @@ use crate::ids::{JointId, Line, LinkId, LinkPointRef, PointId, Scalar};
 use crate::joint::{Joint, JointKind};
 use crate::key_table::{JOINTS, SIDES};
 use crate::link::{CircularArc, Side, SmoothCurve};
+use crate::read::algebra::{minus, over, plus, times, turn};
 use crate::read::context::Context;
+use crate::read::drawn;
 use crate::read::entry::{Entry, on_link};
 
 /// A radius this little, in parts of it, below half the distance of an arc's ends is that half: a semicircle.
@@ -73,6 +75,14 @@ fn read_joint(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<JointKind> {
 }
 
 impl Entry<'_> {
+    /// A value, or where the entry leaves it out the one that the drawing has.
+    fn or_drawn(&self, key: &str, value: Scalar, drawn: impl FnOnce() -> Option<Scalar>) -> Scalar {
+        match self.has(key) {
+            true => value,
+            false => drawn().unwrap_or(value),
+        }
+    }
+
     fn different(&self, cx: &mut Context<'_>, a: LinkId, b: LinkId) -> Option<()> {
         if a != b {
             return Some(());
@@ -98,10 +108,14 @@ fn slider(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<JointKind> {
     let (slider, (at, at_node), on) = (slider?, at?, on?);
     let at = on_link(cx, at, slider, at_node)?;
     entry.different(cx, slider, on.link)?;
+    let as_drawn = || {
+        let guide = drawn::line_angle(cx, &on)?;
+        Some(turn(&guide, &drawn::listed_angle(cx, slider)?))
+    };
     Some(JointKind::Slider {
         at,
         on,
-        angle: angle?,
+        angle: entry.or_drawn("angle", angle?, as_drawn),
     })
 }
 
@@ -321,7 +335,7 @@ fn weld(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<JointKind> {
         a,
         b,
         at,
-        angle: angle?,
+        angle: entry.or_drawn("angle", angle?, || drawn::angle_between(cx, a, b)),
     })
 }
 
@@ -373,14 +387,19 @@ fn gears(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<JointKind> {
             );
         }
     }
+    let internal = internal?;
+    let ratio = over(teeth_b.clone(), teeth_a.clone());
+    let phase = entry.or_drawn("phase", phase?, || {
+        drawn::phase(cx, [a, b, arm], ratio, !internal)
+    });
     Some(JointKind::Gears {
         a,
         b,
         arm,
         teeth_a,
         teeth_b,
-        internal: internal?,
-        phase: phase?,
+        internal,
+        phase,
     })
 }
 
@@ -460,15 +479,20 @@ fn belt(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<JointKind> {
         );
         return None;
     }
+    let crossed = crossed?;
+    let ratio = over(radius_b.clone(), radius_a.clone());
+    let phase = entry.or_drawn("phase", phase?, || {
+        drawn::phase(cx, [a, b, arm], ratio, crossed)
+    });
     Some(JointKind::Belt {
         a,
         b,
         arm,
         radius_a,
         radius_b,
-        crossed: crossed?,
+        crossed,
         chain: chain.is_some(),
-        phase: phase?,
+        phase,
     })
 }
 
@@ -495,13 +519,23 @@ fn rack(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<JointKind> {
             on_link(cx, point, pinion, node)?.point
         }
     };
+    let (radius, side) = (radius?, side?);
+    let offset = entry.or_drawn("offset", offset?, || {
+        let rolled = times(radius.clone(), drawn::angle_between(cx, rack, pinion)?);
+        let travel = drawn::travel(cx, rack, center)?;
+        let offset = match side {
+            Side::Left => plus(travel, rolled),
+            Side::Right => minus(&travel, &rolled),
+        };
+        Some(offset.fold())
+    });
     Some(JointKind::Rack {
         rack,
         pinion,
         center,
-        radius: radius?,
-        side: side?,
-        offset: offset?,
+        radius,
+        side,
+        offset,
     })
 }
 

@@ -7,7 +7,7 @@ use crate::diagnostic::Diagnostic;
 use crate::document::{Node, Value};
 use crate::drive::{Law, LawPiece, RiseLaw};
 use crate::ids::{Scalar, Span};
-use crate::key_table::{LAW_TABLE, LAWS, PIECE};
+use crate::key_table::{DRAWN, LAW_TABLE, LAWS, PIECE};
 use crate::read::context::Context;
 use crate::read::entry::Entry;
 use crate::read::law_table::read_table;
@@ -20,14 +20,21 @@ struct LawReader<'e, 'd> {
     entry: &'e Entry<'d>,
     place: &'e str,
     dimension: Dimension,
+    /// Where the drive stands as drawn.
+    drawn: Option<Scalar>,
 }
 
-/// Reads the law of a drive.
-pub(crate) fn read_law(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<Law> {
+/// Reads the law of a drive that stands at `drawn` where the file draws it.
+pub(crate) fn read_law(
+    cx: &mut Context<'_>,
+    entry: &Entry<'_>,
+    drawn: Option<Scalar>,
+) -> Option<Law> {
     LawReader {
         entry,
         place: &entry.place,
         dimension: entry.dimension("from"),
+        drawn,
     }
     .read(cx)
 }
@@ -76,7 +83,12 @@ impl<'d> LawReader<'_, 'd> {
             &["from", "to", "speed", "acceleration", "law", "in"],
             "`at` holds the drive where it is",
         );
-        let from = cx.scalar(node, self.dimension)?;
+        let from = match &node.value {
+            Value::Text(text) if text.content.trim() == DRAWN && !cx.names.contains_key(DRAWN) => {
+                self.as_drawn(cx, node)?
+            }
+            _ => cx.scalar(node, self.dimension)?,
+        };
         self.check_coordinate(cx, &from, &node.span);
         Some(Law {
             pieces: vec![LawPiece::Dwell {
@@ -84,6 +96,20 @@ impl<'d> LawReader<'_, 'd> {
             }],
             from,
         })
+    }
+
+    /// `at = "drawn"`.
+    fn as_drawn(&self, cx: &mut Context<'_>, node: &Node) -> Option<Scalar> {
+        if self.drawn.is_none() && cx.broken_places.is_empty() {
+            let example = cx.example(self.dimension);
+            return cx.refuse(
+                "no-place",
+                format!("{} is not drawn", self.place),
+                &node.span,
+                format!("draw the points that it is between under [places], or say where it is held: at = {example}"),
+            );
+        }
+        self.drawn.clone()
     }
 
     /// Reports keys that say something a second time.
@@ -100,7 +126,7 @@ impl<'d> LawReader<'_, 'd> {
         }
     }
 
-    /// The start: 0 unless said otherwise; a cylinder has no such default.
+    /// The start: as drawn, or 0, unless said otherwise; a cylinder that is not drawn has no such default.
     fn from(&self, cx: &mut Context<'_>) -> Option<Scalar> {
         match self.entry.get("from") {
             Some(node) => {
@@ -108,7 +134,16 @@ impl<'d> LawReader<'_, 'd> {
                 self.check_coordinate(cx, &from, &node.span);
                 Some(from)
             }
+            None if self.drawn.is_some() => {
+                let drawn = self.drawn.clone()?;
+                self.check_coordinate(cx, &drawn, self.entry.span);
+                Some(drawn)
+            }
             None if self.entry.kind.name == "cylinder" => {
+                // a broken place may be all that is missing
+                if !cx.broken_places.is_empty() {
+                    return None;
+                }
                 self.entry
                     .required_like(cx, "from", "\"380 mm\", the length at the start");
                 None

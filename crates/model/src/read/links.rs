@@ -1,9 +1,9 @@
-//! `[links]`: points by coordinates and by distances, mass properties.
+//! `[links]`: points by coordinates, by distances and by names alone, mass properties.
 
 use kempe_units::Dimension;
 
 use crate::diagnostic::Diagnostic;
-use crate::document::{Key, Node, Value};
+use crate::document::{Key, Node, Table, Value};
 use crate::ids::{FRAME, LinkId, PointId, Span};
 use crate::key_table::LINKS;
 use crate::link::Center;
@@ -11,8 +11,9 @@ use crate::read::context::Context;
 use crate::read::draft::{Coordinates, Distance, Draft, SideOf};
 use crate::read::entry::Entry;
 use crate::read::masses::{mass_of_frame, read_inertia};
-use crate::read::names::{is_point_name, pair_of};
+use crate::read::names::{LISTED, is_point_name, pair_of};
 use crate::read::place::place_points;
+use crate::read::places;
 
 /// Reads all links, of which the entries begin with the link `first`; without `whole` the section itself could not be read, and is
 /// not to be missed.
@@ -33,18 +34,36 @@ pub(crate) fn read(cx: &mut Context<'_>, entries: &[&(Key, Node)], first: usize,
 
 fn read_link(cx: &mut Context<'_>, id: LinkId, key: &Key, node: &Node) {
     let place = format!("link `{}`", key.name);
-    let Some(table) = cx.table(node, &place, LINKS.example) else {
-        return;
+    let empty = Table::default();
+    let (table, list) = match &node.value {
+        Value::Array(_) => (&empty, Some(node)),
+        _ => {
+            let Some(table) = cx.table(node, &place, LINKS.example) else {
+                return;
+            };
+            (table, table.get(LISTED))
+        }
     };
     let mut draft = Draft::default();
+    let listed = list.and_then(|list| places::listed(cx, list, &place));
+    draft.broken = list.is_some() && listed.is_none();
+    let listed = listed.unwrap_or_default();
+    let mut distances = Vec::new();
     for (key, value) in &table.entries {
-        read_entry(cx, &mut draft, &place, key, value);
+        match places::given(cx, &listed, key, value) {
+            Some(Some(distance)) => distances.push(distance),
+            Some(None) => draft.broken = true,
+            None => read_entry(cx, &mut draft, &place, &listed, key, value),
+        }
+    }
+    if !listed.is_empty() {
+        places::lay(cx, &mut draft, id, &place, &listed, distances);
     }
     if draft.points.is_empty() && !draft.broken {
         cx.push(
             Diagnostic::error("empty-link", format!("{place} has no points"))
                 .at(key.span.clone(), "")
-                .help("a link is its points: give their coordinates, A = [0, 0], or their distances, A-B = 20"),
+                .help("a link is its points: give their coordinates, A = [0, 0], their distances, A-B = 20, or the names of points that [places] draws, [\"A\", \"B\"]"),
         );
     }
     let points = place_points(cx, &draft, &place, &key.span);
@@ -64,7 +83,14 @@ fn read_link(cx: &mut Context<'_>, id: LinkId, key: &Key, node: &Node) {
     }
 }
 
-fn read_entry(cx: &mut Context<'_>, draft: &mut Draft, place: &str, key: &Key, value: &Node) {
+fn read_entry(
+    cx: &mut Context<'_>,
+    draft: &mut Draft,
+    place: &str,
+    listed: &[(PointId, Span)],
+    key: &Key,
+    value: &Node,
+) {
     let name = key.name.as_str();
     if LINKS.key(name).is_some() {
         return;
@@ -102,6 +128,17 @@ fn read_entry(cx: &mut Context<'_>, draft: &mut Draft, place: &str, key: &Key, v
         }
     } else if is_point_name(name) {
         let Some(point) = known(cx, name) else { return };
+        if let Some((_, list)) = listed.iter().find(|(listed, _)| *listed == point) {
+            draft.broken = true;
+            let message = format!("{place}: {name} is listed, and so placed as it is drawn");
+            cx.push(
+                Diagnostic::error("over-specified", message)
+                    .at(key.span.clone(), "one thing too many")
+                    .see(list.clone(), "listed here")
+                    .help("leave this out, or take the point out of the list"),
+            );
+            return;
+        }
         note_point(draft, point, &key.span);
         let read = match &value.value {
             Value::Text(text) => cx.side_phrase(text).map(|(side, line)| {

@@ -21,6 +21,7 @@ use crate::joint::JointKind;
 use crate::key_table::{BAR, MASS};
 use crate::link::{Center, Inertia, LinkPoint, Place};
 use crate::load::PointMass;
+use crate::read::algebra::{minus, over, place_in_xy, plus, times};
 use crate::read::context::Context;
 use crate::read::draft::Draft;
 use crate::read::entry::{Entry, moving_carrier, on_link};
@@ -286,17 +287,16 @@ fn shaped<'d>(
         }
         return None;
     };
-    let minus = |a: &Scalar, b: &Scalar| Expr::Sub(Box::new(b.clone()), Box::new(a.clone()));
-    let length = Expr::Call(Builtin::Hypot, vec![minus(&ax, &bx), minus(&ay, &by)]).fold();
+    let length = Expr::Call(Builtin::Hypot, vec![minus(&bx, &ax), minus(&by, &ay)]).fold();
     let mass = times(per_length, length.clone());
-    let squares = Expr::Add(
-        Box::new(Expr::Powi(Box::new(length), 2)),
-        Box::new(Expr::Powi(Box::new(width), 2)),
+    let squares = plus(
+        Expr::Powi(Box::new(length), 2),
+        Expr::Powi(Box::new(width), 2),
     );
-    let moment = over(times(mass.clone(), squares), 12.0);
+    let moment = over(times(mass.clone(), squares), Expr::Const(12.0));
     cx.finite(&mass, &node.span, Dimension::MASS)?;
     cx.finite(&moment, &node.span, Dimension::INERTIA)?;
-    let middle = |a: Scalar, b: Scalar| over(Expr::Add(Box::new(a), Box::new(b)), 2.0).fold();
+    let middle = |a: Scalar, b: Scalar| over(plus(a, b), Expr::Const(2.0)).fold();
     Some(Inertia {
         mass: Some(mass.fold()),
         moment: Some(moment.fold()),
@@ -307,29 +307,18 @@ fn shaped<'d>(
     })
 }
 
-fn times(a: Scalar, b: Scalar) -> Scalar {
-    Expr::Mul(Box::new(a), Box::new(b))
-}
-
-fn over(a: Scalar, by: f64) -> Scalar {
-    Expr::Div(Box::new(a), Box::new(Expr::Const(by)))
-}
-
-/// Where a bar starts and ends: the points of the first distance, or else the first two points.
+/// Where a bar starts and ends: the points of the first distance, or else, and of a link that lists its points, the first two.
 fn ends(draft: &Draft, points: &[LinkPoint]) -> Option<([Scalar; 2], [Scalar; 2])> {
     let named = draft.distances.first().map(|d| (d.a, d.b));
+    let named = named.filter(|_| !draft.listed);
     let mut first = draft.points.iter().map(|(point, _)| *point);
     let (a, b) = match named {
         Some(pair) => pair,
         None => (first.next()?, first.next()?),
     };
-    let coordinates = |point: PointId| match &points.iter().find(|p| p.point == point)?.place {
-        Place::Cartesian { x, y } => Some([x.clone(), y.clone()]),
-        Place::Polar { radius, angle } => {
-            let part = |function| times(radius.clone(), Expr::Call(function, vec![angle.clone()]));
-            Some([part(Builtin::Cos), part(Builtin::Sin)])
-        }
-        Place::Triangle { .. } => None,
+    let coordinates = |point: PointId| {
+        let of = points.iter().find(|p| p.point == point)?;
+        place_in_xy(&of.place)
     };
     Some((coordinates(a)?, coordinates(b)?))
 }

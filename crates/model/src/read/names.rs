@@ -266,15 +266,38 @@ fn collect_points(cx: &mut Context<'_>, id: LinkId, key: &Key, node: &Node) {
         inertia: None,
         span: key.span.clone(),
     });
-    let Value::Table(table) = &node.value else {
-        return;
+    let table = match &node.value {
+        Value::Table(table) => table,
+        Value::Array(listed) => return collect_listed(cx, id, listed),
+        _ => return,
     };
-    for (key, _) in &table.entries {
+    for (key, node) in &table.entries {
+        if let (LISTED, Value::Array(listed)) = (key.name.as_str(), &node.value) {
+            collect_listed(cx, id, listed);
+        }
         let pair = pair_of(&key.name);
         let single = is_point_name(&key.name).then_some(key.name.as_str());
         for name in pair.into_iter().flat_map(|(a, b)| [a, b]).chain(single) {
             if !cx.points.contains_key(name) {
                 long_name(cx, name, &key.span);
+            }
+            enter_point(cx, name, id);
+        }
+    }
+}
+
+/// The key of a link's list of points.
+pub(crate) const LISTED: &str = "points";
+
+/// Enters the points that a link lists by their names.
+fn collect_listed(cx: &mut Context<'_>, id: LinkId, listed: &[Node]) {
+    for node in listed {
+        if let Value::Text(text) = &node.value
+            && is_point_name(text.content.trim())
+        {
+            let name = text.content.trim();
+            if !cx.points.contains_key(name) {
+                long_name(cx, name, &node.span);
             }
             enter_point(cx, name, id);
         }

@@ -12,8 +12,8 @@ use crate::model::UnitName;
 use crate::read::context::Context;
 use crate::read::entry::Entry;
 use crate::read::{
-    actuators, assembly, drives, friction, joints, links, loads, masses, measures, names,
-    parameters, springs, studies,
+    actuators, assembly, drawn, drives, friction, joints, links, loads, masses, measures, names,
+    parameters, places, springs, studies,
 };
 
 /// Reads the whole file.
@@ -71,10 +71,14 @@ pub(crate) fn read(cx: &mut Context<'_>, root: &Table, overrides: &[(String, Str
     let whole = file
         .get("links")
         .is_none_or(|n| matches!(n.value, Value::Table(_)));
+    places::read(cx, sections.of("places"));
     links::read(cx, sections.of("links"), sections.first_link, whole);
+    places::frame_as_drawn(cx);
     joints::read(cx, sections.of("joints"));
     drives::read(cx, sections.of("drives"));
     assembly::read(cx, sections.of("assembly"));
+    drawn::single_points(cx);
+    drawn::assemble(cx, &file);
     loose_links(cx);
     if let Some(node) = file.get("gravity") {
         masses::read_gravity(cx, node);
@@ -123,6 +127,10 @@ fn loose_links(cx: &mut Context<'_>) {
         let Some(link) = cx.model.links.get(i) else {
             continue;
         };
+        // what is wrong with its points has been told
+        if link.points.is_empty() {
+            continue;
+        }
         let warning = Diagnostic::warning(
             "loose-link",
             format!("nothing holds link `{}`", link.name),
