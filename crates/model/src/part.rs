@@ -138,7 +138,7 @@ pub struct Naming {
     pub span: Span,
     /// The path of the key or the value in which it stands.
     pub path: Vec<String>,
-    /// Whether the part is described here: its entry, or what says of a point on which link or where it lies.
+    /// Whether the part is described here: its entry, or what says of a point that a link has it.
     pub declares: bool,
     /// The key in which the name stands, if it stands in one.
     pub(crate) key: Option<Span>,
@@ -223,6 +223,11 @@ pub fn namings(text: &str, part: &Part) -> Vec<Naming> {
     namings.of(part).cloned().collect()
 }
 
+/// Whether a path is that of a point's place in `[places]`, which goes with the point.
+pub(crate) fn is_drawn_place(path: &[String]) -> bool {
+    matches!(path, [section, _] if section == "places")
+}
+
 /// The section and entry of a path, as far as it goes.
 pub(crate) fn place_of(path: &[String]) -> (&str, &str) {
     let part = |i: usize| path.get(i).map_or("", String::as_str);
@@ -289,8 +294,7 @@ impl Finder<'_> {
                     }
                 };
                 let Some(part) = part else { return };
-                let entry =
-                    section == "places" || SECTIONS.iter().any(|(known, _)| known == section);
+                let entry = SECTIONS.iter().any(|(known, _)| known == section);
                 self.push(part, within(0, name), &key.path, here(entry));
             }
             [section, _, name] if section == "links" => {

@@ -85,7 +85,7 @@ fn every_example_reads_back() {
     for (folder, least) in [
         ("../../examples/gallery", 10),
         ("../../examples/seeds", 8),
-        ("tests/good", 6),
+        ("tests/good", 7),
         // the warnings
         ("tests/bad", 8),
     ] {

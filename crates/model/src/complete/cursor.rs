@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::ids::Span;
 use crate::outline::{Outline, Shape, ValueMark};
-use crate::part::{Namings, Part, PartKind};
+use crate::part::{Naming, Namings, Part, PartKind, is_drawn_place};
 use crate::text_edit::TextEdit;
 
 /// What a completion is.
@@ -148,7 +148,8 @@ impl Known {
             .iter()
             .map(|v| (v.path.as_slice(), v))
             .collect();
-        for naming in namings.all.iter().filter(|n| n.declares) {
+        let offered = |n: &&Naming| n.declares || is_drawn_place(&n.path);
+        for naming in namings.all.iter().filter(offered) {
             let name = naming.part.name.as_str();
             if let (PartKind::Point, [section, link, ..]) =
                 (naming.part.kind, naming.path.as_slice())

@@ -7,7 +7,7 @@ use crate::diagnostic::Diagnostic;
 use crate::edit::rename::unknown;
 use crate::ids::Span;
 use crate::outline::{Outline, Shape, ValueMark};
-use crate::part::{Naming, Namings, Part, place_of};
+use crate::part::{Naming, Namings, Part, is_drawn_place, place_of};
 use crate::text_edit::TextEdit;
 
 /// Why a part is not deleted.
@@ -47,7 +47,7 @@ pub struct Deletion {
     pub parts: Vec<Part>,
 }
 
-/// The edits that delete a part to which nothing else refers. A point goes with the keys of links that name it.
+/// The edits that delete a part to which nothing else refers. A point goes with its place and the keys of links that name it.
 ///
 /// # Errors
 ///
@@ -192,6 +192,10 @@ impl<'o> Going<'o> {
                 if *left == 0 {
                     self.parts.insert(naming.part.clone());
                     self.waiting.push(naming.part.clone());
+                    let drawn = self.places(&naming.part).into_iter();
+                    let drawn = drawn.filter_map(|i| self.namings.all.get(i));
+                    let drawn = drawn.filter(|n| is_drawn_place(&n.path));
+                    self.paths.extend(drawn.map(|n| n.path.clone()));
                 }
             }
         }

@@ -10,6 +10,9 @@ pub(crate) fn plus(a: Scalar, b: Scalar) -> Scalar {
 }
 
 pub(crate) fn minus(a: &Scalar, b: &Scalar) -> Scalar {
+    if matches!(b, Expr::Const(0.0)) {
+        return a.clone();
+    }
     Expr::Sub(Box::new(a.clone()), Box::new(b.clone()))
 }
 

@@ -48,6 +48,9 @@ fn read_link(cx: &mut Context<'_>, id: LinkId, key: &Key, node: &Node) {
     let listed = list.and_then(|list| places::listed(cx, list, &place));
     draft.broken = list.is_some() && listed.is_none();
     let listed = listed.unwrap_or_default();
+    for (point, span) in &listed {
+        note_point(&mut draft, *point, span);
+    }
     let mut distances = Vec::new();
     for (key, value) in &table.entries {
         match places::given(cx, &listed, key, value) {

@@ -271,10 +271,11 @@ fn collect_points(cx: &mut Context<'_>, id: LinkId, key: &Key, node: &Node) {
         Value::Array(listed) => return collect_listed(cx, id, listed),
         _ => return,
     };
-    for (key, node) in &table.entries {
-        if let (LISTED, Value::Array(listed)) = (key.name.as_str(), &node.value) {
-            collect_listed(cx, id, listed);
-        }
+    // they are placed first, wherever the list stands
+    if let Some(Value::Array(listed)) = table.get(LISTED).map(|node| &node.value) {
+        collect_listed(cx, id, listed);
+    }
+    for (key, _) in &table.entries {
         let pair = pair_of(&key.name);
         let single = is_point_name(&key.name).then_some(key.name.as_str());
         for name in pair.into_iter().flat_map(|(a, b)| [a, b]).chain(single) {

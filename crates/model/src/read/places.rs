@@ -15,7 +15,7 @@
 
 use std::collections::BTreeMap;
 
-use kempe_units::{Dimension, Expr};
+use kempe_units::{Builtin, Dimension, Expr};
 
 use crate::bound::Keeps;
 use crate::diagnostic::Diagnostic;
@@ -24,7 +24,7 @@ use crate::drawing::DrawnPlace;
 use crate::geometry::place as evaluate_place;
 use crate::ids::{FRAME, LinkId, PointId, Scalar, Span};
 use crate::link::{Place, Side};
-use crate::read::algebra::{cross, dot, length, minus, over, place_in_xy, plus, times, way};
+use crate::read::algebra::{cross, dot, length, over, place_in_xy, plus, times, way};
 use crate::read::context::Context;
 use crate::read::draft::{Coordinates, Distance, Draft, SideOf};
 use crate::read::names::{MAX_POINTS, is_point_name, long_name, pair_of};
@@ -204,11 +204,6 @@ pub(crate) fn lay(
     given: Vec<Given>,
 ) {
     draft.listed = true;
-    for (point, span) in points {
-        if draft.known.insert(*point) {
-            draft.points.push((*point, span.clone()));
-        }
-    }
     let mut at = Vec::with_capacity(points.len());
     for (point, span) in points {
         match cx.model.drawing.places.get(point) {
@@ -275,22 +270,17 @@ pub(crate) fn lay(
 
 /// The place at a distance from another in a direction.
 fn along(from: &[Scalar; 2], direction: &[Scalar; 2], distance: &Scalar) -> [Scalar; 2] {
-    // along an axis nothing is to be divided
-    let zero = |scalar: &Scalar| matches!(scalar, Expr::Const(x) if *x == 0.0);
-    let size = length(direction);
-    let part = |i: usize| {
-        let step = match zero(&direction[i]) {
-            true => Expr::Const(0.0),
-            false if direction[i] == size => distance.clone(),
-            false => over(times(distance.clone(), direction[i].clone()), size.clone()),
-        };
-        match (zero(&from[i]), zero(&step)) {
-            (true, _) => step,
-            (_, true) => from[i].clone(),
-            _ => plus(from[i].clone(), step).fold(),
-        }
+    let part = |i: usize, step: Scalar| match &from[i] {
+        Expr::Const(0.0) => step,
+        from => plus(from.clone(), step).fold(),
     };
-    [part(0), part(1)]
+    // along the link's own axis nothing is to be divided
+    if let [Expr::Call(Builtin::Hypot, _), Expr::Const(0.0)] = direction {
+        return [part(0, distance.clone()), from[1].clone()];
+    }
+    let size = length(direction);
+    let step = |i: usize| over(times(distance.clone(), direction[i].clone()), size.clone()).fold();
+    [part(0, step(0)), part(1, step(1))]
 }
 
 /// Places in the link's own coordinates.
@@ -412,7 +402,7 @@ fn drawn_side(
     let left = cx.number(&area) >= 0.0;
     let (side, signed) = match left {
         true => (Side::Left, area),
-        false => (Side::Right, minus(&Expr::Const(0.0), &area)),
+        false => (Side::Right, Expr::Neg(Box::new(area))),
     };
     let name = cx.point_name(*point).to_owned();
     let bound = format!("the side on which {name} is drawn");
