@@ -567,3 +567,34 @@ fn what_cannot_move_says_so_when_it_is_compiled() {
     let [b, c] = ["B", "C"].map(|name| pose.point(name).expect("a point"));
     assert!((kempe::number::math::hypot(b[0] - c[0], b[1] - c[1]) - 3.0).abs() < 1e-12);
 }
+
+/// Places are expressions: a parameter moves the drawing, and with it lengths, start and assembly.
+#[test]
+fn a_drawing_follows_its_parameters() {
+    let text = |w: &str| {
+        format!(
+            "units = {{ length = \"mm\" }}\n[parameters]\nw = \"{w}\"\n[places]\nA = [0, 0]\nB = [\"w / 3\", 11]\nC = [\"w\", 38]\nD = [60, 0]\n\
+             [links]\nframe = [\"A\", \"D\"]\ncrank = [\"A\", \"B\"]\ncoupler = [\"B\", \"C\"]\nrocker = [\"D\", \"C\"]\n\
+             [drives]\nmotor = {{ turns = \"crank\", to = 90, speed = 1 }}\n"
+        )
+    };
+    let session = |w: &str| {
+        let model: Model = text(w).parse().expect("a model");
+        model.compile().expect("it moves").session()
+    };
+    let mut set = session("50 mm");
+    set.set("w", 0.055).expect("sound");
+    let (moved, anew) = (
+        set.start().expect("a pose"),
+        session("55 mm").start().expect("a pose"),
+    );
+    for (point, drawn) in [("B", [0.055 / 3.0, 0.011]), ("C", [0.055, 0.038])] {
+        for pose in [&moved, &anew] {
+            let at = pose.point(point).expect("a point");
+            assert!(
+                (0..2).all(|i| (at[i] - drawn[i]).abs() < 1e-12),
+                "{point}: {at:?} {drawn:?}"
+            );
+        }
+    }
+}

@@ -86,13 +86,13 @@ fn listed_points_lie_on_their_link_as_they_are_drawn() {
     }
     assert_eq!(hints(&model), ["B", "C", "P", "coupler", "rocker"]);
     let from = value(&model.drives[0].law.from, &model.parameter_values::<f64>());
-    assert!((from - 4.0f64.atan2(3.0)).abs() < 1e-15);
+    assert!((from - kempe_number::math::atan2(4.0, 3.0)).abs() < 1e-15);
 }
 
 #[test]
 fn given_distances_count_instead_of_drawn_ones() {
     let apart = |p: &[[f64; 2]], i: usize, j: usize| {
-        ((p[i][0] - p[j][0]).powi(2) + (p[i][1] - p[j][1]).powi(2)).sqrt()
+        kempe_number::math::hypot(p[i][0] - p[j][0], p[i][1] - p[j][1])
     };
     let drawn = points(&read(FILE), "coupler");
     let with = |given: &str| {
