@@ -82,9 +82,7 @@ fn read_drive(cx: &mut Context<'_>, (key, node): &(Key, Node)) -> Option<Drive> 
         "cylinder" => cylinder(cx, &entry),
         _ => slides(cx, &entry),
     };
-    let drawn = kind_read
-        .as_ref()
-        .and_then(|kind| drawn::coordinate(cx, kind));
+    let drawn = kind_read.as_ref().map(|kind| drawn::coordinate(cx, kind));
     let law = read_law(cx, &entry, drawn);
     let lasts: Option<f64> = law.as_ref().map(|law| law.duration(&cx.values));
     if lasts.is_some_and(|t| !t.is_finite()) {

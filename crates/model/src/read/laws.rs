@@ -22,19 +22,22 @@ struct LawReader<'e, 'd> {
     dimension: Dimension,
     /// Where the drive stands as drawn.
     drawn: Option<Scalar>,
+    /// Whether it is known what the drive moves.
+    known: bool,
 }
 
-/// Reads the law of a drive that stands at `drawn` where the file draws it.
+/// Reads the law of a drive, with where it stands if the file draws it; `None` if it is not known what it moves.
 pub(crate) fn read_law(
     cx: &mut Context<'_>,
     entry: &Entry<'_>,
-    drawn: Option<Scalar>,
+    drawn: Option<Option<Scalar>>,
 ) -> Option<Law> {
     LawReader {
         entry,
         place: &entry.place,
         dimension: entry.dimension("from"),
-        drawn,
+        known: drawn.is_some(),
+        drawn: drawn.flatten(),
     }
     .read(cx)
 }
@@ -100,7 +103,7 @@ impl<'d> LawReader<'_, 'd> {
 
     /// `at = "drawn"`.
     fn as_drawn(&self, cx: &mut Context<'_>, node: &Node) -> Option<Scalar> {
-        if self.drawn.is_none() && cx.broken_places.is_empty() {
+        if self.drawn.is_none() && self.known && cx.broken_places.is_empty() {
             let example = cx.example(self.dimension);
             return cx.refuse(
                 "no-place",
