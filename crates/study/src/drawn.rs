@@ -81,7 +81,7 @@ fn lengths(
         if as_drawn && !listed {
             continue;
         }
-        let text = |x: f64| units.text(x, Dimension::LENGTH);
+        let text = |x: f64| units.short(x, Dimension::LENGTH);
         let mut line = format!("{} {}", [a, b].map(name).join("-"), text(is));
         if !as_drawn {
             line += &format!(" (drawn {})", text(was));

@@ -163,7 +163,7 @@ pub fn check_with_progress(model: &Model, progress: &mut dyn Progress) -> Report
                 lengths: f
                     .lengths
                     .iter()
-                    .map(|l| units.text(*l, Dimension::LENGTH))
+                    .map(|l| units.short(*l, Dimension::LENGTH))
                     .collect(),
                 kind: f.kind.name().to_owned(),
             })

@@ -5,6 +5,8 @@ use kempe_units::{Dimension, Unit, format_digits};
 
 /// Digits to which places on a motion are located.
 const PLACE_DIGITS: i32 = 14;
+/// Digits of what people read in a picture or a list.
+const SHORT_DIGITS: usize = 6;
 
 /// Chooses units for results.
 #[derive(Clone, Debug)]
@@ -73,6 +75,11 @@ impl Units {
     pub fn text(&self, si: f64, dimension: Dimension) -> String {
         // A rounded negative zero is a zero.
         format_digits(si + 0.0, &self.unit(dimension), 12)
+    }
+
+    /// A value with its unit, in as many digits as people read in a picture or a list.
+    pub fn short(&self, si: f64, dimension: Dimension) -> String {
+        format_digits(si + 0.0, &self.unit(dimension), SHORT_DIGITS)
     }
 
     /// A located place with its unit, to the digits that rounding leaves it: `117.51220651664 deg`. They are counted from

@@ -291,9 +291,9 @@ fn check_tells_the_lengths_and_what_is_not_as_drawn() {
     let report = check(&model(&text)).to_text();
     let expected = "Drawn as
   frame    A-D 0.6 m
-  crank    A-B 0.2 m (drawn 0.202484567313 m)
-  coupler  B-C 0.466154480832 m, B-P 0.336154726279 m, C-P 0.253179778023 m
-  rocker   D-C 0.4 m (drawn 0.383275357935 m)
+  crank    A-B 0.2 m (drawn 0.202485 m)
+  coupler  B-C 0.466154 m, B-P 0.336155 m, C-P 0.25318 m
+  rocker   D-C 0.4 m (drawn 0.383275 m)
 ";
     assert!(report.contains(expected), "{report}");
 }
