@@ -2,7 +2,6 @@
 
 /// What a careful engineer would want to be told of a number over a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
 pub enum StatisticNote {
     /// What it is of is infinite somewhere.
     Infinite {

@@ -93,7 +93,7 @@ pub(crate) fn over_motion<F: ForceSource>(
         }
     }
     let duration = sampler.duration();
-    let (mut too_fast, mut looked_closely) = (false, Vec::new());
+    let (mut too_fast, mut looked_closely) = (Vec::new(), Vec::new());
     if !courses.is_empty() {
         let together = sampler.asked(&measures);
         let mut stretches = stretches(sampler);
@@ -115,7 +115,7 @@ pub(crate) fn over_motion<F: ForceSource>(
                 courses.iter().any(Course::goes_on)
             },
         )?;
-        too_fast = unseen.spent;
+        too_fast = unseen.too_fast;
         looked_closely = unseen.closely;
         for (index, between) in unseen.unbounded {
             if let Some(course) = courses.get_mut(index) {
@@ -147,7 +147,8 @@ pub(crate) fn over_motion<F: ForceSource>(
                 return f64::NAN;
             };
             let mut tell = |note| notes.push((number, note));
-            if too_fast {
+            let by_loads = course.asked.forces && too_fast.contains(&None);
+            if by_loads || too_fast.contains(&place) {
                 tell(StatisticNote::TooFast);
             }
             if let (Statistic::Mean, Some(mean)) = (statistic, &course.mean) {
@@ -170,6 +171,11 @@ pub(crate) fn over_motion<F: ForceSource>(
             let Some((low, high)) = course.extremes.as_ref().and_then(Search::found) else {
                 return f64::NAN;
             };
+            // Right at a sample.
+            let at_sample = [low, high].into_iter().find(|at| at.1.is_infinite());
+            if let (Some((time, _)), true) = (at_sample, course.poles.is_empty()) {
+                tell(StatisticNote::Infinite { time });
+            }
             match statistic {
                 Statistic::Min => low.1,
                 Statistic::Max => high.1,

@@ -53,17 +53,12 @@ fn warning(study: &str, name: &str, note: StatisticNote, motion: &Motion) -> Dia
             format!("{number} did not settle: {digits} of its digits hold"),
         )
         .help("what is averaged jumps or oscillates too fast: take the mean over a shorter range, or of something smoother"),
-        StatisticNote::TooFast => too_fast(&number),
-        _ => too_fast(&number),
+        StatisticNote::TooFast => Diagnostic::warning(
+            "changes-too-fast",
+            format!("{number} is of something that changes faster than it was looked at: peaks may be missed"),
+        )
+        .help("look at a shorter range, where what changes fast is looked at more closely"),
     }
-}
-
-fn too_fast(number: &str) -> Diagnostic {
-    Diagnostic::warning(
-        "changes-too-fast",
-        format!("{number} is of something that changes faster than it was looked at: peaks may be missed"),
-    )
-    .help("look at a shorter range, where what changes fast is looked at more closely")
 }
 
 /// Where a motion is at a time, s: its drive's coordinate where one alone moves.

@@ -156,7 +156,7 @@ pub fn sensitivities(
     let measures = rows.filter_map(|(named, (value, slopes))| {
         let unit = units.unit(named.dimension);
         if !value.is_finite() {
-            left_out.push((named.name.clone(), "it has no value here".to_owned()));
+            left_out.push((named.name.clone(), "it has no finite value here".to_owned()));
             return None;
         }
         let derivatives = model

@@ -37,6 +37,8 @@ pub(super) struct Resolution {
     size: Vec<f64>,
     /// What it can be at most, seen from afar: near a pole it grows no more.
     most: Vec<f64>,
+    /// Whether samples would have had to be put in for it when there were no more.
+    open: Vec<bool>,
     budget: usize,
     duration: f64,
 }
@@ -88,6 +90,7 @@ impl Resolution {
         let mut it = Self {
             size: vec![0.0; own.len()],
             most: vec![0.0; own.len()],
+            open: vec![false; own.len()],
             known,
             budget: BUDGET.0 + BUDGET.1 * samples,
             duration: sampler.duration(),
@@ -185,7 +188,11 @@ impl Resolution {
                 change > SHOWN[k] * size
             })
         };
-        if follow && !bounds.iter().enumerate().any(open) {
+        let open: Vec<usize> = (bounds.iter().enumerate())
+            .filter(|of| open(*of))
+            .map(|(index, _)| index)
+            .collect();
+        if follow && open.is_empty() {
             return Shown::Yes;
         }
         let [of_interval, of_motion] = HALVINGS.map(|n| kempe_number::powi(2.0, -n));
@@ -195,15 +202,17 @@ impl Resolution {
             return Shown::Never(unbounded.filter_map(|(index, _)| *index).collect());
         }
         if self.budget == 0 {
+            open.into_iter().for_each(|index| self.open[index] = true);
             return Shown::Yes;
         }
         self.budget -= 1;
         Shown::No
     }
 
-    /// Whether more samples would have been needed than are taken.
-    pub fn is_spent(&self) -> bool {
-        self.budget == 0
+    /// The measures surveyed for which more samples would have been needed than are taken; `None` stands for loads.
+    pub fn left_open(&self) -> impl Iterator<Item = Option<usize>> {
+        let open = self.surveyed.iter().zip(&self.open);
+        open.filter(|(_, open)| **open).map(|(index, _)| *index)
     }
 }
 

@@ -109,8 +109,8 @@ pub(super) type Heard<'h, F> = dyn FnMut(&mut Sampler<F>, Option<&Sample>, &Samp
 pub(super) struct Unseen {
     /// Measures, by their index, that have no bound between two samples however near.
     pub unbounded: Vec<(usize, [f64; 2])>,
-    /// Whether more samples would have been needed than are taken.
-    pub spent: bool,
+    /// Measures, by their index, for which more samples would have been needed than are taken; `None` stands for loads.
+    pub too_fast: Vec<Option<usize>>,
     /// Times at which samples were put between others.
     pub closely: Vec<f64>,
 }
@@ -193,7 +193,7 @@ pub(super) fn survey<F: ForceSource>(
             }
         }
     }
-    unseen.spent = resolution.is_spent();
+    unseen.too_fast = resolution.left_open().collect();
     Some(unseen)
 }
 
