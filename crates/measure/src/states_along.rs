@@ -194,7 +194,7 @@ where
                     let start = drive.law.at(Series::zero(), &self.rich).coefficient(0);
                     Series::constant(start + (held[index] - start.value()))
                 }
-                DrivePath::Time { .. } => drive.law.at(p, &self.rich),
+                DrivePath::Time { end, .. } => drive.law.going_on(p, &self.rich, *end),
             };
         }
     }

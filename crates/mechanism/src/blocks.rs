@@ -86,6 +86,8 @@ pub struct Decomposition {
     pub idle: Vec<BodyId>,
     /// Unknowns that nothing determines: freedoms without a drive.
     pub undetermined: Vec<Unknown>,
+    /// The bodies that these freedoms may move.
+    pub loose: Vec<BodyId>,
 }
 
 /// The unknowns that a constraint feels. `idle[body]` tells that nothing feels the body's angle.
@@ -151,26 +153,34 @@ pub fn decompose(structure: &Structure, with_drives: bool) -> Decomposition {
 
     let idle_angle = idle_bodies(structure);
     let mut rows: Vec<(Row, Vec<usize>)> = Vec::new();
+    let mut surplus = Vec::new();
     for index in order {
         let constraint = &structure.constraints[index].0;
         let list: Vec<usize> = felt(constraint, &idle_angle)
             .into_iter()
             .map(Unknown::node)
             .collect();
+        // Links that share two points can turn no more against each other: of the second pin one row is left.
+        let independent = if joins_once_more(structure, index) {
+            1
+        } else {
+            constraint.rows()
+        };
         for row in 0..constraint.rows() {
-            rows.push((
-                Row {
-                    constraint: index,
-                    row,
-                },
-                list.clone(),
-            ));
+            let row = Row {
+                constraint: index,
+                row,
+            };
+            if row.row < independent {
+                rows.push((row, list.clone()));
+            } else {
+                surplus.push(row);
+            }
         }
     }
 
     let owner = match_rows(&rows, nodes);
     let mut owned: Vec<Vec<usize>> = vec![Vec::new(); nodes];
-    let mut surplus = Vec::new();
     for (row, node) in owner.iter().enumerate() {
         match node {
             Some(node) => owned[*node].push(row),
@@ -189,6 +199,8 @@ pub fn decompose(structure: &Structure, with_drives: bool) -> Decomposition {
             }
         }
     }
+
+    let loose = loose(&rows, &owner, &undetermined);
 
     // A node depends on the nodes that its own rows feel.
     let depends: Vec<Vec<usize>> = (0..nodes)
@@ -240,7 +252,35 @@ pub fn decompose(structure: &Structure, with_drives: bool) -> Decomposition {
         surplus,
         idle,
         undetermined,
+        loose,
     }
+}
+
+/// The bodies that nothing determines: those of the unknowns without rows, and those whose rows could as well determine these (the
+/// under-determined part of Dulmage and Mendelsohn, 1958).
+fn loose(
+    rows: &[(Row, Vec<usize>)],
+    owner: &[Option<usize>],
+    undetermined: &[Unknown],
+) -> Vec<BodyId> {
+    let mut found: Vec<usize> = undetermined.iter().map(|u| u.node()).collect();
+    let mut next = 0;
+    while let Some(&node) = found.get(next) {
+        for ((_, felt), owner) in rows.iter().zip(owner) {
+            if let Some(owner) = owner
+                && felt.contains(&node)
+                && !found.contains(owner)
+            {
+                found.push(*owner);
+            }
+        }
+        next += 1;
+    }
+    let bodies = found.into_iter().map(|n| Unknown::from_node(n).body());
+    let mut bodies: Vec<BodyId> = bodies.collect();
+    bodies.sort_unstable();
+    bodies.dedup();
+    bodies
 }
 
 /// Maximum matching of rows to unknowns (an angle takes one row, a place two), by shortest augmenting paths.

@@ -142,6 +142,23 @@ impl JointKind {
         }
     }
 
+    /// The points that it is made of.
+    pub fn points(&self) -> Vec<PointId> {
+        match self {
+            Self::Slider { at, on, .. } | Self::Slot { pin: at, on } => {
+                vec![at.point, on.from, on.to]
+            }
+            Self::ArcSlot { pin, on } => vec![pin.point, on.from, on.to],
+            Self::CurveSlot { pin, on } => {
+                let through = on.through.iter().copied();
+                [pin.point].into_iter().chain(through).collect()
+            }
+            Self::Weld { at, .. } => vec![*at],
+            Self::Gears { .. } | Self::Belt { .. } => Vec::new(),
+            Self::Rack { center, .. } => vec![*center],
+        }
+    }
+
     /// Whether it ties the angles of its links and its load has a moment about the point where it is counted.
     pub fn holds_angle(&self) -> bool {
         matches!(

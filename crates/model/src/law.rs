@@ -35,7 +35,15 @@ impl Law {
     /// later one is meant; at the end the last piece, to within [`SAME_END`]: rates there are those of the motion.
     pub fn at<T: Number>(&self, t: T, parameters: &[T]) -> T {
         let start = value(&self.from, parameters);
-        t.choose_with(|| after(self.stretches(parameters), t, start), || start)
+        let after = || after(self.stretches(parameters), t, start, None);
+        t.choose_with(after, || start)
+    }
+
+    /// As [`Law::at`], but before the start the first piece goes on, and behind `end`, where the motion ends, the last one of a law
+    /// that ends there: so what is smooth at the ends of a motion can be looked at from both sides.
+    pub fn going_on<T: Number>(&self, t: T, parameters: &[T], end: f64) -> T {
+        let start = value(&self.from, parameters);
+        after(self.stretches(parameters), t, start, Some(end))
     }
 
     /// The times at which one piece ends and the next begins, both ends of the motion included, s.
@@ -114,26 +122,35 @@ impl Law {
     }
 }
 
-/// The coordinate at a time that is not before the first of these stretches; `end` is where they begin.
+/// The coordinate at a time that is not before the first of these stretches; `end` is where they begin. Those that end at
+/// `on` go on behind it.
 fn after<'a, T: Number>(
     mut stretches: impl ExactSizeIterator<Item = TimedPiece<'a, T>> + Clone,
     t: T,
     end: T,
+    on: Option<f64>,
 ) -> T {
     let Some(stretch) = stretches.next() else {
         return end;
     };
     let later = stretches;
     let until = (stretch.start + stretch.duration).constant_part();
+    let here = || stretch.at(t - stretch.start);
     let by_time = || {
-        (t - until).choose_with(
-            || after(later.clone(), t, stretch.to),
-            || stretch.at(t - stretch.start),
-        )
+        let behind = || after(later.clone(), t, stretch.to, on);
+        (t - until).choose_with(behind, || match on {
+            // Before the start, where nothing can go on in a stretch without duration.
+            Some(_) => (-stretch.duration).choose_with(|| stretch.from, here),
+            None => here(),
+        })
     };
     if later.len() > 0 {
         return by_time();
     }
+    let by_time = || match on {
+        Some(on) => (until - on * (1.0 - SAME_END)).choose_with(here, by_time),
+        None => by_time(),
+    };
     // A last stretch without duration is none.
     (-stretch.duration).choose_with(by_time, || {
         let off = (t.constant_part() - until).abs();

@@ -92,6 +92,8 @@ pub enum DrivePath {
         laws: Vec<Law>,
         /// The model's parameters.
         parameters: Vec<f64>,
+        /// When the motion ends, s.
+        end: f64,
         /// Typical time, s.
         scale: f64,
     },
@@ -150,6 +152,7 @@ impl DrivePath {
                 Self::Time {
                     laws,
                     parameters: parameters.to_vec(),
+                    end: total,
                     scale,
                 }
             }
@@ -183,7 +186,8 @@ impl DrivePath {
         matches!(self, Self::Coordinate { is_angle: true, .. })
     }
 
-    /// Drive coordinates at the path parameter, on any number, for the parameters that the path was made with.
+    /// Drive coordinates at the path parameter, on any number, for the parameters that the path was made with. Beyond the times of
+    /// the motion its laws [go on](Law::going_on).
     pub fn coordinates<T: Number>(&self, p: T, out: &mut [T]) {
         match self {
             Self::Coordinate { .. } => self.coordinates_for(p, &[], out),
@@ -207,9 +211,9 @@ impl DrivePath {
                     };
                 }
             }
-            Self::Time { laws, .. } => {
+            Self::Time { laws, end, .. } => {
                 for (out, law) in out.iter_mut().zip(laws) {
-                    *out = law.at(p, parameters);
+                    *out = law.going_on(p, parameters, *end);
                 }
             }
         }
@@ -259,12 +263,15 @@ impl Path for DrivePath {
                 }
             }
             Self::Time {
-                laws, parameters, ..
+                laws,
+                parameters,
+                end,
+                ..
             } => {
                 type Series = kempe_number::Jet<f64, 2>;
                 let rich: Vec<Series> = parameters.iter().map(|x| Series::constant(*x)).collect();
                 for (law, (q, rate)) in laws.iter().zip(coordinates.iter_mut().zip(rates)) {
-                    let series = law.at(Series::variable(p), &rich);
+                    let series = law.going_on(Series::variable(p), &rich, *end);
                     (*q, *rate) = (series.derivative(0), series.derivative(1));
                 }
             }
@@ -275,10 +282,15 @@ impl Path for DrivePath {
         match self {
             Self::Coordinate { .. } => Vec::new(),
             Self::Time {
-                laws, parameters, ..
+                laws,
+                parameters,
+                end,
+                ..
             } => {
                 let mut breaks: Vec<f64> =
                     laws.iter().flat_map(|law| law.breaks(parameters)).collect();
+                let near_end = SAME_END * end;
+                breaks.retain(|t| *t > near_end && *t < end - near_end);
                 breaks.sort_by(f64::total_cmp);
                 breaks.dedup();
                 breaks

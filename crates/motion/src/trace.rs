@@ -176,11 +176,6 @@ impl<'a, P: Path> Follower<'a, P> {
         (self.path.breaks(), self.path.scale())
     }
 
-    /// Whether the path parameter is time.
-    pub fn is_along_time(&self) -> bool {
-        !self.path.breaks().is_empty()
-    }
-
     /// Path parameter at scaled unknowns.
     pub fn parameter(&self, z: &[f64]) -> f64 {
         z[z.len() - 1] * self.path.scale()

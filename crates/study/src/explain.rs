@@ -1,9 +1,9 @@
 //! Why there is no motion, or less than was asked for, in the words of the file.
 
 use kempe_mechanism::plan::{Condition, Dyad, Step, Swing};
-use kempe_mechanism::structure::Marker;
+use kempe_mechanism::structure::{BodyId, Marker};
 use kempe_mechanism::{Branch, Configuration, Design, Mechanism};
-use kempe_model::{Diagnostic, Model};
+use kempe_model::{Diagnostic, LinkId, Model};
 use kempe_motion::drive_path::DrivePath;
 use kempe_motion::{EndReason, Motion, MotionError, SIZES, Stage};
 use kempe_number::math::hypot;
@@ -13,6 +13,24 @@ use crate::hints;
 use crate::lone_points::with_lone_points;
 use crate::unit::{Units, shown};
 use crate::words::{list, source_name};
+
+/// Two of these bodies' links that share two points and so turn as one link, if there are such.
+fn joined_twice(mechanism: &Mechanism, bodies: &[BodyId]) -> Option<String> {
+    let model = &mechanism.model;
+    let loose = |link: &LinkId| bodies.contains(&mechanism.body_of(*link));
+    let links: Vec<LinkId> = (0..model.links.len() as u32).map(LinkId).filter(loose).collect();
+    for (k, b) in links.iter().enumerate() {
+        for a in &links[..k] {
+            let shared = model.points.iter().filter(|p| p.links.contains(a) && p.links.contains(b));
+            let names: Vec<String> = shared.map(|p| p.name.clone()).collect();
+            if names.len() > 1 {
+                let [a, b] = [a, b].map(|link| &model.links[link.index()].name);
+                return Some(format!("`{a}` and `{b}` share {}: they turn as one link", list(&names)));
+            }
+        }
+    }
+    None
+}
 
 /// A motion that does not start, as a diagnostic over the model file.
 pub fn cannot_move(design: &Design<f64>, error: &MotionError) -> Diagnostic {
@@ -30,6 +48,9 @@ pub fn cannot_move(design: &Design<f64>, error: &MotionError) -> Diagnostic {
             );
             for link in model.links.iter().zip(&mechanism.seats).filter(|(_, seat)| bodies.contains(&seat.body)) {
                 diagnostic = diagnostic.at(link.0.span.clone(), "free");
+            }
+            if let Some(twice) = joined_twice(mechanism, bodies) {
+                diagnostic = diagnostic.note(twice);
             }
             let otherwise = "every freedom needs a drive: add one, or a joint that holds the links";
             with_lone_points(diagnostic, model, mechanism, bodies, otherwise)

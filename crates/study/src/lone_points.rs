@@ -2,12 +2,12 @@
 
 use kempe_mechanism::Mechanism;
 use kempe_mechanism::structure::BodyId;
-use kempe_model::{Diagnostic, LinkPoint, Model, Span};
+use kempe_model::{Diagnostic, LinkPoint, Model, PointId, Span};
 use kempe_units::nearest;
 
 use crate::words::list;
 
-/// A point of a link that no other link carries.
+/// A point of a link that no other link carries, and no joint.
 struct Lone<'m> {
     name: &'m str,
     link: &'m str,
@@ -19,10 +19,13 @@ struct Lone<'m> {
 fn lone<'m>(model: &'m Model, mechanism: &'m Mechanism, bodies: &[BodyId]) -> Vec<Lone<'m>> {
     let links = model.links.iter().zip(&mechanism.seats);
     let loose = links.filter(|(_, seat)| bodies.contains(&seat.body));
+    let joined: Vec<PointId> = (model.joints.iter())
+        .flat_map(|joint| joint.kind.points())
+        .collect();
     let of_link = |link: &'m kempe_model::Link| {
         let is_lone = |point: &&LinkPoint| {
             let known = model.points.get(point.point.index());
-            known.is_some_and(|p| p.links.len() == 1)
+            known.is_some_and(|p| p.links.len() == 1) && !joined.contains(&point.point)
         };
         link.points.iter().filter(is_lone).map(move |point| {
             let name = model.points[point.point.index()].name.as_str();

@@ -82,10 +82,6 @@ fn follow(
     let last = start.z.len() - 1;
     let direction = start.tangent[last].signum();
     let mut nodes = vec![start];
-    // Along time there is nothing beyond the range.
-    if follower.is_along_time() && (nodes[0].z[last] - target) * direction >= 0.0 {
-        return Some((nodes, EndReason::Covered));
-    }
     let mut step = 0.02;
     let mut beyond = 0;
     let stops = stops(follower, direction, nodes[0].z[last], target);

@@ -170,13 +170,7 @@ impl Motion {
             return Err(MotionError::NoDrive);
         }
         if !plan.decomposition.undetermined.is_empty() {
-            let mut bodies: Vec<_> = plan
-                .decomposition
-                .undetermined
-                .iter()
-                .map(|u| u.body())
-                .collect();
-            bodies.dedup();
+            let bodies = plan.decomposition.loose.clone();
             return Err(MotionError::Undetermined { bodies });
         }
         let size = design.size();
