@@ -7,10 +7,10 @@
 
 use std::collections::VecDeque;
 
-use kempe_model::{LinkId, Point};
+use kempe_model::{LinkId, Point, PointId};
 
 use crate::constraint::{Constraint, Joint, Touch};
-use crate::ids::BodyId;
+use crate::ids::{BodyId, Marker};
 use crate::structure::{Source, Structure};
 
 /// One unknown quantity of a body.
@@ -88,6 +88,9 @@ pub struct Decomposition {
     pub undetermined: Vec<Unknown>,
     /// The bodies that these freedoms may move.
     pub loose: Vec<BodyId>,
+    /// One of several bodies that hold each other and turn as one about a point, and the point: nothing determines their angle, though
+    /// there are rows enough.
+    pub as_one: Vec<(BodyId, PointId)>,
 }
 
 /// The unknowns that a constraint feels. `idle[body]` tells that nothing feels the body's angle.
@@ -200,8 +203,6 @@ pub fn decompose(structure: &Structure, with_drives: bool) -> Decomposition {
         }
     }
 
-    let loose = loose(&rows, &owner, &undetermined);
-
     // A node depends on the nodes that its own rows feel.
     let depends: Vec<Vec<usize>> = (0..nodes)
         .map(|node| {
@@ -247,13 +248,51 @@ pub fn decompose(structure: &Structure, with_drives: bool) -> Decomposition {
             blocks[home].surplus.push(row);
         }
     }
+    let as_one = blocks.iter();
+    let as_one: Vec<(BodyId, PointId)> = as_one
+        .filter_map(|block| turns_as_one(structure, &idle_angle, block))
+        .collect();
+    undetermined.extend(as_one.iter().map(|(body, _)| Unknown::Angle(*body)));
+    let loose = loose(&rows, &owner, &undetermined);
     Decomposition {
         blocks,
         surplus,
         idle,
         undetermined,
         loose,
+        as_one,
     }
+}
+
+/// A body of a block that holds on to all else at a single point, and the point.
+fn turns_as_one(structure: &Structure, idle: &[bool], block: &Block) -> Option<(BodyId, PointId)> {
+    let inside = |unknown: Unknown| block.unknowns.contains(&unknown);
+    let angles = block.unknowns.iter().filter(|u| u.size() == 1);
+    let body = angles.clone().next()?.body();
+    if angles.count() < 2 {
+        return None;
+    }
+    let mut held: Vec<PointId> = Vec::new();
+    for row in &block.rows {
+        let constraint = &structure.constraints[row.constraint].0;
+        for touch in constraint.touches().into_iter().flatten() {
+            let body = touch.body();
+            let angle = inside(Unknown::Angle(body));
+            let place = inside(Unknown::Place(body));
+            let at = |marker: Marker| structure.markers[marker.index as usize].point;
+            held.push(match touch {
+                _ if angle && place => continue,
+                Touch::Angle(_) if angle || idle[body.index()] => continue,
+                Touch::Point(marker) if !angle && !place => at(marker),
+                // Its origin is in place.
+                Touch::Point(marker) if angle && structure.at_origin(marker) => at(marker),
+                Touch::Point(_) | Touch::Whole(_) if angle => structure.origin(body)?,
+                _ => return None,
+            });
+        }
+    }
+    let point = *held.first()?;
+    held.iter().all(|p| *p == point).then_some((body, point))
 }
 
 /// The bodies that nothing determines: those of the unknowns without rows, and those whose rows could as well determine these (the

@@ -122,10 +122,17 @@ impl Parts {
 
     /// Whether the marker lies at its body's origin whatever the dimensions, so that turning the body cannot move it.
     pub fn at_origin(&self, marker: Marker) -> bool {
-        if marker.spot == Spot::Origin {
-            return true;
-        }
-        let at = self.markers[marker.index as usize];
+        marker.spot == Spot::Origin || self.is_origin(self.markers[marker.index as usize])
+    }
+
+    /// The point at a body's origin.
+    pub fn origin(&self, body: BodyId) -> Option<PointId> {
+        let mut markers = self.markers.iter();
+        let at = markers.find(|at| self.body_of(at.link) == body && self.is_origin(**at))?;
+        Some(at.point)
+    }
+
+    fn is_origin(&self, at: LinkPointRef) -> bool {
         let link = &self.model.links[at.link.index()];
         self.seats[at.link.index()].weld.is_none()
             && link.points.iter().any(|p| {

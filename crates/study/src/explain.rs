@@ -18,14 +18,23 @@ use crate::words::{list, source_name};
 fn joined_twice(mechanism: &Mechanism, bodies: &[BodyId]) -> Option<String> {
     let model = &mechanism.model;
     let loose = |link: &LinkId| bodies.contains(&mechanism.body_of(*link));
-    let links: Vec<LinkId> = (0..model.links.len() as u32).map(LinkId).filter(loose).collect();
+    let links: Vec<LinkId> = (0..model.links.len() as u32)
+        .map(LinkId)
+        .filter(loose)
+        .collect();
     for (k, b) in links.iter().enumerate() {
         for a in &links[..k] {
-            let shared = model.points.iter().filter(|p| p.links.contains(a) && p.links.contains(b));
+            let shared = model
+                .points
+                .iter()
+                .filter(|p| p.links.contains(a) && p.links.contains(b));
             let names: Vec<String> = shared.map(|p| p.name.clone()).collect();
             if names.len() > 1 {
                 let [a, b] = [a, b].map(|link| &model.links[link.index()].name);
-                return Some(format!("`{a}` and `{b}` share {}: they turn as one link", list(&names)));
+                return Some(format!(
+                    "`{a}` and `{b}` share {}: they turn as one link",
+                    list(&names)
+                ));
             }
         }
     }
@@ -48,6 +57,12 @@ pub fn cannot_move(design: &Design<f64>, error: &MotionError) -> Diagnostic {
             );
             for link in model.links.iter().zip(&mechanism.seats).filter(|(_, seat)| bodies.contains(&seat.body)) {
                 diagnostic = diagnostic.at(link.0.span.clone(), "free");
+            }
+            for (_, point) in &plan.decomposition.as_one {
+                let name = &model.points[point.index()].name;
+                diagnostic = diagnostic.note(format!(
+                    "they hold each other and turn as one about {name}: a drive between them cannot move them"
+                ));
             }
             if let Some(twice) = joined_twice(mechanism, bodies) {
                 diagnostic = diagnostic.note(twice);
