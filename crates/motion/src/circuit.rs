@@ -69,16 +69,25 @@ impl Circuit {
         let (low, high) = motion.demanded;
         let direction = if motion.start == low { 1.0 } else { -1.0 };
         let (path, assemblies) = (motion.path.clone(), motion.assemblies.clone());
-        let (anchor, start) = (motion.anchor, motion.start);
-        let locked = MotionError::Locked { at: start };
+        let locked = MotionError::Locked { at: motion.start };
         let Some(chosen) = assemblies.list.first() else {
             return Err(locked);
         };
         let design = chosen.count_in(design);
         // Arc lengths are counted along its nodes: steps as even as the bordered systems take them keep rows where they are.
         let mut follower = Follower::new(&design, &path).without_plan();
-        let z = follower.scaled(&chosen.poses, &chosen.branch.near, anchor);
-        let start = follower.start(z, direction).ok_or(locked)?;
+        let start = if motion.anchor == motion.start {
+            let z = follower.scaled(&chosen.poses, &chosen.branch.near, motion.anchor);
+            follower.start(z, direction).ok_or(locked)?
+        } else {
+            // At a dead or a change point, where only the curve itself tells how it goes on.
+            let start = motion.node_at(motion.start);
+            if direction < 0.0 {
+                start.turned()
+            } else {
+                start
+            }
+        };
         restricting_steps(&mut follower, |follower| {
             let (nodes, closed) = go_round(
                 follower,

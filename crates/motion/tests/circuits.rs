@@ -21,6 +21,13 @@ fn has_dead_points(text: &str, dead: &[f64]) {
     assert!(circuit.closed, "{text}");
     let mut samplers =
         kempe_measure::circuit_samplers(&circuit, &[], &mut kempe_motion::Silent).unwrap();
+    let first = kempe_measure::circuit_row(&circuit, &mut samplers, 0.0).unwrap();
+    let start = circuit.demanded.start;
+    assert!(
+        (first.parameter - start).abs() <= 1e-12,
+        "{text}: begins at {} instead of {start}",
+        first.parameter
+    );
     for k in 0..=360 {
         let arc = circuit.length * f64::from(k) / 360.0;
         let row = kempe_measure::circuit_row(&circuit, &mut samplers, arc).unwrap();
