@@ -76,16 +76,15 @@ impl Circuit {
         let design = chosen.count_in(design);
         // Arc lengths are counted along its nodes: steps as even as the bordered systems take them keep rows where they are.
         let mut follower = Follower::new(&design, &path).without_plan();
-        let start = if motion.anchor == motion.start {
-            let z = follower.scaled(&chosen.poses, &chosen.branch.near, motion.anchor);
-            follower.start(z, direction).ok_or(locked)?
-        } else {
-            // At a dead or a change point, where only the curve itself tells how it goes on.
-            let start = motion.node_at(motion.start);
-            if direction < 0.0 {
-                start.turned()
-            } else {
-                start
+        let limit = motion
+            .limit_at(motion.start)
+            .map(|k| motion.nodes[k].clone());
+        let start = match limit {
+            Some(limit) if direction < 0.0 => limit.turned(),
+            Some(limit) => limit,
+            None => {
+                let z = follower.scaled(&chosen.poses, &chosen.branch.near, motion.anchor);
+                follower.start(z, direction).ok_or(locked)?
             }
         };
         restricting_steps(&mut follower, |follower| {
@@ -125,6 +124,11 @@ impl Circuit {
                 scale: path.scale(),
             })
         })
+    }
+
+    /// The path parameter at its start. Where branches cross at the demanded start, that is a place beside it.
+    pub fn start(&self) -> f64 {
+        self.locate(0.0).1
     }
 
     /// Size of a typical change of the path parameter: a radian, or the mechanism's size.

@@ -85,7 +85,7 @@ pub struct Motion {
     pub events: Vec<Event>,
     /// All those on the trace, which goes a little beyond the demanded range.
     pub places: Vec<Event>,
-    nodes: Vec<Node>,
+    pub(crate) nodes: Vec<Node>,
     /// How many nodes the trace had from which they come.
     traced: usize,
     parameters: Vec<f64>,

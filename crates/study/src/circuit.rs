@@ -8,7 +8,7 @@ use kempe_units::Unit;
 use crate::along::Row;
 use crate::along::unprepared;
 use crate::columns::Asked;
-use crate::events::events;
+use crate::events::{events, place};
 use crate::explain::cannot_move;
 use crate::missing::row_warnings;
 use crate::motion_findings::of_mechanism;
@@ -44,6 +44,7 @@ pub(crate) fn run_circuit(
         .map_err(|problem| unprepared(model, &quantities, problem))?;
 
     let mut diagnostics = of_mechanism(&circuit.demanded);
+    diagnostics.extend(begins_beside(name, &circuit));
     let evenly = |count: usize| -> Vec<f64> {
         (0..count)
             .map(|k| circuit.length * (k as f64 / (count - 1) as f64))
@@ -119,7 +120,7 @@ pub(crate) fn run_circuit(
             .iter()
             .map(|(s, p)| if *s == index { *p } else { f64::INFINITY })
             .collect();
-        for event in events(&stretch.motion, &units, &own) {
+        for event in events(&stretch.motion, &own) {
             if met
                 .iter()
                 .all(|e| e.place != event.place || e.row.abs_diff(event.row) > 2)
@@ -142,4 +143,20 @@ pub(crate) fn run_circuit(
         diagnostics,
         demanded_rows: count,
     })
+}
+
+/// Told where branches cross at the start that is asked for, and the circuit is followed from a place beside it.
+fn begins_beside(name: &str, circuit: &Circuit) -> Option<Diagnostic> {
+    let (motion, begins) = (&circuit.demanded, circuit.start());
+    if (begins - motion.start).abs() <= motion.margin() {
+        return None;
+    }
+    let [begins, asked] = [begins, motion.start].map(|p| place(motion, p));
+    Some(
+        Diagnostic::warning(
+            "circuit-begins-beside",
+            format!("the circuit of study `{name}` begins at {begins}, beside the change point at {asked}"),
+        )
+        .help("where branches cross no direction of the circuit is told apart: start the drive a little further on"),
+    )
 }

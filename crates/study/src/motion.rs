@@ -88,7 +88,7 @@ pub(crate) fn run_along(
     }));
     let parameters = &design.parameters;
     diagnostics.extend(left_slots(model, parameters, &frames, &rows.table, along));
-    let met = events(&motion, &units, &parameters_met);
+    let met = events(&motion, &parameters_met);
     if forces {
         diagnostics.extend(unbounded(&design.mechanism, &asked.scalars, &met));
     }

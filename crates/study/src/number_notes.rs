@@ -3,12 +3,10 @@
 use kempe_measure::StatisticNote;
 use kempe_model::Diagnostic;
 use kempe_motion::Motion;
-use kempe_motion::drive_path::DrivePath;
-use kempe_units::Dimension;
 
 use crate::along::Along;
+use crate::events::place;
 use crate::quantity::Quantity;
-use crate::unit::Units;
 
 /// Warnings of the quantities of a study that contain numbers over its motion.
 pub(crate) fn number_notes<'q>(
@@ -36,7 +34,7 @@ fn warning(study: &str, name: &str, note: StatisticNote, motion: &Motion) -> Dia
             "infinite",
             format!(
                 "{number} is infinite, or of something that is, at {}",
-                place(motion, time)
+                at_time(motion, time)
             ),
         )
         .help("keep the motion away from there, or ask for what is finite there, such as the inverse"),
@@ -44,7 +42,7 @@ fn warning(study: &str, name: &str, note: StatisticNote, motion: &Motion) -> Dia
             "diverges",
             format!(
                 "{number} has no value: what is averaged runs away too fast at {}",
-                place(motion, time)
+                at_time(motion, time)
             ),
         )
         .help("the mean over a range that does not hold that place has one"),
@@ -61,23 +59,9 @@ fn warning(study: &str, name: &str, note: StatisticNote, motion: &Motion) -> Dia
     }
 }
 
-/// Where a motion is at a time, s: its drive's coordinate where one alone moves.
-fn place(motion: &Motion, time: f64) -> String {
+/// Where a motion is at a time, s.
+fn at_time(motion: &Motion, time: f64) -> String {
     let model = &motion.mechanism().model;
-    let units = Units::of(model);
-    let drive = match motion.path {
-        DrivePath::Coordinate { drive, .. } => model.drives.get(drive),
-        DrivePath::Time { .. } => None,
-    };
-    let Some(drive) = drive else {
-        return format!("time = {}", units.text(time, Dimension::TIME));
-    };
-    let at = motion
-        .path
-        .parameter_at(model, time, &motion.design.parameters);
-    format!(
-        "{} = {}",
-        drive.name,
-        units.place_text(at, drive.dimension, motion.demanded)
-    )
+    let parameters = &motion.design.parameters;
+    place(motion, motion.path.parameter_at(model, time, parameters))
 }

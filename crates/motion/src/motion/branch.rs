@@ -4,10 +4,7 @@ use kempe_mechanism::Branch;
 use kempe_mechanism::pose::Pose;
 
 use super::Motion;
-use crate::trace::{Cubic, Node, chord, hermite, interval};
-
-/// Part of a step over which a tangent is taken.
-const BESIDE: f64 = 1e-4;
+use crate::trace::{Cubic, interval};
 
 /// One stretch of the motion on which every assembly mode stays the same.
 #[derive(Clone, Debug)]
@@ -40,30 +37,6 @@ impl Motion {
             branch.guess[body] = Pose::from_angle(x * self.size, y * self.size, angle);
             branch.near[body] = angle;
         }
-    }
-
-    /// The place of the traced curve nearest to a path parameter, with the curve's tangent, which rises.
-    pub(crate) fn node_at(&self, p: f64) -> Node {
-        let (low, high) = self.reached();
-        let p = p.clamp(low, high);
-        let index = interval(&self.parameters, p);
-        let (from, to) = (&self.nodes[index], &self.nodes[index + 1]);
-        if p <= self.parameters[index] {
-            return from.clone();
-        }
-        if p >= self.parameters[index + 1] {
-            return to.clone();
-        }
-        let part = Cubic::new(from, to).part_where(from.z.len() - 1, p / self.scale);
-        let [before, at, after] =
-            [part - BESIDE, part, part + BESIDE].map(|s| hermite(from, to, s));
-        Node::new(
-            at,
-            chord(
-                &Node::new(before, Vec::new()),
-                &Node::new(after, Vec::new()),
-            ),
-        )
     }
 
     /// The stretches on which every assembly mode stays the same: where each begins, and the modes; rising.
