@@ -110,6 +110,7 @@ pub const LATER_CODES: &[Code] = &[
     code("cannot-draw", "a picture cannot be made as it is asked for"),
     code("cannot-write", "a file or folder cannot be written"),
     code("changes-too-fast", "a number over the motion is of something with peaks that may be missed"),
+    code("circuit-begins-beside", "a circuit begins beside the change point at which it was to begin"),
     code("circuit-open", "a circuit does not come back to its start"),
     code("circuit-without-time", "steps of time are asked for along a circuit"),
     code("command-line", "the command line cannot be read"),

@@ -13,7 +13,11 @@ use std::sync::Arc;
 
 use kempe_mechanism::Design;
 
+use kempe_model::{Law, LawPiece};
+use kempe_units::Expr;
+
 use crate::assemble::Assemblies;
+use crate::drive_path::DrivePath;
 use crate::motion::{EndReason, Motion, MotionError, Unlocated, restricting_steps};
 use crate::progress::{Progress, Silent, Stage};
 use crate::trace::{Follower, Node, Path, distance};
@@ -103,8 +107,8 @@ impl Circuit {
                 let arcs = arcs(&nodes, length);
                 length = arcs.last().copied().unwrap_or(length);
                 let (rising, forward) = rising(&nodes);
-                let (design, path) = (design.clone(), path.clone());
-                let assemblies = assemblies.clone();
+                let design = running_through(&design, &path, &nodes);
+                let (path, assemblies) = (path.clone(), assemblies.clone());
                 let mut motion = Motion::of_nodes(design, path, assemblies, rising);
                 motion.ends = (EndReason::Limit, EndReason::Limit);
                 motion.find_events(follower, progress)?;
@@ -135,6 +139,29 @@ impl Circuit {
     pub fn scale(&self) -> f64 {
         self.scale
     }
+}
+
+/// The design with a drive that runs evenly through a piece in a second: numbers over the piece are numbers over that motion.
+fn running_through(design: &Design<f64>, path: &DrivePath, nodes: &[Node]) -> Design<f64> {
+    let mut design = design.clone();
+    let DrivePath::Coordinate { drive, scale, .. } = path else {
+        return design;
+    };
+    let at = |node: Option<&Node>| Some(node?.z.last()? * scale);
+    let (Some(from), Some(to)) = (at(nodes.first()), at(nodes.last())) else {
+        return design;
+    };
+    let mechanism = Arc::make_mut(&mut design.mechanism);
+    if let Some(drive) = mechanism.structure.model.drives.get_mut(*drive) {
+        drive.law = Law {
+            from: Expr::Const(from),
+            pieces: vec![LawPiece::ConstantSpeed {
+                to: Expr::Const(to),
+                speed: Expr::Const((to - from).abs()),
+            }],
+        };
+    }
+    design
 }
 
 /// Cuts a curve at its dead points, which belong to both pieces.

@@ -20,7 +20,7 @@ fn has_dead_points(text: &str, dead: &[f64]) {
     let circuit = Circuit::new(&case.design).unwrap();
     assert!(circuit.closed, "{text}");
     let mut samplers =
-        kempe_measure::circuit_samplers(&circuit, &[], &mut kempe_motion::Silent).unwrap();
+        kempe_measure::circuit_samplers(&circuit, &[], &[], &mut kempe_motion::Silent).unwrap();
     let first = kempe_measure::circuit_row(&circuit, &mut samplers, 0.0).unwrap();
     let start = circuit.demanded.start;
     assert!(
@@ -156,5 +156,63 @@ fn a_drive_that_comes_to_a_stand_has_no_limit_there() {
         assert!(places.windows(2).all(|w| w[0] < w[1]), "{to}");
         let text = case.text.replace(to, "5.726162528285305");
         case = Case::read(&text, "stand");
+    }
+}
+
+/// Numbers over a circuit of two assemblies between dead points hold all of its rows and are met by them; what needs time has
+/// none. Source: a dense table of the same circuit.
+#[test]
+fn numbers_over_a_circuit_are_those_of_all_its_rows() {
+    let text = "units = { length = \"m\", angle = \"rad\" }
+[links]
+frame = { A = [0, 0], D = [3, 0] }
+crank = { A-B = 2.5 }
+rod = { B-C = 2, P = [1, 1] }
+rocker = { D-C = 2.2 }
+[drives]
+motor = { turns = \"crank\", from = 0.7, to = 1, speed = 1 }
+[assembly]
+C = \"left of B -> D\"
+[measures]
+x = \"x(C)\"
+y = \"y(P)\"
+lowest = \"min(x)\"
+highest = \"max(x)\"
+span = \"range(y)\"
+mean = \"mean(x)\"
+fastest = \"max(speed(C))\"
+of_both = \"max(x)/max(y)\"
+nested = \"max(x/highest)\"
+";
+    let case = Case::read(text, "circuit.toml");
+    let circuit = Circuit::new(&case.design).unwrap();
+    let measures: Vec<&kempe_model::Measure> =
+        case.model.measures.iter().map(|m| &m.measure).collect();
+    let arcs: Vec<f64> = (0..=20_000)
+        .map(|k| circuit.length * f64::from(k) / 20_000.0)
+        .collect();
+    let silent = &mut kempe_motion::Silent;
+    let mut samplers =
+        kempe_measure::circuit_samplers(&circuit, &measures, &arcs[..2], silent).unwrap();
+    let rows: Vec<Vec<f64>> = arcs
+        .iter()
+        .map(|arc| {
+            kempe_measure::circuit_row(&circuit, &mut samplers, *arc)
+                .unwrap()
+                .values
+        })
+        .collect();
+    let (least, most) = (
+        |k: usize| rows.iter().map(|r| r[k]).fold(f64::INFINITY, f64::min),
+        |k: usize| rows.iter().map(|r| r[k]).fold(f64::NEG_INFINITY, f64::max),
+    );
+    let expected = [least(0), most(0), most(1) - least(1)];
+    for row in &rows {
+        for (found, expected) in row[2..5].iter().zip(expected) {
+            assert!((found - expected).abs() < 1e-6, "{found} is not {expected}");
+        }
+        assert!(row[2] <= row[0] && row[0] <= row[3]);
+        assert!((row[7] - most(0) / most(1)).abs() < 1e-6);
+        assert!(row[5].is_nan() && row[6].is_nan() && row[8].is_nan());
     }
 }

@@ -264,7 +264,7 @@ C = \"left of B -> D\"
             }
         }
         let mut samplers =
-            kempe_measure::circuit_samplers(&circuit, &[], &mut kempe_motion::Silent).unwrap();
+            kempe_measure::circuit_samplers(&circuit, &[], &[], &mut kempe_motion::Silent).unwrap();
         for k in 0..=40 {
             let row = kempe_measure::circuit_row(
                 &circuit,

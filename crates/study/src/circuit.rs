@@ -10,8 +10,9 @@ use crate::along::unprepared;
 use crate::columns::Asked;
 use crate::events::{events, place};
 use crate::explain::cannot_move;
-use crate::missing::row_warnings;
+use crate::missing::{Lack, row_warnings, without_value};
 use crate::motion_findings::of_mechanism;
+use crate::number_notes::number_notes;
 use crate::prepared::design;
 use crate::quantity::Quantity;
 use crate::result::{Event, StudyResult};
@@ -38,11 +39,6 @@ pub(crate) fn run_circuit(
     let asked = Asked::of_motion(model, study);
     let circuit = Circuit::with_progress(&design, progress)
         .map_err(|error| vec![cannot_move(&design, &error)])?;
-    let quantities: Vec<&Quantity> = asked.all().collect();
-    let measures: Vec<_> = quantities.iter().map(|q| &q.measure).collect();
-    let mut samplers = circuit_samplers(&circuit, &measures, progress)
-        .map_err(|problem| unprepared(model, &quantities, problem))?;
-
     let mut diagnostics = of_mechanism(&circuit.demanded);
     diagnostics.extend(begins_beside(name, &circuit));
     let evenly = |count: usize| -> Vec<f64> {
@@ -75,6 +71,10 @@ pub(crate) fn run_circuit(
             evenly(DEFAULT_ROWS)
         }
     };
+    let quantities: Vec<&Quantity> = asked.all().collect();
+    let measures: Vec<_> = quantities.iter().map(|q| &q.measure).collect();
+    let mut samplers = circuit_samplers(&circuit, &measures, &arcs, progress)
+        .map_err(|problem| unprepared(model, &quantities, problem))?;
     let count = arcs.len();
     let units = Units::of(model);
     let arc = Column::new("arc", Unit::one());
@@ -99,6 +99,16 @@ pub(crate) fn run_circuit(
         }
     }
     diagnostics.extend(row_warnings(name, &rows.table, 0));
+    for (stretch, sampler) in circuit.stretches.iter().zip(&samplers) {
+        let told = number_notes(
+            name,
+            &stretch.motion,
+            quantities.iter().copied(),
+            |measure| sampler.notes_of(measure),
+        );
+        diagnostics.extend(told);
+    }
+    diagnostics.extend(without_value(&rows, 0, |_| Lack::Time));
     diagnostics.extend(left_slots(
         model,
         &design.parameters,

@@ -53,25 +53,53 @@ fn open_warning(name: &str, table: &Table, along: usize) -> Option<Diagnostic> {
     )
 }
 
-/// Columns and numbers over the motion that have no value where the pose is known and no note says why. `lacks_cycle` tells
-/// of which numbers that is because the motion is no cycle.
+/// Says what a circuit cannot tell.
+fn timeless(diagnostic: Diagnostic) -> Diagnostic {
+    diagnostic
+        .note("time does not run along a circuit: speeds, means, time ratios and numbers over numbers over the motion have no value there")
+        .help("ask for it in a study that runs by the drives' laws, without `circuit`")
+}
+
+/// Why a number over the motion, or a column in all rows, may have no value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Lack {
+    /// It has none somewhere.
+    Somewhere,
+    /// The motion is no cycle.
+    Cycle,
+    /// Time does not run.
+    Time,
+}
+
+/// Columns and numbers over the motion that have no value where the pose is known and no note says why. `why` tells it of the numbers
+/// and, asked without an index, of columns without any value.
 pub(crate) fn without_value(
     rows: &RowSink,
     along: usize,
-    lacks_cycle: impl Fn(usize) -> bool,
+    why: impl Fn(Option<usize>) -> Lack,
 ) -> Vec<Diagnostic> {
     let table = &rows.table;
     let silent = |row: usize| {
         table.closure.get(row).is_some_and(|c| c.is_finite())
             && table.notes.get(row).is_some_and(Option::is_none)
     };
-    let columns = table.columns.iter().filter_map(|column| {
+    // A number over the motion that is a column too is told of once.
+    let is_number = |name: &str| rows.scalars.iter().any(|s| s.name == name);
+    let columns = table.columns.iter().filter(|c| !is_number(&c.name));
+    let columns = columns.filter_map(|column| {
         let values = column.values.iter().enumerate();
         let missing: Vec<usize> = values
             .filter(|(row, value)| !value.is_finite() && silent(*row))
             .map(|(row, _)| row)
             .collect();
         let first = *missing.first()?;
+        if column.values.iter().all(|x| x.is_nan()) && why(None) == Lack::Time {
+            let text = format!(
+                "study `{}`: `{}` has no value in any row",
+                table.name, column.name
+            );
+            return Some(timeless(Diagnostic::warning("no-value", text)));
+        }
         Some(
             Diagnostic::warning(
                 "no-value",
@@ -94,12 +122,15 @@ pub(crate) fn without_value(
             "no-value",
             format!("study `{}`: `{}` has no finite value", table.name, scalar.name),
         );
-        if lacks_cycle(index) {
-            return diagnostic
+        match why(Some(index)) {
+            Lack::Cycle => diagnostic
                 .note("a time ratio compares both strokes of a cycle, and this motion is none")
-                .help("let the drives end where they started, or whole turns from there");
+                .help("let the drives end where they started, or whole turns from there"),
+            Lack::Time => timeless(diagnostic),
+            Lack::Somewhere => {
+                diagnostic.help("what it is taken of has none somewhere, or the place that it asks for is not on the motion")
+            }
         }
-        diagnostic.help("what it is taken of has none somewhere, or the place that it asks for is not on the motion")
     });
     let all_reached = table.unreached() == 0;
     columns.chain(numbers.filter(|_| all_reached)).collect()

@@ -12,7 +12,7 @@ use crate::columns::Asked;
 use crate::events::events;
 use crate::force_columns::standard_plots;
 use crate::force_notes::unbounded;
-use crate::missing::{row_warnings, without_value};
+use crate::missing::{Lack, row_warnings, without_value};
 use crate::motion_findings::{motion_findings, refused};
 use crate::number_notes::number_notes;
 use crate::prepared::{design, motion};
@@ -75,16 +75,18 @@ pub(crate) fn run_along(
     let along = abscissa(&motion, &design.parameters);
     diagnostics.extend(row_warnings(name, &rows.table, along));
     diagnostics.extend(rows.force_warnings(&design.mechanism, along));
-    diagnostics.extend(number_notes(
-        name,
-        &sampler,
-        &motion,
-        quantities.iter().copied(),
-    ));
+    let numbers = quantities.iter().copied();
+    diagnostics.extend(number_notes(name, &motion, numbers, |measure| {
+        sampler.notes_of(measure)
+    }));
     diagnostics.extend(without_value(&rows, along, |index| {
-        let of_cycles = (asked.scalars.get(index))
-            .is_some_and(|q| asks_time_ratio(&design.mechanism, &q.measure));
-        of_cycles && !is_cycle(model, &design.parameters)
+        let number = index.and_then(|index| asked.scalars.get(index));
+        let of_cycles = number.is_some_and(|q| asks_time_ratio(&design.mechanism, &q.measure));
+        if of_cycles && !is_cycle(model, &design.parameters) {
+            Lack::Cycle
+        } else {
+            Lack::Somewhere
+        }
     }));
     let parameters = &design.parameters;
     diagnostics.extend(left_slots(model, parameters, &frames, &rows.table, along));

@@ -1,23 +1,22 @@
 //! What is to be told of numbers over a motion: where they are infinite, and how far they are to be trusted.
 
 use kempe_measure::StatisticNote;
-use kempe_model::Diagnostic;
+use kempe_model::{Diagnostic, Measure};
 use kempe_motion::Motion;
 
-use crate::along::Along;
 use crate::events::place;
 use crate::quantity::Quantity;
 
 /// Warnings of the quantities of a study that contain numbers over its motion.
 pub(crate) fn number_notes<'q>(
     study: &str,
-    along: &Along,
     motion: &Motion,
     quantities: impl Iterator<Item = &'q Quantity>,
+    notes_of: impl Fn(&Measure) -> Vec<StatisticNote>,
 ) -> Vec<Diagnostic> {
     let mut told = Vec::new();
     for quantity in quantities {
-        for note in along.notes_of(&quantity.measure) {
+        for note in notes_of(&quantity.measure) {
             let warning = warning(study, &quantity.name, note, motion);
             if !told.contains(&warning) {
                 told.push(warning);
