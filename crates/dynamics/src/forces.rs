@@ -19,8 +19,8 @@ use crate::wrench::{self, Wrench};
 /// Part of the largest load in which the difference of both routes is counted at least.
 pub const FLOOR: f64 = 1e-3;
 
-/// A load that changes its sense within this way of the drive, by its rate there (in rad, or in mechanism sizes), is not
-/// held by friction but about to turn about.
+/// Friction that is less than what the load gains over this way of the drive, by its rate there (in rad, or in mechanism
+/// sizes), holds it only where it is about to change its sense: any friction does.
 const SENSE_CHANGES: f64 = 0.25;
 
 /// What a joint or drive does to one of its links.
@@ -264,6 +264,9 @@ impl<T: ForceNumber> Forces<T> {
     }
 }
 
+/// Loads below this part of what friction takes are rounding: nothing is held at a dead point itself.
+const NO_LOAD: f64 = 1e-9;
+
 impl Forces<Rates> {
     /// Whether friction holds a drive against what acts on the mechanism, masses at rest: without friction the drive would
     /// have to brake the motion at hand, with friction it has to drive it, and this is not only because the load is about
@@ -284,15 +287,19 @@ impl Forces<Rates> {
             &needed,
         );
         let (row, speed) = (resting.row(constraint), at.drive_speeds[drive].value());
-        let holds = resting.lanes[0].frictionless[row] * speed < 0.0
-            && resting.lambda[row].value() * speed > 0.0;
+        let (free, held) = (
+            resting.lanes[0].frictionless[row],
+            resting.lambda[row].value(),
+        );
+        let loaded = free.abs() > NO_LOAD * held.abs();
+        let holds = loaded && free * speed < 0.0 && held * speed > 0.0;
         let load = virtual_power::project(&needed, &at.coefficients[drive]).value;
         let per_drive = load.coefficient(1) / speed;
         let typical = match self.design.mechanism.model.drives[drive].dimension {
             Dimension::ANGLE => 1.0,
             _ => self.design.geometry.value().size(&self.design.mechanism),
         };
-        let turns_about = load.value().abs() < SENSE_CHANGES * typical * per_drive.abs();
+        let turns_about = (held - free).abs() < SENSE_CHANGES * typical * per_drive.abs();
         holds && !turns_about
     }
 }

@@ -357,6 +357,39 @@ motor = { turns = "arm", from = "0 deg", to = "-60 deg", speed = "1 rad/s" }
     );
 }
 
+/// A press whose pins are thicker than its crank is long holds its load from the dead point on, where the load only begins to
+/// push, and not before it: by the friction circles, as far as they are wider than the load's arm about the crank.
+#[test]
+fn friction_holds_from_the_dead_point_on() {
+    let text = r#"
+[links]
+frame = { A = [0, 0], E = [0, 0], G = [0.3, 0] }
+crank = { A-B = 0.01 }
+rod   = { B-C = 0.06 }
+ram   = { C = [0, 0] }
+[joints]
+way = { slider = "ram", at = "C", on = "E -> G" }
+[drives]
+m = { turns = "crank", from = "-30 deg", to = "30 deg", speed = "1 rad/s" }
+[assembly]
+C = { near = [0.07, 0] }
+"#;
+    let mut model = model(text);
+    let load = force("work", on(&model, "ram", "C"), [-1000.0, 0.0]);
+    model.actions.loads.push(load);
+    let (way, mu) = (FrictionAt::Joint(joint(&model, "way")), 0.3);
+    model.actions.friction.push(friction(way, mu, None));
+    for pin in ["A", "B", "C"].map(|name| FrictionAt::Pin(point(&model, name))) {
+        model.actions.friction.push(friction(pin, mu, Some(0.012)));
+    }
+    let angles = (-29..30_i32).map(|k| f64::from(k).to_radians());
+    let angles: Vec<f64> = angles.chain([1e-15]).collect();
+    for (row, angle) in rows(&model, &[drive()], &angles).iter().zip(angles) {
+        let locks = row.notes.contains(&ForceNote::SelfLocking(DriveId(0)));
+        assert_eq!(locks, angle > 1e-9, "{angle}: {:?}", row.notes);
+    }
+}
+
 /// Where a drive's torque passes through zero, as its masses or a spring take turns, any friction is more than it: no lock.
 #[test]
 fn a_torque_that_changes_its_sense_is_not_locked() {
