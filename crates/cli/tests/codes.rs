@@ -26,7 +26,7 @@ const WITHOUT: &[(&str, &[&str])] = &[
     ]),
     (BUILT, &[
         "bad-table", "contradictory-pressures", "cylinder-count", "damper-ends", "damper-idle", "friction-place",
-        "friction-radius", "load-measure", "load-of-force", "load-on-nothing", "motor-curve", "negative-damping",
+        "friction-radius", "friction-teeth", "load-measure", "load-of-force", "load-on-nothing", "motor-curve", "negative-damping",
         "negative-friction", "negative-mass", "negative-radius", "negative-stiffness", "rod-too-thick", "scale", "spring-ends",
         "spring-idle", "stops-crossed",
     ]),

@@ -34,7 +34,7 @@ pub struct Acting<T: ForceNumber> {
     pub springs: Vec<Spring<T>>,
     /// Dampers.
     pub dampers: Vec<Damper<T>>,
-    /// Friction.
+    /// Friction, and what parts wheels.
     pub friction: Vec<Friction<T>>,
     /// Hydraulic cylinders.
     pub cylinders: Vec<Cylinder<T>>,
@@ -73,7 +73,7 @@ impl<T: ForceNumber> Acting<T> {
             masses: Mass::all(mechanism, geometry, parameters, &mut problems),
             springs: Spring::all(mechanism, geometry, parameters, &mut problems),
             dampers: Damper::all(mechanism, geometry, parameters, &mut problems),
-            friction: Friction::all(mechanism, parameters, &mut problems),
+            friction: Friction::all(mechanism, geometry, parameters, &mut problems),
             motors: (actions.motors.iter())
                 .map(|m| Motor::new(m, parameters, &mut problems))
                 .collect(),

@@ -1,13 +1,15 @@
-//! Friction at pins and sliders: Coulomb's, with Stribeck's falling coefficient and a viscous part.
+//! What a joint adds to its load in proportion to it: friction at pins, sliders and teeth, Coulomb's with Stribeck's falling
+//! coefficient and a viscous part, and the force with which teeth part their wheels.
 
-use kempe_mechanism::Mechanism;
 use kempe_mechanism::constraint::{Joint, Rubs};
 use kempe_mechanism::structure::Source;
-use kempe_model::{self as model, FrictionAt, JointId, PointId};
+use kempe_mechanism::{Geometry, Mechanism};
+use kempe_model::{self as model, FrictionAt, JointId, PointId, ToothSize};
 use kempe_number::{Interval, Number};
 
 use crate::number::{ForceNumber, PlainNumber};
 use crate::problem::Problem;
+use crate::teeth::Teeth;
 use crate::vector::sign;
 
 /// A friction law: resistance over sliding speed and load.
@@ -19,7 +21,7 @@ pub struct FrictionLaw<T> {
     pub at_rest: T,
     /// Speed at which the coefficient has fallen to the e-th part of the way, m/s.
     pub stribeck_speed: Option<T>,
-    /// Viscous part, N m s/rad at pins, N s/m at sliders.
+    /// Viscous part, N m s/rad at pins, N s/m at sliders and teeth.
     pub viscous: T,
 }
 
@@ -32,6 +34,17 @@ impl<T: Number> FrictionLaw<T> {
             at_rest: friction.static_coefficient.as_ref().map_or(kinetic, of),
             stribeck_speed: friction.stribeck_speed.as_ref().map(of),
             viscous: friction.viscous.as_ref().map_or(T::zero(), of),
+        }
+    }
+
+    /// That of what does not rub.
+    fn none() -> Self {
+        let zero = T::zero();
+        Self {
+            kinetic: zero,
+            at_rest: zero,
+            stribeck_speed: None,
+            viscous: zero,
         }
     }
 
@@ -48,14 +61,28 @@ impl<T: Number> FrictionLaw<T> {
     }
 }
 
-/// Friction at one joint of a mechanism.
+/// What bears a joint's load.
+#[derive(Clone, Copy, Debug)]
+pub enum Bearing<T> {
+    /// A guide: its load is the normal force.
+    Guide,
+    /// A pin of this radius, m, in its hole: its load is the resultant of two rows.
+    Pin(T),
+    /// Teeth that slide on each other; their load is the force along the common tangent of the pitch circles, and their path
+    /// counts what the joint tells the length of.
+    Teeth(Teeth<T>),
+    /// The flanks of teeth, which push their wheels apart by this part of that force whether they slide or not.
+    Flanks(T),
+}
+
+/// Friction at one joint of a mechanism, or the force that parts its wheels.
 #[derive(Clone, Copy, Debug)]
 pub struct Friction<T> {
     /// Index of the joint's constraint.
     pub constraint: usize,
-    /// Radius of the pin, m; `None` where the joint slides along a guide.
-    pub radius: Option<T>,
-    /// The law.
+    /// Where it acts.
+    pub bearing: Bearing<T>,
+    /// The law; flanks need none.
     pub law: FrictionLaw<T>,
 }
 
@@ -63,6 +90,7 @@ impl<T: ForceNumber> Friction<T> {
     /// Compiles the model's friction: what is said of one joint goes before what is said of all.
     pub(crate) fn all(
         mechanism: &Mechanism,
+        geometry: &Geometry<T>,
         parameters: &[T],
         problems: &mut Vec<Problem>,
     ) -> Vec<Self> {
@@ -71,31 +99,66 @@ impl<T: ForceNumber> Friction<T> {
             Self::check(mechanism, friction, parameters, problems);
         }
         let mut list = Vec::new();
-        for (index, (constraint, source)) in mechanism.constraints.iter().enumerate() {
-            let Some(rubs) = constraint.rubs() else {
-                continue;
-            };
+        for (constraint, (joint, source)) in mechanism.constraints.iter().enumerate() {
             let own = match source {
                 Source::Pin { point, .. } => FrictionAt::Pin(*point),
                 Source::Joint(joint) => FrictionAt::Joint(*joint),
                 Source::Drive(_) => continue,
             };
-            let of_own = given.iter().rev().find(|f| f.at == own);
-            let Some(friction) =
-                of_own.or_else(|| given.iter().rev().find(|f| f.at == FrictionAt::All))
-            else {
+            let Some(rubs) = joint.rubs() else {
+                problems.extend(no_axes(mechanism, source, joint.drive().is_some()));
                 continue;
             };
-            let radius = match (rubs, &friction.radius) {
-                (Rubs::AlongGuide, _) => None,
-                (Rubs::AboutPin, Some(radius)) => Some(model::value(radius, parameters)),
-                (Rubs::AboutPin, None) => Some(T::zero()),
+            let of_own = given.iter().rev().find(|f| f.at == own);
+            let of_all = || given.iter().rev().find(|f| f.at == FrictionAt::All);
+            let mut add = |bearing, law| {
+                list.push(Self {
+                    constraint,
+                    bearing,
+                    law,
+                });
             };
-            list.push(Self {
-                constraint: index,
-                radius,
-                law: FrictionLaw::new(friction, parameters),
-            });
+            let law = |friction| FrictionLaw::new(friction, parameters);
+            match rubs {
+                Rubs::AlongGuide => {
+                    if let Some(friction) = of_own.or_else(of_all) {
+                        add(Bearing::Guide, law(friction));
+                    }
+                }
+                Rubs::AboutPin => {
+                    if let Some(friction) = of_own.or_else(of_all) {
+                        let radius = (friction.radius.as_ref())
+                            .map_or(T::zero(), |radius| model::value(radius, parameters));
+                        add(Bearing::Pin(radius), law(friction));
+                    }
+                }
+                Rubs::Teeth { constants, rack } => {
+                    let Some(form) = teeth_of(mechanism, source) else {
+                        continue;
+                    };
+                    let Some(angle) = &form.pressure_angle else {
+                        continue;
+                    };
+                    let angle: T = model::value(angle, parameters);
+                    let tooth = match &form.size {
+                        ToothSize::Counted => Some(T::one()),
+                        ToothSize::Module(module) => (module.as_ref())
+                            .map(|module| model::value::<T>(module, parameters) * 0.5),
+                    };
+                    let (s, c) = angle.sin_cos();
+                    add(Bearing::Flanks(s / c), FrictionLaw::none());
+                    if let (Some(friction), Some(tooth)) = (of_own, tooth) {
+                        let k = &geometry.gears[constants as usize];
+                        let numbers = match rack {
+                            true => [None, Some(k.second.abs() / tooth)],
+                            false => Teeth::numbers(k.first, k.second, tooth),
+                        };
+                        let teeth = Teeth::new(angle, numbers);
+                        let path = teeth.path * tooth;
+                        add(Bearing::Teeth(Teeth { path, ..teeth }), law(friction));
+                    }
+                }
+            }
         }
         list
     }
@@ -133,9 +196,21 @@ impl<T: ForceNumber> Friction<T> {
             }
             FrictionAt::Joint(joint) if !slides(mechanism, joint) => add(
                 "friction-place",
-                "friction acts at pins, sliders and slots; gears, racks and welds have none here"
+                "friction acts at pins, sliders, slots and teeth; belts and welds have none here"
                     .into(),
             ),
+            FrictionAt::Joint(joint) => {
+                let teeth = teeth_of(mechanism, &Source::Joint(joint));
+                if teeth.is_some_and(|teeth| {
+                    teeth.pressure_angle.is_none() || teeth.size == ToothSize::Module(None)
+                }) {
+                    add(
+                        "friction-teeth",
+                        "friction at teeth needs their pressure angle, and the module where wheels are told by radii"
+                            .into(),
+                    );
+                }
+            }
             _ => {}
         }
     }
@@ -150,13 +225,33 @@ impl<T: ForceNumber> Friction<T> {
     /// Resistance over load. The load of a line is its normal force; that of a pin is its whole force, friction included,
     /// which passes the pin's centre on the friction circle: at `r sin(atan(mu))`.
     pub(crate) fn per_load(&self, speed: T) -> T {
-        match self.radius {
-            None => self.law.coefficient(speed.abs()),
-            Some(radius) => {
+        match self.bearing {
+            Bearing::Guide => self.law.coefficient(speed.abs()),
+            Bearing::Pin(radius) => {
                 let coefficient = self.law.coefficient(speed.abs() * radius);
                 coefficient * radius / (coefficient.square() + 1.0).sqrt()
             }
+            Bearing::Teeth(teeth) => self.law.coefficient(speed.abs()) * teeth.secant,
+            Bearing::Flanks(tangent) => tangent,
         }
+    }
+
+    /// How many rows, from its joint's first on, make up its load.
+    pub(crate) fn rows(&self) -> usize {
+        match self.bearing {
+            Bearing::Pin(_) => 2,
+            Bearing::Guide | Bearing::Teeth(_) | Bearing::Flanks(_) => 1,
+        }
+    }
+
+    /// Whether it is friction, and no force that parts wheels.
+    pub(crate) fn rubs(&self) -> bool {
+        !matches!(self.bearing, Bearing::Flanks(_))
+    }
+
+    /// How much of it acts where this share of the friction does: what parts wheels acts all the time.
+    pub(crate) fn share(&self, of_friction: f64) -> f64 {
+        if self.rubs() { of_friction } else { 1.0 }
     }
 
     /// Derivative of the resistance to the load, in a lane.
@@ -206,6 +301,32 @@ pub(crate) fn directions(
 fn slides(mechanism: &Mechanism, joint: JointId) -> bool {
     let mut constraints = mechanism.constraints.iter();
     constraints.any(|(c, source)| *source == Source::Joint(joint) && c.rubs().is_some())
+}
+
+/// What a gear pair or rack tells of its teeth.
+fn teeth_of<'m>(mechanism: &'m Mechanism, source: &Source) -> Option<&'m model::Teeth> {
+    let Source::Joint(joint) = source else {
+        return None;
+    };
+    (mechanism.model.joints.get(joint.index()))?.kind.teeth()
+}
+
+/// What is wrong with teeth of which a pressure angle is told, but not where their wheels meet.
+fn no_axes(mechanism: &Mechanism, source: &Source, released: bool) -> Option<Problem> {
+    let asked = teeth_of(mechanism, source)?.pressure_angle.is_some() && !released;
+    let Source::Joint(joint) = source else {
+        return None;
+    };
+    let joint = mechanism.model.joints.get(joint.index())?;
+    asked.then(|| {
+        let message = format!(
+            "joint `{}` has a pressure angle, but its gears have no axes on their arm: where their teeth meet is not known",
+            joint.name
+        );
+        Problem::new("teeth-without-axes", &joint.span, message).remedy(
+            "name the centre of each gear on the arm too, say which link the arm is, or leave the pressure angle out",
+        )
+    })
 }
 
 fn point_name(mechanism: &Mechanism, point: PointId) -> &str {

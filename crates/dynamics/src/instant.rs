@@ -2,8 +2,8 @@
 
 use kempe_measure::{Series, State};
 use kempe_mechanism::configuration::input_of;
-use kempe_mechanism::constraint::Input;
-use kempe_mechanism::{BodyId, Configuration, Mechanism, Pose};
+use kempe_mechanism::constraint::{Input, Situation};
+use kempe_mechanism::{BodyId, Configuration, Geometry, Mechanism, Pose};
 use kempe_model::DriveId;
 use kempe_number::{Jet, Number};
 
@@ -40,6 +40,16 @@ pub struct Instant<T> {
 }
 
 impl<T: Number> Instant<T> {
+    /// What the joints of a design with these dimensions are asked at.
+    pub(crate) fn situation<'a>(&'a self, geometry: &'a Geometry<T>) -> Situation<'a, T> {
+        Situation {
+            geometry,
+            inputs: &self.inputs,
+            poses: &self.poses,
+            near: &self.near,
+        }
+    }
+
     /// Storage for a mechanism with so many varying amounts; everything at rest.
     pub fn new(mechanism: &Mechanism, amounts: usize) -> Self {
         let (bodies, drives) = (mechanism.bodies, mechanism.model.drives.len());

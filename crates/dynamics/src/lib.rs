@@ -60,6 +60,7 @@ mod source;
 pub mod spring;
 pub mod spring_choice;
 pub mod table;
+pub mod teeth;
 mod vector;
 pub mod virtual_power;
 pub mod weld;

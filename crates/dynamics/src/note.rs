@@ -54,6 +54,8 @@ pub enum ForceNote {
     SelfLocking(DriveId),
     /// Nothing moves at a joint with friction: its friction is not determined and counted as none.
     AtRest,
+    /// A pinion moves across its rack: their teeth would part or jam, and the force that parts them does work.
+    TeethPart(Carrier),
     /// Something would turn a body whose angle nothing determines.
     IdleBodyDriven {
         /// The body.
@@ -108,6 +110,7 @@ impl ForceNote {
             Self::FrictionNotConverged { .. } => "friction-not-converged",
             Self::SelfLocking(_) => "self-locking",
             Self::AtRest => "friction-at-rest",
+            Self::TeethPart(_) => "teeth-part",
             Self::IdleBodyDriven { .. } => "idle-body-driven",
             Self::MotorTooWeak { .. } => "motor-too-weak",
             Self::CylinderTooWeak { .. } => "cylinder-too-weak",
@@ -136,6 +139,9 @@ impl ForceNote {
                 "do not rely on these rows: lessen the friction, or take smaller steps in what loads depend on"
             }
             Self::AtRest => "give the drive a speed, so that friction knows its way",
+            Self::TeethPart(_) => {
+                "guide the pinion's centre along the rack's x axis, or leave the pressure angle out"
+            }
             Self::IdleBodyDriven { .. } => {
                 "hold the link by another joint, or leave out what turns it"
             }
@@ -167,6 +173,7 @@ impl ForceNote {
             | Self::NotUnique(_)
             | Self::SelfLocking(_)
             | Self::AtRest
+            | Self::TeethPart(_)
             | Self::NoLoad { .. }
             | Self::NoTime => 0.0,
         }
@@ -220,6 +227,10 @@ impl ForceNote {
                 format!("self-locking: friction holds {} against its load", drive(d))
             }
             Self::AtRest => "at rest: friction is not determined and counted as none".into(),
+            Self::TeethPart(carrier) => format!(
+                "the pinion of {} moves across its rack, where teeth would part or jam: do not rely on these forces",
+                carrier.name(mechanism)
+            ),
             Self::IdleBodyDriven { body, torque } => format!(
                 "{} turns freely, and a torque of {torque:.3e} N m would turn it; it is held here",
                 mechanism.body_name(*body)
@@ -320,6 +331,10 @@ pub(crate) fn notes(forces: &Forces<Rates>, at: &Instant<Rates>, condition: f64)
     }
     if equilibrium.rests(&forces.acting.friction) {
         notes.push(ForceNote::AtRest);
+    }
+    for constraint in equilibrium.parting(&forces.acting.friction) {
+        let source = &forces.design.mechanism.constraints[constraint].1;
+        notes.push(ForceNote::TeethPart(Carrier::of(source)));
     }
     for (index, drive) in forces.drives.iter().enumerate() {
         let speed = at.drive_speeds[index].value();

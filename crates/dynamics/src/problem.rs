@@ -13,6 +13,8 @@ pub struct Problem {
     pub message: String,
     /// Where it stands in the file.
     pub span: Span,
+    /// What to do about it, where the sentence does not tell.
+    pub remedy: Option<&'static str>,
 }
 
 impl Problem {
@@ -21,7 +23,13 @@ impl Problem {
             code,
             message: message.into(),
             span: span.clone(),
+            remedy: None,
         }
+    }
+
+    pub(crate) fn remedy(mut self, remedy: &'static str) -> Self {
+        self.remedy = Some(remedy);
+        self
     }
 }
 

@@ -138,8 +138,12 @@ impl<T: ForceNumber> Forces<T> {
     fn joint_place(&self, at: &Instant<T>, id: JointId, link: LinkId) -> Option<[T; 2]> {
         let mechanism = &self.design.mechanism;
         let body = mechanism.body_of(link);
-        let own = (mechanism.constraints.iter()).filter(|c| c.1 == Source::Joint(id));
-        let point = own.into_iter().find_map(|(c, _)| c.load_point(body))?;
+        let own = || (mechanism.constraints.iter()).filter(|c| c.1 == Source::Joint(id));
+        let situation = at.situation(&self.design.geometry);
+        if let Some(place) = own().find_map(|(c, _)| c.load_place(&situation)) {
+            return Some(place);
+        }
+        let point = own().find_map(|(c, _)| c.load_point(body))?;
         Some(match point {
             LoadPoint::At(marker) => at.place(
                 marker.body,

@@ -5,6 +5,8 @@
 mod acted;
 #[path = "../../motion/tests/support/mod.rs"]
 mod mechanisms;
+#[path = "support/toothed.rs"]
+mod toothed;
 
 use std::sync::Arc;
 
@@ -473,8 +475,9 @@ fn bounds_are_as_narrow_as_what_they_are_given() {
         of_points > 5_000 && wide_at_points < of_points / 50,
         "{wide_at_points} of {of_points}"
     );
+    // Of pins and meshes that stand still bounds do not tell that they do.
     assert!(
-        compared > 3_000 && slow < compared / 10,
+        compared > 3_000 && slow < compared / 8,
         "{slow} of {compared}"
     );
 }

@@ -252,6 +252,10 @@ impl Joint for Constraint {
         ask!(self, joint => joint.load_point(body))
     }
 
+    fn load_place<T: Number>(&self, at: &Situation<'_, T>) -> Option<[T; 2]> {
+        ask!(self, joint => joint.load_place(at))
+    }
+
     fn rubs(&self) -> Option<Rubs> {
         ask!(self, joint => joint.rubs())
     }

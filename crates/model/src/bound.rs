@@ -28,7 +28,12 @@ pub enum Keeps {
     Positive,
     /// It is not below zero.
     NotNegative,
+    /// It is below 45 degrees.
+    PressureAngle,
 }
+
+/// Pressure angles are smaller, rad: the base circles of steeper teeth leave no room for them.
+pub(crate) const STEEPEST: f64 = std::f64::consts::FRAC_PI_4;
 
 /// Values in SI are at most so large: products of a few and their squares are still numbers.
 const LARGEST: f64 = 1e30;

@@ -80,6 +80,8 @@ pub enum JointKind {
         internal: bool,
         /// Angle of the first gear on the arm when that of the second is zero, rad.
         phase: Scalar,
+        /// What is known of its teeth.
+        teeth: Teeth,
     },
     /// A belt or chain over two wheels whose axes sit on the arm:
     /// `radius_a (angle_a - angle_arm) - radius_b (angle_b - angle_arm) = radius_a phase`; crossed: plus. Angles count as
@@ -118,10 +120,50 @@ pub enum JointKind {
         side: Side,
         /// Travel of the centre along the rack where pinion and rack are parallel.
         offset: Scalar,
+        /// What is known of its teeth.
+        teeth: Teeth,
     },
 }
 
+/// What is known of the teeth of gears, or of a rack and its pinion: their forces go by it, never the motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Teeth {
+    /// Pressure angle, rad, between the tooth force and the tangent of the pitch circles; without it the tooth force is
+    /// along that tangent.
+    pub pressure_angle: Option<Scalar>,
+    /// How large a tooth is.
+    pub size: ToothSize,
+}
+
+/// How large a tooth is.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ToothSize {
+    /// The wheels are told by their numbers of teeth, which share the distance of their axes.
+    Counted,
+    /// The wheels are told by their radii: the module, m, where it is given, tells how many teeth they have.
+    Module(Option<Scalar>),
+}
+
+impl Teeth {
+    /// Every expression in it.
+    pub(crate) fn scalars_mut(&mut self) -> impl Iterator<Item = &mut Scalar> {
+        let module = match &mut self.size {
+            ToothSize::Counted => None,
+            ToothSize::Module(module) => module.as_mut(),
+        };
+        self.pressure_angle.iter_mut().chain(module)
+    }
+}
+
 impl JointKind {
+    /// The teeth of gears, or of a rack and its pinion.
+    pub fn teeth(&self) -> Option<&Teeth> {
+        match self {
+            Self::Gears { teeth, .. } | Self::Rack { teeth, .. } => Some(teeth),
+            _ => None,
+        }
+    }
+
     /// The two links that the joint joins (of gears and belts: without the arm).
     pub fn links(&self) -> (LinkId, LinkId) {
         match *self {

@@ -232,7 +232,13 @@ static GEARS: Kind = kind("joint", "gears",
         must("teeth", T::Two(&T::AnyValue), "[20, 40]", "Their numbers of teeth, or their radii."),
         may("internal", T::Flag, "true", "Whether one of them is a ring."),
         may("phase", ANGLE, "\"5 deg\"", "The first gear's angle on the arm where the second's is 0; 0 unless said otherwise."),
-    ]]);
+    ], &TEETH]);
+
+/// What is told of teeth, for the forces at them.
+static TEETH: [Key; 2] = [
+    may("pressure_angle", positive(D::ANGLE), "\"20 deg\"", "Between the tooth force and the common tangent of the pitch circles, for the force that parts the axes and for friction; without it the tooth force is along that tangent."),
+    may("module", positive(D::LENGTH), "\"2 mm\"", "The pitch diameter over the number of teeth, needed for friction where a wheel is told by its radius."),
+];
 
 static BELT: Kind = kind("joint", "belt",
     "belt = { belt = [\"pulley\", \"wheel\"], radii = [20, 60] }",
@@ -257,7 +263,7 @@ static RACK: Kind = kind("joint", "rack",
         must("radius", positive(D::LENGTH), "\"20 mm\"", "The pinion's radius."),
         may("side", SIDE_WORDS, "\"right\"", "On which side of the rack's x axis the pinion lies; left unless said otherwise."),
         may("offset", any(D::LENGTH), "\"5 mm\"", "The centre's place along the rack where both links have one angle; 0 unless said otherwise."),
-    ]]);
+    ], &TEETH]);
 
 /// The kinds of drives.
 pub(crate) static DRIVES: [&Kind; 3] = [&TURNS, &DRIVE_CYLINDER, &SLIDES];
@@ -397,7 +403,7 @@ static DRY: [Key; 3] = [
     may("stribeck", positive(D::SPEED), "\"1 mm/s\"", "The speed over which the coefficient falls from that at rest."),
 ];
 const fn viscous(example: &'static str) -> [Key; 1] {
-    let about = "Torque per angular speed at a pin, force per speed at a slider.";
+    let about = "Torque per angular speed at a pin, force per sliding speed at a slider or at teeth.";
     [may("viscous", DAMPING, example, about)]
 }
 static VISCOUS_TURNING: [Key; 1] = viscous("\"0.001 N m s\"");
@@ -412,7 +418,7 @@ pub(crate) static FRICTION_OF_PIN: Kind = kind("friction of", "pin",
 
 pub(crate) static FRICTION_OF_JOINT: Kind = kind("friction of", "joint",
     FRICTION,
-    "Friction of a slider or of a pin in a slot.",
+    "Friction of a slider, of a pin in a slot, or of the teeth of gears or a rack.",
     &[&DRY, &VISCOUS_SLIDING]);
 
 pub(crate) static FRICTION_OF_ALL: Kind = kind("friction of", "all",

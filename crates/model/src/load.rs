@@ -21,7 +21,7 @@ pub struct Actions {
     pub springs: Vec<Spring>,
     /// Dampers.
     pub dampers: Vec<Damper>,
-    /// Friction at pins and sliders.
+    /// Friction at pins, sliders and teeth.
     pub friction: Vec<Friction>,
     /// Hydraulic cylinders behind cylinder drives.
     pub cylinders: Vec<HydraulicCylinder>,
@@ -170,7 +170,7 @@ pub struct Friction {
     pub static_coefficient: Option<Scalar>,
     /// Speed at which the coefficient falls from static to kinetic, m/s.
     pub stribeck_speed: Option<Scalar>,
-    /// Viscous part, N m s/rad at pins, N s/m at sliders.
+    /// Viscous part, N m s/rad at pins, N s/m at sliders and teeth.
     pub viscous: Option<Scalar>,
     /// Radius of the pin, m; friction of a pin needs one.
     pub radius: Option<Scalar>,
@@ -183,7 +183,7 @@ pub struct Friction {
 pub enum FrictionAt {
     /// At a pin (at every pair of a multiple joint).
     Pin(PointId),
-    /// At a slider, slot, gear or rack.
+    /// At a slider or slot, or at the teeth of gears or a rack.
     Joint(JointId),
     /// At every pin and slider that has none of its own.
     All,

@@ -85,12 +85,19 @@ impl Model {
                     teeth_a,
                     teeth_b,
                     phase,
+                    teeth,
                     ..
-                } => [teeth_a, teeth_b, phase].into_iter().for_each(&mut *f),
-                JointKind::Rack { radius, offset, .. } => {
-                    f(radius);
-                    f(offset);
-                }
+                } => ([teeth_a, teeth_b, phase].into_iter())
+                    .chain(teeth.scalars_mut())
+                    .for_each(&mut *f),
+                JointKind::Rack {
+                    radius,
+                    offset,
+                    teeth,
+                    ..
+                } => ([radius, offset].into_iter())
+                    .chain(teeth.scalars_mut())
+                    .for_each(&mut *f),
             }
         }
         for drive in &mut self.drives {

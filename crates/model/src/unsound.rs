@@ -6,7 +6,7 @@
 use kempe_number::math;
 use kempe_units::{Unit, format_digits};
 
-use crate::bound::{Bound, Keeps, beyond, remedy};
+use crate::bound::{Bound, Keeps, STEEPEST, beyond, remedy};
 use crate::diagnostic::Diagnostic;
 use crate::geometry::value;
 use crate::link::{Link, Place};
@@ -56,7 +56,12 @@ impl Bound {
         let wanted = match self.keeps {
             Keeps::Positive if x <= 0.0 => "must be positive",
             Keeps::NotNegative if x < 0.0 => "must not be negative",
+            Keeps::PressureAngle if x >= STEEPEST => "must be below 45 deg",
             _ => return None,
+        };
+        let code = match self.keeps {
+            Keeps::PressureAngle => "pressure-angle",
+            _ => "bad-size",
         };
         let preferred: Vec<Unit> = [&model.units.length, &model.units.angle]
             .into_iter()
@@ -65,7 +70,7 @@ impl Bound {
             .collect();
         let found = format_digits(x, &Unit::for_display(self.dimension, &preferred), 6);
         Some(
-            finding("bad-size", format!("{} {wanted}, found {found}", self.what))
+            finding(code, format!("{} {wanted}, found {found}", self.what))
                 .help("set the parameters that it is made of to values that leave it so"),
         )
     }

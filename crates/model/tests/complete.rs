@@ -51,7 +51,15 @@ fn keys_of_the_kind_that_are_not_there_yet() {
     assert_eq!(keys, ["at", "angle"]);
     assert_eq!(
         labels("[joints]\nx = { rack = \"rod\", pin|"),
-        ["pinion", "center", "radius", "side", "offset"]
+        [
+            "pinion",
+            "center",
+            "radius",
+            "side",
+            "offset",
+            "pressure_angle",
+            "module"
+        ]
     );
     assert!(labels("[joints]\nx = { | ").contains(&"gears".to_owned()));
     assert_eq!(

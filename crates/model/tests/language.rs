@@ -3,7 +3,7 @@
 
 use kempe_model::{
     Acts, Amount, Between, Center, Checked, Diagnostic, DriveKind, ForceMeasure, FrictionAt,
-    LawPiece, Leaf, LoadKind, Measure, Model, Place, Plot, Rows, StudyKind, value,
+    LawPiece, Leaf, LoadKind, Measure, Model, Place, Plot, Rows, StudyKind, ToothSize, value,
 };
 
 fn read(name: &str) -> Checked {
@@ -117,6 +117,41 @@ fn every_joint_and_every_law() {
         LawPiece::Table { .. }
     ));
     assert!((model.drives[2].law.duration::<f64>(&[]) - 2.0).abs() < 1e-15);
+}
+
+/// A parameter set by a program stays between none and 45 degrees, as one in the file does.
+#[test]
+fn pressure_angles_are_those_of_teeth() {
+    let text = r#"
+[parameters]
+alpha = "20 deg"
+[links]
+frame = { A = [0, 0], B = [0.3, 0] }
+sun   = { A = [0, 0] }
+wheel = { B = [0, 0] }
+[joints]
+mesh = { gears = ["sun", "wheel"], teeth = ["0.1 m", "0.2 m"], pressure_angle = "alpha", module = "5 mm" }
+[drives]
+motor = { turns = "sun", speed = "1 rad/s" }
+"#;
+    let model = Model::from_toml(text, "test", &mut |_| Err("no table".into()))
+        .unwrap()
+        .model;
+    let codes = |alpha: f64| -> Vec<&str> {
+        let found = model.unsound(&[alpha]).into_iter();
+        found.map(|d| d.code).collect()
+    };
+    assert!(codes(0.3).is_empty() && codes(0.785).is_empty());
+    assert_eq!(codes(0.0), ["bad-size"]);
+    assert_eq!(codes(-0.1), ["bad-size"]);
+    assert_eq!(codes(0.786), ["pressure-angle"]);
+    let teeth = model.joints[0].kind.teeth().unwrap();
+    assert!(matches!(&teeth.size, ToothSize::Module(Some(m)) if value::<f64>(m, &[]) == 0.005));
+    // A file written from it says the same.
+    let again = Model::from_toml(&model.to_toml().toml, "again", &mut |_| {
+        Err("no table".into())
+    });
+    assert_eq!(again.unwrap().model.joints[0].kind, model.joints[0].kind);
 }
 
 #[test]

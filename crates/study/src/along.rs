@@ -18,7 +18,13 @@ use crate::rows::{RowPlace, path_drive};
 pub fn force_problems(problems: Vec<Problem>) -> Vec<Diagnostic> {
     let diagnostics = problems.into_iter();
     diagnostics
-        .map(|p| Diagnostic::error(p.code, p.message).at(p.span, ""))
+        .map(|p| {
+            let error = Diagnostic::error(p.code, p.message).at(p.span, "");
+            match p.remedy {
+                Some(remedy) => error.help(remedy),
+                None => error,
+            }
+        })
         .collect()
 }
 

@@ -3,7 +3,9 @@
 use kempe_mechanism::Design;
 use kempe_mechanism::mobility::Mobility;
 use kempe_mechanism::structure::BodyId;
-use kempe_model::{Diagnostic, Drive, JointKind, Model, Rows, Severity, Study, StudyKind, value};
+use kempe_model::{
+    Diagnostic, Drive, Joint, JointKind, Model, Rows, Severity, Study, StudyKind, value,
+};
 use kempe_motion::assemble::{Assemblies, Assembly};
 use kempe_motion::drive_path::DrivePath;
 use kempe_motion::events::EventKind;
@@ -298,6 +300,7 @@ fn assumptions(model: &Model, units: &Units) -> Vec<String> {
             endless.join(", ")
         ));
     }
+    assumed.extend(teeth(model));
     if model.assembly.is_empty() {
         assumed.push("assembly: the first found, as the file names none".to_owned());
     }
@@ -309,6 +312,17 @@ fn assumptions(model: &Model, units: &Units) -> Vec<String> {
         )
     }));
     assumed
+}
+
+/// What is taken of the teeth of gears and racks.
+fn teeth(model: &Model) -> Option<String> {
+    let told = |joint: &Joint| Some(joint.kind.teeth()?.pressure_angle.is_some());
+    let told: Vec<bool> = model.joints.iter().filter_map(told).collect();
+    let across = match told.contains(&false) {
+        true => "; without a pressure angle they push along the tangent of the pitch circles alone",
+        false => "",
+    };
+    (!told.is_empty()).then(|| format!("teeth: without backlash{across}"))
 }
 
 /// From where to where a law goes, the way that it goes.

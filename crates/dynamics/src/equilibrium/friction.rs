@@ -1,11 +1,11 @@
 //! Friction at the joints: where it acts and in which sense, and what it does at given multipliers.
 
-use kempe_mechanism::constraint::{Joint, Situation, Sliding};
+use kempe_mechanism::constraint::{Joint, Sliding};
 use kempe_mechanism::{BodyId, Geometry, Mechanism};
 use kempe_number::Number;
 
 use super::Equilibrium;
-use crate::friction::Friction;
+use crate::friction::{Bearing, Friction};
 use crate::instant::Instant;
 use crate::number::{ForceNumber, PlainNumber};
 use crate::vector::{cross, dot, length, sub};
@@ -15,6 +15,9 @@ use crate::wrench::Wrench;
 pub const STILL: f64 = 1e-12;
 /// Accelerations below this part of those that the fastest speed would have over the whole motion count as none.
 pub const UNMOVED: f64 = 1e-9;
+
+/// Teeth part where they do so at more than this part of the fastest speed: rounding stays far below.
+const PARTING: f64 = 1e-9;
 
 /// How fast a motion usually is, so that rest can be told from a slow moment.
 #[derive(Clone, Debug, Default)]
@@ -32,7 +35,7 @@ pub(crate) struct FrictionContact<T: ForceNumber> {
     pub friction: usize,
     /// First row of the joint.
     pub row: usize,
-    /// Relative speed, rad/s or m/s.
+    /// Relative speed, rad/s or m/s; of flanks that at which they part.
     pub speed: T,
     /// Sense of sliding.
     pub direction: T::Plain,
@@ -76,14 +79,12 @@ impl<T: ForceNumber> Equilibrium<T> {
         }
         let size = T::Plain::of_lanes(|lane| self.lanes[lane].size);
         let fastest = self.fastest(at, size);
+        for lane in &mut self.lanes {
+            lane.fastest = fastest.lane_value(lane.index());
+        }
         let still = [fastest * STILL, fastest * UNMOVED * self.pace.frequency];
         let still_sliding = still.map(|s| s * size);
-        let situation = Situation {
-            geometry,
-            inputs: &at.inputs,
-            poses: &at.poses,
-            near: &at.near,
-        };
+        let situation = at.situation(geometry);
         for (index, friction) in frictions.iter().enumerate() {
             let row = self.layout.first_row[friction.constraint];
             let (zero, one) = (T::zero(), T::one());
@@ -120,6 +121,38 @@ impl<T: ForceNumber> Equilibrium<T> {
                     let direction = speed.plain().direction(gain.plain(), still_sliding);
                     Some(contact(speed, direction, [(point.body, own), (on, other)]))
                 }
+                Some(Sliding::Rolling {
+                    a,
+                    b,
+                    point,
+                    off,
+                    unit,
+                }) => Some(match friction.bearing {
+                    Bearing::Flanks(_) => {
+                        let push = |body: BodyId, force: [T; 2]| {
+                            let pose = &at.poses[body.index()];
+                            let arm = sub(point, [pose.x, pose.y]);
+                            (body, [force[0], force[1], cross(arm, force)])
+                        };
+                        let unit = [push(a, off), push(b, off.map(|x| -x))];
+                        let speed = |body: BodyId| {
+                            let pose = &at.poses[body.index()];
+                            dot(off, at.velocity(body, sub(point, [pose.x, pose.y])))
+                        };
+                        contact(speed(a) - speed(b), T::Plain::one(), unit)
+                    }
+                    bearing => {
+                        let path = match bearing {
+                            Bearing::Teeth(teeth) => teeth.path * unit,
+                            _ => zero,
+                        };
+                        let turning = v[b.index()][2] - v[a.index()][2];
+                        let gain = w[b.index()][2] - w[a.index()][2];
+                        let direction = turning.plain().direction(gain.plain(), still);
+                        let unit = [(b, [zero, zero, -path]), (a, [zero, zero, path])];
+                        contact(turning * path, direction, unit)
+                    }
+                }),
                 None => None,
             });
         }
@@ -153,10 +186,22 @@ impl<T: ForceNumber> Equilibrium<T> {
     /// Power that friction takes, W: never positive.
     pub fn friction_power(&self, frictions: &[Friction<T>]) -> T {
         let mut sum = T::zero();
-        for contact in &self.contacts {
+        let rubbing = (self.contacts.iter()).filter(|c| frictions[c.friction].rubs());
+        for contact in rubbing {
             sum -= resistance(frictions, contact, &self.lambda) * contact.speed;
         }
         sum
+    }
+
+    /// Constraints whose teeth part, or are pressed into each other, by the motion at hand: their force would do work. In
+    /// lanes: in any of them.
+    pub fn parting(&self, frictions: &[Friction<T>]) -> impl Iterator<Item = usize> {
+        let flanks = (self.contacts.iter()).filter(|c| !frictions[c.friction].rubs());
+        let moving = flanks.filter(|contact| {
+            let still = |lane: usize| PARTING * self.lanes[lane].size * self.lanes[lane].fastest;
+            (0..T::Plain::LANES).any(|lane| contact.speed.value_in(lane).abs() > still(lane))
+        });
+        moving.map(|contact| frictions[contact.friction].constraint)
     }
 
     /// Whether friction acts at a joint that does not move and is not about to: its size is not determined there. In lanes:
@@ -177,9 +222,9 @@ pub(super) fn resistance<T: ForceNumber>(
     lambda: &[T],
 ) -> T {
     let friction = &frictions[contact.friction];
-    let load = match friction.radius {
-        Some(_) => length([lambda[contact.row], lambda[contact.row + 1]]),
-        None => lambda[contact.row].abs(),
+    let load = match lambda[contact.row..][..friction.rows()] {
+        [x, y] => length([x, y]),
+        _ => lambda[contact.row].abs(),
     };
     friction.resistance(contact.speed, contact.direction, load)
 }

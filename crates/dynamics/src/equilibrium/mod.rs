@@ -4,7 +4,7 @@
 //! (d'Alembert, Lagrange). By the scaling of those residuals the multipliers are: of a pin the force on the later body,
 //! of a point on a line the normal force along the line's left normal on the point, of a direction the torque on its
 //! first body, of a cylinder's length the push on its eye, of a travel the push along the guide, of a rack and of gears
-//! with known pins the tooth force.
+//! with known pins the tooth force along the common tangent of the pitch circles.
 //!
 //! With more rows than unknowns the loads of some joints are not determined by equilibrium; the shortest solution is
 //! given (moments counted over the mechanism's size) and those joints are named.
@@ -17,7 +17,7 @@ mod order;
 mod plain;
 mod proof;
 
-use kempe_mechanism::constraint::{Gradient, Joint, Situation, Unit};
+use kempe_mechanism::constraint::{Gradient, Joint, Unit};
 use kempe_mechanism::{BodyId, Geometry, Mechanism};
 use kempe_number::Number;
 
@@ -194,12 +194,7 @@ impl<T: ForceNumber> Equilibrium<T> {
     }
 
     fn assemble(&mut self, mechanism: &Mechanism, geometry: &Geometry<T>, at: &Instant<T>) {
-        let situation = Situation {
-            geometry,
-            inputs: &at.inputs,
-            poses: &at.poses,
-            near: &at.near,
-        };
+        let situation = at.situation(geometry);
         self.entries.clear();
         for (index, (constraint, _)) in mechanism.constraints.iter().enumerate() {
             let row = self.layout.first_row[index];

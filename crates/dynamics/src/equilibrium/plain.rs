@@ -18,6 +18,8 @@ pub struct PlainEquilibrium {
     lane: usize,
     /// The mechanism's size, m.
     pub(super) size: f64,
+    /// The fastest that any body moves or usually does, 1/s.
+    pub(super) fastest: f64,
     /// Scale of every row.
     pub(super) unit: Vec<f64>,
     pub(super) qr: Qr,
@@ -42,6 +44,7 @@ impl PlainEquilibrium {
         Self {
             lane,
             size,
+            fastest: 0.0,
             unit: (layout.units.iter())
                 .map(|unit| unit.factor(size))
                 .collect(),
@@ -80,6 +83,11 @@ impl PlainEquilibrium {
             }
         }
         list
+    }
+
+    /// Which lane it is.
+    pub(super) fn index(&self) -> usize {
+        self.lane
     }
 
     /// Whether multipliers were found: the pose is regular, and loads and friction are consistent.
@@ -140,9 +148,10 @@ impl PlainEquilibrium {
         if let Some((lambda, share)) = friction_at {
             for contact in equations.contacts {
                 let friction = &equations.frictions[contact.friction];
-                let slope = friction.slope(contact.speed, contact.direction, *lane) * share;
-                let (count, load) = load_of(friction.radius.is_some(), &lambda[contact.row..]);
-                for k in 0..count {
+                let slope =
+                    friction.slope(contact.speed, contact.direction, *lane) * friction.share(share);
+                let load = load_of(&lambda[contact.row..][..friction.rows()]);
+                for k in 0..friction.rows() {
                     let part = if load > 0.0 {
                         lambda[contact.row + k] / load
                     } else {
@@ -189,10 +198,10 @@ impl PlainEquilibrium {
         }
         for contact in equations.contacts {
             let friction = &equations.frictions[contact.friction];
-            let (_, load) = load_of(friction.radius.is_some(), &self.lambda[contact.row..]);
+            let load = load_of(&self.lambda[contact.row..][..friction.rows()]);
             let viscous = (friction.law.viscous * contact.speed).value_in(lane);
             let slope = friction.slope(contact.speed, contact.direction, lane);
-            let resistance = (slope * load + viscous) * share;
+            let resistance = (slope * load + viscous) * friction.share(share);
             for (body, unit) in contact.unit.iter().filter(|u| u.0 != BodyId::GROUND) {
                 for k in 0..3 {
                     right[3 * (body.index() - 1) + k] -= unit[k].value_in(lane) * resistance;
@@ -328,10 +337,10 @@ impl PlainEquilibrium {
     }
 }
 
-/// Rows and size of a joint's load at plain multipliers, of a pin or along a guide.
-fn load_of(pin: bool, lambda: &[f64]) -> (usize, f64) {
-    match pin {
-        true => (2, kempe_number::math::hypot(lambda[0], lambda[1])),
-        false => (1, lambda[0].abs()),
+/// Size of a joint's load at its plain multipliers, of a pin or along a line.
+fn load_of(lambda: &[f64]) -> f64 {
+    match *lambda {
+        [x, y] => kempe_number::math::hypot(x, y),
+        _ => lambda.first().map_or(0.0, |x| x.abs()),
     }
 }

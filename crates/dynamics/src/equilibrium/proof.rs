@@ -199,7 +199,7 @@ impl<T: ForceNumber<Plain = Interval>> Equilibrium<T> {
         for contact in &self.contacts {
             let friction = &frictions[contact.friction];
             let slope = friction.per_load(contact.speed).plain() * contact.direction;
-            let rows = contact.row..contact.row + if friction.radius.is_some() { 2 } else { 1 };
+            let rows = contact.row..contact.row + friction.rows();
             let load = match &lambda[rows.clone()] {
                 [x, y] => length([*x, *y]),
                 one => one[0].abs(),

@@ -9,6 +9,7 @@ use kempe_model::{
 use kempe_units::{Dimension, Expr};
 
 use crate::mechanisms::Rng;
+use crate::toothed::give_teeth;
 
 /// Parameters, all 1: the first is a factor of friction, the others of everything else.
 pub const PARAMETERS: usize = 6;
@@ -178,6 +179,10 @@ pub fn act(model: &mut Model, rng: &mut Rng, size: f64) {
             }),
         }
     }
+    let rubs = rng.chance(0.7).then(|| times(rng.range(0.02, 0.2), 0));
+    give_teeth(model, rng, rubs, |rng, x| {
+        times(x, 1 + rng.below(PARAMETERS - 1))
+    });
 }
 
 /// Every measure of forces of a model.

@@ -2,15 +2,15 @@
 //!
 //! The row ties angles only; its multiplier is a torque on each gear and on the arm. With the gears' pins on the arm known,
 //! the same condition is that both pitch circles have the same speed at the pitch point `P = A + (B - A) z_a / (z_a + z_b)`
-//! (`z_b` negative for a ring). Its multiplier is the tangential tooth force, and the pins carry its reaction. The radial
-//! part of a real tooth force depends on the pressure angle and is left out.
+//! (`z_b` negative for a ring). Its multiplier is the tooth force along the common tangent of the pitch circles there, and the
+//! pins carry its reaction. What the pressure angle and friction add goes with that multiplier, and is no part of the row.
 
 use kempe_model::LinkId;
 use kempe_number::Number;
 
 use super::isotropic::Isotropic;
 use super::joint::{Gradient, InAngles, Joint, Pairs, Touch, Unit};
-use super::loads::LoadPoint;
+use super::loads::{LoadPoint, Rubs, Sliding};
 use super::situation::Situation;
 use crate::ids::{BodyId, Marker};
 use crate::parts::Parts;
@@ -32,7 +32,36 @@ pub struct Gears {
     pub pins: Option<[Marker; 2]>,
 }
 
+/// Where two wheels meet.
+struct Pitch<T> {
+    /// The pitch point in the frame.
+    point: [T; 2],
+    /// Unit vector from the first axis to the second.
+    ahead: [T; 2],
+    /// Length that one of the teeth, or one of what the radii are counted in, takes of the distance.
+    unit: T,
+}
+
 impl Gears {
+    /// Where wheels pinned to their arm meet; without direction and unit where they do not.
+    fn pitch<T: Number>(&self, at: &Situation<'_, T>) -> Option<Pitch<T>> {
+        let (a, axis) = self.axes(at)?;
+        let k = &at.geometry.gears[self.constants as usize];
+        let (teeth, square) = (k.first + k.second, dot(axis, axis));
+        let (none, zero) = (-Self::room(teeth, square), T::zero());
+        let (part, distance) = (k.first / teeth, square.sqrt());
+        Some(Pitch {
+            point: [0, 1].map(|i| none.choose(a[i], a[i] + axis[i] * part)),
+            ahead: axis.map(|x| none.choose(zero, x / distance)),
+            unit: none.choose(zero, distance / teeth.abs()),
+        })
+    }
+
+    /// Positive for wheels that meet at a pitch point: none do on one axis, and none that turn alike.
+    fn room<T: Number>(teeth: T, square: T) -> T {
+        teeth.abs().min(square)
+    }
+
     /// Centre of the first wheel and the way from there to that of the second; `None` for wheels not pinned to their arm.
     pub(super) fn axes<T: Number>(&self, at: &Situation<'_, T>) -> Option<([T; 2], [T; 2])> {
         let [a, b] = self.pins?.map(|pin| at.place(pin));
@@ -173,8 +202,7 @@ impl Joint for Gears {
                 });
             }
         };
-        // None on one axis, and none for wheels that turn alike.
-        self.with_room(at, teeth.abs().min(square), by_pins, &mut emit);
+        self.with_room(at, Self::room(teeth, square), by_pins, &mut emit);
     }
 
     fn load_unit(&self) -> Unit {
@@ -189,6 +217,31 @@ impl Joint for Gears {
             Some([a, _]) if a.body == body => LoadPoint::At(a),
             Some([_, b]) => LoadPoint::At(b),
             None => LoadPoint::Origin(body),
+        })
+    }
+
+    fn load_place<T: Number>(&self, at: &Situation<'_, T>) -> Option<[T; 2]> {
+        Some(self.pitch(at)?.point)
+    }
+
+    fn rubs(&self) -> Option<Rubs> {
+        self.pins.map(|_| Rubs::Teeth {
+            constants: self.constants,
+            rack: false,
+        })
+    }
+
+    fn sliding<T: Number>(&self, at: &Situation<'_, T>) -> Option<Sliding<T>> {
+        let Pitch { point, ahead, unit } = self.pitch(at)?;
+        let k = &at.geometry.gears[self.constants as usize];
+        // Teeth push the axes of two wheels apart, and that of a wheel towards the axis of its ring.
+        let back = k.second.choose(-T::one(), T::one());
+        Some(Sliding::Rolling {
+            a: self.a,
+            b: self.b,
+            point,
+            off: ahead.map(|x| x * back),
+            unit,
         })
     }
 }

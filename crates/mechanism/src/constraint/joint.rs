@@ -120,6 +120,11 @@ pub trait Joint {
     /// Where the load on a body is counted; `None` where another constraint of the same joint tells.
     fn load_point(&self, body: BodyId) -> Option<LoadPoint>;
 
+    /// Where its load acts in the frame, m, where that is no point of a body.
+    fn load_place<T: Number>(&self, _: &Situation<'_, T>) -> Option<[T; 2]> {
+        None
+    }
+
     /// What rubs in it; `None` where no friction acts.
     fn rubs(&self) -> Option<Rubs> {
         None

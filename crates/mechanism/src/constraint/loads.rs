@@ -18,6 +18,13 @@ pub enum Rubs {
     AboutPin,
     /// A point along a guide: one row, the normal force.
     AlongGuide,
+    /// Teeth: one row, the force along the common tangent of the pitch circles.
+    Teeth {
+        /// Index into the geometry's gear constants, whose factors are the wheels' sizes.
+        constants: u32,
+        /// The first of the two is a rack, and the second factor its pinion's size.
+        rack: bool,
+    },
 }
 
 /// How two bodies slide on each other in a joint that rubs.
@@ -38,5 +45,18 @@ pub enum Sliding<T> {
         on: BodyId,
         /// Unit tangent of the guide at the point, in the frame.
         tangent: [T; 2],
+    },
+    /// Teeth of `a` and `b` roll on each other at the pitch point and slide everywhere else along their path of contact.
+    Rolling {
+        /// The one body.
+        a: BodyId,
+        /// The other.
+        b: BodyId,
+        /// The pitch point in the frame, m.
+        point: [T; 2],
+        /// Unit vector in the frame along which the teeth push `a` off.
+        off: [T; 2],
+        /// Length of what a factor of the constants counts, m: half the module where it counts teeth, 1 where it is m.
+        unit: T,
     },
 }

@@ -5,11 +5,12 @@ use kempe_number::Number;
 
 use super::isotropic::Isotropic;
 use super::joint::{Gradient, Joint, Pairs, Touch};
-use super::loads::LoadPoint;
+use super::loads::{LoadPoint, Rubs, Sliding};
 use super::situation::Situation;
 use super::travel::{travel_gradients, travelled};
 use crate::ids::{BodyId, LineRef, Marker};
 use crate::parts::Parts;
+use crate::pose::left;
 use crate::step::{Condition, Step};
 
 /// `s + radius (angle_pinion - angle_rack) = offset`, `s` along the rack's line.
@@ -21,6 +22,15 @@ pub struct Rack {
     pub center: Marker,
     /// Index into the geometry's gear constants.
     pub constants: u32,
+}
+
+impl Rack {
+    /// The pitch point, and the unit vector from there to the pinion's centre for a pinion on the left of the line.
+    fn pitch<T: Number>(&self, at: &Situation<'_, T>) -> ([T; 2], [T; 2]) {
+        let k = &at.geometry.gears[self.constants as usize];
+        let (center, up) = (at.place(self.center), left(at.line(self.line).1));
+        ([0, 1].map(|i| center[i] - up[i] * k.second), up)
+    }
 }
 
 impl Joint for Rack {
@@ -106,5 +116,29 @@ impl Joint for Rack {
 
     fn load_point(&self, _: BodyId) -> Option<LoadPoint> {
         Some(LoadPoint::At(self.center))
+    }
+
+    fn load_place<T: Number>(&self, at: &Situation<'_, T>) -> Option<[T; 2]> {
+        Some(self.pitch(at).0)
+    }
+
+    fn rubs(&self) -> Option<Rubs> {
+        Some(Rubs::Teeth {
+            constants: self.constants,
+            rack: true,
+        })
+    }
+
+    fn sliding<T: Number>(&self, at: &Situation<'_, T>) -> Option<Sliding<T>> {
+        let (point, up) = self.pitch(at);
+        let k = &at.geometry.gears[self.constants as usize];
+        let side = k.second.choose(T::one(), -T::one());
+        Some(Sliding::Rolling {
+            a: self.center.body,
+            b: self.line.body,
+            point,
+            off: up.map(|x| x * side),
+            unit: T::one(),
+        })
     }
 }

@@ -82,4 +82,8 @@ impl<J: Joint> Joint for Released<J> {
     fn load_point(&self, body: BodyId) -> Option<LoadPoint> {
         self.joint.load_point(body)
     }
+
+    fn load_place<T: Number>(&self, at: &Situation<'_, T>) -> Option<[T; 2]> {
+        self.joint.load_place(at)
+    }
 }

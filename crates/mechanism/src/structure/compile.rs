@@ -104,6 +104,7 @@ impl Structure {
                 teeth_b,
                 internal,
                 phase,
+                ..
             } => {
                 let wheels = self.wheels([a, b, arm], teeth_a, signed(teeth_b, internal), phase);
                 self.constraints.push((wheels.into(), source));
@@ -128,6 +129,7 @@ impl Structure {
                 radius,
                 side,
                 offset,
+                ..
             } => {
                 let line = LineRef {
                     body: self.body_of(rack),

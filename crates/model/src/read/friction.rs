@@ -1,4 +1,4 @@
-//! `[friction]`: at pins by the name of the point, at sliders and slots by the name of the joint, and for `all`.
+//! `[friction]`: at pins by the name of the point, at sliders, slots and teeth by the name of the joint, and for `all`.
 //!
 //! ```toml
 //! [friction]
@@ -14,8 +14,8 @@ use kempe_units::Expr;
 
 use crate::diagnostic::Diagnostic;
 use crate::document::{Key, Node};
-use crate::ids::PointId;
-use crate::joint::JointKind;
+use crate::ids::{JointId, PointId, Span};
+use crate::joint::{JointKind, Teeth, ToothSize};
 use crate::key_table::{FRICTION_OF_ALL, FRICTION_OF_JOINT, FRICTION_OF_PIN};
 use crate::load::{Friction, FrictionAt};
 use crate::read::context::{Context, Meaning};
@@ -46,6 +46,9 @@ fn read_one(
         FrictionAt::All => &FRICTION_OF_ALL,
     };
     let mut entry = Entry::new(cx, entry, kind)?;
+    if let FrictionAt::Joint(joint) = at {
+        needs_teeth(cx, joint, &key.span)?;
+    }
     entry.turning = matches!(at, FrictionAt::Pin(_));
     let known = |key: &str| kind.key(key).is_some();
     let viscous = match known("viscous") {
@@ -109,6 +112,43 @@ fn needs_radius(cx: &Context<'_>, at: FrictionAt, entries: &[&(Key, Node)]) -> b
     }
 }
 
+/// Refuses friction at teeth of which too little is known.
+fn needs_teeth(cx: &mut Context<'_>, joint: JointId, span: &Span) -> Option<()> {
+    let joint = cx.model.joints.get(joint.index())?;
+    let Some(teeth) = joint.kind.teeth() else {
+        return Some(());
+    };
+    let (missing, example, why) = match teeth {
+        Teeth {
+            pressure_angle: None,
+            ..
+        } => (
+            "pressure_angle",
+            "\"20 deg\"",
+            "friction goes with the normal force of the teeth",
+        ),
+        Teeth {
+            size: ToothSize::Module(None),
+            ..
+        } => (
+            "module",
+            "\"2 mm\"",
+            "friction goes with the path along which teeth slide, and radii do not tell how large they are",
+        ),
+        _ => return Some(()),
+    };
+    let (name, at) = (joint.name.clone(), joint.span.clone());
+    let told = format!("friction at the teeth of `{name}` needs its `{missing}`");
+    cx.push(
+        Diagnostic::error("missing-key", told)
+            .at(span.clone(), "")
+            .see(at, format!("`{name}` has no `{missing}`"))
+            .note(why)
+            .help(format!("add {missing} = {example} to the joint `{name}`")),
+    );
+    None
+}
+
 fn place(cx: &mut Context<'_>, key: &Key) -> Option<FrictionAt> {
     let name = key.name.as_str();
     if name == "all" {
@@ -122,14 +162,8 @@ fn place(cx: &mut Context<'_>, key: &Key) -> Option<FrictionAt> {
         let id = cx.joints.get(*i).copied().flatten()?;
         let what = match cx.model.joints.get(id.index()).map(|j| &j.kind) {
             Some(JointKind::Weld { .. }) => Some("a weld: nothing rubs there"),
-            Some(JointKind::Gears { .. }) => {
-                Some("a gear pair, whose friction this version does not know")
-            }
             Some(JointKind::Belt { .. }) => {
                 Some("a belt, whose friction this version does not know")
-            }
-            Some(JointKind::Rack { .. }) => {
-                Some("a rack, whose friction this version does not know")
             }
             _ => None,
         };
@@ -138,7 +172,7 @@ fn place(cx: &mut Context<'_>, key: &Key) -> Option<FrictionAt> {
                 "not-a-slider",
                 format!("`{name}` is {what}"),
                 &key.span,
-                "friction acts at pins, sliders and slots",
+                "friction acts at pins, sliders, slots and the teeth of gears and racks",
             );
         }
         return Some(FrictionAt::Joint(id));
@@ -167,7 +201,7 @@ fn place(cx: &mut Context<'_>, key: &Key) -> Option<FrictionAt> {
         d = d.see(declared.clone(), format!("`{name}` is {}", meaning.what()));
     }
     cx.push(
-        d.note("friction is told of pins by their point, of sliders by their joint, and of `all`"),
+        d.note("friction is told of pins by their point, of sliders and teeth by their joint, and of `all`"),
     );
     None
 }
@@ -184,6 +218,8 @@ fn slides(cx: &Context<'_>, joint: usize) -> bool {
                 | JointKind::Slot { .. }
                 | JointKind::ArcSlot { .. }
                 | JointKind::CurveSlot { .. }
+                | JointKind::Gears { .. }
+                | JointKind::Rack { .. }
         )
     )
 }

@@ -5,7 +5,7 @@ use kempe_units::{Dimension, Expr};
 use crate::diagnostic::Diagnostic;
 use crate::document::{Key, Node};
 use crate::ids::{JointId, Line, LinkId, LinkPointRef, PointId, Scalar};
-use crate::joint::{Joint, JointKind};
+use crate::joint::{Joint, JointKind, Teeth, ToothSize};
 use crate::key_table::{JOINTS, SIDES};
 use crate::link::{CircularArc, Side, SmoothCurve};
 use crate::read::algebra::{minus, over, plus, times, turn};
@@ -357,7 +357,7 @@ fn two_links(cx: &mut Context<'_>, entry: &Entry<'_>, key: &str) -> Option<(Link
 fn gears(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<JointKind> {
     let links = two_links(cx, entry, "gears");
     let arm = entry.link_or_frame(cx, "arm");
-    let teeth = entry.required(cx, "teeth").and_then(|node| {
+    let sizes = entry.required(cx, "teeth").and_then(|node| {
         // teeth are numbers, radii are lengths; both of a kind
         let (a, b) = entry.two(cx, node, "teeth")?;
         let what = entry.place_of("teeth");
@@ -371,14 +371,18 @@ fn gears(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<JointKind> {
             cx.positive(a, dimension, &what, false),
             cx.positive(b, dimension, &what, false),
         );
-        Some((a?, b?))
+        Some((a?, b?, dimension == Dimension::NONE))
     });
     let internal = entry.flag(cx, "internal");
     let phase = entry.value_or(cx, "phase", 0.0);
-    let ((a, b), arm, (teeth_a, teeth_b)) = (links?, arm?, teeth?);
+    let ((a, b), arm, (teeth_a, teeth_b, counted)) = (links?, arm?, sizes?);
+    let form = teeth(cx, entry, counted);
+    let mut axes = Vec::new();
     for gear in [a, b] {
         entry.different(cx, gear, arm)?;
-        if shared_point(cx, gear, arm).is_none() {
+        let axis = shared_point(cx, gear, arm);
+        axes.extend(axis);
+        if axis.is_none() {
             let (gear, arm) = (cx.link_name(gear).to_owned(), cx.link_name(arm).to_owned());
             cx.push(
                 Diagnostic::warning("no-common-point", format!("{}: gear `{gear}` has no axis on the arm `{arm}`", entry.place))
@@ -387,7 +391,16 @@ fn gears(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<JointKind> {
             );
         }
     }
-    let internal = internal?;
+    let (internal, form) = (internal?, form?);
+    if let (true, [a, b]) = (entry.has("pressure_angle"), axes.as_slice()) {
+        let turn_alike = internal && cx.number(&teeth_a) == cx.number(&teeth_b);
+        if turn_alike || !(distance_on(cx, arm, *a, *b)? > 0.0) {
+            let message = "wheels on one axis have no pressure angle: their teeth do not meet";
+            let help = "leave `pressure_angle` out, or set the axes apart on the arm and give wheels of different size";
+            entry.contradiction(cx, &["pressure_angle", "teeth"], message, help);
+            return None;
+        }
+    }
     let ratio = over(teeth_b.clone(), teeth_a.clone());
     let phase = entry.or_drawn("phase", phase?, || {
         drawn::phase(cx, [a, b, arm], ratio, !internal)
@@ -400,6 +413,32 @@ fn gears(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<JointKind> {
         teeth_b,
         internal,
         phase,
+        teeth: form,
+    })
+}
+
+/// What an entry tells of its teeth, which are counted where its wheels are not told by their radii.
+fn teeth(cx: &mut Context<'_>, entry: &Entry<'_>, counted: bool) -> Option<Teeth> {
+    entry.idle(cx, &["module"], "pressure_angle");
+    let angle = entry.value(cx, "pressure_angle");
+    let module = entry.value(cx, "module");
+    let (pressure_angle, module) = (angle?, module?);
+    if let (Some(angle), Some(node)) = (&pressure_angle, entry.get("pressure_angle")) {
+        cx.pressure_angle(angle, node, &entry.place_of("pressure_angle"))?;
+    }
+    if counted && module.is_some() {
+        let message = "numbers of teeth and the distance of the axes tell the module";
+        let help = "leave `module` out, or give radii: teeth = [\"20 mm\", \"40 mm\"]";
+        entry.contradiction(cx, &["module", "teeth"], message, help);
+        return None;
+    }
+    let size = match counted {
+        true => ToothSize::Counted,
+        false => ToothSize::Module(module),
+    };
+    Some(Teeth {
+        pressure_angle,
+        size,
     })
 }
 
@@ -510,6 +549,7 @@ fn rack(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<JointKind> {
         ),
     };
     let offset = entry.value_or(cx, "offset", 0.0);
+    let teeth = teeth(cx, entry, false);
     let (rack, pinion) = (rack?, pinion?);
     entry.different(cx, rack, pinion)?;
     let center = match entry.has("center") {
@@ -519,7 +559,7 @@ fn rack(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<JointKind> {
             on_link(cx, point, pinion, node)?.point
         }
     };
-    let (radius, side) = (radius?, side?);
+    let (radius, side, teeth) = (radius?, side?, teeth?);
     let offset = entry.or_drawn("offset", offset?, || {
         let rolled = times(radius.clone(), drawn::angle_between(cx, rack, pinion)?);
         let travel = drawn::travel(cx, rack, center)?;
@@ -536,6 +576,7 @@ fn rack(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<JointKind> {
         radius,
         side,
         offset,
+        teeth,
     })
 }
 

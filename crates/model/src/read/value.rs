@@ -2,7 +2,7 @@
 
 use kempe_units::{Dimension, Expr, Issue, Resolver, Unit, check, check_as, format_digits, parse};
 
-use crate::bound::{Bound, Keeps, beyond, remedy};
+use crate::bound::{Bound, Keeps, STEEPEST, beyond, remedy};
 use crate::decimal::torn;
 use crate::diagnostic::{Diagnostic, Label};
 use crate::document::{Node, Text, Value};
@@ -247,6 +247,27 @@ impl Context<'_> {
                 )),
         );
         None
+    }
+
+    /// Refuses a positive pressure angle that no gear has.
+    pub fn pressure_angle(&mut self, angle: &Scalar, node: &Node, what: &str) -> Option<()> {
+        self.bound(
+            angle,
+            &node.span,
+            what,
+            Dimension::ANGLE,
+            Keeps::PressureAngle,
+        );
+        if self.number(angle) < STEEPEST {
+            return Some(());
+        }
+        let found = self.show(self.number(angle), Dimension::ANGLE);
+        self.refuse(
+            "pressure-angle",
+            format!("{what} must be below 45 deg, found {found}"),
+            &node.span,
+            "give that of the teeth's profile: \"20 deg\" by the standard, \"14.5 deg\" or \"25 deg\" where drawings say so",
+        )
     }
 
     /// A value in the file's units.

@@ -6,7 +6,7 @@ use crate::drive::{Drive, DriveKind};
 use crate::hint::HintKind;
 use crate::ids::{FRAME, Line, Scalar};
 use crate::item::{File, Item};
-use crate::joint::JointKind;
+use crate::joint::{JointKind, Teeth, ToothSize};
 use crate::key_table::{SIDES, word_of};
 use crate::link::Side;
 use crate::write::spelling::Writer;
@@ -134,11 +134,14 @@ impl Writer<'_> {
                 teeth_b,
                 internal,
                 phase,
+                teeth: form,
             } => {
                 let links = [a, b].map(|l| Item::text(self.link(*l)));
-                // numbers, unless a parameter says that they are radii
-                let is = self.together(&[teeth_a, teeth_b], Dimension::NONE);
-                let teeth = [teeth_a, teeth_b].map(|t| self.scalar(t, is));
+                // A bare number counts teeth.
+                let teeth = [teeth_a, teeth_b].map(|size| match form.size {
+                    ToothSize::Counted => self.scalar(size, Dimension::NONE),
+                    ToothSize::Module(_) => self.expression(size, Dimension::LENGTH),
+                });
                 entries = vec![
                     ("gears".to_owned(), Item::List(links.to_vec())),
                     ("teeth".to_owned(), Item::List(teeth.to_vec())),
@@ -150,6 +153,7 @@ impl Writer<'_> {
                     entries.push(("internal".to_owned(), Item::Flag(true)));
                 }
                 entries.extend(angle("phase", phase));
+                entries.extend(self.teeth(form));
             }
             JointKind::Rack {
                 rack,
@@ -158,6 +162,7 @@ impl Writer<'_> {
                 radius,
                 side,
                 offset,
+                teeth,
             } => {
                 entries = vec![
                     text("rack", self.link(*rack)),
@@ -171,6 +176,25 @@ impl Writer<'_> {
                 if !is_nothing(offset) {
                     entries.push(("offset".to_owned(), self.scalar(offset, Dimension::LENGTH)));
                 }
+                entries.extend(self.teeth(teeth));
+            }
+        }
+        entries
+    }
+
+    fn teeth(&self, teeth: &Teeth) -> Entries {
+        let module = match &teeth.size {
+            ToothSize::Counted => None,
+            ToothSize::Module(module) => module.as_ref(),
+        };
+        let angle = teeth.pressure_angle.as_ref();
+        let mut entries = Entries::new();
+        for (key, value, dimension) in [
+            ("pressure_angle", angle, Dimension::ANGLE),
+            ("module", module, Dimension::LENGTH),
+        ] {
+            if let Some(value) = value {
+                entries.push((key.to_owned(), self.scalar(value, dimension)));
             }
         }
         entries

@@ -1,6 +1,6 @@
 //! Values and measures as they are written.
 
-use kempe_units::{Dimension, Expr, Freedom, Kind, Natural, Node, Spelling, Unit};
+use kempe_units::{Dimension, Expr, Kind, Natural, Node, Spelling, Unit};
 
 use crate::ids::{DriveId, JointId, Line, LinkId, LinkPointRef, ParameterId, PointId, Scalar};
 use crate::item::Item;
@@ -366,13 +366,6 @@ impl Writer<'_> {
     fn per(&self, drive: DriveId, n: u32) -> Dimension {
         let per = self.coordinate(drive);
         per.powi(n as i32).unwrap_or(per)
-    }
-
-    /// What several values measure together that must measure the same; `otherwise` where they do not say.
-    pub fn together(&self, scalars: &[&Scalar], otherwise: Dimension) -> Dimension {
-        let mut naturals = scalars.iter().map(|s| self.measures(s));
-        let fixed = naturals.find(|n| n.freedom == Freedom::Fixed);
-        fixed.map_or(otherwise, |n| n.dimension)
     }
 }
 
