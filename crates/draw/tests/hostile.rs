@@ -96,6 +96,24 @@ fn long_motions_are_thinned_and_the_ends_kept() {
     assert!(html.len() < 1_500_000, "{}", html.len());
 }
 
+#[test]
+fn a_peak_between_the_rows_of_the_page_is_drawn() {
+    let mut case = mechanisms::slider_crank();
+    let n = 25_001;
+    case.frames = (0..n).map(|k| case.frames[k % 121].clone()).collect();
+    case.drive = (0..n).map(|k| k as f64 * 1e-3).collect();
+    let mut report = reports::report(&[case]);
+    report.motions[0].plots[0].curves[0].y[12_345] = 7777.0;
+    let html = report.to_html();
+    let start = html.find("id=\"data\">").unwrap() + 10;
+    let json = &html[start..start + html[start..].find("</script>").unwrap()];
+    let data: serde_json::Value = serde_json::from_str(json).unwrap();
+    let curve = &data[0]["plots"][0]["curves"][0];
+    let row = data[0]["row"].as_array().unwrap();
+    assert!(!row.contains(&12_345.into()), "the page has not that row");
+    assert!(curve["fine"][1].as_array().unwrap().contains(&7777.into()));
+}
+
 /// Any number, with the awkward ones often.
 fn number() -> impl Strategy<Value = f64> {
     prop_oneof![

@@ -46,11 +46,11 @@ pub(crate) fn plotted(model: &Model, result: &StudyResult) -> Vec<Column> {
     more
 }
 
-/// `reaction_x(B)` of `reaction(B)`.
-fn component(name: &str, axis: &str) -> String {
-    match name.split_once('(') {
-        Some((what, rest)) => format!("{what}_{axis}({rest}"),
-        None => format!("{name} {axis}"),
+/// `reaction_x(B)` of `hodograph(B)`, as the measure is called.
+fn component(hodograph: &str, axis: &str) -> String {
+    match hodograph.split_once('(') {
+        Some((_, rest)) => format!("reaction_{axis}({rest}"),
+        None => format!("{hodograph} {axis}"),
     }
 }
 
@@ -102,7 +102,10 @@ mod tests {
 
     #[test]
     fn the_components_of_a_force_are_named_as_measures_are() {
-        assert_eq!(component("reaction(B)", "x"), "reaction_x(B)");
-        assert_eq!(component("reaction(B, crank)", "y"), "reaction_y(B, crank)");
+        assert_eq!(component("hodograph(B)", "x"), "reaction_x(B)");
+        assert_eq!(
+            component("hodograph(B, crank)", "y"),
+            "reaction_y(B, crank)"
+        );
     }
 }

@@ -50,10 +50,5 @@ fn abscissa(model: &Model, result: &StudyResult) -> Option<(Dimension, String)> 
     });
     let (drive, _) = moving.next()?;
     let alone = moving.next().is_none();
-    alone.then(|| {
-        (
-            drive.dimension,
-            format!("by the coordinate of {}", drive.name),
-        )
-    })
+    alone.then(|| (drive.dimension, format!("derivative to {}", drive.name)))
 }

@@ -98,7 +98,7 @@ pub enum VectorKind {
 pub struct PointVectors {
     /// Which one.
     pub kind: VectorKind,
-    /// To what the derivative is taken, such as `in time` or `per rad of crank`.
+    /// To what the derivative is taken, such as `in time` or `derivative to crank`.
     pub per: String,
     /// Unit in which it is told.
     pub unit: LoadUnit,

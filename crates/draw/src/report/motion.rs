@@ -10,7 +10,7 @@ use crate::svg;
 use kempe_number::text::significant;
 
 /// Width of the stage and size of a plot, mm; the page scales them. The stage is small, so that its texts are large.
-const STAGE: [f64; 2] = [130.0, 115.0];
+const STAGE: [f64; 2] = [150.0, 132.0];
 const PLOT: [f64; 2] = [104.0, 66.0];
 /// Height of a plot with equal axes, mm.
 const PATH_PLOT_HEIGHT: f64 = 84.0;

@@ -12,6 +12,8 @@ use crate::tokens::Token;
 
 /// A point whose largest vector is below this part of the largest of all stands still: it is what rounding left of none.
 const STILL: f64 = 1e-9;
+/// What is larger than so many times the usual is drawn broken: near a dead point velocities grow without bound.
+const FAR: f64 = 3.0;
 /// Longest arrow as a part of the sheet's smaller side.
 const LONGEST: f64 = 0.25;
 /// The arrows are not made shorter than this to keep them on the sheet, mm.
@@ -43,7 +45,7 @@ impl PointVectors {
             let of_row = self.rows.get(*row).map_or(&[][..], Vec::as_slice);
             of_row.iter().map(|v| self.size(v)).collect::<Vec<f64>>()
         };
-        Quantity::over(rows.kept.iter().map(sizes), 0.0)
+        Quantity::within(rows.kept.iter().map(sizes), 0.0, FAR)
     }
 
     fn size(&self, [x, y]: &[f64; 2]) -> f64 {
@@ -56,8 +58,8 @@ impl PointVectors {
         [x / self.unit.size(), y / self.unit.size()]
     }
 
-    /// The points that move.
-    fn moving(&self, rows: &Rows, scale: &Quantity) -> Vec<usize> {
+    /// The points that move, but for those that only give a curve its shape.
+    fn moving(&self, rows: &Rows, scale: &Quantity, stage: &Stage) -> Vec<usize> {
         let points = self.rows.iter().map(Vec::len).max().unwrap_or(0);
         let moves = |point: &usize| {
             let mut sizes = rows.kept.iter().map(|row| {
@@ -66,7 +68,8 @@ impl PointVectors {
             });
             sizes.any(|size| size.is_finite() && size > STILL * scale.largest)
         };
-        (0..points).filter(moves).collect()
+        let shown = |point: &usize| !stage.context.roles.point(*point).only_shapes();
+        (0..points).filter(shown).filter(moves).collect()
     }
 }
 
@@ -77,7 +80,7 @@ pub(super) fn vectors(motion: &MotionReport, rows: &Rows, stage: &Stage) -> Stri
 }
 
 fn vector(it: &PointVectors, rows: &Rows, stage: &Stage, scale: &Quantity) -> String {
-    let points = it.moving(rows, scale);
+    let points = it.moving(rows, scale, stage);
     let track = |point: &usize| {
         let mut bytes = Vec::with_capacity(8 * rows.kept.len());
         for row in &rows.kept {
@@ -146,7 +149,7 @@ pub(super) fn switches(motion: &MotionReport, rows: &Rows) -> String {
             ""
         };
         Some(format!(
-            "<label title=\"Longest arrow: {} {}{outside}\"><input type=\"checkbox\" data-vector=\"{}\"> {} <span class=\"muted\">{}, up to {} {}</span></label>\n",
+            "<label title=\"Longest arrow: {} {}{outside}\"><input type=\"checkbox\" data-vector=\"{}\"> {} <span class=\"muted\">({}, up to {} {})</span></label>\n",
             significant(scale.full, 3),
             escape(&it.unit.name),
             it.kind.name(),

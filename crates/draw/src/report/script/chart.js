@@ -33,7 +33,7 @@ function chart(svg, spec, width, height) {
   const left = Math.min(Math.max(12, ...upright().marks.map(([, t]) => wide(t))) + LINE + 16, width * 0.4), right = width - 16;
   let x = scale(shown(spec.x, all(0), 0), left, right, spec.x.log);
   if (spec.plane && !x.log && !y.log) [x, y] = equalized(x, y);
-  const xTicks = ticks(x, count(right - left, 70, 2, 12), spec.x.unit), yTicks = upright();
+  const xTicks = ticks(x, count(right - left, 55, 2, 12), spec.x.unit), yTicks = upright();
   const frame = { left, right, top, bottom };
   furniture(svg, frame, x, y, xTicks, yTicks);
   markers(svg, spec.markers, frame, x);

@@ -10,14 +10,19 @@ function enlarged(plot) {
   large.replaceChildren(plot.figure);
   returning = () => {
     place.replaceWith(plot.figure);
-    plot.enlarge.textContent = "Enlarge";
-    plot.fit();
-    plot.enlarge.focus();
+    named(plot, "Enlarge", "Show this plot as large as the window");
   };
   large.showModal();
-  plot.enlarge.textContent = "Close";
-  plot.enlarge.focus();
-  plot.fit();
+  named(plot, "Close", "Back to the page");
 }
+
+function named(plot, name, title) {
+  plot.enlarge.textContent = name;
+  plot.enlarge.title = title;
+  plot.enlarge.setAttribute("aria-label", `${title}: ${plot.what}`);
+  plot.fit();
+  plot.enlarge.focus();
+}
+
 large.addEventListener("close", () => { returning?.(); returning = null; });
 large.addEventListener("click", (event) => { if (event.target === large) large.close(); });
