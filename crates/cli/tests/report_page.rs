@@ -89,7 +89,7 @@ fn the_report_works_in_a_browser() {
         page.open(&report, size, phone, dark);
         everything_is_in_sight(&page);
         it_plays_and_stops(&page);
-        the_place_is_moved_by_hand(&page);
+        the_place_is_moved_by_hand(&page, phone);
         a_point_shows_how_it_moves(&page, at);
         what_is_chosen_is_plotted(&page, at);
         a_plot_is_enlarged(&page);
@@ -150,7 +150,7 @@ fn it_plays_and_stops(page: &Page) {
 }
 
 /// By keys, and by a click on a plot: where the axis says 180 the motor stands at 180.
-fn the_place_is_moved_by_hand(page: &Page) {
+fn the_place_is_moved_by_hand(page: &Page, phone: bool) {
     page.key("End");
     assert_eq!(row(page), 360.0);
     page.key("Home");
@@ -185,6 +185,30 @@ fn the_place_is_moved_by_hand(page: &Page) {
         "the line stands at {at}, not at {}",
         there[0]
     );
+    let shown = format!("!document.querySelector('{SHOWN} .tip').hidden");
+    if phone {
+        // what a finger asked for stays when it is lifted, until the next touch
+        page.tap([there[0] - 60.0, there[1]]);
+        page.wait(&format!(
+            "{shown} && +document.querySelector('{SHOWN} [data-in=row]').value < 150"
+        ));
+        page.tap(page.place("h1", [0.5, 0.5]));
+        page.wait(&format!("!({shown})"));
+    } else {
+        // with keys alone: the plot is reached, and tells the place of the player
+        page.mouse("mouseMoved", [5.0, 5.0]);
+        page.value(&format!(
+            "document.querySelector('{SHOWN} [data-do=csv]').focus()"
+        ));
+        page.key("Tab");
+        page.wait(&shown);
+        page.key("End");
+        page.wait(&format!(
+            "document.querySelector('{SHOWN} .tip').innerText.startsWith('motor = 360 deg')"
+        ));
+        page.key("Tab");
+        page.wait(&format!("!({shown})"));
+    }
 }
 
 /// The velocity of P is that of the table, which is its measured rate.

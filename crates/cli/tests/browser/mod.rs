@@ -262,6 +262,14 @@ impl Page {
         self.ask("Input.dispatchMouseEvent", event);
     }
 
+    /// Touches a place with a finger and lifts it.
+    pub fn tap(&self, [x, y]: [f64; 2]) {
+        let touch = json!({"type": "touchStart", "touchPoints": [{"x": x, "y": y}]});
+        self.ask("Input.dispatchTouchEvent", touch);
+        let lifted = json!({"type": "touchEnd", "touchPoints": []});
+        self.ask("Input.dispatchTouchEvent", lifted);
+    }
+
     /// Presses a key by its name.
     pub fn key(&self, key: &str) {
         let (name, code) = match key {
@@ -270,6 +278,7 @@ impl Page {
             "Home" => ("Home", 36),
             "End" => ("End", 35),
             "ArrowRight" => ("ArrowRight", 39),
+            "Tab" => ("Tab", 9),
             _ => panic!("what key is {key}?"),
         };
         for kind in ["keyDown", "keyUp"] {

@@ -72,6 +72,9 @@ class Plot {
     for (const end of ["pointerup", "pointercancel"]) this.svg.addEventListener(end, () => { down = false; });
     // a finger leaves as soon as it is lifted: what it asked for stays until the next touch
     this.svg.addEventListener("pointerleave", (event) => { down = false; if (event.pointerType !== "touch") this.hover(null); });
+    // who comes by keys reads the player's place
+    this.svg.addEventListener("focus", () => { if (this.shown) this.show(...this.shown); });
+    this.svg.addEventListener("blur", () => this.hover(null));
     document.addEventListener("pointerdown", (event) => { if (!this.svg.contains(event.target)) this.hover(null); });
   }
 
@@ -126,6 +129,13 @@ class Plot {
       place(this.dots[k], this.arrows[k] ? null : px, py);
       if (this.arrows[k]) this.vector(this.arrows[k], px, py);
     });
+    if (this.svg.matches(":focus-visible")) this.hover(Math.round(row + share), this.center());
+  }
+
+  // The middle of the plot, as an event of a pointer tells it.
+  center() {
+    const box = this.svg.getBoundingClientRect();
+    return { clientX: box.x + box.width / 2, clientY: box.y + box.height / 2 };
   }
 
   // An arrow from the origin to a tip.

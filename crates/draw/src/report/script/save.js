@@ -55,5 +55,5 @@ function csv(motion) {
 }
 
 function saveCsv(motion) {
-  keep(`${motion.name}.csv`, new Blob([csv(motion)], { type: "text/csv" }));
+  keep(`${motion.name}${motion.mark ? ".partial" : ""}.csv`, new Blob([csv(motion)], { type: "text/csv" }));
 }
