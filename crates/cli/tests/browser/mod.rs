@@ -26,6 +26,7 @@ const NAMES: [&str; 6] = [
 
 /// A page of a browser. It ends with this.
 pub struct Page {
+    program: PathBuf,
     child: Child,
     input: RefCell<ChildStdin>,
     output: Receiver<Value>,
@@ -58,6 +59,7 @@ fn program() -> PathBuf {
 impl Page {
     /// Starts a browser with an empty page.
     pub fn start() -> Page {
+        let program = program();
         let folder = tempfile::tempdir().expect("a folder");
         fs::create_dir(folder.path().join("saved")).expect("made");
         // The browser reads from its third stream and writes to its fourth.
@@ -66,7 +68,7 @@ impl Page {
             "-c",
             "exec \"$0\" \"$@\" 3<&0 4>&1 </dev/null >/dev/null 2>&1",
         ]);
-        command.arg(program()).args([
+        command.arg(&program).args([
             "--headless=new",
             "--remote-debugging-pipe",
             // It only ever sees pages that this test made, and as root it does not start otherwise.
@@ -97,6 +99,7 @@ impl Page {
             }
         });
         let mut page = Page {
+            program,
             child,
             input: RefCell::new(input),
             output: receiver,
@@ -134,7 +137,7 @@ impl Page {
             .input
             .borrow_mut()
             .write_all(format!("{message}\0").as_bytes());
-        sent.unwrap_or_else(|error| panic!("the browser has ended: {error}"));
+        sent.unwrap_or_else(|error| panic!("{} has ended: {error}", self.program.display()));
         let begun = Instant::now();
         loop {
             let answer = self.next(begun, method);
@@ -154,7 +157,10 @@ impl Page {
             Ok(message) => message,
             Err(RecvTimeoutError::Timeout) => panic!("no answer in {BOUND:?}: {what}"),
             Err(RecvTimeoutError::Disconnected) => {
-                panic!("the browser has ended before it answered: {what}")
+                panic!(
+                    "{} does not start, or has ended before it answered: {what}",
+                    self.program.display()
+                )
             }
         }
     }

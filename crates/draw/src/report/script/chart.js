@@ -36,15 +36,16 @@ function chart(svg, spec, width, height) {
   const xTicks = ticks(x, count(right - left, 55, 2, 12), spec.x.unit), yTicks = upright();
   const frame = { left, right, top, bottom };
   furniture(svg, frame, x, y, xTicks, yTicks);
-  markers(svg, spec.markers, frame, x);
+  const drawn = spec.curves.flatMap((c) => { const [xs, ys] = finite(c); return Array.from(xs, (v, k) => [x.at(v), y.at(ys[k])]); });
+  markers(svg, spec.markers, frame, x, drawn);
   const clip = `clip-${chart.drawn = (chart.drawn ?? 0) + 1}`;
   element("rect", { x: left - 2, y: top - 2, width: right - left + 4, height: bottom - top + 4 }, element("clipPath", { id: clip }, svg));
   const inside = element("g", { "clip-path": `url(#${clip})` }, svg);
   for (const limit of spec.limits) shade(inside, limit, spec.curves, x, y);
   if (vectors) crossing(inside, frame, x);
   spec.curves.forEach((c, k) => element("path", { d: line(finite(c), x, y), fill: "none", stroke: color(k), "stroke-width": 2, "stroke-linejoin": "round", "stroke-linecap": "round", "stroke-dasharray": c.dashed ? "7 5" : "none" }, inside));
-  for (const limit of spec.limits) drawLimit(svg, inside, limit, spec.curves, frame, x, y);
-  if (vectors) nameTips(svg, spec, vectors, frame, x, y);
+  for (const limit of spec.limits) drawLimit(svg, inside, limit, drawn, frame, x, y);
+  if (vectors) nameTips(svg, spec, vectors, frame, x, y, drawn);
   const middle = [(left + right) / 2, (top + bottom) / 2], center = { "text-anchor": "middle" };
   words(captions, fitting(head(spec.x.label, spec.x.unit) + powerText(xTicks.power), right - left), middle[0], height - EDGE, center);
   words(captions, fitting(head(spec.y.label, spec.y.unit) + powerText(yTicks.power), bottom - top), 0, 0, { ...center, transform: `translate(${LINE} ${round(middle[1])}) rotate(-90)` });
@@ -98,8 +99,12 @@ function furniture(svg, { left, right, top, bottom }, x, y, xTicks, yTicks) {
   element("path", { d: `M${left} ${top}V${bottom}H${right}`, fill: "none", stroke: "var(--muted)", "stroke-width": 1.4 }, group);
 }
 
-// Lines at dead and change points. Their names stand beside them, where they do not run into each other.
-function markers(svg, marks, { left, right, top, bottom }, x) {
+// How many of some points lie in a box: left, top, right, bottom.
+const covered = (points, [left, top, right, bottom]) => points.reduce((sum, [x, y]) => sum + (x > left && x < right && y > top && y < bottom), 0);
+
+// Lines at dead and change points. Their names stand beside them, at the top or at the bottom, where they hide less of the
+// curves and do not run into each other.
+function markers(svg, marks, { left, right, top, bottom }, x, drawn) {
   let free = -Infinity;
   for (const mark of marks) {
     const at = x.at(mark.at), [token, dash] = MARKS[mark.kind];
@@ -107,7 +112,9 @@ function markers(svg, marks, { left, right, top, bottom }, x) {
     element("path", { d: `M${round(at)} ${bottom}V${top}`, stroke: `var(${token})`, "stroke-width": 1.4, "stroke-dasharray": dash }, svg);
     if (at <= free) continue;
     const beside = at + LINE > right ? at - 4 : at + FONT;
-    words(svg, fitting(mark.label, bottom - top - 8), 0, 0, { ...halo, fill: `var(${token})`, "text-anchor": "end", transform: `translate(${round(beside)} ${top + 4}) rotate(-90)` });
+    const label = fitting(mark.label, bottom - top - 8), room = (from) => covered(drawn, [beside - FONT, from, beside + 3, from + wide(label) + 4]);
+    const low = room(bottom - wide(label) - 4) < room(top);
+    words(svg, label, 0, 0, { ...halo, fill: `var(${token})`, "text-anchor": low ? "start" : "end", transform: `translate(${round(beside)} ${low ? bottom - 5 : top + 4}) rotate(-90)` });
     free = at + LINE;
   }
 }

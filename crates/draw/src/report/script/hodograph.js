@@ -16,9 +16,9 @@ function crossing(parent, { top, bottom }, x) {
 }
 
 // Dots at some tips, each with the coordinate of the drive where it has room.
-function nameTips(svg, spec, { outside }, { left, right, top, bottom }, x, y) {
+function nameTips(svg, spec, { outside }, { left, right, top, bottom }, x, y, drawn) {
   const taken = [], group = element("g", {}, svg), muted = { ...halo, fill: "var(--muted)" };
-  const clear = (box) => box[0] >= left && box[2] <= right && box[1] >= top && box[3] <= bottom && taken.every((b) => box[2] < b[0] || b[2] < box[0] || box[3] < b[1] || b[3] < box[1]);
+  const clear = (box) => !covered(drawn, box) && box[0] >= left && box[2] <= right && box[1] >= top && box[3] <= bottom && taken.every((b) => box[2] < b[0] || b[2] < box[0] || box[3] < b[1] || b[3] < box[1]);
   if (outside != null) {
     const told = `up to ${withUnit(outside, spec.x.unit, 3)} outside`;
     taken.push([right - 4 - wide(told), bottom - LINE - 2, right, bottom]);

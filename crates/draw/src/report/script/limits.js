@@ -39,7 +39,7 @@ function shade(parent, limit, curves, x, y) {
 }
 
 // Draws the line, and its name at the end where the curves are farther from it.
-function drawLimit(svg, inside, limit, curves, { left, right, top, bottom }, x, y) {
+function drawLimit(svg, inside, limit, drawn, { left, right, top, bottom }, x, y) {
   const own = limit.x ? [limit.x, limit.y] : [[x.low, x.high], [limit.y[0], limit.y[0]]];
   element("path", { d: line(own, x, y), fill: "none", stroke: "var(--error)", "stroke-width": 1.6, "stroke-dasharray": "8 4 2 4" }, inside);
   if (!limit.label) return;
@@ -51,12 +51,7 @@ function drawLimit(svg, inside, limit, curves, { left, right, top, bottom }, x, 
     if (!edges.length) continue;
     for (const base of [Math.min(...edges) - 6, Math.max(...edges) + FONT + 3]) {
       if (base - FONT < top || base > bottom) continue;
-      let covered = 0;
-      for (const [xs, ys] of curves.map(finite)) for (let row = 0; row < xs.length; row++) {
-        const px = x.at(xs[row]), py = y.at(ys[row]);
-        if (px > from - 3 && px < from + long + 3 && py > base - FONT - 3 && py < base + 4) covered++;
-      }
-      places.push([covered, from, base]);
+      places.push([covered(drawn, [from - 3, base - FONT - 3, from + long + 3, base + 4]), from, base]);
     }
   }
   places.sort((a, b) => a[0] - b[0]);
