@@ -36,7 +36,8 @@ fn plot(motion: &MotionReport, rows: &Rows, spec: &PlotSpec) -> String {
         }
         json::object(&fields)
     };
-    let markers = spec.markers.iter().take(200).map(|m| {
+    let markers = spec.markers.iter().filter(|m| m.at.is_finite());
+    let markers = markers.take(200).map(|m| {
         json::object(&[
             ("at", json::number(m.at, 12)),
             ("label", json::string(&m.label)),

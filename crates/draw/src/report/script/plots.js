@@ -179,6 +179,6 @@ function plotOfRun(motion, spec) {
     const [x, y] = [column(c.x), column(c.y)];
     return { ...c, color: color(k), x: x.v, y: y.v, fine: c.fine?.map((v) => unpacked(v)), names: [x.name ?? spec.x.label, y.name ?? (c.label || spec.y.label)] };
   });
-  const limits = spec.limits.map((l) => ({ ...l, y: [].concat(l.y) }));
+  const list = (v) => [].concat(v).map((x) => x ?? NaN), limits = spec.limits.map((l) => ({ ...l, x: l.x && list(l.x), y: list(l.y) }));
   return { ...spec, curves, limits, hodograph: spec.hodograph && { ...spec.hodograph, drive: column(spec.hodograph.drive).v } };
 }
