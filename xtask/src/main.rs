@@ -1,5 +1,6 @@
 //! Developer tasks: `cargo xtask test`, what people and CI run before a change goes in.
 
+mod chromium;
 mod fuzz;
 mod shell;
 mod slim;

@@ -89,3 +89,25 @@ pub fn has(subcommand: &str) -> bool {
         &[subcommand, "--version"],
     )
 }
+
+/// Installs Debian packages where that is possible: as root, with apt.
+///
+/// # Errors
+///
+/// What failed, in one line.
+pub fn apt_install(packages: &[&str]) -> Result<(), String> {
+    if !answers("apt-get", &["--version"]) {
+        return Err("there is no apt-get".into());
+    }
+    let apt = |arguments: &[&str]| {
+        let mut command = Command::new("apt-get");
+        command
+            .args(arguments)
+            .env("DEBIAN_FRONTEND", "noninteractive");
+        run(&mut command, &format!("apt-get {}", arguments.join(" ")))
+    };
+    apt(&["update"])?;
+    let mut install = vec!["install", "--yes", "--no-install-recommends"];
+    install.extend(packages);
+    apt(&install)
+}

@@ -1,7 +1,7 @@
 //! The tasks.
 
 use crate::shell::{cargo, has};
-use crate::{fuzz, slim, wasm};
+use crate::{chromium, fuzz, slim, wasm};
 
 /// Format, lints, docs, tests, doctests, the slim library, the fuzz targets, the module for browsers. All steps run; the
 /// failures are told at the end.
@@ -27,6 +27,7 @@ pub fn test(fast: bool) -> Result<(), String> {
         step(slim::slim());
         step(fuzz::check());
     }
+    step(chromium::ready());
     // Without it the same tests run, one file after the other.
     if has("nextest") {
         let nextest = [

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::shell::{answers, cargo, cargo_program, output, root, run, target_folder};
+use crate::shell::{answers, apt_install, cargo, cargo_program, output, root, run, target_folder};
 
 const TARGET: &str = "wasm32-unknown-unknown";
 
@@ -161,22 +161,4 @@ fn node() -> Result<(), String> {
         return Ok(());
     }
     Err("node is missing, which runs the WebAssembly module: https://nodejs.org, or apt-get install nodejs".into())
-}
-
-/// Installs Debian packages where that is possible: as root, with apt.
-fn apt_install(packages: &[&str]) -> Result<(), String> {
-    if !answers("apt-get", &["--version"]) {
-        return Err("there is no apt-get".into());
-    }
-    let apt = |arguments: &[&str]| {
-        let mut command = Command::new("apt-get");
-        command
-            .args(arguments)
-            .env("DEBIAN_FRONTEND", "noninteractive");
-        run(&mut command, &format!("apt-get {}", arguments.join(" ")))
-    };
-    apt(&["update"])?;
-    let mut install = vec!["install", "--yes", "--no-install-recommends"];
-    install.extend(packages);
-    apt(&install)
 }

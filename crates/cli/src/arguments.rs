@@ -128,6 +128,9 @@ pub struct Run {
     /// Folder for the results; without it, only the summary is printed
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    /// Tell in the report when it was written; without it, the same run gives the same bytes
+    #[arg(long)]
+    pub date: bool,
     /// Print one JSON object instead of text
     #[arg(long)]
     pub json: bool,

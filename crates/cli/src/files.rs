@@ -20,6 +20,8 @@ pub struct Loaded {
     pub text: String,
     /// The file's name as given.
     pub name: String,
+    /// Parameters that the command line gave other values.
+    pub set: Vec<(String, String)>,
     /// All files that the model was read from: its own, and its tables.
     pub inputs: Vec<PathBuf>,
 }
@@ -56,6 +58,7 @@ pub fn load(model: &ModelFile, speaker: &mut Speaker) -> Result<Loaded, Exit> {
                 checked,
                 text,
                 name,
+                set: model.set.clone(),
                 inputs,
             })
         }

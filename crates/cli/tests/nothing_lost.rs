@@ -383,6 +383,8 @@ fn a_stopped_run_stands_beside_the_earlier_result_and_says_so() {
         assert!(
             html.contains("Partial result: the run was stopped") && html.contains("later: no rows")
         );
+        // a table that is saved from the page says so, too
+        assert!(html.contains(&format!("\"mark\":\"# partial: {mark}")));
         assert!(!at.join("out/later.partial.csv").exists());
         if name != "HUP" {
             let partial = contents(&at.join("out"));

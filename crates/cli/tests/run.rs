@@ -49,6 +49,27 @@ fn a_run_leaves_tables_figures_and_a_report_and_the_same_bytes_again() {
 }
 
 #[test]
+fn the_report_tells_its_date_where_asked() {
+    let folder = folder();
+    let at = folder.path();
+    let report = |arguments: &[&str]| {
+        let all = [&["run", "m.toml", "--out", "out"], arguments].concat();
+        assert!(kempe(at, &all).status.success());
+        fs::read_to_string(at.join("out/report.html")).expect("text")
+    };
+    let (plain, dated) = (report(&[]), report(&["--date"]));
+    assert!(!plain.contains(" UTC"));
+    let (before, after) = dated.split_once(" UTC").expect("a date");
+    let date = &before[before.len() - 19..];
+    assert!(
+        date.starts_with("20") && date.as_bytes()[10] == b' ',
+        "{date}"
+    );
+    let without = format!("{}{after}", &before[..before.len() - 21]);
+    assert_eq!(without, plain, "nothing else differs");
+}
+
+#[test]
 fn a_failed_run_leaves_the_earlier_result_as_it_was() {
     let folder = folder();
     let at = folder.path();

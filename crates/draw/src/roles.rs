@@ -25,7 +25,12 @@ impl PointRole {
 
     /// It belongs to the frame alone and does nothing but give a guide its direction: no symbol shows it.
     pub fn only_guides(&self) -> bool {
-        self.carriers == [0] && self.guides && !self.pinned && !self.slides && self.welds == 0
+        self.carriers == [0] && self.only_shapes()
+    }
+
+    /// It does nothing but give a guide its direction, or a curve its shape.
+    pub fn only_shapes(&self) -> bool {
+        self.guides && !self.pinned && !self.slides && self.welds == 0
     }
 }
 

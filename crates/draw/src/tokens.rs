@@ -26,6 +26,10 @@ pub enum Token {
     Drive,
     /// A force or a moment by what it comes from.
     Load(LoadRole),
+    /// The velocity of a point.
+    Velocity,
+    /// The acceleration of a point.
+    Acceleration,
     /// Something wrong: a gap, a row not reached.
     Error,
     /// Something to look at: a dead point, a change point.
@@ -59,7 +63,7 @@ const LOADS: [(u32, u32); 6] = [
     (0x7B3FA0, 0xD5A8F2),
 ];
 
-const PLAIN: [Token; 11] = [
+const PLAIN: [Token; 13] = [
     Token::Background,
     Token::Panel,
     Token::Ink,
@@ -68,6 +72,8 @@ const PLAIN: [Token; 11] = [
     Token::Ground,
     Token::Pin,
     Token::Drive,
+    Token::Velocity,
+    Token::Acceleration,
     Token::Error,
     Token::Warning,
     Token::Accent,
@@ -87,6 +93,8 @@ impl Token {
             Token::Series(index) => (SERIES_LIGHT[index % 6], SERIES_DARK[index % 6]),
             Token::Drive => (0xC2410C, 0xFF9A5C),
             Token::Load(role) => LOADS[role.index()],
+            Token::Velocity => (0x0B7285, 0x5FD3E8),
+            Token::Acceleration => (0xA61E8C, 0xF0A6E4),
             Token::Error => (0xC92A2A, 0xFF8787),
             Token::Warning => (0x9A5B00, 0xF2C14E),
             Token::Accent => (0x1F6FEB, 0x6CA8FF),
@@ -107,6 +115,8 @@ impl Token {
             Token::Pin => "pin".into(),
             Token::Drive => "drive".into(),
             Token::Load(role) => format!("load-{}", role.name()),
+            Token::Velocity => "velocity".into(),
+            Token::Acceleration => "acceleration".into(),
             Token::Error => "error".into(),
             Token::Warning => "warning".into(),
             Token::Accent => "accent".into(),
@@ -154,6 +164,8 @@ mod tests {
                     Token::Ink,
                     Token::Muted,
                     Token::Drive,
+                    Token::Velocity,
+                    Token::Acceleration,
                     Token::Error,
                     Token::Warning,
                     Token::Ground,

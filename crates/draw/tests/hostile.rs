@@ -6,7 +6,7 @@ mod mechanisms;
 mod reports;
 
 use kempe_draw::plot::{Axis, Curve, Hodograph, Limit, PlotSpec};
-use kempe_draw::report::{Block, Check, MOST_ROWS, Report};
+use kempe_draw::report::{Block, Check, MOST_ROWS, Note, PointVectors, Report, VectorKind};
 use kempe_draw::*;
 use proptest::prelude::*;
 
@@ -16,6 +16,7 @@ fn evil_report() -> Report {
     let mut report = reports::report(&[mechanisms::crank_rocker(), mechanisms::slider_crank()]);
     let text = || EVIL.to_string();
     (report.title, report.file_name, report.generator) = (text(), text(), text());
+    (report.source, report.date) = (text(), text());
     for motion in &mut report.motions {
         (motion.name, motion.summary, motion.view.title) = (text(), text(), text());
         motion.view.points.iter_mut().for_each(|p| *p = text());
@@ -24,7 +25,14 @@ fn evil_report() -> Report {
             .columns
             .iter_mut()
             .for_each(|c| (c.name, c.unit) = (text(), text()));
-        (motion.drive.name, motion.drive.unit) = (text(), text());
+        (motion.mark, motion.notes) = (
+            text(),
+            vec![Note {
+                first: 0,
+                last: 9,
+                text: text(),
+            }],
+        );
         motion.view.length_unit.name = text();
         motion
             .events
@@ -86,6 +94,24 @@ fn long_motions_are_thinned_and_the_ends_kept() {
         rows.len() <= MOST_ROWS + 1 && rows.first() == Some(&"0") && rows.last() == Some(&"25000")
     );
     assert!(html.len() < 1_500_000, "{}", html.len());
+}
+
+#[test]
+fn a_peak_between_the_rows_of_the_page_is_drawn() {
+    let mut case = mechanisms::slider_crank();
+    let n = 25_001;
+    case.frames = (0..n).map(|k| case.frames[k % 121].clone()).collect();
+    case.drive = (0..n).map(|k| k as f64 * 1e-3).collect();
+    let mut report = reports::report(&[case]);
+    report.motions[0].plots[0].curves[0].y[12_345] = 7777.0;
+    let html = report.to_html();
+    let start = html.find("id=\"data\">").unwrap() + 10;
+    let json = &html[start..start + html[start..].find("</script>").unwrap()];
+    let data: serde_json::Value = serde_json::from_str(json).unwrap();
+    let curve = &data[0]["plots"][0]["curves"][0];
+    let row = data[0]["row"].as_array().unwrap();
+    assert!(!row.contains(&12_345.into()), "the page has not that row");
+    assert!(curve["fine"][1].as_array().unwrap().contains(&7777.into()));
 }
 
 /// Any number, with the awkward ones often.
@@ -260,8 +286,13 @@ proptest! {
     fn any_report_is_a_page_with_json((view, frames) in mechanism(), values in prop::collection::vec(number(), 0..6)) {
         let mut report = reports::report(&[mechanisms::crank_rocker()]);
         let motion = &mut report.motions[0];
-        (motion.view, motion.frames, motion.time) = (view, frames, values.clone());
-        motion.drive.values = values;
+        (motion.view, motion.frames) = (view, frames);
+        let points = motion.view.points.len();
+        motion.vectors = [VectorKind::Velocity, VectorKind::Acceleration].map(|kind| PointVectors {
+            kind, per: "in time".into(), unit: LoadUnit::new("mm/s", 1e-3),
+            rows: values.iter().map(|v| vec![[*v, -v]; points]).collect(),
+        }).to_vec();
+        for k in 0..2 { motion.columns[k].values.clone_from(&values); }
         let html = report.to_html();
         let start = html.find("id=\"data\">").unwrap() + 10;
         let json = &html[start..start + html[start..].find("</script>").unwrap()];

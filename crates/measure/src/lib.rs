@@ -24,7 +24,7 @@ pub use designs_in_lanes::{DesignsInLanes, is_of_poses};
 pub use force_source::{Curve, ForceSource, NoForces};
 pub use prepare::{Unmeasurable, Unprepared, unmeasurable};
 pub use row_note::RowNote;
-pub use sampler::{CLOSURE_LIMIT, Sample, Sampler};
+pub use sampler::{CLOSURE_LIMIT, PointRates, Sample, Sampler};
 pub use sensitivity::{Held, Sensitivities, Varying, sensitivities, sensitivities_with};
 pub use state::{Abscissa, ORDER, Series, State};
 pub use states_along::Base;

@@ -6,9 +6,11 @@
 mod between;
 mod moment;
 mod note;
+mod rates;
 
 pub(crate) use self::between::{Between, Kept};
 pub(crate) use self::moment::Asked;
+pub use self::rates::PointRates;
 
 use std::sync::Arc;
 
@@ -44,8 +46,10 @@ pub struct Sample {
     pub values: Vec<f64>,
     /// x, y and unwrapped angle of every link.
     pub links: Vec<[f64; 3]>,
-    /// PathPlace of every point of the model in the frame.
+    /// Place of every point of the model in the frame.
     pub points: Vec<[f64; 2]>,
+    /// How every point of the model moves; NaN where the row was not reached, or where it has no rate.
+    pub rates: Vec<PointRates>,
     /// Largest closure residual, in mechanism sizes (directions in rad).
     pub closure: f64,
     /// Smallest singular value of the scaled constraint Jacobian.
@@ -188,6 +192,7 @@ impl<F: ForceSource> Sampler<F> {
             values: vec![f64::NAN; self.measures.len()],
             links: vec![[f64::NAN; 3]; model.links.len()],
             points: vec![[f64::NAN; 2]; model.points.len()],
+            rates: vec![PointRates::NONE; model.points.len()],
             closure: f64::NAN,
             smallest_singular_value: f64::NAN,
             note: None,
@@ -203,6 +208,7 @@ impl<F: ForceSource> Sampler<F> {
             return sample;
         }
         let still = self.measure(place, &mut sample.values);
+        rates::fill(self.measurer.state(), &mut sample.rates);
 
         let found = self.measurer.state();
         for (pose, series) in self.plain.state.poses.iter_mut().zip(&found.poses) {

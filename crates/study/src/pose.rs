@@ -411,6 +411,7 @@ fn on_motion(
         frame: Frame {
             links: sample.links,
             points: sample.points,
+            rates: sample.rates,
             arrows,
         },
         label: label.to_owned(),

@@ -1,7 +1,7 @@
 //! Everything about a model and its studies as one HTML report.
 
 use kempe_draw::report::{
-    Block, Check, Column as Shown, Event, Evidence, MotionReport, NotReached, Report, Section,
+    Block, Check, Column as Shown, Event, Evidence, MotionReport, NotReached, Note, Report, Section,
 };
 use kempe_dynamics::note::{EQUILIBRIUM_LIMIT, ILL_CONDITIONED, ROUTES_AGREE};
 use kempe_measure::CLOSURE_LIMIT;
@@ -11,6 +11,9 @@ use crate::figures::{figures, marker_kind};
 use crate::findings::Report as CheckReport;
 use crate::findings_text::warnings_section;
 use crate::force_notes::place;
+use crate::parameters_section::parameters_section;
+use crate::plotted::plotted;
+use crate::point_vectors::point_vectors;
 use crate::result::StudyResult;
 use crate::table::{Column, largest};
 use crate::view::{drawing_frames, mechanism_view};
@@ -24,11 +27,25 @@ pub struct StudyOutcome<'a> {
     pub result: Result<StudyResult, Vec<Diagnostic>>,
 }
 
-/// The report of a model. `warnings` are those of reading the file; `generator` is the program's name and version.
+/// Where a report comes from.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ReportOrigin<'a> {
+    /// The model file's name.
+    pub file_name: &'a str,
+    /// The model file's text.
+    pub text: &'a str,
+    /// Parameters that were given other values than the file's, with these values as written.
+    pub set: &'a [(String, String)],
+    /// The program's name and version.
+    pub generator: &'a str,
+    /// When it was written, for those who want it in the page; may be empty.
+    pub date: &'a str,
+}
+
+/// The report of a model. `warnings` are those of reading the file.
 pub fn report(
     model: &Model,
-    file_name: &str,
-    generator: &str,
+    origin: &ReportOrigin<'_>,
     warnings: &[Diagnostic],
     check: &CheckReport,
     studies: &[StudyOutcome<'_>],
@@ -37,6 +54,7 @@ pub fn report(
     let mut sections: Vec<Section> = results
         .flat_map(|r| values_section(r).into_iter().chain(listings(r)))
         .collect();
+    sections.extend(parameters_section(model, origin));
     sections.extend(check.sections());
     let mut findings: Vec<Diagnostic> = warnings.to_vec();
     let more = studies.iter().flat_map(|s| match &s.result {
@@ -61,11 +79,13 @@ pub fn report(
     });
     Report {
         title: model.title.clone(),
-        file_name: file_name.to_owned(),
+        file_name: origin.file_name.to_owned(),
         motions: motions.collect(),
         first: warnings_section(&findings).into_iter().collect(),
         sections,
-        generator: generator.to_owned(),
+        source: origin.text.replace("\r\n", "\n"),
+        generator: origin.generator.to_owned(),
+        date: origin.date.to_owned(),
     }
 }
 
@@ -111,27 +131,29 @@ fn shown(column: &Column) -> Shown {
 
 fn motion(model: &Model, study: &MotionStudy, result: &StudyResult) -> MotionReport {
     let table = &result.table;
-    let first = table
-        .columns
-        .first()
-        .map(|c| c.values.clone())
-        .unwrap_or_default();
-    // The drive that is moved by hand in the page; where several move, the first. All others are read out.
-    let drive = result.along.max(1);
-    let others = table.columns.iter().enumerate().skip(1);
-    let others = others.filter(|(index, _)| *index != drive);
+    let evidence_columns = table.evidence();
+    let note = |(first, last, text): (usize, usize, &str)| Note {
+        first,
+        last,
+        text: text.to_owned(),
+    };
     MotionReport {
         name: result.name.clone(),
         summary: summary(result),
         view: mechanism_view(model, Some(study)),
         frames: drawing_frames(model, result),
-        time: first,
-        drive: table.columns.get(drive).map(shown).unwrap_or_default(),
-        columns: others.map(|(_, column)| shown(column)).collect(),
+        columns: table.columns.iter().map(shown).collect(),
+        // The drive that is moved by hand in the page; where several move, the first. All others are read out.
+        drive: result.along.max(1),
+        more: plotted(model, result).iter().map(shown).collect(),
+        tests: evidence_columns.iter().map(shown).collect(),
+        notes: table.noted().into_iter().map(note).collect(),
+        mark: String::new(),
         plots: figures(model, result)
             .into_iter()
             .map(|(_, plot)| plot)
             .collect(),
+        vectors: point_vectors(model, result),
         events: result
             .events
             .iter()

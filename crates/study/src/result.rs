@@ -1,6 +1,7 @@
 //! What a study returns.
 
 use kempe_dynamics::ForceArrow;
+use kempe_measure::PointRates;
 use kempe_model::{Diagnostic, PointId};
 use kempe_motion::events::EventKind;
 use kempe_units::Unit;
@@ -97,6 +98,8 @@ pub struct Frame {
     pub links: Vec<[f64; 3]>,
     /// Places of the points, m.
     pub points: Vec<[f64; 2]>,
+    /// How the points move: in time, or along a circuit to the drive's coordinate.
+    pub rates: Vec<PointRates>,
     /// What acts on the links, where forces were asked for.
     pub arrows: Vec<ForceArrow>,
 }

@@ -20,6 +20,9 @@ const NUMBER: usize = size_of::<f64>();
 /// Columns that every table has besides those that are asked for: evidence.
 const EVIDENCE: usize = 5;
 
+/// Velocity and acceleration of a point.
+const RATES: usize = 4;
+
 /// Each curve of a plot, and each path, is held with its abscissa, in the result and in its picture.
 const HELD: usize = 4;
 
@@ -34,7 +37,7 @@ pub(crate) fn row_bytes(model: &Model, asked: &Asked, plots: usize, forces: bool
         + EVIDENCE
         + HELD * (asked.curves.len() + plots)
         + 3 * model.links.len()
-        + 2 * model.points.len();
+        + (2 + RATES) * model.points.len();
     let note = size_of::<Option<String>>();
     let arrows = if forces { arrows(model) } else { 0 };
     numbers * NUMBER + note + size_of::<Frame>() + arrows * (size_of::<ForceArrow>() + 4 * NUMBER)
@@ -189,6 +192,7 @@ mod tests {
         for frame in &result.frames {
             bytes += size_of::<Frame>();
             bytes += (3 * frame.links.len() + 2 * frame.points.len()) * NUMBER;
+            bytes += frame.rates.len() * size_of::<kempe_measure::PointRates>();
             let names: usize = frame.arrows.iter().map(|a| a.name.len()).sum();
             bytes += frame.arrows.len() * size_of::<ForceArrow>() + names;
         }

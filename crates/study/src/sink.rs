@@ -108,6 +108,7 @@ impl RowSink {
         Frame {
             links: sample.links,
             points: sample.points,
+            rates: sample.rates,
             arrows,
         }
     }

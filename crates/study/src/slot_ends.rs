@@ -126,6 +126,7 @@ mod tests {
             let frame = Frame {
                 links: Vec::new(),
                 points: vec![[1.0, 0.0], [-1.0, 0.0], p],
+                rates: Vec::new(),
                 arrows: Vec::new(),
             };
             past_ends(&frame, pin, &arc(side), 2.0_f64.sqrt()).map(|far| far / 2.0_f64.sqrt())

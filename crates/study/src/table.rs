@@ -83,20 +83,25 @@ impl Table {
 
     /// All columns of numbers: the quantities, then the evidence.
     pub fn with_evidence(&self) -> Vec<Column> {
-        let evidence = |name: &str, values: &[f64]| Column {
+        let mut all = self.columns.clone();
+        all.extend(self.evidence());
+        all
+    }
+
+    /// The evidence of the rows as columns.
+    pub fn evidence(&self) -> Vec<Column> {
+        let column = |name: &str, values: &[f64]| Column {
             values: values.to_vec(),
             ..Column::new(name, Unit::one())
         };
-        let mut all = self.columns.clone();
-        all.push(evidence("closure", &self.closure));
-        all.push(evidence(
-            "smallest_singular_value",
-            &self.smallest_singular_value,
-        ));
+        let mut all = vec![
+            column("closure", &self.closure),
+            column("smallest_singular_value", &self.smallest_singular_value),
+        ];
         if let Some(forces) = &self.forces {
-            all.push(evidence("route_difference", &forces.route_difference));
-            all.push(evidence("equilibrium_residual", &forces.residual));
-            all.push(evidence("condition", &forces.condition));
+            all.push(column("route_difference", &forces.route_difference));
+            all.push(column("equilibrium_residual", &forces.residual));
+            all.push(column("condition", &forces.condition));
         }
         all
     }

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use kempe_model::{Model, Severity};
-use kempe_study::{Silent, StudyOutcome, check, encode, report, run};
+use kempe_study::{ReportOrigin, Silent, StudyOutcome, check, encode, report, run};
 
 /// Difference of virtual power and equilibrium that no example exceeds.
 const ROUTES_AGREE: f64 = 1e-9;
@@ -75,8 +75,11 @@ fn every_example_runs() {
         }
         let html = report(
             &model,
-            &name,
-            "kempe",
+            &ReportOrigin {
+                file_name: &name,
+                text: &text,
+                ..ReportOrigin::default()
+            },
             &checked.warnings,
             &findings,
             &outcomes,

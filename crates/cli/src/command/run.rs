@@ -10,6 +10,7 @@ use kempe_study::{StudyOutcome, room_for, study_bytes};
 use kempe_units::nearest;
 
 use crate::arguments::Run;
+use crate::clock;
 use crate::exit::Exit;
 use crate::files::{Loaded, load};
 use crate::interrupt;
@@ -67,6 +68,7 @@ pub fn run(arguments: &Run) -> Exit {
                 outcomes: &outcomes,
                 check,
                 stopped: stopped.then_some(missing),
+                date: arguments.date.then(clock::now),
             };
             match results.write(output) {
                 Ok(written) => files = written,

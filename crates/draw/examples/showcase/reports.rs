@@ -114,15 +114,21 @@ pub fn motion(case: &Case) -> MotionReport {
         summary: format!("{} over one turn of its motor.", case.view.title),
         view: case.view.clone(),
         frames: case.frames.clone(),
-        time,
-        drive: Column::new("motor", "deg", degrees),
+        drive: 1,
         columns: vec![
+            Column::new("time", "s", time),
+            Column::new("motor", "deg", degrees),
             Column::new(format!("x({name})"), "mm", x),
             Column::new(format!("y({name})"), "mm", y),
             Column::new(format!("angle({last})"), "deg", angle),
             Column::new(format!("speed({name})"), "mm/s", speed),
         ],
+        more: vec![],
+        tests: vec![Column::new("closure", "", vec![3.1e-16; rows])],
+        notes: vec![],
+        mark: String::new(),
         plots,
+        vectors: vec![],
         events: vec![
             Event {
                 row: rows / 5,
@@ -206,6 +212,7 @@ pub fn report(cases: &[Case]) -> Report {
             second
                 .columns
                 .iter_mut()
+                .skip(2)
                 .for_each(|c| c.values[row] = f64::NAN);
             for plot in &mut second.plots {
                 plot.curves.iter_mut().for_each(|c| c.y[row] = f64::NAN);
@@ -274,6 +281,8 @@ pub fn report(cases: &[Case]) -> Report {
                 ])],
             },
         ],
+        source: "[links]\nframe = { A = [0, 0] }\n".into(),
         generator: "kempe 0.1.0".into(),
+        date: String::new(),
     }
 }

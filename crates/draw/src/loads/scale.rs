@@ -22,6 +22,11 @@ impl Quantity {
     /// The scale for the magnitudes of each pose; `None` where all are zero or not finite. Shares of the full value
     /// below `least` are not drawn.
     pub fn over(poses: impl Iterator<Item = Vec<f64>>, least: f64) -> Option<Quantity> {
+        Quantity::within(poses, least, FAR)
+    }
+
+    /// The same where what is larger than `far` times the usual is off the scale.
+    pub fn within(poses: impl Iterator<Item = Vec<f64>>, least: f64, far: f64) -> Option<Quantity> {
         let poses: Vec<Vec<f64>> = poses.collect();
         let mut peaks: Vec<f64> = poses
             .iter()
@@ -36,7 +41,7 @@ impl Quantity {
         peaks.sort_by(f64::total_cmp);
         let largest = *peaks.last()?;
         let usual = peaks[(SHARE * (peaks.len() - 1) as f64) as usize];
-        let full = largest.min(FAR * usual);
+        let full = largest.min(far * usual);
         let small = |v: &f64| *v > 0.0 && *v < least * full;
         Some(Quantity {
             full,

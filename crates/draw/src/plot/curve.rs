@@ -11,7 +11,7 @@ const FINEST: f64 = 0.03;
 const MOST_ROWS: usize = 4000;
 
 /// The rows to draw: all, or of each short run its ends, its extremes and its gaps, so that no peak is lost.
-pub(super) fn thinned(curve: &Curve) -> Vec<usize> {
+pub(crate) fn thinned(curve: &Curve) -> Vec<usize> {
     let rows = curve.x.len().min(curve.y.len());
     if rows <= MOST_ROWS {
         return (0..rows).collect();

@@ -8,6 +8,7 @@ mod hodograph;
 mod limit;
 
 pub use axis::Scale;
+pub(crate) use curve::thinned;
 pub use hodograph::Hodograph;
 pub use limit::{Beyond, Limit, LimitLine};
 

@@ -1,12 +1,9 @@
-//! The data behind a motion's page: poses, columns and plots, with just enough digits.
+//! The data behind a motion's page: its rows, their poses with just enough digits, and what the other files give.
 
-use super::{Event, MOST_ROWS, MotionReport, json};
+use super::{Event, MOST_ROWS, MotionReport, columns, json, plots, vectors};
 use crate::context::Anchor;
-use crate::plot::{Curve, MarkerKind, PlotPicture, PlotSpec, Scale};
+use crate::plot::MarkerKind;
 use crate::stage::Stage;
-
-/// Significant digits of measures.
-const DIGITS: usize = 7;
 
 /// The rows of a motion that the page carries.
 pub(super) struct Rows {
@@ -19,10 +16,7 @@ pub(super) struct Rows {
 impl Rows {
     pub fn of(motion: &MotionReport) -> Rows {
         let columns = motion.columns.iter().map(|c| c.values.len());
-        let all = columns.fold(
-            motion.frames.len().min(motion.drive.values.len()),
-            usize::min,
-        );
+        let all = columns.fold(motion.frames.len(), usize::min);
         let stride = all.div_ceil(MOST_ROWS).max(1);
         let mut kept: Vec<usize> = (0..all).step_by(stride).collect();
         if kept.last().is_some_and(|last| last + 1 < all) {
@@ -45,31 +39,10 @@ impl Rows {
             after
         }
     }
-
-    fn column(&self, values: &[f64]) -> String {
-        json::array(
-            self.kept
-                .iter()
-                .map(|&row| json::number(values.get(row).copied().unwrap_or(f64::NAN), DIGITS)),
-        )
-    }
 }
 
 /// All of a motion as one JSON object.
-pub(super) fn motion(
-    motion: &MotionReport,
-    rows: &Rows,
-    stage: &Stage,
-    shown: usize,
-    plots: &[PlotPicture],
-) -> String {
-    let column = |c: &super::Column| {
-        json::object(&[
-            ("name", json::string(&c.name)),
-            ("unit", json::string(&c.unit)),
-            ("v", rows.column(&c.values)),
-        ])
-    };
+pub(super) fn motion(motion: &MotionReport, rows: &Rows, stage: &Stage, shown: usize) -> String {
     let [width, height] = stage.size();
     let traces = motion
         .view
@@ -89,43 +62,39 @@ pub(super) fn motion(
             json::string(&gap.reason),
         ])
     });
-    let pictures = motion
-        .plots
-        .iter()
-        .zip(plots)
-        .map(|(spec, picture)| plot(motion, rows, spec, picture));
-    json::object(&[
+    let anchors = stage.anchors();
+    let anchors = anchors.iter().map(|a| anchor(*a, motion, stage, shown));
+    let mut fields = vec![
         ("name", json::string(&motion.name)),
         ("all", rows.all.to_string()),
         ("row", json::array(rows.kept.iter().map(usize::to_string))),
-        ("time", rows.column(&motion.time)),
-        ("drive", column(&motion.drive)),
-        ("cols", json::array(motion.columns.iter().map(column))),
+    ];
+    fields.extend(columns::columns(motion, rows));
+    fields.extend([
         (
             "size",
             json::array([json::decimal(width, 3), json::decimal(height, 3)]),
         ),
         ("shown", shown.to_string()),
         ("links", links(motion, rows, stage)),
-        ("points", points(motion, stage)),
         (
-            "anchors",
-            json::array(
-                stage
-                    .anchors()
-                    .iter()
-                    .map(|a| anchor(*a, motion, stage, shown)),
-            ),
+            "named",
+            json::array(motion.view.points.iter().map(|n| json::string(n))),
         ),
+        ("points", points(motion, stage)),
+        ("anchors", json::array(anchors)),
         ("traces", json::array(traces)),
+        ("arrow", super::loads::arrow()),
         ("loads", super::loads::loads(stage)),
-        ("plots", json::array(pictures)),
+        ("vectors", vectors::vectors(motion, rows, stage)),
+        ("plots", plots::plots(motion, rows)),
         (
             "events",
             json::array(motion.events.iter().map(|e| event(e, rows))),
         ),
         ("gaps", json::array(gaps)),
-    ])
+    ]);
+    json::object(&fields)
 }
 
 /// For each link, x, y (mm on paper, y up) and angle of its first point, row after row; once for a link that stands still.
@@ -197,79 +166,19 @@ fn anchor(anchor: Anchor, motion: &MotionReport, stage: &Stage, shown: usize) ->
 }
 
 fn event(event: &Event, rows: &Rows) -> String {
-    let kind = match event.kind {
+    json::object(&[
+        ("row", rows.nearest(event.row).to_string()),
+        ("label", json::string(&event.label)),
+        ("kind", json::string(marker(event.kind))),
+    ])
+}
+
+/// The kind of a mark as the page calls it.
+pub(super) fn marker(kind: MarkerKind) -> &'static str {
+    match kind {
         MarkerKind::DeadPoint => "dead",
         MarkerKind::ChangePoint => "change",
         MarkerKind::Limit => "limit",
         MarkerKind::Event => "event",
-    };
-    json::object(&[
-        ("row", rows.nearest(event.row).to_string()),
-        ("label", json::string(&event.label)),
-        ("kind", json::string(kind)),
-    ])
-}
-
-fn plot(motion: &MotionReport, rows: &Rows, spec: &PlotSpec, picture: &PlotPicture) -> String {
-    let scale = |s: &Scale| {
-        let ends = [s.low, s.high].map(|v| json::number(v, 9));
-        let places = [s.from, s.to].map(|v| json::decimal(v, 3));
-        json::array(
-            ends.into_iter()
-                .chain(places)
-                .chain([u8::from(s.log).to_string()]),
-        )
-    };
-    // values that the page has already are named, not repeated
-    let values = |values: &[f64]| -> String {
-        if values.len() < rows.all || rows.all == 0 {
-            return "null".into();
-        }
-        let values = &values[..rows.all];
-        let equal = |other: &[f64]| {
-            other.len() >= rows.all
-                && other
-                    .iter()
-                    .zip(values)
-                    .all(|(a, b)| a.to_bits() == b.to_bits())
-        };
-        if equal(&motion.drive.values) {
-            return json::string("drive");
-        }
-        if equal(&motion.time) {
-            return json::string("time");
-        }
-        match motion.columns.iter().position(|c| equal(&c.values)) {
-            Some(index) => index.to_string(),
-            None => rows.column(values),
-        }
-    };
-    let curve = |(index, c): (usize, &Curve)| {
-        let exact = c.x.len() == rows.all && c.y.len() == rows.all;
-        let data = |v: &[f64]| if exact { values(v) } else { "null".into() };
-        json::object(&[
-            ("label", json::string(&c.label)),
-            (
-                "c",
-                json::string(&format!(
-                    "var(--{})",
-                    crate::tokens::Token::Series(index).name()
-                )),
-            ),
-            ("x", data(&c.x)),
-            ("y", data(&c.y)),
-        ])
-    };
-    json::object(&[
-        ("x", scale(&picture.x)),
-        ("y", scale(&picture.y)),
-        ("h", json::decimal(picture.scene.height, 3)),
-        ("w", json::decimal(picture.scene.width, 3)),
-        (
-            "curves",
-            json::array(spec.curves.iter().enumerate().map(curve)),
-        ),
-        ("path", spec.is_plane().to_string()),
-        ("vector", spec.hodograph.is_some().to_string()),
-    ])
+    }
 }

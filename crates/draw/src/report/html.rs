@@ -6,11 +6,23 @@ use crate::tokens;
 
 const TEMPLATE: &str = include_str!("template.html");
 const STYLE: &str = include_str!("style.css");
-const SCRIPTS: [&str; 4] = [
-    include_str!("loads.js"),
-    include_str!("pose.js"),
-    include_str!("plots.js"),
-    include_str!("player.js"),
+/// In the order in which each needs those before it.
+const SCRIPTS: [&str; 15] = [
+    include_str!("script/numbers.js"),
+    include_str!("script/elements.js"),
+    include_str!("script/arrows.js"),
+    include_str!("script/pose.js"),
+    include_str!("script/loads.js"),
+    include_str!("script/vectors.js"),
+    include_str!("script/axes.js"),
+    include_str!("script/chart.js"),
+    include_str!("script/limits.js"),
+    include_str!("script/hodograph.js"),
+    include_str!("script/save.js"),
+    include_str!("script/plots.js"),
+    include_str!("script/enlarge.js"),
+    include_str!("script/choose.js"),
+    include_str!("script/player.js"),
 ];
 
 pub(super) fn page(report: &Report) -> String {
@@ -48,10 +60,15 @@ pub(super) fn page(report: &Report) -> String {
     } else {
         &report.title
     };
+    let generator = match report.date.as_str() {
+        "" => report.generator.clone(),
+        date => format!("{}, {date}", report.generator),
+    };
     let value = |key: &str| match key {
         "title" => escape(title),
         "file" => escape(&report.file_name),
-        "generator" => escape(&report.generator),
+        "source" => source(report),
+        "generator" => escape(&generator),
         "light" => tokens::css(false),
         "dark" => tokens::css(true),
         "style" => STYLE.to_string(),
@@ -64,6 +81,18 @@ pub(super) fn page(report: &Report) -> String {
         _ => String::new(),
     };
     fill(TEMPLATE, value)
+}
+
+/// The text of the model, closed.
+fn source(report: &Report) -> String {
+    match report.source.as_str() {
+        "" => String::new(),
+        text => format!(
+            "<details class=\"card source\"><summary>The model: {}</summary><pre tabindex=\"0\">{}</pre></details>\n",
+            escape(&report.file_name),
+            escape(text)
+        ),
+    }
 }
 
 /// Puts values in place of `{{key}}`, once: what a value holds is not looked at again.

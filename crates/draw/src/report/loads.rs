@@ -10,23 +10,30 @@ pub(super) fn loads(stage: &Stage) -> String {
     let Some(sheet) = &stage.loads else {
         return "null".into();
     };
-    let sizes = [
-        ("head", loads::HEAD),
-        ("half", loads::HALF_HEAD),
-        ("rim", loads::RIM),
-        ("gap", loads::BREAK),
-        ("text", loads::LABEL_SIZE),
-    ];
+    let sizes = [("rim", loads::RIM), ("text", loads::LABEL_SIZE)];
     let tracks = sheet.tracks.iter().zip(&sheet.sides);
-    let mut fields: Vec<(&str, String)> = sizes
-        .iter()
-        .map(|(name, mm)| (*name, json::decimal(*mm, 3)))
-        .collect();
+    let mut fields = lengths(&sizes);
     fields.push((
         "tracks",
         json::array(tracks.map(|(t, &side)| track(stage, sheet, t, side))),
     ));
     json::object(&fields)
+}
+
+/// The sizes that all arrows share, as a JSON object.
+pub(super) fn arrow() -> String {
+    json::object(&lengths(&[
+        ("head", loads::HEAD),
+        ("half", loads::HALF_HEAD),
+        ("gap", loads::BREAK),
+    ]))
+}
+
+fn lengths(sizes: &[(&'static str, f64)]) -> Vec<(&'static str, String)> {
+    let sizes = sizes.iter();
+    sizes
+        .map(|(name, mm)| (*name, json::decimal(*mm, 3)))
+        .collect()
 }
 
 /// A load through the motion: its look, its point (x and y row after row, once when it stands still), the arrow (the

@@ -1,15 +1,19 @@
 //! The report: one HTML file that needs nothing else. The mechanism moves in the page, its plots follow, and the check's
 //! findings and the evidence stand beside them.
 
+mod base64;
+mod columns;
 mod data;
 mod html;
 mod json;
 mod loads;
 mod motion;
+mod plots;
 mod sections;
+mod vectors;
 
 use crate::plot::{MarkerKind, PlotSpec};
-use crate::view::{Frame, MechanismView};
+use crate::view::{Frame, LoadUnit, MechanismView};
 
 /// Most poses and rows that a report carries of one motion; more are thinned out evenly.
 pub const MOST_ROWS: usize = 2000;
@@ -27,14 +31,18 @@ pub struct Report {
     pub first: Vec<Section>,
     /// Findings, in order: mobility, groups, assemblies.
     pub sections: Vec<Section>,
+    /// The text of the model file; none is shown when it is empty.
+    pub source: String,
     /// The program that wrote it, with its version, for the last line.
     pub generator: String,
+    /// When it was written; not told when empty, so that the same run gives the same bytes.
+    pub date: String,
 }
 
 /// A motion with what was asked of it. All lists run by row; they may differ in length, the shortest counts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MotionReport {
-    /// Name of the study.
+    /// Name of the study; its table is saved from the page as `NAME.csv`.
     pub name: String,
     /// What it asks, in a sentence; may be empty.
     pub summary: String,
@@ -42,18 +50,60 @@ pub struct MotionReport {
     pub view: MechanismView,
     /// Its pose at each row; NaN where it was not reached.
     pub frames: Vec<Frame>,
-    /// Time at each row, s.
-    pub time: Vec<f64>,
-    /// The drive's coordinate at each row.
-    pub drive: Column,
-    /// Measures to read out.
+    /// The columns of the table in the order of its CSV file. The first is what runs when the motion is played: time, or the
+    /// arc of a circuit.
     pub columns: Vec<Column>,
+    /// The column of the drive that is moved by hand.
+    pub drive: usize,
+    /// What is plotted and is no column of the table.
+    pub more: Vec<Column>,
+    /// Evidence for each row: the last columns of the CSV file.
+    pub tests: Vec<Column>,
+    /// What is said about rows.
+    pub notes: Vec<Note>,
+    /// First line of the saved table; none when empty. It says of a run that was stopped how far it came.
+    pub mark: String,
     /// Plots. Curves with one value a row follow the playhead.
     pub plots: Vec<PlotSpec>,
+    /// Velocities and accelerations of the points.
+    pub vectors: Vec<PointVectors>,
     /// Places worth knowing.
     pub events: Vec<Event>,
     /// How far the result can be trusted.
     pub evidence: Evidence,
+}
+
+/// What is said about some rows that follow each other.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Note {
+    /// First row.
+    pub first: usize,
+    /// Last row.
+    pub last: usize,
+    /// What is said.
+    pub text: String,
+}
+
+/// Which vector of a moving point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum VectorKind {
+    /// Of its velocity.
+    Velocity,
+    /// Of its acceleration.
+    Acceleration,
+}
+
+/// A vector at every point of the mechanism, row after row.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PointVectors {
+    /// Which one.
+    pub kind: VectorKind,
+    /// To what the derivative is taken, such as `in time` or `derivative to crank`.
+    pub per: String,
+    /// Unit in which it is told.
+    pub unit: LoadUnit,
+    /// For each row, x and y at each point in the order of [`MechanismView::points`], SI; NaN where it is not known.
+    pub rows: Vec<Vec<[f64; 2]>>,
 }
 
 /// A measure over the rows.
@@ -74,15 +124,6 @@ impl Column {
             name: name.into(),
             unit: unit.into(),
             values,
-        }
-    }
-
-    /// `name [unit]`, or the name alone.
-    pub fn head(&self) -> String {
-        if self.unit.is_empty() {
-            self.name.clone()
-        } else {
-            format!("{} [{}]", self.name, self.unit)
         }
     }
 }
@@ -206,6 +247,13 @@ pub enum Block {
         /// What to do about it; may be empty.
         help: String,
     },
+}
+
+impl MotionReport {
+    /// The column of the drive.
+    fn drive(&self) -> Option<&Column> {
+        self.columns.get(self.drive)
+    }
 }
 
 impl Report {

@@ -1,7 +1,7 @@
 //! A motion's part of the page: stage, controls, read-out, plots, evidence.
 
 use super::data::{self, Rows};
-use super::{MotionReport, loads, sections};
+use super::{Column, MotionReport, loads, sections, vectors};
 use crate::context::complete;
 use crate::escape::escape;
 use crate::plot::PlotPicture;
@@ -9,8 +9,8 @@ use crate::stage::{DrawOptions, Stage};
 use crate::svg;
 use kempe_number::text::significant;
 
-/// Width of the stage and size of a plot, mm; the page scales them.
-const STAGE: [f64; 2] = [170.0, 150.0];
+/// Width of the stage and size of a plot, mm; the page scales them. The stage is small, so that its texts are large.
+const STAGE: [f64; 2] = [150.0, 132.0];
 const PLOT: [f64; 2] = [104.0, 66.0];
 /// Height of a plot with equal axes, mm.
 const PATH_PLOT_HEIGHT: f64 = 84.0;
@@ -73,21 +73,25 @@ pub(super) fn build(motion: &MotionReport, index: usize) -> Built {
          <div class=\"card evidence\"><h3>Evidence</h3>{evidence}</div>\n</section>\n",
         name = escape(&motion.name),
         drawing = svg::element(&stage.scene(shown), "class=\"drawing\""),
-        controls = controls(motion, &rows, &loads::switches(&stage)),
-        readout = readout(motion, shown_row),
+        controls = controls(
+            motion,
+            &rows,
+            &[loads::switches(&stage), vectors::switches(motion, &rows)].concat()
+        ),
+        readout = readout(motion, &rows, shown_row),
         evidence = sections::evidence(motion, rows.all),
     );
     Built {
         html,
-        json: data::motion(motion, &rows, &stage, shown_row, &pictures),
+        json: data::motion(motion, &rows, &stage, shown_row),
     }
 }
 
+/// A plot as it stands before the script draws it for the width it has.
 fn plot_figure(picture: &PlotPicture, number: usize) -> String {
     format!(
-        "<figure class=\"card plot\" data-plot=\"{number}\">{}<div class=\"tip\" hidden></div>\
-         <details><summary>Values as a table</summary><div class=\"scroll\" tabindex=\"0\"></div></details></figure>\n",
-        svg::element(&picture.scene, "")
+        "<figure class=\"card plot\" data-plot=\"{number}\">{}</figure>\n",
+        svg::element(&picture.scene, "class=\"still\"")
     )
 }
 
@@ -114,14 +118,21 @@ fn controls(motion: &MotionReport, rows: &Rows, roles: &str) -> String {
         )
     };
     let marks: String = motion.events.iter().take(200).map(mark).collect();
-    let drive = escape(&motion.drive.name);
-    let unit = escape(&motion.drive.unit);
+    let number = |input: &str, column: Option<&Column>| {
+        let Some(column) = column else {
+            return String::new();
+        };
+        format!(
+            "<label>{} <input type=\"number\" step=\"any\" data-in=\"{input}\"> {}</label>\n",
+            escape(&column.name),
+            escape(&column.unit)
+        )
+    };
+    let clock = motion.columns.first().filter(|_| motion.drive != 0);
     format!(
         "<div class=\"controls\" role=\"group\" aria-label=\"Playback\">\n<div class=\"scrub\"><div class=\"marks\" aria-hidden=\"true\">{marks}</div>\
          <input type=\"range\" min=\"0\" max=\"{last}\" value=\"0\" step=\"1\" data-in=\"row\" aria-label=\"Position in the motion\"></div>\n\
-         <div class=\"row\"><span class=\"buttons\">{}{}{}{}{}</span>\n\
-         <label>{drive} <input type=\"number\" step=\"any\" data-in=\"drive\"> {unit}</label>\n\
-         <label>time <input type=\"number\" step=\"any\" data-in=\"time\"> s</label></div>\n\
+         <div class=\"row\"><span class=\"buttons\">{}{}{}{}{}</span>\n{}{}</div>\n\
          <div class=\"row\"><label>Speed <select data-in=\"speed\"><option value=\"0.1\">0.1×</option><option value=\"0.25\">0.25×</option>\
          <option value=\"0.5\">0.5×</option><option value=\"1\" selected>1×</option><option value=\"2\">2×</option>\
          <option value=\"4\">4×</option></select></label>\n\
@@ -135,26 +146,36 @@ fn controls(motion: &MotionReport, rows: &Rows, roles: &str) -> String {
         button("play", "Play or pause", "M4 2.5v11L13 8z"),
         button("on", "One step on", "M5 3v10l7-5z"),
         button("last", "To the end", "M11 3h2v10h-2zM3 3v10l7-5z"),
+        number("drive", motion.drive()),
+        number("time", clock),
     )
 }
 
-fn readout(motion: &MotionReport, row: usize) -> String {
+fn readout(motion: &MotionReport, rows: &Rows, row: usize) -> String {
     let value = |values: &[f64]| significant(values.get(row).copied().unwrap_or(f64::NAN), 6);
-    let line = |name: &str, unit: &str, values: &[f64]| {
+    let line = |(index, column): (usize, &Column)| {
         format!(
-            "<tr><th scope=\"row\">{}</th><td class=\"number\">{}</td><td>{}</td></tr>",
-            escape(name),
-            value(values),
-            escape(unit)
+            "<tr data-column=\"{index}\"><th scope=\"row\">{}</th><td class=\"number\">{}</td><td>{}</td></tr>",
+            escape(&column.name),
+            value(&column.values),
+            escape(&column.unit)
         )
     };
-    let mut lines = line(&motion.drive.name, &motion.drive.unit, &motion.drive.values);
-    lines.push_str(&line("time", "s", &motion.time));
-    for column in &motion.columns {
-        lines.push_str(&line(&column.name, &column.unit, &column.values));
-    }
+    let columns = motion.columns.iter().chain(&motion.more);
+    let lines: String = columns.enumerate().map(line).collect();
+    let some = match rows.kept.len() < rows.all {
+        true => format!(
+            " <span class=\"muted\">This page has {} of {} rows; {}.csv of the run has all.</span>",
+            rows.kept.len(),
+            rows.all,
+            escape(&motion.name)
+        ),
+        false => String::new(),
+    };
     format!(
         "<div class=\"card readout\"><table><caption>Values at this row</caption><thead><tr><th scope=\"col\">Measure</th>\
-         <th scope=\"col\" class=\"number\">Value</th><th scope=\"col\">Unit</th></tr></thead><tbody>{lines}</tbody></table></div>\n"
+         <th scope=\"col\" class=\"number\">Value</th><th scope=\"col\">Unit</th></tr></thead><tbody>{lines}</tbody></table>\
+         <div class=\"moving\" hidden></div>\n\
+         <p class=\"tools\"><button type=\"button\" data-do=\"csv\">Save the table as CSV</button>{some}</p></div>\n"
     )
 }

@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use kempe_draw::report::{Block, Section};
 use kempe_draw::{DrawOptions, Stage, Theme, svg};
-use kempe_model::{Diagnostic, Model, Study};
+use kempe_model::{Diagnostic, Model, PARTIAL_TABLE, Study};
 use kempe_study::{
-    CheckReport, MECHANISM, StudyOutcome, StudyResult, drawing_frames, encode, figures,
-    mechanism_view,
+    CheckReport, MECHANISM, ReportOrigin, StudyOutcome, StudyResult, drawing_frames, encode,
+    figures, mechanism_view,
 };
 
 use crate::files::Loaded;
@@ -45,6 +45,8 @@ pub struct Results<'r> {
     pub check: CheckReport,
     /// Of a run that was stopped, the studies that have no rows; `None` of a whole one.
     pub stopped: Option<Vec<&'r str>>,
+    /// When, where the report shall tell it.
+    pub date: Option<String>,
 }
 
 impl Results<'_> {
@@ -92,10 +94,16 @@ impl Results<'_> {
     }
 
     fn report(&self) -> String {
+        let origin = ReportOrigin {
+            file_name: &self.loaded.name,
+            text: &self.loaded.text,
+            set: &self.loaded.set,
+            generator: &generator(),
+            date: self.date.as_deref().unwrap_or(""),
+        };
         let mut report = kempe_study::report(
             &self.loaded.checked.model,
-            &self.loaded.name,
-            &generator(),
+            &origin,
             &self.loaded.checked.warnings,
             &self.check,
             self.outcomes,
@@ -105,6 +113,10 @@ impl Results<'_> {
             report
                 .first
                 .insert(0, partial_section(self.outcomes, missing));
+            let results = self.outcomes.iter().filter_map(|o| o.result.as_ref().ok());
+            for (motion, result) in report.motions.iter_mut().zip(results) {
+                motion.mark = format!("{PARTIAL_TABLE} {}", how_far(result));
+            }
         }
         report.to_html()
     }

@@ -1,6 +1,4 @@
 // Poses: from the rows of a motion to the transforms of the drawing's parts. Paper millimetres, y up, as the data has them.
-const SVG = "http://www.w3.org/2000/svg";
-const round = (v) => Math.round(v * 1000) / 1000;
 
 // A link's place between two rows: x, y, angle; null where a row was not reached.
 function linkPose(motion, link, row, share) {
@@ -58,11 +56,11 @@ class Drawing {
     this.parts = [...svg.querySelectorAll("[data-part]")].map((g) => [g, motion.anchors[+g.dataset.part]]);
     svg.querySelectorAll(".trace-past").forEach((g) => g.remove());
     this.loads = new Loads(motion, svg, section);
+    this.vectors = new Vectors(motion, svg, section);
     const count = motion.row.length;
     const before = svg.querySelector(".joint");
     this.trails = motion.traces.map((trace) => {
-      const path = document.createElementNS(SVG, "path");
-      for (const [name, value] of Object.entries({ class: "trail", fill: "none", stroke: trace.c, "stroke-width": 0.55, "stroke-linecap": "round", "stroke-linejoin": "round" })) path.setAttribute(name, value);
+      const path = element("path", { class: "trail", fill: "none", stroke: trace.c, "stroke-width": 0.55, "stroke-linecap": "round", "stroke-linejoin": "round" });
       svg.insertBefore(path, before);
       const pieces = [];
       let fresh = true;
@@ -87,6 +85,7 @@ class Drawing {
     }
     this.svg.classList.toggle("stale", !reached);
     this.loads.show(row, share);
+    this.vectors.show(row, share, poses);
     for (const { path, pieces } of this.trails) path.setAttribute("d", pieces.slice(0, row + 1).join(""));
     return reached;
   }

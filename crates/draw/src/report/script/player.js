@@ -12,29 +12,41 @@ class Player {
     if (this.at < 0) this.at = 0;
     this.playing = false;
     this.sense = 1;
+    for (const c of motion.cols) c.v = unpacked(c.v);
+    this.drive = motion.cols[motion.drive] ?? { name: "", unit: "", v: [] };
+    this.clock = motion.cols[0] ?? this.drive;
     this.drawing = new Drawing(motion, section.querySelector(".drawing"), section);
-    this.plots = [...section.querySelectorAll(".plot")].map((f) => new Plot(motion, motion.plots[+f.dataset.plot], f, (row) => this.seek(row)));
-    this.cells = [...section.querySelectorAll(".readout tbody td:nth-child(2)")];
+    this.plots = [...section.querySelectorAll(".plot")].map((f) => new Plot(this, plotOfRun(motion, motion.plots[+f.dataset.plot]), f));
+    if (this.count && motion.cols.length) this.choose(section.querySelector(".plots"));
+    this.cells = [...section.querySelectorAll(".readout [data-column]")].map((line) => [line.querySelector(".number"), motion.cols[+line.dataset.column].v]);
     this.status = section.querySelector(".status");
     this.input = {};
     for (const e of section.querySelectorAll("[data-in]")) this.input[e.dataset.in] = e;
-    const t = motion.time;
-    this.timed = this.count > 1 && t.every((v, k) => v != null && (k === 0 || v >= t[k - 1])) && t[this.count - 1] > t[0];
+    const t = this.clock.v;
+    this.timed = this.count > 1 && t.every((v, k) => known(v) && (k === 0 || v >= t[k - 1])) && t[this.count - 1] > t[0];
     this.listen();
     this.note();
     this.show();
   }
 
+  // One more plot of what the reader wants.
+  choose(holder) {
+    const chosen = new Chosen(this, holder);
+    this.plots.push(chosen.plot);
+    if (this.shown) chosen.plot.show(...this.shown);
+    return chosen;
+  }
+
   listen() {
-    const on = { first: () => this.seek(0), back: () => this.step(-1), play: () => this.toggle(), on: () => this.step(1), last: () => this.seek(this.count - 1) };
+    const on = { csv: () => saveCsv(this.motion), first: () => this.seek(0), back: () => this.step(-1), play: () => this.toggle(), on: () => this.step(1), last: () => this.seek(this.count - 1) };
     for (const b of this.section.querySelectorAll("[data-do]")) b.addEventListener("click", on[b.dataset.do]);
     this.playButton = this.section.querySelector("[data-do=play]");
     const { row, drive, time, labels, traces, speed, mode } = this.input;
     row.addEventListener("input", () => this.seek(+row.value));
-    const nearest = (values, v) => values.reduce((best, x, k) => x != null && Math.abs(x - v) < Math.abs((values[best] ?? Infinity) - v) ? k : best, 0);
-    const typed = (input, values) => input.addEventListener("change", () => { if (input.value !== "") this.seek(nearest(values, +input.value)); });
-    typed(drive, this.motion.drive.v);
-    typed(time, this.motion.time);
+    const nearest = (values, v) => values.reduce((best, x, k) => known(x) && !(Math.abs(x - v) >= Math.abs(values[best] - v)) ? k : best, 0);
+    const typed = (input, values) => input?.addEventListener("change", () => { if (input.value !== "") this.seek(nearest(values, +input.value)); });
+    typed(drive, this.drive.v);
+    typed(time, this.clock.v);
     labels.addEventListener("change", () => this.section.classList.toggle("no-labels", !labels.checked));
     traces.addEventListener("change", () => this.section.classList.toggle("no-traces", !traces.checked));
     speed.addEventListener("change", () => this.note());
@@ -44,10 +56,10 @@ class Player {
   }
 
   note() {
-    const t = this.motion.time, line = this.section.querySelector(".rate");
+    const t = this.clock.v, line = this.section.querySelector(".rate");
     if (!this.timed) { line.textContent = "Played row by row"; return; }
     const rate = (t[this.count - 1] - t[0]) / PASS * +this.input.speed.value;
-    line.textContent = `1 s on screen is ${Number(rate.toPrecision(3))} s of the motion`;
+    line.textContent = this.clock.unit === "s" ? `1 s on screen is ${text(rate, 3)} s of the motion` : `Played along the ${this.clock.name}`;
   }
 
   toggle(play = !this.playing) {
@@ -55,19 +67,19 @@ class Player {
     if (this.playing && this.input.mode.value === "once" && this.at >= this.count - 1) this.at = 0;
     this.playButton.setAttribute("aria-pressed", this.playing);
     this.playButton.querySelector("path").setAttribute("d", this.playing ? "M4 3h3v10H4zM9 3h3v10H9z" : "M4 2.5v11L13 8z");
-    if (this.playing) { this.last = null; this.clock = this.toClock(this.at); requestAnimationFrame((now) => this.tick(now)); }
+    if (this.playing) { this.last = null; this.passed = this.toClock(this.at); requestAnimationFrame((now) => this.tick(now)); }
     else { this.at = Math.round(this.at); this.show(); }
   }
 
   // Share of the pass at a row, and back; by time where there is one.
   toClock(at) {
     if (!this.timed) return at / (this.count - 1);
-    const t = this.motion.time, k = Math.min(Math.floor(at), this.count - 2);
+    const t = this.clock.v, k = Math.min(Math.floor(at), this.count - 2);
     return (t[k] + (at - k) * (t[k + 1] - t[k]) - t[0]) / (t[this.count - 1] - t[0]);
   }
   toRow(clock) {
     if (!this.timed) return clock * (this.count - 1);
-    const t = this.motion.time, want = t[0] + clock * (t[this.count - 1] - t[0]);
+    const t = this.clock.v, want = t[0] + clock * (t[this.count - 1] - t[0]);
     let low = 0, high = this.count - 1;
     while (high - low > 1) { const mid = (low + high) >> 1; if (t[mid] <= want) low = mid; else high = mid; }
     return low + (t[high] > t[low] ? Math.min(1, (want - t[low]) / (t[high] - t[low])) : 0);
@@ -79,13 +91,13 @@ class Player {
     this.last = now;
     const mode = this.input.mode.value;
     if (mode !== "pingpong") this.sense = 1;
-    this.clock += this.sense * passed * +this.input.speed.value / PASS;
-    if (this.clock > 1 || this.clock < 0) {
-      if (mode === "pingpong") { this.sense = this.clock > 1 ? -1 : 1; this.clock = Math.min(1, Math.max(0, this.clock)); }
-      else if (mode === "loop") this.clock -= Math.floor(this.clock);
+    this.passed += this.sense * passed * +this.input.speed.value / PASS;
+    if (this.passed > 1 || this.passed < 0) {
+      if (mode === "pingpong") { this.sense = this.passed > 1 ? -1 : 1; this.passed = Math.min(1, Math.max(0, this.passed)); }
+      else if (mode === "loop") this.passed -= Math.floor(this.passed);
       else { this.at = this.count - 1; this.toggle(false); return; }
     }
-    this.at = this.toRow(this.clock);
+    this.at = this.toRow(this.passed);
     this.show();
     requestAnimationFrame((n) => this.tick(n));
   }
@@ -98,7 +110,7 @@ class Player {
   seek(row) {
     if (row == null || !this.count) return;
     this.at = Math.min(this.count - 1, Math.max(0, row));
-    if (this.playing) this.clock = this.toClock(this.at);
+    if (this.playing) this.passed = this.toClock(this.at);
     this.show();
   }
   step(by) { if (this.playing) this.toggle(false); this.seek(Math.round(this.at) + by); }
@@ -110,14 +122,16 @@ class Player {
     if (share > 0 && !this.smooth(row)) { row = Math.round(this.at); share = 0; }
     if (row < 0) { this.status.textContent = "No row was reached"; return; }
     const reached = this.drawing.show(row, share);
+    this.shown = [row, share];
     for (const plot of this.plots) plot.show(row, share);
     const near = Math.round(this.at);
     this.input.row.value = near;
-    const drive = motion.drive.v[near], time = motion.time[near];
-    if (document.activeElement !== this.input.drive) this.input.drive.value = drive == null ? "" : Number(drive.toPrecision(6));
-    if (document.activeElement !== this.input.time) this.input.time.value = time == null ? "" : Number(time.toPrecision(5));
-    [motion.drive.v, motion.time, ...motion.cols.map((c) => c.v)].forEach((v, k) => { if (this.cells[k]) this.cells[k].textContent = text(v[near]); });
-    this.input.row.setAttribute("aria-valuetext", `${motion.drive.name} ${text(drive)} ${motion.drive.unit}, ${text(time)} s`);
+    const put = (input, v, digits) => { if (input && document.activeElement !== input) input.value = known(v) ? Number(v.toPrecision(digits)) : ""; };
+    const drive = this.drive.v[near], time = this.clock.v[near];
+    put(this.input.drive, drive, 6);
+    put(this.input.time, time, 5);
+    for (const [cell, v] of this.cells) cell.textContent = text(v[near]);
+    this.input.row.setAttribute("aria-valuetext", `${this.drive.name} ${withUnit(drive, this.drive.unit)}, ${withUnit(time, this.clock.unit)}`);
     const event = motion.events.find((e) => e.row === near);
     const gap = motion.gaps.find(([a, b]) => motion.row[near] >= a && motion.row[near] <= b);
     const bad = !reached || !!gap;
@@ -152,9 +166,10 @@ document.addEventListener("keydown", (event) => {
   if (!player || event.ctrlKey || event.metaKey || event.altKey) return;
   if (tag === "SELECT" || (tag === "INPUT" && event.target.type === "number") || event.target.closest(".scroll")) return;
   if (event.key === " " && (tag === "BUTTON" || tag === "SUMMARY" || event.target.type === "checkbox")) return;
-  const flip = (name) => { const box = player.input[name]; box.checked = !box.checked; box.dispatchEvent(new Event("change")); };
+  const boxes = (selector) => [...player.section.querySelectorAll(selector)];
+  const flip = (list) => { const on = !list.every((box) => box.checked); for (const box of list) { box.checked = on; box.dispatchEvent(new Event("change")); } };
   const by = event.shiftKey ? 10 : 1;
-  const act = { " ": () => player.toggle(), ArrowLeft: () => player.step(-by), ArrowRight: () => player.step(by), Home: () => player.seek(0), End: () => player.seek(player.count - 1), l: () => flip("labels"), t: () => flip("traces") }[event.key];
+  const act = { " ": () => player.toggle(), ArrowLeft: () => player.step(-by), ArrowRight: () => player.step(by), Home: () => player.seek(0), End: () => player.seek(player.count - 1), l: () => flip(boxes("[data-in=labels]")), t: () => flip(boxes("[data-in=traces]")), v: () => flip(boxes("[data-vector=velocity]")), a: () => flip(boxes("[data-vector=acceleration]")), f: () => flip(boxes("[data-role]")) }[event.key];
   if (act) { event.preventDefault(); act(); }
 });
 if (players.length) select(0);
