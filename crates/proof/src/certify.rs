@@ -13,6 +13,8 @@
 //!   it (the Jacobian is regular in all of the tube). Where the pose at a common end of two stretches is proved to lie
 //!   in both tubes, both hold one and the same branch.
 //!
+//! * [`Certifier::largest`] bounds what is measured along a proved motion, by branch and bound.
+//!
 //! At change points and limits the Jacobian is singular and nothing can be proved by these means: a neighbourhood is
 //! left over and reported as a [`Gap`].
 //!
@@ -22,6 +24,7 @@
 
 mod cell;
 mod cover;
+mod extreme;
 mod found;
 mod pose;
 

@@ -40,19 +40,12 @@ impl Asked {
     }
 
     fn of(model: &Model, study: &MotionStudy, forces: bool) -> Self {
-        let named = || {
-            let known = model.measures.iter().filter(|m| forces || !m.needs_forces);
-            known.map(|m| Quantity {
-                name: m.name.clone(),
-                measure: m.measure.clone(),
-                dimension: m.dimension,
-            })
-        };
         let constant = constants(model);
         let is_constant =
             |q: &Quantity| is_constant(&q.measure, &|index| constant.get(index).copied());
+        let (scalars, others): (Vec<_>, Vec<_>) = named(model, forces).partition(is_constant);
         let mut asked = Self {
-            scalars: named().filter(|q| is_constant(q)).collect(),
+            scalars,
             ..Self::default()
         };
         for column in &study.columns {
@@ -73,9 +66,7 @@ impl Asked {
             });
         }
         if study.columns.is_empty() {
-            named()
-                .filter(|q| !is_constant(q))
-                .for_each(|q| asked.add(q));
+            others.into_iter().for_each(|q| asked.add(q));
         }
         for plot in &study.plots {
             match plot {
@@ -103,6 +94,26 @@ impl Asked {
     pub fn all(&self) -> impl Iterator<Item = &Quantity> {
         self.columns.iter().chain(&self.curves).chain(&self.scalars)
     }
+}
+
+/// Named measures, those of forces only with `forces`.
+fn named(model: &Model, forces: bool) -> impl Iterator<Item = Quantity> {
+    let known = model
+        .measures
+        .iter()
+        .filter(move |m| forces || !m.needs_forces);
+    known.map(|m| Quantity {
+        name: m.name.clone(),
+        measure: m.measure.clone(),
+        dimension: m.dimension,
+    })
+}
+
+/// The named measures that are one number over the whole motion, those of forces among them.
+pub(crate) fn numbers(model: &Model) -> Vec<Quantity> {
+    let constant = constants(model);
+    let is_number = |q: &Quantity| is_constant(&q.measure, &|index| constant.get(index).copied());
+    named(model, true).filter(is_number).collect()
 }
 
 /// The components of a joint's force.

@@ -57,6 +57,7 @@ mod point_vectors;
 mod pose;
 mod prepared;
 mod proof;
+mod proved_numbers;
 mod quantity;
 mod report;
 mod result;
@@ -79,6 +80,7 @@ pub use findings::{Grashof, Group, Report as CheckReport, check, check_with_prog
 pub use kempe_motion::progress::{Done, Progress, Silent, Stage};
 pub use pose::{Setting, ShownPose, loaded_at, pose_at};
 pub use proof::{Proof, Unproved, prove};
+pub use proved_numbers::ProvedNumber;
 pub use quantity::Quantity;
 pub use report::{ReportOrigin, StudyOutcome, report};
 pub use result::{Event, Figure, Frame, Listing, Scalar, StudyResult};

@@ -11,6 +11,7 @@ use kempe_units::Dimension;
 use serde::Serialize;
 
 use crate::prepared::{design, motion};
+use crate::proved_numbers::{ProvedNumber, prove_numbers};
 use crate::unit::Units;
 use kempe_motion::progress::{Done, Progress};
 
@@ -32,6 +33,8 @@ pub struct Proof {
     pub redundant: usize,
     /// False when it was stopped on the way: what comes after is in neither list.
     pub finished: bool,
+    /// The model's numbers over the motion.
+    pub numbers: Vec<ProvedNumber>,
 }
 
 /// A stretch that is not proved.
@@ -107,6 +110,7 @@ pub fn prove(model: &Model, progress: &mut dyn Progress) -> Result<Proof, Vec<Di
         gaps: gaps.chain(beyond).collect(),
         redundant: found.redundant,
         finished: found.finished,
+        numbers: prove_numbers(&motion, &found, progress),
     })
 }
 
@@ -142,6 +146,11 @@ impl Proof {
                 "  Without   {} redundant constraint rows: that they agree cannot be proved",
                 self.redundant
             );
+        }
+        let wide = self.numbers.iter().map(|n| n.name.len()).max();
+        for number in &self.numbers {
+            let (name, wide) = (&number.name, wide.unwrap_or(0));
+            let _ = writeln!(out, "  Number    {name:wide$}  {}", number.told);
         }
         if !self.finished {
             out.push_str("  Stopped   what comes after is not known\n");

@@ -57,8 +57,8 @@ impl Certifier {
         Ok((cell, tube))
     }
 
-    /// Whether the pose at `p` is proved to be the pose of both tubes.
-    pub(super) fn joins(&mut self, before: &Tube, after: &Tube, p: f64) -> bool {
+    /// Whether the pose at `p` is proved to be the pose of all these tubes.
+    pub(super) fn joins(&mut self, tubes: &[&Tube], p: f64) -> bool {
         let mut attempt = || -> Result<bool, NotProved> {
             self.prepare(Interval::from_f64(p))?;
             let mut middle = self.traced(p)?;
@@ -67,7 +67,7 @@ impl Certifier {
             let given = Given::new(&self.design, inputs, near, size);
             let poses = &mut self.wide.state.poses;
             let (image, _) = self.system.enclose(&given, &mut middle, poses)?;
-            Ok([before, after]
+            Ok(tubes
                 .iter()
                 .all(|tube| self.system.is_in_tube(tube, p, &middle, &image)))
         };

@@ -65,7 +65,7 @@ impl Certifier {
             match self.cell(from, to) {
                 Ok((mut cell, tube)) => {
                     cell.joined = last.as_ref().is_some_and(|before| {
-                        before.range.hi() == from && self.joins(before, &tube, from)
+                        before.range.hi() == from && self.joins(&[before, &tube], from)
                     });
                     it.take_cell(cell);
                     last = Some(tube);

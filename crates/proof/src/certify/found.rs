@@ -75,6 +75,11 @@ pub struct CertifiedMotion {
 }
 
 impl CertifiedMotion {
+    /// Whether all of the reached range is proved to be one smooth branch.
+    pub fn is_whole(&self) -> bool {
+        self.finished && self.gaps.is_empty() && self.redundant == 0 && self.runs.len() == 1
+    }
+
     pub(super) fn take_cell(&mut self, cell: Cell) {
         match self.runs.last_mut() {
             Some(run) if cell.joined => run.1 = cell.to,
