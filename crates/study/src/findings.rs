@@ -6,7 +6,7 @@ use kempe_mechanism::structure::BodyId;
 use kempe_model::{
     Diagnostic, Drive, Joint, JointKind, Model, Rows, Severity, Study, StudyKind, value,
 };
-use kempe_motion::assemble::{Assemblies, Assembly};
+use kempe_motion::assemble::Assembly;
 use kempe_motion::drive_path::DrivePath;
 use kempe_motion::events::EventKind;
 use kempe_motion::{EndReason, Findings};
@@ -173,7 +173,7 @@ pub fn check_with_progress(model: &Model, progress: &mut dyn Progress) -> Report
         assemblies: found.searched.then_some(found.assemblies.list.len()),
         assemblies_rejected: found.assemblies.rejected,
         assemblies_complete: found.assemblies.complete,
-        chosen: chosen(&design, &found.assemblies, &units),
+        chosen: chosen(&design, &found, &units),
         reach: None,
         reach_si: found.reach.as_ref().map(|r| r.range),
         events: Vec::new(),
@@ -231,8 +231,10 @@ pub fn check_with_progress(model: &Model, progress: &mut dyn Progress) -> Report
 const AS_DRAWN: f64 = 1e-6;
 
 /// How the assembly was chosen where several agree with the file, and which hints decide nothing.
-fn chosen(design: &Design<f64>, assemblies: &Assemblies, units: &Units) -> Vec<String> {
-    let mechanism = &*design.mechanism;
+fn chosen(design: &Design<f64>, found: &Findings, units: &Units) -> Vec<String> {
+    // the hints that counted
+    let design = found.motion.as_ref().map_or(design, |m| &m.design);
+    let (mechanism, assemblies) = (&*design.mechanism, &found.assemblies);
     let mut words = Vec::new();
     if let [first, ..] = assemblies.list.as_slice()
         && assemblies.list.len() > 1
