@@ -274,3 +274,20 @@ fn hostile_drawings_end_soon() {
         assert!(codes(&text).contains(&"wrong-type"), "{places}");
     }
 }
+
+#[test]
+fn a_drive_may_end_where_it_is_drawn() {
+    let to = |text: &str| {
+        let model = read(text);
+        let (_, high) = (model.drives[0].law).extent(&model.parameter_values());
+        high
+    };
+    let drawn = to(&FILE.replace("speed", "from = 0, to = \"drawn\", speed"));
+    assert!((drawn - kempe_number::math::atan2(4.0, 3.0)).abs() < 1e-15);
+    let held = FILE.replace("speed", "to = \"drawn\", speed");
+    assert_eq!(codes(&held), ["no-motion"]);
+    // a parameter of that name is meant instead
+    let named = FILE.replace("w = \"55 m\"", "w = \"55 m\"\ndrawn = \"100 deg\"");
+    let named = named.replace("speed", "to = \"drawn\", speed");
+    assert!((to(&named) - 100f64.to_radians()).abs() < 1e-15);
+}
