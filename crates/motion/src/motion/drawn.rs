@@ -90,50 +90,40 @@ impl Motion {
         if drawn != there {
             let lead = start.with_model(|model| lead(model, &drawn, &there));
             let lead_demand = Self::demand(&lead);
-            let (path, (low, high)) = (lead_demand.path.clone(), lead_demand.range);
-            let (begin, end) = match lead_demand.start == low {
-                true => (low, high),
-                false => (high, low),
-            };
+            let (begin, (low, high)) = (lead_demand.start, lead_demand.range);
+            let end = if begin == low { high } else { low };
             let found = Self::through(&lead, lead_demand, begin, &[], progress);
             let Some(motion) = unless_stopped(found)? else {
                 return Ok(Followed::Ended(None));
             };
-            let mut solver = motion.solver();
-            let Some(placed) = motion.placed(end, &mut solver) else {
-                let (at, why) = motion.end_towards(end);
-                path.coordinates(at, &mut there);
-                let at = elsewhere.iter().map(|e| there[e.drive.index()]).collect();
-                return Ok(Followed::Ended(Some((at, why))));
+            let Some(placed) = motion.placed(end, &mut motion.solver()) else {
+                return Ok(motion.ended(end, elsewhere));
             };
             start = carried(&motion.design, &start, &placed, own);
         }
-        let (path, start_at) = (demand.path.clone(), demand.start);
+        let target = demand.start;
         let found = Self::through(&start, demand, place, earlier, progress);
         let Some(motion) = unless_stopped(found)? else {
             return Ok(Followed::Ended(None));
         };
-        if motion.reaches(start_at) {
-            return Ok(Followed::Reached(Box::new(motion)));
-        }
-        let (at, why) = motion.end_towards(start_at);
-        path.coordinates(at, &mut there);
-        let at = elsewhere.iter().map(|e| there[e.drive.index()]).collect();
-        Ok(Followed::Ended(Some((at, why))))
+        Ok(match motion.reaches(target) {
+            true => Followed::Reached(Box::new(motion)),
+            false => motion.ended(target, elsewhere),
+        })
     }
 
     /// Where the motion ends on the way to a place beyond, and why.
-    fn end_towards(&self, p: f64) -> (f64, EndReason) {
+    fn ended(&self, beyond: f64, elsewhere: &[StartsElsewhere]) -> Followed {
         let nodes = self.node_parameters();
-        let end = match p < self.anchor {
-            true => nodes.first(),
-            false => nodes.last(),
+        let (end, why) = match beyond < self.anchor {
+            true => (nodes.first(), self.ends.0),
+            false => (nodes.last(), self.ends.1),
         };
-        let why = match p < self.anchor {
-            true => self.ends.0,
-            false => self.ends.1,
-        };
-        (end.copied().unwrap_or(self.anchor), why)
+        let mut coordinates = vec![0.0; self.mechanism().model.drives.len()];
+        let end = end.copied().unwrap_or(self.anchor);
+        self.path.coordinates(end, &mut coordinates);
+        let at = elsewhere.iter().map(|e| coordinates[e.drive.index()]);
+        Followed::Ended(Some((at.collect(), why)))
     }
 }
 
