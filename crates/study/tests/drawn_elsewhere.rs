@@ -243,6 +243,23 @@ fn a_rack_meshes_where_it_is_drawn() {
 }
 
 #[test]
+fn a_circuit_begins_at_the_start_not_at_the_drawing() {
+    let drawn = "A = [0, 0]\nB = [0.17, 0.11]\nC = [0.55, 0.38]\nD = [0.60, 0]";
+    let text = four_bar(drawn, "from = 200, to = 560").replace("rows = 25", "circuit = true");
+    let result = table(&text);
+    assert_eq!(result.diagnostics, []);
+    let crank = column(&result, "angle(crank)");
+    assert!((crank[0].to_degrees() - 200.0).abs() < 1e-9);
+    let [x, y] = ["x(C)", "y(C)"].map(|name| column(&result, name));
+    for i in 0..crank.len() {
+        let r = d(A, B);
+        let b = [r * cos(crank[i]), r * sin(crank[i])];
+        let c = meet(b, d(B, C), D, d(D, C));
+        assert!(d(c, [x[i], y[i]]) < 1e-9, "{i}");
+    }
+}
+
+#[test]
 fn a_model_that_starts_elsewhere_is_written_and_read_again() {
     let text = four_bar(
         "A = [0, 0]\nB = [0.17, 0.11]\nC = [0.55, -0.38]\nD = [0.60, 0]",
