@@ -1,7 +1,9 @@
 //! The command line's grammar and its help.
 
+use std::ffi::OsStr;
 use std::path::PathBuf;
 
+use clap::builder::{PossibleValue, StringValueParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
 
 /// A workbench for planar linkages: one short model file becomes motion, numbers and pictures.
@@ -174,23 +176,40 @@ pub struct Draw {
 /// `kempe new`
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Examples:\n  kempe new\n  kempe new press.toml --kind slider-crank\n\nAn existing file is never overwritten."
+    after_help = "Examples:\n  kempe new\n  kempe new six-bar\n  kempe new press.toml --kind slider-crank\n\n\
+                  Without a name it lists the kinds. An existing file is never overwritten."
 )]
 pub struct New {
-    /// File to write; KIND.toml unless named
+    /// What to start from, one of the kinds, or a file to write that ends in .toml
     #[arg(value_name = "NAME")]
     pub name: Option<PathBuf>,
-    /// What to start from
-    #[arg(long, default_value = kempe_model::STARTERS[0].name, value_parser = kinds())]
-    pub kind: String,
+    /// What to start from, whatever the file's name
+    #[arg(long, value_parser = Kinds)]
+    pub kind: Option<String>,
 }
 
-fn kinds() -> clap::builder::PossibleValuesParser {
-    let kinds = kempe_model::STARTERS.iter();
-    kinds
-        .map(|s| clap::builder::PossibleValue::new(s.name).help(s.doc))
-        .collect::<Vec<_>>()
-        .into()
+/// The kinds of starter files, for help and completion. An unknown one is told by the verb, with all kinds.
+#[derive(Clone)]
+struct Kinds;
+
+impl TypedValueParser for Kinds {
+    type Value = String;
+
+    fn parse_ref(
+        &self,
+        command: &clap::Command,
+        argument: Option<&clap::Arg>,
+        value: &OsStr,
+    ) -> Result<String, clap::Error> {
+        StringValueParser::new().parse_ref(command, argument, value)
+    }
+
+    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
+        let kinds = kempe_model::STARTERS.iter();
+        Some(Box::new(
+            kinds.map(|s| PossibleValue::new(s.name).help(s.doc)),
+        ))
+    }
 }
 
 /// `kempe measures`

@@ -206,7 +206,7 @@ fn only_what_kempe_wrote_and_nobody_changed_is_replaced() {
     // Nor does `new` replace what `draw` would.
     fs::copy(at.join("m.toml"), at.join("x.toml")).expect("copied");
     refused(at, &["new", "x.toml"], &["file-exists"]);
-    refused(at, &["new", "x"], &["file-exists"]);
+    refused(at, &["new", "x", "--kind", "four-bar"], &["file-exists"]);
 }
 
 #[test]

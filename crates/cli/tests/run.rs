@@ -183,27 +183,65 @@ fn every_starter_checks_and_runs() {
     let folder = tempfile::tempdir().expect("a folder");
     let at = folder.path();
     for starter in kempe_model::STARTERS {
-        let made = kempe(at, &["new", "--kind", starter.name]);
+        let made = kempe(at, &["new", starter.name]);
         assert!(made.status.success());
         let file = format!("{}.toml", starter.name);
-        let check = kempe(at, &["check", &file]);
+        let text = fs::read_to_string(at.join(&file)).expect("a file");
+        assert!(text.contains("[places]") && text.contains(&format!("kempe run {file}")));
+        let check = kempe(at, &["check", &file, "--strict"]);
         assert!(
             check.status.success(),
             "{}",
             String::from_utf8_lossy(&check.stderr)
         );
-        let run = kempe(at, &["run", &file, "--out", starter.name]);
+        let run = kempe(at, &["run", &file, "--strict", "--out", starter.name]);
         assert!(
             run.status.success(),
             "{}",
             String::from_utf8_lossy(&run.stderr)
         );
-        assert_eq!(
-            kempe(at, &["new", &file]).status.code(),
-            Some(2),
-            "never overwritten"
-        );
+        fs::write(at.join(&file), "mine").expect("written");
+        for again in [&["new", starter.name][..], &["new", &file]] {
+            assert_eq!(kempe(at, again).status.code(), Some(2));
+        }
+        let kept = fs::read_to_string(at.join(&file)).expect("a file");
+        assert_eq!(kept, "mine", "never overwritten");
     }
+}
+
+#[test]
+fn starters_are_listed_where_none_is_named() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = folder.path();
+    let listed = kempe(at, &["new"]);
+    assert!(listed.status.success());
+    let unknown = kempe(at, &["new", "sixbar"]);
+    assert_eq!(unknown.status.code(), Some(2));
+    assert_eq!(
+        kempe(at, &["new", "--kind", "linkage"]).status.code(),
+        Some(2)
+    );
+    let said = [&listed.stdout, &unknown.stderr].map(|s| String::from_utf8_lossy(s).into_owned());
+    for starter in kempe_model::STARTERS {
+        for said in &said {
+            let line = said.lines().find(|line| line.contains(starter.name));
+            assert!(line.is_some_and(|l| l.contains(starter.doc)), "{said}");
+        }
+    }
+    assert!(said[1].contains("did you mean `six-bar`?"), "{}", said[1]);
+    assert!(
+        fs::read_dir(at).expect("a folder").next().is_none(),
+        "nothing is written"
+    );
+    // a file of one's own name, of one kind or the other
+    assert!(kempe(at, &["new", "mine.toml"]).status.success());
+    assert!(
+        kempe(at, &["new", "train.toml", "--kind", "gear-train"])
+            .status
+            .success()
+    );
+    let text = fs::read_to_string(at.join("train.toml")).expect("a file");
+    assert!(text.contains("teeth"));
 }
 
 #[test]

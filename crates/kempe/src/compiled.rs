@@ -173,14 +173,11 @@ impl Compiled {
 
 /// A design whose drives move by other laws.
 pub(crate) fn with_laws(design: &Design<f64>, law: impl Fn(usize) -> Option<Law>) -> Design<f64> {
-    let mut mechanism = (*design.mechanism).clone();
-    for (index, drive) in mechanism.structure.model.drives.iter_mut().enumerate() {
-        if let Some(law) = law(index) {
-            drive.law = law;
+    design.with_model(|model| {
+        for (index, drive) in model.drives.iter_mut().enumerate() {
+            if let Some(law) = law(index) {
+                drive.law = law;
+            }
         }
-    }
-    Design {
-        mechanism: Arc::new(mechanism),
-        ..design.clone()
-    }
+    })
 }

@@ -598,3 +598,23 @@ fn a_drawing_follows_its_parameters() {
         }
     }
 }
+
+/// A drawing whose drive starts elsewhere is followed to the start, for the parameters of the session.
+#[test]
+fn a_drawing_that_starts_elsewhere_follows_its_parameters() {
+    let text = "[parameters]\nw = \"0.5 m\"\n[places]\nA = [0, 0]\nB = [0.1, 0.2]\nC = [\"w + 0.1 m\", 0.2]\nD = [\"w\", 0]\n\
+        [links]\nframe = [\"A\", \"D\"]\ncrank = [\"A\", \"B\"]\ncoupler = [\"B\", \"C\"]\nrocker = [\"D\", \"C\"]\n\
+        [drives]\nmotor = { turns = \"crank\", from = 0, to = 2, speed = 1 }\n";
+    let model: Model = text.parse().expect("a model");
+    let mut session = model.compile().expect("it moves").session();
+    // a parallelogram, whatever its width: every place is that of the crank, moved by the width
+    for w in [0.5, 0.55, 0.3] {
+        session.set("w", w).expect("sound");
+        let at = session.pose([("motor", 1.5)]).expect("a pose");
+        let [b, c] = ["B", "C"].map(|name| at.point(name).expect("a point"));
+        assert!(
+            (c[0] - b[0] - w).abs() < 1e-12 && (c[1] - b[1]).abs() < 1e-12,
+            "{w}: {b:?} {c:?}"
+        );
+    }
+}

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use kempe_model::Model;
 use kempe_number::Number;
 
 use crate::Mechanism;
@@ -95,6 +96,16 @@ impl<T: Number> Design<T> {
 }
 
 impl Design<f64> {
+    /// The same design of a model whose laws and hints were changed: nothing else of it may be.
+    pub fn with_model(&self, change: impl FnOnce(&mut Model)) -> Self {
+        let mut mechanism = (*self.mechanism).clone();
+        change(&mut mechanism.structure.model);
+        Self {
+            mechanism: Arc::new(mechanism),
+            ..self.clone()
+        }
+    }
+
     /// A characteristic length of the mechanism, m: see [`Geometry::size`].
     pub fn size(&self) -> f64 {
         self.geometry.size(&self.mechanism)

@@ -59,7 +59,7 @@ pub const CODES: &[Code] = &[
     code("not-a-pin", "a point that is no pin, because only one link carries it"),
     code("not-a-slider", "something should slide along a line, but does not"),
     code("not-a-value", "a link, a joint, a point, a line or a picture stands where a value is needed"),
-    code("not-as-drawn", "a drive starts, or a point of the frame lies, elsewhere than drawn"),
+    code("not-as-drawn", "a point of the frame lies elsewhere than drawn, or the drawn assembly does not reach the start of the drives"),
     code("not-at-one-instant", "a number over the whole motion stands where a value at every instant is needed"),
     code("not-finite", "a value is infinite or not a number"),
     code("not-placed", "a point whose place on its link is not determined"),

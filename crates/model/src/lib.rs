@@ -46,7 +46,7 @@ pub use bound::{Bound, Keeps};
 pub use codes::{CODES, Code, LATER_CODES};
 pub use complete::{Completion, CompletionKind, complete};
 pub use diagnostic::{Diagnostic, Label, Severity, Source};
-pub use drawing::{Drawing, DrawnPlace};
+pub use drawing::{Drawing, DrawnPlace, StartsElsewhere};
 pub use drive::*;
 pub use edit::delete::{DeleteError, Deletion, delete, delete_with_dependants};
 pub use edit::rename::rename;

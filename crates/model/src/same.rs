@@ -1,5 +1,6 @@
 //! Whether two models are the same but for how and where they are written.
 
+use crate::drawing::Drawing;
 use crate::drive::LawPiece;
 use crate::hint::HintKind;
 use crate::ids::{Scalar, Span};
@@ -25,8 +26,16 @@ impl Model {
         // What values must keep to follows from the rest; what was put into numbers is in them.
         model.bounds.clear();
         model.settled.clear();
-        // So are links, drives and hints that were drawn.
-        model.drawing = Default::default();
+        // So are links, drives and hints that were drawn; not where drives are drawn that start elsewhere.
+        let parameters = model.parameter_values::<f64>();
+        let coordinates = match model.starting_elsewhere(&parameters).is_empty() {
+            true => Vec::new(),
+            false => std::mem::take(&mut model.drawing.coordinates),
+        };
+        model.drawing = Drawing {
+            coordinates,
+            ..Drawing::default()
+        };
         model.visit_scalars(&mut |scalar| *scalar = scalar.fold());
         model.visit_measures(&mut |measure| *measure = folded(measure));
         model
@@ -120,6 +129,9 @@ impl Model {
                     LawPiece::Table { .. } => {}
                 }
             }
+        }
+        for (_, drawn) in &mut self.drawing.coordinates {
+            f(drawn);
         }
         for hint in &mut self.assembly {
             match &mut hint.kind {

@@ -12,7 +12,7 @@ pub struct Starter {
     pub text: &'static str,
 }
 
-/// All starter files; the first is the default.
+/// All starter files; the first is what a file without a kind starts from.
 pub const STARTERS: &[Starter] = &[
     Starter {
         name: "four-bar",
@@ -25,9 +25,19 @@ pub const STARTERS: &[Starter] = &[
         text: include_str!("starter/slider-crank.toml"),
     },
     Starter {
+        name: "six-bar",
+        doc: "a crank-rocker whose coupler swings an output lever",
+        text: include_str!("starter/six-bar.toml"),
+    },
+    Starter {
         name: "cylinder",
-        doc: "an arm lifted by a hydraulic cylinder",
+        doc: "an arm lifted by a hydraulic cylinder, with its force",
         text: include_str!("starter/cylinder.toml"),
+    },
+    Starter {
+        name: "gear-train",
+        doc: "two gear meshes one after the other, with the torque",
+        text: include_str!("starter/gear-train.toml"),
     },
 ];
 

@@ -134,17 +134,24 @@ fn given_distances_count_instead_of_drawn_ones() {
 }
 
 #[test]
-fn hints_of_the_file_come_first_and_a_start_elsewhere_leaves_the_choice_to_it() {
+fn hints_of_the_file_come_first_and_alone_where_it_starts_elsewhere() {
     let own = format!("{FILE}[assembly]\nC = \"left of B -> D\"\ncoupler = {{ near = 30 }}\n");
     assert_eq!(hints(&read(&own)), ["C", "coupler", "B", "P", "rocker"]);
-    let elsewhere = FILE.replace("speed", "from = 0, speed");
-    assert_eq!(codes(&elsewhere), ["not-as-drawn"]);
+    // drawn hints are about where it is drawn, those of the file about the start
+    let elsewhere = read(&FILE.replace("speed", "from = 0, speed"));
+    let [found] = elsewhere.starting_elsewhere(&elsewhere.parameter_values::<f64>())[..] else {
+        panic!()
+    };
+    assert_eq!((found.start, hints(&elsewhere).len()), (0.0, 5));
+    assert!((found.drawn - kempe_number::math::atan2(4.0, 3.0)).abs() < 1e-15);
     let said = own.replace("speed", "from = 0, speed");
     assert_eq!(hints(&read(&said)), ["C", "coupler"]);
     // a turn further, or few digits, is as drawn
     for from in ["53.1", "413.13", "-306.87"] {
         let near = FILE.replace("speed", &format!("from = {from}, speed"));
-        assert_eq!(hints(&read(&near)).len(), 5, "{from}");
+        let near = read(&near);
+        let elsewhere = near.starting_elsewhere(&near.parameter_values::<f64>());
+        assert_eq!((elsewhere, hints(&near).len()), (vec![], 5), "{from}");
     }
 }
 
@@ -163,7 +170,7 @@ rocker = { D-C = 4 }
 motor = { turns = "crank", from = 30, speed = 1 }
 "#;
     let model = read(mixed);
-    assert_eq!(hints(&model), ["C", "P", "coupler"]);
+    assert_eq!(hints(&model), ["C", "P", "coupler", "rocker"]);
     let coupler = &model.links[2];
     assert!(matches!(coupler.points[2].place, Place::Triangle { .. }));
     // nothing is drawn: nothing starts as drawn
@@ -266,4 +273,21 @@ fn hostile_drawings_end_soon() {
         let text = format!("{places}[links]\nframe = {{ A = [0, 0] }}\n");
         assert!(codes(&text).contains(&"wrong-type"), "{places}");
     }
+}
+
+#[test]
+fn a_drive_may_end_where_it_is_drawn() {
+    let to = |text: &str| {
+        let model = read(text);
+        let (_, high) = (model.drives[0].law).extent(&model.parameter_values());
+        high
+    };
+    let drawn = to(&FILE.replace("speed", "from = 0, to = \"drawn\", speed"));
+    assert!((drawn - kempe_number::math::atan2(4.0, 3.0)).abs() < 1e-15);
+    let held = FILE.replace("speed", "to = \"drawn\", speed");
+    assert_eq!(codes(&held), ["no-motion"]);
+    // a parameter of that name is meant instead
+    let named = FILE.replace("w = \"55 m\"", "w = \"55 m\"\ndrawn = \"100 deg\"");
+    let named = named.replace("speed", "to = \"drawn\", speed");
+    assert!((to(&named) - 100f64.to_radians()).abs() < 1e-15);
 }

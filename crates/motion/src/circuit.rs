@@ -87,7 +87,15 @@ impl Circuit {
             Some(limit) if direction < 0.0 => limit.turned(),
             Some(limit) => limit,
             None => {
-                let z = follower.scaled(&chosen.poses, &chosen.branch.near, motion.anchor);
+                // The assembly may be known elsewhere, where the mechanism is drawn.
+                let at_start = match motion.start_crossing() {
+                    None => motion.placed(motion.start, &mut motion.solver()),
+                    Some(_) => None,
+                };
+                let z = match at_start {
+                    Some(at) => follower.scaled(&at.poses, &at.near, motion.start),
+                    None => follower.scaled(&chosen.poses, &chosen.branch.near, motion.anchor),
+                };
                 follower.start(z, direction).ok_or(locked)?
             }
         };

@@ -13,5 +13,5 @@ pub mod temporary_drives;
 pub mod trace;
 
 pub use check::{Findings, Reach, check, check_with_progress};
-pub use motion::{Demand, EndReason, Motion, MotionError, Placed, SIZES, Solver};
+pub use motion::{Demand, EndReason, LeftDrawing, Motion, MotionError, Placed, SIZES, Solver};
 pub use progress::{Done, Progress, Silent, Stage};

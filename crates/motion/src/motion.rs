@@ -1,12 +1,13 @@
 //! A motion: the branch through the chosen assembly, known all along the drives' path.
 //!
-//! It begins at an assembly (`start`) and is followed from there both ways (`follow`), with restricted steps where branches come
+//! It begins at an assembly (`start`), where the mechanism is drawn if that is elsewhere (`drawn`), and is followed from there both ways (`follow`), with restricted steps where branches come
 //! near each other (`restriction`). Where modes change between nodes of the trace it is split (`modes`). From then on the branch is
 //! known everywhere (`branch`), and rows are solved on any number (`solver`). That of a design much like one known is found from it
 //! (`again`).
 
 mod again;
 mod branch;
+mod drawn;
 mod error;
 mod follow;
 mod modes;
@@ -15,6 +16,7 @@ mod restriction;
 mod solver;
 mod start;
 
+pub use self::drawn::LeftDrawing;
 pub use self::error::MotionError;
 pub(crate) use self::follow::runs_away;
 pub use self::follow::{EndReason, FAR, STEP_LIMIT, WHIRLING};
@@ -70,7 +72,8 @@ pub struct Motion {
     pub path: DrivePath,
     /// All assemblies at the anchor, the chosen one first.
     pub assemblies: Assemblies,
-    /// Path parameter where the assembly was chosen: the start, or near it when the start is singular.
+    /// Path parameter where the assembly was chosen: the start, or near it when the start is singular; where the mechanism is
+    /// drawn when it starts elsewhere.
     pub anchor: f64,
     /// How many assemblies at the anchor fit the file's hints and lead to the pose at the start: more than one where the
     /// start is a change point and the hints do not tell which branch is meant.
@@ -79,6 +82,8 @@ pub struct Motion {
     pub start: f64,
     /// Demanded range of the path parameter.
     pub demanded: (f64, f64),
+    /// Why the drawing did not choose the assembly, where drives start elsewhere than drawn.
+    pub left_drawing: Option<LeftDrawing>,
     /// Why the trace ended at its low and its high end.
     pub ends: (EndReason, EndReason),
     /// Dead points, change points and limits met within the demanded range, in order of the path parameter.
@@ -115,7 +120,7 @@ impl Motion {
     }
 
     /// What is asked of the motion by the laws of the file.
-    fn demand(design: &Design<f64>) -> Demand {
+    pub(crate) fn demand(design: &Design<f64>) -> Demand {
         let (model, parameters) = (&design.mechanism.model, &design.parameters);
         let path = DrivePath::new(model, parameters, design.size());
         Demand {
@@ -143,6 +148,7 @@ impl Motion {
             assemblies,
             anchor: demanded.0,
             choices: 1,
+            left_drawing: None,
             start: demanded.0,
             demanded,
             ends: (EndReason::Covered, EndReason::Covered),

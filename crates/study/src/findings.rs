@@ -6,7 +6,7 @@ use kempe_mechanism::structure::BodyId;
 use kempe_model::{
     Diagnostic, Drive, Joint, JointKind, Model, Rows, Severity, Study, StudyKind, value,
 };
-use kempe_motion::assemble::{Assemblies, Assembly};
+use kempe_motion::assemble::Assembly;
 use kempe_motion::drive_path::DrivePath;
 use kempe_motion::events::EventKind;
 use kempe_motion::{EndReason, Findings};
@@ -21,7 +21,7 @@ use crate::hints;
 use crate::motion_findings::{motion_findings, of_freedoms, of_mechanism};
 use crate::prepared::design;
 use crate::unit::Units;
-use crate::words::source_name;
+use crate::words::{list, source_name};
 use kempe_motion::progress::{Progress, Silent};
 
 /// The answer of `check`.
@@ -126,6 +126,13 @@ pub fn check_with_progress(model: &Model, progress: &mut dyn Progress) -> Report
             .get(index)
             .map_or(String::new(), |p| p.name.clone())
     };
+    let elsewhere: Vec<String> = (model.starting_elsewhere(&design.parameters).iter())
+        .filter_map(|e| {
+            let drive = model.drives.get(e.drive.index())?;
+            let drawn = units.text(e.drawn, drive.dimension);
+            Some(format!("{} = {drawn}", drive.name))
+        })
+        .collect();
     let moving = found.motion.as_ref().and_then(|motion| match motion.path {
         DrivePath::Coordinate { drive, .. } => model.drives.get(drive),
         DrivePath::Time { .. } => None,
@@ -173,7 +180,7 @@ pub fn check_with_progress(model: &Model, progress: &mut dyn Progress) -> Report
         assemblies: found.searched.then_some(found.assemblies.list.len()),
         assemblies_rejected: found.assemblies.rejected,
         assemblies_complete: found.assemblies.complete,
-        chosen: chosen(&design, &found.assemblies, &units),
+        chosen: chosen(&design, &found, &elsewhere, &units),
         reach: None,
         reach_si: found.reach.as_ref().map(|r| r.range),
         events: Vec::new(),
@@ -231,8 +238,20 @@ pub fn check_with_progress(model: &Model, progress: &mut dyn Progress) -> Report
 const AS_DRAWN: f64 = 1e-6;
 
 /// How the assembly was chosen where several agree with the file, and which hints decide nothing.
-fn chosen(design: &Design<f64>, assemblies: &Assemblies, units: &Units) -> Vec<String> {
-    let mechanism = &*design.mechanism;
+/// `elsewhere` tells the drives that start elsewhere than drawn, with where they are drawn.
+fn chosen(
+    design: &Design<f64>,
+    found: &Findings,
+    elsewhere: &[String],
+    units: &Units,
+) -> Vec<String> {
+    // the hints that counted
+    let design = found.motion.as_ref().map_or(design, |m| &m.design);
+    let (mechanism, assemblies) = (&*design.mechanism, &found.assemblies);
+    let followed = match elsewhere.is_empty() {
+        true => String::new(),
+        false => format!(", followed from {} to the start", list(elsewhere)),
+    };
     let mut words = Vec::new();
     if let [first, ..] = assemblies.list.as_slice()
         && assemblies.list.len() > 1
@@ -243,7 +262,7 @@ fn chosen(design: &Design<f64>, assemblies: &Assemblies, units: &Units) -> Vec<S
         let drawn = !model.assembly.is_empty() && drawn::gives_hint(model, 0);
         words.push(match assemblies.list.get(alike) {
             Some(_) if alike == 1 && drawn && first.distance <= AS_DRAWN * design.size() => {
-                "the one that is drawn".to_owned()
+                format!("the one that is drawn{followed}")
             }
             None => "the first of them: nothing in [assembly] decides".to_owned(),
             Some(next) if alike == 1 => format!(

@@ -34,6 +34,7 @@ pub(crate) fn of_mechanism(motion: &Motion) -> Vec<Diagnostic> {
     let design = &motion.design;
     let mut findings = findings_forces::problems(design);
     findings.extend(of_freedoms(design, &mobility_at_start(motion)));
+    findings.extend(left_drawing(motion));
     findings.extend(of_assemblies(design, &motion.assemblies));
     findings
 }
@@ -113,6 +114,46 @@ pub(crate) fn of_freedoms(design: &Design<f64>, mobility: &Mobility) -> Vec<Diag
         ));
     }
     findings
+}
+
+/// Why the drawing does not say which assembly is meant.
+fn left_drawing(motion: &Motion) -> Option<Diagnostic> {
+    let left = motion.left_drawing.as_ref()?;
+    let model = &motion.mechanism().model;
+    let units = Units::of(model);
+    let drives: Vec<_> = (left.elsewhere.iter())
+        .filter_map(|e| Some((e, model.drives.get(e.drive.index())?)))
+        .collect();
+    let elsewhere: Vec<String> = drives
+        .iter()
+        .map(|(e, drive)| {
+            let [start, drawn] = [e.start, e.drawn].map(|x| units.text(x, drive.dimension));
+            format!("`{}` starts at {start} and is drawn at {drawn}", drive.name)
+        })
+        .collect();
+    let why = match &left.ends {
+        None => "as it is drawn it cannot be put together".to_owned(),
+        Some((at, reason)) => {
+            let at: Vec<String> = (drives.iter().zip(at))
+                .map(|((_, drive), x)| units.text(*x, drive.dimension))
+                .collect();
+            let at = list(&at);
+            match reason {
+                EndReason::Limit => {
+                    format!("the assembly that is drawn goes only to {at}, a limit")
+                }
+                _ => format!("the assembly that is drawn could be followed only to {at}"),
+            }
+        }
+    };
+    let mut finding =
+        Diagnostic::warning("not-as-drawn", format!("drive {}: {why}", list(&elsewhere)));
+    for (_, drive) in drives {
+        finding = finding.at(drive.span.clone(), "does not start as drawn");
+    }
+    Some(finding.help(
+        "leave out where it starts, draw it there, or say under [assembly] which one is meant",
+    ))
 }
 
 /// Whether it is clear which assembly is meant, and whether the file gets the one that it asks for.

@@ -229,3 +229,25 @@ fn bounds_and_a_wanted_effort_are_kept() {
             .any(|d| d.code == "spring-not-linear")
     );
 }
+
+/// The garage door of the gallery. Stiffness and preload were computed apart from Kempe: the rollers' height by Pythagoras, the
+/// effort by Lagrange's equation with slopes by differences of eighth order, and the normal equations of its squares over the
+/// 86 rows, of which the first and the last count half.
+#[test]
+fn the_spring_of_the_garage_door_is_that_of_least_squares() {
+    let text = include_str!("../../../examples/gallery/garage-door.toml");
+    let model = model(text);
+    let study = model.studies.iter().find(|s| s.name == "choose").unwrap();
+    let result = run(&model, study, &mut Silent).unwrap();
+    let near = |name: &str, expected: f64| {
+        let found = scalar(&result, name);
+        assert!(
+            (found - expected).abs() < 1e-7 * 11_647.0,
+            "{name}: {found}"
+        );
+    };
+    near("stiffness", 11_647.015_802);
+    near("preload", -233.861_871 + 11_647.015_802 * 0.02);
+    near("effort less wanted, root mean square before", 352.855_838_4);
+    near("effort less wanted, root mean square after", 8.284_253_4);
+}

@@ -2,12 +2,12 @@
 
 use std::collections::BTreeSet;
 
-use kempe_units::{Dimension, Expr};
+use kempe_units::Expr;
 
 use crate::diagnostic::Diagnostic;
-use crate::drive::{Drive, DriveKind};
+use crate::drive::DriveKind;
 use crate::hint::{AssemblyHint, HintKind};
-use crate::ids::{FRAME, Line, LinkId, PointId, Scalar};
+use crate::ids::{DriveId, FRAME, Line, LinkId, PointId, Scalar};
 use crate::joint::JointKind;
 use crate::link::LinkPoint;
 use crate::read::algebra::{
@@ -16,11 +16,6 @@ use crate::read::algebra::{
 use crate::read::context::Context;
 use crate::read::entry::Entry;
 use crate::read::places::world;
-
-/// A drive starts as drawn when its coordinate is this near, rad: a drawn angle written with few digits.
-const NEAR_ANGLE: f64 = 0.01;
-/// The same of a length, in parts of the size of the drawing.
-const NEAR_LENGTH: f64 = 0.005;
 
 /// The angle of a link's x axis as drawn, rad: of the frame zero, of others that of the way between two of their points.
 pub(crate) fn angle(cx: &Context<'_>, id: LinkId) -> Option<Scalar> {
@@ -116,21 +111,19 @@ pub(crate) fn single_points(cx: &mut Context<'_>) {
 
 /// Says which assembly is meant: the one that is drawn, unless the file says so itself.
 ///
-/// Hints are about the start of the drives: where a drive starts elsewhere than drawn, the drawing says nothing of it.
+/// Hints of the file are about the start of the drives: where a drive starts elsewhere than drawn, they alone count.
 pub(crate) fn assemble(cx: &mut Context<'_>, file: &Entry<'_>) {
     if cx.model.drawing.places.is_empty() {
         return;
     }
-    let elsewhere: Vec<Diagnostic> = cx
-        .model
-        .drives
-        .iter()
-        .filter_map(|drive| starts_elsewhere(cx, drive))
-        .collect();
-    if !elsewhere.is_empty() {
-        if !file.has("assembly") {
-            elsewhere.into_iter().for_each(|d| cx.push(d));
-        }
+    let drives = cx.model.drives.iter().enumerate();
+    let drawn = drives.filter_map(|(index, drive)| {
+        let drawn = coordinate(cx, &drive.kind)?;
+        (drawn.fold() != drive.law.from.fold()).then_some((DriveId(index as u32), drawn))
+    });
+    cx.model.drawing.coordinates = drawn.collect();
+    if file.has("assembly") && !cx.model.starting_elsewhere(&cx.values).is_empty() {
+        cx.model.drawing.coordinates.clear();
         return;
     }
     let mut hints = Vec::new();
@@ -166,56 +159,18 @@ pub(crate) fn assemble(cx: &mut Context<'_>, file: &Entry<'_>) {
         let span = place.span.clone();
         hints.push(AssemblyHint { kind, span });
     }
-    for id in &cx.model.drawing.links {
-        if links.contains(id) {
-            continue;
-        }
-        let span = cx.model.links.get(id.index()).map(|l| l.span.clone());
-        if let (Some(angle), Some(span)) = (angle(cx, *id), span) {
-            let kind = HintKind::NearAngle { link: *id, angle };
+    for (index, link) in cx.model.links.iter().enumerate() {
+        let id = LinkId(index as u32);
+        if !links.contains(&id)
+            && let Some(angle) = angle(cx, id)
+        {
+            let kind = HintKind::NearAngle { link: id, angle };
+            let span = link.span.clone();
             hints.push(AssemblyHint { kind, span });
         }
     }
     cx.model.drawing.hints = hints.len();
     cx.model.assembly.extend(hints);
-}
-
-/// What is to be said of a drive that does not start as drawn.
-fn starts_elsewhere(cx: &Context<'_>, drive: &Drive) -> Option<Diagnostic> {
-    let drawn = coordinate(cx, &drive.kind)?;
-    let (start, drawn) = (cx.number(&drive.law.from), cx.number(&drawn));
-    let off = start - drawn;
-    let off = match drive.dimension {
-        Dimension::ANGLE => off - std::f64::consts::TAU * (off / std::f64::consts::TAU).round(),
-        _ => off,
-    };
-    let near = match drive.dimension {
-        Dimension::ANGLE => NEAR_ANGLE,
-        _ => NEAR_LENGTH * size(cx),
-    };
-    if off.abs() <= near {
-        return None;
-    }
-    let [start, drawn] = [start, drawn].map(|x| cx.show(x, drive.dimension));
-    Some(
-        Diagnostic::warning(
-            "not-as-drawn",
-            format!(
-                "drive `{}` starts at {start} and is drawn at {drawn}: the drawing does not say which assembly is meant",
-                drive.name
-            ),
-        )
-        .at(drive.span.clone(), "does not start as drawn")
-        .help("leave out where it starts, draw it there, or say under [assembly] which one is meant"),
-    )
-}
-
-/// The size of the drawing, m.
-fn size(cx: &Context<'_>) -> f64 {
-    let places = cx.model.drawing.places.values();
-    let all = places.flat_map(|p| [cx.number(&p.at[0]), cx.number(&p.at[1])]);
-    let (least, most) = all.fold((0.0f64, 0.0f64), |(a, b), x| (a.min(x), b.max(x)));
-    most - least
 }
 
 /// The angle from one link to another as drawn, where the drawing says how both stand.

@@ -86,13 +86,7 @@ impl<'d> LawReader<'_, 'd> {
             &["from", "to", "speed", "acceleration", "law", "in"],
             "`at` holds the drive where it is",
         );
-        let from = match &node.value {
-            Value::Text(text) if text.content.trim() == DRAWN && !cx.names.contains_key(DRAWN) => {
-                self.as_drawn(cx, node)?
-            }
-            _ => cx.scalar(node, self.dimension)?,
-        };
-        self.check_coordinate(cx, &from, &node.span);
+        let from = self.coordinate(cx, node)?;
         Some(Law {
             pieces: vec![LawPiece::Dwell {
                 duration: Expr::Const(0.0),
@@ -101,7 +95,19 @@ impl<'d> LawReader<'_, 'd> {
         })
     }
 
-    /// `at = "drawn"`.
+    /// A value, or `"drawn"`.
+    fn coordinate(&self, cx: &mut Context<'_>, node: &Node) -> Option<Scalar> {
+        let coordinate = match &node.value {
+            Value::Text(text) if text.content.trim() == DRAWN && !cx.names.contains_key(DRAWN) => {
+                self.as_drawn(cx, node)?
+            }
+            _ => cx.scalar(node, self.dimension)?,
+        };
+        self.check_coordinate(cx, &coordinate, &node.span);
+        Some(coordinate)
+    }
+
+    /// `"drawn"`.
     fn as_drawn(&self, cx: &mut Context<'_>, node: &Node) -> Option<Scalar> {
         if self.drawn.is_none() && self.known && cx.broken_places.is_empty() {
             let example = cx.example(self.dimension);
@@ -109,7 +115,9 @@ impl<'d> LawReader<'_, 'd> {
                 "no-place",
                 format!("{} is not drawn", self.place),
                 &node.span,
-                format!("draw the points that it is between under [places], or say where it is held: at = {example}"),
+                format!(
+                    "draw the points that it is between under [places], or give a value: {example}"
+                ),
             );
         }
         self.drawn.clone()
@@ -132,11 +140,7 @@ impl<'d> LawReader<'_, 'd> {
     /// The start: as drawn, or 0, unless said otherwise; a cylinder that is not drawn has no such default.
     fn from(&self, cx: &mut Context<'_>) -> Option<Scalar> {
         match self.entry.get("from") {
-            Some(node) => {
-                let from = cx.scalar(node, self.dimension)?;
-                self.check_coordinate(cx, &from, &node.span);
-                Some(from)
-            }
+            Some(node) => self.coordinate(cx, node),
             None if self.drawn.is_some() => {
                 let drawn = self.drawn.clone()?;
                 self.check_coordinate(cx, &drawn, self.entry.span);
@@ -158,11 +162,7 @@ impl<'d> LawReader<'_, 'd> {
     /// The end: one turn further unless said otherwise; lengths have no such default.
     fn to(&self, cx: &mut Context<'_>, from: Option<&Scalar>) -> Option<Scalar> {
         match self.entry.get("to") {
-            Some(node) => {
-                let to = cx.scalar(node, self.dimension)?;
-                self.check_coordinate(cx, &to, &node.span);
-                Some(to)
-            }
+            Some(node) => self.coordinate(cx, node),
             None if self.entry.kind.name == "turns" => {
                 let turn = Expr::Const(std::f64::consts::TAU);
                 match from? {

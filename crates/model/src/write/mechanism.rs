@@ -24,8 +24,20 @@ impl Writer<'_> {
         *file.section("drives") = drives
             .filter_map(|d| Some((d.name.clone(), Item::Table(self.drive_entry(d)?))))
             .collect();
-        let hints = model.assembly.iter();
-        *file.section("assembly") = hints.map(|h| self.hint(&h.kind)).collect();
+        let parameters = model.parameter_values::<f64>();
+        if model.starting_elsewhere(&parameters).is_empty() {
+            let hints = model.assembly.iter();
+            *file.section("assembly") = hints.map(|h| self.hint(&h.kind)).collect();
+            return;
+        }
+        // Hints would be about the start: what is drawn is told as it is drawn.
+        let places = model.drawing.places.iter();
+        *file.section("places") = places
+            .map(|(point, place)| {
+                let place = place.at.iter().map(|x| self.scalar(x, Dimension::LENGTH));
+                (self.point(*point).to_owned(), Item::List(place.collect()))
+            })
+            .collect();
     }
 
     fn joint_entry(&self, kind: &JointKind) -> Entries {

@@ -9,6 +9,7 @@ use std::sync::Arc;
 use kempe_mechanism::Design;
 
 use super::branch::Patch;
+use super::drawn::elsewhere;
 use super::follow::{STANDING, runs_away};
 use super::{Demand, EndReason, Motion, MotionError};
 use crate::assemble::{Assemblies, find_assemblies_after};
@@ -74,6 +75,7 @@ impl Motion {
         };
         same_path
             && Arc::ptr_eq(self.mechanism(), &design.mechanism)
+            && elsewhere(design).is_empty()
             && self.places.is_empty()
             && self.patches.len() == 1
             && self.nodes.len() <= MOST_NODES * self.traced

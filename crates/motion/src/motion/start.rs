@@ -63,13 +63,28 @@ impl Motion {
         earlier: &[PathReport],
         progress: &mut dyn Progress,
     ) -> Result<Self, MotionError> {
+        Self::possible(design)?;
+        if demand.assemblies.is_none() {
+            return Self::as_drawn(design, demand, earlier, progress);
+        }
+        let from = demand.start;
+        Self::through(design, demand, from, earlier, progress)
+    }
+
+    /// The branch through the assembly that is meant at the place `from` of the path, where `demand.assemblies` are too.
+    pub(super) fn through(
+        design: &Design<f64>,
+        demand: Demand,
+        from: f64,
+        earlier: &[PathReport],
+        progress: &mut dyn Progress,
+    ) -> Result<Self, MotionError> {
         let Demand {
             path,
             range: demanded,
             start,
             assemblies: mut known,
         } = demand;
-        Self::possible(design)?;
         let scale = path.scale();
         let mut coordinates = vec![0.0; design.mechanism.model.drives.len()];
         let mut nothing: Option<Assemblies> = None;
@@ -77,13 +92,13 @@ impl Motion {
         let mut best: Option<Beginning> = None;
         let mut compared = 0;
         let mut missed = 0;
-        for Anchor { anchor, inside } in places(&path, demanded, start) {
+        for Anchor { anchor, inside } in places(&path, demanded, from) {
             // A start right at a limit may miss closure by a rounding error: look a little inside, and no farther.
             if nothing.is_some() && best.is_none() && (missed > TRIES || !inside) {
                 continue;
             }
             path.coordinates(anchor, &mut coordinates);
-            let assemblies = match known.take().filter(|_| anchor == start) {
+            let assemblies = match known.take().filter(|_| anchor == from) {
                 Some(known) => known,
                 None => find_assemblies_after(design, &coordinates, earlier, progress).ok_or(
                     MotionError::Stopped {
@@ -121,10 +136,10 @@ impl Motion {
         else {
             return Err(match nothing {
                 Some(assemblies) => MotionError::CannotAssemble {
-                    at: start,
+                    at: from,
                     assemblies: Box::new(assemblies),
                 },
-                None => MotionError::Locked { at: start },
+                None => MotionError::Locked { at: from },
             });
         };
         // The share of the range that lies above it.
@@ -142,7 +157,9 @@ impl Motion {
             motion.demanded = demanded;
             motion.ends = ends;
             motion.find_events(follower, progress)?;
-            motion.choices = motion.choices_at_start(follower);
+            if from == start {
+                motion.choices = motion.choices_at_start(follower);
+            }
             Ok(motion)
         });
         match (found, nothing) {
