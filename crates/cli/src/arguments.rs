@@ -83,7 +83,7 @@ fn name_and_value(text: &str) -> Result<(String, String), String> {
 pub struct Check {
     #[command(flatten)]
     pub model: ModelFile,
-    /// Prove the motion by interval arithmetic: how much of it is certain, and where it is not
+    /// Prove the motion by interval arithmetic: how much of it is certain, where it is not, and bounds of its numbers
     #[arg(long)]
     pub certify: bool,
     /// Print one JSON object instead of text
@@ -130,6 +130,9 @@ pub struct Run {
     /// Folder for the results; without it, only the summary is printed
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    /// Prove the motion and its largest and smallest values by interval arithmetic; the report tells which numbers are proved
+    #[arg(long)]
+    pub certify: bool,
     /// Tell in the report when it was written; without it, the same run gives the same bytes
     #[arg(long)]
     pub date: bool,

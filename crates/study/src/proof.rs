@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use kempe_draw::report::{Block, Section};
 use kempe_model::{Diagnostic, Model};
 use kempe_motion::Stage;
 use kempe_motion::drive_path::DrivePath;
@@ -120,40 +121,70 @@ impl Proof {
         self.finished && self.redundant == 0 && self.gaps.is_empty()
     }
 
+    /// What is proved and what is not, as labels with what they say.
+    fn facts(&self) -> Vec<(&'static str, String)> {
+        // Rounded down: 100 % is said of all of it only.
+        let percent = (self.fraction * 1e6).floor() / 1e4;
+        let along = &self.along;
+        let mut facts = vec![(
+            "Proved",
+            format!(
+                "{percent} % of {along} {}: one pose near the one followed, moving smoothly",
+                self.range
+            ),
+        )];
+        facts.extend(
+            self.runs
+                .iter()
+                .map(|run| ("One run", format!("{along} {run}"))),
+        );
+        let gaps = self.gaps.iter();
+        facts
+            .extend(gaps.map(|gap| ("Left out", format!("{along} {}: {}", gap.place, gap.reason))));
+        if self.redundant > 0 {
+            let text = format!(
+                "{} redundant constraint rows: that they agree cannot be proved",
+                self.redundant
+            );
+            facts.push(("Without", text));
+        }
+        if !self.finished {
+            facts.push(("Stopped", "what comes after is not known".to_owned()));
+        }
+        facts
+    }
+
+    /// The proof as a section of a report.
+    pub fn section(&self) -> Section {
+        let facts = self.facts().into_iter();
+        let mut blocks = vec![Block::Facts(
+            facts
+                .map(|(label, text)| (label.to_owned(), text))
+                .collect(),
+        )];
+        if !self.numbers.is_empty() {
+            let rows = self.numbers.iter();
+            blocks.push(Block::Table {
+                head: vec!["Number over the motion".to_owned(), "Proved".to_owned()],
+                rows: rows.map(|n| vec![n.name.clone(), n.told.clone()]).collect(),
+            });
+        }
+        Section {
+            title: "Proof".to_owned(),
+            blocks,
+        }
+    }
+
     /// The proof as plain text.
     pub fn to_text(&self) -> String {
         let mut out = String::from("\nProof\n");
-        // Rounded down: 100 % is said of all of it only.
-        let percent = (self.fraction * 1e6).floor() / 1e4;
-        let _ = writeln!(
-            out,
-            "  Proved    {percent} % of {} {}: one pose near the one followed, moving smoothly",
-            self.along, self.range
-        );
-        for run in &self.runs {
-            let _ = writeln!(out, "  One run   {} {run}", self.along);
-        }
-        for gap in &self.gaps {
-            let _ = writeln!(
-                out,
-                "  Left out  {} {}: {}",
-                self.along, gap.place, gap.reason
-            );
-        }
-        if self.redundant > 0 {
-            let _ = writeln!(
-                out,
-                "  Without   {} redundant constraint rows: that they agree cannot be proved",
-                self.redundant
-            );
+        for (label, text) in self.facts() {
+            let _ = writeln!(out, "  {label:8}  {text}");
         }
         let wide = self.numbers.iter().map(|n| n.name.len()).max();
         for number in &self.numbers {
             let (name, wide) = (&number.name, wide.unwrap_or(0));
             let _ = writeln!(out, "  Number    {name:wide$}  {}", number.told);
-        }
-        if !self.finished {
-            out.push_str("  Stopped   what comes after is not known\n");
         }
         out
     }

@@ -48,6 +48,9 @@ pub fn run(arguments: &Run) -> Exit {
     };
     let (finished, missing): (Vec<&str>, Vec<&str>) =
         (studies.iter().map(|s| s.name.as_str())).partition(|name| has_rows(name));
+    let proof = (arguments.certify && !interrupt::stopped())
+        .then(|| kempe_study::prove(&loaded.checked.model, &mut Bar::new("proof", quiet)).ok())
+        .flatten();
     let mut stopped = interrupt::stopped();
     let mut files = Vec::new();
     if let (Some(output), false) = (output, finished.is_empty()) {
@@ -67,6 +70,7 @@ pub fn run(arguments: &Run) -> Exit {
                 loaded: &loaded,
                 outcomes: &outcomes,
                 check,
+                proof: proof.as_ref(),
                 stopped: stopped.then_some(missing),
                 date: arguments.date.then(clock::now),
             };
@@ -84,14 +88,11 @@ pub fn run(arguments: &Run) -> Exit {
     }
     if arguments.json {
         let with_tables = arguments.out.is_none();
-        print_json(&summary_json(
-            &loaded,
-            &outcomes,
-            &files,
-            stopped,
-            with_tables,
-            &speaker,
-        ));
+        let mut value = summary_json(&loaded, &outcomes, &files, stopped, with_tables, &speaker);
+        if let Some(proof) = &proof {
+            value["proof"] = serde_json::to_value(proof).unwrap_or_default();
+        }
+        print_json(&value);
     } else if !arguments.quiet {
         put(&summary(
             &outcomes,
@@ -99,10 +100,14 @@ pub fn run(arguments: &Run) -> Exit {
             &files,
             stopped,
         ));
+        if let Some(proof) = &proof {
+            put(&proof.to_text());
+        }
     }
-    match stopped {
-        true => Exit::Interrupted,
-        false => speaker.exit(),
+    match proof {
+        _ if stopped => Exit::Interrupted,
+        Some(proof) if !proof.is_whole() => speaker.exit().max(Exit::Finding),
+        _ => speaker.exit(),
     }
 }
 

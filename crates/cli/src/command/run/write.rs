@@ -6,7 +6,7 @@ use kempe_draw::report::{Block, Section};
 use kempe_draw::{DrawOptions, Stage, Theme, svg};
 use kempe_model::{Diagnostic, Model, PARTIAL_TABLE, Study};
 use kempe_study::{
-    CheckReport, MECHANISM, ReportOrigin, StudyOutcome, StudyResult, drawing_frames, encode,
+    CheckReport, MECHANISM, Proof, ReportOrigin, StudyOutcome, StudyResult, drawing_frames, encode,
     figures, mechanism_view,
 };
 
@@ -43,6 +43,8 @@ pub struct Results<'r> {
     pub outcomes: &'r [StudyOutcome<'r>],
     /// What is to be known of the mechanism.
     pub check: CheckReport,
+    /// What is proved of the motion, where that was asked for.
+    pub proof: Option<&'r Proof>,
     /// Of a run that was stopped, the studies that have no rows; `None` of a whole one.
     pub stopped: Option<Vec<&'r str>>,
     /// When, where the report shall tell it.
@@ -108,6 +110,9 @@ impl Results<'_> {
             &self.check,
             self.outcomes,
         );
+        if let Some(proof) = self.proof {
+            report.sections.insert(0, proof.section());
+        }
         if let Some(missing) = &self.stopped {
             report.title = format!("{} (partial: the run was stopped)", report.title);
             report
