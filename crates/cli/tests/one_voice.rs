@@ -208,3 +208,34 @@ fn json_is_printed_on_errors_too() {
         }
     }
 }
+
+/// A number that is infinite is so for whoever asks: a study, a circuit and its derivatives.
+#[test]
+fn every_command_says_where_a_number_is_infinite() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = folder.path();
+    let text = four_bar("B-C = 50", TURN, LEFT)
+        + "most = \"max(mechanical_advantage(angle(rocker), motor))\"\n\
+           pole = \"max(1/cos(motor))\"\n[studies.s]\nkind = \"motion\"\nrows = 7\n";
+    fs::write(at.join("m.toml"), &text).expect("written");
+    let circuit = text.replace("rows = 7", "rows = 7\ncircuit = true");
+    fs::write(at.join("c.toml"), circuit).expect("written");
+    for arguments in [
+        ["run", "m.toml"],
+        ["run", "c.toml"],
+        ["sensitivities", "m.toml"],
+    ] {
+        let output = kempe(at, &arguments);
+        let codes = told(&output);
+        assert!(
+            codes.iter().any(|c| c == "infinite"),
+            "{arguments:?}: {codes:?}"
+        );
+        assert_eq!(output.status.code(), Some(1), "{arguments:?}");
+    }
+    let derived = kempe(at, &["sensitivities", "m.toml"]);
+    let text = String::from_utf8_lossy(&derived.stdout).into_owned();
+    for name in ["most", "pole"] {
+        assert!(text.contains(&format!("{name}: left out")), "{text}");
+    }
+}

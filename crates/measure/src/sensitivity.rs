@@ -32,6 +32,7 @@ use self::varied::{Varied, varied_parameters};
 use crate::force_source::{ForceSource, NoForces};
 use crate::prepare::Unmeasurable;
 use crate::sampler::Sampler;
+use crate::statistic_note::StatisticNote;
 
 /// Parameters differentiated to at once.
 const CHUNK: usize = 4;
@@ -58,6 +59,8 @@ pub struct Sensitivities {
     pub time: f64,
     /// Value of every measure.
     pub values: Vec<f64>,
+    /// What is to be told of the numbers over the motion in every measure.
+    pub notes: Vec<Vec<StatisticNote>>,
     /// `derivatives[i][j]` is d(measure i)/d(parameter j); not finite where there is none.
     pub derivatives: Vec<Vec<f64>>,
 }
@@ -100,6 +103,7 @@ pub fn sensitivities_with<F: ForceSource, G: ForceSource<Varying>>(
         parameter,
         time,
         values: vec![f64::NAN; measures.len()],
+        notes: measures.iter().map(|m| sampler.notes_of(m)).collect(),
         derivatives: vec![Vec::with_capacity(parameters.len()); measures.len()],
     };
     // Without parameters the values are still wanted.
@@ -119,6 +123,18 @@ pub fn sensitivities_with<F: ForceSource, G: ForceSource<Varying>>(
             let slopes = result.eps.iter().take(chunk.len());
             it.derivatives[index]
                 .extend(slopes.map(|d| if result.re.is_nan() { f64::NAN } else { *d }));
+        }
+    }
+    // What is infinite somewhere has no derivatives, and the value that rows have.
+    let plain = match held {
+        Held::Path(p) => sampler.values_at_parameter(p),
+        Held::Time(t) => sampler.values_at_time(t),
+    };
+    for (index, value) in plain.into_iter().enumerate() {
+        let infinite = |note: &StatisticNote| matches!(note, StatisticNote::Infinite { .. });
+        if value.is_infinite() || it.notes[index].iter().any(infinite) {
+            it.values[index] = value;
+            it.derivatives[index].fill(f64::NAN);
         }
     }
     Ok(it)

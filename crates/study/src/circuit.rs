@@ -100,12 +100,9 @@ pub(crate) fn run_circuit(
     }
     diagnostics.extend(row_warnings(name, &rows.table, 0));
     for (stretch, sampler) in circuit.stretches.iter().zip(&samplers) {
-        let told = number_notes(
-            name,
-            &stretch.motion,
-            quantities.iter().copied(),
-            |measure| sampler.notes_of(measure),
-        );
+        let numbers = quantities.iter();
+        let numbers = numbers.map(|q| (q.name.as_str(), sampler.notes_of(&q.measure)));
+        let told = number_notes(Some(name), &stretch.motion, numbers);
         diagnostics.extend(told);
     }
     diagnostics.extend(without_value(&rows, 0, |_| Lack::Time));

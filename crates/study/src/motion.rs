@@ -75,10 +75,9 @@ pub(crate) fn run_along(
     let along = abscissa(&motion, &design.parameters);
     diagnostics.extend(row_warnings(name, &rows.table, along));
     diagnostics.extend(rows.force_warnings(&design.mechanism, along));
-    let numbers = quantities.iter().copied();
-    diagnostics.extend(number_notes(name, &motion, numbers, |measure| {
-        sampler.notes_of(measure)
-    }));
+    let numbers = quantities.iter();
+    let numbers = numbers.map(|q| (q.name.as_str(), sampler.notes_of(&q.measure)));
+    diagnostics.extend(number_notes(Some(name), &motion, numbers));
     diagnostics.extend(without_value(&rows, along, |index| {
         let number = index.and_then(|index| asked.scalars.get(index));
         let of_cycles = number.is_some_and(|q| asks_time_ratio(&design.mechanism, &q.measure));

@@ -1,23 +1,21 @@
 //! What is to be told of numbers over a motion: where they are infinite, and how far they are to be trusted.
 
 use kempe_measure::StatisticNote;
-use kempe_model::{Diagnostic, Measure};
+use kempe_model::Diagnostic;
 use kempe_motion::Motion;
 
 use crate::events::place;
-use crate::quantity::Quantity;
 
-/// Warnings of the quantities of a study that contain numbers over its motion.
+/// Warnings of numbers over a motion, of a study where it is one: their names, with what is to be told of them.
 pub(crate) fn number_notes<'q>(
-    study: &str,
+    study: Option<&str>,
     motion: &Motion,
-    quantities: impl Iterator<Item = &'q Quantity>,
-    notes_of: impl Fn(&Measure) -> Vec<StatisticNote>,
+    numbers: impl Iterator<Item = (&'q str, Vec<StatisticNote>)>,
 ) -> Vec<Diagnostic> {
     let mut told = Vec::new();
-    for quantity in quantities {
-        for note in notes_of(&quantity.measure) {
-            let warning = warning(study, &quantity.name, note, motion);
+    for (name, notes) in numbers {
+        for note in notes {
+            let warning = warning(study, name, note, motion);
             if !told.contains(&warning) {
                 told.push(warning);
             }
@@ -26,8 +24,11 @@ pub(crate) fn number_notes<'q>(
     told
 }
 
-fn warning(study: &str, name: &str, note: StatisticNote, motion: &Motion) -> Diagnostic {
-    let number = format!("study `{study}`: `{name}`");
+fn warning(study: Option<&str>, name: &str, note: StatisticNote, motion: &Motion) -> Diagnostic {
+    let number = match study {
+        Some(study) => format!("study `{study}`: `{name}`"),
+        None => format!("`{name}`"),
+    };
     match note {
         StatisticNote::Infinite { time } => Diagnostic::warning(
             "infinite",

@@ -10,6 +10,7 @@ use serde::Serialize;
 
 use crate::along::force_problems;
 use crate::motion_findings::motion_findings;
+use crate::number_notes::number_notes;
 use crate::pose::Setting;
 use crate::prepared::{design, motion};
 use crate::unit::Units;
@@ -184,11 +185,15 @@ pub fn sensitivities(
         })
     });
     let measures = measures.collect();
+    let mut diagnostics = motion_findings(&motion);
+    let numbers = asked.iter().zip(found.notes);
+    let numbers = numbers.map(|(named, notes)| (named.name.as_str(), notes));
+    diagnostics.extend(number_notes(None, &motion, numbers));
     Ok(Sensitivities {
         place,
         measures,
         left_out,
-        diagnostics: motion_findings(&motion),
+        diagnostics,
     })
 }
 
