@@ -16,6 +16,7 @@ use crate::plotted::plotted;
 use crate::point_vectors::point_vectors;
 use crate::result::StudyResult;
 use crate::table::{Column, largest};
+use crate::unit::SHORT_DIGITS;
 use crate::view::{drawing_frames, mechanism_view};
 
 /// A study with what became of it.
@@ -114,7 +115,7 @@ fn listings(result: &StudyResult) -> impl Iterator<Item = Section> + '_ {
 
 fn scalar_facts(result: &StudyResult) -> Vec<(String, String)> {
     let fact = |s: &crate::result::Scalar| {
-        let value = kempe_number::text::significant(s.value, 12);
+        let value = kempe_number::text::significant(s.value, SHORT_DIGITS);
         let text = format!("{value} {}", s.unit.text());
         (s.name.clone(), text.trim_end().to_owned())
     };

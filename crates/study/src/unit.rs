@@ -6,7 +6,7 @@ use kempe_units::{Dimension, Unit, format_digits};
 /// Digits to which places on a motion are located.
 const PLACE_DIGITS: i32 = 14;
 /// Digits of what people read in a picture or a list.
-const SHORT_DIGITS: usize = 6;
+pub(crate) const SHORT_DIGITS: usize = 6;
 
 /// Chooses units for results.
 #[derive(Clone, Debug)]
