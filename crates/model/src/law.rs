@@ -6,7 +6,7 @@ use kempe_number::Number;
 
 use crate::drive::{Law, LawPiece, RiseLaw};
 use crate::geometry::value;
-use crate::spline::spline_at;
+use crate::spline::{piece, spline_at};
 
 /// A time this near to the end of a law, as a part of it, is the end: sums and quotients of a file's numbers miss it by
 /// their rounding, and drives that end together do so to the last bit.
@@ -60,8 +60,13 @@ impl Law {
         let mut take = |x: f64| extent = (extent.0.min(x), extent.1.max(x));
         for stretch in self.stretches(parameters) {
             take(stretch.to);
-            if let LawPiece::Table { times, .. } = stretch.piece {
-                for t in fine_times(times) {
+            if let LawPiece::Table {
+                times,
+                values,
+                moments,
+            } = stretch.piece
+            {
+                for t in knots_and_turns(times, values, moments) {
                     take(stretch.at(t));
                 }
             }
@@ -189,9 +194,14 @@ impl<T: Number> TimedPiece<'_, T> {
 
 impl TimedPiece<'_, f64> {
     fn first_time(&self, x: f64) -> Option<f64> {
-        if let LawPiece::Table { times, .. } = self.piece {
-            let fine: Vec<f64> = fine_times(times).collect();
-            return fine
+        if let LawPiece::Table {
+            times,
+            values,
+            moments,
+        } = self.piece
+        {
+            let ends: Vec<f64> = knots_and_turns(times, values, moments).collect();
+            return ends
                 .windows(2)
                 .find_map(|w| self.crossing(x, *w.first()?, *w.last()?));
         }
@@ -227,22 +237,31 @@ impl TimedPiece<'_, f64> {
     }
 }
 
-/// Times of a table close enough to find its extremes and crossings between: 16 steps to a segment.
-fn fine_times(times: &[f64]) -> impl Iterator<Item = f64> {
-    let steps = 16;
-    times.windows(2).flat_map(move |w| {
-        let (a, b) = (
-            w.first().copied().unwrap_or(0.0),
-            w.last().copied().unwrap_or(0.0),
-        );
-        (0..=steps).map(move |i| {
-            if i == steps {
-                b
-            } else {
-                a + (b - a) * f64::from(i) / f64::from(steps)
-            }
-        })
+/// The times of a table, and those between them at which its spline turns back: from one to the next it is monotone.
+fn knots_and_turns<'a>(
+    times: &'a [f64],
+    values: &'a [f64],
+    moments: &'a [f64],
+) -> impl Iterator<Item = f64> + 'a {
+    let pair = |list: &[f64], i: usize| Some([*list.get(i)?, *list.get(i + 1)?]);
+    let segment = move |i: usize| {
+        let [start, end] = pair(times, i)?;
+        let [_, b, c, d] = piece(end - start, pair(values, i)?, pair(moments, i)?);
+        let inside = move |t: &f64| start < *t && *t < end;
+        let mut turns = zeros(b, 2.0 * c, 3.0 * d).map(|s| start + s);
+        turns.sort_by(f64::total_cmp);
+        Some(turns.into_iter().filter(inside))
+    };
+    (0..times.len()).flat_map(move |i| {
+        let turns = segment(i).into_iter().flatten();
+        times.get(i).copied().into_iter().chain(turns)
     })
+}
+
+/// The zeros of `a + b x + c x^2`, without cancellation; not finite where there is none.
+fn zeros(a: f64, b: f64, c: f64) -> [f64; 2] {
+    let sum = b + (b * b - 4.0 * a * c).sqrt().copysign(b);
+    [-0.5 * sum / c, -2.0 * a / sum]
 }
 
 impl RiseLaw {
@@ -396,6 +415,42 @@ mod tests {
             ),
             (0.0, 3.0, 3.0)
         );
+    }
+
+    /// The extent of a table holds all of its spline, which overshoots between points that lie unevenly, and no more; the first
+    /// time of its ends is where they are.
+    #[test]
+    fn a_table_reaches_as_far_as_its_spline() {
+        for times in [
+            vec![0.0, 1.0, 1.001, 1.002, 2.0],
+            vec![0.0, 0.3, 0.5, 2.0, 2.1],
+        ] {
+            let values = vec![0.0, 3.1, 3.2, 3.2, 6.3];
+            let moments = crate::spline::moments(&times, &values);
+            let end = times[times.len() - 1];
+            let law = Law {
+                from: c(0.0),
+                pieces: vec![LawPiece::Table {
+                    times,
+                    values,
+                    moments,
+                }],
+            };
+            let (low, high) = law.extent(&[]);
+            let slack = 1e-12 * (high - low);
+            let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
+            for k in 0..=100_000 {
+                let x: f64 = law.at(end * f64::from(k) / 1e5, &[]);
+                assert!(low - slack <= x && x <= high + slack, "{x} {low} {high}");
+                (least, most) = (least.min(x), most.max(x));
+            }
+            let near = 1e-6 * (high - low);
+            assert!(least - low < near && high - most < near);
+            for x in [low, high] {
+                let t = law.first_time(x, &[]).unwrap();
+                assert!((law.at::<f64>(t, &[]) - x).abs() <= slack, "{x} {t}");
+            }
+        }
     }
 
     /// Times in several pieces at once: each lane has the bits of its own, an interval holds all between.
