@@ -11,6 +11,8 @@ use crate::view::{Frame, Wheel};
 
 /// Thickness of the strip behind the teeth, mm.
 const BACK: f64 = 2.2;
+/// Fewer teeth are not drawn.
+const FEWEST_TEETH: u32 = 5;
 /// More teeth than this are left out.
 const MOST_TEETH: f64 = 400.0;
 
@@ -28,13 +30,17 @@ pub(super) fn parts(context: &Context, link: usize, pinion: Wheel, side: f64) ->
     let (low, high) = along.fold((center[0], center[0]), |(low, high), x| {
         (low.min(x), high.max(x))
     });
-    let pitch = 2.0 * PI * radius / f64::from(pinion.teeth.max(1));
+    // Without teeth there is no pitch: a strip along the way.
+    let pitch = match pinion.teeth {
+        FEWEST_TEETH.. => 2.0 * PI * radius / f64::from(pinion.teeth),
+        _ => 0.0,
+    };
     let (x0, x1) = (low - 6.0 - pitch, high + 6.0 + pitch);
     let pitch_line = center[1] - side * radius;
     let module = pitch / PI;
     let back = pitch_line - side * (1.2 * module + BACK);
     let mut points: Vec<Point> = vec![[x1, back], [x0, back]];
-    let has_teeth = pinion.teeth >= 5 && module > 0.45 && (x1 - x0) / pitch < MOST_TEETH;
+    let has_teeth = module > 0.45 && (x1 - x0) / pitch < MOST_TEETH;
     if has_teeth {
         let root = pitch_line - side * 1.2 * module;
         points.push([x0, root]);
