@@ -35,7 +35,7 @@ const WITHOUT: &[(&str, &[&str])] = &[
     ]),
     (GUARD, &[
         "assemblies-incomplete", "branches-entangled", "changes-too-fast", "circuit-open", "friction-at-rest", "friction-not-converged",
-        "jammed", "locked", "not-balanced", "routes-differ", "rows-open",
+        "jammed", "not-balanced", "routes-differ", "rows-open",
     ]),
 ];
 

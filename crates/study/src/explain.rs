@@ -103,21 +103,11 @@ pub fn cannot_move(design: &Design<f64>, error: &MotionError) -> Diagnostic {
                 "cannot-assemble",
                 format!("{place} the mechanism cannot be assembled: {}", gap.message),
             );
-            let parts = &plan.decomposition;
-            let surplus = parts.blocks.iter().flat_map(|b| &b.surplus).chain(&parts.surplus);
-            let mut named: Vec<String> = surplus
-                .filter_map(|row| mechanism.constraints.get(row.constraint))
-                .map(|(_, source)| format!("`{}`", source_name(model, *source)))
-                .collect();
-            named.dedup();
-            diagnostic = if named.is_empty() {
-                diagnostic.help("change a length, or start the drive where the loop closes")
-            } else {
-                diagnostic.note(format!(
-                    "by count the links are fixed more often than they can move: without {} the rest decides everything",
-                    list(&named)
-                ))
-                .help("leave out a drive or a joint that is one too many, or make the lengths agree exactly")
+            diagnostic = match surplus_note(mechanism) {
+                None => diagnostic.help("change a length, or start the drive where the loop closes"),
+                Some(note) => diagnostic
+                    .note(note)
+                    .help("leave out a drive or a joint that is one too many, or make the lengths agree exactly"),
             };
             for link in links {
                 if let Some(link) = model.links.iter().find(|l| l.name == link) {
@@ -148,14 +138,41 @@ pub fn cannot_move(design: &Design<f64>, error: &MotionError) -> Diagnostic {
             model.units.length.name
         )),
         MotionError::Locked { at } => {
+            let drive = if model.drives.len() == 1 { "drive" } else { "drives" };
             let diagnostic = Diagnostic::error(
                 "locked",
-                format!("{} the mechanism is locked: the drive cannot move it in any direction", start_text(mechanism, *at)),
-            )
-            .help("start the drive elsewhere: here it stands at a dead point");
+                format!("{} the mechanism is locked: the {drive} cannot move it in any direction", start_text(mechanism, *at)),
+            );
+            let diagnostic = match surplus_note(mechanism) {
+                None => diagnostic.help("start the drive elsewhere: here it stands at a dead point"),
+                Some(note) => diagnostic
+                    .note(note)
+                    .help("leave out a drive or a joint that is one too many"),
+            };
             model.drives.iter().fold(diagnostic, |d, drive| d.at(drive.span.clone(), ""))
         }
     }
+}
+
+/// What holds the links besides what decides where they are; `None` when nothing does.
+fn surplus_note(mechanism: &Mechanism) -> Option<String> {
+    let parts = &mechanism.plan.decomposition;
+    let surplus = parts
+        .blocks
+        .iter()
+        .flat_map(|b| &b.surplus)
+        .chain(&parts.surplus);
+    let mut named: Vec<String> = surplus
+        .filter_map(|row| mechanism.constraints.get(row.constraint))
+        .map(|(_, source)| format!("`{}`", source_name(&mechanism.model, *source)))
+        .collect();
+    named.dedup();
+    (!named.is_empty()).then(|| {
+        format!(
+            "by count the links are fixed more often than they can move: without {} the rest decides everything",
+            list(&named)
+        )
+    })
 }
 
 /// Work that was stopped before its first row.

@@ -88,6 +88,7 @@ impl Motion {
         let scale = path.scale();
         let mut coordinates = vec![0.0; design.mechanism.model.drives.len()];
         let mut nothing: Option<Assemblies> = None;
+        let mut stands = false;
         let mut at_start: Option<Vec<f64>> = None;
         let mut best: Option<Beginning> = None;
         let mut compared = 0;
@@ -111,6 +112,7 @@ impl Motion {
                 nothing.get_or_insert(assemblies);
                 continue;
             }
+            stands |= anchor == from;
             let found = begin(design, &path, assemblies, anchor, &mut at_start);
             let Some(found) = found else { continue };
             let clear = found.determined > DETERMINED;
@@ -135,11 +137,12 @@ impl Motion {
         }) = best
         else {
             return Err(match nothing {
-                Some(assemblies) => MotionError::CannotAssemble {
+                // It stands where it starts, and nowhere beside it.
+                Some(assemblies) if !stands => MotionError::CannotAssemble {
                     at: from,
                     assemblies: Box::new(assemblies),
                 },
-                None => MotionError::Locked { at: from },
+                _ => MotionError::Locked { at: from },
             });
         };
         // The share of the range that lies above it.
