@@ -142,10 +142,12 @@ impl Proof {
         facts
             .extend(gaps.map(|gap| ("Left out", format!("{along} {}: {}", gap.place, gap.reason))));
         if self.redundant > 0 {
-            let text = format!(
-                "{} redundant constraint rows: that they agree cannot be proved",
-                self.redundant
-            );
+            let text = match self.redundant {
+                1 => "1 redundant constraint row: that it agrees cannot be proved".to_owned(),
+                rows => {
+                    format!("{rows} redundant constraint rows: that they agree cannot be proved")
+                }
+            };
             facts.push(("Without", text));
         }
         if !self.finished {

@@ -91,9 +91,8 @@ impl Certifier {
                 heap.push(piece);
                 break;
             };
-            if !(from < middle && middle < to)
-                || !self.joins(&[&piece.tube, &low.1, &high.1], middle)
-            {
+            let tubes = [&piece.tube, &low.1, &high.1];
+            if middle <= from || to <= middle || !self.joins(&tubes, middle) {
                 heap.push(piece);
                 break;
             }
