@@ -57,8 +57,12 @@ pub(crate) fn prove_numbers(
             b.lo() - slack <= value && value <= b.hi() + slack
         };
         let bounds = Some(bounds).filter(|b| !b.is_empty() && b.width().is_finite() && holds(b));
+        let told = told(&units, &quantity, value, bounds);
         list.push(ProvedNumber {
-            told: told(&units, &quantity, value, bounds),
+            told: match bounds {
+                Some(_) => told,
+                None => format!("{told}: {}", why_not(proved, value)),
+            },
             name: quantity.name,
             value,
             bounds: bounds.map(|b| (b.lo(), b.hi())),
@@ -79,6 +83,17 @@ fn told(units: &Units, quantity: &Quantity, value: f64, bounds: Option<Interval>
             text(b.hi())
         ),
         None => format!("{}, not proved", text(value)),
+    }
+}
+
+/// Why a number has no proved bounds.
+fn why_not(proved: &CertifiedMotion, value: f64) -> &'static str {
+    if !proved.is_whole() {
+        "the motion is not proved as one run"
+    } else if value.is_nan() {
+        "it has no value from poses alone"
+    } else {
+        "it is no largest or smallest value or range of what poses tell, or its bounds stayed wide"
     }
 }
 
