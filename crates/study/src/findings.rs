@@ -297,13 +297,12 @@ fn assumptions(model: &Model, units: &Units) -> Vec<String> {
         model.units.length.name, model.units.angle.name
     )];
     for drive in &model.drives {
-        let law = &drive.law;
-        assumed.push(format!(
-            "drive {}: {} in {}",
-            drive.name,
-            law_text(drive, &parameters, units),
-            units.text(law.duration(&parameters), Dimension::TIME)
-        ));
+        let way = law_text(drive, &parameters, units);
+        let time = match drive.law.duration(&parameters) {
+            0.0 => String::new(),
+            time => format!(" in {}", units.text(time, Dimension::TIME)),
+        };
+        assumed.push(format!("drive {}: {way}{time}", drive.name));
     }
     assumed.extend(crate::findings_forces::assumptions(model, units));
     let endless = model.joints.iter().filter(|joint| {
