@@ -165,23 +165,23 @@ pub(crate) fn over_motion<F: ForceSource>(
                 }
                 return mean;
             }
-            if let Some(pole) = course.poles.first() {
-                tell(StatisticNote::Infinite { time: pole.time });
-            }
             let Some((low, high)) = course.extremes.as_ref().and_then(Search::found) else {
+                if let Some(pole) = course.poles.first() {
+                    tell(StatisticNote::Infinite { time: pole.time });
+                }
                 return f64::NAN;
             };
-            // Right at a sample.
-            let at_sample = [low, high].into_iter().find(|at| at.1.is_infinite());
-            if let (Some((time, _)), true) = (at_sample, course.poles.is_empty()) {
+            let (ends, value) = match statistic {
+                Statistic::Min => ([low, low], low.1),
+                Statistic::Max => ([high, high], high.1),
+                Statistic::Range => ([low, high], high.1 - low.1),
+                _ => ([low, high], time_ratio(sampler, high.0 - low.0, duration)),
+            };
+            // At a pole or right at a sample. The smallest value of what runs away upwards alone is as good as any.
+            if let Some((time, _)) = ends.into_iter().find(|at| at.1.is_infinite()) {
                 tell(StatisticNote::Infinite { time });
             }
-            match statistic {
-                Statistic::Min => low.1,
-                Statistic::Max => high.1,
-                Statistic::Range => high.1 - low.1,
-                _ => time_ratio(sampler, high.0 - low.0, duration),
-            }
+            value
         })
         .collect();
     let known = (measures.iter().zip(&courses))

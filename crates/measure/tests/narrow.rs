@@ -124,8 +124,13 @@ fn poles_are_infinite_and_their_place_is_told() {
                 StatisticNote::Infinite { time } | StatisticNote::Diverges { time } => *time,
                 note => panic!("{of}: {note:?}"),
             };
-            for (_, notes) in &found[..3] {
-                assert!((place(&notes[0]) - center).abs() < 1e-9, "{of}: {notes:?}");
+            for (value, notes) in &found[..3] {
+                // The smallest value of what runs away upwards alone is as good as any.
+                if value.is_finite() {
+                    assert!(notes.is_empty(), "{of}: {value} {notes:?}");
+                } else {
+                    assert!((place(&notes[0]) - center).abs() < 1e-9, "{of}: {notes:?}");
+                }
             }
         }
     }
