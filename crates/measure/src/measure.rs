@@ -10,6 +10,7 @@ mod named;
 mod needs;
 
 use self::named::NamedSeries;
+pub(crate) use self::needs::needs_time;
 pub use self::needs::{NoMeasure, order_of, visit_leaves};
 
 use kempe_mechanism::pose::Pose;

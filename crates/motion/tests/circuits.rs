@@ -183,6 +183,10 @@ mean = \"mean(x)\"
 fastest = \"max(speed(C))\"
 of_both = \"max(x)/max(y)\"
 nested = \"max(x/highest)\"
+hidden = \"max(speed(C) / sqrt(x/1 m - 3))\"
+late = \"max(time)\"
+once = \"at(x, motor, 0.9)\"
+when = \"at(x, time, 0.5)\"
 ";
     let case = Case::read(text, "circuit.toml");
     let circuit = Circuit::new(&case.design).unwrap();
@@ -207,12 +211,26 @@ nested = \"max(x/highest)\"
         |k: usize| rows.iter().map(|r| r[k]).fold(f64::NEG_INFINITY, f64::max),
     );
     let expected = [least(0), most(0), most(1) - least(1)];
+    let at = |p: f64| {
+        let mut sampler = kempe_measure::Sampler::new(&circuit.demanded, &measures[..1]).unwrap();
+        sampler.values_at_parameter(p)[0]
+    };
+    let first = at(0.9);
+    for sampler in &samplers {
+        for timeless in [5, 6, 8, 9, 10, 12] {
+            assert_eq!(sampler.notes_of(measures[timeless]), []);
+        }
+    }
     for row in &rows {
         for (found, expected) in row[2..5].iter().zip(expected) {
             assert!((found - expected).abs() < 1e-6, "{found} is not {expected}");
         }
         assert!(row[2] <= row[0] && row[0] <= row[3]);
         assert!((row[7] - most(0) / most(1)).abs() < 1e-6);
-        assert!(row[5].is_nan() && row[6].is_nan() && row[8].is_nan());
+        // Between the dead points the drawn assembly is the first that is travelled.
+        assert!((row[11] - first).abs() < 1e-9);
+        for timeless in [5, 6, 8, 9, 10, 12] {
+            assert!(row[timeless].is_nan(), "{timeless}: {row:?}");
+        }
     }
 }

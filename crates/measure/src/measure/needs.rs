@@ -110,6 +110,19 @@ fn depth(
     Ok(deepest)
 }
 
+/// Whether a measure has a value only where time runs.
+pub(crate) fn needs_time(mechanism: &Mechanism, measure: &Measure) -> bool {
+    let mut needs = false;
+    visit_leaves(mechanism, measure, &mut |leaf| {
+        needs |= match leaf {
+            Leaf::Time | Leaf::Rate(..) | Leaf::Force(_) => true,
+            Leaf::Pose(pose) => matches!(pose.nature(), Nature::InTime(_)),
+            _ => false,
+        };
+    });
+    needs
+}
+
 /// Calls `f` for every leaf of a measure, inside rates, coefficients, statistics and named measures as well, the inner
 /// leaves first. A named measure is looked into once.
 pub fn visit_leaves(mechanism: &Mechanism, measure: &Measure, f: &mut impl FnMut(&Leaf)) {

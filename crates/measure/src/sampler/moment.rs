@@ -12,7 +12,7 @@ use crate::states_along::PathPlace;
 impl<F: ForceSource> Sampler<F> {
     /// Hands the moment last found to `ask`: with its forces where they are wanted, and with the lengths of the paths of some
     /// points.
-    pub(crate) fn with_moment<R>(
+    pub(super) fn with_moment<R>(
         &mut self,
         place: PathPlace<f64>,
         with_forces: bool,
