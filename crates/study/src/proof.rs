@@ -116,9 +116,10 @@ pub fn prove(model: &Model, progress: &mut dyn Progress) -> Result<Proof, Vec<Di
 }
 
 impl Proof {
-    /// Whether all of the range is proved, without a gap.
+    /// Whether all of the range is proved, without a gap, and no number is outside of its bounds.
     pub fn is_whole(&self) -> bool {
-        self.finished && self.redundant == 0 && self.gaps.is_empty()
+        let contradicted = self.numbers.iter().any(|n| n.contradicted);
+        self.finished && self.redundant == 0 && self.gaps.is_empty() && !contradicted
     }
 
     /// What is proved and what is not, as labels with what they say.

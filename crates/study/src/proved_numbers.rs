@@ -2,14 +2,15 @@
 
 use std::sync::Arc;
 
-use kempe_measure::measure::{Along, History, measure};
-use kempe_measure::{Abscissa, Sampler, Series, State};
+use kempe_measure::measure::{Along, History, measure, visit_leaves};
+use kempe_measure::{Abscissa, NoForces, Sampler, Series, State, unmeasurable};
 use kempe_mechanism::{Branch, Design};
-use kempe_model::{Leaf, Measure, Statistic};
+use kempe_model::{Leaf, Measure, PoseMeasure, Statistic};
 use kempe_motion::Motion;
 use kempe_motion::progress::{Done, Progress, Stage};
 use kempe_number::{Interval, Number};
 use kempe_proof::{Cell, CertifiedMotion, Certifier};
+use kempe_units::{Dimension, format_digits};
 use serde::Serialize;
 
 use crate::columns::numbers;
@@ -18,6 +19,10 @@ use crate::unit::Units;
 
 /// Bounds are wanted as near to each other as this part of what they bound.
 const NARROW: f64 = 1e-6;
+/// A number may miss its bounds by this part of them: it was found in plain numbers.
+const ROUNDING: f64 = 1e-9;
+/// Digits that are told of bounds.
+const DIGITS: usize = 9;
 
 /// A number over the motion, and what is proved of it.
 #[derive(Clone, Debug, Serialize)]
@@ -29,71 +34,118 @@ pub struct ProvedNumber {
     pub value: f64,
     /// Bounds that hold it, SI: proved.
     pub bounds: Option<(f64, f64)>,
+    /// Whether the value lies outside of bounds that were proved: one of both is wrong.
+    pub contradicted: bool,
     /// With its unit, as it is told to people.
     pub told: String,
 }
 
-/// Proves what can be proved of a model's numbers over a proved motion: those of poses. Of speeds and forces nothing is.
+/// Proves what can be proved of a model's numbers over a proved motion: those of poses. Of speeds and forces nothing is. None
+/// where it is stopped.
 pub(crate) fn prove_numbers(
     motion: &Arc<Motion>,
     proved: &CertifiedMotion,
     progress: &mut dyn Progress,
 ) -> Vec<ProvedNumber> {
     let model = &motion.mechanism().model;
-    let asked = numbers(model);
+    let mut asked = numbers(model);
+    asked.retain(|q| unmeasurable(motion.mechanism(), &[&q.measure]).is_empty());
+    let measures: Vec<&Measure> = asked.iter().map(|q| &q.measure).collect();
+    // Those of forces need their source, and have no value here.
+    let Ok(mut sampler) = Sampler::with_progress(motion, &measures, NoForces, progress) else {
+        return Vec::new();
+    };
+    let values = sampler.values_at_parameter(motion.start);
     let mut prover = Prover::new(motion, proved);
     let units = Units::of(model);
     let mut list = Vec::new();
-    for quantity in asked {
-        // Those of forces need their source, and have no bounds here.
-        let Ok(mut sampler) = Sampler::new(motion, &[&quantity.measure]) else {
-            continue;
-        };
-        let value = sampler.values_at_parameter(motion.start)[0];
+    for (quantity, value) in asked.iter().zip(values) {
         let bounds = prover.bounds(&quantity.measure, progress);
-        // A measure that counts turns may be whole turns off what is proved of its principal value.
-        let holds = |b: &Interval| {
-            let slack = NARROW * b.lo().abs().max(b.hi().abs());
-            b.lo() - slack <= value && value <= b.hi() + slack
+        let finding = if value.is_nan() {
+            Finding::NotProved("it has no value from poses alone")
+        } else if !proved.is_whole() {
+            Finding::NotProved("the motion is not proved as one run")
+        } else if bounds.is_empty() || !bounds.width().is_finite() {
+            Finding::NotProved(
+                "it is no largest or smallest value or range of what poses tell, or its bounds stayed wide",
+            )
+        } else if holds(bounds, value) {
+            Finding::Proved(bounds)
+        } else if counts_turns(motion, &quantity.measure) {
+            Finding::NotProved(
+                "bounds are those of directions without the turns that they have made",
+            )
+        } else if gap(bounds, value) <= ROUNDING * scale(quantity.dimension, motion.size()) {
+            Finding::NotProved("it lies beside its bounds by rounding")
+        } else {
+            Finding::Contradicted(bounds)
         };
-        let bounds = Some(bounds).filter(|b| !b.is_empty() && b.width().is_finite() && holds(b));
-        let told = told(&units, &quantity, value, bounds);
         list.push(ProvedNumber {
-            told: match bounds {
-                Some(_) => told,
-                None => format!("{told}: {}", why_not(proved, value)),
-            },
-            name: quantity.name,
+            name: quantity.name.clone(),
             value,
-            bounds: bounds.map(|b| (b.lo(), b.hi())),
+            bounds: match finding {
+                Finding::Proved(b) => Some((b.lo(), b.hi())),
+                _ => None,
+            },
+            contradicted: matches!(finding, Finding::Contradicted(_)),
+            told: told(&units, quantity, value, &finding),
         });
+        if progress.reached(Stage::Proving, Done::Unknown).is_break() {
+            return Vec::new();
+        }
     }
     list
 }
 
-fn told(units: &Units, quantity: &Quantity, value: f64, bounds: Option<Interval>) -> String {
-    let unit = quantity.unit(units);
-    let text = |x: f64| kempe_units::format_digits(x + 0.0, &unit, 9);
-    match bounds {
-        None if value.is_nan() => "not proved".to_owned(),
-        Some(b) => format!(
-            "{}, proved between {} and {}",
-            text(value),
-            text(b.lo()),
-            text(b.hi())
-        ),
-        None => format!("{}, not proved", text(value)),
+/// What became of the proof of a number.
+enum Finding {
+    Proved(Interval),
+    NotProved(&'static str),
+    /// It lies outside of its bounds: one of both is wrong.
+    Contradicted(Interval),
+}
+
+/// Whether bounds hold a number, but for its rounding.
+fn holds(bounds: Interval, value: f64) -> bool {
+    gap(bounds, value) <= ROUNDING * bounds.lo().abs().max(bounds.hi().abs())
+}
+
+/// How far a number lies outside of bounds.
+fn gap(bounds: Interval, value: f64) -> f64 {
+    (bounds.lo() - value).max(value - bounds.hi()).max(0.0)
+}
+
+/// A typical size of a quantity: what differences of such are rounded to. Of most it is not known.
+fn scale(dimension: Dimension, size: f64) -> f64 {
+    match dimension {
+        Dimension::LENGTH => size,
+        Dimension::ANGLE | Dimension::NONE => 1.0,
+        _ => f64::INFINITY,
     }
 }
 
-/// Why a number has no proved bounds.
-fn why_not(proved: &CertifiedMotion, value: f64) -> &'static str {
-    if !proved.is_whole() {
-        "the motion is not proved as one run"
-    } else if value.is_nan() {
-        "it has no value from poses alone"
-    } else {
-        "it is no largest or smallest value or range of what poses tell, or its bounds stayed wide"
+/// Whether a measure asks for directions, which the motion unwraps and a proof does not.
+fn counts_turns(motion: &Motion, measure: &Measure) -> bool {
+    let mut counts = false;
+    visit_leaves(motion.mechanism(), measure, &mut |leaf| {
+        counts |= matches!(leaf, Leaf::Pose(PoseMeasure::Direction(..)));
+    });
+    counts
+}
+
+fn told(units: &Units, quantity: &Quantity, value: f64, finding: &Finding) -> String {
+    let unit = quantity.unit(units);
+    let text = |x: f64| format_digits(x + 0.0, &unit, DIGITS);
+    let between = |b: &Interval| format!("between {} and {}", text(b.lo()), text(b.hi()));
+    match finding {
+        Finding::Proved(b) => format!("{}, proved {}", text(value), between(b)),
+        Finding::NotProved(why) if value.is_nan() => format!("not proved: {why}"),
+        Finding::NotProved(why) => format!("{}, not proved: {why}", text(value)),
+        Finding::Contradicted(b) => format!(
+            "{}, but proved {}: one of both is wrong, please report it with this file",
+            text(value),
+            between(b)
+        ),
     }
 }
 
@@ -220,4 +272,25 @@ fn over_cell(
         near: branch.near.clone(),
     };
     measure(&state, &History::default(), None, inner, Along::Time).coefficient(0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_number_is_held_by_its_bounds_but_for_its_rounding() {
+        let bounds = Interval::new(2.0, 3.0);
+        assert!(
+            [2.0, 2.5, 3.0, 3.0 + 1e-10]
+                .iter()
+                .all(|x| holds(bounds, *x))
+        );
+        assert!(
+            [1.9, 3.0 + 1e-6, f64::INFINITY]
+                .iter()
+                .all(|x| !holds(bounds, *x))
+        );
+        assert_eq!([1.5, 2.5, 4.0].map(|x| gap(bounds, x)), [0.5, 0.0, 1.0]);
+    }
 }
