@@ -61,10 +61,10 @@ pub(crate) fn prove_numbers(
     let mut list = Vec::new();
     for (quantity, value) in asked.iter().zip(values) {
         let bounds = prover.bounds(&quantity.measure, progress);
-        let finding = if value.is_nan() {
-            Finding::NotProved("it has no value from poses alone")
-        } else if !proved.is_whole() {
+        let finding = if !proved.is_whole() {
             Finding::NotProved("the motion is not proved as one run")
+        } else if value.is_nan() {
+            Finding::NotProved("it has no value from poses alone")
         } else if bounds.is_empty() || !bounds.width().is_finite() {
             Finding::NotProved(
                 "it is no largest or smallest value or range of what poses tell, or its bounds stayed wide",
