@@ -46,7 +46,7 @@ pub struct MotionEvent {
     pub kind: EventKind,
     /// Where, SI.
     pub at: f64,
-    /// Where, in the file's unit: `lock = 117.51220651664 deg`.
+    /// Where, in the file's unit: `lock = 117.512 deg`.
     pub place: String,
 }
 

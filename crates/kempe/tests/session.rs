@@ -156,7 +156,7 @@ fn the_lock_is_dragged_through_its_change_point() {
     assert!(
         p.note()
             .expect("a note")
-            .starts_with("change point at lock = 117.5122")
+            .starts_with("change point at lock = 117.512 deg")
     );
 
     // Beyond the laws, up to the limit at 132.74 degrees, and no farther.

@@ -25,6 +25,8 @@ use kempe_motion::progress::{Done, Progress, Stage};
 
 /// Rows of a circuit when the study does not say how many.
 const DEFAULT_ROWS: usize = 361;
+/// What two stretches met at the same place, in parts of the size of the range: they end and begin there.
+const SAME_PLACE: f64 = 1e-12;
 
 /// Runs a study that traces a whole circuit. Rows stand evenly along the arc, or at steps of
 /// the drive; time does not run.
@@ -127,11 +129,12 @@ pub(crate) fn run_circuit(
             .iter()
             .map(|(s, p)| if *s == index { *p } else { f64::INFINITY })
             .collect();
+        let (low, high) = stretch.motion.reached();
+        let near = SAME_PLACE * low.abs().max(high.abs());
         for event in events(&stretch.motion, &own) {
-            if met
-                .iter()
-                .all(|e| e.place != event.place || e.row.abs_diff(event.row) > 2)
-            {
+            let same =
+                |e: &Event| (e.at - event.at).abs() <= near && e.row.abs_diff(event.row) <= 2;
+            if !met.iter().any(same) {
                 met.push(event);
             }
         }

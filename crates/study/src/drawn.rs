@@ -23,6 +23,8 @@ pub struct DrawnLink {
     pub link: String,
     /// Distances such as `A-B 20 mm`, and `A-B 20 mm (drawn 20.2 mm)` where the file gives another than is drawn.
     pub lengths: Vec<String>,
+    /// The same, m.
+    pub lengths_si: Vec<f64>,
 }
 
 /// The links that are drawn. Of a link whose points the file places otherwise, the distances that are not as drawn.
@@ -42,10 +44,16 @@ pub(crate) fn links(design: &Design<f64>, units: &Units) -> Vec<DrawnLink> {
     for (i, link) in model.links.iter().enumerate() {
         let listed = model.drawing.links.iter().any(|id| id.index() == i);
         let lengths = lengths(model, link, listed, &places, parameters, units);
-        if !lengths.is_empty() {
-            let link = link.name.clone();
-            found.push(DrawnLink { link, lengths });
+        if lengths.is_empty() {
+            continue;
         }
+        let (lengths, lengths_si) = lengths.into_iter().unzip();
+        let link = link.name.clone();
+        found.push(DrawnLink {
+            link,
+            lengths,
+            lengths_si,
+        });
     }
     found
 }
@@ -57,7 +65,7 @@ fn lengths(
     places: &BTreeMap<PointId, [f64; 2]>,
     parameters: &[f64],
     units: &Units,
-) -> Vec<String> {
+) -> Vec<(String, f64)> {
     let own: Vec<[f64; 2]> = link.evaluate(parameters);
     let drawn = link.points.iter().zip(own);
     let drawn: Vec<_> = drawn
@@ -81,12 +89,15 @@ fn lengths(
         if as_drawn && !listed {
             continue;
         }
-        let text = |x: f64| units.short(x, Dimension::LENGTH);
-        let mut line = format!("{} {}", [a, b].map(name).join("-"), text(is));
-        if !as_drawn {
-            line += &format!(" (drawn {})", text(was));
-        }
-        lengths.push(line);
+        let names = [a, b].map(name).join("-");
+        let text = match as_drawn {
+            true => units.text(is, Dimension::LENGTH),
+            false => {
+                let [is, was] = units.texts([is, was], Dimension::LENGTH);
+                format!("{is} (drawn {was})")
+            }
+        };
+        lengths.push((format!("{names} {text}"), is));
     }
     lengths
 }

@@ -3,7 +3,7 @@
 use kempe_mechanism::plan::{Condition, Dyad, Step, Swing};
 use kempe_mechanism::structure::{BodyId, Marker};
 use kempe_mechanism::{Branch, Configuration, Design, Mechanism};
-use kempe_model::{Diagnostic, LinkId, Model};
+use kempe_model::{Diagnostic, LinkId};
 use kempe_motion::drive_path::DrivePath;
 use kempe_motion::{EndReason, Motion, MotionError, SIZES, Stage};
 use kempe_number::math::hypot;
@@ -386,12 +386,12 @@ pub fn beyond_limit(motion: &Motion, missed: &[(EndReason, f64)]) -> Diagnostic 
         },
         DrivePath::Time { .. } => ("the motion".to_owned(), Dimension::TIME, None),
     };
-    let text = |x: f64| units.text(x, dimension);
     let ends: Vec<String> = missed
         .iter()
         .map(|(_, at)| {
             let limit = if *at > high { high } else { low };
-            format!("{} is beyond {}", text(*at), text(limit))
+            let [at, limit] = units.texts([*at, limit], dimension);
+            format!("{at} is beyond {limit}")
         })
         .collect();
     let stuck = missed.iter().all(|(r, _)| *r == EndReason::Stuck);
@@ -428,13 +428,13 @@ pub fn beyond_limit(motion: &Motion, missed: &[(EndReason, f64)]) -> Diagnostic 
         )
     };
     let falls = falls(motion);
-    let ordered = |low: String, high: String| match falls {
+    let range = match falls {
         true => (high, low),
         false => (low, high),
     };
-    let (from, to) = ordered(text(low), text(high));
     let mut diagnostic = Diagnostic::error(code, message).note(format!(
-        "from {from} to {to} can be reached, on the circuit of this assembly"
+        "from {} can be reached, on the circuit of this assembly",
+        units.range_text(range, dimension)
     ));
     if too_long {
         return diagnostic.help("ask for a shorter range: every turn of a cycle is like the first");
@@ -458,10 +458,11 @@ pub fn beyond_limit(motion: &Motion, missed: &[(EndReason, f64)]) -> Diagnostic 
             let [a, b, low, high] =
                 [motion.demanded.0, motion.demanded.1, low, high].map(|x| shown(x, &unit));
             let text = |x: f64| units.text(unit.to_si(x), dimension);
-            let (from, to) = ordered(
-                text(inside(a, low, high, true)),
-                text(inside(b, low, high, false)),
-            );
+            let [first, last] = [inside(a, low, high, true), inside(b, low, high, false)].map(text);
+            let (from, to) = match falls {
+                true => (last, first),
+                false => (first, last),
+            };
             diagnostic = diagnostic.help(format!("ask for no more than \"{from}\" to \"{to}\""));
         } else {
             diagnostic = diagnostic.help("start the drive elsewhere or change a length a little: branches may meet where it stopped");
@@ -527,14 +528,4 @@ fn limiting_group(motion: &Motion, at: f64) -> Option<String> {
         (_, 1) => Some(format!("{} cannot be placed any further", names[0])),
         _ => Some(format!("the group of {} reaches its end", list(&names))),
     }
-}
-
-/// A range with its unit: `0 deg to 117.279612741 deg`.
-pub fn reach_text(model: &Model, range: (f64, f64), dimension: Dimension) -> String {
-    let units = Units::of(model);
-    format!(
-        "{} to {}",
-        units.text(range.0, dimension),
-        units.text(range.1, dimension)
-    )
 }

@@ -69,6 +69,8 @@ pub struct Report {
     pub reach_si: Option<(f64, f64)>,
     /// Dead points and change points, in words.
     pub events: Vec<String>,
+    /// Where they are in SI, in the same order.
+    pub events_si: Vec<f64>,
     /// What is assumed where the file says nothing.
     pub assumptions: Vec<String>,
     /// What a careful engineer would want to be told, and what is wrong.
@@ -99,6 +101,8 @@ pub struct Grashof {
     pub pins: Vec<String>,
     /// Distances between the pins of each link, with units.
     pub lengths: Vec<String>,
+    /// The same, m.
+    pub lengths_si: Vec<f64>,
     /// Its type.
     pub kind: String,
 }
@@ -172,8 +176,9 @@ pub fn check_with_progress(model: &Model, progress: &mut dyn Progress) -> Report
                 lengths: f
                     .lengths
                     .iter()
-                    .map(|l| units.short(*l, Dimension::LENGTH))
+                    .map(|l| units.text(*l, Dimension::LENGTH))
                     .collect(),
+                lengths_si: f.lengths.to_vec(),
                 kind: f.kind.name().to_owned(),
             })
             .collect(),
@@ -184,6 +189,7 @@ pub fn check_with_progress(model: &Model, progress: &mut dyn Progress) -> Report
         reach: None,
         reach_si: found.reach.as_ref().map(|r| r.range),
         events: Vec::new(),
+        events_si: Vec::new(),
         assumptions: assumptions(model, &units),
         diagnostics: Vec::new(),
     };
@@ -194,7 +200,7 @@ pub fn check_with_progress(model: &Model, progress: &mut dyn Progress) -> Report
         report.reach = Some(if reach.full_turn {
             format!("{name} turns fully")
         } else {
-            let range = crate::explain::reach_text(model, reach.range, dimension);
+            let range = units.range_text(reach.range, dimension);
             let why = match reach.ends {
                 (EndReason::Limit, EndReason::Limit) => ", limits on both sides",
                 (EndReason::Runaway, EndReason::Limit) => {
@@ -224,6 +230,7 @@ pub fn check_with_progress(model: &Model, progress: &mut dyn Progress) -> Report
                 EventKind::Limit => "limit of the drive",
                 _ => "change point",
             };
+            report.events_si.push(event.at);
             report.events.push(format!(
                 "{what} at {name} = {}",
                 units.place_text(event.at, dimension, reach.range)
@@ -347,24 +354,17 @@ fn teeth(model: &Model) -> Option<String> {
 fn law_text(drive: &Drive, parameters: &[f64], units: &Units) -> String {
     let law = &drive.law;
     let (low, high) = law.extent(parameters);
-    let text = |x: f64| units.text(x, drive.dimension);
     if low == high {
-        return format!("held at {}", text(low));
+        return format!("held at {}", units.text(low, drive.dimension));
     }
-    let (first, last) = (
-        law.at(0.0, parameters),
-        law.at(law.duration(parameters), parameters),
-    );
-    match (first, last) {
-        ends if ends == (low, high) => format!("{} to {}", text(low), text(high)),
-        ends if ends == (high, low) => format!("{} to {}", text(high), text(low)),
-        _ => format!(
-            "{} to {}, between {} and {}",
-            text(first),
-            text(last),
-            text(low),
-            text(high)
-        ),
+    let end = law.duration(parameters);
+    let ends = [law.at(0.0, parameters), law.at(end, parameters), low, high];
+    let [first, last, least, most] = units.texts(ends, drive.dimension);
+    match ends {
+        [a, b, ..] if (a, b) == (low, high) || (a, b) == (high, low) => {
+            format!("{first} to {last}")
+        }
+        _ => format!("{first} to {last}, between {least} and {most}"),
     }
 }
 

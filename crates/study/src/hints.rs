@@ -13,6 +13,8 @@ use crate::words::list;
 const AS_NEAR: f64 = 1e-6;
 /// Digits in which it is told how far a hint is missed.
 const DIGITS: usize = 3;
+/// A hint missed by less than this part of the mechanism's size, or of a radian, is met.
+const ROUNDING: f64 = 1e-12;
 /// Contradictions of up to so many sides are looked for; of more all are named.
 const SMALL: usize = 4;
 
@@ -54,7 +56,14 @@ pub(crate) fn as_near<'a>(design: &Design<f64>, assemblies: &'a Assemblies) -> &
 pub(crate) fn off(design: &Design<f64>, units: &Units, poses: &[Pose<f64>]) -> String {
     let model = &design.mechanism.model;
     let found = found_near(design, poses).into_iter().zip(&model.assembly);
-    let rough = |x: f64, dimension| format_digits(x, &units.unit(dimension), DIGITS);
+    let rough = |x: f64, dimension| {
+        let size = match dimension {
+            Dimension::LENGTH => design.size(),
+            _ => 1.0,
+        };
+        let x = if x <= ROUNDING * size { 0.0 } else { x };
+        format_digits(x, &units.unit(dimension), DIGITS)
+    };
     let parts: Vec<String> = found
         .filter_map(|(found, hint)| {
             Some(match (found?, &hint.kind) {

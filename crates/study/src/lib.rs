@@ -74,7 +74,7 @@ mod view;
 mod words;
 
 pub use along::{Along, Row, RowForces, force_problems};
-pub use explain::{beyond_limit, cannot_move, reach_text};
+pub use explain::{beyond_limit, cannot_move};
 pub use figures::{MECHANISM, figures};
 pub use findings::{Grashof, Group, Report as CheckReport, check, check_with_progress};
 pub use kempe_motion::progress::{Done, Progress, Silent, Stage};

@@ -127,7 +127,7 @@ fn left_drawing(motion: &Motion) -> Option<Diagnostic> {
     let elsewhere: Vec<String> = drives
         .iter()
         .map(|(e, drive)| {
-            let [start, drawn] = [e.start, e.drawn].map(|x| units.text(x, drive.dimension));
+            let [start, drawn] = units.texts([e.start, e.drawn], drive.dimension);
             format!("`{}` starts at {start} and is drawn at {drawn}", drive.name)
         })
         .collect();

@@ -179,12 +179,9 @@ fn off_the_motion(model: &Model, time: f64) -> Option<Diagnostic> {
         return None;
     }
     let units = Units::of(model);
-    let [time, duration] = [time, duration].map(|t| units.text(t, Dimension::TIME));
+    let [time, duration] = units.texts([time, duration], Dimension::TIME);
     let message = format!("the motion does not pass {time}: it goes from 0 s to {duration}");
-    Some(
-        Diagnostic::error("not-on-the-motion", message)
-            .help(format!("give a time from 0 s to {duration}")),
-    )
+    Some(Diagnostic::error("not-on-the-motion", message).help("give a time between these"))
 }
 
 /// What keeps the drives from going to a place, told of the place that was asked for.
@@ -261,7 +258,7 @@ pub fn pose_at(model: &Model, settings: &[Setting]) -> Result<ShownPose, Vec<Dia
         label.push(format!(
             "{} = {}",
             drive.name,
-            units.short(target, drive.dimension)
+            units.text(target, drive.dimension)
         ));
         let piece = if target == from {
             LawPiece::Dwell {
@@ -298,7 +295,7 @@ fn start_text(model: &Model, units: &Units) -> String {
     let parameters: Vec<f64> = model.parameter_values();
     let places = model.drives.iter().map(|drive| {
         let start = drive.law.at(0.0, &parameters);
-        format!("{} = {}", drive.name, units.short(start, drive.dimension))
+        format!("{} = {}", drive.name, units.text(start, drive.dimension))
     });
     places.collect::<Vec<_>>().join(", ")
 }
@@ -313,7 +310,7 @@ fn with_held(model: &Model, parameters: &[f64]) -> Option<Model> {
 
 /// The pose of the motion at a time, s.
 fn pose_at_time(model: &Model, time: f64) -> Result<ShownPose, Vec<Diagnostic>> {
-    let label = format!("time = {}", Units::of(model).short(time, Dimension::TIME));
+    let label = format!("time = {}", Units::of(model).text(time, Dimension::TIME));
     on_motion(model, &|_| Ok(RowPlace::Time(time)), false, &label)
 }
 
@@ -342,7 +339,7 @@ pub fn loaded_at(model: &Model, settings: &[Setting]) -> Result<ShownPose, Vec<D
         [one] => {
             let drive = model.drives.iter().find(|d| d.name == one.name);
             let dimension = drive.map_or(Dimension::TIME, |d| d.dimension);
-            format!("{} = {}", one.name, units.short(one.value, dimension))
+            format!("{} = {}", one.name, units.text(one.value, dimension))
         }
         _ => return Err(vec![not_on_motion(model)]),
     };

@@ -70,13 +70,7 @@ pub fn prove(model: &Model, progress: &mut dyn Progress) -> Result<Proof, Vec<Di
     let (along, dimension) = drive.map_or(("time", Dimension::TIME), |d| {
         (d.name.as_str(), d.dimension)
     });
-    let range = |from: f64, to: f64| {
-        format!(
-            "{} to {}",
-            units.text(from, dimension),
-            units.text(to, dimension)
-        )
-    };
+    let range = |from: f64, to: f64| units.range_text((from, to), dimension);
     let gaps = found.gaps.iter().map(|gap| {
         let event = gap.event.map_or("", |kind| match kind {
             EventKind::Limit => ", at a limit of the drive",

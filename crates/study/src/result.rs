@@ -112,7 +112,7 @@ pub struct Event {
     pub kind: EventKind,
     /// Where, SI: the coordinate of the drive, or time.
     pub at: f64,
-    /// Where, in words: `lock = 117.51220651664109 deg`.
+    /// Where, in words: `lock = 117.512 deg`.
     pub place: String,
     /// What it is, in words.
     pub label: String,

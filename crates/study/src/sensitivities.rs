@@ -141,12 +141,10 @@ pub fn sensitivities(
     };
     let place = format!("{name} = {}", units.text(at, dimension));
     if !motion.reaches(found.parameter) {
-        let (low, high) = motion.reached();
-        let range = crate::explain::reach_text(
-            model,
-            (low, high),
-            drive.map_or(Dimension::TIME, |d| d.dimension),
-        );
+        let reached = motion.reached();
+        let place = format!("{name} = {}", units.place_text(at, dimension, reached));
+        let along = drive.map_or(Dimension::TIME, |d| d.dimension);
+        let range = units.range_text(reached, along);
         let diagnostic =
             Diagnostic::error("not-reached", format!("the motion does not reach {place}"));
         return Err(vec![diagnostic.note(format!("it goes from {range}"))]);

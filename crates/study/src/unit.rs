@@ -1,12 +1,19 @@
 //! The units results are shown in: lengths and angles in the file's, angular rates in radians.
 
 use kempe_model::Model;
+use kempe_number::text;
 use kempe_units::{Dimension, Unit, format_digits};
 
-/// Digits to which places on a motion are located.
-const PLACE_DIGITS: i32 = 14;
 /// Digits of what people read in a picture or a list.
 pub(crate) const SHORT_DIGITS: usize = 6;
+/// Digits of numbers that somebody wrote into a file: what was computed has more.
+const WRITTEN_DIGITS: usize = 9;
+/// Digits that rounding leaves to what was computed.
+const LONG_DIGITS: usize = 12;
+/// What differs by less than this part of the largest beside it is the same.
+const SAME: f64 = 1e-12;
+/// What is less than this part of the largest beside it is 0: places on a motion are located to it.
+const NOTHING: f64 = 1e-14;
 
 /// Chooses units for results.
 #[derive(Clone, Debug)]
@@ -71,30 +78,59 @@ impl Units {
         Unit::for_display(dimension, &self.preferred)
     }
 
-    /// A value with its unit, to 12 digits: `117.512206517 deg`.
+    /// A value with its unit, as people read it: `117.512 deg`. What has few digits, because somebody wrote it, keeps them.
     pub fn text(&self, si: f64, dimension: Dimension) -> String {
-        // A rounded negative zero is a zero.
-        format_digits(si + 0.0, &self.unit(dimension), 12)
+        let [text] = self.texts([si], dimension);
+        text
     }
 
-    /// A value with its unit, in as many digits as people read in a picture or a list.
-    pub fn short(&self, si: f64, dimension: Dimension) -> String {
-        format_digits(si + 0.0, &self.unit(dimension), SHORT_DIGITS)
+    /// A value with its unit, as it is to be written into a file: `117.512206517 deg`.
+    pub fn written(&self, si: f64, dimension: Dimension) -> String {
+        format_digits(si + 0.0, &self.unit(dimension), LONG_DIGITS)
     }
 
-    /// A located place with its unit, to the digits that rounding leaves it: `117.51220651664 deg`. They are counted from
-    /// the size of `range`, what the place was looked for in, so that a place at 0 is 0.
-    pub fn place_text(&self, si: f64, dimension: Dimension, range: (f64, f64)) -> String {
+    /// Values that are read beside each other, each with its unit: in so many digits that different ones differ. What is
+    /// nothing beside the others is 0.
+    pub fn texts<const N: usize>(&self, si: [f64; N], dimension: Dimension) -> [String; N] {
         let unit = self.unit(dimension);
-        let [at, low, high] = [si, range.0, range.1].map(|v| unit.from_si(v));
-        let size = [low, high].into_iter().filter(|v| v.is_finite());
-        let size = size.fold(at.abs(), |size, v| size.max(v.abs()));
-        let decimals = PLACE_DIGITS - 1 - kempe_number::text::decade(size);
-        let rounded = match usize::try_from(decimals) {
-            Ok(decimals) => format!("{at:.decimals$}").parse().unwrap_or(at),
-            Err(_) => at,
-        };
-        format_digits(unit.to_si(rounded) + 0.0, &unit, PLACE_DIGITS as usize)
+        let values = si.map(|x| unit.from_si(x));
+        let finite = values.iter().filter(|v| v.is_finite());
+        let size = finite.fold(0.0, |size: f64, v| size.max(v.abs()));
+        values.map(|value| {
+            if value.abs() <= NOTHING * size {
+                return format_digits(0.0, &unit, 1);
+            }
+            let differs = |digits: &usize| {
+                let own = readable(value, *digits);
+                let mut others = values.iter().filter(|v| (**v - value).abs() > SAME * size);
+                others.all(|other| readable(*other, *digits) != own)
+            };
+            let digits = (SHORT_DIGITS..LONG_DIGITS).find(differs);
+            let number = readable(value, digits.unwrap_or(LONG_DIGITS));
+            format_digits(unit.to_si(number), &unit, LONG_DIGITS)
+        })
+    }
+
+    /// A range with its unit: `0 deg to 117.512 deg`.
+    pub fn range_text(&self, si: (f64, f64), dimension: Dimension) -> String {
+        let [from, to] = self.texts([si.0, si.1], dimension);
+        format!("{from} to {to}")
+    }
+
+    /// A located place with its unit: `117.512 deg`. `range` is what it was looked for in: beside it a place at 0 is 0, and a
+    /// place near one of its ends does not read like it.
+    pub fn place_text(&self, si: f64, dimension: Dimension, range: (f64, f64)) -> String {
+        let [place, ..] = self.texts([si, range.0, range.1], dimension);
+        place
+    }
+}
+
+/// A number in `digits` digits; where it has hardly more, as somebody may have written it, in all of them.
+fn readable(value: f64, digits: usize) -> f64 {
+    let long = text::rounded(value, LONG_DIGITS);
+    match text::rounded(value, WRITTEN_DIGITS) == long {
+        true => long,
+        false => text::rounded(value, digits),
     }
 }
 
@@ -160,12 +196,48 @@ mod tests {
         let place = |deg: f64| mm.place_text(deg.to_radians(), Dimension::ANGLE, (0.0, turn));
         assert_eq!(place(4.972_161_733_623_2e-13), "0 deg");
         assert_eq!(place(-4.972_161_733_623_2e-13), "0 deg");
-        assert_eq!(place(117.512_206_516_641_08), "117.51220651664 deg");
+        assert_eq!(place(117.512_206_516_641_08), "117.512 deg");
+        assert_eq!(place(359.999_999_99), "359.99999999 deg", "not the end");
+        assert_eq!(place(3.0e-12), "0 deg");
         assert_eq!(place(180.0), "180 deg");
         assert_eq!(place(-0.001), "-0.001 deg");
         assert_eq!(mm.text(-0.0, Dimension::LENGTH), "0 mm");
         let near = mm.place_text(1e-9, Dimension::LENGTH, (0.0, 1e-8));
         assert_eq!(near, "1e-6 mm");
+    }
+
+    #[test]
+    fn different_values_read_differently_and_what_was_written_stays() {
+        let mm = units("mm", "deg");
+        let range =
+            |a: f64, b: f64| mm.range_text((a.to_radians(), b.to_radians()), Dimension::ANGLE);
+        assert_eq!(range(-0.0, 117.512_206_517), "0 deg to 117.512 deg");
+        assert_eq!(
+            range(109.127_236_027, 228.943_762_433),
+            "109.127 deg to 228.944 deg"
+        );
+        assert_eq!(
+            range(228.943_762_433, 109.127_236_027),
+            "228.944 deg to 109.127 deg"
+        );
+        assert_eq!(range(-2.597_835_160_91, -0.01), "-2.59784 deg to -0.01 deg");
+        assert_eq!(range(133.263_293, 360.0), "133.263293 deg to 360 deg");
+        assert_eq!(
+            range(89.999_999_9, 90.000_000_123_4),
+            "89.9999999 deg to 90 deg"
+        );
+        assert_eq!(range(3.0e-15, 360.0), "0 deg to 360 deg");
+        let [a, b] = mm.texts(
+            [90.0_f64, 90.000_000_34].map(f64::to_radians),
+            Dimension::ANGLE,
+        );
+        assert_eq!((a.as_str(), b.as_str()), ("90 deg", "90.0000003 deg"));
+        assert_eq!(mm.text(1.0 / 3.0, Dimension::LENGTH), "333.333 mm");
+        assert_eq!(mm.text(f64::NAN, Dimension::LENGTH), "NaN mm");
+        assert_eq!(
+            mm.range_text((f64::NEG_INFINITY, 1.0), Dimension::LENGTH),
+            "-inf mm to 1000 mm"
+        );
     }
 
     #[test]

@@ -180,7 +180,7 @@ fn a_range_beyond_the_limit_is_an_error_with_the_limit_in_it() {
     let text = FOUR_BAR.replace("D = [60, 0]", "D = [100, 0]");
     let (found, text) = fails(&text);
     assert_eq!(found[0].code, "range-beyond-limit");
-    assert!(text.contains("360 deg is beyond 54.9003678046"), "{text}");
+    assert!(text.contains("360 deg is beyond 54.9004 deg"), "{text}");
     assert!(text.contains("motor = {"), "points at the drive: {text}");
     assert!(
         text.contains("ask for no more than \"0 deg\" to \"54.9 deg\""),

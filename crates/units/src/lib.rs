@@ -57,5 +57,5 @@ pub use parser::{MAX_DEPTH, MAX_LENGTH, parse, parse_argument, parse_condition};
 pub use spell::{Freedom, Natural, Spelling};
 pub use suggest::nearest;
 pub use syntax::{BinaryOp, CONSTANTS, Comparison, Condition, JoinedUnit, Kind, Node, Quantity};
-pub use unit::{Unit, format_digits, format_value};
+pub use unit::{Unit, format_digits};
 pub use unit_table::{UNITS, UnitDefinition};

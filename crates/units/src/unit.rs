@@ -196,20 +196,15 @@ impl FromStr for Unit {
     }
 }
 
-/// The value `si` in `unit`, rounded to 12 significant digits so that the last rounding does not show: `120 mm`.
+/// The value `si` in `unit`, rounded to `digits` significant digits (at least one, at most 17), without idle zeros.
 ///
 /// # Example
 ///
 /// ```
-/// use kempe_units::{Unit, format_value};
-/// assert_eq!(format_value(0.12, &Unit::parse("mm").unwrap()), "120 mm");
-/// assert_eq!(format_value(0.5235987755982988, &Unit::parse("deg").unwrap()), "30 deg");
+/// use kempe_units::{Unit, format_digits};
+/// assert_eq!(format_digits(0.12, &Unit::parse("mm").unwrap(), 12), "120 mm");
+/// assert_eq!(format_digits(0.5235987755982988, &Unit::parse("deg").unwrap(), 6), "30 deg");
 /// ```
-pub fn format_value(si: f64, unit: &Unit) -> String {
-    format_digits(si, unit, 12)
-}
-
-/// The value `si` in `unit`, rounded to `digits` significant digits (at least one, at most 17), without idle zeros.
 pub fn format_digits(si: f64, unit: &Unit, digits: usize) -> String {
     let number = shortest(rounded(unit.from_si(si), digits));
     if unit.text.is_empty() {

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use kempe_units::{Dimension, UNITS, Unit, format_digits, format_value};
+use kempe_units::{Dimension, UNITS, Unit, format_digits};
 use proptest::prelude::*;
 
 /// The SI value of `text` by fend, which calculates in rationals.
@@ -323,12 +323,12 @@ fn display_units() {
 #[test]
 fn values_as_text() {
     let unit = |text| Unit::parse(text).unwrap();
-    assert_eq!(format_value(0.12, &unit("mm")), "120 mm");
-    assert_eq!(format_value(0.1 + 0.2, &unit("m")), "0.3 m");
-    assert_eq!(format_value(5.0, &Unit::one()), "5");
-    assert_eq!(format_value(-0.05, &unit("%")), "-5 %");
-    assert_eq!(format_value(f64::NAN, &unit("mm")), "NaN mm");
-    assert_eq!(format_value(f64::INFINITY, &unit("mm")), "inf mm");
+    assert_eq!(format_digits(0.12, &unit("mm"), 12), "120 mm");
+    assert_eq!(format_digits(0.1 + 0.2, &unit("m"), 12), "0.3 m");
+    assert_eq!(format_digits(5.0, &Unit::one(), 12), "5");
+    assert_eq!(format_digits(-0.05, &unit("%"), 12), "-5 %");
+    assert_eq!(format_digits(f64::NAN, &unit("mm"), 12), "NaN mm");
+    assert_eq!(format_digits(f64::INFINITY, &unit("mm"), 12), "inf mm");
     assert_eq!(format_digits(1.0 / 3.0, &unit("m"), 4), "0.3333 m");
     assert_eq!(format_digits(12_345.678, &unit("m"), 3), "12300 m");
 }

@@ -133,7 +133,7 @@ impl Column {
 pub struct Event {
     /// The row nearest to it.
     pub row: usize,
-    /// Where it is exactly, such as `motor = 117.5122065166410849 deg`.
+    /// Where it is, such as `motor = 117.512 deg`.
     pub place: String,
     /// What it is.
     pub label: String,

@@ -266,7 +266,7 @@ fn advice(model: &Model, weights: &[PointMass]) -> Listing {
         let length = |s| {
             // Rounding of a direction along an axis is no place.
             let si = (value(s, &parameters) / FINEST).round() * FINEST;
-            units.text(si, Dimension::LENGTH)
+            units.written(si, Dimension::LENGTH)
         };
         Some(vec![format!(
             "{} = {{ on = \"{}\", at = [\"{}\", \"{}\"], mass = \"{}\" }}",
@@ -274,7 +274,7 @@ fn advice(model: &Model, weights: &[PointMass]) -> Listing {
             model.links.get(w.on.index())?.name,
             length(x),
             length(y),
-            units.text(value(&w.mass, &parameters), Dimension::MASS),
+            units.written(value(&w.mass, &parameters), Dimension::MASS),
         )])
     });
     let mut rows: Vec<Vec<String>> = lines.collect();

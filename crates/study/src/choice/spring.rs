@@ -172,8 +172,8 @@ fn tell(
         head: Vec::new(),
         rows: vec![vec![format!(
             "stiffness = \"{}\", preload = \"{}\"",
-            units.text(chosen.stiffness, stiffness),
-            units.text(chosen.preload, tension)
+            units.written(chosen.stiffness, stiffness),
+            units.written(chosen.preload, tension)
         )]],
     });
     if spring.acts != Acts::Both || spring.stops.iter().any(Option::is_some) {
