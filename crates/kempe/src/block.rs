@@ -1,5 +1,6 @@
 //! Numbers with their names and units: what every answer is made of.
 
+use kempe_model::Diagnostic;
 use kempe_study::{Quantity, Units, shown};
 use kempe_units::{Dimension, Unit};
 
@@ -43,6 +44,8 @@ pub struct Value {
     pub heading: Heading,
     /// In SI.
     pub si: f64,
+    /// What is to be told of the numbers over the motion in it: that one is infinite, or how many of its digits hold.
+    pub warnings: Vec<Diagnostic>,
 }
 
 impl Value {

@@ -3,7 +3,7 @@
 use kempe_measure::{Held, Unmeasurable, sensitivities};
 use kempe_model::{Diagnostic, ParameterId};
 use kempe_motion::drive_path::DrivePath;
-use kempe_study::{Progress, Silent, force_problems};
+use kempe_study::{Progress, Silent, force_problems, number_notes};
 
 use crate::block::Heading;
 use crate::way::{Way, on_the_motion};
@@ -21,6 +21,8 @@ pub struct Derivatives {
     pub parameters: Vec<Heading>,
     /// d(measure)/d(parameter), all parameters of the first measure, then those of the second; NaN where there is none.
     pub derivatives: Vec<f64>,
+    /// What is to be told of numbers over the motion among the measures.
+    pub warnings: Vec<Diagnostic>,
     /// By measure: why it has no value, or no derivative to some parameter.
     pub notes: Vec<Option<String>>,
 }
@@ -184,15 +186,21 @@ impl Session {
         } else {
             sensitivities(&motion, held, &wanted, &ids).map_err(unmeasurable)?
         };
-        if !motion.reaches(found.parameter) {
-            let message = format!("the motion does not reach {}", found.parameter);
-            let (low, high) = motion.reached();
-            let diagnostic = Diagnostic::error("not-reached", message);
-            return Err(self
-                .compiled
-                .error(diagnostic.help(format!("it goes from {low} to {high}, SI"))));
-        }
         let units = self.compiled.units();
+        if !motion.reaches(found.parameter) {
+            let (name, dimension) = match motion.path {
+                DrivePath::Coordinate { drive, .. } => Way::Drive(drive),
+                DrivePath::Time { .. } => Way::Time,
+            }
+            .places(&self.compiled);
+            let reached = motion.reached();
+            let place = units.place_text(found.parameter, dimension, reached);
+            let message = format!("the motion does not reach {name} = {place}");
+            let range = units.range_text(reached, dimension);
+            let diagnostic = Diagnostic::error("not-reached", message);
+            let diagnostic = diagnostic.help(format!("it goes from {range}"));
+            return Err(self.compiled.error(diagnostic));
+        }
         let declared = &self.compiled.data().parameters;
         let notes = found.values.iter().zip(&found.derivatives);
         let notes = notes.map(|(value, slopes)| {
@@ -205,7 +213,10 @@ impl Session {
             };
             Some(note.to_owned())
         });
+        let numbers = asked.quantities.iter().zip(found.notes);
+        let numbers = numbers.map(|(q, notes)| (q.name.as_str(), notes));
         Ok(Derivatives {
+            warnings: number_notes(None, &motion, numbers),
             notes: notes.collect(),
             measures: (asked.quantities.iter())
                 .map(|q| Heading::of(q, units))

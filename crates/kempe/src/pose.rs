@@ -9,7 +9,7 @@ use kempe_model::{Diagnostic, Law, LawPiece, RiseLaw, Severity};
 use kempe_motion::drive_path::DrivePath;
 use kempe_motion::events::EventKind;
 use kempe_motion::{EndReason, Motion, Placed, Solver};
-use kempe_study::{Along, Progress, RowPlace, Silent, beyond_limit, cannot_move};
+use kempe_study::{Along, Progress, RowPlace, Silent, beyond_limit, cannot_move, number_notes};
 use kempe_units::Expr;
 
 use crate::block::{Heading, Value};
@@ -235,7 +235,7 @@ impl Pose {
         let model = &self.motion.mechanism().model;
         let asked = Asked::of(&self.compiled, model, [text])?;
         let quantities: Vec<_> = asked.quantities.iter().collect();
-        let (si, note, time) = match (self.passed, asked.any_forces()) {
+        let (si, note, time, warnings) = match (self.passed, asked.any_forces()) {
             (Passed::Never, true) => {
                 let diagnostic = Diagnostic::error(
                     "not-on-the-motion",
@@ -259,7 +259,10 @@ impl Pose {
                 asked.without_time(&mut sample);
                 {
                     let note = (sample.note).map(|note| note.text(self.motion.mechanism()));
-                    (sample.values.first().copied(), note, sample.time)
+                    let notes = quantities.iter();
+                    let notes = notes.map(|q| (q.name.as_str(), sampler.notes_of(&q.measure)));
+                    let warnings = number_notes(None, &self.motion, notes);
+                    (sample.values.first().copied(), note, sample.time, warnings)
                 }
             }
             (passed, forces) => {
@@ -272,7 +275,8 @@ impl Pose {
                 let note = row.note(self.motion.mechanism());
                 let mut sample = row.sample;
                 asked.without_time(&mut sample);
-                (sample.values.first().copied(), note, sample.time)
+                let warnings = along.number_warnings(None, &quantities);
+                (sample.values.first().copied(), note, sample.time, warnings)
             }
         };
         let si = si.unwrap_or(f64::NAN);
@@ -281,7 +285,11 @@ impl Pose {
             return Err(self.compiled.error(Diagnostic::error("no-value", reason)));
         }
         let heading = Heading::of(quantities[0], self.compiled.units());
-        Ok(Value { heading, si })
+        Ok(Value {
+            heading,
+            si,
+            warnings,
+        })
     }
 }
 

@@ -4,6 +4,7 @@ use std::borrow::Borrow;
 use std::sync::Arc;
 
 use kempe_measure::Sample;
+use kempe_model::Diagnostic;
 use kempe_motion::Motion;
 use kempe_study::{Along, Done, ForceColumns, Progress, RowPlace, Silent, Stage};
 use kempe_units::Dimension;
@@ -31,6 +32,8 @@ pub struct Sweep {
     pub forces: Option<ForceColumns>,
     /// What is to be told about each row; always something where the row was not reached or a value is NaN.
     pub notes: Vec<Option<String>>,
+    /// What is to be told of numbers over the motion among the measures: that one is infinite, or how many of its digits hold.
+    pub warnings: Vec<Diagnostic>,
     /// Rows that were asked for: there are fewer where the sweep was stopped.
     pub asked: usize,
 }
@@ -243,6 +246,7 @@ pub(crate) fn rows(
         smallest_singular_value: Vec::with_capacity(places.len()),
         forces: forces.then(ForceColumns::default),
         notes: Vec::with_capacity(places.len()),
+        warnings: along.number_warnings(None, &quantities),
         asked: places.len(),
     };
     for (done, place) in places.iter().enumerate() {

@@ -618,3 +618,37 @@ fn a_drawing_that_starts_elsewhere_follows_its_parameters() {
         );
     }
 }
+
+#[test]
+fn infinite_numbers_over_the_motion_are_told_by_every_question() {
+    let mut s = crank_rocker();
+    // The crank's end passes x = 0 at 90 and 270 degrees; its highest place is finite.
+    let asked = ["max(1 / x(B)^2)", "max(y(B))"];
+    let infinite = |warnings: &[Diagnostic]| {
+        assert_eq!(warnings.len(), 1, "{warnings:?}");
+        assert_eq!(warnings[0].code, "infinite");
+        let told = &warnings[0].message;
+        assert!(
+            told.contains("max(1 / x(B)^2)") && told.contains(" at motor = "),
+            "{told}"
+        );
+    };
+    let table = s.sweep("motor", [0.5], asked).expect("rows");
+    infinite(&table.warnings);
+    assert_eq!(table.columns[0].values, [f64::INFINITY]);
+    let pose = s.pose([("motor", 0.5)]).expect("a pose");
+    infinite(
+        &pose
+            .measure(asked[0])
+            .expect("infinite is a value")
+            .warnings,
+    );
+    assert!(pose.measure(asked[1]).expect("a value").warnings.is_empty());
+    infinite(&s.derivatives(asked, ["a"]).expect("derivatives").warnings);
+    assert!(
+        s.sweep("motor", [0.5], [asked[1]])
+            .expect("rows")
+            .warnings
+            .is_empty()
+    );
+}

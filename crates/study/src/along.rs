@@ -11,6 +11,7 @@ use kempe_motion::{Motion, Progress, Silent, Stage};
 
 use crate::columns::Asked;
 use crate::explain::stopped;
+use crate::number_notes::number_notes;
 use crate::quantity::Quantity;
 use crate::rows::{RowPlace, path_drive};
 
@@ -154,11 +155,26 @@ impl Along {
     }
 
     /// What is to be told of the numbers over the motion that a measure contains.
-    pub fn notes_of(&self, measure: &Measure) -> Vec<StatisticNote> {
+    fn notes_of(&self, measure: &Measure) -> Vec<StatisticNote> {
         match self {
             Self::Motion(sampler) => sampler.notes_of(measure),
             Self::Forces(sampler) => sampler.notes_of(measure),
         }
+    }
+
+    /// What is to be told of the numbers over the motion in the quantities that it was made for, and of which study they are.
+    pub fn number_warnings(
+        &self,
+        study: Option<&str>,
+        quantities: &[&Quantity],
+    ) -> Vec<Diagnostic> {
+        let motion = match self {
+            Self::Motion(sampler) => sampler.motion(),
+            Self::Forces(sampler) => sampler.motion(),
+        };
+        let numbers = quantities.iter();
+        let numbers = numbers.map(|q| (q.name.as_str(), self.notes_of(&q.measure)));
+        number_notes(study, motion, numbers)
     }
 
     /// The drive that the rows go by; none where several move.

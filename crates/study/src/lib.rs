@@ -78,6 +78,7 @@ pub use explain::{beyond_limit, cannot_move};
 pub use figures::{MECHANISM, figures};
 pub use findings::{Grashof, Group, Report as CheckReport, check, check_with_progress};
 pub use kempe_motion::progress::{Done, Progress, Silent, Stage};
+pub use number_notes::number_notes;
 pub use pose::{Setting, ShownPose, loaded_at, pose_at};
 pub use proof::{Proof, Unproved, prove};
 pub use proved_numbers::ProvedNumber;

@@ -14,7 +14,6 @@ use crate::force_columns::standard_plots;
 use crate::force_notes::unbounded;
 use crate::missing::{Lack, row_warnings, without_value};
 use crate::motion_findings::{motion_findings, refused};
-use crate::number_notes::number_notes;
 use crate::prepared::{design, motion};
 use crate::quantity::Quantity;
 use crate::result::StudyResult;
@@ -75,9 +74,7 @@ pub(crate) fn run_along(
     let along = abscissa(&motion, &design.parameters);
     diagnostics.extend(row_warnings(name, &rows.table, along));
     diagnostics.extend(rows.force_warnings(&design.mechanism, along));
-    let numbers = quantities.iter();
-    let numbers = numbers.map(|q| (q.name.as_str(), sampler.notes_of(&q.measure)));
-    diagnostics.extend(number_notes(Some(name), &motion, numbers));
+    diagnostics.extend(sampler.number_warnings(Some(name), &quantities));
     diagnostics.extend(without_value(&rows, along, |index| {
         let number = index.and_then(|index| asked.scalars.get(index));
         let of_cycles = number.is_some_and(|q| asks_time_ratio(&design.mechanism, &q.measure));

@@ -7,7 +7,7 @@ use kempe_motion::Motion;
 use crate::events::place;
 
 /// Warnings of numbers over a motion, of a study where it is one: their names, with what is to be told of them.
-pub(crate) fn number_notes<'q>(
+pub fn number_notes<'q>(
     study: Option<&str>,
     motion: &Motion,
     numbers: impl Iterator<Item = (&'q str, Vec<StatisticNote>)>,

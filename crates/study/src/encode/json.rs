@@ -1,10 +1,11 @@
-//! Results and diagnostics as JSON for scripts. What is not finite becomes null.
+//! Results and diagnostics as JSON for scripts. What has no value is null; so is what is infinite, with its sign beside it,
+//! because JSON has no word for it.
 
 use kempe_model::Diagnostic;
 use kempe_motion::events::EventKind;
 use serde_json::{Value, json};
 
-use crate::result::{Event, StudyResult};
+use crate::result::{Event, Scalar, StudyResult};
 use crate::table::{Column, Table};
 
 /// A table: its columns with name, unit and values.
@@ -14,22 +15,39 @@ pub fn table(table: &Table) -> Value {
 }
 
 fn column(column: &Column) -> Value {
-    json!({ "name": column.name, "unit": column.unit.text(), "values": column.values })
+    let mut out =
+        json!({ "name": column.name, "unit": column.unit.text(), "values": column.values });
+    let rows = column.values.iter().enumerate();
+    let infinite = rows.filter_map(|(row, value)| Some((row.to_string(), infinite(*value)?)));
+    let infinite: serde_json::Map<String, Value> = infinite.collect();
+    if !infinite.is_empty() {
+        out["infinite"] = infinite.into();
+    }
+    out
+}
+
+fn scalar(scalar: &Scalar) -> Value {
+    let mut out = json!({ "name": scalar.name, "unit": scalar.unit.text(), "value": scalar.value });
+    if let Some(sign) = infinite(scalar.value) {
+        out["infinite"] = sign;
+    }
+    out
+}
+
+/// The sign of what is infinite: 1 or -1.
+fn infinite(value: f64) -> Option<Value> {
+    value.is_infinite().then(|| (value.signum() as i8).into())
 }
 
 /// A study's result without its poses. The table is left out unless asked for: it is in its own file.
 pub fn result(result: &StudyResult, with_table: bool) -> Value {
-    let scalars = result
-        .scalars
-        .iter()
-        .map(|s| json!({ "name": s.name, "unit": s.unit.text(), "value": s.value }));
     let mut out = json!({
         "study": result.name,
         "rows": result.table.rows(),
         "rows_demanded": result.demanded_rows,
         "rows_not_reached": result.table.unreached(),
         "interrupted": result.interrupted(),
-        "values": scalars.collect::<Vec<_>>(),
+        "values": result.scalars.iter().map(scalar).collect::<Vec<_>>(),
         "listings": result.listings.iter().map(|l| json!({ "title": l.title, "head": l.head, "rows": l.rows })).collect::<Vec<_>>(),
         "events": result.events.iter().map(event).collect::<Vec<_>>(),
         "assemblies": { "matching": result.assemblies.0, "other": result.assemblies.1 },
@@ -57,4 +75,33 @@ fn event(event: &Event) -> Value {
 /// A diagnostic with its spans in bytes of the model file.
 pub fn diagnostic(diagnostic: &Diagnostic) -> Value {
     serde_json::to_value(diagnostic).unwrap_or(Value::Null)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use kempe_units::Unit;
+
+    #[test]
+    fn what_is_infinite_is_told_from_what_has_no_value() {
+        let unit = Unit::parse("mm").unwrap();
+        let mut c = Column::new("x", unit.clone());
+        c.values = vec![1.0, f64::NEG_INFINITY, f64::NAN, f64::INFINITY];
+        let found = column(&c);
+        assert_eq!(found["values"], json!([1.0, null, null, null]));
+        assert_eq!(found["infinite"], json!({ "1": -1, "3": 1 }));
+        let number = |value| {
+            scalar(&Scalar {
+                name: "peak".to_owned(),
+                unit: unit.clone(),
+                value,
+            })
+        };
+        assert_eq!(number(f64::INFINITY)["infinite"], json!(1));
+        assert_eq!(number(f64::NAN).get("infinite"), None);
+        assert_eq!(
+            number(2.0),
+            json!({ "name": "peak", "unit": "mm", "value": 2.0 })
+        );
+    }
 }
