@@ -297,7 +297,7 @@ static TURNS: Kind = kind("drive", "turns",
 static DRIVE_CYLINDER: Kind = kind("drive", "cylinder",
     "lift = { cylinder = \"A-B\", from = \"380 mm\", to = \"520 mm\", speed = \"20 mm/s\" }",
     "Its coordinate is the distance of two points: the whole length, not the stroke.",
-    &[&[must("cylinder", T::PointPair, "\"A-B\"", "Its two points, on different links.")], &LAW_OF_TRAVEL]);
+    &[&[must("cylinder", T::PointPair, "\"A-B\"", "Its two points, on different links."), ON], &LAW_OF_TRAVEL]);
 
 static SLIDES: Kind = kind("drive", "slides",
     "feed = { slides = \"piston\", from = \"0 mm\", to = \"40 mm\", law = \"cycloidal\", in = \"0.2 s\" }",
@@ -372,9 +372,13 @@ pub(crate) static MASS: Kind = kind("mass", "mass",
         must("mass", not_negative(D::MASS), "\"2 kg\"", "Its mass."),
     ]]);
 
-static BETWEEN: [Key; 2] = [
+/// The links at the ends of what acts between two points.
+const ON: Key = may("on", T::AnyOf(&[LINK, T::List(&LINK, 1)]), "\"strut\"", "The link on which it acts at a point of several, or both in brackets; the frame or the first that moves unless said otherwise.");
+
+static BETWEEN: [Key; 3] = [
     one_of("between", T::PointPair, "\"A-B\"", "Two points of different links, between which it acts."),
     one_of("links", T::Two(&LINK), "[\"frame\", \"lever\"]", "Two links, between which it turns."),
+    ON,
 ];
 
 pub(crate) static SPRING: Kind = kind("spring", "spring",

@@ -11,6 +11,7 @@ mod csv;
 mod draft;
 mod drawn;
 mod drives;
+mod ends;
 mod entry;
 mod force_names;
 mod friction;

@@ -4,7 +4,7 @@ use kempe_mechanism::Design;
 use kempe_mechanism::mobility::Mobility;
 use kempe_mechanism::structure::BodyId;
 use kempe_model::{
-    Diagnostic, Drive, Joint, JointKind, Model, Rows, Severity, Study, StudyKind, value,
+    Diagnostic, Drive, DriveKind, Joint, JointKind, Model, Rows, Severity, Study, StudyKind, value,
 };
 use kempe_motion::assemble::Assembly;
 use kempe_motion::drive_path::DrivePath;
@@ -16,6 +16,7 @@ use serde::Serialize;
 use crate::along::not_answerable;
 use crate::drawn::{self, DrawnLink};
 use crate::explain::cannot_move;
+use crate::findings_forces::on_links;
 use crate::findings_text::kind_text;
 use crate::hints;
 use crate::motion_findings::{motion_findings, of_freedoms, of_mechanism};
@@ -309,7 +310,11 @@ fn assumptions(model: &Model, units: &Units) -> Vec<String> {
             0.0 => String::new(),
             time => format!(" in {}", units.text(time, Dimension::TIME)),
         };
-        assumed.push(format!("drive {}: {way}{time}", drive.name));
+        let on = match &drive.kind {
+            DriveKind::Cylinder { a, b } => on_links(model, &[a, b]),
+            _ => String::new(),
+        };
+        assumed.push(format!("drive {}{on}: {way}{time}", drive.name));
     }
     assumed.extend(crate::findings_forces::assumptions(model, units));
     let endless = model.joints.iter().filter(|joint| {

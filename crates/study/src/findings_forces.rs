@@ -4,8 +4,8 @@ use kempe_dynamics::Acting;
 use kempe_dynamics::acting::GRAVITY;
 use kempe_mechanism::Design;
 use kempe_model::{
-    Center, Diagnostic, DriveId, FRAME, Friction, FrictionAt, Load, LoadKind, Model, Study,
-    StudyKind, value,
+    Between, Center, Diagnostic, DriveId, FRAME, Friction, FrictionAt, LinkPointRef, Load,
+    LoadKind, Model, Study, StudyKind, value,
 };
 use kempe_number::text::significant;
 use kempe_units::Dimension;
@@ -103,11 +103,15 @@ fn acting(model: &Model) -> Vec<String> {
     );
     add(
         "springs",
-        actions.springs.iter().map(|s| s.name.clone()).collect(),
+        (actions.springs.iter())
+            .map(|s| s.name.clone() + &ends_on(model, &s.between))
+            .collect(),
     );
     add(
         "dampers",
-        actions.dampers.iter().map(|d| d.name.clone()).collect(),
+        (actions.dampers.iter())
+            .map(|d| d.name.clone() + &ends_on(model, &d.between))
+            .collect(),
     );
     add(
         "friction",
@@ -138,18 +142,34 @@ fn acting(model: &Model) -> Vec<String> {
     diagnostics
 }
 
-/// A load, with the link on which it acts where its point is one of several that move.
+/// A load, with the link on which it acts.
 fn acting_on(model: &Model, load: &Load) -> String {
-    let LoadKind::Force { at, .. } = &load.kind else {
-        return load.name.clone();
-    };
-    let point = model.points.get(at.point.index());
-    let moving = point.map_or(0, |p| p.links.iter().filter(|l| **l != FRAME).count());
-    match (moving > 1, point, model.links.get(at.link.index())) {
-        (true, Some(point), Some(link)) => {
-            format!("{} (at {} on {})", load.name, point.name, link.name)
-        }
-        _ => load.name.clone(),
+    match &load.kind {
+        LoadKind::Force { at, .. } => load.name.clone() + &on_links(model, &[at]),
+        LoadKind::Torque { .. } => load.name.clone(),
+    }
+}
+
+/// The links on which what is between two points acts.
+fn ends_on(model: &Model, between: &Between) -> String {
+    match between {
+        Between::Points(a, b) => on_links(model, &[a, b]),
+        Between::Links(..) => String::new(),
+    }
+}
+
+/// The links on which something acts at points of several that move: ` (at C on rocker)`.
+pub(crate) fn on_links(model: &Model, ends: &[&LinkPointRef]) -> String {
+    let told = ends.iter().filter_map(|end| {
+        let point = model.points.get(end.point.index())?;
+        let link = model.links.get(end.link.index())?;
+        let moving = point.links.iter().filter(|l| **l != FRAME).count();
+        (moving > 1).then(|| format!("at {} on {}", point.name, link.name))
+    });
+    let told: Vec<String> = told.collect();
+    match told.is_empty() {
+        true => String::new(),
+        false => format!(" ({})", told.join(", ")),
     }
 }
 

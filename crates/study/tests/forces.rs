@@ -684,3 +684,85 @@ fn a_load_at_a_pin_acts_on_the_slider_or_the_file_is_asked() {
     let (codes, ..) = told(&welded);
     assert!(codes.is_empty(), "{codes:?}");
 }
+
+/// A four-bar whose coupler pin is also the end of a spring: the pin carries the spring's force or not, by the link it acts on.
+#[test]
+fn a_spring_and_a_cylinder_act_on_the_link_that_is_named() {
+    let text = |on: &str, lift: &str| {
+        format!(
+            "units = {{ length = \"mm\", angle = \"deg\" }}\n[links]\nframe = {{ A = [0, 0], D = [60, 0], G = [30, 90] }}\n\
+             crank = {{ A-B = 20 }}\ncoupler = {{ B-C = 50 }}\nrocker = {{ D-C = 40 }}\n\
+             [assembly]\nC = \"left of B -> D\"\n[drives]\n{lift}\n\
+             [springs]\nback = {{ between = \"C-G\", stiffness = 0, preload = \"100 N\"{on} }}\n\
+             [studies.f]\nkind = \"forces\"\nrows = 13\ncolumns = [\"reaction_x(C, rocker)\", \"reaction_y(C, rocker)\", \"x(C)\", \"y(C)\", \"reaction(B)\"]\n"
+        )
+    };
+    let turn = "m = { turns = \"crank\", from = 10, to = 100, speed = \"1 rad/s\" }";
+    let told = |text: &str| {
+        let read = Model::from_toml(text, "spring", &mut |_| Err("no files".into())).unwrap();
+        let codes: Vec<&str> = read.warnings.iter().map(|d| d.code).collect();
+        let again = kempe_model::Model::from_toml(&read.model.to_toml().toml, "spring", &mut |_| {
+            Err("no files".into())
+        });
+        assert_eq!(
+            again.unwrap().model.actions.springs[0].between,
+            read.model.actions.springs[0].between
+        );
+        let result = run(&read.model, &read.model.studies[0], &mut Silent).unwrap();
+        let columns: Vec<Vec<f64>> = result
+            .table
+            .columns
+            .iter()
+            .map(|c| c.values.clone())
+            .collect();
+        let column = |name: &str| {
+            let at = result.table.columns.iter().position(|c| c.name == name);
+            columns[at.unwrap()].clone()
+        };
+        let names = [
+            "reaction_x(C, rocker)",
+            "reaction_y(C, rocker)",
+            "x(C)",
+            "y(C)",
+        ];
+        (
+            codes,
+            names.map(column),
+            check(&read.model).assumptions.join("\n"),
+        )
+    };
+    let (codes, coupler, assumed) = told(&text(", on = \"coupler\"", turn));
+    assert!(codes.is_empty(), "{codes:?}");
+    assert!(assumed.contains("back (at C on coupler)"), "{assumed}");
+    let (_, rocker, assumed) = told(&text(", on = [\"rocker\", \"frame\"]", turn));
+    assert!(assumed.contains("back (at C on rocker)"), "{assumed}");
+    for row in 0..13 {
+        // The pin hands the spring's pull on where it acts on the other link.
+        let [x, y] = [coupler[2][row], coupler[3][row]];
+        let way = [30.0 - x, 90.0 - y];
+        let length = way[0].hypot(way[1]);
+        for k in 0..2 {
+            let difference = coupler[k][row] - rocker[k][row];
+            assert!(
+                (difference - 100.0 * way[k] / length).abs() < 1e-9,
+                "{row}: {difference}"
+            );
+        }
+    }
+    let (codes, unnamed, _) = told(&text("", turn));
+    assert_eq!((codes, unnamed), (vec!["link-not-named"], coupler));
+    // A cylinder is asked for its link where forces are asked for.
+    let lift = "m = { cylinder = \"G-B\", from = 80, to = 90, speed = \"1 mm/s\" }";
+    let on = ", on = \"rocker\"";
+    assert_eq!(told(&text(on, lift)).0, ["link-not-named"]);
+    let named = lift.replace("G-B\"", "G-B\", on = \"crank\"");
+    let (codes, _, assumed) = told(&text(on, &named));
+    assert!(
+        codes.is_empty() && assumed.contains("drive m (at B on crank): 80 mm to 90 mm"),
+        "{assumed}"
+    );
+    let motion = text(on, lift).replace("\"forces\"", "\"motion\"");
+    let motion = motion.split("columns").next().unwrap().to_owned();
+    let read = Model::from_toml(&motion, "spring", &mut |_| Err("no files".into())).unwrap();
+    assert!(read.warnings.is_empty(), "{:?}", read.warnings);
+}

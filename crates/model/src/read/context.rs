@@ -46,6 +46,8 @@ pub(crate) struct Context<'a> {
     pub files: Files<'a>,
     /// All that is to be said so far.
     pub found: Vec<Diagnostic>,
+    /// What is to be said where forces are asked for.
+    pub of_forces: Vec<Diagnostic>,
     /// What could not be read, or not as what it is meant to be.
     pub broken: Broken,
     /// The file's units: of length, of angle, and those it names besides.
@@ -110,6 +112,7 @@ impl<'a> Context<'a> {
         Self {
             files,
             found: Vec::new(),
+            of_forces: Vec::new(),
             broken: Broken::default(),
             preferred: vec![unit("m"), unit("deg")],
             names: BTreeMap::new(),

@@ -3,12 +3,13 @@
 use crate::diagnostic::Diagnostic;
 use crate::document::{Key, Node};
 use crate::drive::{Drive, DriveKind, Released};
-use crate::ids::{DriveId, FRAME, JointId, LinkId, LinkPointRef, PointId};
+use crate::ids::{DriveId, FRAME, JointId, LinkId};
 use crate::joint::JointKind;
 use crate::key_table::DRIVES;
 use crate::keys::Kind;
 use crate::read::context::{Context, Meaning};
 use crate::read::drawn;
+use crate::read::ends::ends;
 use crate::read::entry::Entry;
 use crate::read::laws::read_law;
 
@@ -157,7 +158,6 @@ fn cylinder(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<DriveKind> {
             "a cylinder is between two points of different links",
         );
     }
-    let (on_a, on_b) = different_links(cx, a, b)?;
     if cx
         .carriers(a)
         .iter()
@@ -173,20 +173,9 @@ fn cylinder(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<DriveKind> {
             "a cylinder takes the place of a bar: leave that bar out of [links]",
         );
     }
-    Some(DriveKind::Cylinder {
-        a: LinkPointRef {
-            link: on_a,
-            point: a,
-        },
-        b: LinkPointRef {
-            link: on_b,
-            point: b,
-        },
-    })
-}
-
-fn different_links(cx: &Context<'_>, a: PointId, b: PointId) -> Option<(LinkId, LinkId)> {
-    Some((*cx.carriers(a).first()?, *cx.carriers(b).first()?))
+    let ([a, b], warnings) = ends(cx, entry, [a, b])?;
+    cx.of_forces.extend(warnings);
+    Some(DriveKind::Cylinder { a, b })
 }
 
 fn slides(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<DriveKind> {

@@ -366,25 +366,32 @@ pub(crate) fn on_link(
     )
 }
 
+fn some_of(names: Vec<&str>) -> String {
+    const SHOWN: usize = 8;
+    let more = if names.len() > SHOWN { ", …" } else { "" };
+    format!("{}{more}", names.get(..SHOWN).unwrap_or(&names).join(", "))
+}
+
+/// The links that carry a point, in words.
+pub(crate) fn carriers_of(cx: &Context<'_>, point: PointId) -> String {
+    let carriers = cx.carriers(point).iter();
+    let carriers = carriers.map(|l| cx.link_name(*l)).collect();
+    format!("{} is on {}", cx.point_name(point), some_of(carriers))
+}
+
 /// The links that carry a point and the points of a link, for help where one is not on the other.
 fn points_help(cx: &Context<'_>, point: PointId, link: LinkId) -> String {
-    const SHOWN: usize = 8;
-    let list = |names: Vec<&str>| {
-        let more = if names.len() > SHOWN { ", …" } else { "" };
-        format!("{}{more}", names.get(..SHOWN).unwrap_or(&names).join(", "))
-    };
-    let carriers = cx
-        .carriers(point)
-        .iter()
-        .map(|l| cx.link_name(*l))
-        .collect();
     // links are read after their points are known, so that a link's own list may not be there yet
     let points = cx.model.points.iter().filter(|p| p.links.contains(&link));
     let points: Vec<&str> = points.map(|p| p.name.as_str()).collect();
-    let carriers = format!("{} is on {}", cx.point_name(point), list(carriers));
+    let carriers = carriers_of(cx, point);
     match points.is_empty() {
         true => carriers,
-        false => format!("{carriers}; `{}` has {}", cx.link_name(link), list(points)),
+        false => format!(
+            "{carriers}; `{}` has {}",
+            cx.link_name(link),
+            some_of(points)
+        ),
     }
 }
 
@@ -396,6 +403,18 @@ pub(crate) fn moving_carrier(
     what: &str,
     span: &Span,
 ) -> Option<LinkId> {
+    let (link, warning) = carrier(cx, point, what, span)?;
+    cx.found.extend(warning);
+    Some(link)
+}
+
+/// As [`moving_carrier`], with the warning for whoever tells it.
+pub(crate) fn carrier(
+    cx: &Context<'_>,
+    point: PointId,
+    what: &str,
+    span: &Span,
+) -> Option<(LinkId, Option<Diagnostic>)> {
     let carriers = cx.carriers(point);
     let moving: Vec<LinkId> = carriers.iter().copied().filter(|l| *l != FRAME).collect();
     let slides = |link: &LinkId| {
@@ -405,13 +424,13 @@ pub(crate) fn moving_carrier(
     };
     let sliders: Vec<LinkId> = moving.iter().copied().filter(slides).collect();
     if let [slider] = sliders.as_slice() {
-        return Some(*slider);
+        return Some((*slider, None));
     }
     let first = moving.first().or(carriers.first()).copied()?;
     let others = moving.iter().copied().filter(|l| !welded(cx, first, *l));
     let others: Vec<LinkId> = others.collect();
     if others.is_empty() {
-        return Some(first);
+        return Some((first, None));
     }
     let name = |link: LinkId| cx.link_name(link).to_owned();
     let all: Vec<String> = (std::iter::once(first).chain(others))
@@ -430,8 +449,7 @@ pub(crate) fn moving_carrier(
         "what the pin {point} carries depends on which of its links it acts on"
     ))
     .help(format!("say which is meant: {}", all.join(" or ")));
-    cx.push(warning);
-    Some(first)
+    Some((first, Some(warning)))
 }
 
 /// Whether welds hold two links together.

@@ -15,6 +15,7 @@ use crate::read::{
     actuators, assembly, drawn, drives, friction, joints, links, loads, masses, measures, names,
     parameters, places, springs, studies,
 };
+use crate::study::StudyKind;
 
 /// Reads the whole file.
 pub(crate) fn read(cx: &mut Context<'_>, root: &Table, overrides: &[(String, String)]) {
@@ -94,6 +95,11 @@ pub(crate) fn read(cx: &mut Context<'_>, root: &Table, overrides: &[(String, Str
     measures::read(cx, sections.of("measures"));
     loads::read(cx, sections.of("loads"));
     studies::read(cx, sections.of("studies"));
+    let asked = (cx.model.studies.iter()).any(|s| !matches!(s.kind, StudyKind::Motion(_)))
+        || cx.model.measures.iter().any(|m| m.needs_forces);
+    if asked {
+        cx.found.append(&mut cx.of_forces);
+    }
 }
 
 /// Warns of links that nothing holds.

@@ -17,11 +17,12 @@ use kempe_units::{Dimension, Expr};
 
 use crate::diagnostic::Diagnostic;
 use crate::document::{Key, Node};
-use crate::ids::{LinkPointRef, Scalar};
+use crate::ids::Scalar;
 use crate::key_table::{ACTS, DAMPER, SPRING};
 use crate::keys::Sign;
 use crate::load::{Between, Damper, Spring};
 use crate::read::context::Context;
+use crate::read::ends::ends;
 use crate::read::entry::Entry;
 use crate::read::names::{is_small_name, long_name};
 
@@ -182,6 +183,7 @@ fn between(cx: &mut Context<'_>, entry: &mut Entry<'_>, torsion: &'static str) -
         }
         (Some(node), None) => points(cx, entry, node),
         (None, Some(_)) => {
+            entry.idle(cx, &["on"], "between");
             let ((first, second), node) = entry.two_links(cx, "links")?;
             if first == second {
                 let name = cx.link_name(first).to_owned();
@@ -224,11 +226,7 @@ fn points<'d>(cx: &mut Context<'_>, entry: &Entry<'d>, node: &'d Node) -> Option
             "name two points that no link has in common",
         );
     }
-    let end = |point| {
-        Some(LinkPointRef {
-            link: *cx.carriers(point).first()?,
-            point,
-        })
-    };
-    Some(Between::Points(end(a)?, end(b)?))
+    let ([a, b], warnings) = ends(cx, entry, [a, b])?;
+    cx.found.extend(warnings);
+    Some(Between::Points(a, b))
 }

@@ -2,7 +2,7 @@
 
 use kempe_units::{Dimension, Unit};
 
-use crate::ids::{FRAME, LinkId, PointId, Scalar};
+use crate::ids::{FRAME, LinkId, LinkPointRef, PointId, Scalar};
 use crate::item::{File, Item};
 use crate::key_table::{ACTS, word_of};
 use crate::link::Place;
@@ -175,17 +175,33 @@ impl Writer<'_> {
         ]
     }
 
-    fn between(&self, between: &Between) -> (String, Item) {
+    fn between(&self, between: &Between) -> Entries {
         match between {
-            Between::Points(a, b) => {
-                let pair = format!("{}-{}", self.point(a.point), self.point(b.point));
-                self.text("between", &pair)
-            }
+            Between::Points(a, b) => self.ends("between", [a, b]),
             Between::Links(a, b) => {
                 let links = [a, b].map(|l| Item::text(self.link(*l)));
-                ("links".to_owned(), Item::List(links.to_vec()))
+                vec![("links".to_owned(), Item::List(links.to_vec()))]
             }
         }
+    }
+
+    /// Two points, with the links that are meant where several could be.
+    pub(super) fn ends(&self, key: &str, ends: [&LinkPointRef; 2]) -> Entries {
+        let pair = ends.map(|end| self.point(end.point)).join("-");
+        let shared = |end: &&LinkPointRef| {
+            let point = self.model.points.get(end.point.index());
+            end.link != FRAME && point.is_some_and(|p| p.links.len() > 1)
+        };
+        let on = ends.into_iter().filter(shared);
+        let on: Vec<Item> = on.map(|end| Item::text(self.link(end.link))).collect();
+        let on = match on.len() {
+            0 => None,
+            1 => on.into_iter().next(),
+            _ => Some(Item::List(on)),
+        };
+        let mut entries = vec![self.text(key, &pair)];
+        entries.extend(on.map(|on| ("on".to_owned(), on)));
+        entries
     }
 
     fn spring(&self, spring: &Spring) -> Entries {
@@ -195,11 +211,9 @@ impl Writer<'_> {
             Between::Links(..) => Dimension::ANGLE,
         };
         let per = force / travel;
-        let mut entries = vec![
-            self.between(&spring.between),
-            self.value("stiffness", &spring.stiffness, per),
-            self.value("free", &spring.free, travel),
-        ];
+        let mut entries = self.between(&spring.between);
+        entries.push(self.value("stiffness", &spring.stiffness, per));
+        entries.push(self.value("free", &spring.free, travel));
         // without stiffness its force must be told, even if it has none
         let values = self.model.parameter_values::<f64>();
         let limp = crate::value(&spring.stiffness, &values) == 0.0;
@@ -226,10 +240,8 @@ impl Writer<'_> {
             Between::Points(..) => Dimension::DAMPING,
             Between::Links(..) => Dimension::TORSIONAL_DAMPING,
         };
-        let mut entries = vec![
-            self.between(&damper.between),
-            self.value("damping", &damper.damping, per),
-        ];
+        let mut entries = self.between(&damper.between);
+        entries.push(self.value("damping", &damper.damping, per));
         entries.extend(self.given("closing", &damper.closing, per));
         entries
     }

@@ -223,10 +223,7 @@ impl Writer<'_> {
                 }
                 entries
             }
-            DriveKind::Cylinder { a, b } => {
-                let pair = format!("{}-{}", self.point(a.point), self.point(b.point));
-                vec![text("cylinder", &pair)]
-            }
+            DriveKind::Cylinder { a, b } => self.ends("cylinder", [&a, &b]),
             DriveKind::Slide { joint } => vec![text("slides", self.joint(joint))],
             DriveKind::Release { .. } => return None,
         };
