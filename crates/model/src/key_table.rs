@@ -274,7 +274,7 @@ const HOW: T = T::AnyOf(&[LAW_WORDS, T::List(&T::Table(&PIECE), 1), T::Table(&LA
 const fn law([from, to, speed, acceleration]: [&'static str; 4]) -> [Key; 7] {
     [
         may("from", COORDINATE, from, "Where it starts; as drawn where [places] draws it, else 0, and needed for a cylinder."),
-        may("to", COORDINATE, to, "Where it ends; one turn further unless said otherwise, and needed for what does not turn."),
+        may("to", COORDINATE, to, "Where it ends, such as \"drawn\" or \"drawn + 30 deg\"; one turn further unless said otherwise, and needed for what does not turn."),
         may("speed", SPEED, speed, "Constant speed, without a sign."),
         may("acceleration", ACCELERATION, acceleration, "Constant acceleration from rest, without a sign."),
         may("law", HOW, "\"cycloidal\"",

@@ -284,6 +284,26 @@ fn a_drive_may_end_where_it_is_drawn() {
     };
     let drawn = to(&FILE.replace("speed", "from = 0, to = \"drawn\", speed"));
     assert!((drawn - kempe_number::math::atan2(4.0, 3.0)).abs() < 1e-15);
+    let further = [
+        "from = 0, to = \"drawn + 30 deg\", speed = 1",
+        "from = 0, to = \"3 * drawn - 2 * (drawn - 15 deg)\", speed = 1",
+        "from = 0, law = [{ to = \"drawn + 30 deg\", in = \"1 s\" }]",
+    ];
+    for law in further {
+        let high = to(&FILE.replace("speed = 1", law));
+        assert!((high - drawn - 30f64.to_radians()).abs() < 1e-14, "{law}");
+    }
+    let to_drawn = FILE.replace("speed = 1", "from = 0, law = [{ to = \"drawn\", in = 1 }]");
+    assert!((to(&to_drawn) - drawn).abs() < 1e-15);
+    for (wrong, code) in [
+        ("drawn + 30 mm", "unit-mismatch"),
+        ("drawn * drawn", "unit-mismatch"),
+        ("drawnn + 30 deg", "unknown-name"),
+        ("drawn * 2 / (drawn / drawn - 1)", "not-finite"),
+    ] {
+        let text = FILE.replace("speed", &format!("to = \"{wrong}\", speed"));
+        assert!(codes(&text).contains(&code), "{wrong}: {:?}", codes(&text));
+    }
     let held = FILE.replace("speed", "to = \"drawn\", speed");
     assert_eq!(codes(&held), ["no-motion"]);
     // a parameter of that name is meant instead

@@ -701,9 +701,10 @@ fn a_spring_and_a_cylinder_act_on_the_link_that_is_named() {
     let told = |text: &str| {
         let read = Model::from_toml(text, "spring", &mut |_| Err("no files".into())).unwrap();
         let codes: Vec<&str> = read.warnings.iter().map(|d| d.code).collect();
-        let again = kempe_model::Model::from_toml(&read.model.to_toml().toml, "spring", &mut |_| {
-            Err("no files".into())
-        });
+        let again =
+            kempe_model::Model::from_toml(&read.model.to_toml().toml, "spring", &mut |_| {
+                Err("no files".into())
+            });
         assert_eq!(
             again.unwrap().model.actions.springs[0].between,
             read.model.actions.springs[0].between

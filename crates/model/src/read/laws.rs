@@ -95,16 +95,22 @@ impl<'d> LawReader<'_, 'd> {
         })
     }
 
-    /// A value, or `"drawn"`.
+    /// A place of the drive that is within its bounds.
     fn coordinate(&self, cx: &mut Context<'_>, node: &Node) -> Option<Scalar> {
-        let coordinate = match &node.value {
-            Value::Text(text) if text.content.trim() == DRAWN && !cx.names.contains_key(DRAWN) => {
-                self.as_drawn(cx, node)?
-            }
-            _ => cx.scalar(node, self.dimension)?,
-        };
+        let coordinate = self.coordinate_anywhere(cx, node)?;
         self.check_coordinate(cx, &coordinate, &node.span);
         Some(coordinate)
+    }
+
+    /// A value, `"drawn"`, or what is computed of it: `"drawn + 30 deg"`.
+    fn coordinate_anywhere(&self, cx: &mut Context<'_>, node: &Node) -> Option<Scalar> {
+        match &node.value {
+            Value::Text(text) if names(&text.content, DRAWN) && !cx.names.contains_key(DRAWN) => {
+                let drawn = self.as_drawn(cx, node)?;
+                cx.scalar_over(node, self.dimension, Some((DRAWN, &drawn)))
+            }
+            _ => cx.scalar(node, self.dimension),
+        }
     }
 
     /// `"drawn"`.
@@ -427,7 +433,10 @@ impl<'d> LawReader<'_, 'd> {
             let duration = cx.positive(value, Dimension::TIME, "a dwell", false)?;
             return Some(LawPiece::Dwell { duration });
         }
-        let by_how_much = cx.scalar(value, self.dimension)?;
+        let by_how_much = match *end {
+            "to" => self.coordinate_anywhere(cx, value)?,
+            _ => cx.scalar(value, self.dimension)?,
+        };
         let to = match (*end, from, by_how_much) {
             ("to", _, to) => to,
             ("rise", Expr::Const(a), Expr::Const(b)) => Expr::Const(a + b),
@@ -463,6 +472,12 @@ impl<'d> LawReader<'_, 'd> {
             by: by?,
         })
     }
+}
+
+/// Whether an expression has a name in it.
+fn names(text: &str, name: &str) -> bool {
+    let mut words = text.split(|c: char| !c.is_alphanumeric() && c != '_');
+    words.any(|word| word == name)
 }
 
 /// The dimension of the `order`-th rate of a coordinate.

@@ -50,6 +50,28 @@ impl Resolver<ParameterId> for Parameters<'_, '_> {
     }
 }
 
+/// Names of an expression over the parameters and one name more, which is `None`.
+struct OneMore<'c, 'a> {
+    parameters: Parameters<'c, 'a>,
+    more: Option<(&'c str, Dimension)>,
+}
+
+impl Resolver<Option<ParameterId>> for OneMore<'_, '_> {
+    fn name(&mut self, name: &str, span: Span) -> Result<(Option<ParameterId>, Dimension), Issue> {
+        match self.more {
+            Some((more, dimension)) if more == name => Ok((None, dimension)),
+            _ => {
+                let (id, dimension) = self.parameters.name(name, span)?;
+                Ok((Some(id), dimension))
+            }
+        }
+    }
+
+    fn declared(&self, name: &str) -> bool {
+        self.more.is_some_and(|(more, _)| more == name) || self.parameters.declared(name)
+    }
+}
+
 impl Context<'_> {
     /// A parameter with its dimension, unless it is broken.
     pub fn parameter(
@@ -87,14 +109,32 @@ impl Context<'_> {
 
     /// A dimension of the design: an expression over the parameters that measures `expected` and is finite.
     pub fn scalar(&mut self, node: &Node, expected: Dimension) -> Option<Scalar> {
+        self.scalar_over(node, expected, None)
+    }
+
+    /// As [`scalar`](Self::scalar), over one more name too, of the same dimension.
+    pub fn scalar_over(
+        &mut self,
+        node: &Node,
+        expected: Dimension,
+        more: Option<(&str, &Scalar)>,
+    ) -> Option<Scalar> {
         let scalar = match &node.value {
             Value::Number(x) => Expr::Const(self.bare_unit(expected).to_si(*x)),
             Value::Text(text) => {
                 let unit = self.bare_unit(expected);
+                let mut names = OneMore {
+                    parameters: Parameters(self),
+                    more: more.map(|(name, _)| (name, expected)),
+                };
                 let checked = parse(&text.content)
-                    .and_then(|tree| check_as(&tree, &mut Parameters(self), expected, &unit));
+                    .and_then(|tree| check_as(&tree, &mut names, expected, &unit));
                 match checked {
-                    Ok((scalar, _)) => scalar,
+                    Ok((scalar, _)) => scalar.substitute(&mut |leaf| match (leaf, more) {
+                        (None, Some((_, value))) => value.clone(),
+                        // no other leaf is without a parameter
+                        (leaf, _) => leaf.map_or(Expr::Const(f64::NAN), Expr::Leaf),
+                    }),
                     Err(issues) => {
                         self.issues(text, issues);
                         return None;
