@@ -524,6 +524,20 @@ fn limiting_group(motion: &Motion, at: f64) -> Option<String> {
         names.len(),
     ) {
         (Step::Dyad { .. }, 2) => Some(format!("{} stand in line", list(&names))),
+        (
+            Step::Swing(Swing {
+                condition: Condition::Radius { input, .. },
+                ..
+            }),
+            1,
+        ) => {
+            let drive = motion.mechanism().model.drives.get(input.index())?;
+            let cylinder = &drive.name;
+            Some(format!(
+                "{} and the cylinder `{cylinder}` stand in line",
+                names[0]
+            ))
+        }
         (_, 0) => None,
         (_, 1) => Some(format!("{} cannot be placed any further", names[0])),
         _ => Some(format!("the group of {} reaches its end", list(&names))),

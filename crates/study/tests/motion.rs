@@ -192,6 +192,28 @@ fn a_range_beyond_the_limit_is_an_error_with_the_limit_in_it() {
     );
 }
 
+/// At either end of the range: a cylinder of 30 mm to 150 mm on an arm of 60 mm, its foot 90 mm from the pivot.
+#[test]
+fn a_limit_at_either_end_has_its_reason() {
+    let text = |way: &str| {
+        format!(
+            "units = {{ length = \"mm\", angle = \"deg\" }}\n[links]\nframe = {{ A = [0, 0], F = [90, 0] }}\narm = {{ A-B = 60 }}\n\
+             [assembly]\nB = \"left of A -> F\"\n[drives]\nlift = {{ cylinder = \"F-B\", {way}, speed = \"1 mm/s\" }}\n\
+             [studies.s]\nkind = \"motion\"\n"
+        )
+    };
+    for (way, limit) in [
+        ("from = 100, to = 20", "30 mm"),
+        ("from = 100, to = 160", "150 mm"),
+    ] {
+        let (found, said) = fails(&text(way));
+        assert_eq!(found[0].code, "range-beyond-limit", "{way}: {said}");
+        assert!(said.contains(&format!("beyond {limit}")), "{way}: {said}");
+        let reason = "at the limit `arm` and the cylinder `lift` stand in line";
+        assert!(said.contains(reason), "{way}: {said}");
+    }
+}
+
 #[test]
 fn a_loop_that_cannot_close_names_its_links_and_distances() {
     let text = FOUR_BAR.replace("D = [60, 0]", "D = [125, 0]");

@@ -47,7 +47,8 @@ impl Motion {
             let at_limit = node.parameter_rate().abs() < STATIONARY;
             // Only a limit that was located has no rate at all.
             if node.parameter_rate() == 0.0 {
-                let regular = index.checked_sub(1).map(|before| &old[before].determinants);
+                let beside = index.checked_sub(1).unwrap_or(index + 1);
+                let regular = old.get(beside).map(|node| &node.determinants);
                 self.places.push(Event {
                     kind: EventKind::Limit,
                     at: follower.parameter(&node.z),
