@@ -112,12 +112,19 @@ pub struct Sensitivities {
 #[derive(Debug, Args)]
 #[command(
     after_help = "Examples:\n  kempe run hitch.toml --out results\n  kempe run hitch.toml lifting --out results --set k=450mm\n  \
-                        kempe run hitch.toml --json --quiet | jq .studies[0].values\n\n\
+                        kempe run hitch.toml --json --quiet | jq .studies[0].values\n  \
+                        kempe run hitch.toml --against-set k=450mm --out results\n  \
+                        kempe run new.toml --against old.toml\n\n\
                         Writes STUDY.csv, STUDY.parquet, STUDY-*.svg and report.html. All appear at the end, each whole.\n\
                         Where a study cannot run (exit code 3) or a file cannot be written, none does, and the folder\n\
                         stays as it was. Earlier files of studies that are not asked for stay.\n\n\
                         Nothing is replaced but what Kempe wrote and nobody changed; .kempe-files.json in the folder\n\
                         lists that. One run at a time writes to a folder.\n\n\
+                        With --against or --against-set it writes comparison.csv and the other design's STUDY.against.csv\n\
+                        and STUDY.against.parquet besides; pictures and report show both. --set is of this design alone,\n\
+                        but where the other one is given by --against-set without --against. The exit code is the worse\n\
+                        of both; a design that cannot run beside this one does not keep this one's results from being\n\
+                        written.\n\n\
                         Ctrl-C, SIGTERM and SIGHUP keep the finished rows beside an earlier result: STUDY.partial.csv,\n\
                         report.partial.html and so on, which say inside how far the run came."
 )]
@@ -130,6 +137,13 @@ pub struct Run {
     /// Folder for the results; without it, only the summary is printed
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    /// Set the design of another model file beside this one: drawings, plots, and a table of differences
+    #[arg(long, value_name = "FILE")]
+    pub against: Option<PathBuf>,
+    /// Set a parameter of the other design, as in --against-set a=25mm; may be repeated. Without --against the other design is
+    /// this file with these values, and those of --set
+    #[arg(long = "against-set", value_name = "NAME=VALUE", value_parser = name_and_value)]
+    pub against_set: Vec<(String, String)>,
     /// Prove the motion and its largest and smallest values by interval arithmetic; the report tells which numbers are proved
     #[arg(long)]
     pub certify: bool,

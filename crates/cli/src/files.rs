@@ -5,6 +5,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use kempe_model::{Checked, Diagnostic, MAX_FILE_BYTES, Model};
+use kempe_study::ReportOrigin;
 use kempe_units::nearest;
 
 use crate::arguments::ModelFile;
@@ -26,8 +27,37 @@ pub struct Loaded {
     pub inputs: Vec<PathBuf>,
 }
 
+impl Loaded {
+    /// Where the design comes from.
+    pub fn origin(&self) -> ReportOrigin<'_> {
+        ReportOrigin {
+            file_name: &self.name,
+            text: &self.text,
+            set: &self.set,
+            ..ReportOrigin::default()
+        }
+    }
+}
+
 /// Reads a model file, or says why not.
 pub fn load(model: &ModelFile, speaker: &mut Speaker) -> Result<Loaded, Exit> {
+    let loaded = read(model, speaker)?;
+    speaker.tell(&loaded.checked.warnings);
+    Ok(loaded)
+}
+
+/// Reads the other one of two designs. What reading the same text has told already is not told again.
+pub fn load_other(model: &ModelFile, this: &Loaded, speaker: &mut Speaker) -> Result<Loaded, Exit> {
+    let mut loaded = read(model, speaker)?;
+    if loaded.text == this.text {
+        let told = &this.checked.warnings;
+        loaded.checked.warnings.retain(|w| !told.contains(w));
+    }
+    speaker.tell(&loaded.checked.warnings);
+    Ok(loaded)
+}
+
+fn read(model: &ModelFile, speaker: &mut Speaker) -> Result<Loaded, Exit> {
     let name = model.file.display().to_string();
     let bytes = match read_plain(&model.file, MAX_FILE_BYTES) {
         Ok(bytes) => bytes,
@@ -51,7 +81,6 @@ pub fn load(model: &ModelFile, speaker: &mut Speaker) -> Result<Loaded, Exit> {
     let mut tables = Tables::of(folder, model.allow_outside);
     match Model::from_bytes(&bytes, &title, &mut |name| tables.read(name), &model.set) {
         Ok(checked) => {
-            speaker.tell(&checked.warnings);
             let mut inputs = tables.read;
             inputs.push(model.file.clone());
             Ok(Loaded {

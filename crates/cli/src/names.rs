@@ -22,6 +22,24 @@ pub fn picture(model: &Model, study: &str, picture: &str) -> String {
     format!("{study}{mark}{picture}.svg")
 }
 
+/// The name of a file of the other one of two designs: `turn.against.csv`. No study has a dot in its name.
+pub fn of_other_design(name: &str) -> String {
+    match name.rsplit_once('.') {
+        Some((stem, ending)) => format!("{stem}.against.{ending}"),
+        None => format!("{name}.against"),
+    }
+}
+
+/// The name of the table that sets two designs beside each other: `comparison.csv`, unless that is the table of a study.
+pub fn comparison(model: &Model) -> &'static str {
+    let known = model.studies.iter().map(|s| s.name.as_str());
+    let mut names = known.chain(model.announced.iter().map(|s| s.name.as_str()));
+    match names.any(|name| name.to_lowercase() == "comparison") {
+        true => "report.comparison.csv",
+        false => "comparison.csv",
+    }
+}
+
 /// The name of a file of a run: of one that was stopped, `turn.csv` is `turn.partial.csv`.
 pub fn of_run(name: &str, partial: bool) -> String {
     match name.rsplit_once('.') {
@@ -33,6 +51,21 @@ pub fn of_run(name: &str, partial: bool) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_comparison_is_no_table_of_a_study() {
+        let of = |study: &str| {
+            let text = format!(
+                "[links]\nframe = {{ A = [0, 0] }}\ncrank = {{ A-B = 1 }}\n[drives]\nmotor = {{ turns = \"crank\", speed = 1 }}\n\
+                 [studies.{study}]\nkind = \"motion\"\n"
+            );
+            let model = Model::from_toml(&text, "x", &mut |_| Err(String::new()));
+            comparison(&model.expect("a model").model)
+        };
+        assert_eq!(of("turn"), "comparison.csv");
+        assert_eq!(of("comparison"), "report.comparison.csv");
+        assert_eq!(of_other_design("turn.csv"), "turn.against.csv");
+    }
 
     #[test]
     fn studies_whose_names_go_on_keep_their_pictures_apart() {

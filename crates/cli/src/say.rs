@@ -7,6 +7,7 @@ use annotate_snippets::renderer::DecorStyle;
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use kempe_model::{Diagnostic, Severity};
 use kempe_number::text::{is_hidden, visible};
+use kempe_study::{ReportOrigin, of_other_design};
 use serde_json::Value;
 
 use crate::exit::Exit;
@@ -19,6 +20,8 @@ pub struct Speaker {
     strict: bool,
     file: String,
     text: String,
+    /// The parameters of the other design, while that is spoken of.
+    other: Option<Vec<(String, String)>>,
     /// What was said: nothing is said twice.
     told: Vec<Diagnostic>,
 }
@@ -32,6 +35,7 @@ impl Speaker {
             strict: false,
             file: String::new(),
             text: String::new(),
+            other: None,
             told: Vec::new(),
         }
     }
@@ -48,10 +52,36 @@ impl Speaker {
         text.clone_into(&mut self.text);
     }
 
+    /// From now on diagnostics are about the other one of two designs, a file with these parameters, and say so.
+    pub fn turn_to_other(&mut self, file: &str, text: &str, set: &[(String, String)]) {
+        self.name_file(file, text);
+        self.other = Some(set.to_vec());
+    }
+
+    /// From now on diagnostics are about this design again, or about both.
+    pub fn turn_back(&mut self, file: &str, text: &str) {
+        self.other = None;
+        self.name_file(file, text);
+    }
+
+    /// A diagnostic with whose it is.
+    fn marked(&self, diagnostic: &Diagnostic) -> Diagnostic {
+        let Some(set) = &self.other else {
+            return diagnostic.clone();
+        };
+        let origin = ReportOrigin {
+            file_name: &self.file,
+            text: &self.text,
+            set,
+            ..ReportOrigin::default()
+        };
+        of_other_design(diagnostic, &origin)
+    }
+
     /// Says diagnostics.
     pub fn tell(&mut self, diagnostics: &[Diagnostic]) {
         for diagnostic in diagnostics {
-            let mut diagnostic = diagnostic.clone();
+            let mut diagnostic = self.marked(diagnostic);
             if self.strict {
                 diagnostic.severity = Severity::Error;
             }

@@ -100,6 +100,21 @@ impl Context<'_> {
         Some([c * x + s * y, c * y - s * x])
     }
 
+    /// For scripts that move the drawing: the paper position of a link's first point and the link's angle in a pose.
+    pub fn link_pose(&self, frame: &Frame, link: usize) -> Option<[f64; 3]> {
+        let first = *self.view.links.get(link)?.points.first()?;
+        let at = self.paper(frame, first)?;
+        Some([at[0], at[1], link_angle(frame, link)?])
+    }
+
+    /// For scripts that move the drawing: a point as the link that carries it and its place there from the link's first
+    /// point, mm.
+    pub fn point_on_link(&self, index: usize) -> Option<(usize, Point)> {
+        let link = *self.roles.point(index).carriers.first()?;
+        let first = *self.view.links[link].points.first()?;
+        Some((link, self.local(link, first, index)?))
+    }
+
     /// Angle of a guide in the axes of its link.
     pub fn guide_angle(&self, guide: Guide) -> Option<f64> {
         let to = self.local(guide.link, guide.from, guide.to)?;

@@ -2,6 +2,7 @@
 
 use crate::scene::{Align, Group, Item, Layer, Path, Style, Text};
 use crate::stage::Stage;
+use crate::symbols::outline_style;
 use crate::text::shortened;
 use crate::tokens::Token;
 use crate::view::Frame;
@@ -23,6 +24,15 @@ pub(crate) fn groups(stage: &Stage, frame: Option<&Frame>) -> Vec<Group> {
             bold: true,
             ..Text::new([6.0, height - 8.5], 4.6, title)
         }));
+    }
+    if let (true, Some(other)) = (stage.options.title, &stage.other) {
+        let [x, y] = [6.0, height - 13.0];
+        let line = Path::polyline(&[[x, y + 1.0], [x + 9.0, y + 1.0]]);
+        caption.push(Item::path(line, outline_style()));
+        let name = shortened(other.name, 3.2, width - 24.0);
+        caption.push(Item::Text(
+            Text::new([x + 11.0, y], 3.2, name).colored(Token::Muted),
+        ));
     }
     if let (true, Some(frame)) = (stage.options.caption, frame) {
         let label = shortened(&frame.label, 3.4, width * 0.6);

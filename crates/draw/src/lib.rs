@@ -30,6 +30,7 @@ pub mod dxf;
 mod escape;
 mod fit;
 mod furniture;
+mod ghost;
 mod hull;
 mod loads;
 mod picture;
@@ -49,7 +50,7 @@ mod view;
 
 pub use context::Anchor;
 pub use loads::{LoadRole, LoadView};
-pub use stage::{DrawOptions, Stage};
+pub use stage::{DrawOptions, Outline, Stage};
 pub use tokens::Theme;
 pub use view::{
     ArcGuide, CurveGuide, DriveKind, DriveView, Frame, Guide, JointView, LengthUnit, LinkView,

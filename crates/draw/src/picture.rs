@@ -18,6 +18,9 @@ impl Stage<'_> {
         if let Some(frame) = frame {
             groups.extend(self.pose(frame));
         }
+        if let Some(other) = &self.other {
+            groups.extend(other.groups(index));
+        }
         groups.extend(furniture::groups(self, frame));
         if let Some(loads) = &self.loads {
             groups.extend(loads.groups(&self.context, index));
@@ -29,6 +32,9 @@ impl Stage<'_> {
         let mut title = self.context.view.title.clone();
         if let Some(label) = frame.map(|f| f.label.as_str()).filter(|l| !l.is_empty()) {
             title = format!("{title}: {label}");
+        }
+        if let Some(other) = &self.other {
+            title = format!("{title}; dashed: {}", other.name);
         }
         Scene {
             width,

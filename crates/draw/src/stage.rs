@@ -2,8 +2,9 @@
 
 use kempe_number::math::sin_cos;
 
-use crate::context::{Anchor, Context, link_angle, point, reference_frame};
+use crate::context::{Anchor, Context, point, reference_frame};
 use crate::fit::{Bounds, Fit, Margins};
+use crate::ghost::Ghost;
 use crate::loads::{LEAST_SCALE, LoadSheet, SHARES};
 use crate::roles::Roles;
 use crate::scene::{Group, Layer, Point};
@@ -58,6 +59,18 @@ pub struct Stage<'a> {
     pub(crate) parts: Vec<Part>,
     pub(crate) traces: Vec<TracePath>,
     pub(crate) loads: Option<LoadSheet>,
+    pub(crate) other: Option<Ghost<'a>>,
+}
+
+/// A design that is shown as an outline over another one, pose by pose.
+#[derive(Clone, Copy, Debug)]
+pub struct Outline<'a> {
+    /// What it is called.
+    pub name: &'a str,
+    /// The mechanism.
+    pub view: &'a MechanismView,
+    /// Its pose at each pose of the drawn design; one without points where it has none.
+    pub frames: &'a [Frame],
 }
 
 /// Room around the mechanism for the paper-sized symbols, mm.
@@ -68,6 +81,16 @@ const LEAST_HEIGHT: f64 = 40.0;
 impl<'a> Stage<'a> {
     /// Lays the mechanism out. Poses may be missing or not finite; what cannot be drawn is left out.
     pub fn new(view: &'a MechanismView, frames: &'a [Frame], options: DrawOptions) -> Stage<'a> {
+        Stage::with_outline(view, frames, None, options)
+    }
+
+    /// Lays the mechanism out with another design over it, both at one scale.
+    pub fn with_outline(
+        view: &'a MechanismView,
+        frames: &'a [Frame],
+        other: Option<Outline<'a>>,
+        options: DrawOptions,
+    ) -> Stage<'a> {
         let options = DrawOptions {
             width: if options.width.is_finite() {
                 options.width.clamp(20.0, 5000.0)
@@ -86,15 +109,22 @@ impl<'a> Stage<'a> {
         match options.view_box {
             Some(corners) => corners.iter().for_each(|&p| bounds.add(p, 0.0)),
             None => {
-                frames
-                    .iter()
-                    .for_each(|frame| add_frame(&mut bounds, view, &roles, frame));
-                view.joints
-                    .iter()
-                    .for_each(|joint| add_rack(&mut bounds, frames, joint));
+                add_all(&mut bounds, view, &roles, frames);
+                if let Some(other) = &other {
+                    add_all(
+                        &mut bounds,
+                        other.view,
+                        &Roles::new(other.view),
+                        other.frames,
+                    );
+                }
             }
         }
-        let top = if options.title { 10.0 } else { 0.0 };
+        let top = match (options.title, &other) {
+            (true, Some(_)) => 15.0,
+            (true, None) => 10.0,
+            (false, _) => 0.0,
+        };
         let bottom = if options.scale_bar || options.caption {
             9.0
         } else {
@@ -152,12 +182,14 @@ impl<'a> Stage<'a> {
         } else {
             Vec::new()
         };
+        let other = other.map(|other| Ghost::new(other, fit, options.traces));
         Stage {
             context,
             options,
             parts,
             traces,
             loads,
+            other,
         }
     }
 
@@ -217,21 +249,16 @@ impl<'a> Stage<'a> {
     pub fn anchors(&self) -> Vec<Anchor> {
         self.parts.iter().map(|part| part.anchor).collect()
     }
+}
 
-    /// For scripts that move the drawing: the paper position of a link's first point and the link's angle in a pose.
-    pub fn link_pose(&self, frame: &Frame, link: usize) -> Option<[f64; 3]> {
-        let first = *self.context.view.links.get(link)?.points.first()?;
-        let at = self.context.paper(frame, first)?;
-        Some([at[0], at[1], link_angle(frame, link)?])
-    }
-
-    /// For scripts that move the drawing: a point as the link that carries it and its place there from the link's first
-    /// point, mm.
-    pub fn point_on_link(&self, index: usize) -> Option<(usize, Point)> {
-        let link = *self.context.roles.point(index).carriers.first()?;
-        let first = *self.context.view.links[link].points.first()?;
-        Some((link, self.context.local(link, first, index)?))
-    }
+/// All poses of a mechanism.
+fn add_all(bounds: &mut Bounds, view: &MechanismView, roles: &Roles, frames: &[Frame]) {
+    frames
+        .iter()
+        .for_each(|frame| add_frame(bounds, view, roles, frame));
+    view.joints
+        .iter()
+        .for_each(|joint| add_rack(bounds, frames, joint));
 }
 
 fn add_frame(bounds: &mut Bounds, view: &MechanismView, roles: &Roles, frame: &Frame) {

@@ -49,13 +49,14 @@ fn a_plot_looks_as_it_did() {
                 label: "one".into(),
                 x: x.clone(),
                 y: y(1.0),
-                dashed: false,
+                ..Curve::default()
             },
             Curve {
                 label: "two".into(),
                 x: x.clone(),
                 y: y(-2.5),
                 dashed: true,
+                ..Curve::default()
             },
         ],
         markers: vec![Marker {

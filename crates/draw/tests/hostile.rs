@@ -305,7 +305,7 @@ proptest! {
         logs in any::<[bool; 2]>(), equal_aspect in any::<bool>(), hodograph in any::<bool>(), limit in number(), limits in prop::option::of([number(), number()]),
     ) {
         let axis = |log| Axis { log, limits, ..Axis::new("a", "deg") };
-        let curve = Curve { label: "c".into(), x, y, dashed: true };
+        let curve = Curve { label: "c".into(), x, y, dashed: true, ..Curve::default() };
         let along = Limit::along("l", curve.y.clone(), curve.x.clone());
         let hodograph = hodograph.then(|| Hodograph { drive: curve.y.clone(), unit: "deg".into() });
         let plot = PlotSpec {

@@ -161,6 +161,7 @@ pub const LATER_CODES: &[Code] = &[
     code("not-the-path", "a drive that does not move the mechanism alone"),
     code("not-written", "some results were not written, because others failed"),
     code("nothing-acts", "forces are asked for where nothing acts"),
+    code("nothing-to-compare", "both designs of a comparison are the same, or have no study in common"),
     code("nothing-to-differentiate", "sensitivities without measures or without parameters"),
     code("overconstrained", "some constraints repeat others: the mobility by count is not that by rank"),
     code("overdriven", "more drives than freedoms"),

@@ -24,20 +24,8 @@ pub fn figures(model: &Model, result: &StudyResult) -> Vec<(String, PlotSpec)> {
     let Some(x) = result.abscissa() else {
         return Vec::new();
     };
-    let drives = 1 + model.drives.len();
-    let mut chosen: Vec<Figure> = result.figures.clone();
-    if chosen.is_empty() {
-        let own = result.table.columns.iter().skip(drives);
-        let own = own.take(MOST_DEFAULT).cloned();
-        chosen = own
-            .map(|c| Figure::Curves {
-                curves: vec![c],
-                limits: Vec::new(),
-            })
-            .collect();
-    }
     let mut plots: Vec<(String, PlotSpec)> = Vec::new();
-    for figure in &chosen {
+    for figure in &chosen(model, result) {
         let (name, plot) = match figure {
             Figure::Curves { curves, limits } => {
                 let spec = curves_plot(x, curves, result);
@@ -67,6 +55,21 @@ pub fn figures(model: &Model, result: &StudyResult) -> Vec<(String, PlotSpec)> {
         plots.push((file, plot));
     }
     plots
+}
+
+/// What the plots of a study show, in their order.
+pub(crate) fn chosen(model: &Model, result: &StudyResult) -> Vec<Figure> {
+    if !result.figures.is_empty() {
+        return result.figures.clone();
+    }
+    let drives = 1 + model.drives.len();
+    let own = result.table.columns.iter().skip(drives);
+    let own = own.take(MOST_DEFAULT).cloned();
+    own.map(|c| Figure::Curves {
+        curves: vec![c],
+        limits: Vec::new(),
+    })
+    .collect()
 }
 
 /// Plots of a study that names none.
@@ -113,7 +116,7 @@ fn names(columns: &[Column]) -> String {
 const NO_FORCE: f64 = 1e-12;
 
 /// The size below which a force of a study is none, SI.
-fn noise(result: &StudyResult) -> f64 {
+pub(crate) fn noise(result: &StudyResult) -> f64 {
     let force = |unit: &Unit| unit.dimension() == Dimension::FORCE;
     let of_figures = result.figures.iter().flat_map(|figure| match figure {
         Figure::Hodograph(_, axes) => axes.as_slice(),
@@ -128,7 +131,7 @@ fn noise(result: &StudyResult) -> f64 {
     NO_FORCE * largest.filter(|v| v.is_finite()).fold(0.0, f64::max)
 }
 
-fn hodograph(name: &str, [x, y]: &[Column; 2], along: &Column, noise: f64) -> PlotSpec {
+pub(crate) fn hodograph(name: &str, [x, y]: &[Column; 2], along: &Column, noise: f64) -> PlotSpec {
     let values = |column: &Column| -> Vec<f64> {
         let plain = |v: &f64| match column.unit.to_si(*v).abs() < noise {
             true => 0.0,
@@ -144,7 +147,7 @@ fn hodograph(name: &str, [x, y]: &[Column; 2], along: &Column, noise: f64) -> Pl
             label: String::new(),
             x: values(x),
             y: values(y),
-            dashed: false,
+            ..Curve::default()
         }],
         equal_aspect: true,
         ..PlotSpec::default()
@@ -192,6 +195,7 @@ fn curves_plot(x: &Column, columns: &[Column], result: &StudyResult) -> PlotSpec
                 x: x.values.clone(),
                 y: y.values.clone(),
                 dashed: index > 0,
+                ..Curve::default()
             })
             .collect(),
         markers: result.events.iter().map(marker).collect(),
@@ -199,7 +203,7 @@ fn curves_plot(x: &Column, columns: &[Column], result: &StudyResult) -> PlotSpec
     }
 }
 
-fn path(model: &Model, name: &str, point: usize, result: &StudyResult) -> PlotSpec {
+pub(crate) fn path(model: &Model, name: &str, point: usize, result: &StudyResult) -> PlotSpec {
     let unit = &model.units.length;
     let coordinate = |k: usize| -> Vec<f64> {
         let at = |f: &crate::result::Frame| f.points.get(point).map_or(f64::NAN, |p| p[k]);
@@ -213,7 +217,7 @@ fn path(model: &Model, name: &str, point: usize, result: &StudyResult) -> PlotSp
             label: String::new(),
             x: coordinate(0),
             y: coordinate(1),
-            dashed: false,
+            ..Curve::default()
         }],
         equal_aspect: true,
         ..PlotSpec::default()

@@ -7,13 +7,16 @@ use kempe_dynamics::note::{EQUILIBRIUM_LIMIT, ILL_CONDITIONED, ROUTES_AGREE};
 use kempe_measure::CLOSURE_LIMIT;
 use kempe_model::{Diagnostic, Model, MotionStudy, Study};
 
+use crate::comparison::{Comparison, Design};
 use crate::figures::{figures, marker_kind};
+use crate::figures_against::figures_against;
 use crate::findings::Report as CheckReport;
 use crate::findings_text::warnings_section;
 use crate::force_notes::place;
 use crate::parameters_section::parameters_section;
 use crate::plotted::plotted;
 use crate::point_vectors::point_vectors;
+use crate::report_against::{beside, findings_of_other, other_source};
 use crate::result::StudyResult;
 use crate::table::{Column, largest};
 use crate::unit::SHORT_DIGITS;
@@ -26,6 +29,16 @@ pub struct StudyOutcome<'a> {
     pub study: &'a Study,
     /// Its result, or why there is none.
     pub result: Result<StudyResult, Vec<Diagnostic>>,
+}
+
+impl StudyOutcome<'_> {
+    /// What is told of it.
+    pub fn diagnostics(&self) -> &[Diagnostic] {
+        match &self.result {
+            Ok(result) => &result.diagnostics,
+            Err(errors) => errors,
+        }
+    }
 }
 
 /// Where a report comes from.
@@ -43,26 +56,50 @@ pub struct ReportOrigin<'a> {
     pub date: &'a str,
 }
 
-/// The report of a model. `warnings` are those of reading the file.
+impl ReportOrigin<'_> {
+    /// What the design is called: `four-bar.toml with a=25mm`.
+    pub fn design_name(&self) -> String {
+        let set: Vec<String> = (self.set.iter())
+            .map(|(name, value)| format!("{name}={value}"))
+            .collect();
+        match set.is_empty() {
+            true => self.file_name.to_owned(),
+            false => format!("{} with {}", self.file_name, set.join(", ")),
+        }
+    }
+}
+
+/// Another design to set beside that of a report.
+#[derive(Clone, Copy, Debug)]
+pub struct ReportAgainst<'a> {
+    /// The other design.
+    pub design: Design<'a>,
+    /// Where it comes from.
+    pub origin: &'a ReportOrigin<'a>,
+    /// Warnings of reading its file.
+    pub warnings: &'a [Diagnostic],
+    /// Both beside each other.
+    pub comparison: &'a Comparison,
+}
+
+/// The report of a model, with another design beside it where one is given. `warnings` are those of reading the file.
 pub fn report(
     model: &Model,
     origin: &ReportOrigin<'_>,
     warnings: &[Diagnostic],
     check: &CheckReport,
     studies: &[StudyOutcome<'_>],
+    against: Option<&ReportAgainst<'_>>,
 ) -> Report {
     let results = studies.iter().filter_map(|s| s.result.as_ref().ok());
-    let mut sections: Vec<Section> = results
-        .flat_map(|r| values_section(r).into_iter().chain(listings(r)))
-        .collect();
+    let mut sections: Vec<Section> = against.map_or_else(Vec::new, |a| a.comparison.sections());
+    sections.extend(results.flat_map(|r| values_section(r).into_iter().chain(listings(r))));
     sections.extend(parameters_section(model, origin));
     sections.extend(check.sections());
     let mut findings: Vec<Diagnostic> = warnings.to_vec();
-    let more = studies.iter().flat_map(|s| match &s.result {
-        Ok(result) => result.diagnostics.iter(),
-        Err(errors) => errors.iter(),
-    });
-    for diagnostic in check.diagnostics.iter().chain(more) {
+    let others = against.map_or_else(Vec::new, findings_of_other);
+    let more = studies.iter().flat_map(StudyOutcome::diagnostics);
+    for diagnostic in check.diagnostics.iter().chain(more).chain(&others) {
         if findings
             .iter()
             .all(|d| d.code != diagnostic.code || d.message != diagnostic.message)
@@ -76,7 +113,7 @@ pub fn report(
             .result
             .as_ref()
             .ok()
-            .map(|result| motion(model, study, result))
+            .map(|result| motion(model, study, result, against))
     });
     Report {
         title: model.title.clone(),
@@ -85,6 +122,7 @@ pub fn report(
         first: warnings_section(&findings).into_iter().collect(),
         sections,
         source: origin.text.replace("\r\n", "\n"),
+        other_source: against.and_then(|a| other_source(origin, a.origin)),
         generator: origin.generator.to_owned(),
         date: origin.date.to_owned(),
     }
@@ -130,7 +168,14 @@ fn shown(column: &Column) -> Shown {
     )
 }
 
-fn motion(model: &Model, study: &MotionStudy, result: &StudyResult) -> MotionReport {
+fn motion(
+    model: &Model,
+    study: &MotionStudy,
+    result: &StudyResult,
+    against: Option<&ReportAgainst<'_>>,
+) -> MotionReport {
+    let other = against.and_then(|a| Some((a, a.design.result(&result.name)?)));
+    let more = plotted(model, result);
     let table = &result.table;
     let evidence_columns = table.evidence();
     let note = |(first, last, text): (usize, usize, &str)| Note {
@@ -146,14 +191,18 @@ fn motion(model: &Model, study: &MotionStudy, result: &StudyResult) -> MotionRep
         columns: table.columns.iter().map(shown).collect(),
         // The drive that is moved by hand in the page; where several move, the first. All others are read out.
         drive: result.along.max(1),
-        more: plotted(model, result).iter().map(shown).collect(),
+        against: other.map(|(a, other)| beside(a, result, &more, other)),
+        more: more.iter().map(shown).collect(),
         tests: evidence_columns.iter().map(shown).collect(),
         notes: table.noted().into_iter().map(note).collect(),
         mark: String::new(),
-        plots: figures(model, result)
-            .into_iter()
-            .map(|(_, plot)| plot)
-            .collect(),
+        plots: match other {
+            Some((a, other)) => figures_against(model, result, a.design.model, other),
+            None => figures(model, result),
+        }
+        .into_iter()
+        .map(|(_, plot)| plot)
+        .collect(),
         vectors: point_vectors(model, result),
         events: result
             .events

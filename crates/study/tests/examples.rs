@@ -83,6 +83,7 @@ fn every_example_runs() {
             &checked.warnings,
             &findings,
             &outcomes,
+            None,
         )
         .to_html();
         assert!(html.contains("</html>"), "{name}");

@@ -1,12 +1,13 @@
 //! `kempe run`: the studies of a model, as tables, figures and a report.
 
+mod against;
 mod summary;
 mod write;
 
 use std::path::{Path, PathBuf};
 
 use kempe_model::{Diagnostic, Model, Study};
-use kempe_study::{StudyOutcome, room_for, study_bytes};
+use kempe_study::{StudyOutcome, encode, of_other_design, room_for, study_bytes};
 use kempe_units::nearest;
 
 use crate::arguments::Run;
@@ -18,8 +19,9 @@ use crate::names;
 use crate::output::Output;
 use crate::progress::Bar;
 use crate::say::{Speaker, print_json, put};
-use summary::{summary, summary_json};
-use write::{REPORT, Results, known_names};
+use against::{Against, studies_of_other};
+use summary::{against_json, compared, summary, summary_json};
+use write::{REPORT, Results, known_names, known_names_against};
 
 /// The studies of a run together hold at most so many bytes.
 const MAX_RUN_BYTES: u64 = 4 << 30;
@@ -32,16 +34,33 @@ pub fn run(arguments: &Run) -> Exit {
         Ok(loaded) => loaded,
         Err(exit) => return failed(&speaker, exit),
     };
-    let (studies, output) = match prepared(arguments, &loaded) {
+    let other = match against::other(arguments, &loaded, &mut speaker) {
+        Ok(other) => other,
+        Err(exit) => return failed(&speaker, exit),
+    };
+    let prepared = match prepared(arguments, &loaded, other.as_ref(), &mut speaker) {
         Ok(prepared) => prepared,
         Err(diagnostics) => {
             speaker.tell(&diagnostics);
             return failed(&speaker, Exit::Usage);
         }
     };
+    let (studies, output) = (prepared.studies, prepared.output);
     interrupt::listen();
     let quiet = arguments.quiet || arguments.json;
-    let outcomes = run_all(&loaded.checked.model, &studies, quiet, &mut speaker);
+    let outcomes = run_all(&loaded, &studies, "", quiet, &mut speaker);
+    let other_outcomes = match &other {
+        Some(other) if !interrupt::stopped() => {
+            speaker.turn_to_other(&other.name, &other.text, &other.set);
+            let outcomes = run_all(other, &prepared.of_other, " (against)", quiet, &mut speaker);
+            speaker.turn_back(&loaded.name, &loaded.text);
+            outcomes
+        }
+        _ => Vec::new(),
+    };
+    let against = other
+        .as_ref()
+        .map(|other| Against::of(&loaded, &outcomes, other, &other_outcomes));
     let has_rows = |name: &str| {
         let mut of_it = outcomes.iter().filter(|o| o.study.name == name);
         of_it.any(|o| o.result.is_ok())
@@ -70,6 +89,7 @@ pub fn run(arguments: &Run) -> Exit {
                 loaded: &loaded,
                 outcomes: &outcomes,
                 check,
+                against: against.as_ref(),
                 proof: proof.as_ref(),
                 stopped: stopped.then_some(missing),
                 date: arguments.date.then(clock::now),
@@ -92,6 +112,10 @@ pub fn run(arguments: &Run) -> Exit {
         if let Some(proof) = &proof {
             value["proof"] = serde_json::to_value(proof).unwrap_or_default();
         }
+        if let Some(against) = &against {
+            value["against"] = against_json(against, with_tables);
+            value["comparison"] = encode::comparison_json(&against.comparison);
+        }
         print_json(&value);
     } else if !arguments.quiet {
         put(&summary(
@@ -103,6 +127,9 @@ pub fn run(arguments: &Run) -> Exit {
         if let Some(proof) = &proof {
             put(&proof.to_text());
         }
+        if let Some(against) = &against {
+            put(&compared(&against.comparison));
+        }
     }
     match proof {
         _ if stopped => Exit::Interrupted,
@@ -111,22 +138,53 @@ pub fn run(arguments: &Run) -> Exit {
     }
 }
 
+/// What a run begins with.
+struct Prepared<'l> {
+    /// The studies that are asked for.
+    studies: Vec<&'l Study>,
+    /// Those of the other design.
+    of_other: Vec<&'l Study>,
+    /// The place for the results.
+    output: Option<Output>,
+}
+
 /// The studies that are asked for and the place for their results, or why it is not begun.
 fn prepared<'l>(
     arguments: &Run,
     loaded: &'l Loaded,
-) -> Result<(Vec<&'l Study>, Option<Output>), Vec<Diagnostic>> {
+    other: Option<&'l Loaded>,
+    speaker: &mut Speaker,
+) -> Result<Prepared<'l>, Vec<Diagnostic>> {
     let model = &loaded.checked.model;
     let alone = |diagnostic: Box<Diagnostic>| vec![*diagnostic];
     let studies = chosen(model, &arguments.studies, &loaded.name).map_err(alone)?;
-    let rooms = studies.iter().map(|study| room_for(model, study));
-    let too_large: Vec<Diagnostic> = rooms.filter_map(Result::err).flatten().collect();
+    let of_other = other.map_or_else(Vec::new, |other| studies_of_other(&studies, other, speaker));
+    let rooms = |loaded: &Loaded, studies: &[&Study]| -> Vec<Diagnostic> {
+        let rooms = studies.iter().map(|s| room_for(&loaded.checked.model, s));
+        rooms.filter_map(Result::err).flatten().collect()
+    };
+    let mut too_large = rooms(loaded, &studies);
+    let mut held: Vec<(&Model, &Study)> = studies.iter().map(|s| (model, *s)).collect();
+    if let Some(other) = other {
+        let found = rooms(other, &of_other);
+        too_large.extend(found.iter().map(|d| of_other_design(d, &other.origin())));
+        held.extend(of_other.iter().map(|s| (&other.checked.model, *s)));
+    }
     if !too_large.is_empty() {
         return Err(too_large);
     }
-    have_room(model, &studies).map_err(alone)?;
-    let output = folder(arguments, loaded, &studies).map_err(alone)?;
-    Ok((studies, output))
+    have_room(&held).map_err(alone)?;
+    let output = folder(
+        arguments,
+        loaded,
+        &studies,
+        other.zip(Some(of_other.as_slice())),
+    );
+    Ok(Prepared {
+        output: output.map_err(alone)?,
+        studies,
+        of_other,
+    })
 }
 
 /// The folder for the results, after a look at what stands there: a refusal comes before the work.
@@ -134,12 +192,18 @@ fn folder(
     arguments: &Run,
     loaded: &Loaded,
     studies: &[&Study],
+    other: Option<(&Loaded, &[&Study])>,
 ) -> Result<Option<Output>, Box<Diagnostic>> {
     let Some(folder) = &arguments.out else {
         return Ok(None);
     };
-    let output = Output::folder(folder, &loaded.inputs)?;
-    let names = known_names(&loaded.checked.model, studies);
+    let mut inputs = loaded.inputs.clone();
+    inputs.extend(other.iter().flat_map(|(other, _)| other.inputs.clone()));
+    let output = Output::folder(folder, &inputs)?;
+    let mut names = known_names(&loaded.checked.model, studies);
+    if let Some((_, studies)) = other {
+        names.extend(known_names_against(&loaded.checked.model, studies));
+    }
     let partial: Vec<String> = names.iter().map(|n| names::of_run(n, true)).collect();
     // What the other pictures are called, the run alone tells; those that somebody touched are looked at before.
     let touched = output.changed().filter(|name| {
@@ -152,10 +216,10 @@ fn folder(
 }
 
 /// All studies of a run are held until the last one is done.
-fn have_room(model: &Model, studies: &[&Study]) -> Result<(), Box<Diagnostic>> {
+fn have_room(studies: &[(&Model, &Study)]) -> Result<(), Box<Diagnostic>> {
     let held = studies
         .iter()
-        .map(|study| study_bytes(model, study).bytes());
+        .map(|(model, study)| study_bytes(model, study).bytes());
     let all: f64 = held.sum();
     if all <= MAX_RUN_BYTES as f64 {
         return Ok(());
@@ -173,17 +237,18 @@ fn have_room(model: &Model, studies: &[&Study]) -> Result<(), Box<Diagnostic>> {
     )))
 }
 
-/// Runs one study after the other, until it is told to stop.
+/// Runs one study after the other, until it is told to stop. `whose` stands behind their names while they run.
 fn run_all<'m>(
-    model: &'m Model,
+    loaded: &'m Loaded,
     studies: &[&'m Study],
+    whose: &str,
     quiet: bool,
     speaker: &mut Speaker,
 ) -> Vec<StudyOutcome<'m>> {
     let mut outcomes = Vec::new();
     for study in studies {
-        let mut bar = Bar::new(&study.name, quiet);
-        let result = kempe_study::run(model, study, &mut bar);
+        let mut bar = Bar::new(&format!("{}{whose}", study.name), quiet);
+        let result = kempe_study::run(&loaded.checked.model, study, &mut bar);
         drop(bar);
         match &result {
             Ok(result) => speaker.tell(&result.diagnostics),

@@ -43,7 +43,7 @@ pub fn motion(case: &Case) -> MotionReport {
         label: label.into(),
         x: degrees.clone(),
         y: y.to_vec(),
-        dashed: false,
+        ..Curve::default()
     };
     let markers = vec![
         Marker {
@@ -85,7 +85,7 @@ pub fn motion(case: &Case) -> MotionReport {
                 label: String::new(),
                 x: x.clone(),
                 y: y.clone(),
-                dashed: false,
+                ..Curve::default()
             }],
             equal_aspect: true,
             ..PlotSpec::default()
@@ -127,6 +127,7 @@ pub fn motion(case: &Case) -> MotionReport {
         tests: vec![Column::new("closure", "", vec![3.1e-16; rows])],
         notes: vec![],
         mark: String::new(),
+        against: None,
         plots,
         vectors: vec![],
         events: vec![
@@ -229,6 +230,7 @@ pub fn report(cases: &[Case]) -> Report {
         title: "Crank-rocker".into(),
         file_name: "examples/seeds/crank-rocker.toml".into(),
         motions,
+        other_source: None,
         first: vec![Section {
             title: "Warnings".into(),
             blocks: vec![

@@ -61,6 +61,7 @@ impl Writer<'_> {
         self.layer = match group.layer {
             Layer::Furniture | Layer::Caption | Layer::TracePast => return,
             Layer::Curve(_) | Layer::Limit | Layer::Vector => return,
+            Layer::OtherTrace | Layer::Other => return,
             Layer::Ghost => "0".into(),
             Layer::TraceRest => "TRACES".into(),
             Layer::Ground => "GROUND".into(),

@@ -107,7 +107,7 @@ pub(super) fn draw(plot: &PlotSpec, width: f64, height: f64) -> PlotPicture {
     groups.extend(cross);
     for (index, curve) in plot.curves.iter().enumerate() {
         let paths = curve_paths(curve, frame, &x, &y);
-        let style = Style::stroke(Token::Series(index), 0.55);
+        let style = Style::stroke(curve.token(index), 0.55);
         let style = if curve.dashed {
             style.dashed(&[1.8, 1.2])
         } else {
@@ -193,7 +193,7 @@ fn legend(
                 break;
             }
         }
-        let style = Style::stroke(Token::Series(*index), 0.7);
+        let style = Style::stroke(curve.token(*index), 0.7);
         let style = if curve.dashed {
             style.dashed(&[1.8, 1.2])
         } else {

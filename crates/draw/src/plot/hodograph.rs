@@ -78,10 +78,12 @@ pub(super) fn groups(
             ..text.aligned(Align::End).colored(Token::Muted)
         }));
     }
-    for (index, curve) in plot.curves.iter().enumerate() {
+    // another design has rows of its own: its tips are of other places
+    let own = plot.curves.iter().enumerate();
+    for (index, curve) in own.filter(|(_, curve)| curve.told.is_none()) {
         let tips = tips(curve, x, y);
         let first = tips.iter().flatten().find(|p| inside(p));
-        arrows.extend(first.map(|tip| arrow(origin, *tip, Token::Series(index))));
+        arrows.extend(first.map(|tip| arrow(origin, *tip, curve.token(index))));
         let rows = tips.len();
         let mut marked: Vec<Point> = Vec::new();
         let middle = middle(&tips).unwrap_or(origin);
@@ -95,7 +97,7 @@ pub(super) fn groups(
                 continue;
             }
             marked.push(tip);
-            names.push(Item::circle(tip, 0.75, Style::fill(Token::Series(index))));
+            names.push(Item::circle(tip, 0.75, Style::fill(curve.token(index))));
             let Some(value) = hodograph.drive.get(row).filter(|v| v.is_finite()) else {
                 continue;
             };

@@ -13,6 +13,7 @@ pub use hodograph::Hodograph;
 pub use limit::{Beyond, Limit, LimitLine};
 
 use crate::scene::Scene;
+use crate::tokens::Token;
 
 /// A named axis with its unit.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -58,6 +59,28 @@ pub struct Curve {
     pub y: Vec<f64>,
     /// Dashed.
     pub dashed: bool,
+    /// The number of its colour; its place among the curves when `None`.
+    pub color: Option<usize>,
+    /// Of a curve of another design: what a reader is told of it at the rows of the motion.
+    pub told: Option<Told>,
+}
+
+impl Curve {
+    /// The colour of the curve that stands at a place among others.
+    pub(crate) fn token(&self, index: usize) -> Token {
+        Token::Series(self.color.unwrap_or(index))
+    }
+}
+
+/// What a reader is told of a curve that has other rows than the motion beside it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Told {
+    /// What it is called.
+    pub name: String,
+    /// Its abscissa at each row of the motion, in the unit of the x axis; NaN where it has none.
+    pub x: Vec<f64>,
+    /// Its ordinate there, in the unit of the y axis.
+    pub y: Vec<f64>,
 }
 
 /// What a marker stands for.

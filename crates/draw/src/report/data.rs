@@ -1,9 +1,10 @@
 //! The data behind a motion's page: its rows, their poses with just enough digits, and what the other files give.
 
 use super::{Event, MOST_ROWS, MotionReport, columns, json, plots, vectors};
-use crate::context::Anchor;
+use crate::context::{Anchor, Context};
 use crate::plot::MarkerKind;
 use crate::stage::Stage;
+use crate::view::Frame;
 
 /// The rows of a motion that the page carries.
 pub(super) struct Rows {
@@ -62,8 +63,9 @@ pub(super) fn motion(motion: &MotionReport, rows: &Rows, stage: &Stage, shown: u
             json::string(&gap.reason),
         ])
     });
+    let drawn = motion.frames.get(shown);
     let anchors = stage.anchors();
-    let anchors = anchors.iter().map(|a| anchor(*a, motion, stage, shown));
+    let anchors = anchors.iter().map(|a| anchor(*a, drawn, &stage.context));
     let mut fields = vec![
         ("name", json::string(&motion.name)),
         ("all", rows.all.to_string()),
@@ -76,12 +78,12 @@ pub(super) fn motion(motion: &MotionReport, rows: &Rows, stage: &Stage, shown: u
             json::array([json::decimal(width, 3), json::decimal(height, 3)]),
         ),
         ("shown", shown.to_string()),
-        ("links", links(motion, rows, stage)),
+        ("links", links(&motion.frames, rows, &stage.context)),
         (
             "named",
             json::array(motion.view.points.iter().map(|n| json::string(n))),
         ),
-        ("points", points(motion, stage)),
+        ("points", points(&stage.context)),
         ("anchors", json::array(anchors)),
         ("traces", json::array(traces)),
         ("arrow", super::loads::arrow()),
@@ -93,18 +95,40 @@ pub(super) fn motion(motion: &MotionReport, rows: &Rows, stage: &Stage, shown: u
             json::array(motion.events.iter().map(|e| event(e, rows))),
         ),
         ("gaps", json::array(gaps)),
+        ("against", against(motion, rows, stage, shown)),
     ]);
     json::object(&fields)
 }
 
+/// The other design: what moves its outline, and its values; null where there is none.
+fn against(motion: &MotionReport, rows: &Rows, stage: &Stage, shown: usize) -> String {
+    let (Some(other), Some(ghost)) = (&motion.against, &stage.other) else {
+        return "null".into();
+    };
+    let anchors = ghost.anchors();
+    let drawn = other.frames.get(shown);
+    let anchors = anchors.iter().map(|a| anchor(*a, drawn, &ghost.context));
+    let values = other.values.iter().map(|values| match values {
+        Some(values) => columns::values(rows, values),
+        None => "null".into(),
+    });
+    let [width, height] = stage.size();
+    json::object(&[
+        (
+            "size",
+            json::array([json::decimal(width, 3), json::decimal(height, 3)]),
+        ),
+        ("links", links(&other.frames, rows, &ghost.context)),
+        ("points", points(&ghost.context)),
+        ("anchors", json::array(anchors)),
+        ("values", json::array(values)),
+    ])
+}
+
 /// For each link, x, y (mm on paper, y up) and angle of its first point, row after row; once for a link that stands still.
-fn links(motion: &MotionReport, rows: &Rows, stage: &Stage) -> String {
+fn links(frames: &[Frame], rows: &Rows, context: &Context) -> String {
     let of_link = |link: usize| {
-        let pose = |row: &usize| match motion
-            .frames
-            .get(*row)
-            .and_then(|f| stage.link_pose(f, link))
-        {
+        let pose = |row: &usize| match frames.get(*row).and_then(|f| context.link_pose(f, link)) {
             Some([x, y, a]) => [
                 json::decimal(x, 3),
                 json::decimal(y, 3),
@@ -122,20 +146,20 @@ fn links(motion: &MotionReport, rows: &Rows, stage: &Stage) -> String {
             json::array(rows.kept.iter().map(pose))
         }
     };
-    json::array((0..motion.view.links.len()).map(of_link))
+    json::array((0..context.view.links.len()).map(of_link))
 }
 
-fn points(motion: &MotionReport, stage: &Stage) -> String {
-    let point = |index: usize| match stage.point_on_link(index) {
+fn points(context: &Context) -> String {
+    let point = |index: usize| match context.point_on_link(index) {
         Some((link, [x, y])) => {
             json::array([link.to_string(), json::decimal(x, 3), json::decimal(y, 3)])
         }
         None => "null".into(),
     };
-    json::array((0..motion.view.points.len()).map(point))
+    json::array((0..context.view.points.len()).map(point))
 }
 
-fn anchor(anchor: Anchor, motion: &MotionReport, stage: &Stage, shown: usize) -> String {
+fn anchor(anchor: Anchor, drawn: Option<&Frame>, context: &Context) -> String {
     let parts = match anchor {
         Anchor::Point(p) => vec![json::string("p"), p.to_string()],
         Anchor::On(p, link, offset) => {
@@ -149,10 +173,7 @@ fn anchor(anchor: Anchor, motion: &MotionReport, stage: &Stage, shown: usize) ->
         Anchor::Toward(p, q) => vec![json::string("t"), p.to_string(), q.to_string()],
         Anchor::Between(p, q) => {
             // the drawn pose has its stretch in it already
-            let drawn = motion
-                .frames
-                .get(shown)
-                .and_then(|f| stage.context.place(f, anchor));
+            let drawn = drawn.and_then(|f| context.place(f, anchor));
             let stretch = drawn.map_or(1.0, |place| place.stretch);
             vec![
                 json::string("b"),

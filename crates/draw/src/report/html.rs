@@ -77,22 +77,31 @@ pub(super) fn page(report: &Report) -> String {
         "motions" => panels.clone(),
         "sections" => findings.clone(),
         "data" => format!("[{}]", data.join(",\n")),
+        "other_key" => match report.motions.iter().any(|m| m.against.is_some()) {
+            true => ", <kbd>O</kbd> other design".to_owned(),
+            false => String::new(),
+        },
         "script" => SCRIPTS.concat(),
         _ => String::new(),
     };
     fill(TEMPLATE, value)
 }
 
-/// The text of the model, closed.
+/// The text of the model and of the other one, closed.
 fn source(report: &Report) -> String {
-    match report.source.as_str() {
+    let file = |what: &str, name: &str, text: &str| match text {
         "" => String::new(),
         text => format!(
-            "<details class=\"card source\"><summary>The model: {}</summary><pre tabindex=\"0\">{}</pre></details>\n",
-            escape(&report.file_name),
+            "<details class=\"card source\"><summary>{what}: {}</summary><pre tabindex=\"0\">{}</pre></details>\n",
+            escape(name),
             escape(text)
         ),
+    };
+    let mut out = file("The model", &report.file_name, &report.source);
+    if let Some((name, text)) = &report.other_source {
+        out.push_str(&file("The other model", name, text));
     }
+    out
 }
 
 /// Puts values in place of `{{key}}`, once: what a value holds is not looked at again.

@@ -33,6 +33,8 @@ pub struct Report {
     pub sections: Vec<Section>,
     /// The text of the model file; none is shown when it is empty.
     pub source: String,
+    /// Name and text of the other design's file, where that is another one.
+    pub other_source: Option<(String, String)>,
     /// The program that wrote it, with its version, for the last line.
     pub generator: String,
     /// When it was written; not told when empty, so that the same run gives the same bytes.
@@ -71,6 +73,24 @@ pub struct MotionReport {
     pub events: Vec<Event>,
     /// How far the result can be trusted.
     pub evidence: Evidence,
+    /// Another design, row by row beside this one.
+    pub against: Option<Against>,
+}
+
+/// Another design at the rows of a motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Against {
+    /// What it is called.
+    pub name: String,
+    /// How its rows belong to those of the motion.
+    pub matched: String,
+    /// Its mechanism.
+    pub view: MechanismView,
+    /// Its pose at each row; one without points where it has none.
+    pub frames: Vec<Frame>,
+    /// Its values at each row, for each of [`MotionReport::columns`], [`MotionReport::more`] and [`MotionReport::tests`] in this
+    /// order, in their units; `None` where it has no such quantity.
+    pub values: Vec<Option<Vec<f64>>>,
 }
 
 /// What is said about some rows that follow each other.

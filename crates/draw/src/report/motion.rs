@@ -5,7 +5,7 @@ use super::{Column, MotionReport, loads, sections, vectors};
 use crate::context::complete;
 use crate::escape::escape;
 use crate::plot::PlotPicture;
-use crate::stage::{DrawOptions, Stage};
+use crate::stage::{DrawOptions, Outline, Stage};
 use crate::svg;
 use kempe_number::text::significant;
 
@@ -35,11 +35,25 @@ pub(super) fn build(motion: &MotionReport, index: usize) -> Built {
         caption: false,
         ..DrawOptions::default()
     };
-    let stage = Stage::new(&motion.view, &frames, options);
-    let shown = frames
-        .iter()
-        .position(|f| complete(&motion.view, f))
-        .unwrap_or(0);
+    let others: Vec<_> = (motion.against.iter())
+        .flat_map(|other| {
+            let frame = |row: &usize| other.frames.get(*row).cloned().unwrap_or_default();
+            rows.kept.iter().map(frame)
+        })
+        .collect();
+    let outline = motion.against.as_ref().map(|other| Outline {
+        name: &other.name,
+        view: &other.view,
+        frames: &others,
+    });
+    let stage = Stage::with_outline(&motion.view, &frames, outline, options);
+    let whole = |row: &usize| (frames.get(*row)).is_some_and(|f| complete(&motion.view, f));
+    let both = |row: &usize| {
+        let other = outline.zip(others.get(*row));
+        whole(row) && other.is_none_or(|(o, f)| complete(o.view, f))
+    };
+    let all = 0..frames.len();
+    let shown = (all.clone().find(both).or_else(|| all.clone().find(whole))).unwrap_or(0);
     let shown_row = rows.kept.get(shown).copied().unwrap_or(0);
     let pictures: Vec<PlotPicture> = motion
         .plots
@@ -68,10 +82,11 @@ pub(super) fn build(motion: &MotionReport, index: usize) -> Built {
     let html = format!(
         "<section class=\"motion\" id=\"motion-{index}\" role=\"tabpanel\" aria-label=\"{name}\" data-motion=\"{index}\">\n\
          <h2>{name}</h2>{summary}\n<div class=\"bench\">\n<div class=\"left\">\n<figure class=\"card stage\">\n{drawing}\
-         <figcaption class=\"status\" aria-live=\"polite\"></figcaption>\n{controls}</figure>\n{readout}</div>\n\
+         {against}<figcaption class=\"status\" aria-live=\"polite\"></figcaption>\n{controls}</figure>\n{readout}</div>\n\
          <div class=\"plots\">{plots}</div>\n</div>\n\
          <div class=\"card evidence\"><h3>Evidence</h3>{evidence}</div>\n</section>\n",
         name = escape(&motion.name),
+        against = against_line(motion),
         drawing = svg::element(&stage.scene(shown), "class=\"drawing\""),
         controls = controls(
             motion,
@@ -85,6 +100,19 @@ pub(super) fn build(motion: &MotionReport, index: usize) -> Built {
         html,
         json: data::motion(motion, &rows, &stage, shown_row),
     }
+}
+
+/// What the dashed outline is.
+fn against_line(motion: &MotionReport) -> String {
+    let Some(other) = &motion.against else {
+        return String::new();
+    };
+    format!(
+        "<p class=\"against\"><svg viewBox=\"0 0 28 8\" aria-hidden=\"true\"><path d=\"M1 4h26\"/></svg> \
+         Dashed: {} <span class=\"muted\">({})</span></p>\n",
+        escape(&other.name),
+        escape(&other.matched)
+    )
 }
 
 /// A plot as it stands before the script draws it for the width it has.
@@ -139,7 +167,7 @@ fn controls(motion: &MotionReport, rows: &Rows, roles: &str) -> String {
          <label>At the end <select data-in=\"mode\"><option value=\"loop\">start again</option><option value=\"pingpong\">go back</option>\
          <option value=\"once\">stop</option></select></label>\n\
          <label><input type=\"checkbox\" data-in=\"labels\" checked> Labels</label>\n\
-         <label><input type=\"checkbox\" data-in=\"traces\" checked> Traces</label></div>\n{roles}\
+         <label><input type=\"checkbox\" data-in=\"traces\" checked> Traces</label>{other}</div>\n{roles}\
          <p class=\"muted rate\"></p></div>\n",
         button("first", "To the start", "M3 3h2v10H3zM13 3v10L6 8z"),
         button("back", "One step back", "M11 3v10L4 8z"),
@@ -148,18 +176,36 @@ fn controls(motion: &MotionReport, rows: &Rows, roles: &str) -> String {
         button("last", "To the end", "M11 3h2v10h-2zM3 3v10l7-5z"),
         number("drive", motion.drive()),
         number("time", clock),
+        other = match &motion.against {
+            Some(_) =>
+                "\n<label><input type=\"checkbox\" data-in=\"other\" checked> Other design</label>",
+            None => "",
+        },
     )
 }
 
 fn readout(motion: &MotionReport, rows: &Rows, row: usize) -> String {
     let value = |values: &[f64]| significant(values.get(row).copied().unwrap_or(f64::NAN), 6);
+    let other = |index: usize| match &motion.against {
+        Some(other) => {
+            let values = other.values.get(index).and_then(Option::as_deref);
+            let text = values.map_or_else(String::new, value);
+            format!("<td class=\"number\" data-other>{text}</td>")
+        }
+        None => String::new(),
+    };
     let line = |(index, column): (usize, &Column)| {
         format!(
-            "<tr data-column=\"{index}\"><th scope=\"row\">{}</th><td class=\"number\">{}</td><td>{}</td></tr>",
+            "<tr data-column=\"{index}\"><th scope=\"row\">{}</th><td class=\"number\">{}</td>{}<td>{}</td></tr>",
             escape(&column.name),
             value(&column.values),
+            other(index),
             escape(&column.unit)
         )
+    };
+    let (here, there) = match motion.against {
+        Some(_) => ("This", "<th scope=\"col\" class=\"number\">Against</th>"),
+        None => ("Value", ""),
     };
     let columns = motion.columns.iter().chain(&motion.more);
     let lines: String = columns.enumerate().map(line).collect();
@@ -174,7 +220,7 @@ fn readout(motion: &MotionReport, rows: &Rows, row: usize) -> String {
     };
     format!(
         "<div class=\"card readout\"><table><caption>Values at this row</caption><thead><tr><th scope=\"col\">Measure</th>\
-         <th scope=\"col\" class=\"number\">Value</th><th scope=\"col\">Unit</th></tr></thead><tbody>{lines}</tbody></table>\
+         <th scope=\"col\" class=\"number\">{here}</th>{there}<th scope=\"col\">Unit</th></tr></thead><tbody>{lines}</tbody></table>\
          <div class=\"moving\" hidden></div>\n\
          <p class=\"tools\"><button type=\"button\" data-do=\"csv\">Save the table as CSV</button>{some}</p></div>\n"
     )

@@ -14,22 +14,30 @@ pub(super) fn plots(motion: &MotionReport, rows: &Rows) -> String {
 }
 
 fn plot(motion: &MotionReport, rows: &Rows, spec: &PlotSpec) -> String {
-    let curve = |c: &Curve| {
-        let own = c.x.len() == rows.all && c.y.len() == rows.all;
+    let curve = |(index, c): (usize, &Curve)| {
+        let (x, y) = match &c.told {
+            Some(told) => (&told.x, &told.y),
+            None => (&c.x, &c.y),
+        };
+        let own = x.len() == rows.all && y.len() == rows.all;
         let mut fields = vec![
             ("label", json::string(&c.label)),
             ("dashed", c.dashed.to_string()),
+            ("color", c.color.unwrap_or(index).to_string()),
             ("own", own.to_string()),
         ];
+        if let Some(told) = &c.told {
+            fields.push(("name", json::string(&told.name)));
+        }
         match own {
             true => fields.extend([
-                ("x", column(motion, rows, &c.x)),
-                ("y", column(motion, rows, &c.y)),
+                ("x", column(motion, rows, x)),
+                ("y", column(motion, rows, y)),
             ]),
             false => fields.extend([("x", drawn(&c.x)), ("y", drawn(&c.y))]),
         }
-        // no peak is lost where the page has fewer rows than the curve
-        if own && rows.kept.len() < rows.all {
+        // no peak is lost where the page has fewer rows than the curve, or other ones
+        if own && (rows.kept.len() < rows.all || c.told.is_some()) {
             let fine = thinned(c);
             let of = |v: &[f64]| drawn(&fine.iter().map(|k| v[*k]).collect::<Vec<f64>>());
             fields.push(("fine", json::array([of(&c.x), of(&c.y)])));
@@ -54,7 +62,10 @@ fn plot(motion: &MotionReport, rows: &Rows, spec: &PlotSpec) -> String {
         ("title", json::string(&spec.title)),
         ("x", axis(&spec.x)),
         ("y", axis(&spec.y)),
-        ("curves", json::array(spec.curves.iter().map(curve))),
+        (
+            "curves",
+            json::array(spec.curves.iter().enumerate().map(curve)),
+        ),
         ("markers", json::array(markers)),
         ("limits", json::array(spec.limits.iter().map(limit))),
         ("plane", spec.is_plane().to_string()),

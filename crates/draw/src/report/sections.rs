@@ -7,14 +7,22 @@ use kempe_number::text::significant;
 /// Most rows of a table that are written out.
 const MOST_TABLE_ROWS: usize = 500;
 
+/// A table of more columns takes the whole width of the page.
+const WIDE: usize = 6;
+
 /// Characters of a value that stays on one line.
 const SHORT: usize = 24;
 
 /// A section with its heading.
 pub(super) fn section(section: &Section, id: &str) -> String {
     let blocks: String = section.blocks.iter().map(block).collect();
+    let is_wide = |block: &Block| matches!(block, Block::Table { head, .. } if head.len() > WIDE);
+    let wide = match section.blocks.iter().any(is_wide) {
+        true => " wide",
+        false => "",
+    };
     format!(
-        "<section class=\"card\" id=\"{id}\"><h2>{}</h2>{blocks}</section>\n",
+        "<section class=\"card{wide}\" id=\"{id}\"><h2>{}</h2>{blocks}</section>\n",
         escape(&section.title)
     )
 }
@@ -77,9 +85,17 @@ fn facts(facts: &[(String, String)]) -> String {
 }
 
 fn table(head: &[String], rows: &[Vec<String>]) -> String {
-    let heads: String = head
-        .iter()
-        .map(|h| format!("<th scope=\"col\">{}</th>", escape(h)))
+    // A head stands above its numbers.
+    let numbers = |column: usize| {
+        let mut cells = (rows.iter()).filter_map(|r| r.get(column).filter(|c| !c.is_empty()));
+        let first = cells.next();
+        (first.into_iter().chain(cells)).all(|c| c.parse::<f64>().is_ok()) && first.is_some()
+    };
+    let heads: String = (head.iter().enumerate())
+        .map(|(column, h)| match numbers(column) {
+            true => format!("<th scope=\"col\" class=\"number\">{}</th>", escape(h)),
+            false => format!("<th scope=\"col\">{}</th>", escape(h)),
+        })
         .collect();
     let cell = |c: &String| {
         let starts_with_number = || {

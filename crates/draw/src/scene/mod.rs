@@ -78,6 +78,10 @@ pub enum Layer {
     Link(usize),
     /// Slider blocks, cylinders and the like on top of the links.
     Body,
+    /// Paths of the points of another design.
+    OtherTrace,
+    /// Another design, outlined.
+    Other,
     /// The travelled path of a point.
     TracePast,
     /// Arrows of the loads of a role.
@@ -113,6 +117,8 @@ impl Layer {
             Layer::Gear => "gear".into(),
             Layer::Link(index) => format!("link-{index}"),
             Layer::Body => "body".into(),
+            Layer::OtherTrace => "other trace-rest".into(),
+            Layer::Other => "other".into(),
             Layer::TracePast => "trace-past".into(),
             Layer::Joint => "joint".into(),
             Layer::Drive => "drive".into(),

@@ -98,7 +98,7 @@ pub(crate) fn parts(context: &Context, labels: bool) -> Vec<Part> {
 
 /// An item as it looks in a ghost pose: a faint outline.
 pub(crate) fn ghost_item(item: &Item) -> Item {
-    let faint = |style: &Style| Style {
+    restyled(item, |style| Style {
         fill: None,
         stroke: style
             .stroke
@@ -109,11 +109,31 @@ pub(crate) fn ghost_item(item: &Item) -> Item {
             }),
         width: 0.3,
         dash: style.dash.clone(),
-    };
+    })
+}
+
+/// How another design is drawn.
+pub(crate) fn outline_style() -> Style {
+    Style::stroke(Token::Muted, 0.4).dashed(&[1.5, 0.9])
+}
+
+/// An item as it looks in another design: a thin dashed outline, but for circles, which are too small for dashes.
+pub(crate) fn outlined_item(item: &Item) -> Item {
+    let small = matches!(item, Item::Circle { radius, .. } if *radius < SMALL_CIRCLE);
+    restyled(item, |_| match small {
+        true => Style::stroke(Token::Muted, 0.3),
+        false => outline_style(),
+    })
+}
+
+/// A circle of a smaller radius has no room for dashes, mm.
+const SMALL_CIRCLE: f64 = 3.0;
+
+fn restyled(item: &Item, change: impl Fn(&Style) -> Style) -> Item {
     match item {
         Item::Shape { paths, style } => Item::Shape {
             paths: paths.clone(),
-            style: faint(style),
+            style: change(style),
         },
         Item::Circle {
             center,
@@ -122,7 +142,7 @@ pub(crate) fn ghost_item(item: &Item) -> Item {
         } => Item::Circle {
             center: *center,
             radius: *radius,
-            style: faint(style),
+            style: change(style),
         },
         Item::Text(text) => Item::Text(text.clone()),
     }

@@ -34,7 +34,7 @@ pub fn marked_partial(csv: &str, how_far: &str) -> String {
 }
 
 /// A number with 17 significant digits, in plain notation where that is readable; nothing for NaN.
-fn push_number(out: &mut String, value: f64) {
+pub(super) fn push_number(out: &mut String, value: f64) {
     if value.is_nan() {
         return;
     }
@@ -59,7 +59,7 @@ fn push_number(out: &mut String, value: f64) {
 }
 
 /// A field in quotes where it needs them.
-fn quoted(text: &str) -> String {
+pub(super) fn quoted(text: &str) -> String {
     if text.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", text.replace('"', "\"\""))
     } else {

@@ -3,9 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use kempe_number::text::significant;
-use kempe_study::{StudyOutcome, StudyResult, encode};
+use kempe_study::{
+    Comparison, Extreme, Listing, StudyOutcome, StudyResult, encode, without_rounding,
+};
 use serde_json::{Value, json};
 
+use super::against::Against;
 use super::write::REPORT;
 use crate::files::Loaded;
 use crate::names;
@@ -13,8 +16,6 @@ use crate::say::Speaker;
 
 /// Digits of what people read; files and JSON have all.
 const DIGITS: usize = 6;
-/// What is less than this part of the largest of its column is rounding.
-const NOTHING: f64 = 1e-12;
 
 /// What a run found, for people.
 pub fn summary(
@@ -97,30 +98,14 @@ fn extremes(result: &StudyResult) -> Vec<Vec<String>> {
     let at = format!("at {}", along.head());
     let head = ["in the rows", "smallest", &at, "largest", &at];
     let mut rows = vec![head.map(str::to_owned).to_vec()];
-    for column in result
-        .table
-        .columns
-        .iter()
-        .filter(|c| c.name != along.name && c.name != "time")
-    {
-        let size = column
-            .values
-            .iter()
-            .fold(0.0, |size: f64, v| size.max(v.abs()));
-        let text = |value: f64| match value.abs() <= NOTHING * size {
-            true => "0".to_owned(),
-            false => significant(value, DIGITS),
+    for extremes in kempe_study::extremes(result) {
+        let mut row = vec![extremes.column.head()];
+        let told = |e: Extreme| {
+            let value = significant(without_rounding(e.value, extremes.size), DIGITS);
+            [value, significant(e.at, DIGITS)]
         };
-        let mut row = vec![column.head()];
-        for best in [f64::lt, f64::gt] {
-            let values = column.values.iter().copied().enumerate();
-            let found = values.filter(|(_, v)| !v.is_nan());
-            let found = found.reduce(|a, b| if best(&b.1, &a.1) { b } else { a });
-            let place = |row: usize| along.values.get(row).copied().unwrap_or(f64::NAN);
-            row.extend(match found {
-                Some((index, value)) => [text(value), significant(place(index), DIGITS)],
-                None => ["n/a", ""].map(str::to_owned),
-            });
+        for extreme in [extremes.smallest, extremes.largest] {
+            row.extend(extreme.map_or(["n/a", ""].map(str::to_owned), told));
         }
         rows.push(row);
     }
@@ -149,6 +134,39 @@ fn aligned<'r>(rows: impl Iterator<Item = &'r Vec<String>>, indent: usize) -> St
     rows.into_iter().map(line).collect()
 }
 
+/// Two designs beside each other, for people.
+pub fn compared(comparison: &Comparison) -> String {
+    let mut out = format!("{}\n", comparison.headline());
+    let table = |listing: &Listing| {
+        let rows = std::iter::once(&listing.head).chain(&listing.rows);
+        aligned(rows, 2)
+    };
+    out.extend(comparison.parameters_listing().map(|l| table(&l)));
+    for study in &comparison.studies {
+        out.push_str(&format!("{}: {}\n", study.name, study.headline()));
+        out.extend(study.listings().iter().map(table));
+    }
+    out.extend(comparison.sameness().map(|text| format!("{text}\n")));
+    out
+}
+
+/// What became of the other design, for scripts.
+pub fn against_json(against: &Against<'_>, with_tables: bool) -> Value {
+    json!({
+        "file": against.loaded.name,
+        "title": against.loaded.checked.model.title,
+        "studies": studies_json(against.outcomes, with_tables),
+    })
+}
+
+fn studies_json(outcomes: &[StudyOutcome<'_>], with_tables: bool) -> Vec<Value> {
+    let studies = outcomes.iter().map(|outcome| match &outcome.result {
+        Ok(result) => encode::result(result, with_tables),
+        Err(_) => json!({ "study": outcome.study.name, "failed": true }),
+    });
+    studies.collect()
+}
+
 /// What a run found, for scripts.
 pub fn summary_json(
     loaded: &Loaded,
@@ -158,15 +176,11 @@ pub fn summary_json(
     with_tables: bool,
     speaker: &Speaker,
 ) -> Value {
-    let studies = outcomes.iter().map(|outcome| match &outcome.result {
-        Ok(result) => encode::result(result, with_tables),
-        Err(_) => json!({ "study": outcome.study.name, "failed": true }),
-    });
     json!({
         "file": loaded.name,
         "title": loaded.checked.model.title,
         "partial": partial,
-        "studies": studies.collect::<Vec<_>>(),
+        "studies": studies_json(outcomes, with_tables),
         "files": files.iter().map(|f| f.display().to_string()).collect::<Vec<_>>(),
         "diagnostics": speaker.diagnostics(),
     })

@@ -2,14 +2,16 @@
 
 use std::path::PathBuf;
 
+use kempe_draw::plot::PlotSpec;
 use kempe_draw::report::{Block, Section};
-use kempe_draw::{DrawOptions, Stage, Theme, svg};
+use kempe_draw::{DrawOptions, Frame, Outline, Stage, Theme, svg};
 use kempe_model::{Diagnostic, Model, PARTIAL_TABLE, Study};
 use kempe_study::{
-    CheckReport, MECHANISM, Proof, ReportOrigin, StudyOutcome, StudyResult, drawing_frames, encode,
-    figures, mechanism_view,
+    CheckReport, MECHANISM, Proof, ReportAgainst, ReportOrigin, StudyOutcome, StudyResult,
+    drawing_frames, encode, figures, figures_against, mechanism_view, outline,
 };
 
+use super::against::Against;
 use crate::files::Loaded;
 use crate::fingerprint::fnv1a64;
 use crate::names;
@@ -35,6 +37,17 @@ pub fn known_names(model: &Model, studies: &[&Study]) -> Vec<String> {
     own.chain([REPORT.to_owned()]).collect()
 }
 
+/// The names of the files that another design beside this one adds.
+pub fn known_names_against(model: &Model, studies: &[&Study]) -> Vec<String> {
+    let tables = studies.iter().flat_map(|study| {
+        let of = |ending| names::of_other_design(&format!("{}.{ending}", study.name));
+        ["csv", "parquet"].map(of)
+    });
+    tables
+        .chain([names::comparison(model).to_owned()])
+        .collect()
+}
+
 /// What a run has found, to be written.
 pub struct Results<'r> {
     /// The model.
@@ -43,6 +56,8 @@ pub struct Results<'r> {
     pub outcomes: &'r [StudyOutcome<'r>],
     /// What is to be known of the mechanism.
     pub check: CheckReport,
+    /// The other design, where two are set beside each other.
+    pub against: Option<&'r Against<'r>>,
     /// What is proved of the motion, where that was asked for.
     pub proof: Option<&'r Proof>,
     /// Of a run that was stopped, the studies that have no rows; `None` of a whole one.
@@ -62,23 +77,12 @@ impl Results<'_> {
                 continue;
             };
             let name = &result.name;
-            let (csv, parquet) = (format!("{name}.csv"), format!("{name}.parquet"));
-            let why = self.stopped.as_ref().map(|_| how_far(result));
-            let table = encode::csv(&result.table);
-            match &why {
-                Some(why) => add(&csv, encode::marked_partial(&table, why).as_bytes())?,
-                None => add(&csv, table.as_bytes())?,
-            }
-            drop(table);
-            let bytes = encode::parquet(&result.table, &origin(self.loaded, why));
-            let bytes = bytes.map_err(|error| not_encoded(&parquet, &error.to_string()))?;
-            add(&parquet, &bytes)?;
-            drop(bytes);
+            self.write_table(self.loaded, result, |name| name.to_owned(), &mut add)?;
             add(
                 &names::picture(model, name, MECHANISM),
-                picture(model, outcome.study, result).as_bytes(),
+                self.picture(outcome.study, result).as_bytes(),
             )?;
-            for (plot, spec) in figures(model, result) {
+            for (plot, spec) in self.plots(result) {
                 let height = if spec.equal_aspect {
                     PLOT[0] * 0.8
                 } else {
@@ -91,33 +95,115 @@ impl Results<'_> {
                 )?;
             }
         }
+        if let Some(against) = self.against {
+            for result in against
+                .outcomes
+                .iter()
+                .filter_map(|o| o.result.as_ref().ok())
+            {
+                self.write_table(against.loaded, result, names::of_other_design, &mut add)?;
+            }
+            let table = encode::comparison_csv(&against.comparison);
+            let table = match partial {
+                true => encode::marked_partial(&table, "the run was stopped"),
+                false => table,
+            };
+            add(names::comparison(model), table.as_bytes())?;
+        }
         add(REPORT, self.report().as_bytes())?;
         output.publish()
     }
 
+    /// A table as CSV and Parquet, under the names that `named` makes of the study's.
+    fn write_table(
+        &self,
+        loaded: &Loaded,
+        result: &StudyResult,
+        named: impl Fn(&str) -> String,
+        add: &mut impl FnMut(&str, &[u8]) -> Result<(), Box<Diagnostic>>,
+    ) -> Result<(), Box<Diagnostic>> {
+        let name = &result.name;
+        let [csv, parquet] = ["csv", "parquet"].map(|ending| named(&format!("{name}.{ending}")));
+        let why = self.stopped.as_ref().map(|_| how_far(result));
+        let table = encode::csv(&result.table);
+        match &why {
+            Some(why) => add(&csv, encode::marked_partial(&table, why).as_bytes())?,
+            None => add(&csv, table.as_bytes())?,
+        }
+        drop(table);
+        let bytes = encode::parquet(&result.table, &origin(loaded, why));
+        let bytes = bytes.map_err(|error| not_encoded(&parquet, &error.to_string()))?;
+        add(&parquet, &bytes)
+    }
+
+    /// The other design's model with its result of the same study.
+    fn beside(&self, result: &StudyResult) -> Option<(&Model, &StudyResult)> {
+        let against = self.against?;
+        let other = against.design().result(&result.name)?;
+        Some((&against.loaded.checked.model, other))
+    }
+
+    fn plots(&self, result: &StudyResult) -> Vec<(String, PlotSpec)> {
+        let model = &self.loaded.checked.model;
+        match self.beside(result) {
+            Some((other_model, other)) => figures_against(model, result, other_model, other),
+            None => figures(model, result),
+        }
+    }
+
+    /// The mechanism at its first row that was reached, by both designs where that may be.
+    fn picture(&self, study: &Study, result: &StudyResult) -> String {
+        let model = &self.loaded.checked.model;
+        let view = mechanism_view(model, Some(study.kind.along()));
+        let frames = drawing_frames(model, result);
+        let beside = self.beside(result);
+        let beside = beside.map(|(model, other)| outline(result, model, other));
+        let name = self.against.map_or("", |a| a.comparison.against.as_str());
+        let other = beside
+            .as_ref()
+            .map(|(view, frames)| Outline { name, view, frames });
+        let closure = &result.table.closure;
+        let reached = |row: &usize| closure.get(*row).is_some_and(|c| c.is_finite());
+        let both = |row: &usize| {
+            let pose = other.map(|o| o.frames.get(*row).is_some_and(is_placed));
+            reached(row) && pose.unwrap_or(true)
+        };
+        let mut rows = 0..closure.len();
+        let first = rows.clone().find(both).or_else(|| rows.find(reached));
+        let stage = Stage::with_outline(&view, &frames, other, DrawOptions::default());
+        svg::document(&stage.scene(first.unwrap_or(0)), Theme::Light)
+    }
+
     fn report(&self) -> String {
         let origin = ReportOrigin {
-            file_name: &self.loaded.name,
-            text: &self.loaded.text,
-            set: &self.loaded.set,
             generator: &generator(),
             date: self.date.as_deref().unwrap_or(""),
+            ..self.loaded.origin()
         };
+        let other = self.against.map(|against| against.loaded.origin());
+        let against = (self.against.zip(other.as_ref())).map(|(against, origin)| ReportAgainst {
+            design: against.design(),
+            origin,
+            warnings: &against.loaded.checked.warnings,
+            comparison: &against.comparison,
+        });
         let mut report = kempe_study::report(
             &self.loaded.checked.model,
             &origin,
             &self.loaded.checked.warnings,
             &self.check,
             self.outcomes,
+            against.as_ref(),
         );
         if let Some(proof) = self.proof {
             report.sections.insert(0, proof.section());
         }
         if let Some(missing) = &self.stopped {
             report.title = format!("{} (partial: the run was stopped)", report.title);
+            let others = self.against.map_or(&[][..], |against| against.outcomes);
             report
                 .first
-                .insert(0, partial_section(self.outcomes, missing));
+                .insert(0, partial_section(self.outcomes, others, missing));
             let results = self.outcomes.iter().filter_map(|o| o.result.as_ref().ok());
             for (motion, result) in report.motions.iter_mut().zip(results) {
                 motion.mark = format!("{PARTIAL_TABLE} {}", how_far(result));
@@ -137,9 +223,15 @@ fn how_far(result: &StudyResult) -> String {
 }
 
 /// What the report of a run says that was stopped.
-fn partial_section(outcomes: &[StudyOutcome<'_>], missing: &[&str]) -> Section {
+fn partial_section(
+    outcomes: &[StudyOutcome<'_>],
+    others: &[StudyOutcome<'_>],
+    missing: &[&str],
+) -> Section {
     let results = outcomes.iter().filter_map(|o| o.result.as_ref().ok());
-    let lines = results.map(how_far);
+    let of_other = others.iter().filter_map(|o| o.result.as_ref().ok());
+    let of_other = of_other.map(|r| format!("{} (the other design)", how_far(r)));
+    let lines = results.map(how_far).chain(of_other);
     let without = missing.iter().map(|name| format!("{name}: no rows"));
     Section {
         title: "Partial result: the run was stopped".to_owned(),
@@ -167,18 +259,9 @@ fn origin(loaded: &Loaded, partial: Option<String>) -> Vec<(String, String)> {
     all
 }
 
-/// The mechanism at its first row that was reached.
-fn picture(model: &Model, study: &Study, result: &StudyResult) -> String {
-    let view = mechanism_view(model, Some(study.kind.along()));
-    let frames = drawing_frames(model, result);
-    let row = result
-        .table
-        .closure
-        .iter()
-        .position(|c| c.is_finite())
-        .unwrap_or(0);
-    let stage = Stage::new(&view, &frames, DrawOptions::default());
-    svg::document(&stage.scene(row), Theme::Light)
+/// Whether a pose has its points.
+fn is_placed(pose: &Frame) -> bool {
+    !pose.points.is_empty() && pose.points.iter().flatten().all(|v| v.is_finite())
 }
 
 /// The program's name and version, for files that say where they come from.

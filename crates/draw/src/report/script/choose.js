@@ -42,6 +42,11 @@ class Chosen {
     list.value = fit.some((o) => o.value === before) ? before : -1;
   }
 
+  // The values that the other design has of a column.
+  other(column) {
+    return this.motion.against?.values[this.motion.cols.indexOf(column)];
+  }
+
   choose() {
     this.offer();
     this.plot.set(this.spec());
@@ -52,7 +57,14 @@ class Chosen {
     const along = cols[+x.value] ?? this.rows, chosen = [y, list].map((l) => cols[+l.value]).filter(Boolean);
     // a point's two coordinates are its path
     const point = /^x\((.*)\)$/.exec(along.name), plane = chosen.length === 1 && !this.log.checked && !!point && chosen[0].name === `y(${point[1]})`;
-    const curves = chosen.map((c, k) => ({ label: chosen.length > 1 ? c.name : "", dashed: k > 0, own: true, color: color(k), x: along.v, y: c.v, names: [along.name, c.name] }));
+    const compared = chosen.some((c) => this.other(c));
+    const label = (c) => chosen.length > 1 ? c.name : compared ? "this" : "";
+    const curves = chosen.map((c, k) => ({ label: label(c), dashed: k > 0 && !compared, own: true, color: color(k), x: along.v, y: c.v, names: [along.name, c.name] }));
+    // the other design's by the colour of its quantity; a lone quantity leaves a colour for it
+    chosen.forEach((c, k) => {
+      const y = this.other(c), own = along === this.rows ? along.v : this.other(along);
+      if (y && own) curves.push({ label: chosen.length > 1 ? `${c.name}, against` : "against", dashed: true, own: true, against: true, color: color(chosen.length > 1 ? k : 1), x: shared(along.v, own), y, names: [`${along.name}, against`, `${c.name}, against`] });
+    });
     const marks = monotone(along.v) ? events.map((e) => ({ at: along.v[e.row], label: e.kind === "dead" ? "limit" : "change point", kind: e.kind })) : [];
     const axis = (c, log) => ({ label: c.name, unit: c.unit, log, limits: null });
     const upright = axis(chosen[0] ?? this.rows, this.log.checked);

@@ -25,7 +25,8 @@ function nameTips(svg, spec, { outside }, { left, right, top, bottom }, x, y, dr
     words(group, told, right - 4, bottom - 6, { ...muted, "text-anchor": "end" });
   }
   const drive = spec.hodograph.drive;
-  spec.curves.forEach((curve, number) => {
+  // another design has rows of its own: its tips are of other places
+  for (const curve of spec.curves.filter((c) => !c.against)) {
     const tips = Array.from(curve.x, (v, k) => [x.at(v), y.at(curve.y[k])]), marked = [];
     const there = tips.filter(([px, py]) => px != null && py != null);
     const middle = [0, 1].map((k) => there.reduce((sum, p) => sum + p[k], 0) / Math.max(1, there.length));
@@ -35,7 +36,7 @@ function nameTips(svg, spec, { outside }, { left, right, top, bottom }, x, y, dr
       // a motion that closes comes back to its first tip
       if (marked.some((p) => Math.hypot(p[0] - px, p[1] - py) < 8)) continue;
       marked.push([px, py]);
-      element("circle", { cx: round(px), cy: round(py), r: 3, fill: color(number) }, group);
+      element("circle", { cx: round(px), cy: round(py), r: 3, fill: curve.color }, group);
       if (!known(drive[row])) continue;
       const told = withUnit(drive[row], spec.hodograph.unit, 3), half = [wide(told) / 2 + 1, FONT / 2];
       const far = Math.max(1e-9, Math.hypot(px - middle[0], py - middle[1])), along = [(px - middle[0]) / far, (py - middle[1]) / far];
@@ -49,5 +50,5 @@ function nameTips(svg, spec, { outside }, { left, right, top, bottom }, x, y, dr
         break;
       }
     }
-  });
+  }
 }

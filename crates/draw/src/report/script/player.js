@@ -13,12 +13,16 @@ class Player {
     this.playing = false;
     this.sense = 1;
     for (const c of motion.cols) c.v = unpacked(c.v);
+    if (motion.against) motion.against.values = motion.against.values.map((v) => v && unpacked(v));
     this.drive = motion.cols[motion.drive] ?? { name: "", unit: "", v: [] };
     this.clock = motion.cols[0] ?? this.drive;
     this.drawing = new Drawing(motion, section.querySelector(".drawing"), section);
     this.plots = [...section.querySelectorAll(".plot")].map((f) => new Plot(this, plotOfRun(motion, motion.plots[+f.dataset.plot]), f));
     if (this.count && motion.cols.length) this.choose(section.querySelector(".plots"));
-    this.cells = [...section.querySelectorAll(".readout [data-column]")].map((line) => [line.querySelector(".number"), motion.cols[+line.dataset.column].v]);
+    this.cells = [...section.querySelectorAll(".readout [data-column]")].flatMap((line) => {
+      const column = +line.dataset.column, other = line.querySelector("[data-other]"), values = motion.against?.values[column];
+      return [[line.querySelector(".number"), motion.cols[column].v], ...other && values ? [[other, values]] : []];
+    });
     this.status = section.querySelector(".status");
     this.input = {};
     for (const e of section.querySelectorAll("[data-in]")) this.input[e.dataset.in] = e;
@@ -41,7 +45,7 @@ class Player {
     const on = { csv: () => saveCsv(this.motion), first: () => this.seek(0), back: () => this.step(-1), play: () => this.toggle(), on: () => this.step(1), last: () => this.seek(this.count - 1) };
     for (const b of this.section.querySelectorAll("[data-do]")) b.addEventListener("click", on[b.dataset.do]);
     this.playButton = this.section.querySelector("[data-do=play]");
-    const { row, drive, time, labels, traces, speed, mode } = this.input;
+    const { row, drive, time, labels, traces, other, speed, mode } = this.input;
     row.addEventListener("input", () => this.seek(+row.value));
     const nearest = (values, v) => values.reduce((best, x, k) => known(x) && !(Math.abs(x - v) >= Math.abs(values[best] - v)) ? k : best, 0);
     const typed = (input, values) => input?.addEventListener("change", () => { if (input.value !== "") this.seek(nearest(values, +input.value)); });
@@ -49,6 +53,7 @@ class Player {
     typed(time, this.clock.v);
     labels.addEventListener("change", () => this.section.classList.toggle("no-labels", !labels.checked));
     traces.addEventListener("change", () => this.section.classList.toggle("no-traces", !traces.checked));
+    other?.addEventListener("change", () => this.section.classList.toggle("no-other", !other.checked));
     speed.addEventListener("change", () => this.note());
     // a motion that does not end where it began goes back by itself
     const v = this.motion.links.map((l) => l.length > 3 ? Math.hypot(l[0] - l[l.length - 3], l[1] - l[l.length - 2]) + Math.abs(Math.sin((l[2] - l[l.length - 1]) / 2)) * 20 : 0);
@@ -169,7 +174,7 @@ document.addEventListener("keydown", (event) => {
   const boxes = (selector) => [...player.section.querySelectorAll(selector)];
   const flip = (list) => { const on = !list.every((box) => box.checked); for (const box of list) { box.checked = on; box.dispatchEvent(new Event("change")); } };
   const by = event.shiftKey ? 10 : 1;
-  const act = { " ": () => player.toggle(), ArrowLeft: () => player.step(-by), ArrowRight: () => player.step(by), Home: () => player.seek(0), End: () => player.seek(player.count - 1), l: () => flip(boxes("[data-in=labels]")), t: () => flip(boxes("[data-in=traces]")), v: () => flip(boxes("[data-vector=velocity]")), a: () => flip(boxes("[data-vector=acceleration]")), f: () => flip(boxes("[data-role]")) }[event.key];
+  const act = { " ": () => player.toggle(), ArrowLeft: () => player.step(-by), ArrowRight: () => player.step(by), Home: () => player.seek(0), End: () => player.seek(player.count - 1), l: () => flip(boxes("[data-in=labels]")), t: () => flip(boxes("[data-in=traces]")), o: () => flip(boxes("[data-in=other]")), v: () => flip(boxes("[data-vector=velocity]")), a: () => flip(boxes("[data-vector=acceleration]")), f: () => flip(boxes("[data-role]")) }[event.key];
   if (act) { event.preventDefault(); act(); }
 });
 if (players.length) select(0);

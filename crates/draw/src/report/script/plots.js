@@ -33,7 +33,7 @@ class Plot {
     // one abscissa for all curves that runs one way is a line at the player's place; a path in the plane has dots only
     const x = this.own[0]?.x;
     this.x = x && !spec.plane && this.own.every((c) => c.x === x) && monotone(x) ? x : null;
-    const what = spec.title || [...new Set(spec.curves.map((c) => c.names[1]))].join(", ");
+    const what = spec.title || [...new Set(spec.curves.filter((c) => !c.against).map((c) => c.names[1]))].join(", ");
     this.svg.setAttribute("aria-label", spec.title || `${what} over ${spec.x.label}`);
     this.table.hidden = !this.own.length;
     for (const b of this.tools.children) b.setAttribute("aria-label", `${b.title}: ${what}`);
@@ -172,12 +172,20 @@ function place(dot, x, y) {
   if (there) { dot.setAttribute("cx", round(x)); dot.setAttribute("cy", round(y)); }
 }
 
+// An abscissa of another design: this one's own list where both are the same up to rounding, so that they share the player's place.
+function shared(own, other) {
+  let far = 0, size = 0;
+  own.forEach((v, k) => { if (known(v) && known(other[k])) { far = Math.max(far, Math.abs(v - other[k])); size = Math.max(size, Math.abs(v)); } });
+  return own.length === other.length && far <= 1e-9 * size ? own : other;
+}
+
 // A plot of the run with its columns in place of their numbers.
 function plotOfRun(motion, spec) {
   const column = (v) => typeof v === "number" ? motion.cols[v] : { v: unpacked(v) };
-  const curves = spec.curves.map((c, k) => {
-    const [x, y] = [column(c.x), column(c.y)];
-    return { ...c, color: color(k), x: x.v, y: y.v, fine: c.fine?.map((v) => unpacked(v)), names: [x.name ?? spec.x.label, y.name ?? (c.label || spec.y.label)] };
+  const first = spec.curves[0] && column(spec.curves[0].x);
+  const curves = spec.curves.map((c) => {
+    const [x, y] = [column(c.x), column(c.y)], against = c.name != null;
+    return { ...c, against, color: color(c.color), x: against ? shared(first.v, x.v) : x.v, y: y.v, fine: c.fine?.map((v) => unpacked(v)), names: [against ? `${first.name ?? spec.x.label}, against` : x.name ?? spec.x.label, c.name ?? y.name ?? (c.label || spec.y.label)] };
   });
   const list = (v) => [].concat(v).map((x) => x ?? NaN), limits = spec.limits.map((l) => ({ ...l, x: l.x && list(l.x), y: list(l.y) }));
   return { ...spec, curves, limits, hodograph: spec.hodograph && { ...spec.hodograph, drive: column(spec.hodograph.drive).v } };

@@ -49,11 +49,32 @@ function transform(motion, poses, anchor) {
   return `translate(${round(at[0])} ${round(motion.size[1] - at[1])})${turn}${stretch}`;
 }
 
+// The outline of another design, which moves with the rows of this one.
+class Other {
+  constructor(against, svg) {
+    this.against = against;
+    this.parts = against ? [...svg.querySelectorAll(".other[data-part]")].map((g) => [g, against.anchors[+g.dataset.part]]) : [];
+  }
+
+  // A part without a place in this row is not shown.
+  show(row, share) {
+    if (!this.parts.length) return;
+    const at = share > 0 && !isSmooth(this.against, row) ? [row + Math.round(share), 0] : [row, share];
+    const poses = this.against.links.map((_, link) => linkPose(this.against, link, ...at));
+    for (const [group, anchor] of this.parts) {
+      const t = anchor && transform(this.against, poses, anchor);
+      group.setAttribute("visibility", t ? "visible" : "hidden");
+      if (t) group.setAttribute("transform", t);
+    }
+  }
+}
+
 class Drawing {
   constructor(motion, svg, section) {
     this.motion = motion;
     this.svg = svg;
-    this.parts = [...svg.querySelectorAll("[data-part]")].map((g) => [g, motion.anchors[+g.dataset.part]]);
+    this.parts = [...svg.querySelectorAll("[data-part]:not(.other)")].map((g) => [g, motion.anchors[+g.dataset.part]]);
+    this.other = new Other(motion.against, svg);
     svg.querySelectorAll(".trace-past").forEach((g) => g.remove());
     this.loads = new Loads(motion, svg, section);
     this.vectors = new Vectors(motion, svg, section);
@@ -84,6 +105,7 @@ class Drawing {
       else reached = false;
     }
     this.svg.classList.toggle("stale", !reached);
+    this.other.show(row, share);
     this.loads.show(row, share);
     this.vectors.show(row, share, poses);
     for (const { path, pieces } of this.trails) path.setAttribute("d", pieces.slice(0, row + 1).join(""));
