@@ -100,6 +100,177 @@ fn the_report_works_in_a_browser() {
     }
 }
 
+/// Two designs on one page: the other one moves along, its curves are read out, saved and chosen with this one's.
+#[test]
+fn a_report_of_two_designs_works_in_a_browser() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = folder.path();
+    fs::write(at.join("m.toml"), MODEL).expect("written");
+    // other rows, and an end before this one's
+    let other = MODEL
+        .replace("step = 1\n", "step = 4\n")
+        .replace("to = 360", "to = 300");
+    fs::write(at.join("other.toml"), other).expect("written");
+    let runs: [(&str, &[&str]); 2] = [
+        ("same", &["--against-set", "a=25mm"]),
+        (
+            "elsewhere",
+            &["--against", "other.toml", "--against-set", "a=25mm"],
+        ),
+    ];
+    let page = Page::start();
+    for (out, arguments) in runs {
+        let ran = kempe(
+            at,
+            &[
+                &["run", "m.toml", "--set", "reach=45mm", "--out", out],
+                arguments,
+            ]
+            .concat(),
+        );
+        let report = at.join(out).join("report.html");
+        assert!(report.exists(), "{}", support::said(&ran));
+        for (size, phone, dark) in [([1400, 900], false, false), ([390, 844], true, true)] {
+            page.open(&report, size, phone, dark);
+            everything_is_in_sight(&page);
+            // a phone shows more than its width where something needs it
+            let wide = page.number("document.documentElement.scrollWidth");
+            assert!(wide <= f64::from(size[0]), "{wide} of {size:?}");
+            it_plays_and_stops(&page);
+            both_are_read_out(&page, &at.join(out));
+            the_outline_moves_along(&page, out == "elsewhere");
+            both_are_chosen_and_saved(&page);
+            the_other_study_shows_its_forces(&page);
+            everything_is_in_sight(&page);
+            assert_eq!(page.complaints(), Vec::<String>::new(), "{out} at {size:?}");
+        }
+    }
+}
+
+/// Where the outline's crank pin stands on paper: a crank of 25 mm at the angle of this one, which is 20 mm long.
+fn the_outline_moves_along(page: &Page, ends_before: bool) {
+    let place = |selector: &str| {
+        let centre = |axis: &str, size: &str| {
+            page.number(&format!(
+                "(() => {{ const b = document.querySelector('{SHOWN} {selector}').getBoundingClientRect(); return b.{axis} + b.{size} / 2; }})()"
+            ))
+        };
+        [centre("x", "width"), centre("y", "height")]
+    };
+    // a bar's middle from the crank's pivot, which both have; both bars are as wide
+    let length = |selector: &str| {
+        page.number(&format!(
+            "(() => {{ const b = document.querySelector('{SHOWN} {selector} path').getBBox(); return Math.max(b.width, b.height); }})()"
+        ))
+    };
+    let wide = 2.0 * 1.7;
+    let (own, other) = (
+        length(".link-1") - wide,
+        length(".other[data-part=\"0\"]") - wide,
+    );
+    assert!((other / own - 1.25).abs() < 0.01, "{own}, {other}");
+    page.key("Home");
+    let before = place(".other[data-part=\"0\"]");
+    for _ in 0..9 {
+        page.value("document.body.dispatchEvent(new KeyboardEvent('keydown', { key: 'ArrowRight', shiftKey: true, bubbles: true }))");
+    }
+    let after = place(".other[data-part=\"0\"]");
+    assert!(
+        hypot(after[0] - before[0], after[1] - before[1]) > 5.0,
+        "{before:?} {after:?}"
+    );
+    assert!(row(page) > 80.0);
+    let turned = |selector: &str| {
+        page.text(&format!(
+            "document.querySelector('{SHOWN} {selector}').getAttribute('transform').match(/rotate\\((.*?)\\)/)[1]"
+        ))
+    };
+    let (this, against): (f64, f64) = (
+        turned(".link-1").parse().expect("a number"),
+        turned(".other[data-part=\"0\"]").parse().expect("a number"),
+    );
+    assert!((this - against).abs() < 2.1, "{this}, {against}");
+    page.key("End");
+    let shown = page.text(&format!(
+        "document.querySelector('{SHOWN} .other[data-part=\"0\"]').getAttribute('visibility')"
+    ));
+    assert_eq!(shown, if ends_before { "hidden" } else { "visible" });
+    let display = format!(
+        "getComputedStyle(document.querySelector('{SHOWN} .other[data-part=\"0\"]')).display"
+    );
+    let switch = || page.click(&format!("{SHOWN} [data-in=other]"));
+    switch();
+    page.wait(&format!("{display} === 'none'"));
+    switch();
+    page.wait(&format!("{display} === 'inline'"));
+}
+
+/// At 120 deg, where both have a row: the values are those of the two tables.
+fn both_are_read_out(page: &Page, out: &Path) {
+    page.value(&format!(
+        "(() => {{ const i = document.querySelector('{SHOWN} [data-in=drive]'); i.value = 120; i.dispatchEvent(new Event('change')); i.blur(); }})()"
+    ));
+    let at_120 = |file: &str| {
+        let table = Table::read(&fs::read_to_string(out.join(file)).expect("text"));
+        let mut rows = 0..table.rows.len();
+        let row = rows.find(|row| (table.number(*row, "motor [deg]") - 120.0).abs() < 1e-9);
+        table.number(row.expect("a row"), "swing [deg]")
+    };
+    let cells = |k: usize| {
+        page.text(&format!(
+            "[...document.querySelectorAll('{SHOWN} .readout tr')].find((r) => r.cells[0].textContent === 'swing').cells[{k}].textContent"
+        ))
+    };
+    for (k, file) in [(1, "turn.csv"), (2, "turn.against.csv")] {
+        let (told, expected) = (cells(k).parse::<f64>().expect("a number"), at_120(file));
+        assert!(
+            (told - expected).abs() < 1e-3,
+            "{file}: {told} is not {expected}"
+        );
+    }
+    // under the pointer both are told
+    let [x, y] = page.place(&format!("{SHOWN} .plot svg"), [0.5, 0.5]);
+    page.mouse("mouseMoved", [x, y]);
+    let tip = page.text(&format!("document.querySelector('{SHOWN} .tip').innerText"));
+    assert!(
+        tip.contains("swing = ") && tip.contains("swing, against = "),
+        "{tip}"
+    );
+    page.mouse("mouseMoved", [2.0, 2.0]);
+}
+
+fn both_are_chosen_and_saved(page: &Page) {
+    choose(page, "y", "vx [mm/s]");
+    choose(page, "x", "motor [deg]");
+    let picture =
+        format!("document.querySelector('{SHOWN} .choose').closest('.plot').querySelector('svg')");
+    let dashes = format!(
+        "[...{picture}.querySelectorAll('g[clip-path] path')].map((p) => p.getAttribute('stroke-dasharray')).join()"
+    );
+    assert_eq!(page.text(&dashes), "none,7 5");
+    choose(page, "with", "vy");
+    assert_eq!(page.text(&dashes), "none,none,7 5,7 5");
+    choose(page, "x", "swing [deg]");
+    choose(page, "x", "row");
+    let (name, bytes) = page.saved(&format!("{SHOWN} [data-tool=svg]"));
+    assert_eq!(name, "turn-swing.svg");
+    let svg = String::from_utf8(bytes).expect("text");
+    assert!(svg.contains(">this</text>") && svg.contains(">against</text>"));
+    assert!(svg.contains("stroke-dasharray=\"7 5\"") && !svg.contains("var("));
+    let (name, bytes) = page.saved(&format!("{SHOWN} [data-tool=png]"));
+    assert_eq!(name, "turn-swing.png");
+    let mut reader = png::Decoder::new(Cursor::new(bytes))
+        .read_info()
+        .expect("a PNG");
+    let mut pixels = vec![0; reader.output_buffer_size().expect("a size")];
+    let picture = reader.next_frame(&mut pixels).expect("a picture");
+    let mut colors = pixels[..picture.buffer_size()].chunks(picture.color_type.samples());
+    assert!(
+        colors.any(|c| c.starts_with(&[0xe6, 0x9f, 0x00])),
+        "the other curve"
+    );
+}
+
 /// The page is no wider than the window, and what can be used has a name.
 fn everything_is_in_sight(page: &Page) {
     page.wait(&format!(
