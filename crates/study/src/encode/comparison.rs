@@ -3,6 +3,7 @@
 use serde_json::{Value, json};
 
 use super::csv::{push_number, quoted};
+use super::json::infinite;
 use crate::comparison::{Axis, Comparison, Pair, StudyPair};
 
 /// The heads of the CSV table.
@@ -119,7 +120,7 @@ fn study_json(study: &StudyPair) -> Value {
 }
 
 fn pair_json(pair: &Pair) -> Value {
-    json!({
+    let mut out = json!({
         "kind": pair.kind.name(),
         "name": pair.name,
         "unit": pair.unit.text(),
@@ -131,5 +132,11 @@ fn pair_json(pair: &Pair) -> Value {
         "this_at": pair.places[0],
         "against_at": pair.places[1],
         "note": pair.note,
-    })
+    });
+    for (name, value) in ["this", "against"].into_iter().zip(pair.values) {
+        if let Some(sign) = value.and_then(infinite) {
+            out["infinite"][name] = sign;
+        }
+    }
+    out
 }

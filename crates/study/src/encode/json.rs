@@ -35,7 +35,7 @@ fn scalar(scalar: &Scalar) -> Value {
 }
 
 /// The sign of what is infinite: 1 or -1.
-fn infinite(value: f64) -> Option<Value> {
+pub(super) fn infinite(value: f64) -> Option<Value> {
     value.is_infinite().then(|| (value.signum() as i8).into())
 }
 
