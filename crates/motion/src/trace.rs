@@ -28,6 +28,11 @@ use kempe_mechanism::pose::Pose;
 const LOCKED: f64 = 1e-6;
 /// A correction below this (in mechanism sizes and rad) ends Newton's method.
 const CORRECTED: f64 = 1e-13;
+/// Least and most (in mechanism sizes and rad) that rounding leaves over of a point: most where two branches meet, at the root of the
+/// rounding itself.
+const LEFT_OVER: (f64, f64) = (1e-11, 1e-8);
+/// Residual, as a part of the largest unknown (at least 1), that rounding leaves on the curve.
+const ROUNDING: f64 = 1e-15;
 /// Corrections before a point is given up.
 const CORRECTIONS: usize = 8;
 /// A path through the space of drive coordinates.
@@ -279,6 +284,7 @@ impl<'a, P: Path> Follower<'a, P> {
         let mut last = f64::INFINITY;
         for _ in 0..CORRECTIONS {
             self.linearise(z);
+            let residual = self.system().largest_residual();
             let mut step = std::mem::take(&mut self.step);
             self.system().solve(true, border, 0.0, &mut step);
             let length = norm(&step);
@@ -286,8 +292,13 @@ impl<'a, P: Path> Follower<'a, P> {
                 *z -= d;
             }
             self.step = step;
-            // What rounding leaves over, and more of it near singular poses.
-            let floor = (1e-15 / self.conditioning()).clamp(1e-11, 1e-8);
+            // What rounding leaves over, and more of it near singular poses; where branches come near each other, as much as it may
+            // ever be for a point that is on the curve.
+            let size = z.iter().fold(1.0, |most: f64, z| most.max(z.abs()));
+            let floor = match residual <= ROUNDING * size {
+                true => LEFT_OVER.1,
+                false => (1e-15 / self.conditioning()).clamp(LEFT_OVER.0, LEFT_OVER.1),
+            };
             if !length.is_finite() || (length > 0.5 * last && length > 10.0 * floor) {
                 return None;
             }

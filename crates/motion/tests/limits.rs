@@ -636,3 +636,137 @@ fn four_bars_near_change_points_keep_their_branch() {
         );
     }
 }
+
+/// Four-bars whose longest and shortest bars together miss the other two by a hair: their branches pass each other, or the crank stops,
+/// as the sign of the excess says; below what lengths are told apart by, they cross. None is given up, however many
+/// turns the crank has made before, and wherever it starts.
+#[test]
+fn four_bars_that_miss_a_change_point_by_a_hair_are_followed() {
+    let mut rng = Rng(7);
+    let (mut passed, mut stopped, mut crossed) = (0, 0, 0);
+    for k in 0..400 {
+        // Far from kites, which meet at two places.
+        let (a, d) = (1.0 + rng.below(30) as f64, 33.0 + rng.below(40) as f64);
+        let (plus, minus) = (a + d, d - a);
+        let inner = k % 2 == 0;
+        // |b - c| = d - a at 0, or b + c = a + d at pi.
+        let c = if inner {
+            1.0 + rng.below(90) as f64
+        } else {
+            (plus * rng.range(0.15, 0.85)).round()
+        };
+        let exact = if inner { minus + c } else { plus - c };
+        // The other pair of lengths makes no dead point within the turn.
+        let clear = if inner {
+            exact + c - plus
+        } else {
+            minus - (exact - c).abs()
+        };
+        if clear < 1.0 {
+            continue;
+        }
+        let largest = exact.max(c).max(d);
+        let sign = if rng.chance(0.5) { 1.0 } else { -1.0 };
+        let b = exact + sign * largest * 10.0_f64.powf(rng.range(-13.0, -6.0));
+        let excess = b - exact;
+        let at = if inner { 0.0 } else { PI };
+        let turns = f64::from(rng.below(12) as u32) * TAU;
+        // From the place itself, from a round angle, or from any.
+        let start = turns
+            + match k % 3 {
+                0 => at,
+                1 => at + 0.25 * PI * (1.0 + f64::from(rng.below(3) as u32)),
+                _ => at + rng.range(0.01, 3.0),
+            };
+        let size = [1.0, 1e-3, 1e3][rng.below(3)];
+        let bars = [a, b, c, d].map(|x| x * size);
+        let case = four_bar(bars, start, start + TAU, "C = \"left of B -> D\"");
+        // b longer: at 0 it must fold onto a longer diagonal than there is; at pi it reaches farther.
+        let meets = if inner { excess < 0.0 } else { excess > 0.0 };
+        let label = format!("{bars:?} excess {excess:e} from {start}");
+        let motion = match case.motion() {
+            Err(MotionError::CannotAssemble { .. }) if k % 3 == 0 && !meets => continue,
+            found => found.unwrap_or_else(|e| panic!("{label}: {e:?}")),
+        };
+        let ends = [motion.ends.0, motion.ends.1];
+        let told = ends
+            .iter()
+            .all(|e| matches!(e, EndReason::Covered | EndReason::Limit));
+        assert!(told, "{label}: {ends:?} {:?}", motion.reached());
+        let crossing = motion
+            .events
+            .iter()
+            .any(|e| e.kind == EventKind::ChangePoint);
+        crossed += usize::from(crossing);
+        if crossing {
+            assert!(
+                excess.abs() < 3e-11 * largest,
+                "{label}: {:?}",
+                motion.events
+            );
+            continue;
+        }
+        let full = ends == [EndReason::Covered; 2];
+        assert!(
+            full == meets || excess.abs() < 3e-11 * largest,
+            "{label}: {ends:?}"
+        );
+        passed += usize::from(full);
+        stopped += usize::from(!full);
+        let (low, high) = motion.reached();
+        let mut sampler = Sampler::new(&motion, &[]).unwrap();
+        for j in 0..=40 {
+            let q = low + (high - low) * f64::from(j) / 40.0;
+            let sample = sampler.at_parameter(q);
+            let got = times(point(&case, &sample.points, "C"), 1e3 / size);
+            // The factors of the area without cancellation: each is its value at the place and what the turn adds.
+            let add = 4.0 * a * d * (0.5 * q).sin().powi(2);
+            let less = 4.0 * a * d * (0.5 * q).cos().powi(2);
+            let (outer, folded) = if inner {
+                (
+                    (b + c).powi(2) - plus * plus + less,
+                    add - excess * (minus + (b - c)),
+                )
+            } else {
+                (
+                    less + excess * (plus + (b + c)),
+                    minus * minus - (b - c).powi(2) + add,
+                )
+            };
+            let truth = joint([a, b, c, d], q, 0.5 * (outer * folded).max(0.0).sqrt());
+            let off = norm(sub(got, truth)) / largest;
+            assert!(off < 1e-6, "{label} at {q}: {got:?} {truth:?} {off:e}");
+        }
+    }
+    assert!(
+        passed > 60 && stopped > 60 && crossed > 30,
+        "{passed} {stopped} {crossed}"
+    );
+}
+
+/// Four-bars of any size whose crank starts right where branches cross: what rounding makes of the pose there is no pose of its own.
+#[test]
+fn starts_right_on_a_change_point_are_followed_whatever_the_size() {
+    let mut rng = Rng(8);
+    for k in 0..1500 {
+        let a = 10.0 + rng.below(50) as f64;
+        let d = a + 3.0 + rng.below(40) as f64;
+        let c = match k % 2 {
+            0 => a,
+            _ => a + 1.0 + rng.below(75) as f64,
+        };
+        let size = [1.0, 1e-3, 1e3, 0.37, 25.4][rng.below(5)];
+        let bars = [a, d - a + c, c, d].map(|x| x * size);
+        let from = [0.0, TAU, -TAU, 2.0 * TAU][rng.below(4)];
+        let to = from + [TAU, -TAU, PI][rng.below(3)];
+        let case = four_bar(bars, from, to, "C = \"left of B -> D\"");
+        let motion = case.must_move();
+        let label = format!("{bars:?} from {from} to {to}: {:?}", motion.ends);
+        assert_eq!(motion.reached(), motion.demanded, "{label}");
+        let mut sampler = Sampler::new(&motion, &[]).unwrap();
+        for q in [from, from + 0.3 * (to - from), to] {
+            let closure = sampler.at_parameter(q).closure;
+            assert!(closure < 1e-10, "{label} at {q}: {closure:e}");
+        }
+    }
+}
