@@ -770,3 +770,49 @@ fn starts_right_on_a_change_point_are_followed_whatever_the_size() {
         }
     }
 }
+
+/// A class III group on three parallel cranks, of which the last is longer or shorter than the others by what redundant constraints
+/// may miss each other by: it goes as far as the exact one, in as many steps. Where a mode changes, the constraints miss each
+/// other as they do everywhere.
+#[test]
+fn redundant_bars_that_miss_a_little_do_not_hold_the_trace_up() {
+    let length = 29.885_253_120_996_428;
+    let motion = |off: f64, way: f64| {
+        let from = 79_f64.to_radians();
+        Case::read(
+            &format!(
+                "units = {{ length = \"mm\", angle = \"rad\" }}
+[links]
+frame = {{ A = [0, 0], D = [46, -22], G = [93, 27], H = [-16.3, 53] }}
+third = {{ G-F = {:e} }}
+rod = {{ P-Q = 60.5 }}
+crank = {{ H-P = 22 }}
+first = {{ A-B = {length:e} }}
+plate = {{ B = [0, 0], C = [46, -22], F = [93, 27], Q = [30, 50] }}
+second = {{ D-C = {length:e} }}
+[drives]
+m = {{ turns = \"crank\", from = {from:e}, to = {:e}, speed = \"1 rad/s\" }}
+[assembly]
+B = {{ near = [18.4, 23.5] }}
+",
+                length * (1.0 + off),
+                from + way * TAU
+            ),
+            "three-cranks.toml",
+        )
+        .must_move()
+    };
+    for way in [1.0, -1.0] {
+        let exact = motion(0.0, way);
+        for off in [1e-11, -1e-10, 3e-10, -6e-10, 1e-9, -3e-9] {
+            let nearly = motion(off, way);
+            let label = format!("{off:e} {way}: {:?} {:?}", nearly.ends, exact.ends);
+            assert_eq!(nearly.ends, exact.ends, "{label}");
+            let (a, b) = (nearly.reached(), exact.reached());
+            let apart = (a.0 - b.0).abs().max((a.1 - b.1).abs());
+            assert!(apart < 1e-6, "{label}: {a:?} {b:?}");
+            let (a, b) = (nearly.nodes(), exact.nodes());
+            assert!(a < 2 * b, "{label}: {a} nodes, {b}");
+        }
+    }
+}

@@ -184,7 +184,12 @@ impl Motion {
             if located.is_none() || !(residual <= MEETING) {
                 (located, z, residual) = locate(false);
             }
-            if !(residual <= MEETING) {
+            // What redundant constraints leave over on the branch itself keeps no branches apart.
+            let mut left_over = || {
+                let [here, there] = [node, next].map(|node| follower.residual(&node.z));
+                here.max(there)
+            };
+            if !(residual <= MEETING || residual <= MEETING + left_over()) {
                 return Err(Unlocated::Missed { z, residual });
             }
             found.extend(located.map(|(s, at)| Change { s, at, step }));
