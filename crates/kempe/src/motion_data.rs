@@ -63,7 +63,8 @@ pub struct AssemblyData {
 }
 
 impl Session {
-    /// The motion by the file's laws, as data: its range, what it meets, and the assemblies at its start.
+    /// The motion by the file's laws, as data: its range, what it meets, and the assemblies where one was chosen: at its start, or as
+    /// drawn.
     ///
     /// # Errors
     ///

@@ -39,7 +39,7 @@ pub struct Findings {
     pub idle: Vec<BodyId>,
     /// Joints with redundant constraints.
     pub redundant: Vec<Source>,
-    /// All assemblies at the start.
+    /// All assemblies where one was chosen, at the start or as drawn.
     pub assemblies: Assemblies,
     /// Whether assemblies were looked for: with too few drives there is no place at which they could be counted.
     pub searched: bool,
@@ -105,9 +105,12 @@ pub fn check_with_progress(design: &Design<f64>, progress: &mut dyn Progress) ->
             findings.motion = Some(motion);
         }
         Err(problem) => {
-            if let MotionError::CannotAssemble { assemblies, .. } = &problem {
+            if let MotionError::CannotAssemble { assemblies, .. }
+            | MotionError::Locked { assemblies, .. } = &problem
+            {
                 findings.assemblies = (**assemblies).clone();
             }
+            findings.mobility = mobility_standing(design, &findings.assemblies);
             if matches!(
                 problem,
                 MotionError::NoDrive | MotionError::Undetermined { .. }
@@ -126,6 +129,18 @@ pub fn check_with_progress(design: &Design<f64>, progress: &mut dyn Progress) ->
         }
     }
     findings
+}
+
+/// Freedoms of what stands and does not move, in the first of its assemblies.
+pub fn mobility_standing(design: &Design<f64>, assemblies: &Assemblies) -> Mobility {
+    let mechanism = &*design.mechanism;
+    let Some(stands) = assemblies.list.first() else {
+        return mobility(design, None);
+    };
+    // The joints are the same wherever the drives hold it.
+    let coordinates = vec![0.0; mechanism.model.drives.len()];
+    let state = state_at(mechanism, &stands.poses, &coordinates);
+    mobility(design, Some((&state, &stands.branch)))
 }
 
 /// Freedoms in the assembly from which a motion starts.

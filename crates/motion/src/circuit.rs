@@ -44,7 +44,7 @@ pub struct Circuit {
     pub closed: bool,
     /// Whole arc length, in mechanism sizes and rad over all bodies.
     pub length: f64,
-    /// All assemblies at the start.
+    /// All assemblies where one was chosen, at the start or as drawn.
     pub assemblies: Assemblies,
     /// The motion that the drives' laws demand, as far as it goes: where the circuit starts.
     pub demanded: Arc<Motion>,
@@ -73,9 +73,12 @@ impl Circuit {
         let (low, high) = motion.demanded;
         let direction = if motion.start == low { 1.0 } else { -1.0 };
         let (path, assemblies) = (motion.path.clone(), motion.assemblies.clone());
-        let locked = MotionError::Locked { at: motion.start };
+        let locked = || MotionError::Locked {
+            at: motion.start,
+            assemblies: Box::new(assemblies.clone()),
+        };
         let Some(chosen) = assemblies.list.first() else {
-            return Err(locked);
+            return Err(locked());
         };
         let design = chosen.count_in(design);
         // Arc lengths are counted along its nodes: steps as even as the bordered systems take them keep rows where they are.
@@ -96,7 +99,7 @@ impl Circuit {
                     Some(at) => follower.scaled(&at.poses, &at.near, motion.start),
                     None => follower.scaled(&chosen.poses, &chosen.branch.near, motion.anchor),
                 };
-                follower.start(z, direction).ok_or(locked)?
+                follower.start(z, direction).ok_or_else(locked)?
             }
         };
         restricting_steps(&mut follower, |follower| {

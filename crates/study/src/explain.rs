@@ -4,6 +4,8 @@ use kempe_mechanism::plan::{Condition, Dyad, Step, Swing};
 use kempe_mechanism::structure::{BodyId, Marker};
 use kempe_mechanism::{Branch, Configuration, Design, Mechanism};
 use kempe_model::{Diagnostic, LinkId};
+use kempe_motion::assemble::Assemblies;
+use kempe_motion::check::mobility_standing;
 use kempe_motion::drive_path::DrivePath;
 use kempe_motion::{EndReason, Motion, MotionError, SIZES, Stage};
 use kempe_number::math::hypot;
@@ -137,7 +139,7 @@ pub fn cannot_move(design: &Design<f64>, error: &MotionError) -> Diagnostic {
             "check the units: a bare length is in {}",
             model.units.length.name
         )),
-        MotionError::Locked { at } => {
+        MotionError::Locked { at, assemblies } => {
             let drive = if model.drives.len() == 1 { "drive" } else { "drives" };
             let diagnostic = Diagnostic::error(
                 "locked",
@@ -145,13 +147,25 @@ pub fn cannot_move(design: &Design<f64>, error: &MotionError) -> Diagnostic {
             );
             let diagnostic = match surplus_note(mechanism) {
                 None => diagnostic.help("start the drive elsewhere: here it stands at a dead point"),
-                Some(note) => diagnostic
-                    .note(note)
-                    .help("leave out a drive or a joint that is one too many"),
+                Some(note) => {
+                    let diagnostic = match gives(design, assemblies) {
+                        true => diagnostic.note("its links give by a hair, as bars in line do: a freedom by rank from which no motion follows"),
+                        false => diagnostic,
+                    };
+                    diagnostic
+                        .note(note)
+                        .help("leave out a drive or a joint that is one too many")
+                }
             };
             model.drives.iter().fold(diagnostic, |d, drive| d.at(drive.span.clone(), ""))
         }
     }
+}
+
+/// Whether a locked mechanism has a freedom of first order.
+fn gives(design: &Design<f64>, assemblies: &Assemblies) -> bool {
+    let rank = mobility_standing(design, assemblies).by_rank;
+    rank.is_some_and(|rank| rank > 0)
 }
 
 /// What holds the links besides what decides where they are; `None` when nothing does.

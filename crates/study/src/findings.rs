@@ -56,7 +56,7 @@ pub struct Report {
     pub groups: Vec<Group>,
     /// Four-bar loops.
     pub four_bars: Vec<Grashof>,
-    /// Assemblies at the start that agree with the file; unknown where drives are missing.
+    /// Assemblies that agree with the file where one was chosen, at the start or as drawn; unknown where drives are missing.
     pub assemblies: Option<usize>,
     /// Assemblies that the file's sides reject.
     pub assemblies_rejected: usize,

@@ -252,7 +252,7 @@ fn evidence(result: &StudyResult) -> Evidence {
         .filter(|(first, ..)| table.closure.get(*first).is_some_and(|c| !c.is_finite()));
     let (matching, other) = result.assemblies;
     let facts = vec![(
-        "Assemblies at the start".to_owned(),
+        "Assemblies where one was chosen".to_owned(),
         format!("{matching} as the file says, {other} more"),
     )];
     Evidence {

@@ -28,7 +28,8 @@ pub struct StudyResult {
     pub events: Vec<Event>,
     /// Index into the columns of the quantity the rows run along: a drive, or time.
     pub along: usize,
-    /// How many assemblies agree with the file's hints at the start, and how many do not.
+    /// How many assemblies agree with the file's hints where one was chosen (at the start, or where the mechanism is drawn), and how
+    /// many do not.
     pub assemblies: (usize, usize),
     /// What a careful engineer would want to be told of the mechanism, its motion and these rows; errors where the motion does
     /// not go as far as it should.

@@ -659,6 +659,18 @@ fn a_load_at_a_pin_acts_on_the_slider_or_the_file_is_asked() {
         assert_eq!(values, named);
         assert!(assumed.contains("gas (at B on piston)"), "{assumed}");
     }
+    // A joint that could not be read is told alone: it may say which link is meant.
+    let unread = text(rod_first, "at = \"B\"").replace("O -> G", "O -> K");
+    let found = Model::from_toml(&unread, "pin", &mut |_| Err("no files".into())).unwrap_err();
+    assert!(
+        found.iter().all(|d| d.code != "link-not-named"),
+        "{found:?}"
+    );
+    assert!(
+        found
+            .iter()
+            .any(|d| d.severity == kempe_model::Severity::Error)
+    );
     // On the rod itself the pin carries what presses the rod against the bore alone.
     let (_, on_rod, _) = told(&text(rod_first, "at = \"B\", on = \"rod\""));
     assert!(on_rod.iter().all(|f| *f < 5_000.0), "{on_rod:?}");

@@ -105,6 +105,15 @@ fn a_locked_structure_is_no_loop_that_does_not_close() {
             "a = { A-B = 25 }\nb = { B-D = 65 }",
             "m = { turns = \"a\", at = -90 }",
         ),
+        // In line it gives by a hair, and goes nowhere.
+        (
+            "a = { A-B = 25 }\nb = { B-D = 35 }",
+            "m = { turns = \"a\", from = 0, to = 90, speed = 10 }",
+        ),
+        (
+            "a = { A-B = 25 }\nb = { B-D = 85 }",
+            "m = { turns = \"a\", from = 180, to = 90, speed = 10 }",
+        ),
         (
             "a = { A-B = 30 }\nb = { B-C = 40 }\nc = { A-C = 50 }",
             "m = { turns = \"c\", from = 0, to = 90, speed = 10 }\n\
@@ -121,8 +130,11 @@ fn a_locked_structure_is_no_loop_that_does_not_close() {
                 "{links}"
             );
             assert!(answer.words().contains("one too many"));
+            assert!(!answer.words().contains("no pose"), "{}", answer.words());
             // A length that is off leaves no pose.
-            let off = links.replace("65", "66").replace("40", "41");
+            let off = (links.replace("65", "66").replace("40", "41"))
+                .replace("35", "36")
+                .replace("85", "86");
             let answer = ask(&[command], &text(&off), &[]);
             assert_eq!(
                 (answer.exit, answer.codes()),

@@ -429,7 +429,8 @@ pub(crate) fn carrier(
     let first = moving.first().or(carriers.first()).copied()?;
     let others = moving.iter().copied().filter(|l| !welded(cx, first, *l));
     let others: Vec<LinkId> = others.collect();
-    if others.is_empty() {
+    // A joint that could not be read may tell which.
+    if others.is_empty() || cx.joints.contains(&None) {
         return Some((first, None));
     }
     let name = |link: LinkId| cx.link_name(link).to_owned();

@@ -22,10 +22,12 @@ pub enum MotionError {
         /// What was found.
         assemblies: Box<Assemblies>,
     },
-    /// Every pose tried near the start is singular: there is no direction in which the drive moves the mechanism.
+    /// It stands where it starts, and there is no direction in which the drive moves it farther than it gives.
     Locked {
         /// Path parameter of the start.
         at: f64,
+        /// The assemblies there, the one meant first.
+        assemblies: Box<Assemblies>,
     },
     /// The mechanism is too large or too small for numbers: squares of its lengths would overflow or vanish.
     Scale {

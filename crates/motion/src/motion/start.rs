@@ -1,11 +1,12 @@
 //! Where a motion starts, and how it is followed from there to both ends of its range.
 
 use kempe_homotopy::PathReport;
+use kempe_mechanism::mobility::surplus_of;
 use kempe_mechanism::{Branch, Design};
 
 use super::follow::follow_both;
 use super::restriction::{Unlocated, restricting_steps};
-use super::{Demand, Motion, MotionError};
+use super::{Demand, EndReason, Motion, MotionError};
 use crate::assemble::{Assemblies, Assembly, find_assemblies_after};
 use crate::drive_path::DrivePath;
 use crate::progress::{Progress, Stage};
@@ -26,6 +27,8 @@ const BETTER: f64 = 30.0;
 /// Places that are compared where none is that far, and tried where the mechanism cannot be assembled at the start.
 const COMPARED: usize = 3;
 const TRIES: usize = 2;
+/// What redundant constraints hold at second order is stuck within so many path scales, where they miss each other by rounding.
+const GIVES: f64 = 1e-4;
 /// Assemblies no farther from the pose at the start than this many times the nearest one may all lead to it.
 const LEADS_TO: f64 = 30.0;
 
@@ -88,7 +91,7 @@ impl Motion {
         let scale = path.scale();
         let mut coordinates = vec![0.0; design.mechanism.model.drives.len()];
         let mut nothing: Option<Assemblies> = None;
-        let mut stands = false;
+        let mut standing: Option<Assemblies> = None;
         let mut at_start: Option<Vec<f64>> = None;
         let mut best: Option<Beginning> = None;
         let mut compared = 0;
@@ -112,7 +115,9 @@ impl Motion {
                 nothing.get_or_insert(assemblies);
                 continue;
             }
-            stands |= anchor == from;
+            if anchor == from {
+                standing = Some(assemblies.clone());
+            }
             let found = begin(design, &path, assemblies, anchor, &mut at_start);
             let Some(found) = found else { continue };
             let clear = found.determined > DETERMINED;
@@ -136,13 +141,16 @@ impl Motion {
             ..
         }) = best
         else {
-            return Err(match nothing {
-                // It stands where it starts, and nowhere beside it.
-                Some(assemblies) if !stands => MotionError::CannotAssemble {
+            return Err(match (standing, nothing) {
+                (None, Some(assemblies)) => MotionError::CannotAssemble {
                     at: from,
                     assemblies: Box::new(assemblies),
                 },
-                _ => MotionError::Locked { at: from },
+                // It stands where it starts, and nowhere beside it.
+                (standing, _) => MotionError::Locked {
+                    at: from,
+                    assemblies: Box::new(standing.unwrap_or_default()),
+                },
             });
         };
         // The share of the range that lies above it.
@@ -165,6 +173,14 @@ impl Motion {
             }
             Ok(motion)
         });
+        if let (Ok(motion), Some(assemblies)) = (&found, &standing)
+            && motion.only_gives()
+        {
+            return Err(MotionError::Locked {
+                at: from,
+                assemblies: Box::new(assemblies.clone()),
+            });
+        }
         match (found, nothing) {
             // It ends before the only place that is asked for.
             (Ok(motion), Some(assemblies))
@@ -177,6 +193,18 @@ impl Motion {
             }
             (found, _) => found,
         }
+    }
+
+    /// Whether redundant constraints hold it: what they leave is a freedom of first order, as of bars in line.
+    fn only_gives(&self) -> bool {
+        let nodes = self.node_parameters();
+        let wide = match (nodes.first(), nodes.last()) {
+            (Some(first), Some(last)) => last - first,
+            _ => 0.0,
+        };
+        [self.ends.0, self.ends.1].contains(&EndReason::Stuck)
+            && wide <= GIVES * self.scale
+            && !surplus_of(self.mechanism()).is_empty()
     }
 
     /// Whether a mechanism can be moved at all.
