@@ -3,7 +3,7 @@
 use kempe_mechanism::plan::{Condition, Dyad, Step, Swing};
 use kempe_mechanism::structure::{BodyId, Marker};
 use kempe_mechanism::{Branch, Configuration, Design, Mechanism};
-use kempe_model::{Diagnostic, LinkId};
+use kempe_model::{Diagnostic, Drive, LinkId};
 use kempe_motion::assemble::Assemblies;
 use kempe_motion::check::mobility_standing;
 use kempe_motion::drive_path::DrivePath;
@@ -15,6 +15,9 @@ use crate::hints;
 use crate::lone_points::with_lone_points;
 use crate::unit::{Units, shown};
 use crate::words::{list, source_name};
+
+/// A motion along time that stops this near to a break of a law, as a part of its time, stops there.
+const AT_BREAK: f64 = 1e-6;
 
 /// Two of these bodies' links that share two points and so turn as one link, if there are such.
 fn joined_twice(mechanism: &Mechanism, bodies: &[BodyId]) -> Option<String> {
@@ -482,9 +485,33 @@ pub fn beyond_limit(motion: &Motion, missed: &[(EndReason, f64)]) -> Diagnostic 
             diagnostic = diagnostic.help("start the drive elsewhere or change a length a little: branches may meet where it stopped");
         }
     } else {
-        diagnostic = diagnostic.help("the rows beyond carry the reason in their note; change the drives' laws or the lengths");
+        let ends = missed
+            .iter()
+            .map(|(_, at)| if *at > high { high } else { low });
+        let breaking = breaking_at(motion, &ends.collect::<Vec<_>>());
+        for drive in breaking.iter().filter(|_| stuck) {
+            diagnostic = diagnostic
+                .at(drive.span.clone(), "its law starts, ends or changes there")
+                .note(format!("the law of `{}` starts, ends or changes where branches meet: how the motion goes on there was not found", drive.name));
+        }
+        diagnostic = match stuck && !breaking.is_empty() {
+            true => diagnostic.help("let the law go through that place, or start and end a little beside it"),
+            false => diagnostic.help("the rows beyond carry the reason in their note; change the drives' laws or the lengths"),
+        };
     }
     diagnostic
+}
+
+/// The drives whose laws are not smooth where a motion along time stopped.
+fn breaking_at<'a>(motion: &'a Motion, stops: &[f64]) -> Vec<&'a Drive> {
+    let parameters = &motion.design.parameters;
+    let near = AT_BREAK * (motion.demanded.1 - motion.demanded.0);
+    let breaks = |drive: &&Drive| {
+        let breaks = drive.law.breaks(parameters);
+        (breaks.iter()).any(|t| stops.iter().any(|stop| (t - stop).abs() <= near))
+    };
+    let drives = motion.mechanism().model.drives.iter();
+    drives.filter(breaks).collect()
 }
 
 /// Whether a motion goes from the high end of its range to the low one.

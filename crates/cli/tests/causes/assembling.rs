@@ -145,6 +145,32 @@ fn a_locked_structure_is_no_loop_that_does_not_close() {
     }
 }
 
+/// A law that ends or starts in the middle of the motion where branches meet: which it is, where, and what to do.
+#[test]
+fn a_law_that_ends_where_branches_meet_is_named() {
+    let text = |law: &str| {
+        format!(
+            "{HEAD}[links]\nframe = {{ A = [0, 0], D = [40, 0], E = [0, 100], H = [50, 100] }}\n\
+             crank = {{ A-B = 20 }}\nb = {{ B-C = 40 }}\nc = {{ D-C = 20 }}\n\
+             e = {{ E-F = 15 }}\nf = {{ F-G = 45 }}\nh = {{ H-G = 30 }}\n\
+             [drives]\nm = {{ turns = \"crank\", {law} }}\nn = {{ turns = \"e\", from = 0, to = 360, speed = 18 }}\n\
+             [assembly]\nC = \"left of B -> D\"\nG = \"left of F -> H\"\n"
+        )
+    };
+    for law in [
+        "from = 0, to = 360, speed = 36",
+        "from = 30, law = [{ to = 180, in = 5 }, { dwell = 5 }, { to = 330, in = 5 }]",
+    ] {
+        let answer = check(&text(law));
+        assert_eq!((answer.exit, answer.codes()), (3, vec!["motion-stuck"]));
+        let words = answer.words();
+        assert!(words.contains("the law of `m`"), "{words}");
+        assert!(!words.contains("the law of `n`"), "{words}");
+    }
+    let beside = check(&text("from = 30, to = 350, speed = 36"));
+    assert_eq!(beside.exit, 0, "{}", beside.words());
+}
+
 /// A third crank of a parallelogram whose pivot is off by a little: rank, redundancy, motion and proof say one thing, whether it is
 /// placed after the others or together with them.
 #[test]
