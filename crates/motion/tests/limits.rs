@@ -816,3 +816,87 @@ B = {{ near = [18.4, 23.5] }}
         }
     }
 }
+
+/// Parallelograms, antiparallelograms, kites and other change-point four-bars whose crank comes to rest on change points and elsewhere,
+/// stays, turns back or goes on: in every row the rocker is where the smooth branch has it.
+#[test]
+fn cranks_that_rest_on_change_points_go_on_along_their_branch() {
+    let mut rng = Rng(9);
+    let mut rests = 0;
+    for k in 0..240 {
+        let p = 10.0 + rng.below(50) as f64;
+        let q = p + 3.0 + rng.below(40) as f64;
+        let l = match k % 3 {
+            0 => [p, q, p, q],
+            1 => [p, p, q, q],
+            _ => {
+                let c = p + 1.0 + rng.below(60) as f64;
+                [p, q - p + c, c, q]
+            }
+        };
+        let [a, b, c, d] = l;
+        let outer = a + d == b + c;
+        let inner = (a - d).abs() == (b - c).abs();
+        let met: &[f64] = match (inner, outer) {
+            (true, true) => &[0.0, PI, TAU, -PI],
+            (true, false) => &[0.0, TAU, -TAU],
+            _ => &[PI, -PI],
+        };
+        let start = rng.range(0.4, 2.7);
+        let mut pieces = Vec::new();
+        let mut now = start;
+        for _ in 0..2 + rng.below(4) {
+            if rng.chance(0.4) {
+                pieces.push("{ dwell = 0.5 }".to_owned());
+            }
+            let to = match rng.chance(0.7) {
+                true => met[rng.below(met.len())],
+                false => rng.range(-3.0, 6.0),
+            };
+            if (to - now).abs() < 1e-3 {
+                continue;
+            }
+            rests += usize::from(met.contains(&to));
+            let by = ["cycloidal", "harmonic", "3-4-5", "4-5-6-7"][rng.below(4)];
+            pieces.push(format!("{{ to = {to:e}, in = 1, by = \"{by}\" }}"));
+            now = to;
+        }
+        let side = if rng.chance(0.5) { "left" } else { "right" };
+        let text = format!(
+            "units = {{ length = \"mm\", angle = \"rad\" }}
+[links]
+frame = {{ A = [0, 0], D = [{d}, 0] }}
+crank = {{ A-B = {a} }}
+coupler = {{ B-C = {b} }}
+rocker = {{ D-C = {c} }}
+[drives]
+motor = {{ turns = \"crank\", from = {start:e}, law = [{}] }}
+[assembly]
+C = \"{side} of B -> D\"
+",
+            pieces.join(", ")
+        );
+        let case = Case::read(&text, "rests.toml");
+        let motion = case.must_move();
+        assert_eq!(motion.reached(), motion.demanded, "{text}");
+        let mode = if side == "left" { 1.0 } else { -1.0 };
+        let sign = mode * smooth_area(l, start, outer, inner).signum();
+        let law = case.model.drives[0].law.clone();
+        let end: f64 = law.duration(&[]);
+        let mut sampler = Sampler::new(&motion, &[]).unwrap();
+        let mut at: Vec<f64> = (0..=50).map(|j| end * f64::from(j) / 50.0).collect();
+        at.extend(law.breaks(&[]));
+        for t in at {
+            let crank: f64 = law.at(t, &[]);
+            let row = sampler.at_time(t);
+            let got = times(point(&case, &row.points, "C"), 1e3);
+            let truth = joint(l, crank, sign * smooth_area(l, crank, outer, inner));
+            let off = norm(sub(got, truth)) / a.max(b).max(c).max(d);
+            assert!(
+                off < 1e-8,
+                "{text} at {t}, {crank}: {got:?} {truth:?} {off:e}"
+            );
+        }
+    }
+    assert!(rests > 200, "{rests}");
+}
