@@ -32,6 +32,8 @@ mod fit;
 mod furniture;
 mod ghost;
 mod hull;
+mod labelled;
+mod labels;
 mod loads;
 mod picture;
 pub mod plot;

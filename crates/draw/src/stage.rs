@@ -5,6 +5,7 @@ use kempe_number::math::sin_cos;
 use crate::context::{Anchor, Context, point, reference_frame};
 use crate::fit::{Bounds, Fit, Margins};
 use crate::ghost::Ghost;
+use crate::labels::{self, Named};
 use crate::loads::{LEAST_SCALE, LoadSheet, SHARES};
 use crate::roles::Roles;
 use crate::scene::{Group, Layer, Point};
@@ -31,6 +32,8 @@ pub struct DrawOptions {
     pub scale_bar: bool,
     /// Other poses to show faintly, by index.
     pub ghosts: Vec<usize>,
+    /// Names keep their places over the motion, as in an animation; otherwise each picture has those that are best for it.
+    pub steady: bool,
     /// Model coordinates (m) that must be on the sheet: lower left and upper right corner; all poses when `None`.
     pub view_box: Option<[[f64; 2]; 2]>,
 }
@@ -47,6 +50,7 @@ impl Default for DrawOptions {
             traces: true,
             scale_bar: true,
             ghosts: Vec::new(),
+            steady: false,
             view_box: None,
         }
     }
@@ -57,6 +61,7 @@ pub struct Stage<'a> {
     pub(crate) context: Context<'a>,
     pub(crate) options: DrawOptions,
     pub(crate) parts: Vec<Part>,
+    pub(crate) names: Vec<Named>,
     pub(crate) traces: Vec<TracePath>,
     pub(crate) loads: Option<LoadSheet>,
     pub(crate) other: Option<Ghost<'a>>,
@@ -165,7 +170,7 @@ impl<'a> Stage<'a> {
             }
             found = with_arrows(share);
         }
-        let (mut loads, fit, _) = found;
+        let (loads, fit, _) = found;
         let context = Context {
             view,
             frames,
@@ -173,24 +178,30 @@ impl<'a> Stage<'a> {
             roles,
             reference: reference_frame(view, frames),
         };
-        let parts = symbols::parts(&context, options.labels);
-        if let Some(loads) = &mut loads {
-            loads.place_labels(&context, &parts);
-        }
+        let parts = symbols::parts(&context);
+        let names = match options.labels {
+            true => labels::named(&context),
+            false => Vec::new(),
+        };
         let traces = if options.traces {
             TracePath::all(&context)
         } else {
             Vec::new()
         };
         let other = other.map(|other| Ghost::new(other, fit, options.traces));
-        Stage {
+        let mut stage = Stage {
             context,
             options,
             parts,
+            names,
             traces,
             loads,
             other,
+        };
+        if stage.options.steady {
+            stage.settle_labels();
         }
+        stage
     }
 
     /// Number of poses.

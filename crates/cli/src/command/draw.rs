@@ -130,6 +130,7 @@ fn picture(
     };
     let options = DrawOptions {
         labels: !arguments.no_labels,
+        steady: matches!(kind, Kind::Gif | Kind::Apng),
         ..DrawOptions::default()
     };
     let failed =

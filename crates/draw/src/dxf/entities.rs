@@ -67,6 +67,7 @@ impl Writer<'_> {
             Layer::Ground => "GROUND".into(),
             Layer::Joint | Layer::Body | Layer::Gear => "JOINTS".into(),
             Layer::Drive => "DRIVES".into(),
+            Layer::Dimension => super::DIMENSION_LAYER.into(),
             Layer::Label => "LABELS".into(),
             Layer::Load(role) | Layer::LoadLabel(role) => super::load_layer(role),
             Layer::LoadLegend => super::LEGEND_LAYER.into(),

@@ -20,6 +20,9 @@ const LONGEST_NAME: usize = 60;
 /// The layer of what the arrows of forces mean.
 const LEGEND_LAYER: &str = "FORCES_LEGEND";
 
+/// The layer of dimensions.
+const DIMENSION_LAYER: &str = "DIMENSIONS";
+
 /// The layer of the forces of a role.
 fn load_layer(role: LoadRole) -> String {
     format!("FORCES_{}", role.name().to_uppercase())

@@ -1,71 +1,108 @@
-//! Where the label of an arrow stands: beyond its tip or beside it, the same over the whole motion.
+//! Where the label of an arrow stands: beyond its tip or beside it, with a leader from further away.
 
-use super::Shape;
-use crate::scene::{Align, Point, Text};
-use crate::text::width;
+use std::f64::consts::FRAC_PI_2;
+
+use super::{HEAD, Shape};
+use crate::labels::{Choice, Room, Spot, Words, around_disc, beside};
+use crate::scene::Point;
+use kempe_number::math::{atan2, hypot};
 
 /// Font size, mm.
 pub(crate) const SIZE: f64 = 2.8;
 /// Longest label, mm.
 pub(super) const LONGEST: f64 = 26.0;
-/// Directions to stand off a tip, turned from the arrow's own, as cosine and sine.
-pub(crate) const SIDES: [Point; 5] = [
-    [1.0, 0.0],
-    [0.5, 0.866],
-    [0.5, -0.866],
-    [-0.2, 0.98],
-    [-0.2, -0.98],
+/// How much worse a label around an arrow's tip is than one that goes on from it.
+const AROUND: f64 = 3.0;
+
+/// Where a label stands as seen from its arrow, the same over a motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Stance {
+    /// Its direction, turned from the arrow's own, rad.
+    pub turn: f64,
+    /// From the arrow to the label, mm.
+    pub gap: f64,
+    /// From where on the arrow, as a share of its length.
+    pub share: f64,
+    /// How much worse it is than the best.
+    dislike: f64,
+}
+
+/// All stances, the best first.
+pub(crate) const STANCES: [Stance; 12] = [
+    stance(0.0, 1.0, 1.0, 0.0),
+    stance(1.05, 1.0, 1.0, 0.3),
+    stance(-1.05, 1.0, 1.0, 0.3),
+    stance(1.75, 1.0, 1.0, 0.6),
+    stance(-1.75, 1.0, 1.0, 0.6),
+    stance(FRAC_PI_2, 1.4, 0.5, 1.5),
+    stance(-FRAC_PI_2, 1.4, 0.5, 1.5),
+    stance(0.0, 3.0, 1.0, 2.5),
+    stance(1.05, 3.0, 1.0, 3.0),
+    stance(-1.05, 3.0, 1.0, 3.0),
+    stance(1.75, 3.0, 1.0, 3.5),
+    stance(-1.75, 3.0, 1.0, 3.5),
 ];
 
-/// A box on paper: lower left and upper right corner.
-pub(super) type Box2 = [Point; 2];
-
-/// Middle of a label of a width at a shape.
-pub(super) fn middle(shape: &Shape, side: usize, wide: f64) -> Point {
-    let (tip, along) = shape.tip();
-    let [c, s] = SIDES.get(side).copied().unwrap_or(SIDES[0]);
-    let away = [along[0] * c - along[1] * s, along[0] * s + along[1] * c];
-    [
-        tip[0] + away[0] * (wide / 2.0 + 1.0),
-        tip[1] + away[1] * (SIZE / 2.0 + 1.0),
-    ]
-}
-
-/// The room that a label takes.
-pub(super) fn room(label: &str, shape: &Shape, side: usize) -> Box2 {
-    let wide = width(label, SIZE);
-    let [x, y] = middle(shape, side, wide);
-    [
-        [x - wide / 2.0, y - SIZE / 2.0],
-        [x + wide / 2.0, y + SIZE / 2.0],
-    ]
-}
-
-/// The label itself.
-pub(super) fn text(label: &str, shape: &Shape, side: usize) -> Text {
-    let [x, y] = middle(shape, side, width(label, SIZE));
-    Text {
-        halo: true,
-        ..Text::new([x, y - SIZE * 0.36], SIZE, label).aligned(Align::Middle)
+const fn stance(turn: f64, gap: f64, share: f64, dislike: f64) -> Stance {
+    Stance {
+        turn,
+        gap,
+        share,
+        dislike,
     }
 }
 
-/// Area that two boxes share, mm².
-pub(super) fn overlap(a: &Box2, b: &Box2) -> f64 {
-    let along = |k: usize| (a[1][k].min(b[1][k]) - a[0][k].max(b[0][k])).max(0.0);
-    along(0) * along(1)
+/// The room of a label that stands so at a shape.
+pub(super) fn room(words: &Words, shape: &Shape, stance: &Stance) -> Room {
+    let (tip, along) = shape.tip();
+    let back = match *shape {
+        Shape::Force { vector, .. } => vector.map(|v| v * (1.0 - stance.share)),
+        Shape::Moment { .. } => [0.0; 2],
+    };
+    let from = [tip[0] - back[0], tip[1] - back[1]];
+    let direction = atan2(along[1], along[0]) + stance.turn;
+    beside(from, stance.gap, words.half, direction)
 }
 
-/// About how much of a line from `from` to `to` runs through a box, mm.
-pub(super) fn crossing(a: &Box2, from: Point, to: Point) -> f64 {
-    let steps = 12;
-    let inside = |k: &i32| {
-        let t = f64::from(*k) / f64::from(steps);
-        (0..2).all(|i| {
-            let v = from[i] + t * (to[i] - from[i]);
-            v > a[0][i] && v < a[1][i]
-        })
+/// The stances as choices for a label over some poses.
+pub(super) fn steady(words: &Words, shapes: &[Option<Shape>]) -> impl Iterator<Item = Choice> {
+    let choice = |stance: &Stance| {
+        let spot = |shape: &Option<Shape>| {
+            let room = room(words, shape.as_ref()?, stance);
+            let lines = Vec::new();
+            Some(Spot { room, lines })
+        };
+        Choice {
+            dislike: stance.dislike,
+            spots: shapes.iter().map(spot).collect(),
+        }
     };
-    let length = crate::scene::distance(from, to);
-    (0..=steps).filter(inside).count() as f64 / f64::from(steps + 1) * length
+    STANCES.iter().map(choice)
+}
+
+/// The choices in a single pose: the stances, and all around the tip of an arrow or the arc of a moment.
+pub(super) fn free(words: &Words, shape: &Shape, most: usize) -> Vec<Choice> {
+    let (at, discs, worse) = match *shape {
+        Shape::Force { vector, .. } => {
+            let (tip, _) = shape.tip();
+            let size = hypot(vector[0], vector[1]);
+            // leaders go to the shaft behind the head
+            let back = HEAD.min(size) / size;
+            let at: Point = [0, 1].map(|k: usize| tip[k] - back * vector[k]);
+            (at, [3.0, 1.6], AROUND)
+        }
+        Shape::Moment { center, radius, .. } => (center, [radius + 1.4, radius + 0.4], 0.0),
+    };
+    let at = [Some(at)];
+    let around = around_disc(&at, discs, words.half).map(|choice| Choice {
+        dislike: choice.dislike + worse,
+        ..choice
+    });
+    match shape {
+        Shape::Force { .. } => steady(words, &[Some(*shape)])
+            .chain(around)
+            .take(most)
+            .collect(),
+        Shape::Moment { .. } => around.take(most).collect(),
+    }
 }

@@ -14,6 +14,8 @@ const SIZE: f64 = 3.0;
 const LINE: f64 = 5.8;
 /// From the edge of the sheet to the text, mm.
 const EDGE: f64 = 6.0;
+/// Between two entries, mm.
+const BETWEEN: f64 = 5.0;
 /// Radius of the sample of a moment, mm.
 const RADIUS: f64 = 2.5;
 
@@ -59,24 +61,34 @@ impl Legend {
                 "acting on the body named, tail at the point".into(),
             ));
         }
-        samples.extend(roles.iter().map(|role| Entry::Role(*role)));
-        samples.extend(notes(force, in_force));
-        samples.extend(notes(moment, in_moment));
+        let roles = roles.iter().map(|role| Entry::Role(*role)).collect();
+        let quantities = [(force, in_force), (moment, in_moment)];
+        let mut notes: Vec<Entry> = quantities
+            .iter()
+            .filter_map(|(q, u)| broken(q, u))
+            .collect();
+        notes.extend(dropped(&quantities));
         if not_finite > 0 {
-            samples.push(Entry::Note(format!("not finite, not drawn: {not_finite}")));
+            notes.push(Entry::Note(format!("not finite, not drawn: {not_finite}")));
         }
         let mut lines: Vec<Vec<(f64, Entry)>> = vec![Vec::new()];
         let mut x = EDGE;
-        for entry in samples {
-            let wide = entry.width(width);
-            if x + wide > width - EDGE && x > EDGE {
-                lines.push(Vec::new());
-                x = EDGE;
+        for section in [samples, roles, notes] {
+            // what belongs together stands on one line where it has the room
+            let whole: f64 = section.iter().map(|e| e.width(width) + BETWEEN).sum();
+            let mut fresh = x + whole - BETWEEN > width - EDGE;
+            for entry in section {
+                let wide = entry.width(width);
+                if (fresh || x + wide > width - EDGE) && x > EDGE {
+                    lines.push(Vec::new());
+                    x = EDGE;
+                }
+                fresh = false;
+                if let Some(line) = lines.last_mut() {
+                    line.push((x, entry));
+                }
+                x += wide + BETWEEN;
             }
-            if let Some(line) = lines.last_mut() {
-                line.push((x, entry));
-            }
-            x += wide + 5.0;
         }
         Legend { lines, width }
     }
@@ -102,24 +114,21 @@ impl Legend {
     }
 }
 
-/// What is not drawn as it is.
-fn notes(quantity: &Option<Quantity>, unit: &LoadUnit) -> Vec<Entry> {
-    let Some(q) = quantity else {
-        return Vec::new();
+/// From which size on arrows are broken.
+fn broken(quantity: &Option<Quantity>, unit: &LoadUnit) -> Option<Entry> {
+    let q = quantity.as_ref().filter(|q| q.capped())?;
+    let (over, largest) = (unit.text(q.full, 3), unit.text(q.largest, 3));
+    Some(Entry::Note(format!("broken: over {over}, up to {largest}")))
+}
+
+/// Below which sizes there are no arrows.
+fn dropped(quantities: &[(&Option<Quantity>, &LoadUnit)]) -> Option<Entry> {
+    let least = |(q, unit): &(&Option<Quantity>, &LoadUnit)| {
+        let q = q.as_ref().filter(|q| q.dropped)?;
+        Some(unit.text(q.least * q.full, 2))
     };
-    let mut notes = Vec::new();
-    if q.capped() {
-        notes.push(Entry::Note(format!(
-            "broken: over {}, up to {}",
-            unit.text(q.full, 3),
-            unit.text(q.largest, 3)
-        )));
-    }
-    if q.dropped {
-        let least = unit.text(q.least * q.full, 2);
-        notes.push(Entry::Note(format!("not drawn: below {least}")));
-    }
-    notes
+    let all: Vec<String> = quantities.iter().filter_map(least).collect();
+    (!all.is_empty()).then(|| Entry::Note(format!("not drawn: below {}", all.join(" or "))))
 }
 
 /// The largest of 1, 2, 5 times a power of ten of a unit up to a value, in SI as the value.
@@ -150,7 +159,7 @@ impl Entry {
     }
 
     fn width(&self, sheet: f64) -> f64 {
-        (self.sample() + 1.1 * text_width(self.text(), SIZE)).min(sheet - 2.0 * EDGE)
+        (self.sample() + text_width(self.text(), SIZE)).min(sheet - 2.0 * EDGE)
     }
 
     fn items(&self, x: f64, y: f64, sheet: f64) -> Vec<Item> {

@@ -8,10 +8,9 @@ mod sheet;
 mod track;
 
 pub(crate) use arrow::{BREAK, HALF_HEAD, HEAD, RIM, Shape, Stroke, moment_radius};
-pub(crate) use label::{SIDES, SIZE as LABEL_SIZE};
+pub(crate) use label::{SIZE as LABEL_SIZE, STANCES};
 pub(crate) use scale::Quantity;
 pub(crate) use sheet::{LEAST_SCALE, LoadSheet, SHARES};
-pub(crate) use track::Track;
 
 /// What a force comes from; each has its own colour, line and head.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]

@@ -1,14 +1,14 @@
 //! All loads of a motion laid out: their scale, who is who from pose to pose, where labels stand, the legend.
 
 use super::arrow::{HEAD, RIM, TURN, moment_radius};
-use super::label::{self, Box2};
+use super::label::{self, STANCES, Stance};
 use super::legend::Legend;
 use super::track::Track;
 use super::{LoadRole, LoadView, Quantity, Shape};
 use crate::context::{Context, complete};
 use crate::fit::{Bounds, Fit, drawable};
-use crate::scene::{Group, Item, Layer, Placement, Point};
-use crate::symbols::Part;
+use crate::labels::{Spot, Wanted, Words, leader};
+use crate::scene::{Group, Item, Layer, Point};
 use crate::text::shortened;
 use crate::tokens::Token;
 use crate::view::{Frame, MechanismView};
@@ -18,10 +18,9 @@ use crate::view::{Frame, MechanismView};
 pub(crate) const SHARES: [f64; 4] = [0.2, 0.16, 0.13, 0.1];
 /// The scale that arrows leave a mechanism at least, in parts of that without arrows.
 pub(crate) const LEAST_SCALE: f64 = 0.5;
-/// Poses looked at to place labels.
-const SAMPLES: usize = 16;
-/// With more loads than this, labels stand beyond the tips without a search.
-const SEARCHED: usize = 60;
+
+/// A box on paper: lower left and upper right corner.
+type Box2 = [Point; 2];
 
 /// The loads of a motion on paper.
 pub(crate) struct LoadSheet {
@@ -35,8 +34,10 @@ pub(crate) struct LoadSheet {
     pub roles: Vec<LoadRole>,
     /// Loads through the motion.
     pub tracks: Vec<Track>,
-    /// The side of each track's label.
-    pub sides: Vec<usize>,
+    /// Each track's label.
+    pub words: Vec<Words>,
+    /// How each track's label stands over the motion.
+    pub stances: Vec<Stance>,
     /// What the arrows mean.
     pub legend: Legend,
 }
@@ -81,7 +82,11 @@ impl LoadSheet {
         let broken =
             |l: &&LoadView| !(drawable(l.at) && force_is_finite(l) && l.moment.is_finite());
         let not_finite = reached.flat_map(|f| &f.loads).filter(broken).count();
-        let sides = vec![0; tracks.len()];
+        let words = tracks
+            .iter()
+            .map(|t| Words::new(t.label.clone(), label::SIZE));
+        let words: Vec<Words> = words.collect();
+        let stances = vec![STANCES[0]; tracks.len()];
         let legend = Legend::new(
             (&force, &view.load_units.force),
             (&moment, &view.load_units.moment),
@@ -97,7 +102,8 @@ impl LoadSheet {
             length,
             roles,
             tracks,
-            sides,
+            words,
+            stances,
             legend,
         })
     }
@@ -128,7 +134,7 @@ impl LoadSheet {
     }
 
     /// What the loads of a pose take up on paper, from their points: lower left and upper right corner.
-    fn reach(&self, track: &Track, load: &LoadView) -> Option<Box2> {
+    fn reach(&self, words: &Words, load: &LoadView) -> Option<Box2> {
         let mut bounds = Bounds::EMPTY;
         let shapes = self.shapes(load, [0.0; 2]);
         for shape in shapes.iter().flatten() {
@@ -137,10 +143,12 @@ impl LoadSheet {
                 Shape::Moment { center, radius, .. } => bounds.add(center, radius),
             }
         }
-        if let (Some(shape), false) = (shapes.iter().flatten().next(), track.label.is_empty()) {
-            let [low, high] = label::room(&track.label, shape, 0);
-            bounds.add(low, 0.0);
-            bounds.add(high, 0.0);
+        if let (Some(shape), false) = (shapes.iter().flatten().next(), words.content.is_empty()) {
+            let room = label::room(words, shape, &STANCES[0]);
+            for sign in [-1.0, 1.0] {
+                let corner = |k: usize| room.middle[k] + sign * room.half[k];
+                bounds.add([corner(0), corner(1)], 0.0);
+            }
         }
         (!bounds.is_empty()).then_some([bounds.low, bounds.high])
     }
@@ -153,14 +161,15 @@ impl LoadSheet {
         plain: Fit,
         again: impl Fn(Bounds) -> Fit,
     ) -> Fit {
-        let reach = |track: &Track| -> Vec<(Point, Box2)> {
+        let reach = |(track, words): (&Track, &Words)| -> Vec<(Point, Box2)> {
             let of = |row: &usize| {
                 let load = track.load(frames, *row).filter(|l| drawable(l.at))?;
-                Some((load.at, self.reach(track, load)?))
+                Some((load.at, self.reach(words, load)?))
             };
             track.rows.keys().filter_map(of).collect()
         };
-        let all: Vec<(Point, Box2)> = self.tracks.iter().flat_map(reach).collect();
+        let tracks = self.tracks.iter().zip(&self.words);
+        let all: Vec<(Point, Box2)> = tracks.flat_map(reach).collect();
         let mut fit = plain;
         // arrows keep their size on paper: the scale that makes room for them is the limit of this series
         for _ in 0..12 {
@@ -178,55 +187,60 @@ impl LoadSheet {
         fit
     }
 
-    /// Chooses a side for each label on which it crosses least over the motion.
-    pub fn place_labels(&mut self, context: &Context, parts: &[Part]) {
-        if self.tracks.len() > SEARCHED {
-            return;
-        }
-        let frames = context.frames;
-        let step = frames.len().div_ceil(SAMPLES).max(1);
-        let rows: Vec<usize> = (0..frames.len()).step_by(step).collect();
-        let mut taken: Vec<Vec<Box2>> = rows.iter().map(|_| Vec::new()).collect();
-        for (names, &row) in taken.iter_mut().zip(&rows) {
-            names.extend(
-                parts
-                    .iter()
-                    .filter_map(|p| name_room(context, &frames[row], p)),
-            );
-        }
-        for number in 0..self.tracks.len() {
-            let track = &self.tracks[number];
-            if track.label.is_empty() {
-                continue;
+    /// The labels with their arrows in some poses, as they may stand over the whole motion: one for each track, each in at
+    /// most so many ways.
+    pub fn steady_labels(&self, context: &Context, rows: &[usize], most: usize) -> Vec<Wanted> {
+        let wanted = |(track, words): (&Track, &Words)| {
+            let shape = |row: &usize| self.first_shape(context, track, *row);
+            let shapes: Vec<Option<Shape>> = rows.iter().map(shape).collect();
+            let named = !words.content.is_empty();
+            Wanted {
+                choices: match named && shapes.iter().any(Option::is_some) {
+                    true => label::steady(words, &shapes).take(most).collect(),
+                    false => Vec::new(),
+                },
+                optional: false,
             }
-            let room = |row: usize, side: usize| {
-                let shape = self.first_shape(context, track, row)?;
-                Some(label::room(&track.label, &shape, side))
+        };
+        self.tracks.iter().zip(&self.words).map(wanted).collect()
+    }
+
+    /// The labels in one pose: the number of their track, and where they may stand, each in at most so many ways.
+    pub fn free_labels(&self, context: &Context, row: usize, most: usize) -> Vec<(usize, Wanted)> {
+        let tracks = self.tracks.iter().zip(&self.words).enumerate();
+        let wanted = tracks.filter_map(|(number, (track, words))| {
+            let shape = self.first_shape(context, track, row)?;
+            let wanted = Wanted {
+                choices: label::free(words, &shape, most),
+                optional: false,
             };
-            let cost = |side: usize| -> f64 {
-                let at = |(names, &row): (&Vec<Box2>, &usize)| {
-                    let Some(room) = room(row, side) else {
-                        return 0.0;
-                    };
-                    let over = names.iter().map(|b| label::overlap(&room, b)).sum::<f64>();
-                    over + self.crossed(context, &room, row)
-                };
-                taken.iter().zip(&rows).map(at).sum::<f64>() + 0.2 * side as f64
-            };
-            let mut best = (f64::INFINITY, 0);
-            for side in 0..label::SIDES.len() {
-                let c = cost(side);
-                if c < best.0 {
-                    best = (c, side);
-                }
+            (!words.content.is_empty()).then_some((number, wanted))
+        });
+        wanted.collect()
+    }
+
+    /// A label at a place.
+    pub fn label(&self, number: usize, spot: &Spot) -> Option<Group> {
+        let (track, words) = (self.tracks.get(number)?, self.words.get(number)?);
+        let token = Token::Load(track.role);
+        let mut items: Vec<Item> = spot.lines.iter().map(|l| leader(*l, token)).collect();
+        items.push(Item::Text(words.text(&spot.room).colored(token)));
+        Some(Group::new(Layer::LoadLabel(track.role), items))
+    }
+
+    /// The labels of a pose where they stand over the whole motion.
+    pub fn labels(&self, context: &Context, row: usize) -> Vec<Group> {
+        let tracks = self.tracks.iter().zip(&self.words).enumerate();
+        let group = |(number, (track, words)): (usize, (&Track, &Words))| {
+            let shape = self.first_shape(context, track, row)?;
+            if words.content.is_empty() {
+                return None;
             }
-            let rooms: Vec<_> = rows.iter().map(|&row| room(row, best.1)).collect();
-            taken
-                .iter_mut()
-                .zip(rooms)
-                .for_each(|(names, room)| names.extend(room));
-            self.sides[number] = best.1;
-        }
+            let room = label::room(words, &shape, &self.stances[number]);
+            let lines = Vec::new();
+            self.label(number, &Spot { room, lines })
+        };
+        tracks.filter_map(group).collect()
     }
 
     fn first_shape(&self, context: &Context, track: &Track, row: usize) -> Option<Shape> {
@@ -235,41 +249,17 @@ impl LoadSheet {
         self.shapes(load, at).into_iter().flatten().next()
     }
 
-    /// How much of the arrows of a pose runs through a box, mm.
-    fn crossed(&self, context: &Context, room: &Box2, row: usize) -> f64 {
-        let arrow = |track: &Track| match self.first_shape(context, track, row) {
-            Some(Shape::Force { tail, vector, .. }) => {
-                label::crossing(room, tail, [tail[0] + vector[0], tail[1] + vector[1]])
-            }
-            _ => 0.0,
-        };
-        self.tracks.iter().map(arrow).sum()
-    }
-
     /// The loads of a pose.
     pub fn groups(&self, context: &Context, row: usize) -> Vec<Group> {
-        let mut groups = Vec::new();
-        for (track, &side) in self.tracks.iter().zip(&self.sides) {
-            let at = track
-                .load(context.frames, row)
-                .and_then(|load| Some((load, context.fit.paper(load.at)?)));
-            let Some((load, at)) = at else { continue };
+        let group = |track: &Track| {
+            let load = track.load(context.frames, row)?;
+            let at = context.fit.paper(load.at)?;
             let shapes = self.shapes(load, at);
-            let items: Vec<Item> = shapes
-                .iter()
-                .flatten()
-                .flat_map(|shape| shape.items(track.role))
-                .collect();
-            groups.push(Group::new(Layer::Load(track.role), items));
-            if let (Some(shape), false) = (shapes.iter().flatten().next(), track.label.is_empty()) {
-                let text = label::text(&track.label, shape, side).colored(Token::Load(track.role));
-                groups.push(Group::new(
-                    Layer::LoadLabel(track.role),
-                    vec![Item::Text(text)],
-                ));
-            }
-        }
-        groups
+            let items = shapes.iter().flatten();
+            let items = items.flat_map(|shape| shape.items(track.role)).collect();
+            Some(Group::new(Layer::Load(track.role), items))
+        };
+        self.tracks.iter().filter_map(group).collect()
     }
 }
 
@@ -279,15 +269,4 @@ fn force(load: &LoadView) -> f64 {
 
 fn force_is_finite(load: &LoadView) -> bool {
     force(load).is_finite()
-}
-
-/// The room of a point's name in a pose.
-fn name_room(context: &Context, frame: &Frame, part: &Part) -> Option<Box2> {
-    let (Layer::Label, [Item::Text(text)]) = (part.layer, part.items.as_slice()) else {
-        return None;
-    };
-    let Placement { at, .. } = context.place(frame, part.anchor)?;
-    let (x, y) = (at[0] + text.at[0], at[1] + text.at[1]);
-    let half = crate::text::width(&text.content, text.size) / 2.0;
-    Some([[x - half, y], [x + half, y + 0.8 * text.size]])
 }

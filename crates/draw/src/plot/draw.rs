@@ -101,7 +101,9 @@ pub(super) fn draw(plot: &PlotSpec, width: f64, height: f64) -> PlotPicture {
     let shading = |limit: &Limit| limit.shading(&plot.curves, frame, &x, &y);
     groups.extend(plot.limits.iter().map(shading));
     let [cross, vector, tips] = match &plot.hodograph {
-        Some(hodograph) => hodograph::groups(plot, hodograph, largest, frame, &x, &y).map(Some),
+        Some(hodograph) => {
+            hodograph::groups(plot, hodograph, largest, [width, height], frame, &x, &y).map(Some)
+        }
         None => [None, None, None],
     };
     groups.extend(cross);

@@ -1,18 +1,22 @@
 //! A vector over a motion: its tail at the origin, its tip along a curve, some tips named by the drive.
 
 use super::axis::Scale;
+use super::curve::curve_paths;
 use super::frame::Frame;
 use super::{Curve, PlotSpec};
+use crate::labels::{Choice, Spot, Surroundings, Wanted, Words, beside, place};
 use crate::loads::Quantity;
 use crate::scene::{Align, Group, Item, Layer, Path, Point, Style, Text, distance};
-use crate::text::width as text_width;
 use crate::tokens::Token;
+use kempe_number::math::atan2;
 use kempe_number::text::significant;
 
 /// Into how many intervals the named tips divide the motion.
 const INTERVALS: usize = 8;
 /// Font size, mm.
 const SIZE: f64 = 2.6;
+/// Width of the curves, mm.
+const WIDTH: f64 = 0.55;
 /// Length of an arrow's head and half its width, mm.
 const HEAD: Point = [2.4, 0.95];
 
@@ -49,6 +53,7 @@ pub(super) fn groups(
     plot: &PlotSpec,
     hodograph: &Hodograph,
     largest: Option<f64>,
+    sheet: Point,
     frame: Frame,
     x: &Scale,
     y: &Scale,
@@ -63,21 +68,16 @@ pub(super) fn groups(
         Style::stroke(Token::Muted, 0.25),
     );
     let (mut arrows, mut names) = (Vec::new(), Vec::new());
-    let mut taken: Vec<[Point; 2]> = vec![[
-        [origin[0] - 1.0, origin[1] - 1.0],
-        [origin[0] + 1.0, origin[1] + 1.0],
-    ]];
     if let Some(largest) = largest {
         let text = format!("up to {} {}", significant(largest, 3), plot.x.unit);
-        let at = [right - 1.0, bottom + 1.2];
-        let wide = text_width(&text, SIZE);
-        taken.push([[at[0] - wide, at[1]], [at[0], at[1] + SIZE]]);
-        let text = Text::new(at, SIZE, format!("{} outside", text.trim_end()));
+        let text = format!("{} outside", text.trim_end());
+        let text = Text::new([right - 1.0, bottom + 1.2], SIZE, text);
         names.push(Item::Text(Text {
             halo: true,
             ..text.aligned(Align::End).colored(Token::Muted)
         }));
     }
+    let (mut words, mut wanted) = (Vec::new(), Vec::new());
     // another design has rows of its own: its tips are of other places
     let own = plot.curves.iter().enumerate();
     for (index, curve) in own.filter(|(_, curve)| curve.told.is_none()) {
@@ -102,30 +102,28 @@ pub(super) fn groups(
                 continue;
             };
             let text = format!("{} {}", significant(*value, 3), hodograph.unit);
-            let text = text.trim_end();
-            let half = [0.54 * text_width(text, SIZE), SIZE / 2.0];
-            let free = places(middle, tip, half).into_iter().find(|p| {
-                let room = [
-                    [p[0] - half[0], p[1] - half[1]],
-                    [p[0] + half[0], p[1] + half[1]],
-                ];
-                let clear = taken
-                    .iter()
-                    .all(|b| (0..2).any(|i| room[1][i] < b[0][i] || b[1][i] < room[0][i]));
-                clear && room.iter().all(&inside)
+            let text = Words::new(text.trim_end(), SIZE);
+            wanted.push(Wanted {
+                choices: places(middle, tip, &text, &inside),
+                optional: true,
             });
-            let Some(p) = free else { continue };
-            taken.push([
-                [p[0] - half[0], p[1] - half[1]],
-                [p[0] + half[0], p[1] + half[1]],
-            ]);
-            names.push(Item::Text(Text {
-                halo: true,
-                ..Text::new([p[0], p[1] - 0.36 * SIZE], SIZE, text)
-                    .aligned(Align::Middle)
-                    .colored(Token::Muted)
-            }));
+            words.push(text);
         }
+    }
+    let curves = plot.curves.iter().enumerate().map(|(index, curve)| {
+        let paths = curve_paths(curve, frame, x, y);
+        let style = Style::stroke(Token::Series(index), WIDTH);
+        Group::new(Layer::Curve(index), vec![Item::Shape { paths, style }])
+    });
+    let mut drawn: Vec<Group> = curves.collect();
+    let heads = arrows.iter().flatten().cloned().collect();
+    drawn.push(Group::new(Layer::Vector, heads));
+    drawn.push(Group::new(Layer::Joint, names.clone()));
+    let around = Surroundings::new(sheet, &drawn);
+    for ((words, wanted), choice) in words.iter().zip(&wanted).zip(place(&wanted, &[around])) {
+        let spots = choice.and_then(|choice| wanted.choices.get(choice));
+        let spot = spots.and_then(|c| c.spots.first()?.as_ref());
+        names.extend(spot.map(|s| Item::Text(words.text(&s.room).colored(Token::Muted))));
     }
     [
         Group::new(Layer::Furniture, vec![cross]),
@@ -146,26 +144,30 @@ fn middle(tips: &[Option<Point>]) -> Option<Point> {
     (count > 0).then(|| [mean(0), mean(1)])
 }
 
-/// Where the name of a tip may stand: beyond it as seen from the middle, then beside it.
-fn places(middle: Point, tip: Point, half: Point) -> Vec<Point> {
-    let long = distance(middle, tip).max(1e-9);
-    let along = [(tip[0] - middle[0]) / long, (tip[1] - middle[1]) / long];
-    let sides = [
-        [1.0, 0.0],
-        [0.6, 0.8],
-        [0.6, -0.8],
-        [0.0, 1.0],
-        [0.0, -1.0],
-        [-1.0, 0.0],
-    ];
-    let place = |[c, s]: [f64; 2]| {
-        let away = [along[0] * c - along[1] * s, along[0] * s + along[1] * c];
-        [
-            tip[0] + away[0] * (half[0] + 1.7),
-            tip[1] + away[1] * (half[1] + 1.7),
-        ]
-    };
-    sides.into_iter().map(place).collect()
+/// Where the name of a tip may stand: beyond it as seen from the middle, then all around it, inside of the plot.
+fn places(
+    middle: Point,
+    tip: Point,
+    words: &Words,
+    inside: &impl Fn(&Point) -> bool,
+) -> Vec<Choice> {
+    let beyond = atan2(tip[1] - middle[1], tip[0] - middle[0]);
+    let sides = (0..12).map(|k| f64::from((k + 1) / 2) * if k % 2 == 0 { 0.5 } else { -0.5 });
+    let gaps = [(1.5, 0.0), (3.2, 3.0)];
+    let ways = gaps
+        .iter()
+        .flat_map(|gap| sides.clone().map(move |side| (gap, side)));
+    let choices = ways.filter_map(|((gap, worse), side)| {
+        let room = beside(tip, *gap, words.half, beyond + side);
+        let reach = room.reach();
+        let corner = |sign: f64| [0, 1].map(|k: usize| room.middle[k] + sign * reach[k]);
+        let lines = Vec::new();
+        (inside(&corner(1.0)) && inside(&corner(-1.0))).then(|| Choice {
+            dislike: worse + side.abs(),
+            spots: vec![Some(Spot { room, lines })],
+        })
+    });
+    choices.collect()
 }
 
 fn arrow(tail: Point, tip: Point, token: Token) -> Vec<Item> {

@@ -203,7 +203,7 @@ impl Limit {
             style: Style::stroke(Token::Error, 0.4).dashed(&[2.4, 1.2]),
         }];
         let label = shortened(&self.label, SIZE, (right - left - 2.0).max(10.0));
-        let wide = 1.08 * text_width(&label, SIZE);
+        let wide = text_width(&label, SIZE);
         let mut best: Option<(f64, Point)> = None;
         for (number, end) in ends.iter().rev().enumerate() {
             let from = if number == 0 {

@@ -7,7 +7,7 @@ use tiny_skia::{
 
 use super::{RasterError, font};
 use crate::scene::{
-    Align, Group, Item, Paint, Path, Placement, Point, Scene, Style, Text, distance,
+    Align, Group, Item, Paint, Path, Placement, Point, Scene, Style, Text, arc_points,
 };
 use crate::tokens::{Theme, Token};
 
@@ -74,6 +74,9 @@ fn color(paint: Paint, dark: bool) -> Color {
     color
 }
 
+/// The sides of an arc's polygon stay this near to it, pixels.
+const SAGITTA: f64 = 0.05;
+
 struct Brush<'a> {
     pixmap: &'a mut Pixmap,
     density: f64,
@@ -115,6 +118,11 @@ impl Brush<'_> {
         ]
     }
 
+    /// How far a polygon may be from its arc, mm: less than what is seen.
+    fn sagitta(&self) -> f64 {
+        SAGITTA / self.density
+    }
+
     fn add_path(&self, builder: &mut PathBuilder, path: &Path) {
         let Some(first) = path.vertices.first() else {
             return;
@@ -122,7 +130,7 @@ impl Brush<'_> {
         let [x, y] = self.pixel(first.at);
         builder.move_to(x, y);
         for (from, to, bulge) in path.segments() {
-            for p in arc_points(from, to, bulge) {
+            for p in arc_points(from, to, bulge, self.sagitta()) {
                 let [x, y] = self.pixel(p);
                 builder.line_to(x, y);
             }
@@ -206,34 +214,4 @@ impl Brush<'_> {
                 .stroke_path(&outline, &ink, &rim(0.045), transform, None);
         }
     }
-}
-
-/// The sides of an arc's polygon stay this near to it, mm,
-const SAGITTA: f64 = 0.01;
-/// and turn by no more than this, rad.
-const WIDEST_STEP: f64 = 0.12;
-
-/// Points after the start along a segment: the end alone for a straight line, a fine polygon for an arc.
-pub(crate) fn arc_points(from: Point, to: Point, bulge: f64) -> Vec<Point> {
-    let chord = distance(from, to);
-    if bulge.abs() < 1e-9 || chord == 0.0 || !bulge.is_finite() {
-        return vec![to];
-    }
-    // centre of the arc: beside the middle of the chord, on its left for a short counter-clockwise arc
-    let side = (1.0 - bulge * bulge) / (4.0 * bulge);
-    let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
-    let center = [
-        (from[0] + to[0]) / 2.0 - side * dy,
-        (from[1] + to[1]) / 2.0 + side * dx,
-    ];
-    let sweep = 4.0 * kempe_number::math::atan2(bulge, 1.0);
-    let radius = distance(from, center);
-    let step = (8.0 * SAGITTA / radius).sqrt().min(WIDEST_STEP);
-    let steps = (sweep.abs() / step).ceil().clamp(1.0, 512.0) as usize;
-    let turned = |k: usize| {
-        let (s, c) = kempe_number::math::sin_cos(sweep * k as f64 / steps as f64);
-        let (x, y) = (from[0] - center[0], from[1] - center[1]);
-        [center[0] + c * x - s * y, center[1] + s * x + c * y]
-    };
-    (1..steps).map(turned).chain([to]).collect()
 }

@@ -66,3 +66,9 @@ pub fn png(scene: &Scene, theme: Theme, dpi: f64) -> Result<Vec<u8>, RasterError
     };
     encode().map_err(|error| RasterError::Encode(error.to_string()))
 }
+
+/// Width of a line of text of size 1 in the font of the pictures.
+#[cfg(test)]
+pub(crate) fn text_width(text: &str) -> Option<f64> {
+    font::outline(text).map(|(_, width)| f64::from(width))
+}

@@ -1,7 +1,7 @@
 //! The forces behind a motion's page: what the script needs to draw them at any row, and the switches of their roles.
 
 use super::json;
-use crate::loads::{self, LoadSheet, LoadView, Shape, Track};
+use crate::loads::{self, LoadSheet, LoadView, Shape};
 use crate::stage::Stage;
 use crate::tokens::Token;
 
@@ -11,11 +11,11 @@ pub(super) fn loads(stage: &Stage) -> String {
         return "null".into();
     };
     let sizes = [("rim", loads::RIM), ("text", loads::LABEL_SIZE)];
-    let tracks = sheet.tracks.iter().zip(&sheet.sides);
+    let tracks = 0..sheet.tracks.len();
     let mut fields = lengths(&sizes);
     fields.push((
         "tracks",
-        json::array(tracks.map(|(t, &side)| track(stage, sheet, t, side))),
+        json::array(tracks.map(|number| track(stage, sheet, number))),
     ));
     json::object(&fields)
 }
@@ -38,7 +38,9 @@ fn lengths(sizes: &[(&'static str, f64)]) -> Vec<(&'static str, String)> {
 
 /// A load through the motion: its look, its point (x and y row after row, once when it stands still), the arrow (the
 /// same way), the angle of the moment, and the rows where it is off the scale.
-fn track(stage: &Stage, sheet: &LoadSheet, track: &Track, side: usize) -> String {
+fn track(stage: &Stage, sheet: &LoadSheet, number: usize) -> String {
+    let track = &sheet.tracks[number];
+    let (words, stance) = (&sheet.words[number], &sheet.stances[number]);
     let frames = stage.context.frames;
     let at = |load: &LoadView| stage.context.fit.paper(load.at);
     let (mut points, mut arrows, mut turns, mut broken) = (vec![], vec![], vec![], vec![]);
@@ -65,8 +67,8 @@ fn track(stage: &Stage, sheet: &LoadSheet, track: &Track, side: usize) -> String
     }
     let stroke = loads::Stroke::of(track.role);
     let dash: Vec<String> = stroke.dash.iter().map(|d| json::decimal(*d, 2)).collect();
-    let away = loads::SIDES[side].map(|v| json::decimal(v, 3));
-    let wide = crate::text::width(&track.label, loads::LABEL_SIZE);
+    let stands = [stance.turn, stance.gap, stance.share].map(|v| json::decimal(v, 3));
+    let room = [words.half[0], words.half[1], words.rise].map(|v| json::decimal(v, 3));
     json::object(&[
         ("role", json::string(track.role.name())),
         (
@@ -77,8 +79,8 @@ fn track(stage: &Stage, sheet: &LoadSheet, track: &Track, side: usize) -> String
         ("dash", json::string(&dash.join(" "))),
         ("open", stroke.open.to_string()),
         ("label", json::string(&track.label)),
-        ("wide", json::decimal(wide, 2)),
-        ("away", json::array(away)),
+        ("room", json::array(room)),
+        ("stands", json::array(stands)),
         ("r", json::decimal(loads::moment_radius(track.role), 2)),
         ("p", once(points)),
         ("f", once(arrows)),

@@ -33,6 +33,7 @@ pub(super) fn build(motion: &MotionReport, index: usize) -> Built {
         max_height: STAGE[1],
         title: false,
         caption: false,
+        steady: true,
         ..DrawOptions::default()
     };
     let others: Vec<_> = (motion.against.iter())

@@ -10,7 +10,7 @@ pub use path::{Path, Vertex};
 pub use style::{Paint, Style};
 pub use text::{Align, Text};
 
-pub(crate) use path::distance;
+pub(crate) use path::{arc_points, distance};
 
 use kempe_number::math::sin_cos;
 
@@ -90,6 +90,8 @@ pub enum Layer {
     Joint,
     /// Arrows of the drives.
     Drive,
+    /// Dimension lines with their values.
+    Dimension,
     /// Names of points.
     Label,
     /// Names at the arrows of the loads of a role.
@@ -122,6 +124,7 @@ impl Layer {
             Layer::TracePast => "trace-past".into(),
             Layer::Joint => "joint".into(),
             Layer::Drive => "drive".into(),
+            Layer::Dimension => "dimension".into(),
             Layer::Label => "label".into(),
             Layer::Load(role) => format!("load load-{}", role.name()),
             Layer::LoadLabel(role) => format!("load label load-{}", role.name()),

@@ -1,6 +1,6 @@
 //! Paths of straight lines and circular arcs.
 
-use kempe_number::math::{hypot, sin_cos};
+use kempe_number::math::{atan2, hypot, sin_cos};
 
 use super::Point;
 
@@ -105,4 +105,54 @@ impl Path {
 #[inline]
 pub(crate) fn distance(a: Point, b: Point) -> f64 {
     hypot(b[0] - a[0], b[1] - a[1])
+}
+
+/// The sides of an arc's polygon turn by no more than this, rad.
+const WIDEST_STEP: f64 = 0.12;
+
+/// Points after the start along a segment: the end alone for a straight line; for an arc the corners of a polygon that stays
+/// within `sagitta` of it.
+pub(crate) fn arc_points(from: Point, to: Point, bulge: f64, sagitta: f64) -> Vec<Point> {
+    let chord = distance(from, to);
+    if bulge.abs() < 1e-9 || chord == 0.0 || !bulge.is_finite() {
+        return vec![to];
+    }
+    // centre of the arc: beside the middle of the chord, on its left for a short counter-clockwise arc
+    let side = (1.0 - bulge * bulge) / (4.0 * bulge);
+    let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
+    let center = [
+        (from[0] + to[0]) / 2.0 - side * dy,
+        (from[1] + to[1]) / 2.0 + side * dx,
+    ];
+    let sweep = 4.0 * atan2(bulge, 1.0);
+    let radius = distance(from, center);
+    let step = (8.0 * sagitta / radius).sqrt().min(WIDEST_STEP);
+    let steps = (sweep.abs() / step).ceil().clamp(1.0, 2048.0) as usize;
+    let turned = |k: usize| {
+        let (s, c) = sin_cos(sweep * k as f64 / steps as f64);
+        let (x, y) = (from[0] - center[0], from[1] - center[1]);
+        [center[0] + c * x - s * y, center[1] + s * x + c * y]
+    };
+    (1..steps).map(turned).chain([to]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn polygons_of_arcs_stay_near_to_them() {
+        for (radius, sagitta) in [(0.3, 0.01), (40.0, 0.01), (40.0, 0.001), (900.0, 0.01)] {
+            let path = Path::arc([3.0, -2.0], radius, 0.4, 2.9);
+            let (from, to, bulge) = path.segments().next().unwrap();
+            let mut last = from;
+            for p in arc_points(from, to, bulge, sagitta) {
+                let middle = [(p[0] + last[0]) / 2.0, (p[1] + last[1]) / 2.0];
+                let off = radius - distance(middle, [3.0, -2.0]);
+                assert!(off > -1e-9 && off < 1.01 * sagitta, "{radius}: {off}");
+                assert!((distance(p, [3.0, -2.0]) - radius).abs() < 1e-9 * radius);
+                last = p;
+            }
+        }
+    }
 }

@@ -6,7 +6,6 @@ mod cylinder;
 mod drive;
 mod gear;
 mod ground;
-mod label;
 mod link;
 mod pin;
 mod rack;
@@ -57,8 +56,8 @@ pub(crate) fn link_token(link: usize) -> Token {
     }
 }
 
-/// All parts of a mechanism.
-pub(crate) fn parts(context: &Context, labels: bool) -> Vec<Part> {
+/// All parts of a mechanism but its labels.
+pub(crate) fn parts(context: &Context) -> Vec<Part> {
     let mut parts = Vec::new();
     parts.extend(gear::parts(context));
     parts.extend(link::parts(context));
@@ -90,9 +89,6 @@ pub(crate) fn parts(context: &Context, labels: bool) -> Vec<Part> {
     }
     parts.extend(pin::parts(context));
     parts.extend(drive::parts(context));
-    if labels {
-        parts.extend(label::parts(context));
-    }
     parts
 }
 

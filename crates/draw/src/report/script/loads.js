@@ -72,8 +72,12 @@ class Loads {
     if (!label) return;
     label.setAttribute("visibility", tip ? "visible" : "hidden");
     if (!tip) return;
-    const [c, s] = track.away;
-    label.setAttribute("x", round(tip[0] + (along[0] * c - along[1] * s) * (track.wide / 2 + 1)));
-    label.setAttribute("y", round(high - tip[1] - (along[0] * s + along[1] * c) * (data.text / 2 + 1) + data.text * 0.36));
+    // as the picture stands it: away from a place of the arrow, in a direction turned from its own
+    const [turn, far, part] = track.stands, [half, up, rise] = track.room;
+    const angle = Math.atan2(along[1], along[0]) + turn, away = [Math.cos(angle), Math.sin(angle)];
+    const back = long > 1e-9 ? f.map((v) => v * (1 - part)) : [0, 0];
+    const edge = (v) => Math.sign(v) * Math.min(1, Math.abs(v) / 0.7);
+    label.setAttribute("x", round(tip[0] - back[0] + half * edge(away[0]) + far * away[0]));
+    label.setAttribute("y", round(high - (tip[1] - back[1] + up * edge(away[1]) + far * away[1]) + rise));
   }
 }

@@ -1,0 +1,217 @@
+//! Puts labels where they are in nobody's way: names of points and of arrows, dimensions, names along a curve.
+//!
+//! Each label has choices in order of preference. What a choice covers of the picture and of other labels costs; from the
+//! first choices on, labels are put elsewhere one by one as long as that makes things better.
+
+mod names;
+mod points;
+mod room;
+mod surroundings;
+mod words;
+
+pub(crate) use names::{around_disc, beside};
+pub(crate) use points::{Named, named};
+pub(crate) use room::Room;
+pub(crate) use surroundings::Surroundings;
+pub(crate) use words::Words;
+
+use crate::scene::{Item, Path, Point, Style};
+use crate::tokens::Token;
+
+/// What it costs that two labels touch, or that a label leaves the sheet; each mm as much again.
+const OVERLAP: f64 = 300.0;
+/// What it costs that a line of one label runs into the text of another; each mm as much again.
+const STRUCK: f64 = 40.0;
+/// What it costs that a line of one label crosses one of another.
+const CROSSED: f64 = 12.0;
+/// Between two labels there is at least so much, mm.
+const APART: f64 = 0.5;
+/// Two parallel lines of labels are at least so far from each other, mm.
+const LINES_APART: f64 = 1.2;
+/// How often all labels are looked at again.
+const SWEEPS: usize = 8;
+/// With more labels than this, every label has its first choice.
+const MOST_LABELS: usize = 300;
+
+/// A label in one pose: where its text stands, and the lines that come with it.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Spot {
+    /// The room of its text.
+    pub room: Room,
+    /// A leader, or the lines of a dimension.
+    pub lines: Vec<[Point; 2]>,
+}
+
+/// One way to put a label, in each pose that is looked at; `None` in a pose that does not show it.
+#[derive(Clone, Debug)]
+pub(crate) struct Choice {
+    /// How much worse this is by itself than the best.
+    pub dislike: f64,
+    /// Where the label is in each pose.
+    pub spots: Vec<Option<Spot>>,
+}
+
+/// A label to be placed.
+#[derive(Clone, Debug)]
+pub(crate) struct Wanted {
+    /// The ways to put it, the best first.
+    pub choices: Vec<Choice>,
+    /// It may be left out where it would touch another.
+    pub optional: bool,
+}
+
+/// How many choices are worth while for each of so many labels.
+pub(crate) fn most_choices(labels: usize) -> usize {
+    match labels > MOST_LABELS {
+        true => 1,
+        false => usize::MAX,
+    }
+}
+
+/// Chooses for each label one of its choices; `None` for those that are left out.
+pub(crate) fn place(labels: &[Wanted], around: &[Surroundings]) -> Vec<Option<usize>> {
+    let first = |label: &Wanted| (!label.choices.is_empty()).then_some(0);
+    let mut chosen: Vec<Option<usize>> = labels.iter().map(first).collect();
+    if labels.len() > MOST_LABELS {
+        return chosen;
+    }
+    let own: Vec<Vec<f64>> = labels
+        .iter()
+        .map(|label| label.choices.iter().map(|c| alone(c, around)).collect())
+        .collect();
+    // those placed so far count; later labels do not stand anywhere yet
+    let mut known = vec![false; labels.len()];
+    for sweep in 0..SWEEPS {
+        let mut changed = false;
+        for number in 0..labels.len() {
+            let others = |choice: &Choice| -> f64 {
+                let each = (0..labels.len()).filter(|&k| k != number && known[k]);
+                each.filter_map(|k| Some(together(choice, &labels[k].choices[chosen[k]?])))
+                    .sum()
+            };
+            let mut best = (f64::INFINITY, None);
+            for (index, choice) in labels[number].choices.iter().enumerate() {
+                let least = own[number][index];
+                if least >= best.0 {
+                    continue;
+                }
+                let cost = least + others(choice);
+                if cost < best.0 - 1e-9 {
+                    best = (cost, Some(index));
+                }
+            }
+            if labels[number].optional && best.0 >= OVERLAP {
+                best.1 = None;
+            }
+            changed |= best.1 != chosen[number] || !known[number];
+            chosen[number] = best.1;
+            known[number] = true;
+        }
+        if sweep > 0 && !changed {
+            break;
+        }
+    }
+    chosen
+}
+
+/// What a choice costs by itself: the mean over the poses.
+fn alone(choice: &Choice, around: &[Surroundings]) -> f64 {
+    let one = |(spot, around): (&Option<Spot>, &Surroundings)| {
+        let Some(spot) = spot else { return 0.0 };
+        let lines = spot.lines.iter().map(|line| 0.3 * around.crossed(*line));
+        around.covered(&spot.room) + lines.sum::<f64>()
+    };
+    let all: f64 = choice.spots.iter().zip(around).map(one).sum();
+    choice.dislike + all / around.len().max(1) as f64
+}
+
+/// What two choices cost each other: the mean over the poses.
+fn together(a: &Choice, b: &Choice) -> f64 {
+    let one = |(a, b): (&Option<Spot>, &Option<Spot>)| match (a, b) {
+        (Some(a), Some(b)) => conflict(a, b),
+        _ => 0.0,
+    };
+    let all: f64 = a.spots.iter().zip(&b.spots).map(one).sum();
+    all / a.spots.len().max(1) as f64
+}
+
+fn conflict(a: &Spot, b: &Spot) -> f64 {
+    let struck = |room: &Room, lines: &[[Point; 2]]| -> f64 {
+        let room = room.grown(APART / 2.0);
+        let each = lines.iter().map(|line| match room.holds(line[0], line[1]) {
+            0.0 => 0.0,
+            mm => STRUCK * (1.0 + mm),
+        });
+        each.sum()
+    };
+    let pairs = a
+        .lines
+        .iter()
+        .flat_map(|p| b.lines.iter().map(move |q| (p, q)));
+    let crossed = pairs
+        .filter(|(p, q)| Room::of_line(**p, LINES_APART).overlap(&Room::of_line(**q, 0.0)) > 0.0);
+    touching(&a.room, &b.room)
+        + struck(&a.room, &b.lines)
+        + struck(&b.room, &a.lines)
+        + CROSSED * crossed.count() as f64
+}
+
+/// What it costs that two texts touch.
+fn touching(a: &Room, b: &Room) -> f64 {
+    let (dx, dy) = (b.middle[0] - a.middle[0], b.middle[1] - a.middle[1]);
+    let far = a.half[0] + a.half[1] + b.half[0] + b.half[1] + APART;
+    if dx.abs() > far || dy.abs() > far {
+        return 0.0;
+    }
+    match a.grown(APART).overlap(b) {
+        0.0 => 0.0,
+        mm => OVERLAP * (1.0 + mm),
+    }
+}
+
+/// The thin line from a label to what it names.
+pub(crate) fn leader([from, to]: [Point; 2], token: Token) -> Item {
+    Item::path(Path::polyline(&[from, to]), Style::stroke(token, 0.2))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Group, Layer};
+
+    fn choice(dislike: f64, x: f64) -> Choice {
+        let room = Room::upright([x, 20.0], [3.0, 1.5]);
+        let spot = Spot {
+            room,
+            lines: Vec::new(),
+        };
+        Choice {
+            dislike,
+            spots: vec![Some(spot)],
+        }
+    }
+
+    fn wanted(places: &[f64], optional: bool) -> Wanted {
+        let choices = places.iter().enumerate();
+        let choices = choices.map(|(k, x)| choice(k as f64, *x)).collect();
+        Wanted { choices, optional }
+    }
+
+    #[test]
+    fn labels_give_way_to_each_other_and_to_what_is_drawn() {
+        let bar = Path::polyline(&[[30.0, 0.0], [30.0, 40.0]]);
+        let bar = Item::path(bar, Style::stroke(Token::Ink, 0.5));
+        let group = Group::new(Layer::Link(1), vec![bar]);
+        let around = [Surroundings::new([100.0, 40.0], &[group])];
+        // the first choice of the first is on the bar, that of the second where the first goes to
+        let labels = [
+            wanted(&[30.0, 50.0], false),
+            wanted(&[52.0, 70.0], false),
+            wanted(&[71.0], true),
+            wanted(&[99.0, 80.0], false),
+        ];
+        assert_eq!(place(&labels, &around), [Some(1), Some(1), None, Some(1)]);
+        let least = place(&labels[..1], &[Surroundings::new([100.0, 40.0], &[])]);
+        assert_eq!(least, [Some(0)]);
+    }
+}
