@@ -162,7 +162,7 @@ pub struct Run {
 #[derive(Debug, Args)]
 #[command(
     after_help = "Examples:\n  kempe draw crank.toml -o crank.svg\n  kempe draw crank.toml --at motor=30deg -o pose.dxf\n  \
-                        kempe draw crank.toml -o crank.gif --width 800\n\n\
+                        kempe draw crank.toml -o crank.gif --width 800\n  kempe draw crank.toml -o sizes.svg --dimensions\n\n\
                         GIF and APNG move through the first study of the file. SVG, PNG and DXF show one pose.\n\
                         Only a picture that Kempe wrote and nobody changed is replaced; .kempe-files.json beside it\n\
                         lists those."
@@ -185,6 +185,9 @@ pub struct Draw {
     /// Show what acts on the links: joint reactions, loads, weights, drives, springs
     #[arg(long)]
     pub forces: bool,
+    /// Write sizes into the picture: lengths of links, places of fixed points, guides, radii
+    #[arg(long)]
+    pub dimensions: bool,
     /// Leave out the names of the points
     #[arg(long)]
     pub no_labels: bool,

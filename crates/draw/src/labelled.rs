@@ -1,5 +1,6 @@
-//! Labels of a mechanism's drawing: put for one picture, or for a whole motion.
+//! Labels and dimensions of a mechanism's drawing: put for one picture, or labels for a whole motion.
 
+use crate::dimensions::Dimension;
 use crate::labels::{Choice, Named, Spot, Surroundings, Wanted, most_choices, place};
 use crate::loads::STANCES;
 use crate::scene::{Group, Layer};
@@ -12,7 +13,7 @@ const SAMPLES: usize = 16;
 impl Stage<'_> {
     fn most_choices(&self) -> usize {
         let arrows = self.loads.as_ref().map_or(0, |l| l.tracks.len());
-        most_choices(self.names.len() + arrows)
+        most_choices(self.names.len() + arrows + self.context.view.dimensions.len())
     }
 
     /// Gives the labels places that they keep over the motion: names become parts of the drawing.
@@ -68,15 +69,18 @@ impl Stage<'_> {
             None => Vec::new(),
         };
         let (tracks, arrows): (Vec<_>, Vec<_>) = arrows.into_iter().unzip();
+        let sizes = Dimension::all(&self.context, frame);
         let mut wanted = names;
         wanted.extend(arrows);
+        let labels = wanted.len();
+        wanted.extend(sizes.iter().map(|size| size.wanted(most)));
         let chosen = place(&wanted, &[around]);
         let spots: Vec<Option<&Spot>> = wanted
             .iter()
-            .zip(chosen)
-            .map(|(wanted, choice)| spot(&wanted.choices, choice))
+            .zip(&chosen)
+            .map(|(wanted, choice)| spot(&wanted.choices, *choice))
             .collect();
-        let (of_names, of_arrows) = spots.split_at(named.len());
+        let (of_names, of_arrows) = spots[..labels].split_at(named.len());
         let mut groups = Vec::new();
         for (named, spot) in named.iter().zip(of_names) {
             groups.extend(spot.map(|spot| Group::new(Layer::Label, named.drawn(spot))));
@@ -85,6 +89,9 @@ impl Stage<'_> {
             let loads = self.loads.as_ref();
             groups.extend(loads.zip(*spot).and_then(|(l, spot)| l.label(*track, spot)));
         }
+        let sizes = sizes.iter().zip(&chosen[labels..]);
+        let drawn = sizes.filter_map(|(size, choice)| size.drawn((*choice)?));
+        groups.extend(drawn.map(|items| Group::new(Layer::Dimension, items)));
         groups
     }
 }

@@ -17,6 +17,7 @@
 //!     joints: vec![],
 //!     traces: vec![],
 //!     drives: vec![],
+//!     dimensions: vec![],
 //! };
 //! let pose = Frame { points: vec![[0.0, 0.0], [0.0, 0.05]], links: vec![[0.0; 3], [0.0; 3]], ..Frame::default() };
 //! let poses = [pose];
@@ -26,6 +27,7 @@
 //! ```
 
 mod context;
+mod dimensions;
 pub mod dxf;
 mod escape;
 mod fit;
@@ -55,6 +57,6 @@ pub use loads::{LoadRole, LoadView};
 pub use stage::{DrawOptions, Outline, Stage};
 pub use tokens::Theme;
 pub use view::{
-    ArcGuide, CurveGuide, DriveKind, DriveView, Frame, Guide, JointView, LengthUnit, LinkView,
-    LoadUnit, LoadUnits, MechanismView, TraceView, Wheel,
+    ArcGuide, CurveGuide, DimensionKind, DimensionView, DriveKind, DriveView, Frame, Guide,
+    JointView, LengthUnit, LinkView, LoadUnit, LoadUnits, MechanismView, TraceView, Wheel,
 };

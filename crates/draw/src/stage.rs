@@ -80,6 +80,8 @@ pub struct Outline<'a> {
 
 /// Room around the mechanism for the paper-sized symbols, mm.
 const SYMBOL_ROOM: f64 = 9.0;
+/// The same with dimensions, mm.
+const DIMENSION_ROOM: f64 = 21.0;
 /// The lowest sheet, mm.
 const LEAST_HEIGHT: f64 = 40.0;
 
@@ -125,6 +127,10 @@ impl<'a> Stage<'a> {
                 }
             }
         }
+        let room = match view.dimensions.is_empty() || options.steady {
+            true => SYMBOL_ROOM,
+            false => DIMENSION_ROOM,
+        };
         let top = match (options.title, &other) {
             (true, Some(_)) => 15.0,
             (true, None) => 10.0,
@@ -138,12 +144,7 @@ impl<'a> Stage<'a> {
         let sheet = [options.width, options.max_height];
         let fitted = |legend: f64, bounds| {
             let margins = Margins {
-                sides: [
-                    SYMBOL_ROOM,
-                    SYMBOL_ROOM,
-                    SYMBOL_ROOM + top,
-                    SYMBOL_ROOM + bottom + legend,
-                ],
+                sides: [room, room, room + top, room + bottom + legend],
             };
             // the legend has a room of its own below the drawing
             let heights = [LEAST_HEIGHT + legend, options.max_height + legend];

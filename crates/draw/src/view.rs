@@ -109,6 +109,8 @@ pub struct MechanismView {
     pub traces: Vec<TraceView>,
     /// What is moved from outside.
     pub drives: Vec<DriveView>,
+    /// Sizes to write into pictures of one pose; none when empty. An animation shows none.
+    pub dimensions: Vec<DimensionView>,
 }
 
 /// A rigid body.
@@ -310,6 +312,59 @@ pub enum DriveKind {
         /// The other point.
         b: usize,
     },
+}
+
+/// A size to be written into the drawing.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DimensionView {
+    /// What is measured.
+    pub kind: DimensionKind,
+    /// Its value, m or rad.
+    pub value: f64,
+    /// What is written, with its unit: `25 mm`, `a = 25 mm`.
+    pub text: String,
+}
+
+/// What a dimension measures.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum DimensionKind {
+    /// The distance of two points.
+    Length {
+        /// One point.
+        a: usize,
+        /// The other point.
+        b: usize,
+    },
+    /// How far two points are apart along the fixed x axis.
+    Across {
+        /// One point.
+        a: usize,
+        /// The other point.
+        b: usize,
+    },
+    /// How far two points are apart along the fixed y axis.
+    Up {
+        /// One point.
+        a: usize,
+        /// The other point.
+        b: usize,
+    },
+    /// The distance of a point from the line of a guide.
+    Offset {
+        /// The point.
+        point: usize,
+        /// The guide.
+        guide: Guide,
+    },
+    /// The angle between the fixed x axis and the line of a guide, at its first point: from -90 to 90 degrees.
+    Angle {
+        /// The guide.
+        guide: Guide,
+    },
+    /// The pitch radius of a wheel.
+    Wheel(Wheel),
+    /// The radius of a circular slot.
+    Arc(ArcGuide),
 }
 
 /// A pose. A pose that was not reached has NaN coordinates; it is not drawn.

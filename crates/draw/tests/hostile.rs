@@ -255,6 +255,7 @@ prop_compose! {
             joints,
             traces: vec![TraceView { label: "t".into(), point: 2 }],
             drives,
+            dimensions: vec![],
         };
         let frames = frames.into_iter().map(|(points, links, loads)| Frame {
             points: points.into_iter().map(|p| p.map(|v| v * size)).collect(), links, label: "f".into(), loads }).collect();
@@ -335,6 +336,7 @@ fn a_hundred_thousand_links_are_drawn() {
             .collect(),
         traces: vec![],
         drives: vec![],
+        dimensions: vec![],
     };
     let points = (0..=n).map(|k| [k as f64, (k % 7) as f64]).collect();
     let frames = [Frame {
@@ -365,6 +367,7 @@ fn a_path_of_very_many_rows_is_drawn_in_bounded_size() {
             point: 1,
         }],
         drives: vec![],
+        dimensions: vec![],
     };
     let frame = |row: usize| {
         let angle = row as f64 / 100.0;

@@ -36,6 +36,7 @@ mod choice;
 mod circuit;
 mod columns;
 mod comparison;
+mod dimensions;
 mod drawn;
 pub mod encode;
 mod events;
@@ -79,6 +80,7 @@ mod words;
 
 pub use along::{Along, Row, RowForces, force_problems};
 pub use comparison::{Axis, Comparison, Design, Kind, Pair, StudyPair, compare};
+pub use dimensions::dimensions;
 pub use explain::{beyond_limit, cannot_move};
 pub use extremes::{Extreme, Extremes, extremes, without_rounding};
 pub use figures::{MECHANISM, figures};

@@ -72,6 +72,7 @@ pub fn mechanism_view(model: &Model, study: Option<&MotionStudy>) -> MechanismVi
             })
             .collect(),
         drives: drives(model, &parameters),
+        dimensions: Vec::new(),
     }
 }
 
@@ -240,7 +241,7 @@ fn whole_teeth(count: f64) -> u32 {
 }
 
 /// A point that two links share.
-fn shared(model: &Model, a: LinkId, b: LinkId) -> Option<PointId> {
+pub(crate) fn shared(model: &Model, a: LinkId, b: LinkId) -> Option<PointId> {
     let found = model
         .points
         .iter()

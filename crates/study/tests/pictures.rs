@@ -7,7 +7,7 @@ mod support;
 use kempe_draw::scene::{Align, Item, Layer, Scene, Text};
 use kempe_draw::{DrawOptions, Stage};
 use kempe_model::StudyKind;
-use kempe_study::{Silent, drawing_frames, mechanism_view, run};
+use kempe_study::{Silent, dimensions, drawing_frames, drawn, mechanism_view, pose_at, run};
 use support::examples;
 
 /// The widest of the fonts that pictures ask for.
@@ -15,8 +15,8 @@ fn font() -> ttf_parser::Face<'static> {
     ttf_parser::Face::parse(dejavu::sans::regular(), 0).expect("a font")
 }
 
-/// Lower left and upper right corner of an upright line of text: as wide as its letters advance, as high as their ink.
-fn corners(face: &ttf_parser::Face, text: &Text) -> [[f64; 2]; 2] {
+/// The corners of a line of text in order around it: as wide as its letters advance, as high as their ink.
+fn corners(face: &ttf_parser::Face, text: &Text) -> [[f64; 2]; 4] {
     let em = f64::from(face.units_per_em()) / text.size;
     let (mut wide, mut low, mut high) = (0.0, 0.0_f64, 0.0_f64);
     for c in text.content.chars() {
@@ -29,18 +29,40 @@ fn corners(face: &ttf_parser::Face, text: &Text) -> [[f64; 2]; 2] {
     }
     let left = match text.align {
         Align::Start => 0.0,
-        Align::Middle => wide / 2.0,
-        Align::End => wide,
+        Align::Middle => -wide / 2.0,
+        Align::End => -wide,
     };
-    let [x, y] = text.at;
-    [[x - left, y + low], [x - left + wide, y + high]]
+    let (s, c) = kempe_number::math::sin_cos(text.turn.to_radians());
+    let at = |x: f64, y: f64| [text.at[0] + c * x - s * y, text.at[1] + s * x + c * y];
+    [
+        at(left, low),
+        at(left + wide, low),
+        at(left + wide, high),
+        at(left, high),
+    ]
+}
+
+/// Whether two convex outlines share more than an edge: no side of either has the other wholly beyond it.
+fn touch(a: &[[f64; 2]; 4], b: &[[f64; 2]; 4]) -> bool {
+    let parts = |outline: &[[f64; 2]; 4], other: &[[f64; 2]; 4]| {
+        (0..4).any(|k| {
+            let (p, q) = (outline[k], outline[(k + 1) % 4]);
+            let beyond =
+                |r: &[f64; 2]| (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]) <= 0.0;
+            other.iter().all(beyond)
+        })
+    };
+    !parts(a, b) && !parts(b, a)
 }
 
 /// All texts of a picture: those that label something, and the others.
 fn texts(scene: &Scene) -> (Vec<Text>, Vec<Text>) {
     let (mut labels, mut others) = (Vec::new(), Vec::new());
     for group in &scene.groups {
-        let label = matches!(group.layer, Layer::Label | Layer::LoadLabel(_));
+        let label = matches!(
+            group.layer,
+            Layer::Label | Layer::LoadLabel(_) | Layer::Dimension
+        );
         for item in &group.items {
             if let Item::Text(text) = item {
                 match label {
@@ -53,15 +75,35 @@ fn texts(scene: &Scene) -> (Vec<Text>, Vec<Text>) {
     (labels, others)
 }
 
+/// What is wrong with the labels of a picture.
+fn faults(face: &ttf_parser::Face, scene: &Scene) -> Vec<String> {
+    let mut wrong = Vec::new();
+    let (labels, others) = texts(scene);
+    let outlines: Vec<_> = labels.iter().map(|t| corners(face, t)).collect();
+    for (k, (label, outline)) in labels.iter().zip(&outlines).enumerate() {
+        let inside =
+            |[x, y]: &[f64; 2]| *x > 0.0 && *y > 0.0 && *x < scene.width && *y < scene.height;
+        if !outline.iter().all(inside) {
+            wrong.push(format!("`{}` leaves the sheet", label.content));
+        }
+        let before = labels[..k].iter().zip(outlines[..k].iter().copied());
+        let others = others.iter().map(|other| (other, corners(face, other)));
+        for (other, theirs) in before.chain(others) {
+            if touch(outline, &theirs) {
+                wrong.push(format!("`{}` on `{}`", label.content, other.content));
+            }
+        }
+    }
+    wrong
+}
+
 #[test]
 fn no_two_labels_of_an_example_touch() {
     let face = font();
     let (mut seen, mut wrong) = (0, Vec::new());
     for (name, model) in examples() {
         for study in &model.studies {
-            let forces = matches!(study.kind, StudyKind::Forces(_));
-            let motion = matches!(study.kind, StudyKind::Motion(_));
-            if !forces && !motion {
+            if !matches!(study.kind, StudyKind::Forces(_) | StudyKind::Motion(_)) {
                 continue;
             }
             let result = run(&model, study, &mut Silent).expect("a result");
@@ -71,30 +113,32 @@ fn no_two_labels_of_an_example_touch() {
             for part in 0..8 {
                 let row = part * (frames.len() - 1) / 7;
                 let scene = stage.scene(row);
-                let (labels, others) = texts(&scene);
-                for (k, label) in labels.iter().enumerate() {
-                    seen += 1;
-                    let [low, high] = corners(&face, label);
-                    let inside = low[0] > 0.0
-                        && low[1] > 0.0
-                        && high[0] < scene.width
-                        && high[1] < scene.height;
-                    if !inside {
-                        wrong.push(format!("{name} row {row}: `{}` leaves", label.content));
-                    }
-                    for other in labels[..k].iter().chain(&others) {
-                        let [other_low, other_high] = corners(&face, other);
-                        let touch =
-                            (0..2).all(|i| low[i] < other_high[i] && other_low[i] < high[i]);
-                        if touch {
-                            let (a, b) = (&label.content, &other.content);
-                            wrong.push(format!("{name} row {row}: `{a}` on `{b}`"));
-                        }
-                    }
-                }
+                seen += texts(&scene).0.len();
+                let found = faults(&face, &scene);
+                wrong.extend(found.iter().map(|f| format!("{name} row {row}: {f}")));
             }
         }
     }
     assert!(seen > 2000, "{seen}");
+    assert!(wrong.is_empty(), "{}:\n{}", wrong.len(), wrong.join("\n"));
+}
+
+#[test]
+fn no_two_dimensions_of_an_example_touch() {
+    let face = font();
+    let (mut seen, mut wrong) = (0, Vec::new());
+    for (name, model) in examples() {
+        let Ok(pose) = pose_at(&model, &[]) else {
+            continue;
+        };
+        let mut view = mechanism_view(&model, None);
+        view.dimensions = dimensions(&model, &view);
+        let frames = [drawn(&model, &pose.frame, String::new())];
+        let scene = Stage::new(&view, &frames, DrawOptions::default()).scene(0);
+        seen += view.dimensions.len();
+        let found = faults(&face, &scene);
+        wrong.extend(found.iter().map(|f| format!("{name}: {f}")));
+    }
+    assert!(seen > 300, "{seen}");
     assert!(wrong.is_empty(), "{}:\n{}", wrong.len(), wrong.join("\n"));
 }

@@ -4,7 +4,9 @@ use kempe_draw::raster::animation::{self, AnimationOptions};
 use kempe_draw::raster::{self, RasterError};
 use kempe_draw::{DrawOptions, Frame, MechanismView, Stage, Theme, dxf, svg};
 use kempe_model::{Diagnostic, Model, MotionStudy, Severity, Study, StudyKind};
-use kempe_study::{Setting, drawing_frames, drawn, loaded_at, mechanism_view, pose_at, room_for};
+use kempe_study::{
+    Setting, dimensions, drawing_frames, drawn, loaded_at, mechanism_view, pose_at, room_for,
+};
 
 use crate::arguments::Draw;
 use crate::command::run::{nothing_to_run, warned};
@@ -142,6 +144,13 @@ fn picture(
             diagnostic.help("leave out --at, or write .svg, .png or .dxf"),
         ));
     }
+    if moving && arguments.dimensions {
+        let message = "--dimensions shows one pose, GIF and APNG move";
+        let diagnostic = Diagnostic::error("cannot-draw", message);
+        return Err(Failure::Usage(
+            diagnostic.help("leave out --dimensions, or write .svg, .png or .dxf"),
+        ));
+    }
     if moving {
         let (view, frames, period) = motion(model, arguments.forces, speaker)?;
         let stage = Stage::new(&view, &frames, options);
@@ -157,7 +166,10 @@ fn picture(
         }
         .map_err(failed);
     }
-    let (view, frames, shown) = pose(arguments, model, speaker)?;
+    let (mut view, frames, shown) = pose(arguments, model, speaker)?;
+    if arguments.dimensions {
+        view.dimensions = dimensions(model, &view);
+    }
     let stage = Stage::new(&view, &frames, options);
     match kind {
         Kind::Dxf => Ok(dxf::document(&stage, shown).into_bytes()),

@@ -58,6 +58,7 @@ fn view(title: &str, points: &[&str], links: &[(&str, &str)]) -> MechanismView {
         joints: vec![],
         traces: vec![],
         drives: vec![],
+        dimensions: vec![],
     }
 }
 

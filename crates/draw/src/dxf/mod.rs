@@ -41,6 +41,9 @@ pub fn document(stage: &Stage, index: usize) -> String {
     for layer in ["GROUND", "JOINTS", "DRIVES", "TRACES", "LABELS"] {
         layers.push((layer.into(), Token::Ground.rgb(false)));
     }
+    if !view.dimensions.is_empty() {
+        layers.push((DIMENSION_LAYER.into(), Token::Muted.rgb(false)));
+    }
     for link in 0..view.links.len() {
         layers.push((
             writer.link_layer(link),
