@@ -9,7 +9,7 @@ use kempe_dynamics::{ForceArrow, Origin};
 use kempe_mechanism::curve::LocalCurve;
 use kempe_model::{
     Between, DriveKind, FRAME, JointKind, Line, LinkId, Model, MotionStudy, Plot, PointId, Scalar,
-    SmoothCurve, value,
+    SmoothCurve, ToothSize, value,
 };
 use kempe_number::math::atan2;
 use kempe_units::Dimension;
@@ -186,12 +186,13 @@ fn joint_view(model: &Model, kind: &JointKind, parameters: &[f64]) -> Option<Joi
             teeth_a,
             teeth_b,
             internal,
+            teeth,
             ..
         } => {
             let (center_a, center_b) = (shared(model, *a, *arm)?, shared(model, *b, *arm)?);
-            let teeth = (value(teeth_a, parameters), value(teeth_b, parameters));
+            let sizes = (value(teeth_a, parameters), value(teeth_b, parameters));
             let apart = distance_on(model, *arm, center_a, center_b, parameters)?;
-            let (size_a, size_b): (f64, f64) = (teeth.0.abs(), teeth.1.abs());
+            let (size_a, size_b): (f64, f64) = (sizes.0.abs(), sizes.1.abs());
             let ratio = apart
                 / if *internal {
                     (size_a - size_b).abs()
@@ -202,7 +203,10 @@ fn joint_view(model: &Model, kind: &JointKind, parameters: &[f64]) -> Option<Joi
                 link: link.index(),
                 center: center.index(),
                 radius: size * ratio,
-                teeth: whole_teeth(size),
+                teeth: match teeth.size {
+                    ToothSize::Counted => whole_teeth(size),
+                    ToothSize::Module(_) => toothed(size * ratio, &teeth.size, parameters),
+                },
             };
             JointView::Gears {
                 a: wheel(*a, center_a, size_a),
@@ -216,18 +220,37 @@ fn joint_view(model: &Model, kind: &JointKind, parameters: &[f64]) -> Option<Joi
             center,
             radius,
             side,
+            teeth,
             ..
-        } => JointView::Rack {
-            link: rack.index(),
-            pinion: Wheel {
-                link: pinion.index(),
-                center: center.index(),
-                radius: value(radius, parameters),
-                teeth: 0,
-            },
-            side: side.sign(),
-        },
+        } => {
+            let radius = value(radius, parameters);
+            JointView::Rack {
+                link: rack.index(),
+                pinion: Wheel {
+                    link: pinion.index(),
+                    center: center.index(),
+                    radius,
+                    teeth: toothed(radius, &teeth.size, parameters),
+                },
+                side: side.sign(),
+            }
+        }
     })
+}
+
+/// Teeth of a wheel of a radius by its module; none where that is not known, or leaves a part of a tooth.
+fn toothed(radius: f64, size: &ToothSize, parameters: &[f64]) -> u32 {
+    match size {
+        ToothSize::Module(Some(module)) => {
+            let count = 2.0 * radius / value::<f64>(module, parameters);
+            // rounding of lengths leaves a little
+            match (count - count.round()).abs() < 1e-6 {
+                true => whole_teeth(count.round()),
+                false => 0,
+            }
+        }
+        _ => 0,
+    }
 }
 
 /// Teeth of a wheel; none where the ratio is given by radii.
@@ -291,7 +314,7 @@ fn drives(model: &Model, parameters: &[f64]) -> Vec<DriveView> {
             drive.law.at(0.0, parameters),
             drive.law.duration::<f64>(parameters),
         );
-        // The first way the drive goes counts.
+        // The first way the drive goes counts; one that is held has no arrow.
         let steps = 64;
         let way = (1..=steps)
             .map(|k| {
@@ -300,11 +323,11 @@ fn drives(model: &Model, parameters: &[f64]) -> Vec<DriveView> {
                     .at(duration * f64::from(k) / f64::from(steps), parameters)
                     - from
             })
-            .find(|way| *way != 0.0);
+            .find(|way| *way != 0.0)?;
         Some(DriveView {
             name: drive.name.clone(),
             kind,
-            forward: way.unwrap_or(1.0) >= 0.0,
+            forward: way >= 0.0,
         })
     };
     model.drives.iter().filter_map(view).collect()

@@ -5,8 +5,8 @@
 mod support;
 
 use kempe_draw::scene::{Align, Item, Layer, Scene, Text};
-use kempe_draw::{DrawOptions, Stage};
-use kempe_model::StudyKind;
+use kempe_draw::{DrawOptions, JointView, MechanismView, Stage};
+use kempe_model::{Model, StudyKind};
 use kempe_study::{Silent, dimensions, drawing_frames, drawn, mechanism_view, pose_at, run};
 use support::examples;
 
@@ -141,4 +141,67 @@ fn no_two_dimensions_of_an_example_touch() {
     }
     assert!(seen > 300, "{seen}");
     assert!(wrong.is_empty(), "{}:\n{}", wrong.len(), wrong.join("\n"));
+}
+
+fn view(text: &str) -> MechanismView {
+    let mut none = |_: &str| Err(String::new());
+    let checked = Model::from_toml(text, "test", &mut none).expect("a model");
+    mechanism_view(&checked.model, None)
+}
+
+#[test]
+fn teeth_are_drawn_where_the_module_tells_them() {
+    let teeth = |more: &str| {
+        let text = format!(
+            r#"
+[links]
+frame = {{ O = [0, "30 mm"], G = [0, 0], K = ["100 mm", 0] }}
+pinion = {{ O = [0, 0], N = ["20 mm", 0] }}
+rack = {{ R = [0, 0] }}
+[joints]
+housing = {{ slider = "rack", at = "R", on = "G -> K" }}
+mesh = {{ rack = "rack", pinion = "pinion", radius = "30 mm"{more} }}
+"#
+        );
+        let joints = view(&text).joints;
+        joints.iter().find_map(|joint| match joint {
+            JointView::Rack { pinion, .. } => Some(pinion.teeth),
+            _ => None,
+        })
+    };
+    assert_eq!(
+        teeth(r#", pressure_angle = "20 deg", module = "3 mm""#),
+        Some(20)
+    );
+    assert_eq!(teeth(""), Some(0));
+    // no wheel has a part of a tooth
+    assert_eq!(
+        teeth(r#", pressure_angle = "20 deg", module = "3.7 mm""#),
+        Some(0)
+    );
+}
+
+#[test]
+fn a_held_cylinder_is_a_cylinder_without_an_arrow() {
+    let text = r#"
+[places]
+A = [0, 0]
+P = [0.5, -0.6]
+Q = [1.2, 0.6]
+B = [3, 1]
+R = [1.6, 1.4]
+S = [2.7, 1.5]
+[links]
+frame = ["A", "P"]
+boom = ["A", "Q", "B", "R"]
+stick = ["B", "S"]
+[drives]
+lift = { cylinder = "P-Q", to = 2, speed = "0.1 m/s" }
+stay = { cylinder = "R-S", at = "drawn" }
+"#;
+    let view = view(text);
+    let drawn = |joint: &&JointView| matches!(joint, JointView::Cylinder { .. });
+    assert_eq!(view.joints.iter().filter(drawn).count(), 2);
+    let moved: Vec<&str> = view.drives.iter().map(|d| d.name.as_str()).collect();
+    assert_eq!(moved, ["lift"]);
 }

@@ -14,12 +14,23 @@ use crate::view::{JointView, Wheel};
 const FINEST_MODULE: f64 = 0.45;
 /// More teeth than this are left out.
 const MOST_TEETH: u32 = 400;
+/// Dashes and gaps of pitch circles and pitch lines, mm.
+pub(super) const PITCH_LINE: [f64; 4] = [2.4, 0.7, 0.5, 0.7];
+/// Teeth lower than this have no pitch circle of their own to be seen, mm.
+const LEAST_TIP: f64 = 0.2;
+
+/// Height of teeth of unknown size above a pitch circle, mm on paper.
+pub(super) fn tip_height(radius: f64) -> f64 {
+    (0.12 * radius).min(1.1)
+}
 
 /// A wheel with the angle of its first tooth in its link's axes.
 #[derive(Clone, Copy)]
 struct Placed {
     wheel: Wheel,
     ring: bool,
+    /// It has teeth, whether or not they are drawn: it is no pulley.
+    gear: bool,
     phase: f64,
 }
 
@@ -41,6 +52,7 @@ pub(super) fn parts(context: &Context) -> Vec<Part> {
                 let one = known(first.0, &placed).unwrap_or(Placed {
                     wheel: first.0,
                     ring: first.1,
+                    gear: true,
                     phase: 0.0,
                 });
                 if known(first.0, &placed).is_none() {
@@ -51,6 +63,7 @@ pub(super) fn parts(context: &Context) -> Vec<Part> {
                     placed.push(Placed {
                         wheel: second.0,
                         ring: second.1,
+                        gear: true,
                         phase,
                     });
                 }
@@ -61,6 +74,7 @@ pub(super) fn parts(context: &Context) -> Vec<Part> {
                         placed.push(Placed {
                             wheel,
                             ring: false,
+                            gear: false,
                             phase: 0.0,
                         });
                     }
@@ -70,6 +84,7 @@ pub(super) fn parts(context: &Context) -> Vec<Part> {
                 placed.push(Placed {
                     wheel: pinion,
                     ring: false,
+                    gear: true,
                     phase: 0.0,
                 });
             }
@@ -130,7 +145,12 @@ fn toothed(radius: f64, teeth: u32, phase: f64) -> Path {
 }
 
 fn draw(context: &Context, placed: &Placed) -> Option<Part> {
-    let Placed { wheel, ring, phase } = *placed;
+    let Placed {
+        wheel,
+        ring,
+        gear,
+        phase,
+    } = *placed;
     let radius = wheel.radius.abs() * context.fit.scale;
     if !(radius.is_finite() && radius > 0.05) || wheel.link >= context.view.links.len() {
         return None;
@@ -139,18 +159,23 @@ fn draw(context: &Context, placed: &Placed) -> Option<Part> {
     let style = Style::stroke(token, 0.45).filled(token, 0.16);
     let module = 2.0 * radius / f64::from(wheel.teeth.max(1));
     let has_teeth = (5..=MOST_TEETH).contains(&wheel.teeth) && module > FINEST_MODULE;
+    // teeth that are not drawn one by one: their tips, beside the pitch circle (ISO 2203)
+    let height = match (gear, has_teeth, wheel.teeth) {
+        (false, ..) => 0.0,
+        (true, true, _) => module,
+        (true, false, 5..) => module.min(tip_height(radius)),
+        (true, false, _) => tip_height(radius),
+    };
     let circle = |r: f64| crate::hull::rounded_hull(&[[0.0, 0.0]], r);
-    let mut paths = vec![if has_teeth {
-        toothed(radius, wheel.teeth, phase)
-    } else {
-        circle(radius)?
+    let mut paths = vec![match (has_teeth, ring) {
+        (true, _) => toothed(radius, wheel.teeth, phase),
+        (false, true) => circle(radius - height)?,
+        (false, false) => circle(radius + height)?,
     }];
     if ring {
-        paths.push(circle(
-            radius + if has_teeth { 1.2 * module } else { 0.0 } + 2.4,
-        )?);
+        paths.push(circle(radius + 1.2 * height + 2.4)?);
     }
-    let pitch_line = Style::stroke(token, 0.25).dashed(&[2.4, 0.7, 0.5, 0.7]);
+    let pitch_line = Style::stroke(token, 0.25).dashed(&PITCH_LINE);
     let (s, c) = sin_cos(phase);
     let (from, to) = if ring {
         (radius + 0.4, radius + 2.2)
@@ -159,7 +184,7 @@ fn draw(context: &Context, placed: &Placed) -> Option<Part> {
     };
     let mark = Path::polyline(&[[from * c, from * s], [to * c, to * s]]);
     let mut items = vec![Item::Shape { paths, style }];
-    if has_teeth {
+    if height > LEAST_TIP {
         items.push(Item::circle([0.0, 0.0], radius, pitch_line));
     }
     items.push(Item::path(mark, Style::stroke(token, LINE * 2.0)));

@@ -4,9 +4,10 @@ use std::f64::consts::PI;
 
 use kempe_number::math::sin_cos;
 
-use super::{Part, link_token};
+use super::{Part, gear, link_token};
 use crate::context::{Anchor, Context, link_angle};
 use crate::scene::{Item, Layer, Path, Point, Style};
+use crate::tokens::Token;
 use crate::view::{Frame, Wheel};
 
 /// Thickness of the strip behind the teeth, mm.
@@ -38,9 +39,15 @@ pub(super) fn parts(context: &Context, link: usize, pinion: Wheel, side: f64) ->
     let (x0, x1) = (low - 6.0 - pitch, high + 6.0 + pitch);
     let pitch_line = center[1] - side * radius;
     let module = pitch / PI;
-    let back = pitch_line - side * (1.2 * module + BACK);
-    let mut points: Vec<Point> = vec![[x1, back], [x0, back]];
     let has_teeth = module > 0.45 && (x1 - x0) / pitch < MOST_TEETH;
+    // teeth that are not drawn one by one: their tips, beside the pitch line (ISO 2203)
+    let height = match (has_teeth, pinion.teeth) {
+        (true, _) => module,
+        (false, FEWEST_TEETH..) => module.min(gear::tip_height(radius)),
+        (false, _) => gear::tip_height(radius),
+    };
+    let back = pitch_line - side * (1.2 * height + BACK);
+    let mut points: Vec<Point> = vec![[x1, back], [x0, back]];
     if has_teeth {
         let root = pitch_line - side * 1.2 * module;
         points.push([x0, root]);
@@ -62,20 +69,26 @@ pub(super) fn parts(context: &Context, link: usize, pinion: Wheel, side: f64) ->
         }
         points.push([x1, root]);
     } else {
-        points.extend([[x0, pitch_line], [x1, pitch_line]]);
+        let tips = pitch_line + side * height;
+        points.extend([[x0, tips], [x1, tips]]);
     }
     let token = link_token(link);
     let style = Style::stroke(token, 0.45).filled(token, 0.16);
+    let line = Path::polyline(&[[x0, pitch_line], [x1, pitch_line]]);
+    // the bar of its own link does not show through, but the pinion's teeth do
+    let root = pitch_line - side * 1.2 * height;
+    let strip = Path::rectangle([x0, back.min(root)], [x1, back.max(root)], 0.0);
+    let items = vec![
+        Item::path(strip, Style::fill(Token::Background)),
+        Item::path(Path::polygon(&points), style),
+        Item::path(line, Style::stroke(token, 0.25).dashed(&gear::PITCH_LINE)),
+    ];
     let layer = if link == 0 {
         Layer::Ground
     } else {
-        Layer::Gear
+        Layer::Body
     };
-    Some(Part::new(
-        layer,
-        Anchor::On(first, link, 0.0),
-        vec![Item::path(Path::polygon(&points), style)],
-    ))
+    Some(Part::new(layer, Anchor::On(first, link, 0.0), items))
 }
 
 /// A point in the axes of a link in a pose, mm from one of the link's points.
