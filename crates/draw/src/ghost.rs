@@ -37,7 +37,7 @@ impl<'a> Ghost<'a> {
             items: part.items.iter().map(symbols::outlined_item).collect(),
             ..part
         };
-        let parts = symbols::parts(&context, false).into_iter();
+        let parts = symbols::parts(&context).into_iter();
         let parts = parts.filter(solid).map(outlined).collect();
         let traces = match traces {
             true => TracePath::all(&context),

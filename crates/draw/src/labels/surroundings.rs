@@ -54,7 +54,7 @@ fn weight(layer: Layer, style: &Style) -> f64 {
         Layer::Ground => 2.0,
         Layer::Gear => 1.2,
         Layer::TracePast => 0.6,
-        Layer::TraceRest | Layer::Ghost => 0.4,
+        Layer::TraceRest | Layer::Ghost | Layer::OtherTrace | Layer::Other => 0.4,
         Layer::Dimension | Layer::Label | Layer::LoadLabel(_) => 0.0,
     };
     match style.fill.is_none() && style.width < THIN {
