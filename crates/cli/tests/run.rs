@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use support::{MODEL, folder, kempe, names};
+use support::{MODEL, folder, kempe, names, said};
 
 #[test]
 fn a_run_leaves_tables_figures_and_a_report_and_the_same_bytes_again() {
@@ -567,4 +567,22 @@ fn readers_that_go_away_do_not_keep_a_run_from_its_end() {
         assert!(code.is_some_and(|c| c <= 3), "{arguments:?}: {code:?}");
     }
     assert!(at.join("out/report.html").exists());
+}
+
+#[test]
+fn sizes_are_written_into_pictures_where_they_are_asked_for() {
+    let folder = folder();
+    let at = folder.path();
+    for (name, words) in [("d.svg", "a = 20 mm"), ("d.dxf", "DIMENSIONS")] {
+        let plain = kempe(at, &["draw", "m.toml", "-o", name]);
+        assert!(plain.status.success(), "{}", said(&plain));
+        let text = |name: &str| fs::read_to_string(at.join(name)).expect("a picture");
+        let without = text(name);
+        let sized = kempe(at, &["draw", "m.toml", "-o", name, "--dimensions"]);
+        assert!(sized.status.success(), "{}", said(&sized));
+        assert!(
+            text(name).contains(words) && text(name) != without,
+            "{name}"
+        );
+    }
 }
