@@ -4,6 +4,7 @@ mod actuators;
 mod algebra;
 mod arguments;
 mod assembly;
+mod carrier;
 mod choices;
 mod column;
 mod context;

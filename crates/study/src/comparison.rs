@@ -6,7 +6,7 @@ mod text;
 use kempe_model::Model;
 use kempe_units::{Dimension, Unit};
 
-use crate::extremes::{Extreme, Extremes, extremes, extremes_of, without_rounding};
+use crate::extremes::{Extreme, Extremes, Sizes, extremes, extremes_of, without_rounding};
 use crate::report::StudyOutcome;
 use crate::result::StudyResult;
 use crate::unit::Units;
@@ -382,16 +382,14 @@ fn columns(this: &StudyResult, against: &StudyResult) -> Vec<Pair> {
 fn running(this: &StudyResult, against: &StudyResult) -> Vec<Pair> {
     let along = this.abscissa().map_or("", |c| c.name.as_str());
     let names = both_names(["time"].into_iter(), [along].into_iter());
-    let places = |result: &'_ StudyResult| {
-        result
-            .abscissa()
-            .map_or_else(Vec::new, |c| c.values.clone())
-    };
-    let (one, two) = (places(this), places(against));
+    let designs = [this, against].map(|result| {
+        let places = result.abscissa().map_or(&[][..], |c| &c.values);
+        (result, places, Sizes::of(&result.table.columns))
+    });
     let pairs = names.into_iter().flat_map(|name| {
-        let both = [(this, &one), (against, &two)].map(|(result, along)| {
+        let both = designs.each_ref().map(|(result, along, sizes)| {
             let column = result.table.column(name)?;
-            Some(extremes_of(column, along))
+            Some(extremes_of(column, along, sizes))
         });
         match &both {
             [Some(_), Some(_)] => extreme_pairs(name, [both[0].as_ref(), both[1].as_ref()]),

@@ -1,9 +1,11 @@
 //! The smallest and largest values of a table's columns, and where they stand.
 
+use std::collections::BTreeMap;
+
 use crate::result::StudyResult;
 use crate::table::Column;
 
-/// What is less than this part of the largest of its column is rounding.
+/// What is less than this part of the largest value of its unit in the table is rounding.
 pub const ROUNDING: f64 = 1e-12;
 
 /// A value in a row.
@@ -22,7 +24,7 @@ pub struct Extreme {
 pub struct Extremes<'r> {
     /// The column.
     pub column: &'r Column,
-    /// The largest absolute value; 0 where there is none.
+    /// The largest absolute value of the columns in its unit; 0 where there is none.
     pub size: f64,
     /// The smallest value; `None` where no row has one.
     pub smallest: Option<Extreme>,
@@ -35,27 +37,47 @@ pub fn extremes(result: &StudyResult) -> Vec<Extremes<'_>> {
     let Some(along) = result.abscissa() else {
         return Vec::new();
     };
+    let sizes = Sizes::of(&result.table.columns);
     let own = |column: &&Column| column.name != along.name && column.name != "time";
     let columns = result.table.columns.iter().filter(own);
     columns
-        .map(|column| extremes_of(column, &along.values))
+        .map(|column| extremes_of(column, &along.values, &sizes))
         .collect()
 }
 
-/// The extremes of a column over `along`, which has as many rows. Of equal values the first one counts.
-pub(crate) fn extremes_of<'r>(column: &'r Column, along: &[f64]) -> Extremes<'r> {
+/// The largest absolute values of a table by their unit: a force that is nothing beside the others is rounding.
+pub(crate) struct Sizes(BTreeMap<String, f64>);
+
+impl Sizes {
+    pub(crate) fn of(columns: &[Column]) -> Self {
+        let mut sizes = BTreeMap::new();
+        for column in columns {
+            let finite = column.values.iter().filter(|v| v.is_finite());
+            let own = finite.fold(0.0, |size: f64, v| size.max(v.abs()));
+            let size = sizes
+                .entry(column.unit.text().to_owned())
+                .or_insert(0.0_f64);
+            *size = size.max(own);
+        }
+        Self(sizes)
+    }
+}
+
+/// The extremes of a column over `along`, which has as many rows. Of values that differ by rounding the first one has the place.
+pub(crate) fn extremes_of<'r>(column: &'r Column, along: &[f64], sizes: &Sizes) -> Extremes<'r> {
     let values = &column.values;
-    let finite = values.iter().filter(|v| v.is_finite());
+    let size = sizes.0.get(column.unit.text()).copied().unwrap_or(0.0);
     let best = |better: fn(&f64, &f64) -> bool| {
-        let numbers = values.iter().copied().enumerate();
-        let found = numbers.filter(|(_, v)| !v.is_nan());
-        let (row, value) = found.reduce(|a, b| if better(&b.1, &a.1) { b } else { a })?;
+        let found = values.iter().copied().filter(|v| !v.is_nan());
+        let value = found.reduce(|a, b| if better(&b, &a) { b } else { a })?;
+        let alike = |v: &f64| *v == value || (v - value).abs() <= ROUNDING * size;
+        let row = values.iter().position(alike)?;
         let at = along.get(row).copied().unwrap_or(f64::NAN);
         Some(Extreme { value, row, at })
     };
     Extremes {
         column,
-        size: finite.fold(0.0, |size, v| size.max(v.abs())),
+        size,
         smallest: best(f64::lt),
         largest: best(f64::gt),
     }
@@ -66,5 +88,38 @@ pub fn without_rounding(value: f64, size: f64) -> f64 {
     match value.abs() <= ROUNDING * size {
         true => 0.0,
         false => value,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use kempe_units::Unit;
+
+    #[test]
+    fn what_is_rounding_beside_its_kind_is_nothing_and_has_the_first_place() {
+        let column = |name: &str, unit: &str, values: &[f64]| {
+            let mut column = Column::new(name, Unit::parse(unit).unwrap());
+            column.values = values.to_vec();
+            column
+        };
+        let columns = [
+            column("f", "N", &[1e3, 1e3 * (1.0 + 1e-15), 1e3]),
+            column("g", "N", &[1e-13, -1e-12, f64::NAN]),
+            column("h", "mm", &[1e-13, -1e-12, f64::INFINITY]),
+        ];
+        let sizes = Sizes::of(&columns);
+        let [f, g, h] = [0, 1, 2].map(|k| extremes_of(&columns[k], &[5.0, 6.0, 7.0], &sizes));
+        assert_eq!(
+            f.largest.unwrap().at,
+            5.0,
+            "the first of those that differ by rounding"
+        );
+        let shown = |e: &Extremes<'_>| {
+            [e.smallest, e.largest].map(|x| without_rounding(x.unwrap().value, e.size))
+        };
+        assert_eq!(shown(&g), [0.0, 0.0]);
+        assert_eq!(shown(&h), [-1e-12, f64::INFINITY]);
+        assert_eq!((h.smallest.unwrap().at, h.largest.unwrap().at), (6.0, 7.0));
     }
 }

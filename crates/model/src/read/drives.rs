@@ -173,8 +173,8 @@ fn cylinder(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<DriveKind> {
             "a cylinder takes the place of a bar: leave that bar out of [links]",
         );
     }
-    let ([a, b], warnings) = ends(cx, entry, [a, b])?;
-    cx.of_forces.extend(warnings);
+    let ([a, b], warning) = ends(cx, entry, [a, b])?;
+    cx.of_forces.extend(warning);
     Some(DriveKind::Cylinder { a, b })
 }
 

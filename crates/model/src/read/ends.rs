@@ -3,33 +3,37 @@
 use crate::diagnostic::Diagnostic;
 use crate::document::Value;
 use crate::ids::{FRAME, LinkId, LinkPointRef, PointId};
+use crate::read::carrier::{carrier, not_named};
 use crate::read::context::Context;
-use crate::read::entry::{Entry, carrier, carriers_of, link_of};
+use crate::read::entry::{Entry, carriers_of, link_of};
 
 /// The ends at two points that no link has in common: on a link that `on` names, or else on the frame, which anchors what
-/// ends at it, or else on the link that [`carrier`] takes, with a warning where another could be meant.
+/// ends at it, or else on the link that [`carrier`] finds, with a warning where another could be meant.
 pub(crate) fn ends(
     cx: &mut Context<'_>,
     entry: &Entry<'_>,
     points: [PointId; 2],
-) -> Option<([LinkPointRef; 2], Vec<Diagnostic>)> {
+) -> Option<([LinkPointRef; 2], Option<Diagnostic>)> {
     let named = named(cx, entry, points)?;
-    let mut warnings = Vec::new();
+    let mut taken = Vec::new();
     let mut end = |point: PointId| {
         let given = named.iter().find(|(_, p)| *p == point);
         let link = match given {
             Some((link, _)) => *link,
             None if cx.carriers(point).contains(&FRAME) => FRAME,
             None => {
-                let (link, warning) = carrier(cx, point, &entry.place, entry.span)?;
-                warnings.extend(warning);
+                let found = carrier(cx, point)?;
+                let link = found.link;
+                taken.push(found);
                 link
             }
         };
         Some(LinkPointRef { link, point })
     };
     let [a, b] = points;
-    Some(([end(a)?, end(b)?], warnings))
+    let ends = [end(a)?, end(b)?];
+    let warning = not_named(cx, &entry.place, entry.span, &taken);
+    Some((ends, warning))
 }
 
 /// The links that `on` names, each with the point where it carries an end.

@@ -5,7 +5,6 @@ use kempe_units::{Dimension, Expr, nearest};
 use crate::diagnostic::Diagnostic;
 use crate::document::{Key, Node, Table, Text, Value};
 use crate::ids::{FRAME, LinkId, LinkPointRef, PointId, Scalar, Span};
-use crate::joint::JointKind;
 use crate::keys::{Kind, Quantity, Sign, Takes};
 use crate::read::context::Context;
 
@@ -393,84 +392,6 @@ fn points_help(cx: &Context<'_>, point: PointId, link: LinkId) -> String {
             some_of(points)
         ),
     }
-}
-
-/// The link that something (`what`) at a point acts on when none is named: a slider whose pin it is, or else the first-named
-/// that moves, or else the frame. A warning where another could be meant.
-pub(crate) fn moving_carrier(
-    cx: &mut Context<'_>,
-    point: PointId,
-    what: &str,
-    span: &Span,
-) -> Option<LinkId> {
-    let (link, warning) = carrier(cx, point, what, span)?;
-    cx.found.extend(warning);
-    Some(link)
-}
-
-/// As [`moving_carrier`], with the warning for whoever tells it.
-pub(crate) fn carrier(
-    cx: &Context<'_>,
-    point: PointId,
-    what: &str,
-    span: &Span,
-) -> Option<(LinkId, Option<Diagnostic>)> {
-    let carriers = cx.carriers(point);
-    let moving: Vec<LinkId> = carriers.iter().copied().filter(|l| *l != FRAME).collect();
-    let slides = |link: &LinkId| {
-        (cx.model.joints.iter()).any(|joint| {
-            matches!(&joint.kind, JointKind::Slider { at, .. } if at.link == *link && at.point == point)
-        })
-    };
-    let sliders: Vec<LinkId> = moving.iter().copied().filter(slides).collect();
-    if let [slider] = sliders.as_slice() {
-        return Some((*slider, None));
-    }
-    let first = moving.first().or(carriers.first()).copied()?;
-    let others = moving.iter().copied().filter(|l| !welded(cx, first, *l));
-    let others: Vec<LinkId> = others.collect();
-    // A joint that could not be read may tell which.
-    if others.is_empty() || cx.joints.contains(&None) {
-        return Some((first, None));
-    }
-    let name = |link: LinkId| cx.link_name(link).to_owned();
-    let all: Vec<String> = (std::iter::once(first).chain(others))
-        .map(|link| format!("on = \"{}\"", name(link)))
-        .collect();
-    let point = (cx.model.points.get(point.index())).map_or(String::new(), |p| p.name.clone());
-    let warning = Diagnostic::warning(
-        "link-not-named",
-        format!(
-            "{what} is taken to be on `{}`: {point} is a point of other links too",
-            name(first)
-        ),
-    )
-    .at(span.clone(), "")
-    .note(format!(
-        "what the pin {point} carries depends on which of its links it acts on"
-    ))
-    .help(format!("say which is meant: {}", all.join(" or ")));
-    Some((first, Some(warning)))
-}
-
-/// Whether welds hold two links together.
-fn welded(cx: &Context<'_>, a: LinkId, b: LinkId) -> bool {
-    let mut held = vec![a];
-    let mut next = 0;
-    while let Some(link) = held.get(next).copied() {
-        next += 1;
-        for joint in &cx.model.joints {
-            let JointKind::Weld { a, b, .. } = joint.kind else {
-                continue;
-            };
-            for (one, other) in [(a, b), (b, a)] {
-                if one == link && !held.contains(&other) {
-                    held.push(other);
-                }
-            }
-        }
-    }
-    held.contains(&b)
 }
 
 #[cfg(test)]

@@ -22,9 +22,10 @@ use crate::key_table::{BAR, MASS};
 use crate::link::{Center, Inertia, LinkPoint, Place};
 use crate::load::PointMass;
 use crate::read::algebra::{minus, over, place_in_xy, plus, times};
+use crate::read::carrier::moving_carrier;
 use crate::read::context::Context;
 use crate::read::draft::Draft;
-use crate::read::entry::{Entry, moving_carrier, on_link};
+use crate::read::entry::{Entry, on_link};
 use crate::read::names::is_point_name;
 use crate::read::springs::plain_name;
 

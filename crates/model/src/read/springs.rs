@@ -226,7 +226,7 @@ fn points<'d>(cx: &mut Context<'_>, entry: &Entry<'d>, node: &'d Node) -> Option
             "name two points that no link has in common",
         );
     }
-    let ([a, b], warnings) = ends(cx, entry, [a, b])?;
-    cx.found.extend(warnings);
+    let ([a, b], warning) = ends(cx, entry, [a, b])?;
+    cx.found.extend(warning);
     Some(Between::Points(a, b))
 }
