@@ -1,4 +1,4 @@
-//! `kempe verify`: the published reference cases, re-run.
+//! `kempe verify`: the reference values of publications and closed forms, re-computed.
 
 use std::fs;
 use std::path::{Path, PathBuf};
