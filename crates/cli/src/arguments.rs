@@ -40,7 +40,7 @@ pub enum Command {
     Schema,
     /// List what may be measured
     Measures(Measures),
-    /// Re-compute every reference value, of publications and of closed forms: ours, theirs, the difference
+    /// Re-compute all reference values: ours, theirs, the difference, the source
     Verify(Verify),
     /// Print a completion script for a shell
     Completions(Completions),

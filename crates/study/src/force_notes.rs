@@ -9,6 +9,7 @@ use kempe_motion::events::EventKind;
 use crate::quantity::Quantity;
 use crate::result::Event;
 use crate::table::Table;
+use crate::unit::number_text;
 
 /// Notes of all rows, one entry for each kind and drive.
 #[derive(Debug, Default)]
@@ -98,7 +99,7 @@ pub(crate) fn place(table: &Table, along: usize, row: usize) -> String {
         return format!("row {row}");
     };
     let at = column.values.get(row).copied().unwrap_or(f64::NAN);
-    let digits = kempe_number::text::significant(at, 8);
+    let digits = number_text(at);
     format!("{} = {digits} {}", column.name, column.unit.text())
         .trim_end()
         .to_owned()

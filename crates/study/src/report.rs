@@ -19,7 +19,7 @@ use crate::point_vectors::point_vectors;
 use crate::report_against::{beside, findings_of_other, other_source};
 use crate::result::StudyResult;
 use crate::table::{Column, largest};
-use crate::unit::SHORT_DIGITS;
+use crate::unit::{SHORT_DIGITS, number_text};
 use crate::view::{drawing_frames, mechanism_view};
 
 /// A study with what became of it.
@@ -225,8 +225,8 @@ fn summary(result: &StudyResult) -> String {
                 "{} rows, {} from {} to {} {}",
                 result.table.rows(),
                 x.name,
-                kempe_number::text::significant(*a, 8),
-                kempe_number::text::significant(*b, 8),
+                number_text(*a),
+                number_text(*b),
                 x.unit.text()
             ),
             _ => String::new(),

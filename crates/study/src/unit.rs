@@ -125,6 +125,11 @@ impl Units {
     }
 }
 
+/// A number of a table as people read it, without its unit.
+pub(crate) fn number_text(value: f64) -> String {
+    text::significant(readable(value, SHORT_DIGITS), LONG_DIGITS)
+}
+
 /// A number in `digits` digits; where it has hardly more, as somebody may have written it, in all of them.
 fn readable(value: f64, digits: usize) -> f64 {
     let long = text::rounded(value, LONG_DIGITS);

@@ -251,7 +251,7 @@ fn a_cylinder_that_is_too_weak_is_told_once_with_the_worst_place() {
         weak[0].message
     );
     assert!(
-        weak[0].message.contains(&format!("lift = {at:.8}")),
+        weak[0].message.contains(&format!("lift = {at:.6}")),
         "{} {at}",
         weak[0].message
     );
