@@ -78,6 +78,13 @@ impl Clock {
             .first_time(value, self.parameters())
     }
 
+    /// A time, s, where the motion lasts so long.
+    pub fn within(&self, time: f64) -> Option<f64> {
+        let duration = self.duration();
+        let off = (time - time.clamp(0.0, duration)).abs();
+        (off <= SAME_END * duration).then(|| time.clamp(0.0, duration))
+    }
+
     /// The drive whose coordinate is the path parameter.
     pub fn path_drive(&self) -> Option<DriveId> {
         match self.motion.path {

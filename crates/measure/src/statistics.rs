@@ -136,7 +136,7 @@ pub(crate) fn over_motion<F: ForceSource>(
             if let Statistic::At { drive, value } = statistic {
                 let time = match drive {
                     Some(drive) => sampler.time_of(*drive, *value),
-                    None => Some(*value),
+                    None => sampler.within(*value),
                 };
                 let asked = sampler.asked(&[measure]);
                 let at = |time| Point::take(sampler, &asked, time).value();

@@ -439,3 +439,15 @@ fn sensitivities_of_fixed_points_and_of_paths() {
     near(found.values[1], 0.08, 1e-12, "length");
     near(found.derivatives[1][0], 4.0, 1e-9, "per crank");
 }
+
+#[test]
+fn at_a_time_beyond_the_motion_nothing_has_a_value() {
+    // Half a turn in 0.5 s.
+    let measures = "a = \"at(x(C), time, 0.25 s)\"\nb = \"at(x(C), time, 0.5 s)\"\nc = \"at(x(C), time, 0.5001 s)\"\n\
+                    d = \"at(speed(B), time, -3 s)\"\ne = \"at(motor, time, 5 s)\"";
+    let text = slider_crank("from = 0, to = 180, speed = \"60 rpm\"", 1.0, measures);
+    let values = &rows(&text, &[0.3])[0].values;
+    near(values[0], travel(PI / 2.0), 1e-12, "in it");
+    near(values[1], travel(PI), 1e-12, "at its end");
+    assert!(values[2..].iter().all(|v| v.is_nan()), "{values:?}");
+}

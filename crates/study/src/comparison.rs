@@ -3,13 +3,15 @@
 mod matched;
 mod text;
 
+use std::f64::consts::{PI, TAU};
+
 use kempe_model::Model;
-use kempe_units::{Dimension, Unit};
+use kempe_units::{Dimension, Unit, format_digits};
 
 use crate::extremes::{Extreme, Extremes, Sizes, extremes, extremes_of, without_rounding};
 use crate::report::StudyOutcome;
-use crate::result::StudyResult;
-use crate::unit::Units;
+use crate::result::{Listing, StudyResult};
+use crate::unit::{SHORT_DIGITS, Units};
 
 pub(crate) use matched::Matched;
 
@@ -58,6 +60,8 @@ pub struct StudyPair {
     pub along: [Option<Axis>; 2],
     /// Its numbers over the motion, then the smallest and largest values of its columns.
     pub pairs: Vec<Pair>,
+    /// What the other design's study tells in words, where this one's tells something else.
+    pub told: Vec<Listing>,
     /// Why there is nothing to compare, where one of both has no such result; may be empty.
     pub note: String,
 }
@@ -218,6 +222,9 @@ fn pair(kind: Kind, name: &str, told: [Option<Told>; 2], sizes: [f64; 2]) -> Pai
         }
         [None, None] => (Unit::one(), [None, None], 0.0),
     };
+    if let ([Some(this), Some(against)], "") = (values, note.as_str()) {
+        note = hint(kind, [this, against], &unit);
+    }
     Pair {
         kind,
         name: name.to_owned(),
@@ -227,6 +234,31 @@ fn pair(kind: Kind, name: &str, told: [Option<Told>; 2], sizes: [f64; 2]) -> Pai
         size,
         note,
     }
+}
+
+/// Why two values have no difference, or how theirs is to be read.
+fn hint(kind: Kind, [this, against]: [f64; 2], unit: &Unit) -> String {
+    let without = |value: f64, whose: &str| match value {
+        v if v.is_nan() => Some(format!("no value in {whose}")),
+        v if v.is_infinite() => Some(format!("infinite in {whose}")),
+        _ => None,
+    };
+    let lacks = [
+        without(this, "this design"),
+        without(against, "the other design"),
+    ];
+    let lacks: Vec<String> = lacks.into_iter().flatten().collect();
+    if !lacks.is_empty() {
+        return lacks.join(", ");
+    }
+    let apart = unit.to_si(this) - unit.to_si(against);
+    let angle = kind != Kind::Parameter && unit.dimension() == Dimension::ANGLE;
+    if !angle || apart.abs() <= PI {
+        return String::new();
+    }
+    let rest = apart - TAU * (apart / TAU).round();
+    let rest = format_digits(rest + 0.0, unit, SHORT_DIGITS);
+    format!("{rest} apart but for whole turns, which each design counts from its own start")
 }
 
 /// A value in another unit of its dimension; in the same one it stays as it is, to the bit.
@@ -308,11 +340,17 @@ fn study_pair(name: &str, this: &Design<'_>, against: &Design<'_>) -> StudyPair 
         of_other.for_each(|at| *at = converted(*at, &two.unit, &one.unit));
         two.unit = one.unit.clone();
     }
+    let listings = results.map(|result| result.map_or(&[][..], |r| r.listings.as_slice()));
+    let told = match listings {
+        [this, against] if this != against => against.to_vec(),
+        _ => Vec::new(),
+    };
     StudyPair {
         name: name.to_owned(),
         rows,
         along,
         pairs,
+        told,
         note,
     }
 }
@@ -355,10 +393,9 @@ fn numbers(this: &StudyResult, against: &StudyResult) -> Vec<Pair> {
 
 /// The extremes of the columns; those of the drive and the time only where they differ.
 fn columns(this: &StudyResult, against: &StudyResult) -> Vec<Pair> {
-    let mut pairs: Vec<Pair> = running(this, against)
-        .into_iter()
-        .filter(Pair::differs)
-        .collect();
+    let running = running(this, against);
+    let told: Vec<String> = running.iter().map(|p| p.name.clone()).collect();
+    let mut pairs: Vec<Pair> = running.into_iter().filter(Pair::differs).collect();
     let (one, two) = (extremes(this), extremes(against));
     let of = |list: &'_ [Extremes<'_>], name: &str| list.iter().position(|e| e.column.name == name);
     let names = both_names(
@@ -370,18 +407,18 @@ fn columns(this: &StudyResult, against: &StudyResult) -> Vec<Pair> {
             of(&one, name).map(|k| &one[k]),
             of(&two, name).map(|k| &two[k]),
         ];
-        // What runs in one design alone has been told.
-        if pairs.iter().all(|p| p.name != name) {
+        // What both run along, or one of them, has been told.
+        if !told.iter().any(|t| t == name) {
             pairs.extend(extreme_pairs(name, both));
         }
     }
     pairs
 }
 
-/// The ends of the time and of the column that the rows run along, which most designs have in common.
+/// The ends of the time and of the columns that the rows of one of both run along, where both have them.
 fn running(this: &StudyResult, against: &StudyResult) -> Vec<Pair> {
-    let along = this.abscissa().map_or("", |c| c.name.as_str());
-    let names = both_names(["time"].into_iter(), [along].into_iter());
+    let along = [this, against].map(|result| result.abscissa().map_or("", |c| &c.name));
+    let names = both_names(["time", along[0]].into_iter(), [along[1]].into_iter());
     let designs = [this, against].map(|result| {
         let places = result.abscissa().map_or(&[][..], |c| &c.values);
         (result, places, Sizes::of(&result.table.columns))
@@ -389,7 +426,7 @@ fn running(this: &StudyResult, against: &StudyResult) -> Vec<Pair> {
     let pairs = names.into_iter().flat_map(|name| {
         let both = designs.each_ref().map(|(result, along, sizes)| {
             let column = result.table.column(name)?;
-            Some(extremes_of(column, along, sizes))
+            Some(extremes_of(column, &result.table, along, sizes))
         });
         match &both {
             [Some(_), Some(_)] => extreme_pairs(name, [both[0].as_ref(), both[1].as_ref()]),

@@ -407,8 +407,11 @@ pub fn beyond_limit(motion: &Motion, missed: &[(EndReason, f64)]) -> Diagnostic 
         .iter()
         .map(|(_, at)| {
             let limit = if *at > high { high } else { low };
-            let [at, limit] = units.texts([*at, limit], dimension);
-            format!("{at} is beyond {limit}")
+            let by = units.text((*at - limit).abs(), dimension);
+            match units.texts([*at, limit], dimension) {
+                [at, limit] if at == limit => format!("{at} is beyond {limit} by {by}"),
+                [at, limit] => format!("{at} is beyond {limit}"),
+            }
         })
         .collect();
     let stuck = missed.iter().all(|(r, _)| *r == EndReason::Stuck);

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::result::StudyResult;
-use crate::table::Column;
+use crate::table::{Column, Table};
 
 /// What is less than this part of the largest value of its unit in the table is rounding.
 pub const ROUNDING: f64 = 1e-12;
@@ -41,7 +41,7 @@ pub fn extremes(result: &StudyResult) -> Vec<Extremes<'_>> {
     let own = |column: &&Column| column.name != along.name && column.name != "time";
     let columns = result.table.columns.iter().filter(own);
     columns
-        .map(|column| extremes_of(column, &along.values, &sizes))
+        .map(|column| extremes_of(column, &result.table, &along.values, &sizes))
         .collect()
 }
 
@@ -63,15 +63,25 @@ impl Sizes {
     }
 }
 
-/// The extremes of a column over `along`, which has as many rows. Of values that differ by rounding the first one has the place.
-pub(crate) fn extremes_of<'r>(column: &'r Column, along: &[f64], sizes: &Sizes) -> Extremes<'r> {
-    let values = &column.values;
+/// The extremes of a column of a table over `along`, in the rows that were reached. Of values that differ by rounding the first one
+/// has the place.
+pub(crate) fn extremes_of<'r>(
+    column: &'r Column,
+    table: &Table,
+    along: &[f64],
+    sizes: &Sizes,
+) -> Extremes<'r> {
+    let reached = |row: usize| table.closure.get(row).is_none_or(|c| c.is_finite());
+    let rows = column.values.iter().copied().enumerate();
+    let values: Vec<(usize, f64)> = rows
+        .filter(|(row, v)| !v.is_nan() && reached(*row))
+        .collect();
     let size = sizes.0.get(column.unit.text()).copied().unwrap_or(0.0);
     let best = |better: fn(&f64, &f64) -> bool| {
-        let found = values.iter().copied().filter(|v| !v.is_nan());
+        let found = values.iter().map(|(_, value)| *value);
         let value = found.reduce(|a, b| if better(&b, &a) { b } else { a })?;
-        let alike = |v: &f64| *v == value || (v - value).abs() <= ROUNDING * size;
-        let row = values.iter().position(alike)?;
+        let alike = |v: f64| v == value || (v - value).abs() <= ROUNDING * size;
+        let (row, _) = *values.iter().find(|(_, v)| alike(*v))?;
         let at = along.get(row).copied().unwrap_or(f64::NAN);
         Some(Extreme { value, row, at })
     };
@@ -109,7 +119,25 @@ mod tests {
             column("h", "mm", &[1e-13, -1e-12, f64::INFINITY]),
         ];
         let sizes = Sizes::of(&columns);
-        let [f, g, h] = [0, 1, 2].map(|k| extremes_of(&columns[k], &[5.0, 6.0, 7.0], &sizes));
+        let table = |closure: &[f64]| Table {
+            name: "t".to_owned(),
+            columns: Vec::new(),
+            closure: closure.to_vec(),
+            smallest_singular_value: Vec::new(),
+            forces: None,
+            notes: Vec::new(),
+        };
+        let along = [5.0, 6.0, 7.0];
+        let whole = table(&[0.0; 3]);
+        let [f, g, h] = [0, 1, 2].map(|k| extremes_of(&columns[k], &whole, &along, &sizes));
+        let part = table(&[0.0, 0.0, f64::NAN]);
+        let drive = column("m", "deg", &[10.0, 20.0, 30.0]);
+        let reached = extremes_of(&drive, &part, &along, &sizes).largest.unwrap();
+        assert_eq!(
+            (reached.value, reached.at),
+            (20.0, 6.0),
+            "demanded is not reached"
+        );
         assert_eq!(
             f.largest.unwrap().at,
             5.0,

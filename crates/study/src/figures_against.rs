@@ -54,14 +54,12 @@ struct Beside {
     values: [(Vec<f64>, Unit); 2],
 }
 
-/// Curves over what the rows run along, where that is the same quantity.
+/// Curves over what this design's rows run along, where the other one knows that too.
 fn over_the_drive(result: &StudyResult, curves: &[Column], other: &StudyResult) -> Vec<Beside> {
-    let (Some(own), Some(along)) = (result.abscissa(), other.abscissa()) else {
+    let along = result.abscissa().and_then(|own| quantity(other, &own.name));
+    let Some(along) = along else {
         return Vec::new();
     };
-    if own.name != along.name {
-        return Vec::new();
-    }
     let beside = |(index, curve): (usize, &Column)| {
         let column = quantity(other, &curve.name)?;
         let values = [along, column].map(|c| (c.values.clone(), c.unit.clone()));
@@ -133,6 +131,12 @@ fn overlay(plot: &mut PlotSpec, others: Vec<Beside>, matched: &Matched) {
     };
     let others: Vec<Curve> = others.into_iter().filter_map(curve).collect();
     if others.is_empty() {
+        for curve in &mut plot.curves {
+            let name = if alone { "" } else { &curve.label };
+            curve.label = format!("{name} only in this design")
+                .trim_start()
+                .to_owned();
+        }
         return;
     }
     for curve in &mut plot.curves {

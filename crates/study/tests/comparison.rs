@@ -1,5 +1,7 @@
 //! Two designs beside each other, held against themselves, against a scaled one and against what is worked out by hand.
 
+#![allow(clippy::unwrap_used)]
+
 use kempe_model::Model;
 use kempe_study::{
     Comparison, Design, Kind, Pair, ReportAgainst, ReportOrigin, Silent, StudyOutcome, check,
@@ -267,4 +269,54 @@ fn a_report_has_both() {
     }
     assert_eq!(report.sections[0].title, "Comparison");
     assert!(report.other_source.is_none(), "one text");
+}
+
+/// A crank-rocker whose rocker passes 180 degrees on its way, so that a little change counts its angle from another turn.
+#[test]
+fn angles_that_are_whole_turns_apart_say_so() {
+    let text = "units = { length = \"mm\", angle = \"deg\" }\n[parameters]\nl = \"28.4 mm\"\n[links]\n\
+        frame = { A = [0, 0], D = [60, 0] }\ncrank = { A-B = 20 }\ncoupler = { B-C = \"l\" }\nrocker = { D-C = 40 }\n[drives]\n\
+        motor = { turns = \"crank\", from = 90, to = 60, speed = \"60 rpm\" }\n[assembly]\nC = { near = [20, 0] }\n[measures]\n\
+        swing = \"angle(rocker)\"\nm = \"mean(swing)\"\n[studies.turn]\nkind = \"motion\"\nstep = 2\ncolumns = [\"swing\"]\n";
+    let found = compared(&model(text, &[]), &model(text, &[("l", "28.1 mm")]));
+    let mean = pair(&found, Kind::Number, "m");
+    assert!(mean.difference().unwrap().abs() > 350.0);
+    let (apart, rest) = mean.note.split_once(' ').unwrap();
+    assert!(
+        (apart.parse::<f64>().unwrap() - 0.49).abs() < 0.01,
+        "{}",
+        mean.note
+    );
+    assert!(rest.contains("apart but for whole turns"), "{rest}");
+}
+
+/// Rows along the drive beside rows along time: the same quantities, whichever comes first.
+#[test]
+fn what_the_rows_of_one_run_along_is_a_column_of_the_other() {
+    let drive = four_bar(1.0, "mm", 1.0, COLUMNS);
+    let circuit = drive.replace("step = 10", "circuit = true\nrows = 50");
+    let [drive, circuit] = [drive, circuit].map(|text| model(&text, &[]));
+    for (this, other) in [(&drive, &circuit), (&circuit, &drive)] {
+        let found = compared(this, other);
+        let mut pairs = found.studies.iter().flat_map(|s| &s.pairs);
+        assert!(
+            pairs.all(|p| p.name != "motor" || p.note.is_empty()),
+            "{found:?}"
+        );
+    }
+    let (one, two) = (outcomes(&drive), outcomes(&circuit));
+    let [one, two] = [&one, &two].map(|o| o[0].result.as_ref().unwrap());
+    let plots = figures_against(&drive, one, &circuit, two);
+    assert_eq!(
+        plots[0].1.curves.len(),
+        2,
+        "over the drive, which both know"
+    );
+    let alone = figures_against(&circuit, two, &drive, one);
+    let labels: Vec<&str> = alone[0].1.curves.iter().map(|c| c.label.as_str()).collect();
+    assert_eq!(
+        labels,
+        ["only in this design"],
+        "the other one knows no arc"
+    );
 }

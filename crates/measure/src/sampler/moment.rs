@@ -87,6 +87,11 @@ impl<F: ForceSource> Sampler<F> {
         self.clock().time_of(drive, value)
     }
 
+    /// A time, s, where the motion lasts so long.
+    pub fn within(&self, time: f64) -> Option<f64> {
+        self.clock().within(time)
+    }
+
     /// The drive whose coordinate is the path parameter.
     pub fn path_drive(&self) -> Option<DriveId> {
         self.clock().path_drive()

@@ -18,10 +18,13 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
     pub(super) fn over(&mut self, statistic: Statistic, measure: &Measure) -> Varying {
         let nothing = Varying::from_f64(f64::NAN);
         match statistic {
-            Statistic::At { drive: None, value } => {
-                let place = self.at_time(Varying::from_f64(value));
-                self.value(measure, place)
-            }
+            Statistic::At { drive: None, value } => match self.sampler.within(value) {
+                Some(time) => {
+                    let place = self.at_time(Varying::from_f64(time));
+                    self.value(measure, place)
+                }
+                None => nothing,
+            },
             Statistic::At {
                 drive: Some(drive),
                 value,

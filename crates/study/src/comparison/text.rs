@@ -86,6 +86,10 @@ impl StudyPair {
             &numbers,
         ));
         all.extend(self.extremes_listing(&of(&[Kind::Smallest, Kind::Largest])));
+        all.extend(self.told.iter().map(|listing| Listing {
+            title: format!("Of the other design: {}", listing.title),
+            ..listing.clone()
+        }));
         all
     }
 
