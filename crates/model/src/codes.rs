@@ -116,6 +116,7 @@ pub const LATER_CODES: &[Code] = &[
     code("circuit-without-time", "steps of time are asked for along a circuit"),
     code("command-line", "the command line cannot be read"),
     code("contradictory-pressures", "a cylinder drains against more pressure than it is fed with"),
+    code("crowded-picture", "a picture has more sizes in it than can be told apart"),
     code("cylinder-count", "fewer than one cylinder"),
     code("cylinder-too-weak", "a cylinder cannot give the force at its highest pressure"),
     code("damper-ends", "an end of a damper is on no link"),

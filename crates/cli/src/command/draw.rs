@@ -98,6 +98,9 @@ fn write(
     Ok(())
 }
 
+/// A picture has room for so many sizes: rows of four-bars with more have texts over each other.
+const MOST_SIZES: usize = 48;
+
 fn kind(arguments: &Draw) -> Result<Kind, Box<Diagnostic>> {
     let ending = arguments
         .output
@@ -169,6 +172,15 @@ fn picture(
     let (mut view, frames, shown) = pose(arguments, model, speaker)?;
     if arguments.dimensions {
         view.dimensions = dimensions(model, &view);
+        let sizes = view.dimensions.len();
+        if sizes > MOST_SIZES && kind != Kind::Dxf {
+            let message = format!(
+                "{sizes} sizes are more than the picture has room for: some may lie over each other or beyond its edge"
+            );
+            let diagnostic = Diagnostic::warning("crowded-picture", message);
+            speaker.tell(&[diagnostic
+                .help("write a .dxf, whose layer DIMENSIONS can be enlarged, or look them up with `kempe check`")]);
+        }
     }
     let stage = Stage::new(&view, &frames, options);
     match kind {
