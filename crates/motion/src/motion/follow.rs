@@ -11,6 +11,8 @@ use crate::trace::{Follower, Node, distance};
 pub const STEP_LIMIT: usize = 200_000;
 /// A part this far out, in mechanism sizes, is taken to run away to infinity.
 pub const FAR: f64 = 1e3;
+/// What is this far out, in mechanism sizes, while the drive stands still, is on its way there.
+const ON_ITS_WAY: f64 = 10.0;
 /// A body that turns on by this much, rad, while the drive all but stands still is taken to run away too.
 pub const WHIRLING: f64 = 300.0;
 /// Rate of the scaled path parameter along the arc below which the drive all but stands still.
@@ -126,7 +128,12 @@ fn follow(
         // Where the drive's coordinate no longer changes while the mechanism moves on, rounding alone decides its sign.
         let still = [from, &next].map(|node| node.parameter_rate().abs() < STILL);
         if still == [true; 2] && distance(&from.z, &next.z) > STILL_STEP {
-            return Some((nodes, ended(EndReason::Runaway)));
+            // What has not gone far yet turns where branches all but meet: links of equal lengths that fold.
+            let reason = match far(&next.z, &nodes[0].z, ON_ITS_WAY) {
+                true => EndReason::Runaway,
+                false => EndReason::Stuck,
+            };
+            return Some((nodes, ended(reason)));
         }
         if next.parameter_rate() * direction <= 0.0 {
             let limit = locate_limit(follower, from, &next);
@@ -153,11 +160,13 @@ fn follow(
 /// all but stands still, turning on and on counts as that too.
 pub(crate) fn runs_away(z: &[f64], start: &[f64], standing: bool) -> bool {
     let mut bodies = z.chunks_exact(3).zip(start.chunks_exact(3));
-    bodies.any(|(p, q)| {
-        (p[0] - q[0]).abs() > FAR
-            || (p[1] - q[1]).abs() > FAR
-            || (standing && (p[2] - q[2]).abs() > WHIRLING)
-    })
+    far(z, start, FAR) || (standing && bodies.any(|(p, q)| (p[2] - q[2]).abs() > WHIRLING))
+}
+
+/// Whether some body is farther from where it was at the start, in mechanism sizes.
+fn far(z: &[f64], start: &[f64], sizes: f64) -> bool {
+    let mut bodies = z.chunks_exact(3).zip(start.chunks_exact(3));
+    bodies.any(|(p, q)| (p[0] - q[0]).abs() > sizes || (p[1] - q[1]).abs() > sizes)
 }
 
 /// The places ahead where the drives' rates jump, as near and far sides in scaled parameters. Between the two lies less
