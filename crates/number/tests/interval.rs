@@ -248,6 +248,12 @@ fn the_branch_cut_gives_the_full_turn() {
     assert_eq!(Interval::zero().atan2(left), full);
     assert_eq!(around.atan2(around), full);
     assert!(around.atan2(-left).mag() < 0.1);
+    // what begins at zero has no negative angle
+    let upper = around.abs();
+    let (back, near) = (upper.atan2(left), upper.atan2(around));
+    assert!(back.lo() > 2.9 && back.hi() >= PI, "{back:?}");
+    assert!(near.lo() == 0.0 && near.hi() >= PI, "{near:?}");
+    assert!(upper.atan2(-left).lo() == 0.0, "not a little below");
     let above = Interval::new(0.1, 0.2).atan2(left);
     assert!(above.lo() > 2.9 && above.hi() < PI);
 }

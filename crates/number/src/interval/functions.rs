@@ -83,7 +83,8 @@ impl Number for Interval {
         )
     }
 
-    /// [-pi, pi] when the box meets the branch cut (the negative x axis and the origin).
+    /// [-pi, pi] when the box lies on both sides of the branch cut (the negative x axis and the origin); above it, which `y` from
+    /// a positive zero on says, no angle is negative.
     ///
     /// Elsewhere the angle is monotonic along every edge and two corners give the bounds.
     fn atan2(self, x: Self) -> Self {
@@ -92,8 +93,15 @@ impl Number for Interval {
             return Self::EMPTY;
         }
         let pi = PI.next_up();
+        // A negative zero may stand for what lies below.
+        let above = y.lo >= 0.0 && y.lo.is_sign_positive() && y.hi > 0.0;
         if y.contains_zero() && x.lo <= 0.0 {
-            return Self { lo: -pi, hi: pi };
+            let lo = match above {
+                false => -pi,
+                true if x.hi >= 0.0 => 0.0,
+                true => down2(math::atan2(y.hi, x.hi)).max(0.0),
+            };
+            return Self { lo, hi: pi };
         }
         let (lo, hi) = if y.lo >= 0.0 {
             let right = math::atan2(if x.hi > 0.0 { y.lo } else { y.hi }, x.hi);
@@ -107,7 +115,7 @@ impl Number for Interval {
             (math::atan2(y.lo, x.lo), math::atan2(y.hi, x.lo))
         };
         Self {
-            lo: down2(lo).max(-pi),
+            lo: down2(lo).max(if above { 0.0 } else { -pi }),
             hi: up2(hi).min(pi),
         }
     }
