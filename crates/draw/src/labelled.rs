@@ -8,7 +8,7 @@ use crate::stage::Stage;
 use crate::symbols::Part;
 
 /// Poses looked at to place labels for a whole motion.
-const SAMPLES: usize = 16;
+const SAMPLES: usize = 8;
 
 impl Stage<'_> {
     fn most_choices(&self) -> usize {

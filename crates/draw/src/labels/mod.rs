@@ -75,9 +75,9 @@ pub(crate) fn place(labels: &[Wanted], around: &[Surroundings]) -> Vec<Option<us
     if labels.len() > MOST_LABELS {
         return chosen;
     }
-    let own: Vec<Vec<f64>> = labels
-        .iter()
-        .map(|label| label.choices.iter().map(|c| alone(c, around)).collect())
+    // what choices cost by themselves, where that was asked for
+    let mut own: Vec<Vec<Option<f64>>> = (labels.iter())
+        .map(|label| vec![None; label.choices.len()])
         .collect();
     // those placed so far count; later labels do not stand anywhere yet
     let mut known = vec![false; labels.len()];
@@ -91,7 +91,11 @@ pub(crate) fn place(labels: &[Wanted], around: &[Surroundings]) -> Vec<Option<us
             };
             let mut best = (f64::INFINITY, None);
             for (index, choice) in labels[number].choices.iter().enumerate() {
-                let least = own[number][index];
+                // nothing costs less than how much it is disliked
+                if choice.dislike >= best.0 {
+                    continue;
+                }
+                let least = *own[number][index].get_or_insert_with(|| alone(choice, around));
                 if least >= best.0 {
                     continue;
                 }
