@@ -257,6 +257,16 @@ fn both_are_chosen_and_saved(page: &Page) {
     let svg = String::from_utf8(bytes).expect("text");
     assert!(svg.contains(">this</text>") && svg.contains(">against</text>"));
     assert!(svg.contains("stroke-dasharray=\"7 5\"") && !svg.contains("var("));
+    let (picture, pixels) = saved_png(page);
+    let mut colors = pixels[..picture.buffer_size()].chunks(picture.color_type.samples());
+    assert!(
+        colors.any(|c| c.starts_with(&[0xe6, 0x9f, 0x00])),
+        "the other curve"
+    );
+}
+
+/// The plot that is shown, saved as PNG.
+fn saved_png(page: &Page) -> (png::OutputInfo, Vec<u8>) {
     let (name, bytes) = page.saved(&format!("{SHOWN} [data-tool=png]"));
     assert_eq!(name, "turn-swing.png");
     let mut reader = png::Decoder::new(Cursor::new(bytes))
@@ -264,11 +274,7 @@ fn both_are_chosen_and_saved(page: &Page) {
         .expect("a PNG");
     let mut pixels = vec![0; reader.output_buffer_size().expect("a size")];
     let picture = reader.next_frame(&mut pixels).expect("a picture");
-    let mut colors = pixels[..picture.buffer_size()].chunks(picture.color_type.samples());
-    assert!(
-        colors.any(|c| c.starts_with(&[0xe6, 0x9f, 0x00])),
-        "the other curve"
-    );
+    (picture, pixels)
 }
 
 /// The page is no wider than the window, and what can be used has a name.
@@ -519,13 +525,7 @@ fn what_is_saved_is_whole(page: &Page, at: &Path) {
         "it stands by itself"
     );
 
-    let (name, bytes) = page.saved(&format!("{SHOWN} [data-tool=png]"));
-    assert_eq!(name, "turn-swing.png");
-    let mut reader = png::Decoder::new(Cursor::new(bytes))
-        .read_info()
-        .expect("a PNG");
-    let mut pixels = vec![0; reader.output_buffer_size().expect("a size")];
-    let picture = reader.next_frame(&mut pixels).expect("a picture");
+    let (picture, pixels) = saved_png(page);
     let box_ = page.value(&format!(
         "document.querySelector('{SHOWN} .plot svg').getAttribute('viewBox').split(' ').map(Number)"
     ));

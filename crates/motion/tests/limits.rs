@@ -15,7 +15,13 @@ use kempe_motion::{EndReason, Motion, MotionError};
 use support::{Case, Rng, V, add, norm, polar, sub, times, wrapped};
 
 /// A four-bar with crank a, coupler b, rocker c, frame d (mm), the crank driven from `from` to `to` rad.
-fn four_bar([a, b, c, d]: [f64; 4], from: f64, to: f64, hint: &str) -> Case {
+fn four_bar(lengths: [f64; 4], from: f64, to: f64, hint: &str) -> Case {
+    let law = format!("from = {from:e}, to = {to:e}, speed = \"1 rad/s\"");
+    driven(lengths, &law, hint)
+}
+
+/// The same with the crank driven by a law.
+fn driven([a, b, c, d]: [f64; 4], law: &str, hint: &str) -> Case {
     Case::read(
         &format!(
             "units = {{ length = \"mm\", angle = \"rad\" }}
@@ -25,7 +31,7 @@ crank = {{ A-B = {a} }}
 coupler = {{ B-C = {b} }}
 rocker = {{ D-C = {c} }}
 [drives]
-motor = {{ turns = \"crank\", from = {from:e}, to = {to:e}, speed = \"1 rad/s\" }}
+motor = {{ turns = \"crank\", {law} }}
 [assembly]
 {hint}
 "
@@ -862,21 +868,8 @@ fn cranks_that_rest_on_change_points_go_on_along_their_branch() {
             now = to;
         }
         let side = if rng.chance(0.5) { "left" } else { "right" };
-        let text = format!(
-            "units = {{ length = \"mm\", angle = \"rad\" }}
-[links]
-frame = {{ A = [0, 0], D = [{d}, 0] }}
-crank = {{ A-B = {a} }}
-coupler = {{ B-C = {b} }}
-rocker = {{ D-C = {c} }}
-[drives]
-motor = {{ turns = \"crank\", from = {start:e}, law = [{}] }}
-[assembly]
-C = \"{side} of B -> D\"
-",
-            pieces.join(", ")
-        );
-        let case = Case::read(&text, "rests.toml");
+        let text = format!("from = {start:e}, law = [{}]", pieces.join(", "));
+        let case = driven([a, b, c, d], &text, &format!("C = \"{side} of B -> D\""));
         let motion = case.must_move();
         assert_eq!(motion.reached(), motion.demanded, "{text}");
         let mode = if side == "left" { 1.0 } else { -1.0 };
