@@ -195,7 +195,7 @@ fn a_design_that_cannot_run_does_not_lose_the_other() {
     assert!(!out.join("turn.against.csv").exists());
     let table = fs::read_to_string(out.join("comparison.csv")).expect("text");
     assert!(
-        table.contains("could not run in the other design"),
+        table.contains("it could not run in the other design"),
         "{table}"
     );
     let report = fs::read_to_string(out.join("report.html")).expect("text");

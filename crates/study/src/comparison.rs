@@ -5,7 +5,7 @@ mod text;
 
 use std::f64::consts::{PI, TAU};
 
-use kempe_model::Model;
+use kempe_model::{Diagnostic, Model};
 use kempe_units::{Dimension, Unit, format_digits};
 
 use crate::extremes::{Extreme, Extremes, Sizes, extremes, extremes_of, without_rounding};
@@ -31,6 +31,12 @@ impl<'a> Design<'a> {
     pub fn result(&self, study: &str) -> Option<&'a StudyResult> {
         let outcome = self.outcomes.iter().find(|o| o.study.name == study)?;
         outcome.result.as_ref().ok()
+    }
+
+    /// Why a study of this name that was begun has no result.
+    fn failure(&self, study: &str) -> Option<&'a [Diagnostic]> {
+        let outcome = self.outcomes.iter().find(|o| o.study.name == study)?;
+        outcome.result.as_ref().err().map(Vec::as_slice)
     }
 }
 
@@ -117,7 +123,7 @@ pub struct Pair {
     pub places: [Option<f64>; 2],
     /// The size of the numbers it is one of: what is 1e-12 of it is rounding.
     pub size: f64,
-    /// Why one value is missing; may be empty.
+    /// Why a value or the difference is missing, or how the difference is to be read; may be empty.
     pub note: String,
 }
 
@@ -157,7 +163,8 @@ impl Pair {
 impl StudyPair {
     /// Whether anything differs.
     pub fn differs(&self) -> bool {
-        !self.note.is_empty() || self.pairs.iter().any(Pair::differs)
+        let told = !self.note.is_empty() || !self.told.is_empty();
+        told || self.pairs.iter().any(Pair::differs)
     }
 }
 
@@ -357,14 +364,16 @@ fn study_pair(name: &str, this: &Design<'_>, against: &Design<'_>) -> StudyPair 
 
 /// Why a study cannot be compared.
 fn missing(name: &str, this: &Design<'_>, against: &Design<'_>) -> String {
-    let failed = |design: &Design<'_>| design.outcomes.iter().any(|o| o.study.name == name);
     let has = |design: &Design<'_>| design.model.studies.iter().any(|s| s.name == name);
     let said = [(this, "this design"), (against, "the other design")].map(|(design, whose)| {
         let why = match design.result(name) {
             Some(_) => return None,
-            None if failed(design) => "could not run in",
-            None if has(design) => "was not run of",
-            None => "there is no such study in",
+            None => match design.failure(name) {
+                Some(found) if found.iter().any(|d| d.code == "stopped") => "it was stopped in",
+                Some(_) => "it could not run in",
+                None if has(design) => "it was not run in",
+                None => "there is no such study in",
+            },
         };
         Some(format!("{why} {whose}"))
     });

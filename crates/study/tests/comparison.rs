@@ -182,7 +182,7 @@ fn a_design_that_cannot_run_is_told_and_does_not_hide_the_other() {
     let study = &comparison.studies[0];
     assert_eq!(
         study.note,
-        "not compared: could not run in the other design"
+        "not compared: it could not run in the other design"
     );
     assert_eq!(study.rows, [Some((37, 0)), None]);
     assert!(comparison.differs());
@@ -318,5 +318,30 @@ fn what_the_rows_of_one_run_along_is_a_column_of_the_other() {
         labels,
         ["only in this design"],
         "the other one knows no arc"
+    );
+}
+
+/// Counterweights of two designs: what to write for the other one stands beside, and is a difference.
+#[test]
+fn what_the_other_design_chooses_is_told() {
+    let text = four_bar(1.0, "mm", 1.0, "rows = 13")
+        .replace("a = \"20 mm\"", "a = \"20 mm\"\nr = \"30 mm\"")
+        + "[masses]\nload = { at = [15, 0], on = \"crank\", mass = \"1 kg\" }\n\
+           [studies.quiet]\nkind = \"balance\"\non = [\"crank\"]\nradius = \"r\"\n";
+    let (this, other) = (model(&text, &[]), model(&text, &[("r", "60 mm")]));
+    let found = compared(&this, &other);
+    let study = found.studies.iter().find(|s| s.name == "quiet").unwrap();
+    let alone = outcomes(&other);
+    let own = alone
+        .iter()
+        .find_map(|o| o.result.as_ref().ok().filter(|r| r.name == "quiet"));
+    assert_eq!(study.told, own.unwrap().listings);
+    assert!(!study.told.is_empty() && study.differs());
+    let titles: Vec<String> = study.listings().into_iter().map(|l| l.title).collect();
+    assert!(
+        titles
+            .iter()
+            .any(|t| t.starts_with("Of the other design: ")),
+        "{titles:?}"
     );
 }

@@ -214,6 +214,28 @@ fn a_limit_at_either_end_has_its_reason() {
     }
 }
 
+/// A demand that is 3e-11 mm too long: the two places read alike, whatever the digits.
+#[test]
+fn a_limit_missed_by_a_hair_says_by_how_much() {
+    let text = "units = { length = \"mm\", angle = \"deg\" }\n[links]\nframe = { A = [0, 0], E = [-28.194, -3] }\n\
+        boom = { A-B = 23.853, T = [31.702, 1] }\n[drives]\n\
+        push = { cylinder = \"E-B\", from = 40.92702675490301, to = 52.206159189090066, speed = \"10 mm/s\" }\n\
+        [assembly]\nT = \"left of A -> E\"\n[studies.s]\nkind = \"motion\"\n";
+    let (found, said) = fails(text);
+    assert_eq!(found[0].code, "range-beyond-limit");
+    let (_, by) = said
+        .split_once("52.2062 mm is beyond 52.2062 mm by ")
+        .expect(&said);
+    let by: f64 = by
+        .split(' ')
+        .next()
+        .and_then(|x| x.parse().ok())
+        .expect(&said);
+    // hypot(28.194, 3) + 23.853
+    let over = 52.206159189090066 - (kempe_number::math::hypot(28.194, 3.0) + 23.853);
+    assert!((by - over).abs() < 1e-13, "{by} {over}");
+}
+
 #[test]
 fn a_loop_that_cannot_close_names_its_links_and_distances() {
     let text = FOUR_BAR.replace("D = [60, 0]", "D = [125, 0]");
