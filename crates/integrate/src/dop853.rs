@@ -7,7 +7,8 @@ mod coefficients;
 use coefficients::{BETWEEN, ERROR_3, ERROR_5, LAST, NODES, STAGE, STAGES};
 use kempe_number::math::powf;
 
-use crate::System;
+use crate::track::{At, Next, Track};
+use crate::{Stopped, System, Tolerance};
 
 /// Stages with their coefficients.
 type Terms = &'static [(usize, f64)];
@@ -23,56 +24,16 @@ const SHORTER: f64 = 0.2;
 const LONGER: f64 = 6.0;
 /// Order of the error that rules the step.
 const ORDER: f64 = 8.0;
-/// A step without rates is tried again so much shorter.
-const RETREAT: f64 = 0.25;
-/// A step shorter than this part of the time goes nowhere.
-const SHORTEST: f64 = 4.0 * f64::EPSILON;
-
-/// How large the error of one step may be: `absolute + relative * |y|`, in the root of the mean square of all components.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Tolerance {
-    /// Part of the size of a component.
-    pub relative: f64,
-    /// By component, in its own unit; one for all where there is one only.
-    pub absolute: Vec<f64>,
-}
-
-impl Tolerance {
-    /// The scale against which an error of component `index` of this size counts.
-    fn scale(&self, index: usize, size: f64) -> f64 {
-        let own = self.absolute.get(index).or(self.absolute.last());
-        own.copied().unwrap_or(0.0) + self.relative * size
-    }
-}
-
-/// Why no step was made.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Stopped {
-    /// The rates are not finite or not there just ahead.
-    NoRates,
-    /// No step is short enough for the tolerance: the solution runs away, jumps, or is stiff beyond an explicit method.
-    TooShort,
-}
 
 /// A solution that is followed step by step. All storage is its own; steps allocate nothing.
 #[derive(Clone, Debug)]
 pub struct Dop853 {
-    time: f64,
-    state: Vec<f64>,
-    before: f64,
-    earlier: Vec<f64>,
-    /// What rounding took from the state, so that long motions lose nothing to many steps.
-    carry: Vec<f64>,
+    pub(crate) track: Track,
     stages: Vec<f64>,
-    trial: Vec<f64>,
     between: Vec<f64>,
     known_between: bool,
     /// Whether the rates at the state are those of the last stage of the step that led there, not yet the first of the next.
     ended: bool,
-    step: f64,
-    tolerance: Tolerance,
-    refused: bool,
-    evaluations: usize,
 }
 
 impl Dop853 {
@@ -85,38 +46,55 @@ impl Dop853 {
         heading: f64,
         tolerance: Tolerance,
     ) -> Option<Self> {
-        let size = state.len();
-        let mut it = Self {
-            time,
-            state: state.to_vec(),
-            before: time,
-            earlier: state.to_vec(),
-            carry: vec![0.0; size],
+        let mut it = Self::on(Track::new(state.len(), heading, tolerance));
+        it.restart(system, time, state).then_some(it)
+    }
+
+    /// Storage for steps on a track, which is nowhere yet.
+    pub(crate) fn on(track: Track) -> Self {
+        let size = track.size();
+        Self {
+            track,
             stages: vec![0.0; STAGES * size],
-            trial: vec![0.0; size],
             between: vec![0.0; POWERS * size],
             known_between: false,
             ended: false,
-            step: heading.signum(),
-            tolerance,
-            refused: false,
-            evaluations: 0,
-        };
-        if !it.evaluate(system, 0, time, true) {
-            return None;
         }
-        it.step = heading.signum() * it.first_step(system);
-        Some(it)
+    }
+
+    /// Begins again from another state (one after an impact, say), with the storage it has. `false` where there are no rates.
+    pub fn restart(&mut self, system: &mut impl System, time: f64, state: &[f64]) -> bool {
+        self.track.place(time, state);
+        self.ended = false;
+        if !self.evaluate(system, 0, time, At::State) {
+            return false;
+        }
+        self.choose_step(system);
+        true
+    }
+
+    /// Chooses the next step from the rates alone.
+    pub(crate) fn choose_step(&mut self, system: &mut impl System) {
+        self.begin();
+        let size = self.track.size();
+        let (here, there) = self.stages.split_at_mut(size);
+        (self.track).choose_step(system, ORDER, here, &mut there[..size]);
+    }
+
+    /// Goes on from where another method led, with its rates there.
+    pub(crate) fn take_over(&mut self, rates: &[f64]) {
+        self.ended = false;
+        self.stages[..rates.len()].copy_from_slice(rates);
     }
 
     /// The time that was reached.
     pub fn time(&self) -> f64 {
-        self.time
+        self.track.time
     }
 
     /// The state there.
     pub fn state(&self) -> &[f64] {
-        &self.state
+        &self.track.state
     }
 
     /// The rates there.
@@ -126,84 +104,40 @@ impl Dop853 {
 
     /// The time before the last step.
     pub fn before(&self) -> f64 {
-        self.before
+        self.track.before
     }
 
     /// How often rates were asked for.
     pub fn evaluations(&self) -> usize {
-        self.evaluations
+        self.track.evaluations
     }
 
     fn stage(&self, index: usize) -> &[f64] {
-        let size = self.state.len();
+        let size = self.track.size();
         self.stages
             .get(index * size..(index + 1) * size)
             .unwrap_or(&[])
     }
 
-    /// Rates into a stage, at the state (`here`) or at the trial.
-    fn evaluate(&mut self, system: &mut impl System, index: usize, time: f64, here: bool) -> bool {
-        self.evaluations += 1;
-        let size = self.state.len();
-        let at = if here { &self.state } else { &self.trial };
+    /// Rates into a stage, at the state or at the trial.
+    fn evaluate(&mut self, system: &mut impl System, index: usize, time: f64, at: At) -> bool {
+        let size = self.track.size();
         let Some(rates) = self.stages.get_mut(index * size..(index + 1) * size) else {
             return false;
         };
-        system.rates(time, at, rates) && rates.iter().all(|r| r.is_finite())
+        self.track.rates(system, time, at, rates)
     }
 
-    /// `earlier + step * (sum of stages)` of a component.
+    /// The sum of stages of a component.
     fn sum(&self, terms: Terms, component: usize) -> f64 {
-        let size = self.state.len();
-        terms.iter().fold(0.0, |sum, (stage, factor)| {
-            sum + factor
-                * self
-                    .stages
-                    .get(stage * size + component)
-                    .copied()
-                    .unwrap_or(0.0)
-        })
+        sum(&self.stages, self.track.size(), terms, component)
     }
 
     fn try_at(&mut self, terms: Terms, step: f64) {
-        for component in 0..self.state.len() {
+        for component in 0..self.track.size() {
             let sum = self.sum(terms, component);
-            self.trial[component] = self.state[component] + step * sum;
+            self.track.trial[component] = self.track.state[component] + step * sum;
         }
-    }
-
-    /// Root of the mean square of something against the tolerance.
-    fn norm(&self, value: impl Fn(&Self, usize) -> f64, at: impl Fn(&Self, usize) -> f64) -> f64 {
-        let size = self.state.len();
-        let sum = (0..size).fold(0.0, |sum, k| {
-            let part = value(self, k) / self.tolerance.scale(k, at(self, k).abs());
-            sum + part * part
-        });
-        (sum / size.max(1) as f64).sqrt()
-    }
-
-    /// A first step by the size of the state, of its rates and of theirs (section II.4 there).
-    fn first_step(&mut self, system: &mut impl System) -> f64 {
-        let here = |it: &Self, k: usize| it.state[k];
-        let sizes = self.norm(here, here);
-        let rates = self.norm(|it, k| it.stages[k], here);
-        let rough = match sizes > 1e-5 && rates > 1e-5 {
-            true => 0.01 * sizes / rates,
-            false => 1e-6,
-        };
-        self.try_at(&[(0, 1.0)], rough * self.step.signum());
-        let time = self.time + rough * self.step.signum();
-        if !self.evaluate(system, 1, time, false) {
-            return RETREAT * rough;
-        }
-        let size = self.state.len();
-        let change = self.norm(|it, k| it.stages[size + k] - it.stages[k], here) / rough;
-        let most = rates.max(change);
-        let fine = match most <= 1e-15 {
-            true => (1e-3 * rough).max(1e-6),
-            false => powf(0.01 / most, 1.0 / ORDER),
-        };
-        fine.min(100.0 * rough)
     }
 
     /// One step that keeps the tolerance and does not pass `end`.
@@ -213,67 +147,53 @@ impl Dop853 {
     /// Where no step can be made; the state stays where it was.
     pub fn step(&mut self, system: &mut impl System, end: f64) -> Result<(), Stopped> {
         loop {
-            let left = end - self.time;
-            let last = self.step.abs() >= left.abs();
-            let step = if last { left } else { self.step };
-            let shortest = SHORTEST * self.time.abs().max(end.abs());
-            if !(step.abs() > shortest) {
-                if last && left.abs() <= shortest {
-                    // Nothing is left but rounding.
-                    self.time = end;
-                    return Ok(());
-                }
-                return Err(Stopped::TooShort);
-            }
+            let Next::Step { step, last } = self.track.next(end)? else {
+                return Ok(());
+            };
+            let end_of_step = if last { end } else { self.track.time + step };
+            // As long as the time that it takes, to the last bit: the solution may go far in little time.
+            let step = end_of_step - self.track.time;
             let Some(error) = self.attempt(system, step) else {
-                self.refused = true;
-                self.step = RETREAT * step;
-                if !(self.step.abs() > shortest) {
-                    return Err(Stopped::NoRates);
-                }
+                self.track.retreat(step)?;
                 continue;
             };
             let fits = SAFETY * powf(error, -1.0 / ORDER);
             if error > 1.0 {
-                self.refused = true;
-                self.step = step * fits.max(SHORTER);
+                self.track.refuse(step * fits.max(SHORTER));
                 continue;
             }
-            let most = if self.refused { 1.0 } else { LONGER };
+            let most = if self.track.refused { 1.0 } else { LONGER };
             let next = step * fits.clamp(SHORTER, most);
-            // A step cut off at the end says nothing against longer ones.
-            self.step = if last && next.abs() < self.step.abs() {
-                self.step
-            } else {
-                next
-            };
-            self.refused = false;
-            self.accept(if last { end } else { self.time + step });
+            self.track.follow_with(next, last);
+            self.accept(end_of_step);
             return Ok(());
+        }
+    }
+
+    /// The rates at the end of the last step are those at the beginning of this one.
+    fn begin(&mut self) {
+        if self.ended {
+            let size = self.track.size();
+            self.stages.copy_within(LAST * size..(LAST + 1) * size, 0);
+            self.ended = false;
         }
     }
 
     /// All stages of a step, with the trial at its end; the error against the tolerance, `None` where rates are missing.
     fn attempt(&mut self, system: &mut impl System, step: f64) -> Option<f64> {
-        if self.ended {
-            // The rates at the end of the last step are those at the beginning of this one.
-            let size = self.state.len();
-            self.stages.copy_within(LAST * size..(LAST + 1) * size, 0);
-            self.ended = false;
-        }
+        self.begin();
         for index in 1..OWN {
             self.try_at(STAGE[index], step);
-            if !self.evaluate(system, index, self.time + NODES[index] * step, false) {
+            let time = self.track.time + NODES[index] * step;
+            if !self.evaluate(system, index, time, At::Trial) {
                 return None;
             }
         }
         self.try_at(STAGE[LAST], step);
-        if !self.evaluate(system, LAST, self.time + step, false) {
+        if !self.evaluate(system, LAST, self.track.time + step, At::Trial) {
             return None;
         }
-        let size = |it: &Self, k: usize| it.state[k].abs().max(it.trial[k].abs());
-        let five = self.norm(|it, k| it.sum(ERROR_5, k), size);
-        let three = self.norm(|it, k| it.sum(ERROR_3, k), size);
+        let (five, three) = (self.error(ERROR_5), self.error(ERROR_3));
         let (five, three) = (five * five, three * three);
         if five == 0.0 && three == 0.0 {
             return Some(f64::MIN_POSITIVE);
@@ -281,19 +201,32 @@ impl Dop853 {
         Some((step.abs() * five / (five + 0.01 * three).sqrt()).max(f64::MIN_POSITIVE))
     }
 
-    fn accept(&mut self, time: f64) {
-        let step = time - self.time;
-        for k in 0..self.state.len() {
-            let (was, carry) = (self.state[k], self.carry[k]);
-            let add = step * self.sum(STAGE[LAST], k) + carry;
-            let now = was + add;
-            // Kahan: what the sum lost.
-            self.carry[k] = add - (now - was);
-            self.earlier[k] = was;
-            self.state[k] = now;
+    /// A sum of stages against the tolerance over the step that is tried.
+    fn error(&self, terms: Terms) -> f64 {
+        let track = &self.track;
+        let sum = |k| self.sum(terms, k);
+        (track.tolerance).norm(track.size(), sum, |k| track.size_over_step(k))
+    }
+
+    /// How large the last step is for the fastest change that nearby solutions show: its length times their rate. Steps
+    /// beyond the bound of stability, about 6, are those of a stiff system (section IV.2 of volume II).
+    pub(crate) fn strain(&self) -> f64 {
+        if !self.ended {
+            return 0.0;
         }
-        self.before = self.time;
-        self.time = time;
+        let track = &self.track;
+        let (size, before_last) = (track.size(), OWN - 1);
+        // The last two stages are taken at the same time at states that differ a little.
+        let rates =
+            track.norm(|k| self.stages[LAST * size + k] - self.stages[before_last * size + k]);
+        let states = track.norm(|k| self.sum(STAGE[LAST], k) - self.sum(STAGE[before_last], k));
+        if states > 0.0 { rates / states } else { 0.0 }
+    }
+
+    fn accept(&mut self, time: f64) {
+        let step = time - self.track.time;
+        let (stages, size) = (&self.stages, self.track.size());
+        (self.track).accept(time, |k| step * sum(stages, size, STAGE[LAST], k));
         self.known_between = false;
         self.ended = true;
     }
@@ -301,42 +234,44 @@ impl Dop853 {
     /// The state at a time within the last step, into `state`. Three more rates are asked for, once a step; `false` where
     /// they are not there.
     pub fn between(&mut self, system: &mut impl System, time: f64, state: &mut [f64]) -> bool {
-        let step = self.time - self.before;
+        let track = &self.track;
+        let step = track.time - track.before;
         if !self.ended || step == 0.0 {
-            state.copy_from_slice(&self.state);
+            state.copy_from_slice(&track.state);
             return true;
         }
         if !self.known_between && !self.find_between(system, step) {
             return false;
         }
-        let x = (time - self.before) / step;
-        let size = self.state.len();
+        let track = &self.track;
+        let x = (time - track.before) / step;
+        let size = track.size();
         for (k, value) in state.iter_mut().enumerate().take(size) {
             let mut sum = 0.0;
             for power in (0..POWERS).rev() {
                 sum += self.between[power * size + k];
                 sum *= if power % 2 == 0 { x } else { 1.0 - x };
             }
-            *value = self.earlier[k] + sum;
+            *value = track.earlier[k] + sum;
         }
         true
     }
 
     /// The polynomial between the ends of the last step.
     fn find_between(&mut self, system: &mut impl System, step: f64) -> bool {
-        let size = self.state.len();
+        let size = self.track.size();
         for index in LAST + 1..STAGES {
             for component in 0..size {
                 let sum = self.sum(STAGE[index], component);
-                self.trial[component] = self.earlier[component] + step * sum;
+                self.track.trial[component] = self.track.earlier[component] + step * sum;
             }
-            let time = self.before + NODES[index] * step;
-            if !self.evaluate(system, index, time, false) {
+            let time = self.track.before + NODES[index] * step;
+            if !self.evaluate(system, index, time, At::Trial) {
                 return false;
             }
         }
         for k in 0..size {
-            let change = self.state[k] - self.earlier[k];
+            let change = self.track.state[k] - self.track.earlier[k];
             let (first, last) = (self.stages[k], self.stages[LAST * size + k]);
             let rest = BETWEEN.map(|terms| step * self.sum(terms, k));
             let own = [
@@ -351,4 +286,12 @@ impl Dop853 {
         self.known_between = true;
         true
     }
+}
+
+/// The sum of stages of a component, in the order of the terms.
+fn sum(stages: &[f64], size: usize, terms: Terms, component: usize) -> f64 {
+    terms.iter().fold(0.0, |sum, (stage, factor)| {
+        let rate = stages.get(stage * size + component);
+        sum + factor * rate.copied().unwrap_or(0.0)
+    })
 }

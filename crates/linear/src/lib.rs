@@ -4,26 +4,34 @@
 //! | --- | --- |
 //! | `qr.rs` | dense systems and least squares on plain numbers, solved for any number |
 //! | `elimination.rs` | small systems on the stack, one matrix per lane |
+//! | `lu.rs` | square systems, real or complex, whose factors are kept |
 //! | `complex.rs`, `affine.rs` | complex systems, and linear equations that leave variables free |
 //! | `tridiagonal.rs` | splines |
 //! | `rank.rs` | the rank of large sparse matrices |
 //! | `singular.rs` | how near to losing rank a matrix is |
 //! | `dependent.rs` | least squares with columns that may explain each other |
+//! | `symmetric.rs`, `eigenvalues.rs` | eigenvalues: of symmetric matrices with their vectors, of any real matrix |
 
 mod affine;
 mod complex;
 mod dependent;
+mod eigenvalues;
 mod elimination;
+mod lu;
 mod qr;
 mod rank;
 mod singular;
+mod symmetric;
 mod tridiagonal;
 
 pub use affine::{Affine, eliminate};
 pub use complex::{C, solve_complex};
 pub use dependent::independent_least_squares;
+pub use eigenvalues::eigenvalues;
 pub use elimination::{Elimination, Matrix, Plain};
+pub use lu::{Entry, Lu};
 pub use qr::Qr;
 pub use rank::{RANK_TOLERANCE, SparseRow, rank};
 pub use singular::smallest_singular_value;
+pub use symmetric::{EigenPair, generalised_eigen, symmetric_eigen};
 pub use tridiagonal::{Tridiagonal, solve_tridiagonal};

@@ -1,0 +1,34 @@
+//! Joints with play: where journal and bearing, or block and guide, touch, which forces arise there, and what an impact delivers.
+//!
+//! | file | for |
+//! | --- | --- |
+//! | `touch.rs` | what two bodies do where they touch or nearly do, and what forces there do to them |
+//! | `pin.rs`, `guide.rs` | the places where a pin in its hole and a block in its guide touch |
+//! | `normal.rs` | forces that press: elastic, and dissipating |
+//! | `restitution.rs` | how much a law must dissipate for a wanted restitution, and which one it delivers |
+//! | `impact.rs` | the deepest indentation, the largest force and the duration of an impact |
+//! | `stiffness.rs` | the stiffness of two bodies from their materials and radii |
+//! | `friction.rs` | forces that resist sliding |
+//! | `unfit.rs` | what is no such joint |
+//!
+//! Laws and geometry run on any [`Number`](kempe_number::Number); what must be solved for is solved once, on plain numbers.
+
+mod friction;
+mod guide;
+mod impact;
+mod normal;
+mod pin;
+mod restitution;
+mod stiffness;
+mod touch;
+mod unfit;
+
+pub use friction::{Friction, Onset, falling_coefficient};
+pub use guide::BlockInGuide;
+pub use impact::Impact;
+pub use normal::{Damping, Normal, SLOWEST_APPROACH};
+pub use pin::PinWithPlay;
+pub use restitution::{Dissipation, damping_ratio_for, delivered_by_factor, delivered_by_ratio};
+pub use stiffness::{Fit, Material, stiffness};
+pub use touch::{Body, Touch, Wrench};
+pub use unfit::Unfit;

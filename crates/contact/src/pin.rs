@@ -1,0 +1,63 @@
+//! A pin with play: a journal of one body in the bearing of another.
+
+use kempe_mechanism::pose::{dot, sub};
+use kempe_number::Number;
+
+use crate::stiffness::room;
+use crate::unfit::not_negative;
+use crate::{Body, Touch, Unfit};
+
+/// A round hole in the first body and a round pin of the second in it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PinWithPlay<T> {
+    /// Centre of the bearing in the first body, m.
+    pub bearing: [T; 2],
+    /// Centre of the journal in the second body, m.
+    pub journal: [T; 2],
+    /// Radii of bearing and journal, m.
+    pub radii: [T; 2],
+}
+
+impl<T: Number> PinWithPlay<T> {
+    /// From centres in their bodies and radii, m.
+    ///
+    /// # Errors
+    ///
+    /// Where a radius is negative or the journal does not fit into the bearing.
+    pub fn new(bearing: [T; 2], journal: [T; 2], radii: [T; 2]) -> Result<Self, Unfit> {
+        not_negative("radius of the bearing", radii[0].value())?;
+        not_negative("radius of the journal", radii[1].value())?;
+        room(radii[0], radii[1])?;
+        Ok(Self {
+            bearing,
+            journal,
+            radii,
+        })
+    }
+
+    /// The clearance, m: the difference of the radii.
+    pub fn clearance(&self) -> T {
+        self.radii[0] - self.radii[1]
+    }
+
+    /// Where they touch, or would touch next. Where the centres are one the direction is that of the x axis: all are as near.
+    pub fn touch(&self, bodies: &[Body<T>; 2]) -> Touch<T> {
+        let centres = [
+            bodies[0].pose.place(self.bearing),
+            bodies[1].pose.place(self.journal),
+        ];
+        let apart = sub(centres[1], centres[0]);
+        let square = dot(apart, apart);
+        let distance = (-square).choose_with(T::zero, || square.sqrt());
+        let along = |k: usize, at_none: f64| {
+            (-square).choose_with(|| T::from_f64(at_none), || apart[k] / distance)
+        };
+        let normal = [along(0, 1.0), along(1, 0.0)];
+        let point = |k: usize| {
+            let ([x, y], radius) = (centres[k], self.radii[k]);
+            [x + normal[0] * radius, y + normal[1] * radius]
+        };
+        let gap = self.clearance() - distance;
+        Touch::new(bodies, [point(0), point(1)], normal, gap)
+    }
+}

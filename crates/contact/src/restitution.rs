@@ -1,0 +1,218 @@
+//! How much a normal law must dissipate for a wanted restitution, and which restitution it delivers.
+//!
+//! Laws `F = K d^n (1 + chi v / v0)` deliver the same restitution `e` for every stiffness, exponent, mass and approach speed v0:
+//! `m v dv/dd = -K d^n (1 + chi v / v0)` separates, and both halves of an impact meet in the deepest indentation where
+//! `chi (1 + e) = ln((1 + chi) / (1 - chi e))`. (Y. Gonthier et al., Multibody System Dynamics 11, 2004, have the same relation as
+//! their implicit factor.)
+//!
+//! With `q = -ln(1 - chi e)` the relation is `chi - ln(1 + chi) = q - (1 - exp(-q))`: both sides without cancellation.
+
+use kempe_number::math::{acos, acosh, exp, exp_m1, ln_1p};
+
+use crate::Unfit;
+
+/// Below this, differences of functions are taken from their series.
+pub(crate) const SMALL: f64 = 0.1;
+/// Terms of those series.
+const TERMS: i32 = 20;
+
+/// Whose factor chi makes a law of a wanted restitution e.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Dissipation {
+    /// The factor that delivers the wanted restitution.
+    #[default]
+    Exact,
+    /// 3 (1 - e) / 2: K. H. Hunt and F. R. E. Crossley, 1975.
+    HuntCrossley,
+    /// 6 (1 - e) / ((2 e - 1)^2 + 3): R. G. Herbert and D. C. McWhannell, 1977.
+    HerbertMcWhannell,
+    /// 3 (1 - e) / 4: T. W. Lee and A. C. Wang, 1983.
+    LeeWang,
+    /// 3 (1 - e^2) / 4: H. M. Lankarani and P. E. Nikravesh, 1990.
+    LankaraniNikravesh,
+    /// (1 - e^2) / e: the approximation of Y. Gonthier et al., 2004.
+    Gonthier,
+    /// 3 (1 - e^2) exp(2 (1 - e)) / 4: Q. Zhiying and L. Qishao, 2006.
+    ZhiyingQishao,
+    /// 8 (1 - e) / (5 e): P. Flores et al., 2011.
+    Flores,
+    /// 3 (1 - e) / (2 e): S. Hu and X. Guo, 2015.
+    HuGuo,
+}
+
+impl Dissipation {
+    /// All of them, the default first.
+    pub const ALL: [Self; 9] = [
+        Self::Exact,
+        Self::HuntCrossley,
+        Self::HerbertMcWhannell,
+        Self::LeeWang,
+        Self::LankaraniNikravesh,
+        Self::Gonthier,
+        Self::ZhiyingQishao,
+        Self::Flores,
+        Self::HuGuo,
+    ];
+
+    /// Its name in a model file.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Exact => "exact",
+            Self::HuntCrossley => "hunt-crossley",
+            Self::HerbertMcWhannell => "herbert-mcwhannell",
+            Self::LeeWang => "lee-wang",
+            Self::LankaraniNikravesh => "lankarani-nikravesh",
+            Self::Gonthier => "gonthier",
+            Self::ZhiyingQishao => "zhiying-qishao",
+            Self::Flores => "flores",
+            Self::HuGuo => "hu-guo",
+        }
+    }
+
+    /// The one of this name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|it| it.name() == name)
+    }
+
+    /// Its factor chi for a wanted restitution.
+    ///
+    /// # Errors
+    ///
+    /// Where the restitution is not above 0 and at most 1.
+    pub fn factor(self, restitution: f64) -> Result<f64, Unfit> {
+        let e = checked(restitution)?;
+        Ok(match self {
+            Self::Exact => exact_factor(e),
+            Self::HuntCrossley => 1.5 * (1.0 - e),
+            Self::HerbertMcWhannell => 6.0 * (1.0 - e) / ((2.0 * e - 1.0) * (2.0 * e - 1.0) + 3.0),
+            Self::LeeWang => 0.75 * (1.0 - e),
+            Self::LankaraniNikravesh => 0.75 * (1.0 - e * e),
+            Self::Gonthier => (1.0 - e * e) / e,
+            Self::ZhiyingQishao => 0.75 * (1.0 - e * e) * exp(2.0 * (1.0 - e)),
+            Self::Flores => 1.6 * (1.0 - e) / e,
+            Self::HuGuo => 1.5 * (1.0 - e) / e,
+        })
+    }
+
+    /// The restitution that its factor for a wanted one delivers.
+    ///
+    /// # Errors
+    ///
+    /// As [`Dissipation::factor`].
+    pub fn delivers(self, restitution: f64) -> Result<f64, Unfit> {
+        Ok(delivered_by_factor(self.factor(restitution)?))
+    }
+}
+
+fn checked(restitution: f64) -> Result<f64, Unfit> {
+    match restitution > 0.0 && restitution <= 1.0 {
+        true => Ok(restitution),
+        false => Err(Unfit::Restitution(restitution)),
+    }
+}
+
+/// The restitution that a law of this factor chi delivers: 1 for none, less for more.
+pub fn delivered_by_factor(chi: f64) -> f64 {
+    if !(chi > 0.0) {
+        return 1.0;
+    }
+    -exp_m1(-rebound_exponent(chi)) / chi
+}
+
+/// q of a factor chi.
+pub(crate) fn rebound_exponent(chi: f64) -> f64 {
+    let wanted = beyond_logarithm(chi);
+    // The right side of the relation lies between q - 1 and q.
+    root(|q| wanted - beyond_exponential(q), wanted + 1.0)
+}
+
+/// The factor chi that delivers a restitution.
+fn exact_factor(e: f64) -> f64 {
+    if e == 1.0 {
+        return 0.0;
+    }
+    let chi = |q: f64| -exp_m1(-q) / e;
+    // chi < 1 / e, so that q < (1 + e) / e.
+    let most = (1.0 + e) / e;
+    chi(root(
+        |q| beyond_logarithm(chi(q)) - beyond_exponential(q),
+        most,
+    ))
+}
+
+/// x - ln(1 + x).
+pub(crate) fn beyond_logarithm(x: f64) -> f64 {
+    if x.abs() < SMALL {
+        return x * x * series(-x, |k| f64::from(k + 2));
+    }
+    x - ln_1p(x)
+}
+
+/// x - (1 - exp(-x)).
+fn beyond_exponential(x: f64) -> f64 {
+    if x.abs() < SMALL {
+        let mut term = 0.5 * x * x;
+        return (3..TERMS).fold(0.0, |sum, k| {
+            let sum = sum + term;
+            term *= -x / f64::from(k);
+            sum
+        });
+    }
+    x + exp_m1(-x)
+}
+
+/// The sum of x^k / divisor(k), from k = 0.
+fn series(x: f64, divisor: impl Fn(i32) -> f64) -> f64 {
+    (0..TERMS)
+        .rev()
+        .fold(0.0, |sum, k| sum * x + 1.0 / divisor(k))
+}
+
+/// Where something that is positive just above 0 and negative at `high` changes its sign, to rounding.
+pub(crate) fn root(value: impl Fn(f64) -> f64, mut high: f64) -> f64 {
+    let mut low = 0.0;
+    loop {
+        let middle = 0.5 * low + 0.5 * high;
+        if !(middle > low && middle < high) {
+            return high;
+        }
+        match value(middle) > 0.0 {
+            true => low = middle,
+            false => high = middle,
+        }
+    }
+}
+
+/// The restitution that a spring with a damper of this part of the critical damping delivers, when they press and never pull:
+/// `exp(-zeta (pi - 2 asin zeta) / sqrt(1 - zeta^2))` (T. Schwager and T. Pöschel, Granular Matter 9, 2007).
+pub fn delivered_by_ratio(damping_ratio: f64) -> f64 {
+    let zeta = damping_ratio.max(0.0);
+    let square = (1.0 - zeta) * (1.0 + zeta);
+    // The angle over its sine; its limit is 1 where the damping is critical.
+    let part = if square > 0.0 {
+        acos(zeta) / square.sqrt()
+    } else if square < 0.0 {
+        acosh(zeta) / (-square).sqrt()
+    } else {
+        1.0
+    };
+    exp(-2.0 * zeta * part)
+}
+
+/// The part of the critical damping that delivers a restitution; the damping of a spring of stiffness K under a mass m is
+/// this times `2 sqrt(K m)`.
+///
+/// # Errors
+///
+/// Where the restitution is not above 0 and at most 1.
+pub fn damping_ratio_for(restitution: f64) -> Result<f64, Unfit> {
+    let e = checked(restitution)?;
+    if e == 1.0 {
+        return Ok(0.0);
+    }
+    let mut high = 1.0;
+    while delivered_by_ratio(high) > e && high < f64::MAX {
+        high *= 2.0;
+    }
+    Ok(root(|zeta| delivered_by_ratio(zeta) - e, high))
+}
