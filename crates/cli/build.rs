@@ -9,6 +9,7 @@ fn main() {
         String::from("/// Files that came with the program, by their path in the repository.\n");
     list.push_str("const EMBEDDED: &[(&str, &str)] = &[\n");
     for folder in [
+        "examples/benchmarks",
         "examples/gallery",
         "examples/seeds",
         "validation",

@@ -61,12 +61,29 @@ pub fn run(command: &mut Command, shown: &str) -> Result<(), String> {
 ///
 /// What failed, in one line.
 pub fn output(command: &mut Command, shown: &str) -> Result<Vec<u8>, String> {
+    ended(command, shown, &[0])
+}
+
+/// As [`output`], of `kempe`, which ends with 1 where it warns of something.
+///
+/// # Errors
+///
+/// What failed, in one line.
+pub fn told(command: &mut Command, shown: &str) -> Result<Vec<u8>, String> {
+    ended(command, shown, &[0, 1])
+}
+
+fn ended(command: &mut Command, shown: &str, codes: &[i32]) -> Result<Vec<u8>, String> {
     let output = command
         .current_dir(root())
         .stderr(Stdio::inherit())
         .output()
         .map_err(|error| format!("{shown}: {error}"))?;
-    match output.status.success() {
+    match output
+        .status
+        .code()
+        .is_some_and(|code| codes.contains(&code))
+    {
         true => Ok(output.stdout),
         false => Err(format!("{shown} failed")),
     }

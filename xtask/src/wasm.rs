@@ -4,11 +4,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::shell::{answers, apt_install, cargo, cargo_program, output, root, run, target_folder};
+use crate::shell::{
+    answers, apt_install, cargo, cargo_program, output, root, run, target_folder, told,
+};
 
 const TARGET: &str = "wasm32-unknown-unknown";
 
-/// Model files in `examples/`: closed forms, Newton's method, a table, forces, a chosen counterweight, gears.
+/// Model files in `examples/`: closed forms, Newton's method, a table, forces, a chosen counterweight, gears, what moves by itself.
 const EXAMPLES: &[&str] = &[
     "seeds/crank-rocker.toml",
     "seeds/door-lock.toml",
@@ -16,6 +18,7 @@ const EXAMPLES: &[&str] = &[
     "gallery/five-bar.toml",
     "gallery/balanced-four-bar.toml",
     "gallery/geared-five-bar.toml",
+    "gallery/trebuchet.toml",
 ];
 
 /// What builds for the browser here.
@@ -69,10 +72,10 @@ fn compare(module: &Path, example: &str, results: &Path) -> Result<(), String> {
         .join(format!("kempe{}", std::env::consts::EXE_SUFFIX));
     let mut ran = Command::new(&program);
     ran.arg("run").arg(&model).arg("--out").arg(&native);
-    output(ran.arg("--quiet"), &format!("kempe run {example}"))?;
+    told(ran.arg("--quiet"), &format!("kempe run {example}"))?;
     let mut checked = Command::new(&program);
     checked.arg("check").arg(&model).arg("--json");
-    let report = output(&mut checked, &format!("kempe check {example}"))?;
+    let report = told(&mut checked, &format!("kempe check {example}"))?;
     fs::write(native.join("check.json"), report).map_err(|error| error.to_string())?;
     let mut node = Command::new("node");
     node.arg(root().join("xtask/src/wasm.mjs"));

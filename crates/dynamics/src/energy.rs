@@ -1,11 +1,12 @@
 //! Energy and power.
 
-use kempe_mechanism::Geometry;
+use kempe_mechanism::{Design, Geometry};
 
 use crate::acting::Acting;
 use crate::instant::Instant;
 use crate::number::ForceNumber;
 use crate::vector::dot;
+use crate::wrench::{self, Wrench};
 
 /// Kinetic energy of all links, J.
 pub fn kinetic<T: ForceNumber>(acting: &Acting<T>, at: &Instant<T>) -> T {
@@ -19,6 +20,23 @@ pub fn potential<T: ForceNumber>(acting: &Acting<T>, geometry: &Geometry<T>, at:
         sum - dot(acting.gravity, place) * mass.mass
     });
     (acting.springs.iter()).fold(weights, |sum, spring| sum + spring.energy(geometry, at))
+}
+
+/// Power that the loads give to the mechanism, W. `storage` has a place for every link.
+pub fn of_loads<T: ForceNumber>(
+    acting: &Acting<T>,
+    design: &Design<T>,
+    at: &Instant<T>,
+    storage: &mut [Wrench<T>],
+) -> T {
+    storage.fill([T::zero(); 3]);
+    for load in &acting.loads {
+        load.act(&design.mechanism, &design.geometry, at, storage);
+    }
+    let seats = design.mechanism.seats.iter();
+    seats.zip(storage).fold(T::zero(), |sum, (seat, w)| {
+        sum + wrench::power(*w, at.velocities[seat.body.index()])
+    })
 }
 
 /// Power that the dampers take from the mechanism, W, never negative.

@@ -68,7 +68,7 @@ pub struct Forces<T: ForceNumber> {
     /// Weights, loads, springs and dampers on every body.
     pub applied_on_bodies: Vec<Wrench<T>>,
     /// `m a` less what is applied, friction included after a solve, of every body.
-    needed: Vec<Wrench<T>>,
+    pub(crate) needed: Vec<Wrench<T>>,
     /// Constraint of every drive.
     drive_constraints: Vec<Option<usize>>,
 }
@@ -131,8 +131,8 @@ impl<T: ForceNumber> Forces<T> {
         })
     }
 
-    /// Finds all forces of an instant.
-    pub fn solve(&mut self, at: &Instant<T>) {
+    /// Takes up what acts at an instant and how the masses accelerate: what every body needs, without friction.
+    pub(crate) fn take_up(&mut self, at: &Instant<T>) {
         self.acting.evaluate(
             &self.design.mechanism,
             &self.design.geometry,
@@ -149,6 +149,11 @@ impl<T: ForceNumber> Forces<T> {
             wrench::add(&mut self.needed[body], inertial);
             wrench::add(&mut self.needed[body], wrench::opposite(applied));
         }
+    }
+
+    /// Finds all forces of an instant.
+    pub fn solve(&mut self, at: &Instant<T>) {
+        self.take_up(at);
         self.equilibrium.solve(
             &self.design.mechanism,
             &self.design.geometry,

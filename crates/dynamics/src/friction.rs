@@ -1,6 +1,7 @@
 //! What a joint adds to its load in proportion to it: friction at pins, sliders and teeth, Coulomb's with Stribeck's falling
 //! coefficient and a viscous part, and the force with which teeth part their wheels.
 
+use kempe_contact::falling_coefficient;
 use kempe_mechanism::constraint::{Joint, Rubs};
 use kempe_mechanism::structure::Source;
 use kempe_mechanism::{Geometry, Mechanism};
@@ -23,6 +24,8 @@ pub struct FrictionLaw<T> {
     pub stribeck_speed: Option<T>,
     /// Viscous part, N m s/rad at pins, N s/m at sliders and teeth.
     pub viscous: T,
+    /// What it resists with whatever the load, N m at pins, N at sliders and teeth.
+    pub drag: T,
 }
 
 impl<T: Number> FrictionLaw<T> {
@@ -34,6 +37,7 @@ impl<T: Number> FrictionLaw<T> {
             at_rest: friction.static_coefficient.as_ref().map_or(kinetic, of),
             stribeck_speed: friction.stribeck_speed.as_ref().map(of),
             viscous: friction.viscous.as_ref().map_or(T::zero(), of),
+            drag: friction.drag.as_ref().map_or(T::zero(), of),
         }
     }
 
@@ -45,19 +49,16 @@ impl<T: Number> FrictionLaw<T> {
             at_rest: zero,
             stribeck_speed: None,
             viscous: zero,
+            drag: zero,
         }
     }
 
     /// The coefficient at a sliding speed: `k + (s - k) exp(-(v / v_s)^2)`.
     pub fn coefficient(&self, speed: T) -> T {
-        let Some(scale) = self.stribeck_speed else {
-            return self.kinetic;
-        };
-        let falling = || {
-            let part = (-(speed / scale).square()).exp();
-            self.kinetic + (self.at_rest - self.kinetic) * part
-        };
-        (-scale).choose_with(|| self.kinetic, falling)
+        match self.stribeck_speed {
+            Some(scale) => falling_coefficient(self.kinetic, self.at_rest, scale, speed),
+            None => self.kinetic,
+        }
     }
 }
 
@@ -173,7 +174,7 @@ impl<T: ForceNumber> Friction<T> {
             problems.push(Problem::new(code, &friction.span, message));
         };
         let law = FrictionLaw::new(friction, parameters);
-        if [law.kinetic, law.at_rest, law.viscous]
+        if [law.kinetic, law.at_rest, law.viscous, law.drag]
             .iter()
             .any(|x| x.any_lane(|x| x < 0.0))
         {
@@ -216,10 +217,16 @@ impl<T: ForceNumber> Friction<T> {
     }
 
     /// Resistance (N m at a pin, N on a line) to a relative speed (rad/s or m/s) under a load (N), with the sign of
-    /// `direction`; what it does is the opposite of its sign. Viscous resistance included.
+    /// `direction`; what it does is the opposite of its sign. Viscous resistance and drag included.
     #[inline]
     pub fn resistance(&self, speed: T, direction: T::Plain, load: T) -> T {
-        (self.per_load(speed) * load).times(direction) + self.law.viscous * speed
+        (self.per_load(speed) * load).times(direction) + self.apart_from_load(speed, direction)
+    }
+
+    /// The part of the resistance that does not depend on the load.
+    #[inline]
+    pub(crate) fn apart_from_load(&self, speed: T, direction: T::Plain) -> T {
+        self.law.drag.times(direction) + self.law.viscous * speed
     }
 
     /// Resistance over load. The load of a line is its normal force; that of a pin is its whole force, friction included,

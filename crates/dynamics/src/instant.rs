@@ -109,6 +109,22 @@ fn turning<B: Number, const N: usize>(pose: &Pose<Jet<B, N>>) -> Jet<B, N> {
     pose.c * pose.s.differentiate() - pose.s * pose.c.differentiate()
 }
 
+/// First and second derivatives of a pose's place and angle.
+fn slopes_of(pose: &Pose<Rates>) -> ([f64; 3], [f64; 3]) {
+    let (c, s) = (pose.c.coefficients(), pose.s.coefficients());
+    let first = [
+        pose.x.coefficient(1),
+        pose.y.coefficient(1),
+        c[0] * s[1] - s[0] * c[1],
+    ];
+    let second = [
+        2.0 * pose.x.coefficient(2),
+        2.0 * pose.y.coefficient(2),
+        2.0 * (c[0] * s[2] - s[0] * c[2]),
+    ];
+    (first, second)
+}
+
 #[inline(always)]
 fn slopes<B: Number, const N: usize>(pose: &Pose<Jet<B, N>>) -> [Jet<B, N>; 3] {
     [
@@ -216,6 +232,51 @@ impl Instant<Rates> {
 }
 
 impl Instant<f64> {
+    /// Takes poses that were solved as series in time, with the coordinates of the drives as such series (SI). `near` are the
+    /// bodies' angles to within half a turn. Kinematic coefficients are not touched.
+    pub fn set_in_time(
+        &mut self,
+        state: &Configuration<Rates>,
+        near: &[f64],
+        coordinates: &[Rates],
+    ) {
+        for (body, pose) in state.poses.iter().enumerate().skip(1) {
+            let (first, second) = slopes_of(pose);
+            self.poses[body] = pose.value();
+            self.angles[body] = self.poses[body].angle_near(near[body]);
+            self.velocities[body] = first;
+            self.accelerations[body] = second;
+        }
+        for (out, input) in self.inputs.iter_mut().zip(&state.inputs) {
+            *out = input.plain();
+        }
+        for (index, q) in coordinates.iter().enumerate() {
+            self.drive_speeds[index] = q.coefficient(1);
+            self.drive_accelerations[index] = 2.0 * q.coefficient(2);
+        }
+        self.near.copy_from_slice(near);
+    }
+
+    /// Takes the kinematic coefficients of a drive from poses that were solved as series in its coordinate alone.
+    pub fn set_coefficients(&mut self, drive: DriveId, state: &Configuration<Rates>) {
+        for (body, pose) in state.poses.iter().enumerate().skip(1) {
+            let (first, second) = slopes_of(pose);
+            self.coefficients[drive.index()][body] = first;
+            self.coefficient_rates[drive.index()][body] = second;
+        }
+    }
+
+    /// Lets the coordinate of a drive accelerate by so much more.
+    pub(crate) fn accelerate(&mut self, drive: DriveId, by: f64) {
+        self.drive_accelerations[drive.index()] += by;
+        let coefficients = &self.coefficients[drive.index()];
+        for (acceleration, k) in self.accelerations.iter_mut().zip(coefficients).skip(1) {
+            for (a, k) in acceleration.iter_mut().zip(k) {
+                *a += k * by;
+            }
+        }
+    }
+
     /// Takes a state that was solved as a series in the coordinate of one drive, which moves with this speed and
     /// acceleration while the others stand still. Allocates nothing. `near` are the bodies' angles to within half a turn.
     pub fn set_along(
@@ -238,20 +299,7 @@ impl Instant<f64> {
             &mut self.coefficient_rates[drive.index()],
         );
         for (body, pose) in state.poses.iter().enumerate().skip(1) {
-            let (first, second);
-            {
-                let (c, s) = (pose.c.coefficients(), pose.s.coefficients());
-                first = [
-                    pose.x.coefficient(1),
-                    pose.y.coefficient(1),
-                    c[0] * s[1] - s[0] * c[1],
-                ];
-                second = [
-                    2.0 * pose.x.coefficient(2),
-                    2.0 * pose.y.coefficient(2),
-                    2.0 * (c[0] * s[2] - s[0] * c[2]),
-                ];
-            }
+            let (first, second) = slopes_of(pose);
             self.poses[body] = pose.value();
             self.angles[body] = self.poses[body].angle_near(near[body]);
             for k in 0..3 {

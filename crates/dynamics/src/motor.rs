@@ -60,6 +60,15 @@ impl<T: ForceNumber> Motor<T> {
         (last.0 - x).choose(torque, T::zero())
     }
 
+    /// The torque with which it turns a drive that is let go, N m, at a speed along its own sense: where it is turned back, as
+    /// at its curve's first point.
+    pub fn turns_with(&self, speed: T) -> T {
+        match self.curve.first() {
+            Some(first) => self.torque((speed - first.0).choose(speed, first.0)),
+            None => T::zero(),
+        }
+    }
+
     /// What it has left, N m, when it must give `needed` at a speed: negative when it is too weak. Braking takes nothing
     /// from it.
     pub fn margin(&self, needed: T, speed: T) -> T {

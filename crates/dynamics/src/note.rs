@@ -361,6 +361,9 @@ pub(crate) fn notes(forces: &Forces<Rates>, at: &Instant<Rates>, condition: f64)
     notes
 }
 
+/// A motor that lacks less than this part of the most it can give does give enough.
+const ENOUGH: f64 = 1e-6;
+
 fn actuator_notes(forces: &Forces<Rates>, at: &Instant<Rates>, notes: &mut Vec<ForceNote>) {
     use kempe_number::Number as _;
     for motor in &forces.acting.motors {
@@ -369,7 +372,8 @@ fn actuator_notes(forces: &Forces<Rates>, at: &Instant<Rates>, notes: &mut Vec<F
         };
         let speed = at.drive_speeds[motor.drive.index()];
         let margin = motor.margin(drive.value, speed).value();
-        if margin < 0.0 {
+        let most = motor.curve.iter().map(|(_, torque)| torque.value().abs());
+        if margin < -ENOUGH * most.fold(0.0, f64::max) {
             notes.push(ForceNote::MotorTooWeak {
                 drive: motor.drive,
                 lacks: -margin,

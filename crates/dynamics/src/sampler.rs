@@ -222,7 +222,7 @@ impl ForceSampler {
     }
 }
 
-fn evidence(forces: &Forces<Rates>, at: &Instant<Rates>) -> ForceEvidence {
+pub(crate) fn evidence(forces: &Forces<Rates>, at: &Instant<Rates>) -> ForceEvidence {
     use kempe_number::Number as _;
     let equilibrium = &forces.equilibrium;
     let plain = &equilibrium.lanes[0];

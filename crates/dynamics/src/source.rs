@@ -99,7 +99,7 @@ impl<B: ForceNumber> ForceSource<B> for Source<B> {
 }
 
 /// Mean speeds of the drives over their laws.
-fn pace(design: &Design<f64>) -> Pace {
+pub(crate) fn pace(design: &Design<f64>) -> Pace {
     let (model, parameters) = (&design.mechanism.model, &design.parameters);
     let durations = model.drives.iter().map(|d| d.law.duration(parameters));
     let longest = durations.fold(0.0, f64::max);

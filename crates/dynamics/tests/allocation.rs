@@ -60,6 +60,7 @@ fn forces_of_the_door_lock_allocate_nothing() {
         static_coefficient: None,
         stribeck_speed: None,
         viscous: None,
+        drag: None,
         radius: Some(support::number(0.01)),
         span: 0..0,
     });

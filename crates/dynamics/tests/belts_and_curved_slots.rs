@@ -79,6 +79,7 @@ fn a_curved_slot_rubs() {
         static_coefficient: None,
         stribeck_speed: None,
         viscous: None,
+        drag: None,
         radius: None,
         span: 0..0,
     });

@@ -30,6 +30,7 @@ fn friction(at: FrictionAt, coefficient: f64, radius: Option<f64>) -> Friction {
         static_coefficient: None,
         stribeck_speed: None,
         viscous: None,
+        drag: None,
         radius: radius.map(number),
         span: 0..0,
     }

@@ -196,6 +196,7 @@ fn load(model: &mut Model, seed: u64, size: f64, units: Units) -> Measure {
             static_coefficient: Some(number(1.3 * units.friction)),
             stribeck_speed: Some(number(0.1 * l)),
             viscous: None,
+            drag: None,
             radius: Some(number(0.03 * l)),
             span: 0..0,
         });

@@ -127,6 +127,7 @@ fn with_friction_the_power_balances() {
         static_coefficient: None,
         stribeck_speed: None,
         viscous: None,
+        drag: None,
         radius: None,
         span: 0..0,
     });

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use kempe_mechanism::{Design, Mechanism};
-use kempe_model::{Diagnostic, DriveId, Law, LinkId, ParameterId, PointId};
+use kempe_model::{Diagnostic, DriveId, LinkId, ParameterId, PointId};
 use kempe_motion::Motion;
 use kempe_study::{Units, cannot_move};
 use kempe_units::{Expr, nearest};
@@ -169,15 +169,4 @@ impl Compiled {
             diagnostics,
         }
     }
-}
-
-/// A design whose drives move by other laws.
-pub(crate) fn with_laws(design: &Design<f64>, law: impl Fn(usize) -> Option<Law>) -> Design<f64> {
-    design.with_model(|model| {
-        for (index, drive) in model.drives.iter_mut().enumerate() {
-            if let Some(law) = law(index) {
-                drive.law = law;
-            }
-        }
-    })
 }

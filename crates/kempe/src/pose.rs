@@ -13,7 +13,6 @@ use kempe_study::{Along, Progress, RowPlace, Silent, beyond_limit, cannot_move, 
 use kempe_units::Expr;
 
 use crate::block::{Heading, Value};
-use crate::compiled::with_laws;
 use crate::session::Asked;
 use crate::sweep::no_value;
 use crate::way::{Way, on_the_motion};
@@ -393,7 +392,7 @@ impl Session {
         progress: &mut dyn Progress,
     ) -> Result<Arc<Motion>, Error> {
         let (model, parameters) = (&self.design.mechanism.model, &self.design.parameters);
-        let design = with_laws(&self.design, |index| {
+        let design = self.design.with_laws(|index| {
             let from = model.drives[index].law.at(0.0, parameters);
             let own = places.iter().find(|(way, _)| *way == Way::Drive(index));
             let duration = Expr::Const(1.0);

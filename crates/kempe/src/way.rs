@@ -2,17 +2,14 @@
 
 use std::sync::Arc;
 
-use kempe_mechanism::Branch;
 use kempe_mechanism::Design;
-use kempe_model::{Diagnostic, Law, LawPiece};
-use kempe_motion::assemble::{Assemblies, Assembly};
+use kempe_model::{Diagnostic, Law};
 use kempe_motion::drive_path::{DrivePath, duration};
 use kempe_motion::trace::Path as _;
 use kempe_motion::{Demand, EndReason, Motion};
 use kempe_study::{Progress, cannot_move};
-use kempe_units::{Dimension, Expr};
+use kempe_units::Dimension;
 
-use crate::compiled::with_laws;
 use crate::{Compiled, Error, Pose, Session};
 
 /// What moves.
@@ -89,27 +86,6 @@ fn covers(motion: &Motion, drive: usize, (low, high): (f64, f64)) -> bool {
     own && motion.demanded.0 - slack <= low && high <= motion.demanded.1 + slack
 }
 
-/// The path of one drive, the others held.
-fn path_of(design: &Design<f64>, drive: usize, held: Vec<f64>) -> DrivePath {
-    let is_angle = design.mechanism.model.drives[drive].dimension == Dimension::ANGLE;
-    DrivePath::Coordinate {
-        drive,
-        held,
-        is_angle,
-        scale: if is_angle { 1.0 } else { design.size() },
-    }
-}
-
-/// A law that stands still.
-fn standing(at: f64) -> Law {
-    Law {
-        from: Expr::Const(at),
-        pieces: vec![LawPiece::Dwell {
-            duration: Expr::Const(0.0),
-        }],
-    }
-}
-
 /// The motion of one drive alone from where its law starts, over its law and a range besides.
 fn alone(
     design: &Design<f64>,
@@ -122,12 +98,10 @@ fn alone(
     let held: Vec<f64> = drives.map(|d| d.law.at(0.0, &design.parameters)).collect();
     let law = &model.drives[drive].law;
     let (from, to) = law.extent(&design.parameters);
-    let own = with_laws(design, |index| {
-        (index != drive).then(|| standing(held[index]))
-    });
+    let own = design.with_laws(|index| (index != drive).then(|| Law::standing(held[index])));
     let start = held[drive];
     let demand = Demand {
-        path: path_of(&own, drive, held),
+        path: DrivePath::of_drive(model, own.size(), drive, held),
         range: (from.min(low), to.max(high)),
         start,
         assemblies: None,
@@ -215,37 +189,25 @@ impl Session {
             false => None,
         };
         let placed = placed.as_ref().unwrap_or(&pose.placed);
-        let design = with_laws(&known.design, |index| {
+        let design = known.design.with_laws(|index| {
             Some(match index == drive {
                 true => self.design.mechanism.model.drives[drive].law.clone(),
-                false => standing(pose.coordinates[index]),
+                false => Law::standing(pose.coordinates[index]),
             })
         });
-        let path = path_of(&design, drive, pose.coordinates.clone());
+        let path = DrivePath::of_drive(
+            &design.mechanism.model,
+            design.size(),
+            drive,
+            pose.coordinates.clone(),
+        );
         let ahead = AHEAD * path.scale();
         let (first, last) = if own { reached } else { (from, from) };
-        let assembly = Assembly {
-            branch: Branch {
-                guess: placed.poses.clone(),
-                near: placed.near.clone(),
-                ..Branch::neutral(&design.mechanism)
-            },
-            poses: placed.poses.clone(),
-            distance: 0.0,
-            turns: design.geometry.turns.clone(),
-        };
-        let demand = Demand {
-            path,
-            range: (
-                if low < first { low - ahead } else { first },
-                if high > last { high + ahead } else { last },
-            ),
-            start: from,
-            assemblies: Some(Assemblies {
-                list: vec![assembly],
-                ..Assemblies::default()
-            }),
-        };
+        let range = (
+            if low < first { low - ahead } else { first },
+            if high > last { high + ahead } else { last },
+        );
+        let demand = Demand::from_pose(&design, path, range, from, placed);
         let mut motion = Motion::along(&design, demand, progress)
             .map_err(|error| self.compiled.error(cannot_move(&design, &error)))?;
         if own {

@@ -3,7 +3,7 @@
 use kempe_mechanism::Design;
 use kempe_mechanism::pose::dot;
 use kempe_mechanism::structure::Marker;
-use kempe_model::{LawPiece, PointId};
+use kempe_model::PointId;
 use kempe_motion::bridge::{SideSeries, across};
 use kempe_motion::drive_path::DrivePath;
 use kempe_motion::events::EventKind;
@@ -298,13 +298,11 @@ fn turns(motion: &Motion, parameters: &[f64]) -> Vec<(f64, f64)> {
         let rate = |t: f64| drive.law.at(Line::variable(t), &rich).coefficient(1);
         let starts = drive.law.breaks(parameters);
         for (piece, start) in drive.law.pieces.iter().zip(&starts) {
-            // All other laws go one way from beginning to end.
-            if let LawPiece::Table { times: knots, .. } = piece {
-                for pair in knots.windows(2) {
-                    let width = (pair[1] - pair[0]) / PARTS as f64;
-                    let fine = (0..PARTS).map(|k| start + pair[0] + width * k as f64);
-                    times.extend(fine.filter_map(|t| zero(&rate, t, t + width)));
-                }
+            // Laws without knots go one way from beginning to end.
+            for pair in piece.knots().windows(2) {
+                let width = (pair[1] - pair[0]) / PARTS as f64;
+                let fine = (0..PARTS).map(|k| start + pair[0] + width * k as f64);
+                times.extend(fine.filter_map(|t| zero(&rate, t, t + width)));
             }
         }
         times.extend(starts.iter().skip(1));

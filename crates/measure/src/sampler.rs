@@ -16,6 +16,7 @@ use std::sync::Arc;
 
 use kempe_mechanism::bordered::Bordered;
 use kempe_mechanism::evidence::evidence;
+use kempe_mechanism::{Geometry, Mechanism, Pose};
 use kempe_model::{Leaf, Measure, PointId, Statistic};
 use kempe_motion::motion::{Motion, Solver};
 
@@ -26,6 +27,7 @@ use crate::measure::visit_leaves;
 use crate::measurer::Measurer;
 use crate::path_length::Swept;
 use crate::row_note::RowNote;
+use crate::state::State;
 use crate::states_along::PathPlace;
 use crate::statistic_note::StatisticNote;
 
@@ -229,28 +231,45 @@ impl<F: ForceSource> Sampler<F> {
         );
         sample.closure = found.closure;
         sample.smallest_singular_value = found.smallest_singular_value;
-        self.fill_places(&mut sample);
+        let plain = &self.plain;
+        sample.place(
+            motion.mechanism(),
+            &motion.design.geometry,
+            &plain.state.poses,
+            &plain.branch.near,
+        );
         sample.note = self.note(p, &sample, still);
         sample
     }
+}
+
+impl Sample {
+    /// Puts links and points where a state has them, moving as they do in it; nothing else of the row changes.
+    pub fn put(&mut self, state: &State<f64>) {
+        let poses: Vec<Pose<f64>> = state.poses.iter().map(Pose::value).collect();
+        let geometry = state.design.geometry.value();
+        self.place(state.mechanism(), &geometry, &poses, &state.near);
+        rates::fill(state, &mut self.rates);
+    }
 
     /// Fills in where links and points are.
-    fn fill_places(&self, sample: &mut Sample) {
-        let motion = &*self.motion().clone();
-        let geometry = &motion.design.geometry;
-        for (index, place) in sample.links.iter_mut().enumerate() {
-            let body = motion.mechanism().seats[index].body.index();
-            let (pose, seat) = (&self.plain.state.poses[body], &geometry.seats[index]);
+    fn place(
+        &mut self,
+        mechanism: &Mechanism,
+        geometry: &Geometry<f64>,
+        poses: &[Pose<f64>],
+        near: &[f64],
+    ) {
+        for (index, place) in self.links.iter_mut().enumerate() {
+            let body = mechanism.seats[index].body.index();
+            let (pose, seat) = (&poses[body], &geometry.seats[index]);
             let [x, y] = pose.place([seat.x, seat.y]);
-            *place = [
-                x,
-                y,
-                pose.angle_near(self.plain.branch.near[body]) + geometry.seat_angles[index],
-            ];
+            let angle = pose.angle_near(near[body]) + geometry.seat_angles[index];
+            *place = [x, y, angle];
         }
-        for (index, place) in sample.points.iter_mut().enumerate() {
-            if let Some(marker) = motion.mechanism().any_marker(PointId(index as u32)) {
-                *place = self.plain.state.poses[marker.body.index()].place(geometry.marker(marker));
+        for (index, place) in self.points.iter_mut().enumerate() {
+            if let Some(marker) = mechanism.any_marker(PointId(index as u32)) {
+                *place = poses[marker.body.index()].place(geometry.marker(marker));
             }
         }
     }

@@ -65,7 +65,7 @@ fn parametrised(mut model: Model) -> Model {
                     free(more, Dimension::NONE);
                 }
                 LawPiece::Dwell { duration } => free(duration, Dimension::NONE),
-                LawPiece::Table { .. } => {}
+                LawPiece::Table { .. } | LawPiece::Polynomials(_) => {}
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use kempe_model::Model;
+use kempe_model::{Law, Model};
 use kempe_number::Number;
 
 use crate::Mechanism;
@@ -104,6 +104,17 @@ impl Design<f64> {
             mechanism: Arc::new(mechanism),
             ..self.clone()
         }
+    }
+
+    /// The same design whose drives move by other laws, where there are some.
+    pub fn with_laws(&self, law: impl Fn(usize) -> Option<Law>) -> Self {
+        self.with_model(|model| {
+            for (index, drive) in model.drives.iter_mut().enumerate() {
+                if let Some(law) = law(index) {
+                    drive.law = law;
+                }
+            }
+        })
     }
 
     /// A characteristic length of the mechanism, m: see [`Geometry::size`].

@@ -257,7 +257,7 @@ pub fn slides(slider: &str) -> Entry {
     Entry::new().with("slides", slider)
 }
 
-/// A study of a kind: `"motion"`, `"forces"`, `"balance"` or `"spring"`.
+/// A study of a kind: `"motion"`, `"forces"`, `"balance"`, `"spring"` or `"vibrations"`.
 pub fn study(kind: &str) -> Entry {
     Entry::new().with("kind", kind)
 }

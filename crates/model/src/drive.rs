@@ -3,6 +3,7 @@
 use kempe_units::Dimension;
 
 use crate::ids::{JointId, LinkId, LinkPointRef, PointId, Scalar, Span};
+use crate::polynomials::Polynomials;
 
 /// What is moved from outside.
 #[derive(Clone, Debug, PartialEq)]
@@ -114,6 +115,19 @@ pub enum LawPiece {
         /// Second derivatives of the spline through them at these times, SI.
         moments: Vec<f64>,
     },
+    /// Polynomials in time, as a simulation finds them. Files cannot say it; written as a file they are measured points.
+    Polynomials(Polynomials),
+}
+
+impl LawPiece {
+    /// The times, s from its start, between which a piece of several parts is smooth; none of any other.
+    pub fn knots(&self) -> &[f64] {
+        match self {
+            Self::Table { times, .. } => times,
+            Self::Polynomials(polynomials) => polynomials.times(),
+            _ => &[],
+        }
+    }
 }
 
 /// Standard laws from rest to rest.

@@ -1,12 +1,14 @@
 //! The keys of the model file, all of them: the one table that the reader, the schema, help and the docs go by.
 
+pub(crate) mod clearance;
+
 use kempe_units::Dimension as D;
 
 use crate::keys::{Key, Kind, Named, Need, Quantity, Sign, Takes};
 use crate::load::Acts;
 use crate::drive::RiseLaw;
 use crate::link::Side;
-use crate::study::BalanceGoal;
+use crate::study::{BalanceGoal, StepMethod};
 use Takes as T;
 
 /// Rows a table may have.
@@ -45,7 +47,7 @@ pub(crate) const LAWS: [(&str, RiseLaw); 4] = [
 ];
 
 /// Kinds of study of the language that this version has not got.
-pub const ANNOUNCED_STUDIES: &[&str] = &["simulate", "clearance", "sweep", "tolerance", "adjust", "synthesize", "optimize"];
+pub const ANNOUNCED_STUDIES: &[&str] = &["sweep", "tolerance", "adjust", "synthesize", "optimize"];
 
 const fn words<W: Copy, const N: usize>(of: &[(&'static str, W); N]) -> [&'static str; N] {
     let mut words = [""; N];
@@ -56,6 +58,13 @@ const fn words<W: Copy, const N: usize>(of: &[(&'static str, W); N]) -> [&'stati
     }
     words
 }
+
+/// How a simulation makes its steps.
+pub(crate) const METHODS: [(&str, StepMethod); 2] = [
+    ("explicit", StepMethod::Explicit),
+    ("implicit", StepMethod::Implicit),
+];
+const METHOD_WORDS: T = T::Words(&words(&METHODS));
 
 const ACT_WORDS: T = T::Words(&words(&ACTS));
 const GOAL_WORDS: T = T::Words(&words(&GOALS));
@@ -142,7 +151,8 @@ pub static FILE: Kind = kind("file", "file",
             "Friction, by the point of a pin, by the name of a joint, or for `all`."),
         may("cylinders", T::Entries(&[&CYLINDER]), CYLINDER.example, "Hydraulic cylinders, by the name of their drive."),
         may("motors", T::Entries(&[&MOTOR]), MOTOR.example, "Motors, by the name of their drive."),
-        may("clearance", T::Announced, "", "Read by later versions."),
+        may("clearance", T::Entries(&[&clearance::OF_PIN, &clearance::OF_JOINT, &clearance::OF_ALL]), clearance::OF_PIN.example,
+            "Play at joints, by the point of a pin, by the name of a slider, or for `all`."),
         may("measures", T::Values(&T::Measure), "swing = \"angle(rocker)\"", "Named measures: expressions over what may be asked of the mechanism."),
         may("studies", T::Entries(&STUDIES), "kind = \"motion\"", "What is asked of the model."),
     ]]);
@@ -389,7 +399,7 @@ pub(crate) static SPRING: Kind = kind("spring", "spring",
         may("free", COORDINATE, "\"80 mm\"", "Its length or angle where stiffness gives nothing; needed unless the stiffness is 0."),
         may("preload", TENSION, "\"5 N\"", "Its tension at the free length; negative pushes, 0 unless said otherwise."),
         may("acts", ACT_WORDS, "\"tension\"", "In which sense it acts; both unless said otherwise."),
-        may("stops", T::Two(&T::AnyOf(&[COORDINATE, T::Words(NONE)])), "[\"60 mm\", \"none\"]", "The lengths or angles below and above which the stop stiffness acts too."),
+        may("stops", T::Two(&END), "[\"60 mm\", \"none\"]", "The lengths or angles below and above which the stop stiffness acts too."),
         may("stop_stiffness", stiffness(Sign::Positive), "\"500 N/mm\"", "The stiffness of the stops."),
     ]]);
 
@@ -406,12 +416,14 @@ static DRY: [Key; 3] = [
     may("static", not_negative(D::NONE), "0.15", "The coefficient at rest, with `stribeck`."),
     may("stribeck", positive(D::SPEED), "\"1 mm/s\"", "The speed over which the coefficient falls from that at rest."),
 ];
-const fn viscous(example: &'static str) -> [Key; 1] {
-    let about = "Torque per angular speed at a pin, force per sliding speed at a slider or at teeth.";
-    [may("viscous", DAMPING, example, about)]
+const fn apart_from_load(viscous: &'static str, drag: &'static str) -> [Key; 2] {
+    [
+        may("viscous", DAMPING, viscous, "Torque per angular speed at a pin, force per sliding speed at a slider or at teeth."),
+        may("drag", value(D::FORCE, D::TORQUE, Sign::NotNegative), drag, "Torque at a pin, force at a slider, whatever the load and speed: a seal."),
+    ]
 }
-static VISCOUS_TURNING: [Key; 1] = viscous("\"0.001 N m s\"");
-static VISCOUS_SLIDING: [Key; 1] = viscous("\"50 N s/m\"");
+static VISCOUS_TURNING: [Key; 2] = apart_from_load("\"0.001 N m s\"", "\"0.05 N m\"");
+static VISCOUS_SLIDING: [Key; 2] = apart_from_load("\"50 N s/m\"", "\"3 N\"");
 static PIN_RADIUS: [Key; 1] = [may("radius", positive(D::LENGTH), "\"10 mm\"", "The radius of the pin, needed for dry friction there.")];
 const FRICTION: &str = "B = { coefficient = 0.1, radius = \"10 mm\" }";
 
@@ -453,10 +465,12 @@ pub(crate) static MOTOR: Kind = kind("motor", "motor",
     ]]);
 
 /// The kinds of studies.
-pub(crate) static STUDIES: [&Kind; 4] = [&MOTION, &FORCES, &BALANCE, &SPRING_STUDY];
+pub(crate) static STUDIES: [&Kind; 7] = [&MOTION, &FORCES, &BALANCE, &SPRING_STUDY, &SIMULATE, &clearance::STUDY, &VIBRATIONS];
+
+const STUDY_KINDS: T = T::Words(&["motion", "forces", "balance", "spring", "simulate", "clearance", "vibrations"]);
 
 static OF_STUDIES: [Key; 3] = [
-    must("kind", T::Words(&["motion", "forces", "balance", "spring"]), "\"motion\"", "What kind of study it is."),
+    must("kind", STUDY_KINDS, "\"motion\"", "What kind of study it is."),
     may("step", T::AnyValue, "\"5 ms\"", "Step of the drive, or of time; a degree, or the 180th part of a travel, unless said otherwise."),
     may("rows", T::Count(MAX_ROWS), "361", "How many rows, evenly in time, instead of a step."),
 ];
@@ -495,6 +509,44 @@ static SPRING_STUDY: Kind = kind("study", "spring",
         may("wanted", T::AnyOf(&[TENSION, T::Measure]), "\"0 N m\"", "What the drive is to give; nothing unless said otherwise."),
         may("stiffness", T::Two(&T::AnyOf(&[stiffness(Sign::Any), T::Words(NONE)])), "[\"0.1 N/mm\", \"none\"]", "Bounds of the stiffness; from 0 up unless said otherwise."),
         may("preload", T::Two(&T::AnyOf(&[TENSION, T::Words(NONE)])), "[0, \"none\"]", "Bounds of the preload; none unless said otherwise."),
+    ]]);
+
+static SIMULATE: Kind = kind("study", "simulate",
+    "kind = \"simulate\", until = \"2 s\"",
+    "How it moves in time under what acts on it, its drives let go.",
+    &[&OF_STUDIES, &SHOWN, &[
+        must("until", positive(D::TIME), "\"2 s\"", "How long."),
+        may("release", T::AnyOf(&[DRIVE, T::List(&DRIVE, 1)]), "[\"motor\"]", "Drives that are let go and give nothing but what their motors can; all unless said otherwise, the others keep their laws."),
+        may("start", T::Values(&T::AnyValue), "{ motor = \"30 deg\", motor_rate = \"2 rad/s\" }", "Where drives that are let go start, and with `_rate` how fast; where their laws start, and at rest, unless said otherwise."),
+        may("stops", T::Values(&T::AnyOf(&[T::Two(&END), T::Table(&STOP)])), "{ rocker = [\"-10 deg\", \"95 deg\"] }", "Least and largest angle of a link, coordinate of a drive or value of a measure, where it is stopped."),
+        may("end_when", T::AnyOf(&[T::Measure, T::List(&T::Measure, 1)]), "\"angle(rocker) <= 0 deg\"", "It ends when this comes to hold."),
+        may("tolerance", positive(D::NONE), "1e-10", "Error of a step, in parts of what moves; 1e-13 unless said otherwise."),
+        may("method", METHOD_WORDS, "\"implicit\"", "How steps are made; as suits unless said otherwise."),
+    ]]);
+
+pub(crate) static STOP: Kind = kind("stop", "stop",
+    "rocker = { between = [\"-10 deg\", \"95 deg\"], restitution = 0.4 }",
+    "What an angle or a length cannot pass.",
+    &[&[
+        must("between", T::Two(&END), "[\"-10 deg\", \"none\"]", "Least and largest."),
+        may("restitution", not_negative(D::NONE), "0.4", "Speed after an impact over that before; 0 unless said otherwise."),
+        may("stiffness", stiffness(Sign::Positive), "\"5 N m/deg\"", "Of a stop that gives."),
+        may("damping", DAMPING, "\"0.1 N m s\"", "Of a stop that gives; 0 unless said otherwise."),
+    ]]);
+
+const DRIVE: T = T::Name(Named::Drive);
+const END: T = T::AnyOf(&[COORDINATE, T::Words(NONE)]);
+
+static VIBRATIONS: Kind = kind("study", "vibrations",
+    "kind = \"vibrations\", release = [\"swing\"]",
+    "The natural frequencies, mode shapes and damping about a pose, or about the poses of a motion.",
+    &[&[
+        must("kind", STUDY_KINDS, "\"vibrations\"", "What kind of study it is."),
+        may("release", T::AnyOf(&[DRIVE, T::List(&DRIVE, 1)]), "[\"motor\"]", "The drives that are let go; all unless said otherwise. The others are held."),
+        may("at", T::Values(&T::AnyValue), "{ motor = \"30 deg\" }", "Where drives stand, by their names; at their start unless said otherwise."),
+        may("equilibrium", T::Flag, "false", "Whether the drives that are let go sink to static equilibrium first; they do unless said otherwise."),
+        may("step", T::AnyValue, "\"5 ms\"", "Of one held drive, or of time: the frequencies along the motion of the drives that are held; about one pose without it."),
+        may("rows", T::Count(MAX_ROWS), "61", "How many rows along that motion, evenly in time, instead of a step."),
     ]]);
 
 /// Where there is no bound.

@@ -71,8 +71,6 @@ pub enum Takes {
     Values(&'static Takes),
     /// Names of the user's choice, each with a table of one of these kinds.
     Entries(&'static [&'static Kind]),
-    /// A section that is kept for later versions.
-    Announced,
 }
 
 /// What a name is the name of.
@@ -201,7 +199,6 @@ impl Takes {
             }
             Self::Values(one) => format!("names, each with {}", one.in_words()),
             Self::Entries(_) => "names, each with a table".to_owned(),
-            Self::Announced => "read by later versions".to_owned(),
         }
     }
 }

@@ -3,6 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use kempe_number::Number;
+use kempe_units::Expr;
 
 use crate::drive::{Law, LawPiece, RiseLaw};
 use crate::geometry::value;
@@ -22,6 +23,16 @@ struct TimedPiece<'a, T> {
 }
 
 impl Law {
+    /// A law that stands still, SI.
+    pub fn standing(at: f64) -> Self {
+        Self {
+            from: Expr::Const(at),
+            pieces: vec![LawPiece::Dwell {
+                duration: Expr::Const(0.0),
+            }],
+        }
+    }
+
     /// How long the law takes, s. A held coordinate takes no time.
     pub fn duration<T: Number>(&self, parameters: &[T]) -> T {
         self.stretches(parameters)
@@ -53,6 +64,18 @@ impl Law {
         breaks
     }
 
+    /// The times between which the law is smooth, those inside of pieces and both ends included, s, rising.
+    pub fn knots(&self, parameters: &[f64]) -> Vec<f64> {
+        let starts = self.breaks(parameters);
+        let mut knots = starts.clone();
+        for (piece, start) in self.pieces.iter().zip(&starts) {
+            knots.extend(piece.knots().iter().map(|t| start + t));
+        }
+        knots.sort_by(f64::total_cmp);
+        knots.dedup();
+        knots
+    }
+
     /// Smallest and largest coordinate of the motion (rad or m).
     pub fn extent(&self, parameters: &[f64]) -> (f64, f64) {
         let from = value(&self.from, parameters);
@@ -60,15 +83,8 @@ impl Law {
         let mut take = |x: f64| extent = (extent.0.min(x), extent.1.max(x));
         for stretch in self.stretches(parameters) {
             take(stretch.to);
-            if let LawPiece::Table {
-                times,
-                values,
-                moments,
-            } = stretch.piece
-            {
-                for t in knots_and_turns(times, values, moments) {
-                    take(stretch.at(t));
-                }
+            for t in turns(stretch.piece) {
+                take(stretch.at(t));
             }
         }
         extent
@@ -112,6 +128,7 @@ impl Law {
                     let last = |list: &[f64]| T::from_f64(list.last().copied().unwrap_or(0.0));
                     (last(values), last(times))
                 }
+                LawPiece::Polynomials(it) => (T::from_f64(it.end()), T::from_f64(it.duration())),
             };
             let stretch = TimedPiece {
                 piece,
@@ -179,6 +196,7 @@ impl<T: Number> TimedPiece<'_, T> {
                 values,
                 moments,
             } => spline_at(times, values, moments, t),
+            LawPiece::Polynomials(it) => it.at(t),
         }
     }
 }
@@ -194,18 +212,12 @@ impl<T: Number> TimedPiece<'_, T> {
 
 impl TimedPiece<'_, f64> {
     fn first_time(&self, x: f64) -> Option<f64> {
-        if let LawPiece::Table {
-            times,
-            values,
-            moments,
-        } = self.piece
-        {
-            let ends: Vec<f64> = knots_and_turns(times, values, moments).collect();
-            return ends
-                .windows(2)
-                .find_map(|w| self.crossing(x, *w.first()?, *w.last()?));
+        let ends = turns(self.piece);
+        if ends.is_empty() {
+            return self.crossing(x, 0.0, self.duration);
         }
-        self.crossing(x, 0.0, self.duration)
+        ends.windows(2)
+            .find_map(|w| self.crossing(x, *w.first()?, *w.last()?))
     }
 
     /// The time in `[low, high]`, between which the coordinate is monotone, where it is `x`; by bisection to the last bit.
@@ -234,6 +246,20 @@ impl TimedPiece<'_, f64> {
                 low = middle
             }
         }
+    }
+}
+
+/// The times, s from its start, from one of which to the next a piece of several parts is monotone; none of any other, which
+/// is monotone all along.
+fn turns(piece: &LawPiece) -> Vec<f64> {
+    match piece {
+        LawPiece::Table {
+            times,
+            values,
+            moments,
+        } => knots_and_turns(times, values, moments).collect(),
+        LawPiece::Polynomials(it) => it.turns().to_vec(),
+        _ => Vec::new(),
     }
 }
 
@@ -303,7 +329,6 @@ mod tests {
     use super::*;
     use crate::spline::moments;
     use kempe_number::{Interval, Jet, Lanes};
-    use kempe_units::Expr;
 
     fn c(x: f64) -> Expr<crate::ids::ParameterId> {
         Expr::Const(x)

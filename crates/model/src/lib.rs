@@ -2,6 +2,7 @@
 
 mod bound;
 pub mod build;
+mod clearance;
 mod codes;
 mod complete;
 mod decimal;
@@ -30,6 +31,7 @@ mod outline;
 mod part;
 mod partial;
 mod path;
+mod polynomials;
 mod read;
 mod registry;
 mod same;
@@ -43,6 +45,7 @@ mod unsound;
 mod write;
 
 pub use bound::{Bound, Keeps};
+pub use clearance::*;
 pub use codes::{CODES, Code, LATER_CODES};
 pub use complete::{Completion, CompletionKind, complete};
 pub use diagnostic::{Diagnostic, Label, Severity, Source};
@@ -63,6 +66,7 @@ pub use model::{FileUnits, Model, Parameter, UnitName};
 pub use part::{Naming, Part, PartKind, namings, parts};
 pub use partial::Partial;
 pub use path::{PathAt, PathPart, PathPlaces, path_at, places_of};
+pub use polynomials::{COEFFICIENTS, Polynomials};
 pub use read::{Checked, MAX_FILE_BYTES, MAX_TABLE_BYTES, PARTIAL_TABLE, partial_table};
 pub use registry::{Argument, MeasureEntry, Nature, Registry};
 pub use schema::schema;

@@ -172,6 +172,8 @@ pub struct Friction {
     pub stribeck_speed: Option<Scalar>,
     /// Viscous part, N m s/rad at pins, N s/m at sliders and teeth.
     pub viscous: Option<Scalar>,
+    /// What it resists with whatever the load, N m at pins, N at sliders and teeth.
+    pub drag: Option<Scalar>,
     /// Radius of the pin, m; friction of a pin needs one.
     pub radius: Option<Scalar>,
     /// Where it stands in the file.

@@ -32,6 +32,8 @@ pub struct Model {
     pub drives: Vec<Drive>,
     /// What acts on it.
     pub actions: crate::load::Actions,
+    /// Play at its joints, in file order.
+    pub clearances: Vec<crate::clearance::Clearance>,
     /// Which assembly is meant.
     pub assembly: Vec<AssemblyHint>,
     /// Where the file draws points, and which links list them.

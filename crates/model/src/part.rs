@@ -11,6 +11,7 @@ use crate::key_path::{is_index, takes_at};
 use crate::keys::{Named, Takes};
 use crate::outline::{KeyMark, Outline, Shape, ValueMark, string};
 use crate::read::names::{LISTED, is_point_name, pair_of};
+use crate::read::simulate::RATE;
 use crate::registry::{Argument, Registry};
 
 /// The kinds of part that have a name.
@@ -283,11 +284,13 @@ impl Finder<'_> {
         match key.path.as_slice() {
             [section, name] => {
                 let part = match section.as_str() {
-                    "friction" | "assembly" | "places" if is_point_name(name) => {
+                    "friction" | "clearance" | "assembly" | "places" if is_point_name(name) => {
                         Some(Part::new(PartKind::Point, name))
                     }
-                    "friction" if name == "all" => None,
-                    "friction" | "assembly" | "cylinders" | "motors" => self.common(name),
+                    "friction" | "clearance" if name == "all" => None,
+                    "friction" | "clearance" | "assembly" | "cylinders" | "motors" => {
+                        self.common(name)
+                    }
                     _ => {
                         let kind = SECTIONS.iter().find(|(known, _)| known == section);
                         kind.map(|(_, kind)| Part::new(*kind, name))
@@ -296,6 +299,17 @@ impl Finder<'_> {
                 let Some(part) = part else { return };
                 let entry = SECTIONS.iter().any(|(known, _)| known == section);
                 self.push(part, within(0, name), &key.path, here(entry));
+            }
+            [section, _, of, name]
+                if section == "studies" && ["at", "start", "stops"].contains(&of.as_str()) =>
+            {
+                // of how fast a drive starts, the drive
+                let drive = name.strip_suffix(RATE).filter(|_| of == "start");
+                let named = [Some(name.as_str()), drive].into_iter().flatten();
+                let mut known = named.filter_map(|name| Some((name, self.common(name)?)));
+                if let Some((name, part)) = known.next() {
+                    self.push(part, within(0, name), &key.path, here(false));
+                }
             }
             [section, _, name] if section == "links" => {
                 let single = is_point_name(name).then_some((0, name.as_str()));

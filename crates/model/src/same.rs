@@ -9,7 +9,7 @@ use crate::link::{Center, Place};
 use crate::load::{Amount, LoadKind};
 use crate::measure::{Leaf, Measure, PoseMeasure};
 use crate::model::Model;
-use crate::study::{Column, Plot, Rows, StudyKind};
+use crate::study::{Column, Plot, Rows, StopResistance, StudyKind};
 
 impl Model {
     /// Whether two models are the same but for the places in their files and for how their constants are written.
@@ -62,6 +62,7 @@ impl Model {
         let cylinders = acting.cylinders.iter_mut();
         cylinders.for_each(|p| forget(&mut p.span));
         acting.motors.iter_mut().for_each(|p| forget(&mut p.span));
+        self.clearances.iter_mut().for_each(|p| forget(&mut p.span));
     }
 
     /// Every expression over parameters.
@@ -126,7 +127,7 @@ impl Model {
                         f(to);
                         f(duration);
                     }
-                    LawPiece::Table { .. } => {}
+                    LawPiece::Table { .. } | LawPiece::Polynomials(_) => {}
                 }
             }
         }
@@ -144,6 +145,7 @@ impl Model {
             }
         }
         self.visit_scalars_of_actions(f);
+        (self.clearances.iter_mut()).for_each(|clearance| f(&mut clearance.radial));
         for study in &mut self.studies {
             let along = match &mut study.kind {
                 StudyKind::Motion(along) | StudyKind::Forces(along) => along,
@@ -154,6 +156,32 @@ impl Model {
                 StudyKind::Spring(study) => {
                     let bounds = study.stiffness.iter_mut().chain(&mut study.preload);
                     bounds.flatten().for_each(&mut *f);
+                    &mut study.along
+                }
+                StudyKind::Simulate(study) => {
+                    f(&mut study.until);
+                    study.tolerance.iter_mut().for_each(&mut *f);
+                    for start in &mut study.start {
+                        start.at.iter_mut().for_each(&mut *f);
+                        start.rate.iter_mut().for_each(&mut *f);
+                    }
+                    for stop in &mut study.stops {
+                        stop.between.iter_mut().flatten().for_each(&mut *f);
+                        match &mut stop.resistance {
+                            StopResistance::Rigid { restitution } => {
+                                restitution.iter_mut().for_each(&mut *f);
+                            }
+                            StopResistance::Soft { stiffness, damping } => {
+                                f(stiffness);
+                                damping.iter_mut().for_each(&mut *f);
+                            }
+                        }
+                    }
+                    &mut study.along
+                }
+                StudyKind::Clearance(study) => &mut study.along,
+                StudyKind::Vibrations(study) => {
+                    study.at.iter_mut().for_each(|(_, at)| f(at));
                     &mut study.along
                 }
             };
@@ -194,6 +222,7 @@ impl Model {
             let rest = friction.static_coefficient.iter_mut();
             rest.chain(&mut friction.stribeck_speed)
                 .chain(&mut friction.viscous)
+                .chain(&mut friction.drag)
                 .chain(&mut friction.radius)
                 .for_each(&mut *f);
         }
@@ -234,6 +263,13 @@ impl Model {
                     f(&mut study.wanted);
                     &mut study.along
                 }
+                StudyKind::Simulate(study) => {
+                    study.stops.iter_mut().for_each(|s| f(&mut s.what));
+                    study.end_when.iter_mut().for_each(|c| f(&mut c.above));
+                    &mut study.along
+                }
+                StudyKind::Clearance(study) => &mut study.along,
+                StudyKind::Vibrations(study) => &mut study.along,
             };
             let mut column = |c: &mut Column| f(&mut c.measure);
             along.columns.iter_mut().for_each(&mut column);

@@ -192,6 +192,5 @@ fn of(takes: &Takes) -> Value {
         Takes::Entries(kinds) => {
             json!({ "type": "object", "additionalProperties": reference(definition_of(kinds)) })
         }
-        Takes::Announced => json!({ "type": "object" }),
     }
 }

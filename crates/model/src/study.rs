@@ -1,9 +1,10 @@
 //! What is asked of a model.
 
-use kempe_units::Dimension;
+use kempe_units::{Dimension, Expr};
 
+use crate::clearance::ClearanceStudy;
 use crate::ids::{DriveId, LinkId, PointId, Scalar, Span};
-use crate::measure::Measure;
+use crate::measure::{Leaf, Measure};
 
 /// A measure with the user's name for it.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,7 +27,7 @@ pub struct NamedMeasure {
 pub struct AnnouncedStudy {
     /// Name.
     pub name: String,
-    /// Its kind, as in `kind = "clearance"`.
+    /// Its kind, as in `kind = "sweep"`.
     pub kind: String,
 }
 
@@ -52,6 +53,122 @@ pub enum StudyKind {
     Balance(BalanceStudy),
     /// The spring that leaves a wanted effort to a drive.
     Spring(SpringStudy),
+    /// How it moves in time where drives are let go.
+    Simulate(SimulateStudy),
+    /// What play at the joints does. Rows, columns and plots as for forces.
+    Clearance(ClearanceStudy),
+    /// The natural vibrations about a pose, or about the poses of a motion.
+    Vibrations(VibrationStudy),
+}
+
+/// How a mechanism moves in time under what acts on it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SimulateStudy {
+    /// Where rows stand, in time; columns and plots.
+    pub along: MotionStudy,
+    /// Drives that are let go; the others keep their laws.
+    pub released: Vec<DriveId>,
+    /// Where drives that are let go start, and how fast; elsewhere where their laws do, and at rest.
+    pub start: Vec<DriveStart>,
+    /// How long, s.
+    pub until: Scalar,
+    /// What stops it.
+    pub stops: Vec<Stop>,
+    /// It ends when one of these comes to hold.
+    pub end_when: Vec<Condition>,
+    /// Error of a step, in parts of what moves.
+    pub tolerance: Option<Scalar>,
+    /// How steps are made; as suits where it is not said.
+    pub method: Option<StepMethod>,
+}
+
+/// How a simulation makes its steps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StepMethod {
+    /// Explicit ones, of high order.
+    Explicit,
+    /// Implicit ones, which stiff springs do not hold back.
+    Implicit,
+}
+
+/// How a drive that is let go starts.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DriveStart {
+    /// The drive.
+    pub drive: DriveId,
+    /// Where, rad or m.
+    pub at: Option<Scalar>,
+    /// How fast, rad/s or m/s.
+    pub rate: Option<Scalar>,
+}
+
+/// Bounds that an angle or a length cannot pass.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stop {
+    /// The link, drive or named measure, as written.
+    pub name: String,
+    /// What is bounded.
+    pub what: Measure,
+    /// Whether it is an angle; otherwise it is a length.
+    pub is_angle: bool,
+    /// Least and largest; `None` for no bound.
+    pub between: [Option<Scalar>; 2],
+    /// How the stop resists.
+    pub resistance: StopResistance,
+}
+
+impl Stop {
+    /// What is not negative as long as the stop is not passed, at either end; whether that is the least value.
+    pub fn gaps(&self) -> impl Iterator<Item = (bool, Measure)> + '_ {
+        let ends = self.between.iter().zip([true, false]);
+        ends.filter_map(|(bound, least)| {
+            let bound = bound.clone()?.map_leaves(&mut |id| Leaf::Parameter(*id));
+            let (large, small) = match least {
+                true => (self.what.clone(), bound),
+                false => (bound, self.what.clone()),
+            };
+            Some((least, Expr::Sub(Box::new(large), Box::new(small))))
+        })
+    }
+}
+
+/// How a stop resists.
+#[derive(Clone, Debug, PartialEq)]
+pub enum StopResistance {
+    /// At once.
+    Rigid {
+        /// Speed after an impact over that before, from 0 to 1; 0 where none is given.
+        restitution: Option<Scalar>,
+    },
+    /// As a spring and a damper that never pull.
+    Soft {
+        /// N/m or N m/rad.
+        stiffness: Scalar,
+        /// N s/m or N m s/rad; 0 where none is given.
+        damping: Option<Scalar>,
+    },
+}
+
+/// Something that holds or does not at every instant.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Condition {
+    /// As written: `angle(rocker) <= 0 deg`.
+    pub text: String,
+    /// It holds where this is not negative.
+    pub above: Measure,
+}
+
+/// How a mechanism vibrates when some of its drives are let go.
+#[derive(Clone, Debug, PartialEq)]
+pub struct VibrationStudy {
+    /// Where rows stand along the motion of the drives that are held; of one pose alone, one row.
+    pub along: MotionStudy,
+    /// The drives that are let go.
+    pub release: Vec<DriveId>,
+    /// Where drives stand; others at their start.
+    pub at: Vec<(DriveId, Scalar)>,
+    /// Whether what is let go first sinks to static equilibrium.
+    pub settles: bool,
 }
 
 /// Which counterweights a mechanism needs.
@@ -100,6 +217,9 @@ impl StudyKind {
             Self::Motion(along) | Self::Forces(along) => along,
             Self::Balance(study) => &study.along,
             Self::Spring(study) => &study.along,
+            Self::Simulate(study) => &study.along,
+            Self::Clearance(study) => &study.along,
+            Self::Vibrations(study) => &study.along,
         }
     }
 }

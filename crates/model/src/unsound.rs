@@ -4,7 +4,7 @@
 //! asks here.
 
 use kempe_number::math;
-use kempe_units::{Unit, format_digits};
+use kempe_units::{Dimension, Unit, format_digits};
 
 use crate::bound::{Bound, Keeps, STEEPEST, beyond, remedy};
 use crate::diagnostic::Diagnostic;
@@ -18,14 +18,28 @@ const OPEN: f64 = 1e-9;
 impl Model {
     /// What is wrong with parameter values (SI, in the model's order); nothing where a file with them would be read.
     ///
-    /// `not-finite`, `out-of-range`, `bad-size` and `triangle-open`, each labelled where the value stands in the file.
+    /// `not-finite`, `out-of-range`, `bad-size`, `triangle-open` and `clearance-too-large`, each labelled where the value stands in the file.
     pub fn unsound(&self, parameters: &[f64]) -> Vec<Diagnostic> {
         let broken = self
             .bounds
             .iter()
             .filter_map(|b| b.broken(self, parameters));
         let open = (self.links.iter()).filter_map(|link| open_triangle(link, parameters));
-        broken.chain(open).collect()
+        (broken.chain(open))
+            .chain(self.clearances_too_large(parameters))
+            .collect()
+    }
+}
+
+impl Model {
+    /// A value in the file's units, for people.
+    pub(crate) fn shown(&self, x: f64, dimension: Dimension) -> String {
+        let preferred: Vec<Unit> = [&self.units.length, &self.units.angle]
+            .into_iter()
+            .chain(&self.units.more)
+            .filter_map(|unit| Unit::parse(&unit.name).ok())
+            .collect();
+        format_digits(x, &Unit::for_display(dimension, &preferred), 6)
     }
 }
 
@@ -63,12 +77,7 @@ impl Bound {
             Keeps::PressureAngle => "pressure-angle",
             _ => "bad-size",
         };
-        let preferred: Vec<Unit> = [&model.units.length, &model.units.angle]
-            .into_iter()
-            .chain(&model.units.more)
-            .filter_map(|unit| Unit::parse(&unit.name).ok())
-            .collect();
-        let found = format_digits(x, &Unit::for_display(self.dimension, &preferred), 6);
+        let found = model.shown(x, self.dimension);
         Some(
             finding(code, format!("{} {wanted}, found {found}", self.what))
                 .help("set the parameters that it is made of to values that leave it so"),

@@ -76,6 +76,7 @@ impl Model {
         writer.links(&mut file);
         writer.mechanism(&mut file);
         writer.actions(&mut file);
+        writer.clearances(&mut file);
         writer.questions(&mut file);
         ModelFile {
             toml: file.to_toml(),

@@ -93,12 +93,15 @@ fn keys_of_the_kind_that_are_not_there_yet() {
     );
     assert_eq!(
         labels("[friction]\nB = { static = 0.2, | }"),
-        ["coefficient", "stribeck", "viscous", "radius"]
+        ["coefficient", "stribeck", "viscous", "drag", "radius"]
     );
     assert_eq!(
         labels("[friction]\nbore = { | }"),
-        ["coefficient", "static", "stribeck", "viscous"]
+        ["coefficient", "static", "stribeck", "viscous", "drag"]
     );
+    assert_eq!(labels("[clearance]\nB = { | }"), ["radial", "on"]);
+    assert_eq!(labels("[clearance]\nbore = { | }"), ["radial"]);
+    assert_eq!(labels("[clearance]\n|").last().unwrap(), "all");
     // of points and links that a spring may act between, one
     assert!(!labels("[springs]\nx = { between = \"A-P\", | }").contains(&"links".to_owned()));
     // the frame's points and the keys of a link
@@ -158,7 +161,19 @@ fn names_where_names_are_wanted() {
     );
     assert_eq!(
         labels("[studies.s]\nkind = \"|\""),
-        ["motion", "forces", "balance", "spring"]
+        [
+            "motion",
+            "forces",
+            "balance",
+            "spring",
+            "simulate",
+            "clearance",
+            "vibrations"
+        ]
+    );
+    assert_eq!(
+        labels("[studies.s]\nkind = \"clearance\"\nrates = \"|\""),
+        ["frozen", "turning"]
     );
     assert_eq!(labels("[studies.s]\nspring = \"|\""), ["back"]);
     assert_eq!(

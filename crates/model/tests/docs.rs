@@ -214,9 +214,10 @@ fn the_language_page_leaves_nothing_out() {
 #[rustfmt::skip]
 const OTHER: &[&str] = &[
     // what always has this name
-    "frame", "all", "pi", "inf", "path", "hodograph", "before",
+    "frame", "all", "pi", "inf", "path", "hodograph", "before", "false",
     // columns that tables have of their own
-    "arc", "closure", "condition", "equilibrium_residual", "note", "route_difference", "smallest_singular_value",
+    "arc", "closure", "condition", "energy_residual", "equilibrium_residual", "note", "power_residual", "route_difference", "smallest_singular_value", "_rate",
+    "amplitude", "angular_frequency", "damped_frequency", "damping_ratio", "frequency", "growth", "modal_inertia", "modal_mass", "period", "shape",
     // on the command line
     "kempe", "check", "new", "run", "draw", "schema",
     // parts of names and phrases, and names of the page's own models

@@ -63,6 +63,38 @@ fn other_name(kind: PartKind) -> &'static str {
 }
 
 #[test]
+fn drives_that_a_study_lets_go_are_renamed_deleted_and_completed() {
+    let text = "[links]\nframe = { O = [0, 0] }\nupper = { O-P = 1 }\nlower = { P-Q = 1 }\n[drives]\na = { turns = \"upper\", at = 0 }\n\
+                b = { turns = \"lower\", at = 0 }\n[studies.m]\nkind = \"vibrations\"\nrelease = [\"a\", \"b\"]\nat = { a = 3, b = 4 }\n";
+    let a = Part::new(PartKind::Drive, "a");
+    let renamed = apply(text, &rename(text, &a, "swing").unwrap()).unwrap();
+    assert!(
+        renamed.contains("release = [\"swing\", \"b\"]\nat = { swing = 3, b = 4 }"),
+        "{renamed}"
+    );
+    assert!(read(&renamed, Path::new("")).is_ok());
+    assert!(matches!(delete(text, &a), Err(DeleteError::InUse(by)) if by.len() == 2));
+    let gone = delete_with_dependants(text, &a).unwrap();
+    let left = apply(text, &gone.edits).unwrap();
+    assert!(left.contains("release = [\"b\"]\nat = { b = 4 }"), "{left}");
+    let labels = |at: &str| -> Vec<String> {
+        let offset = text.find(at).unwrap() + at.len();
+        complete(text, offset)
+            .into_iter()
+            .map(|c| c.label)
+            .collect()
+    };
+    assert_eq!(labels("release = [\""), ["a", "b"]);
+    let typed = text.replace("at = { a = 3, b = 4 }", "at = {  }");
+    let offset = typed.find("at = { ").unwrap() + 7;
+    let found: Vec<String> = complete(&typed, offset)
+        .into_iter()
+        .map(|c| c.label)
+        .collect();
+    assert_eq!(found, ["a", "b"]);
+}
+
+#[test]
 fn a_part_renamed_is_the_same_part_and_renamed_back_the_same_text() {
     let mut renamed = 0;
     for (text, folder) in texts() {
@@ -166,6 +198,8 @@ x = "1"
 none = 3
 [friction]
 C = { coefficient = "x", radius = 1 }
+[clearance]
+C = { radial = "x * 1 um", on = "c" }
 [drives]
 m = { turns = "b1", law = [ { rise = "x * 1 deg", in = "none * 1 s", by = "harmonic" } ] }
 [measures]
@@ -178,13 +212,13 @@ columns = "one"
 plot = [["one", "x(C)"], "path(C)", "hodograph(C, c)"]
 "#;
     let count = |kind, name: &str| namings(text, &Part::new(kind, name)).len();
-    assert_eq!(count(PartKind::Point, "C"), 11);
+    assert_eq!(count(PartKind::Point, "C"), 12);
     assert_eq!(count(PartKind::Point, "P"), 6);
     assert_eq!(count(PartKind::Point, "D"), 6);
-    assert_eq!(count(PartKind::Link, "c"), 3);
+    assert_eq!(count(PartKind::Link, "c"), 4);
     assert_eq!(count(PartKind::Link, "b1"), 2);
     assert_eq!(count(PartKind::Spring, "b1"), 2);
-    assert_eq!(count(PartKind::Parameter, "x"), 6);
+    assert_eq!(count(PartKind::Parameter, "x"), 7);
     assert_eq!(count(PartKind::Parameter, "none"), 2);
     assert_eq!(count(PartKind::Measure, "one"), 3);
     for (part, _) in parts(text) {

@@ -63,10 +63,9 @@ fn door_lock() {
         model, warnings, ..
     } = read("door-lock");
     let codes: Vec<&str> = warnings.iter().map(|d| d.code).collect();
-    assert_eq!(
-        codes,
-        ["no-inertia", "section-not-available", "study-not-available"]
-    );
+    assert_eq!(codes, ["no-inertia"]);
+    assert_eq!(model.clearances.len(), 1);
+    assert!(matches!(model.studies[2].kind, StudyKind::Clearance(_)));
     assert!(matches!(model.drives[0].kind, DriveKind::Turn { .. }));
     assert!(matches!(
         model.links[2].points[2].place,

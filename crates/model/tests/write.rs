@@ -186,8 +186,15 @@ hinge = { links = ["frame", "élan"], damping = "0.1 N m s" }
 
 [friction]
 B = { coefficient = 0.1, radius = "a/10", viscous = "0.001 N m s", static = 0.15, stribeck = "1 mm/s" }
-bore = { viscous = "50 N s/m" }
+bore = { viscous = "50 N s/m", drag = "3 N" }
 all = { coefficient = "ratio / 100", radius = "4 mm" }
+
+[clearance]
+B = { radial = "a/1000", on = ["crank", "two"] }
+U = { radial = "20 um", on = "foot" }
+bore = { radial = 0 }
+slot = { radial = "ratio * 1 um" }
+all = { radial = "10 um" }
 
 [cylinders]
 lift = { bore = "80 mm", rod = "ratio * 10 mm", supply = 180, relief = "210 bar", back = "5 bar", flow = "20 L/min", friction = "100 N", count = 2 }
@@ -250,6 +257,26 @@ drive = "motor"
 wanted = "ratio * 1 N m * sin(motor)"
 stiffness = [0, "ratio * 1 N m/rad"]
 preload = ["none", "200 N m"]
+[studies.worn]
+kind = "clearance"
+rates = "turning"
+rows = 25
+columns = ["m1", "n3"]
+plot = ["m1", "hodograph(bore)"]
+[studies.play]
+kind = "clearance"
+model = "continuous"
+[studies.modes]
+kind = "vibrations"
+[studies.swings]
+kind = "vibrations"
+release = ["lift"]
+at = { lift = "a + 60 mm" }
+equilibrium = false
+[studies.over]
+kind = "vibrations"
+release = ["lift"]
+rows = 12
 [studies.later]
 kind = "tolerance"
 "#;

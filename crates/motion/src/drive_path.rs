@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use kempe_model::{Law, LawPiece, Model, SAME_END};
+use kempe_model::{Law, Model, SAME_END};
 use kempe_number::Number;
 use kempe_units::Dimension;
 
@@ -48,13 +48,10 @@ pub fn law_knots(model: &Model, parameters: &[f64], pieces: bool) -> Vec<[f64; 2
     let end = duration(model, parameters);
     let mut times = vec![0.0];
     for drive in &model.drives {
-        let starts = drive.law.breaks(parameters);
-        for (piece, start) in drive.law.pieces.iter().zip(&starts) {
-            if let (LawPiece::Table { times: knots, .. }, false) = (piece, pieces) {
-                times.extend(knots.iter().map(|t| start + t));
-            }
-        }
-        times.extend(starts);
+        times.extend(match pieces {
+            true => drive.law.breaks(parameters),
+            false => drive.law.knots(parameters),
+        });
     }
     let near_end = SAME_END * end;
     times.retain(|t| *t < end - near_end);
@@ -116,16 +113,7 @@ impl DrivePath {
                     .iter()
                     .map(|d| d.law.at(0.0, parameters))
                     .collect();
-                let is_angle = model
-                    .drives
-                    .get(drive)
-                    .is_none_or(|d| d.dimension == Dimension::ANGLE);
-                Self::Coordinate {
-                    drive,
-                    held,
-                    is_angle,
-                    scale: if is_angle { 1.0 } else { size },
-                }
+                Self::of_drive(model, size, drive, held)
             }
             _ => {
                 let laws: Vec<Law> = model.drives.iter().map(|d| d.law.clone()).collect();
@@ -156,6 +144,18 @@ impl DrivePath {
                     scale,
                 }
             }
+        }
+    }
+
+    /// The path of one drive of a mechanism of this size, m, the others held at these coordinates.
+    pub fn of_drive(model: &Model, size: f64, drive: usize, held: Vec<f64>) -> Self {
+        let moving = model.drives.get(drive);
+        let is_angle = moving.is_none_or(|d| d.dimension == Dimension::ANGLE);
+        Self::Coordinate {
+            drive,
+            held,
+            is_angle,
+            scale: if is_angle { 1.0 } else { size },
         }
     }
 
@@ -240,13 +240,7 @@ impl DrivePath {
         };
         let mut list = Vec::new();
         for law in laws {
-            let starts = law.breaks(parameters);
-            for (piece, start) in law.pieces.iter().zip(&starts) {
-                if let LawPiece::Table { times, .. } = piece {
-                    list.extend(times.iter().map(|t| start + t));
-                }
-            }
-            list.extend(starts);
+            list.extend(law.knots(parameters));
         }
         list
     }

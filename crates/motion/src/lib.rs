@@ -9,9 +9,11 @@ pub mod events;
 pub mod four_bar;
 pub mod motion;
 pub mod progress;
+pub mod stance;
 pub mod temporary_drives;
 pub mod trace;
 
 pub use check::{Findings, Reach, check, check_with_progress};
 pub use motion::{Demand, EndReason, LeftDrawing, Motion, MotionError, Placed, SIZES, Solver};
 pub use progress::{Done, Progress, Silent, Stage};
+pub use stance::Stance;

@@ -20,6 +20,10 @@ pub enum Stage {
     Proving,
     /// What could be put on the mechanism is tried, unit by unit.
     Trying,
+    /// What is let go moves in time.
+    Simulating,
+    /// What is let go sinks to equilibrium.
+    Settling,
     /// Rows of a table are computed, or values of many designs.
     Rows,
 }
@@ -34,6 +38,8 @@ impl Stage {
             Self::Measuring => "measuring over the motion",
             Self::Proving => "proving the motion",
             Self::Trying => "trying what each unit does",
+            Self::Simulating => "simulating",
+            Self::Settling => "finding equilibrium",
             Self::Rows => "computing rows",
         }
     }

@@ -9,6 +9,7 @@ use kempe_mechanism::Mechanism;
 use kempe_model::{Diagnostic, DriveId, Measure, Model, Study, StudyKind};
 use kempe_motion::{Motion, Progress, Silent, Stage};
 
+use crate::clearance::not_at_an_instant;
 use crate::columns::Asked;
 use crate::explain::stopped;
 use crate::number_notes::number_notes;
@@ -203,8 +204,19 @@ pub(crate) fn not_answerable(mechanism: &Mechanism, study: &Study) -> Vec<Diagno
     let asked = match &study.kind {
         StudyKind::Motion(along) => Asked::of_motion(&mechanism.model, along),
         StudyKind::Forces(along) => Asked::of_forces(mechanism, along),
+        StudyKind::Simulate(study) => Asked::of_forces(mechanism, &study.along),
+        StudyKind::Clearance(play) => {
+            let asked = Asked::of_clearance(mechanism, &play.along);
+            let problems = not_at_an_instant(mechanism, &asked);
+            if !problems.is_empty() {
+                return problems;
+            }
+            asked
+        }
         // They ask for columns of their own, which every mechanism answers.
-        StudyKind::Balance(_) | StudyKind::Spring(_) => return Vec::new(),
+        StudyKind::Balance(_) | StudyKind::Spring(_) | StudyKind::Vibrations(_) => {
+            return Vec::new();
+        }
     };
     let quantities: Vec<&Quantity> = asked.all().collect();
     let measures: Vec<_> = quantities.iter().map(|q| &q.measure).collect();
@@ -234,7 +246,7 @@ fn not_measurable(
 }
 
 /// Times of rows, s; of those at a coordinate the first time at which the drive is there.
-fn times(motion: &Motion, rows: &[RowPlace]) -> Vec<f64> {
+pub(crate) fn times(motion: &Motion, rows: &[RowPlace]) -> Vec<f64> {
     let drive = motion.mechanism().model.drives.get(path_drive(motion));
     let time = |row: &RowPlace| match row {
         RowPlace::Time(time) => Some(*time),

@@ -148,6 +148,7 @@ pub(crate) fn run_circuit(
         table: rows.table,
         frames,
         listings: Vec::new(),
+        shapes: Vec::new(),
         along: 0,
         assemblies: (circuit.assemblies.list.len(), circuit.assemblies.rejected),
         diagnostics,

@@ -1,5 +1,6 @@
 //! Which quantities a motion study reports.
 
+use kempe_measure::measure::visit_leaves;
 use kempe_mechanism::Mechanism;
 use kempe_model::{
     FRAME, ForceMeasure, Hodograph, Leaf, LinkId, Measure, Model, MotionStudy, Plot, PointId,
@@ -16,6 +17,8 @@ pub(crate) struct Asked {
     pub columns: Vec<Quantity>,
     pub curves: Vec<Quantity>,
     pub scalars: Vec<Quantity>,
+    /// What the study itself looks at, and shows in no column.
+    pub hidden: Vec<Quantity>,
 }
 
 impl Asked {
@@ -35,6 +38,21 @@ impl Asked {
         let mut asked = Self::of(&mechanism.model, study, true);
         if study.columns.is_empty() {
             standard(mechanism).into_iter().for_each(|q| asked.add(q));
+        }
+        asked
+    }
+
+    /// What a study of clearance asks for; without columns of its own, all named measures that have a value at every instant,
+    /// without such, where everything is. Numbers over the motion are those of a motion, and this is beside one.
+    pub fn of_clearance(mechanism: &Mechanism, study: &MotionStudy) -> Self {
+        let model = &mechanism.model;
+        let mut asked = Self::of(model, study, true);
+        asked.scalars.clear();
+        if study.columns.is_empty() {
+            (asked.columns).retain(|q| !is_of_whole_motion(mechanism, &q.measure));
+        }
+        if asked.columns.is_empty() && study.columns.is_empty() {
+            places(model).into_iter().for_each(|q| asked.add(q));
         }
         asked
     }
@@ -90,10 +108,23 @@ impl Asked {
         }
     }
 
-    /// All measures, columns first.
+    /// All measures, columns first and hidden ones last.
     pub fn all(&self) -> impl Iterator<Item = &Quantity> {
-        self.columns.iter().chain(&self.curves).chain(&self.scalars)
+        let shown = self.columns.iter().chain(&self.curves);
+        shown.chain(&self.scalars).chain(&self.hidden)
     }
+}
+
+/// Whether a measure asks for more of a motion than an instant: a number over it, or the way so far.
+pub(crate) fn is_of_whole_motion(mechanism: &Mechanism, measure: &Measure) -> bool {
+    let mut found = false;
+    visit_leaves(mechanism, measure, &mut |leaf| {
+        found |= matches!(
+            leaf,
+            Leaf::Over(..) | Leaf::Pose(PoseMeasure::PathLength(_))
+        );
+    });
+    found
 }
 
 /// Named measures, those of forces only with `forces`.

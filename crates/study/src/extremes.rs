@@ -34,7 +34,7 @@ pub struct Extremes<'r> {
 
 /// The extremes of every column but the one that the rows run along and the time.
 pub fn extremes(result: &StudyResult) -> Vec<Extremes<'_>> {
-    let Some(along) = result.abscissa() else {
+    let Some(along) = result.abscissa().filter(|_| result.shapes.is_empty()) else {
         return Vec::new();
     };
     let sizes = Sizes::of(&result.table.columns);
@@ -125,6 +125,7 @@ mod tests {
             closure: closure.to_vec(),
             smallest_singular_value: Vec::new(),
             forces: None,
+            balance: None,
             notes: Vec::new(),
         };
         let along = [5.0, 6.0, 7.0];

@@ -1,6 +1,6 @@
 //! The plots a study asks for.
 
-use kempe_draw::plot::{Axis, Curve, Limit, Marker, MarkerKind, PlotSpec};
+use kempe_draw::plot::{Axis, Beyond, Curve, Limit, Marker, MarkerKind, PlotSpec};
 use kempe_model::Model;
 use kempe_motion::events::EventKind;
 use kempe_units::{Dimension, Unit};
@@ -28,7 +28,7 @@ pub fn figures(model: &Model, result: &StudyResult) -> Vec<(String, PlotSpec)> {
     for figure in &chosen(model, result) {
         let (name, plot) = match figure {
             Figure::Curves { curves, limits } => {
-                let spec = curves_plot(x, curves, result);
+                let spec = curves_plot(x, curves, markers(x, result));
                 let limited = limits.iter().fold(spec, |spec, limit| {
                     spec.with_limit(Limit::along(
                         limit.name.clone(),
@@ -37,6 +37,19 @@ pub fn figures(model: &Model, result: &StudyResult) -> Vec<(String, PlotSpec)> {
                     ))
                 });
                 (names(curves), limited)
+            }
+            Figure::Within { curve, bound } => {
+                let spec = curves_plot(x, std::slice::from_ref(curve), markers(x, result));
+                let along = |label: &str, sign: f64, beyond: Beyond| {
+                    let values = bound.values.iter().map(|y| sign * y).collect();
+                    Limit {
+                        beyond: Some(beyond),
+                        ..Limit::along(label, x.values.clone(), values)
+                    }
+                };
+                let spec = (spec.with_limit(along(&bound.name, 1.0, Beyond::Above)))
+                    .with_limit(along("", -1.0, Beyond::Below));
+                (curve.name.clone(), spec)
             }
             Figure::Hodograph(name, axes) => {
                 (name.clone(), hodograph(name, axes, x, noise(result)))
@@ -59,7 +72,8 @@ pub fn figures(model: &Model, result: &StudyResult) -> Vec<(String, PlotSpec)> {
 
 /// What the plots of a study show, in their order.
 pub(crate) fn chosen(model: &Model, result: &StudyResult) -> Vec<Figure> {
-    if !result.figures.is_empty() {
+    // Over the numbers of modes there is nothing to draw.
+    if !result.figures.is_empty() || !result.shapes.is_empty() {
         return result.figures.clone();
     }
     let drives = 1 + model.drives.len();
@@ -121,6 +135,7 @@ pub(crate) fn noise(result: &StudyResult) -> f64 {
     let of_figures = result.figures.iter().flat_map(|figure| match figure {
         Figure::Hodograph(_, axes) => axes.as_slice(),
         Figure::Curves { curves, .. } => curves.as_slice(),
+        Figure::Within { curve, .. } => std::slice::from_ref(curve),
         Figure::Path(_) => &[],
     });
     let columns = result.table.columns.iter().chain(of_figures);
@@ -155,7 +170,8 @@ pub(crate) fn hodograph(name: &str, [x, y]: &[Column; 2], along: &Column, noise:
     .as_hodograph(along.values.clone(), along.unit.text())
 }
 
-fn curves_plot(x: &Column, columns: &[Column], result: &StudyResult) -> PlotSpec {
+/// The marks of events over a column.
+fn markers(x: &Column, result: &StudyResult) -> Vec<Marker> {
     let marker = |event: &Event| {
         // An event stands at a coordinate of the drive; along time or an arc it is where its row is.
         let at = if result.along == 0 {
@@ -172,6 +188,11 @@ fn curves_plot(x: &Column, columns: &[Column], result: &StudyResult) -> PlotSpec
             kind: marker_kind(event.kind),
         }
     };
+    result.events.iter().map(marker).collect()
+}
+
+/// Columns of one dimension over another column.
+pub(crate) fn curves_plot(x: &Column, columns: &[Column], markers: Vec<Marker>) -> PlotSpec {
     PlotSpec {
         title: String::new(),
         x: Axis::new(x.name.clone(), x.unit.text()),
@@ -198,7 +219,7 @@ fn curves_plot(x: &Column, columns: &[Column], result: &StudyResult) -> PlotSpec
                 ..Curve::default()
             })
             .collect(),
-        markers: result.events.iter().map(marker).collect(),
+        markers,
         ..PlotSpec::default()
     }
 }

@@ -22,6 +22,9 @@ pub fn figures_against(
     for ((_, plot), figure) in plots.iter_mut().zip(chosen(model, result)) {
         let others = match &figure {
             Figure::Curves { curves, .. } => over_the_drive(result, curves, other),
+            Figure::Within { curve, .. } => {
+                over_the_drive(result, std::slice::from_ref(curve), other)
+            }
             Figure::Path(point) => {
                 let name = model.points.get(point.index()).map_or("", |p| &p.name);
                 let index = other_model.points.iter().position(|p| p.name == name);
@@ -96,6 +99,9 @@ fn unit(axis: &Axis) -> Option<Unit> {
 pub(crate) fn quantity<'r>(result: &'r StudyResult, name: &str) -> Option<&'r Column> {
     let plotted = result.figures.iter().flat_map(|figure| match figure {
         Figure::Curves { curves, limits } => curves.iter().chain(limits),
+        Figure::Within { curve, bound } => std::slice::from_ref(curve)
+            .iter()
+            .chain(std::slice::from_ref(bound)),
         Figure::Path(_) | Figure::Hodograph(..) => [].iter().chain(&[]),
     });
     (result.table.columns.iter().chain(plotted)).find(|c| c.name == name)

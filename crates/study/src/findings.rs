@@ -381,6 +381,9 @@ fn study_text(model: &Model, study: &Study, parameters: &[f64], units: &Units) -
         StudyKind::Forces(_) => "forces",
         StudyKind::Balance(_) => "counterweights",
         StudyKind::Spring(_) => "a spring",
+        StudyKind::Simulate(_) => "a simulation",
+        StudyKind::Clearance(_) => "clearance",
+        StudyKind::Vibrations(_) => "natural vibrations",
     };
     let along = study.kind.along();
     let moving = |d: &&Drive| {
@@ -402,11 +405,24 @@ fn study_text(model: &Model, study: &Study, parameters: &[f64], units: &Units) -
             let step = units.text(value(step, parameters), Dimension::TIME);
             format!("a row every {step}")
         }
+        Rows::Count(1) if matches!(study.kind, StudyKind::Vibrations(_)) => {
+            "about one pose".to_owned()
+        }
         Rows::Count(1) => "1 row".to_owned(),
         Rows::Count(count) if along.circuit => format!("{count} rows evenly along the arc"),
         Rows::Count(count) => format!("{count} rows evenly in time"),
     };
-    format!("{kind}, {rows}")
+    match &study.kind {
+        StudyKind::Simulate(simulated) => {
+            let free: Vec<String> = (simulated.released.iter())
+                .filter_map(|drive| model.drives.get(drive.index()))
+                .map(|drive| drive.name.clone())
+                .collect();
+            let until = units.text(value(&simulated.until, parameters), Dimension::TIME);
+            format!("{kind} of {until}, {} let go, {rows}", list(&free))
+        }
+        _ => format!("{kind}, {rows}"),
+    }
 }
 
 fn diagnostics(model: &Model, design: &Design<f64>, found: &Findings) -> Vec<Diagnostic> {

@@ -10,6 +10,7 @@ use kempe_model::{
 use kempe_number::text::significant;
 use kempe_units::Dimension;
 
+use crate::clearance::given;
 use crate::unit::Units;
 use crate::words::list;
 
@@ -23,6 +24,7 @@ pub(crate) fn assumptions(model: &Model, units: &Units) -> Vec<String> {
     let parameters: Vec<f64> = model.parameter_values();
     let actions = &model.actions;
     let mut diagnostics = acting(model);
+    diagnostics.extend(given(model, units));
     let own = model
         .links
         .iter()
@@ -196,7 +198,10 @@ pub(crate) fn something_acts(model: &Model) -> bool {
         || !actions.loads.is_empty()
         || !actions.springs.is_empty()
         || !actions.dampers.is_empty()
-        || actions.friction.iter().any(|f| f.viscous.is_some())
+        || actions
+            .friction
+            .iter()
+            .any(|f| f.viscous.is_some() || f.drag.is_some())
 }
 
 /// What makes forces meaningless for the dimensions at hand.

@@ -34,7 +34,7 @@ pub(crate) fn row_warnings(name: &str, table: &Table, along: usize) -> Vec<Diagn
 }
 
 /// Rows whose loops do not close as well as every row should.
-fn open_warning(name: &str, table: &Table, along: usize) -> Option<Diagnostic> {
+pub(crate) fn open_warning(name: &str, table: &Table, along: usize) -> Option<Diagnostic> {
     let open: Vec<usize> = (0..table.rows())
         .filter(|row| table.closure.get(*row).is_some_and(|c| *c > CLOSURE_LIMIT))
         .collect();
@@ -157,6 +157,7 @@ mod tests {
             columns: Vec::new(),
             smallest_singular_value: vec![1.0; closure.len()],
             forces: None,
+            balance: None,
             notes: vec![None; closure.len()],
             closure,
         };

@@ -1,8 +1,10 @@
 //! Motion studies: a row for every place along the drives' laws.
 
+use std::sync::Arc;
+
 use kempe_measure::measure::visit_leaves;
 use kempe_mechanism::Mechanism;
-use kempe_model::{Diagnostic, Leaf, Measure, Model, MotionStudy, Statistic};
+use kempe_model::{Diagnostic, Drive, Leaf, Measure, Model, MotionStudy, Statistic};
 use kempe_motion::Motion;
 use kempe_motion::drive_path::{DrivePath, is_cycle};
 use kempe_units::Dimension;
@@ -32,24 +34,42 @@ pub(crate) fn run_along(
     forces: bool,
     progress: &mut dyn Progress,
 ) -> Result<StudyResult, Vec<Diagnostic>> {
-    let design = design(model);
-    let motion = motion(&design, progress)?;
-    let mut diagnostics = motion_findings(&motion);
+    let motion = motion(&design(model), progress)?;
+    let diagnostics = motion_findings(&motion);
     if refused(&motion) {
         return Err(diagnostics);
     }
+    let along = abscissa(&motion, &motion.design.parameters);
+    let (mut result, _) = rows_of(&motion, name, study, (forces, along, &[]), progress)?;
+    result.diagnostics.splice(0..0, diagnostics);
+    Ok(result)
+}
+
+/// Rows along a motion, with forces or without, and the column that they run along; the values (SI) of what is `hidden` in no
+/// column, by row.
+pub(crate) fn rows_of(
+    motion: &Arc<Motion>,
+    name: &str,
+    study: &MotionStudy,
+    (forces, along, hidden): (bool, usize, &[Quantity]),
+    progress: &mut dyn Progress,
+) -> Result<(StudyResult, Vec<Vec<f64>>), Vec<Diagnostic>> {
+    let design = &motion.design;
+    let model = &design.mechanism.model;
+    let mut diagnostics = Vec::new();
     let mut study = study.clone();
     if forces && study.plots.is_empty() {
         study.plots = standard_plots(&design.mechanism);
     }
-    let asked = if forces {
+    let mut asked = if forces {
         Asked::of_forces(&design.mechanism, &study)
     } else {
         Asked::of_motion(model, &study)
     };
+    asked.hidden = hidden.to_vec();
     let quantities: Vec<&Quantity> = asked.all().collect();
-    let places = places_along(&motion, &study, &design.parameters);
-    let mut sampler = Along::with_progress(model, &motion, &quantities, forces, &places, progress)?;
+    let places = places_along(motion, &study, &design.parameters);
+    let mut sampler = Along::with_progress(model, motion, &quantities, forces, &places, progress)?;
     let units = Units::of(model);
     let mut rows = RowSink::new(
         name,
@@ -71,7 +91,6 @@ pub(crate) fn run_along(
             break;
         }
     }
-    let along = abscissa(&motion, &design.parameters);
     diagnostics.extend(row_warnings(name, &rows.table, along));
     diagnostics.extend(rows.force_warnings(&design.mechanism, along));
     diagnostics.extend(sampler.number_warnings(Some(name), &quantities));
@@ -86,11 +105,12 @@ pub(crate) fn run_along(
     }));
     let parameters = &design.parameters;
     diagnostics.extend(left_slots(model, parameters, &frames, &rows.table, along));
-    let met = events(&motion, &parameters_met);
+    let met = events(motion, &parameters_met);
     if forces {
         diagnostics.extend(unbounded(&design.mechanism, &asked.scalars, &met));
     }
-    Ok(StudyResult {
+    let hidden = std::mem::take(&mut rows.hidden);
+    let result = StudyResult {
         name: name.to_owned(),
         events: met,
         scalars: rows.scalars.clone(),
@@ -98,11 +118,13 @@ pub(crate) fn run_along(
         table: rows.table,
         frames,
         listings: Vec::new(),
+        shapes: Vec::new(),
         along,
         assemblies: (motion.assemblies.list.len(), motion.assemblies.rejected),
         diagnostics,
         demanded_rows: places.len(),
-    })
+    };
+    Ok((result, hidden))
 }
 
 /// Whether a measure asks for a time ratio, itself or by another measure.
@@ -115,19 +137,23 @@ fn asks_time_ratio(mechanism: &Mechanism, measure: &Measure) -> bool {
 }
 
 /// The column that rows run along: the drive that goes one way through the whole motion, or else time.
-fn abscissa(motion: &Motion, parameters: &[f64]) -> usize {
+pub(crate) fn abscissa(motion: &Motion, parameters: &[f64]) -> usize {
     let model = &motion.mechanism().model;
     let DrivePath::Coordinate { drive, .. } = motion.path else {
         return 0;
     };
-    let goes_one_way = model.drives.get(drive).is_some_and(|d| {
-        let breaks = d.law.breaks(parameters);
-        let at: Vec<f64> = breaks.iter().map(|t| d.law.at(*t, parameters)).collect();
-        let ends = [at.first(), at.last()].map(|end| end.copied().unwrap_or(f64::NAN));
-        let (low, high) = d.law.extent(parameters);
-        // Measured laws may turn between their ends.
-        let covers = ends[0].min(ends[1]) <= low && ends[0].max(ends[1]) >= high;
-        covers && (at.is_sorted_by(|a, b| a < b) || at.is_sorted_by(|a, b| a > b))
-    });
-    if goes_one_way { 1 + drive } else { 0 }
+    let one_way = (model.drives.get(drive)).is_some_and(|d| goes_one_way(d, parameters));
+    if one_way { 1 + drive } else { 0 }
+}
+
+/// Whether a drive goes one way through its whole law.
+pub(crate) fn goes_one_way(drive: &Drive, parameters: &[f64]) -> bool {
+    let law = &drive.law;
+    let breaks = law.breaks(parameters);
+    let at: Vec<f64> = breaks.iter().map(|t| law.at(*t, parameters)).collect();
+    let ends = [at.first(), at.last()].map(|end| end.copied().unwrap_or(f64::NAN));
+    let (low, high) = law.extent(parameters);
+    // Measured laws may turn between their ends.
+    let covers = ends[0].min(ends[1]) <= low && ends[0].max(ends[1]) >= high;
+    covers && (at.is_sorted_by(|a, b| a < b) || at.is_sorted_by(|a, b| a > b))
 }

@@ -23,6 +23,9 @@ pub(crate) fn plotted(model: &Model, result: &StudyResult) -> Vec<Column> {
             Figure::Curves { curves, limits } => {
                 curves.iter().chain(limits).cloned().for_each(&mut add);
             }
+            Figure::Within { curve, bound } => {
+                [curve, bound].into_iter().cloned().for_each(&mut add)
+            }
             Figure::Path(_) | Figure::Hodograph(..) => {}
         }
     }
@@ -30,7 +33,7 @@ pub(crate) fn plotted(model: &Model, result: &StudyResult) -> Vec<Column> {
     let plots = result.figures.iter().zip(figures(model, result));
     for (figure, (_, plot)) in plots {
         let names = match figure {
-            Figure::Curves { .. } => continue,
+            Figure::Curves { .. } | Figure::Within { .. } => continue,
             Figure::Path(point) => {
                 let name = model.points.get(point.index()).map_or("", |p| &p.name);
                 ["x", "y"].map(|axis| format!("{axis}({name})"))

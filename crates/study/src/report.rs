@@ -17,6 +17,7 @@ use crate::parameters_section::parameters_section;
 use crate::plotted::plotted;
 use crate::point_vectors::point_vectors;
 use crate::report_against::{beside, findings_of_other, other_source};
+use crate::report_shapes::mode_shapes;
 use crate::result::StudyResult;
 use crate::table::{Column, largest};
 use crate::unit::{SHORT_DIGITS, number_text};
@@ -107,13 +108,13 @@ pub fn report(
             findings.push(diagnostic.clone());
         }
     }
-    let motions = studies.iter().filter_map(|outcome| {
+    let motions = studies.iter().flat_map(|outcome| {
         let study = outcome.study.kind.along();
-        outcome
-            .result
-            .as_ref()
-            .ok()
-            .map(|result| motion(model, study, result, against))
+        match &outcome.result {
+            Ok(result) if result.shapes.is_empty() => vec![motion(model, study, result, against)],
+            Ok(result) => mode_shapes(model, study, result),
+            Err(_) => Vec::new(),
+        }
     });
     Report {
         title: model.title.clone(),
@@ -160,7 +161,7 @@ fn scalar_facts(result: &StudyResult) -> Vec<(String, String)> {
     result.scalars.iter().map(fact).collect()
 }
 
-fn shown(column: &Column) -> Shown {
+pub(crate) fn shown(column: &Column) -> Shown {
     Shown::new(
         column.name.clone(),
         column.unit.text(),

@@ -24,6 +24,8 @@ pub struct StudyResult {
     pub listings: Vec<Listing>,
     /// The pose at each row.
     pub frames: Vec<Frame>,
+    /// Natural vibrations about one pose, one for each row.
+    pub shapes: Vec<ModeShape>,
     /// Limits and change points met.
     pub events: Vec<Event>,
     /// Index into the columns of the quantity the rows run along: a drive, or time.
@@ -44,10 +46,35 @@ impl StudyResult {
         self.table.rows() < self.demanded_rows
     }
 
+    /// Pictures that move: one of all rows, or one for each natural vibration.
+    pub fn motions(&self) -> usize {
+        self.shapes.len().max(1)
+    }
+
     /// The column that the rows run along.
     pub fn abscissa(&self) -> Option<&Column> {
         self.table.columns.get(self.along)
     }
+}
+
+/// A natural vibration in real poses, as large as is good to look at.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct ModeShape {
+    /// Its name: `mode-1`.
+    pub name: String,
+    /// What stands under its picture: `mode 1: 2.31 Hz`.
+    pub title: String,
+    /// What it is, in words.
+    pub about: String,
+    /// What runs along its poses: time or a phase, drives, and how far away from the middle they are.
+    pub columns: Vec<Column>,
+    /// Its poses over some periods; the first is the middle.
+    pub frames: Vec<Frame>,
+    /// Closure of each pose, see [`Table::closure`].
+    pub closure: Vec<f64>,
+    /// The poses at both ends of its way.
+    pub extremes: [usize; 2],
 }
 
 /// One number with a name.
@@ -84,6 +111,13 @@ pub enum Figure {
         curves: Vec<Column>,
         /// Their limits.
         limits: Vec<Column>,
+    },
+    /// A quantity between minus and plus another one.
+    Within {
+        /// The quantity.
+        curve: Column,
+        /// What its size should not exceed.
+        bound: Column,
     },
     /// The path of a point.
     Path(PointId),

@@ -4,12 +4,14 @@ use std::mem::size_of;
 
 use kempe_dynamics::ForceArrow;
 use kempe_mechanism::Mechanism;
-use kempe_model::{Diagnostic, Model, MotionStudy, Rows, Study, StudyKind};
+use kempe_model::{Diagnostic, Model, MotionStudy, Rows, Study, StudyKind, VibrationStudy, value};
 
+use crate::clearance::COLUMNS;
 use crate::columns::Asked;
 use crate::force_columns::standard_plots;
 use crate::result::Frame;
-use crate::rows::most;
+use crate::rows::{count, most};
+use crate::vibrations::SHAPE_POSES;
 
 /// A study holds at most so many bytes: its table, its curves and its poses. Writing it takes about as much again.
 pub const MAX_STUDY_BYTES: usize = 2 << 30;
@@ -25,6 +27,9 @@ const RATES: usize = 4;
 
 /// Each curve of a plot, and each path, is held with its abscissa, in the result and in its picture.
 const HELD: usize = 4;
+
+/// Columns of a natural vibration.
+const VIBRATION_COLUMNS: usize = 10;
 
 /// Quantities that a choice shows besides those of the drives, at most.
 const SHOWN: usize = 4;
@@ -74,24 +79,53 @@ impl Held {
 pub fn study_bytes(model: &Model, study: &Study) -> Held {
     match &study.kind {
         StudyKind::Motion(motion) => bytes_of_motion(model, motion),
-        StudyKind::Forces(forces) => {
-            let mechanism = Mechanism::new(model);
-            let mut study = forces.clone();
-            if study.plots.is_empty() {
-                study.plots = standard_plots(&mechanism);
+        StudyKind::Forces(forces) => held(model, forces, row_of_forces(model, forces)),
+        StudyKind::Simulate(study) => {
+            let until = value(&study.until, &model.parameter_values());
+            Held {
+                rows: count(model, &study.along.rows, &model.parameter_values(), until),
+                row: row_of_forces(model, &study.along),
             }
-            let asked = Asked::of_forces(&mechanism, &study);
-            held(
-                model,
-                &study,
-                row_bytes(model, &asked, study.plots.len(), true),
-            )
+        }
+        StudyKind::Clearance(play) => {
+            let asked = Asked::of_clearance(&Mechanism::new(model), &play.along);
+            let columns = COLUMNS * (asked.columns.len() + asked.curves.len()) * (1 + HELD);
+            let row = row_bytes(model, &Asked::default(), play.along.plots.len(), true);
+            held(model, &play.along, row + columns * NUMBER)
         }
         // Two directions of each counterweight.
         StudyKind::Balance(choice) => bytes_of_choice(model, &choice.along, 2 * choice.on.len()),
         // Stiffness and preload.
         StudyKind::Spring(choice) => bytes_of_choice(model, &choice.along, 2),
+        StudyKind::Vibrations(asked) => bytes_of_vibrations(model, asked),
     }
+}
+
+/// What a study of natural vibrations will hold.
+fn bytes_of_vibrations(model: &Model, study: &VibrationStudy) -> Held {
+    let row = row_bytes(model, &Asked::default(), 0, false);
+    let modes = study.release.len();
+    // Numbers of each mode as columns and in pictures; about one pose, a row and moving poses for each.
+    let columns = VIBRATION_COLUMNS * (1 + HELD) * modes + model.points.len();
+    let held = held(model, &study.along, row + columns * NUMBER);
+    match study.along.rows {
+        Rows::Count(1) => Held {
+            rows: (modes * (1 + SHAPE_POSES)) as f64,
+            ..held
+        },
+        _ => held,
+    }
+}
+
+/// Bytes of a row of forces.
+fn row_of_forces(model: &Model, forces: &MotionStudy) -> usize {
+    let mechanism = Mechanism::new(model);
+    let mut study = forces.clone();
+    if study.plots.is_empty() {
+        study.plots = standard_plots(&mechanism);
+    }
+    let asked = Asked::of_forces(&mechanism, &study);
+    row_bytes(model, &asked, study.plots.len(), true)
 }
 
 /// What a study of motion will hold.
@@ -185,6 +219,7 @@ mod tests {
                     curves.iter().chain(limits).map(|c| c.values.len()).sum()
                 }
                 crate::Figure::Hodograph(_, [x, y]) => x.values.len() + y.values.len(),
+                crate::Figure::Within { curve, bound } => curve.values.len() + bound.values.len(),
                 crate::Figure::Path(_) => 0,
             };
         }
@@ -207,6 +242,7 @@ mod tests {
             "kind = \"motion\"\ncircuit = true\nrows = 500",
             "kind = \"motion\"\nstep = \"10 ms\"",
             "kind = \"forces\"\nrows = 100",
+            "kind = \"clearance\"\nrows = 100\nplot = [\"angle(rocker)\", \"torque(motor)\"]\n[clearance]\nB = { radial = 0.1 }",
         ] {
             let model = model(&format!("[studies.a]\n{kind}\n"));
             let study = &model.studies[0];

@@ -40,6 +40,11 @@ pub(crate) fn places_along(
 /// How many rows a study asks for at most, without their places: of the drives, the one with the most steps counts.
 pub(crate) fn most(model: &Model, rows: &Rows, parameters: &[f64]) -> f64 {
     let duration = kempe_motion::drive_path::duration(model, parameters);
+    count(model, rows, parameters, duration)
+}
+
+/// As [`most`], of a motion that takes so long, s.
+pub(crate) fn count(model: &Model, rows: &Rows, parameters: &[f64], duration: f64) -> f64 {
     let parts = |travel: f64, step: &Scalar| (travel / value(step, parameters)).abs();
     let count = match rows {
         Rows::DriveStep(step) => {
@@ -56,7 +61,12 @@ pub(crate) fn most(model: &Model, rows: &Rows, parameters: &[f64]) -> f64 {
 }
 
 /// The places of all rows. `drive` is the drive that a step of the drive means.
-fn places(model: &Model, rows: &Rows, parameters: &[f64], drive: usize) -> Vec<RowPlace> {
+pub(crate) fn places(
+    model: &Model,
+    rows: &Rows,
+    parameters: &[f64],
+    drive: usize,
+) -> Vec<RowPlace> {
     let duration = kempe_motion::drive_path::duration(model, parameters);
     match rows {
         Rows::DriveStep(step) => {

@@ -4,10 +4,13 @@ use kempe_model::{Diagnostic, Model, MotionStudy, Study, StudyKind};
 
 use crate::choice::{balance, spring};
 use crate::circuit::run_circuit;
+use crate::clearance::clearance;
 use crate::findings_forces::something_acts;
 use crate::motion::run_along;
 use crate::result::StudyResult;
 use crate::room::{bytes_of_motion, has_room, room_for};
+use crate::simulation::simulation;
+use crate::vibrations::vibrations;
 use kempe_motion::progress::Progress;
 
 /// Runs a study of a model.
@@ -32,7 +35,10 @@ pub fn run(
             Ok(result)
         }
         StudyKind::Balance(choice) => balance(model, &study.name, choice, progress),
+        StudyKind::Simulate(it) => simulation(model, &study.name, it, progress),
         StudyKind::Spring(choice) => spring(model, &study.name, choice, progress),
+        StudyKind::Clearance(play) => clearance(model, &study.name, play, progress),
+        StudyKind::Vibrations(asked) => vibrations(model, &study.name, asked, progress),
     }
 }
 

@@ -21,6 +21,8 @@ pub(crate) struct RowSink {
     curves: Vec<Column>,
     force_notes: ForceNotes,
     pub scalars: Vec<Scalar>,
+    /// Values of what is hidden by row, SI.
+    pub hidden: Vec<Vec<f64>>,
 }
 
 impl RowSink {
@@ -53,6 +55,7 @@ impl RowSink {
                 closure: Vec::new(),
                 smallest_singular_value: Vec::new(),
                 forces: None,
+                balance: None,
                 notes: Vec::new(),
             },
             force_notes: ForceNotes::default(),
@@ -60,6 +63,7 @@ impl RowSink {
             columns: asked.columns.len(),
             curves: asked.curves.iter().map(column).collect(),
             scalars: scalars.collect(),
+            hidden: vec![Vec::new(); asked.hidden.len()],
         }
     }
 
@@ -72,6 +76,10 @@ impl RowSink {
         let values = sample.values.iter();
         let (own, rest) = sample.values.split_at(self.columns.min(values.len()));
         let (curves, scalars) = rest.split_at(self.curves.len().min(rest.len()));
+        let (scalars, hidden) = scalars.split_at(self.scalars.len().min(scalars.len()));
+        for (values, value) in self.hidden.iter_mut().zip(hidden) {
+            values.push(*value);
+        }
         let fixed = 1 + self.drives.len();
         let mut columns = self.table.columns.iter_mut();
         for (column, value) in columns

@@ -17,6 +17,8 @@ pub struct Table {
     pub smallest_singular_value: Vec<f64>,
     /// How far the forces of each row can be trusted; `None` where none were asked for.
     pub forces: Option<ForceColumns>,
+    /// How well a simulation keeps the balance of energy and power; `None` of what is not simulated.
+    pub balance: Option<BalanceColumns>,
     /// What is to be said about each row, such as why it was not reached.
     pub notes: Vec<Option<String>>,
 }
@@ -31,6 +33,17 @@ pub struct ForceColumns {
     pub residual: Vec<f64>,
     /// Condition of the scaled equations of equilibrium.
     pub condition: Vec<f64>,
+}
+
+/// How well a simulation keeps its balances, NaN where a row has none.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct BalanceColumns {
+    /// Energy at hand less what it began with and what work was done on it, in parts of the most that was moved.
+    pub energy: Vec<f64>,
+    /// Power that inverse dynamics asks of what is let go beyond what it gives, in parts of the largest at which energy was
+    /// moved.
+    pub power: Vec<f64>,
 }
 
 /// A quantity over the rows of a table.
@@ -102,6 +115,10 @@ impl Table {
             all.push(column("route_difference", &forces.route_difference));
             all.push(column("equilibrium_residual", &forces.residual));
             all.push(column("condition", &forces.condition));
+        }
+        if let Some(balance) = &self.balance {
+            all.push(column("energy_residual", &balance.energy));
+            all.push(column("power_residual", &balance.power));
         }
         all
     }

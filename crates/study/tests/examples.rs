@@ -53,7 +53,9 @@ fn every_example_runs() {
                 Ok(result) => {
                     let table = &result.table;
                     let closed = table.worst_closure() < 1e-10;
-                    if table.unreached() > 0 || table.rows() == 0 || !closed {
+                    // Around the change point of the lock no contact settles.
+                    let lock = name.ends_with("door-lock.toml") && study.name == "play";
+                    if (table.unreached() > 0) != lock || table.rows() == 0 || !closed {
                         diagnostic.push(format!("{name}: {:?}", table.noted().first()));
                     }
                     if let Some((row, difference)) = table.worst_route_difference()

@@ -232,7 +232,11 @@ fn motion(
     forces: bool,
     speaker: &mut Speaker,
 ) -> Result<(MechanismView, Vec<Frame>, f64), Failure> {
-    let Some(study) = first_study(model, forces) else {
+    let vibrates = |s: &&Study| matches!(s.kind, StudyKind::Vibrations(_));
+    let Some(study) = (model.studies.first().filter(vibrates).cloned())
+        .filter(|_| !forces)
+        .or_else(|| first_study(model, forces))
+    else {
         return Err(Failure::Usage(nothing_to_run(model)));
     };
     room_for(model, &study).map_err(Failure::TooLarge)?;
@@ -251,9 +255,16 @@ fn motion(
     let period = real
         .filter(|t| (1.0..=20.0).contains(t))
         .unwrap_or(AnimationOptions::default().period);
+    // Where modes are asked for the first moves.
+    let frames = match result.shapes.first() {
+        Some(mode) => (mode.frames.iter())
+            .map(|frame| drawn(model, frame, mode.title.clone()))
+            .collect(),
+        None => drawing_frames(model, &result),
+    };
     Ok((
         mechanism_view(model, Some(study.kind.along())),
-        drawing_frames(model, &result),
+        frames,
         period,
     ))
 }

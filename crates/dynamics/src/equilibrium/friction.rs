@@ -183,6 +183,24 @@ impl<T: ForceNumber> Equilibrium<T> {
         }
     }
 
+    /// Hands out what viscous friction alone does at an instant: body, wrench about the body's origin.
+    pub(crate) fn each_viscous(
+        &mut self,
+        mechanism: &Mechanism,
+        geometry: &Geometry<T>,
+        frictions: &[Friction<T>],
+        at: &Instant<T>,
+        mut take: impl FnMut(BodyId, Wrench<T>),
+    ) {
+        self.find_contacts(mechanism, geometry, frictions, at);
+        for contact in &self.contacts {
+            let resistance = frictions[contact.friction].law.viscous * contact.speed;
+            for (body, unit) in &contact.unit {
+                take(*body, unit.map(|u| u * resistance));
+            }
+        }
+    }
+
     /// Power that friction takes, W: never positive.
     pub fn friction_power(&self, frictions: &[Friction<T>]) -> T {
         let mut sum = T::zero();
@@ -208,9 +226,10 @@ impl<T: ForceNumber> Equilibrium<T> {
     /// in any of them.
     pub fn rests(&self, frictions: &[Friction<T>]) -> bool {
         self.contacts.iter().any(|contact| {
-            let kinetic = frictions[contact.friction].law.kinetic;
+            let law = &frictions[contact.friction].law;
             (0..T::Plain::LANES).any(|lane| {
-                contact.direction.lane_value(lane) == 0.0 && kinetic.value_in(lane) > 0.0
+                let dry = law.kinetic.value_in(lane) > 0.0 || law.drag.value_in(lane) > 0.0;
+                contact.direction.lane_value(lane) == 0.0 && dry
             })
         })
     }

@@ -199,9 +199,9 @@ impl PlainEquilibrium {
         for contact in equations.contacts {
             let friction = &equations.frictions[contact.friction];
             let load = load_of(&self.lambda[contact.row..][..friction.rows()]);
-            let viscous = (friction.law.viscous * contact.speed).value_in(lane);
+            let apart = friction.apart_from_load(contact.speed, contact.direction);
             let slope = friction.slope(contact.speed, contact.direction, lane);
-            let resistance = (slope * load + viscous) * friction.share(share);
+            let resistance = (slope * load + apart.value_in(lane)) * friction.share(share);
             for (body, unit) in contact.unit.iter().filter(|u| u.0 != BodyId::GROUND) {
                 for k in 0..3 {
                     right[3 * (body.index() - 1) + k] -= unit[k].value_in(lane) * resistance;

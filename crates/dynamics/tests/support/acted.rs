@@ -149,6 +149,7 @@ pub fn act(model: &mut Model, rng: &mut Rng, size: f64) {
             static_coefficient: Some(times(1.3 * friction, 0)),
             stribeck_speed: rng.chance(0.5).then(|| number(rng, 0.05 * l, 0.2 * l)),
             viscous: rng.chance(0.5).then(|| number(rng, 0.0, 0.01)),
+            drag: rng.chance(0.3).then(|| number(rng, 0.0, 0.01)),
             radius: Some(number(rng, 0.01 * l, 0.04 * l)),
             span: 0..0,
         });

@@ -43,6 +43,7 @@ pub fn give_teeth(
                 static_coefficient: None,
                 stribeck_speed: None,
                 viscous: rng.chance(0.3).then_some(Expr::Const(0.01)),
+                drag: None,
                 radius: None,
                 span: 0..0,
             });

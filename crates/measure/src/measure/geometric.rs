@@ -41,7 +41,7 @@ impl<B: Number> Moment<'_, B> {
                 self.angle(poses, *link) - self.angle(poses, *other)
             }
             PoseMeasure::Direction(a, b) => {
-                let v = sub(point(*b), point(*a));
+                let v = self.way(poses, *a, *b);
                 let near = self
                     .history
                     .directions
@@ -57,7 +57,7 @@ impl<B: Number> Moment<'_, B> {
                 .angle_near(near)
             }
             PoseMeasure::Distance(a, b) => {
-                let v = sub(point(*b), point(*a));
+                let v = self.way(poses, *a, *b);
                 dot(v, v).sqrt()
             }
             PoseMeasure::DistanceToLine(p, line) => {
@@ -66,7 +66,11 @@ impl<B: Number> Moment<'_, B> {
             }
             PoseMeasure::Travel(at, line) => {
                 let (origin, direction) = self.guide(poses, *line);
-                dot(direction, sub(point(at.point), origin))
+                let own = self.on_link(poses, *at).filter(|_| self.comes_apart());
+                dot(
+                    direction,
+                    sub(own.unwrap_or_else(|| point(at.point)), origin),
+                )
             }
             PoseMeasure::TransmissionAngle { at, a, b, folded } => {
                 let corner = point(*at);
@@ -104,7 +108,32 @@ impl<B: Number> Moment<'_, B> {
         }
     }
 
-    /// A point in the frame.
+    /// Whether pins are let go, so that a point may be at several places: on each of its links at another.
+    fn comes_apart(&self) -> bool {
+        !self.state.mechanism().released.is_empty()
+    }
+
+    /// From one point to another, in the frame; where a link has both, as that link has them.
+    fn way(&self, poses: &[Pose<Series<B>>], a: PointId, b: PointId) -> [Series<B>; 2] {
+        let together = || {
+            let points = &self.state.mechanism().model.points;
+            let links = [a, b].map(|p| points.get(p.index()).map_or(&[][..], |p| &p.links));
+            let link = *links[0].iter().find(|link| links[1].contains(link))?;
+            let [a, b] = [a, b].map(|point| self.on_link(poses, LinkPointRef { link, point }));
+            Some(sub(b?, a?))
+        };
+        let apart = self.comes_apart().then(together).flatten();
+        apart.unwrap_or_else(|| sub(self.point(poses, b), self.point(poses, a)))
+    }
+
+    /// A point in the frame where one of its links has it.
+    fn on_link(&self, poses: &[Pose<Series<B>>], at: LinkPointRef) -> Option<[Series<B>; 2]> {
+        let marker = self.state.mechanism().marker(at)?;
+        let local = self.state.design.geometry.marker(marker);
+        Some(poses[marker.body.index()].place(local))
+    }
+
+    /// A point in the frame; of several links where the first of them has it.
     pub(super) fn point(&self, poses: &[Pose<Series<B>>], point: PointId) -> [Series<B>; 2] {
         match self.state.mechanism().any_marker(point) {
             Some(marker) => {

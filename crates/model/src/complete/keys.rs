@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use crate::complete::cursor::{Completion, CompletionKind, Cursor, once};
 use crate::key_path::{Kinds, takes_at};
-use crate::key_table::{FILE, FRICTION_OF_ALL};
+use crate::key_table::{FILE, FRICTION_OF_ALL, clearance};
 use crate::keys::{Key, Kind, Need, Takes};
 use crate::outline::string;
 use crate::part::{PartKind, place_of};
@@ -30,13 +30,19 @@ impl Cursor<'_> {
         let mut found = match (section, path.len()) {
             ("places", 1) => self.parts(&[PartKind::Point]),
             ("assembly", 1) => self.parts(&[PartKind::Point, PartKind::Link]),
-            ("friction", 1) => {
+            ("friction" | "clearance", 1) => {
                 let mut found = self.parts(&[PartKind::Point, PartKind::Joint]);
-                let all = &FRICTION_OF_ALL;
+                let all = match section {
+                    "friction" => &FRICTION_OF_ALL,
+                    _ => &clearance::OF_ALL,
+                };
                 found.push(self.one(CompletionKind::Word, all.name, all.name, all.about));
                 found
             }
             ("cylinders" | "motors", 1) => self.parts(&[PartKind::Drive]),
+            ("studies", 3) if path.last().is_some_and(|key| key == "at") => {
+                self.parts(&[PartKind::Drive])
+            }
             _ => Vec::new(),
         };
         for takes in self.takes_at(path) {
@@ -75,9 +81,9 @@ impl Cursor<'_> {
         let word = self.outline.value(&path);
         let word = word.and_then(|value| string(self.text, value));
         let diagnostic = |kind: &Kind| match place_of(entry) {
-            ("friction", name) if is_point_name(name) => kind.name == "pin",
-            ("friction", name) if name == FRICTION_OF_ALL.name => kind.name == name,
-            ("friction", _) => kind.name == "joint",
+            ("friction" | "clearance", name) if is_point_name(name) => kind.name == "pin",
+            ("friction" | "clearance", name) if name == FRICTION_OF_ALL.name => kind.name == name,
+            ("friction" | "clearance", _) => kind.name == "joint",
             _ => {
                 let of_word = word.as_ref().is_some_and(|w| w.content.trim() == kind.name);
                 of_word || there.contains(kind.name)
@@ -106,8 +112,5 @@ impl Cursor<'_> {
 
 /// Whether a key of the file is written as a header, `[links]`.
 fn has_header(key: &Key) -> bool {
-    matches!(
-        key.takes,
-        Takes::Entries(_) | Takes::Values(_) | Takes::Announced
-    )
+    matches!(key.takes, Takes::Entries(_) | Takes::Values(_))
 }

@@ -217,17 +217,20 @@ impl<'o> Going<'o> {
         let list = user.path.get(2).map_or("", String::as_str);
         let depth = match (section, list) {
             ("links", _) if user.path.len() > 2 => 3,
-            ("studies", "columns" | "plot" | "on") if user.path.len() >= ELEMENT => {
+            ("studies", "columns" | "plot" | "on" | "release" | "end_when")
+                if user.path.len() >= ELEMENT =>
+            {
                 let left = self.elements.entry(upto(ELEMENT - 1)).or_default();
                 *left = left.saturating_sub(1);
                 // the last of a list takes the list with it, and a study of no link is none
                 match (*left, list) {
-                    (0, "on") => 2,
+                    (0, "on" | "release") => 2,
                     (0, _) => 3,
                     _ => ELEMENT,
                 }
             }
-            ("studies", "columns" | "plot") => 3,
+            ("studies", "columns" | "plot" | "end_when") => 3,
+            ("studies", "at" | "start" | "stops") => ELEMENT,
             _ => 2,
         };
         self.path(upto(depth).to_vec());

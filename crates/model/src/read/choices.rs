@@ -23,10 +23,11 @@ use crate::document::Node;
 use crate::ids::{DriveId, FRAME, LinkId, PointId, Scalar};
 use crate::key_table::GOALS;
 use crate::measure::{Leaf, Measure};
-use crate::read::context::{Context, Meaning};
+use crate::read::context::Context;
 use crate::read::entry::{Entry, link_of};
 use crate::read::measures::measure_text;
 use crate::read::nature::nature;
+use crate::read::simulate::drive_of;
 use crate::study::{BalanceGoal, BalanceStudy, MotionStudy, SpringStudy, StudyKind};
 
 /// A study of counterweights.
@@ -146,15 +147,8 @@ fn drive_named(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<(DriveId, Dime
     }
     let node = entry.required(cx, "drive")?;
     let text = entry.text(cx, "drive", node)?;
-    let name = text.content.trim();
-    if let Some(Meaning::Drive(i)) = cx.names.get(name).map(|(meaning, _)| *meaning) {
-        let id = cx.drives.get(i).copied().flatten()?;
-        return found(cx, id);
-    }
-    let drives = cx.model.drives.iter().map(|d| d.name.as_str());
-    let d = cx.no_such("drive", name, node.span.clone(), drives);
-    cx.push(d);
-    None
+    let id = drive_of(cx, text.content.trim(), node.span.clone())?;
+    found(cx, id)
 }
 
 /// What the drive is to give: nothing unless said otherwise.

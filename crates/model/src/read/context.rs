@@ -74,6 +74,8 @@ pub(crate) struct Context<'a> {
     pub loads: BTreeMap<String, Option<(usize, kempe_units::Dimension)>>,
     /// Entries of `[cylinders]` that are not sound.
     pub broken_cylinders: BTreeSet<String>,
+    /// Whether the file has clearances, sound or not.
+    pub clearances_given: bool,
     /// Rows of tables read so far.
     pub table_rows: usize,
     /// Measures in file order.
@@ -126,6 +128,7 @@ impl<'a> Context<'a> {
             dampers: BTreeMap::new(),
             loads: BTreeMap::new(),
             broken_cylinders: BTreeSet::new(),
+            clearances_given: false,
             table_rows: 0,
             measures: Vec::new(),
             natures: Vec::new(),
@@ -139,6 +142,7 @@ impl<'a> Context<'a> {
                 joints: Vec::new(),
                 drives: Vec::new(),
                 actions: Default::default(),
+                clearances: Vec::new(),
                 assembly: Vec::new(),
                 drawing: Default::default(),
                 measures: Vec::new(),

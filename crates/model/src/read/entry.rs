@@ -218,14 +218,8 @@ impl<'d> Entry<'d> {
         let Some(node) = self.get(key) else {
             return Some(None);
         };
-        let (low, high) = self.two(cx, node, key)?;
-        let dimension = self.dimension(key);
-        let mut bound = |node: &Node| match &node.value {
-            Value::Text(text) if text.content.trim() == "none" => Some(None),
-            _ => cx.scalar(node, dimension).map(Some),
-        };
-        let (low, high) = (bound(low), bound(high));
-        Some(Some([low?, high?]))
+        let place = self.place_of(key);
+        bounds_of(cx, node, self.dimension(key), &place, self.example).map(Some)
     }
 
     /// Two links that must be named.
@@ -248,15 +242,7 @@ impl<'d> Entry<'d> {
         node: &'d Node,
         key: &str,
     ) -> Option<(&'d Node, &'d Node)> {
-        let place = self.place_of(key);
-        match cx.array(node, &place, self.example)? {
-            [a, b] => Some((a, b)),
-            items => {
-                let help = format!("write it like {}", self.example);
-                cx.not_two(node, items, format!("{place} has two entries"), &help);
-                None
-            }
-        }
+        two_of(cx, node, &self.place_of(key), self.example)
     }
 
     /// Warns of keys that mean nothing without another.
@@ -333,6 +319,40 @@ fn quantity(takes: &Takes) -> Option<Quantity> {
         Takes::Two(one) | Takes::List(one, _) => quantity(one),
         _ => None,
     }
+}
+
+/// The two values of an array.
+fn two_of<'n>(
+    cx: &mut Context<'_>,
+    node: &'n Node,
+    place: &str,
+    example: &str,
+) -> Option<(&'n Node, &'n Node)> {
+    match cx.array(node, place, example)? {
+        [a, b] => Some((a, b)),
+        items => {
+            let help = format!("write it like {example}");
+            cx.not_two(node, items, format!("{place} has two entries"), &help);
+            None
+        }
+    }
+}
+
+/// Two bounds, `"none"` where there is no bound.
+pub(crate) fn bounds_of(
+    cx: &mut Context<'_>,
+    node: &Node,
+    dimension: Dimension,
+    place: &str,
+    example: &str,
+) -> Option<[Option<Scalar>; 2]> {
+    let (low, high) = two_of(cx, node, place, example)?;
+    let mut bound = |node: &Node| match &node.value {
+        Value::Text(text) if text.content.trim() == "none" => Some(None),
+        _ => cx.scalar(node, dimension).map(Some),
+    };
+    let (low, high) = (bound(low), bound(high));
+    Some([low?, high?])
 }
 
 /// A link by its name in a string.

@@ -8,7 +8,7 @@
 //! ```
 //!
 //! `coefficient` is Coulomb's, at speed; `static` the one at rest, from which it falls over the speed `stribeck`. A viscous
-//! part is told of a pin or a slider, not of all, because it measures something else at each.
+//! part and a drag are told of a pin or a slider, not of all, because they measure something else at each.
 
 use kempe_units::Expr;
 
@@ -55,8 +55,13 @@ fn read_one(
         true => entry.value(cx, "viscous"),
         false => Some(None),
     };
-    let only_viscous = known("viscous") && entry.has("viscous") && !entry.has("coefficient");
-    let coefficient = if only_viscous {
+    let drag = match known("drag") {
+        true => entry.value(cx, "drag"),
+        false => Some(None),
+    };
+    let mut apart = ["viscous", "drag"].iter().filter(|key| known(key));
+    let apart_from_load = apart.any(|key| entry.has(key)) && !entry.has("coefficient");
+    let coefficient = if apart_from_load {
         Some(Expr::Const(0.0))
     } else {
         entry.needed(cx, "coefficient")
@@ -91,6 +96,7 @@ fn read_one(
         static_coefficient: at_rest,
         stribeck_speed: stribeck?,
         viscous: viscous?,
+        drag: drag?,
         radius: radius?,
         span: key.span.clone(),
     })

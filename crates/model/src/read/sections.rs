@@ -12,8 +12,8 @@ use crate::model::UnitName;
 use crate::read::context::Context;
 use crate::read::entry::Entry;
 use crate::read::{
-    actuators, assembly, drawn, drives, friction, joints, links, loads, masses, measures, names,
-    parameters, places, springs, studies,
+    actuators, assembly, clearance, drawn, drives, friction, joints, links, loads, masses,
+    measures, names, parameters, places, springs, studies,
 };
 use crate::study::StudyKind;
 
@@ -48,25 +48,6 @@ pub(crate) fn read(cx: &mut Context<'_>, root: &Table, overrides: &[(String, Str
     if let Some((key, node)) = file.entry("units") {
         units(cx, key, node);
     }
-    let announced = |key: &keys::Key| matches!(key.takes, Takes::Announced);
-    let announced: Vec<&str> = FILE
-        .keys()
-        .filter(|k| announced(k))
-        .map(|k| k.name)
-        .collect();
-    for key in file.given(&announced) {
-        cx.push(
-            Diagnostic::warning(
-                "section-not-available",
-                format!(
-                    "[{}] is skipped: this version does not compute with it",
-                    key.name
-                ),
-            )
-            .at(key.span.clone(), "")
-            .help("the motion of the file does not depend on it"),
-        );
-    }
     let sections = names::collect(cx, &file);
     parameters::read(cx, sections.of("parameters"), overrides);
     let whole = file
@@ -89,6 +70,7 @@ pub(crate) fn read(cx: &mut Context<'_>, root: &Table, overrides: &[(String, Str
     springs::read_springs(cx, sections.of("springs"));
     springs::read_dampers(cx, sections.of("dampers"));
     friction::read(cx, sections.of("friction"));
+    clearance::read(cx, sections.of("clearance"));
     actuators::read_cylinders(cx, sections.of("cylinders"));
     actuators::read_motors(cx, sections.of("motors"));
     loads::declare(cx, sections.of("loads"));

@@ -10,12 +10,12 @@ use crate::drive::LawPiece;
 use crate::ids::Scalar;
 use crate::key_table::{ANNOUNCED_STUDIES, DRIVES, MAX_ROWS, STUDIES};
 use crate::model::Model;
-use crate::read::choices;
 use crate::read::column::column;
 use crate::read::context::Context;
 use crate::read::entry::Entry;
 use crate::read::names::long_name;
 use crate::read::plots::plot;
+use crate::read::{choices, clearance, simulate, vibrations};
 use crate::study::{AnnouncedStudy, Column, MotionStudy, Plot, Rows, Study, StudyKind};
 
 /// Rows of a table by default, when a step is not the thing to say.
@@ -166,7 +166,13 @@ fn read_study(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<StudyKind> {
         return cx.refuse("no-drive", message, &key.span, help);
     }
     let mut entry = Entry::new(cx, entry, known)?;
-    let rows = rows(cx, &entry);
+    if name == "vibrations" {
+        return vibrations::read(cx, &entry);
+    }
+    let rows = match name {
+        "simulate" => simulate::rows(cx, &entry),
+        _ => rows(cx, &entry),
+    };
     let forces = name != "motion";
     let (columns, plots) = if known.key("columns").is_some() {
         (columns(cx, &entry, forces), plots(cx, &entry, forces))
@@ -189,6 +195,8 @@ fn read_study(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<StudyKind> {
         "motion" => Some(StudyKind::Motion(along)),
         "forces" => Some(StudyKind::Forces(along)),
         "balance" => choices::balance(cx, &entry, along),
+        "simulate" => simulate::simulate(cx, &entry, along),
+        "clearance" => clearance::study(cx, &entry, along),
         _ => choices::spring(cx, &mut entry, along),
     }
 }
@@ -231,7 +239,8 @@ fn plots(cx: &mut Context<'_>, entry: &Entry<'_>, forces: bool) -> Vec<Plot> {
     nodes.filter_map(|node| plot(cx, node, forces)).collect()
 }
 
-fn entries<'d>(cx: &mut Context<'_>, entry: &Entry<'d>, key: &str) -> Vec<&'d Node> {
+/// One value, or several in brackets.
+pub(crate) fn entries<'d>(cx: &mut Context<'_>, entry: &Entry<'d>, key: &str) -> Vec<&'d Node> {
     let example = entry.example_of(key);
     match entry.get(key) {
         None => Vec::new(),
@@ -262,47 +271,57 @@ fn entries<'d>(cx: &mut Context<'_>, entry: &Entry<'d>, key: &str) -> Vec<&'d No
 }
 
 /// Where the rows stand: `step` or `rows`, or the default.
-fn rows(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<Rows> {
+pub(crate) fn rows(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<Rows> {
     let place = &entry.place;
     match (entry.get("step"), entry.entry("rows")) {
         (None, None) => Some(default_rows(cx)),
         (Some(_), Some((key, _))) => {
-            cx.push(
-                Diagnostic::error(
-                    "over-specified",
-                    format!("{place} has both `step` and `rows`"),
-                )
-                .at(key.span.clone(), "one of them is enough")
-                .help("leave one of them out"),
-            );
+            both_ways(cx, key, place);
             None
         }
-        (None, Some((_, node))) => match node.value {
-            Value::Number(n) if n == n.trunc() && n >= 1.0 && n <= MAX_ROWS as f64 => {
-                Some(Rows::Count(n as usize))
-            }
-            Value::Number(n) => {
-                let (code, message) = if n > MAX_ROWS as f64 {
-                    ("too-large", format!("{place}: {n} rows"))
-                } else if n < 1.0 {
-                    ("bad-size", format!("{place}: a table has at least one row"))
-                } else {
-                    ("wrong-type", format!("{place}: {n} is no number of rows"))
-                };
-                cx.refuse(
-                    code,
-                    message,
-                    &node.span,
-                    format!("write a whole number from 1 to {MAX_ROWS}: rows = 361"),
-                )
-            }
-            _ => {
-                cx.wrong_type(node, "`rows`", "a number, how many rows", "rows = 361");
-                None
-            }
-        },
+        (None, Some((_, node))) => count(cx, node, place),
         (Some(node), None) => step(cx, node, place),
     }
+}
+
+/// How many rows.
+pub(crate) fn count(cx: &mut Context<'_>, node: &Node, place: &str) -> Option<Rows> {
+    match node.value {
+        Value::Number(n) if n == n.trunc() && n >= 1.0 && n <= MAX_ROWS as f64 => {
+            Some(Rows::Count(n as usize))
+        }
+        Value::Number(n) => {
+            let (code, message) = if n > MAX_ROWS as f64 {
+                ("too-large", format!("{place}: {n} rows"))
+            } else if n < 1.0 {
+                ("bad-size", format!("{place}: a table has at least one row"))
+            } else {
+                ("wrong-type", format!("{place}: {n} is no number of rows"))
+            };
+            cx.refuse(
+                code,
+                message,
+                &node.span,
+                format!("write a whole number from 1 to {MAX_ROWS}: rows = 361"),
+            )
+        }
+        _ => {
+            cx.wrong_type(node, "`rows`", "a number, how many rows", "rows = 361");
+            None
+        }
+    }
+}
+
+/// Rows are told in two ways at once.
+pub(crate) fn both_ways(cx: &mut Context<'_>, key: &Key, place: &str) {
+    cx.push(
+        Diagnostic::error(
+            "over-specified",
+            format!("{place} has both `step` and `rows`"),
+        )
+        .at(key.span.clone(), "one of them is enough")
+        .help("leave one of them out"),
+    );
 }
 
 /// The drive whose coordinate runs one way through the whole motion, when there is only one that moves.
@@ -350,8 +369,9 @@ fn step(cx: &mut Context<'_>, node: &Node, place: &str) -> Option<Rows> {
         let travel = (cx.number(&to) - cx.number(&from)).abs();
         (Rows::DriveStep(step), travel / size)
     } else {
-        // drives that are broken have been told
-        if cx.drives.iter().all(Option::is_some) {
+        // drives that are broken have been told, and a line that is no TOML may be the one that moves
+        let lost = of_drive.is_none() && cx.broken.has_lines();
+        if cx.drives.iter().all(Option::is_some) && !lost {
             let (message, help) = match of_drive {
                 Some(d) => (
                     format!("{d} or time expected, found {}", dimension.with_article()),
@@ -374,15 +394,20 @@ fn step(cx: &mut Context<'_>, node: &Node, place: &str) -> Option<Rows> {
         }
         return None;
     };
-    if count > MAX_ROWS as f64 {
+    few_enough(cx, node, place, count).then_some(rows)
+}
+
+/// Tells a step that makes too many rows.
+pub(crate) fn few_enough(cx: &mut Context<'_>, node: &Node, place: &str, count: f64) -> bool {
+    let few = count <= MAX_ROWS as f64;
+    if !few {
         cx.push(
             Diagnostic::error("too-large", format!("{place}: {count:.0} rows"))
                 .at(node.span.clone(), "this step is too small")
                 .help(format!("a table has at most {MAX_ROWS} rows")),
         );
-        return None;
     }
-    Some(rows)
+    few
 }
 
 /// Why no drive alone runs one way.

@@ -2,8 +2,10 @@
 
 use kempe_units::{Dimension, Unit};
 
+use crate::clearance::ClearanceAt;
 use crate::ids::{FRAME, LinkId, LinkPointRef, PointId, Scalar};
 use crate::item::{File, Item};
+use crate::key_table::clearance::OF_ALL;
 use crate::key_table::{ACTS, word_of};
 use crate::link::Place;
 use crate::load::{
@@ -58,6 +60,26 @@ impl Writer<'_> {
             let name = self.drive(motor.drive).to_owned();
             let entry = (name, Item::Table(self.motor(motor)));
             file.section("motors").push(entry);
+        }
+    }
+
+    pub fn clearances(&self, file: &mut File) {
+        for clearance in &self.model.clearances {
+            let radial = self.value("radial", &clearance.radial, Dimension::LENGTH);
+            let mut entries = vec![radial];
+            let name = match &clearance.at {
+                ClearanceAt::Pin { point, on } => {
+                    let links: Vec<Item> = on.iter().map(|l| Item::text(self.link(*l))).collect();
+                    if !links.is_empty() {
+                        entries.push(("on".to_owned(), Item::List(links)));
+                    }
+                    self.point(*point)
+                }
+                ClearanceAt::Joint(joint) => self.joint(*joint),
+                ClearanceAt::All => OF_ALL.name,
+            };
+            let entry = (name.to_owned(), Item::Table(entries));
+            file.section("clearance").push(entry);
         }
     }
 
@@ -247,10 +269,14 @@ impl Writer<'_> {
     }
 
     fn friction(&self, friction: &Friction) -> (String, Item) {
-        let (name, viscous) = match friction.at {
-            FrictionAt::Pin(point) => (self.point(point), Dimension::TORSIONAL_DAMPING),
-            FrictionAt::Joint(joint) => (self.joint(joint), Dimension::DAMPING),
-            FrictionAt::All => ("all", Dimension::DAMPING),
+        let (name, viscous, drag) = match friction.at {
+            FrictionAt::Pin(point) => (
+                self.point(point),
+                Dimension::TORSIONAL_DAMPING,
+                Dimension::TORQUE,
+            ),
+            FrictionAt::Joint(joint) => (self.joint(joint), Dimension::DAMPING, Dimension::FORCE),
+            FrictionAt::All => ("all", Dimension::DAMPING, Dimension::FORCE),
         };
         let number = Dimension::NONE;
         let mut entries = vec![self.value("coefficient", &friction.coefficient, number)];
@@ -258,6 +284,7 @@ impl Writer<'_> {
             self.given("static", &friction.static_coefficient, number),
             self.given("stribeck", &friction.stribeck_speed, Dimension::SPEED),
             self.given("viscous", &friction.viscous, viscous),
+            self.given("drag", &friction.drag, drag),
             self.given("radius", &friction.radius, Dimension::LENGTH),
         ];
         entries.extend(more.into_iter().flatten());

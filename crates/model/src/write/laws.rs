@@ -18,11 +18,14 @@ impl Writer<'_> {
         match drive.law.pieces.as_slice() {
             [LawPiece::Dwell { duration }] if is_zero(duration) => put("at", from),
             [LawPiece::Table { times, values, .. }] => {
-                let table = self.table(
-                    &drive.name,
-                    &[("t [s]", times), (&value_head(drive.dimension), values)],
-                );
-                put("law", Item::Table(vec![("table".to_owned(), table)]));
+                put("law", self.measured(drive, times, values));
+            }
+            pieces if (pieces.iter()).any(|p| matches!(p, LawPiece::Polynomials(_))) => {
+                let parameters = self.model.parameter_values();
+                let times = drive.law.knots(&parameters);
+                let at = |t: &f64| drive.law.at(*t, &parameters);
+                let values: Vec<f64> = times.iter().map(at).collect();
+                put("law", self.measured(drive, &times, &values));
             }
             [LawPiece::ConstantSpeed { to: end, speed }] => {
                 put("from", from);
@@ -91,10 +94,17 @@ impl Writer<'_> {
                     self.scalar(acceleration, rate(dimension, 2)),
                 );
             }
-            // a table is a law of its own
-            LawPiece::Table { .. } => {}
+            // measured points are a law of their own
+            LawPiece::Table { .. } | LawPiece::Polynomials(_) => {}
         }
         Item::Table(entries)
+    }
+
+    /// Points of a drive, in a table beside the file.
+    fn measured(&mut self, drive: &Drive, times: &[f64], values: &[f64]) -> Item {
+        let head = value_head(drive.dimension);
+        let table = self.table(&drive.name, &[("t [s]", times), (&head, values)]);
+        Item::Table(vec![("table".to_owned(), table)])
     }
 
     /// Enters a table beside the file; its name there.

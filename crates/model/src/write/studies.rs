@@ -2,12 +2,17 @@
 
 use kempe_units::{Dimension, Expr};
 
+use crate::clearance::ClearanceRates;
 use crate::drive::{Law, LawPiece};
 use crate::ids::Scalar;
 use crate::item::{File, Item};
-use crate::key_table::{GOALS, word_of};
+use crate::key_table::clearance::{MODELS, RATES};
+use crate::key_table::{GOALS, METHODS, word_of};
 use crate::read::springs::tension;
-use crate::study::{BalanceGoal, MotionStudy, Plot, Rows, Study, StudyKind};
+use crate::study::{
+    BalanceGoal, MotionStudy, Plot, Rows, SimulateStudy, Stop, StopResistance, Study, StudyKind,
+    VibrationStudy,
+};
 use crate::write::spelling::Writer;
 
 type Entries = Vec<(String, Item)>;
@@ -35,12 +40,24 @@ impl Writer<'_> {
             StudyKind::Forces(_) => "forces",
             StudyKind::Balance(_) => "balance",
             StudyKind::Spring(_) => "spring",
+            StudyKind::Simulate(_) => "simulate",
+            StudyKind::Clearance(_) => "clearance",
+            StudyKind::Vibrations(_) => "vibrations",
         };
         let mut entries = vec![("kind".to_owned(), Item::text(kind))];
-        self.along(study.kind.along(), &mut entries);
+        let one_pose = |study: &VibrationStudy| study.along.rows == Rows::Count(1);
+        if !matches!(&study.kind, StudyKind::Vibrations(study) if one_pose(study)) {
+            self.along(study.kind.along(), &mut entries);
+        }
         let mut put = |key: &str, item: Item| entries.push((key.to_owned(), item));
         match &study.kind {
             StudyKind::Motion(_) | StudyKind::Forces(_) => {}
+            StudyKind::Clearance(study) => {
+                put("model", Item::text(word_of(&MODELS, &study.model)));
+                if study.rates != ClearanceRates::Frozen {
+                    put("rates", Item::text(word_of(&RATES, &study.rates)));
+                }
+            }
             StudyKind::Balance(study) => {
                 if study.goal != BalanceGoal::ShakingForce {
                     put("goal", Item::text(word_of(&GOALS, &study.goal)));
@@ -75,8 +92,101 @@ impl Writer<'_> {
                 put("stiffness", self.bounds(&study.stiffness, force / travel));
                 put("preload", self.bounds(&study.preload, force));
             }
+            StudyKind::Simulate(study) => self.simulate(study, &mut put),
+            StudyKind::Vibrations(study) => self.vibrations(study, &mut put),
         }
         entries
+    }
+
+    fn simulate(&self, study: &SimulateStudy, put: &mut dyn FnMut(&str, Item)) {
+        put("until", self.scalar(&study.until, Dimension::TIME));
+        if study.released.len() != self.model.drives.len() {
+            let released = study.released.iter();
+            let names = released.map(|drive| Item::text(self.drive(*drive)));
+            put("release", Item::List(names.collect()));
+        }
+        let mut start = Entries::new();
+        for it in &study.start {
+            let name = self.drive(it.drive);
+            let drive = self.model.drives.get(it.drive.index());
+            let coordinate = drive.map_or(Dimension::NONE, |d| d.dimension);
+            if let Some(at) = &it.at {
+                start.push((name.to_owned(), self.scalar(at, coordinate)));
+            }
+            if let Some(rate) = &it.rate {
+                let rate = self.scalar(rate, coordinate / Dimension::TIME);
+                start.push((format!("{name}_rate"), rate));
+            }
+        }
+        if !start.is_empty() {
+            put("start", Item::Table(start));
+        }
+        if !study.stops.is_empty() {
+            let stops = study.stops.iter();
+            put(
+                "stops",
+                Item::Table(stops.map(|s| (s.name.clone(), self.stop(s))).collect()),
+            );
+        }
+        match study.end_when.as_slice() {
+            [] => {}
+            [one] => put("end_when", Item::text(&one.text)),
+            many => {
+                let texts = many.iter().map(|c| Item::text(&c.text));
+                put("end_when", Item::List(texts.collect()));
+            }
+        }
+        if let Some(tolerance) = &study.tolerance {
+            put("tolerance", self.scalar(tolerance, Dimension::NONE));
+        }
+        if let Some(method) = &study.method {
+            put("method", Item::text(word_of(&METHODS, method)));
+        }
+    }
+
+    fn stop(&self, stop: &Stop) -> Item {
+        let (coordinate, force) = match stop.is_angle {
+            true => (Dimension::ANGLE, Dimension::TORQUE),
+            false => (Dimension::LENGTH, Dimension::FORCE),
+        };
+        let between = self.bounds(&stop.between, coordinate);
+        let mut entries = vec![("between".to_owned(), between)];
+        let mut put = |key: &str, item: Item| entries.push((key.to_owned(), item));
+        match &stop.resistance {
+            StopResistance::Rigid { restitution: None } => {
+                return self.bounds(&stop.between, coordinate);
+            }
+            StopResistance::Rigid {
+                restitution: Some(restitution),
+            } => put("restitution", self.scalar(restitution, Dimension::NONE)),
+            StopResistance::Soft { stiffness, damping } => {
+                put("stiffness", self.scalar(stiffness, force / coordinate));
+                if let Some(damping) = damping {
+                    let rate = coordinate / Dimension::TIME;
+                    put("damping", self.scalar(damping, force / rate));
+                }
+            }
+        }
+        Item::Table(entries)
+    }
+
+    fn vibrations(&self, study: &VibrationStudy, put: &mut dyn FnMut(&str, Item)) {
+        // without it all are let go
+        if study.release.len() < self.model.drives.len() {
+            let release = study.release.iter().map(|d| Item::text(self.drive(*d)));
+            put("release", Item::List(release.collect()));
+        }
+        if !study.at.is_empty() {
+            let at = study.at.iter().map(|(drive, at)| {
+                let dimension = self.model.drives.get(drive.index()).map(|d| d.dimension);
+                let place = self.scalar(at, dimension.unwrap_or(Dimension::NONE));
+                (self.drive(*drive).to_owned(), place)
+            });
+            put("at", Item::Table(at.collect()));
+        }
+        if !study.settles {
+            put("equilibrium", Item::Flag(false));
+        }
     }
 
     fn bounds(&self, bounds: &[Option<Scalar>; 2], dimension: Dimension) -> Item {

@@ -2,9 +2,12 @@
 
 use kempe_mechanism::evidence::is_finite;
 use kempe_mechanism::pose::Pose;
+use kempe_mechanism::{Branch, Design};
 
-use super::{Motion, Solver};
+use super::{Demand, Motion, Solver};
+use crate::assemble::{Assemblies, Assembly};
 use crate::bridge::{SideSeries, across};
+use crate::drive_path::DrivePath;
 
 /// Where the bodies are at a place of a motion.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,6 +16,37 @@ pub struct Placed {
     pub poses: Vec<Pose<f64>>,
     /// Angle of every body to within half a turn, rad, the turns counted along the motion.
     pub near: Vec<f64>,
+}
+
+impl Demand {
+    /// A motion on from a pose at `start`, over a range that holds it: no assembly is searched for, the branch is the pose's.
+    pub fn from_pose(
+        design: &Design<f64>,
+        path: DrivePath,
+        range: (f64, f64),
+        start: f64,
+        placed: &Placed,
+    ) -> Self {
+        let assembly = Assembly {
+            branch: Branch {
+                guess: placed.poses.clone(),
+                near: placed.near.clone(),
+                ..Branch::neutral(&design.mechanism)
+            },
+            poses: placed.poses.clone(),
+            distance: 0.0,
+            turns: design.geometry.turns.clone(),
+        };
+        Self {
+            path,
+            range,
+            start,
+            assemblies: Some(Assemblies {
+                list: vec![assembly],
+                ..Assemblies::default()
+            }),
+        }
+    }
 }
 
 impl Motion {

@@ -80,6 +80,7 @@ mod tests {
             closure: vec![0.0; values.len()],
             forces: None,
             smallest_singular_value: vec![f64::NAN; values.len()],
+            balance: None,
             notes: vec![None; values.len()],
             columns: vec![Column {
                 values,

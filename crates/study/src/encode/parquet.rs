@@ -105,6 +105,7 @@ mod tests {
             closure: vec![1e-16, f64::NAN, 0.0],
             forces: None,
             smallest_singular_value: vec![0.5; 3],
+            balance: None,
             notes: vec![None, Some("not reached, é".into()), None],
         };
         let origin = [("model".to_owned(), "abc".to_owned())];
@@ -142,6 +143,7 @@ mod tests {
             closure: vec![],
             forces: None,
             smallest_singular_value: vec![],
+            balance: None,
             notes: vec![],
         };
         let bytes = parquet(&table, &[]).unwrap();

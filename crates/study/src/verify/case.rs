@@ -30,6 +30,9 @@ pub struct Case {
     pub model: String,
     /// Parameters set from outside.
     pub set: Vec<(String, String)>,
+    /// The simulation whose motion is meant, or another study whose columns and numbers are compared; the motion of the drives' laws
+    /// without one.
+    pub study: Option<String>,
     /// What is expected.
     pub expected: Vec<Expected>,
 }
@@ -84,6 +87,7 @@ impl Case {
                 "source",
                 "tolerance",
                 "set",
+                "study",
                 "table",
                 "value",
             ],
@@ -97,6 +101,7 @@ impl Case {
             title: text_of(&root, "title")?.unwrap_or_else(|| model.clone()),
             model,
             set: Vec::new(),
+            study: text_of(&root, "study")?,
             expected: Vec::new(),
         };
         for (name, value) in root

@@ -2,19 +2,21 @@
 
 use std::sync::Arc;
 
-use kempe_model::{Diagnostic, Model, NamedMeasure};
+use kempe_model::{Diagnostic, Model, NamedMeasure, Study, StudyKind};
 use kempe_motion::Motion;
 use kempe_motion::events::EventKind;
 use kempe_units::{Dimension, Unit};
 use serde::Serialize;
 
 use super::case::{Case, Expected, Target};
+use super::of_study::OfStudy;
 use crate::along::{Along, Row};
 use crate::findings::check;
 use crate::pose::Setting;
 use crate::prepared::{design, motion};
 use crate::quantity::Quantity;
 use crate::rows::RowPlace;
+use crate::simulation::simulated_motion;
 use kempe_motion::progress::Silent;
 
 /// Ours and the reference, side by side.
@@ -63,6 +65,25 @@ pub fn compare(
     text: &str,
     files: &mut dyn FnMut(&str) -> Result<String, String>,
 ) -> Result<Vec<Comparison>, Vec<Diagnostic>> {
+    let model = Model::from_toml_with(text, &case.title, files, &case.set)?.model;
+    let named = |study: &&Study| Some(&study.name) == case.study.as_ref();
+    let study = model.studies.iter().find(named);
+    if let Some(study) = study.filter(|s| !matches!(s.kind, StudyKind::Simulate(_))) {
+        let study = OfStudy::new(&model, study)?;
+        let compared = case.expected.iter().map(|expected| {
+            let found = match &expected.target {
+                Target::Measure { measure, at } => {
+                    let place = at.as_deref().unwrap_or_default();
+                    study.value(measure, place, &expected.reference.unit)
+                }
+                Target::Event(_) | Target::Check(_) => {
+                    Err("a case of a study compares its columns and numbers alone".to_owned())
+                }
+            };
+            compared(case, expected, found)
+        });
+        return Ok(compared.collect());
+    }
     let mut measures: Vec<String> = Vec::new();
     for expected in &case.expected {
         if let Target::Measure { measure, .. } = &expected.target
@@ -71,9 +92,11 @@ pub fn compare(
             measures.push(measure.clone());
         }
     }
-    let model = Model::from_toml_with(text, &case.title, files, &case.set)?.model;
     let design = design(&model);
-    let motion = motion(&design, &mut Silent)?;
+    let motion = match &case.study {
+        Some(name) => simulated_motion(&model, name, &mut Silent)?,
+        None => motion(&design, &mut Silent)?,
+    };
     let named: Vec<NamedMeasure> = (measures.iter())
         .map(|text| model.measure(text))
         .collect::<Result<_, _>>()?;
@@ -110,13 +133,9 @@ fn compare_one(
     last: &mut Option<(String, Vec<f64>)>,
 ) -> Comparison {
     let reference = &expected.reference;
-    let (what, place) = match &expected.target {
-        Target::Measure { at, measure } => (measure.clone(), at.clone().unwrap_or_default()),
-        Target::Event(kind) => (kind.clone(), String::new()),
-        Target::Check(field) => (format!("check: {field}"), String::new()),
-    };
     let found = match &expected.target {
-        Target::Measure { measure, .. } => {
+        Target::Measure { at, measure } => {
+            let place = at.clone().unwrap_or_default();
             let index = subject.measures.iter().position(|m| m == measure);
             match index.and_then(|i| Some((i, *named.get(i)?))) {
                 Some((index, named)) => dimension_fits(named.dimension, &reference.unit)
@@ -130,6 +149,21 @@ fn compare_one(
         }
         Target::Event(kind) => nearest_event(subject, kind, expected),
         Target::Check(field) => check_number(subject.model, field).map(|x| (x, Dimension::NONE)),
+    };
+    compared(case, expected, found)
+}
+
+/// Ours, in the reference's unit, beside the reference.
+fn compared(
+    case: &Case,
+    expected: &Expected,
+    found: Result<(f64, Dimension), String>,
+) -> Comparison {
+    let reference = &expected.reference;
+    let (what, place) = match &expected.target {
+        Target::Measure { at, measure } => (measure.clone(), at.clone().unwrap_or_default()),
+        Target::Event(kind) => (kind.clone(), String::new()),
+        Target::Check(field) => (format!("check: {field}"), String::new()),
     };
     let (ours, problem, turning) = match found {
         Ok((value, dimension)) => (value, None, dimension == Dimension::ANGLE),
@@ -155,7 +189,7 @@ fn compare_one(
     }
 }
 
-fn dimension_fits(dimension: Dimension, unit: &Unit) -> Result<(), String> {
+pub(super) fn dimension_fits(dimension: Dimension, unit: &Unit) -> Result<(), String> {
     // Derivatives to angles and angular rates may be given with or without the radian.
     let bare = |d: Dimension| Dimension { angle: 0, ..d };
     let same = if dimension == Dimension::ANGLE || unit.dimension() == Dimension::ANGLE {
@@ -186,7 +220,8 @@ fn measured(
     let place_of_row = if place.is_empty() {
         RowPlace::Time(0.0)
     } else {
-        let setting = Setting::parse(subject.model, place).map_err(|d| d.message)?;
+        let model = &subject.motion.mechanism().model;
+        let setting = Setting::parse(model, place).map_err(|d| d.message)?;
         if setting.name == "time" {
             RowPlace::Time(setting.value)
         } else {

@@ -6,6 +6,7 @@
 //! title  = "Crank-rocker"
 //! model  = "../examples/seeds/crank-rocker.toml"   # from this file
 //! source = "S. Author, Journal 1 (1990) 2, table 3"
+//! study  = "swing"                                 # whose motion, of a simulation, or whose columns; the drives' laws without it
 //! set    = { a = "20 mm" }                         # parameters, if others than the file's
 //!
 //! [[table]]                                        # a reference table: head and rows as `kempe run` writes them
@@ -28,6 +29,11 @@
 //! [[value]]                                        # a number of `kempe check --json`
 //! check   = "mobility_rank"
 //! expect  = 1
+//!
+//! [[value]]                                        # of a case of another study: its columns and numbers, not measures
+//! at      = "lock = -40 deg"
+//! measure = "th2 deviation"
+//! expect  = "-8.32e-5 rad"
 //! ```
 //!
 //! The first column of a table is a drive or `time`; the others are measures. A reference written with a decimal point is
@@ -38,6 +44,7 @@
 
 mod case;
 mod compare;
+mod of_study;
 mod quantity;
 
 pub use case::{Case, CaseError, Expected, Target};

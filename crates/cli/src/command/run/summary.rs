@@ -38,10 +38,12 @@ pub fn summary(
         if table.unreached() > 0 {
             out.push_str(&format!(", {} not reached", table.unreached()));
         }
-        out.push_str(&format!(
-            ", loops closed to {:.1e} of the mechanism's size",
-            table.worst_closure()
-        ));
+        let closure = table.worst_closure();
+        if closure.is_finite() {
+            out.push_str(&format!(
+                ", loops closed to {closure:.1e} of the mechanism's size"
+            ));
+        }
         if let Some((_, difference)) = table.worst_route_difference() {
             out.push_str(&format!(
                 ", virtual power and Newton-Euler agree to {difference:.1e}"
@@ -98,7 +100,11 @@ fn extremes(result: &StudyResult) -> Vec<Vec<String>> {
     let at = format!("at {}", along.head());
     let head = ["in the rows", "smallest", &at, "largest", &at];
     let mut rows = vec![head.map(str::to_owned).to_vec()];
-    for extremes in kempe_study::extremes(result) {
+    let columns = kempe_study::extremes(result);
+    if columns.is_empty() {
+        return Vec::new();
+    }
+    for extremes in columns {
         let mut row = vec![extremes.column.head()];
         let told = |e: Extreme| {
             let value = significant(without_rounding(e.value, extremes.size), DIGITS);

@@ -7,8 +7,8 @@ use kempe_draw::report::{Block, Section};
 use kempe_draw::{DrawOptions, Frame, Outline, Stage, Theme, svg};
 use kempe_model::{Diagnostic, Model, PARTIAL_TABLE, Study};
 use kempe_study::{
-    CheckReport, MECHANISM, Proof, ReportAgainst, ReportOrigin, StudyOutcome, StudyResult,
-    drawing_frames, encode, figures, figures_against, mechanism_view, outline,
+    CheckReport, MECHANISM, ModeShape, Proof, ReportAgainst, ReportOrigin, StudyOutcome,
+    StudyResult, drawing_frames, drawn, encode, figures, figures_against, mechanism_view, outline,
 };
 
 use super::against::Against;
@@ -82,6 +82,9 @@ impl Results<'_> {
                 &names::picture(model, name, MECHANISM),
                 self.picture(outcome.study, result).as_bytes(),
             )?;
+            for (shape, picture) in shape_pictures(model, outcome.study, result) {
+                add(&names::picture(model, name, &shape), picture.as_bytes())?;
+            }
             for (plot, spec) in self.plots(result) {
                 let height = if spec.equal_aspect {
                     PLOT[0] * 0.8
@@ -205,12 +208,31 @@ impl Results<'_> {
                 .first
                 .insert(0, partial_section(self.outcomes, others, missing));
             let results = self.outcomes.iter().filter_map(|o| o.result.as_ref().ok());
+            let results = results.flat_map(|r| std::iter::repeat_n(r, r.motions()));
             for (motion, result) in report.motions.iter_mut().zip(results) {
                 motion.mark = format!("{PARTIAL_TABLE} {}", how_far(result));
             }
         }
         report.to_html()
     }
+}
+
+/// Each natural vibration of a study with both ends of its way behind its middle.
+fn shape_pictures(model: &Model, study: &Study, result: &StudyResult) -> Vec<(String, String)> {
+    let view = mechanism_view(model, Some(study.kind.along()));
+    let picture = |shape: &ModeShape| {
+        let frames = shape.frames.iter();
+        let frames: Vec<Frame> = frames
+            .map(|f| drawn(model, f, shape.title.clone()))
+            .collect();
+        let options = DrawOptions {
+            ghosts: shape.extremes.to_vec(),
+            ..DrawOptions::default()
+        };
+        let scene = Stage::new(&view, &frames, options).scene(0);
+        (shape.name.clone(), svg::document(&scene, Theme::Light))
+    };
+    result.shapes.iter().map(picture).collect()
 }
 
 /// How much of a study a run has that was stopped.

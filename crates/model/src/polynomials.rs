@@ -1,0 +1,303 @@
+//! Polynomials in time, one after the other: coordinates that were found, such as by a simulation.
+
+use kempe_number::{Number, piecewise};
+
+/// Coefficients of one polynomial.
+pub const COEFFICIENTS: usize = 9;
+
+/// A part of a polynomial this short says nothing more of where its slope vanishes.
+const SHORTEST: f64 = 1e-9;
+
+/// Polynomials of degree 8 that follow each other in time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Polynomials {
+    /// Where each begins, and where the last one ends, s, rising.
+    times: Vec<f64>,
+    /// Coefficients of each in the time from its middle, in halves of its length.
+    coefficients: Vec<[f64; COEFFICIENTS]>,
+    /// The times, and those at which the coordinate turns back: from one to the next it is monotone.
+    turns: Vec<f64>,
+}
+
+impl Polynomials {
+    /// The polynomials through given states, coordinate, speed and acceleration at the ends of each, and given accelerations at
+    /// its quarters: an error of places inside, which a second derivative would magnify, has no part in them. `None` where the
+    /// times do not rise or the numbers of times, states and quarters do not agree.
+    pub fn through(times: &[f64], ends: &[[f64; 3]], quarters: &[[f64; 3]]) -> Option<Self> {
+        let fits = times.len() == ends.len() && ends.len() == quarters.len() + 1;
+        if !fits || quarters.is_empty() || !times.windows(2).all(|w| w[0] < w[1]) {
+            return None;
+        }
+        let of = |(k, quarters): (usize, &[f64; 3])| {
+            let half = 0.5 * (times[k + 1] - times[k]);
+            polynomial(half, [ends[k], ends[k + 1]], *quarters)
+        };
+        let coefficients = quarters.iter().enumerate().map(of).collect();
+        Some(Self::new(times, coefficients))
+    }
+
+    /// The polynomials through values at equal parts of each, both ends included. `None` where the times do not rise, or there
+    /// are not values for every polynomial.
+    pub fn at_equal_parts(times: &[f64], values: &[[f64; COEFFICIENTS]]) -> Option<Self> {
+        let fits = times.len() == values.len() + 1 && !values.is_empty();
+        (fits && times.windows(2).all(|w| w[0] < w[1]))
+            .then(|| Self::new(times, values.iter().map(through_values).collect()))
+    }
+
+    fn new(times: &[f64], coefficients: Vec<[f64; COEFFICIENTS]>) -> Self {
+        let mut it = Self {
+            times: times.to_vec(),
+            turns: Vec::with_capacity(times.len()),
+            coefficients,
+        };
+        for k in 0..it.coefficients.len() {
+            let [from, to] = it.span(k);
+            it.turns.push(from);
+            let mut turns = Vec::new();
+            flat(&it.coefficients[k], -1.0, 1.0, &mut turns);
+            for turn in turns {
+                let t = it.time_in(k, turn);
+                if from < t && t < to {
+                    it.turns.push(t);
+                }
+            }
+        }
+        it.turns.extend(times.last());
+        it
+    }
+
+    /// Whether the coordinate stays at a value.
+    pub fn is_constant(&self, value: f64) -> bool {
+        let stays = |c: &[f64; COEFFICIENTS]| c[0] == value && c[1..].iter().all(|c| *c == 0.0);
+        self.coefficients.iter().all(stays)
+    }
+
+    /// Where each begins, and where the last one ends, s.
+    pub fn times(&self) -> &[f64] {
+        &self.times
+    }
+
+    /// The times, and those at which the coordinate turns back, rising.
+    pub(crate) fn turns(&self) -> &[f64] {
+        &self.turns
+    }
+
+    /// How long they last together, s.
+    pub(crate) fn duration(&self) -> f64 {
+        self.times.last().copied().unwrap_or(0.0)
+    }
+
+    /// The coordinate at the end.
+    pub(crate) fn end(&self) -> f64 {
+        let last = self.coefficients.last();
+        last.map_or(f64::NAN, |c| c.iter().sum())
+    }
+
+    /// The coordinate at a time.
+    pub(crate) fn at<T: Number>(&self, t: T) -> T {
+        let past = |k: usize| t - self.times[k];
+        let [value] = piecewise(self.coefficients.len(), &past, &|k| {
+            let Some(coefficients) = self.coefficients.get(k) else {
+                return [T::from_f64(f64::NAN)];
+            };
+            let [from, to] = self.span(k);
+            let s = (t - 0.5 * (from + to)) / (0.5 * (to - from));
+            let sum = coefficients.iter().rev();
+            [sum.fold(T::zero(), |sum, c| sum * s + *c)]
+        });
+        value
+    }
+
+    fn span(&self, k: usize) -> [f64; 2] {
+        [self.times[k], self.times[k + 1]]
+    }
+
+    /// The time of a place of a polynomial, from -1 to 1.
+    fn time_in(&self, k: usize, place: f64) -> f64 {
+        let [from, to] = self.span(k);
+        0.5 * (from + to) + 0.5 * (to - from) * place
+    }
+}
+
+/// The polynomial through coordinate, speed and acceleration at -1 and 1 and through accelerations at -1/2, 0 and 1/2, where
+/// `half` is the time of 1.
+fn polynomial(half: f64, ends: [[f64; 3]; 2], quarters: [f64; 3]) -> [f64; COEFFICIENTS] {
+    let [low, high] = ends.map(|[q, v, a]| [q, v * half, a * half * half]);
+    let [before, middle, after] = quarters.map(|a| a * half * half);
+    // Even and odd parts are solved apart, by elimination.
+    let c2 = 0.5 * middle;
+    let slope = 0.5 * (high[1] - low[1]) - middle;
+    let quarter = 0.5 * (after + before) - middle;
+    let end = 0.5 * (high[2] + low[2]) - middle;
+    let c8 = (quarter - 0.75 * slope + 0.21875 * (end - 3.0 * slope)) / 1.875;
+    let c6 = (end - 3.0 * slope - 32.0 * c8) / 12.0;
+    let c4 = (slope - 6.0 * c6 - 8.0 * c8) / 4.0;
+    let c0 = 0.5 * (high[0] + low[0]) - c2 - c4 - c6 - c8;
+    let value = 0.5 * (high[0] - low[0]);
+    let slope = 0.5 * (high[1] + low[1]) - value;
+    let quarter = 0.5 * (after - before);
+    let end = 0.5 * (high[2] - low[2]);
+    let c7 = (quarter - 1.5 * slope + 0.4375 * (end - 3.0 * slope)) / 2.8125;
+    let c5 = (end - 3.0 * slope - 24.0 * c7) / 8.0;
+    let c3 = 0.5 * (slope - 4.0 * c5 - 6.0 * c7);
+    let c1 = value - c3 - c5 - c7;
+    [c0, c1, c2, c3, c4, c5, c6, c7, c8]
+}
+
+/// The polynomial through values at equal parts from -1 to 1: Newton's divided differences, then powers.
+fn through_values(values: &[f64; COEFFICIENTS]) -> [f64; COEFFICIENTS] {
+    let place = |k: usize| 2.0 * k as f64 / (COEFFICIENTS - 1) as f64 - 1.0;
+    let mut newton = *values;
+    for order in 1..COEFFICIENTS {
+        for k in (order..COEFFICIENTS).rev() {
+            newton[k] = (newton[k] - newton[k - 1]) / (place(k) - place(k - order));
+        }
+    }
+    let mut c = [0.0; COEFFICIENTS];
+    for k in (0..COEFFICIENTS).rev() {
+        for j in (1..COEFFICIENTS).rev() {
+            c[j] = c[j - 1] - place(k) * c[j];
+        }
+        c[0] = newton[k] - place(k) * c[0];
+    }
+    c
+}
+
+/// Slope and how much it may change within `half` of a place, by its own derivatives there; and the same of its derivative.
+fn slope_about(coefficients: &[f64; COEFFICIENTS], at: f64, half: f64) -> [[f64; 2]; 2] {
+    // Coefficients about the place, by repeated synthetic division.
+    let mut c = *coefficients;
+    for first in 0..COEFFICIENTS {
+        for k in (first..COEFFICIENTS - 1).rev() {
+            c[k] += at * c[k + 1];
+        }
+    }
+    let (mut change, mut bend) = (0.0, 0.0);
+    let mut power = half;
+    for k in 2..COEFFICIENTS {
+        let n = k as f64;
+        change += n * c[k].abs() * power;
+        if k > 2 {
+            bend += n * (n - 1.0) * c[k].abs() * power / half;
+        }
+        power *= half;
+    }
+    [[c[1], change], [2.0 * c[2], bend]]
+}
+
+/// The places between `low` and `high` where the slope changes its sign, rising: parts are halved until the slope has none, or one
+/// by its monotony.
+fn flat(coefficients: &[f64; COEFFICIENTS], low: f64, high: f64, found: &mut Vec<f64>) {
+    let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
+    let [[slope, change], [second, bend]] = slope_about(coefficients, middle, half);
+    // Where it stands still it turns nowhere.
+    if !(slope.abs() <= change) || change == 0.0 {
+        return;
+    }
+    let slope_at = |s: f64| slope_about(coefficients, s, 0.0)[0][0];
+    if second.abs() > bend || half < SHORTEST {
+        let (mut a, mut b) = (low, high);
+        let falls = slope_at(a) > 0.0;
+        if (slope_at(b) > 0.0) == falls {
+            return;
+        }
+        loop {
+            let next = 0.5 * (a + b);
+            if next <= a || next >= b {
+                break;
+            }
+            if (slope_at(next) > 0.0) == falls {
+                a = next;
+            } else {
+                b = next;
+            }
+        }
+        found.push(b);
+        return;
+    }
+    flat(coefficients, low, middle, found);
+    flat(coefficients, middle, high, found);
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use kempe_number::Jet;
+    use kempe_number::math::sin_cos;
+
+    /// Half a vibration and more, by its own formula.
+    fn swing() -> Polynomials {
+        let times: Vec<f64> = (0..=12).map(|k| 0.3 * f64::from(k)).collect();
+        let state = |t: f64| {
+            let (s, c) = sin_cos(2.0 * t);
+            [s, 2.0 * c, -4.0 * s]
+        };
+        let quarter =
+            |w: &[f64]| [0.25, 0.5, 0.75].map(|part| state(w[0] + part * (w[1] - w[0]))[2]);
+        let quarters: Vec<[f64; 3]> = times.windows(2).map(quarter).collect();
+        let ends: Vec<[f64; 3]> = times.iter().map(|t| state(*t)).collect();
+        Polynomials::through(&times, &ends, &quarters).unwrap()
+    }
+
+    #[test]
+    fn a_smooth_motion_comes_back_with_its_rates() {
+        let swing = swing();
+        for k in 0..=360 {
+            let t = 0.01 * f64::from(k);
+            let found: Jet<f64, 3> = swing.at(Jet::variable(t));
+            let (s, c) = sin_cos(2.0 * t);
+            for (order, exact) in [s, 2.0 * c, -4.0 * s].into_iter().enumerate() {
+                let off = (found.derivative(order) - exact).abs();
+                assert!(off < 1e-7, "{t} {order}: {off}");
+            }
+        }
+    }
+
+    #[test]
+    fn polynomials_of_that_degree_are_exact() {
+        let value = |t: Jet<f64, 3>| {
+            let square = t * t;
+            square * square * square * square - square * t * 3.0 + t * 0.5 - 2.0
+        };
+        let state = |t: f64| {
+            let series = value(Jet::variable(t));
+            [0, 1, 2].map(|k| series.derivative(k))
+        };
+        let quarters = [0.375, 0.75, 1.125].map(|t| state(t)[2]);
+        let it = Polynomials::through(&[0.0, 1.5], &[0.0, 1.5].map(state), &[quarters]).unwrap();
+        for k in 0..=15 {
+            let t = Jet::variable(0.1 * f64::from(k));
+            let (found, exact): (Jet<f64, 3>, _) = (it.at(t), value(t));
+            for order in 0..3 {
+                let off = (found.derivative(order) - exact.derivative(order)).abs();
+                assert!(off < 1e-12 * 200.0, "{k} {order}: {off}");
+            }
+        }
+    }
+
+    #[test]
+    fn it_turns_where_its_speed_vanishes() {
+        let swing = swing();
+        let quarter = std::f64::consts::FRAC_PI_4;
+        let turns: Vec<f64> = (swing.turns().iter().copied())
+            .filter(|t| !swing.times().contains(t))
+            .collect();
+        assert_eq!(turns.len(), 2, "{turns:?}");
+        for (turn, exact) in turns.iter().zip([quarter, 3.0 * quarter]) {
+            assert!((turn - exact).abs() < 1e-9, "{turn}");
+        }
+        let values =
+            [0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0].map(|t: f64| t * t * t - 2.0 * t + 1.0);
+        let it = Polynomials::at_equal_parts(&[0.0, 4.0], &[values]).unwrap();
+        for k in 0..=40 {
+            let t = 0.1 * f64::from(k);
+            let (found, exact): (f64, f64) = (it.at(t), t * t * t - 2.0 * t + 1.0);
+            assert!((found - exact).abs() < 1e-12, "{t}: {found}, not {exact}");
+        }
+        let still = Polynomials::at_equal_parts(&[0.0, 1.0], &[[3.0; COEFFICIENTS]]).unwrap();
+        assert_eq!((still.turns().len(), still.is_constant(3.0)), (2, true));
+        assert!(Polynomials::through(&[0.0, 0.0], &[[0.0; 3]; 2], &[[0.0; 3]]).is_none());
+        assert!(Polynomials::through(&[0.0, 1.0], &[[0.0; 3]; 3], &[[0.0; 3]]).is_none());
+    }
+}

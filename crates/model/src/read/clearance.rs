@@ -1,0 +1,195 @@
+//! `[clearance]`: at pins by the name of the point, at sliders and slots by the name of the joint, and for `all`; and the
+//! studies of it.
+//!
+//! ```toml
+//! [clearance]
+//! all  = { radial = "10 um" }                  # every pin, slider and slot that has no entry of its own
+//! B    = { radial = "50 um" }
+//! C    = { radial = "50 um", on = "rocker" }   # of the links that share the pin C, with the first of them
+//! bore = { radial = "play" }                   # to either side of the slider's line
+//!
+//! [studies.play]
+//! kind  = "clearance"
+//! model = "continuous"
+//! rates = "frozen"                             # or "turning"
+//! ```
+
+use crate::clearance::{Clearance, ClearanceAt, ClearanceModel, ClearanceRates, ClearanceStudy};
+use crate::diagnostic::Diagnostic;
+use crate::document::{Key, Node, Value};
+use crate::ids::{LinkId, PointId};
+use crate::joint::JointKind;
+use crate::key_table::clearance::{LATER_MODELS, MODELS, OF_ALL, OF_JOINT, OF_PIN, RATES};
+use crate::read::context::{Context, Meaning};
+use crate::read::entry::{Entry, link_of};
+use crate::read::names::is_point_name;
+use crate::study::{MotionStudy, StudyKind};
+
+/// A file has at most so many.
+const MAX: usize = 100_000;
+
+/// Reads all clearances.
+pub(crate) fn read(cx: &mut Context<'_>, entries: &[&(Key, Node)]) {
+    cx.clearances_given = !entries.is_empty();
+    for entry in cx.limited(entries, MAX, "clearances") {
+        let clearance = read_one(cx, entry);
+        cx.model.clearances.extend(clearance);
+    }
+    for diagnostic in cx.model.clearances_too_large(&cx.values) {
+        cx.push(diagnostic);
+    }
+}
+
+fn read_one(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<Clearance> {
+    let (key, _) = entry;
+    let mut at = place(cx, key)?;
+    let kind = match at {
+        ClearanceAt::Pin { .. } => &OF_PIN,
+        ClearanceAt::Joint(_) => &OF_JOINT,
+        ClearanceAt::All => &OF_ALL,
+    };
+    let entry = Entry::new(cx, entry, kind)?;
+    let radial = entry.needed(cx, "radial");
+    if let ClearanceAt::Pin { point, on } = &mut at {
+        *on = links(cx, &entry, *point)?;
+    }
+    Some(Clearance {
+        at,
+        radial: radial?,
+        span: key.span.clone(),
+    })
+}
+
+/// The links that have play on a pin; none where the file names none.
+fn links(cx: &mut Context<'_>, entry: &Entry<'_>, pin: PointId) -> Option<Vec<LinkId>> {
+    let Some(node) = entry.get("on") else {
+        return Some(Vec::new());
+    };
+    let place = entry.place_of("on");
+    let nodes: Vec<&Node> = match &node.value {
+        Value::Array(_) => cx
+            .array(node, &place, entry.example_of("on"))?
+            .iter()
+            .collect(),
+        _ => vec![node],
+    };
+    let mut found = Vec::new();
+    for node in nodes {
+        let link = link_of(cx, node, &place)?;
+        let carriers = cx.carriers(pin).to_vec();
+        let (name, point) = (cx.link_name(link).to_owned(), cx.point_name(pin).to_owned());
+        if !carriers.contains(&link) {
+            return cx.refuse(
+                "no-common-point",
+                format!("{point} is no point of link `{name}`"),
+                &node.span,
+                format!("name links that share the pin {point}"),
+            );
+        }
+        // Of two links it is the same pair, whichever is named.
+        match carriers.as_slice() {
+            [_, later] => found.push(*later),
+            [first, ..] if *first == link => {
+                return cx.refuse(
+                    "not-a-pin",
+                    format!("the pin {point} sits fast in link `{name}`, the first of the file that has it"),
+                    &node.span,
+                    "name the links that have play on the pin: the others",
+                );
+            }
+            _ => found.push(link),
+        }
+    }
+    Some(found)
+}
+
+fn place(cx: &mut Context<'_>, key: &Key) -> Option<ClearanceAt> {
+    let name = key.name.as_str();
+    if name == OF_ALL.name {
+        return Some(ClearanceAt::All);
+    }
+    if is_point_name(name) {
+        let point = cx.point(name, key.span.clone())?;
+        if cx.carriers(point).len() > 1 {
+            let on = Vec::new();
+            return Some(ClearanceAt::Pin { point, on });
+        }
+        cx.push(
+            Diagnostic::error("not-a-pin", format!("{name} is no pin"))
+                .at(key.span.clone(), "only one link carries it")
+                .help("a point that two links carry is a pin; of a slider or a pin in a slot, name the joint"),
+        );
+        return None;
+    }
+    if let Some((Meaning::Joint(i), _)) = cx.names.get(name) {
+        let id = cx.joints.get(*i).copied().flatten()?;
+        let kind = cx.model.joints.get(id.index()).map(|j| &j.kind);
+        let what = match kind? {
+            JointKind::Slider { .. } | JointKind::Slot { .. } | JointKind::ArcSlot { .. } => {
+                return Some(ClearanceAt::Joint(id));
+            }
+            JointKind::CurveSlot { .. } => "a slot along a smooth curve",
+            JointKind::Weld { .. } => "a weld",
+            JointKind::Belt { .. } => "a belt",
+            JointKind::Gears { .. } | JointKind::Rack { .. } => "teeth in mesh",
+        };
+        return cx.refuse(
+            "not-a-slider",
+            format!("`{name}` is {what}, whose play this version does not know"),
+            &key.span,
+            "there may be play at pins, sliders, straight slots and slots along an arc",
+        );
+    }
+    let joints = (cx.names.iter()).filter(|(_, (m, _))| matches!(m, Meaning::Joint(_)));
+    let pins = cx.model.points.iter().filter(|p| p.links.len() > 1);
+    let known: Vec<String> = (joints.map(|(n, _)| n.clone()))
+        .chain(pins.map(|p| p.name.clone()))
+        .chain([OF_ALL.name.to_owned()])
+        .collect();
+    let known = known.iter().map(String::as_str);
+    let mut d = cx.no_such("pin or joint", name, key.span.clone(), known);
+    if let Some((meaning, declared)) = cx.names.get(name) {
+        d = d.see(declared.clone(), format!("`{name}` is {}", meaning.what()));
+    }
+    cx.push(
+        d.note("clearance is told of pins by their point, of sliders by their joint, and of `all`"),
+    );
+    None
+}
+
+/// A study of what play does.
+pub(crate) fn study(
+    cx: &mut Context<'_>,
+    entry: &Entry<'_>,
+    along: MotionStudy,
+) -> Option<StudyKind> {
+    let model = model(cx, entry);
+    let rates = entry.choice(cx, "rates", &RATES);
+    if cx.model.clearances.is_empty() && !cx.clearances_given {
+        let message = format!("{} has no clearance to look at", entry.place);
+        let help = format!("say where there is play: [clearance] {}", OF_ALL.example);
+        return cx.refuse("missing-key", message, entry.span, help);
+    }
+    Some(StudyKind::Clearance(ClearanceStudy {
+        along,
+        model: model?,
+        rates: rates?.unwrap_or(ClearanceRates::Frozen),
+    }))
+}
+
+fn model(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<ClearanceModel> {
+    if let Some(node) = entry.get("model")
+        && let Value::Text(text) = &node.value
+        && LATER_MODELS.contains(&text.content.trim())
+    {
+        let message = format!(
+            "{}: this version has no model `{}` of clearance, in which contact is lost",
+            entry.place,
+            text.content.trim()
+        );
+        let help = format!("write model = {:?}: contact is never lost", MODELS[0].0);
+        return cx.refuse("study-not-available", message, &node.span, help);
+    }
+    let model = entry.choice(cx, "model", &MODELS)?;
+    Some(model.unwrap_or(ClearanceModel::Continuous))
+}

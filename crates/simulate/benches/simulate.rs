@@ -1,0 +1,165 @@
+//! Benchmarks of multibody dynamics in time, each with its error beside its time: `cargo bench -p kempe-simulate`. Times are those of the
+//! whole call, from a model that is read to laws that are found, tracing included; the fastest of several counts. The pendulum and the
+//! four-bars stand beside the same integrator on the one equation that they come to by hand.
+
+use std::hint::black_box;
+use std::time::{Duration, Instant};
+
+use kempe_integrate::{Integrator, Tolerance};
+use kempe_mechanism::{Design, Mechanism};
+use kempe_model::{Model, StudyKind, value};
+use kempe_motion::Silent;
+use kempe_number::Jet;
+use kempe_number::math::sin_cos;
+use kempe_simulate::{Method, Question, Simulated, simulate};
+
+const REPEATS: usize = 5;
+
+/// A benchmark of `examples/benchmarks`, with what its first drive and its rate are at the end.
+struct Case {
+    name: &'static str,
+    exact: [f64; 2],
+}
+
+const CASES: [Case; 6] = [
+    // Elliptic functions; angles to whole turns.
+    Case {
+        name: "pendulum",
+        exact: [-1.849_477_000_364_879_5, 4.343_160_692_864_683],
+    },
+    Case {
+        name: "n-four-bar-2",
+        exact: [1.236_125_675_706_727_2, -1.506_642_180_841_829_5],
+    },
+    Case {
+        name: "n-four-bar-40",
+        exact: [1.389_289_118_707_091_3, -1.167_622_108_751_707],
+    },
+    // In quadruple precision.
+    Case {
+        name: "andrews",
+        exact: [15.810_771_195_153_707, 1_139.920_302_259_106_1],
+    },
+    // Another integrator.
+    Case {
+        name: "free-slider-crank",
+        exact: [5.642_329_982_104_728, 10.176_525_166_012_459],
+    },
+    Case {
+        name: "crank-rocker",
+        exact: [38.927_179_540_111_24, 33.027_805_163_307_81],
+    },
+];
+
+fn question(model: &Model, tolerance: f64) -> (Design<f64>, Question) {
+    let parameters = model.parameter_values();
+    let design = Design::new(&Mechanism::new(model), &parameters);
+    let study = model.studies.iter().find_map(|s| match &s.kind {
+        StudyKind::Simulate(study) => Some(study),
+        _ => None,
+    });
+    let study = study.expect("a simulation");
+    let start = study.released.iter().map(|drive| {
+        let at = model.drives[drive.index()].law.at(0.0, &parameters);
+        let rate = study.start.iter().find(|s| s.drive == *drive);
+        let rate = rate.and_then(|s| s.rate.as_ref());
+        [at, rate.map_or(0.0, |rate| value(rate, &parameters))]
+    });
+    let question = Question {
+        free: study.released.clone(),
+        start: start.collect(),
+        until: value(&study.until, &parameters),
+        tolerance,
+        method: Method::Choose,
+        stops: Vec::new(),
+        end_when: Vec::new(),
+    };
+    (design, question)
+}
+
+fn best<T>(mut run: impl FnMut() -> T) -> (Duration, T) {
+    let mut fastest = (Duration::MAX, None);
+    for _ in 0..REPEATS {
+        let clock = Instant::now();
+        let found = black_box(run());
+        let took = clock.elapsed();
+        if took < fastest.0 {
+            fastest = (took, Some(found));
+        }
+    }
+    (fastest.0, fastest.1.expect("a run"))
+}
+
+/// The larger of the relative errors of the first drive and of its rate at the end; of an angle to whole turns.
+fn error(found: &Simulated, exact: [f64; 2], until: f64) -> f64 {
+    let q: Jet<f64, 2> = found.laws[0].at(Jet::variable(until), &[]);
+    let turn = std::f64::consts::TAU;
+    let off = q.derivative(0) - exact[0];
+    let off = off - (off / turn).round() * turn;
+    let rate = q.derivative(1) - exact[1];
+    (off / exact[0]).abs().max((rate / exact[1]).abs())
+}
+
+/// `theta" = -a cos theta` by the same integrator.
+fn by_hand(a: f64, start: [f64; 2], until: f64, tolerance: f64) -> [f64; 2] {
+    let mut rates = |_: f64, y: &[f64], rates: &mut [f64]| {
+        rates[0] = y[1];
+        rates[1] = -a * sin_cos(y[0]).1;
+        true
+    };
+    let tolerance = Tolerance {
+        relative: tolerance,
+        absolute: vec![tolerance],
+    };
+    let mut it =
+        Integrator::with(Method::Explicit, &mut rates, 0.0, &start, 1.0, tolerance).expect("rates");
+    while it.time() < until {
+        it.step(&mut rates, until).expect("a step");
+    }
+    [it.state()[0], it.state()[1]]
+}
+
+fn main() {
+    println!(
+        "{:<18} {:>9} {:>11} {:>9} {:>12} {:>9}",
+        "", "tolerance", "time", "error", "evaluations", "by hand"
+    );
+    for case in &CASES {
+        let path = format!(
+            "{}/../../examples/benchmarks/{}.toml",
+            env!("CARGO_MANIFEST_DIR"),
+            case.name
+        );
+        let text = std::fs::read_to_string(&path).expect("a benchmark");
+        let read = Model::from_toml(&text, case.name, &mut |_| Err("no files".into()));
+        let Ok(read) = read else { panic!("{path}") };
+        for tolerance in [1e-7, 1e-10, 1e-13] {
+            let (design, question) = question(&read.model, tolerance);
+            let (took, found) =
+                best(|| simulate(&design, &question, &mut Silent).expect("a motion"));
+            let n = match case.name {
+                "n-four-bar-2" => Some(2.0),
+                "n-four-bar-40" => Some(40.0),
+                _ => None,
+            };
+            let a = match case.name {
+                "pendulum" => Some(9.81),
+                _ => n.map(|n: f64| 9.81 * ((n + 1.0) / 2.0 + n) / ((n + 1.0) / 3.0 + n)),
+            };
+            let hand = a.map_or(String::new(), |a| {
+                let start = question.start[0];
+                let (hand, _) = best(|| by_hand(a, start, question.until, tolerance));
+                format!("{:.1} x", took.as_secs_f64() / hand.as_secs_f64())
+            });
+            println!(
+                "{:<18} {:>9.0e} {:>8.3} ms {:>9.1e} {:>12} {:>9}",
+                case.name,
+                tolerance,
+                1e3 * took.as_secs_f64(),
+                error(&found, case.exact, question.until),
+                found.evaluations,
+                hand
+            );
+        }
+    }
+}

@@ -1,0 +1,176 @@
+//! Stops: how far they are open, what an impact does, and what holds a rest.
+
+use kempe_measure::measure::{Along, History, measure};
+use kempe_model::Measure;
+
+use crate::plant::Plant;
+use crate::question::Resistance;
+
+/// Passes over the contacts of one impact, at most.
+const PASSES: usize = 500;
+/// An impulse that changes by less than this part is settled.
+const SETTLED: f64 = 1e-15;
+
+/// A stop at a state.
+#[derive(Clone, Debug)]
+pub(crate) struct Gap {
+    /// How far it is open.
+    pub open: f64,
+    /// How fast it opens.
+    pub rate: f64,
+    /// How its rate changes while no coordinate that is let go accelerates.
+    pub bend: f64,
+    /// Its derivatives to the coordinates that are let go.
+    pub gradient: Vec<f64>,
+}
+
+impl Gap {
+    /// How much of its own unit one unit of what moves is: `scales` are the sizes of the coordinates that are let go.
+    pub fn scale(&self, scales: &[f64]) -> f64 {
+        let along = self.gradient.iter().zip(scales);
+        along.map(|(j, scale)| (j * scale).abs()).sum()
+    }
+
+    /// What the terms of [`Gap::opening`] come to, all of one sign.
+    pub fn terms(&self, accelerations: &[f64]) -> f64 {
+        self.bend.abs() + self.scale(accelerations)
+    }
+
+    /// The rate of its rate where the coordinates that are let go accelerate so.
+    pub fn opening(&self, accelerations: &[f64]) -> f64 {
+        self.bend + dot(&self.gradient, accelerations)
+    }
+}
+
+/// An impact at several stops.
+pub(crate) struct Impact {
+    /// Rates before and after.
+    pub rates: Vec<[f64; 2]>,
+    /// Work done on the mechanism, J: never positive.
+    pub work: f64,
+}
+
+impl Plant {
+    /// A measure of the pose at a state.
+    pub fn value(&mut self, what: &Measure, time: f64, y: &[f64]) -> Option<f64> {
+        self.take(time, y);
+        let state = self.places.state(time, &self.coordinates)?;
+        Some(measure(&state, &History::default(), None, what, Along::Time).coefficient(0))
+    }
+
+    /// A stop at a state.
+    pub fn gap(&mut self, stop: usize, time: f64, y: &[f64]) -> Option<Gap> {
+        self.take(time, y);
+        let state = self.places.state(time, &self.coordinates)?;
+        let what = &self.stops.get(stop)?.gap;
+        let along = |along| measure(&state, &History::default(), None, what, along);
+        let series = along(Along::Time);
+        let gradient = self.free.iter();
+        Some(Gap {
+            open: series.coefficient(0),
+            rate: series.coefficient(1),
+            bend: 2.0 * series.coefficient(2),
+            gradient: gradient
+                .map(|drive| along(Along::Drive(*drive)).coefficient(1))
+                .collect(),
+        })
+    }
+
+    /// What soft stops that are touched push, along the coordinates.
+    pub(crate) fn push(&mut self, time: f64, y: &[f64]) -> bool {
+        for index in 0..self.mode.touched.len() {
+            let stop = self.mode.touched[index];
+            let Some(gap) = self.gap(stop, time, y) else {
+                return false;
+            };
+            let Some(Resistance::Soft { stiffness, damping }) =
+                self.stops.get(stop).map(|s| s.resistance)
+            else {
+                continue;
+            };
+            let push = (-stiffness * gap.open - damping * gap.rate).max(0.0);
+            for (given, j) in self.given.iter_mut().zip(&gap.gradient) {
+                *given += push * j;
+            }
+        }
+        true
+    }
+
+    /// What the mechanism's masses oppose to unit impulses at some gaps: changes of their rates.
+    pub(crate) fn yielding(&self, gaps: &[Gap]) -> Vec<Vec<f64>> {
+        let row = |gap: &Gap| {
+            let mut response = gap.gradient.clone();
+            self.let_go.respond(&mut response);
+            let to = |other: &Gap| dot(&other.gradient, &response);
+            gaps.iter().map(to).collect()
+        };
+        gaps.iter().map(row).collect()
+    }
+
+    /// Strikes rigid stops at a state, whose speeds it changes: by Newton's law of impact, all at once, none pulling.
+    pub fn strike(&mut self, stops: &[usize], time: f64, y: &mut [f64]) -> Option<Impact> {
+        let mut rates = vec![0.0; y.len()];
+        if !self.accelerate(time, y, &mut rates) {
+            return None;
+        }
+        let gaps: Option<Vec<Gap>> = stops.iter().map(|s| self.gap(*s, time, y)).collect();
+        let gaps = gaps?;
+        let restitution = |stop: &usize| match self.stops.get(*stop).map(|s| s.resistance) {
+            Some(Resistance::Rigid { restitution }) => restitution,
+            _ => 0.0,
+        };
+        let matrix = self.yielding(&gaps);
+        // 0 <= impulse, 0 <= rate after + restitution * rate before, one of them 0: by projected Gauss-Seidel.
+        let wanted: Vec<f64> = (gaps.iter().zip(stops))
+            .map(|(gap, stop)| -(1.0 + restitution(stop)) * gap.rate)
+            .collect();
+        let mut impulses = vec![0.0_f64; gaps.len()];
+        for _ in 0..PASSES {
+            let mut settled = true;
+            for k in 0..gaps.len() {
+                let others: f64 = (0..gaps.len())
+                    .filter(|j| *j != k)
+                    .map(|j| matrix[k][j] * impulses[j])
+                    .sum();
+                let new = ((wanted[k] - others) / matrix[k][k]).max(0.0);
+                settled &= (new - impulses[k]).abs() <= SETTLED * new.abs();
+                impulses[k] = new;
+            }
+            if settled {
+                break;
+            }
+        }
+        let n = self.free.len();
+        let mut change = vec![0.0; n];
+        for (gap, impulse) in gaps.iter().zip(&impulses) {
+            for (change, j) in change.iter_mut().zip(&gap.gradient) {
+                *change += impulse * j;
+            }
+        }
+        self.let_go.respond(&mut change);
+        for (v, change) in y[n..2 * n].iter_mut().zip(&change) {
+            *v += change;
+        }
+        let mut impact = Impact {
+            rates: Vec::new(),
+            work: 0.0,
+        };
+        for (k, gap) in gaps.iter().enumerate() {
+            let gained: f64 = (0..gaps.len()).map(|j| matrix[k][j] * impulses[j]).sum();
+            let after = gap.rate + gained;
+            impact.rates.push([gap.rate, after]);
+            impact.work += 0.5 * impulses[k] * (gap.rate + after);
+        }
+        impact
+            .rates
+            .iter()
+            .flatten()
+            .all(|r| r.is_finite())
+            .then_some(impact)
+    }
+}
+
+/// The sum of the products.
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}

@@ -1,0 +1,70 @@
+//! What happens during a motion.
+
+/// Something that happened at a time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Happening {
+    /// When, s.
+    pub time: f64,
+    /// What.
+    pub what: Happened,
+}
+
+/// What happened; stops by their place in the question.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Happened {
+    /// Something strikes a stop, with this speed of its gap before and after.
+    Strikes {
+        /// The stop.
+        stop: usize,
+        /// Rate of the gap before: negative.
+        before: f64,
+        /// After.
+        after: f64,
+    },
+    /// Something touches a soft stop, with this speed.
+    Touches {
+        /// The stop.
+        stop: usize,
+        /// How fast its gap closes.
+        speed: f64,
+    },
+    /// It comes to rest on a stop.
+    Rests {
+        /// The stop.
+        stop: usize,
+    },
+    /// It leaves a stop on which it rested.
+    Leaves {
+        /// The stop.
+        stop: usize,
+    },
+    /// Friction holds it.
+    Sticks,
+    /// Friction lets it go.
+    Slips,
+    /// One of the conditions holds that end the motion.
+    Ends {
+        /// Which.
+        condition: usize,
+    },
+}
+
+/// A time in which something besides the drives holds or pushes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Held {
+    /// Since when, s.
+    pub from: f64,
+    /// Until when, s.
+    pub to: f64,
+    /// The stops that do.
+    pub stops: Vec<usize>,
+    /// Whether friction holds it.
+    pub by_friction: bool,
+}
+
+impl Held {
+    /// Whether a time lies in it, ends included.
+    pub fn holds_at(&self, time: f64) -> bool {
+        self.from <= time && time <= self.to
+    }
+}

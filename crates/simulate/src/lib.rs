@@ -1,0 +1,36 @@
+//! Mechanisms let go: how they move in time under what acts on them.
+//!
+//! A drive that is let go gives nothing but what its motor can; its coordinate `q` moves as `M(q) q" = Q - h(q, q', t)` says,
+//! the same definitions as inverse dynamics ([`kempe_dynamics::equations_of_motion`]). So coordinates are minimal: no constraint
+//! drifts, and a pose is closed as exactly as in any other study.
+//!
+//! | file | for |
+//! | --- | --- |
+//! | `question.rs` | what is asked: what is let go, from where, how long, against which stops |
+//! | `start.rs` | the pose that the motion starts from |
+//! | `places.rs` | poses from coordinates: `curve.rs` along the followed motion of one coordinate, `several.rs` by the plan |
+//! | `plant.rs` | accelerations of a state, with motors, stops and friction |
+//! | `watch.rs` | what is looked for between steps |
+//! | `contact.rs` | stops: impacts, and what holds a rest |
+//! | `run.rs` | from step to step and from event to event |
+//! | `record.rs` | what was found, as laws of the drives |
+
+mod contact;
+mod curve;
+mod happening;
+mod places;
+mod plant;
+mod question;
+mod record;
+mod run;
+mod several;
+mod start;
+mod watch;
+
+pub use kempe_integrate::{Method, Used};
+
+pub use happening::{Happened, Happening, Held};
+pub use question::{Question, Resistance, Stop};
+pub use record::{Ending, Simulated};
+pub use run::{Unsimulated, simulate};
+pub use start::NoStart;

@@ -1,0 +1,83 @@
+//! Poses from coordinates.
+
+use kempe_dynamics::{Instant, Rates};
+use kempe_measure::State;
+use kempe_model::DriveId;
+use kempe_motion::{EndReason, MotionError, Progress};
+use kempe_number::Number;
+
+use crate::curve::Curve;
+use crate::several::Several;
+use crate::start::Start;
+
+/// How poses are found from coordinates.
+pub(crate) enum Places {
+    /// One coordinate moves, along its followed motion.
+    Curve(Box<Curve>, DriveId),
+    /// Several move, by the plan.
+    Several(Box<Several>),
+}
+
+impl Places {
+    /// For these drives that move.
+    pub fn new(
+        start: Start,
+        moving: &[DriveId],
+        progress: &mut dyn Progress,
+    ) -> Result<Self, MotionError> {
+        match moving {
+            [drive] => {
+                Curve::new(start, *drive, progress).map(|c| Self::Curve(Box::new(c), *drive))
+            }
+            _ => Ok(Self::Several(Box::new(Several::new(
+                &start,
+                moving.to_vec(),
+            )))),
+        }
+    }
+
+    /// The instant at coordinates that run as these series in time; false where no pose is known.
+    pub fn instant(&mut self, coordinates: &[Rates], out: &mut Instant<f64>) -> bool {
+        match self {
+            Self::Curve(curve, drive) => {
+                let q = &coordinates[drive.index()];
+                curve.instant(q.value(), q.coefficient(1), out)
+            }
+            Self::Several(several) => several.instant(coordinates, out),
+        }
+    }
+
+    /// The state at a time, for measures.
+    pub fn state(&mut self, time: f64, coordinates: &[Rates]) -> Option<State<f64>> {
+        match self {
+            Self::Curve(curve, drive) => {
+                let [q, v, a] = *coordinates[drive.index()].coefficients();
+                curve.state(time, [q, v, 2.0 * a])
+            }
+            Self::Several(several) => several.state(time, coordinates),
+        }
+    }
+
+    /// Goes on from these coordinates: what is known of the branch is made long enough.
+    pub fn go_on(
+        &mut self,
+        coordinates: &[Rates],
+        progress: &mut dyn Progress,
+    ) -> Result<(), MotionError> {
+        match self {
+            Self::Curve(curve, drive) => curve.follow(coordinates[drive.index()].value(), progress),
+            Self::Several(several) => {
+                several.accept();
+                Ok(())
+            }
+        }
+    }
+
+    /// Why there is nothing beyond these coordinates, where that is known.
+    pub fn end_at(&self, coordinates: &[Rates]) -> Option<EndReason> {
+        match self {
+            Self::Curve(curve, drive) => curve.end_at(coordinates[drive.index()].value()),
+            Self::Several(_) => None,
+        }
+    }
+}

@@ -1,0 +1,385 @@
+//! How what is let go accelerates, at any state.
+
+use kempe_dynamics::equations_of_motion::LetGo;
+use kempe_dynamics::wrench::Wrench;
+use kempe_dynamics::{Forces, Instant, Rates};
+use kempe_integrate::System;
+use kempe_linear::Lu;
+use kempe_measure::measure::{Along, History, measure};
+use kempe_mechanism::Design;
+use kempe_model::{DriveId, Law, Leaf, Measure};
+use kempe_number::{Jet, Number};
+
+use crate::contact::Gap;
+use crate::places::Places;
+use crate::question::Stop;
+
+/// A coordinate that moves against the sense in which friction is looked at moves this slowly (rad/s, or m/s) instead: so
+/// friction goes on smoothly a little beyond where it turns.
+const SLOW: f64 = 1e-9;
+/// Speeds on both sides of a break that differ by this part are the same.
+const SMOOTH: f64 = 1e-9;
+/// Corrections of what holds a rest where friction acts, at most.
+const CORRECTIONS: usize = 100;
+/// What holds a rest is settled when the gap's acceleration is this part of what it would be.
+const SETTLED: f64 = 1e-13;
+
+/// What holds the mechanism besides its drives.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Mode {
+    /// Rigid stops on which it rests.
+    pub resting: Vec<usize>,
+    /// Rigid stops that are closed and stay so by what holds it on those: they say the same.
+    pub beside: Vec<usize>,
+    /// Soft stops that are touched.
+    pub touched: Vec<usize>,
+    /// Friction holds it.
+    pub stuck: bool,
+    /// The sense in which friction is looked at; 0 where nothing rubs.
+    pub sense: f64,
+}
+
+/// A mechanism with what is let go.
+pub(crate) struct Plant {
+    pub places: Places,
+    pub forces: Forces<f64>,
+    /// Drives that are let go.
+    pub free: Vec<DriveId>,
+    /// Drives that keep laws by which they move.
+    pub driven: Vec<DriveId>,
+    /// Sizes of the coordinates that are let go: 1 rad, or the mechanism's.
+    pub scales: Vec<f64>,
+    pub stops: Vec<Stop>,
+    pub mode: Mode,
+    /// Where the stretch at hand ends, s: laws are looked at before.
+    pub end: f64,
+    /// Whether anything does work but weights and springs.
+    pub works: bool,
+    /// Coordinates of all drives in time, as last taken.
+    pub coordinates: Vec<Rates>,
+    /// Forces along the coordinates that are let go.
+    pub given: Vec<f64>,
+    /// What the stops on which it rests push.
+    pub pushes: Vec<f64>,
+    pub let_go: LetGo,
+    instant: Instant<f64>,
+    parameters: Vec<Rates>,
+    amounts: Vec<(Measure, Option<f64>)>,
+    /// Motors of the drives that are let go, each with the sense in which it turns.
+    pub motors: Vec<Option<(usize, f64)>>,
+    storage: Vec<Wrench<f64>>,
+}
+
+impl Plant {
+    pub fn new(
+        design: &Design<f64>,
+        forces: Forces<f64>,
+        places: Places,
+        [free, driven]: [Vec<DriveId>; 2],
+        scales: Vec<f64>,
+        stops: Vec<Stop>,
+    ) -> Self {
+        let model = &design.mechanism.model;
+        let parameters = &design.parameters;
+        let acting = &forces.acting;
+        let amounts: Vec<(Measure, Option<f64>)> = (acting.amounts.iter())
+            .map(|amount| {
+                (
+                    amount.measure.clone(),
+                    constant(&amount.measure, parameters),
+                )
+            })
+            .collect();
+        let motors: Vec<Option<(usize, f64)>> = (free.iter())
+            .map(|drive| {
+                let motor = acting.motors.iter().position(|m| m.drive == *drive)?;
+                let law = &model.drives.get(drive.index())?.law;
+                Some((motor, motor_sense(law, parameters)))
+            })
+            .collect();
+        let works = !acting.loads.is_empty()
+            || !acting.dampers.is_empty()
+            || !acting.friction.is_empty()
+            || motors.iter().any(Option::is_some)
+            || !driven.is_empty()
+            || !stops.is_empty();
+        Self {
+            instant: Instant::new(&design.mechanism, amounts.len()),
+            coordinates: vec![Rates::zero(); model.drives.len()],
+            parameters: parameters.iter().map(|p| Rates::constant(*p)).collect(),
+            given: vec![0.0; free.len()],
+            pushes: Vec::new(),
+            let_go: LetGo::default(),
+            storage: vec![[0.0; 3]; model.links.len()],
+            mode: Mode::default(),
+            end: f64::INFINITY,
+            motors,
+            amounts,
+            places,
+            forces,
+            free,
+            driven,
+            scales,
+            stops,
+            works,
+        }
+    }
+
+    /// Whether anything rubs.
+    pub fn rubs(&self) -> bool {
+        let friction = &self.forces.acting.friction;
+        friction
+            .iter()
+            .any(|f| !matches!(f.bearing, kempe_dynamics::friction::Bearing::Flanks(_)))
+    }
+
+    /// Takes the coordinates of a state; those let go do not accelerate.
+    pub fn take(&mut self, time: f64, y: &[f64]) {
+        let n = self.free.len();
+        let time = if time < self.end {
+            time
+        } else {
+            self.end.next_down()
+        };
+        let drives = &self.forces.design.mechanism.model.drives;
+        for (q, drive) in self.coordinates.iter_mut().zip(drives) {
+            *q = drive.law.at(Jet::variable(time), &self.parameters);
+        }
+        for (k, drive) in self.free.iter().enumerate() {
+            let mut v = y[n + k];
+            if self.mode.sense != 0.0 && v * self.mode.sense < SLOW {
+                v = SLOW * self.mode.sense;
+            }
+            if self.mode.stuck {
+                v = 0.0;
+            }
+            self.coordinates[drive.index()] = Rates::from_coefficients([y[k], v, 0.0]);
+        }
+    }
+
+    /// Rates of a state: speeds, accelerations, and the power of all that does work.
+    pub fn accelerate(&mut self, time: f64, y: &[f64], rates: &mut [f64]) -> bool {
+        let n = self.free.len();
+        rates[..n].copy_from_slice(&y[n..2 * n]);
+        if self.mode.stuck {
+            rates.fill(0.0);
+            return true;
+        }
+        if !self.let_go_at(time, y, &[]) {
+            return false;
+        }
+        if !self.mode.resting.is_empty() && !self.hold(time, y) {
+            return false;
+        }
+        rates[n..2 * n].copy_from_slice(&self.let_go.accelerations);
+        rates[2 * n] = match self.works {
+            true => self.power(&y[n..2 * n]),
+            false => 0.0,
+        };
+        rates.iter().all(|r| r.is_finite())
+    }
+
+    /// Accelerations where stops besides push along the coordinates.
+    fn let_go_at(&mut self, time: f64, y: &[f64], pushes: &[f64]) -> bool {
+        self.take(time, y);
+        for (given, (k, motor)) in self.given.iter_mut().zip(self.motors.iter().enumerate()) {
+            let push = pushes.get(k).copied().unwrap_or(0.0);
+            let speed = self.coordinates[self.free[k].index()].coefficient(1);
+            *given = push
+                + motor.map_or(0.0, |(motor, sense)| {
+                    sense * self.forces.acting.motors[motor].turns_with(sense * speed)
+                });
+        }
+        if !self.mode.touched.is_empty() && !self.push(time, y) {
+            return false;
+        }
+        if !self.places.instant(&self.coordinates, &mut self.instant) || !self.amounts_at(time) {
+            return false;
+        }
+        let (forces, instant) = (&mut self.forces, &mut self.instant);
+        forces.let_go(instant, &self.free, &self.given, &mut self.let_go)
+    }
+
+    /// Changes the speeds of what is let go as jumps in the speeds of drives that keep their laws do, from before a time to behind
+    /// it, where the next stretch ends at `end`: by impulses of those drives alone. The work that they do, J.
+    pub fn jerk(&mut self, time: f64, end: f64, y: &mut [f64]) -> Option<f64> {
+        let n = self.free.len();
+        let speeds = |it: &Self| -> Vec<f64> {
+            let driven = it.driven.iter();
+            driven
+                .map(|d| it.coordinates[d.index()].coefficient(1))
+                .collect()
+        };
+        let mut rates = vec![0.0; y.len()];
+        let mut state = |it: &mut Self, y: &[f64]| -> Option<(Vec<f64>, f64)> {
+            it.accelerate(time, y, &mut rates).then(|| {
+                (
+                    speeds(it),
+                    kempe_dynamics::energy::kinetic(&it.forces.acting, &it.instant),
+                )
+            })
+        };
+        // Laws are looked at before where a stretch ends, and behind where the next begins.
+        let (before, kinetic) = state(self, y)?;
+        self.end = end;
+        let (behind, _) = state(self, y)?;
+        let jumps: Vec<f64> = behind.iter().zip(&before).map(|(b, a)| b - a).collect();
+        if jumps
+            .iter()
+            .zip(&before)
+            .all(|(jump, speed)| jump.abs() <= SMOOTH * speed.abs())
+        {
+            return Some(0.0);
+        }
+        let mut impulses = (self.forces).carried(&self.instant, &self.free, &self.driven, &jumps);
+        self.let_go.respond(&mut impulses);
+        for (v, change) in y[n..2 * n].iter_mut().zip(&impulses) {
+            *v -= change;
+        }
+        let (_, after) = state(self, y)?;
+        Some(after - kinetic)
+    }
+
+    /// What the loads vary with.
+    fn amounts_at(&mut self, time: f64) -> bool {
+        if self.amounts.is_empty() {
+            return true;
+        }
+        let varies = self.amounts.iter().any(|(_, constant)| constant.is_none());
+        let state = match varies {
+            true => match self.places.state(time, &self.coordinates) {
+                Some(state) => Some(state),
+                None => return false,
+            },
+            false => None,
+        };
+        let history = History::default();
+        for (index, (what, constant)) in self.amounts.iter().enumerate() {
+            let measured = match (constant, &state) {
+                (Some(value), _) => *value,
+                (None, Some(state)) => {
+                    measure(state, &history, None, what, Along::Time).coefficient(0)
+                }
+                (None, None) => f64::NAN,
+            };
+            self.instant.amounts[index] = self.forces.acting.amounts[index].of(measured);
+        }
+        true
+    }
+
+    /// Lets the stops on which it rests push so that none of their gaps accelerates.
+    fn hold(&mut self, time: f64, y: &[f64]) -> bool {
+        let stops = self.mode.resting.clone();
+        let gaps: Option<Vec<Gap>> = stops.iter().map(|s| self.gap(*s, time, y)).collect();
+        let Some(gaps) = gaps else {
+            return false;
+        };
+        let matrix = self.yielding(&gaps);
+        let mut factors = Lu::new(gaps.len());
+        if !factors.factor(|row, column| matrix[row][column]) {
+            return false;
+        }
+        let opening = |it: &Self| -> Vec<f64> {
+            let of = |gap: &Gap| gap.opening(&it.let_go.accelerations);
+            gaps.iter().map(of).collect()
+        };
+        self.pushes = vec![0.0; gaps.len()];
+        let scale: f64 = opening(self).iter().map(|x| x.abs()).fold(0.0, f64::max);
+        for _ in 0..CORRECTIONS {
+            let mut more: Vec<f64> = opening(self).iter().map(|x| -x).collect();
+            if more.iter().all(|x| x.abs() <= SETTLED * scale) {
+                break;
+            }
+            factors.solve(&mut more);
+            for (push, more) in self.pushes.iter_mut().zip(more) {
+                *push += more;
+            }
+            let mut along = vec![0.0; self.free.len()];
+            for (gap, push) in gaps.iter().zip(&self.pushes) {
+                for (along, j) in along.iter_mut().zip(&gap.gradient) {
+                    *along += push * j;
+                }
+            }
+            if !self.let_go_at(time, y, &along) {
+                return false;
+            }
+        }
+        true
+    }
+
+    /// Power of all that does work but weights and springs, W.
+    fn power(&mut self, speeds: &[f64]) -> f64 {
+        let along = self.given.iter().zip(speeds).map(|(q, v)| q * v);
+        let mut power: f64 = along.sum();
+        for drive in &self.driven {
+            let speed = self.coordinates[drive.index()].coefficient(1);
+            power += self.forces.given_by(&self.instant, *drive) * speed;
+        }
+        // Beyond where friction turns, power goes on as the speed does.
+        let slow = match (self.mode.sense == 0.0, self.free.first(), speeds.first()) {
+            (false, Some(drive), Some(speed)) => {
+                speed / self.coordinates[drive.index()].coefficient(1)
+            }
+            _ => 1.0,
+        };
+        let (forces, storage) = (&self.forces, &mut self.storage);
+        power + slow * forces.power_from_outside(&self.instant, storage)
+    }
+
+    /// The acceleration of the only coordinate that is let go where it slips in a sense, at rest.
+    pub fn slipping(&mut self, sense: f64, time: f64, y: &[f64]) -> Option<f64> {
+        let mode = self.mode.clone();
+        (self.mode.sense, self.mode.stuck) = (sense, false);
+        let mut at_rest = y.to_vec();
+        at_rest[1] = 0.0;
+        let mut rates = vec![0.0; y.len()];
+        let found = self.accelerate(time, &at_rest, &mut rates);
+        self.mode = mode;
+        found.then(|| rates[1])
+    }
+
+    /// How far friction is from letting go of the only coordinate, as an acceleration: negative where it slips.
+    pub fn grip(&mut self, time: f64, y: &[f64]) -> Option<f64> {
+        let up = self.slipping(1.0, time, y)?;
+        let down = self.slipping(-1.0, time, y)?;
+        Some((-up).min(down))
+    }
+
+    /// Coordinate, speed and acceleration of every drive at a state with these rates.
+    pub fn drives_at(&mut self, time: f64, y: &[f64], rates: &[f64]) -> Vec<[f64; 3]> {
+        let n = self.free.len();
+        self.take(time, y);
+        let mut all: Vec<[f64; 3]> = (self.coordinates.iter())
+            .map(|q| [0, 1, 2].map(|k| q.derivative(k)))
+            .collect();
+        for (k, drive) in self.free.iter().enumerate() {
+            all[drive.index()] = [y[k], y[n + k], rates[n + k]];
+        }
+        all
+    }
+}
+
+impl System for Plant {
+    fn rates(&mut self, time: f64, y: &[f64], rates: &mut [f64]) -> bool {
+        self.accelerate(time, y, rates)
+    }
+}
+
+/// The sense in which a motor turns its drive: the way that its law goes.
+fn motor_sense(law: &Law, parameters: &[f64]) -> f64 {
+    let way = law.at(law.duration(parameters), parameters) - law.at(0.0, parameters);
+    if way < 0.0 { -1.0 } else { 1.0 }
+}
+
+/// The value of a measure of parameters alone.
+fn constant(measure: &Measure, parameters: &[f64]) -> Option<f64> {
+    let of_parameters = measure
+        .leaves()
+        .all(|leaf| matches!(leaf, Leaf::Parameter(_)));
+    of_parameters.then(|| {
+        measure.eval(&mut |leaf| match leaf {
+            Leaf::Parameter(id) => parameters.get(id.index()).copied().unwrap_or(f64::NAN),
+            _ => f64::NAN,
+        })
+    })
+}

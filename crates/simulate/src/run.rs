@@ -1,0 +1,576 @@
+//! From step to step and from event to event.
+
+use std::sync::Arc;
+
+use kempe_dynamics::{Forces, Problem};
+use kempe_integrate::{Integrator, Stopped, Tolerance, Used};
+use kempe_mechanism::Design;
+use kempe_model::{COEFFICIENTS, DriveId};
+use kempe_motion::{Done, MotionError, Progress, Stage};
+use kempe_units::Dimension;
+
+use crate::contact::dot;
+use crate::happening::{Happened, Happening, Held};
+use crate::places::Places;
+use crate::plant::{Mode, Plant};
+use crate::question::{Question, Resistance};
+use crate::record::{Ending, Record, Simulated};
+use crate::start::{NoStart, start};
+use crate::watch::{Watch, first};
+
+/// Most steps and events: what is kept of a step takes some hundred bytes, and of an event a piece of the laws, which are searched one
+/// by one.
+const STEPS: usize = 1_000_000;
+const EVENTS: usize = 2_000;
+/// Most events in a time that is none, such as the accumulation of a bouncing ball; and that time, as a part of the whole.
+const AT_ONCE: usize = 500;
+const NO_TIME: f64 = 1e-12;
+/// A rate this part of that before an impact is none: what should be zero is left over by rounding.
+const LEFT_OVER: f64 = 1e-9;
+/// Parts of the whole time in which something that is held is looked at.
+const LOOKS: f64 = 500.0;
+/// A flight from a stop that lasts this part of the whole time is none: it rests.
+const CHATTER: f64 = 1e-9;
+/// Nor is one that rises by this much (in path scales): hardly more than rounding.
+const RISE: f64 = 2e-15;
+/// A stop that is open by this much (in path scales) is touched.
+const TOUCHED: f64 = 1e-9;
+
+/// Why there is no simulation.
+#[derive(Debug)]
+pub enum Unsimulated {
+    /// The mechanism does not come to the start.
+    Start(NoStart),
+    /// It cannot move there.
+    Motion(MotionError),
+    /// What acts on it makes no sense.
+    Problems(Vec<Problem>),
+    /// Nothing that is let go moves mass there, or friction jams.
+    NoMass,
+    /// Friction where several coordinates move: what sticks is not known.
+    FrictionOfSeveral,
+    /// It starts beyond this stop, by so much.
+    BeyondStop(usize, f64),
+}
+
+/// Simulates a design.
+///
+/// # Errors
+/// Why it cannot begin. What ends it early is told with what was found until then.
+pub fn simulate(
+    design: &Design<f64>,
+    question: &Question,
+    progress: &mut dyn Progress,
+) -> Result<Simulated, Unsimulated> {
+    let model = &design.mechanism.model;
+    let parameters = design.parameters.clone();
+    let mut coordinates: Vec<f64> = (model.drives.iter())
+        .map(|d| d.law.at(0.0, &parameters))
+        .collect();
+    for (drive, [q, _]) in question.free.iter().zip(&question.start) {
+        coordinates[drive.index()] = *q;
+    }
+    let from = start(design, &coordinates, progress).map_err(Unsimulated::Start)?;
+    // Laws are those of the file: what was found may stand still.
+    let laws = |index: usize| model.drives.get(index).map(|d| d.law.clone());
+    let design = from.design.with_laws(laws);
+    let (placed, first_motion) = (from.placed.clone(), from.first.clone());
+    let mut forces = Forces::new(design.clone()).map_err(Unsimulated::Problems)?;
+    for spring in &mut forces.acting.springs {
+        spring.align(&forces.design.geometry, &placed.near);
+    }
+    let driven: Vec<DriveId> = (0..model.drives.len() as u32)
+        .map(DriveId)
+        .filter(|drive| {
+            let law = &model.drives[drive.index()].law;
+            !question.free.contains(drive) && law.duration(&parameters) > 0.0
+        })
+        .collect();
+    let moving: Vec<DriveId> = question.free.iter().chain(&driven).copied().collect();
+    let places = Places::new(from, &moving, progress).map_err(Unsimulated::Motion)?;
+    let mut breaks: Vec<f64> = (driven.iter())
+        .flat_map(|drive| model.drives[drive.index()].law.breaks(&parameters))
+        .filter(|t| 0.0 < *t && *t < question.until)
+        .chain([question.until])
+        .collect();
+    breaks.sort_by(f64::total_cmp);
+    breaks.dedup();
+    let scales: Vec<f64> = (question.free.iter())
+        .map(|drive| match model.drives[drive.index()].dimension {
+            Dimension::ANGLE => 1.0,
+            _ => design.size(),
+        })
+        .collect();
+    let plant = Plant::new(
+        &design,
+        forces,
+        places,
+        [question.free.clone(), driven],
+        scales,
+        question.stops.clone(),
+    );
+    if plant.rubs() && moving.len() > 1 {
+        return Err(Unsimulated::FrictionOfSeveral);
+    }
+    let mut run = Run {
+        record: Record::new(coordinates),
+        time: 0.0,
+        y: (question.start.iter().map(|s| s[0]))
+            .chain(question.start.iter().map(|s| s[1]))
+            .chain([0.0])
+            .collect(),
+        conditions: vec![false; question.end_when.len()],
+        happenings: Vec::new(),
+        held: Vec::new(),
+        steps: 0,
+        integrator: None,
+        question,
+        plant,
+    };
+    let ending = run.whole(&breaks, progress)?;
+    let acting = &run.plant.forces.acting;
+    let motors = (run.plant.motors.iter())
+        .map(|it| it.map(|(motor, sense)| (acting.motors[motor].clone(), sense)))
+        .collect();
+    let end = run.time;
+    let (laws, work) = run.record.laws(end);
+    Ok(Simulated {
+        laws,
+        work,
+        end,
+        ending,
+        happenings: run.happenings,
+        held: run.held,
+        used: run
+            .integrator
+            .as_ref()
+            .map_or(Used::default(), Integrator::used),
+        evaluations: run.integrator.as_ref().map_or(0, Integrator::evaluations),
+        first: first_motion,
+        motors,
+        design,
+        placed,
+    })
+}
+
+/// A simulation on its way.
+struct Run<'q> {
+    question: &'q Question,
+    plant: Plant,
+    record: Record,
+    time: f64,
+    /// Coordinates that are let go, their speeds, and the work done.
+    y: Vec<f64>,
+    /// Which conditions did not hold yet, so that they may come to.
+    conditions: Vec<bool>,
+    happenings: Vec<Happening>,
+    held: Vec<Held>,
+    steps: usize,
+    /// It goes on from event to event with the method that was found to suit.
+    integrator: Option<Integrator>,
+}
+
+impl Run<'_> {
+    /// All stretches between breaks of laws.
+    fn whole(
+        &mut self,
+        breaks: &[f64],
+        progress: &mut dyn Progress,
+    ) -> Result<Ending, Unsimulated> {
+        self.begin()?;
+        let (mut events, mut at_once, mut since) = (0, 0, 0.0);
+        for end in breaks {
+            if self.time > 0.0 && !self.follow_jump(*end) {
+                return Ok(Ending::NoWay);
+            }
+            self.plant.end = *end;
+            while self.time < *end {
+                events += 1;
+                if self.time > since + NO_TIME * self.question.until {
+                    (at_once, since) = (0, self.time);
+                }
+                at_once += 1;
+                if events > EVENTS || at_once > AT_ONCE {
+                    return Ok(Ending::TooMany);
+                }
+                let done = Done::Part(self.time / self.question.until);
+                if progress.reached(Stage::Simulating, done).is_break() {
+                    return Ok(Ending::Stopped);
+                }
+                if let Some(ending) = self.stretch(*end, progress) {
+                    return Ok(ending);
+                }
+            }
+        }
+        Ok(Ending::Until)
+    }
+
+    /// Follows a jump in the speeds of drives that keep their laws, at the time at hand, where the next stretch ends at `end`:
+    /// the links that hang on them are jerked along.
+    fn follow_jump(&mut self, end: f64) -> bool {
+        let Some(work) = self.plant.jerk(self.time, end, &mut self.y) else {
+            return false;
+        };
+        if let Some(sum) = self.y.last_mut() {
+            *sum += work;
+        }
+        let jerked = work != 0.0;
+        // What it lay on it may be thrown against, or off.
+        match self.plant.mode.resting.first().copied().filter(|_| jerked) {
+            Some(stop) => {
+                let struck = self.strikes(stop);
+                self.rest(struck.unwrap_or(0.0));
+                struck.is_some()
+            }
+            None => true,
+        }
+    }
+
+    /// Decides what holds it at the start.
+    fn begin(&mut self) -> Result<(), Unsimulated> {
+        for stop in 0..self.plant.stops.len() {
+            let gap = self.plant.gap(stop, 0.0, &self.y);
+            let open = gap.map_or(f64::NAN, |gap| gap.open);
+            if open < -TOUCHED * self.scale() {
+                return Err(Unsimulated::BeyondStop(stop, -open));
+            }
+        }
+        for (armed, condition) in self.conditions.iter_mut().zip(&self.question.end_when) {
+            *armed = (self.plant.value(condition, 0.0, &self.y)).is_some_and(|x| x < 0.0);
+        }
+        if self.plant.rubs() {
+            self.plant.mode.sense = match self.y[1] {
+                v if v != 0.0 => v.signum(),
+                _ => self.slip_or_stick().ok_or(Unsimulated::NoMass)?,
+            };
+        }
+        let mut rates = vec![0.0; self.y.len()];
+        if !self.plant.accelerate(0.0, &self.y, &mut rates) {
+            return Err(Unsimulated::NoMass);
+        }
+        self.rest(0.0);
+        Ok(())
+    }
+
+    fn scale(&self) -> f64 {
+        self.plant.scales.iter().copied().fold(0.0, f64::max)
+    }
+
+    /// Where the only coordinate, which rubs, is at rest: whether friction holds it; the sense in which it slips otherwise.
+    fn slip_or_stick(&mut self) -> Option<f64> {
+        let up = self.plant.slipping(1.0, self.time, &self.y)?;
+        let down = self.plant.slipping(-1.0, self.time, &self.y)?;
+        self.plant.mode.stuck = up <= 0.0 && down >= 0.0;
+        if self.plant.mode.stuck {
+            self.tell(Happened::Sticks);
+        }
+        // Where it just slips one of them is zero, and rounding would choose.
+        Some(if up + down > 0.0 { 1.0 } else { -1.0 })
+    }
+
+    fn tell(&mut self, what: Happened) {
+        self.happenings.push(Happening {
+            time: self.time,
+            what,
+        });
+    }
+
+    /// Takes up the stops on which it comes to rest: closed, hardly opening, and pressed on. `struck` is the fastest rate of an
+    /// impact just before.
+    fn rest(&mut self, struck: f64) {
+        let free = self.plant.mode.stuck;
+        let mut rates = vec![0.0; self.y.len()];
+        if free || !self.plant.accelerate(self.time, &self.y, &mut rates) {
+            return;
+        }
+        let n = self.plant.free.len();
+        for stop in 0..self.plant.stops.len() {
+            let rigid = matches!(self.plant.stops[stop].resistance, Resistance::Rigid { .. });
+            let mode = &self.plant.mode;
+            if !rigid || mode.resting.contains(&stop) || mode.beside.contains(&stop) {
+                continue;
+            }
+            let Some(gap) = self.plant.gap(stop, self.time, &self.y) else {
+                continue;
+            };
+            let scale = gap.scale(&self.plant.scales);
+            let opening = gap.opening(&rates[n..2 * n]);
+            // The flight to come, back to where it began.
+            let flight = -2.0 * gap.rate / opening;
+            let closed = gap.open.abs() <= TOUCHED * scale;
+            let still = opening.abs() <= LEFT_OVER * gap.terms(&rates[n..2 * n]);
+            if closed && still && !self.plant.mode.resting.is_empty() {
+                self.plant.mode.beside.push(stop);
+                continue;
+            }
+            let rise = -0.5 * gap.rate * gap.rate / opening;
+            let stays = flight <= CHATTER * self.question.until || rise <= RISE * scale;
+            if closed && opening < 0.0 && gap.rate >= -LEFT_OVER * struck && stays {
+                self.still(&gap.gradient, gap.rate);
+                self.plant.mode.resting.push(stop);
+                self.tell(Happened::Rests { stop });
+                // What it does to the others changes.
+                if !self.plant.accelerate(self.time, &self.y, &mut rates) {
+                    return;
+                }
+            }
+        }
+    }
+
+    /// Takes the last of a rate from the speeds.
+    fn still(&mut self, gradient: &[f64], rate: f64) {
+        let n = self.plant.free.len();
+        let mut response = gradient.to_vec();
+        self.plant.let_go.respond(&mut response);
+        let yielding = dot(gradient, &response);
+        if n == 1 {
+            self.y[1] = 0.0;
+        } else if yielding > 0.0 {
+            for (v, r) in self.y[n..2 * n].iter_mut().zip(&response) {
+                *v -= r * rate / yielding;
+            }
+        }
+    }
+
+    /// From the time at hand to the next event, or to the end; why it ends, where it does.
+    fn stretch(&mut self, end: f64, progress: &mut dyn Progress) -> Option<Ending> {
+        let until = self.question.until;
+        let Some(mut it) = self.integrator_here() else {
+            return Some(Ending::NoWay);
+        };
+        let states = self.plant.drives_at(self.time, &self.y, it.rates());
+        self.record.begin(self.time, &states);
+        let mut found = self.y.clone();
+        let is_held = self.plant.mode.stuck || !self.plant.mode.resting.is_empty();
+        let Mode {
+            resting,
+            touched,
+            stuck,
+            ..
+        } = self.plant.mode.clone();
+        let began = self.time;
+        let ending = loop {
+            if self.time >= end {
+                break None;
+            }
+            let next = if is_held {
+                end.min(self.time + until / LOOKS)
+            } else {
+                end
+            };
+            if let Err(reason) = it.step(&mut self.plant, next) {
+                break Some(self.no_way(reason));
+            }
+            self.steps += 1;
+            let watched = first(
+                &mut it,
+                &mut self.plant,
+                &self.question.end_when,
+                &mut self.conditions,
+                &mut found,
+            );
+            let to = watched.map_or(it.time(), |(time, _)| time);
+            if to > self.time && !self.add(&mut it, to, &mut found) {
+                break Some(Ending::NoWay);
+            }
+            if let Some((_, watch)) = watched {
+                break self.happens(watch);
+            }
+            if self
+                .plant
+                .places
+                .go_on(&self.plant.coordinates, progress)
+                .is_err()
+            {
+                break Some(Ending::NoWay);
+            }
+            if self.steps > STEPS {
+                break Some(Ending::TooMany);
+            }
+            let done = Done::Part(self.time / until);
+            if progress.reached(Stage::Simulating, done).is_break() {
+                break Some(Ending::Stopped);
+            }
+        };
+        self.integrator = Some(it);
+        if is_held || !touched.is_empty() {
+            self.held.push(Held {
+                from: began,
+                to: self.time,
+                stops: [resting, touched].concat(),
+                by_friction: stuck,
+            });
+        }
+        ending
+    }
+
+    /// The integrator at the state at hand.
+    fn integrator_here(&mut self) -> Option<Integrator> {
+        let (time, y) = (self.time, self.y.as_slice());
+        if let Some(mut known) = self.integrator.take() {
+            return known.restart(&mut self.plant, time, y).then_some(known);
+        }
+        let (relative, until) = (self.question.tolerance, self.question.until);
+        let absolute = (self.plant.scales.iter().map(|s| relative * s))
+            .chain(self.plant.scales.iter().map(|s| relative * s / until))
+            .chain([f64::INFINITY])
+            .collect();
+        let tolerance = Tolerance { relative, absolute };
+        Integrator::with(
+            self.question.method,
+            &mut self.plant,
+            time,
+            y,
+            1.0,
+            tolerance,
+        )
+    }
+
+    /// Records the part of the last step up to a time, and goes there.
+    fn add(&mut self, it: &mut Integrator, to: f64, found: &mut [f64]) -> bool {
+        let from = self.time;
+        let mut work = [self.y[self.y.len() - 1]; COEFFICIENTS];
+        if self.plant.works {
+            for (k, work) in work.iter_mut().enumerate().skip(1) {
+                let part = k as f64 / (COEFFICIENTS - 1) as f64;
+                if !it.between(&mut self.plant, from + part * (to - from), found) {
+                    return false;
+                }
+                *work = found.last().copied().unwrap_or(0.0);
+            }
+        }
+        let mut rates = vec![0.0; found.len()];
+        let mut at = |time: f64, run: &mut Self| -> Option<Vec<[f64; 3]>> {
+            if time == it.time() {
+                found.copy_from_slice(it.state());
+            } else if !it.between(&mut run.plant, time, found) {
+                return None;
+            }
+            if !run.plant.accelerate(time, found, &mut rates) {
+                return None;
+            }
+            Some(run.plant.drives_at(time, found, &rates))
+        };
+        let mut quarters: [Vec<[f64; 3]>; 3] = Default::default();
+        for (quarter, part) in quarters.iter_mut().zip([0.25, 0.5, 0.75]) {
+            match at(from + part * (to - from), self) {
+                Some(states) => *quarter = states,
+                None => return false,
+            }
+        }
+        let Some(last) = at(to, self) else {
+            return false;
+        };
+        self.record.add(to, &quarters, &last, work);
+        self.time = to;
+        self.y.copy_from_slice(found);
+        true
+    }
+
+    /// Why there is no step.
+    fn no_way(&mut self, reason: Stopped) -> Ending {
+        self.plant.take(self.time, &self.y);
+        match (self.plant.places.end_at(&self.plant.coordinates), reason) {
+            (Some(end), _) => Ending::Limit(end),
+            (None, Stopped::NoRates) => Ending::NoWay,
+            (None, Stopped::TooShort) => Ending::TooShort,
+        }
+    }
+
+    /// What an event does.
+    fn happens(&mut self, watch: Watch) -> Option<Ending> {
+        match watch {
+            Watch::Strikes(stop) => {
+                let Some(struck) = self.strikes(stop) else {
+                    return Some(Ending::NoWay);
+                };
+                self.rest(struck);
+            }
+            Watch::Touches(stop) => {
+                self.plant.mode.touched.push(stop);
+                let rate = self.plant.gap(stop, self.time, &self.y);
+                let speed = rate.map_or(f64::NAN, |gap| -gap.rate);
+                self.tell(Happened::Touches { stop, speed });
+            }
+            Watch::Parts(stop) => {
+                self.plant.mode.touched.retain(|s| *s != stop);
+            }
+            Watch::Leaves(place) => {
+                let stop = self.plant.mode.resting.remove(place);
+                self.plant.mode.beside.clear();
+                self.tell(Happened::Leaves { stop });
+            }
+            Watch::Turns => {
+                self.y[1] = 0.0;
+                let Some(sense) = self.slip_or_stick() else {
+                    return Some(Ending::NoWay);
+                };
+                self.plant.mode.sense = sense;
+            }
+            Watch::Slips => {
+                self.plant.mode.stuck = false;
+                let Some(sense) = self.slip_or_stick() else {
+                    return Some(Ending::NoWay);
+                };
+                // It was found to slip: at rest still, it does so the way that holds least.
+                if self.plant.mode.stuck {
+                    self.plant.mode.stuck = false;
+                    self.happenings.pop();
+                }
+                self.plant.mode.sense = sense;
+                self.tell(Happened::Slips);
+            }
+            Watch::Ends(condition, _) => {
+                self.tell(Happened::Ends { condition });
+                return Some(Ending::Condition(condition));
+            }
+        }
+        None
+    }
+
+    /// An impact at a stop, and at all others that are closed and closing: the fastest rate before.
+    fn strikes(&mut self, stop: usize) -> Option<f64> {
+        let mut stops = vec![stop];
+        for other in 0..self.plant.stops.len() {
+            let rigid = matches!(self.plant.stops[other].resistance, Resistance::Rigid { .. });
+            if other == stop || !rigid {
+                continue;
+            }
+            let gap = self.plant.gap(other, self.time, &self.y)?;
+            let scale = gap.scale(&self.plant.scales);
+            if gap.open <= TOUCHED * scale && gap.rate <= 0.0 {
+                stops.push(other);
+            }
+        }
+        // What is struck again holds by the impact, if it does.
+        self.plant.mode.resting.clear();
+        self.plant.mode.beside.clear();
+        let impact = self.plant.strike(&stops, self.time, &mut self.y)?;
+        let rates = impact.rates.iter().map(|[before, _]| before.abs());
+        let fastest = rates.fold(0.0, f64::max);
+        for (stop, [before, after]) in stops.iter().zip(&impact.rates) {
+            // What opens already is not struck.
+            if *before >= 0.0 {
+                continue;
+            }
+            self.tell(Happened::Strikes {
+                stop: *stop,
+                before: *before,
+                after: *after,
+            });
+        }
+        if let Some(work) = self.y.last_mut() {
+            *work += impact.work;
+        }
+        if self.plant.mode.sense != 0.0 && self.y[1] != 0.0 {
+            self.plant.mode.sense = self.y[1].signum();
+        }
+        Some(fastest)
+    }
+}
+
+/// Shared by threads, as everything that is computed.
+const _: fn() = || {
+    fn shared<T: Send + Sync>() {}
+    shared::<Arc<Simulated>>();
+};

@@ -1,0 +1,175 @@
+//! What is looked for between steps.
+
+use kempe_integrate::{Integrator, crossing};
+use kempe_model::Measure;
+
+use crate::plant::Plant;
+use crate::question::Resistance;
+
+/// Places within a step that are looked at.
+const PARTS: usize = 8;
+/// A gap that begins closed is not passed above this (in path scales).
+const GRAZES: f64 = 1e-13;
+/// Halvings towards the beginning of a step before what began at zero counts as never having been open.
+const HALVINGS: usize = 40;
+
+/// Something that happens when its value becomes negative.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Watch {
+    /// A rigid stop is struck.
+    Strikes(usize),
+    /// A soft stop is touched.
+    Touches(usize),
+    /// A soft stop is left.
+    Parts(usize),
+    /// A stop on which it rests is left; its place among those.
+    Leaves(usize),
+    /// The only coordinate, which rubs, comes to rest.
+    Turns,
+    /// Friction lets it go.
+    Slips,
+    /// A condition holds; whether it did not, yet.
+    Ends(usize, bool),
+}
+
+/// What is to be watched in the plant's mode.
+pub(crate) fn watches(plant: &Plant, conditions: &[bool]) -> Vec<Watch> {
+    let mode = &plant.mode;
+    let mut list = Vec::new();
+    if mode.stuck {
+        list.push(Watch::Slips);
+    } else {
+        if mode.sense != 0.0 && mode.resting.is_empty() {
+            list.push(Watch::Turns);
+        }
+        list.extend((0..mode.resting.len()).map(Watch::Leaves));
+        for (index, stop) in plant.stops.iter().enumerate() {
+            match stop.resistance {
+                Resistance::Rigid { .. } => {
+                    if !mode.resting.contains(&index) && !mode.beside.contains(&index) {
+                        list.push(Watch::Strikes(index));
+                    }
+                }
+                Resistance::Soft { .. } if mode.touched.contains(&index) => {
+                    list.push(Watch::Parts(index));
+                }
+                Resistance::Soft { .. } => list.push(Watch::Touches(index)),
+            }
+        }
+    }
+    list.extend((conditions.iter().enumerate()).map(|(k, armed)| Watch::Ends(k, *armed)));
+    list
+}
+
+impl Watch {
+    fn value(self, plant: &mut Plant, ends: &[Measure], time: f64, y: &[f64]) -> Option<f64> {
+        let stop = |plant: &Plant, k: usize| plant.stops.get(k).map(|s| s.gap.clone());
+        match self {
+            Self::Strikes(k) | Self::Touches(k) => {
+                let gap = stop(plant, k)?;
+                plant.value(&gap, time, y)
+            }
+            Self::Parts(k) => {
+                let gap = stop(plant, k)?;
+                plant.value(&gap, time, y).map(|open| -open)
+            }
+            Self::Leaves(k) => {
+                let mut rates = vec![0.0; y.len()];
+                plant.accelerate(time, y, &mut rates);
+                plant.pushes.get(k).copied()
+            }
+            Self::Turns => Some(y.get(1)? * plant.mode.sense),
+            Self::Slips => plant.grip(time, y),
+            Self::Ends(k, _) => plant.value(ends.get(k)?, time, y).map(|above| -above),
+        }
+    }
+}
+
+impl Watch {
+    /// By how much its value may be below zero where it begins there: by the rounding of a gap.
+    fn slack(self, plant: &mut Plant, time: f64, y: &[f64]) -> f64 {
+        let (Self::Strikes(k) | Self::Touches(k) | Self::Parts(k)) = self else {
+            return 0.0;
+        };
+        let scale = plant
+            .gap(k, time, y)
+            .map_or(0.0, |gap| gap.scale(&plant.scales));
+        // A stop on what stands still has none of its own.
+        let any = plant.scales.iter().copied().fold(0.0, f64::max);
+        GRAZES * if scale > 0.0 { scale } else { any }
+    }
+}
+
+/// What happens first in the last step, and when. Conditions that come to be false on the way are armed from then on.
+pub(crate) fn first(
+    it: &mut Integrator,
+    plant: &mut Plant,
+    ends: &[Measure],
+    conditions: &mut [bool],
+    y: &mut [f64],
+) -> Option<(f64, Watch)> {
+    let (from, to) = (it.before(), it.time());
+    let place = |k: usize| match k {
+        PARTS => to,
+        k => from + (to - from) * (k as f64 / PARTS as f64),
+    };
+    let mut earliest: Option<(f64, Watch)> = None;
+    for watch in watches(plant, conditions) {
+        let mut at = |time: f64, plant: &mut Plant, y: &mut [f64]| -> f64 {
+            if !it.between(plant, time, y) {
+                return f64::NAN;
+            }
+            watch.value(plant, ends, time, y).unwrap_or(f64::NAN)
+        };
+        let mut armed = !matches!(watch, Watch::Ends(_, false));
+        let mut low = from;
+        let mut open = at(from, plant, y) > 0.0;
+        // What begins closed may be off by rounding.
+        let slack = if open {
+            0.0
+        } else {
+            watch.slack(plant, from, y)
+        };
+        for k in 1..=PARTS {
+            let high = place(k);
+            // What comes behind the first event does not come.
+            if earliest.is_some_and(|(first, _)| first < high) && !armed {
+                break;
+            }
+            let value = at(high, plant, y);
+            if value > 0.0 || (value == 0.0 && open) {
+                (low, open, armed) = (high, true, true);
+                continue;
+            }
+            if !armed || value.is_nan() || (!open && value >= -slack) {
+                continue;
+            }
+            let found = if open {
+                crossing(|t| at(t, plant, y), low, high)
+            } else {
+                // It begins at zero: open a little later, or never.
+                let mut part = high - low;
+                let opens = (0..HALVINGS).find_map(|_| {
+                    part *= 0.5;
+                    (at(low + part, plant, y) > 0.0).then_some(low + part)
+                });
+                match opens {
+                    Some(opens) => crossing(|t| at(t, plant, y), opens, high),
+                    None => Some(low),
+                }
+            };
+            if let Some(time) = found
+                && earliest.is_none_or(|(t, _)| time < t)
+            {
+                earliest = Some((time, watch));
+            }
+            break;
+        }
+        if let Watch::Ends(k, _) = watch
+            && let Some(known) = conditions.get_mut(k)
+        {
+            *known |= armed;
+        }
+    }
+    earliest
+}

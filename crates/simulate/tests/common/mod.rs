@@ -1,0 +1,65 @@
+//! Mechanisms for the tests of simulations.
+#![allow(clippy::unwrap_used, dead_code)]
+
+use kempe_mechanism::{Design, Mechanism};
+use kempe_model::{DriveId, Measure, Model};
+use kempe_motion::Silent;
+use kempe_simulate::{Method, Question, Resistance, Simulated, Stop, simulate};
+
+/// A mechanism whose drives are all let go.
+pub struct Free {
+    pub model: Model,
+    pub design: Design<f64>,
+    pub question: Question,
+}
+
+impl Free {
+    /// From where its laws start, at rest, for so long.
+    pub fn new(text: &str, until: f64) -> Self {
+        let read = Model::from_toml(text, "free", &mut |_| Err("no files".into())).unwrap();
+        let model = read.model;
+        let design = Design::new(&Mechanism::new(&model), &model.parameter_values());
+        let free: Vec<DriveId> = (0..model.drives.len() as u32).map(DriveId).collect();
+        let start = (model.drives.iter())
+            .map(|d| [d.law.at(0.0, &design.parameters), 0.0])
+            .collect();
+        Self {
+            question: Question {
+                free,
+                start,
+                until,
+                tolerance: 1e-13,
+                method: Method::Choose,
+                stops: Vec::new(),
+                end_when: Vec::new(),
+            },
+            design,
+            model,
+        }
+    }
+
+    /// The named measure as one that is asked for.
+    pub fn measure(&self, name: &str) -> Measure {
+        let found = self.model.measures.iter().find(|m| m.name == name);
+        found.unwrap().measure.clone()
+    }
+
+    pub fn stop(&mut self, name: &str, restitution: f64) {
+        let gap = self.measure(name);
+        self.question.stops.push(Stop {
+            gap,
+            resistance: Resistance::Rigid { restitution },
+        });
+    }
+
+    pub fn run(&self) -> Simulated {
+        simulate(&self.design, &self.question, &mut Silent).unwrap()
+    }
+}
+
+/// Coordinate and speed of a drive at a time.
+pub fn at(found: &Simulated, drive: usize, time: f64) -> [f64; 2] {
+    use kempe_number::Jet;
+    let q: Jet<f64, 2> = found.laws[drive].at(Jet::variable(time), &[]);
+    [q.derivative(0), q.derivative(1)]
+}

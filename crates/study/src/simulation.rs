@@ -1,0 +1,558 @@
+//! Simulations: how a mechanism moves in time where drives are let go.
+//!
+//! What `kempe-simulate` finds are laws of the drives. The rows are those of a study of forces along the motion by these laws:
+//! every measure is there, and inverse dynamics, which knows nothing of the simulation, must find that a drive that was let go
+//! gives nothing.
+
+use std::sync::Arc;
+
+use kempe_mechanism::Design;
+use kempe_model::{
+    Diagnostic, DriveId, ForceMeasure, Leaf, Model, MotionStudy, Rows, SimulateStudy, StepMethod,
+    StopResistance, StudyKind, value,
+};
+use kempe_motion::progress::{Progress, Silent};
+use kempe_motion::{EndReason, Motion, Stage};
+use kempe_simulate::{
+    Ending, Happened, Held, Method, NoStart, Question, Resistance, Simulated, Stop, Unsimulated,
+    simulate,
+};
+use kempe_units::{Dimension, Expr};
+
+use crate::along::force_problems;
+use crate::explain::{cannot_move, stopped};
+use crate::motion::rows_of;
+use crate::motion_findings::{motion_findings, refused};
+use crate::prepared::design;
+use crate::quantity::Quantity;
+use crate::result::{Listing, StudyResult};
+use crate::rows::count;
+use crate::table::{BalanceColumns, largest};
+use crate::unit::Units;
+
+/// Error of a step where the file does not say, in parts of what moves.
+const TOLERANCE: f64 = 1e-13;
+/// A balance that is off by more than this, or by more than a larger tolerance asks for, is told ...
+const OFF: [(&str, f64); 2] = [("energy", 1e-8), ("power", 1e-6)];
+/// ... and by more than this in any case.
+const WRONG: f64 = 1e-3;
+/// No step is better than that.
+const FINEST: f64 = 1e-15;
+/// A speed below this part of that before an impact is none.
+const STAYS: f64 = 1e-9;
+/// At most so many things that happened are listed.
+const LISTED: usize = 30;
+
+/// The motion that a simulation of the model finds.
+///
+/// # Errors
+///
+/// That there is no such simulation, and what keeps it from starting.
+pub(crate) fn simulated_motion(
+    model: &Model,
+    name: &str,
+    progress: &mut dyn Progress,
+) -> Result<Arc<Motion>, Vec<Diagnostic>> {
+    let named = model.studies.iter().find(|s| s.name == name);
+    let Some(StudyKind::Simulate(study)) = named.map(|s| &s.kind) else {
+        let message = format!("there is no simulation called `{name}`");
+        return Err(vec![Diagnostic::error("unknown-name", message)]);
+    };
+    let run = Run::new(model, study, progress)?;
+    run.motion(progress)
+}
+
+/// A simulation that was run.
+struct Run {
+    design: Design<f64>,
+    question: Question,
+    ends: Vec<End>,
+    found: Simulated,
+    /// What is to be told of the mechanism, whatever moves it.
+    findings: Vec<Diagnostic>,
+}
+
+impl Run {
+    fn new(
+        model: &Model,
+        study: &SimulateStudy,
+        progress: &mut dyn Progress,
+    ) -> Result<Self, Vec<Diagnostic>> {
+        let design = design(model);
+        let (question, ends) = question(study, model, &design.parameters);
+        let found = simulate(&design, &question, progress)
+            .map_err(|error| explain(&design, study, &ends, error))?;
+        let findings = motion_findings(&found.first);
+        if refused(&found.first) {
+            return Err(findings);
+        }
+        Ok(Self {
+            design,
+            question,
+            ends,
+            found,
+            findings,
+        })
+    }
+
+    fn motion(&self, progress: &mut dyn Progress) -> Result<Arc<Motion>, Vec<Diagnostic>> {
+        (self.found.motion(progress)).map_err(|error| vec![cannot_move(&self.design, &error)])
+    }
+}
+
+/// A simulation.
+pub(crate) fn simulation(
+    model: &Model,
+    name: &str,
+    study: &SimulateStudy,
+    progress: &mut dyn Progress,
+) -> Result<StudyResult, Vec<Diagnostic>> {
+    let run = Run::new(model, study, progress)?;
+    // What was found until it was stopped is shown.
+    let was_stopped = run.found.ending == Ending::Stopped;
+    let progress: &mut dyn Progress = if was_stopped { &mut Silent } else { progress };
+    let motion = run.motion(progress)?;
+    let Run {
+        question,
+        ends,
+        found,
+        findings: mut diagnostics,
+        ..
+    } = run;
+    let hidden = hidden(&question.free);
+    let along = in_time(&study.along, question.until);
+    let (mut result, values) = rows_of(&motion, name, &along, (true, 0, &hidden), progress)?;
+    diagnostics.append(&mut result.diagnostics);
+    let units = Units::of(model);
+    let times = result
+        .table
+        .columns
+        .first()
+        .map(|c| c.si())
+        .unwrap_or_default();
+    let balance = balance(&question, &found, &times, &values);
+    diagnostics.extend(out_of_balance(
+        name,
+        &units,
+        &balance,
+        &times,
+        question.tolerance,
+    ));
+    diagnostics.extend(early(model, &units, &found));
+    result.table.balance = Some(balance);
+    for (note, time) in result.table.notes.iter_mut().zip(&times) {
+        let held = held_at(&found, *time).map(|held| what_holds(held, study, &ends));
+        let all: Vec<String> = note.take().into_iter().chain(held).collect();
+        *note = (!all.is_empty()).then(|| all.join("; "));
+    }
+    result.listings.push(how(&units, &found, &result));
+    result
+        .listings
+        .extend(happened(&units, study, &ends, &found));
+    if was_stopped {
+        let all = count(
+            model,
+            &along.rows,
+            &model.parameter_values(),
+            question.until,
+        );
+        result.demanded_rows = (all as usize).max(result.table.rows() + 1);
+    }
+    result.diagnostics = diagnostics;
+    Ok(result)
+}
+
+/// The rows of a study in time: so many over the whole time asked for, however early it ends.
+fn in_time(study: &MotionStudy, until: f64) -> MotionStudy {
+    let mut study = study.clone();
+    if let Rows::Count(rows) = study.rows
+        && rows > 1
+    {
+        study.rows = Rows::TimeStep(Expr::Const(until / (rows - 1) as f64));
+    }
+    study
+}
+
+/// The end of a stop: which of the study's, and whether it is the least value.
+type End = (usize, bool);
+
+/// What is asked, with the ends of its stops.
+fn question(study: &SimulateStudy, model: &Model, parameters: &[f64]) -> (Question, Vec<End>) {
+    let number = |scalar: &kempe_model::Scalar| value(scalar, parameters);
+    let start = study.released.iter().map(|drive| {
+        let law = model.drives.get(drive.index()).map(|d| &d.law);
+        let own = study.start.iter().find(|s| s.drive == *drive);
+        let at = own.and_then(|s| s.at.as_ref()).map(number);
+        let rate = own.and_then(|s| s.rate.as_ref()).map_or(0.0, number);
+        let of_law = || law.map_or(0.0, |law| law.at(0.0, parameters));
+        [at.unwrap_or_else(of_law), rate]
+    });
+    let (mut stops, mut ends) = (Vec::new(), Vec::new());
+    for (index, stop) in study.stops.iter().enumerate() {
+        let resistance = match &stop.resistance {
+            StopResistance::Rigid { restitution } => Resistance::Rigid {
+                restitution: restitution.as_ref().map_or(0.0, number),
+            },
+            StopResistance::Soft { stiffness, damping } => Resistance::Soft {
+                stiffness: number(stiffness),
+                damping: damping.as_ref().map_or(0.0, number),
+            },
+        };
+        for (least, gap) in stop.gaps() {
+            stops.push(Stop { gap, resistance });
+            ends.push((index, least));
+        }
+    }
+    let question = Question {
+        free: study.released.clone(),
+        start: start.collect(),
+        until: number(&study.until),
+        tolerance: study
+            .tolerance
+            .as_ref()
+            .map_or(TOLERANCE, number)
+            .max(FINEST),
+        method: match study.method {
+            None => Method::Choose,
+            Some(StepMethod::Explicit) => Method::Explicit,
+            Some(StepMethod::Implicit) => Method::Implicit,
+        },
+        stops,
+        end_when: study.end_when.iter().map(|c| c.above.clone()).collect(),
+    };
+    (question, ends)
+}
+
+/// Energies, the rate of the kinetic one, and effort and speed of every drive that is let go.
+fn hidden(free: &[DriveId]) -> Vec<Quantity> {
+    let force = |measure: ForceMeasure| Expr::Leaf(Leaf::Force(measure));
+    let quantity = |measure| Quantity {
+        name: String::new(),
+        measure,
+        dimension: Dimension::NONE,
+    };
+    let kinetic = force(ForceMeasure::KineticEnergy);
+    let mut list = vec![
+        quantity(kinetic.clone()),
+        quantity(force(ForceMeasure::PotentialEnergy)),
+        quantity(Expr::Leaf(Leaf::Rate(Box::new(kinetic), 1))),
+    ];
+    for drive in free {
+        list.push(quantity(force(ForceMeasure::Drive(*drive))));
+        let coordinate = Box::new(Expr::Leaf(Leaf::Drive(*drive)));
+        list.push(quantity(Expr::Leaf(Leaf::Rate(coordinate, 1))));
+    }
+    list
+}
+
+/// What holds it at a time.
+fn held_at(found: &Simulated, time: f64) -> impl Iterator<Item = &Held> {
+    // Times rise: of two that meet there, both hold.
+    let first = found.held.partition_point(|held| held.to < time);
+    let from = found.held.get(first..).unwrap_or(&[]).iter();
+    from.take_while(move |held| held.holds_at(time))
+}
+
+/// What holds it, in words.
+fn what_holds(held: &Held, study: &SimulateStudy, ends: &[End]) -> String {
+    let stops = held.stops.iter();
+    let stops = stops.map(|stop| format!("lies on {}", stop_name(study, ends, *stop)));
+    let friction = held.by_friction.then(|| "friction holds it".to_owned());
+    stops.chain(friction).collect::<Vec<_>>().join(", ")
+}
+
+/// A stop's end: `the lower stop of rocker`.
+fn stop_name(study: &SimulateStudy, ends: &[End], stop: usize) -> String {
+    let named =
+        (ends.get(stop)).and_then(|(index, least)| Some((study.stops.get(*index)?, *least)));
+    named.map_or(String::new(), |(stop, least)| {
+        let end = if least { "lower" } else { "upper" };
+        format!("the {end} stop of {}", stop.name)
+    })
+}
+
+/// How well energy and power balance.
+fn balance(
+    question: &Question,
+    found: &Simulated,
+    times: &[f64],
+    values: &[Vec<f64>],
+) -> BalanceColumns {
+    let value = |index: usize, row: usize| {
+        let column = values.get(index);
+        column.and_then(|c| c.get(row)).copied().unwrap_or(f64::NAN)
+    };
+    let rows = 0..times.len();
+    let works: Vec<f64> = times.iter().map(|t| found.work.at(*t, &[])).collect();
+    let energy = |row: usize| value(0, row) + value(1, row);
+    let moved = |row: usize| {
+        let (kinetic, potential) = (value(0, row), value(1, row) - value(1, 0));
+        kinetic.abs().max(potential.abs()).max(works[row].abs())
+    };
+    let most = rows.clone().map(moved).fold(0.0, f64::max);
+    let fastest = rows
+        .clone()
+        .map(|row| value(2, row).abs())
+        .fold(most / question.until, f64::max);
+    let part = |x: f64, of: f64| if x == 0.0 { 0.0 } else { x / of };
+    let is_held = |t: f64| held_at(found, t).next().is_some();
+    let asked = |row: usize| {
+        (0..question.free.len())
+            .map(|k| {
+                let [effort, speed] = [0, 1].map(|j| value(3 + 2 * k + j, row));
+                (effort - found.motor_torque(k, speed)) * speed
+            })
+            .sum::<f64>()
+    };
+    BalanceColumns {
+        energy: (rows.clone())
+            .map(|row| part(energy(row) - energy(0) - works[row], most))
+            .collect(),
+        power: rows
+            .map(|row| match is_held(times[row]) {
+                true => f64::NAN,
+                false => part(asked(row), fastest),
+            })
+            .collect(),
+    }
+}
+
+/// A balance that does not come out.
+fn out_of_balance(
+    name: &str,
+    units: &Units,
+    balance: &BalanceColumns,
+    times: &[f64],
+    tolerance: f64,
+) -> Vec<Diagnostic> {
+    let worst = OFF.iter().zip([&balance.energy, &balance.power]);
+    let worst = worst.map(|((what, least), column)| {
+        let limit = least.max(tolerance).min(WRONG);
+        let sizes: Vec<f64> = column.iter().map(|x| x.abs()).collect();
+        let (row, off) = largest(&sizes).filter(|(_, off)| *off > limit)?;
+        let at = units.text(times.get(row).copied().unwrap_or(f64::NAN), Dimension::TIME);
+        let message = format!(
+            "study `{name}`: the balance of {what} is off by {off:.1e} of the most that is moved, at {at}"
+        );
+        let warning = Diagnostic::warning("out-of-balance", message);
+        Some(warning.help("ask for a smaller `tolerance`; where something jumps there, its size is uncertain"))
+    });
+    worst.flatten().collect()
+}
+
+/// That it ended before it was to.
+fn early(model: &Model, units: &Units, found: &Simulated) -> Option<Diagnostic> {
+    let at = units.text(found.end, Dimension::TIME);
+    let (why, help) = match found.ending {
+        Ending::Until | Ending::Condition(_) | Ending::Stopped => return None,
+        Ending::Limit(EndReason::Covered) | Ending::NoWay => (
+            "no pose or no acceleration was found just ahead: links are stretched or folded there, or nothing moves mass",
+            "let another drive go, one that turns a link which turns on there",
+        ),
+        Ending::Limit(_) => (
+            "the drive that is let go comes to its dead point, beyond which its coordinate does not tell where the mechanism goes",
+            "let another drive go, one that turns a link which turns on there",
+        ),
+        Ending::TooShort => (
+            "no step is short enough: something runs away, jumps, or is very stiff",
+            "look for a load, spring or stop that is very large there, or ask for a larger `tolerance`",
+        ),
+        Ending::TooMany => (
+            "there is no end of steps or impacts",
+            "look for stops between which it rattles, or loads that jump to and fro, or ask for a shorter time",
+        ),
+    };
+    let drives: Vec<String> = (found.laws.iter().zip(&model.drives))
+        .map(|(law, drive)| {
+            let q = law.at(found.end, &[]);
+            format!("{} = {}", drive.name, units.text(q, drive.dimension))
+        })
+        .collect();
+    Some(
+        Diagnostic::error(
+            "simulation-ended",
+            format!("the simulation goes no farther than {at}"),
+        )
+        .note(format!("{why} ({})", drives.join(", ")))
+        .help(help),
+    )
+}
+
+/// How it was done, and how well.
+fn how(units: &Units, found: &Simulated, result: &StudyResult) -> Listing {
+    let balance = result.table.balance.as_ref();
+    let worst = |column: Option<&Vec<f64>>| {
+        let sizes: Vec<f64> = column.into_iter().flatten().map(|x| x.abs()).collect();
+        largest(&sizes).map_or("not known".to_owned(), |(_, off)| format!("{off:.1e}"))
+    };
+    let used = found.used;
+    let explicit = "explicit Runge-Kutta of order 8 (Dormand and Prince)";
+    let implicit = "implicit Runge-Kutta of order 5 (Radau IIA)";
+    let methods: Vec<String> = match used.implicit_from {
+        None => vec![explicit.to_owned()],
+        Some(_) if used.explicit == 0 => vec![implicit.to_owned()],
+        Some(from) => vec![
+            format!("{explicit}, {} steps,", used.explicit),
+            format!(
+                "{implicit}, {} steps, first at {}",
+                used.implicit,
+                units.text(from, Dimension::TIME)
+            ),
+        ],
+    };
+    let rows = vec![
+        vec![
+            "method".to_owned(),
+            format!("minimal coordinates, {}", methods.join(" and ")),
+        ],
+        vec![
+            "steps".to_owned(),
+            format!(
+                "{}, {} evaluations",
+                used.explicit + used.implicit,
+                found.evaluations
+            ),
+        ],
+        vec![
+            "energy".to_owned(),
+            format!(
+                "balanced to {} of the most that was moved",
+                worst(balance.map(|b| &b.energy))
+            ),
+        ],
+        vec![
+            "power".to_owned(),
+            format!(
+                "inverse dynamics asks no more of what is let go than it gives, to {}",
+                worst(balance.map(|b| &b.power))
+            ),
+        ],
+    ];
+    Listing {
+        title: "How it was simulated".to_owned(),
+        head: Vec::new(),
+        rows,
+    }
+}
+
+/// What happened, in words.
+fn happened(
+    units: &Units,
+    study: &SimulateStudy,
+    ends: &[End],
+    found: &Simulated,
+) -> Option<Listing> {
+    let stop = |index: &usize| {
+        ends.get(*index)
+            .and_then(|(stop, least)| Some((study.stops.get(*stop)?, *least)))
+    };
+    let name = |index: &usize| stop_name(study, ends, *index);
+    let speed = |index: &usize, rate: f64| {
+        let is_angle = stop(index).is_some_and(|(stop, _)| stop.is_angle);
+        let coordinate = if is_angle {
+            Dimension::ANGLE
+        } else {
+            Dimension::LENGTH
+        };
+        units.text(rate, coordinate / Dimension::TIME)
+    };
+    let rows = found.happenings.iter().take(LISTED).map(|it| {
+        let what = match &it.what {
+            Happened::Strikes {
+                stop,
+                before,
+                after,
+            } => {
+                let after = match *after > -STAYS * before {
+                    true => format!("leaves at {}", speed(stop, *after)),
+                    false => "stays".to_owned(),
+                };
+                let before = speed(stop, -before);
+                format!("strikes {} at {before}, {after}", name(stop))
+            }
+            Happened::Touches { stop, speed: rate } => {
+                format!("touches {} at {}", name(stop), speed(stop, *rate))
+            }
+            Happened::Rests { stop } => format!("rests on {}", name(stop)),
+            Happened::Leaves { stop } => format!("leaves {}", name(stop)),
+            Happened::Sticks => "friction holds it".to_owned(),
+            Happened::Slips => "friction lets it go".to_owned(),
+            Happened::Ends { condition } => {
+                let text = study
+                    .end_when
+                    .get(*condition)
+                    .map_or("", |c| c.text.as_str());
+                format!("it ends: {text}")
+            }
+        };
+        vec![units.text(it.time, Dimension::TIME), what]
+    });
+    let mut rows: Vec<Vec<String>> = rows.collect();
+    let more = found.happenings.len().saturating_sub(LISTED);
+    if more > 0 {
+        rows.push(vec!["…".to_owned(), format!("and {more} more")]);
+    }
+    (!rows.is_empty()).then(|| Listing {
+        title: "What happened".to_owned(),
+        head: vec!["time".to_owned(), "what".to_owned()],
+        rows,
+    })
+}
+
+/// Why there is no simulation.
+fn explain(
+    design: &Design<f64>,
+    study: &SimulateStudy,
+    ends: &[End],
+    error: Unsimulated,
+) -> Vec<Diagnostic> {
+    let model = &design.mechanism.model;
+    let units = Units::of(model);
+    let cannot = |message: String| Diagnostic::error("cannot-simulate", message);
+    vec![match error {
+        Unsimulated::Problems(problems) => return force_problems(problems),
+        Unsimulated::Start(NoStart::Motion(error)) | Unsimulated::Motion(error) => {
+            cannot_move(design, &error)
+        }
+        Unsimulated::Start(NoStart::NotReached(drive, reached)) => {
+            let Some(drive) = model.drives.get(drive.index()) else {
+                return vec![stopped(Stage::Simulating)];
+            };
+            let at = units.text(reached, drive.dimension);
+            cannot(format!(
+                "drive `{}` does not come to where it is to start: it comes to {at}",
+                drive.name
+            ))
+            .at(drive.span.clone(), "")
+            .help("start it where it comes to, or describe another assembly under [assembly]")
+        }
+        Unsimulated::NoMass => cannot(
+            "what is let go moves no mass, or friction jams it: its acceleration is not determined"
+                .to_owned(),
+        )
+        .note("links have no mass unless it is given")
+        .help("give the links that move their mass and inertia, or start away from a dead point"),
+        Unsimulated::FrictionOfSeveral => cannot(
+            "friction is simulated where one coordinate moves alone, and here several do"
+                .to_owned(),
+        )
+        .note("which of several joints stick is not decided yet")
+        .help(
+            "let one drive go and hold the others, or describe what takes the energy by [dampers]",
+        ),
+        Unsimulated::BeyondStop(index, by) => {
+            let stop = ends.get(index).and_then(|(stop, _)| study.stops.get(*stop));
+            let (name, is_angle) = stop.map_or(("", false), |s| (s.name.as_str(), s.is_angle));
+            let dimension = if is_angle {
+                Dimension::ANGLE
+            } else {
+                Dimension::LENGTH
+            };
+            cannot(format!(
+                "it starts beyond the stop of `{name}`, by {}",
+                units.text(by, dimension)
+            ))
+            .help("start between the stops, or move them")
+        }
+    }]
+}

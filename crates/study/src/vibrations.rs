@@ -1,0 +1,30 @@
+//! Natural vibrations of a mechanism some of whose drives are let go: about one pose, or about the poses of a motion.
+//!
+//! `bench.rs` brings the mechanism to a pose and makes it linear there, `pose.rs` tells the modes of one pose, `sweep.rs` their
+//! frequencies along a motion, `shapes.rs` makes poses of a mode that can be looked at.
+
+mod bench;
+mod pose;
+mod shapes;
+mod sweep;
+
+use kempe_model::{Diagnostic, Model, Rows, VibrationStudy};
+use kempe_motion::Progress;
+
+use crate::result::StudyResult;
+
+pub(crate) use shapes::SHAPE_POSES;
+
+/// Runs a study of natural vibrations.
+pub(crate) fn vibrations(
+    model: &Model,
+    name: &str,
+    study: &VibrationStudy,
+    progress: &mut dyn Progress,
+) -> Result<StudyResult, Vec<Diagnostic>> {
+    let bench = bench::Bench::new(model, name, study, progress)?;
+    match study.along.rows {
+        Rows::Count(1) => pose::about(bench, progress),
+        _ => sweep::along(bench, progress),
+    }
+}

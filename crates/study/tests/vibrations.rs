@@ -1,0 +1,369 @@
+//! Studies of natural vibrations from the text of a file to their tables, pictures and warnings, against closed forms.
+#![allow(
+    clippy::disallowed_methods,
+    reason = "numbers found by hand beside ours, not reproducible ones"
+)]
+
+use std::f64::consts::{PI, TAU};
+use std::path::Path;
+
+use kempe_model::{Diagnostic, Model};
+use kempe_study::{ReportOrigin, Silent, StudyOutcome, StudyResult, check, report, run};
+
+fn rendered(found: &[Diagnostic], text: &str) -> String {
+    let lines = found.iter().map(|d| d.render_plain("test.toml", text));
+    lines.collect()
+}
+
+fn model(text: &str) -> Model {
+    match Model::from_toml(text, "test", &mut |_| Err("no files".into())) {
+        Ok(checked) => checked.model,
+        Err(found) => panic!("{}", rendered(&found, text)),
+    }
+}
+
+fn ran_study(text: &str, index: usize) -> StudyResult {
+    let model = model(text);
+    match run(&model, &model.studies[index], &mut Silent) {
+        Ok(result) => result,
+        Err(found) => panic!("{}", rendered(&found, text)),
+    }
+}
+
+fn ran(text: &str) -> StudyResult {
+    ran_study(text, 0)
+}
+
+fn refused(text: &str) -> Vec<&'static str> {
+    let model = model(text);
+    let found = run(&model, &model.studies[0], &mut Silent).err();
+    found.into_iter().flatten().map(|d| d.code).collect()
+}
+
+fn codes(result: &StudyResult) -> Vec<&'static str> {
+    result.diagnostics.iter().map(|d| d.code).collect()
+}
+
+fn column(result: &StudyResult, name: &str) -> Vec<f64> {
+    let heads: Vec<&str> = (result.table.columns.iter())
+        .map(|c| c.name.as_str())
+        .collect();
+    match result.table.column(name) {
+        Some(column) => column.values.clone(),
+        None => panic!("no column {name} among {heads:?}"),
+    }
+}
+
+fn scalar(result: &StudyResult, name: &str) -> f64 {
+    let found = result.scalars.iter().find(|s| s.name == name);
+    match found {
+        Some(found) => found.value,
+        None => panic!("no {name} among {:?}", result.scalars),
+    }
+}
+
+fn close(found: f64, exact: f64, part: f64) {
+    assert!(
+        (found - exact).abs() <= part * exact.abs(),
+        "{found}, not {exact}"
+    );
+}
+
+fn example(name: &str) -> String {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/gallery");
+    std::fs::read_to_string(root.join(format!("{name}.toml"))).expect("an example")
+}
+
+#[test]
+fn the_double_pendulum_of_the_gallery_swings_as_its_head_says() {
+    let result = ran(&example("double-pendulum"));
+    let frequency = column(&result, "frequency");
+    for (mode, sign) in [-1.0, 1.0].into_iter().enumerate() {
+        let square: f64 = (2.0 + sign * 2.0_f64.sqrt()) * 9.81 / 0.5;
+        close(frequency[mode], square.sqrt() / TAU, 1e-13);
+        close(column(&result, "period")[mode], TAU / square.sqrt(), 1e-13);
+        close(
+            column(&result, "angular_frequency")[mode],
+            square.sqrt(),
+            1e-13,
+        );
+        // The lower rod goes by 1 deg, the upper one by the root of a half to one side or the other.
+        close(
+            column(&result, "shape(upper_angle)")[mode],
+            -sign * 0.5_f64.sqrt(),
+            1e-12,
+        );
+        close(column(&result, "shape(lower_angle)")[mode], 1.0, 1e-15);
+        // P goes by the arc of the upper rod, Q by both.
+        let degree = PI / 180.0;
+        let p = 500.0 * degree * 0.5_f64.sqrt();
+        close(column(&result, "amplitude(P)")[mode], p, 1e-12);
+        close(
+            column(&result, "amplitude(Q)")[mode],
+            (500.0 * degree - sign * p).abs(),
+            1e-12,
+        );
+        // Kinetic energy for 1 rad of the lower rod: two masses at 0.5 m times these.
+        let q = 1.0 - sign * 0.5_f64.sqrt();
+        close(
+            column(&result, "modal_inertia")[mode],
+            0.25 * (0.5 + q * q),
+            1e-12,
+        );
+    }
+    assert_eq!(scalar(&result, "upper_angle in equilibrium"), -90.0);
+    assert!(codes(&result).is_empty(), "{:?}", result.diagnostics);
+    assert_eq!(result.listings[0].rows.len(), 2);
+}
+
+#[test]
+fn the_metronome_of_the_gallery_slows_as_its_weight_goes_up() {
+    let result = ran(&example("metronome"));
+    let (rod, rod_at, weight, bob, a, g) = (0.005, 0.05, 0.012, 0.06, 0.05, 9.81);
+    let places = column(&result, "tempo");
+    assert_eq!(places.len(), 23);
+    for (row, x) in places.iter().map(|x| x / 1e3).enumerate() {
+        let inertia = 17e-6 + rod * rod_at * rod_at + bob * a * a + 0.5e-6 + weight * x * x;
+        let stiffness = g * (bob * a - rod * rod_at - weight * x);
+        let frequency = (stiffness / inertia).sqrt();
+        close(column(&result, "frequency_1")[row], frequency / TAU, 1e-12);
+        close(
+            column(&result, "damping_ratio_1")[row],
+            2e-5 / 2.0 / inertia / frequency,
+            1e-11,
+        );
+        close(column(&result, "growth_1")[row], -1e-5 / inertia, 1e-11);
+        close(column(&result, "time")[row], (x - 0.03) / 0.01, 1e-9);
+    }
+    assert_eq!(result.abscissa().map(|c| c.name.as_str()), Some("tempo"));
+    // The other study holds the weight at one place of these.
+    let slow = ran_study(&example("metronome"), 1);
+    let row = places
+        .iter()
+        .position(|x| (*x - 130.0).abs() < 1e-9)
+        .expect("a row");
+    close(
+        column(&slow, "frequency")[0],
+        column(&result, "frequency_1")[row],
+        1e-12,
+    );
+}
+
+#[test]
+fn the_quarter_car_heaves_and_hops_as_two_masses_on_springs_do() {
+    let result = ran(&example("quarter-car"));
+    // Two masses in a row, seen from the wheel: arm, coil and damper count by the square of their leverage, nearly.
+    let [heave, hop] = column(&result, "frequency")[..] else {
+        panic!()
+    };
+    assert!(
+        (1.1..1.5).contains(&heave) && (9.0..13.0).contains(&hop),
+        "{heave} {hop}"
+    );
+    let ratio = column(&result, "damping_ratio");
+    assert!(ratio.iter().all(|z| (0.2..0.4).contains(z)), "{ratio:?}");
+    // It has sunk: weights of 366 kg on the coil and tyre, on what was drawn a little out of balance.
+    let [drawn, rests] =
+        ["heave at the pose asked for", "heave in equilibrium"].map(|n| scalar(&result, n));
+    assert!(
+        drawn == 360.0 && (drawn - rests).abs() < 5.0,
+        "{drawn} {rests}"
+    );
+    assert!(scalar(&result, "out of balance there, along heave") < 0.0);
+}
+
+const ROD: &str = "[links]\nframe = { O = [0, 0], W = [1, 0.5] }\nrod = { O-P = 1, mass = 2, inertia = \"0.2 kg m^2\" }\n";
+
+fn rod(angle: &str, more: &str) -> String {
+    format!("{ROD}[drives]\nswing = {{ turns = \"rod\", at = {angle} }}\n{more}\n")
+}
+
+#[test]
+fn a_pose_out_of_balance_sinks_or_is_told() {
+    let sinks = ran(&rod("-30", "[studies.modes]\nkind = \"vibrations\""));
+    assert_eq!(scalar(&sinks, "swing at the pose asked for"), -30.0);
+    close(scalar(&sinks, "swing in equilibrium"), -90.0, 1e-12);
+    close(
+        scalar(&sinks, "out of balance there, along swing"),
+        -2.0 * 9.81 * 0.5 * 30.0_f64.to_radians().cos(),
+        1e-12,
+    );
+    let inertia: f64 = 0.2 + 2.0 * 0.25;
+    close(
+        column(&sinks, "frequency")[0],
+        (9.81 / inertia).sqrt() / TAU,
+        1e-12,
+    );
+    assert!(codes(&sinks).is_empty());
+    let held = ran(&rod(
+        "-30",
+        "[studies.modes]\nkind = \"vibrations\"\nequilibrium = false",
+    ));
+    assert_eq!(codes(&held), ["not-in-equilibrium"]);
+    close(
+        column(&held, "frequency")[0],
+        (9.81 * 0.5 / inertia).sqrt() / TAU,
+        1e-12,
+    );
+    let elsewhere = ran(&rod(
+        "170",
+        "[studies.modes]\nkind = \"vibrations\"\nat = { swing = \"-80 deg\" }",
+    ));
+    close(scalar(&elsewhere, "swing in equilibrium"), -90.0, 1e-12);
+}
+
+#[test]
+fn unstable_and_free_motions_are_told() {
+    let upright = ran(&rod("90", "[studies.modes]\nkind = \"vibrations\""));
+    assert_eq!(codes(&upright), ["unstable-pose"]);
+    close(
+        column(&upright, "growth")[0],
+        (9.81_f64 / 0.7).sqrt(),
+        1e-12,
+    );
+    assert!(column(&upright, "frequency")[0].is_nan());
+    assert!(
+        upright.table.notes[0]
+            .as_deref()
+            .is_some_and(|n| n.contains("grows by e in 0.2671 s"))
+    );
+    let free = format!(
+        "gravity = [0, 0]\n{}",
+        rod("0", "[studies.modes]\nkind = \"vibrations\"")
+    );
+    let free = ran(&free);
+    assert_eq!(
+        (column(&free, "frequency")[0], column(&free, "growth")[0]),
+        (0.0, 0.0)
+    );
+    assert_eq!(
+        free.table.notes[0].as_deref(),
+        Some("free, nothing brings it back")
+    );
+}
+
+#[test]
+fn what_cannot_be_is_refused_with_its_reason() {
+    let light = "[links]\nframe = { O = [0, 0] }\nrod = { O-P = 1 }\n[drives]\nswing = { turns = \"rod\", at = 0 }\n[studies.m]\nkind = \"vibrations\"\n";
+    assert_eq!(refused(light), ["no-mass"]);
+    let far = rod(
+        "-90",
+        "[loads]\npush = { torque = \"1 N m / (angle(rod) + 90 deg) * 1 rad\", on = \"rod\" }\n[studies.m]\nkind = \"vibrations\"",
+    );
+    assert_eq!(refused(&far), ["load-without-value"]);
+    let mut stops = |_, _| std::ops::ControlFlow::Break(());
+    let model = model(&rod("-30", "[studies.m]\nkind = \"vibrations\""));
+    let found = run(&model, &model.studies[0], &mut stops).expect_err("stopped");
+    assert!(found.iter().any(|d| d.code == "stopped"), "{found:?}");
+}
+
+#[test]
+fn each_mode_moves_through_real_poses_in_the_report() {
+    for name in ["double-pendulum", "metronome", "quarter-car"] {
+        let text = example(name);
+        let model = model(&text);
+        let results: Vec<StudyResult> = (model.studies.iter())
+            .map(|s| run(&model, s, &mut Silent).expect("a result"))
+            .collect();
+        for result in &results {
+            for (row, shape) in result.shapes.iter().enumerate() {
+                assert!(shape.closure.iter().all(|c| *c < 1e-12), "{name}");
+                let ends =
+                    [shape.frames.first(), shape.frames.last()].map(|f| f.map(|f| &f.points));
+                assert_eq!(ends[0], ends[1]);
+                let [up, down] = shape.extremes.map(|k| &shape.frames[k]);
+                let middle = &shape.frames[0];
+                // Points go as far as the table says, times the amplitude, as far as it is linear.
+                let amplitudes: Vec<f64> = (model.points.iter().enumerate())
+                    .filter_map(|(p, point)| {
+                        let told = result.table.column(&format!("amplitude({})", point.name))?;
+                        let gone = [0, 1].map(|axis| up.points[p][axis] - down.points[p][axis]);
+                        let gone = gone[0].hypot(gone[1]) / 2.0;
+                        let there = [0, 1].map(|axis| up.points[p][axis] - middle.points[p][axis]);
+                        assert!(there[0].hypot(there[1]) > 0.0 || told.values[row] < 1e-9);
+                        (told.values[row] > 1e-3).then(|| gone / told.values[row])
+                    })
+                    .collect();
+                let least = amplitudes.iter().copied().fold(f64::INFINITY, f64::min);
+                let most = amplitudes.iter().copied().fold(0.0, f64::max);
+                assert!(most <= 1.1 * least, "{name}: {amplitudes:?}");
+            }
+        }
+        let outcomes: Vec<StudyOutcome<'_>> = (model.studies.iter().zip(&results))
+            .map(|(study, result)| StudyOutcome {
+                study,
+                result: Ok(result.clone()),
+            })
+            .collect();
+        let page = report(
+            &model,
+            &ReportOrigin::default(),
+            &[],
+            &check(&model),
+            &outcomes,
+            None,
+        );
+        let names: Vec<&str> = page.motions.iter().map(|m| m.name.as_str()).collect();
+        let wanted: &[&str] = match name {
+            "metronome" => &["beat", "slow-mode-1"],
+            _ => &["modes-mode-1", "modes-mode-2"],
+        };
+        assert_eq!(names, wanted);
+    }
+}
+
+#[test]
+fn along_a_motion_what_is_let_go_follows_its_equilibrium() {
+    // A pendulum on a beam that turns: it hangs down whatever the beam does, by the angle that it has against it.
+    let text = "[links]\nframe = { A = [0, 0] }\nbeam = { A-B = 1 }\nrod = { B-C = 0.4 }\n[masses]\nbob = { on = \"rod\", at = \"C\", mass = 2 }\n\
+                [drives]\nturn = { turns = \"beam\", from = 0, to = 360, speed = \"1 rad/s\" }\n\
+                swing = { turns = \"rod\", relative_to = \"beam\", at = -90 }\n[studies.all]\nkind = \"vibrations\"\nrelease = [\"swing\"]\nrows = 25\n";
+    let result = ran(text);
+    let (turn, swing) = (column(&result, "turn"), column(&result, "swing"));
+    for row in 0..25 {
+        assert!(
+            (turn[row] + swing[row] + 90.0).abs() < 1e-9,
+            "{} {}",
+            turn[row],
+            swing[row]
+        );
+        close(
+            column(&result, "frequency_1")[row],
+            (9.81_f64 / 0.4).sqrt() / TAU,
+            1e-12,
+        );
+    }
+    assert!(codes(&result).is_empty(), "{:?}", result.diagnostics);
+    // As it stands it would be thrown about, and that is told.
+    let stiff = ran(&format!("{text}equilibrium = false\n"));
+    assert!(
+        codes(&stiff).contains(&"not-in-equilibrium") && codes(&stiff).contains(&"unstable-pose")
+    );
+}
+
+#[test]
+fn other_units_tell_the_same_vibrations() {
+    let text = example("quarter-car");
+    let other = text.replace(
+        "length = \"mm\", angle = \"deg\"",
+        "length = \"mm\", angle = \"rad\"",
+    );
+    let (one, two) = (ran(&text), ran(&other));
+    for name in [
+        "frequency",
+        "damping_ratio",
+        "growth",
+        "modal_mass",
+        "modal_inertia",
+    ] {
+        for (a, b) in column(&one, name).into_iter().zip(column(&two, name)) {
+            close(a, b, 1e-12);
+        }
+    }
+    let per_degree = column(&one, "shape(heave)")[0];
+    close(
+        column(&two, "shape(heave)")[0],
+        per_degree * 180.0 / PI,
+        1e-12,
+    );
+}
