@@ -6,44 +6,37 @@
 //! pin back from there. A slider stands off its line to the side that its guide pushes away from; it keeps its angle.
 //!
 //! Where the contacts are depends on the forces, and these on where the contacts are: both are found in turns, from the forces
-//! of the mechanism without play, until the pose stays. It has to stay on the branch of the motion without play.
+//! of the mechanism without play, until the pose stays (`settle.rs`). It has to stay on the branch of the motion without play.
+//!
+//! Joints that repeat each other are a case of its own: one of them can open only as the others let it, and equilibrium does
+//! not determine their reactions. Where clearance at them leads is not known ([`Clearances::is_undetermined`]).
 
-use std::f64::consts::PI;
+mod opening;
+mod settle;
+
 use std::sync::Arc;
 
 use kempe_measure::measure::{Along, History, measure};
-use kempe_measure::{ForceSource, Series, State};
+use kempe_measure::{Directions, ForceSource, Series, State};
 use kempe_mechanism::bordered::Bordered;
 use kempe_mechanism::constraint::Source as Of;
-use kempe_mechanism::evidence::{Evidence, evidence, is_finite as is_known};
-use kempe_mechanism::{Branch, Configuration, Design, Mechanism, NotReleased, Pose};
-use kempe_model::{DriveId, DriveKind, Measure, Released};
+use kempe_mechanism::evidence::{Evidence, closure, evidence};
+use kempe_mechanism::{Branch, Configuration, Design, NotReleased};
+use kempe_model::{DriveId, Measure};
 use kempe_motion::Motion;
 use kempe_motion::motion::Solver;
 use kempe_number::Number;
-use kempe_number::math;
-use kempe_units::Dimension;
 
+use self::opening::Opening;
+use self::settle::is_finite;
 use crate::instant::Rates;
 use crate::note::ForceNote;
 use crate::problem::Problem;
 use crate::sampler::ForceEvidence;
 use crate::source::{Source, pace};
 
-/// A pose stays where nothing moves by more than this, in mechanism sizes and rad.
-const SETTLED: f64 = 1e-12;
-
-/// How often the contacts are looked for. Where they are found at all, each look leaves a small part of the last error.
-const LOOKS: usize = 60;
-
 /// Below this part of the largest load of a mechanism a reaction has no direction.
 const NO_LOAD: f64 = 1e-12;
-
-/// Steps in which a pose with play is followed from that without, to see that both are of one branch.
-const STEPS: usize = 8;
-
-/// Two of these steps that differ by more than this part are no steps along one smooth branch.
-const SMOOTH: f64 = 0.5;
 
 /// A pose closes up to this part of the mechanism's size.
 const CLOSED: f64 = 1e-9;
@@ -55,6 +48,13 @@ pub struct Play {
     pub joint: Of,
     /// The clearance, m.
     pub radial: f64,
+}
+
+impl Play {
+    /// Whether it is across a line or an arc, to two sides alone; at a pin it is all round.
+    pub fn is_across(&self) -> bool {
+        matches!(self.joint, Of::Joint(_))
+    }
 }
 
 /// Why there are no clearances to look at.
@@ -113,13 +113,6 @@ impl NotSettled {
     }
 }
 
-/// A joint with play: its clearance, m, the coordinates along which it stands open, and whether a force is to hold it open.
-struct Opening {
-    radial: f64,
-    along: Vec<DriveId>,
-    held: bool,
-}
-
 /// Places along a motion with clearances: first the one without play is found ([`Clearances::go_to`]), then the one with it
 /// ([`Clearances::settle`]).
 pub struct Clearances {
@@ -133,22 +126,27 @@ pub struct Clearances {
     plain: Design<f64>,
     design: Arc<Design<Series<f64>>>,
     source: Source<f64>,
+    directions: Directions,
     ideal: Solver<f64>,
     configuration: Configuration<f64>,
     system: Bordered,
     branch: Branch,
     state: State<f64>,
     history: History<f64>,
-    evidence: Evidence,
 }
 
 impl Clearances {
-    /// Prepares a motion for clearances. `turning` says whether the massless links turn evenly, as fast as the reactions do;
-    /// otherwise they keep their directions. Friction acts at joints without play alone.
+    /// Prepares a motion for clearances and for values of the measures in `asked`. `turning` says whether the massless links turn
+    /// evenly, as fast as the reactions do; otherwise they keep their directions. Friction acts at joints without play alone.
     ///
     /// # Errors
     /// A joint that cannot have play, or problems of what acts on the mechanism.
-    pub fn new(motion: &Arc<Motion>, plays: &[Play], turning: bool) -> Result<Self, NoClearances> {
+    pub fn new(
+        motion: &Arc<Motion>,
+        plays: &[Play],
+        turning: bool,
+        asked: &[Measure],
+    ) -> Result<Self, NoClearances> {
         let joints: Vec<Of> = plays.iter().map(|play| play.joint).collect();
         let open = (motion.mechanism().releasing(&joints)).map_err(NoClearances::NotReleased)?;
         let given = &motion.design.parameters;
@@ -167,19 +165,17 @@ impl Clearances {
         let design = Arc::new(plain.lift(Series::constant));
         let neutral = Branch::neutral(&open);
         let at_rest = vec![Series::constant(0.0); open.model.drives.len()];
+        let measures = asked.iter().chain(source.measures());
         Ok(Self {
-            openings: plays.iter().map(|play| opening(&open, play)).collect(),
+            openings: plays.iter().map(|play| Opening::new(&open, play)).collect(),
             turning,
             parameters: given.iter().map(|x| Series::constant(*x)).collect(),
+            directions: Directions::of(motion, measures),
             ideal: motion.solver(),
             configuration: Configuration::new(&open),
             system: Bordered::new(&open),
             state: State::moving(&design, &neutral, 0.0, &at_rest),
             history: History::default(),
-            evidence: Evidence {
-                closure: f64::NAN,
-                smallest_singular_value: f64::NAN,
-            },
             branch: neutral,
             motion: motion.clone(),
             plain,
@@ -194,8 +190,11 @@ impl Clearances {
     }
 
     /// How far the pose last found can be trusted.
-    pub fn evidence(&self) -> Evidence {
-        self.evidence
+    pub fn evidence(&mut self) -> Evidence {
+        self.stand();
+        let (design, system) = (&self.plain, &mut self.system);
+        let size = self.motion.size();
+        evidence(design, &self.branch, &self.configuration, size, system)
     }
 
     /// How far the forces of the state last found can be trusted, and what is to be told of them.
@@ -205,17 +204,11 @@ impl Clearances {
         (evidence, crate::note::notes(forces, at, evidence.condition))
     }
 
-    /// What the loads follow, which must have a value at every instant.
-    pub fn followed(&self) -> &[Measure] {
-        self.source.measures()
-    }
-
-    /// Finds the state without play at a time of the motion, s; `history` is what measures there need of the motion so far.
+    /// Finds the state without play at a time of the motion, s.
     ///
     /// # Errors
     /// That the motion does not come there, or that it is singular there.
-    pub fn go_to(&mut self, time: f64, history: History<f64>) -> Result<(), NotSettled> {
-        self.history = history;
+    pub fn go_to(&mut self, time: f64) -> Result<(), NotSettled> {
         let motion = self.motion.clone();
         let model = &motion.mechanism().model;
         let along = (motion.path).parameter_at(model, Series::variable(time), &self.parameters);
@@ -223,6 +216,7 @@ impl Clearances {
         if !motion.reaches(p) || motion.limit_at(p).is_some() || motion.bridge(p).is_some() {
             return Err(NotSettled::NoMotion);
         }
+        self.history = self.directions.history(&motion, p);
         motion.solve(&motion.design, p, &mut self.ideal);
         let mut coordinates = vec![Series::constant(0.0); self.plain.mechanism.model.drives.len()];
         let own = model.drives.len();
@@ -231,26 +225,28 @@ impl Clearances {
         let (poses, near) = (&self.ideal.state.poses, &self.ideal.branch.near);
         self.branch = self.plain.branch_through(poses, near, &places);
         self.find(time, &coordinates);
-        match is_finite(&self.state) && self.closes(&places) {
-            true => Ok(()),
-            false => Err(NotSettled::NoMotion),
+        if !is_finite(&self.state) || !self.closes() {
+            return Err(NotSettled::NoMotion);
         }
+        let loose = self.source.forces.equilibrium.not_unique();
+        for opening in &mut self.openings {
+            opening.undetermined = opening.rows.iter().any(|row| loose.contains(row));
+        }
+        Ok(())
     }
 
     /// Derivatives of a measure of geometry to the ways in which each joint may stand open, at the state last found: along the
-    /// frame's axes for a pin, across its line for a slider.
+    /// frame's axes for a pin, across its line for a slider. NaN of a joint that opens only as others let it
+    /// ([`Clearances::is_undetermined`]).
     pub fn slopes(&self, asked: &Measure) -> Vec<[f64; 2]> {
         let slope = |drive: &DriveId| {
-            let series = measure(
-                &self.state,
-                &self.history,
-                None,
-                asked,
-                Along::Drive(*drive),
-            );
-            series.coefficient(1)
+            let along = Along::Drive(*drive);
+            measure(&self.state, &self.history, None, asked, along).coefficient(1)
         };
         let of = |opening: &Opening| {
+            if opening.undetermined {
+                return [f64::NAN; 2];
+            }
             let mut slopes = opening.along.iter().map(slope);
             std::array::from_fn(|_| slopes.next().unwrap_or(0.0))
         };
@@ -260,54 +256,23 @@ impl Clearances {
     /// The value of a measure of the state last found, SI.
     pub fn value(&self, asked: &Measure) -> f64 {
         let answer = |measure: &_| self.source.answer(measure);
-        measure(
-            &self.state,
-            &self.history,
-            Some(&answer),
-            asked,
-            Along::Time,
-        )
-        .value()
+        let (state, history) = (&self.state, &self.history);
+        measure(state, history, Some(&answer), asked, Along::Time).value()
     }
 
-    /// Goes on from the state without play to the one with the clearances where the reactions have them.
-    ///
-    /// # Errors
-    /// Why there is none.
-    pub fn settle(&mut self) -> Result<(), NotSettled> {
-        let time = self.state.time;
-        let ideal = self.state.poses.clone();
-        let mut coordinates = self.state.coordinates.clone();
-        let mut change = f64::INFINITY;
-        let mut flipping = None;
-        for look in 0..LOOKS {
-            let last: Vec<Pose<f64>> = self.state.poses.iter().map(Pose::value).collect();
-            flipping = self.set_contacts(&mut coordinates, look > 0)?;
-            self.find(time, &coordinates);
-            if !is_finite(&self.state) {
-                return Err(NotSettled::NotClosed);
-            }
-            let before = std::mem::replace(&mut change, self.moved(&last));
-            // Speeds go by how the contacts turn, which goes on settling after the pose has.
-            let settled = change < SETTLED && (!self.turning || before < SETTLED);
-            if settled {
-                let places: Vec<f64> = coordinates.iter().map(|q| q.value()).collect();
-                if !self.closes(&places) {
-                    return Err(NotSettled::NotClosed);
-                }
-                return self.on_branch(&ideal, &places);
-            }
-        }
-        Err(flipping.map_or(NotSettled::Moves(change), NotSettled::Flips))
+    /// Whether other joints repeat a joint with play in the pose without play last found: how far it stands open is no choice of
+    /// its own, and equilibrium does not determine what it carries.
+    pub fn is_undetermined(&self, joint: usize) -> bool {
+        let opening = self.openings.get(joint);
+        opening.is_some_and(|opening| opening.undetermined)
     }
 
     /// Whether no force acts at a joint with play in the state last found.
     pub fn is_idle(&self, joint: usize) -> bool {
-        let load = self
-            .openings
-            .get(joint)
-            .map(|opening| size_of(&self.load(opening)));
-        load.is_some_and(|size| size <= NO_LOAD * self.largest_load())
+        let idle = |opening: &Opening| {
+            !opening.undetermined && self.load_size(opening) <= NO_LOAD * self.largest_load()
+        };
+        self.openings.get(joint).is_some_and(idle)
     }
 
     /// Leaves a joint without play from now on, but for [`Clearances::slopes`]: no force ever holds a contact there.
@@ -315,55 +280,6 @@ impl Clearances {
         if let Some(opening) = self.openings.get_mut(joint) {
             opening.held = false;
         }
-    }
-
-    /// What a joint with play carries along the ways in which it may stand open, N.
-    fn load(&self, opening: &Opening) -> Vec<Rates> {
-        let drives = opening.along.iter();
-        drives
-            .map(|d| self.source.forces.drives[d.index()].value)
-            .collect()
-    }
-
-    /// The largest component of a force between links, N.
-    fn largest_load(&self) -> f64 {
-        let sides = self.source.forces.sides.iter().flatten();
-        let components = sides.flat_map(|side| side.wrench[..2].iter());
-        components.fold(0.0, |largest: f64, f| largest.max(f.value().abs()))
-    }
-
-    /// Puts the contacts where the forces of the state want them. Answers which one went to the other side.
-    fn set_contacts(
-        &self,
-        coordinates: &mut [Series<f64>],
-        again: bool,
-    ) -> Result<Option<usize>, NotSettled> {
-        let none = NO_LOAD * self.largest_load();
-        let mut flipping = None;
-        for (joint, opening) in self.openings.iter().enumerate() {
-            if !opening.held {
-                continue;
-            }
-            let force = self.load(opening);
-            let size = size_of(&force);
-            if size.is_nan() {
-                return Err(NotSettled::Undetermined(joint));
-            }
-            if size <= none {
-                return Err(NotSettled::NoReaction(joint));
-            }
-            let there = contact(&force, opening.radial, self.turning);
-            let mut along = 0.0;
-            for (drive, to) in opening.along.iter().zip(there) {
-                let place = &mut coordinates[drive.index()];
-                along += place.value() * to.value();
-                *place = to;
-            }
-            if again && along < 0.0 {
-                flipping = Some(joint);
-            }
-        }
-        Ok(flipping)
     }
 
     /// Finds state and forces for these coordinates.
@@ -375,121 +291,20 @@ impl Clearances {
         self.source.solve(&self.state, &amounts);
     }
 
-    /// How far the state is from these poses, in mechanism sizes and rad.
-    fn moved(&self, from: &[Pose<f64>]) -> f64 {
-        let pairs = self.state.poses.iter().zip(from);
-        let part = pairs.map(|(now, before)| apart(&now.value(), before, self.motion.size()));
-        part.fold(0.0, f64::max)
-    }
-
-    /// Whether the state's pose closes; fills its evidence.
-    fn closes(&mut self, places: &[f64]) -> bool {
-        self.configuration.set_inputs(&self.plain.mechanism, places);
+    /// Puts the configuration where the state is.
+    fn stand(&mut self) {
+        let places: Vec<f64> = self.state.coordinates.iter().map(|q| q.value()).collect();
+        self.configuration
+            .set_inputs(&self.plain.mechanism, &places);
         for (pose, found) in (self.configuration.poses.iter_mut()).zip(&self.state.poses) {
             *pose = found.value();
         }
-        self.evidence = evidence(
-            &self.plain,
-            &self.branch,
-            &self.configuration,
-            self.motion.size(),
-            &mut self.system,
-        );
-        self.evidence.closure <= CLOSED
     }
 
-    /// Whether the poses between the one without play and the state's, the contacts where they are, follow each other evenly:
-    /// then both are of one branch.
-    fn on_branch(&mut self, ideal: &[Pose<Series<f64>>], places: &[f64]) -> Result<(), NotSettled> {
+    /// Whether the state's pose closes.
+    fn closes(&mut self) -> bool {
+        self.stand();
         let size = self.motion.size();
-        let own = self.motion.mechanism().model.drives.len();
-        let mut last: Vec<Pose<f64>> = ideal.iter().map(Pose::value).collect();
-        let mut branch = self.branch.clone();
-        let mut ways: Vec<Vec<f64>> = Vec::new();
-        for step in 1..=STEPS {
-            let part = step as f64 / STEPS as f64;
-            let mut there = places.to_vec();
-            there[own..].iter_mut().for_each(|q| *q *= part);
-            branch.guess.clone_from(&last);
-            self.configuration.set_inputs(&self.plain.mechanism, &there);
-            self.plain.solve(&branch, &mut self.configuration);
-            if !self.configuration.poses.iter().all(is_known) {
-                return Err(NotSettled::OtherBranch);
-            }
-            let poses = self.configuration.poses.iter();
-            let way = poses.clone().zip(&last).flat_map(|(now, before)| {
-                let [x, y] = [now.x - before.x, now.y - before.y].map(|d| d / size);
-                [x, y, now.c - before.c, now.s - before.s]
-            });
-            ways.push(way.collect());
-            last = poses.copied().collect();
-        }
-        let norm = |list: &mut dyn Iterator<Item = f64>| list.fold(0.0, |a: f64, b| a.max(b.abs()));
-        let longest = ways.iter().map(|way| norm(&mut way.iter().copied()));
-        let longest = longest.fold(0.0, f64::max);
-        let even = ways.windows(2).all(|pair| {
-            let mut differences = pair[0].iter().zip(&pair[1]).map(|(a, b)| a - b);
-            let difference = norm(&mut differences);
-            difference <= (SMOOTH * longest).max(SETTLED)
-        });
-        // The last step ends where the contacts settled.
-        let end = (last.iter().zip(&self.state.poses))
-            .map(|(a, b)| apart(a, &b.value(), size))
-            .fold(0.0, f64::max);
-        match even && end <= CLOSED {
-            true => Ok(()),
-            false => Err(NotSettled::OtherBranch),
-        }
+        closure(&self.plain, &self.branch, &self.configuration, size) <= CLOSED
     }
-}
-
-/// The coordinates along which a joint with play stands open: those that are lengths.
-fn opening(open: &Mechanism, play: &Play) -> Opening {
-    let is_own = |drive: &DriveId| match open.model.drives[drive.index()].kind {
-        DriveKind::Release { of, .. } => is_of(of, play.joint),
-        _ => false,
-    };
-    let is_length =
-        |drive: &DriveId| open.model.drives[drive.index()].dimension == Dimension::LENGTH;
-    Opening {
-        held: true,
-        radial: play.radial,
-        along: (open.released.iter().copied())
-            .filter(|drive| is_own(drive) && is_length(drive))
-            .collect(),
-    }
-}
-
-fn is_of(released: Released, joint: Of) -> bool {
-    Of::from(released) == joint
-}
-
-/// Where the contact is under a force, m, in time: off by the clearance, against the force.
-fn contact(force: &[Rates], radial: f64, turning: bool) -> Vec<Series<f64>> {
-    if let ([x, y], true) = (force, turning) {
-        let angle = y.atan2(*x) + PI;
-        let coefficients = [angle.value(), angle.coefficient(1), 0.0, 0.0, 0.0];
-        let (s, c) = Series::from_coefficients(coefficients).sin_cos();
-        return vec![c * radial, s * radial];
-    }
-    let size = size_of(force);
-    let places = force.iter().map(|f| -radial * f.value() / size);
-    places.map(Series::constant).collect()
-}
-
-/// The size of a force, N.
-fn size_of(force: &[Rates]) -> f64 {
-    force.iter().fold(0.0, |sum, f| math::hypot(sum, f.value()))
-}
-
-/// How far two poses are apart, in mechanism sizes and rad.
-fn apart(a: &Pose<f64>, b: &Pose<f64>, size: f64) -> f64 {
-    let lengths = [a.x - b.x, a.y - b.y].map(|d| d.abs() / size);
-    let directions = [a.c - b.c, a.s - b.s].map(f64::abs);
-    (lengths.into_iter().chain(directions)).fold(0.0, |m, x| if x.is_nan() { x } else { m.max(x) })
-}
-
-fn is_finite(state: &State<f64>) -> bool {
-    let mut poses = state.poses.iter();
-    poses.all(|pose| is_known(&pose.value()))
 }

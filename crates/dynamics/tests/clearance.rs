@@ -9,7 +9,6 @@ use std::sync::Arc;
 
 use kempe_dynamics::ForceSampler;
 use kempe_dynamics::clearance::{Clearances, NotSettled, Play};
-use kempe_measure::measure::History;
 use kempe_mechanism::constraint::Source;
 use kempe_model::{JointKind, LinkId, Measure, Model, PoseMeasure};
 use kempe_motion::Motion;
@@ -38,7 +37,7 @@ fn clearances(motion: &Arc<Motion>, plays: &[(&str, f64)], turning: bool) -> Cle
             radial: *radial,
         })
         .collect();
-    Clearances::new(motion, &plays, turning).unwrap()
+    Clearances::new(motion, &plays, turning, &[]).unwrap()
 }
 
 fn measure(model: &Model, text: &str) -> Measure {
@@ -119,7 +118,7 @@ fn a_clearance_is_a_massless_link_along_the_reaction() {
         let motion = Case::read(&four_bar(&mut Rng(seed), None), "play").must_move();
         let mut at = clearances(&motion, &[("B", e), ("C", 2.0 * e)], false);
         let time = 0.37 * duration(&motion.mechanism().model, &[]);
-        at.go_to(time, History::default()).unwrap();
+        at.go_to(time).unwrap();
         let Ok(()) = at.settle() else { continue };
         let gaps = [(e, contact(&at, 0)[0]), (2.0 * e, contact(&at, 1)[0])];
         let linked = Case::read(&four_bar(&mut Rng(seed), Some(gaps)), "linked").must_move();
@@ -176,7 +175,7 @@ fn a_slider_stands_off_to_the_side_its_guide_pushes_from() {
     let mut sides = Vec::new();
     for part in [0.05, 0.2, 0.4, 0.6, 0.8, 0.95] {
         let time = part * duration(&motion.mechanism().model, &[]);
-        at.go_to(time, History::default()).unwrap();
+        at.go_to(time).unwrap();
         at.settle().unwrap();
         let side = -value(&at, "reaction_y(bore, piston)").signum();
         sides.push(side);
@@ -216,7 +215,7 @@ fn what_gives_way_under_a_load_is_told_by_virtual_work() {
             0.0,
         );
         let mut at = clearances(&motion, &plays, false);
-        at.go_to(0.0, History::default()).unwrap();
+        at.go_to(0.0).unwrap();
         at.settle().unwrap();
         let [dx, dy] = [value(&at, "x(P)") - ideal[0], value(&at, "y(P)") - ideal[1]];
         let along = (dx * x + dy * y) / size;
@@ -282,10 +281,8 @@ fn small_clearances_do_what_their_derivatives_say() {
                     radial,
                 })
                 .collect();
-            let mut at = Clearances::new(&motion, &plays, false).unwrap();
-            if at.go_to(time, History::default()).is_err()
-                || at.evidence().smallest_singular_value < 0.02
-            {
+            let mut at = Clearances::new(&motion, &plays, false, &[]).unwrap();
+            if at.go_to(time).is_err() || at.evidence().smallest_singular_value < 0.02 {
                 break;
             }
             let slopes: Vec<Vec<[f64; 2]>> = angles.iter().map(|m| at.slopes(m)).collect();
@@ -341,7 +338,7 @@ fn without_clearances_nothing_changes_and_without_forces_nothing_is_known() {
     let motion = Case::read(&four_bar(&mut Rng(3), None), "play").must_move();
     let asked = ["angle(rocker)", "torque(motor)", "reaction(B)"];
     let mut at = clearances(&motion, &[], false);
-    at.go_to(0.05, History::default()).unwrap();
+    at.go_to(0.05).unwrap();
     at.settle().unwrap();
     for (text, wanted) in asked.iter().zip(values(&motion, &asked, 0.05)) {
         assert!(
@@ -353,13 +350,10 @@ fn without_clearances_nothing_changes_and_without_forces_nothing_is_known() {
                 [drives]\nmotor = { turns = \"crank\", speed = 1 }\n[assembly]\nC = \"left of B -> D\"\n";
     let motion = Case::read(idle, "idle").must_move();
     let mut at = clearances(&motion, &[("B", 1e-5)], false);
-    at.go_to(1.0, History::default()).unwrap();
+    at.go_to(1.0).unwrap();
     assert_eq!(at.settle(), Err(NotSettled::NoReaction(0)));
     // What the drives never reach has no pose.
-    assert_eq!(
-        at.go_to(f64::NAN, History::default()),
-        Err(NotSettled::NoMotion)
-    );
+    assert_eq!(at.go_to(f64::NAN), Err(NotSettled::NoMotion));
 }
 
 /// A clearance that the loops cannot take up: the four-bar is nearly stretched.
@@ -375,7 +369,7 @@ fn what_does_not_close_is_told() {
         false,
     );
     let end = duration(&motion.mechanism().model, &[]);
-    at.go_to(end, History::default()).unwrap();
+    at.go_to(end).unwrap();
     let why = at.settle();
     assert!(
         matches!(
@@ -398,11 +392,11 @@ fn turning_links_turn_as_the_contacts_do() {
         let h = 1e-4 * time;
         let mut angles = Vec::new();
         for t in [time - h, time + h] {
-            at.go_to(t, History::default()).unwrap();
+            at.go_to(t).unwrap();
             at.settle().unwrap();
             angles.push([contact(&at, 0)[0], contact(&at, 1)[0]]);
         }
-        at.go_to(time, History::default()).unwrap();
+        at.go_to(time).unwrap();
         at.settle().unwrap();
         for pin in 0..2 {
             let [_, rate] = contact(&at, pin);
@@ -411,6 +405,86 @@ fn turning_links_turn_as_the_contacts_do() {
                 (rate - wanted).abs() <= 1e-3 * wanted.abs().max(1.0),
                 "{seed}: {rate} {wanted}"
             );
+        }
+    }
+}
+
+/// A parallelogram whose coupler hangs on these cranks (pin on the frame, pin on the coupler, place on both; without a mass in the
+/// middle), and a dyad on it.
+fn parallelogram(cranks: &[(&str, &str, &str, f64)]) -> String {
+    let list = |of: &dyn Fn(&(&str, &str, &str, f64)) -> String| -> String {
+        cranks.iter().map(of).collect::<Vec<_>>().join("")
+    };
+    format!(
+        "[links]\nframe = {{ {}G = [1.1, -0.3] }}\n{}\
+         coupler = {{ {}P = [1.0, 0.1], mass = 2, inertia = 0.1 }}\n\
+         arm = {{ P-Q = 0.4, mass = 1.5, inertia = 0.02 }}\nswing = {{ G-Q = 0.5, mass = 1, inertia = 0.03 }}\n\
+         [drives]\nmotor = {{ turns = \"{}\", from = 40, to = 140, speed = \"3 rad/s\" }}\n\
+         [assembly]\nQ = {{ near = [1.4, 0.1] }}\n{}",
+        list(&|(_, on, _, x)| format!("{on} = [{x:?}, 0], ")),
+        list(&|(link, on, to, x)| {
+            let mass = if *x == 0.3 {
+                ""
+            } else {
+                ", mass = 1, inertia = 0.01"
+            };
+            format!("{link} = {{ {on}-{to} = 0.25{mass} }}\n")
+        }),
+        list(&|(_, _, to, x)| format!("{to} = [{x:?}, 0], ")),
+        cranks[0].0,
+        list(&|(_, _, to, x)| format!("{to} = {{ near = [{}, 0.16] }}\n", x + 0.19)),
+    )
+}
+
+/// A third crank repeats the others: none of the pins of the parallelogram opens by itself, whatever they are called. What hangs
+/// on it does, as where two cranks do the same.
+#[test]
+fn joints_that_repeat_each_other_are_told_and_the_others_do_as_without_them() {
+    let two = [("crank", "A", "B", 0.0), ("other", "D", "C", 0.6)];
+    let names = [
+        [two[0], two[1], ("third", "E", "F", 0.3)],
+        [two[0], ("third", "E", "F", 0.3), two[1]],
+        [two[0], ("third", "A1", "A2", 0.6), ("a", "Z", "B1", 0.3)],
+    ];
+    let time = 0.3;
+    for cranks in names {
+        let motion = Case::read(&parallelogram(&cranks), "three").must_move();
+        let pins: Vec<&str> = cranks
+            .iter()
+            .flat_map(|(_, on, to, _)| [*on, *to])
+            .collect();
+        for pin in pins {
+            let mut at = clearances(&motion, &[(pin, 1e-5), ("Q", 1e-5)], false);
+            at.go_to(time).unwrap();
+            assert!(at.is_undetermined(0) && !at.is_undetermined(1), "{pin}");
+            assert!(!at.is_idle(0), "{pin}");
+            let slopes = at.slopes(&measure(&motion.mechanism().model, "angle(swing)"));
+            assert!(
+                slopes[0][0].is_nan() && slopes[1][0].is_finite(),
+                "{pin}: {slopes:?}"
+            );
+            assert_eq!(at.settle(), Err(NotSettled::Undetermined(0)), "{pin}");
+        }
+        let simple = Case::read(&parallelogram(&two), "two").must_move();
+        let found = [&motion, &simple].map(|motion| {
+            let mut at = clearances(motion, &[("Q", 1e-4), ("G", 2e-4), ("P", 3e-4)], false);
+            at.go_to(time).unwrap();
+            let slopes = at.slopes(&measure(&motion.mechanism().model, "angle(swing)"));
+            at.settle().unwrap();
+            let asked = [
+                "angle(swing)",
+                "angular_acceleration(arm)",
+                "torque(motor)",
+                "reaction(Q)",
+            ];
+            let values = asked.map(|text| value(&at, text));
+            (slopes, values)
+        });
+        for (a, b) in found[0].0.iter().flatten().zip(found[1].0.iter().flatten()) {
+            assert!((a - b).abs() < 1e-11, "{found:?}");
+        }
+        for (a, b) in found[0].1.iter().zip(found[1].1) {
+            assert!((a - b).abs() < 1e-9 * b.abs().max(1.0), "{found:?}");
         }
     }
 }

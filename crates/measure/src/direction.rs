@@ -2,13 +2,42 @@
 
 use kempe_mechanism::Design;
 use kempe_mechanism::pose::{Pose, sub};
-use kempe_model::PointId;
+use kempe_model::{Measure, PointId};
 use kempe_motion::motion::Motion;
 use kempe_motion::trace::interval;
 use kempe_number::math;
 
+use crate::measure::History;
+use crate::measurer::Needs;
+
+/// The directions between points that measures ask for, followed along a motion.
+#[derive(Default)]
+pub struct Directions(Vec<Direction>);
+
+impl Directions {
+    /// Those that these measures ask for.
+    pub fn of<'m>(motion: &Motion, measures: impl Iterator<Item = &'m Measure>) -> Self {
+        Self::between(motion, &Needs::of(motion, measures).directions)
+    }
+
+    /// Those from one point to another each.
+    pub(crate) fn between(motion: &Motion, points: &[(PointId, PointId)]) -> Self {
+        let directions = points.iter();
+        Self(directions.map(|p| Direction::new(motion, *p)).collect())
+    }
+
+    /// How often each has turned at a path parameter of the motion, as measures there take it.
+    pub fn history<B>(&self, motion: &Motion, p: f64) -> History<B> {
+        let directions = self.0.iter();
+        History {
+            directions: directions.map(|d| (d.points, d.near(motion, p))).collect(),
+            lengths: Vec::new(),
+        }
+    }
+}
+
 /// The direction from one point to another, unwrapped at every node of the trace.
-pub(crate) struct Direction {
+struct Direction {
     points: (PointId, PointId),
     /// rad, at the nodes.
     values: Vec<f64>,
@@ -16,7 +45,7 @@ pub(crate) struct Direction {
 
 impl Direction {
     /// Follows a direction over the whole trace; in the principal range where the motion starts.
-    pub fn new(motion: &Motion, points: (PointId, PointId)) -> Self {
+    fn new(motion: &Motion, points: (PointId, PointId)) -> Self {
         let mut values: Vec<f64> = Vec::with_capacity(motion.nodes());
         for index in 0..motion.nodes() {
             let (_, poses, _) = motion.node(index);
@@ -38,13 +67,8 @@ impl Direction {
         Self { points, values }
     }
 
-    /// From which point to which.
-    pub fn points(&self) -> (PointId, PointId) {
-        self.points
-    }
-
     /// About where it is at a path parameter, rad.
-    pub fn near(&self, motion: &Motion, p: f64) -> f64 {
+    fn near(&self, motion: &Motion, p: f64) -> f64 {
         let (parameters, values) = (motion.node_parameters(), &self.values);
         let node = interval(parameters, p);
         match (parameters.get(node), parameters.get(node + 1)) {

@@ -21,6 +21,7 @@ mod statistics;
 
 pub use circuit_rows::{circuit_row, circuit_samplers};
 pub use designs_in_lanes::{DesignsInLanes, is_of_poses};
+pub use direction::Directions;
 pub use force_source::{Curve, ForceSource, NoForces};
 pub use prepare::{Unmeasurable, Unprepared, unmeasurable};
 pub use row_note::RowNote;

@@ -6,7 +6,7 @@ use kempe_mechanism::PlanNumber;
 use kempe_model::{DriveId, Leaf, Measure, PointId, PoseMeasure, Statistic};
 use kempe_motion::motion::Motion;
 
-use crate::direction::Direction;
+use crate::direction::Directions;
 use crate::force_source::ForceSource;
 use crate::measure::{Along, History, KnownStatistic, Moment, visit_leaves};
 use crate::state::{Series, State};
@@ -68,7 +68,7 @@ pub(crate) struct Measurer<B, F> {
     /// Answers questions to forces.
     pub forces: F,
     /// Directions that are asked for.
-    pub directions: Vec<Direction>,
+    pub directions: Directions,
     /// Numbers over the motion that are known.
     pub statistics: Vec<KnownStatistic<B>>,
 }
@@ -82,7 +82,7 @@ where
         Self {
             states: StatesAlong::new(motion, parameters),
             forces,
-            directions: Vec::new(),
+            directions: Directions::default(),
             statistics: Vec::new(),
         }
     }
@@ -97,9 +97,7 @@ where
             let drives = motion.mechanism().model.drives.len() as u32;
             (0..drives).for_each(|drive| self.states.ask_alone(DriveId(drive)));
         }
-        self.directions = (needs.directions.iter())
-            .map(|points| Direction::new(&motion, *points))
-            .collect();
+        self.directions = Directions::between(&motion, &needs.directions);
     }
 
     /// Hands the state last found, at a path parameter, to `ask`, with its forces where they are wanted.
@@ -111,12 +109,9 @@ where
         ask: impl FnOnce(&Moment<'_, B>) -> R,
     ) -> R {
         let motion = self.states.motion();
-        let directions = self.directions.iter();
         let history = History {
-            directions: directions
-                .map(|d| (d.points(), d.near(motion, p)))
-                .collect(),
             lengths,
+            ..self.directions.history(motion, p)
         };
         let (state, statistics) = (self.states.state(), self.statistics.as_slice());
         if !with_forces {

@@ -119,6 +119,7 @@ pub const LATER_CODES: &[Code] = &[
     code("clearance-idle", "no force holds a contact at a joint with play"),
     code("clearance-left-out", "a pin has no play although all have: a wheel turns there"),
     code("clearance-not-settled", "the contacts in joints with play do not settle in some rows"),
+    code("clearance-undetermined", "joints with play repeat each other, and one opens only as the others let it"),
     code("command-line", "the command line cannot be read"),
     code("contradictory-pressures", "a cylinder drains against more pressure than it is fed with"),
     code("crowded-picture", "a picture has more sizes in it than can be told apart"),

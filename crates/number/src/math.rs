@@ -4,6 +4,8 @@
 //! native build and WebAssembly. Everything here is either plain IEEE arithmetic written out ([`sin_cos`], [`min`],
 //! [`max`]) or a call to the `libm` crate, which is. No function uses a fused multiply-add.
 
+use std::f64::consts::TAU;
+
 /// Largest |x| in rad for which [`sin_cos`] uses Kempe's own reduction; beyond it `libm`'s exact (and slow) one.
 ///
 /// At 1e5 the quotient x / (pi/2) needs 16 bits, which is what the split of pi/2 below leaves room for.
@@ -125,6 +127,12 @@ pub fn max(a: f64, b: f64) -> f64 {
 #[inline]
 pub fn atan2(y: f64, x: f64) -> f64 {
     libm::atan2(y, x)
+}
+
+/// An angle less whole turns, rad, from -pi to pi.
+#[inline]
+pub fn within_half_a_turn(angle: f64) -> f64 {
+    angle - TAU * (angle / TAU).round()
 }
 
 /// Length of the vector (`x`, `y`) without intermediate overflow.

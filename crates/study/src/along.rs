@@ -9,7 +9,6 @@ use kempe_mechanism::Mechanism;
 use kempe_model::{Diagnostic, DriveId, Measure, Model, Study, StudyKind};
 use kempe_motion::{Motion, Progress, Silent, Stage};
 
-use crate::clearance::not_at_an_instant;
 use crate::columns::Asked;
 use crate::explain::stopped;
 use crate::number_notes::number_notes;
@@ -205,14 +204,7 @@ pub(crate) fn not_answerable(mechanism: &Mechanism, study: &Study) -> Vec<Diagno
         StudyKind::Motion(along) => Asked::of_motion(&mechanism.model, along),
         StudyKind::Forces(along) => Asked::of_forces(mechanism, along),
         StudyKind::Simulate(study) => Asked::of_forces(mechanism, &study.along),
-        StudyKind::Clearance(play) => {
-            let asked = Asked::of_clearance(mechanism, &play.along);
-            let problems = not_at_an_instant(mechanism, &asked);
-            if !problems.is_empty() {
-                return problems;
-            }
-            asked
-        }
+        StudyKind::Clearance(play) => Asked::of_clearance(mechanism, &play.along),
         // They ask for columns of their own, which every mechanism answers.
         StudyKind::Balance(_) | StudyKind::Spring(_) | StudyKind::Vibrations(_) => {
             return Vec::new();

@@ -3,9 +3,10 @@
 mod matched;
 mod text;
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 
 use kempe_model::{Diagnostic, Model};
+use kempe_number::math::within_half_a_turn;
 use kempe_units::{Dimension, Unit, format_digits};
 
 use crate::extremes::{Extreme, Extremes, Sizes, extremes, extremes_of, without_rounding};
@@ -263,7 +264,7 @@ fn hint(kind: Kind, [this, against]: [f64; 2], unit: &Unit) -> String {
     if !angle || apart.abs() <= PI {
         return String::new();
     }
-    let rest = apart - TAU * (apart / TAU).round();
+    let rest = within_half_a_turn(apart);
     let rest = format_digits(rest + 0.0, unit, SHORT_DIGITS);
     format!("{rest} apart but for whole turns, which each design counts from its own start")
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::result::StudyResult;
-use crate::table::{Column, Table};
+use crate::table::{Column, Table, first_best};
 
 /// What is less than this part of the largest value of its unit in the table is rounding.
 pub const ROUNDING: f64 = 1e-12;
@@ -61,27 +61,38 @@ impl Sizes {
         }
         Self(sizes)
     }
+
+    /// The largest of the columns in the unit of one.
+    fn of_unit(&self, column: &Column) -> f64 {
+        self.0.get(column.unit.text()).copied().unwrap_or(0.0)
+    }
+
+    /// The largest of values in the unit of a column, and its row: the one that [`extremes_of`] tells of them.
+    pub fn largest(&self, column: &Column, values: &[f64]) -> Option<(usize, f64)> {
+        let rows = values.iter().copied().enumerate();
+        first_best(rows, f64::gt, ROUNDING * self.of_unit(column))
+    }
 }
 
-/// The extremes of a column of a table over `along`, in the rows that were reached. Of values that differ by rounding the first one
-/// has the place.
+/// The extremes of a column of a table over `along`, of what says where rows are in those that were reached. Of values that differ
+/// by rounding the first one has the place.
 pub(crate) fn extremes_of<'r>(
     column: &'r Column,
     table: &Table,
     along: &[f64],
     sizes: &Sizes,
 ) -> Extremes<'r> {
-    let reached = |row: usize| table.closure.get(row).is_none_or(|c| c.is_finite());
+    let mut places = table.columns.iter().take(table.places);
+    let demanded = places.any(|place| place.name == column.name);
+    let counts = |row: usize| {
+        let closure = table.closure.get(row);
+        !demanded || closure.is_none_or(|c| c.is_finite())
+    };
     let rows = column.values.iter().copied().enumerate();
-    let values: Vec<(usize, f64)> = rows
-        .filter(|(row, v)| !v.is_nan() && reached(*row))
-        .collect();
-    let size = sizes.0.get(column.unit.text()).copied().unwrap_or(0.0);
+    let rows = rows.filter(|(row, _)| counts(*row));
+    let size = sizes.of_unit(column);
     let best = |better: fn(&f64, &f64) -> bool| {
-        let found = values.iter().map(|(_, value)| *value);
-        let value = found.reduce(|a, b| if better(&b, &a) { b } else { a })?;
-        let alike = |v: f64| v == value || (v - value).abs() <= ROUNDING * size;
-        let (row, _) = *values.iter().find(|(_, v)| alike(*v))?;
+        let (row, value) = first_best(rows.clone(), better, ROUNDING * size)?;
         let at = along.get(row).copied().unwrap_or(f64::NAN);
         Some(Extreme { value, row, at })
     };
@@ -121,7 +132,8 @@ mod tests {
         let sizes = Sizes::of(&columns);
         let table = |closure: &[f64]| Table {
             name: "t".to_owned(),
-            columns: Vec::new(),
+            columns: vec![column("m", "deg", &[])],
+            places: 1,
             closure: closure.to_vec(),
             smallest_singular_value: Vec::new(),
             forces: None,

@@ -1,5 +1,7 @@
 //! What is to be known of a mechanism before it moves, in the names and units of its file.
 
+use std::sync::Arc;
+
 use kempe_mechanism::Design;
 use kempe_mechanism::mobility::Mobility;
 use kempe_mechanism::structure::BodyId;
@@ -9,11 +11,12 @@ use kempe_model::{
 use kempe_motion::assemble::Assembly;
 use kempe_motion::drive_path::DrivePath;
 use kempe_motion::events::EventKind;
-use kempe_motion::{EndReason, Findings};
+use kempe_motion::{EndReason, Findings, Motion};
 use kempe_units::Dimension;
 use serde::Serialize;
 
 use crate::along::not_answerable;
+use crate::clearance::{findings_of_clearance, refuses};
 use crate::drawn::{self, DrawnLink};
 use crate::explain::cannot_move;
 use crate::findings_forces::on_links;
@@ -455,12 +458,28 @@ fn diagnostics(model: &Model, design: &Design<f64>, found: &Findings) -> Vec<Dia
         )),
         None => diagnostics.extend(of_freedoms(design, &found.mobility)),
     }
-    for problem in (model.studies.iter()).flat_map(|s| not_answerable(&design.mechanism, s)) {
+    let motion = found.motion.as_ref();
+    for problem in (model.studies.iter()).flat_map(|study| of_study(design, study, motion)) {
         if !diagnostics.contains(&problem) {
             diagnostics.push(problem);
         }
     }
     diagnostics
+}
+
+/// What is to be told of a study before it is run.
+fn of_study(design: &Design<f64>, study: &Study, motion: Option<&Arc<Motion>>) -> Vec<Diagnostic> {
+    let mechanism = &*design.mechanism;
+    let mut found = match &study.kind {
+        StudyKind::Clearance(play) => {
+            findings_of_clearance(&mechanism.model, &study.name, play, motion)
+        }
+        _ => Vec::new(),
+    };
+    if !refuses(&found) {
+        found.extend(not_answerable(mechanism, study));
+    }
+    found
 }
 
 fn asks_only_for_circuits(model: &Model) -> bool {

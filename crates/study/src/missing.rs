@@ -155,6 +155,7 @@ mod tests {
         let table = |closure: Vec<f64>| Table {
             name: "turn".to_owned(),
             columns: Vec::new(),
+            places: 0,
             smallest_singular_value: vec![1.0; closure.len()],
             forces: None,
             balance: None,

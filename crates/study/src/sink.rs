@@ -51,6 +51,7 @@ impl RowSink {
         Self {
             table: Table {
                 name: name.to_owned(),
+                places: 1 + drives.len(),
                 columns,
                 closure: Vec::new(),
                 smallest_singular_value: Vec::new(),
@@ -80,7 +81,7 @@ impl RowSink {
         for (values, value) in self.hidden.iter_mut().zip(hidden) {
             values.push(*value);
         }
-        let fixed = 1 + self.drives.len();
+        let fixed = self.table.places;
         let mut columns = self.table.columns.iter_mut();
         for (column, value) in columns
             .by_ref()

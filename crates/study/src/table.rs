@@ -10,6 +10,8 @@ pub struct Table {
     pub name: String,
     /// Columns in order.
     pub columns: Vec<Column>,
+    /// How many of them, the first ones, say where a row is to be: they have values where it was not reached, too.
+    pub places: usize,
     /// Largest closure residual of each row, relative to the mechanism's size (directions in rad); NaN where the row was
     /// not reached.
     pub closure: Vec<f64>,
@@ -169,12 +171,21 @@ impl Table {
     }
 }
 
-/// The largest of what is a number, with its row.
+/// The largest of what is a number, with its row; of equals the first.
 pub(crate) fn largest(values: &[f64]) -> Option<(usize, f64)> {
-    let numbers = values
-        .iter()
-        .copied()
-        .enumerate()
-        .filter(|(_, v)| !v.is_nan());
-    numbers.max_by(|a, b| a.1.total_cmp(&b.1))
+    let rows = values.iter().copied().enumerate();
+    first_best(rows, f64::gt, 0.0)
+}
+
+/// The best of what is a number, and the first row of those whose values differ from it by rounding at most.
+pub(crate) fn first_best(
+    rows: impl Iterator<Item = (usize, f64)> + Clone,
+    better: fn(&f64, &f64) -> bool,
+    rounding: f64,
+) -> Option<(usize, f64)> {
+    let mut rows = rows.filter(|(_, value)| !value.is_nan());
+    let values = rows.clone().map(|(_, value)| value);
+    let best = values.reduce(|a, b| if better(&b, &a) { b } else { a })?;
+    let (row, _) = rows.find(|(_, v)| *v == best || (v - best).abs() <= rounding)?;
+    Some((row, best))
 }

@@ -82,15 +82,12 @@ impl<F: ForceSource> Sampler<F> {
     pub(crate) fn bounds(&self, between: &Between, a: &Kept, b: &Kept) -> Vec<Series<Interval>> {
         let motion = self.motion();
         let p = a.state.abscissa.clock.coefficient(0);
-        let directions = self.measurer.directions.iter();
         let lengths = a.lengths.iter().zip(&b.lengths);
         let history = History {
-            directions: directions
-                .map(|d| (d.points(), d.near(motion, p)))
-                .collect(),
             lengths: lengths
                 .map(|((point, from), (_, to))| (*point, Interval::new(*from, *to)))
                 .collect(),
+            ..self.measurer.directions.history(motion, p)
         };
         let state = between.state(&a.state, &b.state);
         let moment = Moment::new(&state, &history, &between.statistics, None);

@@ -1,15 +1,16 @@
 //! The columns of a study of clearance: of each quantity its value with play, how far that is from the ideal one, and what the
 //! clearances can do to it to first order.
 
-use std::f64::consts::{FRAC_1_SQRT_2, TAU};
+use std::f64::consts::FRAC_1_SQRT_2;
 
+use kempe_dynamics::clearance::Play;
 use kempe_measure::measure::visit_leaves;
 use kempe_mechanism::Mechanism;
-use kempe_model::{Diagnostic, Leaf, Measure, Nature, Plot};
+use kempe_model::{Leaf, Measure, Nature, Plot};
+use kempe_number::math::{hypot, within_half_a_turn};
 use kempe_units::{Dimension, Unit};
 
-use super::joints::Joints;
-use crate::columns::{Asked, is_of_whole_motion};
+use crate::columns::Asked;
 use crate::quantity::Quantity;
 use crate::result::Figure;
 use crate::table::Column;
@@ -28,10 +29,10 @@ pub(super) struct Found {
 
 impl Found {
     /// Nothing yet.
-    pub fn nothing(measures: &[Measure], joints: &Joints) -> Self {
+    pub fn nothing(measures: &[Measure], plays: &[Play]) -> Self {
         Self {
             values: vec![f64::NAN; measures.len()],
-            slopes: vec![vec![[f64::NAN; 2]; joints.plays.len()]; measures.len()],
+            slopes: vec![vec![[f64::NAN; 2]; plays.len()]; measures.len()],
         }
     }
 }
@@ -61,14 +62,13 @@ pub(super) struct FirstOrder {
 /// The quantities of a study of clearance.
 pub(super) struct Deviations {
     all: Vec<Deviation>,
-    radial: Vec<f64>,
-    across: Vec<bool>,
+    plays: Vec<Play>,
     /// How many of them are columns of the table; the rest is plotted alone.
     columns: usize,
 }
 
 impl Deviations {
-    pub fn new(mechanism: &Mechanism, units: &Units, asked: &Asked, joints: &Joints) -> Self {
+    pub fn new(mechanism: &Mechanism, units: &Units, asked: &Asked, plays: &[Play]) -> Self {
         let mut all: Vec<Deviation> = Vec::new();
         for quantity in asked.columns.iter().chain(&asked.curves) {
             let known = |d: &Deviation| {
@@ -80,8 +80,7 @@ impl Deviations {
         }
         Self {
             columns: asked.columns.len(),
-            radial: joints.plays.iter().map(|p| p.radial).collect(),
-            across: joints.across.clone(),
+            plays: plays.to_vec(),
             all,
         }
     }
@@ -105,15 +104,12 @@ impl Deviations {
             let Some(first) = &mut it.first_order else {
                 continue;
             };
-            let sizes = slopes
-                .iter()
-                .map(|[x, y]| kempe_number::math::hypot(*x, *y));
-            let parts: Vec<f64> = (sizes.zip(&self.radial))
-                .map(|(slope, radial)| slope * radial / unit.factor())
+            let parts: Vec<f64> = (slopes.iter().zip(&self.plays))
+                .map(|([x, y], play)| hypot(*x, *y) * play.radial / unit.factor())
                 .collect();
             // Of a play to two sides each is the whole, of one all round the mean square of a component is half.
-            let squares = (parts.iter().zip(&self.across)).map(|(part, across)| {
-                let share = if *across { 1.0 } else { FRAC_1_SQRT_2 };
+            let squares = (parts.iter().zip(&self.plays)).map(|(part, play)| {
+                let share = if play.is_across() { 1.0 } else { FRAC_1_SQRT_2 };
                 (share * part) * (share * part)
             });
             first.rms.values.push(squares.sum::<f64>().sqrt());
@@ -201,20 +197,6 @@ fn pictured(all: &[&Deviation]) -> Figure {
     }
 }
 
-/// What is asked that is no matter of an instant, as diagnostics over the model file.
-pub(crate) fn not_at_an_instant(mechanism: &Mechanism, asked: &Asked) -> Vec<Diagnostic> {
-    let whole = (asked.all()).filter(|q| is_of_whole_motion(mechanism, &q.measure));
-    let diagnostics = whole.map(|quantity| {
-        let message = format!(
-            "`{}` cannot be evaluated with clearance: it asks for the whole motion, and every row is found by itself",
-            quantity.name
-        );
-        Diagnostic::error("not-measurable", message)
-            .help("ask for what has a value at every instant; numbers over the ideal motion are told by other studies")
-    });
-    diagnostics.collect()
-}
-
 /// Whether a measure is a function of the pose alone, whose derivatives to the clearances are known.
 fn is_geometry(mechanism: &Mechanism, measure: &Measure) -> bool {
     let mut alone = true;
@@ -226,9 +208,4 @@ fn is_geometry(mechanism: &Mechanism, measure: &Measure) -> bool {
         };
     });
     alone
-}
-
-/// An angle less whole turns, from -pi to pi.
-fn within_half_a_turn(angle: f64) -> f64 {
-    angle - TAU * (angle / TAU).round()
 }

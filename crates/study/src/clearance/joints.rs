@@ -3,7 +3,7 @@
 use kempe_dynamics::clearance::Play;
 use kempe_mechanism::constraint::Source;
 use kempe_mechanism::{Mechanism, NotReleased};
-use kempe_model::{Clearance, ClearanceAt, Diagnostic, JointKind, Model, PointId, value};
+use kempe_model::{Clearance, ClearanceAt, Diagnostic, JointKind, LinkId, Model, PointId, value};
 use kempe_units::Dimension;
 
 use crate::unit::Units;
@@ -15,10 +15,10 @@ pub(crate) struct Joints {
     pub plays: Vec<Play>,
     /// What they are called.
     pub names: Vec<String>,
-    /// Whether the play is across a line, to two sides alone.
-    pub across: Vec<bool>,
     /// Pins that `all` means and that cannot have play, because wheels turn on them.
     carry_wheels: Vec<String>,
+    /// Why others that the file names cannot have it.
+    pub refused: Vec<Diagnostic>,
 }
 
 impl Joints {
@@ -32,23 +32,30 @@ impl Joints {
                 continue;
             }
             seen.push(*source);
-            let Some(clearance) = of(model, *source) else {
+            let Some(clearance) = of(mechanism, *source) else {
                 continue;
             };
             let radial = value(&clearance.radial, parameters);
             if radial == 0.0 {
                 continue;
             }
-            let name = name(model, *source);
-            let carries = mechanism.releasing(&[*source]).is_err();
-            if clearance.at == ClearanceAt::All && carries {
-                it.carry_wheels.push(name);
-                continue;
+            match mechanism.releasing(&[*source]) {
+                Ok(_) => {
+                    let joint = *source;
+                    it.plays.push(Play { joint, radial });
+                    it.names.push(name(model, joint));
+                }
+                Err(_) if clearance.at == ClearanceAt::All => {
+                    it.carry_wheels.push(name(model, *source));
+                }
+                Err(why) => it.refused.push(not_released(mechanism, why)),
             }
-            let joint = *source;
-            it.plays.push(Play { joint, radial });
-            it.names.push(name);
-            it.across.push(matches!(source, Source::Joint(_)));
+        }
+        for clearance in &model.clearances {
+            let some = value(&clearance.radial, parameters) != 0.0;
+            let welded = welded(mechanism, &clearance.at).filter(|_| some);
+            it.refused
+                .extend(welded.map(|what| no_clearance_there(&what, WELDED, Some(clearance))));
         }
         it
     }
@@ -70,7 +77,8 @@ impl Joints {
 }
 
 /// The entry that tells of a joint.
-fn of(model: &Model, source: Source) -> Option<&Clearance> {
+fn of(mechanism: &Mechanism, source: Source) -> Option<&Clearance> {
+    let model = &mechanism.model;
     let entries = || model.clearances.iter().rev();
     let of_all = || entries().find(|c| c.at == ClearanceAt::All);
     match source {
@@ -80,8 +88,15 @@ fn of(model: &Model, source: Source) -> Option<&Clearance> {
             let Some(own) = entries().find(own) else {
                 return of_all();
             };
+            // Links that are welded sit on the pin as one.
+            let body = mechanism.body_of(link);
             match &own.at {
-                ClearanceAt::Pin { on, .. } => (on.is_empty() || on.contains(&link)).then_some(own),
+                ClearanceAt::Pin { on, .. } if on.is_empty() => Some(own),
+                ClearanceAt::Pin { on, .. } => {
+                    let mut on = on.iter();
+                    on.any(|named| mechanism.body_of(*named) == body)
+                        .then_some(own)
+                }
                 _ => None,
             }
         }
@@ -94,6 +109,42 @@ fn of(model: &Model, source: Source) -> Option<&Clearance> {
             own.or_else(of_all).filter(|_| slides)
         }
         Source::Drive(_) => None,
+    }
+}
+
+/// Why there is no play between links that are one.
+const WELDED: &str = "its links are welded together and part nowhere";
+
+/// What an entry tells of that holds no two bodies together, because its links are welded.
+fn welded(mechanism: &Mechanism, at: &ClearanceAt) -> Option<String> {
+    let model = &mechanism.model;
+    let one = |a: LinkId, b: LinkId| mechanism.body_of(a) == mechanism.body_of(b);
+    match at {
+        ClearanceAt::Pin { point, on } => {
+            let point = model.points.get(point.index())?;
+            let (first, later) = point.links.split_first()?;
+            let fast = |link: &&LinkId| one(*first, **link);
+            if on.is_empty() {
+                return later
+                    .iter()
+                    .all(|link| fast(&link))
+                    .then(|| point.name.clone());
+            }
+            let link = model.links.get(on.iter().find(fast)?.index())?;
+            Some(format!("{} of {}", point.name, link.name))
+        }
+        ClearanceAt::Joint(id) => {
+            let joint = model.joints.get(id.index())?;
+            let [a, b] = match &joint.kind {
+                JointKind::Slider { at: pin, on, .. } | JointKind::Slot { pin, on } => {
+                    [pin.link, on.link]
+                }
+                JointKind::ArcSlot { pin, on } => [pin.link, on.link],
+                _ => return None,
+            };
+            one(a, b).then(|| joint.name.clone())
+        }
+        ClearanceAt::All => None,
     }
 }
 
@@ -119,7 +170,6 @@ fn name(model: &Model, source: Source) -> String {
 
 /// A joint that the file gives a clearance and that cannot have one.
 pub(crate) fn not_released(mechanism: &Mechanism, why: NotReleased) -> Diagnostic {
-    let model = &mechanism.model;
     let (source, reason) = match why {
         NotReleased::NoConstraint(source) => (source, "it holds no two bodies together"),
         NotReleased::OnCurve(source) => (source, "its slot runs along a smooth curve"),
@@ -127,13 +177,15 @@ pub(crate) fn not_released(mechanism: &Mechanism, why: NotReleased) -> Diagnosti
         NotReleased::Twice(source) => (source, "it is let go already"),
         _ => return Diagnostic::error("no-clearance-there", why.to_string()),
     };
-    let message = format!(
-        "the clearance at {} cannot be counted: {reason}",
-        name(model, source)
-    );
+    let name = name(&mechanism.model, source);
+    no_clearance_there(&name, reason, of(mechanism, source))
+}
+
+fn no_clearance_there(name: &str, reason: &str, clearance: Option<&Clearance>) -> Diagnostic {
+    let message = format!("the clearance at {name} cannot be counted: {reason}");
     let diagnostic = Diagnostic::error("no-clearance-there", message)
         .help("leave it out under [clearance]; there may be play at other pins, sliders and slots");
-    match of(model, source) {
+    match clearance {
         Some(clearance) => diagnostic.at(clearance.span.clone(), ""),
         None => diagnostic,
     }

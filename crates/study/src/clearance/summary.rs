@@ -6,22 +6,24 @@ use kempe_number::text::significant;
 
 use super::columns::Deviation;
 use super::joints::Joints;
+use crate::extremes::Sizes;
 use crate::force_notes::place;
 use crate::result::{Listing, Scalar};
-use crate::table::{Column, Table, largest};
+use crate::table::{Column, Table};
 use crate::unit::number_text;
 
 /// Digits of what people read.
 const DIGITS: usize = 4;
 
 /// Of each quantity the largest deviation from the ideal motion, its place and the mean, over the rows that have one.
-pub(super) fn scalars(all: &[Deviation], along: Option<&Column>) -> Vec<Scalar> {
+pub(super) fn scalars(all: &[Deviation], table: &Table, along: usize) -> Vec<Scalar> {
+    let (along, in_table) = (table.columns.get(along), Sizes::of(&table.columns));
     let mut list = Vec::new();
     for it in all {
         let (name, column) = (&it.quantity.name, &it.deviation);
         let sizes: Vec<f64> = column.values.iter().map(|x| x.abs()).collect();
         let known: Vec<f64> = sizes.iter().copied().filter(|x| x.is_finite()).collect();
-        let Some((row, most)) = largest(&sizes) else {
+        let Some((row, most)) = in_table.largest(column, &sizes) else {
             continue;
         };
         let scalar = |name: String, value: f64| Scalar {
@@ -44,11 +46,17 @@ pub(super) fn scalars(all: &[Deviation], along: Option<&Column>) -> Vec<Scalar> 
 }
 
 /// What the clearances can do at most to each quantity of the pose, to first order, and which joints do it.
-pub(super) fn listings(all: &[Deviation], along: Option<&Column>, joints: &Joints) -> Vec<Listing> {
+pub(super) fn listings(
+    all: &[Deviation],
+    table: &Table,
+    along: usize,
+    joints: &Joints,
+) -> Vec<Listing> {
+    let (along, in_table) = (table.columns.get(along), Sizes::of(&table.columns));
     let rows: Vec<Vec<String>> = (all.iter())
         .filter_map(|it| {
             let first = it.first_order.as_ref()?;
-            let (row, worst) = largest(&first.worst.values)?;
+            let (row, worst) = in_table.largest(&first.worst, &first.worst.values)?;
             let at = |column: &Column| column.values.get(row).copied().unwrap_or(f64::NAN);
             let mut parts: Vec<(f64, &str)> = (first.parts.get(row)?.iter())
                 .zip(&joints.names)
@@ -87,8 +95,14 @@ pub(super) fn listings(all: &[Deviation], along: Option<&Column>, joints: &Joint
     }]
 }
 
-/// Where no pose with play was found: a warning for each stretch of rows.
-pub(super) fn not_settled(table: &Table, along: usize, told: &[Option<String>]) -> Vec<Diagnostic> {
+/// Where no pose with play was found: a warning for each stretch of rows. `first_order` says whether the columns to first order
+/// are known.
+pub(super) fn not_settled(
+    table: &Table,
+    along: usize,
+    told: &[Option<String>],
+    first_order: bool,
+) -> Vec<Diagnostic> {
     let mut stretches: Vec<(usize, usize)> = Vec::new();
     for row in (0..told.len()).filter(|row| told[*row].is_some()) {
         match stretches.last_mut() {
@@ -123,7 +137,10 @@ pub(super) fn not_settled(table: &Table, along: usize, told: &[Option<String>]) 
             Diagnostic::warning("clearance-not-settled", message),
             |warning, (reason, count)| warning.note(format!("in {count} of these rows {reason}")),
         );
-        warning.help("see the column `note`, row by row; the columns to first order hold whatever the contacts do, away from a singular pose")
+        warning.help(match first_order {
+            true => "see the column `note`, row by row; the columns to first order hold whatever the contacts do, away from a singular pose",
+            false => "see the column `note`, row by row",
+        })
     };
     let shown = stretches.iter().copied().take(MOST_STRETCHES).map(warning);
     let mut list: Vec<Diagnostic> = shown.collect();

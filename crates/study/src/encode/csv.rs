@@ -78,6 +78,7 @@ mod tests {
         Table {
             name: "t".into(),
             closure: vec![0.0; values.len()],
+            places: 0,
             forces: None,
             smallest_singular_value: vec![f64::NAN; values.len()],
             balance: None,

@@ -103,6 +103,7 @@ mod tests {
                 ..Column::new("swing", Unit::parse("deg").unwrap())
             }],
             closure: vec![1e-16, f64::NAN, 0.0],
+            places: 0,
             forces: None,
             smallest_singular_value: vec![0.5; 3],
             balance: None,
@@ -141,6 +142,7 @@ mod tests {
             name: "none".into(),
             columns: vec![],
             closure: vec![],
+            places: 0,
             forces: None,
             smallest_singular_value: vec![],
             balance: None,

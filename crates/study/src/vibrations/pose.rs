@@ -238,6 +238,7 @@ fn table(bench: &Bench<'_>, modes: &[Mode], counted: &[Counted]) -> Table {
     Table {
         name: bench.name.to_owned(),
         columns,
+        places: 1,
         closure: vec![evidence.closure; modes.len()],
         smallest_singular_value: vec![evidence.smallest_singular_value; modes.len()],
         forces: None,

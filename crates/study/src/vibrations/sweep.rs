@@ -61,6 +61,7 @@ pub(super) fn along(
     let mut table = Table {
         name: bench.name.to_owned(),
         columns,
+        places: fixed,
         closure: Vec::new(),
         smallest_singular_value: Vec::new(),
         forces: None,
