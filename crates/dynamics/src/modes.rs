@@ -11,8 +11,8 @@ use crate::linearised::Linearised;
 
 /// A stiffness below this part of the terms it is the sum of is rounding: nothing brings that motion back.
 const NO_STIFFNESS: f64 = 1e-11;
-/// A stiffness below this part of the largest of all modes is rounding of the latter.
-const BESIDE_STIFFEST: f64 = 1e-14;
+/// An eigenvalue below this part of the largest has few digits of its own: the stiffness along its vector has more.
+const BESIDE_STIFFEST: f64 = 1e-10;
 /// Parts of matrices that are not symmetric count from this part of the largest entry.
 const SYMMETRIC: f64 = 1e-9;
 /// Damping between modes below this part of the largest is none: each vibrates by itself.
@@ -87,17 +87,28 @@ pub fn modes(it: &Linearised) -> Result<Vec<Mode>, NoModes> {
         return Err(NoModes::NoMass(most));
     };
     let stiffest = pairs.iter().fold(0.0_f64, |m, p| m.max(p.value.abs()));
-    let mut modes: Vec<Mode> = (pairs.into_iter())
-        .map(|pair| {
+    let vectors: Vec<&[f64]> = pairs.iter().map(|pair| pair.vector.as_slice()).collect();
+    let along = between(&it.stiffness, &vectors);
+    let squares: Vec<f64> = (pairs.iter().enumerate())
+        .map(|(mode, pair)| {
             let terms: f64 = (0..n * n)
                 .map(|k| (pair.vector[k / n] * it.stiffness_terms[k] * pair.vector[k % n]).abs())
                 .sum();
-            let none = pair.value.abs() <= NO_STIFFNESS * terms + BESIDE_STIFFEST * stiffest;
-            Mode {
-                square: if none { 0.0 } else { pair.value },
-                shape: pair.vector,
-                rates: [[0.0; 2]; 2],
+            let (square, off) = match pair.value.abs() > BESIDE_STIFFEST * stiffest {
+                true => (pair.value, 0.0),
+                false => by_vector(&along, n, mode),
+            };
+            match square.abs() <= NO_STIFFNESS * terms + off {
+                true => 0.0,
+                false => square,
             }
+        })
+        .collect();
+    let mut modes: Vec<Mode> = (pairs.into_iter().zip(squares))
+        .map(|(pair, square)| Mode {
+            square,
+            shape: pair.vector,
+            rates: [[0.0; 2]; 2],
         })
         .collect();
     let modal = Modal::new(it, &modes);
@@ -130,6 +141,39 @@ pub fn modes(it: &Linearised) -> Result<Vec<Mode>, NoModes> {
     Ok(modes)
 }
 
+/// The product of a matrix with shapes from both sides: row and column for each of them.
+fn between(matrix: &[f64], shapes: &[&[f64]]) -> Vec<f64> {
+    let n = shapes.len();
+    let times = |k: usize| -> f64 {
+        let (row, shape) = (&matrix[k / n * n..][..n], shapes[k % n]);
+        row.iter().zip(shape).map(|(a, x)| a * x).sum()
+    };
+    // Row for row of the matrix what each shape makes of it.
+    let right: Vec<f64> = (0..n * n).map(times).collect();
+    let entry = |k: usize| -> f64 {
+        let column = right.iter().skip(k % n).step_by(n);
+        shapes[k / n].iter().zip(column).map(|(x, a)| x * a).sum()
+    };
+    (0..n * n).map(entry).collect()
+}
+
+/// The square of a mode's frequency by the stiffness along its shape, as `along` has it between all shapes, and how far off that
+/// may be because its shape has a part in others: of second order in what is left between them (Rayleigh).
+fn by_vector(along: &[f64], n: usize, mode: usize) -> (f64, f64) {
+    let own = along[mode * n + mode];
+    let others = (0..n).filter(|other| *other != mode);
+    let off = others.map(|other| {
+        let left = (along[mode * n + other] + along[other * n + mode]).abs() / 2.0;
+        let apart = (along[other * n + other] - own).abs();
+        if left < apart {
+            left * left / apart
+        } else {
+            left
+        }
+    });
+    (own, off.sum())
+}
+
 /// The equations in the coordinates of the undamped modes.
 #[derive(Clone, Debug)]
 struct Modal {
@@ -149,14 +193,8 @@ impl Modal {
     fn new(it: &Linearised, modes: &[Mode]) -> Self {
         let n = it.size;
         let basis: Vec<Vec<f64>> = modes.iter().map(|m| m.shape.clone()).collect();
-        let between = |matrix: &[f64]| -> Vec<f64> {
-            let entry = |k: usize| {
-                let (a, b) = (&basis[k / n], &basis[k % n]);
-                let terms = (0..n * n).map(|e| a[e / n] * matrix[e] * b[e % n]);
-                terms.sum::<f64>()
-            };
-            (0..n * n).map(entry).collect()
-        };
+        let shapes: Vec<&[f64]> = basis.iter().map(Vec::as_slice).collect();
+        let between = |matrix: &[f64]| between(matrix, &shapes);
         let skew = |m: &[f64]| {
             (0..n * n)
                 .map(|k| (m[k] - m[k % n * n + k / n]).abs())
