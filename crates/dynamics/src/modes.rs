@@ -89,7 +89,7 @@ pub fn modes(it: &Linearised) -> Result<Vec<Mode>, NoModes> {
     let stiffest = pairs.iter().fold(0.0_f64, |m, p| m.max(p.value.abs()));
     let vectors: Vec<&[f64]> = pairs.iter().map(|pair| pair.vector.as_slice()).collect();
     let along = between(&it.stiffness, &vectors);
-    let squares: Vec<f64> = (pairs.iter().enumerate())
+    let (squares, rounding): (Vec<f64>, Vec<f64>) = (pairs.iter().enumerate())
         .map(|(mode, pair)| {
             let terms: f64 = (0..n * n)
                 .map(|k| (pair.vector[k / n] * it.stiffness_terms[k] * pair.vector[k % n]).abs())
@@ -98,12 +98,11 @@ pub fn modes(it: &Linearised) -> Result<Vec<Mode>, NoModes> {
                 true => (pair.value, 0.0),
                 false => by_vector(&along, n, mode),
             };
-            match square.abs() <= NO_STIFFNESS * terms + off {
-                true => 0.0,
-                false => square,
-            }
+            let rounding = NO_STIFFNESS * terms + off;
+            let none = square.abs() <= rounding;
+            (if none { 0.0 } else { square }, rounding)
         })
-        .collect();
+        .unzip();
     let mut modes: Vec<Mode> = (pairs.into_iter().zip(squares))
         .map(|(pair, square)| Mode {
             square,
@@ -111,7 +110,7 @@ pub fn modes(it: &Linearised) -> Result<Vec<Mode>, NoModes> {
             rates: [[0.0; 2]; 2],
         })
         .collect();
-    let modal = Modal::new(it, &modes);
+    let modal = Modal::new(it, &modes, rounding);
     if !modal.symmetric {
         // Loads that follow the motion: the frequencies are those of the whole, still without damping.
         let undamped = Modal {
@@ -185,12 +184,14 @@ struct Modal {
     basis: Vec<Vec<f64>>,
     /// Angular frequencies by which speeds are counted, 1/s.
     scale: Vec<f64>,
+    /// Squares of angular frequencies that are rounding, 1/s^2.
+    rounding: Vec<f64>,
     /// Whether mass and stiffness are.
     symmetric: bool,
 }
 
 impl Modal {
-    fn new(it: &Linearised, modes: &[Mode]) -> Self {
+    fn new(it: &Linearised, modes: &[Mode], rounding: Vec<f64>) -> Self {
         let n = it.size;
         let basis: Vec<Vec<f64>> = modes.iter().map(|m| m.shape.clone()).collect();
         let shapes: Vec<&[f64]> = basis.iter().map(Vec::as_slice).collect();
@@ -233,6 +234,7 @@ impl Modal {
                 .map(|m| m.square.abs().sqrt().max(least))
                 .collect(),
             basis,
+            rounding,
             symmetric,
         }
     }
@@ -292,7 +294,9 @@ impl Modal {
                 }
             }
         }
-        given.into_iter().map(|both| both.try_into().ok()).collect()
+        let both = given.into_iter().zip(&self.rounding);
+        both.map(|(both, rounding)| Some(without_rounding(both.try_into().ok()?, *rounding)))
+            .collect()
     }
 
     /// The product of a matrix with the inverse of the mass matrix.
@@ -366,6 +370,20 @@ impl Modal {
         };
         (0..modes.len()).map(coordinate).collect()
     }
+}
+
+/// Both values of `s` of a mode. Where their product, the square of its frequency, is rounding nothing brings it back: one of them is
+/// zero, or both, which rounding parts by its root.
+fn without_rounding(mut both: [[f64; 2]; 2], rounding: f64) -> [[f64; 2]; 2] {
+    let sizes = both.map(|[re, im]| re * re + im * im);
+    if (sizes[0] * sizes[1]).sqrt() <= rounding {
+        let smaller = if sizes[1] < sizes[0] { 1 } else { 0 };
+        both[smaller] = [0.0; 2];
+        if sizes[1 - smaller] <= rounding {
+            both[1 - smaller] = [0.0; 2];
+        }
+    }
+    both
 }
 
 /// Both values of `s` where `s^2 + damping s + square = 0`.
@@ -522,6 +540,67 @@ mod tests {
             (most - ((size - 1.5) / 2.0).sqrt()).abs() < 1e-9,
             "{above:?}"
         );
+    }
+
+    #[test]
+    fn what_nothing_brings_back_stays_free_beside_following_loads() {
+        let mut random = kempe_number::Random(17);
+        for n in 2..6 {
+            for _ in 0..20 {
+                let mut any = || 2.0 * random.uniform() - 1.0;
+                // Neither stiffness nor damping feels one motion, which takes part in every coordinate.
+                let still: Vec<f64> = (0..n).map(|_| 1.0 + 0.5 * any()).collect();
+                let length: f64 = still.iter().map(|x| x * x).sum();
+                let mut blind = |own: f64, follows: f64| -> Vec<f64> {
+                    let whole: Vec<f64> = (0..n * n)
+                        .map(|k| if k / n == k % n { own } else { follows * any() })
+                        .collect();
+                    let entry = |k: usize| {
+                        let row = &whole[k / n * n..][..n];
+                        let along: f64 = row.iter().zip(&still).map(|(a, x)| a * x).sum();
+                        row[k % n] - along * still[k % n] / length
+                    };
+                    (0..n * n).map(entry).collect()
+                };
+                let (damping, stiffness) = (blind(0.5, 0.1), blind(50.0, 4.0));
+                let mass: Vec<f64> = (0..n * n)
+                    .map(|k| {
+                        if k / n == k % n {
+                            1.0 + 0.1 * k as f64
+                        } else {
+                            0.1
+                        }
+                    })
+                    .collect();
+                let found = made(n, &mass, &damping, &stiffness);
+                let free: Vec<&Mode> = found.iter().filter(|m| m.square == 0.0).collect();
+                assert_eq!(free.len(), 1, "{found:?}");
+                assert_eq!(free[0].rates, [[0.0; 2]; 2], "{found:?}");
+                assert!(found.iter().all(|m| m.growth() <= 0.0), "{found:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_slow_mode_keeps_its_digits_beside_a_stiff_one() {
+        // A milligram on a stiff spring and a ton on a soft one, joined by another; then two that nothing holds.
+        let mass = [1e-6, 0.0, 0.0, 1e3];
+        let [slow, fast] = &made(2, &mass, &[0.0; 4], &[1e7 + 1.0, -1.0, -1.0, 2.0])[..] else {
+            panic!()
+        };
+        // By the sum and the product of both squares.
+        let (sum, product) = ((1e7 + 1.0) / 1e-6 + 2e-3, ((1e7 + 1.0) * 2.0 - 1.0) / 1e-3);
+        assert!((fast.square / sum - 1.0).abs() < 1e-12);
+        assert!(
+            (slow.square * fast.square / product - 1.0).abs() < 1e-11,
+            "{}",
+            slow.square
+        );
+        let [free, swings] = &made(2, &mass, &[0.0; 4], &[1e7, -1e7, -1e7, 1e7])[..] else {
+            panic!()
+        };
+        assert_eq!(free.square, 0.0);
+        assert!((swings.square / (1e7 * (1e6 + 1e-3)) - 1.0).abs() < 1e-12);
     }
 
     #[test]

@@ -90,7 +90,7 @@ fn scalars(bench: &Bench<'_>, asked: &(Vec<f64>, Linearised), it: &About) -> Vec
                 effort,
             );
             add(format!("{name} in equilibrium"), here, unit);
-        } else if bench.is_balanced(&it.linearised) {
+        } else if it.unsettled.is_none() && bench.is_balanced(&it.linearised) {
             add(format!("{name} in equilibrium"), here, unit);
         } else {
             add(format!("{name} at the pose"), here, unit);
@@ -210,11 +210,17 @@ fn table(bench: &Bench<'_>, modes: &[Mode], counted: &[Counted]) -> Table {
             .map(|(place, _)| place)
             .collect();
         if !alike.is_empty() {
-            add(name, bench.units.unit(dimension), &|_, m| {
-                let most = alike
+            add(name, bench.units.unit(dimension), &|k, m| {
+                // What goes by rounding alone does not go.
+                let going = alike
                     .iter()
-                    .fold(0.0_f64, |most, place| most.max(m.shape[*place].abs()));
-                1.0 / (most * most)
+                    .filter(|place| counted[k].shape[**place] != 0.0);
+                let most = going.fold(0.0_f64, |most, place| most.max(m.shape[*place].abs()));
+                if most > 0.0 {
+                    1.0 / (most * most)
+                } else {
+                    f64::NAN
+                }
             });
         }
     }

@@ -224,19 +224,20 @@ fn one_turn(
 /// What a mode does, in words.
 pub(super) fn in_words(mode: &Mode) -> String {
     let number = |x: f64| significant(x, 4);
-    let Some(frequency) = mode.angular_frequency() else {
-        return format!(
+    let grows = (mode.growth() > 0.0).then(|| {
+        format!(
             "unstable, it grows by e in {} s",
             number(1.0 / mode.growth())
-        );
+        )
+    });
+    let frequency = match (mode.angular_frequency(), &grows) {
+        (Some(frequency), _) if frequency > 0.0 => frequency,
+        (_, Some(grows)) => return grows.clone(),
+        (Some(_), None) => return "free, nothing brings it back".to_owned(),
+        (None, None) => return "held by damping alone".to_owned(),
     };
-    if frequency == 0.0 {
-        return "free, nothing brings it back".to_owned();
-    }
     let damped = match (mode.damping_ratio(), mode.growth()) {
-        (_, growth) if growth > 0.0 => {
-            format!("unstable, it grows by e in {} s", number(1.0 / growth))
-        }
+        _ if grows.is_some() => grows.unwrap_or_default(),
         (Some(ratio), _) if ratio >= 1.0 => {
             format!(
                 "creeps back without swinging, damping ratio {}",
