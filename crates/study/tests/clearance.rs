@@ -310,3 +310,282 @@ fn what_cannot_be_is_refused() {
     let result = study(&all, &[]).unwrap();
     assert_eq!(codes(&result), ["clearance-left-out"]);
 }
+
+/// What `check` tells of a text.
+fn checked(text: &str) -> Vec<&'static str> {
+    let report = kempe_study::check(&model(text, &[]));
+    report.diagnostics.iter().map(|d| d.code).collect()
+}
+
+/// Two links that are welded, on a pin of their own; a third one on the same pin.
+fn welded(clearance: &str) -> String {
+    format!(
+        "units = {{ length = \"mm\", angle = \"deg\" }}\n[links]\nframe = {{ A = [0, 0], D = [60, 0] }}\n\
+         crank = {{ A-B = 20, mass = 1, inertia = 0 }}\narm = {{ B-P = 20 }}\n\
+         coupler = {{ B-C = 50, mass = \"1 kg\", inertia = 0 }}\nlid = {{ C-Q = 20 }}\nrocker = {{ D-C = 40 }}\n\
+         [joints]\nfast = {{ weld = [\"crank\", \"arm\"], at = \"B\", angle = 40 }}\n\
+         firm = {{ weld = [\"rocker\", \"lid\"], at = \"C\", angle = 40 }}\n\
+         [drives]\nmotor = {{ turns = \"crank\", speed = \"60 rpm\" }}\n[assembly]\nC = \"left of B -> D\"\n\
+         [clearance]\n{clearance}\n[studies.play]\nkind = \"clearance\"\nrows = 5\ncolumns = [\"angle(rocker)\"]\n"
+    )
+}
+
+#[test]
+fn between_links_that_are_welded_there_is_no_clearance() {
+    let refused = |clearance: &str| {
+        let text = welded(clearance);
+        let found = study(&text, &[]).unwrap_err();
+        assert_eq!(found[0].code, "no-clearance-there", "{found:?}");
+        assert!(
+            checked(&text).contains(&"no-clearance-there"),
+            "{clearance}"
+        );
+        found[0].message.clone()
+    };
+    let told = refused("B = { radial = \"20 um\", on = \"arm\" }");
+    assert!(
+        told.contains("B of arm") && told.contains("welded"),
+        "{told}"
+    );
+    // Without any left there is nothing to tell of; what is welded to a later link sits on the pin with it.
+    let column_of = |clearance: &str| {
+        let result = study(&welded(clearance), &[]).unwrap();
+        column(&result, "angle(rocker) deviation").to_vec()
+    };
+    assert_eq!(
+        column_of("C = { radial = \"20 um\", on = \"lid\" }"),
+        column_of("C = { radial = \"20 um\", on = \"rocker\" }")
+    );
+    assert!(column_of("C = { radial = \"20 um\" }")[0] != 0.0);
+    let pair = welded("B = { radial = \"20 um\" }")
+        .replace("coupler = { B-C", "coupler = { K-C")
+        .replace("arm = { B-P", "arm = { B-K");
+    let found = study(&pair, &[]).unwrap_err();
+    assert!(
+        found[0].message.contains("at B cannot be counted"),
+        "{found:?}"
+    );
+}
+
+#[test]
+fn check_tells_what_run_tells() {
+    let base = "[clearance]\nall = { radial = \"20 um\" }\n";
+    let rubs = rocker(&format!(
+        "{base}[friction]\nall = {{ coefficient = 0.1, radius = 5 }}\n"
+    ));
+    assert!(checked(&rubs).contains(&"friction-left-out"));
+    let massless = rubs.replace(", mass = \"1 kg\", inertia = 0", "");
+    assert!(checked(&massless).contains(&"nothing-acts"));
+    let follows = rocker(&format!(
+        "{base}[loads]\npush = {{ force = [\"1 N/mm * path_length(C)\", 0], at = \"C\", on = \"rocker\" }}\n"
+    ));
+    assert!(checked(&follows).contains(&"not-measurable"));
+    let geared = "[links]\nframe = { A = [0, 0], D = [3, 0] }\nsun = { A-B = 1, mass = 1, inertia = 1 }\nwheel = { D-E = 1 }\n\
+                  [joints]\nmesh = { gears = [\"sun\", \"wheel\"], teeth = [20, 40] }\n[drives]\nmotor = { turns = \"sun\", speed = 1 }\n\
+                  [clearance]\nA = { radial = \"20 um\" }\n[studies.play]\nkind = \"clearance\"\n";
+    assert!(checked(geared).contains(&"no-clearance-there"));
+    assert!(
+        checked(&geared.replace("A = { radial", "all = { radial")).contains(&"clearance-left-out")
+    );
+    // Whatever run refuses or warns of before its rows, and nothing else.
+    let silent = rocker("[clearance]\nB = { radial = \"20 um\" }\n");
+    assert_eq!(checked(&silent), [""; 0]);
+}
+
+/// Three cranks hold one coupler.
+const THREE: &str = "units = { length = \"mm\", angle = \"deg\" }\n[links]\nframe = { A = [0, 0], D = [60, 0], E = [30, 0] }\n\
+     crank = { A-B = 20, mass = 1, inertia = 0 }\ncoupler = { B = [0, 0], C = [60, 0], F = [30, 0], mass = 1, inertia = 0 }\n\
+     rocker = { D-C = 20 }\nthird = { E-F = 20 }\nflag = { F-Q = 10, mass = 1, inertia = 0 }\n\
+     [drives]\nmotor = { turns = \"crank\", from = 30, to = 150, speed = \"60 rpm\" }\n\
+     wave = { turns = \"flag\", at = 20 }\n[assembly]\nC = { near = [77, 10] }\n\
+     [clearance]\nall = { radial = \"20 um\" }\n[studies.play]\nkind = \"clearance\"\nrows = 5\ncolumns = [\"angle(rocker)\"]\n";
+
+#[test]
+fn joints_that_repeat_each_other_are_told_once() {
+    let result = study(THREE, &[]).unwrap();
+    assert_eq!(
+        codes(&result),
+        ["overconstrained", "clearance-undetermined"]
+    );
+    let told = &result.diagnostics[1];
+    assert!(
+        told.message
+            .contains("at A, D, E, B, C and F of third joints repeat"),
+        "{told:?}"
+    );
+    assert!(
+        told.help
+            .as_deref()
+            .is_some_and(|h| h.ends_with("nothing is repeated: F of flag")),
+        "{told:?}"
+    );
+    for name in [
+        "angle(rocker)",
+        "angle(rocker) worst case",
+        "angle(rocker) rms",
+    ] {
+        assert!(column(&result, name).iter().all(|x| x.is_nan()), "{name}");
+    }
+    assert!(result.listings.is_empty());
+    assert!(checked(THREE).contains(&"clearance-undetermined"));
+    let one = THREE.replace(
+        "all = { radial = \"20 um\" }",
+        "F = { radial = \"20 um\", on = \"flag\" }",
+    );
+    let one = study(&one, &[]).unwrap();
+    assert_eq!(codes(&one), ["overconstrained", "reactions-not-unique"]);
+    assert_eq!(one.table.unreached(), 0);
+    assert!(!checked(&THREE.replace("[\"angle(rocker)\"]", "[\"x(Q)\"]")).contains(&"no-value"));
+}
+
+/// The last joint is found not to be idle in the last row: nothing is left to be told.
+#[test]
+fn a_joint_that_carries_in_the_last_row_alone_is_not_idle() {
+    // The hook of the tail carries nothing but what hangs on it at the end.
+    let text = rocker(
+        "[clearance]\nall = { radial = \"20 um\" }\n[loads]\nwind = { force = [\"max(0 s, time - 0.95 s) * 1 N/s\", 0], at = \"T\", on = \"tail\" }\n",
+    );
+    let result = study(&text, &[]).unwrap();
+    assert!(
+        !codes(&result).contains(&"clearance-idle"),
+        "{:?}",
+        result.diagnostics
+    );
+    assert!(
+        codes(&result).contains(&"clearance-not-settled"),
+        "{:?}",
+        result.diagnostics
+    );
+}
+
+/// Two joints that are worn, one across and the others all round: all round the mean square of one component is half.
+#[test]
+fn the_root_mean_square_is_that_of_independent_directions() {
+    let result = study(WORN, &[]).unwrap();
+    let pins = 0.02_f64.powi(2) + 0.03_f64.powi(2) + 0.05_f64.powi(2);
+    for row in [0, 90, 180] {
+        // At its dead points the piston goes by every pin, and not by its guide.
+        let place = column(&result, "place rms")[row];
+        assert!((place - (pins / 2.0).sqrt()).abs() < 1e-12, "{place}");
+        // The rod of 110 mm tilts by every pin and by the guide.
+        let tilt = column(&result, "tilt rms")[row];
+        let wanted = (pins / 2.0 + 0.015_f64.powi(2)).sqrt() / 110.0;
+        assert!((tilt.to_radians() - wanted).abs() < 1e-14, "{tilt}");
+        let worst = column(&result, "tilt worst case")[row];
+        assert!(
+            (worst.to_radians() - 0.115 / 110.0).abs() < 1e-14,
+            "{worst}"
+        );
+    }
+}
+
+#[test]
+fn numbers_over_the_rows_are_those_of_the_columns() {
+    for (text, along, names) in [
+        (LOCK, "lock", ["th2", "w2", "torque(lock)"]),
+        (WORN, "motor", ["place", "tilt", "torque(motor)"]),
+    ] {
+        let result = study(text, &[]).unwrap();
+        let scalar = |name: String| {
+            let found = result.scalars.iter().find(|s| s.name == name);
+            found.unwrap_or_else(|| panic!("{name}")).value
+        };
+        let extremes = kempe_study::extremes(&result);
+        for name in names {
+            let sizes = column(&result, &format!("{name} deviation")).iter();
+            let sizes: Vec<f64> = sizes.map(|x| x.abs()).collect();
+            let known: Vec<f64> = sizes.iter().copied().filter(|x| !x.is_nan()).collect();
+            let most = known.iter().copied().fold(0.0, f64::max);
+            let row = sizes
+                .iter()
+                .position(|x| *x >= most * (1.0 - 1e-9))
+                .unwrap();
+            assert_eq!(scalar(format!("largest deviation of {name}")), most);
+            assert_eq!(
+                scalar(format!("{along} at the largest deviation of {name}")),
+                column(&result, along)[row],
+                "{name}: of equals the first"
+            );
+            let mean = known.iter().sum::<f64>() / known.len() as f64;
+            let told = scalar(format!("mean deviation of {name}"));
+            assert!((told - mean).abs() <= 1e-15 * mean, "{name}");
+            // And those that are told of every column.
+            let of = format!("{name} deviation");
+            let it = extremes.iter().find(|e| e.column.name == of).unwrap();
+            let places = [it.smallest.unwrap(), it.largest.unwrap()].map(|e| (e.value.abs(), e.at));
+            assert!(
+                places.contains(&(most, column(&result, along)[row])),
+                "{name}: {places:?}"
+            );
+        }
+    }
+    // The list of first order looks at the rows that the columns are told of, settled or not.
+    let result = study(LOCK, &[("play", "100 um")]).unwrap();
+    let extremes = kempe_study::extremes(&result);
+    let worst = extremes
+        .iter()
+        .find(|e| e.column.name == "th2 worst case")
+        .unwrap();
+    let told = worst.largest.unwrap();
+    assert!((112.0..=121.0).contains(&told.at), "{told:?}");
+    let row = &result.listings[0].rows[0];
+    assert_eq!(row[0], "th2 [deg]");
+    assert_eq!(row[1], kempe_number::text::significant(told.value, 4));
+    assert_eq!(row[3].parse::<f64>().unwrap(), told.at);
+}
+
+/// Where the links in the clearances turn with the forces, speeds are what the columns of places grow by; frozen, they are not.
+#[test]
+fn turning_links_give_the_speeds_of_the_deviations() {
+    let text = |rates: &str| {
+        rocker("[clearance]\nB = { radial = \"2 um\" }\nC = { radial = \"3 um\", on = \"rocker\" }\n").replace(
+            "rows = 9\n",
+            &format!("rows = 721\nrates = \"{rates}\"\ncolumns = [\"angle(rocker)\", \"angular_speed(rocker)\"]\n"),
+        )
+    };
+    let [turning, frozen] = ["turning", "frozen"].map(|rates| study(&text(rates), &[]).unwrap());
+    let (time, angle) = (
+        column(&turning, "time"),
+        column(&turning, "angle(rocker) deviation"),
+    );
+    let off = |result: &StudyResult| {
+        let speed = &result
+            .table
+            .column("angular_speed(rocker) deviation")
+            .unwrap();
+        let speeds = speed.si();
+        let size = speeds.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        // A contact that turns round within a row is no place for differences.
+        let smooth = (1..720).filter(|k| {
+            let second = angle[k + 1] - 2.0 * angle[*k] + angle[k - 1];
+            second.abs() < 0.02 * (angle[k + 1] - angle[k - 1]).abs()
+        });
+        let gaps = smooth.map(|k| {
+            let grown = (angle[k + 1] - angle[k - 1]).to_radians() / (time[k + 1] - time[k - 1]);
+            (grown - speeds[k]).abs() / size
+        });
+        let gaps: Vec<f64> = gaps.collect();
+        (gaps.iter().copied().fold(0.0, f64::max), gaps.len())
+    };
+    let (exact, rows) = off(&turning);
+    assert!(exact < 0.01 && rows > 200, "{exact} in {rows}");
+    assert!(off(&frozen).0 > 0.1, "{:?}", off(&frozen));
+}
+
+#[test]
+fn the_search_for_idle_joints_hears_progress() {
+    use kempe_motion::{Done, Stage};
+    let text = rocker("[clearance]\nall = { radial = \"20 um\" }\n");
+    let model = model(&text, &[]);
+    let mut heard = Vec::new();
+    let mut stops = |stage: Stage, done: Done| {
+        heard.push((stage, done));
+        match (stage, done) {
+            (Stage::Measuring, Done::Of(3, 9)) => std::ops::ControlFlow::Break(()),
+            _ => std::ops::ControlFlow::Continue(()),
+        }
+    };
+    let found = run(&model, &model.studies[0], &mut stops).unwrap_err();
+    assert_eq!(found[0].code, "stopped");
+    assert!(!heard.iter().any(|(stage, _)| *stage == Stage::Rows));
+}
