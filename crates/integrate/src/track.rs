@@ -8,6 +8,17 @@ use crate::{System, Tolerance};
 const RETREAT: f64 = 0.25;
 /// A step shorter than this part of the time goes nowhere.
 const SHORTEST: f64 = 4.0 * f64::EPSILON;
+/// A state or rates below so many tolerances say nothing of how long a first step may be.
+const TOO_SMALL: f64 = 1e-5;
+/// A first step where nothing says how long it may be, in the unit of the time.
+const BLIND: f64 = 1e-6;
+/// The first step that is tried changes the state by this part; of the one that is chosen its highest term is as small.
+const CHANGE: f64 = 0.01;
+/// Rates and their change below so many tolerances a unit of time stand still.
+const STANDING: f64 = 1e-15;
+/// The first step beside the one that was tried: where everything stands still, and at most.
+const BEHIND: f64 = 1e-3;
+const BEYOND: f64 = 100.0;
 
 /// Why no step was made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -120,9 +131,9 @@ impl Track {
         let heading = self.step.signum();
         let sizes = self.norm(|k| self.state[k]);
         let rates = self.norm(|k| here[k]);
-        let rough = match sizes > 1e-5 && rates > 1e-5 {
-            true => 0.01 * sizes / rates,
-            false => 1e-6,
+        let rough = match sizes > TOO_SMALL && rates > TOO_SMALL {
+            true => CHANGE * sizes / rates,
+            false => BLIND,
         };
         for k in 0..self.size() {
             self.trial[k] = self.state[k] + rough * heading * here[k];
@@ -134,11 +145,11 @@ impl Track {
         }
         let change = self.norm(|k| there[k] - here[k]) / rough;
         let most = rates.max(change);
-        let fine = match most <= 1e-15 {
-            true => (1e-3 * rough).max(1e-6),
-            false => powf(0.01 / most, 1.0 / order),
+        let fine = match most <= STANDING {
+            true => (BEHIND * rough).max(BLIND),
+            false => powf(CHANGE / most, 1.0 / order),
         };
-        self.step = heading * fine.min(100.0 * rough);
+        self.step = heading * fine.min(BEYOND * rough);
     }
 
     /// Whether a step of this length changes the time.

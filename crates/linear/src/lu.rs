@@ -64,7 +64,8 @@ impl<T: Entry> Lu<T> {
         }
     }
 
-    /// Factors the matrix of these entries (row, column). `false` where it is singular or not finite.
+    /// Factors the matrix of these entries (row, column). `false` where a pivot vanishes or is not finite: the matrix is singular, or
+    /// what it was made of is no number. Entries that are no pivots are not looked at; they show in the solutions.
     pub fn factor(&mut self, mut entry: impl FnMut(usize, usize) -> T) -> bool {
         let n = self.size;
         for row in 0..n {
