@@ -25,6 +25,7 @@ use crate::hints;
 use crate::motion_findings::{motion_findings, of_freedoms, of_mechanism};
 use crate::prepared::design;
 use crate::unit::Units;
+use crate::vibrations::findings_of_vibrations;
 use crate::words::{list, source_name};
 use kempe_motion::progress::{Progress, Silent};
 
@@ -241,7 +242,7 @@ pub fn check_with_progress(model: &Model, progress: &mut dyn Progress) -> Report
             ));
         }
     }
-    report.diagnostics = diagnostics(model, &design, &found);
+    report.diagnostics = diagnostics(model, &design, &found, progress);
     report
 }
 
@@ -428,7 +429,12 @@ fn study_text(model: &Model, study: &Study, parameters: &[f64], units: &Units) -
     }
 }
 
-fn diagnostics(model: &Model, design: &Design<f64>, found: &Findings) -> Vec<Diagnostic> {
+fn diagnostics(
+    model: &Model,
+    design: &Design<f64>,
+    found: &Findings,
+    progress: &mut dyn Progress,
+) -> Vec<Diagnostic> {
     let mut diagnostics = match &found.motion {
         Some(_) => Vec::new(),
         None => crate::findings_forces::problems(design),
@@ -459,20 +465,31 @@ fn diagnostics(model: &Model, design: &Design<f64>, found: &Findings) -> Vec<Dia
         None => diagnostics.extend(of_freedoms(design, &found.mobility)),
     }
     let motion = found.motion.as_ref();
-    for problem in (model.studies.iter()).flat_map(|study| of_study(design, study, motion)) {
-        if !diagnostics.contains(&problem) {
-            diagnostics.push(problem);
+    for study in &model.studies {
+        for problem in of_study(design, study, motion, progress) {
+            if !diagnostics.contains(&problem) {
+                diagnostics.push(problem);
+            }
         }
     }
     diagnostics
 }
 
 /// What is to be told of a study before it is run.
-fn of_study(design: &Design<f64>, study: &Study, motion: Option<&Arc<Motion>>) -> Vec<Diagnostic> {
+fn of_study(
+    design: &Design<f64>,
+    study: &Study,
+    motion: Option<&Arc<Motion>>,
+    progress: &mut dyn Progress,
+) -> Vec<Diagnostic> {
     let mechanism = &*design.mechanism;
     let mut found = match &study.kind {
         StudyKind::Clearance(play) => {
             findings_of_clearance(&mechanism.model, &study.name, play, motion)
+        }
+        // Without a motion it has been told why there is none.
+        StudyKind::Vibrations(asked) if motion.is_some() => {
+            findings_of_vibrations(&mechanism.model, &study.name, asked, progress)
         }
         _ => Vec::new(),
     };

@@ -8,12 +8,35 @@ mod pose;
 mod shapes;
 mod sweep;
 
+use kempe_dynamics::modes;
 use kempe_model::{Diagnostic, Model, Rows, VibrationStudy};
 use kempe_motion::Progress;
 
 use crate::result::StudyResult;
 
 pub(crate) use shapes::SHAPE_POSES;
+
+/// What is to be told of a study of natural vibrations before anything is let go: what keeps it from starting, and what it leaves
+/// out.
+pub(crate) fn findings_of_vibrations(
+    model: &Model,
+    name: &str,
+    study: &VibrationStudy,
+    progress: &mut dyn Progress,
+) -> Vec<Diagnostic> {
+    let mut bench = match bench::Bench::new(model, name, study, progress) {
+        Ok(bench) => bench,
+        Err(refused) => return refused,
+    };
+    // Along a motion a row without vibrations is a row with a note.
+    if study.along.rows == Rows::Count(1)
+        && let Err(why) = modes(&bench.here(0.0))
+    {
+        let failed = bench.failed(bench::Failure::NoModes(why));
+        bench.diagnostics.push(failed);
+    }
+    bench.diagnostics
+}
 
 /// Runs a study of natural vibrations.
 pub(crate) fn vibrations(

@@ -367,3 +367,58 @@ fn other_units_tell_the_same_vibrations() {
         1e-12,
     );
 }
+
+/// What `check` tells of a text.
+fn checked(text: &str) -> Vec<&'static str> {
+    let report = check(&model(text));
+    report.diagnostics.iter().map(|d| d.code).collect()
+}
+
+#[test]
+fn check_tells_what_run_tells_before_anything_is_let_go() {
+    let light = "[links]\nframe = { O = [0, 0] }\nrod = { O-P = 1 }\n[drives]\nswing = { turns = \"rod\", at = 0 }\n[studies.m]\nkind = \"vibrations\"\n";
+    assert_eq!(checked(light), refused(light));
+    let study = "[studies.m]\nkind = \"vibrations\"";
+    let infinite = rod(
+        "-90",
+        &format!(
+            "[loads]\npush = {{ torque = \"1 N m / (angle(rod) + 90 deg) * 1 rad\", on = \"rod\" }}\n{study}"
+        ),
+    );
+    assert_eq!(checked(&infinite), refused(&infinite));
+    let held = "[links]\nframe = { A = [0, 0], D = [60, 0] }\ncrank = { A-B = 20, mass = 1, inertia = 1 }\ncoupler = { B-C = 50 }\n\
+                rocker = { D-C = 40 }\n[drives]\nswing = { turns = \"rocker\", at = 120 }\n[assembly]\nC = \"left of B -> D\"\n\
+                [studies.m]\nkind = \"vibrations\"\nat = { swing = 10 }\n";
+    assert_eq!(refused(held), ["pose-not-reached"]);
+    assert!(checked(held).contains(&"pose-not-reached"));
+    let rubs = rod(
+        "-30",
+        &format!(
+            "[friction]\nO = {{ coefficient = 0.1, radius = 0.01 }}\n[dampers]\nd = {{ between = \"P-W\", damping = 1, closing = 2 }}\n{study}"
+        ),
+    );
+    for told in [checked(&rubs), codes(&ran(&rubs))] {
+        assert_eq!(told, ["dry-friction-left-out", "uneven-damper"]);
+    }
+    assert_eq!(checked(&rod("-30", study)), [""; 0]);
+}
+
+#[test]
+fn a_mode_in_which_nothing_slides_has_no_modal_mass() {
+    let text = "[links]\nframe = { A = [0, 0], E = [1, 0], O = [3, 0] }\nblock = { P = [0, 0], mass = 2, inertia = 1 }\nrod = { O-Q = 1, mass = 2, inertia = 0.3 }\n\
+                [joints]\nguide = { slider = \"block\", at = \"P\", on = \"A -> E\" }\n\
+                [drives]\nway = { slides = \"block\", at = 0.5 }\nswing = { turns = \"rod\", at = -90 }\n\
+                [springs]\nk = { between = \"A-P\", stiffness = 1000, free = 0.5 }\n[studies.m]\nkind = \"vibrations\"\n";
+    let result = ran(text);
+    let (masses, inertias) = (
+        column(&result, "modal_mass"),
+        column(&result, "modal_inertia"),
+    );
+    // The rod swings first.
+    close(inertias[0], 0.3 + 2.0 * 0.25, 1e-12);
+    close(masses[1], 2.0, 1e-12);
+    assert!(
+        masses[0].is_nan() && inertias[1].is_nan(),
+        "{masses:?} {inertias:?}"
+    );
+}

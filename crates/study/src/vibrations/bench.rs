@@ -31,6 +31,9 @@ pub(super) struct Bench<'m> {
     pub motion: Arc<Motion>,
     pub stance: Stance,
     pub lineariser: Lineariser,
+    /// What is to be told of the mechanism.
+    pub found: Vec<Diagnostic>,
+    /// What is to be told of the study.
     pub diagnostics: Vec<Diagnostic>,
 }
 
@@ -74,7 +77,8 @@ impl<'m> Bench<'m> {
             name,
             study,
             units: Units::of(model),
-            diagnostics: motion_findings(&motion),
+            found: motion_findings(&motion),
+            diagnostics: Vec::new(),
             design: own,
             motion,
             stance,
@@ -157,6 +161,13 @@ impl<'m> Bench<'m> {
             modes,
             unsettled,
         })
+    }
+
+    /// Everything that is to be told.
+    pub fn told(self) -> Vec<Diagnostic> {
+        let mut all = self.found;
+        all.extend(self.diagnostics);
+        all
     }
 
     /// Whether a pose is one of equilibrium.

@@ -46,6 +46,7 @@ pub(super) fn about(
         }
     }
     let assemblies = &bench.motion.assemblies;
+    let assemblies = (assemblies.list.len(), assemblies.rejected);
     Ok(StudyResult {
         name: bench.name.to_owned(),
         demanded_rows: table.rows(),
@@ -57,8 +58,8 @@ pub(super) fn about(
         shapes,
         events: Vec::new(),
         along: 0,
-        assemblies: (assemblies.list.len(), assemblies.rejected),
-        diagnostics: bench.diagnostics,
+        assemblies,
+        diagnostics: bench.told(),
     })
 }
 

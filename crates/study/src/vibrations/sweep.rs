@@ -142,12 +142,16 @@ pub(super) fn along(
         [one] if goes_one_way(&model.drives[one.index()], &parameters) => 1 + one.index(),
         _ => 0,
     };
-    let mut diagnostics = bench.diagnostics;
-    diagnostics.extend(row_warnings(bench.name, &table, along));
-    diagnostics.extend(noted(bench.name, &table));
-    let assemblies = &bench.motion.assemblies;
+    let name = bench.name;
+    let assemblies = (
+        bench.motion.assemblies.list.len(),
+        bench.motion.assemblies.rejected,
+    );
+    let mut diagnostics = bench.told();
+    diagnostics.extend(row_warnings(name, &table, along));
+    diagnostics.extend(noted(name, &table));
     Ok(StudyResult {
-        name: bench.name.to_owned(),
+        name: name.to_owned(),
         figures: figures(&table, fixed),
         table,
         scalars: Vec::new(),
@@ -156,7 +160,7 @@ pub(super) fn along(
         shapes: Vec::new(),
         events: Vec::new(),
         along,
-        assemblies: (assemblies.list.len(), assemblies.rejected),
+        assemblies,
         diagnostics,
         demanded_rows: total,
     })
