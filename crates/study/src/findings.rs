@@ -452,8 +452,7 @@ fn diagnostics(
         });
     }
     match &found.motion {
-        // A circuit goes wherever it leads, whatever the drives' laws demand.
-        Some(motion) if asks_only_for_circuits(model) => diagnostics.extend(of_mechanism(motion)),
+        Some(motion) if is_led_elsewhere(model) => diagnostics.extend(of_mechanism(motion)),
         Some(motion) => diagnostics.extend(motion_findings(motion)),
         None if found.searched => diagnostics.extend(of_freedoms(
             design,
@@ -499,7 +498,11 @@ fn of_study(
     found
 }
 
-fn asks_only_for_circuits(model: &Model) -> bool {
-    let circuit = |study: &Study| study.kind.along().circuit;
-    !model.studies.is_empty() && model.studies.iter().all(circuit)
+/// Whether no study goes along the motion that the drives' laws demand: a circuit goes wherever it leads, and about the poses of
+/// vibrations rows that are not reached are rows with a note.
+fn is_led_elsewhere(model: &Model) -> bool {
+    let elsewhere = |study: &Study| {
+        study.kind.along().circuit || matches!(study.kind, StudyKind::Vibrations(_))
+    };
+    !model.studies.is_empty() && model.studies.iter().all(elsewhere)
 }

@@ -422,3 +422,43 @@ fn a_mode_in_which_nothing_slides_has_no_modal_mass() {
         "{masses:?} {inertias:?}"
     );
 }
+
+#[test]
+fn a_column_under_a_following_load_flutters() {
+    // Two rods of 1 m with springs at both joints: H. Ziegler, Ingenieur-Archiv 20 (1952).
+    let text = |push: f64| {
+        format!(
+            "gravity = [0, 0]\n[links]\nframe = {{ O = [0, 0] }}\none = {{ O-P = 1 }}\ntwo = {{ P-Q = 1 }}\n\
+             [masses]\na = {{ on = \"one\", at = \"P\", mass = 2 }}\nb = {{ on = \"two\", at = \"Q\", mass = 1 }}\n\
+             [drives]\nlow = {{ turns = \"one\", at = 0 }}\nhigh = {{ turns = \"two\", at = 0 }}\n\
+             [springs]\ns = {{ links = [\"frame\", \"one\"], stiffness = \"1 N m/rad\", free = 0 }}\n\
+             t = {{ links = [\"one\", \"two\"], stiffness = \"1 N m/rad\", free = 0 }}\n\
+             [loads]\npush = {{ force = [\"-{push:?} N * cos(angle(two))\", \"-{push:?} N * sin(angle(two))\"], at = \"Q\", on = \"two\" }}\n\
+             [studies.m]\nkind = \"vibrations\"\n"
+        )
+    };
+    // Masses 2 m and m: the load at which the frequencies meet is (7/2 - sqrt 2) c / l.
+    let critical = 3.5 - 2.0_f64.sqrt();
+    let below = ran(&text(critical - 0.01));
+    assert!(codes(&below).is_empty(), "{:?}", below.diagnostics);
+    let above = ran(&text(critical + 0.01));
+    assert_eq!(codes(&above), ["unstable-pose"]);
+    assert!(
+        above.diagnostics[0]
+            .help
+            .as_deref()
+            .is_some_and(|h| h.contains("follows the motion"))
+    );
+}
+
+/// What the drives' laws demand beyond the reach is no matter of poses that are led there one by one.
+#[test]
+fn rows_beyond_the_reach_are_rows_with_a_note_for_check_too() {
+    let text = "[links]\nframe = { A = [0, 0], D = [60, 0] }\ncrank = { A-B = 50 }\ncoupler = { B-C = 30 }\nrocker = { D-C = 40 }\n\
+                flap = { C-P = 20, mass = 1, inertia = 1 }\n[drives]\nmotor = { turns = \"crank\", from = 20, to = 300, speed = 1 }\n\
+                hang = { turns = \"flap\", at = -90 }\n[assembly]\nC = \"left of B -> D\"\n\
+                [studies.m]\nkind = \"vibrations\"\nrelease = [\"hang\"]\nrows = 15\n";
+    let result = ran(text);
+    assert_eq!(codes(&result), ["rows-not-reached"]);
+    assert_eq!(checked(text), [""; 0]);
+}

@@ -127,7 +127,7 @@ fn tell_balance(bench: &mut Bench<'_>, it: &About, place: &str) {
         .help(match why {
             Unsettled::NoEnd => "give what drives it on something that holds against it, a spring or a load; or hold that drive",
             Unsettled::NoRest => "move a spring's free length or stop a little, or smooth the load that jumps",
-            _ => "give another pose under `at`, from which it does not sink to a limit; or springs or loads that hold it before",
+            _ => "give another pose under `at`, from which it does not sink to a limit; or springs or loads that hold it before; or, where only the drive ends there, a drive at a link that goes farther",
         }),
         None if !bench.is_balanced(&it.linearised) => Diagnostic::warning(
             "not-in-equilibrium",
@@ -155,6 +155,19 @@ fn tell_unstable(bench: &mut Bench<'_>, modes: &[Mode], place: &str) {
     if growing.is_empty() {
         return;
     }
+    // What swings as it grows is fed by loads that follow it: no pose beside is better.
+    let swings = (modes.iter()).any(|m| m.growth() > 0.0 && m.damped_angular_frequency() > 0.0);
+    let help = match (swings, bench.study.settles) {
+        (true, _) => {
+            "a load that follows the motion feeds it: take some of it away, or give more stiffness or damping"
+        }
+        (false, true) => {
+            "give a pose a little beside it under `at`: from there it sinks to a stable one"
+        }
+        (false, false) => {
+            "leave `equilibrium = false` out, and it sinks to a stable pose if it is a little beside this one"
+        }
+    };
     let message = format!(
         "study `{}`: at {place} the mechanism is not stable: what starts it grows, {}",
         bench.name,
@@ -162,9 +175,7 @@ fn tell_unstable(bench: &mut Bench<'_>, modes: &[Mode], place: &str) {
     );
     bench
         .diagnostics
-        .push(Diagnostic::warning("unstable-pose", message).help(
-            "give a pose a little beside it under `at`: from there it sinks to a stable one",
-        ));
+        .push(Diagnostic::warning("unstable-pose", message).help(help));
 }
 
 fn hertz() -> Unit {
