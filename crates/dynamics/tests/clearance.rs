@@ -409,10 +409,12 @@ fn turning_links_turn_as_the_contacts_do() {
     }
 }
 
-/// A parallelogram whose coupler hangs on these cranks (pin on the frame, pin on the coupler, place on both; without a mass in the
-/// middle), and a dyad on it.
-fn parallelogram(cranks: &[(&str, &str, &str, f64)]) -> String {
-    let list = |of: &dyn Fn(&(&str, &str, &str, f64)) -> String| -> String {
+/// A crank: its name, its pins on the frame and on the coupler, and where both are on these, m.
+type Crank<'a> = (&'a str, &'a str, &'a str, f64);
+
+/// A parallelogram whose coupler hangs on these cranks, that in the middle without a mass, and a dyad on it.
+fn parallelogram(cranks: &[Crank<'_>]) -> String {
+    let list = |of: &dyn Fn(&Crank<'_>) -> String| -> String {
         cranks.iter().map(of).collect::<Vec<_>>().join("")
     };
     format!(
