@@ -462,14 +462,15 @@ fn a_joint_that_carries_in_the_last_row_alone_is_not_idle() {
 #[test]
 fn the_root_mean_square_is_that_of_independent_directions() {
     let result = study(WORN, &[]).unwrap();
-    let pins = 0.02_f64.powi(2) + 0.03_f64.powi(2) + 0.05_f64.powi(2);
+    let [a, b, c, guide] = [0.02, 0.03, 0.05, 0.015];
+    let pins = a * a + b * b + c * c;
     for row in [0, 90, 180] {
         // At its dead points the piston goes by every pin, and not by its guide.
         let place = column(&result, "place rms")[row];
         assert!((place - (pins / 2.0).sqrt()).abs() < 1e-12, "{place}");
         // The rod of 110 mm tilts by every pin and by the guide.
         let tilt = column(&result, "tilt rms")[row];
-        let wanted = (pins / 2.0 + 0.015_f64.powi(2)).sqrt() / 110.0;
+        let wanted = (pins / 2.0 + guide * guide).sqrt() / 110.0;
         assert!((tilt.to_radians() - wanted).abs() < 1e-14, "{tilt}");
         let worst = column(&result, "tilt worst case")[row];
         assert!(
