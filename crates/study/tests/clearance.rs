@@ -410,7 +410,7 @@ fn joints_that_repeat_each_other_are_told_once() {
     let told = &result.diagnostics[1];
     assert!(
         told.message
-            .contains("at A, D, E, B, C and F of third joints repeat"),
+            .contains("other joints repeat A, D, E, B, C and F of third, which open only"),
         "{told:?}"
     );
     assert!(
@@ -462,7 +462,7 @@ fn a_joint_that_carries_in_the_last_row_alone_is_not_idle() {
 #[test]
 fn the_root_mean_square_is_that_of_independent_directions() {
     let result = study(WORN, &[]).unwrap();
-    let [a, b, c, guide] = [0.02, 0.03, 0.05, 0.015];
+    let [a, b, c, guide] = [0.02_f64, 0.03, 0.05, 0.015];
     let pins = a * a + b * b + c * c;
     for row in [0, 90, 180] {
         // At its dead points the piston goes by every pin, and not by its guide.

@@ -100,8 +100,12 @@ pub(super) fn repeat_each_other(
     if repeated.is_empty() {
         return None;
     }
+    let open = match repeated.as_slice() {
+        [_] => "opens only as these let it",
+        _ => "open only as these let them",
+    };
     let message = format!(
-        "study `{name}`: what clearance does is not known: at {} joints repeat each other, and none of them opens but as the others let it",
+        "study `{name}`: what clearance does is not known: other joints repeat {}, which {open}",
         list(&repeated)
     );
     let help = match alone.is_empty() {
