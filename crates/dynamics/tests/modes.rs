@@ -210,3 +210,51 @@ fn what_moves_no_mass_is_named() {
     };
     assert_eq!(modes(&it), Err(NoModes::NoMass(1)));
 }
+
+#[test]
+fn a_following_load_makes_it_flutter_beside_a_stiff_spring_too() {
+    let k = [1.0, 0.8, 0.0, -0.8, 2.0, 0.0, 0.0, 0.0, 1e12];
+    let mass = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
+    let found = made(3, &mass, &[0.0; 9], &k);
+    let most = found.iter().map(Mode::growth).fold(f64::MIN, f64::max);
+    let im = (0.64_f64 - 0.25).sqrt();
+    let size = (2.25 + im * im).sqrt();
+    let wanted = ((size - 1.5) / 2.0).sqrt();
+    assert!((most - wanted).abs() < 1e-6 * wanted, "{found:?}");
+}
+
+#[test]
+fn damping_between_slow_modes_counts_beside_a_light_link_in_tar() {
+    // Two equal masses on equal springs, a weak damper between the second and the wall and a weaker one between both; a milligram
+    // beside them is damped a hundred million times as much for its mass.
+    let (k, far, joint) = (100.0, 2e-3, 4e-5);
+    let mass = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1e-6];
+    let damping = [
+        joint,
+        -joint,
+        0.0,
+        -joint,
+        far + joint,
+        0.0,
+        0.0,
+        0.0,
+        100.0,
+    ];
+    let stiffness = [k, 0.0, 0.0, 0.0, k, 0.0, 0.0, 0.0, 1.0];
+    let found = made(3, &mass, &damping, &stiffness);
+    // Both swing alike but for their damping, along its own axes: s^2 + c s + k = 0 with its eigenvalues c.
+    let (mean, apart) = (joint + far / 2.0, (far * far / 4.0 + joint * joint).sqrt());
+    let mut growth: Vec<f64> = (found.iter())
+        .filter(|m| m.damped_angular_frequency() > 1.0)
+        .map(Mode::growth)
+        .collect();
+    growth.sort_by(f64::total_cmp);
+    let wanted = [-(mean + apart) / 2.0, -(mean - apart) / 2.0];
+    assert_eq!(growth.len(), 2, "{found:?}");
+    for (found, wanted) in growth.iter().zip(wanted) {
+        assert!(
+            (found - wanted).abs() < 1e-4 * wanted.abs(),
+            "{found:e}, not {wanted:e}"
+        );
+    }
+}

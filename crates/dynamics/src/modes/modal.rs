@@ -5,14 +5,17 @@ use kempe_linear::{C, eigenvalues, solve_complex};
 use super::Mode;
 use crate::linearised::Linearised;
 
-/// Parts of matrices that are not symmetric count from this part of the largest entry.
+/// Parts of matrices that are not symmetric count from this part of the terms they are the sum of.
 const SYMMETRIC: f64 = 1e-9;
-/// Damping between modes below this part of the largest is none: each vibrates by itself.
+/// Damping between modes below this part of the terms it is the sum of is none: each vibrates by itself.
 const UNCOUPLED: f64 = 1e-12;
 /// A real part below this part of the largest entry of the matrix whose eigenvalue it is of is rounding.
 const NO_GROWTH: f64 = 1e-13;
 /// A matrix is made singular only up to this part of an eigenvalue, so that it can be solved with.
 const BESIDE: f64 = 1e-9;
+
+/// Speeds of modes that are slower than this part of the fastest are counted as theirs.
+const SLOWEST: f64 = 1e-6;
 
 /// The equations in the coordinates of the undamped modes.
 #[derive(Clone, Debug)]
@@ -36,17 +39,21 @@ impl Modal {
         let n = it.size;
         let basis: Vec<Vec<f64>> = modes.iter().map(|m| m.shape.clone()).collect();
         let shapes: Vec<&[f64]> = basis.iter().map(Vec::as_slice).collect();
-        let between = |matrix: &[f64]| between(matrix, &shapes);
-        let skew = |m: &[f64]| {
-            (0..n * n)
-                .map(|k| (m[k] - m[k % n * n + k / n]).abs())
-                .fold(0.0, f64::max)
+        let of_shapes = |matrix: &[f64]| between(matrix, &shapes);
+        let sizes = |list: &[f64]| -> Vec<f64> { list.iter().map(|x| x.abs()).collect() };
+        let farthest: Vec<Vec<f64>> = basis.iter().map(|shape| sizes(shape)).collect();
+        let farthest: Vec<&[f64]> = farthest.iter().map(Vec::as_slice).collect();
+        // Entry by entry: stiff modes hide nothing of slow ones.
+        let terms_of = |matrix: &[f64]| between(&sizes(matrix), &farthest);
+        let is_symmetric = |m: &[f64], terms: &[f64]| {
+            (0..n * n).all(|k| {
+                let other = k % n * n + k / n;
+                (m[k] - m[other]).abs() <= SYMMETRIC * terms[k].max(terms[other])
+            })
         };
-        let largest = |m: &[f64]| m.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
-        let (mut mass, mut stiffness) = (between(&it.mass), between(&it.stiffness));
-        let terms = between(&it.stiffness_terms);
-        let symmetric = skew(&mass) <= SYMMETRIC * largest(&mass)
-            && skew(&stiffness) <= SYMMETRIC * largest(&terms);
+        let (mut mass, mut stiffness) = (of_shapes(&it.mass), of_shapes(&it.stiffness));
+        let symmetric = is_symmetric(&mass, &terms_of(&it.mass))
+            && is_symmetric(&stiffness, &terms_of(&it.stiffness_terms));
         if symmetric {
             for k in 0..n * n {
                 let own = k / n == k % n;
@@ -54,17 +61,20 @@ impl Modal {
                 stiffness[k] = if own { modes[k / n].square } else { 0.0 };
             }
         }
-        let mut damping = between(&it.damping);
-        let coupling = UNCOUPLED * largest(&damping);
+        let mut damping = of_shapes(&it.damping);
+        let terms = terms_of(&it.damping);
         for k in 0..n * n {
-            if k / n != k % n && damping[k].abs() <= coupling {
+            if k / n != k % n && damping[k].abs() <= UNCOUPLED * terms[k] {
                 damping[k] = 0.0;
             }
         }
         let fastest = modes
             .iter()
             .fold(0.0_f64, |m, mode| m.max(mode.square.abs().sqrt()));
-        let least = if fastest > 0.0 { 1e-6 * fastest } else { 1.0 };
+        let least = match fastest > 0.0 {
+            true => SLOWEST * fastest,
+            false => 1.0,
+        };
         Self {
             n,
             mass,
