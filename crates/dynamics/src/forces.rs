@@ -1,8 +1,8 @@
 //! Forces of one instant, by both routes.
 
 use kempe_mechanism::constraint::Joint;
-use kempe_mechanism::{BodyId, Design};
-use kempe_model::{DriveId, LinkId};
+use kempe_mechanism::{BodyId, Design, Mechanism};
+use kempe_model::{DriveId, DriveKind, LinkId, StandIn};
 use kempe_number::Number as _;
 use kempe_units::Dimension;
 
@@ -168,6 +168,13 @@ impl<T: ForceNumber> Forces<T> {
             .zip(&self.drive_constraints)
             .enumerate()
         {
+            // What holds nothing gives what its motor does.
+            if holds_nothing(&self.design.mechanism, index) {
+                let given = self.acting.turns(DriveId(index as u32), at);
+                drive.by_power.value = given;
+                (drive.by_equilibrium, drive.value) = (given, given);
+                continue;
+            }
             let by_power = virtual_power::project(&self.needed, &at.coefficients[index]);
             let row = constraint.map(|c| self.equilibrium.row(c));
             let by_equilibrium =
@@ -267,6 +274,18 @@ impl<T: ForceNumber> Forces<T> {
         }
         sum
     }
+}
+
+/// Whether a drive is let go and holds nothing, or is a mere number.
+fn holds_nothing(mechanism: &Mechanism, drive: usize) -> bool {
+    let drive = mechanism.model.drives.get(drive);
+    let nothing = |kind: &DriveKind| {
+        matches!(
+            kind,
+            DriveKind::StandIn(StandIn::Follows { .. } | StandIn::Choice)
+        )
+    };
+    drive.is_some_and(|d| nothing(&d.kind))
 }
 
 /// Loads below this part of what friction takes are rounding: nothing is held at a dead point itself.

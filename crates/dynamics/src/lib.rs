@@ -65,8 +65,9 @@ pub mod spring_choice;
 pub mod static_equilibrium;
 pub mod table;
 pub mod teeth;
+pub mod turning;
 mod vector;
-pub mod virtual_power;
+mod virtual_power;
 pub mod weld;
 pub mod wrench;
 

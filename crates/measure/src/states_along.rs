@@ -5,6 +5,7 @@ use std::sync::Arc;
 use kempe_mechanism::Design;
 use kempe_mechanism::PlanNumber;
 use kempe_mechanism::evidence::is_finite;
+use kempe_mechanism::pose::Pose;
 use kempe_model::DriveId;
 use kempe_motion::bridge::{SideSeries, across};
 use kempe_motion::drive_path::DrivePath;
@@ -14,9 +15,17 @@ use kempe_motion::trace::Path;
 use kempe_number::{Jet, Number};
 
 use crate::clock::Clock;
-use crate::measure::only_value;
+use crate::measure::{alone_following, is_following, only_value, pilot_of};
 use crate::sensitivity::Varying;
 use crate::state::{Abscissa, Series, State};
+
+/// No pose.
+const UNKNOWN: Pose<f64> = Pose {
+    x: f64::NAN,
+    y: f64::NAN,
+    c: f64::NAN,
+    s: f64::NAN,
+};
 
 /// A number on which the states of a motion are found.
 pub trait Base: Number {
@@ -125,8 +134,14 @@ where
 
     /// Finds the motion that a drive alone would give, too, from now on.
     pub fn ask_alone(&mut self, drive: DriveId) {
-        if self.clock.path_drive() != Some(drive) {
-            self.state.alone[drive.index()] = Some(Vec::new());
+        if self.clock.path_drive() == Some(drive) {
+            return;
+        }
+        self.state.alone[drive.index()] = Some(Vec::new());
+        // What follows goes with what tells the place.
+        let drives = &self.state.mechanism().model.drives;
+        if let Some(pilot) = pilot_of(drives, drive) {
+            self.state.alone[pilot.index()] = Some(Vec::new());
         }
     }
 
@@ -210,7 +225,8 @@ where
 
     fn find_alone(&mut self, motion: &Motion, place: PathPlace<B>) {
         for index in 0..self.state.alone.len() {
-            if self.state.alone[index].is_none() {
+            let drives = &motion.mechanism().model.drives;
+            if self.state.alone[index].is_none() || is_following(drives, index) {
                 continue;
             }
             motion.branch_at(place.path.value(), &mut self.solver.branch);
@@ -219,6 +235,20 @@ where
             self.solver.coordinates[index] = Series::variable(q);
             B::solve(&mut self.solver, motion, &self.state.design);
             self.state.alone[index] = Some(self.solver.state.poses.clone());
+        }
+        for index in 0..self.state.alone.len() {
+            let drives = &motion.mechanism().model.drives;
+            if self.state.alone[index].is_some() && is_following(drives, index) {
+                let drive = DriveId(index as u32);
+                let pilot = pilot_of(drives, drive);
+                self.state.alone[index] = Some(match pilot {
+                    Some(pilot) => alone_following(&self.state, drive, pilot),
+                    // With several that tell the place, none alone is how one that follows would go alone.
+                    None => {
+                        vec![UNKNOWN.map(|x| only_value(B::from_f64(x))); self.state.poses.len()]
+                    }
+                });
+            }
         }
     }
 

@@ -119,9 +119,16 @@ pub(crate) fn simulation(
         findings: mut diagnostics,
         ..
     } = run;
-    let hidden = hidden(&question.free);
+    let hidden = hidden(&found.telling(&question.free));
     let along = in_time(&study.along, question.until);
-    let (mut result, values) = rows_of(&motion, name, &along, (true, 0, &hidden), progress)?;
+    let (mut result, values) = rows_of(
+        &motion,
+        &found.mechanism(),
+        name,
+        &along,
+        (true, 0, &hidden),
+        progress,
+    )?;
     diagnostics.append(&mut result.diagnostics);
     let units = Units::of(model);
     let times = result
