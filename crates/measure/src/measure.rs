@@ -10,7 +10,7 @@ mod in_time;
 mod named;
 mod needs;
 
-pub(crate) use self::following::{alone_following, is_following, pilot_of};
+pub(crate) use self::following::{alone_following, is_following, pilots};
 use self::named::NamedSeries;
 pub(crate) use self::needs::needs_time;
 pub use self::needs::{NoMeasure, order_of, visit_leaves};

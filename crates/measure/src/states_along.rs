@@ -5,7 +5,6 @@ use std::sync::Arc;
 use kempe_mechanism::Design;
 use kempe_mechanism::PlanNumber;
 use kempe_mechanism::evidence::is_finite;
-use kempe_mechanism::pose::Pose;
 use kempe_model::DriveId;
 use kempe_motion::bridge::{SideSeries, across};
 use kempe_motion::drive_path::DrivePath;
@@ -15,17 +14,9 @@ use kempe_motion::trace::Path;
 use kempe_number::{Jet, Number};
 
 use crate::clock::Clock;
-use crate::measure::{alone_following, is_following, only_value, pilot_of};
+use crate::measure::{alone_following, is_following, only_value, pilots};
 use crate::sensitivity::Varying;
 use crate::state::{Abscissa, Series, State};
-
-/// No pose.
-const UNKNOWN: Pose<f64> = Pose {
-    x: f64::NAN,
-    y: f64::NAN,
-    c: f64::NAN,
-    s: f64::NAN,
-};
 
 /// A number on which the states of a motion are found.
 pub trait Base: Number {
@@ -140,8 +131,10 @@ where
         self.state.alone[drive.index()] = Some(Vec::new());
         // What follows goes with what tells the place.
         let drives = &self.state.mechanism().model.drives;
-        if let Some(pilot) = pilot_of(drives, drive) {
-            self.state.alone[pilot.index()] = Some(Vec::new());
+        if is_following(drives, drive.index()) {
+            for pilot in pilots(drives) {
+                self.state.alone[pilot.index()] = Some(Vec::new());
+            }
         }
     }
 
@@ -239,15 +232,8 @@ where
         for index in 0..self.state.alone.len() {
             let drives = &motion.mechanism().model.drives;
             if self.state.alone[index].is_some() && is_following(drives, index) {
-                let drive = DriveId(index as u32);
-                let pilot = pilot_of(drives, drive);
-                self.state.alone[index] = Some(match pilot {
-                    Some(pilot) => alone_following(&self.state, drive, pilot),
-                    // With several that tell the place, none alone is how one that follows would go alone.
-                    None => {
-                        vec![UNKNOWN.map(|x| only_value(B::from_f64(x))); self.state.poses.len()]
-                    }
-                });
+                let alone = alone_following(&self.state, DriveId(index as u32));
+                self.state.alone[index] = Some(alone);
             }
         }
     }

@@ -85,7 +85,8 @@ impl Tellers {
     }
 
     /// Exchanges a coordinate that comes to its dead point `within` an angle of the link that turns fastest, rad: the plant is that of
-    /// the same mechanism at the same pose, and the state `y` that of its coordinates.
+    /// the same mechanism at the same pose then, and the state `y` that of its coordinates. Where the angle is finite, the plant was
+    /// looked at in this state last.
     pub fn exchange(
         &mut self,
         plant: &mut Plant,
@@ -93,13 +94,17 @@ impl Tellers {
         within: f64,
         progress: &mut dyn Progress,
     ) -> Exchanged {
+        if plant.mode.stuck || (within.is_finite() && poor(plant, within).is_none()) {
+            return Exchanged::Not;
+        }
         let mut rates = vec![0.0; y.len()];
-        if plant.mode.stuck || !plant.accelerate(time, y, &mut rates) {
+        if !plant.accelerate(time, y, &mut rates) {
             return Exchanged::Not;
         }
         let Some((place, turning)) = poor(plant, within) else {
             return Exchanged::Not;
         };
+        let known = self.used.len();
         match self.instead(plant, place, &turning) {
             Some(link) => {
                 let before = self.links[place].replace(link);
@@ -110,6 +115,7 @@ impl Tellers {
                     }
                     None => {
                         self.links[place] = before;
+                        self.used.truncate(known);
                         Exchanged::Failed
                     }
                 }

@@ -560,6 +560,10 @@ rate_4 = "rate(angle(four))"
 of_a = "reaction(A)"
 of_c = "reaction(C)"
 of_e = "reaction(E)"
+per_1 = "d(x(C), q1)"
+mass_1 = "reduced_mass(q1)"
+mass_2 = "reduced_mass(q2)"
+load_2 = "reduced_load(q2)"
 kinetic = "kinetic_energy"
 potential = "potential_energy"
 "#
@@ -588,6 +592,16 @@ fn a_five_bar_passes_its_stretched_pose() {
     let of_cranks = motion(&found);
     let times: Vec<f64> = (0..=100).map(|k| until * f64::from(k) / 100.0).collect();
     let a = values(&free.model, &of_cranks, &names, &times);
+    // What is asked along the cranks is as before a link told in their stead: there the same motion goes by the cranks themselves.
+    let per = ["per_1", "mass_1", "mass_2", "load_2"];
+    let early: Vec<f64> = (0..=8).map(|k| 0.005 * f64::from(k)).collect();
+    free.question.until = 0.0401;
+    let short = free.run();
+    assert!(short.told_by().is_empty());
+    let by_cranks = values(&free.model, &motion(&short), &per, &early);
+    let by_links = values(&free.model, &of_cranks, &per, &early);
+    let off = difference(&by_cranks, &by_links);
+    assert!(off < 1e-9, "{off:e}");
     let start = &a[0];
     let side = five_bar(&format!(
         "q1 = {{ turns = \"one\", at = \"{} rad\" }}\nq2 = {{ turns = \"two\", at = \"{} rad\" }}",
@@ -600,6 +614,29 @@ fn a_five_bar_passes_its_stretched_pose() {
     let b = values(&other.model, &motion(&by_side), &names, &times);
     let off = difference(&b, &a);
     assert!(off < 1e-8, "{off:e}");
+}
+
+#[test]
+fn one_that_is_let_go_passes_beside_one_that_is_driven() {
+    // The right crank turns evenly, the left one is let go: the couplers are stretched on the way, and work is done.
+    let drives = "q1 = { turns = \"one\", at = \"110 deg\" }\nq2 = { turns = \"three\", from = \"75 deg\", to = \"45 deg\", speed = \"50 deg/s\" }";
+    let until = 0.6;
+    let mut free = Free::new(&five_bar(drives), until);
+    free.question.free.truncate(1);
+    free.question.start = vec![[110_f64.to_radians(), 6.0]];
+    let found = free.run();
+    assert_eq!(found.ending, Ending::Until);
+    assert!(found.told_by().len() > 1, "no dead point");
+    let times: Vec<f64> = (0..=100).map(|k| until * f64::from(k) / 100.0).collect();
+    let names = ["kinetic", "potential"];
+    let e = values(&free.model, &motion(&found), &names, &times);
+    let most = e.iter().map(|row| row[0]).fold(0.0, f64::max);
+    for (row, time) in e.iter().zip(&times) {
+        let gained = row[0] + row[1] - e[0][0] - e[0][1];
+        let off = (gained - found.work.at(*time, &[])).abs() / most;
+        assert!(off < 1e-10, "{time}: {off:e}");
+    }
+    assert!(found.work.at(until, &[]).abs() > 1e-3 * most);
 }
 
 #[test]

@@ -2,12 +2,14 @@
 
 use std::f64::consts::TAU;
 
+use kempe_linear::Lu;
 use kempe_mechanism::Pose;
 use kempe_model::{Drive, DriveId, DriveKind, PoseMeasure, StandIn};
 use kempe_number::Number;
 
 use super::{Along, History, Moment, ORDER, Series, undefined};
 use crate::state::State;
+use crate::states_along::Base;
 
 /// Whether a drive follows.
 pub(crate) fn is_following(drives: &[Drive], drive: usize) -> bool {
@@ -15,31 +17,63 @@ pub(crate) fn is_following(drives: &[Drive], drive: usize) -> bool {
         .is_some_and(|d| matches!(d.kind, DriveKind::StandIn(StandIn::Follows { .. })))
 }
 
-/// What tells the place of the mechanism for a drive that follows, where that is one coordinate alone.
-pub(crate) fn pilot_of(drives: &[Drive], drive: DriveId) -> Option<DriveId> {
-    if !is_following(drives, drive.index()) {
-        return None;
-    }
+/// What tells the place of the mechanism for the drives that follow, one for each of these.
+pub(crate) fn pilots(drives: &[Drive]) -> Vec<DriveId> {
     let is_pilot = |d: &Drive| matches!(d.kind, DriveKind::StandIn(StandIn::Pilot { .. }));
-    let mut pilots = (0..drives.len()).filter(|index| is_pilot(&drives[*index]));
-    let only = pilots.next()?;
-    pilots.next().is_none().then_some(DriveId(only as u32))
+    let pilots = (0..drives.len()).filter(|index| is_pilot(&drives[*index]));
+    pilots.map(|index| DriveId(index as u32)).collect()
 }
 
-/// The poses along a drive that follows, as series in its own coordinate: those along the pilot, whose coordinate is a series in
-/// that of the drive. At a dead point of the drive they have no finite rates.
-pub(crate) fn alone_following<B: Number>(
-    state: &State<B>,
-    drive: DriveId,
-    pilot: DriveId,
-) -> Vec<Pose<Series<B>>> {
+/// The poses along a drive that follows, all others that follow at rest, as series in its own coordinate: those along the pilot, whose
+/// coordinate is a series in that of the drive. At a dead point of the drive they have no finite rates. Of several pilots only
+/// how fast each goes is known.
+pub(crate) fn alone_following<B: Base>(state: &State<B>, drive: DriveId) -> Vec<Pose<Series<B>>> {
     let history = History::default();
     let moment = Moment::new(state, &history, &[], None);
-    let along = Along::Drive(pilot);
-    let inverse = reverted(&moment.following(drive, along));
-    let poses = moment.poses(along).iter();
-    poses
-        .map(|pose| pose.map(|x| x.compose(&inverse)))
+    let drives = &state.mechanism().model.drives;
+    let pilots = pilots(drives);
+    if let [pilot] = pilots[..] {
+        let along = Along::Drive(pilot);
+        let inverse = reverted(&moment.following(drive, along));
+        let poses = moment.poses(along).iter();
+        return poses
+            .map(|pose| pose.map(|x| x.compose(&inverse)))
+            .collect();
+    }
+    let follow = (0..drives.len()).filter(|index| is_following(drives, *index));
+    let follow: Vec<DriveId> = follow.map(|index| DriveId(index as u32)).collect();
+    let mut shares: Vec<f64> = (follow.iter())
+        .map(|other| if *other == drive { 1.0 } else { 0.0 })
+        .collect();
+    let mut factors = Lu::new(pilots.len());
+    let rate = |row: usize, column: usize| {
+        let along = Along::Drive(pilots[column]);
+        let following = moment.following(follow[row], along);
+        following.coefficient(1).value()
+    };
+    if follow.len() == pilots.len() && factors.factor(rate) {
+        factors.solve(&mut shares);
+    } else {
+        shares = vec![f64::NAN; pilots.len()];
+    }
+    let first = |body: usize, of: fn(&Pose<Series<B>>) -> Series<B>| {
+        let parts = pilots.iter().zip(&shares).map(|(pilot, share)| {
+            let poses = moment.poses(Along::Drive(*pilot));
+            of(&poses[body]).coefficient(1) * B::unvaried(*share)
+        });
+        let mut coefficients = [B::from_f64(f64::NAN); ORDER];
+        coefficients[0] = of(&state.poses[body]).coefficient(0);
+        coefficients[1] = parts.fold(B::zero(), |sum, part| sum + part);
+        Series::from_coefficients(coefficients)
+    };
+    let bodies = 0..state.poses.len();
+    bodies
+        .map(|body| Pose {
+            x: first(body, |pose| pose.x),
+            y: first(body, |pose| pose.y),
+            c: first(body, |pose| pose.c),
+            s: first(body, |pose| pose.s),
+        })
         .collect()
 }
 
