@@ -41,6 +41,10 @@ x = "x(C)"
 y = "y(C)"
 kinetic = "kinetic_energy"
 potential = "potential_energy"
+fastest = "max(speed(C))"
+hardest = "max(reaction(B))"
+gone = "path_length(C)"
+average = "mean(reaction(D))"
 {more}
 "#
     )
@@ -283,7 +287,9 @@ fn what_asks_for_the_drive_is_answered() {
     let (crank, by_crank) = run(&turn, [start[0], start[1]], 1.0);
     let of_crank = motion(&by_crank);
     let times: Vec<f64> = (0..50).map(|k| (0.5 + f64::from(k)) / 50.0).collect();
-    let names = ["own", "rate_of", "per", "mass", "load"];
+    let names = [
+        "own", "rate_of", "per", "mass", "load", "fastest", "hardest", "gone", "average",
+    ];
     let a = values(&rocker.model, &of_rocker, &names, &times);
     let b = values(&crank.model, &of_crank, &names, &times);
     let off = difference(&b, &a);
@@ -420,7 +426,7 @@ fn a_triple_rocker_swings_through_many_dead_points() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(12))]
+    #![proptest_config(ProptestConfig::with_cases(24))]
 
     /// Whichever link of a four-bar is let go, it moves alike.
     #[test]
