@@ -125,42 +125,27 @@ impl Tellers {
     }
 
     /// The link whose angle tells in the stead of a coordinate by which the bodies turn so: one that told before where it does as well
-    /// as any.
+    /// as any. What tells for others stands still while this one goes.
     fn instead(&mut self, plant: &Plant, place: usize, turning: &[f64]) -> Option<LinkId> {
-        let seats = &self.design.mechanism.seats;
-        let speed = |link: &LinkId| {
-            let body = seats
-                .get(link.index())
-                .map_or(BodyId::GROUND, |seat| seat.body);
-            turning[body.index()].abs()
+        let mechanism = &self.design.mechanism;
+        let speed = |link: LinkId| turning[mechanism.body_of(link).index()].abs();
+        let faster = |best: Option<LinkId>, link: LinkId| match best {
+            Some(best) if speed(best) >= speed(link) => Some(best),
+            _ => Some(link),
         };
-        let others = |link: &LinkId| {
-            !self
-                .links
-                .iter()
-                .enumerate()
-                .any(|(k, l)| k != place && *l == Some(*link))
-        };
-        let fastest = |links: &mut dyn Iterator<Item = LinkId>| {
-            let faster = |best: Option<LinkId>, link: LinkId| match best {
-                Some(best) if speed(&best) >= speed(&link) => Some(best),
-                _ => Some(link),
-            };
-            links.filter(others).fold(None, faster)
-        };
-        let known = fastest(&mut self.used.iter().copied());
-        let any = fastest(&mut (1..seats.len() as u32).map(LinkId))?;
-        // What turns no faster than the coordinate would be no better.
-        let good =
-            |link: &LinkId, part: f64| speed(link) > plant.scales[place].max(part * speed(&any));
-        if let Some(known) = known.filter(|link| good(link, AS_WELL)) {
-            return Some(known);
+        let links = (0..mechanism.model.links.len() as u32).map(LinkId);
+        let any = links.filter(|link| *link != FRAME).fold(None, faster)?;
+        let known = self.used.iter().copied().fold(None, faster);
+        // What turns no faster than the coordinate goes would be no better.
+        let better = |link: LinkId| speed(link) * plant.scales[place] > 1.0;
+        match known.filter(|link| better(*link)) {
+            Some(known) if speed(known) >= AS_WELL * speed(any) => Some(known),
+            _ if self.used.len() < MOST_PILOTS && better(any) => {
+                self.used.push(any);
+                Some(any)
+            }
+            known => known,
         }
-        if self.used.len() < MOST_PILOTS {
-            self.used.push(any);
-            return Some(any);
-        }
-        known.filter(|link| good(link, 0.0))
     }
 
     /// The plant at a state that it shares with another, where the angle of the link now named tells in the stead of one coordinate.

@@ -438,15 +438,15 @@ proptest! {
         // Where the left link can stand, the pin C is on one side.
         let (s, c) = kempe_number::math::sin_cos(place);
         let at_b = [lengths[0] * c, lengths[0] * s];
-        let span = ((100.0 - at_b[0]).powi(2) + at_b[1].powi(2)).sqrt();
+        let span = kempe_number::math::hypot(100.0 - at_b[0], at_b[1]);
         let room = (lengths[1] + lengths[2] - span).min(span - (lengths[1] - lengths[2]).abs());
         // Where change points are near, branches are hard to tell for anybody.
         let mut all = [lengths[0], lengths[1], lengths[2], 100.0];
         all.sort_by(f64::total_cmp);
         let folds = [all[0] + all[3] - all[1] - all[2], all[0] + all[1] + all[2] - all[3], all[0] + all[2] - all[1] - all[3]];
         prop_assume!(room > 8.0 && folds.iter().all(|x| x.abs() > 4.0));
-        let along = (lengths[1].powi(2) - lengths[2].powi(2) + span * span) / (2.0 * span);
-        let up = (lengths[1].powi(2) - along * along).sqrt();
+        let along = (lengths[1] * lengths[1] - lengths[2] * lengths[2] + span * span) / (2.0 * span);
+        let up = (lengths[1] * lengths[1] - along * along).sqrt();
         let way = [(100.0 - at_b[0]) / span, -at_b[1] / span];
         let at_c = [at_b[0] + along * way[0] - up * way[1], at_b[1] + along * way[1] + up * way[0]];
         let until = 1.0;
@@ -646,6 +646,35 @@ fn one_that_is_let_go_passes_beside_one_that_is_driven() {
 }
 
 #[test]
+fn it_ends_where_no_link_turns_on() {
+    // A plate with a wave in it slides under a pin that goes up and down: at the crest the pin stands, and nothing turns.
+    let text = r#"units = { length = "mm" }
+[links]
+frame = { O = [0, 0], X = [100, 0], Y = [0, 100] }
+plate = { P = [0, 0], S = [-60, 40], T = [-30, 60], U = [0, 70], V = [30, 60], W = [60, 40], mass = "1 kg", inertia = "1 kg mm^2" }
+pusher = { Q = [0, 0], mass = "0.2 kg", inertia = "1 kg mm^2" }
+[joints]
+bed  = { slider = "plate", at = "P", on = "O -> X" }
+way  = { slider = "pusher", at = "Q", on = "O -> Y" }
+wave = { pin = "Q", through = ["S", "T", "U", "V", "W"] }
+[drives]
+lift = { slides = "way", at = "60 mm" }
+[assembly]
+P = { near = [30, 0] }
+"#;
+    let (_, found) = run(text, [0.06, 0.5], 1.0);
+    assert!(
+        matches!(found.ending, Ending::Limit(_) | Ending::NoWay),
+        "{:?}",
+        found.ending
+    );
+    assert!(found.told_by().is_empty());
+    // It comes to the crest, 70 mm up.
+    let [lift, _] = common::at(&found, 0, found.end);
+    assert!((lift - 0.07).abs() < 1e-6, "{lift}");
+}
+
+#[test]
 fn a_cylinder_let_go_passes_where_it_is_shortest() {
     // It stands on the frame and holds a crank that turns round: two dead points each turn.
     let text = |drive: &str| {
@@ -667,7 +696,7 @@ of_a = "reaction(A)"
         )
     };
     let names = ["angle", "rate", "length", "of_a"];
-    let length = (150.0_f64.powi(2) + 20.0_f64.powi(2)).sqrt() / 1e3;
+    let length = 22_900.0_f64.sqrt() / 1e3;
     let (ram, by_ram) = run(
         &text(&format!(
             r#"ram = {{ cylinder = "F-B", at = "{length} m" }}"#

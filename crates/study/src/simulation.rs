@@ -355,8 +355,8 @@ fn early(model: &Model, units: &Units, found: &Simulated) -> Option<Diagnostic> 
     let (why, help) = match found.ending {
         Ending::Until | Ending::Condition(_) | Ending::Stopped => return None,
         Ending::Limit(EndReason::Covered) | Ending::NoWay => (
-            "no pose or no acceleration was found just ahead: nothing moves mass there, or links lock each other",
-            "give the links that move there mass and inertia, or change a length so that they do not lock",
+            "no pose or no acceleration was found just ahead: nothing moves mass there, or what is let go comes to a dead point where no link turns on",
+            "give the links that move there mass and inertia, or let another drive go, one whose coordinate goes on there",
         ),
         Ending::Limit(_) => (
             "what is let go comes to a dead point of its own, and no link turns on there whose angle would tell where the mechanism goes",
