@@ -67,7 +67,7 @@ pub mod table;
 pub mod teeth;
 pub mod turning;
 mod vector;
-mod virtual_power;
+pub mod virtual_power;
 pub mod weld;
 pub mod wrench;
 
