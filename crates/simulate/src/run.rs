@@ -137,6 +137,7 @@ pub fn simulate(
         integrator: None,
         earlier: (Used::default(), 0),
         resized: false,
+        exchanged: false,
         question,
         tellers,
         plant,
@@ -190,6 +191,8 @@ struct Run<'q> {
     integrator: Option<Integrator>,
     /// Steps and evaluations of integrators before that, for coordinates of other sizes.
     earlier: (Used, usize),
+    /// Whether what tells the place was exchanged last.
+    exchanged: bool,
     /// Whether coordinates have other sizes than those for which the integrator was made.
     resized: bool,
     tellers: Tellers,
@@ -210,7 +213,8 @@ impl Run<'_> {
             }
             self.plant.end = *end;
             while self.time < *end {
-                events += 1;
+                // What tells the place may change as often as it likes.
+                events += usize::from(!std::mem::take(&mut self.exchanged));
                 if self.time > since + NO_TIME * self.question.until {
                     (at_once, since) = (0, self.time);
                 }
@@ -441,6 +445,7 @@ impl Run<'_> {
         let state = (self.time, self.y.as_mut_slice());
         let exchanged = (self.tellers).exchange(&mut self.plant, state, within, progress);
         self.resized |= scales != self.plant.scales;
+        self.exchanged |= exchanged == Exchanged::Done;
         exchanged
     }
 
