@@ -85,7 +85,7 @@ pub(crate) fn rows_of(
     for (done, place) in places.iter().enumerate() {
         let row = sampler.row(*place);
         parameters_met.push(row.sample.parameter);
-        frames.push(rows.push(shown, row.sample.time, row));
+        frames.push(rows.push(&design.mechanism, row.sample.time, row));
         if progress
             .reached(Stage::Rows, Done::Of(done + 1, places.len()))
             .is_break()
@@ -94,7 +94,7 @@ pub(crate) fn rows_of(
         }
     }
     diagnostics.extend(row_warnings(name, &rows.table, along));
-    diagnostics.extend(rows.force_warnings(shown, along));
+    diagnostics.extend(rows.force_warnings(&design.mechanism, along));
     diagnostics.extend(sampler.number_warnings(Some(name), &quantities));
     diagnostics.extend(without_value(&rows, along, |index| {
         let number = index.and_then(|index| asked.scalars.get(index));
