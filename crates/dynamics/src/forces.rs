@@ -185,6 +185,23 @@ impl<T: ForceNumber> Forces<T> {
                 value: by_power.value.completed(by_equilibrium),
             };
         }
+        self.give_back(at);
+    }
+
+    /// Gives drives that are let go what is carried along their own coordinates, where these tell the place: what a stop does to them.
+    fn give_back(&mut self, at: &Instant<T>) {
+        for (index, drive) in self.design.mechanism.model.drives.iter().enumerate() {
+            let DriveKind::StandIn(StandIn::Pilot { of, chosen, .. }) = &drive.kind else {
+                continue;
+            };
+            if at.inputs[chosen.index()].value.value().round() == 0.0 {
+                let carried = self.drives[index].value;
+                let drive = &mut self.drives[of.index()];
+                drive.by_power.value += carried;
+                drive.by_equilibrium += carried;
+                drive.value += carried;
+            }
+        }
     }
 
     /// `m a` less what is applied, of every body, about its origin; friction left out.

@@ -36,11 +36,14 @@ impl Mechanism {
         let mut model = self.model.clone();
         let first = model.drives.len() + drives.len();
         let own = drives.iter().enumerate();
-        let own: Vec<(usize, Drive)> = own
-            .filter_map(|(k, (drive, _))| Some((k, self.model.drives.get(drive.index())?.clone())))
+        let own: Vec<(usize, DriveId, Drive)> = own
+            .filter_map(|(k, (drive, _))| {
+                Some((k, *drive, self.model.drives.get(drive.index())?.clone()))
+            })
             .collect();
-        for (k, drive) in &own {
+        for (k, of, drive) in &own {
             let kind = DriveKind::StandIn(StandIn::Pilot {
+                of: *of,
                 own: Box::new(drive.kind.clone()),
                 links: links.to_vec(),
                 chosen: DriveId((first + k) as u32),
@@ -49,7 +52,7 @@ impl Mechanism {
             let pilot = standing(drive.name.clone(), kind, Dimension::ANGLE);
             model.drives.push(pilot);
         }
-        for (_, drive) in &own {
+        for (_, _, drive) in &own {
             let choice = standing(
                 drive.name.clone(),
                 DriveKind::StandIn(StandIn::Choice),

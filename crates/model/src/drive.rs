@@ -68,7 +68,9 @@ pub enum StandIn {
     /// What tells the place in its stead: its own coordinate, or the angle of one of some links against the frame, counted as that of
     /// the link's body.
     Pilot {
-        /// The drive's own.
+        /// The drive.
+        of: DriveId,
+        /// Its own.
         own: Box<DriveKind>,
         /// The links.
         links: Vec<LinkId>,

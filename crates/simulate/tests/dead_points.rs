@@ -9,7 +9,7 @@ use common::Free;
 use kempe_dynamics::ForceSampler;
 use kempe_model::{Measure, Model};
 use kempe_motion::{Motion, Silent};
-use kempe_simulate::{Ending, Happened, Simulated};
+use kempe_simulate::{Ending, Happened, Resistance, Simulated, Stop};
 use proptest::prelude::*;
 
 /// A crank-rocker in this unit, one of its drives let go; what moves is measured by name.
@@ -218,6 +218,42 @@ fn stops_hold_across_dead_points() {
     for (a, b) in found.happenings.iter().zip(&other[0].happenings) {
         assert!((a.time - b.time).abs() < 1e-11);
     }
+}
+
+#[test]
+fn the_push_of_a_stop_shows_in_the_drive_while_that_tells_the_place() {
+    // A soft stop throws the rocker back; beyond it comes to a dead point.
+    let more = "gap = \"124 deg - angle(rocker)\"\neffort = \"torque(swing)\"";
+    let swing = crank_rocker(
+        "mm",
+        r#"swing = { turns = "rocker", at = "2.1 rad" }"#,
+        more,
+    );
+    let mut free = Free::new(&swing, 1.0);
+    free.question.start[0] = [2.1, 9.0];
+    let gap = free.measure("gap");
+    free.question.stops.push(Stop {
+        gap,
+        resistance: Resistance::Soft {
+            stiffness: 20.0,
+            damping: 0.0,
+        },
+    });
+    let long = free.run();
+    assert!(long.told_by().len() > 1);
+    let since = long.told_by()[1].0;
+    free.question.until = 0.99 * since;
+    let short = free.run();
+    assert!(short.told_by().is_empty());
+    let times: Vec<f64> = (0..=50)
+        .map(|k| 0.98 * since * f64::from(k) / 50.0)
+        .collect();
+    let names = ["effort", "of_a", "of_d"];
+    let a = values(&free.model, &motion(&short), &names, &times);
+    let b = values(&free.model, &motion(&long), &names, &times);
+    assert!(a.iter().any(|row| row[0].abs() > 0.1));
+    let off = difference(&a, &b);
+    assert!(off < 1e-8, "{off:e}");
 }
 
 #[test]

@@ -180,7 +180,9 @@ impl Structure {
         let held = match &drive.kind {
             // What others tell, and a mere number, hold nothing.
             DriveKind::StandIn(StandIn::Follows { .. } | StandIn::Choice) => None,
-            DriveKind::StandIn(StandIn::Pilot { own, links, chosen }) => {
+            DriveKind::StandIn(StandIn::Pilot {
+                own, links, chosen, ..
+            }) => {
                 let bodies: Vec<BodyId> = links.iter().map(|link| self.body_of(*link)).collect();
                 let own = self.driven(own, id);
                 own.and_then(|own| Pilot::new(own, &bodies, *chosen))
