@@ -1,7 +1,7 @@
 //! Everything that acts on a mechanism, evaluated for one design.
 
 use kempe_mechanism::{Geometry, Mechanism};
-use kempe_model as model;
+use kempe_model::{self as model, DriveId};
 
 use crate::amount::Amount;
 use crate::cylinder::Cylinder;
@@ -14,6 +14,7 @@ use crate::motor::Motor;
 use crate::number::ForceNumber;
 use crate::problem::Problem;
 use crate::spring::Spring;
+use crate::turning::Turning;
 use crate::wrench::{self, Wrench};
 
 /// Acceleration of gravity where the file gives none, m/s^2, along -y.
@@ -40,6 +41,8 @@ pub struct Acting<T: ForceNumber> {
     pub cylinders: Vec<Cylinder<T>>,
     /// Motors.
     pub motors: Vec<Motor<T>>,
+    /// Those of them whose drives are let go and hold nothing: they turn what they are on.
+    pub turning: Vec<Turning>,
 }
 
 impl<T: ForceNumber> Acting<T> {
@@ -77,6 +80,7 @@ impl<T: ForceNumber> Acting<T> {
             motors: (actions.motors.iter())
                 .map(|m| Motor::new(m, parameters, &mut problems))
                 .collect(),
+            turning: Turning::all(mechanism),
             loads,
             amounts,
             cylinders,
@@ -115,5 +119,14 @@ impl<T: ForceNumber> Acting<T> {
         for damper in &self.dampers {
             damper.act(geometry, at, applied);
         }
+        for turning in &self.turning {
+            turning.act(&self.motors, at, applied);
+        }
+    }
+
+    /// What the motor of a drive that is let go and holds nothing gives, N m; none without a motor.
+    pub fn turns(&self, drive: DriveId, at: &Instant<T>) -> T {
+        let own = (self.turning.iter()).find(|it| it.drive == drive);
+        own.map_or(T::zero(), |it| it.torque(&self.motors, at))
     }
 }

@@ -65,7 +65,9 @@ impl<T: ForceNumber> Forces<T> {
                 drive(d).map(|_| reduced::mass(&self.acting, at, d.index())[0])
             }
             ForceMeasure::ReducedLoad(d) => {
-                drive(d).map(|_| reduced::load(&self.applied_on_bodies, at, d.index()))
+                // Its own motor is no load of it.
+                let own = self.acting.turns(*d, at);
+                drive(d).map(|_| reduced::load(&self.applied_on_bodies, at, d.index()) - own)
             }
             ForceMeasure::Pressure(d) => self.cylinder(*d).and_then(|c| {
                 let force = drive(d)?.value;

@@ -1,7 +1,7 @@
 //! Everything that acts on the links of one instant as arrows to be drawn.
 
 use kempe_mechanism::structure::Marker;
-use kempe_model::{DriveKind, FRAME, Joint, LinkId, LinkPointRef};
+use kempe_model::{DriveKind, FRAME, Joint, LinkId, LinkPointRef, StandIn};
 
 use crate::ends::Ends;
 use crate::forces::Forces;
@@ -181,7 +181,7 @@ impl<T: ForceNumber<Plain = f64>> Forces<T> {
         }
     }
 
-    fn place_of(&self, at: &Instant<T>, marker: Marker) -> [f64; 2] {
+    pub(crate) fn place_of(&self, at: &Instant<T>, marker: Marker) -> [f64; 2] {
         let arm = at.arm(marker.body, self.design.geometry.marker(marker));
         at.place(marker.body, arm).map(|x| x.value())
     }
@@ -206,5 +206,8 @@ fn holds_angle(joint: Option<&Joint>) -> bool {
 }
 
 fn is_turn(drive: Option<&kempe_model::Drive>) -> bool {
-    drive.is_some_and(|d| matches!(d.kind, DriveKind::Turn { .. }))
+    drive.is_some_and(|d| match &d.kind {
+        DriveKind::StandIn(StandIn::Follows { of, .. }) => matches!(**of, DriveKind::Turn { .. }),
+        kind => matches!(kind, DriveKind::Turn { .. }),
+    })
 }

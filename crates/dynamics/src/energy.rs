@@ -39,6 +39,11 @@ pub fn of_loads<T: ForceNumber>(
     })
 }
 
+/// Power that the motors of drives give that are let go and hold nothing, W.
+pub fn of_motors<T: ForceNumber>(acting: &Acting<T>, at: &Instant<T>) -> T {
+    (acting.turning.iter()).fold(T::zero(), |sum, it| sum + it.power(&acting.motors, at))
+}
+
 /// Power that the dampers take from the mechanism, W, never negative.
 pub fn dissipation<T: ForceNumber>(
     acting: &Acting<T>,

@@ -276,7 +276,7 @@ impl Forces<f64> {
         self.drives[drive.index()].value
     }
 
-    /// The power, W, that loads and dampers and, after [`Forces::let_go`], friction give to the mechanism. `storage` has a place
+    /// The power, W, that loads, motors of drives that hold nothing, dampers and, after [`Forces::let_go`], friction give to the mechanism. `storage` has a place
     /// for every link.
     pub fn power_from_outside(&self, at: &Instant<f64>, storage: &mut [Wrench<f64>]) -> f64 {
         let rubs = match self.acting.friction.is_empty() {
@@ -284,6 +284,7 @@ impl Forces<f64> {
             false => self.equilibrium.friction_power(&self.acting.friction),
         };
         rubs + energy::of_loads(&self.acting, &self.design, at, storage)
+            + energy::of_motors(&self.acting, at)
             - energy::dissipation(&self.acting, &self.design.geometry, at)
     }
 }

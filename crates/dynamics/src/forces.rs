@@ -1,8 +1,8 @@
 //! Forces of one instant, by both routes.
 
 use kempe_mechanism::constraint::Joint;
-use kempe_mechanism::{BodyId, Design};
-use kempe_model::{DriveId, LinkId};
+use kempe_mechanism::{BodyId, Design, Mechanism};
+use kempe_model::{DriveId, DriveKind, LinkId, StandIn};
 use kempe_number::Number as _;
 use kempe_units::Dimension;
 
@@ -168,6 +168,13 @@ impl<T: ForceNumber> Forces<T> {
             .zip(&self.drive_constraints)
             .enumerate()
         {
+            // What holds nothing gives what its motor does.
+            if holds_nothing(&self.design.mechanism, index) {
+                let given = self.acting.turns(DriveId(index as u32), at);
+                drive.by_power.value = given;
+                (drive.by_equilibrium, drive.value) = (given, given);
+                continue;
+            }
             let by_power = virtual_power::project(&self.needed, &at.coefficients[index]);
             let row = constraint.map(|c| self.equilibrium.row(c));
             let by_equilibrium =
@@ -177,6 +184,23 @@ impl<T: ForceNumber> Forces<T> {
                 by_equilibrium,
                 value: by_power.value.completed(by_equilibrium),
             };
+        }
+        self.give_back(at);
+    }
+
+    /// Gives drives that are let go what is carried along their own coordinates, where these tell the place: what a stop does to them.
+    fn give_back(&mut self, at: &Instant<T>) {
+        for (index, drive) in self.design.mechanism.model.drives.iter().enumerate() {
+            let DriveKind::StandIn(StandIn::Pilot { of, chosen, .. }) = &drive.kind else {
+                continue;
+            };
+            if at.inputs[chosen.index()].value.value().round() == 0.0 {
+                let carried = self.drives[index].value;
+                let drive = &mut self.drives[of.index()];
+                drive.by_power.value += carried;
+                drive.by_equilibrium += carried;
+                drive.value += carried;
+            }
         }
     }
 
@@ -267,6 +291,18 @@ impl<T: ForceNumber> Forces<T> {
         }
         sum
     }
+}
+
+/// Whether a drive is let go and holds nothing, or is a mere number.
+fn holds_nothing(mechanism: &Mechanism, drive: usize) -> bool {
+    let drive = mechanism.model.drives.get(drive);
+    let nothing = |kind: &DriveKind| {
+        matches!(
+            kind,
+            DriveKind::StandIn(StandIn::Follows { .. } | StandIn::Choice)
+        )
+    };
+    drive.is_some_and(|d| nothing(&d.kind))
 }
 
 /// Loads below this part of what friction takes are rounding: nothing is held at a dead point itself.

@@ -65,6 +65,7 @@ pub mod spring_choice;
 pub mod static_equilibrium;
 pub mod table;
 pub mod teeth;
+pub mod turning;
 mod vector;
 pub mod virtual_power;
 pub mod weld;

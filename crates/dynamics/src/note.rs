@@ -1,7 +1,7 @@
 //! What is to be told about the forces of a row.
 
 use kempe_mechanism::{BodyId, Mechanism};
-use kempe_model::DriveId;
+use kempe_model::{DriveId, DriveKind};
 
 use crate::equilibrium::FrictionOutcome;
 use crate::forces::Forces;
@@ -340,8 +340,11 @@ pub(crate) fn notes(forces: &Forces<Rates>, at: &Instant<Rates>, condition: f64)
         let speed = at.drive_speeds[index].value();
         let braked =
             forces.frictionless(index, 0) * speed < 0.0 && drive.value.value() * speed > 0.0;
+        // What tells the place of a drive that is let go moves nothing.
+        let kind = forces.design.mechanism.model.drives.get(index);
+        let drives = !kind.is_some_and(|d| matches!(d.kind, DriveKind::StandIn(_)));
         // What the masses do on their way is no load: friction holds what pushes at rest too.
-        if braked && forces.holds_at_rest(at, index) {
+        if braked && drives && forces.holds_at_rest(at, index) {
             notes.push(ForceNote::SelfLocking(DriveId(index as u32)));
         }
     }

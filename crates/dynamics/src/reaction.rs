@@ -215,6 +215,18 @@ impl<T: ForceNumber<Plain = f64>> Forces<T> {
             }
             list.extend(reaction.map(|r| plain(carrier, &r, !loose.contains(&index))));
         }
+        for turning in &self.acting.turning {
+            let [link, other] = turning.links();
+            let torque = self.acting.turns(turning.drive, at).value();
+            list.extend(self.pivot_marker(link, other).map(|marker| JointLoad {
+                carrier: Carrier::Drive(turning.drive),
+                link,
+                place: self.place_of(at, marker),
+                force: [0.0; 2],
+                moment: torque,
+                unique: true,
+            }));
+        }
         for (index, joint) in model.joints.iter().enumerate() {
             let id = JointId(index as u32);
             if let JointKind::Weld { .. } = joint.kind {
@@ -242,6 +254,8 @@ impl<T: ForceNumber<Plain = f64>> Forces<T> {
             DriveKind::Turn { link, relative_to } => self.pivot_marker(*link, *relative_to),
             // Its constraints are the joint's, and so is its load.
             DriveKind::Release { .. } => None,
+            // What tells the place carries nothing; what follows has no constraint.
+            DriveKind::StandIn(_) => None,
         }?;
         let place = at.place(
             marker.body,

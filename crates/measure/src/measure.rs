@@ -4,11 +4,13 @@
 //! the others at rest. Rates and kinematic coefficients are then coefficients of the series, and no measure needs a
 //! formula for its derivative.
 
+mod following;
 mod geometric;
 mod in_time;
 mod named;
 mod needs;
 
+pub(crate) use self::following::{alone_following, is_following, pilots};
 use self::named::NamedSeries;
 pub(crate) use self::needs::needs_time;
 pub use self::needs::{NoMeasure, order_of, visit_leaves};
@@ -124,6 +126,7 @@ impl<B: Number> Moment<'_, B> {
                 None => undefined(),
             },
             Leaf::Drive(drive) => match along {
+                _ if self.followed(*drive).is_some() => self.following(*drive, along),
                 Along::Drive(d) if d == *drive => {
                     Series::variable(self.state.coordinates[d.index()].coefficient(0))
                 }

@@ -14,7 +14,7 @@ use kempe_motion::trace::Path;
 use kempe_number::{Jet, Number};
 
 use crate::clock::Clock;
-use crate::measure::only_value;
+use crate::measure::{alone_following, is_following, only_value, pilots};
 use crate::sensitivity::Varying;
 use crate::state::{Abscissa, Series, State};
 
@@ -125,8 +125,16 @@ where
 
     /// Finds the motion that a drive alone would give, too, from now on.
     pub fn ask_alone(&mut self, drive: DriveId) {
-        if self.clock.path_drive() != Some(drive) {
-            self.state.alone[drive.index()] = Some(Vec::new());
+        if self.clock.path_drive() == Some(drive) {
+            return;
+        }
+        self.state.alone[drive.index()] = Some(Vec::new());
+        // What follows goes with what tells the place.
+        let drives = &self.state.mechanism().model.drives;
+        if is_following(drives, drive.index()) {
+            for pilot in pilots(drives) {
+                self.state.alone[pilot.index()] = Some(Vec::new());
+            }
         }
     }
 
@@ -210,7 +218,8 @@ where
 
     fn find_alone(&mut self, motion: &Motion, place: PathPlace<B>) {
         for index in 0..self.state.alone.len() {
-            if self.state.alone[index].is_none() {
+            let drives = &motion.mechanism().model.drives;
+            if self.state.alone[index].is_none() || is_following(drives, index) {
                 continue;
             }
             motion.branch_at(place.path.value(), &mut self.solver.branch);
@@ -219,6 +228,13 @@ where
             self.solver.coordinates[index] = Series::variable(q);
             B::solve(&mut self.solver, motion, &self.state.design);
             self.state.alone[index] = Some(self.solver.state.poses.clone());
+        }
+        for index in 0..self.state.alone.len() {
+            let drives = &motion.mechanism().model.drives;
+            if self.state.alone[index].is_some() && is_following(drives, index) {
+                let alone = alone_following(&self.state, DriveId(index as u32));
+                self.state.alone[index] = Some(alone);
+            }
         }
     }
 

@@ -96,7 +96,7 @@ pub struct Decomposition {
 /// The unknowns that a constraint feels. `idle[body]` tells that nothing feels the body's angle.
 fn felt(constraint: &Constraint, idle: &[bool]) -> Vec<Unknown> {
     let mut list = Vec::with_capacity(6);
-    for touch in constraint.touches().into_iter().flatten() {
+    for touch in constraint.touched() {
         let body = touch.body();
         let (place, angle) = match touch {
             Touch::Point(_) => (true, !idle[body.index()]),
@@ -116,7 +116,7 @@ fn felt(constraint: &Constraint, idle: &[bool]) -> Vec<Unknown> {
 fn idle_bodies(structure: &Structure) -> Vec<bool> {
     let mut idle = vec![true; structure.bodies];
     let constraints = structure.constraints.iter();
-    for touch in constraints.flat_map(|(c, _)| c.touches()).flatten() {
+    for touch in constraints.flat_map(|(c, _)| c.touched()) {
         let felt = match touch {
             Touch::Point(marker) => !structure.at_origin(marker),
             Touch::Whole(_) | Touch::Angle(_) => true,
@@ -275,7 +275,7 @@ fn turns_as_one(structure: &Structure, idle: &[bool], block: &Block) -> Option<(
     let mut held: Vec<PointId> = Vec::new();
     for row in &block.rows {
         let constraint = &structure.constraints[row.constraint].0;
-        for touch in constraint.touches().into_iter().flatten() {
+        for touch in constraint.touched() {
             let body = touch.body();
             let angle = inside(Unknown::Angle(body));
             let place = inside(Unknown::Place(body));

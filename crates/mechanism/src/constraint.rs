@@ -16,6 +16,7 @@ mod loads;
 mod on_arc;
 mod on_curve;
 mod on_line;
+mod pilot;
 mod rack;
 mod released;
 mod situation;
@@ -32,6 +33,7 @@ pub use self::loads::{LoadPoint, Rubs, Sliding};
 pub use self::on_arc::OnArc;
 pub use self::on_curve::{OnCurve, Shoe};
 pub use self::on_line::OnLine;
+pub use self::pilot::{MOST_PILOTS, Pilot};
 pub use self::rack::Rack;
 pub use self::released::Released;
 pub use self::situation::{Input, Situation};
@@ -142,6 +144,8 @@ kinds! {
         OnCurve,
         /// A shoe goes with its pin: two rows.
         Shoe,
+        /// Some coordinate tells the place of a mechanism that is let go.
+        Pilot,
     }
     joints_let_go {
         Coincide as ReleasedPin,
@@ -166,6 +170,10 @@ impl Joint for Constraint {
 
     fn touches(&self) -> [Option<Touch>; 3] {
         ask!(self, joint => joint.touches())
+    }
+
+    fn touched(&self) -> Vec<Touch> {
+        ask!(self, joint => joint.touched())
     }
 
     #[inline]
@@ -268,7 +276,7 @@ impl Joint for Constraint {
 impl Constraint {
     /// The bodies it ties; one that it touches twice may come twice.
     pub fn bodies(&self) -> impl Iterator<Item = BodyId> {
-        self.touches().into_iter().flatten().map(Touch::body)
+        self.touched().into_iter().map(Touch::body)
     }
 }
 

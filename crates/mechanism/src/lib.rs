@@ -20,6 +20,7 @@ pub mod mobility;
 mod modes;
 pub mod newton;
 mod parts;
+mod pilots;
 mod pinned_group;
 pub mod plan;
 pub mod pose;

@@ -2,7 +2,7 @@
 
 use kempe_units::Dimension;
 
-use crate::ids::{JointId, LinkId, LinkPointRef, PointId, Scalar, Span};
+use crate::ids::{DriveId, JointId, LinkId, LinkPointRef, PointId, Scalar, Span};
 use crate::polynomials::Polynomials;
 
 /// What is moved from outside.
@@ -50,6 +50,35 @@ pub enum DriveKind {
         /// Which of its rows.
         row: u8,
     },
+    /// What stands in where a drive that is let go tells nothing of the place. Files cannot say it, and a model written as a file
+    /// leaves it out.
+    StandIn(StandIn),
+}
+
+/// What stands in for drives that are let go.
+#[derive(Clone, Debug, PartialEq)]
+pub enum StandIn {
+    /// Such a drive, holding nothing: its coordinate goes with the mechanism, whose place others tell.
+    Follows {
+        /// What it moved.
+        of: Box<DriveKind>,
+        /// The sense in which its motor turns it, 1 or -1.
+        sense: f64,
+    },
+    /// What tells the place in its stead: its own coordinate, or the angle of one of some links against the frame, counted as that of
+    /// the link's body.
+    Pilot {
+        /// The drive.
+        of: DriveId,
+        /// Its own.
+        own: Box<DriveKind>,
+        /// The links.
+        links: Vec<LinkId>,
+        /// The drive whose coordinate says which: 0 for the own, from 1 on the links.
+        chosen: DriveId,
+    },
+    /// A number that holds nothing: which coordinate of a [`StandIn::Pilot`] counts.
+    Choice,
 }
 
 /// A joint that can be let go.

@@ -9,6 +9,7 @@
 //! | `question.rs` | what is asked: what is let go, from where, how long, against which stops |
 //! | `start.rs` | the pose that the motion starts from |
 //! | `places.rs` | poses from coordinates: `curve.rs` along the followed motion of one coordinate, `several.rs` by the plan |
+//! | `tellers.rs` | which coordinates tell the place: others where one comes to its own dead point |
 //! | `plant.rs` | accelerations of a state, with motors, stops and friction |
 //! | `watch.rs` | what is looked for between steps |
 //! | `contact.rs` | stops: impacts, and what holds a rest |
@@ -25,6 +26,7 @@ mod record;
 mod run;
 mod several;
 mod start;
+mod tellers;
 mod watch;
 
 pub use kempe_integrate::{Method, Used};

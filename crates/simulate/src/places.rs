@@ -1,7 +1,7 @@
 //! Poses from coordinates.
 
 use kempe_dynamics::{Instant, Rates};
-use kempe_measure::State;
+use kempe_measure::{Series, State};
 use kempe_model::DriveId;
 use kempe_motion::{EndReason, MotionError, Progress};
 use kempe_number::Number;
@@ -52,7 +52,14 @@ impl Places {
         match self {
             Self::Curve(curve, drive) => {
                 let [q, v, a] = *coordinates[drive.index()].coefficients();
-                curve.state(time, [q, v, 2.0 * a])
+                let mut state = curve.state(time, [q, v, 2.0 * a])?;
+                // Others stand, or follow: about where, is told.
+                for (index, q) in coordinates.iter().enumerate() {
+                    if index != drive.index() {
+                        state.coordinates[index] = Series::constant(q.value());
+                    }
+                }
+                Some(state)
             }
             Self::Several(several) => several.state(time, coordinates),
         }

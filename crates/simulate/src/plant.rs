@@ -39,6 +39,15 @@ pub(crate) struct Mode {
     pub sense: f64,
 }
 
+/// How one coordinate of the state tells the place.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Tells {
+    /// 0 for the coordinate of the drive that is let go, from 1 on for links: see [`Mechanism::piloted`](kempe_mechanism::Mechanism).
+    pub choice: f64,
+    /// By how much the angle of a link is ahead of its body's, rad.
+    pub ahead: f64,
+}
+
 /// A mechanism with what is let go.
 pub(crate) struct Plant {
     pub places: Places,
@@ -67,6 +76,12 @@ pub(crate) struct Plant {
     amounts: Vec<(Measure, Option<f64>)>,
     /// Motors of the drives that are let go, each with the sense in which it turns.
     pub motors: Vec<Option<(usize, f64)>>,
+    /// How the coordinates that are let go tell the place.
+    pub tells: Vec<Tells>,
+    /// Drives in whose stead links tell, with their coordinates, as last known.
+    followed: Vec<(DriveId, f64)>,
+    /// How many drives the model has of its own.
+    own: usize,
     storage: Vec<Wrench<f64>>,
 }
 
@@ -100,6 +115,7 @@ impl Plant {
         let works = !acting.loads.is_empty()
             || !acting.dampers.is_empty()
             || !acting.friction.is_empty()
+            || !acting.turning.is_empty()
             || motors.iter().any(Option::is_some)
             || !driven.is_empty()
             || !stops.is_empty();
@@ -110,6 +126,9 @@ impl Plant {
             given: vec![0.0; free.len()],
             pushes: Vec::new(),
             let_go: LetGo::default(),
+            tells: vec![Tells::default(); free.len()],
+            followed: Vec::new(),
+            own: model.drives.len(),
             storage: vec![[0.0; 3]; model.links.len()],
             mode: Mode::default(),
             end: f64::INFINITY,
@@ -123,6 +142,18 @@ impl Plant {
             stops,
             works,
         }
+    }
+
+    /// The same where links tell the place in the stead of the drives `followed`, whose coordinates are known; of its drives the first
+    /// `own` are the model's.
+    pub fn telling(mut self, tells: Vec<Tells>, followed: Vec<(DriveId, f64)>, own: usize) -> Self {
+        (self.tells, self.followed, self.own) = (tells, followed, own);
+        self
+    }
+
+    /// The instant last looked at.
+    pub fn instant(&self) -> &Instant<f64> {
+        &self.instant
     }
 
     /// Whether anything rubs.
@@ -144,6 +175,9 @@ impl Plant {
         let drives = &self.forces.design.mechanism.model.drives;
         for (q, drive) in self.coordinates.iter_mut().zip(drives) {
             *q = drive.law.at(Jet::variable(time), &self.parameters);
+        }
+        for (drive, q) in &self.followed {
+            self.coordinates[drive.index()] = Rates::constant(*q);
         }
         for (k, drive) in self.free.iter().enumerate() {
             let mut v = y[n + k];
@@ -345,7 +379,8 @@ impl Plant {
         Some((-up).min(down))
     }
 
-    /// Coordinate, speed and acceleration of every drive at a state with these rates.
+    /// Coordinate, speed and acceleration at a state with these rates: of every drive of the model, and behind them of the coordinates
+    /// that tell the place.
     pub fn drives_at(&mut self, time: f64, y: &[f64], rates: &[f64]) -> Vec<[f64; 3]> {
         let n = self.free.len();
         self.take(time, y);
@@ -355,7 +390,36 @@ impl Plant {
         for (k, drive) in self.free.iter().enumerate() {
             all[drive.index()] = [y[k], y[n + k], rates[n + k]];
         }
+        if !self.followed.is_empty() {
+            self.follow(time, &mut all);
+        }
+        all.truncate(self.own);
+        let tells = self.tells.iter().enumerate();
+        all.extend(tells.map(|(k, it)| [y[k] - it.ahead, y[n + k], rates[n + k]]));
         all
+    }
+
+    /// Finds the coordinates of the drives that follow the others in `all`, which are as they move at a time.
+    fn follow(&mut self, time: f64, all: &mut [[f64; 3]]) {
+        for drive in &self.free {
+            let [q, v, a] = all[drive.index()];
+            self.coordinates[drive.index()] = Rates::from_coefficients([q, v, 0.5 * a]);
+        }
+        let state = self.places.state(time, &self.coordinates);
+        let history = History::default();
+        for (drive, known) in &mut self.followed {
+            let found = state.as_ref().map(|state| {
+                let coordinate = Measure::Leaf(Leaf::Drive(*drive));
+                measure(state, &history, None, &coordinate, Along::Time)
+            });
+            all[drive.index()] = match found {
+                Some(q) => [0, 1, 2].map(|k| q.derivative(k)),
+                None => [f64::NAN; 3],
+            };
+            if all[drive.index()][0].is_finite() {
+                *known = all[drive.index()][0];
+            }
+        }
     }
 }
 
@@ -366,7 +430,7 @@ impl System for Plant {
 }
 
 /// The sense in which a motor turns its drive: the way that its law goes.
-fn motor_sense(law: &Law, parameters: &[f64]) -> f64 {
+pub(crate) fn motor_sense(law: &Law, parameters: &[f64]) -> f64 {
     let way = law.at(law.duration(parameters), parameters) - law.at(0.0, parameters);
     if way < 0.0 { -1.0 } else { 1.0 }
 }

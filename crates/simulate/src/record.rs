@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use kempe_dynamics::motor::Motor;
 use kempe_integrate::Used;
-use kempe_mechanism::Design;
-use kempe_model::{COEFFICIENTS, Law, LawPiece, Polynomials};
+use kempe_mechanism::{Design, Mechanism};
+use kempe_model::{COEFFICIENTS, DriveId, Law, LawPiece, LinkId, Polynomials};
 use kempe_motion::drive_path::DrivePath;
 use kempe_motion::{Demand, EndReason, Motion, MotionError, Placed, Progress};
 use kempe_units::Expr;
@@ -54,18 +54,86 @@ pub struct Simulated {
     pub first: Arc<Motion>,
     /// Motors of the drives that are let go, each with the sense in which it turns.
     pub(crate) motors: Vec<Option<(Motor<f64>, f64)>>,
+    /// What told the place, where that was not the drives that are let go all the time.
+    pub(crate) pilots: Option<Pilots>,
     pub(crate) design: Design<f64>,
     pub(crate) placed: Placed,
 }
 
+/// Coordinates that told the place in the stead of drives that are let go.
+#[derive(Clone, Debug)]
+pub(crate) struct Pilots {
+    /// The mechanism whose place they tell: see [`Mechanism::piloted`].
+    pub mechanism: Arc<Mechanism>,
+    /// Laws of its drives behind the model's own.
+    pub laws: Vec<Law>,
+    /// The links whose angles told.
+    pub links: Vec<LinkId>,
+    /// How many there are.
+    pub count: usize,
+}
+
 impl Simulated {
-    /// The torque, N m, that the motor of a drive that was let go (by its place among those) gives at a speed of its
-    /// coordinate, rad/s; none without a motor.
+    /// The torque, N m, that a motor gives at a speed of a coordinate that tells the place (by its place among those), rad/s; none
+    /// without a motor.
     pub fn motor_torque(&self, place: usize, speed: f64) -> f64 {
-        let motor = self.motors.get(place).and_then(Option::as_ref);
+        // What tells the place in a drive's stead has none.
+        let own = self.pilots.is_none();
+        let motor = self
+            .motors
+            .get(place)
+            .and_then(Option::as_ref)
+            .filter(|_| own);
         motor.map_or(0.0, |(motor, sense)| {
             sense * motor.turns_with(sense * speed)
         })
+    }
+
+    /// The coordinates that tell the place along the motion that was found: nothing gives anything along them but motors. They are
+    /// those of the drives that were let go, or drives behind the model's own.
+    pub fn telling(&self, free: &[DriveId]) -> Vec<DriveId> {
+        match &self.pilots {
+            None => free.to_vec(),
+            Some(pilots) => {
+                let first = self.laws.len();
+                (first..first + pilots.count)
+                    .map(|k| DriveId(k as u32))
+                    .collect()
+            }
+        }
+    }
+
+    /// When which links' angles told the place in the stead of the drives that are let go: times, s, with what told from then on, for
+    /// each drive a link or none where it told itself. Nothing where none ever did.
+    pub fn told_by(&self) -> Vec<(f64, Vec<Option<LinkId>>)> {
+        let Some(pilots) = &self.pilots else {
+            return Vec::new();
+        };
+        let choices = pilots.laws.get(pilots.count..).unwrap_or(&[]);
+        let mut times: Vec<f64> = vec![0.0];
+        times.extend(choices.iter().flat_map(|law| law.breaks(&[])));
+        times.sort_by(f64::total_cmp);
+        times.dedup();
+        let mut told: Vec<(f64, Vec<Option<LinkId>>)> = Vec::new();
+        for pair in times.windows(2) {
+            let at = |law: &Law| law.at(0.5 * (pair[0] + pair[1]), &[]).round() as usize;
+            let link = |law: &Law| {
+                at(law)
+                    .checked_sub(1)
+                    .and_then(|k| pilots.links.get(k).copied())
+            };
+            let links: Vec<Option<LinkId>> = choices.iter().map(link).collect();
+            if told.last().is_none_or(|(_, last)| *last != links) {
+                told.push((pair[0], links));
+            }
+        }
+        told
+    }
+
+    /// The mechanism that was asked about, its drives moving as was found.
+    pub fn mechanism(&self) -> Arc<Mechanism> {
+        let design = self.design.with_laws(|index| self.laws.get(index).cloned());
+        design.mechanism
     }
 
     /// The motion that was found, for everything that looks along motions.
@@ -73,7 +141,17 @@ impl Simulated {
     /// # Errors
     /// Where it cannot be followed.
     pub fn motion(&self, progress: &mut dyn Progress) -> Result<Arc<Motion>, MotionError> {
-        let design = self.design.with_laws(|index| self.laws.get(index).cloned());
+        let design = match &self.pilots {
+            None => self.design.clone(),
+            Some(pilots) => {
+                let mut design = Design::new(&pilots.mechanism, &self.design.parameters);
+                design.count_turns(&self.design.geometry.turns);
+                design
+            }
+        };
+        let more = self.pilots.iter().flat_map(|pilots| &pilots.laws);
+        let laws: Vec<&Law> = self.laws.iter().chain(more).collect();
+        let design = design.with_laws(|index| laws.get(index).map(|law| (*law).clone()));
         let (model, parameters) = (&design.mechanism.model, &design.parameters);
         let path = DrivePath::new(model, parameters, design.size());
         let range = path.range(model, parameters);
@@ -92,6 +170,8 @@ struct Stretch {
     /// By drive: accelerations at the quarters of every step.
     quarters: Vec<Vec<[f64; 3]>>,
     work: Vec<[f64; COEFFICIENTS]>,
+    /// Which coordinates tell the place.
+    choices: Vec<f64>,
 }
 
 /// Collects what is found.
@@ -108,13 +188,14 @@ impl Record {
         }
     }
 
-    /// Begins a stretch at a time.
-    pub fn begin(&mut self, time: f64, states: &[[f64; 3]]) {
+    /// Begins a stretch at a time, with which coordinates tell the place.
+    pub fn begin(&mut self, time: f64, states: &[[f64; 3]], choices: Vec<f64>) {
         self.stretches.push(Stretch {
             times: vec![time],
             ends: states.iter().map(|state| vec![*state]).collect(),
             quarters: vec![Vec::new(); states.len()],
             work: Vec::new(),
+            choices,
         });
     }
 
@@ -137,8 +218,8 @@ impl Record {
         }
     }
 
-    /// The laws of all drives, and the work as one.
-    pub fn laws(self, end: f64) -> (Vec<Law>, Law) {
+    /// The laws of all drives, of what tells the place, and of which does that; and the work as one.
+    pub fn laws(self, end: f64) -> Laws {
         let stretches: Vec<Stretch> = (self.stretches.into_iter())
             .filter(|s| s.times.len() > 1)
             .collect();
@@ -146,24 +227,53 @@ impl Record {
             let first = stretch.times[0];
             stretch.times.iter().map(|t| t - first).collect()
         };
-        let laws = self.start.iter().enumerate();
-        let laws = laws.map(|(drive, start)| {
+        let of = |column: usize, start: f64| {
             let of = |stretch: &Stretch| {
                 Polynomials::through(
                     &local(stretch),
-                    &stretch.ends[drive],
-                    &stretch.quarters[drive],
+                    &stretch.ends[column],
+                    &stretch.quarters[column],
                 )
             };
-            law(*start, end, stretches.iter().filter_map(of))
+            law(start, end, stretches.iter().filter_map(of))
+        };
+        let drives = self.start.iter().enumerate();
+        let drives: Vec<Law> = drives.map(|(drive, start)| of(drive, *start)).collect();
+        let told = stretches.first().map_or(0, |s| s.choices.len());
+        let places = (0..told).map(|k| {
+            let column = self.start.len() + k;
+            let first = stretches.first().and_then(|s| s.ends[column].first());
+            of(column, first.map_or(f64::NAN, |q| q[0]))
+        });
+        let choices = (0..told).map(|k| {
+            let of = |stretch: &Stretch| {
+                let steady = vec![[stretch.choices[k], 0.0, 0.0]; stretch.times.len()];
+                Polynomials::through(&local(stretch), &steady, &vec![[0.0; 3]; steady.len() - 1])
+            };
+            let first = stretches.first().map_or(0.0, |s| s.choices[k]);
+            law(first, end, stretches.iter().filter_map(of))
         });
         let of_work =
             |stretch: &Stretch| Polynomials::at_equal_parts(&local(stretch), &stretch.work);
-        (
-            laws.collect(),
-            law(0.0, end, stretches.iter().filter_map(of_work)),
-        )
+        Laws {
+            drives,
+            places: places.collect(),
+            choices: choices.collect(),
+            work: law(0.0, end, stretches.iter().filter_map(of_work)),
+        }
     }
+}
+
+/// What was collected, as laws.
+pub(crate) struct Laws {
+    /// Of the model's drives.
+    pub drives: Vec<Law>,
+    /// Of the coordinates that tell the place.
+    pub places: Vec<Law>,
+    /// Of which coordinates they are.
+    pub choices: Vec<Law>,
+    /// Work done on the mechanism, J.
+    pub work: Law,
 }
 
 /// A law of polynomials until `end`; one that stands still where there are none or where they do.

@@ -12,10 +12,11 @@ use kempe_units::Dimension;
 use crate::contact::dot;
 use crate::happening::{Happened, Happening, Held};
 use crate::places::Places;
-use crate::plant::{Mode, Plant};
+use crate::plant::{Mode, Plant, motor_sense};
 use crate::question::{Question, Resistance};
-use crate::record::{Ending, Record, Simulated};
+use crate::record::{Ending, Pilots, Record, Simulated};
 use crate::start::{NoStart, start};
+use crate::tellers::{Exchanged, NEAR, Tellers};
 use crate::watch::{Watch, first};
 
 /// Most steps and events: what is kept of a step takes some hundred bytes, and of an event a piece of the laws, which are searched one
@@ -101,6 +102,16 @@ pub fn simulate(
             _ => design.size(),
         })
         .collect();
+    let senses = question.free.iter().map(|drive| {
+        let law = model.drives.get(drive.index()).map(|d| &d.law);
+        law.map_or(1.0, |law| motor_sense(law, &parameters))
+    });
+    let tellers = Tellers::new(
+        design.clone(),
+        first_motion.clone(),
+        [question.free.clone(), driven.clone()],
+        senses.collect(),
+    );
     let plant = Plant::new(
         &design,
         forces,
@@ -124,7 +135,11 @@ pub fn simulate(
         held: Vec::new(),
         steps: 0,
         integrator: None,
+        earlier: (Used::default(), 0),
+        resized: false,
+        exchanged: false,
         question,
+        tellers,
         plant,
     };
     let ending = run.whole(&breaks, progress)?;
@@ -133,21 +148,27 @@ pub fn simulate(
         .map(|it| it.map(|(motor, sense)| (acting.motors[motor].clone(), sense)))
         .collect();
     let end = run.time;
-    let (laws, work) = run.record.laws(end);
+    let (used, evaluations) = run.effort();
+    let laws = run.record.laws(end);
+    let links = run.tellers.used();
+    let pilots = (!links.is_empty()).then(|| Pilots {
+        mechanism: run.tellers.piloted(),
+        count: laws.places.len(),
+        laws: [laws.places, laws.choices].concat(),
+        links: links.to_vec(),
+    });
     Ok(Simulated {
-        laws,
-        work,
+        laws: laws.drives,
+        work: laws.work,
         end,
         ending,
         happenings: run.happenings,
         held: run.held,
-        used: run
-            .integrator
-            .as_ref()
-            .map_or(Used::default(), Integrator::used),
-        evaluations: run.integrator.as_ref().map_or(0, Integrator::evaluations),
+        used,
+        evaluations,
         first: first_motion,
         motors,
+        pilots,
         design,
         placed,
     })
@@ -168,6 +189,13 @@ struct Run<'q> {
     steps: usize,
     /// It goes on from event to event with the method that was found to suit.
     integrator: Option<Integrator>,
+    /// Steps and evaluations of integrators before that, for coordinates of other sizes.
+    earlier: (Used, usize),
+    /// Whether what tells the place was exchanged last.
+    exchanged: bool,
+    /// Whether coordinates have other sizes than those for which the integrator was made.
+    resized: bool,
+    tellers: Tellers,
 }
 
 impl Run<'_> {
@@ -185,7 +213,8 @@ impl Run<'_> {
             }
             self.plant.end = *end;
             while self.time < *end {
-                events += 1;
+                // What tells the place may change as often as it likes.
+                events += usize::from(!std::mem::take(&mut self.exchanged));
                 if self.time > since + NO_TIME * self.question.until {
                     (at_once, since) = (0, self.time);
                 }
@@ -339,7 +368,8 @@ impl Run<'_> {
             return Some(Ending::NoWay);
         };
         let states = self.plant.drives_at(self.time, &self.y, it.rates());
-        self.record.begin(self.time, &states);
+        let choices = self.plant.tells.iter().map(|tells| tells.choice);
+        self.record.begin(self.time, &states, choices.collect());
         let mut found = self.y.clone();
         let is_held = self.plant.mode.stuck || !self.plant.mode.resting.is_empty();
         let Mode {
@@ -359,7 +389,9 @@ impl Run<'_> {
                 end
             };
             if let Err(reason) = it.step(&mut self.plant, next) {
-                break Some(self.no_way(reason));
+                // Wherever its dead point is, it cannot tell how to go on.
+                let exchanged = self.exchange(f64::INFINITY, progress);
+                break (exchanged != Exchanged::Done).then(|| self.no_way(reason));
             }
             self.steps += 1;
             let watched = first(
@@ -387,6 +419,9 @@ impl Run<'_> {
             if self.steps > STEPS {
                 break Some(Ending::TooMany);
             }
+            if self.exchange(NEAR, progress) == Exchanged::Done {
+                break None;
+            }
             let done = Done::Part(self.time / until);
             if progress.reached(Stage::Simulating, done).is_break() {
                 break Some(Ending::Stopped);
@@ -404,8 +439,39 @@ impl Run<'_> {
         ending
     }
 
+    /// Exchanges what tells the place, where it comes to a dead point of its own within an angle, rad.
+    fn exchange(&mut self, within: f64, progress: &mut dyn Progress) -> Exchanged {
+        let scales = self.plant.scales.clone();
+        let state = (self.time, self.y.as_mut_slice());
+        let exchanged = (self.tellers).exchange(&mut self.plant, state, within, progress);
+        self.resized |= scales != self.plant.scales;
+        self.exchanged |= exchanged == Exchanged::Done;
+        exchanged
+    }
+
+    /// Steps and evaluations of all integrators.
+    fn effort(&self) -> (Used, usize) {
+        let (earlier, evaluations) = self.earlier;
+        match &self.integrator {
+            Some(it) => {
+                let used = it.used();
+                let used = Used {
+                    explicit: earlier.explicit + used.explicit,
+                    implicit: earlier.implicit + used.implicit,
+                    implicit_from: earlier.implicit_from.or(used.implicit_from),
+                };
+                (used, evaluations + it.evaluations())
+            }
+            None => self.earlier,
+        }
+    }
+
     /// The integrator at the state at hand.
     fn integrator_here(&mut self) -> Option<Integrator> {
+        if std::mem::take(&mut self.resized) {
+            self.earlier = self.effort();
+            self.integrator = None;
+        }
         let (time, y) = (self.time, self.y.as_slice());
         if let Some(mut known) = self.integrator.take() {
             return known.restart(&mut self.plant, time, y).then_some(known);

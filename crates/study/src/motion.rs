@@ -40,29 +40,31 @@ pub(crate) fn run_along(
         return Err(diagnostics);
     }
     let along = abscissa(&motion, &motion.design.parameters);
-    let (mut result, _) = rows_of(&motion, name, study, (forces, along, &[]), progress)?;
+    let shown = motion.mechanism().clone();
+    let (mut result, _) = rows_of(&motion, &shown, name, study, (forces, along, &[]), progress)?;
     result.diagnostics.splice(0..0, diagnostics);
     Ok(result)
 }
 
 /// Rows along a motion, with forces or without, and the column that they run along; the values (SI) of what is `hidden` in no
-/// column, by row.
+/// column, by row. What is `shown` is the mechanism that was asked about: that of the motion, or the one for which its drives stand in.
 pub(crate) fn rows_of(
     motion: &Arc<Motion>,
+    shown: &Arc<Mechanism>,
     name: &str,
     study: &MotionStudy,
     (forces, along, hidden): (bool, usize, &[Quantity]),
     progress: &mut dyn Progress,
 ) -> Result<(StudyResult, Vec<Vec<f64>>), Vec<Diagnostic>> {
     let design = &motion.design;
-    let model = &design.mechanism.model;
+    let model = &shown.model;
     let mut diagnostics = Vec::new();
     let mut study = study.clone();
     if forces && study.plots.is_empty() {
-        study.plots = standard_plots(&design.mechanism);
+        study.plots = standard_plots(shown);
     }
     let mut asked = if forces {
-        Asked::of_forces(&design.mechanism, &study)
+        Asked::of_forces(shown, &study)
     } else {
         Asked::of_motion(model, &study)
     };
@@ -96,7 +98,7 @@ pub(crate) fn rows_of(
     diagnostics.extend(sampler.number_warnings(Some(name), &quantities));
     diagnostics.extend(without_value(&rows, along, |index| {
         let number = index.and_then(|index| asked.scalars.get(index));
-        let of_cycles = number.is_some_and(|q| asks_time_ratio(&design.mechanism, &q.measure));
+        let of_cycles = number.is_some_and(|q| asks_time_ratio(shown, &q.measure));
         if of_cycles && !is_cycle(model, &design.parameters) {
             Lack::Cycle
         } else {
@@ -107,7 +109,7 @@ pub(crate) fn rows_of(
     diagnostics.extend(left_slots(model, parameters, &frames, &rows.table, along));
     let met = events(motion, &parameters_met);
     if forces {
-        diagnostics.extend(unbounded(&design.mechanism, &asked.scalars, &met));
+        diagnostics.extend(unbounded(shown, &asked.scalars, &met));
     }
     let hidden = std::mem::take(&mut rows.hidden);
     let result = StudyResult {

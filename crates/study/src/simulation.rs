@@ -8,8 +8,8 @@ use std::sync::Arc;
 
 use kempe_mechanism::Design;
 use kempe_model::{
-    Diagnostic, DriveId, ForceMeasure, Leaf, Model, MotionStudy, Rows, SimulateStudy, StepMethod,
-    StopResistance, StudyKind, value,
+    Diagnostic, DriveId, ForceMeasure, Leaf, LinkId, Model, MotionStudy, Rows, SimulateStudy,
+    StepMethod, StopResistance, StudyKind, value,
 };
 use kempe_motion::progress::{Progress, Silent};
 use kempe_motion::{EndReason, Motion, Stage};
@@ -42,6 +42,8 @@ const FINEST: f64 = 1e-15;
 const STAYS: f64 = 1e-9;
 /// At most so many things that happened are listed.
 const LISTED: usize = 30;
+/// At most so many changes of what tells the place are listed.
+const TOLD: usize = 4;
 
 /// The motion that a simulation of the model finds.
 ///
@@ -119,9 +121,16 @@ pub(crate) fn simulation(
         findings: mut diagnostics,
         ..
     } = run;
-    let hidden = hidden(&question.free);
+    let hidden = hidden(&found.telling(&question.free));
     let along = in_time(&study.along, question.until);
-    let (mut result, values) = rows_of(&motion, name, &along, (true, 0, &hidden), progress)?;
+    let (mut result, values) = rows_of(
+        &motion,
+        &found.mechanism(),
+        name,
+        &along,
+        (true, 0, &hidden),
+        progress,
+    )?;
     diagnostics.append(&mut result.diagnostics);
     let units = Units::of(model);
     let times = result
@@ -145,7 +154,7 @@ pub(crate) fn simulation(
         let all: Vec<String> = note.take().into_iter().chain(held).collect();
         *note = (!all.is_empty()).then(|| all.join("; "));
     }
-    result.listings.push(how(&units, &found, &result));
+    result.listings.push(how(model, &question, &found, &result));
     result
         .listings
         .extend(happened(&units, study, &ends, &found));
@@ -346,12 +355,12 @@ fn early(model: &Model, units: &Units, found: &Simulated) -> Option<Diagnostic> 
     let (why, help) = match found.ending {
         Ending::Until | Ending::Condition(_) | Ending::Stopped => return None,
         Ending::Limit(EndReason::Covered) | Ending::NoWay => (
-            "no pose or no acceleration was found just ahead: links are stretched or folded there, or nothing moves mass",
-            "let another drive go, one that turns a link which turns on there",
+            "no pose or no acceleration was found just ahead: nothing moves mass there, or what is let go comes to a dead point where no link turns on",
+            "give the links that move there mass and inertia, or let another drive go, one whose coordinate goes on there",
         ),
         Ending::Limit(_) => (
-            "the drive that is let go comes to its dead point, beyond which its coordinate does not tell where the mechanism goes",
-            "let another drive go, one that turns a link which turns on there",
+            "what is let go comes to a dead point of its own, and no link turns on there whose angle would tell where the mechanism goes",
+            "let another drive go, one whose coordinate goes on there",
         ),
         Ending::TooShort => (
             "no step is short enough: something runs away, jumps, or is very stiff",
@@ -379,7 +388,8 @@ fn early(model: &Model, units: &Units, found: &Simulated) -> Option<Diagnostic> 
 }
 
 /// How it was done, and how well.
-fn how(units: &Units, found: &Simulated, result: &StudyResult) -> Listing {
+fn how(model: &Model, question: &Question, found: &Simulated, result: &StudyResult) -> Listing {
+    let units = &Units::of(model);
     let balance = result.table.balance.as_ref();
     let worst = |column: Option<&Vec<f64>>| {
         let sizes: Vec<f64> = column.into_iter().flatten().map(|x| x.abs()).collect();
@@ -400,7 +410,7 @@ fn how(units: &Units, found: &Simulated, result: &StudyResult) -> Listing {
             ),
         ],
     };
-    let rows = vec![
+    let mut rows = vec![
         vec![
             "method".to_owned(),
             format!("minimal coordinates, {}", methods.join(" and ")),
@@ -428,11 +438,48 @@ fn how(units: &Units, found: &Simulated, result: &StudyResult) -> Listing {
             ),
         ],
     ];
+    if let Some(told) = told(model, question, found) {
+        rows.insert(1, vec!["coordinates".to_owned(), told]);
+    }
     Listing {
         title: "How it was simulated".to_owned(),
         head: Vec::new(),
         rows,
     }
+}
+
+/// What told the place of the mechanism, where that was not what was let go all the time: `travel, from 0.1 s angle(crank)`.
+fn told(model: &Model, question: &Question, found: &Simulated) -> Option<String> {
+    let units = Units::of(model);
+    let drive = |place: usize| {
+        let id = question.free.get(place)?;
+        Some(model.drives.get(id.index())?.name.clone())
+    };
+    let link = |link: &LinkId| {
+        let link = model.links.get(link.index())?;
+        Some(format!("angle({})", link.name))
+    };
+    let told = found.told_by();
+    let mut parts: Vec<String> = (told.iter().enumerate().take(TOLD))
+        .map(|(index, (since, links))| {
+            let names = links.iter().enumerate();
+            let names: Vec<String> = names
+                .filter_map(|(place, it)| it.as_ref().map_or_else(|| drive(place), link))
+                .collect();
+            match index {
+                0 => names.join(" and "),
+                _ => format!(
+                    "from {} {}",
+                    units.text(*since, Dimension::TIME),
+                    names.join(" and ")
+                ),
+            }
+        })
+        .collect();
+    if told.len() > TOLD {
+        parts.push(format!("and so on, {} times", told.len() - 1));
+    }
+    (!parts.is_empty()).then(|| parts.join(", "))
 }
 
 /// What happened, in words.

@@ -308,7 +308,7 @@ fn drives(model: &Model, parameters: &[f64]) -> Vec<DriveView> {
                     guide: guide(on),
                 }
             }
-            DriveKind::Release { .. } => return None,
+            DriveKind::Release { .. } | DriveKind::StandIn(_) => return None,
         };
         let (from, duration) = (
             drive.law.at(0.0, parameters),

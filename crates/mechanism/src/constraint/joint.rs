@@ -26,8 +26,13 @@ pub trait Joint {
         Unit::Length
     }
 
-    /// What of its bodies it touches.
+    /// What of its bodies it touches: all of it, unless [`Joint::touched`] says more.
     fn touches(&self) -> [Option<Touch>; 3];
+
+    /// All that it touches of its bodies.
+    fn touched(&self) -> Vec<Touch> {
+        self.touches().into_iter().flatten().collect()
+    }
 
     /// The drive whose coordinate it holds.
     fn drive(&self) -> Option<DriveId> {

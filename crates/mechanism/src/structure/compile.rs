@@ -1,12 +1,14 @@
 //! From a model's joints and drives to constraints.
 
-use kempe_model::{DriveId, DriveKind, JointId, JointKind, LinkId, LinkPointRef, PointId, Scalar};
+use kempe_model::{
+    DriveId, DriveKind, JointId, JointKind, LinkId, LinkPointRef, PointId, Scalar, StandIn,
+};
 use kempe_units::Expr;
 
 use super::{Source, Structure};
 use crate::constraint::{
-    Belt, Coincide, Constraint, Direction, Distance, Gears, Joint, OnArc, OnCurve, OnLine, Rack,
-    Shoe, Travel,
+    Belt, Coincide, Constraint, Direction, Distance, Gears, Joint, OnArc, OnCurve, OnLine, Pilot,
+    Rack, Shoe, Travel,
 };
 use crate::ids::{BodyId, LineRef};
 use crate::sources::{AngleSource, GearSource, LineSource, ZERO};
@@ -175,8 +177,37 @@ impl Structure {
     /// What a drive demands; `opened` are the constraints of joints that are let go.
     pub(super) fn add_drive(&mut self, id: DriveId, opened: &[(Constraint, Source)]) {
         let drive = self.model.drives[id.index()].clone();
-        let source = Source::Drive(id);
-        match drive.kind {
+        let held = match &drive.kind {
+            // What others tell, and a mere number, hold nothing.
+            DriveKind::StandIn(StandIn::Follows { .. } | StandIn::Choice) => None,
+            DriveKind::StandIn(StandIn::Pilot {
+                own, links, chosen, ..
+            }) => {
+                let bodies: Vec<BodyId> = links.iter().map(|link| self.body_of(*link)).collect();
+                let own = self.driven(own, id);
+                own.and_then(|own| Pilot::new(own, &bodies, *chosen))
+                    .map(Constraint::from)
+            }
+            DriveKind::Release { of, row } => {
+                let opened = opened.iter().filter(|(_, source)| *source == (*of).into());
+                let mut rows = opened.flat_map(|(constraint, source)| {
+                    (0..constraint.rows() as u8).map(move |row| (*constraint, row, *source))
+                });
+                if let Some((constraint, row, source)) = rows.nth(usize::from(*row))
+                    && let Some(released) = constraint.releasing(row, id)
+                {
+                    self.constraints.push((released, source));
+                }
+                None
+            }
+            kind => self.driven(kind, id),
+        };
+        (self.constraints).extend(held.map(|held| (held, Source::Drive(id))));
+    }
+
+    /// What holds something at the coordinate of a drive.
+    fn driven(&mut self, kind: &DriveKind, id: DriveId) -> Option<Constraint> {
+        match *kind {
             DriveKind::Turn { link, relative_to } => {
                 let offset = self.angle(AngleSource {
                     value: ZERO,
@@ -191,38 +222,22 @@ impl Structure {
                     offset,
                     input: Some(id),
                 };
-                self.constraints.push((direction.into(), source));
+                Some(direction.into())
             }
             DriveKind::Cylinder { a, b } => {
-                if let (Some(a), Some(b)) = (self.marker(a), self.marker(b)) {
-                    let distance = Distance { a, b, input: id };
-                    self.constraints.push((distance.into(), source));
-                }
+                let (a, b) = (self.marker(a)?, self.marker(b)?);
+                Some(Distance { a, b, input: id }.into())
             }
             DriveKind::Slide { joint } => {
-                let Some((at, on)) = self.model.joints[joint.index()].kind.guide() else {
-                    return;
+                let (at, on) = self.model.joints[joint.index()].kind.guide()?;
+                let travel = Travel {
+                    point: self.marker(at)?,
+                    line: self.line(on)?,
+                    input: id,
                 };
-                if let (Some(point), Some(line)) = (self.marker(at), self.line(on)) {
-                    let travel = Travel {
-                        point,
-                        line,
-                        input: id,
-                    };
-                    self.constraints.push((travel.into(), source));
-                }
+                Some(travel.into())
             }
-            DriveKind::Release { of, row } => {
-                let opened = opened.iter().filter(|(_, source)| *source == of.into());
-                let mut rows = opened.flat_map(|(constraint, source)| {
-                    (0..constraint.rows() as u8).map(move |row| (*constraint, row, *source))
-                });
-                if let Some((constraint, row, source)) = rows.nth(usize::from(row))
-                    && let Some(released) = constraint.releasing(row, id)
-                {
-                    self.constraints.push((released, source));
-                }
-            }
+            _ => None,
         }
     }
 

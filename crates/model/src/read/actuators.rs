@@ -52,7 +52,7 @@ fn drive(cx: &mut Context<'_>, key: &Key, cylinder: bool) -> Option<DriveId> {
     let fits = |kind: &DriveKind| match kind {
         DriveKind::Cylinder { .. } => cylinder,
         DriveKind::Turn { .. } => !cylinder,
-        DriveKind::Slide { .. } | DriveKind::Release { .. } => false,
+        DriveKind::Slide { .. } | DriveKind::Release { .. } | DriveKind::StandIn(_) => false,
     };
     let section = if cylinder { "cylinders" } else { "motors" };
     if let Some((Meaning::Drive(i), declared)) = cx.names.get(name) {
@@ -110,6 +110,7 @@ pub(crate) fn what_it_is(kind: &DriveKind) -> &'static str {
         DriveKind::Cylinder { .. } => "is a cylinder",
         DriveKind::Slide { .. } => "slides along a line",
         DriveKind::Release { .. } => "lets go of a joint",
+        DriveKind::StandIn(_) => "stands in for a drive",
     }
 }
 

@@ -67,7 +67,7 @@ pub(crate) fn coordinate(cx: &Context<'_>, kind: &DriveKind) -> Option<Scalar> {
             let to = way(&from, &world(cx, at.point)?);
             over(dot(&along, &to), length(&along)).fold()
         }
-        DriveKind::Release { .. } => return None,
+        DriveKind::Release { .. } | DriveKind::StandIn(_) => return None,
     };
     let x = cx.number(&found);
     // a cylinder drawn without length has none

@@ -284,6 +284,8 @@ fn same_coordinate(cx: &mut Context<'_>, drive: &Drive) {
             of: Released::Pin { point, link },
             row,
         } => (5 + row, point.0, link.0),
+        // Files cannot say it.
+        DriveKind::StandIn(_) => (u8::MAX, 0, 0),
     };
     let Some(other) = cx
         .model

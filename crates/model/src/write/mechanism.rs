@@ -212,7 +212,7 @@ impl Writer<'_> {
         entries
     }
 
-    /// `None` for a joint that is let go: files cannot say it.
+    /// `None` for what files cannot say, such as a joint that is let go.
     fn drive_entry(&mut self, drive: &Drive) -> Option<Entries> {
         let text = |key: &str, text: &str| (key.to_owned(), Item::text(text));
         let mut entries = match drive.kind {
@@ -225,7 +225,7 @@ impl Writer<'_> {
             }
             DriveKind::Cylinder { a, b } => self.ends("cylinder", [&a, &b]),
             DriveKind::Slide { joint } => vec![text("slides", self.joint(joint))],
-            DriveKind::Release { .. } => return None,
+            DriveKind::Release { .. } | DriveKind::StandIn(_) => return None,
         };
         self.law(drive, &mut entries);
         Some(entries)
