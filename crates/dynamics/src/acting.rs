@@ -9,6 +9,7 @@ use crate::damper::Damper;
 use crate::friction::Friction;
 use crate::inertia::Mass;
 use crate::instant::Instant;
+use crate::joint_contact::JointContact;
 use crate::load::Load;
 use crate::motor::Motor;
 use crate::number::ForceNumber;
@@ -40,6 +41,8 @@ pub struct Acting<T: ForceNumber> {
     pub cylinders: Vec<Cylinder<T>>,
     /// Motors.
     pub motors: Vec<Motor<T>>,
+    /// Joints with play whose bodies touch and part.
+    pub contacts: Vec<JointContact<T>>,
 }
 
 impl<T: ForceNumber> Acting<T> {
@@ -77,6 +80,7 @@ impl<T: ForceNumber> Acting<T> {
             motors: (actions.motors.iter())
                 .map(|m| Motor::new(m, parameters, &mut problems))
                 .collect(),
+            contacts: JointContact::all(mechanism, geometry, parameters, &mut problems),
             loads,
             amounts,
             cylinders,

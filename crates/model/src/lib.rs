@@ -3,6 +3,7 @@
 mod bound;
 pub mod build;
 mod clearance;
+mod contact;
 mod codes;
 mod complete;
 mod decimal;
@@ -46,6 +47,7 @@ mod write;
 
 pub use bound::{Bound, Keeps};
 pub use clearance::*;
+pub use contact::*;
 pub use codes::{CODES, Code, LATER_CODES};
 pub use complete::{Completion, CompletionKind, complete};
 pub use diagnostic::{Diagnostic, Label, Severity, Source};

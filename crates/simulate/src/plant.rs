@@ -100,6 +100,7 @@ impl Plant {
         let works = !acting.loads.is_empty()
             || !acting.dampers.is_empty()
             || !acting.friction.is_empty()
+            || !acting.contacts.is_empty()
             || motors.iter().any(Option::is_some)
             || !driven.is_empty()
             || !stops.is_empty();
@@ -193,6 +194,7 @@ impl Plant {
         if !self.mode.touched.is_empty() && !self.push(time, y) {
             return false;
         }
+        self.instant.time = time;
         if !self.places.instant(&self.coordinates, &mut self.instant) || !self.amounts_at(time) {
             return false;
         }

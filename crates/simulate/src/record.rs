@@ -11,6 +11,7 @@ use kempe_motion::{Demand, EndReason, Motion, MotionError, Placed, Progress};
 use kempe_units::Expr;
 
 use crate::happening::{Happening, Held};
+use crate::joints::{Place, Touched};
 
 /// Why a simulation ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,6 +47,10 @@ pub struct Simulated {
     pub happenings: Vec<Happening>,
     /// When stops or friction held it, in order.
     pub held: Vec<Held>,
+    /// Touches of bodies in joints with play that give, in order.
+    pub touched: Vec<Touched>,
+    /// The places with play for which the stops behind those of the question stand: they resist at once.
+    pub rigid: Vec<Place>,
     /// Steps, and by which method.
     pub used: Used,
     /// How often accelerations were asked for.
@@ -73,7 +78,15 @@ impl Simulated {
     /// # Errors
     /// Where it cannot be followed.
     pub fn motion(&self, progress: &mut dyn Progress) -> Result<Arc<Motion>, MotionError> {
-        let design = self.design.with_laws(|index| self.laws.get(index).cloned());
+        let design = self.design.with_model(|model| {
+            for (drive, law) in model.drives.iter_mut().zip(&self.laws) {
+                drive.law = law.clone();
+            }
+            for (index, contact) in model.actions.contacts.iter_mut().enumerate() {
+                let own = self.touched.iter().filter(|t| t.at.contact == index);
+                contact.touches = own.map(|t| t.touching).collect();
+            }
+        });
         let (model, parameters) = (&design.mechanism.model, &design.parameters);
         let path = DrivePath::new(model, parameters, design.size());
         let range = path.range(model, parameters);
