@@ -5,7 +5,7 @@ use std::sync::Arc;
 use kempe_dynamics::motor::Motor;
 use kempe_integrate::Used;
 use kempe_mechanism::Design;
-use kempe_model::{COEFFICIENTS, Law, LawPiece, Polynomials};
+use kempe_model::{COEFFICIENTS, DriveId, Law, LawPiece, Polynomials};
 use kempe_motion::drive_path::DrivePath;
 use kempe_motion::{Demand, EndReason, Motion, MotionError, Placed, Progress};
 use kempe_units::Expr;
@@ -35,6 +35,8 @@ pub enum Ending {
 /// What a simulation found.
 #[derive(Clone, Debug)]
 pub struct Simulated {
+    /// The coordinates that were let go: the question's drives, then the rows of joints with play.
+    pub free: Vec<DriveId>,
     /// How every drive moves, SI.
     pub laws: Vec<Law>,
     /// Work done on the mechanism by all but weights and springs since the start, J.
@@ -49,8 +51,10 @@ pub struct Simulated {
     pub held: Vec<Held>,
     /// Touches of bodies in joints with play that give, in order.
     pub touched: Vec<Touched>,
-    /// The places with play for which the stops behind those of the question stand: they resist at once.
+    /// The places with play that resist at once, as stops behind those of the question: from `rigid_from` on.
     pub rigid: Vec<Place>,
+    /// How many stops the question has.
+    pub rigid_from: usize,
     /// Steps, and by which method.
     pub used: Used,
     /// How often accelerations were asked for.

@@ -155,7 +155,9 @@ pub fn simulate(
     let end = run.time;
     let (laws, work) = run.record.laws(end);
     Ok(Simulated {
+        free: question.free.clone(),
         touched: touched(&run.plant.forces.acting.contacts, &laws, end),
+        rigid_from: question.stops.len() - rigid_places.len(),
         rigid: rigid_places,
         laws,
         work,

@@ -4,7 +4,7 @@ use kempe_mechanism::Design;
 use kempe_mechanism::mobility::Mobility;
 use kempe_mechanism::structure::BodyId;
 use kempe_model::{
-    Diagnostic, Drive, DriveKind, Joint, JointKind, Model, Rows, Severity, Study, StudyKind, value,
+    ContactStudy, Diagnostic, Drive, DriveKind, Joint, JointKind, Model, Rows, Severity, Study, StudyKind, value,
 };
 use kempe_motion::assemble::Assembly;
 use kempe_motion::drive_path::DrivePath;
@@ -383,6 +383,7 @@ fn study_text(model: &Model, study: &Study, parameters: &[f64], units: &Units) -
         StudyKind::Spring(_) => "a spring",
         StudyKind::Simulate(_) => "a simulation",
         StudyKind::Clearance(_) => "clearance",
+        StudyKind::Contact(_) => "clearance in which contact is lost",
         StudyKind::Vibrations(_) => "natural vibrations",
     };
     let along = study.kind.along();
@@ -413,13 +414,19 @@ fn study_text(model: &Model, study: &Study, parameters: &[f64], units: &Units) -
         Rows::Count(count) => format!("{count} rows evenly in time"),
     };
     match &study.kind {
-        StudyKind::Simulate(simulated) => {
+        StudyKind::Simulate(simulated)
+        | StudyKind::Contact(ContactStudy {
+            motion: simulated, ..
+        }) => {
             let free: Vec<String> = (simulated.released.iter())
                 .filter_map(|drive| model.drives.get(drive.index()))
                 .map(|drive| drive.name.clone())
                 .collect();
             let until = units.text(value(&simulated.until, parameters), Dimension::TIME);
-            format!("{kind} of {until}, {} let go, {rows}", list(&free))
+            match free.is_empty() {
+                true => format!("{kind} of {until}, {rows}"),
+                false => format!("{kind} of {until}, {} let go, {rows}", list(&free)),
+            }
         }
         _ => format!("{kind}, {rows}"),
     }

@@ -39,7 +39,7 @@ impl Joints {
             if radial == 0.0 {
                 continue;
             }
-            let name = name(model, *source);
+            let name = joint_name(model, *source);
             let carries = mechanism.releasing(&[*source]).is_err();
             if clearance.at == ClearanceAt::All && carries {
                 it.carry_wheels.push(name);
@@ -70,7 +70,7 @@ impl Joints {
 }
 
 /// The entry that tells of a joint.
-fn of(model: &Model, source: Source) -> Option<&Clearance> {
+pub(super) fn of(model: &Model, source: Source) -> Option<&Clearance> {
     let entries = || model.clearances.iter().rev();
     let of_all = || entries().find(|c| c.at == ClearanceAt::All);
     match source {
@@ -97,7 +97,8 @@ fn of(model: &Model, source: Source) -> Option<&Clearance> {
     }
 }
 
-fn name(model: &Model, source: Source) -> String {
+/// What a joint is called.
+pub(crate) fn joint_name(model: &Model, source: Source) -> String {
     let point = |id: PointId| model.points.get(id.index());
     match source {
         Source::Pin { point: id, link } => {
@@ -129,7 +130,7 @@ pub(crate) fn not_released(mechanism: &Mechanism, why: NotReleased) -> Diagnosti
     };
     let message = format!(
         "the clearance at {} cannot be counted: {reason}",
-        name(model, source)
+        joint_name(model, source)
     );
     let diagnostic = Diagnostic::error("no-clearance-there", message)
         .help("leave it out under [clearance]; there may be play at other pins, sliders and slots");

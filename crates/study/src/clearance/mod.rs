@@ -1,6 +1,7 @@
 //! What play at the joints does: the motion with it beside the motion without, row by row.
 
 mod columns;
+mod contact;
 mod joints;
 mod summary;
 
@@ -9,7 +10,7 @@ use kempe_measure::measure::History;
 use kempe_measure::measure::visit_leaves;
 use kempe_mechanism::Mechanism;
 use kempe_model::{
-    ClearanceModel, ClearanceRates, ClearanceStudy, Diagnostic, Leaf, Measure, Model, PointId,
+    ClearanceRates, ClearanceStudy, Diagnostic, Leaf, Measure, Model, PointId,
     PoseMeasure,
 };
 use kempe_motion::progress::{Done, Progress, Stage};
@@ -33,8 +34,9 @@ use crate::unit::Units;
 
 pub(crate) use self::columns::{COLUMNS, not_at_an_instant};
 use self::columns::{Deviations, Found};
-pub(crate) use self::joints::given;
-use self::joints::{Joints, not_released};
+pub(crate) use self::contact::contact;
+use self::joints::Joints;
+pub(crate) use self::joints::{given, joint_name, not_released};
 
 /// Runs a study of clearance called `name`.
 pub(crate) fn clearance(
@@ -43,7 +45,6 @@ pub(crate) fn clearance(
     study: &ClearanceStudy,
     progress: &mut dyn Progress,
 ) -> Result<StudyResult, Vec<Diagnostic>> {
-    let ClearanceModel::Continuous = study.model;
     let mut diagnostics = Vec::new();
     let model = &without_friction(model, name, &mut diagnostics);
     let design = design(model);
