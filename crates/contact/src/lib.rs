@@ -24,11 +24,14 @@ mod touch;
 mod unfit;
 
 pub use friction::{Friction, Onset, falling_coefficient};
-pub use guide::BlockInGuide;
+pub use guide::{BlockInGuide, PLACES};
 pub use impact::Impact;
+pub use kempe_model::Dissipation;
 pub use normal::{Damping, Normal, SLOWEST_APPROACH};
 pub use pin::PinWithPlay;
-pub use restitution::{Dissipation, damping_ratio_for, delivered_by_factor, delivered_by_ratio};
+pub use restitution::{
+    damping_ratio_for, delivered, delivered_by_factor, delivered_by_ratio, factor,
+};
 pub use stiffness::{Fit, Material, stiffness};
 pub use touch::{Body, Touch, Wrench};
 pub use unfit::Unfit;

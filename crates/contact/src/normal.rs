@@ -3,7 +3,7 @@
 use kempe_number::Number;
 
 use crate::unfit::{not_negative, positive};
-use crate::{Dissipation, Unfit, damping_ratio_for};
+use crate::{Dissipation, Unfit, damping_ratio_for, factor};
 
 /// Approach speeds below this (m/s) count as this: an impact so slow is rest, and the damping of a law that divides by its
 /// speed would grow without bound.
@@ -59,7 +59,7 @@ impl Normal<f64> {
         dissipation: Dissipation,
     ) -> Result<Self, Unfit> {
         Ok(Self {
-            damping: Damping::Factor(dissipation.factor(restitution)?),
+            damping: Damping::Factor(factor(dissipation, restitution)?),
             ..Self::hertz(stiffness)?
         })
     }

@@ -42,22 +42,37 @@ impl<T: Number> PinWithPlay<T> {
 
     /// Where they touch, or would touch next. Where the centres are one the direction is that of the x axis: all are as near.
     pub fn touch(&self, bodies: &[Body<T>; 2]) -> Touch<T> {
-        let centres = [
-            bodies[0].pose.place(self.bearing),
-            bodies[1].pose.place(self.journal),
-        ];
-        let apart = sub(centres[1], centres[0]);
+        let bearing = bodies[0].pose.place(self.bearing);
+        let journal = bodies[1].pose.place(self.journal);
+        self.touch_at(bodies, sub(journal, bearing))
+    }
+
+    /// The same where somebody knows better than their poses how far the journal stands off the bearing, m along the frame's
+    /// axes: an indentation is a small difference of large numbers otherwise.
+    pub fn touch_at(&self, bodies: &[Body<T>; 2], apart: [T; 2]) -> Touch<T> {
         let square = dot(apart, apart);
         let distance = (-square).choose_with(T::zero, || square.sqrt());
         let along = |k: usize, at_none: f64| {
             (-square).choose_with(|| T::from_f64(at_none), || apart[k] / distance)
         };
         let normal = [along(0, 1.0), along(1, 0.0)];
-        let point = |k: usize| {
-            let ([x, y], radius) = (centres[k], self.radii[k]);
+        let point = |body: &Body<T>, centre: [T; 2], radius: T| {
+            let [x, y] = body.pose.place(centre);
             [x + normal[0] * radius, y + normal[1] * radius]
         };
-        let gap = self.clearance() - distance;
-        Touch::new(bodies, [point(0), point(1)], normal, gap)
+        let points = [
+            point(&bodies[0], self.bearing, self.radii[0]),
+            point(&bodies[1], self.journal, self.radii[1]),
+        ];
+        Touch::new(bodies, points, normal, self.clearance() - distance)
+    }
+
+    /// How far it is open, m, and how fast it opens, m/s, where the journal stands off the bearing so far and parts from it so fast.
+    pub fn gap(&self, apart: [T; 2], parting: [T; 2]) -> [T; 2] {
+        let distance = dot(apart, apart).sqrt();
+        [
+            self.clearance() - distance,
+            -(dot(apart, parting) / distance),
+        ]
     }
 }

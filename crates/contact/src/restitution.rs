@@ -7,6 +7,7 @@
 //!
 //! With `q = -ln(1 - chi e)` the relation is `chi - ln(1 + chi) = q - (1 - exp(-q))`: both sides without cancellation.
 
+use kempe_model::Dissipation;
 use kempe_number::math::{acos, acosh, exp, exp_m1, ln_1p};
 
 use crate::Unfit;
@@ -16,92 +17,35 @@ pub(crate) const SMALL: f64 = 0.1;
 /// Terms of those series.
 const TERMS: i32 = 20;
 
-/// Whose factor chi makes a law of a wanted restitution e.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Dissipation {
-    /// The factor that delivers the wanted restitution.
-    #[default]
-    Exact,
-    /// 3 (1 - e) / 2: K. H. Hunt and F. R. E. Crossley, 1975.
-    HuntCrossley,
-    /// 6 (1 - e) / ((2 e - 1)^2 + 3): R. G. Herbert and D. C. McWhannell, 1977.
-    HerbertMcWhannell,
-    /// 3 (1 - e) / 4: T. W. Lee and A. C. Wang, 1983.
-    LeeWang,
-    /// 3 (1 - e^2) / 4: H. M. Lankarani and P. E. Nikravesh, 1990.
-    LankaraniNikravesh,
-    /// (1 - e^2) / e: the approximation of Y. Gonthier et al., 2004.
-    Gonthier,
-    /// 3 (1 - e^2) exp(2 (1 - e)) / 4: Q. Zhiying and L. Qishao, 2006.
-    ZhiyingQishao,
-    /// 8 (1 - e) / (5 e): P. Flores et al., 2011.
-    Flores,
-    /// 3 (1 - e) / (2 e): S. Hu and X. Guo, 2015.
-    HuGuo,
+/// The factor chi of a law for a wanted restitution.
+///
+/// # Errors
+///
+/// Where the restitution is not above 0 and at most 1.
+pub fn factor(dissipation: Dissipation, restitution: f64) -> Result<f64, Unfit> {
+    let e = checked(restitution)?;
+    Ok(match dissipation {
+        Dissipation::Exact => exact_factor(e),
+        Dissipation::HuntCrossley => 1.5 * (1.0 - e),
+        Dissipation::HerbertMcWhannell => {
+            6.0 * (1.0 - e) / ((2.0 * e - 1.0) * (2.0 * e - 1.0) + 3.0)
+        }
+        Dissipation::LeeWang => 0.75 * (1.0 - e),
+        Dissipation::LankaraniNikravesh => 0.75 * (1.0 - e * e),
+        Dissipation::Gonthier => (1.0 - e * e) / e,
+        Dissipation::ZhiyingQishao => 0.75 * (1.0 - e * e) * exp(2.0 * (1.0 - e)),
+        Dissipation::Flores => 1.6 * (1.0 - e) / e,
+        Dissipation::HuGuo => 1.5 * (1.0 - e) / e,
+    })
 }
 
-impl Dissipation {
-    /// All of them, the default first.
-    pub const ALL: [Self; 9] = [
-        Self::Exact,
-        Self::HuntCrossley,
-        Self::HerbertMcWhannell,
-        Self::LeeWang,
-        Self::LankaraniNikravesh,
-        Self::Gonthier,
-        Self::ZhiyingQishao,
-        Self::Flores,
-        Self::HuGuo,
-    ];
-
-    /// Its name in a model file.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Exact => "exact",
-            Self::HuntCrossley => "hunt-crossley",
-            Self::HerbertMcWhannell => "herbert-mcwhannell",
-            Self::LeeWang => "lee-wang",
-            Self::LankaraniNikravesh => "lankarani-nikravesh",
-            Self::Gonthier => "gonthier",
-            Self::ZhiyingQishao => "zhiying-qishao",
-            Self::Flores => "flores",
-            Self::HuGuo => "hu-guo",
-        }
-    }
-
-    /// The one of this name.
-    pub fn named(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|it| it.name() == name)
-    }
-
-    /// Its factor chi for a wanted restitution.
-    ///
-    /// # Errors
-    ///
-    /// Where the restitution is not above 0 and at most 1.
-    pub fn factor(self, restitution: f64) -> Result<f64, Unfit> {
-        let e = checked(restitution)?;
-        Ok(match self {
-            Self::Exact => exact_factor(e),
-            Self::HuntCrossley => 1.5 * (1.0 - e),
-            Self::HerbertMcWhannell => 6.0 * (1.0 - e) / ((2.0 * e - 1.0) * (2.0 * e - 1.0) + 3.0),
-            Self::LeeWang => 0.75 * (1.0 - e),
-            Self::LankaraniNikravesh => 0.75 * (1.0 - e * e),
-            Self::Gonthier => (1.0 - e * e) / e,
-            Self::ZhiyingQishao => 0.75 * (1.0 - e * e) * exp(2.0 * (1.0 - e)),
-            Self::Flores => 1.6 * (1.0 - e) / e,
-            Self::HuGuo => 1.5 * (1.0 - e) / e,
-        })
-    }
-
-    /// The restitution that its factor for a wanted one delivers.
-    ///
-    /// # Errors
-    ///
-    /// As [`Dissipation::factor`].
-    pub fn delivers(self, restitution: f64) -> Result<f64, Unfit> {
-        Ok(delivered_by_factor(self.factor(restitution)?))
-    }
+/// The restitution that a law's factor for a wanted one delivers.
+///
+/// # Errors
+///
+/// As [`factor`].
+pub fn delivered(dissipation: Dissipation, restitution: f64) -> Result<f64, Unfit> {
+    Ok(delivered_by_factor(factor(dissipation, restitution)?))
 }
 
 fn checked(restitution: f64) -> Result<f64, Unfit> {

@@ -9,6 +9,7 @@ use crate::damper::Damper;
 use crate::friction::Friction;
 use crate::inertia::Mass;
 use crate::instant::Instant;
+use crate::joint_contact::JointContact;
 use crate::load::Load;
 use crate::motor::Motor;
 use crate::number::ForceNumber;
@@ -43,6 +44,8 @@ pub struct Acting<T: ForceNumber> {
     pub motors: Vec<Motor<T>>,
     /// Those of them whose drives are let go and hold nothing: they turn what they are on.
     pub turning: Vec<Turning>,
+    /// Joints with play whose bodies touch and part.
+    pub contacts: Vec<JointContact<T>>,
 }
 
 impl<T: ForceNumber> Acting<T> {
@@ -81,6 +84,7 @@ impl<T: ForceNumber> Acting<T> {
                 .map(|m| Motor::new(m, parameters, &mut problems))
                 .collect(),
             turning: Turning::all(mechanism),
+            contacts: JointContact::all(mechanism, geometry, parameters, &mut problems),
             loads,
             amounts,
             cylinders,

@@ -15,6 +15,7 @@ use crate::acting::Acting;
 use crate::energy;
 use crate::forces::Forces;
 use crate::instant::Instant;
+use crate::joint_contact;
 use crate::number::{ForceNumber, PlainNumber};
 use crate::vector::{add, dot, left, times};
 use crate::virtual_power;
@@ -276,7 +277,7 @@ impl Forces<f64> {
         self.drives[drive.index()].value
     }
 
-    /// The power, W, that loads, motors of drives that hold nothing, dampers and, after [`Forces::let_go`], friction give to the mechanism. `storage` has a place
+    /// The power, W, that loads, motors of drives that hold nothing, dampers, contacts and, after [`Forces::let_go`], friction give to the mechanism. `storage` has a place
     /// for every link.
     pub fn power_from_outside(&self, at: &Instant<f64>, storage: &mut [Wrench<f64>]) -> f64 {
         let rubs = match self.acting.friction.is_empty() {
@@ -285,6 +286,7 @@ impl Forces<f64> {
         };
         rubs + energy::of_loads(&self.acting, &self.design, at, storage)
             + energy::of_motors(&self.acting, at)
+            + joint_contact::power(&self.acting.contacts, at)
             - energy::dissipation(&self.acting, &self.design.geometry, at)
     }
 }

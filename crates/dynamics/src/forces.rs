@@ -10,6 +10,7 @@ use crate::acting::Acting;
 use crate::equilibrium::Equilibrium;
 pub use crate::equilibrium::FrictionOutcome;
 use crate::instant::{Instant, Rates};
+use crate::joint_contact;
 use crate::number::{ForceNumber, PlainNumber};
 use crate::problem::Problem;
 use crate::virtual_power::{self, ByPower};
@@ -67,7 +68,9 @@ pub struct Forces<T: ForceNumber> {
     pub inertial: Vec<Wrench<T>>,
     /// Weights, loads, springs and dampers on every body.
     pub applied_on_bodies: Vec<Wrench<T>>,
-    /// `m a` less what is applied, friction included after a solve, of every body.
+    /// What contacts in joints with play do to every body.
+    pub by_contacts: Vec<Wrench<T>>,
+    /// `m a` less what is applied and what contacts do, friction included after a solve, of every body.
     pub(crate) needed: Vec<Wrench<T>>,
     /// Constraint of every drive.
     drive_constraints: Vec<Option<usize>>,
@@ -116,6 +119,7 @@ impl<T: ForceNumber> Forces<T> {
             applied: vec![zero; links],
             inertial: vec![zero; links],
             applied_on_bodies: vec![zero; bodies],
+            by_contacts: vec![zero; bodies],
             needed: vec![zero; bodies],
             drive_constraints: (0..drives)
                 .map(|d| {
@@ -148,6 +152,11 @@ impl<T: ForceNumber> Forces<T> {
             wrench::add(&mut self.applied_on_bodies[body], applied);
             wrench::add(&mut self.needed[body], inertial);
             wrench::add(&mut self.needed[body], wrench::opposite(applied));
+        }
+        self.by_contacts.fill([T::zero(); 3]);
+        joint_contact::act(&self.acting.contacts, at, &mut self.by_contacts);
+        for (needed, given) in self.needed.iter_mut().zip(&self.by_contacts) {
+            wrench::add(needed, wrench::opposite(*given));
         }
     }
 
@@ -212,6 +221,9 @@ impl<T: ForceNumber> Forces<T> {
             let body = &mut needed[seat.body.index()];
             wrench::add(body, *inertial);
             wrench::add(body, wrench::opposite(*applied));
+        }
+        for (needed, given) in needed.iter_mut().zip(&self.by_contacts) {
+            wrench::add(needed, wrench::opposite(*given));
         }
         needed
     }

@@ -37,6 +37,8 @@ pub struct Instant<T> {
     pub near: Vec<f64>,
     /// Values of everything that varies: see [`crate::amount`].
     pub amounts: Vec<T>,
+    /// The time, s: contacts are known to begin and end in time.
+    pub time: f64,
 }
 
 impl<T: Number> Instant<T> {
@@ -66,6 +68,7 @@ impl<T: Number> Instant<T> {
             drive_accelerations: vec![T::zero(); drives],
             near: vec![0.0; bodies],
             amounts: vec![T::zero(); amounts],
+            time: 0.0,
         }
     }
 
@@ -152,6 +155,7 @@ impl<B: Number> Instant<Rates<B>> {
             self.accelerations[body] = velocity.map(|v| cut(v.differentiate()));
         }
         self.near.copy_from_slice(&state.near);
+        self.time = state.time.value();
         let unknown = B::from_f64(f64::NAN);
         for (index, drive) in state.mechanism().model.drives.iter().enumerate() {
             let id = DriveId(index as u32);
@@ -225,6 +229,7 @@ impl Instant<Rates> {
             *to = from.value();
         }
         out.near.copy_from_slice(&self.near);
+        out.time = self.time;
         for (from, to) in self.amounts.iter().zip(&mut out.amounts) {
             *to = from.value();
         }

@@ -47,6 +47,7 @@ pub mod forces;
 pub mod friction;
 pub mod inertia;
 pub mod instant;
+pub mod joint_contact;
 pub mod linearised;
 pub mod load;
 pub mod modes;

@@ -95,7 +95,7 @@ impl<T: ForceNumber> Forces<T> {
                     link.or_else(|| model.points.get(point.index())?.links.last().copied())?;
                 let is_pin =
                     |source: &Source| matches!(source, Source::Pin { point: p, .. } if *p == point);
-                let w = self.on_body_of(link, is_pin)?;
+                let w = self.on_body_of(at, link, is_pin)?;
                 let marker = (self.design.mechanism.marker(LinkPointRef { link, point }))
                     .or_else(|| self.design.mechanism.any_marker(point))?;
                 let place = at.place(
@@ -130,7 +130,7 @@ impl<T: ForceNumber> Forces<T> {
             };
             return Some(self.about(at, link, place, w));
         }
-        let w = self.on_body_of(link, |source| *source == Source::Joint(id))?;
+        let w = self.on_body_of(at, link, |source| *source == Source::Joint(id))?;
         Some(self.about(at, link, self.joint_place(at, id, link)?, w))
     }
 
@@ -156,8 +156,13 @@ impl<T: ForceNumber> Forces<T> {
         })
     }
 
-    /// Everything that constraints from one source do to a link's body.
-    fn on_body_of(&self, link: LinkId, from: impl Fn(&Source) -> bool) -> Option<Wrench<T>> {
+    /// Everything that constraints from one source, and contacts there, do to a link's body.
+    fn on_body_of(
+        &self,
+        at: &Instant<T>,
+        link: LinkId,
+        from: impl Fn(&Source) -> bool,
+    ) -> Option<Wrench<T>> {
         let body = self.design.mechanism.body_of(link);
         let mut sum: Option<Wrench<T>> = None;
         for ((_, source), sides) in self.design.mechanism.constraints.iter().zip(&self.sides) {
@@ -167,6 +172,13 @@ impl<T: ForceNumber> Forces<T> {
             for side in sides.iter().filter(|s| s.body == body) {
                 wrench::add(sum.get_or_insert([T::zero(); 3]), side.wrench);
             }
+        }
+        for contact in self.acting.contacts.iter().filter(|c| from(&c.joint)) {
+            contact.act(at, |on, w| {
+                if on == body {
+                    wrench::add(sum.get_or_insert([T::zero(); 3]), w);
+                }
+            });
         }
         sum
     }

@@ -126,9 +126,10 @@ impl Mechanism {
         let units = own.flat_map(|(constraint, _)| vec![constraint.unit(); constraint.rows()]);
         for (row, unit) in (0..).zip(units) {
             released.push(DriveId(model.drives.len() as u32));
+            let kind = DriveKind::Release { of, row };
             model.drives.push(Drive {
-                name: format!("{} {row}", name(model, of)),
-                kind: DriveKind::Release { of, row },
+                name: kind.released_name(model).unwrap_or_default(),
+                kind,
                 law: Law {
                     from: Expr::Const(0.0),
                     pieces: vec![LawPiece::Dwell {
@@ -144,13 +145,4 @@ impl Mechanism {
         }
         Ok(())
     }
-}
-
-/// What a joint is called.
-fn name(model: &Model, joint: Released) -> String {
-    let name = match joint {
-        Released::Pin { point, .. } => model.points.get(point.index()).map(|p| &p.name),
-        Released::Joint(joint) => model.joints.get(joint.index()).map(|j| &j.name),
-    };
-    name.cloned().unwrap_or_default()
 }

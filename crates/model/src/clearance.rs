@@ -3,6 +3,7 @@
 use kempe_number::math;
 use kempe_units::Dimension;
 
+use crate::contact::ContactProperties;
 use crate::diagnostic::Diagnostic;
 use crate::geometry::value;
 use crate::ids::{JointId, LinkId, PointId, Scalar, Span};
@@ -17,6 +18,8 @@ pub struct Clearance {
     pub at: ClearanceAt,
     /// How far the centres of a pin and its bore may part, or how far a slider may leave its line to either side, m.
     pub radial: Scalar,
+    /// What is known of the bodies that touch there.
+    pub contact: ContactProperties,
     /// Where it stands in the file.
     pub span: Span,
 }
@@ -37,13 +40,11 @@ pub enum ClearanceAt {
     All,
 }
 
-/// What play at the joints does to the motion.
+/// What play at the joints does to the motion where contact is never lost.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClearanceStudy {
     /// Rows, columns and plots.
     pub along: MotionStudy,
-    /// What is assumed of the contact.
-    pub model: ClearanceModel,
     /// How the links in the clearances turn.
     pub rates: ClearanceRates,
 }
@@ -53,6 +54,10 @@ pub struct ClearanceStudy {
 pub enum ClearanceModel {
     /// It is never lost: each clearance is a massless link along the reaction of its joint.
     Continuous,
+    /// It comes and goes; a spring and a damper press where it is.
+    TwoState,
+    /// It comes and goes by impacts, and may stay.
+    ThreeState,
 }
 
 /// How the massless links in the clearances turn, as far as speeds and accelerations go by it.

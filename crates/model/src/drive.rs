@@ -3,6 +3,8 @@
 use kempe_units::Dimension;
 
 use crate::ids::{DriveId, JointId, LinkId, LinkPointRef, PointId, Scalar, Span};
+use crate::joint::JointKind;
+use crate::model::Model;
 use crate::polynomials::Polynomials;
 
 /// What is moved from outside.
@@ -79,6 +81,36 @@ pub enum StandIn {
     },
     /// A number that holds nothing: which coordinate of a [`StandIn::Pilot`] counts.
     Choice,
+}
+
+impl DriveKind {
+    /// What the coordinate of a joint's row is called that is let go: `B play x`; nothing of other drives.
+    pub fn released_name(&self, model: &Model) -> Option<String> {
+        let Self::Release { of, row } = self else {
+            return None;
+        };
+        let (name, rows) = match *of {
+            Released::Pin { point, link } => {
+                let point = model.points.get(point.index())?;
+                let several = (point.links.len() > 2).then(|| model.links.get(link.index()));
+                let name = match several.flatten() {
+                    Some(link) => format!("{} of {}", point.name, link.name),
+                    None => point.name.clone(),
+                };
+                (name, ["play x", "play y"])
+            }
+            Released::Joint(joint) => {
+                let joint = model.joints.get(joint.index())?;
+                let rows = match joint.kind {
+                    JointKind::Slider { .. } => ["play angle", "play"],
+                    _ => ["play", "play 2"],
+                };
+                (joint.name.clone(), rows)
+            }
+        };
+        let row = rows.get(usize::from(*row)).copied().unwrap_or("play");
+        Some(format!("{name} {row}"))
+    }
 }
 
 /// A joint that can be let go.

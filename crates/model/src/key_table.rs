@@ -511,18 +511,22 @@ static SPRING_STUDY: Kind = kind("study", "spring",
         may("preload", T::Two(&T::AnyOf(&[TENSION, T::Words(NONE)])), "[0, \"none\"]", "Bounds of the preload; none unless said otherwise."),
     ]]);
 
+/// Of studies that find how things move in time.
+static IN_TIME: [Key; 6] = [
+    may("release", T::AnyOf(&[DRIVE, T::List(&DRIVE, 1)]), "[\"motor\"]", "Drives that are let go and give nothing but what their motors can; all unless said otherwise, the others keep their laws."),
+    may("start", T::Values(&T::AnyValue), "{ motor = \"30 deg\", motor_rate = \"2 rad/s\" }", "Where drives that are let go start, and with `_rate` how fast; where their laws start, and at rest, unless said otherwise."),
+    may("stops", T::Values(&T::AnyOf(&[T::Two(&END), T::Table(&STOP)])), "{ rocker = [\"-10 deg\", \"95 deg\"] }", "Least and largest angle of a link, coordinate of a drive or value of a measure, where it is stopped."),
+    may("end_when", T::AnyOf(&[T::Measure, T::List(&T::Measure, 1)]), "\"angle(rocker) <= 0 deg\"", "It ends when this comes to hold."),
+    may("tolerance", positive(D::NONE), "1e-10", "Error of a step, in parts of what moves; 1e-13 unless said otherwise."),
+    may("method", METHOD_WORDS, "\"implicit\"", "How steps are made; as suits unless said otherwise."),
+];
+
 static SIMULATE: Kind = kind("study", "simulate",
     "kind = \"simulate\", until = \"2 s\"",
     "How it moves in time under what acts on it, its drives let go.",
     &[&OF_STUDIES, &SHOWN, &[
         must("until", positive(D::TIME), "\"2 s\"", "How long."),
-        may("release", T::AnyOf(&[DRIVE, T::List(&DRIVE, 1)]), "[\"motor\"]", "Drives that are let go and give nothing but what their motors can; all unless said otherwise, the others keep their laws."),
-        may("start", T::Values(&T::AnyValue), "{ motor = \"30 deg\", motor_rate = \"2 rad/s\" }", "Where drives that are let go start, and with `_rate` how fast; where their laws start, and at rest, unless said otherwise."),
-        may("stops", T::Values(&T::AnyOf(&[T::Two(&END), T::Table(&STOP)])), "{ rocker = [\"-10 deg\", \"95 deg\"] }", "Least and largest angle of a link, coordinate of a drive or value of a measure, where it is stopped."),
-        may("end_when", T::AnyOf(&[T::Measure, T::List(&T::Measure, 1)]), "\"angle(rocker) <= 0 deg\"", "It ends when this comes to hold."),
-        may("tolerance", positive(D::NONE), "1e-10", "Error of a step, in parts of what moves; 1e-13 unless said otherwise."),
-        may("method", METHOD_WORDS, "\"implicit\"", "How steps are made; as suits unless said otherwise."),
-    ]]);
+    ], &IN_TIME]);
 
 pub(crate) static STOP: Kind = kind("stop", "stop",
     "rocker = { between = [\"-10 deg\", \"95 deg\"], restitution = 0.4 }",

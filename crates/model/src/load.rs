@@ -5,6 +5,7 @@
 
 use kempe_units::Dimension;
 
+use crate::contact::Contact;
 use crate::ids::{DriveId, JointId, LinkId, LinkPointRef, PointId, Scalar, Span};
 use crate::measure::Measure;
 
@@ -27,6 +28,8 @@ pub struct Actions {
     pub cylinders: Vec<HydraulicCylinder>,
     /// Motors behind turning drives.
     pub motors: Vec<Motor>,
+    /// Joints with play whose bodies touch and part; no file says so, studies do.
+    pub contacts: Vec<Contact>,
 }
 
 /// A force or a torque.

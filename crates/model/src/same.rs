@@ -1,5 +1,6 @@
 //! Whether two models are the same but for how and where they are written.
 
+use crate::contact::ContactStudy;
 use crate::drawing::Drawing;
 use crate::drive::LawPiece;
 use crate::hint::HintKind;
@@ -145,7 +146,10 @@ impl Model {
             }
         }
         self.visit_scalars_of_actions(f);
-        (self.clearances.iter_mut()).for_each(|clearance| f(&mut clearance.radial));
+        for clearance in &mut self.clearances {
+            f(&mut clearance.radial);
+            clearance.contact.scalars_mut().for_each(&mut *f);
+        }
         for study in &mut self.studies {
             let along = match &mut study.kind {
                 StudyKind::Motion(along) | StudyKind::Forces(along) => along,
@@ -158,7 +162,8 @@ impl Model {
                     bounds.flatten().for_each(&mut *f);
                     &mut study.along
                 }
-                StudyKind::Simulate(study) => {
+                StudyKind::Simulate(study)
+                | StudyKind::Contact(ContactStudy { motion: study, .. }) => {
                     f(&mut study.until);
                     study.tolerance.iter_mut().for_each(&mut *f);
                     for start in &mut study.start {
@@ -263,7 +268,8 @@ impl Model {
                     f(&mut study.wanted);
                     &mut study.along
                 }
-                StudyKind::Simulate(study) => {
+                StudyKind::Simulate(study)
+                | StudyKind::Contact(ContactStudy { motion: study, .. }) => {
                     study.stops.iter_mut().for_each(|s| f(&mut s.what));
                     study.end_when.iter_mut().for_each(|c| f(&mut c.above));
                     &mut study.along

@@ -3,6 +3,7 @@
 use kempe_units::{Dimension, Expr};
 
 use crate::clearance::ClearanceStudy;
+use crate::contact::ContactStudy;
 use crate::ids::{DriveId, LinkId, PointId, Scalar, Span};
 use crate::measure::{Leaf, Measure};
 
@@ -57,6 +58,8 @@ pub enum StudyKind {
     Simulate(SimulateStudy),
     /// What play at the joints does. Rows, columns and plots as for forces.
     Clearance(ClearanceStudy),
+    /// What play at the joints does where contact is lost. Rows, columns and plots as of a simulation.
+    Contact(ContactStudy),
     /// The natural vibrations about a pose, or about the poses of a motion.
     Vibrations(VibrationStudy),
 }
@@ -219,6 +222,7 @@ impl StudyKind {
             Self::Spring(study) => &study.along,
             Self::Simulate(study) => &study.along,
             Self::Clearance(study) => &study.along,
+            Self::Contact(study) => &study.motion.along,
             Self::Vibrations(study) => &study.along,
         }
     }

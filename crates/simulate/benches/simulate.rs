@@ -66,6 +66,7 @@ fn question(model: &Model, tolerance: f64) -> (Design<f64>, Question) {
         [at, rate.map_or(0.0, |rate| value(rate, &parameters))]
     });
     let question = Question {
+        contacts: Vec::new(),
         free: study.released.clone(),
         start: start.collect(),
         until: value(&study.until, &parameters),

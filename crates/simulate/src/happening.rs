@@ -1,5 +1,7 @@
 //! What happens during a motion.
 
+use crate::joints::Place;
+
 /// Something that happened at a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Happening {
@@ -37,6 +39,20 @@ pub enum Happened {
     Leaves {
         /// The stop.
         stop: usize,
+    },
+    /// The bodies of a joint with play come together, with this speed.
+    Meets {
+        /// Where.
+        at: Place,
+        /// How fast, m/s.
+        speed: f64,
+    },
+    /// They part again, with this speed.
+    Separates {
+        /// Where.
+        at: Place,
+        /// How fast, m/s.
+        speed: f64,
     },
     /// Friction holds it.
     Sticks,

@@ -13,12 +13,14 @@
 //! | `plant.rs` | accelerations of a state, with motors, stops and friction |
 //! | `watch.rs` | what is looked for between steps |
 //! | `contact.rs` | stops: impacts, and what holds a rest |
+//! | `joints.rs` | joints with play, whose bodies touch and part |
 //! | `run.rs` | from step to step and from event to event |
 //! | `record.rs` | what was found, as laws of the drives |
 
 mod contact;
 mod curve;
 mod happening;
+mod joints;
 mod places;
 mod plant;
 mod question;
@@ -32,6 +34,7 @@ mod watch;
 pub use kempe_integrate::{Method, Used};
 
 pub use happening::{Happened, Happening, Held};
+pub use joints::{Place, Touched, with_play};
 pub use question::{Question, Resistance, Stop};
 pub use record::{Ending, Simulated};
 pub use run::{Unsimulated, simulate};

@@ -116,6 +116,7 @@ impl Plant {
             || !acting.dampers.is_empty()
             || !acting.friction.is_empty()
             || !acting.turning.is_empty()
+            || !acting.contacts.is_empty()
             || motors.iter().any(Option::is_some)
             || !driven.is_empty()
             || !stops.is_empty();
@@ -227,6 +228,7 @@ impl Plant {
         if !self.mode.touched.is_empty() && !self.push(time, y) {
             return false;
         }
+        self.instant.time = time;
         if !self.places.instant(&self.coordinates, &mut self.instant) || !self.amounts_at(time) {
             return false;
         }

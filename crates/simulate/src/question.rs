@@ -1,7 +1,7 @@
 //! What is asked of a simulation.
 
 use kempe_integrate::Method;
-use kempe_model::{DriveId, Measure};
+use kempe_model::{Contact, DriveId, Measure};
 
 /// What is asked.
 #[derive(Clone, Debug)]
@@ -20,6 +20,8 @@ pub struct Question {
     pub stops: Vec<Stop>,
     /// It ends when one of these becomes positive or zero.
     pub end_when: Vec<Measure>,
+    /// Joints with play, which are let go too, their bodies at first in the middle of their play.
+    pub contacts: Vec<Contact>,
 }
 
 /// Something that stops the motion: a measure of the pose that cannot become negative.

@@ -11,6 +11,7 @@ use kempe_motion::{Demand, EndReason, Motion, MotionError, Placed, Progress};
 use kempe_units::Expr;
 
 use crate::happening::{Happening, Held};
+use crate::joints::{Place, Touched};
 
 /// Why a simulation ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,6 +35,8 @@ pub enum Ending {
 /// What a simulation found.
 #[derive(Clone, Debug)]
 pub struct Simulated {
+    /// The coordinates that were let go: the question's drives, then the rows of joints with play.
+    pub free: Vec<DriveId>,
     /// How every drive moves, SI.
     pub laws: Vec<Law>,
     /// Work done on the mechanism by all but weights and springs since the start, J.
@@ -46,6 +49,12 @@ pub struct Simulated {
     pub happenings: Vec<Happening>,
     /// When stops or friction held it, in order.
     pub held: Vec<Held>,
+    /// Touches of bodies in joints with play that give, in order.
+    pub touched: Vec<Touched>,
+    /// The places with play that resist at once, as stops behind those of the question: from `rigid_from` on.
+    pub rigid: Vec<Place>,
+    /// How many stops the question has.
+    pub rigid_from: usize,
     /// Steps, and by which method.
     pub used: Used,
     /// How often accelerations were asked for.
@@ -91,9 +100,9 @@ impl Simulated {
 
     /// The coordinates that tell the place along the motion that was found: nothing gives anything along them but motors. They are
     /// those of the drives that were let go, or drives behind the model's own.
-    pub fn telling(&self, free: &[DriveId]) -> Vec<DriveId> {
+    pub fn telling(&self) -> Vec<DriveId> {
         match &self.pilots {
-            None => free.to_vec(),
+            None => self.free.clone(),
             Some(pilots) => {
                 let first = self.laws.len();
                 (first..first + pilots.count)
@@ -151,7 +160,15 @@ impl Simulated {
         };
         let more = self.pilots.iter().flat_map(|pilots| &pilots.laws);
         let laws: Vec<&Law> = self.laws.iter().chain(more).collect();
-        let design = design.with_laws(|index| laws.get(index).map(|law| (*law).clone()));
+        let design = design.with_model(|model| {
+            for (drive, law) in model.drives.iter_mut().zip(laws) {
+                drive.law = law.clone();
+            }
+            for (index, contact) in model.actions.contacts.iter_mut().enumerate() {
+                let own = self.touched.iter().filter(|t| t.at.contact == index);
+                contact.touches = own.map(|t| t.touching).collect();
+            }
+        });
         let (model, parameters) = (&design.mechanism.model, &design.parameters);
         let path = DrivePath::new(model, parameters, design.size());
         let range = path.range(model, parameters);

@@ -4,16 +4,17 @@ use std::sync::Arc;
 
 use kempe_dynamics::{Forces, Problem};
 use kempe_integrate::{Integrator, Stopped, Tolerance, Used};
-use kempe_mechanism::Design;
+use kempe_mechanism::{Design, NotReleased};
 use kempe_model::{COEFFICIENTS, DriveId};
 use kempe_motion::{Done, MotionError, Progress, Stage};
 use kempe_units::Dimension;
 
 use crate::contact::dot;
 use crate::happening::{Happened, Happening, Held};
+use crate::joints::{Place, opened, rigid_stops, touched};
 use crate::places::Places;
 use crate::plant::{Mode, Plant, motor_sense};
-use crate::question::{Question, Resistance};
+use crate::question::{Question, Resistance, Stop};
 use crate::record::{Ending, Pilots, Record, Simulated};
 use crate::start::{NoStart, start};
 use crate::tellers::{Exchanged, NEAR, Tellers};
@@ -52,6 +53,8 @@ pub enum Unsimulated {
     FrictionOfSeveral,
     /// It starts beyond this stop, by so much.
     BeyondStop(usize, f64),
+    /// A joint cannot have play.
+    NoPlay(NotReleased),
 }
 
 /// Simulates a design.
@@ -74,7 +77,22 @@ pub fn simulate(
     let from = start(design, &coordinates, progress).map_err(Unsimulated::Start)?;
     // Laws are those of the file: what was found may stand still.
     let laws = |index: usize| model.drives.get(index).map(|d| d.law.clone());
+    let (from, rows) = opened(from, &question.contacts).map_err(Unsimulated::NoPlay)?;
     let design = from.design.with_laws(laws);
+    let model = &design.mechanism.model.clone();
+    coordinates.resize(model.drives.len(), 0.0);
+    let (rigid, rigid_places): (Vec<Stop>, Vec<Place>) =
+        rigid_stops(model, &parameters).into_iter().unzip();
+    let question = &Question {
+        free: (question.free.iter().copied())
+            .chain(rows.iter().map(|row| row.0))
+            .collect(),
+        start: (question.start.iter().copied())
+            .chain(rows.iter().map(|_| [0.0; 2]))
+            .collect(),
+        stops: question.stops.iter().cloned().chain(rigid).collect(),
+        ..question.clone()
+    };
     let (placed, first_motion) = (from.placed.clone(), from.first.clone());
     let mut forces = Forces::new(design.clone()).map_err(Unsimulated::Problems)?;
     for spring in &mut forces.acting.springs {
@@ -96,10 +114,12 @@ pub fn simulate(
         .collect();
     breaks.sort_by(f64::total_cmp);
     breaks.dedup();
+    let play = |drive: &DriveId| rows.iter().find(|row| row.0 == *drive).map(|row| row.1);
     let scales: Vec<f64> = (question.free.iter())
         .map(|drive| match model.drives[drive.index()].dimension {
             Dimension::ANGLE => 1.0,
-            _ => design.size(),
+            // What has play is hardly ever off by more.
+            _ => play(drive).unwrap_or_else(|| design.size()),
         })
         .collect();
     let senses = question.free.iter().map(|drive| {
@@ -158,6 +178,10 @@ pub fn simulate(
         links: links.to_vec(),
     });
     Ok(Simulated {
+        free: question.free.clone(),
+        touched: touched(&run.plant.forces.acting.contacts, &laws.drives, end),
+        rigid_from: question.stops.len() - rigid_places.len(),
+        rigid: rigid_places,
         laws: laws.drives,
         work: laws.work,
         end,
@@ -560,6 +584,15 @@ impl Run<'_> {
             }
             Watch::Parts(stop) => {
                 self.plant.mode.touched.retain(|s| *s != stop);
+            }
+            Watch::Meets(at) => {
+                let speed = self.plant.touch(at, self.time, &self.y);
+                self.tell(Happened::Meets { at, speed });
+            }
+            Watch::Separates(at) => {
+                self.plant.part(at, self.time);
+                let [_, speed] = self.plant.opening(at, &self.y);
+                self.tell(Happened::Separates { at, speed });
             }
             Watch::Leaves(place) => {
                 let stop = self.plant.mode.resting.remove(place);

@@ -94,7 +94,9 @@ impl Tellers {
         within: f64,
         progress: &mut dyn Progress,
     ) -> Exchanged {
-        if plant.mode.stuck || (within.is_finite() && poor(plant, within).is_none()) {
+        // Joints with play are told by how far they stand open.
+        let has_play = !self.design.mechanism.model.actions.contacts.is_empty();
+        if has_play || plant.mode.stuck || (within.is_finite() && poor(plant, within).is_none()) {
             return Exchanged::Not;
         }
         let mut rates = vec![0.0; y.len()];

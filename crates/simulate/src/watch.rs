@@ -3,6 +3,7 @@
 use kempe_integrate::{Integrator, crossing};
 use kempe_model::Measure;
 
+use crate::joints::Place;
 use crate::plant::Plant;
 use crate::question::Resistance;
 
@@ -24,6 +25,10 @@ pub(crate) enum Watch {
     Parts(usize),
     /// A stop on which it rests is left; its place among those.
     Leaves(usize),
+    /// The bodies of a joint with play come together.
+    Meets(Place),
+    /// They part.
+    Separates(Place),
     /// The only coordinate, which rubs, comes to rest.
     Turns,
     /// Friction lets it go.
@@ -56,6 +61,15 @@ pub(crate) fn watches(plant: &Plant, conditions: &[bool]) -> Vec<Watch> {
                 Resistance::Soft { .. } => list.push(Watch::Touches(index)),
             }
         }
+        list.extend(
+            plant
+                .contact_places()
+                .into_iter()
+                .map(|at| match plant.is_touching(at) {
+                    true => Watch::Separates(at),
+                    false => Watch::Meets(at),
+                }),
+        );
     }
     list.extend((conditions.iter().enumerate()).map(|(k, armed)| Watch::Ends(k, *armed)));
     list
@@ -78,6 +92,8 @@ impl Watch {
                 plant.accelerate(time, y, &mut rates);
                 plant.pushes.get(k).copied()
             }
+            Self::Meets(at) => Some(plant.opening(at, y)[0]),
+            Self::Separates(at) => Some(-plant.opening(at, y)[0]),
             Self::Turns => Some(y.get(1)? * plant.mode.sense),
             Self::Slips => plant.grip(time, y),
             Self::Ends(k, _) => plant.value(ends.get(k)?, time, y).map(|above| -above),
@@ -88,12 +104,14 @@ impl Watch {
 impl Watch {
     /// By how much its value may be below zero where it begins there: by the rounding of a gap.
     fn slack(self, plant: &mut Plant, time: f64, y: &[f64]) -> f64 {
-        let (Self::Strikes(k) | Self::Touches(k) | Self::Parts(k)) = self else {
-            return 0.0;
+        let scale = match self {
+            Self::Strikes(k) | Self::Touches(k) | Self::Parts(k) => {
+                let gap = plant.gap(k, time, y);
+                gap.map_or(0.0, |gap| gap.scale(&plant.scales))
+            }
+            Self::Meets(_) | Self::Separates(_) => 0.0,
+            _ => return 0.0,
         };
-        let scale = plant
-            .gap(k, time, y)
-            .map_or(0.0, |gap| gap.scale(&plant.scales));
         // A stop on what stands still has none of its own.
         let any = plant.scales.iter().copied().fold(0.0, f64::max);
         GRAZES * if scale > 0.0 { scale } else { any }

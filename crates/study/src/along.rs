@@ -6,7 +6,7 @@ use kempe_dynamics::{ForceArrow, ForceError, ForceEvidence, ForceNote, ForceSamp
 use kempe_measure::force_source::NoForces;
 use kempe_measure::{Sample, Sampler, StatisticNote, Unmeasurable, Unprepared, unmeasurable};
 use kempe_mechanism::Mechanism;
-use kempe_model::{Diagnostic, DriveId, Measure, Model, Study, StudyKind};
+use kempe_model::{ContactStudy, Diagnostic, DriveId, Measure, Model, Study, StudyKind};
 use kempe_motion::{Motion, Progress, Silent, Stage};
 
 use crate::columns::Asked;
@@ -203,7 +203,9 @@ pub(crate) fn not_answerable(mechanism: &Mechanism, study: &Study) -> Vec<Diagno
     let asked = match &study.kind {
         StudyKind::Motion(along) => Asked::of_motion(&mechanism.model, along),
         StudyKind::Forces(along) => Asked::of_forces(mechanism, along),
-        StudyKind::Simulate(study) => Asked::of_forces(mechanism, &study.along),
+        StudyKind::Simulate(study) | StudyKind::Contact(ContactStudy { motion: study, .. }) => {
+            Asked::of_forces(mechanism, &study.along)
+        }
         StudyKind::Clearance(play) => Asked::of_clearance(mechanism, &play.along),
         // They ask for columns of their own, which every mechanism answers.
         StudyKind::Balance(_) | StudyKind::Spring(_) | StudyKind::Vibrations(_) => {

@@ -6,7 +6,8 @@ use kempe_mechanism::Design;
 use kempe_mechanism::mobility::Mobility;
 use kempe_mechanism::structure::BodyId;
 use kempe_model::{
-    Diagnostic, Drive, DriveKind, Joint, JointKind, Model, Rows, Severity, Study, StudyKind, value,
+    ContactStudy, Diagnostic, Drive, DriveKind, Joint, JointKind, Model, Rows, Severity, Study,
+    StudyKind, value,
 };
 use kempe_motion::assemble::Assembly;
 use kempe_motion::drive_path::DrivePath;
@@ -16,7 +17,7 @@ use kempe_units::Dimension;
 use serde::Serialize;
 
 use crate::along::not_answerable;
-use crate::clearance::{findings_of_clearance, refuses};
+use crate::clearance::{findings_of_clearance, findings_of_contact, refuses};
 use crate::drawn::{self, DrawnLink};
 use crate::explain::cannot_move;
 use crate::findings_forces::on_links;
@@ -387,6 +388,7 @@ fn study_text(model: &Model, study: &Study, parameters: &[f64], units: &Units) -
         StudyKind::Spring(_) => "a spring",
         StudyKind::Simulate(_) => "a simulation",
         StudyKind::Clearance(_) => "clearance",
+        StudyKind::Contact(_) => "clearance in which contact is lost",
         StudyKind::Vibrations(_) => "natural vibrations",
     };
     let along = study.kind.along();
@@ -417,13 +419,19 @@ fn study_text(model: &Model, study: &Study, parameters: &[f64], units: &Units) -
         Rows::Count(count) => format!("{count} rows evenly in time"),
     };
     match &study.kind {
-        StudyKind::Simulate(simulated) => {
+        StudyKind::Simulate(simulated)
+        | StudyKind::Contact(ContactStudy {
+            motion: simulated, ..
+        }) => {
             let free: Vec<String> = (simulated.released.iter())
                 .filter_map(|drive| model.drives.get(drive.index()))
                 .map(|drive| drive.name.clone())
                 .collect();
             let until = units.text(value(&simulated.until, parameters), Dimension::TIME);
-            format!("{kind} of {until}, {} let go, {rows}", list(&free))
+            match free.is_empty() {
+                true => format!("{kind} of {until}, {rows}"),
+                false => format!("{kind} of {until}, {} let go, {rows}", list(&free)),
+            }
         }
         _ => format!("{kind}, {rows}"),
     }
@@ -486,6 +494,7 @@ fn of_study(
         StudyKind::Clearance(play) => {
             findings_of_clearance(&mechanism.model, &study.name, play, motion)
         }
+        StudyKind::Contact(play) => findings_of_contact(&mechanism.model, play),
         // Without a motion it has been told why there is none.
         StudyKind::Vibrations(asked) if motion.is_some() => {
             findings_of_vibrations(&mechanism.model, &study.name, asked, progress)

@@ -4,7 +4,9 @@ use std::mem::size_of;
 
 use kempe_dynamics::ForceArrow;
 use kempe_mechanism::Mechanism;
-use kempe_model::{Diagnostic, Model, MotionStudy, Rows, Study, StudyKind, VibrationStudy, value};
+use kempe_model::{
+    ContactStudy, Diagnostic, Model, MotionStudy, Rows, Study, StudyKind, VibrationStudy, value,
+};
 
 use crate::clearance::COLUMNS;
 use crate::columns::Asked;
@@ -80,7 +82,7 @@ pub fn study_bytes(model: &Model, study: &Study) -> Held {
     match &study.kind {
         StudyKind::Motion(motion) => bytes_of_motion(model, motion),
         StudyKind::Forces(forces) => held(model, forces, row_of_forces(model, forces)),
-        StudyKind::Simulate(study) => {
+        StudyKind::Simulate(study) | StudyKind::Contact(ContactStudy { motion: study, .. }) => {
             let until = value(&study.until, &model.parameter_values());
             Held {
                 rows: count(model, &study.along.rows, &model.parameter_values(), until),

@@ -4,7 +4,7 @@ use kempe_model::{Diagnostic, Model, MotionStudy, Study, StudyKind};
 
 use crate::choice::{balance, spring};
 use crate::circuit::run_circuit;
-use crate::clearance::clearance;
+use crate::clearance::{clearance, contact};
 use crate::findings_forces::something_acts;
 use crate::motion::run_along;
 use crate::result::StudyResult;
@@ -35,9 +35,12 @@ pub fn run(
             Ok(result)
         }
         StudyKind::Balance(choice) => balance(model, &study.name, choice, progress),
-        StudyKind::Simulate(it) => simulation(model, &study.name, it, progress),
+        StudyKind::Simulate(it) => {
+            simulation(model, &study.name, it, &[], progress).map(|(result, _)| result)
+        }
         StudyKind::Spring(choice) => spring(model, &study.name, choice, progress),
         StudyKind::Clearance(play) => clearance(model, &study.name, play, progress),
+        StudyKind::Contact(play) => contact(model, &study.name, play, progress),
         StudyKind::Vibrations(asked) => vibrations(model, &study.name, asked, progress),
     }
 }

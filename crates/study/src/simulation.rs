@@ -8,18 +8,19 @@ use std::sync::Arc;
 
 use kempe_mechanism::Design;
 use kempe_model::{
-    Diagnostic, DriveId, ForceMeasure, Leaf, LinkId, Model, MotionStudy, Rows, SimulateStudy,
-    StepMethod, StopResistance, StudyKind, value,
+    Contact, Diagnostic, DriveId, ForceMeasure, Leaf, LinkId, Model, MotionStudy, Released, Rows,
+    SimulateStudy, StepMethod, StopResistance, StudyKind, value,
 };
 use kempe_motion::progress::{Progress, Silent};
 use kempe_motion::{EndReason, Motion, Stage};
 use kempe_simulate::{
-    Ending, Happened, Held, Method, NoStart, Question, Resistance, Simulated, Stop, Unsimulated,
-    simulate,
+    Ending, Happened, Happening, Held, Method, NoStart, Place, Question, Resistance, Simulated,
+    Stop, Unsimulated, simulate,
 };
 use kempe_units::{Dimension, Expr};
 
 use crate::along::force_problems;
+use crate::clearance::{joint_name, not_released};
 use crate::explain::{cannot_move, stopped};
 use crate::motion::rows_of;
 use crate::motion_findings::{motion_findings, refused};
@@ -60,7 +61,7 @@ pub(crate) fn simulated_motion(
         let message = format!("there is no simulation called `{name}`");
         return Err(vec![Diagnostic::error("unknown-name", message)]);
     };
-    let run = Run::new(model, study, progress)?;
+    let run = Run::new(model, study, &[], progress)?;
     run.motion(progress)
 }
 
@@ -68,7 +69,8 @@ pub(crate) fn simulated_motion(
 struct Run {
     design: Design<f64>,
     question: Question,
-    ends: Vec<End>,
+    /// What stops it, as the question has them.
+    stops: Vec<Named>,
     found: Simulated,
     /// What is to be told of the mechanism, whatever moves it.
     findings: Vec<Diagnostic>,
@@ -78,12 +80,20 @@ impl Run {
     fn new(
         model: &Model,
         study: &SimulateStudy,
+        contacts: &[Contact],
         progress: &mut dyn Progress,
     ) -> Result<Self, Vec<Diagnostic>> {
         let design = design(model);
-        let (question, ends) = question(study, model, &design.parameters);
+        let (mut question, mut stops) = question(study, model, &design.parameters);
+        question.contacts = contacts.to_vec();
         let found = simulate(&design, &question, progress)
-            .map_err(|error| explain(&design, study, &ends, error))?;
+            .map_err(|error| explain(&design, &stops, error))?;
+        let rigid = found.rigid.iter();
+        stops.extend(rigid.map(|at| Named {
+            owner: String::new(),
+            text: place_name(model, contacts, *at),
+            is_angle: false,
+        }));
         let findings = motion_findings(&found.first);
         if refused(&found.first) {
             return Err(findings);
@@ -91,7 +101,7 @@ impl Run {
         Ok(Self {
             design,
             question,
-            ends,
+            stops,
             found,
             findings,
         })
@@ -102,26 +112,27 @@ impl Run {
     }
 }
 
-/// A simulation.
+/// A simulation, where joints have contacts also of these.
 pub(crate) fn simulation(
     model: &Model,
     name: &str,
     study: &SimulateStudy,
+    contacts: &[Contact],
     progress: &mut dyn Progress,
-) -> Result<StudyResult, Vec<Diagnostic>> {
-    let run = Run::new(model, study, progress)?;
+) -> Result<(StudyResult, Simulated), Vec<Diagnostic>> {
+    let run = Run::new(model, study, contacts, progress)?;
     // What was found until it was stopped is shown.
     let was_stopped = run.found.ending == Ending::Stopped;
     let progress: &mut dyn Progress = if was_stopped { &mut Silent } else { progress };
     let motion = run.motion(progress)?;
     let Run {
         question,
-        ends,
+        stops,
         found,
         findings: mut diagnostics,
         ..
     } = run;
-    let hidden = hidden(&found.telling(&question.free));
+    let hidden = hidden(&found.telling());
     let along = in_time(&study.along, question.until);
     let (mut result, values) = rows_of(
         &motion,
@@ -150,14 +161,14 @@ pub(crate) fn simulation(
     diagnostics.extend(early(model, &units, &found));
     result.table.balance = Some(balance);
     for (note, time) in result.table.notes.iter_mut().zip(&times) {
-        let held = held_at(&found, *time).map(|held| what_holds(held, study, &ends));
+        let held = held_at(&found, *time).map(|held| what_holds(held, &stops));
         let all: Vec<String> = note.take().into_iter().chain(held).collect();
         *note = (!all.is_empty()).then(|| all.join("; "));
     }
     result.listings.push(how(model, &question, &found, &result));
     result
         .listings
-        .extend(happened(&units, study, &ends, &found));
+        .extend(happened(&units, study, &stops, &found));
     if was_stopped {
         let all = count(
             model,
@@ -168,7 +179,7 @@ pub(crate) fn simulation(
         result.demanded_rows = (all as usize).max(result.table.rows() + 1);
     }
     result.diagnostics = diagnostics;
-    Ok(result)
+    Ok((result, found))
 }
 
 /// The rows of a study in time: so many over the whole time asked for, however early it ends.
@@ -182,11 +193,17 @@ fn in_time(study: &MotionStudy, until: f64) -> MotionStudy {
     study
 }
 
-/// The end of a stop: which of the study's, and whether it is the least value.
-type End = (usize, bool);
+/// Something that stops the motion, in words.
+struct Named {
+    /// What it stops, as the study calls it.
+    owner: String,
+    /// `the lower stop of rocker`.
+    text: String,
+    is_angle: bool,
+}
 
-/// What is asked, with the ends of its stops.
-fn question(study: &SimulateStudy, model: &Model, parameters: &[f64]) -> (Question, Vec<End>) {
+/// What is asked, with its stops in words.
+fn question(study: &SimulateStudy, model: &Model, parameters: &[f64]) -> (Question, Vec<Named>) {
     let number = |scalar: &kempe_model::Scalar| value(scalar, parameters);
     let start = study.released.iter().map(|drive| {
         let law = model.drives.get(drive.index()).map(|d| &d.law);
@@ -196,8 +213,8 @@ fn question(study: &SimulateStudy, model: &Model, parameters: &[f64]) -> (Questi
         let of_law = || law.map_or(0.0, |law| law.at(0.0, parameters));
         [at.unwrap_or_else(of_law), rate]
     });
-    let (mut stops, mut ends) = (Vec::new(), Vec::new());
-    for (index, stop) in study.stops.iter().enumerate() {
+    let (mut stops, mut names) = (Vec::new(), Vec::new());
+    for stop in &study.stops {
         let resistance = match &stop.resistance {
             StopResistance::Rigid { restitution } => Resistance::Rigid {
                 restitution: restitution.as_ref().map_or(0.0, number),
@@ -209,7 +226,12 @@ fn question(study: &SimulateStudy, model: &Model, parameters: &[f64]) -> (Questi
         };
         for (least, gap) in stop.gaps() {
             stops.push(Stop { gap, resistance });
-            ends.push((index, least));
+            let end = if least { "lower" } else { "upper" };
+            names.push(Named {
+                owner: stop.name.clone(),
+                text: format!("the {end} stop of {}", stop.name),
+                is_angle: stop.is_angle,
+            });
         }
     }
     let question = Question {
@@ -228,8 +250,9 @@ fn question(study: &SimulateStudy, model: &Model, parameters: &[f64]) -> (Questi
         },
         stops,
         end_when: study.end_when.iter().map(|c| c.above.clone()).collect(),
+        contacts: Vec::new(),
     };
-    (question, ends)
+    (question, names)
 }
 
 /// Energies, the rate of the kinetic one, and effort and speed of every drive that is let go.
@@ -263,21 +286,25 @@ fn held_at(found: &Simulated, time: f64) -> impl Iterator<Item = &Held> {
 }
 
 /// What holds it, in words.
-fn what_holds(held: &Held, study: &SimulateStudy, ends: &[End]) -> String {
-    let stops = held.stops.iter();
-    let stops = stops.map(|stop| format!("lies on {}", stop_name(study, ends, *stop)));
+fn what_holds(held: &Held, stops: &[Named]) -> String {
+    let named = held.stops.iter().filter_map(|stop| stops.get(*stop));
+    let lies = named.map(|stop| format!("lies on {}", stop.text));
     let friction = held.by_friction.then(|| "friction holds it".to_owned());
-    stops.chain(friction).collect::<Vec<_>>().join(", ")
+    lies.chain(friction).collect::<Vec<_>>().join(", ")
 }
 
-/// A stop's end: `the lower stop of rocker`.
-fn stop_name(study: &SimulateStudy, ends: &[End], stop: usize) -> String {
-    let named =
-        (ends.get(stop)).and_then(|(index, least)| Some((study.stops.get(*index)?, *least)));
-    named.map_or(String::new(), |(stop, least)| {
-        let end = if least { "lower" } else { "upper" };
-        format!("the {end} stop of {}", stop.name)
-    })
+/// A place of a joint with play, in words.
+pub(crate) fn place_name(model: &Model, contacts: &[Contact], at: Place) -> String {
+    let joint = contacts.get(at.contact).map(|c| c.joint);
+    let name = joint.map_or(String::new(), |joint| joint_name(model, joint.into()));
+    match joint {
+        Some(Released::Joint(_)) => {
+            let corners = ["rear left", "front left", "rear right", "front right"];
+            let corner = corners.get(at.place).copied().unwrap_or_default();
+            format!("the {corner} corner of {name}")
+        }
+        _ => name,
+    }
 }
 
 /// How well energy and power balance.
@@ -306,7 +333,7 @@ fn balance(
     let part = |x: f64, of: f64| if x == 0.0 { 0.0 } else { x / of };
     let is_held = |t: f64| held_at(found, t).next().is_some();
     let asked = |row: usize| {
-        (0..question.free.len())
+        (0..found.free.len())
             .map(|k| {
                 let [effort, speed] = [0, 1].map(|j| value(3 + 2 * k + j, row));
                 (effort - found.motor_torque(k, speed)) * speed
@@ -486,16 +513,12 @@ fn told(model: &Model, question: &Question, found: &Simulated) -> Option<String>
 fn happened(
     units: &Units,
     study: &SimulateStudy,
-    ends: &[End],
+    stops: &[Named],
     found: &Simulated,
 ) -> Option<Listing> {
-    let stop = |index: &usize| {
-        ends.get(*index)
-            .and_then(|(stop, least)| Some((study.stops.get(*stop)?, *least)))
-    };
-    let name = |index: &usize| stop_name(study, ends, *index);
+    let name = |index: &usize| stops.get(*index).map_or("", |stop| stop.text.as_str());
     let speed = |index: &usize, rate: f64| {
-        let is_angle = stop(index).is_some_and(|(stop, _)| stop.is_angle);
+        let is_angle = stops.get(*index).is_some_and(|stop| stop.is_angle);
         let coordinate = if is_angle {
             Dimension::ANGLE
         } else {
@@ -503,8 +526,14 @@ fn happened(
         };
         units.text(rate, coordinate / Dimension::TIME)
     };
-    let rows = found.happenings.iter().take(LISTED).map(|it| {
+    // Contacts in joints have a list of their own.
+    let told =
+        |it: &&Happening| !matches!(it.what, Happened::Meets { .. } | Happened::Separates { .. });
+    let all = found.happenings.iter().filter(told);
+    let count = all.clone().count();
+    let rows = all.take(LISTED).map(|it| {
         let what = match &it.what {
+            Happened::Meets { .. } | Happened::Separates { .. } => String::new(),
             Happened::Strikes {
                 stop,
                 before,
@@ -535,7 +564,7 @@ fn happened(
         vec![units.text(it.time, Dimension::TIME), what]
     });
     let mut rows: Vec<Vec<String>> = rows.collect();
-    let more = found.happenings.len().saturating_sub(LISTED);
+    let more = count.saturating_sub(LISTED);
     if more > 0 {
         rows.push(vec!["…".to_owned(), format!("and {more} more")]);
     }
@@ -547,12 +576,7 @@ fn happened(
 }
 
 /// Why there is no simulation.
-fn explain(
-    design: &Design<f64>,
-    study: &SimulateStudy,
-    ends: &[End],
-    error: Unsimulated,
-) -> Vec<Diagnostic> {
+fn explain(design: &Design<f64>, stops: &[Named], error: Unsimulated) -> Vec<Diagnostic> {
     let model = &design.mechanism.model;
     let units = Units::of(model);
     let cannot = |message: String| Diagnostic::error("cannot-simulate", message);
@@ -588,8 +612,8 @@ fn explain(
             "let one drive go and hold the others, or describe what takes the energy by [dampers]",
         ),
         Unsimulated::BeyondStop(index, by) => {
-            let stop = ends.get(index).and_then(|(stop, _)| study.stops.get(*stop));
-            let (name, is_angle) = stop.map_or(("", false), |s| (s.name.as_str(), s.is_angle));
+            let stop = stops.get(index);
+            let (name, is_angle) = stop.map_or(("", false), |s| (s.owner.as_str(), s.is_angle));
             let dimension = if is_angle {
                 Dimension::ANGLE
             } else {
@@ -601,5 +625,6 @@ fn explain(
             ))
             .help("start between the stops, or move them")
         }
+        Unsimulated::NoPlay(why) => not_released(&design.mechanism, why),
     }]
 }

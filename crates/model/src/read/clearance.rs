@@ -14,15 +14,19 @@
 //! rates = "frozen"                             # or "turning"
 //! ```
 
+use kempe_units::Dimension;
+
 use crate::clearance::{Clearance, ClearanceAt, ClearanceModel, ClearanceRates, ClearanceStudy};
+use crate::contact::{ContactProperties, ContactStates, ContactStudy};
 use crate::diagnostic::Diagnostic;
 use crate::document::{Key, Node, Value};
-use crate::ids::{LinkId, PointId};
+use crate::ids::{LinkId, PointId, Scalar};
 use crate::joint::JointKind;
-use crate::key_table::clearance::{LATER_MODELS, MODELS, OF_ALL, OF_JOINT, OF_PIN, RATES};
+use crate::key_table::clearance::{LAWS, MODELS, OF_ALL, OF_JOINT, OF_PIN, RATES};
 use crate::read::context::{Context, Meaning};
 use crate::read::entry::{Entry, link_of};
 use crate::read::names::is_point_name;
+use crate::read::simulate::{self, restitution};
 use crate::study::{MotionStudy, StudyKind};
 
 /// A file has at most so many.
@@ -53,9 +57,11 @@ fn read_one(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<Clearance> {
     if let ClearanceAt::Pin { point, on } = &mut at {
         *on = links(cx, &entry, *point)?;
     }
+    let contact = contact(cx, &entry);
     Some(Clearance {
         at,
         radial: radial?,
+        contact: contact?,
         span: key.span.clone(),
     })
 }
@@ -157,6 +163,58 @@ fn place(cx: &mut Context<'_>, key: &Key) -> Option<ClearanceAt> {
     None
 }
 
+/// What an entry says of the bodies that touch.
+fn contact(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<ContactProperties> {
+    let law = entry.choice(cx, "law", &LAWS);
+    let speeds = match entry.get("friction_speeds") {
+        None => Some(None),
+        Some(node) => friction_speeds(cx, entry, node).map(Some),
+    };
+    let restitution = restitution(cx, entry);
+    // A pin has no length and a slider no radius.
+    let mut value = |key: &str| match entry.kind.key(key).is_some() {
+        true => entry.value(cx, key),
+        false => Some(None),
+    };
+    let (radius, length, height) = (value("radius"), value("length"), value("height"));
+    let (stiffness, modulus, poisson) = (value("stiffness"), value("modulus"), value("poisson"));
+    let (spring, damping, friction) = (value("spring"), value("damping"), value("friction"));
+    entry.idle(cx, &["damping"], "spring");
+    entry.idle(cx, &["friction_speeds"], "friction");
+    Some(ContactProperties {
+        radius: radius?,
+        length: length?,
+        height: height?,
+        law: law?,
+        restitution: restitution?,
+        stiffness: stiffness?,
+        modulus: modulus?,
+        poisson: poisson?,
+        spring: spring?,
+        damping: damping?,
+        friction: friction?,
+        friction_speeds: speeds?,
+    })
+}
+
+fn friction_speeds(cx: &mut Context<'_>, entry: &Entry<'_>, node: &Node) -> Option<[Scalar; 2]> {
+    let key = "friction_speeds";
+    let place = entry.place_of(key);
+    let (from, to) = entry.two(cx, node, key)?;
+    let from = cx.positive(from, Dimension::SPEED, &place, true);
+    let to = cx.positive(to, Dimension::SPEED, &place, true);
+    let (from, to) = (from?, to?);
+    if cx.number(&from) >= cx.number(&to) {
+        return cx.refuse(
+            "contradictory-values",
+            format!("{place} do not rise"),
+            &node.span,
+            "the speed below which there is no friction stands first, then the one from which on there is all",
+        );
+    }
+    Some([from, to])
+}
+
 /// A study of what play does.
 pub(crate) fn study(
     cx: &mut Context<'_>,
@@ -170,26 +228,54 @@ pub(crate) fn study(
         let help = format!("say where there is play: [clearance] {}", OF_ALL.example);
         return cx.refuse("missing-key", message, entry.span, help);
     }
-    Some(StudyKind::Clearance(ClearanceStudy {
-        along,
-        model: model?,
-        rates: rates?.unwrap_or(ClearanceRates::Frozen),
+    let states = match model? {
+        ClearanceModel::Continuous => {
+            means_nothing(cx, entry, &IN_TIME, "where contact is never lost");
+            return Some(StudyKind::Clearance(ClearanceStudy {
+                along,
+                rates: rates?.unwrap_or(ClearanceRates::Frozen),
+            }));
+        }
+        ClearanceModel::TwoState => ContactStates::Two,
+        ClearanceModel::ThreeState => ContactStates::Three,
+    };
+    means_nothing(cx, entry, &["rates"], "where contact may be lost");
+    let motion = simulate::in_time(cx, entry, along, false)?;
+    Some(StudyKind::Contact(ContactStudy { states, motion }))
+}
+
+/// Keys of a study in which contact may be lost.
+const IN_TIME: [&str; 7] = [
+    "until",
+    "release",
+    "start",
+    "stops",
+    "end_when",
+    "tolerance",
+    "method",
+];
+
+/// Warns of keys that mean nothing in this model.
+fn means_nothing(cx: &mut Context<'_>, entry: &Entry<'_>, keys: &[&str], here: &str) {
+    for (key, _) in keys.iter().filter_map(|key| entry.entry(key)) {
+        let message = format!("`{}` of {} means nothing {here}", key.name, entry.place);
+        cx.push(
+            Diagnostic::warning("idle-key", message)
+                .at(key.span.clone(), "")
+                .help("leave it out, or ask for another `model`"),
+        );
+    }
+}
+
+/// Whether a study's contact may be lost: then its rows stand in time.
+pub(crate) fn loses_contact(entry: &Entry<'_>) -> bool {
+    let word = entry.get("model").map(|node| &node.value);
+    matches!(word, Some(Value::Text(text)) if MODELS.iter().any(|(name, model)| {
+        *name == text.content.trim() && *model != ClearanceModel::Continuous
     }))
 }
 
 fn model(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<ClearanceModel> {
-    if let Some(node) = entry.get("model")
-        && let Value::Text(text) = &node.value
-        && LATER_MODELS.contains(&text.content.trim())
-    {
-        let message = format!(
-            "{}: this version has no model `{}` of clearance, in which contact is lost",
-            entry.place,
-            text.content.trim()
-        );
-        let help = format!("write model = {:?}: contact is never lost", MODELS[0].0);
-        return cx.refuse("study-not-available", message, &node.span, help);
-    }
     let model = entry.choice(cx, "model", &MODELS)?;
     Some(model.unwrap_or(ClearanceModel::Continuous))
 }

@@ -60,10 +60,23 @@ pub(crate) fn simulate(
     entry: &Entry<'_>,
     along: MotionStudy,
 ) -> Option<StudyKind> {
+    in_time(cx, entry, along, true).map(StudyKind::Simulate)
+}
+
+/// How something moves in time; `all` tells whether all drives are let go, or none, where the study does not say.
+pub(crate) fn in_time(
+    cx: &mut Context<'_>,
+    entry: &Entry<'_>,
+    along: MotionStudy,
+    all: bool,
+) -> Option<SimulateStudy> {
     let until = entry.needed(cx, "until");
     let tolerance = entry.value(cx, "tolerance");
     let method = entry.choice(cx, "method", &METHODS);
-    let released = released(cx, entry);
+    let released = match all || entry.has("release") {
+        true => released(cx, entry),
+        false => Some(Vec::new()),
+    };
     let start = match &released {
         Some(released) => start(cx, entry, released),
         None => None,
@@ -79,7 +92,7 @@ pub(crate) fn simulate(
             text.and_then(|text| condition(cx, node, text))
         })
         .collect();
-    Some(StudyKind::Simulate(SimulateStudy {
+    Some(SimulateStudy {
         along,
         released: released?,
         start: start?,
@@ -88,7 +101,7 @@ pub(crate) fn simulate(
         end_when: end_when?,
         tolerance: tolerance?,
         method: method?,
-    }))
+    })
 }
 
 /// The drives that are let go.
@@ -270,34 +283,37 @@ fn in_order(
     }
 }
 
+/// The part of the speed that an impact gives back.
+pub(crate) fn restitution(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<Option<Scalar>> {
+    let restitution = entry.value(cx, "restitution")?;
+    let above_one = restitution.as_ref().is_some_and(|e| cx.number(e) > 1.0);
+    match entry.get("restitution").filter(|_| above_one) {
+        None => Some(restitution),
+        Some(node) => cx.refuse(
+            "out-of-range",
+            format!(
+                "the restitution of {} is above 1: an impact would give energy",
+                entry.place
+            ),
+            &node.span,
+            "write a number from 0, which stays, to 1, which loses nothing",
+        ),
+    }
+}
+
 /// How a stop resists: at once, or as a spring.
 fn resistance(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<StopResistance> {
-    let restitution = entry.value(cx, "restitution")?;
+    let restitution = restitution(cx, entry)?;
     let stiffness = entry.value(cx, "stiffness")?;
     let damping = entry.value(cx, "damping")?;
-    if let Some(restitution) = &restitution
-        && let Some(node) = entry.get("restitution")
-    {
-        if cx.number(restitution) > 1.0 {
-            return cx.refuse(
-                "out-of-range",
-                format!(
-                    "the restitution of {} is above 1: an impact would give energy",
-                    entry.place
-                ),
-                &node.span,
-                "write a number from 0, which stays, to 1, which loses nothing",
-            );
-        }
-        if stiffness.is_some() {
-            entry.contradiction(
-                cx,
-                &["restitution", "stiffness"],
-                "it resists at once, or as a spring",
-                "leave one of them out; what a spring loses is its damping",
-            );
-            return None;
-        }
+    if restitution.is_some() && stiffness.is_some() {
+        entry.contradiction(
+            cx,
+            &["restitution", "stiffness"],
+            "it resists at once, or as a spring",
+            "leave one of them out; what a spring loses is its damping",
+        );
+        return None;
     }
     entry.idle(cx, &["damping"], "stiffness");
     Some(match stiffness {

@@ -169,9 +169,10 @@ fn read_study(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<StudyKind> {
     if name == "vibrations" {
         return vibrations::read(cx, &entry);
     }
-    let rows = match name {
-        "simulate" => simulate::rows(cx, &entry),
-        _ => rows(cx, &entry),
+    let in_time = name == "simulate" || (name == "clearance" && clearance::loses_contact(&entry));
+    let rows = match in_time {
+        true => simulate::rows(cx, &entry),
+        false => rows(cx, &entry),
     };
     let forces = name != "motion";
     let (columns, plots) = if known.key("columns").is_some() {

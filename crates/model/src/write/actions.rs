@@ -3,9 +3,10 @@
 use kempe_units::{Dimension, Unit};
 
 use crate::clearance::ClearanceAt;
+use crate::contact::ContactProperties;
 use crate::ids::{FRAME, LinkId, LinkPointRef, PointId, Scalar};
 use crate::item::{File, Item};
-use crate::key_table::clearance::OF_ALL;
+use crate::key_table::clearance::{HERTZIAN, LAWS, OF_ALL};
 use crate::key_table::{ACTS, word_of};
 use crate::link::Place;
 use crate::load::{
@@ -78,8 +79,33 @@ impl Writer<'_> {
                 ClearanceAt::Joint(joint) => self.joint(*joint),
                 ClearanceAt::All => OF_ALL.name,
             };
+            self.contact(&clearance.contact, &mut entries);
             let entry = (name.to_owned(), Item::Table(entries));
             file.section("clearance").push(entry);
+        }
+    }
+
+    fn contact(&self, contact: &ContactProperties, entries: &mut Vec<(String, Item)>) {
+        let mut put = |key: &str, value: &Option<Scalar>, dimension: Dimension| {
+            let value = value.as_ref();
+            entries.extend(value.map(|value| self.value(key, value, dimension)));
+        };
+        put("radius", &contact.radius, Dimension::LENGTH);
+        put("length", &contact.length, Dimension::LENGTH);
+        put("height", &contact.height, Dimension::LENGTH);
+        put("restitution", &contact.restitution, Dimension::NONE);
+        put("stiffness", &contact.stiffness, HERTZIAN);
+        put("modulus", &contact.modulus, Dimension::PRESSURE);
+        put("poisson", &contact.poisson, Dimension::NONE);
+        put("spring", &contact.spring, Dimension::STIFFNESS);
+        put("damping", &contact.damping, Dimension::DAMPING);
+        put("friction", &contact.friction, Dimension::NONE);
+        if let Some(law) = &contact.law {
+            entries.push(self.text("law", word_of(&LAWS, law)));
+        }
+        if let Some(speeds) = &contact.friction_speeds {
+            let speeds = speeds.iter().map(|v| self.scalar(v, Dimension::SPEED));
+            entries.push(("friction_speeds".to_owned(), Item::List(speeds.collect())));
         }
     }
 

@@ -2,7 +2,8 @@
 
 use kempe_units::{Dimension, Expr};
 
-use crate::clearance::ClearanceRates;
+use crate::clearance::{ClearanceModel, ClearanceRates};
+use crate::contact::ContactStates;
 use crate::drive::{Law, LawPiece};
 use crate::ids::Scalar;
 use crate::item::{File, Item};
@@ -41,7 +42,7 @@ impl Writer<'_> {
             StudyKind::Balance(_) => "balance",
             StudyKind::Spring(_) => "spring",
             StudyKind::Simulate(_) => "simulate",
-            StudyKind::Clearance(_) => "clearance",
+            StudyKind::Clearance(_) | StudyKind::Contact(_) => "clearance",
             StudyKind::Vibrations(_) => "vibrations",
         };
         let mut entries = vec![("kind".to_owned(), Item::text(kind))];
@@ -53,7 +54,8 @@ impl Writer<'_> {
         match &study.kind {
             StudyKind::Motion(_) | StudyKind::Forces(_) => {}
             StudyKind::Clearance(study) => {
-                put("model", Item::text(word_of(&MODELS, &study.model)));
+                let model = ClearanceModel::Continuous;
+                put("model", Item::text(word_of(&MODELS, &model)));
                 if study.rates != ClearanceRates::Frozen {
                     put("rates", Item::text(word_of(&RATES, &study.rates)));
                 }
@@ -92,15 +94,26 @@ impl Writer<'_> {
                 put("stiffness", self.bounds(&study.stiffness, force / travel));
                 put("preload", self.bounds(&study.preload, force));
             }
-            StudyKind::Simulate(study) => self.simulate(study, &mut put),
+            StudyKind::Contact(study) => {
+                let model = match study.states {
+                    ContactStates::Two => ClearanceModel::TwoState,
+                    ContactStates::Three => ClearanceModel::ThreeState,
+                };
+                put("model", Item::text(word_of(&MODELS, &model)));
+                self.in_time(&study.motion, 0, &mut put);
+            }
+            StudyKind::Simulate(study) => {
+                self.in_time(study, self.model.drives.len(), &mut put);
+            }
             StudyKind::Vibrations(study) => self.vibrations(study, &mut put),
         }
         entries
     }
 
-    fn simulate(&self, study: &SimulateStudy, put: &mut dyn FnMut(&str, Item)) {
+    /// How something moves in time; so many drives are let go where the file does not say.
+    fn in_time(&self, study: &SimulateStudy, unsaid: usize, put: &mut dyn FnMut(&str, Item)) {
         put("until", self.scalar(&study.until, Dimension::TIME));
-        if study.released.len() != self.model.drives.len() {
+        if study.released.len() != unsaid {
             let released = study.released.iter();
             let names = released.map(|drive| Item::text(self.drive(*drive)));
             put("release", Item::List(names.collect()));

@@ -32,6 +32,7 @@ impl Free {
                 method: Method::Choose,
                 stops: Vec::new(),
                 end_when: Vec::new(),
+                contacts: Vec::new(),
             },
             design,
             model,

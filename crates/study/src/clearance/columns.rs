@@ -96,10 +96,7 @@ impl Deviations {
         for (it, ((ideal, value), slopes)) in self.all.iter_mut().zip(values) {
             let unit = it.value.unit.clone();
             it.value.values.push(unit.from_si(*value));
-            let difference = match it.quantity.dimension {
-                Dimension::ANGLE => within_half_a_turn(value - ideal),
-                _ => value - ideal,
-            };
+            let difference = difference(it.quantity.dimension, *value, *ideal);
             it.deviation.values.push(difference / unit.factor());
             let Some(first) = &mut it.first_order else {
                 continue;
@@ -208,4 +205,30 @@ fn is_geometry(mechanism: &Mechanism, measure: &Measure) -> bool {
         };
     });
     alone
+}
+
+/// A quantity whose values with play are in a column, beside the ideal ones (SI).
+pub(super) fn deviation_of(
+    mechanism: &Mechanism,
+    quantity: &Quantity,
+    value: Column,
+    ideal: &[f64],
+) -> Deviation {
+    let unit = value.unit.clone();
+    let mut it = Deviation::new(mechanism, quantity, &unit);
+    it.first_order = None;
+    let all = value.values.iter().zip(ideal);
+    (it.deviation.values).extend(all.map(|(value, ideal)| {
+        difference(quantity.dimension, unit.to_si(*value), *ideal) / unit.factor()
+    }));
+    it.value = value;
+    it
+}
+
+/// How far a value is from the ideal one, SI.
+fn difference(dimension: Dimension, value: f64, ideal: f64) -> f64 {
+    match dimension {
+        Dimension::ANGLE => within_half_a_turn(value - ideal),
+        _ => value - ideal,
+    }
 }

@@ -43,10 +43,10 @@ impl Joints {
                 Ok(_) => {
                     let joint = *source;
                     it.plays.push(Play { joint, radial });
-                    it.names.push(name(model, joint));
+                    it.names.push(joint_name(model, joint));
                 }
                 Err(_) if clearance.at == ClearanceAt::All => {
-                    it.carry_wheels.push(name(model, *source));
+                    it.carry_wheels.push(joint_name(model, *source));
                 }
                 Err(why) => it.refused.push(not_released(mechanism, why)),
             }
@@ -77,7 +77,7 @@ impl Joints {
 }
 
 /// The entry that tells of a joint.
-fn of(mechanism: &Mechanism, source: Source) -> Option<&Clearance> {
+pub(super) fn of(mechanism: &Mechanism, source: Source) -> Option<&Clearance> {
     let model = &mechanism.model;
     let entries = || model.clearances.iter().rev();
     let of_all = || entries().find(|c| c.at == ClearanceAt::All);
@@ -148,7 +148,8 @@ fn welded(mechanism: &Mechanism, at: &ClearanceAt) -> Option<String> {
     }
 }
 
-fn name(model: &Model, source: Source) -> String {
+/// What a joint is called.
+pub(crate) fn joint_name(model: &Model, source: Source) -> String {
     let point = |id: PointId| model.points.get(id.index());
     match source {
         Source::Pin { point: id, link } => {
@@ -177,7 +178,7 @@ pub(crate) fn not_released(mechanism: &Mechanism, why: NotReleased) -> Diagnosti
         NotReleased::Twice(source) => (source, "it is let go already"),
         _ => return Diagnostic::error("no-clearance-there", why.to_string()),
     };
-    let name = name(&mechanism.model, source);
+    let name = joint_name(&mechanism.model, source);
     no_clearance_there(&name, reason, of(mechanism, source))
 }
 

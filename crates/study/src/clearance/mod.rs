@@ -1,12 +1,13 @@
 //! What play at the joints does: the motion with it beside the motion without, row by row.
 
 mod columns;
+mod contact;
 mod findings;
 mod joints;
 mod summary;
 
 use kempe_dynamics::clearance::{Clearances, NoClearances, NotSettled};
-use kempe_model::{ClearanceModel, ClearanceRates, ClearanceStudy, Diagnostic, Measure, Model};
+use kempe_model::{ClearanceRates, ClearanceStudy, Diagnostic, Measure, Model};
 use kempe_motion::progress::{Done, Progress, Stage};
 use kempe_units::Dimension;
 
@@ -27,10 +28,11 @@ use crate::unit::Units;
 
 pub(crate) use self::columns::COLUMNS;
 use self::columns::{Deviations, Found};
+pub(crate) use self::contact::{contact, findings_of_contact};
 use self::findings::{Prepared, repeat_each_other};
 pub(crate) use self::findings::{findings_of_clearance, refuses};
-pub(crate) use self::joints::given;
-use self::joints::{Joints, not_released};
+use self::joints::Joints;
+pub(crate) use self::joints::{given, joint_name, not_released};
 
 /// Runs a study of clearance called `name`.
 pub(crate) fn clearance(
@@ -39,7 +41,6 @@ pub(crate) fn clearance(
     study: &ClearanceStudy,
     progress: &mut dyn Progress,
 ) -> Result<StudyResult, Vec<Diagnostic>> {
-    let ClearanceModel::Continuous = study.model;
     let prepared = Prepared::new(model, name, study);
     if prepared.refused() {
         return Err(prepared.findings);

@@ -1,0 +1,267 @@
+//! Joints with play: let go with the drives, their bodies touch and part.
+
+use kempe_dynamics::joint_contact::{JointContact, is_rigid};
+use kempe_mechanism::{Design, NotReleased};
+use kempe_model::{
+    Contact, DriveId, DriveKind, Law, Leaf, Measure, Model, Released, Scalar, Touching, value,
+};
+use kempe_number::{Jet, Number};
+use kempe_units::{Builtin, Expr};
+
+use crate::plant::Plant;
+use crate::question::{Resistance, Stop};
+use crate::start::Start;
+
+/// A place of a joint with play.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// Which of the contacts that were asked about.
+    pub contact: usize,
+    /// The corner of a block, or 0.
+    pub place: usize,
+}
+
+/// A design whose joints are let go where they have play, and whose bodies touch there.
+///
+/// # Errors
+/// A joint that cannot have play.
+pub fn with_play(closed: &Design<f64>, contacts: &[Contact]) -> Result<Design<f64>, NotReleased> {
+    let joints: Vec<_> = contacts.iter().map(|c| c.joint.into()).collect();
+    let open = closed.mechanism.releasing(&joints)?;
+    let mut design = Design::new(&open, &closed.parameters);
+    design.count_turns(&closed.geometry.turns);
+    Ok(design.with_model(|model| model.actions.contacts = contacts.to_vec()))
+}
+
+/// The start with the joints let go, and the coordinates of their rows with the clearance of each.
+pub(crate) fn opened(
+    start: Start,
+    contacts: &[Contact],
+) -> Result<(Start, Vec<(DriveId, f64)>), NotReleased> {
+    if contacts.is_empty() {
+        return Ok((start, Vec::new()));
+    }
+    let design = with_play(&start.design, contacts)?;
+    let drives = &design.mechanism.model.drives;
+    let rows = drives.iter().enumerate().filter_map(|(index, drive)| {
+        let DriveKind::Release { of, .. } = drive.kind else {
+            return None;
+        };
+        let contact = contacts.iter().find(|c| c.joint == of)?;
+        Some((DriveId(index as u32), contact.clearance))
+    });
+    let rows: Vec<(DriveId, f64)> = rows.collect();
+    let mut coordinates = start.coordinates;
+    coordinates.resize(drives.len(), 0.0);
+    let start = Start {
+        coordinates,
+        design,
+        ..start
+    };
+    Ok((start, rows))
+}
+
+/// Stops of the contacts that resist at once, with the places that they stand for.
+pub(crate) fn rigid_stops(model: &Model, parameters: &[f64]) -> Vec<(Stop, Place)> {
+    let contacts = model.actions.contacts.iter().enumerate();
+    let rigid = contacts.filter(|(_, contact)| is_rigid(contact));
+    let stops = rigid.flat_map(|(index, contact)| {
+        let number = |scalar: &Option<Scalar>| scalar.as_ref().map(|s| value(s, parameters));
+        let restitution = number(&contact.properties.restitution).unwrap_or(0.0);
+        let gaps = gaps(model, contact, parameters).into_iter().enumerate();
+        gaps.map(move |(place, gap)| {
+            let resistance = Resistance::Rigid { restitution };
+            let place = Place {
+                contact: index,
+                place,
+            };
+            (Stop { gap, resistance }, place)
+        })
+    });
+    stops.collect()
+}
+
+/// How far a joint is open at each place, in the coordinates of its rows.
+fn gaps(model: &Model, contact: &Contact, parameters: &[f64]) -> Vec<Measure> {
+    let row = |index: u8| -> Measure {
+        let drive = model.drives.iter().position(
+            |drive| matches!(drive.kind, DriveKind::Release { of, row } if of == contact.joint && row == index),
+        );
+        let drive = drive.map_or(f64::NAN, |d| d as f64);
+        Expr::Leaf(Leaf::Drive(DriveId(drive as u32)))
+    };
+    let constant = |x: f64| Box::new(Expr::Const(x));
+    let times = |x: f64, of: Measure| Box::new(Expr::Mul(constant(x), Box::new(of)));
+    match contact.joint {
+        Released::Pin { .. } => {
+            let square = |index| Box::new(Expr::Powi(Box::new(row(index)), 2));
+            let apart = Expr::Call(Builtin::Sqrt, vec![Expr::Add(square(0), square(1))]);
+            vec![Expr::Sub(constant(contact.clearance), Box::new(apart))]
+        }
+        Released::Joint(_) => {
+            let number = |scalar: &Option<Scalar>| scalar.as_ref().map(|s| value(s, parameters));
+            let length = number(&contact.properties.length).unwrap_or(0.0);
+            let height = number(&contact.properties.height).unwrap_or(0.0);
+            let of_angle = |f: Builtin| Expr::Call(f, vec![row(0)]);
+            let corner = |(side, end): (f64, f64)| {
+                // The corner's height over the middle line, towards its wall.
+                let ahead = times(0.5 * length * side * end, of_angle(Builtin::Sin));
+                let up = times(0.5 * height, of_angle(Builtin::Cos));
+                let off = times(side, row(1));
+                let high = Expr::Add(Box::new(Expr::Add(off, ahead)), up);
+                Expr::Sub(constant(0.5 * height + contact.clearance), Box::new(high))
+            };
+            kempe_contact::PLACES.map(corner).to_vec()
+        }
+    }
+}
+
+impl Plant {
+    fn contact(&self, at: Place) -> Option<&JointContact<f64>> {
+        let mut contacts = self.forces.acting.contacts.iter();
+        contacts.find(|contact| contact.index == at.contact)
+    }
+
+    /// How far a contact is open at a place, m, and how fast it opens, m/s, at a state.
+    pub fn opening(&self, at: Place, y: &[f64]) -> [f64; 2] {
+        let n = self.free.len();
+        let Some(contact) = self.contact(at) else {
+            return [f64::NAN; 2];
+        };
+        let of = |drive: DriveId| {
+            let index = self.free.iter().position(|free| *free == drive);
+            index.map_or([f64::NAN; 2], |k| [y[k], y[n + k]])
+        };
+        let [a, b] = contact.along.map(of);
+        contact.gap(at.place, [a[0], b[0]], [a[1], b[1]])
+    }
+
+    /// Every place of the contacts that give.
+    pub fn contact_places(&self) -> Vec<Place> {
+        let contacts = self.forces.acting.contacts.iter();
+        let places = contacts.flat_map(|it| {
+            let contact = it.index;
+            (0..it.places()).map(move |place| Place { contact, place })
+        });
+        places.collect()
+    }
+
+    /// Whether a place touches.
+    pub fn is_touching(&self, at: Place) -> bool {
+        let touches = self.contact(at).and_then(|c| c.touches.get(at.place));
+        let last = touches.and_then(|touches| touches.last());
+        last.is_some_and(|touch| touch.to == f64::INFINITY)
+    }
+
+    /// Lets a place touch from a time on; how fast its bodies come together there, m/s.
+    pub fn touch(&mut self, at: Place, time: f64, y: &[f64]) -> f64 {
+        let [_, opening] = self.opening(at, y);
+        if let Some(touches) = self.touches_of(at) {
+            touches.push(Touching {
+                place: at.place,
+                from: time,
+                to: f64::INFINITY,
+                speed: -opening,
+            });
+        }
+        -opening
+    }
+
+    /// Lets a place part at a time.
+    pub fn part(&mut self, at: Place, time: f64) {
+        if let Some(last) = self.touches_of(at).and_then(|touches| touches.last_mut()) {
+            last.to = time;
+        }
+    }
+
+    fn touches_of(&mut self, at: Place) -> Option<&mut Vec<Touching>> {
+        let mut contacts = self.forces.acting.contacts.iter_mut();
+        let contact = contacts.find(|contact| contact.index == at.contact)?;
+        contact.touches.get_mut(at.place)
+    }
+}
+
+/// What became of a touch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Touched {
+    /// Where.
+    pub at: Place,
+    /// Since when and until when, and how fast they came together.
+    pub touching: Touching,
+    /// How fast they parted, m/s; none where they still touch at the end.
+    pub parting: Option<f64>,
+    /// The deepest indentation, m, and when, s.
+    pub depth: [f64; 2],
+    /// The largest force that presses, N, and when, s.
+    pub force: [f64; 2],
+}
+
+/// Instants of a touch that are looked at before its largest force is located between two of them.
+const LOOKS: usize = 64;
+/// Steps of the golden section: to rounding of what is flat there.
+const STEPS: usize = 50;
+
+/// What became of every touch, by the laws of the drives that were found; in order of time.
+pub(crate) fn touched(contacts: &[JointContact<f64>], laws: &[Law], end: f64) -> Vec<Touched> {
+    let mut all: Vec<Touched> = Vec::new();
+    for contact in contacts {
+        let at = |place: usize, time: f64| {
+            let row = |drive: DriveId| {
+                let law = laws.get(drive.index());
+                let q: Jet<f64, 2> = law.map_or(Jet::constant(f64::NAN), |law| {
+                    law.at(Jet::variable(time), &[])
+                });
+                [q.value(), q.coefficient(1)]
+            };
+            let [a, b] = contact.along.map(row);
+            contact.gap(place, [a[0], b[0]], [a[1], b[1]])
+        };
+        for touching in contact.touches.iter().flatten() {
+            let place = touching.place;
+            let touching = Touching {
+                to: touching.to.min(end),
+                ..*touching
+            };
+            let depth = |time: f64| -at(place, time)[0];
+            let force = |time: f64| {
+                let [gap, rate] = at(place, time);
+                contact.normal.force(-gap, -rate, touching.speed)
+            };
+            all.push(Touched {
+                at: Place {
+                    contact: contact.index,
+                    place,
+                },
+                parting: (touching.to < end).then(|| at(place, touching.to)[1]),
+                depth: largest(depth, &touching),
+                force: largest(force, &touching),
+                touching,
+            });
+        }
+    }
+    all.sort_by(|a, b| a.touching.from.total_cmp(&b.touching.from));
+    all
+}
+
+/// The largest value during a touch, and when.
+fn largest(value: impl Fn(f64) -> f64, during: &Touching) -> [f64; 2] {
+    let time = |k: usize| during.from + (during.to - during.from) * k as f64 / LOOKS as f64;
+    let values: Vec<f64> = (0..=LOOKS).map(|k| value(time(k))).collect();
+    let best = (0..=LOOKS).fold(0, |best, k| if values[k] > values[best] { k } else { best });
+    let (mut low, mut high) = (time(best.saturating_sub(1)), time((best + 1).min(LOOKS)));
+    let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
+    for _ in 0..STEPS {
+        let (a, b) = (high - golden * (high - low), low + golden * (high - low));
+        if value(a) < value(b) {
+            low = a;
+        } else {
+            high = b;
+        }
+    }
+    let found = 0.5 * (low + high);
+    let at_found = value(found);
+    match at_found >= values[best] {
+        true => [at_found, found],
+        false => [values[best], time(best)],
+    }
+}
