@@ -11,6 +11,7 @@ use crate::inertia::Mass;
 use crate::instant::Instant;
 use crate::load::Load;
 use crate::motor::Motor;
+use crate::oil::Oil;
 use crate::number::ForceNumber;
 use crate::problem::Problem;
 use crate::spring::Spring;
@@ -38,6 +39,8 @@ pub struct Acting<T: ForceNumber> {
     pub friction: Vec<Friction<T>>,
     /// Hydraulic cylinders.
     pub cylinders: Vec<Cylinder<T>>,
+    /// Their oil, of those of which it is told.
+    pub oils: Vec<Oil<T>>,
     /// Motors.
     pub motors: Vec<Motor<T>>,
 }
@@ -68,6 +71,9 @@ impl<T: ForceNumber> Acting<T> {
                 cylinder
             })
             .collect();
+        let oils = (actions.cylinders.iter().zip(&cylinders))
+            .filter_map(|(c, machine)| Oil::new(mechanism, c, machine, parameters, &mut problems))
+            .collect();
         let it = Self {
             gravity,
             masses: Mass::all(mechanism, geometry, parameters, &mut problems),
@@ -75,11 +81,12 @@ impl<T: ForceNumber> Acting<T> {
             dampers: Damper::all(mechanism, geometry, parameters, &mut problems),
             friction: Friction::all(mechanism, geometry, parameters, &mut problems),
             motors: (actions.motors.iter())
-                .map(|m| Motor::new(m, parameters, &mut problems))
+                .map(|m| Motor::new(mechanism, m, parameters, &mut problems))
                 .collect(),
             loads,
             amounts,
             cylinders,
+            oils,
         };
         if problems.is_empty() {
             Ok(it)

@@ -10,14 +10,18 @@
 //! | `start.rs` | the pose that the motion starts from |
 //! | `places.rs` | poses from coordinates: `curve.rs` along the followed motion of one coordinate, `several.rs` by the plan |
 //! | `plant.rs` | accelerations of a state, with motors, stops and friction |
+//! | `amounts.rs` | values that loads, valves and motors go by |
+//! | `inner.rs`, `toggle.rs` | pressures of cylinders, and what is switched on and off |
 //! | `watch.rs` | what is looked for between steps |
 //! | `contact.rs` | stops: impacts, and what holds a rest |
 //! | `run.rs` | from step to step and from event to event |
 //! | `record.rs` | what was found, as laws of the drives |
 
+mod amounts;
 mod contact;
 mod curve;
 mod happening;
+mod inner;
 mod places;
 mod plant;
 mod question;
@@ -25,6 +29,7 @@ mod record;
 mod run;
 mod several;
 mod start;
+mod toggle;
 mod watch;
 
 pub use kempe_integrate::{Method, Used};

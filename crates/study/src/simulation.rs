@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use kempe_mechanism::Design;
 use kempe_model::{
-    Diagnostic, DriveId, ForceMeasure, Leaf, Model, MotionStudy, Rows, SimulateStudy, StepMethod,
+    Chamber, Diagnostic, DriveId, ForceMeasure, Leaf, Model, MotionStudy, Rows, SimulateStudy, StepMethod,
     StopResistance, StudyKind, value,
 };
 use kempe_motion::progress::{Progress, Silent};
@@ -58,7 +58,7 @@ pub(crate) fn simulated_motion(
         let message = format!("there is no simulation called `{name}`");
         return Err(vec![Diagnostic::error("unknown-name", message)]);
     };
-    let run = Run::new(model, study, progress)?;
+    let run = Run::new(model, &with_strokes(model, study), progress)?;
     run.motion(progress)
 }
 
@@ -107,6 +107,7 @@ pub(crate) fn simulation(
     study: &SimulateStudy,
     progress: &mut dyn Progress,
 ) -> Result<StudyResult, Vec<Diagnostic>> {
+    let study = &with_strokes(model, study);
     let run = Run::new(model, study, progress)?;
     // What was found until it was stopped is shown.
     let was_stopped = run.found.ending == Ending::Stopped;
@@ -119,7 +120,7 @@ pub(crate) fn simulation(
         findings: mut diagnostics,
         ..
     } = run;
-    let hidden = hidden(&question.free);
+    let hidden = hidden(&question.free, &found);
     let along = in_time(&study.along, question.until);
     let (mut result, values) = rows_of(&motion, name, &along, (true, 0, &hidden), progress)?;
     diagnostics.append(&mut result.diagnostics);
@@ -139,6 +140,7 @@ pub(crate) fn simulation(
         question.tolerance,
     ));
     diagnostics.extend(early(model, &units, &found));
+    diagnostics.extend(cavitation(model, &units, study, &found));
     result.table.balance = Some(balance);
     for (note, time) in result.table.notes.iter_mut().zip(&times) {
         let held = held_at(&found, *time).map(|held| what_holds(held, study, &ends));
@@ -148,7 +150,7 @@ pub(crate) fn simulation(
     result.listings.push(how(&units, &found, &result));
     result
         .listings
-        .extend(happened(&units, study, &ends, &found));
+        .extend(happened(model, &units, study, &ends, &found));
     if was_stopped {
         let all = count(
             model,
@@ -160,6 +162,32 @@ pub(crate) fn simulation(
     }
     result.diagnostics = diagnostics;
     Ok(result)
+}
+
+/// The study with the ends of the strokes of cylinders that their oil moves as stops, where it has none of its own for them.
+fn with_strokes(model: &Model, study: &SimulateStudy) -> SimulateStudy {
+    let mut study = study.clone();
+    for cylinder in &model.actions.cylinders {
+        let drive = cylinder.drive;
+        let what = Expr::Leaf(Leaf::Drive(drive));
+        let told = study.stops.iter().any(|stop| stop.what == what);
+        let stroke = cylinder.oil.as_ref().and_then(|oil| oil.stroke.clone());
+        let (Some([closed, stroke]), Some(named)) = (stroke, model.drives.get(drive.index())) else {
+            continue;
+        };
+        if told || !study.released.contains(&drive) {
+            continue;
+        }
+        let open = Expr::Add(Box::new(closed.clone()), Box::new(stroke));
+        study.stops.push(kempe_model::Stop {
+            name: named.name.clone(),
+            what,
+            is_angle: false,
+            between: [Some(closed), Some(open)],
+            resistance: StopResistance::Rigid { restitution: None },
+        });
+    }
+    study
 }
 
 /// The rows of a study in time: so many over the whole time asked for, however early it ends.
@@ -223,8 +251,8 @@ fn question(study: &SimulateStudy, model: &Model, parameters: &[f64]) -> (Questi
     (question, ends)
 }
 
-/// Energies, the rate of the kinetic one, and effort and speed of every drive that is let go.
-fn hidden(free: &[DriveId]) -> Vec<Quantity> {
+/// Energies, the rate of the kinetic one, and effort, speed and what the throttle goes by of every drive that is let go.
+fn hidden(free: &[DriveId], found: &Simulated) -> Vec<Quantity> {
     let force = |measure: ForceMeasure| Expr::Leaf(Leaf::Force(measure));
     let quantity = |measure| Quantity {
         name: String::new(),
@@ -237,10 +265,12 @@ fn hidden(free: &[DriveId]) -> Vec<Quantity> {
         quantity(force(ForceMeasure::PotentialEnergy)),
         quantity(Expr::Leaf(Leaf::Rate(Box::new(kinetic), 1))),
     ];
-    for drive in free {
+    for (place, drive) in free.iter().enumerate() {
         list.push(quantity(force(ForceMeasure::Drive(*drive))));
         let coordinate = Box::new(Expr::Leaf(Leaf::Drive(*drive)));
         list.push(quantity(Expr::Leaf(Leaf::Rate(coordinate, 1))));
+        let throttle = found.throttle(place).cloned();
+        list.push(quantity(throttle.unwrap_or(Expr::Const(1.0))));
     }
     list
 }
@@ -299,8 +329,8 @@ fn balance(
     let asked = |row: usize| {
         (0..question.free.len())
             .map(|k| {
-                let [effort, speed] = [0, 1].map(|j| value(3 + 2 * k + j, row));
-                (effort - found.motor_torque(k, speed)) * speed
+                let [effort, speed, throttled] = [0, 1, 2].map(|j| value(3 + 3 * k + j, row));
+                (effort - found.gives(k, [times[row], speed], throttled)) * speed
             })
             .sum::<f64>()
     };
@@ -378,6 +408,45 @@ fn early(model: &Model, units: &Units, found: &Simulated) -> Option<Diagnostic> 
     )
 }
 
+/// The pressure of a chamber: `the pressure on the bore's side of lift`.
+fn chamber(model: &Model, study: &SimulateStudy, free: usize, side: Chamber) -> String {
+    let drive = study.released.get(free);
+    let drive = drive.and_then(|drive| model.drives.get(drive.index()));
+    let side = match side {
+        Chamber::Bore => "bore",
+        Chamber::Ring => "rod",
+    };
+    let name = drive.map_or("", |drive| drive.name.as_str());
+    format!("the pressure on the {side}'s side of {name}")
+}
+
+/// That the pressure in a cylinder fell below that of a vacuum, where it did first.
+fn cavitation(
+    model: &Model,
+    units: &Units,
+    study: &SimulateStudy,
+    found: &Simulated,
+) -> Option<Diagnostic> {
+    let first = found.happenings.iter().find_map(|it| match it.what {
+        Happened::Cavitates { free, side } => Some((it.time, free, side)),
+        _ => None,
+    });
+    let (time, free, side) = first?;
+    let message = format!(
+        "{} falls below that of a vacuum at {}: oil would boil or let its air go, and what follows is not known",
+        chamber(model, study, free, side),
+        units.text(time, Dimension::TIME)
+    );
+    let warning = Diagnostic::warning("cavitation", message);
+    let drive = study.released.get(free);
+    let span = drive.and_then(|drive| Some(model.drives.get(drive.index())?.span.clone()));
+    Some(
+        warning
+            .at(span.unwrap_or_default(), "")
+            .help("let more oil in on that side, move more slowly, or hold the load with pressure on the other side"),
+    )
+}
+
 /// How it was done, and how well.
 fn how(units: &Units, found: &Simulated, result: &StudyResult) -> Listing {
     let balance = result.table.balance.as_ref();
@@ -437,6 +506,7 @@ fn how(units: &Units, found: &Simulated, result: &StudyResult) -> Listing {
 
 /// What happened, in words.
 fn happened(
+    model: &Model,
     units: &Units,
     study: &SimulateStudy,
     ends: &[End],
@@ -477,6 +547,14 @@ fn happened(
             Happened::Leaves { stop } => format!("leaves {}", name(stop)),
             Happened::Sticks => "friction holds it".to_owned(),
             Happened::Slips => "friction lets it go".to_owned(),
+            Happened::Switches { switch, on } => {
+                let named = model.actions.switches.get(*switch);
+                let name = named.map_or("", |s| s.name.as_str());
+                format!("{name} goes {}", if *on { "on" } else { "off" })
+            }
+            Happened::Cavitates { free, side } => {
+                format!("{} falls below vacuum", chamber(model, study, *free, *side))
+            }
             Happened::Ends { condition } => {
                 let text = study
                     .end_when

@@ -72,6 +72,8 @@ pub(crate) struct Context<'a> {
     pub dampers: BTreeMap<String, Option<(usize, kempe_units::Dimension)>>,
     /// Loads by name and whether they are forces or torques; they are read after the measures that they may follow.
     pub loads: BTreeMap<String, Option<(usize, kempe_units::Dimension)>>,
+    /// Switches by name, likewise: numbers.
+    pub switches: BTreeMap<String, Option<(usize, kempe_units::Dimension)>>,
     /// Entries of `[cylinders]` that are not sound.
     pub broken_cylinders: BTreeSet<String>,
     /// Whether the file has clearances, sound or not.
@@ -127,6 +129,7 @@ impl<'a> Context<'a> {
             springs: BTreeMap::new(),
             dampers: BTreeMap::new(),
             loads: BTreeMap::new(),
+            switches: BTreeMap::new(),
             broken_cylinders: BTreeSet::new(),
             clearances_given: false,
             table_rows: 0,
@@ -149,6 +152,7 @@ impl<'a> Context<'a> {
                 studies: Vec::new(),
                 announced: Vec::new(),
                 bounds: Vec::new(),
+                inner_laws: Vec::new(),
                 settled: Vec::new(),
             },
         }

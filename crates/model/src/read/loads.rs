@@ -213,7 +213,7 @@ fn polar(
 }
 
 /// A value, a measure or a table.
-fn amount(
+pub(crate) fn amount(
     cx: &mut Context<'_>,
     entry: &Entry<'_>,
     node: &Node,
@@ -269,6 +269,13 @@ fn instant(cx: &mut Context<'_>, measure: &Measure, span: &Span) -> Option<()> {
         )
         .at(span.clone(), "a number over the whole motion")
         .help("min, max, mean, range, stroke, at and time_ratio of a motion have no place here")
+    } else if asks.inner_rate {
+        Diagnostic::error(
+            "not-at-one-instant",
+            "the rate of a pressure or a switch is not known while the motion is being found",
+        )
+        .at(span.clone(), "asks for such a rate")
+        .help("go by the pressure itself, or by speeds")
     } else {
         return Some(());
     };

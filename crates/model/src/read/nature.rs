@@ -13,6 +13,10 @@ pub(crate) struct Nature {
     pub forces: bool,
     /// A number over the whole motion.
     pub motion: bool,
+    /// A pressure or a switch.
+    pub inner: bool,
+    /// The rate of such.
+    pub inner_rate: bool,
 }
 
 impl Nature {
@@ -20,6 +24,8 @@ impl Nature {
         Self {
             forces: self.forces || other.forces,
             motion: self.motion || other.motion,
+            inner: self.inner || other.inner,
+            inner_rate: self.inner_rate || other.inner_rate,
         }
     }
 }
@@ -33,10 +39,20 @@ pub(crate) fn nature(measure: &Measure, named: &[Nature]) -> Nature {
             Leaf::Named(i) => named.get(*i).copied().unwrap_or_default(),
             Leaf::Force(_) => Nature {
                 forces: true,
-                motion: false,
+                ..Nature::default()
             },
+            Leaf::Inner(_) => Nature {
+                inner: true,
+                ..Nature::default()
+            },
+            Leaf::Rate(inner, _) => {
+                let within = nature(inner, named);
+                Nature {
+                    inner_rate: within.inner,
+                    ..within
+                }
+            }
             Leaf::Pose(PoseMeasure::MechanicalAdvantage(inner, _))
-            | Leaf::Rate(inner, _)
             | Leaf::Coefficient(inner, _, _) => nature(inner, named),
             Leaf::Pose(_) => Nature::default(),
             Leaf::Over(_, inner) => Nature {
@@ -85,7 +101,7 @@ impl Model {
             .iter()
             .map(|m| Nature {
                 forces: m.needs_forces,
-                motion: false,
+                ..Nature::default()
             })
             .collect();
         nature(measure, &named).forces
