@@ -45,7 +45,14 @@ impl<T: ForceNumber> Motor<T> {
         let throttle = motor.throttle.as_ref().map(|throttle| {
             let name = mechanism.model.drives.get(motor.drive.index());
             let what = format!("the throttle of `{}`", name.map_or("", |d| d.name.as_str()));
-            Amount::new(mechanism, throttle, parameters, &motor.span, &what, problems)
+            Amount::new(
+                mechanism,
+                throttle,
+                parameters,
+                &motor.span,
+                &what,
+                problems,
+            )
         });
         Self {
             drive: motor.drive,

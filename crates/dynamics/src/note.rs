@@ -387,7 +387,10 @@ fn actuator_notes(forces: &Forces<Rates>, at: &Instant<Rates>, notes: &mut Vec<F
         };
         // What a simulation moved by its oil gives what that gives.
         let model = &forces.design.mechanism.model;
-        if model.inner_law(InnerState::Pressure(id, Chamber::Bore)).is_some() {
+        if model
+            .inner_law(InnerState::Pressure(id, Chamber::Bore))
+            .is_some()
+        {
             continue;
         }
         let direction = forces.drive_direction(at, id);

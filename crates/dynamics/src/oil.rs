@@ -79,7 +79,14 @@ impl<T: ForceNumber> Oil<T> {
         let name = mechanism.model.drives.get(cylinder.drive.index());
         let what = format!("the valve of `{}`", name.map_or("", |d| d.name.as_str()));
         let mut opening = |opening: &model::Amount| {
-            Amount::new(mechanism, opening, parameters, &cylinder.span, &what, problems)
+            Amount::new(
+                mechanism,
+                opening,
+                parameters,
+                &cylinder.span,
+                &what,
+                problems,
+            )
         };
         let valve = (opening(&oil.valve.0), oil.valve.1.as_ref().map(opening));
         let Some(supply) = machine.highest else {
@@ -112,16 +119,22 @@ impl<T: ForceNumber> Oil<T> {
 
     fn check(&self, cylinder: &HydraulicCylinder, problems: &mut Vec<Problem>) {
         let stiff = self.hose_modulus.iter().chain(&self.wall_modulus);
-        let positive = (stiff.chain(&self.volume).chain(self.stroke.iter().flatten()))
-            .chain([&self.bulk_modulus, &self.flow, &self.drop]);
+        let positive = (stiff
+            .chain(&self.volume)
+            .chain(self.stroke.iter().flatten()))
+        .chain([&self.bulk_modulus, &self.flow, &self.drop]);
         let mut positive = positive.copied();
         if positive.any(|x| x.any_lane(|x| !(x > 0.0))) {
             let message =
                 "bulk moduli, volumes, stroke, flow and drop of a cylinder's oil are above zero";
             problems.push(Problem::new("oil-not-positive", &cylinder.span, message));
         }
-        if [self.damping, self.leakage].iter().any(|x| x.any_lane(|x| x < 0.0)) {
-            let message = "damping and leakage of a cylinder's oil are never negative: they would add energy";
+        if [self.damping, self.leakage]
+            .iter()
+            .any(|x| x.any_lane(|x| x < 0.0))
+        {
+            let message =
+                "damping and leakage of a cylinder's oil are never negative: they would add energy";
             problems.push(Problem::new("negative-damping", &cylinder.span, message));
         }
     }
@@ -159,8 +172,8 @@ impl Oil<f64> {
                 return None;
             }
             let enters = self.enters(openings[side], pressures[side]) + sense * leaks;
-            rates[side] = self.stiffness(side, volume) / volume
-                * (sense * self.area[side] * speed + enters);
+            rates[side] =
+                self.stiffness(side, volume) / volume * (sense * self.area[side] * speed + enters);
         }
         Some(rates)
     }
@@ -178,7 +191,8 @@ impl Oil<f64> {
     /// Bulk modulus of a side with its walls, Pa.
     fn stiffness(&self, side: usize, volume: f64) -> f64 {
         let still = self.volume[side] / volume;
-        let yields = |part: f64, modulus: Option<f64>| modulus.map_or(0.0, |modulus| part / modulus);
+        let yields =
+            |part: f64, modulus: Option<f64>| modulus.map_or(0.0, |modulus| part / modulus);
         let all = 1.0 / self.bulk_modulus
             + yields(1.0 - still, self.wall_modulus)
             + yields(still, self.hose_modulus);
@@ -229,7 +243,10 @@ mod tests {
         for at in [0.0, 0.3 * LAMINAR, LAMINAR, -LAMINAR, 2.0 * LAMINAR] {
             let slope = |x: f64| (root(x + step) - root(x - step)) / (2.0 * step);
             let (before, after) = (slope(at - step), slope(at + step));
-            assert!((after / before - 1.0).abs() < 0.01, "{at}: {before} {after}");
+            assert!(
+                (after / before - 1.0).abs() < 0.01,
+                "{at}: {before} {after}"
+            );
             assert_eq!(root(-at), -root(at));
         }
         assert_eq!(root(4.0 * LAMINAR), 2.0 * root(LAMINAR));

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use kempe_measure::measure::asks_unknown_state;
 use kempe_measure::{Curve, ForceSource, Series, State};
-use kempe_mechanism::{Branch, Mechanism};
 use kempe_mechanism::Design;
+use kempe_mechanism::{Branch, Mechanism};
 use kempe_model::{Amount, Drive, ForceMeasure, Measure};
 use kempe_motion::Motion;
 
@@ -108,7 +108,10 @@ fn only_simulated(mechanism: &Mechanism) -> Result<(), Vec<Problem>> {
             Amount::Measure(measure) => measure,
             Amount::Table { over, .. } => over,
         });
-        if measures.into_iter().any(|m| asks_unknown_state(&mechanism.model, m)) {
+        if measures
+            .into_iter()
+            .any(|m| asks_unknown_state(&mechanism.model, m))
+        {
             let message = format!(
                 "the load `{}` goes by a pressure or a switch, which only a simulation follows",
                 load.name

@@ -423,7 +423,7 @@ fn a_torque_that_changes_its_sense_is_not_locked() {
 fn actuators() {
     let mut hitch = model(&example("tractor-hitch"));
     hitch.actions.cylinders = vec![HydraulicCylinder {
-            oil: None,
+        oil: None,
         drive: DriveId(0),
         bore: number(0.06),
         rod: number(0.03),

@@ -14,7 +14,9 @@ pub(crate) use self::needs::needs_time;
 pub use self::needs::{NoMeasure, asks_unknown_state, order_of, visit_leaves};
 
 use kempe_mechanism::pose::Pose;
-use kempe_model::{DriveId, ForceMeasure, InnerState, Leaf, Measure, PointId, PoseMeasure, Statistic};
+use kempe_model::{
+    DriveId, ForceMeasure, InnerState, Leaf, Measure, PointId, PoseMeasure, Statistic,
+};
 use kempe_number::Number;
 
 use self::in_time::is_motion;

@@ -47,7 +47,8 @@ impl Sampler {
 /// Which of the measures a mechanism cannot answer, whatever its dimensions and wherever it goes.
 pub fn unmeasurable(mechanism: &Mechanism, measures: &[&Measure]) -> Vec<Unmeasurable> {
     let problem = |(index, measure): (usize, &&Measure)| {
-        let unknown = || asks_unknown_state(&mechanism.model, measure).then_some(NoMeasure::OnlySimulated);
+        let unknown =
+            || asks_unknown_state(&mechanism.model, measure).then_some(NoMeasure::OnlySimulated);
         let reason = order_of(mechanism, measure).err().or_else(unknown)?;
         Some(Unmeasurable { index, reason })
     };

@@ -31,7 +31,8 @@ impl Model {
     /// All inner states of the model: the pressures of its cylinders with oil, then its switches.
     pub fn inner_states(&self) -> Vec<InnerState> {
         let oils = self.actions.cylinders.iter().filter(|c| c.oil.is_some());
-        let pressures = oils.flat_map(|c| Chamber::BOTH.map(|side| InnerState::Pressure(c.drive, side)));
+        let pressures =
+            oils.flat_map(|c| Chamber::BOTH.map(|side| InnerState::Pressure(c.drive, side)));
         let switches = (0..self.actions.switches.len()).map(InnerState::Switch);
         pressures.chain(switches).collect()
     }

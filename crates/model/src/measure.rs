@@ -2,8 +2,8 @@
 
 use kempe_units::Expr;
 
-use crate::inner::InnerState;
 use crate::ids::{DriveId, Line, LinkId, LinkPointRef, ParameterId, PointId};
+use crate::inner::InnerState;
 
 /// An expression over parameters, names and questions to the mechanism, in SI.
 pub type Measure = Expr<Leaf>;

@@ -4,8 +4,8 @@
 use kempe_units::Dimension as D;
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 
-use crate::inner::Chamber;
 use crate::ids::{DriveId, LinkId, PointId};
+use crate::inner::Chamber;
 use crate::measure::{ForceMeasure as F, JointRef, PoseMeasure as P, Statistic as S};
 use Gives::{ByDrive, Follows, Is};
 use Nature::{Derivative, Forces, Geometric, InTime, Inner, WholeMotion};

@@ -7,9 +7,9 @@ use crate::ids::{Scalar, Span};
 use crate::joint::JointKind;
 use crate::link::{Center, Place};
 use crate::load::{Actions, Amount, LoadKind};
-use crate::oil::Oil;
 use crate::measure::{Leaf, Measure, PoseMeasure};
 use crate::model::Model;
+use crate::oil::Oil;
 use crate::study::{Column, Plot, Rows, StopResistance, StudyKind};
 
 impl Model {

@@ -158,7 +158,12 @@ impl Plant {
             .friction
             .iter()
             .any(|f| !matches!(f.bearing, kempe_dynamics::friction::Bearing::Flanks(_)))
-            || self.inner.moved.iter().map(|m| m.oil).any(|oil| seals(&oil))
+            || self
+                .inner
+                .moved
+                .iter()
+                .map(|m| m.oil)
+                .any(|oil| seals(&oil))
     }
 
     /// Takes the coordinates of a state; those let go do not accelerate.
@@ -224,7 +229,9 @@ impl Plant {
             let speed = self.coordinates[self.free[k].index()].coefficient(1);
             let turns = |turned: &Turned| {
                 let (motor, sense) = (&self.forces.acting.motors[turned.motor], turned.sense);
-                let throttle = turned.throttle.map_or(1.0, |place| self.amounts.values[place]);
+                let throttle = turned
+                    .throttle
+                    .map_or(1.0, |place| self.amounts.values[place]);
                 sense * throttle * motor.turns_with(sense * speed)
             };
             *given = push + motor.as_ref().map_or(0.0, turns);

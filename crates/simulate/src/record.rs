@@ -77,7 +77,11 @@ impl Simulated {
                 Some(Some(law)) => law.at(time, &[]),
                 _ => f64::NAN,
             };
-            let seals = if speed == 0.0 { 0.0 } else { oil.friction * speed.signum() };
+            let seals = if speed == 0.0 {
+                0.0
+            } else {
+                oil.friction * speed.signum()
+            };
             oil.push([pressure(*first), pressure(*first + 1)], speed) - seals
         });
         motor + oil

@@ -449,13 +449,14 @@ impl Run<'_> {
             return known.restart(&mut self.plant, time, y).then_some(known);
         }
         let (relative, until) = (self.question.tolerance, self.question.until);
-        let absolute = (self.plant.scales.iter().map(|s| relative * s))
-            .chain(self.plant.scales.iter().map(|s| relative * s / until))
-            .chain(self.plant.inner.moved.iter().flat_map(|moved| {
-                [relative * self.plant.forces.acting.oils[moved.oil].scale(); 2]
-            }))
-            .chain([f64::INFINITY])
-            .collect();
+        let absolute =
+            (self.plant.scales.iter().map(|s| relative * s))
+                .chain(self.plant.scales.iter().map(|s| relative * s / until))
+                .chain(self.plant.inner.moved.iter().flat_map(|moved| {
+                    [relative * self.plant.forces.acting.oils[moved.oil].scale(); 2]
+                }))
+                .chain([f64::INFINITY])
+                .collect();
         let tolerance = Tolerance { relative, absolute };
         Integrator::with(
             self.question.method,

@@ -8,8 +8,8 @@ use std::sync::Arc;
 
 use kempe_mechanism::Design;
 use kempe_model::{
-    Chamber, Diagnostic, DriveId, ForceMeasure, Leaf, Model, MotionStudy, Rows, SimulateStudy, StepMethod,
-    StopResistance, StudyKind, value,
+    Chamber, Diagnostic, DriveId, ForceMeasure, Leaf, Model, MotionStudy, Rows, SimulateStudy,
+    StepMethod, StopResistance, StudyKind, value,
 };
 use kempe_motion::progress::{Progress, Silent};
 use kempe_motion::{EndReason, Motion, Stage};
@@ -172,7 +172,8 @@ fn with_strokes(model: &Model, study: &SimulateStudy) -> SimulateStudy {
         let what = Expr::Leaf(Leaf::Drive(drive));
         let told = study.stops.iter().any(|stop| stop.what == what);
         let stroke = cylinder.oil.as_ref().and_then(|oil| oil.stroke.clone());
-        let (Some([closed, stroke]), Some(named)) = (stroke, model.drives.get(drive.index())) else {
+        let (Some([closed, stroke]), Some(named)) = (stroke, model.drives.get(drive.index()))
+        else {
             continue;
         };
         if told || !study.released.contains(&drive) {

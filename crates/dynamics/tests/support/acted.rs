@@ -168,7 +168,7 @@ pub fn act(model: &mut Model, rng: &mut Rng, size: f64) {
                 span: 0..0,
             }),
             _ => model.actions.cylinders.push(HydraulicCylinder {
-            oil: None,
+                oil: None,
                 drive: drive_id,
                 bore: times(0.05 * l, 1),
                 rod: times(0.03 * l, 2),

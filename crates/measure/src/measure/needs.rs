@@ -149,12 +149,7 @@ pub fn visit_leaves(mechanism: &Mechanism, measure: &Measure, f: &mut impl FnMut
     visit_unseen(&mechanism.model, measure, &mut seen, f);
 }
 
-fn visit_unseen(
-    model: &Model,
-    measure: &Measure,
-    seen: &mut [bool],
-    f: &mut impl FnMut(&Leaf),
-) {
+fn visit_unseen(model: &Model, measure: &Measure, seen: &mut [bool], f: &mut impl FnMut(&Leaf)) {
     for leaf in measure.leaves() {
         match leaf {
             Leaf::Named(index) => {

@@ -409,16 +409,23 @@ pub(crate) fn near_or_all<'n>(
     known: impl Iterator<Item = &'n str>,
 ) -> String {
     let known: Vec<&str> = known.collect();
+    let all = plural(kind);
     match nearest(name, known.iter().copied()) {
         Some(near) => format!("did you mean `{near}`?"),
-        None if known.is_empty() => format!("the file has no {kind}s"),
+        None if known.is_empty() => format!("the file has no {all}"),
         None if known.len() <= MAX_LISTED && kind.contains(' ') => {
             format!("there are {}", known.join(", "))
         }
-        None if known.len() <= MAX_LISTED => format!("the {kind}s are {}", known.join(", ")),
+        None if known.len() <= MAX_LISTED => format!("the {all} are {}", known.join(", ")),
         None => format!(
-            "the file has {} {kind}s, none of them near this name",
+            "the file has {} {all}, none of them near this name",
             known.len()
         ),
     }
+}
+
+/// `loads`, `switches`.
+pub(crate) fn plural(kind: &str) -> String {
+    let ending = if kind.ends_with("ch") { "es" } else { "s" };
+    format!("{kind}{ending}")
 }

@@ -13,9 +13,14 @@ use crate::read::loads::amount;
 /// Reads the valves of cylinders and the throttles of motors that are sound otherwise.
 pub(crate) fn read(cx: &mut Context<'_>, cylinders: &[&(Key, Node)], motors: &[&(Key, Node)]) {
     for (key, node) in cylinders.iter().copied() {
-        let Some(drive) = drive(cx, key) else { continue };
+        let Some(drive) = drive(cx, key) else {
+            continue;
+        };
         let cylinders = &cx.model.actions.cylinders;
-        let Some(at) = cylinders.iter().position(|c| c.drive == drive && c.oil.is_some()) else {
+        let Some(at) = cylinders
+            .iter()
+            .position(|c| c.drive == drive && c.oil.is_some())
+        else {
             continue;
         };
         let Some(valve) = valve(cx, key, node) else {
@@ -27,7 +32,9 @@ pub(crate) fn read(cx: &mut Context<'_>, cylinders: &[&(Key, Node)], motors: &[&
         }
     }
     for (key, node) in motors.iter().copied() {
-        let Some(drive) = drive(cx, key) else { continue };
+        let Some(drive) = drive(cx, key) else {
+            continue;
+        };
         let motors = &cx.model.actions.motors;
         let Some(at) = motors.iter().position(|m| m.drive == drive) else {
             continue;

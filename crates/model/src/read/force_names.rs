@@ -10,7 +10,7 @@ use crate::joint::JointKind;
 use crate::measure::{ForceMeasure, JointRef};
 use crate::read::actuators::what_it_is;
 use crate::read::arguments::already_told;
-use crate::read::context::Meaning;
+use crate::read::context::{Meaning, plural};
 use crate::read::measure_names::{Call, Found, Measures};
 
 impl Measures<'_, '_> {
@@ -292,8 +292,7 @@ impl Measures<'_, '_> {
         declared: &BTreeMap<String, Option<(usize, Dimension)>>,
     ) -> Found<(usize, Dimension)> {
         let Some(name) = node.as_name() else {
-            let plural = if what.ends_with("ch") { "es" } else { "s" };
-            let help = format!("name a {what} of [{what}{plural}]");
+            let help = format!("name a {what} of [{}]", plural(what));
             return self.argument(node, &format!("a {what}"), help);
         };
         match declared.get(name) {

@@ -22,7 +22,11 @@ use crate::read::context::Context;
 use crate::read::entry::Entry;
 
 /// The oil of a cylinder, if it is told, its valve shut; the outer `None` when it is wrong.
-pub(crate) fn read(cx: &mut Context<'_>, cylinder: &Entry<'_>, supplied: bool) -> Option<Option<Oil>> {
+pub(crate) fn read(
+    cx: &mut Context<'_>,
+    cylinder: &Entry<'_>,
+    supplied: bool,
+) -> Option<Option<Oil>> {
     let Some(entry) = entry(cx, cylinder)? else {
         return Some(None);
     };
@@ -101,4 +105,3 @@ fn stroke(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<Option<[Scalar; 2]>
         }
     }
 }
-

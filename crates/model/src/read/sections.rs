@@ -12,8 +12,8 @@ use crate::model::UnitName;
 use crate::read::context::Context;
 use crate::read::entry::Entry;
 use crate::read::{
-    actuators, assembly, clearance, controls, drawn, drives, friction, joints, links, loads, masses,
-    measures, names, parameters, places, springs, studies, switches,
+    actuators, assembly, clearance, controls, drawn, drives, friction, joints, links, loads,
+    masses, measures, names, parameters, places, springs, studies, switches,
 };
 use crate::study::StudyKind;
 

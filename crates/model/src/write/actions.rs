@@ -73,10 +73,13 @@ impl Writer<'_> {
         }
         for switch in &acting.switches {
             let off = switch.off.as_ref().map(|off| self.text("off", &off.text));
-            let starts = switch.starts.map(|on| self.text("starts", word_of(&ON_OFF, &on)));
+            let starts = switch
+                .starts
+                .map(|on| self.text("starts", word_of(&ON_OFF, &on)));
             let entries = [Some(self.text("on", &switch.on.text)), off, starts];
             let entries = entries.into_iter().flatten().collect();
-            file.section("switches").push((switch.name.clone(), Item::Table(entries)));
+            file.section("switches")
+                .push((switch.name.clone(), Item::Table(entries)));
         }
     }
 

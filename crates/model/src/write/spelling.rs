@@ -2,8 +2,8 @@
 
 use kempe_units::{Dimension, Expr, Kind, Natural, Node, Spelling, Unit};
 
-use crate::inner::{Chamber, InnerState};
 use crate::ids::{DriveId, JointId, Line, LinkId, LinkPointRef, ParameterId, PointId, Scalar};
+use crate::inner::{Chamber, InnerState};
 use crate::item::Item;
 use crate::joint::JointKind;
 use crate::measure::{ForceMeasure, JointRef, Leaf, Measure, PoseMeasure, Statistic};
@@ -352,7 +352,10 @@ impl Spelling<Leaf> for Writer<'_> {
             }
             Leaf::Inner(InnerState::Switch(i)) => {
                 let switch = self.model.actions.switches.get(*i);
-                call("switch", vec![name(switch.map_or("?", |s| s.name.as_str()))])
+                call(
+                    "switch",
+                    vec![name(switch.map_or("?", |s| s.name.as_str()))],
+                )
             }
             Leaf::Pose(pose) => self.pose_node(pose, dimension),
             Leaf::Rate(inner, n) => {
