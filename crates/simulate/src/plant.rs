@@ -191,6 +191,15 @@ impl Plant {
         self.inner.take(&y[2 * n..]);
     }
 
+    /// Takes the coordinates of a state with the speeds that it has, whatever friction is looked at.
+    pub fn take_as_it_is(&mut self, time: f64, y: &[f64]) {
+        self.take(time, y);
+        let speeds = y.iter().skip(self.free.len());
+        for (drive, (q, v)) in self.free.iter().zip(y.iter().zip(speeds)) {
+            self.coordinates[drive.index()] = Rates::from_coefficients([*q, *v, 0.0]);
+        }
+    }
+
     /// Rates of a state: speeds, accelerations, and the power of all that does work.
     pub fn accelerate(&mut self, time: f64, y: &[f64], rates: &mut [f64]) -> bool {
         let n = self.free.len();
