@@ -166,6 +166,8 @@ impl<B: Number> Moment<'_, B> {
         let series = series.unwrap_or_else(undefined);
         match (along, self.state.abscissa.drive) {
             (Along::Time, _) | (Along::Path, None) => series,
+            // A switch stands still between the instants at which it is turned.
+            _ if matches!(which, InnerState::Switch(_)) => Series::constant(series.coefficient(0)),
             _ => only_value(series.coefficient(0)),
         }
     }

@@ -497,6 +497,7 @@ pub(crate) static SWITCH: Kind = kind("switch", "switch",
     &[&[
         must("on", T::Measure, "\"y(P) <= 100 mm\"", "It goes on where this comes to hold."),
         may("off", T::Measure, "\"y(P) >= 400 mm\"", "It goes off where this comes to hold; where `on` holds no more unless said otherwise."),
+        may("every", T::AnyValue, "\"50 mm\"", "It counts instead: one further each time that what `on` compares has grown by this, and never back."),
         may("starts", T::Words(&words(&ON_OFF)), "\"on\"", "Whether it is on at the start; as `on` and `off` hold there unless said otherwise, else off."),
     ]]);
 

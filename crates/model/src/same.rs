@@ -247,6 +247,11 @@ impl Model {
                 f(factor);
             }
         }
+        acting
+            .switches
+            .iter_mut()
+            .flat_map(|s| &mut s.every)
+            .for_each(&mut *f);
         for (speed, torque) in acting.motors.iter_mut().flat_map(|m| &mut m.curve) {
             f(speed);
             f(torque);

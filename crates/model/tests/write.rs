@@ -205,6 +205,7 @@ motor = { curve = [["0 rpm", "12 N m"], ["spin * 10", "0 N m"]], throttle = "1 -
 [switches]
 top = { on = "y(P) <= ratio * a", off = "bore_pressure(lift) > 20 bar + ring_pressure(lift)", starts = "on" }
 bottom = { on = "switch(top) >= 0.5" }
+teeth = { on = "angle(crank) >= tilt", every = "tilt * ratio" }
 
 [measures]
 m1 = "x(P) + y(P) - x(P, plate) + y(P, crank) + m9"

@@ -51,6 +51,13 @@ pub enum Happened {
         /// Whether it is on from here.
         on: bool,
     },
+    /// A switch counts one further.
+    Counts {
+        /// Which of the model's.
+        switch: usize,
+        /// How far it is.
+        to: f64,
+    },
     /// The pressure in a cylinder falls below that of a vacuum, where its equations do not hold.
     Cavitates {
         /// The place of its drive among those that are let go.

@@ -3,6 +3,8 @@
 
 use kempe_dynamics::oil::Oil;
 use kempe_linear::Lu;
+use kempe_measure::Series;
+use kempe_measure::state::ORDER;
 use kempe_model::{Chamber, DriveId, InnerState, Model};
 
 use crate::plant::Plant;
@@ -76,14 +78,30 @@ impl Inner {
         [self.values[moved.place], self.values[moved.place + 1]]
     }
 
-    /// The switches: 1 where they are on, 0 where they are off.
+    /// The switches: 1 where they are on, 0 where they are off, or how far they have counted.
     pub fn switches(&self) -> &[f64] {
         &self.values[self.first_switch..]
     }
 
-    /// Turns a switch on or off.
-    pub fn turn(&mut self, switch: usize, on: bool) {
-        self.values[self.first_switch + switch] = f64::from(u8::from(on));
+    /// Sets a switch.
+    pub fn set(&mut self, switch: usize, value: f64) {
+        self.values[self.first_switch + switch] = value;
+    }
+
+    /// The states as series in time at the instant: how a pressure changes is not known of it.
+    pub fn series(&self) -> Vec<Series<f64>> {
+        let all = self.values.iter().enumerate();
+        let series = all.map(|(place, value)| {
+            let rate = if place < self.first_switch {
+                f64::NAN
+            } else {
+                0.0
+            };
+            let mut coefficients = [rate; ORDER];
+            coefficients[0] = *value;
+            Series::from_coefficients(coefficients)
+        });
+        series.collect()
     }
 }
 

@@ -6,7 +6,7 @@ use kempe_dynamics::wrench::Wrench;
 use kempe_dynamics::{Forces, Instant, Rates};
 use kempe_integrate::System;
 use kempe_linear::Lu;
-use kempe_measure::{Series, State};
+use kempe_measure::State;
 use kempe_mechanism::Design;
 use kempe_model::{DriveId, Law};
 use kempe_number::{Jet, Number};
@@ -318,12 +318,7 @@ impl Plant {
     /// The state last taken, for measures; rates of inner states are not known in it.
     pub fn state(&mut self, time: f64) -> Option<State<f64>> {
         let mut state = self.places.state(time, &self.coordinates)?;
-        let known = |value: &f64| {
-            let mut series = [f64::NAN; kempe_measure::state::ORDER];
-            series[0] = *value;
-            Series::from_coefficients(series)
-        };
-        state.inner = self.inner.values.iter().map(known).collect();
+        state.inner = self.inner.series();
         Some(state)
     }
 

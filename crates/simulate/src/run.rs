@@ -128,7 +128,7 @@ pub fn simulate(
         time: 0.0,
         y,
         ends: (question.end_when.iter())
-            .chain(toggles.iter().map(Toggle::awaits))
+            .chain(toggles.iter().map(|toggle| &toggle.awaits))
             .cloned()
             .collect(),
         conditions: vec![false; question.end_when.len() + toggles.len()],
@@ -584,15 +584,23 @@ impl Run<'_> {
         let Some(toggle) = self.toggles.get_mut(index) else {
             return;
         };
-        toggle.is_on = !toggle.is_on;
-        let (what, on) = (toggle.what, toggle.is_on);
-        self.ends[condition] = toggle.awaits().clone();
+        toggle.turn();
+        let (what, value, counts) = (toggle.what, toggle.value, toggle.counts());
+        self.ends[condition] = toggle.awaits.clone();
         match what {
             Toggled::Switch(switch) => {
-                self.plant.inner.turn(switch, on);
-                self.tell(Happened::Switches { switch, on });
+                self.plant.inner.set(switch, value);
+                self.tell(match counts {
+                    true => Happened::Counts { switch, to: value },
+                    false => Happened::Switches {
+                        switch,
+                        on: value != 0.0,
+                    },
+                });
             }
-            Toggled::Vacuum(free, side) if on => self.tell(Happened::Cavitates { free, side }),
+            Toggled::Vacuum(free, side) if value != 0.0 => {
+                self.tell(Happened::Cavitates { free, side });
+            }
             Toggled::Vacuum(..) => {}
         }
         let awaited = &self.ends[condition];

@@ -330,3 +330,46 @@ runs = { on = "angular_speed(wheel) <= 2 rad/s", off = "angular_speed(wheel) >= 
     assert!((v - 4.0).abs() < 1e-12 && (q - 20.0 * (1.0 - cos) - 4.0 * (3.0 - off)).abs() < 1e-11);
     assert_eq!(found.gives(0, [0.0, 0.0], 1.0), 3.0);
 }
+
+/// A wheel with a pawl behind every radian, thrown forward against a spring.
+#[test]
+fn a_switch_that_counts_makes_a_ratchet() {
+    let text = r#"
+gravity = 0
+[links]
+frame = { A = [0, 0] }
+wheel = { A-B = 1, mass = 1, inertia = 2, center = [0, 0] }
+[springs]
+back = { links = ["frame", "wheel"], stiffness = "8 N m/rad", free = 0 }
+[drives]
+turn = { turns = "wheel", at = "1.5 rad" }
+[switches]
+teeth = { on = "turn >= 1 rad", every = "1 rad" }
+[measures]
+play = "turn - switch(teeth) * 1 rad"
+"#;
+    let mut free = Free::new(text, 3.0);
+    free.question.start[0][1] = 4.0;
+    free.stop("play", 0.0);
+    let found = free.run();
+    // It begins past the first tooth, swings out to sqrt(1.5^2 + 2^2) = 2.5 rad past the second, and falls back on that.
+    let counted: Vec<(f64, f64)> = (found.happenings.iter())
+        .filter_map(|h| match h.what {
+            Happened::Counts { to, .. } => Some((h.time, to)),
+            _ => None,
+        })
+        .collect();
+    let angle = |x: f64| kempe_number::math::asin(x / 2.5);
+    let second = 0.5 * (angle(2.0) - angle(1.5));
+    assert_eq!(counted.len(), 1, "{counted:?}");
+    assert!((counted[0].0 - second).abs() < 1e-12 && counted[0].1 == 2.0);
+    let struck = found.happenings.iter().find_map(|h| match h.what {
+        Happened::Strikes { before, .. } => Some((h.time, before)),
+        _ => None,
+    });
+    let (time, before) = struck.unwrap();
+    let back = 0.5 * (std::f64::consts::PI - angle(2.0) - angle(1.5));
+    assert!((time - back).abs() < 1e-12, "{time}, not {back}");
+    assert!((before + 3.0).abs() < 1e-11, "{before}");
+    assert_eq!(at(&found, 0, 3.0), [2.0, 0.0]);
+}

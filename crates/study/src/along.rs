@@ -235,7 +235,7 @@ pub(crate) fn not_answerable(mechanism: &Mechanism, study: &Study) -> Vec<Diagno
 }
 
 /// Whether a simulation follows all pressures and switches that a measure asks for.
-fn is_followed(mechanism: &Mechanism, study: &SimulateStudy, measure: &Measure) -> bool {
+pub(crate) fn is_followed(mechanism: &Mechanism, study: &SimulateStudy, measure: &Measure) -> bool {
     let mut followed = true;
     visit_leaves(mechanism, measure, &mut |leaf| {
         followed &= match leaf {

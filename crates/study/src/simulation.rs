@@ -8,8 +8,8 @@ use std::sync::Arc;
 
 use kempe_mechanism::Design;
 use kempe_model::{
-    Chamber, Diagnostic, DriveId, ForceMeasure, Leaf, Model, MotionStudy, Rows, SimulateStudy,
-    StepMethod, StopResistance, StudyKind, value,
+    Amount, Chamber, Diagnostic, DriveId, ForceMeasure, Leaf, Model, MotionStudy, Rows,
+    SimulateStudy, StepMethod, StopResistance, StudyKind, value,
 };
 use kempe_motion::progress::{Progress, Silent};
 use kempe_motion::{EndReason, Motion, Stage};
@@ -19,7 +19,7 @@ use kempe_simulate::{
 };
 use kempe_units::{Dimension, Expr};
 
-use crate::along::force_problems;
+use crate::along::{force_problems, is_followed};
 use crate::explain::{cannot_move, stopped};
 use crate::motion::rows_of;
 use crate::motion_findings::{motion_findings, refused};
@@ -36,6 +36,8 @@ const TOLERANCE: f64 = 1e-13;
 const OFF: [(&str, f64); 2] = [("energy", 1e-8), ("power", 1e-6)];
 /// ... and by more than this in any case.
 const WRONG: f64 = 1e-3;
+/// Where less than this part of the energies is moved, nothing moves: a balance is in parts of this.
+const STANDS: f64 = 1e-9;
 /// No step is better than that.
 const FINEST: f64 = 1e-15;
 /// A speed below this part of that before an impact is none.
@@ -79,6 +81,10 @@ impl Run {
         progress: &mut dyn Progress,
     ) -> Result<Self, Vec<Diagnostic>> {
         let design = design(model);
+        let unknown = unfollowed(&design, study);
+        if !unknown.is_empty() {
+            return Err(unknown);
+        }
         let (question, ends) = question(study, model, &design.parameters);
         let found = simulate(&design, &question, progress)
             .map_err(|error| explain(&design, study, &ends, error))?;
@@ -162,6 +168,67 @@ pub(crate) fn simulation(
     }
     result.diagnostics = diagnostics;
     Ok(result)
+}
+
+/// What goes by the pressure of a cylinder that the study does not let go.
+fn unfollowed(design: &Design<f64>, study: &SimulateStudy) -> Vec<Diagnostic> {
+    let model = &design.mechanism.model;
+    let actions = &model.actions;
+    let measure = |amount: &Amount| match amount {
+        Amount::Measure(measure) => measure.clone(),
+        Amount::Table { over, .. } => (**over).clone(),
+    };
+    let loads = actions.loads.iter().flat_map(|load| {
+        let measures = load.kind.amounts().map(measure);
+        measures.map(|m| (format!("the load `{}`", load.name), m, load.span.clone()))
+    });
+    let name = |drive: DriveId| {
+        model
+            .drives
+            .get(drive.index())
+            .map_or("", |d| d.name.as_str())
+    };
+    let valves = (actions.cylinders.iter())
+        .filter(|cylinder| study.released.contains(&cylinder.drive))
+        .flat_map(|cylinder| {
+            let oil = cylinder.oil.iter();
+            let openings = oil.flat_map(|oil| std::iter::once(&oil.valve.0).chain(&oil.valve.1));
+            let what = format!("the valve of `{}`", name(cylinder.drive));
+            openings.map(move |it| (what.clone(), measure(it), cylinder.span.clone()))
+        });
+    let throttles = (actions.motors.iter())
+        .filter(|motor| study.released.contains(&motor.drive))
+        .filter_map(|motor| {
+            let what = format!("the throttle of `{}`", name(motor.drive));
+            Some((what, measure(motor.throttle.as_ref()?), motor.span.clone()))
+        });
+    let switches = actions.switches.iter().flat_map(|switch| {
+        let conditions = std::iter::once(&switch.on).chain(&switch.off);
+        let what = format!("the switch `{}`", switch.name);
+        conditions.map(move |it| (what.clone(), it.above.clone(), switch.span.clone()))
+    });
+    let ends = study.end_when.iter();
+    let ends = ends.map(|it| (format!("`{}`", it.text), it.above.clone(), 0..0));
+    let all = (loads.chain(valves))
+        .chain(throttles)
+        .chain(switches)
+        .chain(ends);
+    let unknown = all.filter(|(_, measure, _)| !is_followed(&design.mechanism, study, measure));
+    let told = unknown.map(|(what, _, span)| {
+        let message = format!(
+            "{what} goes by the pressure of a cylinder that keeps its law: nothing follows its oil"
+        );
+        let error = Diagnostic::error("needs-simulation", message);
+        let error = if span.is_empty() {
+            error
+        } else {
+            error.at(span, "")
+        };
+        error.help(
+            "let its drive go too, by `release`, or go by where things are and how fast they move",
+        )
+    });
+    told.collect()
 }
 
 /// The study with the ends of the strokes of cylinders that their oil moves as stops, where it has none of its own for them.
@@ -320,7 +387,9 @@ fn balance(
         let (kinetic, potential) = (value(0, row), value(1, row) - value(1, 0));
         kinetic.abs().max(potential.abs()).max(works[row].abs())
     };
-    let most = rows.clone().map(moved).fold(0.0, f64::max);
+    let there = |row: usize| value(0, row).abs().max(value(1, row).abs());
+    let rounding = STANDS * rows.clone().map(there).fold(0.0, f64::max);
+    let most = rows.clone().map(moved).fold(rounding, f64::max);
     let fastest = rows
         .clone()
         .map(|row| value(2, row).abs())
@@ -552,6 +621,11 @@ fn happened(
                 let named = model.actions.switches.get(*switch);
                 let name = named.map_or("", |s| s.name.as_str());
                 format!("{name} goes {}", if *on { "on" } else { "off" })
+            }
+            Happened::Counts { switch, to } => {
+                let named = model.actions.switches.get(*switch);
+                let name = named.map_or("", |s| s.name.as_str());
+                format!("{name} counts {to}")
             }
             Happened::Cavitates { free, side } => {
                 format!("{} falls below vacuum", chamber(model, study, *free, *side))

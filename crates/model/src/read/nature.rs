@@ -3,6 +3,7 @@
 use kempe_units::Expr;
 
 use crate::ids::Scalar;
+use crate::inner::InnerState;
 use crate::measure::{Leaf, Measure, PoseMeasure};
 use crate::model::Model;
 
@@ -15,6 +16,8 @@ pub(crate) struct Nature {
     pub motion: bool,
     /// A pressure or a switch.
     pub inner: bool,
+    /// A pressure.
+    pub pressure: bool,
     /// The rate of such.
     pub inner_rate: bool,
 }
@@ -25,6 +28,7 @@ impl Nature {
             forces: self.forces || other.forces,
             motion: self.motion || other.motion,
             inner: self.inner || other.inner,
+            pressure: self.pressure || other.pressure,
             inner_rate: self.inner_rate || other.inner_rate,
         }
     }
@@ -41,8 +45,9 @@ pub(crate) fn nature(measure: &Measure, named: &[Nature]) -> Nature {
                 forces: true,
                 ..Nature::default()
             },
-            Leaf::Inner(_) => Nature {
+            Leaf::Inner(state) => Nature {
                 inner: true,
+                pressure: matches!(state, InnerState::Pressure(..)),
                 ..Nature::default()
             },
             Leaf::Rate(inner, _) => {

@@ -322,10 +322,10 @@ fn stopped(cx: &mut Context<'_>, key: &Key) -> Option<(Measure, Dimension)> {
             Some(MeasureState::Sound(index, dimension)) => {
                 let measure = Expr::Leaf(Leaf::Named(*index));
                 let dimension = *dimension;
-                if nature(&measure, &cx.natures).inner {
+                if nature(&measure, &cx.natures).pressure {
                     return cx.refuse(
                         "bad-choice",
-                        format!("`{}` goes by a pressure or a switch, which no stop holds", key.name),
+                        format!("`{}` goes by a pressure, which no stop holds", key.name),
                         &key.span,
                         "stop the angle of a link, the coordinate of a drive, or a measure of where things are",
                     );
@@ -398,5 +398,6 @@ pub(crate) fn condition(cx: &mut Context<'_>, node: &Node, text: &Text) -> Optio
     Some(Condition {
         text: text.content.trim().to_owned(),
         above,
+        dimension: condition.dimension,
     })
 }

@@ -2,7 +2,8 @@
 //!
 //! ```toml
 //! [switches]
-//! top = { on = "y(P) <= 100 mm", off = "y(P) >= 400 mm", starts = "on" }
+//! top   = { on = "y(P) <= 100 mm", off = "y(P) >= 400 mm", starts = "on" }
+//! teeth = { on = "angle(wheel) >= 30 deg", every = "30 deg" }              # counts the teeth that have passed
 //! ```
 
 use kempe_units::Dimension;
@@ -47,6 +48,25 @@ fn read_switch(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<Switch> {
     };
     let starts = entry.choice(cx, "starts", &ON_OFF);
     let (on, off) = (on?, off?);
+    let every = match entry.get("every") {
+        Some(node) => {
+            let place = entry.place_of("every");
+            Some(cx.positive(node, on.dimension, &place, false)?)
+        }
+        None => None,
+    };
+    let reverse = ["off", "starts"].into_iter().find(|key| entry.has(key));
+    if let (Some(_), Some(key)) = (&every, reverse) {
+        entry.contradiction(
+            cx,
+            &[key, "every"],
+            "it counts, or it goes on and off",
+            &format!(
+                "leave `{key}` out: what counts begins with what has passed and goes on from there"
+            ),
+        );
+        return None;
+    }
     if off.as_ref().is_some_and(|off| off.above == on.above) {
         entry.contradiction(
             cx,
@@ -60,6 +80,7 @@ fn read_switch(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<Switch> {
         name: key.name.clone(),
         on,
         off,
+        every,
         starts: starts?,
         span: key.span.clone(),
     })

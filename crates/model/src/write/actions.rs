@@ -76,7 +76,8 @@ impl Writer<'_> {
             let starts = switch
                 .starts
                 .map(|on| self.text("starts", word_of(&ON_OFF, &on)));
-            let entries = [Some(self.text("on", &switch.on.text)), off, starts];
+            let every = self.given("every", &switch.every, switch.on.dimension);
+            let entries = [Some(self.text("on", &switch.on.text)), off, every, starts];
             let entries = entries.into_iter().flatten().collect();
             file.section("switches")
                 .push((switch.name.clone(), Item::Table(entries)));
