@@ -183,9 +183,14 @@ pub fn simulate(
 
 /// What is followed beside the drives: the work, the pressures, the switches.
 fn beside(plant: &Plant, y: &[f64]) -> Vec<f64> {
-    let (pressures, work) = y[2 * plant.free.len()..].split_at(plant.inner.pressures());
+    let (pressures, work) = split(plant, y);
     let switches = plant.inner.switches();
     [work, pressures, switches].concat()
+}
+
+/// The pressures and the work of a state.
+fn split<'y>(plant: &Plant, y: &'y [f64]) -> (&'y [f64], &'y [f64]) {
+    y[2 * plant.free.len()..].split_at(plant.inner.pressures())
 }
 
 /// A simulation on its way.
@@ -479,9 +484,10 @@ impl Run<'_> {
                 if !it.between(&mut self.plant, from + part * (to - from), found) {
                     return false;
                 }
-                let there = beside(&self.plant, found);
-                for (values, there) in values.iter_mut().zip(there) {
-                    values[k] = there;
+                // Switches stand still within a step.
+                let (pressures, work) = split(&self.plant, found);
+                for (values, there) in values.iter_mut().zip(work.iter().chain(pressures)) {
+                    values[k] = *there;
                 }
             }
         }
