@@ -26,8 +26,8 @@ const WITHOUT: &[(&str, &[&str])] = &[
     ]),
     (BUILT, &[
         "bad-table", "contradictory-pressures", "cylinder-count", "damper-ends", "damper-idle", "friction-place",
-        "friction-radius", "friction-teeth", "load-measure", "load-of-force", "load-on-nothing", "motor-curve", "negative-damping",
-        "negative-friction", "negative-mass", "negative-radius", "negative-stiffness", "rod-too-thick", "scale", "spring-ends",
+        "friction-radius", "friction-teeth", "load-measure", "load-of-force", "load-on-nothing", "missing-supply", "motor-curve", "negative-damping",
+        "negative-friction", "negative-mass", "negative-radius", "negative-stiffness", "oil-not-positive", "rod-too-thick", "scale", "spring-ends",
         "spring-idle", "stops-crossed",
     ]),
     (PROGRAM, &[

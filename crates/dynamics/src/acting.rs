@@ -13,6 +13,7 @@ use crate::joint_contact::JointContact;
 use crate::load::Load;
 use crate::motor::Motor;
 use crate::number::ForceNumber;
+use crate::oil::Oil;
 use crate::problem::Problem;
 use crate::spring::Spring;
 use crate::turning::Turning;
@@ -40,6 +41,8 @@ pub struct Acting<T: ForceNumber> {
     pub friction: Vec<Friction<T>>,
     /// Hydraulic cylinders.
     pub cylinders: Vec<Cylinder<T>>,
+    /// Their oil, of those of which it is told.
+    pub oils: Vec<Oil<T>>,
     /// Motors.
     pub motors: Vec<Motor<T>>,
     /// Those of them whose drives are let go and hold nothing: they turn what they are on.
@@ -74,6 +77,9 @@ impl<T: ForceNumber> Acting<T> {
                 cylinder
             })
             .collect();
+        let oils = (actions.cylinders.iter().zip(&cylinders))
+            .filter_map(|(c, machine)| Oil::new(mechanism, c, machine, parameters, &mut problems))
+            .collect();
         let it = Self {
             gravity,
             masses: Mass::all(mechanism, geometry, parameters, &mut problems),
@@ -81,13 +87,14 @@ impl<T: ForceNumber> Acting<T> {
             dampers: Damper::all(mechanism, geometry, parameters, &mut problems),
             friction: Friction::all(mechanism, geometry, parameters, &mut problems),
             motors: (actions.motors.iter())
-                .map(|m| Motor::new(m, parameters, &mut problems))
+                .map(|m| Motor::new(mechanism, m, parameters, &mut problems))
                 .collect(),
             turning: Turning::all(mechanism),
             contacts: JointContact::all(mechanism, geometry, parameters, &mut problems),
             loads,
             amounts,
             cylinders,
+            oils,
         };
         if problems.is_empty() {
             Ok(it)

@@ -54,6 +54,7 @@ pub mod modes;
 pub mod motor;
 pub mod note;
 mod number;
+pub mod oil;
 pub mod problem;
 pub mod reaction;
 pub mod reduced;

@@ -1,8 +1,10 @@
 //! Motors: what a torque-speed curve leaves over what is needed.
 
+use kempe_mechanism::Mechanism;
 use kempe_model::{self as model, DriveId};
 use kempe_number::piecewise;
 
+use crate::amount::Amount;
 use crate::number::{ForceNumber, PlainNumber};
 use crate::problem::Problem;
 
@@ -13,11 +15,18 @@ pub struct Motor<T> {
     pub drive: DriveId,
     /// Speed (rad/s) and torque (N m), speeds rising; the torque is along the speed's positive sense.
     pub curve: Vec<(T, T)>,
+    /// The part of it that it gives in a simulation; the whole where it is not said.
+    pub throttle: Option<Amount<T>>,
 }
 
 impl<T: ForceNumber> Motor<T> {
     /// Evaluates a motor's curve.
-    pub(crate) fn new(motor: &model::Motor, parameters: &[T], problems: &mut Vec<Problem>) -> Self {
+    pub(crate) fn new(
+        mechanism: &Mechanism,
+        motor: &model::Motor,
+        parameters: &[T],
+        problems: &mut Vec<Problem>,
+    ) -> Self {
         let of = |scalar: &model::Scalar| model::value(scalar, parameters);
         let curve: Vec<(T, T)> = (motor.curve.iter())
             .map(|(speed, torque)| (of(speed), of(torque)))
@@ -33,9 +42,22 @@ impl<T: ForceNumber> Motor<T> {
                 "a motor's curve needs points with rising speed",
             ));
         }
+        let throttle = motor.throttle.as_ref().map(|throttle| {
+            let name = mechanism.model.drives.get(motor.drive.index());
+            let what = format!("the throttle of `{}`", name.map_or("", |d| d.name.as_str()));
+            Amount::new(
+                mechanism,
+                throttle,
+                parameters,
+                &motor.span,
+                &what,
+                problems,
+            )
+        });
         Self {
             drive: motor.drive,
             curve,
+            throttle,
         }
     }
 
@@ -86,6 +108,7 @@ mod tests {
         let motor = Motor {
             drive: DriveId(0),
             curve: vec![(0.0, 30.0), (100.0, 30.0), (150.0, 0.0)],
+            throttle: None,
         };
         assert_eq!(motor.torque(50.0), 30.0);
         assert_eq!(motor.torque(-125.0), 15.0);

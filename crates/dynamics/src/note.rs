@@ -1,7 +1,7 @@
 //! What is to be told about the forces of a row.
 
 use kempe_mechanism::{BodyId, Mechanism};
-use kempe_model::{DriveId, DriveKind};
+use kempe_model::{Chamber, DriveId, DriveKind, InnerState};
 
 use crate::equilibrium::FrictionOutcome;
 use crate::forces::Forces;
@@ -388,6 +388,14 @@ fn actuator_notes(forces: &Forces<Rates>, at: &Instant<Rates>, notes: &mut Vec<F
         let Some(drive) = forces.drives.get(id.index()) else {
             continue;
         };
+        // What a simulation moved by its oil gives what that gives.
+        let model = &forces.design.mechanism.model;
+        if model
+            .inner_law(InnerState::Pressure(id, Chamber::Bore))
+            .is_some()
+        {
+            continue;
+        }
         let direction = forces.drive_direction(at, id);
         let pressure = cylinder.pressure(drive.value, direction).value();
         if let Some(highest) = cylinder.highest.map(|p| p.value())

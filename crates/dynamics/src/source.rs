@@ -2,10 +2,11 @@
 
 use std::sync::Arc;
 
+use kempe_measure::measure::asks_unknown_state;
 use kempe_measure::{Curve, ForceSource, Series, State};
-use kempe_mechanism::Branch;
 use kempe_mechanism::Design;
-use kempe_model::{Drive, ForceMeasure, Measure};
+use kempe_mechanism::{Branch, Mechanism};
+use kempe_model::{Amount, Drive, ForceMeasure, Measure};
 use kempe_motion::Motion;
 
 use crate::equilibrium::Pace;
@@ -44,6 +45,7 @@ impl<B: ForceNumber> Source<B> {
     /// All problems of what acts on the mechanism.
     pub fn of(design: Design<Rates<B>>, near: &[f64]) -> Result<Self, Vec<Problem>> {
         let mut forces = Forces::new(design)?;
+        only_simulated(&forces.design.mechanism)?;
         for spring in &mut forces.acting.springs {
             spring.align(&forces.design.geometry, near);
         }
@@ -95,6 +97,34 @@ impl<B: ForceNumber> ForceSource<B> for Source<B> {
                 B::from_f64(f64::NAN)
             }
         }))
+    }
+}
+
+/// Refuses loads that go by what only a simulation follows, where none has.
+fn only_simulated(mechanism: &Mechanism) -> Result<(), Vec<Problem>> {
+    let mut problems = Vec::new();
+    for load in &mechanism.model.actions.loads {
+        let measures = load.kind.amounts().map(|amount| match amount {
+            Amount::Measure(measure) => measure,
+            Amount::Table { over, .. } => over,
+        });
+        if measures
+            .into_iter()
+            .any(|m| asks_unknown_state(&mechanism.model, m))
+        {
+            let message = format!(
+                "the load `{}` goes by a pressure or a switch, which only a simulation follows",
+                load.name
+            );
+            let problem = Problem::new("needs-simulation", &load.span, message);
+            problems.push(problem.remedy(
+                "ask for it in a study of kind = \"simulate\", or let the load go by where things are and how fast they move",
+            ));
+        }
+    }
+    match problems.is_empty() {
+        true => Ok(()),
+        false => Err(problems),
     }
 }
 

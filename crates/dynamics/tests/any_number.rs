@@ -130,6 +130,7 @@ fn together<B: Number>(
             .map(|d| series(&|s| s.coordinates[d]))
             .collect(),
         near: bench.branch.near.clone(),
+        inner: Vec::new(),
         alone: drives
             .map(|d| Some(poses(&|s| s.alone[d].as_deref().unwrap())))
             .collect(),

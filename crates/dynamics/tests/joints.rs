@@ -423,6 +423,7 @@ fn a_torque_that_changes_its_sense_is_not_locked() {
 fn actuators() {
     let mut hitch = model(&example("tractor-hitch"));
     hitch.actions.cylinders = vec![HydraulicCylinder {
+        oil: None,
         drive: DriveId(0),
         bore: number(0.06),
         rod: number(0.03),
@@ -465,6 +466,7 @@ fn actuators() {
         .loads
         .push(force("gas", on(&crank, "slider", "C"), [1000.0, 0.0]));
     crank.actions.motors.push(Motor {
+        throttle: None,
         drive: DriveId(0),
         curve: vec![(number(0.0), number(20.0)), (number(10.0), number(20.0))],
         span: 0..0,

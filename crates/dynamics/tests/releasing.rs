@@ -155,7 +155,11 @@ fn motions() -> Vec<(String, Arc<Motion>)> {
         for (seed, file) in (0..).zip(files) {
             let name = format!("{part}/{}", file.file_name().to_str().unwrap());
             if let Some(name) = name.strip_suffix(".toml") {
-                add(name.to_owned(), Case::example(name).model, seed);
+                let model = Case::example(name).model;
+                // Loads that go by switches are those of simulations.
+                if model.actions.switches.is_empty() {
+                    add(name.to_owned(), model, seed);
+                }
             }
         }
     }

@@ -386,7 +386,7 @@ impl Asked {
 /// once: `known`.
 fn asks_time(model: &kempe_model::Model, measure: &Measure, known: &mut [Option<bool>]) -> bool {
     measure.leaves().any(|leaf| match leaf {
-        Leaf::Time | Leaf::Rate(..) | Leaf::Force(_) => true,
+        Leaf::Time | Leaf::Rate(..) | Leaf::Force(_) | Leaf::Inner(_) => true,
         Leaf::Pose(pose) => matches!(
             pose,
             PoseMeasure::Speed(_)

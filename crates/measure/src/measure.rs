@@ -13,10 +13,12 @@ mod needs;
 pub(crate) use self::following::{alone_following, is_following, pilots};
 use self::named::NamedSeries;
 pub(crate) use self::needs::needs_time;
-pub use self::needs::{NoMeasure, order_of, visit_leaves};
+pub use self::needs::{NoMeasure, asks_unknown_state, order_of, visit_leaves};
 
 use kempe_mechanism::pose::Pose;
-use kempe_model::{DriveId, ForceMeasure, Leaf, Measure, PointId, PoseMeasure, Statistic};
+use kempe_model::{
+    DriveId, ForceMeasure, InnerState, Leaf, Measure, PointId, PoseMeasure, Statistic,
+};
 use kempe_number::Number;
 
 use self::in_time::is_motion;
@@ -139,6 +141,7 @@ impl<B: Number> Moment<'_, B> {
                 Along::Time => Series::variable(self.state.time),
                 _ => Series::constant(self.state.time),
             },
+            Leaf::Inner(inner) => self.inner(*inner, along),
             // Forces are known to the crate that computes them; here they have no value.
             Leaf::Force(measure) => self.forces.map_or(undefined(), |forces| forces(measure)),
             Leaf::Rate(measure, order) => (0..*order)
@@ -156,6 +159,19 @@ impl<B: Number> Moment<'_, B> {
                 Series::constant(known.map_or(B::from_f64(f64::NAN), |(_, _, value)| *value))
             }
             Leaf::Pose(measure) => self.pose_measure(measure, along),
+        }
+    }
+
+    /// A state besides the drives: known in time alone.
+    fn inner(&self, which: InnerState, along: Along) -> Series<B> {
+        let place = self.state.mechanism().model.inner_place(which);
+        let series = place.and_then(|place| self.state.inner.get(place).copied());
+        let series = series.unwrap_or_else(undefined);
+        match (along, self.state.abscissa.drive) {
+            (Along::Time, _) | (Along::Path, None) => series,
+            // A switch stands still between the instants at which it is turned.
+            _ if matches!(which, InnerState::Switch(_)) => Series::constant(series.coefficient(0)),
+            _ => only_value(series.coefficient(0)),
         }
     }
 

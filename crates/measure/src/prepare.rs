@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::measure::asks_unknown_state;
 use kempe_mechanism::Mechanism;
 use kempe_mechanism::bordered::Bordered;
 use kempe_model::Measure;
@@ -46,7 +47,9 @@ impl Sampler {
 /// Which of the measures a mechanism cannot answer, whatever its dimensions and wherever it goes.
 pub fn unmeasurable(mechanism: &Mechanism, measures: &[&Measure]) -> Vec<Unmeasurable> {
     let problem = |(index, measure): (usize, &&Measure)| {
-        let reason = order_of(mechanism, measure).err()?;
+        let unknown =
+            || asks_unknown_state(&mechanism.model, measure).then_some(NoMeasure::OnlySimulated);
+        let reason = order_of(mechanism, measure).err().or_else(unknown)?;
         Some(Unmeasurable { index, reason })
     };
     measures.iter().enumerate().filter_map(problem).collect()

@@ -57,6 +57,8 @@ pub struct State<B> {
     /// For drives that measures or forces ask for, the poses along that drive alone, all others at rest: its kinematic
     /// coefficients. Not needed for the drive of the abscissa.
     pub alone: Vec<Option<Vec<Pose<Series<B>>>>>,
+    /// The model's inner states in time, where anything follows them.
+    pub inner: Vec<Series<B>>,
 }
 
 impl<B: Number> State<B> {
@@ -70,6 +72,7 @@ impl<B: Number> State<B> {
             coordinates: vec![Series::zero(); drives],
             near: vec![0.0; bodies],
             alone: vec![None; drives],
+            inner: Vec::new(),
             design,
         }
     }

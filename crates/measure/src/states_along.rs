@@ -5,7 +5,7 @@ use std::sync::Arc;
 use kempe_mechanism::Design;
 use kempe_mechanism::PlanNumber;
 use kempe_mechanism::evidence::is_finite;
-use kempe_model::DriveId;
+use kempe_model::{DriveId, Law};
 use kempe_motion::bridge::{SideSeries, across};
 use kempe_motion::drive_path::DrivePath;
 use kempe_motion::events::Event;
@@ -188,8 +188,23 @@ where
             .clock
             .heading(place.time.value(), clock.coefficient(1).value());
         self.state.time = place.time;
+        self.find_inner(&motion, place.time);
         (self.state.abscissa.clock, self.state.abscissa.heading) = (clock, heading);
         true
+    }
+
+    /// Inner states at a time, where a simulation has followed them.
+    fn find_inner(&mut self, motion: &Motion, time: B) {
+        let laws = &motion.mechanism().model.inner_laws;
+        if laws.is_empty() {
+            return;
+        }
+        let (rich, time) = (&self.rich, Series::variable(time));
+        let of = |law: &Option<Law>| match law {
+            Some(law) => law.at(time, rich),
+            None => only_value(B::from_f64(f64::NAN)),
+        };
+        self.state.inner = laws.iter().map(of).collect();
     }
 
     /// Drive coordinates at a path parameter. Drives at rest vary as their laws' starts do.

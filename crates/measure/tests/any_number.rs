@@ -203,6 +203,7 @@ fn intervals_hold_what_lies_between() {
                 .map(|d| hull(samples.iter().map(|s| s.coordinates[d])))
                 .collect(),
             near: branch.near.clone(),
+            inner: Vec::new(),
             alone: (0..drives)
                 .map(|d| match d {
                     0 => Some(poses_of(|s| s.alone[0].as_deref().unwrap())),

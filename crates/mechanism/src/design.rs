@@ -117,6 +117,11 @@ impl Design<f64> {
         })
     }
 
+    /// The same design whose inner states, in the order of [`Model::inner_states`], go by these laws.
+    pub fn with_inner_laws(&self, laws: Vec<Option<Law>>) -> Self {
+        self.with_model(|model| model.inner_laws = laws)
+    }
+
     /// A characteristic length of the mechanism, m: see [`Geometry::size`].
     pub fn size(&self) -> f64 {
         self.geometry.size(&self.mechanism)

@@ -151,6 +151,7 @@ pub static FILE: Kind = kind("file", "file",
             "Friction, by the point of a pin, by the name of a joint, or for `all`."),
         may("cylinders", T::Entries(&[&CYLINDER]), CYLINDER.example, "Hydraulic cylinders, by the name of their drive."),
         may("motors", T::Entries(&[&MOTOR]), MOTOR.example, "Motors, by the name of their drive."),
+        may("switches", T::Entries(&[&SWITCH]), SWITCH.example, "Limit switches of simulations, which loads, valves and motors may go by."),
         may("clearance", T::Entries(&[&clearance::OF_PIN, &clearance::OF_JOINT, &clearance::OF_ALL]), clearance::OF_PIN.example,
             "Play at joints, by the point of a pin, by the name of a slider, or for `all`."),
         may("measures", T::Values(&T::Measure), "swing = \"angle(rocker)\"", "Named measures: expressions over what may be asked of the mechanism."),
@@ -454,7 +455,29 @@ pub(crate) static CYLINDER: Kind = kind("cylinder", "cylinder",
         may("flow", positive(D::FLOW), "\"20 L/min\"", "Flow that the pump gives."),
         may("friction", not_negative(D::FORCE), "\"200 N\"", "Friction of the seals; 0 unless said otherwise."),
         may("count", positive(D::NONE), "2", "How many act side by side; 1 unless said otherwise."),
+        may("oil", T::Table(&OIL), OIL.example, "Its oil and its valve, by which it moves where a simulation lets its drive go."),
     ]]);
+
+pub(crate) static OIL: Kind = kind("oil of", "oil",
+    "{ bulk_modulus = \"14000 bar\", volume = [\"1 L\", \"1 L\"], valve = 0.5, flow = \"40 L/min\", drop = \"35 bar\" }",
+    "The oil of a cylinder and its valve; of two values the first is that of the bore's side.",
+    &[&[
+        must("bulk_modulus", positive(D::PRESSURE), "\"14000 bar\"", "Of the oil."),
+        must("volume", T::Two(&positive(D::VOLUME)), "[\"1 L\", \"1 L\"]", "Oil on both sides, hoses included; with `stroke` what is left of it at the end of the stroke. Of one cylinder."),
+        must("valve", T::AnyOf(&[OPENING, T::Two(&OPENING)]), "[0.5, -0.5]", "How far it is open to both sides, as parts of the whole: from the supply, or to the tank where negative; one value alone opens the ring's side the other way."),
+        must("flow", positive(D::FLOW), "\"40 L/min\"", "Flow through the whole opening ..."),
+        must("drop", positive(D::PRESSURE), "\"35 bar\"", "... at this drop of pressure; it goes with the root of the drop."),
+        may("closed", positive(D::LENGTH), "\"450 mm\"", "Length of the drive with the rod in; needs `stroke`."),
+        may("stroke", positive(D::LENGTH), "\"500 mm\"", "How far the rod comes out; needs `closed`. Volumes go with the rod then, and its ends are stops."),
+        may("hose_modulus", positive(D::PRESSURE), "\"4000 bar\"", "Bulk modulus of the walls around `volume`; stiff unless said otherwise."),
+        may("wall_modulus", positive(D::PRESSURE), "\"60000 bar\"", "Bulk modulus of the cylinder's walls, with `stroke`; stiff unless said otherwise."),
+        may("damping", not_negative(D::DAMPING), "\"2 kN s/m\"", "Resistance over speed; 0 unless said otherwise."),
+        may("leakage", not_negative(LEAKAGE), "\"0.01 L/min/bar\"", "What leaks past the piston over the difference of pressures; 0 unless said otherwise."),
+        may("start", T::Two(&any(D::PRESSURE)), "[\"50 bar\", \"20 bar\"]", "Pressures at the start; those that hold the load, `back` on the other side, unless said otherwise."),
+    ]]);
+const OPENING: T = T::Amount(&CARD);
+/// Flow over pressure.
+pub(crate) const LEAKAGE: D = D::new(4, -1, 1, 0);
 
 pub(crate) static MOTOR: Kind = kind("motor", "motor",
     "motor = { curve = [[\"0 rpm\", \"12 N m\"], [\"3000 rpm\", \"0 N m\"]] }",
@@ -462,6 +485,20 @@ pub(crate) static MOTOR: Kind = kind("motor", "motor",
     &[&[
         must("curve", T::List(&T::Two(&T::AnyOf(&[any(D::ANGULAR_SPEED), any(D::TORQUE)])), 2), "[[\"0 rpm\", \"12 N m\"], [\"3000 rpm\", \"0 N m\"]]",
             "Pairs of speed and torque at the drive, straight between them."),
+        may("throttle", T::Amount(&CARD), "\"switch(top)\"", "The part of its curve that it gives in a simulation; the whole unless said otherwise."),
+    ]]);
+
+/// Whether a switch is on.
+pub(crate) const ON_OFF: [(&str, bool); 2] = [("on", true), ("off", false)];
+
+pub(crate) static SWITCH: Kind = kind("switch", "switch",
+    "top = { on = \"y(P) <= 100 mm\", off = \"y(P) >= 400 mm\" }",
+    "A limit switch of simulations: `switch(top)` is 1 where it is on and 0 where it is off.",
+    &[&[
+        must("on", T::Measure, "\"y(P) <= 100 mm\"", "It goes on where this comes to hold."),
+        may("off", T::Measure, "\"y(P) >= 400 mm\"", "It goes off where this comes to hold; where `on` holds no more unless said otherwise."),
+        may("every", T::AnyValue, "\"50 mm\"", "It counts instead: one further each time that what `on` compares has grown by this, and never back."),
+        may("starts", T::Words(&words(&ON_OFF)), "\"on\"", "Whether it is on at the start; as `on` and `off` hold there unless said otherwise, else off."),
     ]]);
 
 /// The kinds of studies.

@@ -30,6 +30,8 @@ pub struct Actions {
     pub motors: Vec<Motor>,
     /// Joints with play whose bodies touch and part; no file says so, studies do.
     pub contacts: Vec<Contact>,
+    /// Limit switches, which loads, valves and motors may go by.
+    pub switches: Vec<crate::switch::Switch>,
 }
 
 /// A force or a torque.
@@ -64,6 +66,17 @@ pub enum LoadKind {
         /// The torque.
         amount: Amount,
     },
+}
+
+impl LoadKind {
+    /// Its components, or its torque.
+    pub fn amounts(&self) -> impl Iterator<Item = &Amount> {
+        let (force, torque) = match self {
+            Self::Force { components, .. } => (components.as_slice(), None),
+            Self::Torque { amount, .. } => (&[][..], Some(amount)),
+        };
+        force.iter().chain(torque)
+    }
 }
 
 /// A value that may vary along the motion.
@@ -215,6 +228,8 @@ pub struct HydraulicCylinder {
     pub friction: Scalar,
     /// How many cylinders act side by side.
     pub count: Scalar,
+    /// Its oil, by which it moves where its drive is let go.
+    pub oil: Option<crate::oil::Oil>,
     /// Where it stands in the file.
     pub span: Span,
 }
@@ -226,6 +241,8 @@ pub struct Motor {
     pub drive: DriveId,
     /// Torque over speed at the drive, as pairs (rad/s, N m) with rising speed, linear between them.
     pub curve: Vec<(Scalar, Scalar)>,
+    /// The part of its curve that it gives in a simulation; the whole where it is not said.
+    pub throttle: Option<Amount>,
     /// Where it stands in the file.
     pub span: Span,
 }

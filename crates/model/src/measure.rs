@@ -3,6 +3,7 @@
 use kempe_units::Expr;
 
 use crate::ids::{DriveId, Line, LinkId, LinkPointRef, ParameterId, PointId};
+use crate::inner::InnerState;
 
 /// An expression over parameters, names and questions to the mechanism, in SI.
 pub type Measure = Expr<Leaf>;
@@ -18,6 +19,8 @@ pub enum Leaf {
     Drive(DriveId),
     /// Time since the start of the motion.
     Time,
+    /// A state that only a simulation follows: a pressure, Pa, or a switch, 1 where it is on and 0 where it is off.
+    Inner(InnerState),
     /// A question to the mechanism at one pose.
     Pose(PoseMeasure),
     /// The n-th time derivative of a measure.

@@ -46,6 +46,8 @@ pub struct Model {
     pub announced: Vec<AnnouncedStudy>,
     /// What the file's values must keep to, whatever the parameters are set to.
     pub bounds: Vec<Bound>,
+    /// How its [inner states](Model::inner_states) go in time, where a simulation has found that: none in a model that was read.
+    pub inner_laws: Vec<Option<crate::drive::Law>>,
     /// Parameters whose values went into plain numbers when the file was read (the place of an `at`, the period of a table).
     pub settled: Vec<ParameterId>,
 }

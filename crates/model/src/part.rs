@@ -40,6 +40,8 @@ pub enum PartKind {
     Spring,
     /// Of `[dampers]`.
     Damper,
+    /// Of `[switches]`.
+    Switch,
 }
 
 impl PartKind {
@@ -57,6 +59,7 @@ impl PartKind {
             Self::Mass => "mass",
             Self::Spring => "spring",
             Self::Damper => "damper",
+            Self::Switch => "switch",
         }
     }
 
@@ -71,6 +74,7 @@ impl PartKind {
             Argument::Spring => &[Self::Spring],
             Argument::Damper => &[Self::Damper],
             Argument::Load => &[Self::Load],
+            Argument::Switch => &[Self::Switch],
             Argument::Measure | Argument::Order | Argument::Time | Argument::Value => &[],
         }
     }
@@ -102,6 +106,7 @@ const SECTIONS: &[(&str, PartKind)] = &[
     ("masses", PartKind::Mass),
     ("springs", PartKind::Spring),
     ("dampers", PartKind::Damper),
+    ("switches", PartKind::Switch),
 ];
 
 /// A part by its kind and name.

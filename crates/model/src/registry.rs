@@ -5,9 +5,10 @@ use kempe_units::Dimension as D;
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 
 use crate::ids::{DriveId, LinkId, PointId};
+use crate::inner::Chamber;
 use crate::measure::{ForceMeasure as F, JointRef, PoseMeasure as P, Statistic as S};
 use Gives::{ByDrive, Follows, Is};
-use Nature::{Derivative, Forces, Geometric, InTime, WholeMotion};
+use Nature::{Derivative, Forces, Geometric, InTime, Inner, WholeMotion};
 
 /// A function that measures something.
 #[derive(Clone, Copy, Debug)]
@@ -36,6 +37,8 @@ pub enum Nature {
     InTime(u32),
     /// The forces, which need the accelerations.
     Forces,
+    /// A state that only a simulation follows.
+    Inner,
     /// The derivatives of another measure.
     Derivative,
     /// Another measure over the whole motion.
@@ -48,7 +51,7 @@ impl Nature {
         match self {
             Geometric(order) | InTime(order) => order,
             Forces => 2,
-            Derivative | WholeMotion => 0,
+            Inner | Derivative | WholeMotion => 0,
         }
     }
 }
@@ -104,6 +107,8 @@ pub enum Argument {
     Damper,
     /// A load.
     Load,
+    /// A switch.
+    Switch,
     /// Another measure.
     Measure,
     /// The order of a derivative.
@@ -128,6 +133,7 @@ impl Argument {
             Self::Spring => "spring",
             Self::Damper => "damper",
             Self::Load => "load",
+            Self::Switch => "switch",
             Self::Measure => "measure",
             Self::Order => "n",
             Self::Time => "time",
@@ -167,6 +173,9 @@ pub(crate) enum Form {
     Load,
     LoadComponent(fn(usize) -> F),
     Pressure,
+    /// In a chamber of a cylinder with oil.
+    Chamber(Chamber),
+    Switch,
     Capacity,
     /// Of the whole mechanism: without arguments and brackets.
     Whole(F),
@@ -200,6 +209,7 @@ impl Form {
             | Self::Effort { .. }
             | Self::Drive(_)
             | Self::Pressure
+            | Self::Chamber(_)
             | Self::Capacity => &[&[A::Drive]],
             Self::Joint(_) => &[&[P], &[P, A::Link], &[A::Joint], &[A::Joint, A::Link]],
             Self::JointOnLink(_) => &[&[P, A::Link], &[A::Joint, A::Link]],
@@ -207,6 +217,7 @@ impl Form {
             Self::Spring => &[&[A::Spring]],
             Self::Damper => &[&[A::Damper]],
             Self::Load | Self::LoadComponent(_) => &[&[A::Load]],
+            Self::Switch => &[&[A::Switch]],
             Self::Whole(_) => &[],
             Self::Rate => &[&[A::Measure], &[A::Measure, A::Order]],
             Self::Coefficient => &[&[A::Measure, A::Drive], &[A::Measure, A::Drive, A::Order]],
@@ -401,6 +412,12 @@ const MEASURES: &[MeasureEntry] = &[
         "the component of a force load along the frame's y axis"),
     row("pressure", &[Form::Pressure], Is(D::PRESSURE, "pressure"), Forces, "pressure(lift)",
         "in the chamber of a hydraulic cylinder that drives"),
+    row("bore_pressure", &[Form::Chamber(Chamber::Bore)], Is(D::PRESSURE, "pressure"), Inner, "bore_pressure(lift)",
+        "of the oil on the bore's side of a cylinder that is let go, in a simulation"),
+    row("ring_pressure", &[Form::Chamber(Chamber::Ring)], Is(D::PRESSURE, "pressure"), Inner, "ring_pressure(lift)",
+        "of the oil on the rod's side of a cylinder that is let go, in a simulation"),
+    row("switch", &[Form::Switch], Is(D::NONE, "number"), Inner, "switch(top)",
+        "1 where a limit switch is on, 0 where it is off, in a simulation"),
     row("capacity", &[Form::Capacity], ByDrive(D::FORCE, D::TORQUE, "force; torque of a motor"), Forces, "capacity(lift)",
         "the most that a hydraulic cylinder can give along its coordinate at its supply or relief pressure, or a motor at its speed"),
     row("reduced_mass", &[Form::Drive(F::ReducedMass)], ByDrive(D::MASS, D::INERTIA, "mass; moment of inertia of a turning drive"), Forces, "reduced_mass(lift)",

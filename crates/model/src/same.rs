@@ -7,9 +7,10 @@ use crate::hint::HintKind;
 use crate::ids::{Scalar, Span};
 use crate::joint::JointKind;
 use crate::link::{Center, Place};
-use crate::load::{Amount, LoadKind};
+use crate::load::{Actions, Amount, LoadKind};
 use crate::measure::{Leaf, Measure, PoseMeasure};
 use crate::model::Model;
+use crate::oil::Oil;
 use crate::study::{Column, Plot, Rows, StopResistance, StudyKind};
 
 impl Model {
@@ -63,6 +64,7 @@ impl Model {
         let cylinders = acting.cylinders.iter_mut();
         cylinders.for_each(|p| forget(&mut p.span));
         acting.motors.iter_mut().for_each(|p| forget(&mut p.span));
+        acting.switches.iter_mut().for_each(|p| forget(&mut p.span));
         self.clearances.iter_mut().for_each(|p| forget(&mut p.span));
     }
 
@@ -242,7 +244,19 @@ impl Model {
             f(&mut cylinder.back);
             f(&mut cylinder.friction);
             f(&mut cylinder.count);
+            let oil = cylinder.oil.iter_mut().flat_map(Oil::scalars_mut);
+            oil.for_each(&mut *f);
         }
+        for amount in controls(acting) {
+            if let Amount::Table { factor, .. } = amount {
+                f(factor);
+            }
+        }
+        acting
+            .switches
+            .iter_mut()
+            .flat_map(|s| &mut s.every)
+            .for_each(&mut *f);
         for (speed, torque) in acting.motors.iter_mut().flat_map(|m| &mut m.curve) {
             f(speed);
             f(torque);
@@ -259,6 +273,16 @@ impl Model {
                     Amount::Table { over, .. } => f(over),
                 }
             }
+        }
+        for amount in controls(&mut self.actions) {
+            match amount {
+                Amount::Measure(measure) => f(measure),
+                Amount::Table { over, .. } => f(over),
+            }
+        }
+        for switch in &mut self.actions.switches {
+            f(&mut switch.on.above);
+            switch.off.iter_mut().for_each(|off| f(&mut off.above));
         }
         for study in &mut self.studies {
             let along = match &mut study.kind {
@@ -286,6 +310,13 @@ impl Model {
             }
         }
     }
+}
+
+/// The openings of valves and the throttles of motors.
+fn controls(acting: &mut Actions) -> impl Iterator<Item = &mut Amount> {
+    let oils = acting.cylinders.iter_mut().flat_map(|c| &mut c.oil);
+    let openings = oils.flat_map(Oil::openings_mut);
+    openings.chain(acting.motors.iter_mut().flat_map(|m| &mut m.throttle))
 }
 
 fn amounts(kind: &mut LoadKind) -> Vec<&mut Amount> {

@@ -159,6 +159,8 @@ pub struct Condition {
     pub text: String,
     /// It holds where this is not negative.
     pub above: Measure,
+    /// Dimension of what it compares.
+    pub dimension: Dimension,
 }
 
 /// How a mechanism vibrates when some of its drives are let go.

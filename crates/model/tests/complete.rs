@@ -116,9 +116,10 @@ fn sections_and_keys_come_with_their_sentence() {
     let mut seen = 0;
     visit_keys(&mut |section, kind, key| {
         let found = match (section, kind.name) {
+            ("cylinders", "oil") => at("[cylinders]\nmotor = { oil = { | } }"),
             ("", _) => complete("", 0),
             ("springs", _) => at("[springs]\nx = { | }"),
-            ("cylinders", _) => at("[cylinders]\nmotor = { | }"),
+            ("cylinders", "cylinder") => at("[cylinders]\nmotor = { | }"),
             ("units", _) => complete("units = {  }", 10),
             ("joints", "gears") => at("[joints]\nx = { gears = [], |"),
             _ => return,

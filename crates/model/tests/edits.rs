@@ -249,6 +249,7 @@ fn a_part_that_nothing_names_goes_and_the_rest_reads() {
         PartKind::Mass,
         PartKind::Spring,
         PartKind::Damper,
+        PartKind::Switch,
     ];
     let (mut gone, mut used) = (0, 0);
     for (text, folder) in texts() {

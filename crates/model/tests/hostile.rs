@@ -149,6 +149,7 @@ fn sheer_size() {
         ("cylinders", "{ bore = 2, rod = 1 }"),
         ("motors", "{ curve = [[0, 1], [1, 0]] }"),
         ("friction", "{ coefficient = 1 }"),
+        ("switches", "{ on = \"x(B) >= 0\" }"),
     ] {
         let text = format!(
             "{FRAME}[{section}]\n{}",

@@ -29,6 +29,8 @@ motor = { turns = "crank", speed = 1 }
 lift  = { cylinder = "Y-T", from = 1, to = 2, speed = 1 }
 [springs]
 back = { between = "A-C", stiffness = 1, free = 1 }
+[switches]
+top = { on = "y(C) <= 1 m" }
 "#;
 
 /// An entry of a kind that reads, but for what is asked of it.
@@ -70,7 +72,8 @@ fn entry(section: &str, kind: &Kind) -> (&'static str, Vec<(&'static str, &'stat
         ("clearance", "pin") => ("B", vec![("radial", "0.1")]),
         ("clearance", "joint") => ("guide", vec![("radial", "0.1")]),
         ("clearance", _) => ("all", vec![("radial", "0.1")]),
-        ("cylinders", _) => ("lift", vec![("bore", "2"), ("rod", "1")]),
+        ("cylinders", _) => ("lift", vec![("bore", "2"), ("rod", "1"), ("supply", "3")]),
+        ("switches", _) => ("s", vec![("on", "'y(C) <= 1 m'")]),
         ("motors", _) => ("motor", vec![("curve", "[[0, 1], [1, 0]]")]),
         ("studies", "motion") => ("x", vec![("kind", "'motion'")]),
         ("studies", "forces") => ("x", vec![("kind", "'forces'")]),
@@ -127,6 +130,25 @@ fn with(section: &str, kind: &Kind, key: &str, value: &str) -> String {
                 inner(&[("between", "[0, 9]")])
             ),
         ),
+        "oil of" => {
+            let stroke: &[(&str, &str)] = match key {
+                "closed" | "wall_modulus" => &[("stroke", "1"), ("closed", "1")],
+                "stroke" => &[("closed", "1")],
+                _ => &[],
+            };
+            let needed = [
+                ("bulk_modulus", "1"),
+                ("volume", "[1, 1]"),
+                ("valve", "1"),
+                ("flow", "1"),
+                ("drop", "1"),
+            ];
+            let oil = inner(&[&needed[..], stroke].concat());
+            (
+                "lift",
+                format!("{{ bore = 2, rod = 1, supply = 3, oil = {oil} }}"),
+            )
+        }
         "law table" => (
             "d",
             format!(
@@ -134,13 +156,23 @@ fn with(section: &str, kind: &Kind, key: &str, value: &str) -> String {
                 inner(&[("table", "'t.csv'")])
             ),
         ),
-        "load table" => (
-            "x",
-            format!(
-                "{{ torque = {}, on = 'crank' }}",
-                inner(&[("table", "'t.csv'"), ("over", "'angle(crank)'")])
-            ),
-        ),
+        "load table" => {
+            let table = inner(&[("table", "'t.csv'"), ("over", "'angle(crank)'")]);
+            match section {
+                "cylinders" => (
+                    "lift",
+                    format!(
+                        "{{ bore = 2, rod = 1, supply = 3, oil = {{ bulk_modulus = 1, volume = [1, 1], flow = 1, drop = 1, \
+                         valve = {table} }} }}"
+                    ),
+                ),
+                "motors" => (
+                    "motor",
+                    format!("{{ curve = [[0, 1], [1, 0]], throttle = {table} }}"),
+                ),
+                _ => ("x", format!("{{ torque = {table}, on = 'crank' }}")),
+            }
+        }
         _ => {
             let (name, needed) = entry(section, kind);
             (name, inner(&needed))

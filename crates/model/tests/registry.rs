@@ -24,7 +24,9 @@ oil = { between = "A-C", damping = 10 }
 [loads]
 hook = { force = [0, -1], at = "P" }
 [cylinders]
-lift = { bore = 0.08, rod = 0.04, supply = "180 bar" }
+lift = { bore = 0.08, rod = 0.04, supply = "180 bar", oil = { bulk_modulus = "14000 bar", volume = ["1 L", "1 L"], valve = 1, flow = "1 L/min", drop = "1 bar" } }
+[switches]
+top = { on = "y(P) <= 0.1 m" }
 [measures]
 "#;
 
@@ -68,6 +70,7 @@ fn every_example_is_of_its_nature() {
             }
             Nature::Forces => assert!(matches!(leaf, Leaf::Force(_)), "{}", entry.name),
             Nature::Derivative => assert!(matches!(leaf, Leaf::Rate(..) | Leaf::Coefficient(..))),
+            Nature::Inner => assert!(matches!(leaf, Leaf::Inner(_)), "{}", entry.name),
             Nature::WholeMotion => assert!(matches!(leaf, Leaf::Over(..)), "{}", entry.name),
         }
         assert_eq!(measure.needs_forces, entry.nature == Nature::Forces);
@@ -106,8 +109,8 @@ fn every_signature_is_understood() {
                     "slider" => "piston",
                     "joint" => "bore",
                     "drive"
-                        if ["length", "stroke", "force", "pressure", "capacity"]
-                            .contains(&name) =>
+                        if ["length", "stroke", "force", "capacity"].contains(&name)
+                            || name.contains("pressure") =>
                     {
                         "lift"
                     }
@@ -115,6 +118,7 @@ fn every_signature_is_understood() {
                     "spring" => "return",
                     "damper" => "oil",
                     "load" => "hook",
+                    "switch" => "top",
                     "drive" => "motor",
                     "measure" => "x(C)",
                     "n" => "2",

@@ -197,10 +197,15 @@ slot = { radial = "ratio * 1 um" }
 all = { radial = "10 um" }
 
 [cylinders]
-lift = { bore = "80 mm", rod = "ratio * 10 mm", supply = 180, relief = "210 bar", back = "5 bar", flow = "20 L/min", friction = "100 N", count = 2 }
+lift = { bore = "80 mm", rod = "ratio * 10 mm", supply = 180, relief = "210 bar", back = "5 bar", flow = "20 L/min", friction = "100 N", count = 2, oil = { bulk_modulus = "ratio * 1 GPa", hose_modulus = "4000 bar", wall_modulus = 60000, volume = ["1 L", "a^3"], closed = "a", stroke = 12, valve = ["switch(top) * ratio", { table = "card.csv", over = "time", argument = "time", value = "x", factor = "1 / (1 m)" }], flow = "40 L/min", drop = "35 bar", damping = "1 N s/mm", leakage = "0.1 L/min/bar", start = ["ratio * 1 bar", -0.5] } }
 
 [motors]
-motor = { curve = [["0 rpm", "12 N m"], ["spin * 10", "0 N m"]] }
+motor = { curve = [["0 rpm", "12 N m"], ["spin * 10", "0 N m"]], throttle = "1 - switch(bottom) * time / 3 s" }
+
+[switches]
+top = { on = "y(P) <= ratio * a", off = "bore_pressure(lift) > 20 bar + ring_pressure(lift)", starts = "on" }
+bottom = { on = "switch(top) >= 0.5" }
+teeth = { on = "angle(crank) >= tilt", every = "tilt * ratio" }
 
 [measures]
 m1 = "x(P) + y(P) - x(P, plate) + y(P, crank) + m9"
@@ -229,6 +234,7 @@ o6 = "time"
 o7 = "-motor"
 o8 = "hypot(x(P), 3 mm) * exp(ratio) * ln(ratio) * asin(0.5) * cos(tilt) * ratio^2 * (2 * ratio)^-0.5 * abs(neg)"
 o9 = "3 mm"
+p1 = "bore_pressure(lift) - rate(ring_pressure(lift)) * 2 s + switch(top) * 1 bar"
 
 [studies.turn]
 kind = "motion"

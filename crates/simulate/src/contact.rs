@@ -53,15 +53,15 @@ pub(crate) struct Impact {
 impl Plant {
     /// A measure of the pose at a state.
     pub fn value(&mut self, what: &Measure, time: f64, y: &[f64]) -> Option<f64> {
-        self.take(time, y);
-        let state = self.places.state(time, &self.coordinates)?;
+        self.take_as_it_is(time, y);
+        let state = self.state(time)?;
         Some(measure(&state, &History::default(), None, what, Along::Time).coefficient(0))
     }
 
     /// A stop at a state.
     pub fn gap(&mut self, stop: usize, time: f64, y: &[f64]) -> Option<Gap> {
-        self.take(time, y);
-        let state = self.places.state(time, &self.coordinates)?;
+        self.take_as_it_is(time, y);
+        let state = self.state(time)?;
         let what = &self.stops.get(stop)?.gap;
         let along = |along| measure(&state, &History::default(), None, what, along);
         let series = along(Along::Time);
@@ -93,6 +93,7 @@ impl Plant {
                 *given += push * j;
             }
         }
+        self.take(time, y);
         true
     }
 

@@ -195,6 +195,7 @@ impl Curve {
             coordinates: self.rich_solver.coordinates.clone(),
             near: self.near.clone(),
             alone: vec![None; self.motion.mechanism().model.drives.len()],
+            inner: Vec::new(),
             poses,
         })
     }

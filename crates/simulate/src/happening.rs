@@ -1,6 +1,7 @@
 //! What happens during a motion.
 
 use crate::joints::Place;
+use kempe_model::Chamber;
 
 /// Something that happened at a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,6 +59,27 @@ pub enum Happened {
     Sticks,
     /// Friction lets it go.
     Slips,
+    /// A switch goes on or off.
+    Switches {
+        /// Which of the model's.
+        switch: usize,
+        /// Whether it is on from here.
+        on: bool,
+    },
+    /// A switch counts one further.
+    Counts {
+        /// Which of the model's.
+        switch: usize,
+        /// How far it is.
+        to: f64,
+    },
+    /// The pressure in a cylinder falls below that of a vacuum, where its equations do not hold.
+    Cavitates {
+        /// The place of its drive among those that are let go.
+        free: usize,
+        /// The side.
+        side: Chamber,
+    },
     /// One of the conditions holds that end the motion.
     Ends {
         /// Which.

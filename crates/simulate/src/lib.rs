@@ -11,15 +11,19 @@
 //! | `places.rs` | poses from coordinates: `curve.rs` along the followed motion of one coordinate, `several.rs` by the plan |
 //! | `tellers.rs` | which coordinates tell the place: others where one comes to its own dead point |
 //! | `plant.rs` | accelerations of a state, with motors, stops and friction |
+//! | `amounts.rs` | values that loads, valves and motors go by |
+//! | `inner.rs`, `toggle.rs` | pressures of cylinders, and what is switched on and off |
 //! | `watch.rs` | what is looked for between steps |
 //! | `contact.rs` | stops: impacts, and what holds a rest |
 //! | `joints.rs` | joints with play, whose bodies touch and part |
 //! | `run.rs` | from step to step and from event to event |
 //! | `record.rs` | what was found, as laws of the drives |
 
+mod amounts;
 mod contact;
 mod curve;
 mod happening;
+mod inner;
 mod joints;
 mod places;
 mod plant;
@@ -29,6 +33,7 @@ mod run;
 mod several;
 mod start;
 mod tellers;
+mod toggle;
 mod watch;
 
 pub use kempe_integrate::{Method, Used};

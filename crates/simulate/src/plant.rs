@@ -1,16 +1,20 @@
 //! How what is let go accelerates, at any state.
 
+use kempe_dynamics::amount::Amount;
 use kempe_dynamics::equations_of_motion::LetGo;
 use kempe_dynamics::wrench::Wrench;
 use kempe_dynamics::{Forces, Instant, Rates};
 use kempe_integrate::System;
 use kempe_linear::Lu;
+use kempe_measure::State;
 use kempe_measure::measure::{Along, History, measure};
 use kempe_mechanism::Design;
 use kempe_model::{DriveId, Law, Leaf, Measure};
 use kempe_number::{Jet, Number};
 
+use crate::amounts::{Amounts, Known};
 use crate::contact::Gap;
+use crate::inner::Inner;
 use crate::places::Places;
 use crate::question::Stop;
 
@@ -48,6 +52,17 @@ pub(crate) struct Tells {
     pub ahead: f64,
 }
 
+/// A motor of a drive that is let go.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Turned {
+    /// Its place among the motors that act.
+    pub motor: usize,
+    /// The sense in which it turns.
+    pub sense: f64,
+    /// The place of its throttle among the plant's amounts.
+    pub throttle: Option<usize>,
+}
+
 /// A mechanism with what is let go.
 pub(crate) struct Plant {
     pub places: Places,
@@ -73,15 +88,18 @@ pub(crate) struct Plant {
     pub let_go: LetGo,
     instant: Instant<f64>,
     parameters: Vec<Rates>,
-    amounts: Vec<(Measure, Option<f64>)>,
-    /// Motors of the drives that are let go, each with the sense in which it turns.
-    pub motors: Vec<Option<(usize, f64)>>,
     /// How the coordinates that are let go tell the place.
     pub tells: Vec<Tells>,
     /// Drives in whose stead links tell, with their coordinates, as last known.
     followed: Vec<(DriveId, f64)>,
     /// How many drives the model has of its own.
     own: usize,
+    /// What loads vary with, then openings of valves and throttles of motors.
+    pub amounts: Amounts,
+    /// Pressures and switches.
+    pub inner: Inner,
+    /// Motors of the drives that are let go.
+    pub motors: Vec<Option<Turned>>,
     storage: Vec<Wrench<f64>>,
 }
 
@@ -97,31 +115,38 @@ impl Plant {
         let model = &design.mechanism.model;
         let parameters = &design.parameters;
         let acting = &forces.acting;
-        let amounts: Vec<(Measure, Option<f64>)> = (acting.amounts.iter())
-            .map(|amount| {
-                (
-                    amount.measure.clone(),
-                    constant(&amount.measure, parameters),
-                )
-            })
-            .collect();
-        let motors: Vec<Option<(usize, f64)>> = (free.iter())
+        let of_loads = acting.amounts.len();
+        let mut amounts = acting.amounts.clone();
+        let mut place = |amount: Option<&Amount<f64>>| {
+            amounts.push(amount?.clone());
+            Some(amounts.len() - 1)
+        };
+        let motors: Vec<Option<Turned>> = (free.iter())
             .map(|drive| {
                 let motor = acting.motors.iter().position(|m| m.drive == *drive)?;
                 let law = &model.drives.get(drive.index())?.law;
-                Some((motor, motor_sense(law, parameters)))
+                Some(Turned {
+                    motor,
+                    sense: motor_sense(law, parameters),
+                    throttle: place(acting.motors[motor].throttle.as_ref()),
+                })
             })
             .collect();
+        let inner = Inner::new(model, &acting.oils, &free, |oil| {
+            [place(Some(&oil.valve.0)), place(oil.valve.1.as_ref())]
+        });
+        let amounts = Amounts::new(&design.mechanism, parameters, amounts);
         let works = !acting.loads.is_empty()
             || !acting.dampers.is_empty()
             || !acting.friction.is_empty()
             || !acting.turning.is_empty()
             || !acting.contacts.is_empty()
             || motors.iter().any(Option::is_some)
+            || !inner.moved.is_empty()
             || !driven.is_empty()
             || !stops.is_empty();
         Self {
-            instant: Instant::new(&design.mechanism, amounts.len()),
+            instant: Instant::new(&design.mechanism, of_loads),
             coordinates: vec![Rates::zero(); model.drives.len()],
             parameters: parameters.iter().map(|p| Rates::constant(*p)).collect(),
             given: vec![0.0; free.len()],
@@ -135,6 +160,7 @@ impl Plant {
             end: f64::INFINITY,
             motors,
             amounts,
+            inner,
             places,
             forces,
             free,
@@ -152,6 +178,22 @@ impl Plant {
         self
     }
 
+    /// Whether the coordinates that are let go must tell the place themselves: joints with play are told by how far they stand
+    /// open, and what oil or a throttled motor gives goes by its own drive.
+    pub fn is_tied(&self) -> bool {
+        let throttled = |turned: &Turned| turned.throttle.is_some();
+        !self
+            .forces
+            .design
+            .mechanism
+            .model
+            .actions
+            .contacts
+            .is_empty()
+            || !self.inner.moved.is_empty()
+            || self.motors.iter().flatten().any(throttled)
+    }
+
     /// The instant last looked at.
     pub fn instant(&self) -> &Instant<f64> {
         &self.instant
@@ -159,10 +201,18 @@ impl Plant {
 
     /// Whether anything rubs.
     pub fn rubs(&self) -> bool {
-        let friction = &self.forces.acting.friction;
-        friction
+        let acting = &self.forces.acting;
+        let seals = |oil: &usize| acting.oils[*oil].friction > 0.0;
+        acting
+            .friction
             .iter()
             .any(|f| !matches!(f.bearing, kempe_dynamics::friction::Bearing::Flanks(_)))
+            || self
+                .inner
+                .moved
+                .iter()
+                .map(|m| m.oil)
+                .any(|oil| seals(&oil))
     }
 
     /// Takes the coordinates of a state; those let go do not accelerate.
@@ -190,6 +240,16 @@ impl Plant {
             }
             self.coordinates[drive.index()] = Rates::from_coefficients([y[k], v, 0.0]);
         }
+        self.inner.take(&y[2 * n..]);
+    }
+
+    /// Takes the coordinates of a state with the speeds that it has, whatever friction is looked at.
+    pub fn take_as_it_is(&mut self, time: f64, y: &[f64]) {
+        self.take(time, y);
+        let speeds = y.iter().skip(self.free.len());
+        for (drive, (q, v)) in self.free.iter().zip(y.iter().zip(speeds)) {
+            self.coordinates[drive.index()] = Rates::from_coefficients([*q, *v, 0.0]);
+        }
     }
 
     /// Rates of a state: speeds, accelerations, and the power of all that does work.
@@ -198,7 +258,9 @@ impl Plant {
         rates[..n].copy_from_slice(&y[n..2 * n]);
         if self.mode.stuck {
             rates.fill(0.0);
-            return true;
+            self.take(time, y);
+            return self.inner.moved.is_empty()
+                || (self.amounts_at(time) && self.pressure_rates(&mut rates[2 * n..]));
         }
         if !self.let_go_at(time, y, &[]) {
             return false;
@@ -207,7 +269,10 @@ impl Plant {
             return false;
         }
         rates[n..2 * n].copy_from_slice(&self.let_go.accelerations);
-        rates[2 * n] = match self.works {
+        if !self.pressure_rates(&mut rates[2 * n..]) {
+            return false;
+        }
+        rates[2 * n + self.inner.pressures()] = match self.works {
             true => self.power(&y[n..2 * n]),
             false => 0.0,
         };
@@ -217,19 +282,24 @@ impl Plant {
     /// Accelerations where stops besides push along the coordinates.
     fn let_go_at(&mut self, time: f64, y: &[f64], pushes: &[f64]) -> bool {
         self.take(time, y);
+        self.instant.time = time;
+        if !self.places.instant(&self.coordinates, &mut self.instant) || !self.amounts_at(time) {
+            return false;
+        }
         for (given, (k, motor)) in self.given.iter_mut().zip(self.motors.iter().enumerate()) {
             let push = pushes.get(k).copied().unwrap_or(0.0);
             let speed = self.coordinates[self.free[k].index()].coefficient(1);
-            *given = push
-                + motor.map_or(0.0, |(motor, sense)| {
-                    sense * self.forces.acting.motors[motor].turns_with(sense * speed)
-                });
+            let turns = |turned: &Turned| {
+                let (motor, sense) = (&self.forces.acting.motors[turned.motor], turned.sense);
+                let throttle = turned
+                    .throttle
+                    .map_or(1.0, |place| self.amounts.values[place]);
+                sense * throttle * motor.turns_with(sense * speed)
+            };
+            *given = push + motor.as_ref().map_or(0.0, turns);
         }
+        self.push_by_oil();
         if !self.mode.touched.is_empty() && !self.push(time, y) {
-            return false;
-        }
-        self.instant.time = time;
-        if !self.places.instant(&self.coordinates, &mut self.instant) || !self.amounts_at(time) {
             return false;
         }
         let (forces, instant) = (&mut self.forces, &mut self.instant);
@@ -276,31 +346,33 @@ impl Plant {
         Some(after - kinetic)
     }
 
-    /// What the loads vary with.
+    /// Finds what loads, valves and motors go by, at the state last taken.
     fn amounts_at(&mut self, time: f64) -> bool {
-        if self.amounts.is_empty() {
-            return true;
-        }
-        let varies = self.amounts.iter().any(|(_, constant)| constant.is_none());
-        let state = match varies {
-            true => match self.places.state(time, &self.coordinates) {
+        let state = match self.amounts.ask_pose() {
+            true => match self.state(time) {
                 Some(state) => Some(state),
                 None => return false,
             },
             false => None,
         };
-        let history = History::default();
-        for (index, (what, constant)) in self.amounts.iter().enumerate() {
-            let measured = match (constant, &state) {
-                (Some(value), _) => *value,
-                (None, Some(state)) => {
-                    measure(state, &history, None, what, Along::Time).coefficient(0)
-                }
-                (None, None) => f64::NAN,
-            };
-            self.instant.amounts[index] = self.forces.acting.amounts[index].of(measured);
-        }
+        let design = &self.forces.design;
+        let known = Known {
+            time,
+            parameters: &design.parameters,
+            coordinates: &|drive| self.coordinates[drive].coefficient(0),
+            inner: &self.inner.values,
+        };
+        (self.amounts).find(&design.mechanism.model, &known, state.as_ref());
+        let of_loads = self.instant.amounts.len();
+        (self.instant.amounts).copy_from_slice(&self.amounts.values[..of_loads]);
         true
+    }
+
+    /// The state last taken, for measures; rates of inner states are not known in it.
+    pub fn state(&mut self, time: f64) -> Option<State<f64>> {
+        let mut state = self.places.state(time, &self.coordinates)?;
+        state.inner = self.inner.series();
+        Some(state)
     }
 
     /// Lets the stops on which it rests push so that none of their gaps accelerates.
@@ -435,17 +507,4 @@ impl System for Plant {
 pub(crate) fn motor_sense(law: &Law, parameters: &[f64]) -> f64 {
     let way = law.at(law.duration(parameters), parameters) - law.at(0.0, parameters);
     if way < 0.0 { -1.0 } else { 1.0 }
-}
-
-/// The value of a measure of parameters alone.
-fn constant(measure: &Measure, parameters: &[f64]) -> Option<f64> {
-    let of_parameters = measure
-        .leaves()
-        .all(|leaf| matches!(leaf, Leaf::Parameter(_)));
-    of_parameters.then(|| {
-        measure.eval(&mut |leaf| match leaf {
-            Leaf::Parameter(id) => parameters.get(id.index()).copied().unwrap_or(f64::NAN),
-            _ => f64::NAN,
-        })
-    })
 }

@@ -3,9 +3,10 @@
 use std::sync::Arc;
 
 use kempe_dynamics::motor::Motor;
+use kempe_dynamics::oil::Oil;
 use kempe_integrate::Used;
 use kempe_mechanism::{Design, Mechanism};
-use kempe_model::{COEFFICIENTS, DriveId, Law, LawPiece, LinkId, Polynomials};
+use kempe_model::{COEFFICIENTS, DriveId, Law, LawPiece, LinkId, Measure, Polynomials};
 use kempe_motion::drive_path::DrivePath;
 use kempe_motion::{Demand, EndReason, Motion, MotionError, Placed, Progress};
 use kempe_units::Expr;
@@ -61,10 +62,12 @@ pub struct Simulated {
     pub evaluations: usize,
     /// The motion on which the pose of the start was found: the assembly that was chosen, and what it has to say.
     pub first: Arc<Motion>,
-    /// Motors of the drives that are let go, each with the sense in which it turns.
-    pub(crate) motors: Vec<Option<(Motor<f64>, f64)>>,
     /// What told the place, where that was not the drives that are let go all the time.
     pub(crate) pilots: Option<Pilots>,
+    /// Inner states, in the order of the model's; none of what nothing followed.
+    pub inner: Vec<Option<Law>>,
+    /// What the drives that are let go give by themselves.
+    pub(crate) machines: Vec<Machine>,
     pub(crate) design: Design<f64>,
     pub(crate) placed: Placed,
 }
@@ -83,19 +86,37 @@ pub(crate) struct Pilots {
 }
 
 impl Simulated {
-    /// The torque, N m, that a motor gives at a speed of a coordinate that tells the place (by its place among those), rad/s; none
-    /// without a motor.
-    pub fn motor_torque(&self, place: usize, speed: f64) -> f64 {
-        // What tells the place in a drive's stead has none.
-        let own = self.pilots.is_none();
-        let motor = self
-            .motors
-            .get(place)
-            .and_then(Option::as_ref)
-            .filter(|_| own);
-        motor.map_or(0.0, |(motor, sense)| {
-            sense * motor.turns_with(sense * speed)
-        })
+    /// What motor and oil of a drive that was let go (by its place among those) give, N m or N, at a time, s, and a speed of its
+    /// coordinate, rad/s or m/s; `throttled` is the value of its [throttle](Self::throttle).
+    pub fn gives(&self, place: usize, [time, speed]: [f64; 2], throttled: f64) -> f64 {
+        let Some(machine) = self.machines.get(place) else {
+            return 0.0;
+        };
+        // What tells the place in a drive's stead has none: its motor turns the links.
+        let motor = machine.motor.as_ref().filter(|_| self.pilots.is_none());
+        let motor = motor.map_or(0.0, |(motor, sense)| {
+            let part = motor.throttle.as_ref().map_or(1.0, |it| it.of(throttled));
+            part * sense * motor.turns_with(sense * speed)
+        });
+        let oil = machine.oil.as_ref().map_or(0.0, |(oil, first)| {
+            let pressure = |place: usize| match self.inner.get(place) {
+                Some(Some(law)) => law.at(time, &[]),
+                _ => f64::NAN,
+            };
+            let seals = if speed == 0.0 {
+                0.0
+            } else {
+                oil.friction * speed.signum()
+            };
+            oil.push([pressure(*first), pressure(*first + 1)], speed) - seals
+        });
+        motor + oil
+    }
+
+    /// What the throttle of the motor of a drive that was let go goes by; none where it has none.
+    pub fn throttle(&self, place: usize) -> Option<&Measure> {
+        let (motor, _) = self.machines.get(place)?.motor.as_ref()?;
+        motor.throttle.as_ref().map(|throttle| &throttle.measure)
     }
 
     /// The coordinates that tell the place along the motion that was found: nothing gives anything along them but motors. They are
@@ -169,6 +190,7 @@ impl Simulated {
                 contact.touches = own.map(|t| t.touching).collect();
             }
         });
+        let design = design.with_inner_laws(self.inner.clone());
         let (model, parameters) = (&design.mechanism.model, &design.parameters);
         let path = DrivePath::new(model, parameters, design.size());
         let range = path.range(model, parameters);
@@ -176,6 +198,15 @@ impl Simulated {
         let demand = Demand::from_pose(&design, path, range, start, &self.placed);
         Motion::along(&design, demand, progress).map(Arc::new)
     }
+}
+
+/// What a drive that was let go gives by itself.
+#[derive(Clone, Debug)]
+pub(crate) struct Machine {
+    /// Its motor and the sense in which that turns.
+    pub motor: Option<(Motor<f64>, f64)>,
+    /// Its oil and the place of its first pressure among the inner states.
+    pub oil: Option<(Oil<f64>, usize)>,
 }
 
 /// Without a jump between.
@@ -186,7 +217,8 @@ struct Stretch {
     ends: Vec<Vec<[f64; 3]>>,
     /// By drive: accelerations at the quarters of every step.
     quarters: Vec<Vec<[f64; 3]>>,
-    work: Vec<[f64; COEFFICIENTS]>,
+    /// By what is followed beside the drives: its values in every step.
+    beside: Vec<Vec<[f64; COEFFICIENTS]>>,
     /// Which coordinates tell the place.
     choices: Vec<f64>,
 }
@@ -194,13 +226,16 @@ struct Stretch {
 /// Collects what is found.
 pub(crate) struct Record {
     start: Vec<f64>,
+    /// Where begins what is followed beside the drives.
+    beside: Vec<f64>,
     stretches: Vec<Stretch>,
 }
 
 impl Record {
-    pub fn new(start: Vec<f64>) -> Self {
+    pub fn new(start: Vec<f64>, beside: Vec<f64>) -> Self {
         Self {
             start,
+            beside,
             stretches: Vec::new(),
         }
     }
@@ -211,31 +246,34 @@ impl Record {
             times: vec![time],
             ends: states.iter().map(|state| vec![*state]).collect(),
             quarters: vec![Vec::new(); states.len()],
-            work: Vec::new(),
+            beside: vec![Vec::new(); self.beside.len()],
             choices,
         });
     }
 
-    /// Adds a step: the accelerations at its quarters, the state at its end, and the work at equal parts of it.
+    /// Adds a step: the accelerations at its quarters, the state at its end, and what is followed beside the drives at equal parts of
+    /// it.
     pub fn add(
         &mut self,
         time: f64,
         quarters: &[Vec<[f64; 3]>; 3],
         end: &[[f64; 3]],
-        work: [f64; COEFFICIENTS],
+        beside: &[[f64; COEFFICIENTS]],
     ) {
         let Some(stretch) = self.stretches.last_mut() else {
             return;
         };
         stretch.times.push(time);
-        stretch.work.push(work);
+        for (all, values) in stretch.beside.iter_mut().zip(beside) {
+            all.push(*values);
+        }
         for (drive, end) in end.iter().enumerate() {
             stretch.ends[drive].push(*end);
             stretch.quarters[drive].push([0, 1, 2].map(|k| quarters[k][drive][2]));
         }
     }
 
-    /// The laws of all drives, of what tells the place, and of which does that; and the work as one.
+    /// The laws of all drives, of what tells the place, and of which does that; and of what is followed beside them.
     pub fn laws(self, end: f64) -> Laws {
         let stretches: Vec<Stretch> = (self.stretches.into_iter())
             .filter(|s| s.times.len() > 1)
@@ -270,13 +308,17 @@ impl Record {
             let first = stretches.first().map_or(0.0, |s| s.choices[k]);
             law(first, end, stretches.iter().filter_map(of))
         });
-        let of_work =
-            |stretch: &Stretch| Polynomials::at_equal_parts(&local(stretch), &stretch.work);
+        let beside = self.beside.iter().enumerate().map(|(place, start)| {
+            let of = |stretch: &Stretch| {
+                Polynomials::at_equal_parts(&local(stretch), &stretch.beside[place])
+            };
+            law(*start, end, stretches.iter().filter_map(of))
+        });
         Laws {
+            beside: beside.collect(),
             drives,
             places: places.collect(),
             choices: choices.collect(),
-            work: law(0.0, end, stretches.iter().filter_map(of_work)),
         }
     }
 }
@@ -289,8 +331,8 @@ pub(crate) struct Laws {
     pub places: Vec<Law>,
     /// Of which coordinates they are.
     pub choices: Vec<Law>,
-    /// Work done on the mechanism, J.
-    pub work: Law,
+    /// Of what is followed beside them.
+    pub beside: Vec<Law>,
 }
 
 /// A law of polynomials until `end`; one that stands still where there are none or where they do.

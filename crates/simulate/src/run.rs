@@ -5,7 +5,7 @@ use std::sync::Arc;
 use kempe_dynamics::{Forces, Problem};
 use kempe_integrate::{Integrator, Stopped, Tolerance, Used};
 use kempe_mechanism::{Design, NotReleased};
-use kempe_model::{COEFFICIENTS, DriveId};
+use kempe_model::{COEFFICIENTS, DriveId, Law, Measure};
 use kempe_motion::{Done, MotionError, Progress, Stage};
 use kempe_units::Dimension;
 
@@ -15,9 +15,10 @@ use crate::joints::{Place, opened, rigid_stops, touched};
 use crate::places::Places;
 use crate::plant::{Mode, Plant, motor_sense};
 use crate::question::{Question, Resistance, Stop};
-use crate::record::{Ending, Pilots, Record, Simulated};
+use crate::record::{Ending, Machine, Pilots, Record, Simulated};
 use crate::start::{NoStart, start};
 use crate::tellers::{Exchanged, NEAR, Tellers};
+use crate::toggle::{Toggle, Toggled};
 use crate::watch::{Watch, first};
 
 /// Most steps and events: what is kept of a step takes some hundred bytes, and of an event a piece of the laws, which are searched one
@@ -132,7 +133,7 @@ pub fn simulate(
         [question.free.clone(), driven.clone()],
         senses.collect(),
     );
-    let plant = Plant::new(
+    let mut plant = Plant::new(
         &design,
         forces,
         places,
@@ -143,14 +144,26 @@ pub fn simulate(
     if plant.rubs() && moving.len() > 1 {
         return Err(Unsimulated::FrictionOfSeveral);
     }
+    let mut y: Vec<f64> = (question.start.iter().map(|s| s[0]))
+        .chain(question.start.iter().map(|s| s[1]))
+        .chain(vec![0.0; plant.inner.pressures() + 1])
+        .collect();
+    // Switches may go by pressures, and pressures by loads that are switched.
+    Toggle::all(&mut plant, &y);
+    if !plant.pressures_at_start(&mut y) {
+        return Err(Unsimulated::NoMass);
+    }
+    let toggles = Toggle::all(&mut plant, &y);
     let mut run = Run {
-        record: Record::new(coordinates),
+        record: Record::new(coordinates, beside(&plant, &y)),
         time: 0.0,
-        y: (question.start.iter().map(|s| s[0]))
-            .chain(question.start.iter().map(|s| s[1]))
-            .chain([0.0])
+        y,
+        ends: (question.end_when.iter())
+            .chain(toggles.iter().map(|toggle| &toggle.awaits))
+            .cloned()
             .collect(),
-        conditions: vec![false; question.end_when.len()],
+        conditions: vec![false; question.end_when.len() + toggles.len()],
+        toggles,
         happenings: Vec::new(),
         held: Vec::new(),
         steps: 0,
@@ -164,12 +177,18 @@ pub fn simulate(
     };
     let ending = run.whole(&breaks, progress)?;
     let acting = &run.plant.forces.acting;
-    let motors = (run.plant.motors.iter())
-        .map(|it| it.map(|(motor, sense)| (acting.motors[motor].clone(), sense)))
+    let mut machines: Vec<Machine> = (run.plant.motors.iter())
+        .map(|it| Machine {
+            motor: it.map(|it| (acting.motors[it.motor].clone(), it.sense)),
+            oil: None,
+        })
         .collect();
+    for moved in &run.plant.inner.moved {
+        machines[moved.free].oil = Some((acting.oils[moved.oil].clone(), moved.place));
+    }
     let end = run.time;
     let (used, evaluations) = run.effort();
-    let laws = run.record.laws(end);
+    let mut laws = run.record.laws(end);
     let links = run.tellers.used();
     let pilots = (!links.is_empty()).then(|| Pilots {
         mechanism: run.tellers.piloted(),
@@ -177,13 +196,21 @@ pub fn simulate(
         laws: [laws.places, laws.choices].concat(),
         links: links.to_vec(),
     });
+    let work = laws.beside.remove(0);
+    let inner = &run.plant.inner;
+    let mut inner_laws: Vec<Option<Law>> = vec![None; inner.values.len()];
+    let pressures = inner.moved.iter().flat_map(|m| [m.place, m.place + 1]);
+    let switches = inner.values.len() - inner.switches().len()..inner.values.len();
+    for (place, law) in pressures.chain(switches).zip(laws.beside) {
+        inner_laws[place] = Some(law);
+    }
     Ok(Simulated {
         free: question.free.clone(),
         touched: touched(&run.plant.forces.acting.contacts, &laws.drives, end),
         rigid_from: question.stops.len() - rigid_places.len(),
         rigid: rigid_places,
         laws: laws.drives,
-        work: laws.work,
+        work,
         end,
         ending,
         happenings: run.happenings,
@@ -191,11 +218,24 @@ pub fn simulate(
         used,
         evaluations,
         first: first_motion,
-        motors,
         pilots,
+        inner: inner_laws,
+        machines,
         design,
         placed,
     })
+}
+
+/// What is followed beside the drives: the work, the pressures, the switches.
+fn beside(plant: &Plant, y: &[f64]) -> Vec<f64> {
+    let (pressures, work) = split(plant, y);
+    let switches = plant.inner.switches();
+    [work, pressures, switches].concat()
+}
+
+/// The pressures and the work of a state.
+fn split<'y>(plant: &Plant, y: &'y [f64]) -> (&'y [f64], &'y [f64]) {
+    y[2 * plant.free.len()..].split_at(plant.inner.pressures())
 }
 
 /// A simulation on its way.
@@ -204,10 +244,13 @@ struct Run<'q> {
     plant: Plant,
     record: Record,
     time: f64,
-    /// Coordinates that are let go, their speeds, and the work done.
+    /// Coordinates that are let go, their speeds, pressures of cylinders, and the work done.
     y: Vec<f64>,
-    /// Which conditions did not hold yet, so that they may come to.
+    /// What is waited for: conditions that end it, and what turns each toggle next.
+    ends: Vec<Measure>,
+    /// Which of them did not hold yet, so that they may come to.
     conditions: Vec<bool>,
+    toggles: Vec<Toggle>,
     happenings: Vec<Happening>,
     held: Vec<Held>,
     steps: usize,
@@ -288,7 +331,7 @@ impl Run<'_> {
                 return Err(Unsimulated::BeyondStop(stop, -open));
             }
         }
-        for (armed, condition) in self.conditions.iter_mut().zip(&self.question.end_when) {
+        for (armed, condition) in self.conditions.iter_mut().zip(&self.ends) {
             *armed = (self.plant.value(condition, 0.0, &self.y)).is_some_and(|x| x < 0.0);
         }
         if self.plant.rubs() {
@@ -421,7 +464,7 @@ impl Run<'_> {
             let watched = first(
                 &mut it,
                 &mut self.plant,
-                &self.question.end_when,
+                &self.ends,
                 &mut self.conditions,
                 &mut found,
             );
@@ -501,10 +544,14 @@ impl Run<'_> {
             return known.restart(&mut self.plant, time, y).then_some(known);
         }
         let (relative, until) = (self.question.tolerance, self.question.until);
-        let absolute = (self.plant.scales.iter().map(|s| relative * s))
-            .chain(self.plant.scales.iter().map(|s| relative * s / until))
-            .chain([f64::INFINITY])
-            .collect();
+        let absolute =
+            (self.plant.scales.iter().map(|s| relative * s))
+                .chain(self.plant.scales.iter().map(|s| relative * s / until))
+                .chain(self.plant.inner.moved.iter().flat_map(|moved| {
+                    [relative * self.plant.forces.acting.oils[moved.oil].scale(); 2]
+                }))
+                .chain([f64::INFINITY])
+                .collect();
         let tolerance = Tolerance { relative, absolute };
         Integrator::with(
             self.question.method,
@@ -519,14 +566,19 @@ impl Run<'_> {
     /// Records the part of the last step up to a time, and goes there.
     fn add(&mut self, it: &mut Integrator, to: f64, found: &mut [f64]) -> bool {
         let from = self.time;
-        let mut work = [self.y[self.y.len() - 1]; COEFFICIENTS];
+        let now = beside(&self.plant, &self.y);
+        let mut values: Vec<[f64; COEFFICIENTS]> = now.iter().map(|x| [*x; COEFFICIENTS]).collect();
         if self.plant.works {
-            for (k, work) in work.iter_mut().enumerate().skip(1) {
+            for k in 1..COEFFICIENTS {
                 let part = k as f64 / (COEFFICIENTS - 1) as f64;
                 if !it.between(&mut self.plant, from + part * (to - from), found) {
                     return false;
                 }
-                *work = found.last().copied().unwrap_or(0.0);
+                // Switches stand still within a step.
+                let (pressures, work) = split(&self.plant, found);
+                for (values, there) in values.iter_mut().zip(work.iter().chain(pressures)) {
+                    values[k] = *there;
+                }
             }
         }
         let mut rates = vec![0.0; found.len()];
@@ -551,7 +603,7 @@ impl Run<'_> {
         let Some(last) = at(to, self) else {
             return false;
         };
-        self.record.add(to, &quarters, &last, work);
+        self.record.add(to, &quarters, &last, &values);
         self.time = to;
         self.y.copy_from_slice(found);
         true
@@ -620,11 +672,45 @@ impl Run<'_> {
                 self.tell(Happened::Slips);
             }
             Watch::Ends(condition, _) => {
-                self.tell(Happened::Ends { condition });
-                return Some(Ending::Condition(condition));
+                match condition.checked_sub(self.question.end_when.len()) {
+                    Some(toggle) => self.toggle(toggle, condition),
+                    None => {
+                        self.tell(Happened::Ends { condition });
+                        return Some(Ending::Condition(condition));
+                    }
+                }
             }
         }
         None
+    }
+
+    /// Turns something on or off.
+    fn toggle(&mut self, index: usize, condition: usize) {
+        let Some(toggle) = self.toggles.get_mut(index) else {
+            return;
+        };
+        toggle.turn();
+        let (what, value, counts) = (toggle.what, toggle.value, toggle.counts());
+        self.ends[condition] = toggle.awaits.clone();
+        match what {
+            Toggled::Switch(switch) => {
+                self.plant.inner.set(switch, value);
+                self.tell(match counts {
+                    true => Happened::Counts { switch, to: value },
+                    false => Happened::Switches {
+                        switch,
+                        on: value != 0.0,
+                    },
+                });
+            }
+            Toggled::Vacuum(free, side) if value != 0.0 => {
+                self.tell(Happened::Cavitates { free, side });
+            }
+            Toggled::Vacuum(..) => {}
+        }
+        let awaited = &self.ends[condition];
+        self.conditions[condition] =
+            (self.plant.value(awaited, self.time, &self.y)).is_some_and(|x| x < 0.0);
     }
 
     /// An impact at a stop, and at all others that are closed and closing: the fastest rate before.

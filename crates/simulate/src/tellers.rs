@@ -94,9 +94,10 @@ impl Tellers {
         within: f64,
         progress: &mut dyn Progress,
     ) -> Exchanged {
-        // Joints with play are told by how far they stand open.
-        let has_play = !self.design.mechanism.model.actions.contacts.is_empty();
-        if has_play || plant.mode.stuck || (within.is_finite() && poor(plant, within).is_none()) {
+        if plant.is_tied()
+            || plant.mode.stuck
+            || (within.is_finite() && poor(plant, within).is_none())
+        {
             return Exchanged::Not;
         }
         let mut rates = vec![0.0; y.len()];
@@ -219,6 +220,7 @@ impl Tellers {
         )
         .telling(tells, followed.collect(), own);
         new.mode = old.mode.clone();
+        new.inner = old.inner.clone();
         new.end = old.end;
         let body =
             self.links[place].map_or(BodyId::GROUND, |link| self.design.mechanism.body_of(link));

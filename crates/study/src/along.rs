@@ -4,9 +4,13 @@ use std::sync::Arc;
 
 use kempe_dynamics::{ForceArrow, ForceError, ForceEvidence, ForceNote, ForceSampler, Problem};
 use kempe_measure::force_source::NoForces;
+use kempe_measure::measure::{NoMeasure, visit_leaves};
 use kempe_measure::{Sample, Sampler, StatisticNote, Unmeasurable, Unprepared, unmeasurable};
 use kempe_mechanism::Mechanism;
-use kempe_model::{ContactStudy, Diagnostic, DriveId, Measure, Model, Study, StudyKind};
+use kempe_model::{
+    ContactStudy, Diagnostic, DriveId, InnerState, Leaf, Measure, Model, SimulateStudy, Study,
+    StudyKind,
+};
 use kempe_motion::{Motion, Progress, Silent, Stage};
 
 use crate::columns::Asked;
@@ -214,8 +218,27 @@ pub(crate) fn not_answerable(mechanism: &Mechanism, study: &Study) -> Vec<Diagno
     };
     let quantities: Vec<&Quantity> = asked.all().collect();
     let measures: Vec<_> = quantities.iter().map(|q| &q.measure).collect();
-    let problems = unmeasurable(mechanism, &measures);
+    let mut problems = unmeasurable(mechanism, &measures);
+    if let StudyKind::Simulate(study) = &study.kind {
+        problems.retain(|p| {
+            let measure = measures.get(p.index);
+            p.reason != NoMeasure::OnlySimulated
+                || measure.is_none_or(|m| !is_followed(mechanism, study, m))
+        });
+    }
     not_measurable(&mechanism.model, &quantities, &problems)
+}
+
+/// Whether a simulation follows all pressures and switches that a measure asks for.
+pub(crate) fn is_followed(mechanism: &Mechanism, study: &SimulateStudy, measure: &Measure) -> bool {
+    let mut followed = true;
+    visit_leaves(mechanism, measure, &mut |leaf| {
+        followed &= match leaf {
+            Leaf::Inner(InnerState::Pressure(drive, _)) => study.released.contains(drive),
+            _ => true,
+        };
+    });
+    followed
 }
 
 /// Measures that the mechanism cannot answer, as diagnostics over the model file.

@@ -1,6 +1,6 @@
 //! Which quantities a motion study reports.
 
-use kempe_measure::measure::visit_leaves;
+use kempe_measure::measure::{asks_unknown_state, visit_leaves};
 use kempe_mechanism::Mechanism;
 use kempe_model::{
     FRAME, ForceMeasure, Hodograph, Leaf, LinkId, Measure, Model, MotionStudy, Plot, PointId,
@@ -127,12 +127,13 @@ pub(crate) fn is_of_whole_motion(mechanism: &Mechanism, measure: &Measure) -> bo
     found
 }
 
-/// Named measures, those of forces only with `forces`.
+/// Named measures, those of forces only with `forces`, those of pressures and switches where a simulation has followed them.
 fn named(model: &Model, forces: bool) -> impl Iterator<Item = Quantity> {
     let known = model
         .measures
         .iter()
-        .filter(move |m| forces || !m.needs_forces);
+        .filter(move |m| forces || !m.needs_forces)
+        .filter(|m| !asks_unknown_state(model, &m.measure));
     known.map(|m| Quantity {
         name: m.name.clone(),
         measure: m.measure.clone(),

@@ -128,8 +128,15 @@ fn acting(model: &Model) -> Vec<String> {
         actions
             .cylinders
             .iter()
-            .map(|c| of_drive(c.drive))
+            .map(|c| {
+                let oil = if c.oil.is_some() { " with oil" } else { "" };
+                of_drive(c.drive) + oil
+            })
             .collect(),
+    );
+    add(
+        "switches of simulations",
+        actions.switches.iter().map(|s| s.name.clone()).collect(),
     );
     add(
         "motors",

@@ -2,7 +2,8 @@
 
 use kempe_mechanism::Mechanism;
 use kempe_model::{
-    Column, DriveId, DriveKind, ForceMeasure, Hodograph, JointId, JointRef, Leaf, Plot, PointId,
+    Chamber, Column, DriveId, DriveKind, ForceMeasure, Hodograph, InnerState, JointId, JointRef,
+    Leaf, Plot, PointId,
 };
 use kempe_units::{Dimension, Expr};
 
@@ -47,7 +48,21 @@ pub(crate) fn standard(mechanism: &Mechanism) -> Vec<Quantity> {
             ForceMeasure::ReducedLoad(id),
             load,
         ));
-        if let Some(cylinder) = model.actions.cylinders.iter().find(|c| c.drive == id) {
+        let sides = [
+            ("bore_pressure", Chamber::Bore),
+            ("ring_pressure", Chamber::Ring),
+        ];
+        let pressures = sides.map(|(what, side)| (what, InnerState::Pressure(id, side)));
+        if pressures
+            .iter()
+            .any(|(_, state)| model.inner_law(*state).is_some())
+        {
+            list.extend(pressures.map(|(what, state)| Quantity {
+                name: format!("{what}({name})"),
+                measure: Expr::Leaf(Leaf::Inner(state)),
+                dimension: Dimension::PRESSURE,
+            }));
+        } else if let Some(cylinder) = model.actions.cylinders.iter().find(|c| c.drive == id) {
             list.push(force(
                 format!("pressure({name})"),
                 ForceMeasure::Pressure(id),

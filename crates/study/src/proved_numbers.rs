@@ -270,6 +270,7 @@ fn over_cell(
         alone: vec![None; coordinates.len()],
         coordinates: coordinates.into_iter().map(still).collect(),
         near: branch.near.clone(),
+        inner: Vec::new(),
     };
     measure(&state, &History::default(), None, inner, Along::Time).coefficient(0)
 }

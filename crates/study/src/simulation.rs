@@ -8,8 +8,8 @@ use std::sync::Arc;
 
 use kempe_mechanism::Design;
 use kempe_model::{
-    Contact, Diagnostic, DriveId, ForceMeasure, Leaf, LinkId, Model, MotionStudy, Released, Rows,
-    SimulateStudy, StepMethod, StopResistance, StudyKind, value,
+    Amount, Chamber, Contact, Diagnostic, DriveId, ForceMeasure, Leaf, LinkId, Model, MotionStudy,
+    Released, Rows, SimulateStudy, StepMethod, StopResistance, StudyKind, value,
 };
 use kempe_motion::progress::{Progress, Silent};
 use kempe_motion::{EndReason, Motion, Stage};
@@ -19,7 +19,7 @@ use kempe_simulate::{
 };
 use kempe_units::{Dimension, Expr};
 
-use crate::along::force_problems;
+use crate::along::{force_problems, is_followed};
 use crate::clearance::{joint_name, not_released};
 use crate::explain::{cannot_move, stopped};
 use crate::motion::rows_of;
@@ -37,6 +37,8 @@ const TOLERANCE: f64 = 1e-13;
 const OFF: [(&str, f64); 2] = [("energy", 1e-8), ("power", 1e-6)];
 /// ... and by more than this in any case.
 const WRONG: f64 = 1e-3;
+/// Where less than this part of the energies is moved, nothing moves: a balance is in parts of this.
+const STANDS: f64 = 1e-9;
 /// No step is better than that.
 const FINEST: f64 = 1e-15;
 /// A speed below this part of that before an impact is none.
@@ -61,7 +63,7 @@ pub(crate) fn simulated_motion(
         let message = format!("there is no simulation called `{name}`");
         return Err(vec![Diagnostic::error("unknown-name", message)]);
     };
-    let run = Run::new(model, study, &[], progress)?;
+    let run = Run::new(model, &with_strokes(model, study), &[], progress)?;
     run.motion(progress)
 }
 
@@ -84,6 +86,10 @@ impl Run {
         progress: &mut dyn Progress,
     ) -> Result<Self, Vec<Diagnostic>> {
         let design = design(model);
+        let unknown = unfollowed(&design, study);
+        if !unknown.is_empty() {
+            return Err(unknown);
+        }
         let (mut question, mut stops) = question(study, model, &design.parameters);
         question.contacts = contacts.to_vec();
         let found = simulate(&design, &question, progress)
@@ -120,6 +126,7 @@ pub(crate) fn simulation(
     contacts: &[Contact],
     progress: &mut dyn Progress,
 ) -> Result<(StudyResult, Simulated), Vec<Diagnostic>> {
+    let study = &with_strokes(model, study);
     let run = Run::new(model, study, contacts, progress)?;
     // What was found until it was stopped is shown.
     let was_stopped = run.found.ending == Ending::Stopped;
@@ -132,7 +139,7 @@ pub(crate) fn simulation(
         findings: mut diagnostics,
         ..
     } = run;
-    let hidden = hidden(&found.telling());
+    let hidden = hidden(&found.telling(), &found);
     let along = in_time(&study.along, question.until);
     let (mut result, values) = rows_of(
         &motion,
@@ -159,6 +166,7 @@ pub(crate) fn simulation(
         question.tolerance,
     ));
     diagnostics.extend(early(model, &units, &found));
+    diagnostics.extend(cavitation(model, &units, study, &found));
     result.table.balance = Some(balance);
     for (note, time) in result.table.notes.iter_mut().zip(&times) {
         let held = held_at(&found, *time).map(|held| what_holds(held, &stops));
@@ -168,7 +176,7 @@ pub(crate) fn simulation(
     result.listings.push(how(model, &question, &found, &result));
     result
         .listings
-        .extend(happened(&units, study, &stops, &found));
+        .extend(happened(model, &units, study, &stops, &found));
     if was_stopped {
         let all = count(
             model,
@@ -180,6 +188,94 @@ pub(crate) fn simulation(
     }
     result.diagnostics = diagnostics;
     Ok((result, found))
+}
+
+/// What goes by the pressure of a cylinder that the study does not let go.
+fn unfollowed(design: &Design<f64>, study: &SimulateStudy) -> Vec<Diagnostic> {
+    let model = &design.mechanism.model;
+    let actions = &model.actions;
+    let measure = |amount: &Amount| match amount {
+        Amount::Measure(measure) => measure.clone(),
+        Amount::Table { over, .. } => (**over).clone(),
+    };
+    let loads = actions.loads.iter().flat_map(|load| {
+        let measures = load.kind.amounts().map(measure);
+        measures.map(|m| (format!("the load `{}`", load.name), m, load.span.clone()))
+    });
+    let name = |drive: DriveId| {
+        model
+            .drives
+            .get(drive.index())
+            .map_or("", |d| d.name.as_str())
+    };
+    let valves = (actions.cylinders.iter())
+        .filter(|cylinder| study.released.contains(&cylinder.drive))
+        .flat_map(|cylinder| {
+            let oil = cylinder.oil.iter();
+            let openings = oil.flat_map(|oil| std::iter::once(&oil.valve.0).chain(&oil.valve.1));
+            let what = format!("the valve of `{}`", name(cylinder.drive));
+            openings.map(move |it| (what.clone(), measure(it), cylinder.span.clone()))
+        });
+    let throttles = (actions.motors.iter())
+        .filter(|motor| study.released.contains(&motor.drive))
+        .filter_map(|motor| {
+            let what = format!("the throttle of `{}`", name(motor.drive));
+            Some((what, measure(motor.throttle.as_ref()?), motor.span.clone()))
+        });
+    let switches = actions.switches.iter().flat_map(|switch| {
+        let conditions = std::iter::once(&switch.on).chain(&switch.off);
+        let what = format!("the switch `{}`", switch.name);
+        conditions.map(move |it| (what.clone(), it.above.clone(), switch.span.clone()))
+    });
+    let ends = study.end_when.iter();
+    let ends = ends.map(|it| (format!("`{}`", it.text), it.above.clone(), 0..0));
+    let all = (loads.chain(valves))
+        .chain(throttles)
+        .chain(switches)
+        .chain(ends);
+    let unknown = all.filter(|(_, measure, _)| !is_followed(&design.mechanism, study, measure));
+    let told = unknown.map(|(what, _, span)| {
+        let message = format!(
+            "{what} goes by the pressure of a cylinder that keeps its law: nothing follows its oil"
+        );
+        let error = Diagnostic::error("needs-simulation", message);
+        let error = if span.is_empty() {
+            error
+        } else {
+            error.at(span, "")
+        };
+        error.help(
+            "let its drive go too, by `release`, or go by where things are and how fast they move",
+        )
+    });
+    told.collect()
+}
+
+/// The study with the ends of the strokes of cylinders that their oil moves as stops, where it has none of its own for them.
+fn with_strokes(model: &Model, study: &SimulateStudy) -> SimulateStudy {
+    let mut study = study.clone();
+    for cylinder in &model.actions.cylinders {
+        let drive = cylinder.drive;
+        let what = Expr::Leaf(Leaf::Drive(drive));
+        let told = study.stops.iter().any(|stop| stop.what == what);
+        let stroke = cylinder.oil.as_ref().and_then(|oil| oil.stroke.clone());
+        let (Some([closed, stroke]), Some(named)) = (stroke, model.drives.get(drive.index()))
+        else {
+            continue;
+        };
+        if told || !study.released.contains(&drive) {
+            continue;
+        }
+        let open = Expr::Add(Box::new(closed.clone()), Box::new(stroke));
+        study.stops.push(kempe_model::Stop {
+            name: named.name.clone(),
+            what,
+            is_angle: false,
+            between: [Some(closed), Some(open)],
+            resistance: StopResistance::Rigid { restitution: None },
+        });
+    }
+    study
 }
 
 /// The rows of a study in time: so many over the whole time asked for, however early it ends.
@@ -255,8 +351,8 @@ fn question(study: &SimulateStudy, model: &Model, parameters: &[f64]) -> (Questi
     (question, names)
 }
 
-/// Energies, the rate of the kinetic one, and effort and speed of every drive that is let go.
-fn hidden(free: &[DriveId]) -> Vec<Quantity> {
+/// Energies, the rate of the kinetic one, and effort, speed and what the throttle goes by of every drive that is let go.
+fn hidden(free: &[DriveId], found: &Simulated) -> Vec<Quantity> {
     let force = |measure: ForceMeasure| Expr::Leaf(Leaf::Force(measure));
     let quantity = |measure| Quantity {
         name: String::new(),
@@ -269,10 +365,12 @@ fn hidden(free: &[DriveId]) -> Vec<Quantity> {
         quantity(force(ForceMeasure::PotentialEnergy)),
         quantity(Expr::Leaf(Leaf::Rate(Box::new(kinetic), 1))),
     ];
-    for drive in free {
+    for (place, drive) in free.iter().enumerate() {
         list.push(quantity(force(ForceMeasure::Drive(*drive))));
         let coordinate = Box::new(Expr::Leaf(Leaf::Drive(*drive)));
         list.push(quantity(Expr::Leaf(Leaf::Rate(coordinate, 1))));
+        let throttle = found.throttle(place).cloned();
+        list.push(quantity(throttle.unwrap_or(Expr::Const(1.0))));
     }
     list
 }
@@ -325,7 +423,9 @@ fn balance(
         let (kinetic, potential) = (value(0, row), value(1, row) - value(1, 0));
         kinetic.abs().max(potential.abs()).max(works[row].abs())
     };
-    let most = rows.clone().map(moved).fold(0.0, f64::max);
+    let there = |row: usize| value(0, row).abs().max(value(1, row).abs());
+    let rounding = STANDS * rows.clone().map(there).fold(0.0, f64::max);
+    let most = rows.clone().map(moved).fold(rounding, f64::max);
     let fastest = rows
         .clone()
         .map(|row| value(2, row).abs())
@@ -335,8 +435,8 @@ fn balance(
     let asked = |row: usize| {
         (0..found.free.len())
             .map(|k| {
-                let [effort, speed] = [0, 1].map(|j| value(3 + 2 * k + j, row));
-                (effort - found.motor_torque(k, speed)) * speed
+                let [effort, speed, throttled] = [0, 1, 2].map(|j| value(3 + 3 * k + j, row));
+                (effort - found.gives(k, [times[row], speed], throttled)) * speed
             })
             .sum::<f64>()
     };
@@ -411,6 +511,45 @@ fn early(model: &Model, units: &Units, found: &Simulated) -> Option<Diagnostic> 
         )
         .note(format!("{why} ({})", drives.join(", ")))
         .help(help),
+    )
+}
+
+/// The pressure of a chamber: `the pressure on the bore's side of lift`.
+fn chamber(model: &Model, study: &SimulateStudy, free: usize, side: Chamber) -> String {
+    let drive = study.released.get(free);
+    let drive = drive.and_then(|drive| model.drives.get(drive.index()));
+    let side = match side {
+        Chamber::Bore => "bore",
+        Chamber::Ring => "rod",
+    };
+    let name = drive.map_or("", |drive| drive.name.as_str());
+    format!("the pressure on the {side}'s side of {name}")
+}
+
+/// That the pressure in a cylinder fell below that of a vacuum, where it did first.
+fn cavitation(
+    model: &Model,
+    units: &Units,
+    study: &SimulateStudy,
+    found: &Simulated,
+) -> Option<Diagnostic> {
+    let first = found.happenings.iter().find_map(|it| match it.what {
+        Happened::Cavitates { free, side } => Some((it.time, free, side)),
+        _ => None,
+    });
+    let (time, free, side) = first?;
+    let message = format!(
+        "{} falls below that of a vacuum at {}: oil would boil or let its air go, and what follows is not known",
+        chamber(model, study, free, side),
+        units.text(time, Dimension::TIME)
+    );
+    let warning = Diagnostic::warning("cavitation", message);
+    let drive = study.released.get(free);
+    let span = drive.and_then(|drive| Some(model.drives.get(drive.index())?.span.clone()));
+    Some(
+        warning
+            .at(span.unwrap_or_default(), "")
+            .help("let more oil in on that side, move more slowly, or hold the load with pressure on the other side"),
     )
 }
 
@@ -511,6 +650,7 @@ fn told(model: &Model, question: &Question, found: &Simulated) -> Option<String>
 
 /// What happened, in words.
 fn happened(
+    model: &Model,
     units: &Units,
     study: &SimulateStudy,
     stops: &[Named],
@@ -553,6 +693,19 @@ fn happened(
             Happened::Leaves { stop } => format!("leaves {}", name(stop)),
             Happened::Sticks => "friction holds it".to_owned(),
             Happened::Slips => "friction lets it go".to_owned(),
+            Happened::Switches { switch, on } => {
+                let named = model.actions.switches.get(*switch);
+                let name = named.map_or("", |s| s.name.as_str());
+                format!("{name} goes {}", if *on { "on" } else { "off" })
+            }
+            Happened::Counts { switch, to } => {
+                let named = model.actions.switches.get(*switch);
+                let name = named.map_or("", |s| s.name.as_str());
+                format!("{name} counts {to}")
+            }
+            Happened::Cavitates { free, side } => {
+                format!("{} falls below vacuum", chamber(model, study, *free, *side))
+            }
             Happened::Ends { condition } => {
                 let text = study
                     .end_when

@@ -158,6 +158,7 @@ pub fn act(model: &mut Model, rng: &mut Rng, size: f64) {
         let drive_id = DriveId(index as u32);
         match drive.kind {
             DriveKind::Turn { .. } => model.actions.motors.push(Motor {
+                throttle: None,
                 drive: drive_id,
                 curve: vec![
                     (times(rng.range(-0.5, 0.1), 1), number(rng, 1.0, 3.0)),
@@ -167,6 +168,7 @@ pub fn act(model: &mut Model, rng: &mut Rng, size: f64) {
                 span: 0..0,
             }),
             _ => model.actions.cylinders.push(HydraulicCylinder {
+                oil: None,
                 drive: drive_id,
                 bore: times(0.05 * l, 1),
                 rod: times(0.03 * l, 2),

@@ -1,7 +1,7 @@
 //! What a measure asks for: the leaves inside it, and how often it must be differentiated.
 
 use kempe_mechanism::Mechanism;
-use kempe_model::{Leaf, Measure, Nature, PoseMeasure};
+use kempe_model::{Leaf, Measure, Model, Nature, PoseMeasure};
 
 use super::ORDER;
 
@@ -19,6 +19,10 @@ pub enum NoMeasure {
     PathLengthByDrive,
     /// A speed or an acceleration inside a kinematic coefficient.
     SpeedByDrive,
+    /// A pressure or a switch inside a kinematic coefficient.
+    StateByDrive,
+    /// A pressure or a switch that no simulation has followed.
+    OnlySimulated,
 }
 
 impl std::fmt::Display for NoMeasure {
@@ -35,6 +39,10 @@ impl std::fmt::Display for NoMeasure {
             Self::PathLengthByDrive => {
                 "a length of path depends on the whole way since the start, not on where a drive is: divide its rate() by \
                  that of the drive"
+            }
+            Self::StateByDrive => "a pressure or a switch has no derivative to a drive",
+            Self::OnlySimulated => {
+                "only a simulation follows a pressure or a switch, and a pressure only where it lets the cylinder's drive go"
             }
             Self::SpeedByDrive => "a speed or acceleration in time has no derivative to a drive",
         })
@@ -64,7 +72,8 @@ fn depth(
     let mut deepest = 0;
     for leaf in measure.leaves() {
         let own = match leaf {
-            Leaf::Parameter(_) | Leaf::Drive(_) | Leaf::Time => 0,
+            Leaf::Inner(_) if in_coefficient => return Err(NoMeasure::StateByDrive),
+            Leaf::Parameter(_) | Leaf::Drive(_) | Leaf::Time | Leaf::Inner(_) => 0,
             Leaf::Force(_) if in_coefficient => {
                 return Err(NoMeasure::ForceByDrive);
             }
@@ -115,7 +124,7 @@ pub(crate) fn needs_time(mechanism: &Mechanism, measure: &Measure) -> bool {
     let mut needs = false;
     visit_leaves(mechanism, measure, &mut |leaf| {
         needs |= match leaf {
-            Leaf::Time | Leaf::Rate(..) | Leaf::Force(_) => true,
+            Leaf::Time | Leaf::Rate(..) | Leaf::Force(_) | Leaf::Inner(_) => true,
             Leaf::Pose(pose) => matches!(pose.nature(), Nature::InTime(_)),
             _ => false,
         };
@@ -123,33 +132,38 @@ pub(crate) fn needs_time(mechanism: &Mechanism, measure: &Measure) -> bool {
     needs
 }
 
+/// Whether a measure asks for a pressure or a switch that no simulation has followed.
+pub fn asks_unknown_state(model: &Model, measure: &Measure) -> bool {
+    let mut asks = false;
+    let mut seen = vec![false; model.measures.len()];
+    visit_unseen(model, measure, &mut seen, &mut |leaf| {
+        asks |= matches!(leaf, Leaf::Inner(state) if model.inner_law(*state).is_none());
+    });
+    asks
+}
+
 /// Calls `f` for every leaf of a measure, inside rates, coefficients, statistics and named measures as well, the inner
 /// leaves first. A named measure is looked into once.
 pub fn visit_leaves(mechanism: &Mechanism, measure: &Measure, f: &mut impl FnMut(&Leaf)) {
     let mut seen = vec![false; mechanism.model.measures.len()];
-    visit_unseen(mechanism, measure, &mut seen, f);
+    visit_unseen(&mechanism.model, measure, &mut seen, f);
 }
 
-fn visit_unseen(
-    mechanism: &Mechanism,
-    measure: &Measure,
-    seen: &mut [bool],
-    f: &mut impl FnMut(&Leaf),
-) {
+fn visit_unseen(model: &Model, measure: &Measure, seen: &mut [bool], f: &mut impl FnMut(&Leaf)) {
     for leaf in measure.leaves() {
         match leaf {
             Leaf::Named(index) => {
-                let named = mechanism.model.measures.get(*index);
+                let named = model.measures.get(*index);
                 if let (Some(named), Some(false)) = (named, seen.get(*index)) {
                     seen[*index] = true;
-                    visit_unseen(mechanism, &named.measure, seen, f);
+                    visit_unseen(model, &named.measure, seen, f);
                 }
             }
             Leaf::Rate(inner, _)
             | Leaf::Coefficient(inner, _, _)
             | Leaf::Over(_, inner)
             | Leaf::Pose(PoseMeasure::MechanicalAdvantage(inner, _)) => {
-                visit_unseen(mechanism, inner, seen, f);
+                visit_unseen(model, inner, seen, f);
             }
             _ => {}
         }

@@ -118,6 +118,9 @@ impl Between {
                 .collect(),
             near: a.near.clone(),
             alone: alone.collect(),
+            inner: (a.inner.iter().zip(&b.inner))
+                .map(|(a, b)| bounded([a, b], times, over))
+                .collect(),
             abscissa: Abscissa {
                 drive: a.abscissa.drive,
                 clock,

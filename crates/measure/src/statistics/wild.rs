@@ -29,7 +29,12 @@ fn wild(mechanism: &Mechanism, measure: &Measure, known: &mut [Option<bool>]) ->
 fn wild_leaf(mechanism: &Mechanism, leaf: &Leaf, known: &mut [Option<bool>]) -> bool {
     match leaf {
         // Forces are not bounded here; a number over the motion is the same everywhere.
-        Leaf::Parameter(_) | Leaf::Drive(_) | Leaf::Time | Leaf::Force(_) | Leaf::Over(..) => false,
+        Leaf::Parameter(_)
+        | Leaf::Drive(_)
+        | Leaf::Time
+        | Leaf::Inner(_)
+        | Leaf::Force(_)
+        | Leaf::Over(..) => false,
         Leaf::Named(index) => {
             if let Some(found) = known[*index] {
                 return found;

@@ -20,6 +20,7 @@ use crate::key_table::{CYLINDER, MOTOR};
 use crate::load::{HydraulicCylinder, Motor};
 use crate::read::context::{Context, Meaning};
 use crate::read::entry::Entry;
+use crate::read::oil;
 
 /// A file has at most so many of each: as many as drives.
 const MAX: usize = 1_000;
@@ -161,6 +162,8 @@ fn read_cylinder(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<HydraulicC
         cx.wrong_type(node, &place, "a whole number", "count = 2");
         return None;
     }
+    let oil = oil::read(cx, &entry, supply.is_some());
+    let oil = oil?;
     Some(HydraulicCylinder {
         drive: drive?,
         bore,
@@ -171,6 +174,7 @@ fn read_cylinder(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<HydraulicC
         flow: flow?,
         friction: friction?,
         count,
+        oil,
         span: key.span.clone(),
     })
 }
@@ -229,6 +233,8 @@ fn read_motor(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<Motor> {
     Some(Motor {
         drive: drive?,
         curve,
+        // it may go by measures, which are read later
+        throttle: None,
         span: key.span.clone(),
     })
 }

@@ -72,6 +72,8 @@ pub(crate) struct Context<'a> {
     pub dampers: BTreeMap<String, Option<(usize, kempe_units::Dimension)>>,
     /// Loads by name and whether they are forces or torques; they are read after the measures that they may follow.
     pub loads: BTreeMap<String, Option<(usize, kempe_units::Dimension)>>,
+    /// Switches by name, likewise: numbers.
+    pub switches: BTreeMap<String, Option<(usize, kempe_units::Dimension)>>,
     /// Entries of `[cylinders]` that are not sound.
     pub broken_cylinders: BTreeSet<String>,
     /// Whether the file has clearances, sound or not.
@@ -127,6 +129,7 @@ impl<'a> Context<'a> {
             springs: BTreeMap::new(),
             dampers: BTreeMap::new(),
             loads: BTreeMap::new(),
+            switches: BTreeMap::new(),
             broken_cylinders: BTreeSet::new(),
             clearances_given: false,
             table_rows: 0,
@@ -149,6 +152,7 @@ impl<'a> Context<'a> {
                 studies: Vec::new(),
                 announced: Vec::new(),
                 bounds: Vec::new(),
+                inner_laws: Vec::new(),
                 settled: Vec::new(),
             },
         }
@@ -405,16 +409,23 @@ pub(crate) fn near_or_all<'n>(
     known: impl Iterator<Item = &'n str>,
 ) -> String {
     let known: Vec<&str> = known.collect();
+    let all = plural(kind);
     match nearest(name, known.iter().copied()) {
         Some(near) => format!("did you mean `{near}`?"),
-        None if known.is_empty() => format!("the file has no {kind}s"),
+        None if known.is_empty() => format!("the file has no {all}"),
         None if known.len() <= MAX_LISTED && kind.contains(' ') => {
             format!("there are {}", known.join(", "))
         }
-        None if known.len() <= MAX_LISTED => format!("the {kind}s are {}", known.join(", ")),
+        None if known.len() <= MAX_LISTED => format!("the {all} are {}", known.join(", ")),
         None => format!(
-            "the file has {} {kind}s, none of them near this name",
+            "the file has {} {all}, none of them near this name",
             known.len()
         ),
     }
+}
+
+/// `loads`, `switches`.
+pub(crate) fn plural(kind: &str) -> String {
+    let ending = if kind.ends_with("ch") { "es" } else { "s" };
+    format!("{kind}{ending}")
 }

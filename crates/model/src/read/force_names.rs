@@ -10,7 +10,7 @@ use crate::joint::JointKind;
 use crate::measure::{ForceMeasure, JointRef};
 use crate::read::actuators::what_it_is;
 use crate::read::arguments::already_told;
-use crate::read::context::Meaning;
+use crate::read::context::{Meaning, plural};
 use crate::read::measure_names::{Call, Found, Measures};
 
 impl Measures<'_, '_> {
@@ -256,6 +256,24 @@ impl Measures<'_, '_> {
         Ok(id)
     }
 
+    /// A cylinder whose oil is told.
+    pub(crate) fn with_oil(&self, call: &Call<'_>, node: &Node) -> Found<DriveId> {
+        let id = self.hydraulic(call, node, false)?;
+        let mut cylinders = self.0.model.actions.cylinders.iter();
+        if cylinders.any(|c| c.drive == id && c.oil.is_some()) {
+            return Ok(id);
+        }
+        let name = node.as_name().unwrap_or("lift");
+        Err(vec![
+            Issue::new(
+                "missing-key",
+                call.span.clone(),
+                format!("the {} of `{name}` is that of its oil, of which nothing is told", call.function),
+            )
+            .with_help(format!("add `oil` to [cylinders.{name}]; what a given motion asks of it is pressure({name})")),
+        ])
+    }
+
     /// A motor or a cylinder that can give so much and no more, and whether it is a motor.
     pub(crate) fn capacity(&self, call: &Call<'_>, node: &Node) -> Found<(DriveId, bool)> {
         let (id, _) = self.drive(node)?;
@@ -274,7 +292,7 @@ impl Measures<'_, '_> {
         declared: &BTreeMap<String, Option<(usize, Dimension)>>,
     ) -> Found<(usize, Dimension)> {
         let Some(name) = node.as_name() else {
-            let help = format!("name a {what} of [{what}s]");
+            let help = format!("name a {what} of [{}]", plural(what));
             return self.argument(node, &format!("a {what}"), help);
         };
         match declared.get(name) {

@@ -172,7 +172,7 @@ fn direction(cx: &mut Context<'_>, node: &Node) -> Option<Option<Measure>> {
     };
     match check(&tree, &mut Measures(cx)) {
         Ok((angle, Dimension::ANGLE)) => {
-            instant(cx, &angle, &node.span)?;
+            instant(cx, &angle, &node.span, "a load")?;
             Some(Some(angle))
         }
         _ => Some(None),
@@ -213,7 +213,7 @@ fn polar(
 }
 
 /// A value, a measure or a table.
-fn amount(
+pub(crate) fn amount(
     cx: &mut Context<'_>,
     entry: &Entry<'_>,
     node: &Node,
@@ -231,7 +231,7 @@ fn amount(
                 .and_then(|tree| check_as(&tree, &mut Measures(cx), dimension, &unit));
             match checked {
                 Ok((measure, _)) => {
-                    instant(cx, &measure, &node.span)?;
+                    instant(cx, &measure, &node.span, what(entry))?;
                     if let Some(scalar) = as_scalar(&measure) {
                         cx.finite(&scalar, &node.span, dimension)?;
                     }
@@ -252,23 +252,39 @@ fn amount(
     }
 }
 
+/// What an entry says the size of.
+fn what(entry: &Entry<'_>) -> &'static str {
+    match entry.kind.name {
+        "oil" => "the opening of a valve",
+        "motor" => "the throttle of a motor",
+        _ => "a load",
+    }
+}
+
 /// Whether a measure is known at every instant, before the forces are.
-fn instant(cx: &mut Context<'_>, measure: &Measure, span: &Span) -> Option<()> {
+fn instant(cx: &mut Context<'_>, measure: &Measure, span: &Span, what: &str) -> Option<()> {
     let asks = nature(measure, &cx.natures);
     let d = if asks.forces {
         Diagnostic::error(
             "force-depends-on-force",
-            "a load cannot depend on a force that depends on it",
+            format!("{what} cannot depend on a force that depends on it"),
         )
         .at(span.clone(), "asks for a force")
         .help("let it depend on the motion, or write what rubs under [friction] and what yields under [springs]")
     } else if asks.motion {
         Diagnostic::error(
             "not-at-one-instant",
-            "a load is a value at every instant, not one over the whole motion",
+            format!("{what} is a value at every instant, not one over the whole motion"),
         )
         .at(span.clone(), "a number over the whole motion")
         .help("min, max, mean, range, stroke, at and time_ratio of a motion have no place here")
+    } else if asks.inner_rate {
+        Diagnostic::error(
+            "not-at-one-instant",
+            "the rate of a pressure or a switch is not known while the motion is being found",
+        )
+        .at(span.clone(), "asks for such a rate")
+        .help("go by the pressure itself, or by speeds")
     } else {
         return Some(());
     };
@@ -347,7 +363,7 @@ fn over<'d>(
         parse(&text.content).and_then(|tree| check(&tree, &mut Measures(cx)));
     match checked {
         Ok((measure, dimension)) => {
-            instant(cx, &measure, &node.span)?;
+            instant(cx, &measure, &node.span, "what a table goes by")?;
             Some((measure, dimension))
         }
         Err(issues) => {

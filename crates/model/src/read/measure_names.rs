@@ -3,6 +3,7 @@
 use kempe_units::{Dimension, Expr, Issue, Kind, Node, Resolver, check, check_as};
 
 use crate::ids::{FRAME, Span};
+use crate::inner::InnerState;
 use crate::measure::{ForceMeasure, Leaf, Measure, PoseMeasure, Statistic};
 use crate::read::context::{Context, Meaning, MeasureState};
 use crate::read::laws::rate;
@@ -242,6 +243,14 @@ impl Measures<'_, '_> {
             (Form::Pressure, [drive]) => {
                 force(ForceMeasure::Pressure(self.hydraulic(call, drive, false)?))
             }
+            (Form::Chamber(side), [drive]) => {
+                let drive = self.with_oil(call, drive)?;
+                (Leaf::Inner(InnerState::Pressure(drive, *side)), is)
+            }
+            (Form::Switch, [node]) => {
+                let (i, of) = self.acting(node, "switch", &self.0.switches)?;
+                (Leaf::Inner(InnerState::Switch(i)), of)
+            }
             (Form::Capacity, [drive]) => {
                 let (id, of_motor) = self.capacity(call, drive)?;
                 (
@@ -345,7 +354,16 @@ impl Measures<'_, '_> {
     /// A measure that has a derivative to a drive.
     fn of_the_pose(&mut self, node: &Node) -> Found<(Measure, Dimension)> {
         let found = check(node, self)?;
-        if !nature(&found.0, &self.0.natures).forces {
+        let asks = nature(&found.0, &self.0.natures);
+        if asks.inner {
+            let message = "a pressure or a switch has no derivative to a drive";
+            return Err(vec![
+                Issue::new("no-derivative", node.span.clone(), message)
+                    .with_label("asks for a pressure or a switch")
+                    .with_help("its derivative in time is rate(…)"),
+            ]);
+        }
+        if !asks.forces {
             return Ok(found);
         }
         Err(vec![

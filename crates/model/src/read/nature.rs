@@ -3,6 +3,7 @@
 use kempe_units::Expr;
 
 use crate::ids::Scalar;
+use crate::inner::InnerState;
 use crate::measure::{Leaf, Measure, PoseMeasure};
 use crate::model::Model;
 
@@ -13,6 +14,12 @@ pub(crate) struct Nature {
     pub forces: bool,
     /// A number over the whole motion.
     pub motion: bool,
+    /// A pressure or a switch.
+    pub inner: bool,
+    /// A pressure.
+    pub pressure: bool,
+    /// The rate of such.
+    pub inner_rate: bool,
 }
 
 impl Nature {
@@ -20,6 +27,9 @@ impl Nature {
         Self {
             forces: self.forces || other.forces,
             motion: self.motion || other.motion,
+            inner: self.inner || other.inner,
+            pressure: self.pressure || other.pressure,
+            inner_rate: self.inner_rate || other.inner_rate,
         }
     }
 }
@@ -33,10 +43,21 @@ pub(crate) fn nature(measure: &Measure, named: &[Nature]) -> Nature {
             Leaf::Named(i) => named.get(*i).copied().unwrap_or_default(),
             Leaf::Force(_) => Nature {
                 forces: true,
-                motion: false,
+                ..Nature::default()
             },
+            Leaf::Inner(state) => Nature {
+                inner: true,
+                pressure: matches!(state, InnerState::Pressure(..)),
+                ..Nature::default()
+            },
+            Leaf::Rate(inner, _) => {
+                let within = nature(inner, named);
+                Nature {
+                    inner_rate: within.inner,
+                    ..within
+                }
+            }
             Leaf::Pose(PoseMeasure::MechanicalAdvantage(inner, _))
-            | Leaf::Rate(inner, _)
             | Leaf::Coefficient(inner, _, _) => nature(inner, named),
             Leaf::Pose(_) => Nature::default(),
             Leaf::Over(_, inner) => Nature {
@@ -85,7 +106,7 @@ impl Model {
             .iter()
             .map(|m| Nature {
                 forces: m.needs_forces,
-                motion: false,
+                ..Nature::default()
             })
             .collect();
         nature(measure, &named).forces

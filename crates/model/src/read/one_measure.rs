@@ -105,6 +105,9 @@ impl<'a> Context<'a> {
                 (load.name.clone(), Some((i, dimension)))
             })
             .collect();
+        cx.switches = (model.actions.switches.iter().enumerate())
+            .map(|(i, switch)| (switch.name.clone(), Some((i, Dimension::NONE))))
+            .collect();
         cx.measures = (model.measures.iter().enumerate())
             .map(|(i, m)| MeasureState::Sound(i, m.dimension))
             .collect();

@@ -12,8 +12,8 @@ use crate::model::UnitName;
 use crate::read::context::Context;
 use crate::read::entry::Entry;
 use crate::read::{
-    actuators, assembly, clearance, drawn, drives, friction, joints, links, loads, masses,
-    measures, names, parameters, places, springs, studies,
+    actuators, assembly, clearance, controls, drawn, drives, friction, joints, links, loads,
+    masses, measures, names, parameters, places, springs, studies, switches,
 };
 use crate::study::StudyKind;
 
@@ -74,8 +74,11 @@ pub(crate) fn read(cx: &mut Context<'_>, root: &Table, overrides: &[(String, Str
     actuators::read_cylinders(cx, sections.of("cylinders"));
     actuators::read_motors(cx, sections.of("motors"));
     loads::declare(cx, sections.of("loads"));
+    switches::declare(cx, sections.of("switches"));
     measures::read(cx, sections.of("measures"));
     loads::read(cx, sections.of("loads"));
+    switches::read(cx, sections.of("switches"));
+    controls::read(cx, sections.of("cylinders"), sections.of("motors"));
     studies::read(cx, sections.of("studies"));
     let asked = (cx.model.studies.iter()).any(|s| !matches!(s.kind, StudyKind::Motion(_)))
         || cx.model.measures.iter().any(|m| m.needs_forces);

@@ -338,6 +338,14 @@ fn stopped(cx: &mut Context<'_>, key: &Key) -> Option<(Measure, Dimension)> {
             Some(MeasureState::Sound(index, dimension)) => {
                 let measure = Expr::Leaf(Leaf::Named(*index));
                 let dimension = *dimension;
+                if nature(&measure, &cx.natures).pressure {
+                    return cx.refuse(
+                        "bad-choice",
+                        format!("`{}` goes by a pressure, which no stop holds", key.name),
+                        &key.span,
+                        "stop the angle of a link, the coordinate of a drive, or a measure of where things are",
+                    );
+                }
                 of_the_pose(cx, &measure, &key.span)?;
                 Some((measure, dimension))
             }
@@ -361,6 +369,7 @@ fn of_the_pose(cx: &mut Context<'_>, measure: &Measure, span: &Span) -> Option<(
     let (code, what) = match (nature.forces, nature.motion) {
         (true, _) => ("force-in-condition", "a force"),
         (_, true) => ("not-at-one-instant", "a number over the whole motion"),
+        _ if nature.inner_rate => ("not-at-one-instant", "the rate of a pressure or a switch"),
         _ if asks_path(cx, measure) => ("not-at-one-instant", "a length of path"),
         _ => return Some(()),
     };
@@ -386,7 +395,7 @@ fn asks_path(cx: &Context<'_>, measure: &Measure) -> bool {
 }
 
 /// `angle(rocker) <= 0 deg`.
-fn condition(cx: &mut Context<'_>, node: &Node, text: &Text) -> Option<Condition> {
+pub(crate) fn condition(cx: &mut Context<'_>, node: &Node, text: &Text) -> Option<Condition> {
     let checked = parse_condition(&text.content)
         .and_then(|condition| check_condition(&condition, &mut Measures(cx)));
     let condition = match checked {
@@ -405,5 +414,6 @@ fn condition(cx: &mut Context<'_>, node: &Node, text: &Text) -> Option<Condition
     Some(Condition {
         text: text.content.trim().to_owned(),
         above,
+        dimension: condition.dimension,
     })
 }

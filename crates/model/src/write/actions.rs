@@ -7,12 +7,13 @@ use crate::contact::ContactProperties;
 use crate::ids::{FRAME, LinkId, LinkPointRef, PointId, Scalar};
 use crate::item::{File, Item};
 use crate::key_table::clearance::{HERTZIAN, LAWS, OF_ALL};
-use crate::key_table::{ACTS, word_of};
+use crate::key_table::{ACTS, LEAKAGE, ON_OFF, word_of};
 use crate::link::Place;
 use crate::load::{
     Acts, Amount, Between, Damper, Friction, FrictionAt, HydraulicCylinder, Load, LoadKind, Motor,
     PointMass, Spring,
 };
+use crate::oil::Oil;
 use crate::read::springs::tension;
 use crate::write::mechanism::is_nothing;
 use crate::write::spelling::Writer;
@@ -54,13 +55,33 @@ impl Writer<'_> {
         }
         for cylinder in &acting.cylinders {
             let name = self.drive(cylinder.drive).to_owned();
-            let entry = (name, Item::Table(self.cylinder(cylinder)));
+            let mut entries = self.cylinder(cylinder);
+            if let Some(oil) = &cylinder.oil {
+                let oil = self.oil(&name, oil);
+                entries.push(("oil".to_owned(), Item::Table(oil)));
+            }
+            let entry = (name, Item::Table(entries));
             file.section("cylinders").push(entry);
         }
         for motor in &acting.motors {
             let name = self.drive(motor.drive).to_owned();
-            let entry = (name, Item::Table(self.motor(motor)));
-            file.section("motors").push(entry);
+            let mut entries = self.motor(motor);
+            if let Some(throttle) = &motor.throttle {
+                let throttle = self.amount(&name, throttle, Dimension::NONE);
+                entries.push(("throttle".to_owned(), throttle));
+            }
+            file.section("motors").push((name, Item::Table(entries)));
+        }
+        for switch in &acting.switches {
+            let off = switch.off.as_ref().map(|off| self.text("off", &off.text));
+            let starts = switch
+                .starts
+                .map(|on| self.text("starts", word_of(&ON_OFF, &on)));
+            let every = self.given("every", &switch.every, switch.on.dimension);
+            let entries = [Some(self.text("on", &switch.on.text)), off, every, starts];
+            let entries = entries.into_iter().flatten().collect();
+            file.section("switches")
+                .push((switch.name.clone(), Item::Table(entries)));
         }
     }
 
@@ -340,6 +361,40 @@ impl Writer<'_> {
             unless(one, self.value("count", &cylinder.count, Dimension::NONE)),
         ];
         entries.extend(more.into_iter().flatten());
+        entries
+    }
+
+    fn oil(&mut self, name: &str, oil: &Oil) -> Entries {
+        let pressure = Dimension::PRESSURE;
+        let both = |it: &Self, key: &str, both: &[Scalar; 2], dimension: Dimension| {
+            let both = both.iter().map(|value| it.scalar(value, dimension));
+            (key.to_owned(), Item::List(both.collect()))
+        };
+        let mut opening = |opening: &Amount| self.amount(name, opening, Dimension::NONE);
+        let valve = match &oil.valve {
+            (bore, None) => opening(bore),
+            (bore, Some(ring)) => Item::List(vec![opening(bore), opening(ring)]),
+        };
+        let mut entries = vec![
+            self.value("bulk_modulus", &oil.bulk_modulus, pressure),
+            both(self, "volume", &oil.volume, Dimension::VOLUME),
+            ("valve".to_owned(), valve),
+            self.value("flow", &oil.flow, Dimension::FLOW),
+            self.value("drop", &oil.drop, pressure),
+        ];
+        if let Some([closed, stroke]) = &oil.stroke {
+            entries.push(self.value("closed", closed, Dimension::LENGTH));
+            entries.push(self.value("stroke", stroke, Dimension::LENGTH));
+        }
+        entries.extend(self.given("hose_modulus", &oil.hose_modulus, pressure));
+        entries.extend(self.given("wall_modulus", &oil.wall_modulus, pressure));
+        if !is_nothing(&oil.damping) {
+            entries.push(self.value("damping", &oil.damping, Dimension::DAMPING));
+        }
+        if !is_nothing(&oil.leakage) {
+            entries.push(self.value("leakage", &oil.leakage, LEAKAGE));
+        }
+        entries.extend((oil.start.iter()).map(|start| both(self, "start", start, pressure)));
         entries
     }
 

@@ -3,6 +3,7 @@
 use kempe_units::{Dimension, Expr, Kind, Natural, Node, Spelling, Unit};
 
 use crate::ids::{DriveId, JointId, Line, LinkId, LinkPointRef, ParameterId, PointId, Scalar};
+use crate::inner::{Chamber, InnerState};
 use crate::item::Item;
 use crate::joint::JointKind;
 use crate::measure::{ForceMeasure, JointRef, Leaf, Measure, PoseMeasure, Statistic};
@@ -320,6 +321,8 @@ impl Spelling<Leaf> for Writer<'_> {
             }
             Leaf::Drive(id) => Natural::fixed(self.coordinate(*id)),
             Leaf::Time => Natural::fixed(Dimension::TIME),
+            Leaf::Inner(InnerState::Pressure(..)) => Natural::fixed(Dimension::PRESSURE),
+            Leaf::Inner(InnerState::Switch(_)) => Natural::fixed(Dimension::NONE),
             Leaf::Pose(pose) => self.pose(pose),
             Leaf::Rate(inner, n) => of(inner, &|d| rate(d, *n as i32)),
             Leaf::Coefficient(inner, drive, n) => of(inner, &|d| d / self.per(*drive, *n)),
@@ -340,6 +343,20 @@ impl Spelling<Leaf> for Writer<'_> {
             }
             Leaf::Drive(id) => name(self.drive(*id)),
             Leaf::Time => name("time"),
+            Leaf::Inner(InnerState::Pressure(drive, side)) => {
+                let function = match side {
+                    Chamber::Bore => "bore_pressure",
+                    Chamber::Ring => "ring_pressure",
+                };
+                call(function, vec![name(self.drive(*drive))])
+            }
+            Leaf::Inner(InnerState::Switch(i)) => {
+                let switch = self.model.actions.switches.get(*i);
+                call(
+                    "switch",
+                    vec![name(switch.map_or("?", |s| s.name.as_str()))],
+                )
+            }
             Leaf::Pose(pose) => self.pose_node(pose, dimension),
             Leaf::Rate(inner, n) => {
                 let per = Dimension::NONE / rate(Dimension::NONE, *n as i32);
