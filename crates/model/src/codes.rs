@@ -163,6 +163,7 @@ pub const LATER_CODES: &[Code] = &[
     code("negative-radius", "the radius of a pin is below zero"),
     code("negative-stiffness", "the stiffness of a spring is below zero"),
     code("no-clearance-there", "a joint cannot have play"),
+    code("no-contact-law", "nothing says how the bodies of a joint with play resist each other, or what does makes no sense"),
     code("no-equilibrium", "a mechanism whose drives are let go comes to no equilibrium"),
     code("no-file", "a file cannot be opened"),
     code("no-mass", "a drive that is let go moves no mass"),

@@ -28,6 +28,9 @@ const WELL_DETERMINED: f64 = 1e-3;
 const STEPS_BEYOND: usize = 3;
 /// Width, as a part of the whole time, between the near and the far side of a place where the drives' rates jump.
 const SIDES: f64 = 1e-12;
+/// Where the drives' rates jump twice within this part of the whole range, no step fits between: impacts that follow each other faster
+/// and faster come so.
+const AT_ONCE: f64 = 1e-8;
 
 /// Why the motion ends before the demanded range does.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -106,9 +109,17 @@ fn follow(
             && (from.z[last] + 1.5 * step * from.tangent[last] - near) * direction >= 0.0
         {
             let far_side = *far;
-            if let Some(on) = follower.land_smoothly(from, *near, &mut step) {
+            // What lies between two jumps that follow each other at once is jumped over with them.
+            let at_once = (near - from.z[last]) * direction <= AT_ONCE * whole;
+            let on = match at_once {
+                true => Some(from.clone()),
+                false => follower.land_smoothly(from, *near, &mut step),
+            };
+            if let Some(on) = on {
                 let over = follower.land_over(&on, far_side);
-                nodes.push(on);
+                if !at_once {
+                    nodes.push(on);
+                }
                 let Some(over) = over else {
                     return Some((nodes, EndReason::Stuck));
                 };
