@@ -382,7 +382,7 @@ fn law<T: ForceNumber>(
             stiffness([material; 2], pin.radii, Fit::Inside).map_err(unfit)?
         }
         (None, Shape::Block(_)) => {
-            let remedy = "stiffness = \"1e10 N/m^1.5\", or law = \"rigid\", beside radial";
+            let remedy = "stiffness = 1e10 (N/m^1.5), or law = \"rigid\", beside radial";
             let what = "the stiffness of its corners, which follows from no radius";
             return Err(missing(contact, what, remedy));
         }

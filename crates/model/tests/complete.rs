@@ -99,8 +99,21 @@ fn keys_of_the_kind_that_are_not_there_yet() {
         labels("[friction]\nbore = { | }"),
         ["coefficient", "static", "stribeck", "viscous", "drag"]
     );
-    assert_eq!(labels("[clearance]\nB = { | }"), ["radial", "on"]);
-    assert_eq!(labels("[clearance]\nbore = { | }"), ["radial"]);
+    let contact = [
+        "law",
+        "restitution",
+        "stiffness",
+        "modulus",
+        "poisson",
+        "spring",
+        "damping",
+        "friction",
+        "friction_speeds",
+    ];
+    let pin = [&["radial", "on", "radius"], contact.as_slice()].concat();
+    assert_eq!(labels("[clearance]\nB = { | }"), pin);
+    let block = [&["radial", "length", "height"], contact.as_slice()].concat();
+    assert_eq!(labels("[clearance]\nbore = { | }"), block);
     assert_eq!(labels("[clearance]\n|").last().unwrap(), "all");
     // of points and links that a spring may act between, one
     assert!(!labels("[springs]\nx = { between = \"A-P\", | }").contains(&"links".to_owned()));

@@ -1,5 +1,6 @@
 //! Stops: how far they are open, what an impact does, and what holds a rest.
 
+use kempe_linear::Lu;
 use kempe_measure::measure::{Along, History, measure};
 use kempe_model::Measure;
 
@@ -8,6 +9,8 @@ use crate::question::Resistance;
 
 /// Passes over the contacts of one impact, at most.
 const PASSES: usize = 500;
+/// Exact impulses are this near to those that passes found.
+const NEAR: f64 = 1e-3;
 /// An impulse that changes by less than this part is settled.
 const SETTLED: f64 = 1e-15;
 
@@ -141,6 +144,7 @@ impl Plant {
                 break;
             }
         }
+        polish(&matrix, &wanted, &mut impulses);
         let n = self.free.len();
         let mut change = vec![0.0; n];
         for (gap, impulse) in gaps.iter().zip(&impulses) {
@@ -168,6 +172,24 @@ impl Plant {
             .flatten()
             .all(|r| r.is_finite())
             .then_some(impact)
+    }
+}
+
+/// Solves exactly for those impulses that act: passes come nearer and nearer only where contacts lean on each other. They stay what they
+/// are where contacts repeat each other, or where one would pull.
+fn polish(matrix: &[Vec<f64>], wanted: &[f64], impulses: &mut [f64]) {
+    let acting: Vec<usize> = (0..impulses.len()).filter(|k| impulses[*k] > 0.0).collect();
+    let mut factors = Lu::new(acting.len());
+    if !factors.factor(|row, column| matrix[acting[row]][acting[column]]) {
+        return;
+    }
+    let mut exact: Vec<f64> = acting.iter().map(|k| wanted[*k]).collect();
+    factors.solve(&mut exact);
+    let near = |(k, exact): (&usize, &f64)| (exact - impulses[*k]).abs() <= NEAR * impulses[*k];
+    if acting.iter().zip(&exact).all(near) {
+        for (k, exact) in acting.iter().zip(exact) {
+            impulses[*k] = exact;
+        }
     }
 }
 

@@ -5,7 +5,7 @@ mod common;
 
 use common::{Free, at};
 use kempe_model::{Contact, ContactStates, Released, value};
-use kempe_simulate::{Ending, Happened};
+use kempe_simulate::{Ending, Happened, Touched};
 
 const SLIDER_CRANK: &str = include_str!("../../../examples/benchmarks/clearance-slider-crank.toml");
 const SLIDER: &str = include_str!("../../../examples/benchmarks/clearance-slider.toml");
@@ -24,7 +24,7 @@ fn with_play(free: &mut Free, joint: Released, states: ContactStates) {
 }
 
 fn slider_crank(friction: f64, until: f64) -> Free {
-    let text = SLIDER_CRANK.replace("friction = 0\n", &format!("friction = {friction}\n"));
+    let text = SLIDER_CRANK.replace("mu       = 0 ", &format!("mu       = {friction} "));
     let mut free = Free::new(&text, until);
     free.question.free.clear();
     free.question.start.clear();
@@ -116,10 +116,8 @@ fn a_rattling_pin_meets_its_bore_as_known() {
 fn it_rattles_on_without_friction_and_comes_to_follow_with_it() {
     // Over two turns: contacts, those of the first turn, and the largest force after it, kN.
     for (friction, contacts, in_first_turn, force) in [(0.0, 44, 28, 27.79), (0.03, 25, 23, 8.57)] {
-        let mut free = slider_crank(friction, 0.024);
-        free.question.tolerance = 1e-11;
-        let found = free.run();
-        let (first, after): (Vec<_>, Vec<_>) =
+        let found = slider_crank(friction, 0.024).run();
+        let (first, after): (Vec<&Touched>, Vec<&Touched>) =
             (found.touched.iter()).partition(|touch| touch.touching.from < 0.012);
         assert_eq!(
             [found.touched.len(), first.len()],
@@ -131,13 +129,18 @@ fn it_rattles_on_without_friction_and_comes_to_follow_with_it() {
             (largest / 1e3 - force).abs() < 0.01,
             "{friction}: {largest}"
         );
-        let again = free.run();
-        assert_eq!(found.touched, again.touched, "the same run, other bits");
-        assert_eq!(found.laws, again.laws);
     }
 }
 
-/// The deeper law gives back what it is asked for: a pin that falls into its bore, straight, while the crank stands still.
+#[test]
+fn the_same_run_gives_the_same_bits() {
+    let [a, b] = [0, 1].map(|_| slider_crank(0.03, 2e-3).run());
+    assert!(a.touched.len() > 3);
+    assert_eq!(a.touched, b.touched);
+    assert_eq!(a.laws, b.laws);
+}
+
+/// A law gives back what it is asked for: a pin that falls into its bore, straight, while the crank stands still.
 #[test]
 fn a_pin_that_falls_gives_back_what_its_law_delivers() {
     const FALLING: &str = r#"
@@ -147,7 +150,7 @@ gravity = [0, "-9.81 m/s^2"]
 frame = { A = [0, 0], X = [1, 0] }
 bob   = { A = [0, 0], mass = 2, inertia = 1 }
 [clearance]
-A = { radial = "10 mm", radius = "50 mm", stiffness = "1e9 N/m^1.5", restitution = 0.5, spring = "1e6 N/m" }
+A = { radial = "10 mm", radius = "50 mm", stiffness = 1e13, restitution = 0.5, spring = "1e6 N/m" }
 [drives]
 turn = { turns = "bob", at = 0 }
 "#;
@@ -174,7 +177,7 @@ turn = { turns = "bob", at = 0 }
         assert!((touch.touching.speed / fall - 1.0).abs() < 1e-10, "{law}");
         let restitution = touch.parting.unwrap() / touch.touching.speed;
         assert!(
-            (restitution - delivered).abs() < 5e-3,
+            (restitution - delivered).abs() < 5e-4,
             "{law}: {restitution}"
         );
     }
@@ -233,8 +236,8 @@ fn a_block_strikes_with_two_corners_and_comes_to_lie_on_its_guide() {
         assert!((after / before + 0.4).abs() < 1e-12, "{before} {after}");
         assert_eq!(happening.time, first.time);
     }
-    let [_, rate] = at(&found, 0, first.time + 1e-12);
-    assert!((rate - 109.55768154).abs() < 1e-6, "{rate}");
+    let [_, rate] = at(&found, 0, first.time - 1e-14);
+    assert!((rate - 109.55768154).abs() < 1e-8, "{rate}");
     // Each flight is shorter than the one before, until both corners rest.
     let rests = found
         .happenings

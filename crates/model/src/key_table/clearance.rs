@@ -29,9 +29,6 @@ pub(crate) const LAWS: [(&str, ContactLaw); 11] = [
     ("rigid", ContactLaw::Rigid),
 ];
 
-/// N/m^1.5.
-pub(crate) const HERTZIAN: D = D { length: -3, mass: 6, time: -12, angle: 0 };
-
 /// How the links in the clearances may turn.
 pub(crate) const RATES: [(&str, ClearanceRates); 2] = [
     ("frozen", ClearanceRates::Frozen),
@@ -59,7 +56,7 @@ static BLOCK: [Key; 2] = [
 static TOUCHING: [Key; 9] = [
     may("law", LAW_WORDS, "\"exact\"", "How bodies resist where contact may be lost: rigid at once, the others by Hertz's law with what dissipates; exact unless said otherwise, of sliders rigid."),
     may("restitution", not_negative(D::NONE), "0.9", "The part of the speed that an impact gives back."),
-    may("stiffness", positive(HERTZIAN), "\"6.6e10 N/m^1.5\"", "Stiffness of Hertz's law; from the radii and the material unless said otherwise."),
+    may("stiffness", positive(D::NONE), "6.6e10", "Stiffness of Hertz's law, in N/m^1.5; from the radii and the material unless said otherwise."),
     may("modulus", positive(D::PRESSURE), "\"207 GPa\"", "Modulus of elasticity of both bodies; that of steel unless said otherwise."),
     may("poisson", not_negative(D::NONE), "0.3", "Poisson's ratio of both bodies; that of steel unless said otherwise."),
     may("spring", positive(D::STIFFNESS), "\"5e7 N/m\"", "Stiffness of the contact of two states."),

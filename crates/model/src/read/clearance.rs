@@ -223,25 +223,30 @@ pub(crate) fn study(
 ) -> Option<StudyKind> {
     let model = model(cx, entry);
     let rates = entry.choice(cx, "rates", &RATES);
+    let states = match model {
+        Some(ClearanceModel::TwoState) => Some(ContactStates::Two),
+        Some(ClearanceModel::ThreeState) => Some(ContactStates::Three),
+        Some(ClearanceModel::Continuous) => {
+            means_nothing(cx, entry, &IN_TIME, "where contact is never lost");
+            None
+        }
+        None => None,
+    };
+    let motion = states.map(|states| {
+        means_nothing(cx, entry, &["rates"], "where contact may be lost");
+        let motion = simulate::in_time(cx, entry, along.clone(), false)?;
+        Some(StudyKind::Contact(ContactStudy { states, motion }))
+    });
     if cx.model.clearances.is_empty() && !cx.clearances_given {
         let message = format!("{} has no clearance to look at", entry.place);
         let help = format!("say where there is play: [clearance] {}", OF_ALL.example);
         return cx.refuse("missing-key", message, entry.span, help);
     }
-    let states = match model? {
-        ClearanceModel::Continuous => {
-            means_nothing(cx, entry, &IN_TIME, "where contact is never lost");
-            return Some(StudyKind::Clearance(ClearanceStudy {
-                along,
-                rates: rates?.unwrap_or(ClearanceRates::Frozen),
-            }));
-        }
-        ClearanceModel::TwoState => ContactStates::Two,
-        ClearanceModel::ThreeState => ContactStates::Three,
-    };
-    means_nothing(cx, entry, &["rates"], "where contact may be lost");
-    let motion = simulate::in_time(cx, entry, along, false)?;
-    Some(StudyKind::Contact(ContactStudy { states, motion }))
+    let (_, rates) = (model?, rates?);
+    motion.unwrap_or_else(|| {
+        let rates = rates.unwrap_or(ClearanceRates::Frozen);
+        Some(StudyKind::Clearance(ClearanceStudy { along, rates }))
+    })
 }
 
 /// Keys of a study in which contact may be lost.

@@ -6,7 +6,7 @@ use crate::clearance::ClearanceAt;
 use crate::contact::ContactProperties;
 use crate::ids::{FRAME, LinkId, LinkPointRef, PointId, Scalar};
 use crate::item::{File, Item};
-use crate::key_table::clearance::{HERTZIAN, LAWS, OF_ALL};
+use crate::key_table::clearance::{LAWS, OF_ALL};
 use crate::key_table::{ACTS, LEAKAGE, ON_OFF, word_of};
 use crate::link::Place;
 use crate::load::{
@@ -115,7 +115,7 @@ impl Writer<'_> {
         put("length", &contact.length, Dimension::LENGTH);
         put("height", &contact.height, Dimension::LENGTH);
         put("restitution", &contact.restitution, Dimension::NONE);
-        put("stiffness", &contact.stiffness, HERTZIAN);
+        put("stiffness", &contact.stiffness, Dimension::NONE);
         put("modulus", &contact.modulus, Dimension::PRESSURE);
         put("poisson", &contact.poisson, Dimension::NONE);
         put("spring", &contact.spring, Dimension::STIFFNESS);
