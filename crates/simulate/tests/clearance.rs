@@ -5,6 +5,7 @@ mod common;
 
 use common::{Free, at};
 use kempe_model::{Contact, ContactStates, Released, value};
+use kempe_number::math::atan2;
 use kempe_simulate::{Ending, Happened, Touched};
 
 const SLIDER_CRANK: &str = include_str!("../../../examples/benchmarks/clearance-slider-crank.toml");
@@ -197,7 +198,7 @@ turn = { turns = "bob", at = 0 }
     let sag = g / (w * w);
     let v = touch.touching.speed;
     // x = sag (1 - cos wt) + v/w sin wt comes back to 0.
-    let lasts = 2.0 * (std::f64::consts::PI - (v / w / sag).atan()) / w;
+    let lasts = 2.0 * (std::f64::consts::PI - atan2(v / w, sag)) / w;
     let found = touch.touching.to - touch.touching.from;
     assert!((found / lasts - 1.0).abs() < 1e-9, "{found} {lasts}");
     assert!((touch.parting.unwrap() / v - 1.0).abs() < 1e-10);
