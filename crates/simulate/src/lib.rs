@@ -16,7 +16,7 @@
 //! | `watch.rs` | what is looked for between steps |
 //! | `contact.rs` | stops: impacts, and what holds a rest |
 //! | `joints.rs` | joints with play, whose bodies touch and part |
-//! | `run.rs` | from step to step and from event to event |
+//! | `run.rs` | from step to step and from event to event; `run/events.rs` what events do |
 //! | `record.rs` | what was found, as laws of the drives |
 
 mod amounts;

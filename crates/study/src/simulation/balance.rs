@@ -14,6 +14,7 @@ const OFF: [(&str, f64); 2] = [("energy", 1e-8), ("power", 1e-6)];
 const WRONG: f64 = 1e-3;
 /// Where less than this part of the energies is moved, nothing moves: a balance is in parts of this.
 const STANDS: f64 = 1e-9;
+
 /// Energies, the rate of the kinetic one, and effort, speed and what the throttle goes by of every drive that is let go.
 pub(super) fn hidden(free: &[DriveId], found: &Simulated) -> Vec<Quantity> {
     let force = |measure: ForceMeasure| Expr::Leaf(Leaf::Force(measure));

@@ -13,6 +13,7 @@ use crate::along::is_followed;
 const TOLERANCE: f64 = 1e-13;
 /// No step is better than that.
 const FINEST: f64 = 1e-15;
+
 /// Something that stops the motion, in words.
 pub(super) struct Named {
     /// What it stops, as the study calls it.

@@ -17,6 +17,7 @@ const STAYS: f64 = 1e-9;
 const LISTED: usize = 30;
 /// At most so many changes of what tells the place are listed.
 const TOLD: usize = 4;
+
 /// What holds it, in words.
 pub(super) fn what_holds(held: &Held, stops: &[Named]) -> String {
     let named = held.stops.iter().filter_map(|stop| stops.get(*stop));

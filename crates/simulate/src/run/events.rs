@@ -1,0 +1,222 @@
+//! What events do: impacts, rests, friction that sticks and slips, switches.
+
+use crate::contact::dot;
+use crate::happening::Happened;
+use crate::question::Resistance;
+use crate::record::Ending;
+use crate::toggle::Toggled;
+use crate::watch::Watch;
+
+use super::{Run, TOUCHED};
+
+/// A rate this part of that before an impact is none: what should be zero is left over by rounding.
+const LEFT_OVER: f64 = 1e-9;
+/// A flight from a stop that lasts this part of the whole time is none: it rests.
+const CHATTER: f64 = 1e-9;
+/// Nor is one that rises by this much (in path scales): hardly more than rounding.
+const RISE: f64 = 2e-15;
+
+impl Run<'_> {
+    /// Where the only coordinate, which rubs, is at rest: whether friction holds it; the sense in which it slips otherwise.
+    pub(super) fn slip_or_stick(&mut self) -> Option<f64> {
+        let up = self.plant.slipping(1.0, self.time, &self.y)?;
+        let down = self.plant.slipping(-1.0, self.time, &self.y)?;
+        self.plant.mode.stuck = up <= 0.0 && down >= 0.0;
+        if self.plant.mode.stuck {
+            self.tell(Happened::Sticks);
+        }
+        // Where it just slips one of them is zero, and rounding would choose.
+        Some(if up + down > 0.0 { 1.0 } else { -1.0 })
+    }
+
+    /// Takes up the stops on which it comes to rest: closed, hardly opening, and pressed on. `struck` is the fastest rate of an
+    /// impact just before.
+    pub(super) fn rest(&mut self, struck: f64) {
+        let free = self.plant.mode.stuck;
+        let mut rates = vec![0.0; self.y.len()];
+        if free || !self.plant.accelerate(self.time, &self.y, &mut rates) {
+            return;
+        }
+        let n = self.plant.free.len();
+        for stop in 0..self.plant.stops.len() {
+            let rigid = matches!(self.plant.stops[stop].resistance, Resistance::Rigid { .. });
+            let mode = &self.plant.mode;
+            if !rigid || mode.resting.contains(&stop) || mode.beside.contains(&stop) {
+                continue;
+            }
+            let Some(gap) = self.plant.gap(stop, self.time, &self.y) else {
+                continue;
+            };
+            let scale = gap.scale(&self.plant.scales);
+            let opening = gap.opening(&rates[n..2 * n]);
+            // The flight to come, back to where it began.
+            let flight = -2.0 * gap.rate / opening;
+            let closed = gap.open.abs() <= TOUCHED * scale;
+            let still = opening.abs() <= LEFT_OVER * gap.terms(&rates[n..2 * n]);
+            if closed && still && !self.plant.mode.resting.is_empty() {
+                self.plant.mode.beside.push(stop);
+                continue;
+            }
+            let rise = -0.5 * gap.rate * gap.rate / opening;
+            let stays = flight <= CHATTER * self.question.until || rise <= RISE * scale;
+            if closed && opening < 0.0 && gap.rate >= -LEFT_OVER * struck && stays {
+                self.still(&gap.gradient, gap.rate);
+                self.plant.mode.resting.push(stop);
+                self.tell(Happened::Rests { stop });
+                // What it does to the others changes.
+                if !self.plant.accelerate(self.time, &self.y, &mut rates) {
+                    return;
+                }
+            }
+        }
+    }
+
+    /// Takes the last of a rate from the speeds.
+    pub(super) fn still(&mut self, gradient: &[f64], rate: f64) {
+        let n = self.plant.free.len();
+        let mut response = gradient.to_vec();
+        self.plant.let_go.respond(&mut response);
+        let yielding = dot(gradient, &response);
+        if n == 1 {
+            self.y[1] = 0.0;
+        } else if yielding > 0.0 {
+            for (v, r) in self.y[n..2 * n].iter_mut().zip(&response) {
+                *v -= r * rate / yielding;
+            }
+        }
+    }
+
+    /// What an event does.
+    pub(super) fn happens(&mut self, watch: Watch) -> Option<Ending> {
+        match watch {
+            Watch::Strikes(stop) => {
+                let Some(struck) = self.strikes(stop) else {
+                    return Some(Ending::NoWay);
+                };
+                self.rest(struck);
+            }
+            Watch::Touches(stop) => {
+                self.plant.mode.touched.push(stop);
+                let rate = self.plant.gap(stop, self.time, &self.y);
+                let speed = rate.map_or(f64::NAN, |gap| -gap.rate);
+                self.tell(Happened::Touches { stop, speed });
+            }
+            Watch::Parts(stop) => {
+                self.plant.mode.touched.retain(|s| *s != stop);
+            }
+            Watch::Meets(at) => {
+                let speed = self.plant.touch(at, self.time, &self.y);
+                self.tell(Happened::Meets { at, speed });
+            }
+            Watch::Separates(at) => {
+                self.plant.part(at, self.time);
+                let [_, speed] = self.plant.opening(at, &self.y);
+                self.tell(Happened::Separates { at, speed });
+            }
+            Watch::Leaves(place) => {
+                let stop = self.plant.mode.resting.remove(place);
+                self.plant.mode.beside.clear();
+                self.tell(Happened::Leaves { stop });
+            }
+            Watch::Turns => {
+                self.y[1] = 0.0;
+                let Some(sense) = self.slip_or_stick() else {
+                    return Some(Ending::NoWay);
+                };
+                self.plant.mode.sense = sense;
+            }
+            Watch::Slips => {
+                self.plant.mode.stuck = false;
+                let Some(sense) = self.slip_or_stick() else {
+                    return Some(Ending::NoWay);
+                };
+                // It was found to slip: at rest still, it does so the way that holds least.
+                if self.plant.mode.stuck {
+                    self.plant.mode.stuck = false;
+                    self.happenings.pop();
+                }
+                self.plant.mode.sense = sense;
+                self.tell(Happened::Slips);
+            }
+            Watch::Ends(condition, _) => {
+                match condition.checked_sub(self.question.end_when.len()) {
+                    Some(toggle) => self.toggle(toggle, condition),
+                    None => {
+                        self.tell(Happened::Ends { condition });
+                        return Some(Ending::Condition(condition));
+                    }
+                }
+            }
+        }
+        None
+    }
+
+    /// Turns something on or off.
+    pub(super) fn toggle(&mut self, index: usize, condition: usize) {
+        let Some(toggle) = self.toggles.get_mut(index) else {
+            return;
+        };
+        toggle.turn();
+        let (what, value, counts) = (toggle.what, toggle.value, toggle.counts());
+        self.ends[condition] = toggle.awaits.clone();
+        match what {
+            Toggled::Switch(switch) => {
+                self.plant.inner.set(switch, value);
+                self.tell(match counts {
+                    true => Happened::Counts { switch, to: value },
+                    false => Happened::Switches {
+                        switch,
+                        on: value != 0.0,
+                    },
+                });
+            }
+            Toggled::Vacuum(free, side) if value != 0.0 => {
+                self.tell(Happened::Cavitates { free, side });
+            }
+            Toggled::Vacuum(..) => {}
+        }
+        let awaited = &self.ends[condition];
+        self.conditions[condition] =
+            (self.plant.value(awaited, self.time, &self.y)).is_some_and(|x| x < 0.0);
+    }
+
+    /// An impact at a stop, and at all others that are closed and closing: the fastest rate before.
+    pub(super) fn strikes(&mut self, stop: usize) -> Option<f64> {
+        let mut stops = vec![stop];
+        for other in 0..self.plant.stops.len() {
+            let rigid = matches!(self.plant.stops[other].resistance, Resistance::Rigid { .. });
+            if other == stop || !rigid {
+                continue;
+            }
+            let gap = self.plant.gap(other, self.time, &self.y)?;
+            let scale = gap.scale(&self.plant.scales);
+            if gap.open <= TOUCHED * scale && gap.rate <= 0.0 {
+                stops.push(other);
+            }
+        }
+        // What is struck again holds by the impact, if it does.
+        self.plant.mode.resting.clear();
+        self.plant.mode.beside.clear();
+        let impact = self.plant.strike(&stops, self.time, &mut self.y)?;
+        let rates = impact.rates.iter().map(|[before, _]| before.abs());
+        let fastest = rates.fold(0.0, f64::max);
+        for (stop, [before, after]) in stops.iter().zip(&impact.rates) {
+            // What opens already is not struck.
+            if *before >= 0.0 {
+                continue;
+            }
+            self.tell(Happened::Strikes {
+                stop: *stop,
+                before: *before,
+                after: *after,
+            });
+        }
+        if let Some(work) = self.y.last_mut() {
+            *work += impact.work;
+        }
+        if self.plant.mode.sense != 0.0 && self.y[1] != 0.0 {
+            self.plant.mode.sense = self.y[1].signum();
+        }
+        Some(fastest)
+    }
+}
