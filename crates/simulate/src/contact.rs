@@ -49,7 +49,7 @@ impl Gap {
 pub(crate) struct Impact {
     /// Rates before and after.
     pub rates: Vec<[f64; 2]>,
-    /// Work done on the mechanism, J: never positive.
+    /// Work done on the mechanism by the contacts, J, and by drives that keep their laws.
     pub work: f64,
 }
 
@@ -153,12 +153,18 @@ impl Plant {
             }
         }
         self.let_go.respond(&mut change);
+        // Drives that keep their laws hold against the impact, and move as they do.
+        let by_driven = (self.forces).carried(&self.instant, &self.driven, &self.free, &change);
+        let driven = by_driven.iter().zip(&self.driven);
+        let by_driven =
+            driven.map(|(impulse, drive)| impulse * self.coordinates[drive.index()].coefficient(1));
+        let by_driven: f64 = by_driven.sum();
         for (v, change) in y[n..2 * n].iter_mut().zip(&change) {
             *v += change;
         }
         let mut impact = Impact {
             rates: Vec::new(),
-            work: 0.0,
+            work: by_driven,
         };
         for (k, gap) in gaps.iter().enumerate() {
             let gained: f64 = (0..gaps.len()).map(|j| matrix[k][j] * impulses[j]).sum();

@@ -196,6 +196,25 @@ pub struct Touched {
     pub force: [f64; 2],
 }
 
+impl Touched {
+    /// Whether it lasts at a time, s: to the end, where it has not ended then.
+    pub fn lasts_at(&self, time: f64) -> bool {
+        self.touching.from <= time && (time < self.touching.to || self.parting.is_none())
+    }
+
+    /// The time that forces go by: what still touches at the end does so there, too.
+    pub(crate) fn acting(&self) -> Touching {
+        let to = match self.parting {
+            Some(_) => self.touching.to,
+            None => f64::INFINITY,
+        };
+        Touching {
+            to,
+            ..self.touching
+        }
+    }
+}
+
 /// Instants of a touch that are looked at before its largest force is located between two of them.
 const LOOKS: usize = 64;
 /// Steps of the golden section: to rounding of what is flat there.

@@ -86,8 +86,10 @@ pub(crate) struct Plant {
     /// What the stops on which it rests push.
     pub pushes: Vec<f64>,
     pub let_go: LetGo,
-    instant: Instant<f64>,
+    pub(crate) instant: Instant<f64>,
     parameters: Vec<Rates>,
+    /// Drives that keep laws by which they move, with the times at which these end, s.
+    law_ends: Vec<(DriveId, f64)>,
     /// How the coordinates that are let go tell the place.
     pub tells: Vec<Tells>,
     /// Drives in whose stead links tell, with their coordinates, as last known.
@@ -152,6 +154,9 @@ impl Plant {
             given: vec![0.0; free.len()],
             pushes: Vec::new(),
             let_go: LetGo::default(),
+            law_ends: (driven.iter())
+                .map(|drive| (*drive, model.drives[drive.index()].law.duration(parameters)))
+                .collect(),
             tells: vec![Tells::default(); free.len()],
             followed: Vec::new(),
             own: model.drives.len(),
@@ -226,6 +231,13 @@ impl Plant {
         let drives = &self.forces.design.mechanism.model.drives;
         for (q, drive) in self.coordinates.iter_mut().zip(drives) {
             *q = drive.law.at(Jet::variable(time), &self.parameters);
+        }
+        // Where its law ends a drive stands from then on.
+        for (drive, end) in &self.law_ends {
+            if time >= *end {
+                let q = &mut self.coordinates[drive.index()];
+                *q = Rates::constant(q.value());
+            }
         }
         for (drive, q) in &self.followed {
             self.coordinates[drive.index()] = Rates::constant(*q);

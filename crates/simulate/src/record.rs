@@ -187,7 +187,7 @@ impl Simulated {
             }
             for (index, contact) in model.actions.contacts.iter_mut().enumerate() {
                 let own = self.touched.iter().filter(|t| t.at.contact == index);
-                contact.touches = own.map(|t| t.touching).collect();
+                contact.touches = own.map(Touched::acting).collect();
             }
         });
         let design = design.with_inner_laws(self.inner.clone());

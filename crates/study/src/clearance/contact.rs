@@ -134,8 +134,7 @@ fn touching(
         .collect();
     let soft = |time: f64| {
         let own = found.touched.iter().filter(|t| t.at.contact == index);
-        own.filter(|t| t.touching.from <= time && time < t.touching.to)
-            .count()
+        own.filter(|t| t.lasts_at(time)).count()
     };
     let rigid = |time: f64| {
         let held = found.held.iter().filter(|held| held.holds_at(time));
