@@ -127,6 +127,27 @@ impl<T: Number> Friction<T> {
     }
 }
 
+impl Friction<f64> {
+    /// The same law in other numbers.
+    pub fn lift<T: Number>(&self) -> Friction<T> {
+        Friction {
+            kinetic: T::from_f64(self.kinetic),
+            at_rest: T::from_f64(self.at_rest),
+            stribeck_speed: self.stribeck_speed.map(T::from_f64),
+            viscous: T::from_f64(self.viscous),
+            onset: match self.onset {
+                Onset::Sign => Onset::Sign,
+                Onset::Ramp { from, to } => Onset::Ramp {
+                    from: T::from_f64(from),
+                    to: T::from_f64(to),
+                },
+                Onset::Exponential(speed) => Onset::Exponential(T::from_f64(speed)),
+                Onset::Tanh(speed) => Onset::Tanh(T::from_f64(speed)),
+            },
+        }
+    }
+}
+
 impl<T: Number> Onset<T> {
     /// The part of the friction that is there at a speed, with its sign.
     pub fn at(&self, slip: T) -> T {

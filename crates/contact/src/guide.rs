@@ -60,47 +60,58 @@ impl<T: Number> BlockInGuide<T> {
 
     /// The same where somebody knows better than their poses how far the block's middle stands to the left of the guide's middle line, m, and
     /// the cosine and sine of the angle by which it is turned.
-    pub fn touches_at(
-        &self,
-        bodies: &[Body<T>; 2],
-        off: T,
-        [cosine, sine]: [T; 2],
-    ) -> [Touch<T>; 4] {
+    pub fn touches_at(&self, bodies: &[Body<T>; 2], off: T, turned: [T; 2]) -> [Touch<T>; 4] {
         let [first, second] = bodies;
         let guide_left = left(first.pose.turn(self.along));
         let centre = second.pose.place(self.block);
         let long = second.pose.turn(self.block_along);
         let high = left(long);
-        PLACES.map(|(side, end)| {
-            let (up, ahead) = (self.half_height * side, self.half_length * end);
-            let corner = [
+        CORNERS.map(|corner| {
+            let [ahead, up] = self.place_of(corner);
+            let place = [
                 centre[0] + long[0] * ahead + high[0] * up,
                 centre[1] + long[1] * ahead + high[1] * up,
             ];
-            let normal = guide_left.map(|x| x * side);
-            let gap = self.gap_of(side, ahead * sine + up * cosine, off);
-            let on_wall = [corner[0] + normal[0] * gap, corner[1] + normal[1] * gap];
-            Touch::new(bodies, [on_wall, corner], normal, gap)
+            let normal = guide_left.map(|x| x * corner.0);
+            let gap = self.gap_at(corner, off, turned);
+            let on_wall = [place[0] + normal[0] * gap, place[1] + normal[1] * gap];
+            Touch::new(bodies, [on_wall, place], normal, gap)
         })
     }
 
-    fn gap_of(&self, side: f64, corner_off_middle: T, off: T) -> T {
-        self.half_width - (off + corner_off_middle) * side
+    /// How far each corner is open, m, in the same order, where the block's middle stands so far to the left of the middle line, m, and it is
+    /// turned by the angle of this cosine and sine.
+    pub fn gaps(&self, off: T, turned: [T; 2]) -> [T; 4] {
+        CORNERS.map(|corner| self.gap_at(corner, off, turned))
     }
 
-    /// How far a corner is open, m, and how fast it opens, m/s, where the block's middle is so far off the middle line, m, and the block so
-    /// far turned, rad, and how fast both change.
-    pub fn gap(&self, place: usize, [off, angle]: [T; 2], [drifting, turning]: [T; 2]) -> [T; 2] {
-        let (side, end) = PLACES[place % PLACES.len()];
-        let (up, ahead) = (self.half_height * side, self.half_length * end);
-        let (sine, cosine) = angle.sin_cos();
-        let gap = self.gap_of(side, ahead * sine + up * cosine, off);
-        [
-            gap,
-            -((drifting + (ahead * cosine - up * sine) * turning) * side),
-        ]
+    fn gap_at(&self, corner: Corner, off: T, [cosine, sine]: [T; 2]) -> T {
+        let [ahead, up] = self.place_of(corner);
+        self.half_width - (off + ahead * sine + up * cosine) * corner.0
+    }
+
+    /// A corner in the block: ahead of its middle, and to its left, m.
+    fn place_of(&self, (side, end): Corner) -> [T; 2] {
+        [self.half_length * end, self.half_height * side]
     }
 }
 
-/// The corners: the side of the wall (1 is left) and the end (1 is the front).
-pub const PLACES: [(f64, f64); 4] = [(1.0, -1.0), (1.0, 1.0), (-1.0, -1.0), (-1.0, 1.0)];
+impl BlockInGuide<f64> {
+    /// The same in other numbers.
+    pub fn lift<T: Number>(&self) -> BlockInGuide<T> {
+        BlockInGuide {
+            guide: self.guide.map(T::from_f64),
+            along: self.along.map(T::from_f64),
+            block: self.block.map(T::from_f64),
+            block_along: self.block_along.map(T::from_f64),
+            half_length: T::from_f64(self.half_length),
+            half_height: T::from_f64(self.half_height),
+            half_width: T::from_f64(self.half_width),
+        }
+    }
+}
+
+/// A corner: the side of its wall (1 is left) and its end (1 is the front).
+type Corner = (f64, f64);
+
+const CORNERS: [Corner; 4] = [(1.0, -1.0), (1.0, 1.0), (-1.0, -1.0), (-1.0, 1.0)];

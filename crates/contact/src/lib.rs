@@ -24,7 +24,7 @@ mod touch;
 mod unfit;
 
 pub use friction::{Friction, Onset, falling_coefficient};
-pub use guide::{BlockInGuide, PLACES};
+pub use guide::BlockInGuide;
 pub use impact::Impact;
 pub use kempe_model::Dissipation;
 pub use normal::{Damping, Normal, SLOWEST_APPROACH};

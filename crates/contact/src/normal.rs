@@ -94,6 +94,21 @@ impl Normal<f64> {
     }
 }
 
+impl Normal<f64> {
+    /// The same law in other numbers.
+    pub fn lift<T: Number>(&self) -> Normal<T> {
+        Normal {
+            stiffness: T::from_f64(self.stiffness),
+            exponent: self.exponent,
+            damping: match self.damping {
+                Damping::None => Damping::None,
+                Damping::Factor(chi) => Damping::Factor(T::from_f64(chi)),
+                Damping::Viscous(damping) => Damping::Viscous(T::from_f64(damping)),
+            },
+        }
+    }
+}
+
 impl<T: Number> Normal<T> {
     /// The force (N) at an indentation (m), its rate (m/s) and the speed with which this contact began (m/s, at least
     /// [`SLOWEST_APPROACH`]). Zero where nothing is indented and where it would pull.

@@ -50,10 +50,9 @@ impl<T: Number> PinWithPlay<T> {
     /// The same where somebody knows better than their poses how far the journal stands off the bearing, m along the frame's
     /// axes: an indentation is a small difference of large numbers otherwise.
     pub fn touch_at(&self, bodies: &[Body<T>; 2], apart: [T; 2]) -> Touch<T> {
-        let square = dot(apart, apart);
-        let distance = (-square).choose_with(T::zero, || square.sqrt());
+        let distance = length(apart);
         let along = |k: usize, at_none: f64| {
-            (-square).choose_with(|| T::from_f64(at_none), || apart[k] / distance)
+            (-distance).choose_with(|| T::from_f64(at_none), || apart[k] / distance)
         };
         let normal = [along(0, 1.0), along(1, 0.0)];
         let point = |body: &Body<T>, centre: [T; 2], radius: T| {
@@ -64,15 +63,28 @@ impl<T: Number> PinWithPlay<T> {
             point(&bodies[0], self.bearing, self.radii[0]),
             point(&bodies[1], self.journal, self.radii[1]),
         ];
-        Touch::new(bodies, points, normal, self.clearance() - distance)
+        Touch::new(bodies, points, normal, self.gap(apart))
     }
 
-    /// How far it is open, m, and how fast it opens, m/s, where the journal stands off the bearing so far and parts from it so fast.
-    pub fn gap(&self, apart: [T; 2], parting: [T; 2]) -> [T; 2] {
-        let distance = dot(apart, apart).sqrt();
-        [
-            self.clearance() - distance,
-            -(dot(apart, parting) / distance),
-        ]
+    /// How far it is open, m, where the journal stands so far off the bearing.
+    pub fn gap(&self, apart: [T; 2]) -> T {
+        self.clearance() - length(apart)
+    }
+}
+
+/// The length of a vector; of none it is zero, and so are its derivatives.
+fn length<T: Number>(vector: [T; 2]) -> T {
+    let square = dot(vector, vector);
+    (-square).choose_with(T::zero, || square.sqrt())
+}
+
+impl PinWithPlay<f64> {
+    /// The same in other numbers.
+    pub fn lift<T: Number>(&self) -> PinWithPlay<T> {
+        PinWithPlay {
+            bearing: self.bearing.map(T::from_f64),
+            journal: self.journal.map(T::from_f64),
+            radii: self.radii.map(T::from_f64),
+        }
     }
 }

@@ -48,7 +48,7 @@ pub struct Acting<T: ForceNumber> {
     /// Those of them whose drives are let go and hold nothing: they turn what they are on.
     pub turning: Vec<Turning>,
     /// Joints with play whose bodies touch and part.
-    pub contacts: Vec<JointContact<T>>,
+    pub contacts: Vec<JointContact>,
 }
 
 impl<T: ForceNumber> Acting<T> {

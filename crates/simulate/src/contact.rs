@@ -3,9 +3,11 @@
 use kempe_linear::Lu;
 use kempe_measure::measure::{Along, History, measure};
 use kempe_model::Measure;
+use kempe_number::Jet;
 
+use crate::joints::Place;
 use crate::plant::Plant;
-use crate::question::Resistance;
+use crate::question::{Resistance, Stop};
 
 /// Passes over the contacts of one impact, at most.
 const PASSES: usize = 500;
@@ -13,6 +15,34 @@ const PASSES: usize = 500;
 const NEAR: f64 = 1e-3;
 /// An impulse that changes by less than this part is settled.
 const SETTLED: f64 = 1e-15;
+
+/// What tells how far a stop is open.
+#[derive(Clone, Debug)]
+pub(crate) enum Opens {
+    /// A measure of the pose.
+    Measure(Measure),
+    /// How far a joint with play stands open.
+    Joint(Place),
+}
+
+/// Something that stops the motion.
+#[derive(Clone, Debug)]
+pub(crate) struct Barrier {
+    /// What tells how far it is open.
+    pub opens: Opens,
+    /// How it resists.
+    pub resistance: Resistance,
+}
+
+impl Barrier {
+    /// The stop that was asked for.
+    pub fn of(stop: &Stop) -> Self {
+        Self {
+            opens: Opens::Measure(stop.gap.clone()),
+            resistance: stop.resistance,
+        }
+    }
+}
 
 /// A stop at a state.
 #[derive(Clone, Debug)]
@@ -61,11 +91,25 @@ impl Plant {
         Some(measure(&state, &History::default(), None, what, Along::Time).coefficient(0))
     }
 
+    /// How far a stop is open at a state.
+    pub fn open(&mut self, stop: usize, time: f64, y: &[f64]) -> Option<f64> {
+        match self.stops.get(stop)?.opens.clone() {
+            Opens::Measure(what) => self.value(&what, time, y),
+            Opens::Joint(at) => Some(self.opening_in(at, y, |_, [q, _]| q)),
+        }
+    }
+
     /// A stop at a state.
     pub fn gap(&mut self, stop: usize, time: f64, y: &[f64]) -> Option<Gap> {
+        match self.stops.get(stop)?.opens.clone() {
+            Opens::Measure(what) => self.gap_of(&what, time, y),
+            Opens::Joint(at) => Some(self.gap_at(at, y)),
+        }
+    }
+
+    fn gap_of(&mut self, what: &Measure, time: f64, y: &[f64]) -> Option<Gap> {
         self.take_as_it_is(time, y);
         let state = self.state(time)?;
-        let what = &self.stops.get(stop)?.gap;
         let along = |along| measure(&state, &History::default(), None, what, along);
         let series = along(Along::Time);
         let gradient = self.free.iter();
@@ -77,6 +121,23 @@ impl Plant {
                 .map(|drive| along(Along::Drive(*drive)).coefficient(1))
                 .collect(),
         })
+    }
+
+    fn gap_at(&self, at: Place, y: &[f64]) -> Gap {
+        let in_time = |_, [q, v]: [f64; 2]| Jet::<f64, 3>::from_coefficients([q, v, 0.0]);
+        let [open, rate, bend] = *self.opening_in(at, y, in_time).coefficients();
+        let along = |coordinate: usize| {
+            let one = |k: usize, [q, _]: [f64; 2]| {
+                Jet::<f64, 2>::from_coefficients([q, if k == coordinate { 1.0 } else { 0.0 }])
+            };
+            self.opening_in(at, y, one).coefficient(1)
+        };
+        Gap {
+            open,
+            rate,
+            bend: 2.0 * bend,
+            gradient: (0..self.free.len()).map(along).collect(),
+        }
     }
 
     /// What soft stops that are touched push, along the coordinates.

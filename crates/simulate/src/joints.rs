@@ -1,15 +1,13 @@
 //! Joints with play: let go with the drives, their bodies touch and part.
 
-use kempe_dynamics::joint_contact::{JointContact, is_rigid};
+use kempe_dynamics::joint_contact::{JointContact, Resists};
 use kempe_mechanism::{Design, NotReleased};
-use kempe_model::{
-    Contact, DriveId, DriveKind, Law, Leaf, Measure, Model, Released, Scalar, Touching, value,
-};
+use kempe_model::{Contact, DriveId, DriveKind, Law, Touching};
 use kempe_number::{Jet, Number};
-use kempe_units::{Builtin, Expr};
 
+use crate::contact::{Barrier, Opens};
 use crate::plant::Plant;
-use crate::question::{Resistance, Stop};
+use crate::question::Resistance;
 use crate::start::Start;
 
 /// A place of a joint with play.
@@ -62,93 +60,67 @@ pub(crate) fn opened(
 }
 
 /// Stops of the contacts that resist at once, with the places that they stand for.
-pub(crate) fn rigid_stops(model: &Model, parameters: &[f64]) -> Vec<(Stop, Place)> {
-    let contacts = model.actions.contacts.iter().enumerate();
-    let rigid = contacts.filter(|(_, contact)| is_rigid(contact));
-    let stops = rigid.flat_map(|(index, contact)| {
-        let number = |scalar: &Option<Scalar>| scalar.as_ref().map(|s| value(s, parameters));
-        let restitution = number(&contact.properties.restitution).unwrap_or(0.0);
-        let gaps = gaps(model, contact, parameters).into_iter().enumerate();
-        gaps.map(move |(place, gap)| {
-            let resistance = Resistance::Rigid { restitution };
-            let place = Place {
-                contact: index,
-                place,
-            };
-            (Stop { gap, resistance }, place)
-        })
+pub(crate) fn rigid_stops(contacts: &[JointContact]) -> Vec<(Place, Barrier)> {
+    let stops = contacts.iter().enumerate().flat_map(|(contact, it)| {
+        let restitution = match it.resists {
+            Resists::AtOnce { restitution } => Some(restitution),
+            Resists::ByLaw { .. } => None,
+        };
+        let places = restitution.map(|restitution| {
+            (0..it.places()).map(move |place| {
+                let at = Place { contact, place };
+                let barrier = Barrier {
+                    opens: Opens::Joint(at),
+                    resistance: Resistance::Rigid { restitution },
+                };
+                (at, barrier)
+            })
+        });
+        places.into_iter().flatten()
     });
     stops.collect()
 }
 
-/// How far a joint is open at each place, in the coordinates of its rows.
-fn gaps(model: &Model, contact: &Contact, parameters: &[f64]) -> Vec<Measure> {
-    let row = |index: u8| -> Measure {
-        let drive = model.drives.iter().position(
-            |drive| matches!(drive.kind, DriveKind::Release { of, row } if of == contact.joint && row == index),
-        );
-        let drive = drive.map_or(f64::NAN, |d| d as f64);
-        Expr::Leaf(Leaf::Drive(DriveId(drive as u32)))
-    };
-    let constant = |x: f64| Box::new(Expr::Const(x));
-    let times = |x: f64, of: Measure| Box::new(Expr::Mul(constant(x), Box::new(of)));
-    match contact.joint {
-        Released::Pin { .. } => {
-            let square = |index| Box::new(Expr::Powi(Box::new(row(index)), 2));
-            let apart = Expr::Call(Builtin::Sqrt, vec![Expr::Add(square(0), square(1))]);
-            vec![Expr::Sub(constant(contact.clearance), Box::new(apart))]
-        }
-        Released::Joint(_) => {
-            let number = |scalar: &Option<Scalar>| scalar.as_ref().map(|s| value(s, parameters));
-            let length = number(&contact.properties.length).unwrap_or(0.0);
-            let height = number(&contact.properties.height).unwrap_or(0.0);
-            let of_angle = |f: Builtin| Expr::Call(f, vec![row(0)]);
-            let corner = |(side, end): (f64, f64)| {
-                // The corner's height over the middle line, towards its wall.
-                let ahead = times(0.5 * length * side * end, of_angle(Builtin::Sin));
-                let up = times(0.5 * height, of_angle(Builtin::Cos));
-                let off = times(side, row(1));
-                let high = Expr::Add(Box::new(Expr::Add(off, ahead)), up);
-                Expr::Sub(constant(0.5 * height + contact.clearance), Box::new(high))
-            };
-            kempe_contact::PLACES.map(corner).to_vec()
-        }
-    }
-}
-
 impl Plant {
-    fn contact(&self, at: Place) -> Option<&JointContact<f64>> {
-        let mut contacts = self.forces.acting.contacts.iter();
-        contacts.find(|contact| contact.index == at.contact)
+    /// How far a joint is open at a place, m, where its coordinates are these functions of something: `of` makes them of where they
+    /// are and how fast they move.
+    pub fn opening_in<T: Number>(
+        &self,
+        at: Place,
+        y: &[f64],
+        of: impl Fn(usize, [f64; 2]) -> T,
+    ) -> T {
+        let n = self.free.len();
+        let unknown = || T::from_f64(f64::NAN);
+        let Some(contact) = self.forces.acting.contacts.get(at.contact) else {
+            return unknown();
+        };
+        let row = |drive: DriveId| {
+            let index = self.free.iter().position(|free| *free == drive);
+            index.map_or_else(unknown, |k| of(k, [y[k], y[n + k]]))
+        };
+        contact.gap(at.place, contact.along.map(row))
     }
 
-    /// How far a contact is open at a place, m, and how fast it opens, m/s, at a state.
+    /// How far a joint is open at a place, m, and how fast it opens, m/s, at a state.
     pub fn opening(&self, at: Place, y: &[f64]) -> [f64; 2] {
-        let n = self.free.len();
-        let Some(contact) = self.contact(at) else {
-            return [f64::NAN; 2];
-        };
-        let of = |drive: DriveId| {
-            let index = self.free.iter().position(|free| *free == drive);
-            index.map_or([f64::NAN; 2], |k| [y[k], y[n + k]])
-        };
-        let [a, b] = contact.along.map(of);
-        contact.gap(at.place, [a[0], b[0]], [a[1], b[1]])
+        let in_time = |_, [q, v]: [f64; 2]| Jet::<f64, 2>::from_coefficients([q, v]);
+        *self.opening_in(at, y, in_time).coefficients()
     }
 
     /// Every place of the contacts that give.
     pub fn contact_places(&self) -> Vec<Place> {
-        let contacts = self.forces.acting.contacts.iter();
-        let places = contacts.flat_map(|it| {
-            let contact = it.index;
-            (0..it.places()).map(move |place| Place { contact, place })
-        });
+        let contacts = self.forces.acting.contacts.iter().enumerate();
+        let give = contacts.filter(|(_, it)| matches!(it.resists, Resists::ByLaw { .. }));
+        let places = give
+            .flat_map(|(contact, it)| (0..it.places()).map(move |place| Place { contact, place }));
         places.collect()
     }
 
     /// Whether a place touches.
     pub fn is_touching(&self, at: Place) -> bool {
-        let touches = self.contact(at).and_then(|c| c.touches.get(at.place));
+        let contact = self.forces.acting.contacts.get(at.contact);
+        let touches = contact.and_then(|c| c.touches.get(at.place));
         let last = touches.and_then(|touches| touches.last());
         last.is_some_and(|touch| touch.to == f64::INFINITY)
     }
@@ -175,8 +147,7 @@ impl Plant {
     }
 
     fn touches_of(&mut self, at: Place) -> Option<&mut Vec<Touching>> {
-        let mut contacts = self.forces.acting.contacts.iter_mut();
-        let contact = contacts.find(|contact| contact.index == at.contact)?;
+        let contact = self.forces.acting.contacts.get_mut(at.contact)?;
         contact.touches.get_mut(at.place)
     }
 }
@@ -221,19 +192,18 @@ const LOOKS: usize = 64;
 const STEPS: usize = 50;
 
 /// What became of every touch, by the laws of the drives that were found; in order of time.
-pub(crate) fn touched(contacts: &[JointContact<f64>], laws: &[Law], end: f64) -> Vec<Touched> {
+pub(crate) fn touched(contacts: &[JointContact], laws: &[Law], end: f64) -> Vec<Touched> {
     let mut all: Vec<Touched> = Vec::new();
-    for contact in contacts {
-        let at = |place: usize, time: f64| {
-            let row = |drive: DriveId| {
-                let law = laws.get(drive.index());
-                let q: Jet<f64, 2> = law.map_or(Jet::constant(f64::NAN), |law| {
-                    law.at(Jet::variable(time), &[])
-                });
-                [q.value(), q.coefficient(1)]
+    for (index, contact) in contacts.iter().enumerate() {
+        let Resists::ByLaw { normal, .. } = &contact.resists else {
+            continue;
+        };
+        let at = |place: usize, time: f64| -> [f64; 2] {
+            let row = |drive: DriveId| match laws.get(drive.index()) {
+                Some(law) => law.at(Jet::<f64, 2>::variable(time), &[]),
+                None => Jet::constant(f64::NAN),
             };
-            let [a, b] = contact.along.map(row);
-            contact.gap(place, [a[0], b[0]], [a[1], b[1]])
+            *contact.gap(place, contact.along.map(row)).coefficients()
         };
         for touching in contact.touches.iter().flatten() {
             let place = touching.place;
@@ -244,11 +214,11 @@ pub(crate) fn touched(contacts: &[JointContact<f64>], laws: &[Law], end: f64) ->
             let depth = |time: f64| -at(place, time)[0];
             let force = |time: f64| {
                 let [gap, rate] = at(place, time);
-                contact.normal.force(-gap, -rate, touching.speed)
+                normal.force(-gap, -rate, touching.speed)
             };
             all.push(Touched {
                 at: Place {
-                    contact: contact.index,
+                    contact: index,
                     place,
                 },
                 parting: (touching.to < end).then(|| at(place, touching.to)[1]),

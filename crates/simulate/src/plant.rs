@@ -13,10 +13,9 @@ use kempe_model::{DriveId, Law, Leaf, Measure};
 use kempe_number::{Jet, Number};
 
 use crate::amounts::{Amounts, Known};
-use crate::contact::Gap;
+use crate::contact::{Barrier, Gap};
 use crate::inner::Inner;
 use crate::places::Places;
-use crate::question::Stop;
 
 /// A coordinate that moves against the sense in which friction is looked at moves this slowly (rad/s, or m/s) instead: so
 /// friction goes on smoothly a little beyond where it turns.
@@ -73,7 +72,7 @@ pub(crate) struct Plant {
     pub driven: Vec<DriveId>,
     /// Sizes of the coordinates that are let go: 1 rad, or the mechanism's.
     pub scales: Vec<f64>,
-    pub stops: Vec<Stop>,
+    pub stops: Vec<Barrier>,
     pub mode: Mode,
     /// Where the stretch at hand ends, s: laws are looked at before.
     pub end: f64,
@@ -112,7 +111,7 @@ impl Plant {
         places: Places,
         [free, driven]: [Vec<DriveId>; 2],
         scales: Vec<f64>,
-        stops: Vec<Stop>,
+        stops: Vec<Barrier>,
     ) -> Self {
         let model = &design.mechanism.model;
         let parameters = &design.parameters;

@@ -52,10 +52,10 @@ pub struct Simulated {
     pub held: Vec<Held>,
     /// Touches of bodies in joints with play that give, in order.
     pub touched: Vec<Touched>,
-    /// The places with play that resist at once, as stops behind those of the question: from `rigid_from` on.
+    /// The places with play that resist at once, as stops behind those of the question.
     pub rigid: Vec<Place>,
     /// How many stops the question has.
-    pub rigid_from: usize,
+    pub(crate) rigid_from: usize,
     /// Steps, and by which method.
     pub used: Used,
     /// How often accelerations were asked for.
@@ -117,6 +117,11 @@ impl Simulated {
     pub fn throttle(&self, place: usize) -> Option<&Measure> {
         let (motor, _) = self.machines.get(place)?.motor.as_ref()?;
         motor.throttle.as_ref().map(|throttle| &throttle.measure)
+    }
+
+    /// The place with play for which a stop stands; none of those of the question.
+    pub fn place_of(&self, stop: usize) -> Option<Place> {
+        self.rigid.get(stop.checked_sub(self.rigid_from)?).copied()
     }
 
     /// The coordinates that tell the place along the motion that was found: nothing gives anything along them but motors. They are

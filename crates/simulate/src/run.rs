@@ -11,11 +11,12 @@ use kempe_model::{COEFFICIENTS, DriveId, Law, Measure};
 use kempe_motion::{Done, MotionError, Progress, Stage};
 use kempe_units::Dimension;
 
+use crate::contact::Barrier;
 use crate::happening::{Happened, Happening, Held};
 use crate::joints::{Place, opened, rigid_stops, touched};
 use crate::places::Places;
 use crate::plant::{Mode, Plant, motor_sense};
-use crate::question::{Question, Stop};
+use crate::question::Question;
 use crate::record::{Ending, Machine, Pilots, Record, Simulated};
 use crate::start::{NoStart, start};
 use crate::tellers::{Exchanged, NEAR, Tellers};
@@ -77,8 +78,6 @@ pub fn simulate(
     let design = from.design.with_laws(laws);
     let model = &design.mechanism.model.clone();
     coordinates.resize(model.drives.len(), 0.0);
-    let (rigid, rigid_places): (Vec<Stop>, Vec<Place>) =
-        rigid_stops(model, &parameters).into_iter().unzip();
     let question = &Question {
         free: (question.free.iter().copied())
             .chain(rows.iter().map(|row| row.0))
@@ -86,7 +85,6 @@ pub fn simulate(
         start: (question.start.iter().copied())
             .chain(rows.iter().map(|_| [0.0; 2]))
             .collect(),
-        stops: question.stops.iter().cloned().chain(rigid).collect(),
         ..question.clone()
     };
     let (placed, first_motion) = (from.placed.clone(), from.first.clone());
@@ -94,6 +92,9 @@ pub fn simulate(
     for spring in &mut forces.acting.springs {
         spring.align(&forces.design.geometry, &placed.near);
     }
+    let (rigid, barriers): (Vec<Place>, Vec<Barrier>) =
+        rigid_stops(&forces.acting.contacts).into_iter().unzip();
+    let stops = question.stops.iter().map(Barrier::of).chain(barriers);
     let driven: Vec<DriveId> = (0..model.drives.len() as u32)
         .map(DriveId)
         .filter(|drive| {
@@ -134,7 +135,7 @@ pub fn simulate(
         places,
         [question.free.clone(), driven],
         scales,
-        question.stops.clone(),
+        stops.collect(),
     );
     if plant.rubs() && moving.len() > 1 {
         return Err(Unsimulated::FrictionOfSeveral);
@@ -202,8 +203,8 @@ pub fn simulate(
     Ok(Simulated {
         free: question.free.clone(),
         touched: touched(&run.plant.forces.acting.contacts, &laws.drives, end),
-        rigid_from: question.stops.len() - rigid_places.len(),
-        rigid: rigid_places,
+        rigid_from: question.stops.len(),
+        rigid,
         laws: laws.drives,
         work,
         end,

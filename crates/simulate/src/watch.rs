@@ -77,16 +77,9 @@ pub(crate) fn watches(plant: &Plant, conditions: &[bool]) -> Vec<Watch> {
 
 impl Watch {
     fn value(self, plant: &mut Plant, ends: &[Measure], time: f64, y: &[f64]) -> Option<f64> {
-        let stop = |plant: &Plant, k: usize| plant.stops.get(k).map(|s| s.gap.clone());
         match self {
-            Self::Strikes(k) | Self::Touches(k) => {
-                let gap = stop(plant, k)?;
-                plant.value(&gap, time, y)
-            }
-            Self::Parts(k) => {
-                let gap = stop(plant, k)?;
-                plant.value(&gap, time, y).map(|open| -open)
-            }
+            Self::Strikes(k) | Self::Touches(k) => plant.open(k, time, y),
+            Self::Parts(k) => plant.open(k, time, y).map(|open| -open),
             Self::Leaves(k) => {
                 let mut rates = vec![0.0; y.len()];
                 plant.accelerate(time, y, &mut rates);

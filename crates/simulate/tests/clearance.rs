@@ -233,7 +233,7 @@ fn a_block_strikes_with_two_corners_and_comes_to_lie_on_its_guide() {
         else {
             panic!("{happening:?}");
         };
-        assert_eq!(found.rigid[stop - found.rigid_from].place, corner);
+        assert_eq!(found.place_of(stop).unwrap().place, corner);
         assert!((after / before + 0.4).abs() < 1e-12, "{before} {after}");
         assert_eq!(happening.time, first.time);
     }

@@ -2,8 +2,8 @@
 
 use kempe_mechanism::Mechanism;
 use kempe_model::{
-    Chamber, Column, DriveId, DriveKind, ForceMeasure, Hodograph, InnerState, JointId, JointRef,
-    Leaf, Plot, PointId,
+    Chamber, Column, Drive, DriveId, DriveKind, ForceMeasure, Hodograph, InnerState, JointId,
+    JointRef, Leaf, Plot, PointId,
 };
 use kempe_units::{Dimension, Expr};
 
@@ -14,7 +14,10 @@ use crate::quantity::Quantity;
 pub(crate) fn standard(mechanism: &Mechanism) -> Vec<Quantity> {
     let model = &mechanism.model;
     let mut list = Vec::new();
-    for (index, drive) in model.drives.iter().enumerate() {
+    // What gives along a joint that is let go is the joint's load.
+    let is_drive = |drive: &Drive| !matches!(drive.kind, DriveKind::Release { .. });
+    let drives = model.drives.iter().enumerate();
+    for (index, drive) in drives.filter(|(_, drive)| is_drive(drive)) {
         let (id, name) = (DriveId(index as u32), &drive.name);
         list.push(match drive.kind {
             DriveKind::Turn { .. } => force(

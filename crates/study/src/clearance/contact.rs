@@ -128,10 +128,6 @@ fn touching(
     found: &Simulated,
     times: &[f64],
 ) -> Column {
-    let stops: Vec<usize> = (found.rigid.iter().enumerate())
-        .filter(|(_, at)| at.contact == index)
-        .map(|(k, _)| found.rigid_from + k)
-        .collect();
     let soft = |time: f64| {
         let own = found.touched.iter().filter(|t| t.at.contact == index);
         own.filter(|t| t.lasts_at(time)).count()
@@ -139,7 +135,8 @@ fn touching(
     let rigid = |time: f64| {
         let held = found.held.iter().filter(|held| held.holds_at(time));
         let stops_of = held.flat_map(|held| &held.stops);
-        stops_of.filter(|stop| stops.contains(stop)).count()
+        let places = stops_of.filter_map(|stop| found.place_of(*stop));
+        places.filter(|at| at.contact == index).count()
     };
     let name = joint_name(model, contact.joint.into());
     Column {
@@ -222,16 +219,13 @@ fn met(found: &Simulated) -> Vec<Met> {
             stop,
             before,
             after,
-        } => {
-            let at = stop.checked_sub(found.rigid_from)?;
-            Some(Met {
-                at: *found.rigid.get(at)?,
-                time: it.time,
-                speed: -before,
-                parting: Some(after),
-                touch: None,
-            })
-        }
+        } => Some(Met {
+            at: found.place_of(stop)?,
+            time: it.time,
+            speed: -before,
+            parting: Some(after),
+            touch: None,
+        }),
         _ => None,
     });
     let mut all: Vec<Met> = soft.chain(rigid).collect();
