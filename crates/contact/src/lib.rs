@@ -27,7 +27,7 @@ pub use friction::{Friction, Onset, falling_coefficient};
 pub use guide::BlockInGuide;
 pub use impact::Impact;
 pub use kempe_model::Dissipation;
-pub use normal::{Damping, Normal, SLOWEST_APPROACH};
+pub use normal::{Damping, Normal};
 pub use pin::PinWithPlay;
 pub use restitution::{
     damping_ratio_for, delivered, delivered_by_factor, delivered_by_ratio, factor,

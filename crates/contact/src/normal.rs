@@ -5,10 +5,6 @@ use kempe_number::Number;
 use crate::unfit::{not_negative, positive};
 use crate::{Dissipation, Unfit, damping_ratio_for, factor};
 
-/// Approach speeds below this (m/s) count as this: an impact so slow is rest, and the damping of a law that divides by its
-/// speed would grow without bound.
-pub const SLOWEST_APPROACH: f64 = 1e-3;
-
 /// The exponent of the law of Hertz.
 const HERTZ: f64 = 1.5;
 
@@ -110,16 +106,16 @@ impl Normal<f64> {
 }
 
 impl<T: Number> Normal<T> {
-    /// The force (N) at an indentation (m), its rate (m/s) and the speed with which this contact began (m/s, at least
-    /// [`SLOWEST_APPROACH`]). Zero where nothing is indented and where it would pull.
+    /// The force (N) at an indentation (m), its rate (m/s) and the speed with which this contact began (m/s). Zero where nothing is
+    /// indented and where it would pull. What began without speed loses none: a law that divides by it says nothing there.
     pub fn force(&self, indentation: T, rate: T, approach: T) -> T {
         let pressed = || {
             let elastic = self.elastic(indentation);
             let force = match self.damping {
                 Damping::None => elastic,
                 Damping::Factor(chi) => {
-                    let approach = approach.max(T::from_f64(SLOWEST_APPROACH));
-                    elastic * (chi * rate / approach + 1.0)
+                    let losing = || elastic * (chi * rate / approach + 1.0);
+                    (-approach).choose_with(|| elastic, losing)
                 }
                 Damping::Viscous(damping) => elastic + damping * rate,
             };

@@ -129,12 +129,12 @@ impl JointContact {
         });
     }
 
-    /// How fast the contact at a place began that lasts at a time, m/s; none where it does not touch.
+    /// How fast the contact at a place began that lasts at a time, as its law counts it, m/s; none where it does not touch.
     fn began(&self, place: usize, time: f64) -> Option<f64> {
         let touches = self.touches.get(place)?;
         let next = touches.partition_point(|touch| touch.from <= time);
         let last = touches.get(next.checked_sub(1)?)?;
-        (time < last.to).then_some(last.speed)
+        (time < last.to).then_some(last.counts_as)
     }
 }
 

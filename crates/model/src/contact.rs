@@ -159,6 +159,8 @@ pub struct Touching {
     pub to: f64,
     /// How fast they came together, m/s.
     pub speed: f64,
+    /// The speed by which the law of the contact goes, m/s: that, or more where others at this joint were much faster.
+    pub counts_as: f64,
 }
 
 /// A study of clearance in which contact is lost.

@@ -81,6 +81,10 @@ pub(crate) fn rigid_stops(contacts: &[JointContact]) -> Vec<(Place, Barrier)> {
     stops.collect()
 }
 
+/// A contact that begins with less than this part of the fastest before at its joint counts as that fast: it is rest, and what dissipates
+/// by a law that divides by the speed would hold it as in pitch.
+const SLOWEST: f64 = 1e-4;
+
 impl Plant {
     /// How far a joint is open at a place, m, where its coordinates are these functions of something: `of` makes them of where they
     /// are and how fast they move.
@@ -127,16 +131,20 @@ impl Plant {
 
     /// Lets a place touch from a time on; how fast its bodies come together there, m/s.
     pub fn touch(&mut self, at: Place, time: f64, y: &[f64]) -> f64 {
-        let [_, opening] = self.opening(at, y);
+        let speed = -self.opening(at, y)[1];
+        let contact = self.forces.acting.contacts.get(at.contact);
+        let touches = contact.iter().flat_map(|c| c.touches.iter().flatten());
+        let fastest = touches.map(|touch| touch.speed).fold(0.0, f64::max);
         if let Some(touches) = self.touches_of(at) {
             touches.push(Touching {
                 place: at.place,
                 from: time,
                 to: f64::INFINITY,
-                speed: -opening,
+                speed,
+                counts_as: speed.max(SLOWEST * fastest),
             });
         }
-        -opening
+        speed
     }
 
     /// Lets a place part at a time.
@@ -214,7 +222,7 @@ pub(crate) fn touched(contacts: &[JointContact], laws: &[Law], end: f64) -> Vec<
             let depth = |time: f64| -at(place, time)[0];
             let force = |time: f64| {
                 let [gap, rate] = at(place, time);
-                normal.force(-gap, -rate, touching.speed)
+                normal.force(-gap, -rate, touching.counts_as)
             };
             all.push(Touched {
                 at: Place {

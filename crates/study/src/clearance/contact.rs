@@ -241,9 +241,7 @@ fn counted(model: &Model, contacts: &[Contact], units: &Units, found: &Simulated
         let fastest = own.iter().map(|met| met.speed).fold(0.0, f64::max);
         let touches = || own.iter().filter_map(|met| met.touch.as_ref());
         let force = touches().map(|touch| touch.force[0]).fold(0.0, f64::max);
-        let lasts: f64 = touches()
-            .map(|t| t.touching.to - t.touching.from)
-            .sum::<f64>();
+        let lasts = covered(touches().map(|t| [t.touching.from, t.touching.to]));
         let or_none = |known: bool, text: String| if known { text } else { "-".to_owned() };
         let gives = touches().next().is_some();
         vec![
@@ -270,6 +268,16 @@ fn counted(model: &Model, contacts: &[Contact], units: &Units, found: &Simulated
         .to_vec(),
         rows: rows.collect(),
     }
+}
+
+/// How long any of some times lasts that begin one after the other.
+fn covered(times: impl Iterator<Item = [f64; 2]>) -> f64 {
+    let (mut sum, mut until) = (0.0, f64::NEG_INFINITY);
+    for [from, to] in times {
+        sum += (to - from.max(until)).max(0.0);
+        until = until.max(to);
+    }
+    sum
 }
 
 /// The contacts one by one.
