@@ -42,6 +42,9 @@ pub fn is_cycle(model: &Model, parameters: &[f64]) -> bool {
     })
 }
 
+/// A motion of less than this, in rad and mechanism sizes of all drives, is looked at as finely in time as one of so much.
+const LITTLE: f64 = 1.0;
+
 /// Times between which all laws are smooth, rising, both ends of the motion included: first and last of those that are
 /// one but for rounding. `pieces` leaves out the knots of tables.
 pub fn law_knots(model: &Model, parameters: &[f64], pieces: bool) -> Vec<[f64; 2]> {
@@ -132,8 +135,9 @@ impl DrivePath {
                             }
                     })
                     .sum();
+                // What hardly moves has its time all the same: links that ring by micrometres turn in it often.
                 let scale = if travel > 0.0 && total > 0.0 {
-                    total / travel
+                    total / travel.max(LITTLE)
                 } else {
                     1.0
                 };
