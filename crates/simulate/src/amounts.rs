@@ -52,6 +52,11 @@ impl Amounts {
         }
     }
 
+    /// What they go by.
+    pub fn measures(&self) -> impl Iterator<Item = &Measure> {
+        self.list.iter().map(|(amount, _)| &amount.measure)
+    }
+
     /// Whether any of them asks for the pose.
     pub fn ask_pose(&self) -> bool {
         self.list.iter().any(|(_, by)| matches!(by, By::Pose))

@@ -2,7 +2,7 @@
 
 use kempe_linear::Lu;
 use kempe_measure::measure::{Along, History, measure};
-use kempe_model::Measure;
+use kempe_model::{DriveId, Measure};
 use kempe_number::Jet;
 
 use crate::joints::Place;
@@ -55,6 +55,8 @@ pub(crate) struct Gap {
     pub bend: f64,
     /// Its derivatives to the coordinates that are let go.
     pub gradient: Vec<f64>,
+    /// And to those of drives that keep laws by which they move.
+    pub by_driven: Vec<f64>,
 }
 
 impl Gap {
@@ -112,14 +114,13 @@ impl Plant {
         let state = self.state(time)?;
         let along = |along| measure(&state, &History::default(), None, what, along);
         let series = along(Along::Time);
-        let gradient = self.free.iter();
+        let slope = |drive: &DriveId| along(Along::Drive(*drive)).coefficient(1);
         Some(Gap {
             open: series.coefficient(0),
             rate: series.coefficient(1),
             bend: 2.0 * series.coefficient(2),
-            gradient: gradient
-                .map(|drive| along(Along::Drive(*drive)).coefficient(1))
-                .collect(),
+            gradient: self.free.iter().map(slope).collect(),
+            by_driven: self.driven.iter().map(slope).collect(),
         })
     }
 
@@ -137,6 +138,7 @@ impl Plant {
             rate,
             bend: 2.0 * bend,
             gradient: (0..self.free.len()).map(along).collect(),
+            by_driven: vec![0.0; self.driven.len()],
         }
     }
 
@@ -207,18 +209,16 @@ impl Plant {
         }
         polish(&matrix, &wanted, &mut impulses);
         let n = self.free.len();
-        let mut change = vec![0.0; n];
-        for (gap, impulse) in gaps.iter().zip(&impulses) {
-            for (change, j) in change.iter_mut().zip(&gap.gradient) {
-                *change += impulse * j;
-            }
-        }
+        let mut change = along(&gaps, &impulses, n);
         self.let_go.respond(&mut change);
-        // Drives that keep their laws hold against the impact, and move as they do.
-        let by_driven = (self.forces).carried(&self.instant, &self.driven, &self.free, &change);
-        let driven = by_driven.iter().zip(&self.driven);
-        let by_driven =
-            driven.map(|(impulse, drive)| impulse * self.coordinates[drive.index()].coefficient(1));
+        // Drives that keep their laws give what momentum along them changes beyond what the contacts give, and move as they do.
+        let carried = (self.forces).carried(&self.instant, &self.driven, &self.free, &change);
+        let by_driven = carried.iter().zip(&self.driven).enumerate();
+        let by_driven = by_driven.map(|(k, (carried, drive))| {
+            let by_contacts = gaps.iter().zip(&impulses);
+            let by_contacts: f64 = by_contacts.map(|(gap, p)| p * gap.by_driven[k]).sum();
+            (carried - by_contacts) * self.coordinates[drive.index()].coefficient(1)
+        });
         let by_driven: f64 = by_driven.sum();
         for (v, change) in y[n..2 * n].iter_mut().zip(&change) {
             *v += change;
@@ -240,6 +240,17 @@ impl Plant {
             .all(|r| r.is_finite())
             .then_some(impact)
     }
+}
+
+/// What forces or impulses at some gaps come to along `n` coordinates that are let go.
+pub(crate) fn along(gaps: &[Gap], forces: &[f64], n: usize) -> Vec<f64> {
+    let mut sums = vec![0.0; n];
+    for (gap, force) in gaps.iter().zip(forces) {
+        for (sum, j) in sums.iter_mut().zip(&gap.gradient) {
+            *sum += force * j;
+        }
+    }
+    sums
 }
 
 /// Solves exactly for those impulses that act: passes come nearer and nearer only where contacts lean on each other. They stay what they

@@ -101,6 +101,12 @@ pub struct Held {
 }
 
 impl Held {
+    /// Whether another time begins where it ends, in which the same holds.
+    pub(crate) fn goes_on_in(&self, next: &Self) -> bool {
+        let same = self.stops == next.stops && self.by_friction == next.by_friction;
+        same && self.to == next.from
+    }
+
     /// Whether a time lies in it, ends included.
     pub fn holds_at(&self, time: f64) -> bool {
         self.from <= time && time <= self.to

@@ -194,8 +194,8 @@ impl Touched {
     }
 }
 
-/// Instants of a touch that are looked at before its largest force is located between two of them.
-const LOOKS: usize = 64;
+/// Parts of every step that are looked at before the largest force is located between two of them.
+const LOOKS: usize = 4;
 /// Steps of the golden section: to rounding of what is flat there.
 const STEPS: usize = 50;
 
@@ -206,6 +206,10 @@ pub(crate) fn touched(contacts: &[JointContact], laws: &[Law], end: f64) -> Vec<
         let Resists::ByLaw { normal, .. } = &contact.resists else {
             continue;
         };
+        let knots = contact.along.iter().filter_map(|row| laws.get(row.index()));
+        let mut knots: Vec<f64> = knots.flat_map(|law| law.knots(&[])).collect();
+        knots.sort_by(f64::total_cmp);
+        knots.dedup();
         let at = |place: usize, time: f64| -> [f64; 2] {
             let row = |drive: DriveId| match laws.get(drive.index()) {
                 Some(law) => law.at(Jet::<f64, 2>::variable(time), &[]),
@@ -230,8 +234,8 @@ pub(crate) fn touched(contacts: &[JointContact], laws: &[Law], end: f64) -> Vec<
                     place,
                 },
                 parting: (touching.to < end).then(|| at(place, touching.to)[1]),
-                depth: largest(depth, &touching),
-                force: largest(force, &touching),
+                depth: largest(depth, &touching, &knots),
+                force: largest(force, &touching, &knots),
                 touching,
             });
         }
@@ -240,12 +244,25 @@ pub(crate) fn touched(contacts: &[JointContact], laws: &[Law], end: f64) -> Vec<
     all
 }
 
-/// The largest value during a touch, and when.
-fn largest(value: impl Fn(f64) -> f64, during: &Touching) -> [f64; 2] {
-    let time = |k: usize| during.from + (during.to - during.from) * k as f64 / LOOKS as f64;
-    let values: Vec<f64> = (0..=LOOKS).map(|k| value(time(k))).collect();
-    let best = (0..=LOOKS).fold(0, |best, k| if values[k] > values[best] { k } else { best });
-    let (mut low, mut high) = (time(best.saturating_sub(1)), time((best + 1).min(LOOKS)));
+/// The largest value during a touch, and when: `knots` are the ends of the steps in which the motion was found.
+fn largest(value: impl Fn(f64) -> f64, during: &Touching, knots: &[f64]) -> [f64; 2] {
+    let first = knots.partition_point(|t| *t <= during.from);
+    let inside = knots.iter().skip(first).take_while(|t| **t < during.to);
+    let ends: Vec<f64> = std::iter::once(during.from)
+        .chain(inside.copied())
+        .chain([during.to])
+        .collect();
+    let parts = ends.windows(2).flat_map(|pair| {
+        let [from, to] = [pair[0], pair[1]];
+        (0..LOOKS).map(move |k| from + (to - from) * k as f64 / LOOKS as f64)
+    });
+    let times: Vec<f64> = parts.chain([during.to]).collect();
+    let values: Vec<f64> = times.iter().map(|t| value(*t)).collect();
+    let best = (1..times.len()).fold(0, |best, k| if values[k] > values[best] { k } else { best });
+    let (mut low, mut high) = (
+        times[best.saturating_sub(1)],
+        times[(best + 1).min(times.len() - 1)],
+    );
     let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
     for _ in 0..STEPS {
         let (a, b) = (high - golden * (high - low), low + golden * (high - low));
@@ -259,6 +276,6 @@ fn largest(value: impl Fn(f64) -> f64, during: &Touching) -> [f64; 2] {
     let at_found = value(found);
     match at_found >= values[best] {
         true => [at_found, found],
-        false => [values[best], time(best)],
+        false => [values[best], times[best]],
     }
 }

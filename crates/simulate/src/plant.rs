@@ -13,7 +13,7 @@ use kempe_model::{DriveId, Law, Leaf, Measure};
 use kempe_number::{Jet, Number};
 
 use crate::amounts::{Amounts, Known};
-use crate::contact::{Barrier, Gap};
+use crate::contact::{Barrier, Gap, along};
 use crate::inner::Inner;
 use crate::places::Places;
 
@@ -76,6 +76,10 @@ pub(crate) struct Plant {
     pub mode: Mode,
     /// Where the stretch at hand ends, s: laws are looked at before.
     pub end: f64,
+    /// How fast a stop closes again on which it rests and that errors open, 1/s.
+    pub back: f64,
+    /// Whether something goes by derivatives along drives that are let go.
+    pub asked_along: bool,
     /// Whether anything does work but weights and springs.
     pub works: bool,
     /// Coordinates of all drives in time, as last taken.
@@ -162,6 +166,8 @@ impl Plant {
             storage: vec![[0.0; 3]; model.links.len()],
             mode: Mode::default(),
             end: f64::INFINITY,
+            back: 0.0,
+            asked_along: false,
             motors,
             amounts,
             inner,
@@ -183,7 +189,7 @@ impl Plant {
     }
 
     /// Whether the coordinates that are let go must tell the place themselves: joints with play are told by how far they stand
-    /// open, and what oil or a throttled motor gives goes by its own drive.
+    /// open, what oil or a throttled motor gives goes by its own drive, and so do derivatives along it that something asks for.
     pub fn is_tied(&self) -> bool {
         let throttled = |turned: &Turned| turned.throttle.is_some();
         !self
@@ -196,6 +202,19 @@ impl Plant {
             .is_empty()
             || !self.inner.moved.is_empty()
             || self.motors.iter().flatten().any(throttled)
+            || self.asked_along
+    }
+
+    /// Looks at the pose of a state and how it moves, whatever acts: false where there is none.
+    pub fn look(&mut self, time: f64, y: &[f64]) -> bool {
+        self.take(time, y);
+        self.instant.time = time;
+        self.places.instant(&self.coordinates, &mut self.instant)
+    }
+
+    /// Whether one coordinate moves, and nothing else: on a stop it stands still.
+    pub fn is_alone(&self) -> bool {
+        self.free.len() == 1 && self.driven.is_empty()
     }
 
     /// The instant last looked at.
@@ -292,9 +311,7 @@ impl Plant {
 
     /// Accelerations where stops besides push along the coordinates.
     fn let_go_at(&mut self, time: f64, y: &[f64], pushes: &[f64]) -> bool {
-        self.take(time, y);
-        self.instant.time = time;
-        if !self.places.instant(&self.coordinates, &mut self.instant) || !self.amounts_at(time) {
+        if !self.look(time, y) || !self.amounts_at(time) {
             return false;
         }
         for (given, (k, motor)) in self.given.iter_mut().zip(self.motors.iter().enumerate()) {
@@ -398,8 +415,12 @@ impl Plant {
         if !factors.factor(|row, column| matrix[row][column]) {
             return false;
         }
+        // What errors open comes back slowly, unless nothing can.
+        let back = if self.is_alone() { 0.0 } else { self.back };
         let opening = |it: &Self| -> Vec<f64> {
-            let of = |gap: &Gap| gap.opening(&it.let_go.accelerations);
+            let of = |gap: &Gap| {
+                gap.opening(&it.let_go.accelerations) + back * (2.0 * gap.rate + back * gap.open)
+            };
             gaps.iter().map(of).collect()
         };
         self.pushes = vec![0.0; gaps.len()];
@@ -413,12 +434,7 @@ impl Plant {
             for (push, more) in self.pushes.iter_mut().zip(more) {
                 *push += more;
             }
-            let mut along = vec![0.0; self.free.len()];
-            for (gap, push) in gaps.iter().zip(&self.pushes) {
-                for (along, j) in along.iter_mut().zip(&gap.gradient) {
-                    *along += push * j;
-                }
-            }
+            let along = along(&gaps, &self.pushes, self.free.len());
             if !self.let_go_at(time, y, &along) {
                 return false;
             }

@@ -6,8 +6,9 @@ use std::sync::Arc;
 
 use kempe_dynamics::{Forces, Problem};
 use kempe_integrate::{Integrator, Stopped, Tolerance, Used};
-use kempe_mechanism::{Design, NotReleased};
-use kempe_model::{COEFFICIENTS, DriveId, Law, Measure};
+use kempe_measure::measure::visit_leaves;
+use kempe_mechanism::{Design, Mechanism, NotReleased};
+use kempe_model::{COEFFICIENTS, DriveId, Law, Leaf, Measure, PoseMeasure};
 use kempe_motion::{Done, MotionError, Progress, Stage};
 use kempe_units::Dimension;
 
@@ -30,6 +31,8 @@ const EVENTS: usize = 2_000;
 /// Most events in a time that is none, such as the accumulation of a bouncing ball; and that time, as a part of the whole.
 const AT_ONCE: usize = 500;
 const NO_TIME: f64 = 1e-12;
+/// So many times in the whole time a stop closes again by 1/e on which it rests and that errors open.
+const BACK: f64 = 10.0;
 /// Parts of the whole time in which something that is held is looked at.
 const LOOKS: f64 = 500.0;
 /// A stop that is open by this much (in path scales) is touched.
@@ -137,6 +140,7 @@ pub fn simulate(
         scales,
         stops.collect(),
     );
+    plant.back = BACK / question.until;
     if plant.rubs() && moving.len() > 1 {
         return Err(Unsimulated::FrictionOfSeveral);
     }
@@ -150,6 +154,13 @@ pub fn simulate(
         return Err(Unsimulated::NoMass);
     }
     let toggles = Toggle::all(&mut plant, &y);
+    let asked = (question.stops.iter().map(|stop| &stop.gap))
+        .chain(&question.end_when)
+        .chain(toggles.iter().flat_map(Toggle::measures))
+        .chain(plant.amounts.measures());
+    plant.asked_along = asked
+        .into_iter()
+        .any(|what| asks_along(&design.mechanism, what, &question.free));
     let mut run = Run {
         record: Record::new(coordinates, beside(&plant, &y)),
         time: 0.0,
@@ -220,6 +231,19 @@ pub fn simulate(
         design,
         placed,
     })
+}
+
+/// Whether a measure asks for a derivative along one of these drives, itself or by another measure.
+fn asks_along(mechanism: &Mechanism, measure: &Measure, drives: &[DriveId]) -> bool {
+    let mut found = false;
+    visit_leaves(mechanism, measure, &mut |leaf| {
+        found |= match leaf {
+            Leaf::Coefficient(_, drive, _)
+            | Leaf::Pose(PoseMeasure::MechanicalAdvantage(_, drive)) => drives.contains(drive),
+            _ => false,
+        };
+    });
+    found
 }
 
 /// What is followed beside the drives: the work, the pressures, the switches.
@@ -308,11 +332,13 @@ impl Run<'_> {
         }
         let jerked = work != 0.0;
         // What it lay on it may be thrown against, or off.
-        match self.plant.mode.resting.first().copied().filter(|_| jerked) {
+        let before = self.plant.mode.resting.clone();
+        match before.first().copied().filter(|_| jerked) {
             Some(stop) => {
                 let struck = self.strikes(stop);
-                self.rest(struck.unwrap_or(0.0));
-                struck.is_some()
+                let known = struck.is_some();
+                self.settle(struck.unwrap_or_default(), &before);
+                known
             }
             None => true,
         }
@@ -340,7 +366,7 @@ impl Run<'_> {
         if !self.plant.accelerate(0.0, &self.y, &mut rates) {
             return Err(Unsimulated::NoMass);
         }
-        self.rest(0.0);
+        self.rest(0.0, &[]);
         Ok(())
     }
 
@@ -397,7 +423,8 @@ impl Run<'_> {
             );
             let to = watched.map_or(it.time(), |(time, _)| time);
             if to > self.time && !self.add(&mut it, to, &mut found) {
-                break Some(Ending::NoWay);
+                let exchanged = self.exchange(f64::INFINITY, progress);
+                break (exchanged != Exchanged::Done).then_some(Ending::NoWay);
             }
             if let Some((_, watch)) = watched {
                 break self.happens(watch);
@@ -423,12 +450,16 @@ impl Run<'_> {
         };
         self.integrator = Some(it);
         if is_held || !touched.is_empty() {
-            self.held.push(Held {
+            let held = Held {
                 from: began,
                 to: self.time,
                 stops: [resting, touched].concat(),
                 by_friction: stuck,
-            });
+            };
+            match self.held.last_mut().filter(|last| last.goes_on_in(&held)) {
+                Some(last) => last.to = held.to,
+                None => self.held.push(held),
+            }
         }
         ending
     }

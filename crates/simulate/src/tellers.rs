@@ -100,8 +100,8 @@ impl Tellers {
         {
             return Exchanged::Not;
         }
-        let mut rates = vec![0.0; y.len()];
-        if !plant.accelerate(time, y, &mut rates) {
+        // Where friction jams the coordinate there are no accelerations along it, but there is a pose.
+        if !plant.look(time, y) {
             return Exchanged::Not;
         }
         let Some((place, turning)) = poor(plant, within) else {
@@ -222,6 +222,7 @@ impl Tellers {
         new.mode = old.mode.clone();
         new.inner = old.inner.clone();
         new.end = old.end;
+        new.back = old.back;
         let body =
             self.links[place].map_or(BodyId::GROUND, |link| self.design.mechanism.body_of(link));
         new.mode.sense *= turning[body.index()].signum();

@@ -66,6 +66,14 @@ impl Toggle {
         self.await_next();
     }
 
+    /// What turns it.
+    pub fn measures(&self) -> &[Measure] {
+        match &self.turned {
+            Turned::By(both) => both,
+            Turned::Every(grows, _) => std::slice::from_ref(grows),
+        }
+    }
+
     /// Whether it counts.
     pub fn counts(&self) -> bool {
         matches!(self.turned, Turned::Every(..))

@@ -250,3 +250,32 @@ fn a_block_strikes_with_two_corners_and_comes_to_lie_on_its_guide() {
         "{rests:?}"
     );
 }
+
+/// The first impact of a contact that stays is its hardest, however long it stays.
+#[test]
+fn the_largest_force_of_a_contact_is_that_of_its_first_impact_however_long_it_lasts() {
+    const HANGING: &str = r#"
+units = { length = "mm", angle = "deg" }
+gravity = [0, "-9.81 m/s^2"]
+[links]
+frame = { A = [0, 0] }
+arm   = { A-B = 100, mass = "1 kg", inertia = "1000 kg mm^2", center = "B" }
+[clearance]
+A = { radial = "0.1 mm", radius = "5 mm", stiffness = 1e10, restitution = 0.1 }
+[drives]
+swing = { turns = "arm", at = -90 }
+"#;
+    let touches = [0.02, 0.2].map(|until| {
+        let mut free = Free::new(HANGING, until);
+        let pin = Released::Pin {
+            point: kempe_model::PointId(0),
+            link: free.model.points[0].links[1],
+        };
+        with_play(&mut free, pin, ContactStates::Three);
+        free.run().touched[0]
+    });
+    let [short, long] = touches;
+    assert!(short.force[0] > 390.0, "{}", short.force[0]);
+    assert!((long.force[0] / short.force[0] - 1.0).abs() < 1e-6);
+    assert!((long.depth[0] / short.depth[0] - 1.0).abs() < 1e-6);
+}

@@ -1,6 +1,8 @@
 //! What events do: impacts, rests, friction that sticks and slips, switches.
 
-use crate::contact::dot;
+use kempe_linear::Lu;
+
+use crate::contact::{Gap, along};
 use crate::happening::Happened;
 use crate::question::Resistance;
 use crate::record::Ending;
@@ -16,6 +18,15 @@ const CHATTER: f64 = 1e-9;
 /// Nor is one that rises by this much (in path scales): hardly more than rounding.
 const RISE: f64 = 2e-15;
 
+/// What an impact struck.
+#[derive(Debug, Default)]
+pub(super) struct Struck {
+    /// The fastest rate before.
+    fastest: f64,
+    /// The stops.
+    stops: Vec<usize>,
+}
+
 impl Run<'_> {
     /// Where the only coordinate, which rubs, is at rest: whether friction holds it; the sense in which it slips otherwise.
     pub(super) fn slip_or_stick(&mut self) -> Option<f64> {
@@ -30,8 +41,8 @@ impl Run<'_> {
     }
 
     /// Takes up the stops on which it comes to rest: closed, hardly opening, and pressed on. `struck` is the fastest rate of an
-    /// impact just before.
-    pub(super) fn rest(&mut self, struck: f64) {
+    /// impact just before; on `before` it rested already.
+    pub(super) fn rest(&mut self, struck: f64, before: &[usize]) {
         let free = self.plant.mode.stuck;
         let mut rates = vec![0.0; self.y.len()];
         if free || !self.plant.accelerate(self.time, &self.y, &mut rates) {
@@ -60,9 +71,11 @@ impl Run<'_> {
             let rise = -0.5 * gap.rate * gap.rate / opening;
             let stays = flight <= CHATTER * self.question.until || rise <= RISE * scale;
             if closed && opening < 0.0 && gap.rate >= -LEFT_OVER * struck && stays {
-                self.still(&gap.gradient, gap.rate);
                 self.plant.mode.resting.push(stop);
-                self.tell(Happened::Rests { stop });
+                self.still();
+                if !before.contains(&stop) {
+                    self.tell(Happened::Rests { stop });
+                }
                 // What it does to the others changes.
                 if !self.plant.accelerate(self.time, &self.y, &mut rates) {
                     return;
@@ -71,18 +84,44 @@ impl Run<'_> {
         }
     }
 
-    /// Takes the last of a rate from the speeds.
-    pub(super) fn still(&mut self, gradient: &[f64], rate: f64) {
+    /// Takes what is left of the rates of all stops on which it rests from the speeds, at once: one alone would move the others.
+    fn still(&mut self) {
         let n = self.plant.free.len();
-        let mut response = gradient.to_vec();
-        self.plant.let_go.respond(&mut response);
-        let yielding = dot(gradient, &response);
-        if n == 1 {
+        if self.plant.is_alone() {
             self.y[1] = 0.0;
-        } else if yielding > 0.0 {
-            for (v, r) in self.y[n..2 * n].iter_mut().zip(&response) {
-                *v -= r * rate / yielding;
-            }
+            return;
+        }
+        let resting = self.plant.mode.resting.clone();
+        let gaps: Option<Vec<Gap>> = (resting.iter())
+            .map(|stop| self.plant.gap(*stop, self.time, &self.y))
+            .collect();
+        let Some(gaps) = gaps else { return };
+        let matrix = self.plant.yielding(&gaps);
+        let mut factors = Lu::new(gaps.len());
+        if !factors.factor(|row, column| matrix[row][column]) {
+            return;
+        }
+        let mut impulses: Vec<f64> = gaps.iter().map(|gap| -gap.rate).collect();
+        factors.solve(&mut impulses);
+        let mut change = along(&gaps, &impulses, n);
+        self.plant.let_go.respond(&mut change);
+        for (v, change) in self.y[n..2 * n].iter_mut().zip(&change) {
+            *v += change;
+        }
+    }
+
+    /// Takes up the stops on which it rests after something was struck, or jerked. `before` are those on which it did: what it leaves is
+    /// told, unless it was struck.
+    pub(super) fn settle(&mut self, struck: Struck, before: &[usize]) {
+        self.rest(struck.fastest, before);
+        let leaves = before.iter().filter(|stop| {
+            let mode = &self.plant.mode;
+            !mode.resting.contains(stop)
+                && !mode.beside.contains(stop)
+                && !struck.stops.contains(stop)
+        });
+        for stop in leaves.copied().collect::<Vec<_>>() {
+            self.tell(Happened::Leaves { stop });
         }
     }
 
@@ -90,10 +129,11 @@ impl Run<'_> {
     pub(super) fn happens(&mut self, watch: Watch) -> Option<Ending> {
         match watch {
             Watch::Strikes(stop) => {
+                let before = self.plant.mode.resting.clone();
                 let Some(struck) = self.strikes(stop) else {
                     return Some(Ending::NoWay);
                 };
-                self.rest(struck);
+                self.settle(struck, &before);
             }
             Watch::Touches(stop) => {
                 self.plant.mode.touched.push(stop);
@@ -180,8 +220,8 @@ impl Run<'_> {
             (self.plant.value(awaited, self.time, &self.y)).is_some_and(|x| x < 0.0);
     }
 
-    /// An impact at a stop, and at all others that are closed and closing: the fastest rate before.
-    pub(super) fn strikes(&mut self, stop: usize) -> Option<f64> {
+    /// An impact at a stop, and at all others that are closed and closing.
+    pub(super) fn strikes(&mut self, stop: usize) -> Option<Struck> {
         let mut stops = vec![stop];
         for other in 0..self.plant.stops.len() {
             let rigid = matches!(self.plant.stops[other].resistance, Resistance::Rigid { .. });
@@ -200,11 +240,16 @@ impl Run<'_> {
         let impact = self.plant.strike(&stops, self.time, &mut self.y)?;
         let rates = impact.rates.iter().map(|[before, _]| before.abs());
         let fastest = rates.fold(0.0, f64::max);
+        let mut struck = Struck {
+            fastest,
+            stops: Vec::new(),
+        };
         for (stop, [before, after]) in stops.iter().zip(&impact.rates) {
             // What opens already is not struck.
             if *before >= 0.0 {
                 continue;
             }
+            struck.stops.push(*stop);
             self.tell(Happened::Strikes {
                 stop: *stop,
                 before: *before,
@@ -217,6 +262,6 @@ impl Run<'_> {
         if self.plant.mode.sense != 0.0 && self.y[1] != 0.0 {
             self.plant.mode.sense = self.y[1].signum();
         }
-        Some(fastest)
+        Some(struck)
     }
 }
