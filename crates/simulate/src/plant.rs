@@ -286,16 +286,15 @@ impl Plant {
     pub fn accelerate(&mut self, time: f64, y: &[f64], rates: &mut [f64]) -> bool {
         let n = self.free.len();
         rates[..n].copy_from_slice(&y[n..2 * n]);
-        if self.mode.stuck {
+        // It stands still, and not only but for rounding: friction would be asked which way that goes.
+        let rests = self.is_alone() && !self.mode.resting.is_empty();
+        if self.mode.stuck || rests {
             rates.fill(0.0);
             self.take(time, y);
             return self.inner.moved.is_empty()
                 || (self.amounts_at(time) && self.pressure_rates(&mut rates[2 * n..]));
         }
-        if !self.let_go_at(time, y, &[]) {
-            return false;
-        }
-        if !self.mode.resting.is_empty() && !self.hold(time, y) {
+        if !self.held(time, y) {
             return false;
         }
         rates[n..2 * n].copy_from_slice(&self.let_go.accelerations);
@@ -307,6 +306,17 @@ impl Plant {
             false => 0.0,
         };
         rates.iter().all(|r| r.is_finite())
+    }
+
+    /// Accelerations and pushes where the stops hold on which it rests.
+    fn held(&mut self, time: f64, y: &[f64]) -> bool {
+        self.let_go_at(time, y, &[]) && (self.mode.resting.is_empty() || self.hold(time, y))
+    }
+
+    /// What a stop pushes on which it rests, by its place among those: nothing where that is not known.
+    pub fn pushed(&mut self, place: usize, time: f64, y: &[f64]) -> Option<f64> {
+        let known = self.held(time, y);
+        self.pushes.get(place).copied().filter(|_| known)
     }
 
     /// Accelerations where stops besides push along the coordinates.

@@ -80,11 +80,7 @@ impl Watch {
         match self {
             Self::Strikes(k) | Self::Touches(k) => plant.open(k, time, y),
             Self::Parts(k) => plant.open(k, time, y).map(|open| -open),
-            Self::Leaves(k) => {
-                let mut rates = vec![0.0; y.len()];
-                plant.accelerate(time, y, &mut rates);
-                plant.pushes.get(k).copied()
-            }
+            Self::Leaves(k) => plant.pushed(k, time, y),
             Self::Meets(at) => Some(plant.opening(at, y)[0]),
             Self::Separates(at) => Some(-plant.opening(at, y)[0]),
             Self::Turns => Some(y.get(1)? * plant.mode.sense),
