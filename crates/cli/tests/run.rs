@@ -586,3 +586,22 @@ fn sizes_are_written_into_pictures_where_they_are_asked_for() {
         );
     }
 }
+
+/// A picture that moves shows a simulation as it is found: a pendulum let go swings, and one that its drive holds does not.
+#[test]
+fn pictures_of_simulations_move() {
+    const PENDULUM: &str = "units = { length = \"mm\" }\n[links]\nframe = { A = [0, 0] }\n\
+        rod = { A-B = 100, mass = 1, inertia = \"100 kg mm^2\" }\n[drives]\nswing = { turns = \"rod\", at = 0 }\n[studies.s]\n";
+    let folder = folder();
+    let at = folder.path();
+    let picture = |name: &str, study: &str| {
+        fs::write(at.join("p.toml"), format!("{PENDULUM}{study}\n")).expect("written");
+        let output = kempe(at, &["draw", "p.toml", "-o", name, "--width", "200"]);
+        assert!(output.status.success(), "{}", said(&output));
+        fs::metadata(at.join(name)).expect("a picture").len()
+    };
+    let swings = picture("swings.gif", "kind = \"simulate\"\nuntil = \"1 s\"");
+    let held = picture("held.gif", "kind = \"motion\"");
+    // Frames that are all one cost next to nothing.
+    assert!(swings > 5 * held, "{swings} {held}");
+}

@@ -232,11 +232,14 @@ fn motion(
     forces: bool,
     speaker: &mut Speaker,
 ) -> Result<(MechanismView, Vec<Frame>, f64), Failure> {
-    let vibrates = |s: &&Study| matches!(s.kind, StudyKind::Vibrations(_));
-    let Some(study) = (model.studies.first().filter(vibrates).cloned())
-        .filter(|_| !forces)
-        .or_else(|| first_study(model, forces))
-    else {
+    // What moves by itself moves as it does there; the drives' own laws would show something else, or nothing.
+    let by_itself = |s: &&Study| match s.kind {
+        StudyKind::Simulate(_) | StudyKind::Contact(_) => true,
+        StudyKind::Vibrations(_) => !forces,
+        _ => false,
+    };
+    let first = model.studies.first().filter(by_itself).cloned();
+    let Some(study) = first.or_else(|| first_study(model, forces)) else {
         return Err(Failure::Usage(nothing_to_run(model)));
     };
     room_for(model, &study).map_err(Failure::TooLarge)?;
