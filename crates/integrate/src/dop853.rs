@@ -147,12 +147,9 @@ impl Dop853 {
     /// Where no step can be made; the state stays where it was.
     pub fn step(&mut self, system: &mut impl System, end: f64) -> Result<(), Stopped> {
         loop {
-            let Next::Step { step, last } = self.track.next(end)? else {
+            let Next::Step { step, to, last } = self.track.next(end)? else {
                 return Ok(());
             };
-            let end_of_step = if last { end } else { self.track.time + step };
-            // As long as the time that it takes, to the last bit: the solution may go far in little time.
-            let step = end_of_step - self.track.time;
             let Some(error) = self.attempt(system, step) else {
                 self.track.retreat(step)?;
                 continue;
@@ -165,7 +162,7 @@ impl Dop853 {
             let most = if self.track.refused { 1.0 } else { LONGER };
             let next = step * fits.clamp(SHORTER, most);
             self.track.follow_with(next, last);
-            self.accept(end_of_step);
+            self.accept(to);
             return Ok(());
         }
     }

@@ -154,7 +154,7 @@ impl Radau5 {
     /// Where no step can be made; the state stays where it was.
     pub fn step(&mut self, system: &mut impl System, end: f64) -> Result<(), Stopped> {
         loop {
-            let Next::Step { step, last } = self.track.next(end)? else {
+            let Next::Step { step, to, last } = self.track.next(end)? else {
                 return Ok(());
             };
             let prepared = self.matrices.prepare(
@@ -203,7 +203,7 @@ impl Radau5 {
                     let stays = serves && (1.0..WORTH).contains(&next);
                     self.track
                         .follow_with(if stays { step } else { next * step }, last);
-                    self.accept(if last { end } else { self.track.time + step });
+                    self.accept(to);
                     self.matrices.moved(serves);
                     return Ok(());
                 }

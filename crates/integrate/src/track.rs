@@ -38,8 +38,9 @@ pub(crate) enum At {
 
 /// What is to be done next.
 pub(crate) enum Next {
-    /// A step, and whether it is the last before the end.
-    Step { step: f64, last: bool },
+    /// A step to a time, and whether that is the end. The step is as long as the time that it takes, to the last bit: the solution
+    /// may go far in little time.
+    Step { step: f64, to: f64, last: bool },
     /// Nothing: the end is reached but for rounding.
     Arrived,
 }
@@ -165,9 +166,13 @@ impl Track {
             return Ok(Next::Arrived);
         }
         let last = self.step.abs() >= left.abs();
-        let step = if last { left } else { self.step };
-        match self.goes_on(step) {
-            true => Ok(Next::Step { step, last }),
+        let to = if last { end } else { self.time + self.step };
+        match self.goes_on(if last { left } else { self.step }) {
+            true => Ok(Next::Step {
+                step: to - self.time,
+                to,
+                last,
+            }),
             false => Err(Stopped::TooShort),
         }
     }

@@ -3,7 +3,7 @@
 
 mod support;
 
-use kempe_integrate::{Integrator, Method, Stopped, crossing};
+use kempe_integrate::{Integrator, Method, Stopped, Tolerance, crossing};
 use kempe_number::math::{cos, exp, ln, sin};
 use support::{pendulum, run, tolerance};
 
@@ -340,4 +340,33 @@ fn crossings_are_found_to_rounding() {
     let flat = crossing(|t| kempe_number::powi(t - 0.7, 9), 0.0, 1.0).unwrap();
     assert!((flat - 0.7).abs() < 1e-12, "{flat}");
     assert_eq!(crossing(|t| t + 1.0, 0.0, 1.0), None);
+}
+
+#[test]
+fn what_goes_as_time_goes_stays_with_it() {
+    // Late, so that the ends of steps are rounded by far more than what a step adds; something that swings keeps them short.
+    let start = 1e6;
+    let mut rates = |t: f64, y: &[f64], r: &mut [f64]| {
+        (r[0], r[1]) = (1.0, -50.0 * (y[1] - sin(37.0 * t)));
+        true
+    };
+    for method in BOTH {
+        let tolerance = Tolerance {
+            relative: 1e-10,
+            absolute: vec![1e-10],
+        };
+        let it = run(
+            method,
+            &mut rates,
+            (start, start + 50.0),
+            &[start, 0.0],
+            tolerance,
+        );
+        let off = it.state()[0] - it.time();
+        assert!(
+            off.abs() <= 2.0 * f64::EPSILON * start,
+            "{method:?}: {off} off, {:?}",
+            it.used()
+        );
+    }
 }
