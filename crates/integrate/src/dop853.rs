@@ -176,7 +176,8 @@ impl Dop853 {
         }
     }
 
-    /// All stages of a step, with the trial at its end; the error against the tolerance, `None` where rates are missing.
+    /// All stages of a step, with the trial at its end; the error against the tolerance, `None` where rates are missing or the
+    /// error is not finite.
     fn attempt(&mut self, system: &mut impl System, step: f64) -> Option<f64> {
         self.begin();
         for index in 1..OWN {
@@ -195,7 +196,9 @@ impl Dop853 {
         if five == 0.0 && three == 0.0 {
             return Some(f64::MIN_POSITIVE);
         }
-        Some((step.abs() * five / (five + 0.01 * three).sqrt()).max(f64::MIN_POSITIVE))
+        let both = five + 0.01 * three;
+        // Neither no number nor one that is too large to square says that the step is good.
+        (both.is_finite()).then(|| (step.abs() * five / both.sqrt()).max(f64::MIN_POSITIVE))
     }
 
     /// A sum of stages against the tolerance over the step that is tried.

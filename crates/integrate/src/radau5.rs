@@ -212,7 +212,7 @@ impl Radau5 {
     }
 
     /// Holds the error of a step against the tolerance, with the trial at its end and the rates there in `scratch`. `None` where
-    /// rates are missing.
+    /// rates are missing or the error is not finite.
     fn judge(&mut self, system: &mut impl System, step: f64, rounds: usize) -> Option<Judged> {
         let mut error = self.estimate(system, step)?;
         let time = self.track.time + step;

@@ -23,7 +23,7 @@ const BEYOND: f64 = 100.0;
 /// Why no step was made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stopped {
-    /// The rates are not finite or not there just ahead.
+    /// The rates are not finite or not there just ahead, or so large that no error can be told.
     NoRates,
     /// No step is short enough for the tolerance: the solution runs away, jumps, or is stiff beyond an explicit method.
     TooShort,
@@ -177,7 +177,7 @@ impl Track {
         }
     }
 
-    /// After a step whose rates are missing: a much shorter one, if that goes anywhere.
+    /// After a step whose rates are missing, or whose error is: a much shorter one, if that goes anywhere.
     pub(crate) fn retreat(&mut self, step: f64) -> Result<(), Stopped> {
         self.refuse(RETREAT * step);
         match self.goes_on(self.step) {

@@ -370,3 +370,42 @@ fn what_goes_as_time_goes_stays_with_it() {
         );
     }
 }
+
+#[test]
+fn an_error_that_is_no_number_is_no_good_step() {
+    // Rates that jump by so much that the squares of errors are not finite.
+    let mut jump = |t: f64, _: &[f64], r: &mut [f64]| {
+        r[0] = if t > 0.5 { 1e160 * sin(1e3 * t) } else { 1.0 };
+        true
+    };
+    for method in BOTH {
+        let tolerance = Tolerance {
+            relative: 0.0,
+            absolute: vec![1e-9],
+        };
+        let mut it = Integrator::with(method, &mut jump, 0.0, &[0.0], 1.0, tolerance).unwrap();
+        while it.step(&mut jump, 1.0).is_ok() {
+            assert!(it.time() < 1.0, "{method:?} {:?}", it.state());
+        }
+        assert!((it.time() - 0.5).abs() < 1e-12, "{method:?} {}", it.time());
+        assert!((it.state()[0] - 0.5).abs() < 1e-9, "{method:?}");
+    }
+}
+
+#[test]
+fn a_component_that_stays_zero_needs_no_tolerance_of_its_own() {
+    let mut rates = |_: f64, y: &[f64], r: &mut [f64]| {
+        (r[0], r[1], r[2]) = (-y[0], y[0] - y[1], 0.0);
+        true
+    };
+    for method in BOTH {
+        let tolerance = Tolerance {
+            relative: 1e-9,
+            absolute: vec![0.0],
+        };
+        let it = run(method, &mut rates, (0.0, 10.0), &[1.0, 0.5, 0.0], tolerance);
+        let off = it.state()[1] / (10.5 * exp(-10.0)) - 1.0;
+        assert!(off.abs() < 1e-7, "{method:?}: {off}");
+        assert_eq!(it.state()[2], 0.0);
+    }
+}
