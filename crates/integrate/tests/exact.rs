@@ -409,3 +409,32 @@ fn a_component_that_stays_zero_needs_no_tolerance_of_its_own() {
         assert_eq!(it.state()[2], 0.0);
     }
 }
+
+#[test]
+fn a_component_that_may_be_anything_is_asked_for_finite_states_only() {
+    // The second component is nobody's concern and acts on the first.
+    for method in BOTH {
+        let mut unknown = 0;
+        let mut rates = |_: f64, y: &[f64], r: &mut [f64]| {
+            unknown += usize::from(!y.iter().all(|y| y.is_finite()));
+            (r[0], r[1]) = (-y[0] - 1e-3 * y[1], y[0]);
+            true
+        };
+        let tolerance = Tolerance {
+            relative: 1e-9,
+            absolute: vec![1e-9, f64::INFINITY],
+        };
+        let mut it =
+            Integrator::with(method, &mut rates, 0.0, &[1.0, 0.0], 1.0, tolerance).unwrap();
+        while it.time() < 1.0 {
+            it.step(&mut rates, 1.0).unwrap();
+        }
+        // y" + y' + 0.001 y = 0
+        let root = (0.25 - 1e-3_f64).sqrt();
+        let (slow, fast) = (root - 0.5, -root - 0.5);
+        let known = (slow * exp(slow) - fast * exp(fast)) / (slow - fast);
+        let off = it.state()[0] - known;
+        assert!(off.abs() < 1e-8, "{method:?}: {off}");
+        assert_eq!(unknown, 0, "{method:?}");
+    }
+}

@@ -174,6 +174,8 @@ fn typical_size(track: &Track, component: usize) -> f64 {
         true => absolute / relative,
         false => LEAST_SIZE * absolute,
     };
+    // Where nobody asks how exact a component is, its tolerance tells no size.
+    let least = if least.is_finite() { least } else { 0.0 };
     let size = track.state[component].abs().max(least);
     if size > 0.0 { size } else { 1.0 }
 }
