@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use kempe_dynamics::Source;
-use kempe_integrate::{Dop853, Tolerance};
+use kempe_integrate::{Integrator, Method, Tolerance};
 use kempe_measure::measure::{Along, History, measure};
 use kempe_measure::{ForceSource, Series, State};
 use kempe_mechanism::{Branch, Design, Mechanism};
@@ -67,7 +67,8 @@ impl Free {
             relative,
             absolute: vec![relative],
         };
-        let mut it = Dop853::new(&mut rates, 0.0, &start, 1.0, tolerance).unwrap();
+        let mut it =
+            Integrator::with(Method::Explicit, &mut rates, 0.0, &start, 1.0, tolerance).unwrap();
         while it.time() < time {
             it.step(&mut rates, time).unwrap();
         }

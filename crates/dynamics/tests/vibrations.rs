@@ -8,7 +8,7 @@ use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
 use kempe_dynamics::{Linearised, Lineariser, Mode, Source, Unsettled, energy, modes, settle};
-use kempe_integrate::{Dop853, Tolerance};
+use kempe_integrate::{Integrator, Method, Tolerance};
 use kempe_measure::measure::{Along, History, measure};
 use kempe_measure::{ForceSource, Series, State};
 use kempe_mechanism::Mechanism;
@@ -539,7 +539,8 @@ fn swing(bench: &Bench, away: &[f64], times: &[f64]) -> Vec<f64> {
         relative: 1e-12,
         absolute: vec![1e-16],
     };
-    let mut it = Dop853::new(&mut rates, 0.0, &start, 1e-2, tolerance).unwrap();
+    let mut it =
+        Integrator::with(Method::Explicit, &mut rates, 0.0, &start, 1e-2, tolerance).unwrap();
     let mut list = Vec::new();
     for time in times {
         while it.time() < *time {

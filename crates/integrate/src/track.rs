@@ -90,6 +90,11 @@ impl Track {
         self.refused = false;
     }
 
+    /// How long the last step was, with its sign.
+    pub(crate) fn length(&self) -> f64 {
+        self.time - self.before
+    }
+
     pub(crate) fn size(&self) -> usize {
         self.state.len()
     }
