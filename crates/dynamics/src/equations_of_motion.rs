@@ -8,6 +8,7 @@
 //! bias, and [`Forces::let_go`] finds the accelerations with which inverse dynamics, friction included, asks of every drive
 //! let go just what it gives.
 
+use kempe_linear::{factor_positive, is_pivot, solve_positive};
 use kempe_model::DriveId;
 use kempe_number::Number;
 
@@ -20,9 +21,6 @@ use crate::number::{ForceNumber, PlainNumber};
 use crate::vector::{add, dot, left, times};
 use crate::virtual_power;
 use crate::wrench::Wrench;
-
-/// A pivot below this part of its entry is rounding: the coordinate moves no mass that the ones before it do not move.
-const ROUNDING: f64 = 1e-12;
 
 /// The equations of motion of a state.
 #[derive(Clone, Debug)]
@@ -73,7 +71,7 @@ impl<T: ForceNumber> EquationsOfMotion<T> {
         if !factorize(n, &mut l) {
             return None;
         }
-        substitute(n, &l, &mut right);
+        solve_positive(n, &l, &mut right);
         for (drive, acceleration) in free.iter().zip(right) {
             accelerations[drive.index()] = acceleration;
         }
@@ -81,54 +79,21 @@ impl<T: ForceNumber> EquationsOfMotion<T> {
     }
 }
 
-/// The factors L D L' of a symmetric matrix of `n` rows in its place: D on the diagonal, L below. False where it is not
-/// positive: a coordinate moves no mass that those before it do not move. NaN in lanes where only there it is not.
+/// The factors of the mass matrix of `n` coordinates, in its place. False where one moves no mass that those before it do not move. NaN
+/// in lanes where only there it is not.
 fn factorize<T: ForceNumber>(n: usize, l: &mut [T]) -> bool {
-    for i in 0..n {
-        for j in 0..=i {
-            let known: T = (0..j).fold(T::zero(), |sum, k| {
-                sum + l[i * n + k] * l[j * n + k] * l[k * n + k]
-            });
-            let entry = l[i * n + j];
-            let mut rest = entry - known;
-            if i == j {
-                let mut moves = false;
-                for lane in 0..T::Plain::LANES {
-                    if rest.value_in(lane) > ROUNDING * entry.value_in(lane) {
-                        moves = true;
-                    } else {
-                        rest = rest.with_lane(lane, T::InLane::from_f64(f64::NAN));
-                    }
-                }
-                if !moves {
-                    return false;
-                }
-                l[i * n + j] = rest;
+    let pivot = |mut rest: T, entry: T| {
+        let mut moves = false;
+        for lane in 0..T::Plain::LANES {
+            if is_pivot(rest.value_in(lane), entry.value_in(lane)) {
+                moves = true;
             } else {
-                l[i * n + j] = rest / l[j * n + j];
+                rest = rest.with_lane(lane, T::InLane::from_f64(f64::NAN));
             }
         }
-    }
-    true
-}
-
-/// Solves with these factors, in place.
-fn substitute<T: Number>(n: usize, l: &[T], right: &mut [T]) {
-    for i in 0..n {
-        for k in 0..i {
-            let known = l[i * n + k] * right[k];
-            right[i] -= known;
-        }
-    }
-    for i in 0..n {
-        right[i] = right[i] / l[i * n + i];
-    }
-    for i in (0..n).rev() {
-        for k in i + 1..n {
-            let known = l[k * n + i] * right[k];
-            right[i] -= known;
-        }
-    }
+        moves.then_some(rest)
+    };
+    factor_positive(n, l, pivot).is_ok()
 }
 
 /// Coordinates that are let go at an instant: their mass matrix, factorized, and what accelerates them. Storage is reused.
@@ -144,7 +109,7 @@ pub struct LetGo {
 impl LetGo {
     /// The accelerations that generalised forces (N or N m) along the coordinates alone would give, in place.
     pub fn respond(&self, forces: &mut [f64]) {
-        substitute(forces.len(), &self.factors, forces);
+        solve_positive(forces.len(), &self.factors, forces);
     }
 
     /// Fills the factors of the mass matrix of these coordinates.
@@ -205,7 +170,7 @@ impl Forces<f64> {
         found.accelerations.clear();
         let forces = free.iter().zip(given);
         (found.accelerations).extend(forces.map(|(drive, given)| given - needed(self, drive)));
-        substitute(free.len(), &found.factors, &mut found.accelerations);
+        solve_positive(free.len(), &found.factors, &mut found.accelerations);
         for (drive, acceleration) in free.iter().zip(&found.accelerations) {
             at.accelerate(*drive, *acceleration);
         }
@@ -220,7 +185,7 @@ impl Forces<f64> {
             let forces = free.iter().zip(given);
             (found.change)
                 .extend(forces.map(|(drive, given)| given - self.drives[drive.index()].value));
-            substitute(free.len(), &found.factors, &mut found.change);
+            solve_positive(free.len(), &found.factors, &mut found.change);
             for (k, drive) in free.iter().enumerate() {
                 at.accelerate(*drive, found.change[k]);
                 found.accelerations[k] += found.change[k];
