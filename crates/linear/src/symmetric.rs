@@ -10,6 +10,9 @@ const SWEEPS: usize = 60;
 /// An entry that is this part of its diagonal entries' geometric mean is rounding.
 const ROUNDING: f64 = 1e-17;
 
+/// A component of this part of the largest is as large: those that symmetry makes equal differ by rounding.
+const AS_LARGE: f64 = 1.0 - 1e-9;
+
 /// An eigenvalue with its vector.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EigenPair {
@@ -112,8 +115,7 @@ fn forward(l: &[f64], n: usize, at: impl Fn(usize) -> usize, b: &mut [f64]) {
 /// The vector or its opposite, so that its first component of the largest size is positive.
 fn facing_up(mut vector: Vec<f64>) -> Vec<f64> {
     let largest = vector.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-    // Components that symmetry makes equal differ by rounding.
-    let first = vector.iter().find(|x| x.abs() >= largest * (1.0 - 1e-9));
+    let first = vector.iter().find(|x| x.abs() >= largest * AS_LARGE);
     if first.is_some_and(|x| *x < 0.0) {
         vector.iter_mut().for_each(|x| *x = -*x);
     }
