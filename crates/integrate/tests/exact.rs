@@ -1,6 +1,8 @@
 //! Steps of both methods against solutions that are known: elliptic functions, polynomials, and the methods' own orders.
 #![allow(clippy::unwrap_used, clippy::excessive_precision)]
 
+#[path = "support/known.rs"]
+mod known;
 mod support;
 
 use kempe_integrate::{Integrator, Method, Stopped, Tolerance, crossing};
@@ -12,33 +14,12 @@ const BOTH: [Method; 2] = [Method::Explicit, Method::Implicit];
 #[test]
 fn a_pendulum_is_where_elliptic_functions_say() {
     let start = [-std::f64::consts::FRAC_PI_2, 0.0];
-    // t, x, y and rate of Jacobi's functions, from 40 digits
-    let known: [(f64, f64, f64, f64); 3] = [
-        (
-            1.0,
-            0.98629175113187531936,
-            -0.16501085312554116875,
-            -1.79930901690707862,
-        ),
-        (
-            5.0,
-            -0.9423054350437573355,
-            -0.33475433841400058079,
-            -2.56278756819262946,
-        ),
-        (
-            10.0,
-            -0.27508746257611686005,
-            -0.96141920509912506427,
-            -4.34316069286468305,
-        ),
-    ];
     let asked = [
         (Method::Explicit, 1e-14, 1e-11),
         (Method::Implicit, 1e-11, 5e-10),
     ];
     for ((time, x, y, rate), (method, relative, least)) in
-        (known.iter()).flat_map(|known| asked.map(|asked| (*known, asked)))
+        (known::PENDULUM.iter()).flat_map(|known| asked.map(|asked| (*known, asked)))
     {
         let it = run(
             method,
