@@ -11,6 +11,11 @@
 //! | `friction.rs` | forces that resist sliding |
 //! | `unfit.rs` | what is no such joint |
 //!
+//! This is a library of its own: simulations take of it what files have words for (Hertz's law with every factor, springs with dampers, friction
+//! that sets in between two speeds), and a Rust program also the rest of the literature's laws: every onset of friction, the restitution
+//! that a factor delivers, what an impact comes to in closed form, contact outside each other ([`Fit`]). Each is held against numbers found
+//! apart from it (`tests/`).
+//!
 //! Laws and geometry run on any [`Number`](kempe_number::Number); what must be solved for is solved once, on plain numbers.
 
 mod friction;
@@ -29,9 +34,7 @@ pub use impact::Impact;
 pub use kempe_model::Dissipation;
 pub use normal::{Damping, Normal};
 pub use pin::PinWithPlay;
-pub use restitution::{
-    damping_ratio_for, delivered, delivered_by_factor, delivered_by_ratio, factor,
-};
+pub use restitution::{delivered, delivered_by_factor, factor};
 pub use stiffness::{Fit, Material, stiffness};
 pub use touch::{Body, Touch, Wrench};
 pub use unfit::Unfit;

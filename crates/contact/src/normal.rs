@@ -3,7 +3,7 @@
 use kempe_number::Number;
 
 use crate::unfit::{not_negative, positive};
-use crate::{Dissipation, Unfit, damping_ratio_for, factor};
+use crate::{Dissipation, Unfit, factor};
 
 /// The exponent of the law of Hertz.
 const HERTZ: f64 = 1.5;
@@ -73,24 +73,6 @@ impl Normal<f64> {
         })
     }
 
-    /// A spring (N/m) and the damper that delivers a restitution between bodies of a reduced mass (kg).
-    ///
-    /// # Errors
-    ///
-    /// Where stiffness or mass is not positive, or the restitution not above 0 and at most 1.
-    pub fn kelvin_voigt_for(
-        stiffness: f64,
-        restitution: f64,
-        reduced_mass: f64,
-    ) -> Result<Self, Unfit> {
-        let mass = positive("reduced mass", reduced_mass)?;
-        let ratio = damping_ratio_for(restitution)?;
-        let stiffness = positive("stiffness of the contact", stiffness)?;
-        Self::kelvin_voigt(stiffness, 2.0 * ratio * (stiffness * mass).sqrt())
-    }
-}
-
-impl Normal<f64> {
     /// The same law in other numbers.
     pub fn lift<T: Number>(&self) -> Normal<T> {
         Normal {

@@ -8,7 +8,7 @@
 //! With `q = -ln(1 - chi e)` the relation is `chi - ln(1 + chi) = q - (1 - exp(-q))`: both sides without cancellation.
 
 use kempe_model::Dissipation;
-use kempe_number::math::{acos, acosh, exp, exp_m1, ln_1p};
+use kempe_number::math::{exp, exp_m1, ln_1p};
 
 use crate::Unfit;
 
@@ -125,38 +125,4 @@ pub(crate) fn root(value: impl Fn(f64) -> f64, mut high: f64) -> f64 {
             false => high = middle,
         }
     }
-}
-
-/// The restitution that a spring with a damper of this part of the critical damping delivers, when they press and never pull:
-/// `exp(-zeta (pi - 2 asin zeta) / sqrt(1 - zeta^2))` (T. Schwager and T. Pöschel, Granular Matter 9, 2007).
-pub fn delivered_by_ratio(damping_ratio: f64) -> f64 {
-    let zeta = damping_ratio.max(0.0);
-    let square = (1.0 - zeta) * (1.0 + zeta);
-    // The angle over its sine; its limit is 1 where the damping is critical.
-    let part = if square > 0.0 {
-        acos(zeta) / square.sqrt()
-    } else if square < 0.0 {
-        acosh(zeta) / (-square).sqrt()
-    } else {
-        1.0
-    };
-    exp(-2.0 * zeta * part)
-}
-
-/// The part of the critical damping that delivers a restitution; the damping of a spring of stiffness K under a mass m is
-/// this times `2 sqrt(K m)`.
-///
-/// # Errors
-///
-/// Where the restitution is not above 0 and at most 1.
-pub fn damping_ratio_for(restitution: f64) -> Result<f64, Unfit> {
-    let e = checked(restitution)?;
-    if e == 1.0 {
-        return Ok(0.0);
-    }
-    let mut high = 1.0;
-    while delivered_by_ratio(high) > e && high < f64::MAX {
-        high *= 2.0;
-    }
-    Ok(root(|zeta| delivered_by_ratio(zeta) - e, high))
 }

@@ -1,6 +1,8 @@
 //! Slider-cranks with play, against solutions found apart from Kempe.
 #![allow(clippy::unwrap_used, clippy::excessive_precision)]
 
+#[path = "../../integrate/tests/support/known.rs"]
+mod known;
 mod support;
 
 use kempe_contact::{
@@ -9,6 +11,7 @@ use kempe_contact::{
 use kempe_integrate::{Integrator, Method, Tolerance};
 use kempe_mechanism::pose::Pose;
 use kempe_number::math::{cos, sin, sin_cos};
+use known::{ROUGH, SMOOTH};
 use support::until;
 
 /// A crank of 0.05 m at 5000 rpm, a rod of 0.12 m, and a slider whose pin has 0.5 mm of play in the rod (data of P. Flores).
@@ -168,48 +171,6 @@ fn seek(
         assert!(time < 3e-3, "nothing happens");
     }
 }
-
-const SMOOTH: [[f64; 5]; 3] = [
-    [
-        2.272860320398e-4,
-        4.3857831453,
-        2.807232580788e-4,
-        7.7952e-5,
-        45872.2,
-    ],
-    [
-        6.3705643017e-4,
-        2.756949153,
-        6.9089059194e-4,
-        4.6121e-5,
-        20869.0,
-    ],
-    [
-        7.497002798e-4,
-        1.82669907,
-        8.151504404e-4,
-        5.3015e-5,
-        25926.0,
-    ],
-];
-
-const ROUGH: [[f64; 5]; 3] = [
-    [
-        2.272860320398e-4,
-        4.3857831453,
-        2.808068769966e-4,
-        7.7900e-5,
-        45825.5,
-    ],
-    [
-        5.7337150538e-4,
-        2.267401295,
-        6.2266535261e-4,
-        3.5968e-5,
-        14373.0,
-    ],
-    [7.19152359e-4, 2.11913999, 7.87767349e-4, 5.4595e-5, 26976.0],
-];
 
 #[test]
 fn contacts_of_a_slider_crank_are_those_known() {

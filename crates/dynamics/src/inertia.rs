@@ -6,7 +6,7 @@ use kempe_model::{self as model, LinkId};
 use crate::instant::Instant;
 use crate::number::ForceNumber;
 use crate::problem::Problem;
-use crate::vector::{cross, sub};
+use crate::vector::{add, cross, dot, left, sub, times};
 use crate::wrench::{self, Wrench};
 
 /// A mass that moves with a link: the link's own, or one fixed to it.
@@ -23,6 +23,9 @@ pub struct Mass<T> {
     /// Moment of inertia about the centre of mass, kg m^2.
     pub moment: T,
 }
+
+/// How a mass moves with a coordinate, by its rate: its centre along the frame's axes, and its angle.
+pub(crate) type Moved<T> = ([T; 2], T);
 
 impl<T: ForceNumber> Mass<T> {
     /// All masses of a mechanism that can move; those of the frame feel nothing.
@@ -105,6 +108,19 @@ impl<T: ForceNumber> Mass<T> {
     #[inline(always)]
     pub(crate) fn weight(&self, at: &Instant<T>, gravity: [T; 2]) -> Wrench<T> {
         wrench::of_force(gravity.map(|g| g * self.mass), self.arm(at))
+    }
+
+    /// How it moves, its centre as far from its body's origin as `arm` says, where the bodies move so about their origins.
+    #[inline(always)]
+    pub(crate) fn moved(&self, arm: [T; 2], bodies: &[[T; 3]]) -> Moved<T> {
+        let [x, y, turn] = bodies[self.body.index()];
+        (add([x, y], times(left(arm), turn)), turn)
+    }
+
+    /// Its part of the mass matrix in the row and the column of two coordinates that move it so: `m u . v + J w z`.
+    #[inline(always)]
+    pub(crate) fn coupling(&self, (v, w): &Moved<T>, (u, z): &Moved<T>) -> T {
+        dot(*v, *u) * self.mass + *w * *z * self.moment
     }
 
     /// Kinetic energy, J.

@@ -71,16 +71,7 @@ pub fn modes(it: &Linearised) -> Result<Vec<Mode>, NoModes> {
     if !it.is_finite() {
         return Err(NoModes::NoValue);
     }
-    let Some(pairs) = generalised_eigen(&it.stiffness, &it.mass, n) else {
-        let leading = |size: usize| -> Vec<f64> {
-            let rows = it.mass.chunks_exact(n).take(size);
-            rows.flat_map(|row| row[..size].to_vec()).collect()
-        };
-        let fits =
-            |size: &usize| generalised_eigen(&leading(*size), &leading(*size), *size).is_some();
-        let most = (1..n).take_while(fits).last().unwrap_or(0);
-        return Err(NoModes::NoMass(most));
-    };
+    let pairs = generalised_eigen(&it.stiffness, &it.mass, n).map_err(NoModes::NoMass)?;
     let stiffest = pairs.iter().fold(0.0_f64, |m, p| m.max(p.value.abs()));
     let vectors: Vec<&[f64]> = pairs.iter().map(|pair| pair.vector.as_slice()).collect();
     let along = between(&it.stiffness, &vectors);

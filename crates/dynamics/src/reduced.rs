@@ -8,7 +8,7 @@ use kempe_number::Number;
 use crate::acting::Acting;
 use crate::instant::Instant;
 use crate::number::ForceNumber;
-use crate::vector::{add, dot, left, times};
+use crate::vector::{add, times};
 use crate::wrench::{self, Wrench};
 
 /// Equivalent mass (kg) or moment of inertia (kg m^2) at a drive, and its derivative to the drive's coordinate, the other
@@ -17,15 +17,13 @@ pub fn mass<T: ForceNumber>(acting: &Acting<T>, at: &Instant<T>, drive: usize) -
     let (first, second) = (&at.coefficients[drive], &at.coefficient_rates[drive]);
     let mut sum = [T::zero(); 2];
     for mass in &acting.masses {
-        let (k, dk) = (first[mass.body.index()], second[mass.body.index()]);
         let arm = mass.arm(at);
-        let v = add([k[0], k[1]], times(left(arm), k[2]));
-        let dv = add(
-            add([dk[0], dk[1]], times(left(arm), dk[2])),
-            times(arm, -k[2].square()),
-        );
-        sum[0] += dot(v, v) * mass.mass + k[2].square() * mass.moment;
-        sum[1] += (dot(v, dv) * mass.mass + k[2] * dk[2] * mass.moment) * 2.0;
+        let moved = mass.moved(arm, first);
+        let (rate, turn) = mass.moved(arm, second);
+        // The arm turns too.
+        let rate = (add(rate, times(arm, -moved.1.square())), turn);
+        sum[0] += mass.coupling(&moved, &moved);
+        sum[1] += mass.coupling(&moved, &rate) * 2.0;
     }
     sum
 }

@@ -1,20 +1,15 @@
 //! The forces of one instant allocate nothing once their storage is there.
-#![allow(unsafe_code, reason = "a counting allocator cannot be written without")]
 
+#[path = "../../integrate/tests/support/counting.rs"]
+mod counting;
 mod support;
 
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
-
+use counting::allocations;
 use kempe_dynamics::{ForceSampler, Forces, Instant};
 use kempe_mechanism::{Design, Mechanism};
 use kempe_model::DriveId;
 use kempe_motion::Motion;
 use kempe_number::Jet;
-
-thread_local! {
-    static COUNT: Cell<usize> = const { Cell::new(0) };
-}
 
 const FIVE_BAR: &str = r#"
 units = { length = "mm", angle = "deg" }
@@ -34,22 +29,6 @@ tool = { at = "P", mass = "0.5 kg" }
 [friction]
 all = { coefficient = 0.1, radius = 5 }
 "#;
-
-struct Counting;
-
-// SAFETY: every call is handed on to the system's allocator unchanged.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        let _ = COUNT.try_with(|c| c.set(c.get() + 1));
-        unsafe { System.alloc(layout) }
-    }
-    unsafe fn dealloc(&self, ptr: *mut u8, layout: Layout) {
-        unsafe { System.dealloc(ptr, layout) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
 
 #[test]
 fn forces_of_the_door_lock_allocate_nothing() {
@@ -81,10 +60,9 @@ fn forces_of_the_door_lock_allocate_nothing() {
         forces.drives[0].value
     };
     let first = once(1.0);
-    let before = COUNT.with(Cell::get);
-    let again = once(1.0);
-    let other = once(2.0);
-    assert_eq!(COUNT.with(Cell::get), before);
+    let (mut again, mut other) = (0.0, 0.0);
+    let count = allocations(|| (again, other) = (once(1.0), once(2.0)));
+    assert_eq!(count, 0);
     assert!(first == again && other.is_finite() && other != first);
 }
 
@@ -114,10 +92,9 @@ fn forces_of_a_five_bar_on_two_motors_allocate_nothing() {
         [0, 1].map(|drive| forces.drives[drive].value)
     };
     let first = torques(&instants[0]);
-    let before = COUNT.with(Cell::get);
-    let other = torques(&instants[1]);
-    let again = torques(&instants[0]);
-    assert_eq!(COUNT.with(Cell::get), before);
+    let (mut other, mut again) = ([0.0; 2], [0.0; 2]);
+    let count = allocations(|| (other, again) = (torques(&instants[1]), torques(&instants[0])));
+    assert_eq!(count, 0);
     // Loads and friction are iterated from the loads before: the same forces, not the same bits.
     for drive in 0..2 {
         let (a, b, c) = (first[drive], again[drive], other[drive]);

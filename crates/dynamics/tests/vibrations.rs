@@ -7,8 +7,11 @@ mod mechanisms;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-use kempe_dynamics::{Linearised, Lineariser, Mode, Source, Unsettled, energy, modes, settle};
-use kempe_integrate::{Dop853, Tolerance};
+use kempe_dynamics::{
+    Forces, Instant, LetGo, Linearised, Lineariser, Mode, NoModes, Source, Unsettled, energy,
+    modes, settle,
+};
+use kempe_integrate::{Integrator, Method, Tolerance};
 use kempe_measure::measure::{Along, History, measure};
 use kempe_measure::{ForceSource, Series, State};
 use kempe_mechanism::Mechanism;
@@ -539,7 +542,8 @@ fn swing(bench: &Bench, away: &[f64], times: &[f64]) -> Vec<f64> {
         relative: 1e-12,
         absolute: vec![1e-16],
     };
-    let mut it = Dop853::new(&mut rates, 0.0, &start, 1e-2, tolerance).unwrap();
+    let mut it =
+        Integrator::with(Method::Explicit, &mut rates, 0.0, &start, 1e-2, tolerance).unwrap();
     let mut list = Vec::new();
     for time in times {
         while it.time() < *time {
@@ -599,5 +603,47 @@ fn small_free_vibrations_in_time_are_those_of_the_modes() {
                 .sum();
             assert!(left.abs() < 3e-6 * size, "{left:e} of {size:e}");
         }
+    }
+}
+
+#[test]
+fn vibrations_and_free_motion_need_the_same_mass() {
+    // A double pendulum whose knee weighs next to nothing: in line, the upper bar moves hardly any mass that the lower one does not.
+    for (knee, refused) in [(1e-14, true), (5e-13, true), (5e-12, false), (1e-3, false)] {
+        let text = format!(
+            r#"
+            units = {{ length = "m" }}
+            gravity = [0, "-9.81 m/s^2"]
+            [links]
+            frame = {{ O = [0, 0] }}
+            upper = {{ O-P = 1 }}
+            lower = {{ P-Q = 1 }}
+            [drives]
+            a = {{ turns = "upper", at = -90 }}
+            b = {{ turns = "lower", at = -90 }}
+            [masses]
+            knee = {{ at = "P", mass = "{knee:e} kg" }}
+            foot = {{ at = "Q", mass = "1 kg" }}
+            "#
+        );
+        let mut bench = Bench::new(&text);
+        let row = modes(&bench.linearised()).map(|_| ());
+        let wanted = if refused {
+            Err(NoModes::NoMass(1))
+        } else {
+            Ok(())
+        };
+        assert_eq!(row, wanted, "{knee:e}");
+        let (branch, q) = (bench.stance.branch(), bench.stance.coordinates());
+        let source = solved(&bench.motion, branch, q, &[0.0; 2]);
+        let equations = source.forces.equations_of_motion(&source.instant);
+        let nothing = [Number::from_f64(0.0); 2];
+        let found = equations.accelerations(&bench.free, &nothing, &nothing);
+        assert_eq!(found.is_none(), refused, "{knee:e}");
+        let mut instant = Instant::new(bench.motion.mechanism(), 0);
+        source.instant.value_into(&mut instant);
+        let mut forces = Forces::new(bench.motion.design.clone()).unwrap();
+        let moves = forces.let_go(&mut instant, &bench.free, &[0.0; 2], &mut LetGo::default());
+        assert_eq!(moves, !refused, "{knee:e}");
     }
 }

@@ -8,7 +8,7 @@ use coefficients::{BETWEEN, ERROR_3, ERROR_5, LAST, NODES, STAGE, STAGES};
 use kempe_number::math::powf;
 
 use crate::track::{At, Next, Track};
-use crate::{Stopped, System, Tolerance};
+use crate::{Stopped, System};
 
 /// Stages with their coefficients.
 type Terms = &'static [(usize, f64)];
@@ -27,7 +27,7 @@ const ORDER: f64 = 8.0;
 
 /// A solution that is followed step by step. All storage is its own; steps allocate nothing.
 #[derive(Clone, Debug)]
-pub struct Dop853 {
+pub(crate) struct Dop853 {
     pub(crate) track: Track,
     stages: Vec<f64>,
     between: Vec<f64>,
@@ -37,19 +37,6 @@ pub struct Dop853 {
 }
 
 impl Dop853 {
-    /// From a state at a time on, forwards or (`heading` negative) backwards, with a first step chosen from the rates.
-    /// `None` where there are none.
-    pub fn new(
-        system: &mut impl System,
-        time: f64,
-        state: &[f64],
-        heading: f64,
-        tolerance: Tolerance,
-    ) -> Option<Self> {
-        let mut it = Self::on(Track::new(state.len(), heading, tolerance));
-        it.restart(system, time, state).then_some(it)
-    }
-
     /// Storage for steps on a track, which is nowhere yet.
     pub(crate) fn on(track: Track) -> Self {
         let size = track.size();
@@ -62,11 +49,10 @@ impl Dop853 {
         }
     }
 
-    /// Begins again from another state (one after an impact, say), with the storage it has. `false` where there are no rates.
-    pub fn restart(&mut self, system: &mut impl System, time: f64, state: &[f64]) -> bool {
-        self.track.place(time, state);
+    /// Begins where the track is. `false` where there are no rates.
+    pub(crate) fn restart(&mut self, system: &mut impl System) -> bool {
         self.ended = false;
-        if !self.evaluate(system, 0, time, At::State) {
+        if !self.evaluate(system, 0, self.track.time, At::State) {
             return false;
         }
         self.choose_step(system);
@@ -87,29 +73,9 @@ impl Dop853 {
         self.stages[..rates.len()].copy_from_slice(rates);
     }
 
-    /// The time that was reached.
-    pub fn time(&self) -> f64 {
-        self.track.time
-    }
-
-    /// The state there.
-    pub fn state(&self) -> &[f64] {
-        &self.track.state
-    }
-
-    /// The rates there.
-    pub fn rates(&self) -> &[f64] {
+    /// The rates at the state.
+    pub(crate) fn rates(&self) -> &[f64] {
         self.stage(if self.ended { LAST } else { 0 })
-    }
-
-    /// The time before the last step.
-    pub fn before(&self) -> f64 {
-        self.track.before
-    }
-
-    /// How often rates were asked for.
-    pub fn evaluations(&self) -> usize {
-        self.track.evaluations
     }
 
     fn stage(&self, index: usize) -> &[f64] {
@@ -145,14 +111,11 @@ impl Dop853 {
     /// # Errors
     ///
     /// Where no step can be made; the state stays where it was.
-    pub fn step(&mut self, system: &mut impl System, end: f64) -> Result<(), Stopped> {
+    pub(crate) fn step(&mut self, system: &mut impl System, end: f64) -> Result<(), Stopped> {
         loop {
-            let Next::Step { step, last } = self.track.next(end)? else {
+            let Next::Step { step, to, last } = self.track.next(end)? else {
                 return Ok(());
             };
-            let end_of_step = if last { end } else { self.track.time + step };
-            // As long as the time that it takes, to the last bit: the solution may go far in little time.
-            let step = end_of_step - self.track.time;
             let Some(error) = self.attempt(system, step) else {
                 self.track.retreat(step)?;
                 continue;
@@ -165,7 +128,7 @@ impl Dop853 {
             let most = if self.track.refused { 1.0 } else { LONGER };
             let next = step * fits.clamp(SHORTER, most);
             self.track.follow_with(next, last);
-            self.accept(end_of_step);
+            self.accept(to);
             return Ok(());
         }
     }
@@ -179,7 +142,8 @@ impl Dop853 {
         }
     }
 
-    /// All stages of a step, with the trial at its end; the error against the tolerance, `None` where rates are missing.
+    /// All stages of a step, with the trial at its end; the error against the tolerance, `None` where rates are missing or the
+    /// error is not finite.
     fn attempt(&mut self, system: &mut impl System, step: f64) -> Option<f64> {
         self.begin();
         for index in 1..OWN {
@@ -198,7 +162,9 @@ impl Dop853 {
         if five == 0.0 && three == 0.0 {
             return Some(f64::MIN_POSITIVE);
         }
-        Some((step.abs() * five / (five + 0.01 * three).sqrt()).max(f64::MIN_POSITIVE))
+        let both = five + 0.01 * three;
+        // Neither no number nor one that is too large to square says that the step is good.
+        (both.is_finite()).then(|| (step.abs() * five / both.sqrt()).max(f64::MIN_POSITIVE))
     }
 
     /// A sum of stages against the tolerance over the step that is tried.
@@ -233,9 +199,14 @@ impl Dop853 {
 
     /// The state at a time within the last step, into `state`. Three more rates are asked for, once a step; `false` where
     /// they are not there.
-    pub fn between(&mut self, system: &mut impl System, time: f64, state: &mut [f64]) -> bool {
+    pub(crate) fn between(
+        &mut self,
+        system: &mut impl System,
+        time: f64,
+        state: &mut [f64],
+    ) -> bool {
         let track = &self.track;
-        let step = track.time - track.before;
+        let step = track.length();
         if !self.ended || step == 0.0 {
             state.copy_from_slice(&track.state);
             return true;

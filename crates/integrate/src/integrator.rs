@@ -4,15 +4,17 @@ mod stiffness;
 
 use stiffness::Watch;
 
+use crate::dop853::Dop853;
+use crate::radau5::Radau5;
 use crate::track::Track;
-use crate::{Dop853, Radau5, Stopped, System, Tolerance};
+use crate::{Stopped, System, Tolerance};
 
 /// How steps are made.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Method {
-    /// Explicit steps only ([`Dop853`]).
+    /// Explicit steps only, of order 8 (Dormand and Prince).
     Explicit,
-    /// Implicit steps only ([`Radau5`]).
+    /// Implicit steps only, of order 5 (Radau IIA).
     Implicit,
     /// Explicit steps, and implicit ones where the system is stiff.
     #[default]
@@ -123,7 +125,8 @@ impl Integrator {
     /// Begins again from another state (one after an impact, say), with the storage and the method it has. `false` where there
     /// are no rates.
     pub fn restart(&mut self, system: &mut impl System, time: f64, state: &[f64]) -> bool {
-        either!(&mut self.now, it => it.restart(system, time, state))
+        self.now.track_mut().place(time, state);
+        either!(&mut self.now, it => it.restart(system))
     }
 
     /// The time that was reached.
@@ -180,7 +183,7 @@ impl Integrator {
         match &mut self.now {
             Steps::Explicit(it) => self.watch.explicit_step(it.strain()),
             Steps::Implicit(it) => {
-                let (length, work) = ((it.time() - it.before()).abs(), it.evaluations());
+                let (length, work) = (it.track.length().abs(), it.track.evaluations);
                 self.watch.implicit_step(length, work, || it.fastest());
             }
         }

@@ -4,7 +4,7 @@
 //! | --- | --- |
 //! | `dop853.rs` | explicit steps of order 8 that keep their error below a tolerance, and the solution between their ends |
 //! | `radau5.rs` | implicit steps of order 5 for stiff systems, in the same way |
-//! | `integrator.rs` | whichever of both suits, chosen as it goes |
+//! | `integrator.rs` | the door: one of both, or whichever suits, chosen as it goes |
 //! | `track.rs`, `tolerance.rs` | what the methods share: the solution so far, lengths of steps, the size of an error |
 //! | `crossing.rs` | where something becomes zero within a step |
 
@@ -16,9 +16,7 @@ mod tolerance;
 mod track;
 
 pub use crossing::crossing;
-pub use dop853::Dop853;
 pub use integrator::{Integrator, Method, Used};
-pub use radau5::Radau5;
 pub use tolerance::Tolerance;
 pub use track::Stopped;
 

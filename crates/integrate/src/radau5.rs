@@ -17,7 +17,7 @@ use matrices::{Matrices, Missing};
 use newton::{Newton, Outcome, ROUNDS};
 
 use crate::track::{At, Next, Track};
-use crate::{Stopped, System, Tolerance};
+use crate::{Stopped, System};
 
 /// A new step is the one that just keeps the tolerance, times this.
 const SAFETY: f64 = 0.9;
@@ -38,7 +38,7 @@ const LEAST_ERROR: f64 = 1e-2;
 /// The tolerance holds for the estimate of a step's error, of order 3, and with it for what lies between the ends of a step. The
 /// ends themselves, of order 5, are better.
 #[derive(Clone, Debug)]
-pub struct Radau5 {
+pub(crate) struct Radau5 {
     pub(crate) track: Track,
     /// Rates at the state.
     rates: Vec<f64>,
@@ -58,19 +58,6 @@ pub struct Radau5 {
 }
 
 impl Radau5 {
-    /// From a state at a time on, forwards or (`heading` negative) backwards, with a first step chosen from the rates.
-    /// `None` where there are none.
-    pub fn new(
-        system: &mut impl System,
-        time: f64,
-        state: &[f64],
-        heading: f64,
-        tolerance: Tolerance,
-    ) -> Option<Self> {
-        let mut it = Self::on(Track::new(state.len(), heading, tolerance));
-        it.restart(system, time, state).then_some(it)
-    }
-
     /// Storage for steps on a track, which is nowhere yet.
     pub(crate) fn on(track: Track) -> Self {
         let size = track.size();
@@ -89,10 +76,10 @@ impl Radau5 {
         }
     }
 
-    /// Begins again from another state (one after an impact, say), with the storage it has. `false` where there are no rates.
-    pub fn restart(&mut self, system: &mut impl System, time: f64, state: &[f64]) -> bool {
-        self.track.place(time, state);
+    /// Begins where the track is. `false` where there are no rates.
+    pub(crate) fn restart(&mut self, system: &mut impl System) -> bool {
         self.forget();
+        let time = self.track.time;
         if !(self.track).rates(system, time, At::State, &mut self.rates) {
             return false;
         }
@@ -117,29 +104,9 @@ impl Radau5 {
         self.matrices.renew();
     }
 
-    /// The time that was reached.
-    pub fn time(&self) -> f64 {
-        self.track.time
-    }
-
-    /// The state there.
-    pub fn state(&self) -> &[f64] {
-        &self.track.state
-    }
-
-    /// The rates there.
-    pub fn rates(&self) -> &[f64] {
+    /// The rates at the state.
+    pub(crate) fn rates(&self) -> &[f64] {
         &self.rates
-    }
-
-    /// The time before the last step.
-    pub fn before(&self) -> f64 {
-        self.track.before
-    }
-
-    /// How often rates were asked for, for differences too.
-    pub fn evaluations(&self) -> usize {
-        self.track.evaluations
     }
 
     /// How fast nearby solutions part or meet here, in 1/s: what bounds the steps of an explicit method.
@@ -152,9 +119,9 @@ impl Radau5 {
     /// # Errors
     ///
     /// Where no step can be made; the state stays where it was.
-    pub fn step(&mut self, system: &mut impl System, end: f64) -> Result<(), Stopped> {
+    pub(crate) fn step(&mut self, system: &mut impl System, end: f64) -> Result<(), Stopped> {
         loop {
-            let Next::Step { step, last } = self.track.next(end)? else {
+            let Next::Step { step, to, last } = self.track.next(end)? else {
                 return Ok(());
             };
             let prepared = self.matrices.prepare(
@@ -175,8 +142,8 @@ impl Radau5 {
                     continue;
                 }
             }
-            let length = self.track.time - self.track.before;
-            let known = self.ended.then(|| (&self.last[..], step / length));
+            let ratio = step / self.track.length();
+            let known = self.ended.then(|| (&self.last[..], ratio));
             self.newton.guess(known);
             let newton = &mut self.newton;
             match newton.solve(&mut self.track, system, &self.matrices, step) {
@@ -203,7 +170,7 @@ impl Radau5 {
                     let stays = serves && (1.0..WORTH).contains(&next);
                     self.track
                         .follow_with(if stays { step } else { next * step }, last);
-                    self.accept(if last { end } else { self.track.time + step });
+                    self.accept(to);
                     self.matrices.moved(serves);
                     return Ok(());
                 }
@@ -212,7 +179,7 @@ impl Radau5 {
     }
 
     /// Holds the error of a step against the tolerance, with the trial at its end and the rates there in `scratch`. `None` where
-    /// rates are missing.
+    /// rates are missing or the error is not finite.
     fn judge(&mut self, system: &mut impl System, step: f64, rounds: usize) -> Option<Judged> {
         let mut error = self.estimate(system, step)?;
         let time = self.track.time + step;
@@ -317,9 +284,9 @@ impl Radau5 {
     }
 
     /// The state at a time within the last step, into `state`: the polynomial through its stages. Always `true`.
-    pub fn between(&mut self, _: &mut impl System, time: f64, state: &mut [f64]) -> bool {
+    pub(crate) fn between(&mut self, _: &mut impl System, time: f64, state: &mut [f64]) -> bool {
         let track = &self.track;
-        let step = track.time - track.before;
+        let step = track.length();
         if !self.ended || step == 0.0 || time == track.time {
             state.copy_from_slice(&track.state);
             return true;

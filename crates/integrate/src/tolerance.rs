@@ -29,7 +29,12 @@ impl Tolerance {
         at: impl Fn(usize) -> f64,
     ) -> f64 {
         let sum = (0..components).fold(0.0, |sum, k| {
-            let part = value(k) / self.scale(k, at(k).abs());
+            let value = value(k);
+            // Nothing is within any tolerance, none included: a component that stays zero has no size.
+            let part = match value == 0.0 {
+                true => 0.0,
+                false => value / self.scale(k, at(k).abs()),
+            };
             sum + part * part
         });
         (sum / components.max(1) as f64).sqrt()

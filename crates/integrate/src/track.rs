@@ -23,7 +23,7 @@ const BEYOND: f64 = 100.0;
 /// Why no step was made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stopped {
-    /// The rates are not finite or not there just ahead.
+    /// The rates are not finite or not there just ahead, or so large that no error can be told.
     NoRates,
     /// No step is short enough for the tolerance: the solution runs away, jumps, or is stiff beyond an explicit method.
     TooShort,
@@ -38,8 +38,9 @@ pub(crate) enum At {
 
 /// What is to be done next.
 pub(crate) enum Next {
-    /// A step, and whether it is the last before the end.
-    Step { step: f64, last: bool },
+    /// A step to a time, and whether that is the end. The step is as long as the time that it takes, to the last bit: the solution
+    /// may go far in little time.
+    Step { step: f64, to: f64, last: bool },
     /// Nothing: the end is reached but for rounding.
     Arrived,
 }
@@ -87,6 +88,11 @@ impl Track {
         self.carry.fill(0.0);
         self.step = self.step.signum();
         self.refused = false;
+    }
+
+    /// How long the last step was, with its sign.
+    pub(crate) fn length(&self) -> f64 {
+        self.time - self.before
     }
 
     pub(crate) fn size(&self) -> usize {
@@ -165,14 +171,18 @@ impl Track {
             return Ok(Next::Arrived);
         }
         let last = self.step.abs() >= left.abs();
-        let step = if last { left } else { self.step };
-        match self.goes_on(step) {
-            true => Ok(Next::Step { step, last }),
+        let to = if last { end } else { self.time + self.step };
+        match self.goes_on(if last { left } else { self.step }) {
+            true => Ok(Next::Step {
+                step: to - self.time,
+                to,
+                last,
+            }),
             false => Err(Stopped::TooShort),
         }
     }
 
-    /// After a step whose rates are missing: a much shorter one, if that goes anywhere.
+    /// After a step whose rates are missing, or whose error is: a much shorter one, if that goes anywhere.
     pub(crate) fn retreat(&mut self, step: f64) -> Result<(), Stopped> {
         self.refuse(RETREAT * step);
         match self.goes_on(self.step) {

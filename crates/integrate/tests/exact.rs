@@ -1,9 +1,11 @@
 //! Steps of both methods against solutions that are known: elliptic functions, polynomials, and the methods' own orders.
 #![allow(clippy::unwrap_used, clippy::excessive_precision)]
 
+#[path = "support/known.rs"]
+mod known;
 mod support;
 
-use kempe_integrate::{Integrator, Method, Stopped, crossing};
+use kempe_integrate::{Integrator, Method, Stopped, Tolerance, crossing};
 use kempe_number::math::{cos, exp, ln, sin};
 use support::{pendulum, run, tolerance};
 
@@ -12,33 +14,12 @@ const BOTH: [Method; 2] = [Method::Explicit, Method::Implicit];
 #[test]
 fn a_pendulum_is_where_elliptic_functions_say() {
     let start = [-std::f64::consts::FRAC_PI_2, 0.0];
-    // t, x, y and rate of Jacobi's functions, from 40 digits
-    let known: [(f64, f64, f64, f64); 3] = [
-        (
-            1.0,
-            0.98629175113187531936,
-            -0.16501085312554116875,
-            -1.79930901690707862,
-        ),
-        (
-            5.0,
-            -0.9423054350437573355,
-            -0.33475433841400058079,
-            -2.56278756819262946,
-        ),
-        (
-            10.0,
-            -0.27508746257611686005,
-            -0.96141920509912506427,
-            -4.34316069286468305,
-        ),
-    ];
     let asked = [
         (Method::Explicit, 1e-14, 1e-11),
         (Method::Implicit, 1e-11, 5e-10),
     ];
     for ((time, x, y, rate), (method, relative, least)) in
-        (known.iter()).flat_map(|known| asked.map(|asked| (*known, asked)))
+        (known::PENDULUM.iter()).flat_map(|known| asked.map(|asked| (*known, asked)))
     {
         let it = run(
             method,
@@ -340,4 +321,101 @@ fn crossings_are_found_to_rounding() {
     let flat = crossing(|t| kempe_number::powi(t - 0.7, 9), 0.0, 1.0).unwrap();
     assert!((flat - 0.7).abs() < 1e-12, "{flat}");
     assert_eq!(crossing(|t| t + 1.0, 0.0, 1.0), None);
+}
+
+#[test]
+fn what_goes_as_time_goes_stays_with_it() {
+    // Late, so that the ends of steps are rounded by far more than what a step adds; something that swings keeps them short.
+    let start = 1e6;
+    let mut rates = |t: f64, y: &[f64], r: &mut [f64]| {
+        (r[0], r[1]) = (1.0, -50.0 * (y[1] - sin(37.0 * t)));
+        true
+    };
+    for method in BOTH {
+        let tolerance = Tolerance {
+            relative: 1e-10,
+            absolute: vec![1e-10],
+        };
+        let it = run(
+            method,
+            &mut rates,
+            (start, start + 50.0),
+            &[start, 0.0],
+            tolerance,
+        );
+        let off = it.state()[0] - it.time();
+        assert!(
+            off.abs() <= 2.0 * f64::EPSILON * start,
+            "{method:?}: {off} off, {:?}",
+            it.used()
+        );
+    }
+}
+
+#[test]
+fn an_error_that_is_no_number_is_no_good_step() {
+    // Rates that jump by so much that the squares of errors are not finite.
+    let mut jump = |t: f64, _: &[f64], r: &mut [f64]| {
+        r[0] = if t > 0.5 { 1e160 * sin(1e3 * t) } else { 1.0 };
+        true
+    };
+    for method in BOTH {
+        let tolerance = Tolerance {
+            relative: 0.0,
+            absolute: vec![1e-9],
+        };
+        let mut it = Integrator::with(method, &mut jump, 0.0, &[0.0], 1.0, tolerance).unwrap();
+        while it.step(&mut jump, 1.0).is_ok() {
+            assert!(it.time() < 1.0, "{method:?} {:?}", it.state());
+        }
+        assert!((it.time() - 0.5).abs() < 1e-12, "{method:?} {}", it.time());
+        assert!((it.state()[0] - 0.5).abs() < 1e-9, "{method:?}");
+    }
+}
+
+#[test]
+fn a_component_that_stays_zero_needs_no_tolerance_of_its_own() {
+    let mut rates = |_: f64, y: &[f64], r: &mut [f64]| {
+        (r[0], r[1], r[2]) = (-y[0], y[0] - y[1], 0.0);
+        true
+    };
+    for method in BOTH {
+        let tolerance = Tolerance {
+            relative: 1e-9,
+            absolute: vec![0.0],
+        };
+        let it = run(method, &mut rates, (0.0, 10.0), &[1.0, 0.5, 0.0], tolerance);
+        let off = it.state()[1] / (10.5 * exp(-10.0)) - 1.0;
+        assert!(off.abs() < 1e-7, "{method:?}: {off}");
+        assert_eq!(it.state()[2], 0.0);
+    }
+}
+
+#[test]
+fn a_component_that_may_be_anything_is_asked_for_finite_states_only() {
+    // The second component is nobody's concern and acts on the first.
+    for method in BOTH {
+        let mut unknown = 0;
+        let mut rates = |_: f64, y: &[f64], r: &mut [f64]| {
+            unknown += usize::from(!y.iter().all(|y| y.is_finite()));
+            (r[0], r[1]) = (-y[0] - 1e-3 * y[1], y[0]);
+            true
+        };
+        let tolerance = Tolerance {
+            relative: 1e-9,
+            absolute: vec![1e-9, f64::INFINITY],
+        };
+        let mut it =
+            Integrator::with(method, &mut rates, 0.0, &[1.0, 0.0], 1.0, tolerance).unwrap();
+        while it.time() < 1.0 {
+            it.step(&mut rates, 1.0).unwrap();
+        }
+        // y" + y' + 0.001 y = 0
+        let root = (0.25 - 1e-3_f64).sqrt();
+        let (slow, fast) = (root - 0.5, -root - 0.5);
+        let known = (slow * exp(slow) - fast * exp(fast)) / (slow - fast);
+        let off = it.state()[0] - known;
+        assert!(off.abs() < 1e-8, "{method:?}: {off}");
+        assert_eq!(unknown, 0, "{method:?}");
+    }
 }

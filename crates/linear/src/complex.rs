@@ -1,4 +1,4 @@
-//! Small dense complex systems.
+//! Small dense complex systems that are solved once, for all their right-hand sides together; [`Lu`](crate::Lu) keeps factors.
 
 use kempe_number::Complex;
 

@@ -5,6 +5,7 @@
 //! | `qr.rs` | dense systems and least squares on plain numbers, solved for any number |
 //! | `elimination.rs` | small systems on the stack, one matrix per lane |
 //! | `lu.rs` | square systems, real or complex, whose factors are kept |
+//! | `positive.rs` | symmetric systems that are positive, as those of masses are, and which row says that they are not |
 //! | `complex.rs`, `affine.rs` | complex systems, and linear equations that leave variables free |
 //! | `tridiagonal.rs` | splines |
 //! | `rank.rs` | the rank of large sparse matrices |
@@ -18,6 +19,7 @@ mod dependent;
 mod eigenvalues;
 mod elimination;
 mod lu;
+mod positive;
 mod qr;
 mod rank;
 mod singular;
@@ -30,6 +32,7 @@ pub use dependent::independent_least_squares;
 pub use eigenvalues::eigenvalues;
 pub use elimination::{Elimination, Matrix, Plain};
 pub use lu::{Entry, Lu};
+pub use positive::{factor_positive, is_pivot, solve_positive};
 pub use qr::Qr;
 pub use rank::{RANK_TOLERANCE, SparseRow, rank};
 pub use singular::smallest_singular_value;

@@ -3,12 +3,15 @@
 //! By C. G. J. Jacobi's rotations (1846): slower than reduction to tridiagonal form on large matrices, and on the small ones of
 //! mechanisms the simplest method and the most accurate one.
 
+use crate::positive::cholesky;
+
 /// Sweeps over all pairs at most; about six are usual, and convergence is quadratic.
 const SWEEPS: usize = 60;
 /// An entry that is this part of its diagonal entries' geometric mean is rounding.
 const ROUNDING: f64 = 1e-17;
-/// A pivot below this part of its entry is rounding: the matrix is not positive.
-const NOT_POSITIVE: f64 = 1e-13;
+
+/// A component of this part of the largest is as large: those that symmetry makes equal differ by rounding.
+const AS_LARGE: f64 = 1.0 - 1e-9;
 
 /// An eigenvalue with its vector.
 #[derive(Clone, Debug, PartialEq)]
@@ -71,8 +74,11 @@ pub fn symmetric_eigen(matrix: &[f64], n: usize) -> Vec<EigenPair> {
 }
 
 /// The values `w` and vectors `x` of `k x = w m x`, rising in `w`, of symmetric matrices by rows; `m` is positive. The vectors
-/// are of unit mass, `x m x = 1`, and orthogonal in `m` and `k`. `None` where `m` is not positive.
-pub fn generalised_eigen(k: &[f64], m: &[f64], n: usize) -> Option<Vec<EigenPair>> {
+/// are of unit mass, `x m x = 1`, and orthogonal in `m` and `k`.
+///
+/// # Errors
+/// The first row of `m` that has no pivot ([`is_pivot`](crate::is_pivot)): it is not positive.
+pub fn generalised_eigen(k: &[f64], m: &[f64], n: usize) -> Result<Vec<EigenPair>, usize> {
     let l = cholesky(m, n)?;
     // A = L^-1 K L^-T, columns first.
     let mut a = k.to_vec();
@@ -93,27 +99,7 @@ pub fn generalised_eigen(k: &[f64], m: &[f64], n: usize) -> Option<Vec<EigenPair
         }
         pair.vector = facing_up(std::mem::take(x));
     }
-    Some(pairs)
-}
-
-/// `L` of `m = L L^T`, by rows.
-fn cholesky(m: &[f64], n: usize) -> Option<Vec<f64>> {
-    let mut l = vec![0.0; n * n];
-    for i in 0..n {
-        for j in 0..=i {
-            let known: f64 = (0..j).map(|k| l[i * n + k] * l[j * n + k]).sum();
-            let rest = (m[i * n + j] + m[j * n + i]) / 2.0 - known;
-            if i == j {
-                if !(rest > NOT_POSITIVE * m[i * n + i]) {
-                    return None;
-                }
-                l[i * n + i] = rest.sqrt();
-            } else {
-                l[i * n + j] = rest / l[j * n + j];
-            }
-        }
-    }
-    Some(l)
+    Ok(pairs)
 }
 
 /// Solves `L x = b` in place; `at` says where the entries of `b` stand.
@@ -129,8 +115,7 @@ fn forward(l: &[f64], n: usize, at: impl Fn(usize) -> usize, b: &mut [f64]) {
 /// The vector or its opposite, so that its first component of the largest size is positive.
 fn facing_up(mut vector: Vec<f64>) -> Vec<f64> {
     let largest = vector.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-    // Components that symmetry makes equal differ by rounding.
-    let first = vector.iter().find(|x| x.abs() >= largest * (1.0 - 1e-9));
+    let first = vector.iter().find(|x| x.abs() >= largest * AS_LARGE);
     if first.is_some_and(|x| *x < 0.0) {
         vector.iter_mut().for_each(|x| *x = -*x);
     }

@@ -1,44 +1,16 @@
 //! No position solve allocates, on any number.
 #![allow(clippy::unwrap_used)]
-#![allow(unsafe_code, reason = "an allocator that counts has to be one")]
 
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
+#[path = "../../integrate/tests/support/counting.rs"]
+mod counting;
+
 use std::path::Path;
 
+use counting::allocations;
 use kempe_mechanism::{Design, Mechanism, PlanNumber};
 use kempe_model::Model;
 use kempe_motion::Motion;
 use kempe_number::{Dual, Jet, Lanes, Lanes8, Number};
-
-thread_local! {
-    static COUNT: Cell<usize> = const { Cell::new(0) };
-}
-
-/// The system's allocator, counting the calls of each thread.
-struct Counting;
-
-// SAFETY: everything is handed on to the system's allocator.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        COUNT.with(|c| c.set(c.get() + 1));
-        // SAFETY: the caller's promise.
-        unsafe { System.alloc(layout) }
-    }
-    unsafe fn dealloc(&self, at: *mut u8, layout: Layout) {
-        // SAFETY: the caller's promise.
-        unsafe { System.dealloc(at, layout) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
-
-fn allocations(mut work: impl FnMut()) -> usize {
-    let before = COUNT.with(Cell::get);
-    work();
-    COUNT.with(Cell::get) - before
-}
 
 /// Solves along the whole motion on one kind of number.
 fn solves<T: PlanNumber>(name: &str, motion: &Motion, seed: impl Fn(f64) -> T) {

@@ -1,9 +1,8 @@
 //! How what is let go accelerates, at any state.
 
 use kempe_dynamics::amount::Amount;
-use kempe_dynamics::equations_of_motion::LetGo;
 use kempe_dynamics::wrench::Wrench;
-use kempe_dynamics::{Forces, Instant, Rates};
+use kempe_dynamics::{Forces, Instant, LetGo, Rates};
 use kempe_integrate::System;
 use kempe_linear::Lu;
 use kempe_measure::State;

@@ -2,6 +2,8 @@
 #![allow(clippy::unwrap_used, clippy::excessive_precision)]
 
 mod common;
+#[path = "../../integrate/tests/support/known.rs"]
+mod known;
 
 use common::{Free, at};
 use kempe_number::math::sin_cos;
@@ -11,34 +13,8 @@ const PENDULUM: &str = include_str!("../../../examples/benchmarks/pendulum.toml"
 
 #[test]
 fn a_pendulum_keeps_to_elliptic_functions() {
-    // 1 kg on 1 m without mass, from rest at x = -1 m: Jacobi's functions, to 40 digits.
     let found = Free::new(PENDULUM, 10.0).run();
-    for (time, x, y, rate) in [
-        (
-            1.0,
-            0.98629175113187531936,
-            -0.16501085312554116875,
-            -1.79930901690707862,
-        ),
-        (
-            2.0,
-            -0.79356619534332174699,
-            -0.60848393044379151463,
-            3.45520689905932978,
-        ),
-        (
-            5.0,
-            -0.9423054350437573355,
-            -0.33475433841400058079,
-            -2.56278756819262946,
-        ),
-        (
-            10.0,
-            -0.27508746257611686005,
-            -0.96141920509912506427,
-            -4.34316069286468305,
-        ),
-    ] {
+    for (time, x, y, rate) in known::PENDULUM {
         let [q, v] = at(&found, 0, time);
         let (s, c) = sin_cos(q);
         let off = (c - x).abs().max((s - y).abs());
@@ -93,11 +69,7 @@ const ANDREWS: &str = include_str!("../../../examples/benchmarks/andrews.toml");
 #[test]
 fn andrews_squeezer_runs_free() {
     let found = Free::new(ANDREWS, 0.03).run();
-    for (time, beta, rate) in [
-        (0.01, 2.160_113_131_531_526_5, 711.923_152_831_103_9),
-        (0.02, 8.184_905_889_667_561, 726.558_342_609_127_7),
-        (0.03, 15.810_771_195_153_707, 1_139.920_302_259_106_1),
-    ] {
+    for (time, beta, rate) in known::ANDREWS {
         let [q, v] = at(&found, 0, time);
         assert!((q / beta - 1.0).abs() < 1e-11, "{time}: {q}, not {beta}");
         assert!((v / rate - 1.0).abs() < 1e-9, "{time}: {v}, not {rate}");
@@ -139,11 +111,7 @@ fn a_crank_rocker_runs_free() {
     let mut free = Free::new(text, 1.0);
     free.question.start[0][1] = 30.0;
     let found = free.run();
-    for (time, angle, rate) in [
-        (0.1, 5.552026524037504, 29.04393968614691),
-        (0.5, 20.25304488137455, 31.07100123095598),
-        (1.0, 38.92717954011124, 33.02780516330781),
-    ] {
+    for (time, angle, rate) in known::CRANK_ROCKER {
         let [q, v] = at(&found, 0, time);
         assert!(
             (q - angle).abs() < 1e-10 * angle,

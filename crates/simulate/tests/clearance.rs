@@ -2,6 +2,8 @@
 #![allow(clippy::unwrap_used, clippy::excessive_precision)]
 
 mod common;
+#[path = "../../integrate/tests/support/known.rs"]
+mod known;
 
 use common::{Free, at};
 use kempe_model::{Contact, ContactStates, Released, value};
@@ -42,53 +44,9 @@ fn slider_crank(friction: f64, until: f64) -> Free {
     free
 }
 
-/// When, approach speed, until when, deepest (m) and largest force (N).
-type Known = [f64; 5];
-
 #[test]
 fn a_rattling_pin_meets_its_bore_as_known() {
-    // P. Flores et al.'s slider-crank at 5000 rpm: DOP853 at 1e-12, by equations written by hand.
-    let without: [Known; 3] = [
-        [
-            2.272860320398e-4,
-            4.3857831453,
-            2.807232580788e-4,
-            7.7952e-5,
-            45872.2,
-        ],
-        [
-            6.3705643017e-4,
-            2.756949153,
-            6.9089059194e-4,
-            4.6121e-5,
-            20869.0,
-        ],
-        [
-            7.497002798e-4,
-            1.82669907,
-            8.151504404e-4,
-            5.3015e-5,
-            25926.0,
-        ],
-    ];
-    let with: [Known; 3] = [
-        [
-            2.272860320398e-4,
-            4.3857831453,
-            2.808068769966e-4,
-            7.7900e-5,
-            45825.5,
-        ],
-        [
-            5.7337150538e-4,
-            2.267401295,
-            6.2266535261e-4,
-            3.5968e-5,
-            14373.0,
-        ],
-        [7.19152359e-4, 2.11913999, 7.87767349e-4, 5.4595e-5, 26976.0],
-    ];
-    for (friction, known) in [(0.0, without), (0.03, with)] {
+    for (friction, known) in [(0.0, known::SMOOTH), (0.03, known::ROUGH)] {
         let found = slider_crank(friction, 1e-3).run();
         assert_eq!(found.ending, Ending::Until);
         let first = found.touched[0].touching;

@@ -1,8 +1,8 @@
 //! Pins in curved slots.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 
-use kempe_number::math::{atan2, sin_cos};
+use kempe_number::math::{atan2, sin_cos, within_half_a_turn};
 
 use super::{LINE, Part, ground, link_token};
 use crate::context::{Anchor, Context};
@@ -90,8 +90,7 @@ fn placed(context: &Context, arc: ArcGuide) -> Option<Slot> {
     let angle = |p: Point| atan2(p[1] - center[1], p[0] - center[0]);
     let start = angle([0.0; 2]);
     // The shorter way, on the side away from the centre.
-    let mut sweep = angle(to) - start;
-    sweep -= TAU * (sweep / TAU).round();
+    let mut sweep = within_half_a_turn(angle(to) - start);
     if sweep.abs() > PI - 1e-6 {
         sweep = PI * arc.side.signum();
     }

@@ -1,8 +1,6 @@
 //! Pins in slots along smooth curves.
 
-use std::f64::consts::TAU;
-
-use kempe_number::math::sin_cos;
+use kempe_number::math::{sin_cos, within_half_a_turn};
 
 use super::curved_slot::{WALL, channel};
 use super::{Part, ground};
@@ -80,7 +78,7 @@ fn path(places: Middle, closed: bool) -> Path {
     let next = |k: usize| places.get(k + 1).or(places.first().filter(|_| closed));
     let vertices = places.iter().enumerate().map(|(k, &(at, angle))| {
         let turn = next(k).map_or(0.0, |(_, after)| after - angle);
-        let (s, c) = sin_cos((turn - TAU * (turn / TAU).round()) / 4.0);
+        let (s, c) = sin_cos(within_half_a_turn(turn) / 4.0);
         Vertex { at, bulge: s / c }
     });
     Path {

@@ -1,6 +1,6 @@
 //! Equations of motion in the coordinates of the undamped modes: how each of them goes with damping.
 
-use kempe_linear::{C, eigenvalues, solve_complex};
+use kempe_linear::{C, Lu, eigenvalues};
 
 use super::Mode;
 use crate::linearised::Linearised;
@@ -13,7 +13,8 @@ const UNCOUPLED: f64 = 1e-12;
 const NO_GROWTH: f64 = 1e-13;
 /// A matrix is made singular only up to this part of an eigenvalue, so that it can be solved with.
 const BESIDE: f64 = 1e-9;
-
+/// Rounds of inverse iteration: each takes what other motions have in the vector down by nine powers of ten or to rounding.
+const INVERSE_ITERATIONS: usize = 3;
 /// Speeds of modes that are slower than this part of the fastest are counted as theirs.
 const SLOWEST: f64 = 1e-6;
 
@@ -113,8 +114,14 @@ impl Modal {
     pub fn general(&self) -> Option<Vec<[[f64; 2]; 2]>> {
         let n = self.n;
         // In the coordinates (scale y, y').
-        let (by_stiffness, by_damping) =
-            (self.by_mass(&self.stiffness)?, self.by_mass(&self.damping)?);
+        let mut mass = Lu::new(n);
+        if !mass.factor(|row, column| self.mass[row * n + column]) {
+            return None;
+        }
+        let (by_stiffness, by_damping) = (
+            by_mass(&mass, &self.stiffness, n)?,
+            by_mass(&mass, &self.damping, n)?,
+        );
         let mut matrix = vec![0.0; 4 * n * n];
         for i in 0..n {
             matrix[i * 2 * n + n + i] = self.scale[i];
@@ -158,23 +165,6 @@ impl Modal {
             .collect()
     }
 
-    /// The product of a matrix with the inverse of the mass matrix.
-    fn by_mass(&self, matrix: &[f64]) -> Option<Vec<f64>> {
-        let n = self.n;
-        let mut out = vec![0.0; n * n];
-        for column in 0..n {
-            let mut mass: Vec<C> = self.mass.iter().map(|x| C::new(*x, 0.0)).collect();
-            let mut rhs: Vec<[C; 1]> = (0..n)
-                .map(|row| [C::new(matrix[row * n + column], 0.0)])
-                .collect();
-            if !solve_complex(&mut mass, &mut rhs, n) {
-                return None;
-            }
-            (0..n).for_each(|row| out[row * n + column] = rhs[row][0].re);
-        }
-        Some(out)
-    }
-
     /// The motion that goes as `exp(s t)`, in the coordinates of the modes, by inverse iteration.
     fn motion(&self, s: [f64; 2]) -> Vec<C> {
         let n = self.n;
@@ -184,24 +174,23 @@ impl Modal {
             s[1],
         );
         let number = |x: f64| C::new(x, 0.0);
-        let mut y: Vec<[C; 1]> = vec![[C::one()]; n];
-        for _ in 0..3 {
-            let mut matrix: Vec<C> = (0..n * n)
-                .map(|k| {
-                    s * s * number(self.mass[k])
-                        + s * number(self.damping[k])
-                        + number(self.stiffness[k])
-                })
-                .collect();
-            if !solve_complex(&mut matrix, &mut y, n) {
-                break;
-            }
-            let largest = y.iter().fold(0.0_f64, |m, x| m.max(x[0].norm()));
+        let mut y = vec![C::one(); n];
+        let mut matrix = Lu::new(n);
+        let entry = |row: usize, column: usize| {
+            let k = row * n + column;
+            s * s * number(self.mass[k]) + s * number(self.damping[k]) + number(self.stiffness[k])
+        };
+        if !matrix.factor(entry) {
+            return y;
+        }
+        for _ in 0..INVERSE_ITERATIONS {
+            matrix.solve(&mut y);
+            let largest = y.iter().fold(0.0_f64, |m, x| m.max(x.norm()));
             for x in &mut y {
-                x[0] = C::new(x[0].re / largest, x[0].im / largest);
+                *x = C::new(x.re / largest, x.im / largest);
             }
         }
-        y.into_iter().map(|[x]| x).collect()
+        y
     }
 
     /// The part that every mode takes in the motion that goes as `exp(s t)`.
@@ -229,6 +218,18 @@ impl Modal {
         };
         (0..modes.len()).map(coordinate).collect()
     }
+}
+
+/// The product of a matrix with the inverse of the mass matrix. `None` where it is not finite.
+fn by_mass(mass: &Lu<f64>, matrix: &[f64], n: usize) -> Option<Vec<f64>> {
+    let mut out = vec![0.0; n * n];
+    let mut right = vec![0.0; n];
+    for column in 0..n {
+        (0..n).for_each(|row| right[row] = matrix[row * n + column]);
+        mass.solve(&mut right);
+        (0..n).for_each(|row| out[row * n + column] = right[row]);
+    }
+    out.iter().all(|x| x.is_finite()).then_some(out)
 }
 
 /// Both values of `s` of a mode. Where their product, the square of its frequency, is rounding nothing brings it back: one of them is

@@ -11,6 +11,9 @@ use crate::track::{At, Track};
 const SMALL: f64 = 1.490_116_119_384_765_6e-8;
 /// Size of a component where neither it nor the tolerance tells one, against its absolute tolerance.
 const LEAST_SIZE: f64 = 1e6;
+/// Factors for a step that is longer or shorter by this part at most serve: the same step later ends at another rounded time, and
+/// Newton's rounds shrink what it changes by as much.
+const SAME_STEP: f64 = 1e-6;
 /// Products with the matrix before its growth is looked at, and over which it is.
 const PRODUCTS: usize = 8;
 
@@ -81,7 +84,8 @@ impl Matrices {
             self.wanted = false;
             self.fresh = true;
         }
-        if self.factored != Some(step) {
+        let serves = |known: f64| (known - step).abs() <= SAME_STEP * step.abs();
+        if !self.factored.is_some_and(serves) {
             let (size, jacobian) = (rates.len(), &self.jacobian);
             let diagonal = |row, column| if row == column { 1.0 / step } else { 0.0 };
             let real = |row, column| REAL * diagonal(row, column) - jacobian[row * size + column];
@@ -170,6 +174,8 @@ fn typical_size(track: &Track, component: usize) -> f64 {
         true => absolute / relative,
         false => LEAST_SIZE * absolute,
     };
+    // Where nobody asks how exact a component is, its tolerance tells no size.
+    let least = if least.is_finite() { least } else { 0.0 };
     let size = track.state[component].abs().max(least);
     if size > 0.0 { size } else { 1.0 }
 }

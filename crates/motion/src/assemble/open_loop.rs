@@ -17,6 +17,7 @@ use kempe_mechanism::pose::Pose;
 use kempe_mechanism::structure::Source;
 use kempe_mechanism::{Mechanism, Structure};
 use kempe_model::{Drive, DriveKind, Law};
+use kempe_number::math::within_half_a_turn;
 use kempe_units::{Dimension, Expr};
 
 use super::search::Search;
@@ -233,13 +234,12 @@ impl Placed {
 
 /// Whether a curve passes through a point, whole turns of any angle aside.
 fn passes(curve: &[Node], z: &[f64]) -> bool {
-    use std::f64::consts::TAU;
     let last = z.len() - 1;
     let is_angle = |i: usize| i == last || i % 3 == 2;
     let gap = |a: f64, b: f64, i: usize| {
         let gap = a - b;
         if is_angle(i) {
-            gap - (gap / TAU).round() * TAU
+            within_half_a_turn(gap)
         } else {
             gap
         }

@@ -1,0 +1,171 @@
+//! Drives that are let go: how they accelerate, what jumps of their speeds carry, what is given from outside meanwhile.
+//!
+//! A drive that is let go gives nothing but what acts along it. Its acceleration is the one with which inverse dynamics, friction included,
+//! asks of it just that.
+
+use kempe_linear::solve_positive;
+use kempe_model::DriveId;
+
+use crate::acting::Acting;
+use crate::energy;
+use crate::equations_of_motion::factorize;
+use crate::forces::Forces;
+use crate::inertia::Moved;
+use crate::instant::Instant;
+use crate::joint_contact;
+use crate::virtual_power;
+use crate::wrench::Wrench;
+
+/// Coordinates that are let go at an instant: their mass matrix, factorized, and what accelerates them. Storage is reused.
+#[derive(Clone, Debug, Default)]
+pub struct LetGo {
+    factors: Vec<f64>,
+    /// Accelerations of the coordinates let go, in their order.
+    pub accelerations: Vec<f64>,
+    change: Vec<f64>,
+    moved: Vec<Moved<f64>>,
+}
+
+impl LetGo {
+    /// The accelerations that generalised forces (N or N m) along the coordinates alone would give, in place.
+    pub fn respond(&self, forces: &mut [f64]) {
+        solve_positive(forces.len(), &self.factors, forces);
+    }
+
+    /// Fills the factors of the mass matrix of these coordinates.
+    fn factorize(&mut self, acting: &Acting<f64>, at: &Instant<f64>, free: &[DriveId]) -> bool {
+        let n = free.len();
+        self.factors.clear();
+        self.factors.resize(n * n, 0.0);
+        for mass in &acting.masses {
+            let arm = mass.arm(at);
+            self.moved.clear();
+            let by = |drive: &DriveId| mass.moved(arm, &at.coefficients[drive.index()]);
+            self.moved.extend(free.iter().map(by));
+            for (row, one) in self.moved.iter().enumerate() {
+                for (column, other) in self.moved.iter().enumerate().take(row + 1) {
+                    self.factors[row * n + column] += mass.coupling(one, other);
+                }
+            }
+        }
+        factorize(n, &mut self.factors)
+    }
+}
+
+/// Corrections of accelerations for friction, at most: each is a small part of the one before.
+const CORRECTIONS: usize = 200;
+/// A correction below this part of the acceleration is rounding.
+const SETTLED: f64 = 4.0 * f64::EPSILON;
+/// Corrections below this part of the acceleration without friction are settled where they get no smaller.
+const NEARLY: f64 = 1e-10;
+/// Where nothing would accelerate without friction, 1/s^2 or m/s^2.
+const SLIGHT: f64 = 1e-9;
+
+/// The largest of some numbers, without its sign; NaN where one is.
+fn size_of(numbers: &[f64]) -> f64 {
+    let larger = |most: f64, x: &f64| if x.abs() <= most { most } else { x.abs() };
+    numbers.iter().fold(0.0, larger)
+}
+
+impl Forces<f64> {
+    /// How coordinates that are let go accelerate where these forces (N or N m) act along them, friction included. `at` holds
+    /// the state, with the coordinates let go not accelerating; it accelerates with them when this is done. Allocates nothing
+    /// once warm. False where they move no mass, where friction jams, or where it has no one answer.
+    pub fn let_go(
+        &mut self,
+        at: &mut Instant<f64>,
+        free: &[DriveId],
+        given: &[f64],
+        found: &mut LetGo,
+    ) -> bool {
+        self.take_up(at);
+        if !found.factorize(&self.acting, at, free) {
+            return false;
+        }
+        let needed = |it: &Self, drive: &DriveId| {
+            virtual_power::project(&it.needed, &at.coefficients[drive.index()]).value
+        };
+        found.accelerations.clear();
+        let forces = free.iter().zip(given);
+        (found.accelerations).extend(forces.map(|(drive, given)| given - needed(self, drive)));
+        solve_positive(free.len(), &found.factors, &mut found.accelerations);
+        for (drive, acceleration) in free.iter().zip(&found.accelerations) {
+            at.accelerate(*drive, *acceleration);
+        }
+        if self.acting.friction.is_empty() {
+            return found.accelerations.iter().all(|a| a.is_finite());
+        }
+        let first = size_of(&found.accelerations).max(SLIGHT);
+        let mut before = f64::INFINITY;
+        for _ in 0..CORRECTIONS {
+            self.solve(at);
+            found.change.clear();
+            let forces = free.iter().zip(given);
+            (found.change)
+                .extend(forces.map(|(drive, given)| given - self.drives[drive.index()].value));
+            solve_positive(free.len(), &found.factors, &mut found.change);
+            for (k, drive) in free.iter().enumerate() {
+                at.accelerate(*drive, found.change[k]);
+                found.accelerations[k] += found.change[k];
+            }
+            let change = size_of(&found.change);
+            // Where terms cancel, rounding is more than a small part of what is left: then nothing gets smaller any more.
+            let rounds = change <= NEARLY * first && change > 0.5 * before;
+            let settled = rounds || change <= SETTLED * size_of(&found.accelerations);
+            before = change;
+            if !found.accelerations.iter().all(|a| a.is_finite()) {
+                return false;
+            }
+            if settled {
+                return true;
+            }
+        }
+        false
+    }
+}
+
+impl Forces<f64> {
+    /// The momentum along the coordinates `of` that jumps in the speeds of the drives `by` carry, N s or N m s.
+    pub fn carried(
+        &self,
+        at: &Instant<f64>,
+        of: &[DriveId],
+        by: &[DriveId],
+        jumps: &[f64],
+    ) -> Vec<f64> {
+        let mut sums = vec![0.0; of.len()];
+        for mass in &self.acting.masses {
+            let arm = mass.arm(at);
+            let moved = |drive: &DriveId| mass.moved(arm, &at.coefficients[drive.index()]);
+            for (drive, jump) in by.iter().zip(jumps) {
+                let one = moved(drive);
+                for (sum, drive) in sums.iter_mut().zip(of) {
+                    *sum += jump * mass.coupling(&one, &moved(drive));
+                }
+            }
+        }
+        sums
+    }
+
+    /// What a drive that keeps its law gives at an instant after [`Forces::let_go`], N or N m.
+    pub fn given_by(&mut self, at: &Instant<f64>, drive: DriveId) -> f64 {
+        if self.acting.friction.is_empty() {
+            self.take_up(at);
+            return virtual_power::project(&self.needed, &at.coefficients[drive.index()]).value;
+        }
+        self.drives[drive.index()].value
+    }
+
+    /// The power, W, that loads, motors of drives that hold nothing, dampers, contacts and, after [`Forces::let_go`], friction give to the mechanism. `storage` has a place
+    /// for every link.
+    pub fn power_from_outside(&self, at: &Instant<f64>, storage: &mut [Wrench<f64>]) -> f64 {
+        let rubs = match self.acting.friction.is_empty() {
+            true => 0.0,
+            false => self.equilibrium.friction_power(&self.acting.friction),
+        };
+        rubs + energy::of_loads(&self.acting, &self.design, at, storage)
+            + energy::of_motors(&self.acting, at)
+            + joint_contact::power(&self.acting.contacts, at)
+            - energy::dissipation(&self.acting, &self.design.geometry, at)
+    }
+}
