@@ -170,7 +170,9 @@ impl Track {
             self.time = end;
             return Ok(Next::Arrived);
         }
-        let last = self.step.abs() >= left.abs();
+        // What would be left behind it is no step.
+        let rest = left.abs() - self.step.abs();
+        let last = rest <= SHORTEST * self.time.abs().max(end.abs());
         let to = if last { end } else { self.time + self.step };
         match self.goes_on(if last { left } else { self.step }) {
             true => Ok(Next::Step {

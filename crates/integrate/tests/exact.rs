@@ -419,3 +419,30 @@ fn a_component_that_may_be_anything_is_asked_for_finite_states_only() {
         assert_eq!(unknown, 0, "{method:?}");
     }
 }
+
+/// A step that would end a rounding before the end goes there: what is left is no step, and nobody integrates it.
+#[test]
+fn nothing_is_left_between_the_last_step_and_the_end() {
+    for method in BOTH {
+        // Steps of a hundred times the blind first one, 1e-6, end beside these ends by a rounding or not at all.
+        for end in [1e-4, 2e-4, 3e-4, 1e-3] {
+            let mut rates = |_: f64, y: &[f64], r: &mut [f64]| {
+                (r[0], r[1]) = (y[1], -9.81);
+                true
+            };
+            let tolerance = Tolerance {
+                relative: 1e-13,
+                absolute: vec![1e-13, 1e-13],
+            };
+            let start = [0.0, 0.0];
+            let mut it = Integrator::with(method, &mut rates, 0.0, &start, 1.0, tolerance).unwrap();
+            while it.time() < end {
+                let before = it.time();
+                it.step(&mut rates, end).unwrap();
+                assert!(it.time() - before > 1e-10, "{method:?} {end}: {before:e}");
+                assert_eq!(it.before(), before, "{method:?} {end}");
+            }
+            assert!((it.state()[0] + 0.5 * 9.81 * end * end).abs() < 1e-18);
+        }
+    }
+}
