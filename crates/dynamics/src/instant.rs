@@ -263,11 +263,18 @@ impl Instant<f64> {
     }
 
     /// Takes the kinematic coefficients of a drive from poses that were solved as series in its coordinate alone.
-    pub fn set_coefficients(&mut self, drive: DriveId, state: &Configuration<Rates>) {
-        for (body, pose) in state.poses.iter().enumerate().skip(1) {
-            let (first, second) = slopes_of(pose);
-            self.coefficients[drive.index()][body] = first;
-            self.coefficient_rates[drive.index()][body] = second;
+    pub fn set_coefficients(&mut self, drive: DriveId, state: &Configuration<Jet<f64, 2>>) {
+        let out = &mut self.coefficients[drive.index()];
+        for (out, pose) in out.iter_mut().zip(&state.poses).skip(1) {
+            *out = slopes(pose).map(|slope| slope.value());
+        }
+    }
+
+    /// Takes the derivatives of the coefficients of a drive to its coordinate from such series.
+    pub fn set_coefficient_rates(&mut self, drive: DriveId, state: &Configuration<Rates>) {
+        let out = &mut self.coefficient_rates[drive.index()];
+        for (out, pose) in out.iter_mut().zip(&state.poses).skip(1) {
+            *out = slopes_of(pose).1;
         }
     }
 

@@ -97,22 +97,39 @@ impl<const N: usize> PlanNumber for Jet<f64, N> {
         carry_over(block, design, branch, state, N)
     }
 
-    /// Series with two derivatives are solved on in many crates: their solution is compiled here, the others' where they are
-    /// asked for.
+    /// Series with one or two derivatives are solved on in many crates: their solution is compiled here, the others' where they
+    /// are asked for.
     fn solve_plan(design: &Design<Self>, branch: &Branch, state: &mut Configuration<Self>) {
-        let rates = (design as &dyn Any).downcast_ref();
-        match (rates, (state as &mut dyn Any).downcast_mut()) {
-            (Some(design), Some(state)) => solve_rates(design, branch, state),
-            _ => design.run_plan(branch, state),
+        if !solve_here::<Self, 3>(design, branch, state)
+            && !solve_here::<Self, 2>(design, branch, state)
+        {
+            design.run_plan(branch, state);
         }
     }
 }
 
-#[inline(never)]
-fn solve_rates(
-    design: &Design<Jet<f64, 3>>,
+/// Solves a plan on series of this length, if the number is one.
+#[inline]
+fn solve_here<T: Number, const N: usize>(
+    design: &Design<T>,
     branch: &Branch,
-    state: &mut Configuration<Jet<f64, 3>>,
+    state: &mut Configuration<T>,
+) -> bool {
+    let series = (design as &dyn Any).downcast_ref();
+    match (series, (state as &mut dyn Any).downcast_mut()) {
+        (Some(design), Some(state)) => {
+            solve_series::<N>(design, branch, state);
+            true
+        }
+        _ => false,
+    }
+}
+
+#[inline(never)]
+fn solve_series<const N: usize>(
+    design: &Design<Jet<f64, N>>,
+    branch: &Branch,
+    state: &mut Configuration<Jet<f64, N>>,
 ) {
     design.run_plan(branch, state);
 }

@@ -5,7 +5,7 @@ use kempe_units::Dimension;
 use crate::ids::{DriveId, JointId, LinkId, LinkPointRef, PointId, Scalar, Span};
 use crate::joint::JointKind;
 use crate::model::Model;
-use crate::polynomials::Polynomials;
+use crate::polynomials::Stretches;
 
 /// What is moved from outside.
 #[derive(Clone, Debug, PartialEq)]
@@ -177,7 +177,7 @@ pub enum LawPiece {
         moments: Vec<f64>,
     },
     /// Polynomials in time, as a simulation finds them. Files cannot say it; written as a file they are measured points.
-    Polynomials(Polynomials),
+    Polynomials(Stretches),
 }
 
 impl LawPiece {
@@ -185,7 +185,7 @@ impl LawPiece {
     pub fn knots(&self) -> &[f64] {
         match self {
             Self::Table { times, .. } => times,
-            Self::Polynomials(polynomials) => polynomials.times(),
+            Self::Polynomials(found) => found.knots(),
             _ => &[],
         }
     }

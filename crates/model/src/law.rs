@@ -60,16 +60,22 @@ impl Law {
     /// The times at which one piece ends and the next begins, both ends of the motion included, s.
     pub fn breaks(&self, parameters: &[f64]) -> Vec<f64> {
         let mut breaks = vec![0.0];
-        breaks.extend(self.stretches(parameters).map(|s| s.start + s.duration));
+        for stretch in self.stretches(parameters) {
+            match stretch.piece {
+                LawPiece::Polynomials(it) => {
+                    breaks.extend(it.breaks().iter().skip(1).map(|t| stretch.start + t));
+                }
+                _ => breaks.push(stretch.start + stretch.duration),
+            }
+        }
         breaks
     }
 
     /// The times between which the law is smooth, those inside of pieces and both ends included, s, rising.
     pub fn knots(&self, parameters: &[f64]) -> Vec<f64> {
-        let starts = self.breaks(parameters);
-        let mut knots = starts.clone();
-        for (piece, start) in self.pieces.iter().zip(&starts) {
-            knots.extend(piece.knots().iter().map(|t| start + t));
+        let mut knots = self.breaks(parameters);
+        for stretch in self.stretches(parameters) {
+            knots.extend(stretch.piece.knots().iter().map(|t| stretch.start + t));
         }
         knots.sort_by(f64::total_cmp);
         knots.dedup();
@@ -258,7 +264,7 @@ fn turns(piece: &LawPiece) -> Vec<f64> {
             values,
             moments,
         } => knots_and_turns(times, values, moments).collect(),
-        LawPiece::Polynomials(it) => it.turns().to_vec(),
+        LawPiece::Polynomials(it) => it.turns(),
         _ => Vec::new(),
     }
 }

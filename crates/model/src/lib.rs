@@ -73,7 +73,7 @@ pub use oil::Oil;
 pub use part::{Naming, Part, PartKind, namings, parts};
 pub use partial::Partial;
 pub use path::{PathAt, PathPart, PathPlaces, path_at, places_of};
-pub use polynomials::{COEFFICIENTS, Polynomials};
+pub use polynomials::{COEFFICIENTS, Polynomials, Stretches};
 pub use read::{Checked, MAX_FILE_BYTES, MAX_TABLE_BYTES, PARTIAL_TABLE, partial_table};
 pub use registry::{Argument, MeasureEntry, Nature, Registry};
 pub use schema::schema;

@@ -17,6 +17,8 @@ pub struct Polynomials {
     coefficients: Vec<[f64; COEFFICIENTS]>,
     /// The times, and those at which the coordinate turns back: from one to the next it is monotone.
     turns: Vec<f64>,
+    /// The coordinate at the end.
+    end: f64,
 }
 
 impl Polynomials {
@@ -48,6 +50,7 @@ impl Polynomials {
         let mut it = Self {
             times: times.to_vec(),
             turns: Vec::with_capacity(times.len()),
+            end: coefficients.last().map_or(f64::NAN, |c| c.iter().sum()),
             coefficients,
         };
         for k in 0..it.coefficients.len() {
@@ -78,23 +81,17 @@ impl Polynomials {
     }
 
     /// The times, and those at which the coordinate turns back, rising.
-    pub(crate) fn turns(&self) -> &[f64] {
+    fn turns(&self) -> &[f64] {
         &self.turns
     }
 
     /// How long they last together, s.
-    pub(crate) fn duration(&self) -> f64 {
+    fn duration(&self) -> f64 {
         self.times.last().copied().unwrap_or(0.0)
     }
 
-    /// The coordinate at the end.
-    pub(crate) fn end(&self) -> f64 {
-        let last = self.coefficients.last();
-        last.map_or(f64::NAN, |c| c.iter().sum())
-    }
-
     /// The coordinate at a time.
-    pub(crate) fn at<T: Number>(&self, t: T) -> T {
+    fn at<T: Number>(&self, t: T) -> T {
         let past = |k: usize| t - self.times[k];
         let [value] = piecewise(self.coefficients.len(), &past, &|k| {
             let Some(coefficients) = self.coefficients.get(k) else {
@@ -117,6 +114,83 @@ impl Polynomials {
         let [from, to] = self.span(k);
         0.5 * (from + to) + 0.5 * (to - from) * place
     }
+}
+
+/// Stretches of polynomials, one after the other in time. Where one ends and the next begins, rates may jump.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stretches {
+    stretches: Vec<Polynomials>,
+    /// Where each begins, and where the last one ends, s.
+    breaks: Vec<f64>,
+    /// Where every polynomial begins, and where the last one ends, s, rising.
+    knots: Vec<f64>,
+}
+
+impl Stretches {
+    /// The times of each count from its own start; `None` where there is none.
+    pub fn new(stretches: Vec<Polynomials>) -> Option<Self> {
+        let mut breaks = vec![0.0];
+        let mut end = 0.0;
+        for stretch in &stretches {
+            end += stretch.duration();
+            breaks.push(end);
+        }
+        let knots = times_of(&stretches, &breaks, Polynomials::times);
+        (!stretches.is_empty()).then_some(Self {
+            stretches,
+            breaks,
+            knots,
+        })
+    }
+
+    /// Where each begins, and where the last one ends, s.
+    pub fn breaks(&self) -> &[f64] {
+        &self.breaks
+    }
+
+    /// Where every polynomial begins, and where the last one ends, s, rising.
+    pub fn knots(&self) -> &[f64] {
+        &self.knots
+    }
+
+    /// The knots, and the times at which the coordinate turns back, s, rising.
+    pub(crate) fn turns(&self) -> Vec<f64> {
+        times_of(&self.stretches, &self.breaks, Polynomials::turns)
+    }
+
+    /// How long they last together, s.
+    pub(crate) fn duration(&self) -> f64 {
+        self.breaks.last().copied().unwrap_or(0.0)
+    }
+
+    /// The coordinate at the end.
+    pub(crate) fn end(&self) -> f64 {
+        self.stretches.last().map_or(f64::NAN, |it| it.end)
+    }
+
+    /// The coordinate at a time.
+    pub(crate) fn at<T: Number>(&self, t: T) -> T {
+        let past = |k: usize| t - self.breaks[k];
+        let [value] = piecewise(self.stretches.len(), &past, &|k| {
+            let unknown = || T::from_f64(f64::NAN);
+            let stretch = self.stretches.get(k);
+            [stretch.map_or_else(unknown, |stretch| stretch.at(past(k)))]
+        });
+        value
+    }
+}
+
+/// Times of stretches that begin at these times, where those of one are at its ends the same as its neighbours'.
+fn times_of(
+    stretches: &[Polynomials],
+    breaks: &[f64],
+    of: impl Fn(&Polynomials) -> &[f64],
+) -> Vec<f64> {
+    let all = stretches.iter().zip(breaks);
+    let all = all.flat_map(|(stretch, from)| of(stretch).iter().map(move |t| from + t));
+    let mut times: Vec<f64> = all.collect();
+    times.dedup();
+    times
 }
 
 /// The polynomial through coordinate, speed and acceleration at -1 and 1 and through accelerations at -1/2, 0 and 1/2, where

@@ -47,6 +47,20 @@ impl Places {
         }
     }
 
+    /// How the coefficients of these drives change along their own coordinates, at the instant last found, which was at these
+    /// coordinates.
+    pub fn bend(&mut self, drives: &[DriveId], coordinates: &[Rates], out: &mut Instant<f64>) {
+        match self {
+            // Known with the instant.
+            Self::Curve(..) => {}
+            Self::Several(several) => {
+                for drive in drives {
+                    several.bend(*drive, coordinates, out);
+                }
+            }
+        }
+    }
+
     /// The state at a time, for measures.
     pub fn state(&mut self, time: f64, coordinates: &[Rates]) -> Option<State<f64>> {
         match self {

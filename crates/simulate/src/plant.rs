@@ -211,6 +211,12 @@ impl Plant {
         self.places.instant(&self.coordinates, &mut self.instant)
     }
 
+    /// Finds how the coefficients of what is let go change along their own coordinates, in the state last looked at.
+    pub fn bend(&mut self) {
+        self.places
+            .bend(&self.free, &self.coordinates, &mut self.instant);
+    }
+
     /// Whether one coordinate moves, and nothing else: on a stop it stands still.
     pub fn is_alone(&self) -> bool {
         self.free.len() == 1 && self.driven.is_empty()

@@ -6,7 +6,7 @@ use kempe_dynamics::motor::Motor;
 use kempe_dynamics::oil::Oil;
 use kempe_integrate::Used;
 use kempe_mechanism::{Design, Mechanism};
-use kempe_model::{COEFFICIENTS, DriveId, Law, LawPiece, LinkId, Measure, Polynomials};
+use kempe_model::{COEFFICIENTS, DriveId, Law, LawPiece, LinkId, Measure, Polynomials, Stretches};
 use kempe_motion::drive_path::DrivePath;
 use kempe_motion::{Demand, EndReason, Motion, MotionError, Placed, Progress};
 use kempe_units::Expr;
@@ -343,16 +343,15 @@ pub(crate) struct Laws {
 /// A law of polynomials until `end`; one that stands still where there are none or where they do.
 fn law(start: f64, end: f64, pieces: impl Iterator<Item = Polynomials>) -> Law {
     let pieces: Vec<Polynomials> = pieces.collect();
-    if pieces.iter().all(|p| p.is_constant(start)) {
-        return Law {
-            from: Expr::Const(start),
-            pieces: vec![LawPiece::Dwell {
-                duration: Expr::Const(end),
-            }],
-        };
-    }
+    let moves = !pieces.iter().all(|p| p.is_constant(start));
+    let piece = match Stretches::new(pieces).filter(|_| moves) {
+        Some(found) => LawPiece::Polynomials(found),
+        None => LawPiece::Dwell {
+            duration: Expr::Const(end),
+        },
+    };
     Law {
         from: Expr::Const(start),
-        pieces: pieces.into_iter().map(LawPiece::Polynomials).collect(),
+        pieces: vec![piece],
     }
 }

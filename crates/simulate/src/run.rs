@@ -24,10 +24,9 @@ use crate::tellers::{Exchanged, NEAR, Tellers};
 use crate::toggle::Toggle;
 use crate::watch::first;
 
-/// Most steps and events: what is kept of a step takes some hundred bytes, and of an event a piece of the laws, which are searched one
-/// by one.
+/// Most steps and events: what is kept of a step or of a stretch between two events takes some hundred bytes.
 const STEPS: usize = 1_000_000;
-const EVENTS: usize = 2_000;
+const EVENTS: usize = 20_000;
 /// Most events in a time that is none, such as the accumulation of a bouncing ball; and that time, as a part of the whole.
 const AT_ONCE: usize = 500;
 const NO_TIME: f64 = 1e-12;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use kempe_dynamics::{Instant, Rates};
 use kempe_measure::{Series, State};
 use kempe_mechanism::evidence::is_finite;
-use kempe_mechanism::{Branch, Configuration, Design};
+use kempe_mechanism::{Branch, Configuration, Design, PlanNumber};
 use kempe_model::DriveId;
 use kempe_number::{Jet, Number};
 
@@ -18,9 +18,48 @@ pub(crate) struct Several {
     branch: Branch,
     design: Design<Rates>,
     solved: Configuration<Rates>,
-    alone: Configuration<Rates>,
-    one: Vec<Rates>,
+    /// The branch with the poses last solved for guesses.
+    here: Branch,
+    slopes: Alone<2>,
+    bends: Alone<3>,
     rich: Arc<Design<Series<f64>>>,
+}
+
+/// Poses as series in one coordinate alone, the others at rest.
+struct Alone<const N: usize> {
+    design: Design<Jet<f64, N>>,
+    solved: Configuration<Jet<f64, N>>,
+    coordinates: Vec<Jet<f64, N>>,
+}
+
+impl<const N: usize> Alone<N>
+where
+    Jet<f64, N>: PlanNumber,
+{
+    fn new(design: &Design<f64>) -> Self {
+        let mechanism = &design.mechanism;
+        Self {
+            design: design.lift(Jet::from_f64),
+            solved: Configuration::new(mechanism).without_determinants(),
+            coordinates: vec![Jet::zero(); mechanism.model.drives.len()],
+        }
+    }
+
+    /// About these coordinates, in that of a drive.
+    fn solve(
+        &mut self,
+        branch: &Branch,
+        coordinates: &[Rates],
+        drive: DriveId,
+    ) -> &Configuration<Jet<f64, N>> {
+        for (one, q) in self.coordinates.iter_mut().zip(coordinates) {
+            *one = Jet::constant(q.value());
+        }
+        self.coordinates[drive.index()] = Jet::variable(coordinates[drive.index()].value());
+        (self.solved).set_inputs(&self.design.mechanism, &self.coordinates);
+        self.design.solve(branch, &mut self.solved);
+        &self.solved
+    }
 }
 
 impl Several {
@@ -30,11 +69,12 @@ impl Several {
         let branch = start.design.branch_through(poses, near, &start.coordinates);
         Self {
             moving,
+            here: branch.clone(),
             branch,
             design: start.design.lift(Rates::from_f64),
             solved: Configuration::new(mechanism).without_determinants(),
-            alone: Configuration::new(mechanism).without_determinants(),
-            one: vec![Rates::zero(); mechanism.model.drives.len()],
+            slopes: Alone::new(&start.design),
+            bends: Alone::new(&start.design),
             rich: Arc::new(start.design.lift(Series::from_f64)),
         }
     }
@@ -53,16 +93,20 @@ impl Several {
             return false;
         }
         out.set_in_time(&self.solved, &self.branch.near, coordinates);
+        for (guess, pose) in self.here.guess.iter_mut().zip(&self.solved.poses) {
+            *guess = pose.value();
+        }
         for drive in &self.moving {
-            for (one, q) in self.one.iter_mut().zip(coordinates) {
-                *one = Jet::constant(q.value());
-            }
-            self.one[drive.index()] = Jet::variable(coordinates[drive.index()].value());
-            self.alone.set_inputs(mechanism, &self.one);
-            self.design.solve(&self.branch, &mut self.alone);
-            out.set_coefficients(*drive, &self.alone);
+            let alone = self.slopes.solve(&self.here, coordinates, *drive);
+            out.set_coefficients(*drive, alone);
         }
         true
+    }
+
+    /// How the coefficients of a drive change along its own coordinate, at the instant last found, which was at these coordinates.
+    pub fn bend(&mut self, drive: DriveId, coordinates: &[Rates], out: &mut Instant<f64>) {
+        let alone = self.bends.solve(&self.here, coordinates, drive);
+        out.set_coefficient_rates(drive, alone);
     }
 
     /// Takes the pose last found for the one that guesses and angles go on from.
@@ -72,6 +116,7 @@ impl Several {
             let pose = pose.value();
             if is_finite(&pose) {
                 branch.near[body] = pose.angle_near(branch.near[body]);
+                self.here.near[body] = branch.near[body];
                 branch.guess[body] = pose;
             }
         }

@@ -237,7 +237,8 @@ impl Tellers {
 
 /// The coordinate, if any, that comes to a dead point of its own `within` an angle, rad: its place, and by how much every body turns by
 /// it, in rad per rad or per m. Of several the one that is nearest.
-fn poor(plant: &Plant, within: f64) -> Option<(usize, Vec<f64>)> {
+fn poor(plant: &mut Plant, within: f64) -> Option<(usize, Vec<f64>)> {
+    plant.bend();
     let instant = plant.instant();
     let mut worst: Option<(usize, f64)> = None;
     for (place, (drive, scale)) in plant.free.iter().zip(&plant.scales).enumerate() {
