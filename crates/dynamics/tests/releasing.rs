@@ -11,11 +11,15 @@ use kempe_dynamics::{Rates, Reaction, Source};
 use kempe_measure::measure::{Along, History, measure};
 use kempe_measure::{ForceSource, Series, State};
 use kempe_mechanism::constraint::Source as From;
-use kempe_mechanism::{Branch, Design, Mechanism, NotReleased};
-use kempe_model::{Center, DriveId, Inertia, JointId, JointKind, JointRef, Model, Place};
+use kempe_mechanism::evidence::closure;
+use kempe_mechanism::plan::{Condition, Step};
+use kempe_mechanism::{Branch, Configuration, Design, Mechanism, NotReleased};
+use kempe_model::{
+    Center, DriveId, DriveKind, Inertia, JointId, JointKind, JointRef, Model, Place,
+};
 use kempe_motion::Motion;
 use kempe_number::Number;
-use kempe_units::Expr;
+use kempe_units::{Dimension, Expr};
 use mechanisms::generate::{make, recipe};
 use mechanisms::{Case, Rng, spread};
 
@@ -164,6 +168,83 @@ fn motions() -> Vec<(String, Arc<Motion>)> {
         }
     }
     list
+}
+
+/// Closed forms take joints that stand open: what they find closes all loops, near the pose from which it opens.
+#[test]
+fn joints_that_stand_open_close_their_loops() {
+    // Openings, in mechanism sizes and rad; limits leave no pose there, or send one far away.
+    const OPEN: f64 = 1e-4;
+    const NEAR: f64 = 0.1;
+    let mut rng = Rng(29);
+    let (mut apart, mut beside, mut far, mut all) = (0, 0, 0, 0);
+    for (name, motion) in motions() {
+        let size = motion.design.size();
+        for p in spread(&motion, 2) {
+            let mut joints = joints(motion.mechanism());
+            while joints.len() > 3 {
+                let at = (rng.range(0.0, 1.0) * joints.len() as f64) as usize;
+                joints.swap_remove(at.min(joints.len() - 1));
+            }
+            let Ok(mechanism) = motion.mechanism().releasing(&joints) else {
+                continue;
+            };
+            // Overconstrained mechanisms have no pose where one of their joints opens alone.
+            let plan = &mechanism.plan;
+            if !plan.decomposition.surplus.is_empty()
+                || plan.blocks.iter().any(|block| !block.surplus.is_empty())
+            {
+                continue;
+            }
+            let mut bench = Bench::new(&motion, p, &joints);
+            let design = Design::new(&mechanism, &motion.design.parameters);
+            let mut state = Configuration::new(&mechanism);
+            for (q, drive) in bench.q.iter_mut().zip(&mechanism.model.drives) {
+                if let DriveKind::Release { .. } = drive.kind {
+                    let unit = if drive.dimension == Dimension::LENGTH {
+                        size
+                    } else {
+                        1.0
+                    };
+                    *q += OPEN * unit * rng.range(-1.0, 1.0);
+                }
+            }
+            state.set_inputs(&mechanism, &bench.q);
+            design.solve(&bench.branch, &mut state);
+            let off = closure(&design, &bench.branch, &state, size);
+            let poses = state.poses.iter().zip(&bench.branch.guess);
+            let moved = poses
+                .map(|(a, b)| ((a.x - b.x).abs() + (a.y - b.y).abs()) / size + (a.c - b.c).abs())
+                .fold(0.0, f64::max);
+            all += 1;
+            if !(moved < NEAR) || !off.is_finite() {
+                far += 1;
+                continue;
+            }
+            assert!(off < 1e-12, "{name} at {p}, {joints:?}: {off:e}");
+            let steps = mechanism.plan.steps.iter();
+            apart += steps
+                .clone()
+                .filter(|s| matches!(s, Step::Apart(_)))
+                .count();
+            let is_beside = |s: &&Step| match s.closed() {
+                Step::Swing(swing) => matches!(swing.condition, Condition::BesideLine { .. }),
+                Step::Cross { conditions, .. } => conditions.iter().any(|c| {
+                    matches!(
+                        c,
+                        Condition::BesideLine { .. } | Condition::LineBeside { .. }
+                    )
+                }),
+                _ => false,
+            };
+            beside += steps.filter(is_beside).count();
+        }
+    }
+    println!("{all} mechanisms, {apart} open groups, {beside} lines; {far} without a pose near");
+    assert!(
+        apart > 150 && beside > 10 && 10 * far < all,
+        "{all} {apart} {beside} {far}"
+    );
 }
 
 #[test]

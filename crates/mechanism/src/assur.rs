@@ -144,7 +144,8 @@ fn classify(mechanism: &Mechanism, bodies: &[BodyId], steps: &[usize]) -> (u32, 
     let links: Vec<BodyId> = (bodies.iter().copied())
         .filter(|body| !mechanism.is_shoe(*body))
         .collect();
-    let steps: Vec<&Step> = steps.iter().map(|&s| &mechanism.plan.steps[s]).collect();
+    let steps = steps.iter().map(|&s| mechanism.plan.steps[s].closed());
+    let steps: Vec<&Step> = steps.collect();
     match links.len() {
         0 => (1, GroupKind::PinInSlot),
         1 if links != bodies => (2, GroupKind::LinkInSlot),

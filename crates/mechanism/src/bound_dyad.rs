@@ -7,7 +7,7 @@ use crate::configuration::Configuration;
 use crate::design::Design;
 use crate::local_marker::LocalMarker;
 use crate::plan::{Dyad, DyadBody};
-use crate::pose::{Pose, cross, dot, sub};
+use crate::pose::{Pose, add, cross, dot, sub};
 
 /// One body of a dyad in a design.
 struct DyadArm<'d, T> {
@@ -66,12 +66,20 @@ impl<'d, T: Number> BoundDyad<'d, T> {
         }
     }
 
-    /// Places those of its bodies that are wanted; returns the determinant.
+    /// Places those of its bodies that are wanted; returns the determinant. The placed points are `off` from their markers.
     #[cfg_attr(not(debug_assertions), inline(always))]
-    pub(crate) fn solve(&self, state: &mut Configuration<T>, sign: f64) -> T {
+    pub(crate) fn solve(
+        &self,
+        state: &mut Configuration<T>,
+        sign: f64,
+        off: Option<[[T; 2]; 2]>,
+    ) -> T {
         let Self { a, b, constants: k } = self;
         let poses = &mut state.poses[..];
-        let (wa, wb) = (a.at.place(poses), b.at.place(poses));
+        let (mut wa, mut wb) = (a.at.place(poses), b.at.place(poses));
+        if let Some([a, b]) = off {
+            (wa, wb) = (add(wa, a), add(wb, b));
+        }
         let (da, db, h) = dyad(k, sub(wb, wa), sign);
         if a.wanted {
             poses[a.body] = a.pose([k[0], k[1]], da, wa);

@@ -28,7 +28,7 @@ pub use self::direction::Direction;
 pub use self::distance::Distance;
 pub use self::gears::Gears;
 pub use self::isotropic::{Isotropic, Vector};
-pub use self::joint::{Gradient, InAngles, Joint, Pairs, Touch, Unit};
+pub use self::joint::{Gradient, InAngles, Joint, Opened, Pairs, Touch, Unit};
 pub use self::loads::{LoadPoint, Rubs, Sliding};
 pub use self::on_arc::OnArc;
 pub use self::on_curve::{OnCurve, Shoe};
@@ -209,6 +209,10 @@ impl Joint for Constraint {
 
     fn pin(&self, body: BodyId) -> Option<(Marker, Marker)> {
         ask!(self, joint => joint.pin(body))
+    }
+
+    fn opened(&self) -> Option<Opened> {
+        ask!(self, joint => joint.opened())
     }
 
     fn condition(&self, body: BodyId) -> Option<Condition> {

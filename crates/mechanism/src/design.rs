@@ -86,7 +86,7 @@ impl<T: Number> Design<T> {
     fn prepare(&mut self) {
         let geometry = &self.geometry;
         for step in &self.mechanism.plan.steps {
-            if let Step::Dyad(dyad) = step {
+            if let Step::Dyad(dyad) = step.closed() {
                 let own =
                     |body: DyadBody| (geometry.marker(body.outer), geometry.marker(body.inner));
                 self.constants[dyad.constants] = dyad_constants(own(dyad.a), own(dyad.b));

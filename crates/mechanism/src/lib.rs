@@ -1,5 +1,6 @@
 //! Planar mechanisms: what they are made of, and how a pose is found.
 
+mod apart;
 pub mod assur;
 pub mod blocks;
 pub mod bordered;

@@ -13,7 +13,7 @@ const SAME_POSE: f64 = 1e-3;
 impl Step {
     /// Whether the determinant tells where assemblies meet: other steps have none, or none that vanishes.
     pub fn tells_modes(&self) -> bool {
-        self.has_modes() || matches!(self, Step::Newton { .. } | Step::Cross { .. })
+        self.has_modes() || matches!(self.closed(), Step::Newton { .. } | Step::Cross { .. })
     }
 }
 

@@ -8,7 +8,7 @@ use crate::configuration::Configuration;
 use crate::design::Design;
 use crate::ids::Marker;
 use crate::plan::{Carrier, Condition, Reach, Swing, SwingLine};
-use crate::pose::{Pose, cross, dot, left, sub};
+use crate::pose::{Pose, add, cross, dot, left, sub};
 
 /// What a condition says about the point its carrier holds. The carrier's angle must be known.
 ///
@@ -52,12 +52,16 @@ fn locus_in_place<T: Number, const ALL: bool>(
         .pin
         .map_or([T::zero(); 2], |pin| geometry.marker(pin));
     match condition {
-        Condition::OnLine { own, line } | Condition::TravelOn { own, line, .. } => {
+        Condition::OnLine { own, line }
+        | Condition::BesideLine { own, line, .. }
+        | Condition::TravelOn { own, line, .. } => {
             let (origin, along) = state.placed_line(design, line);
             let from = sub(origin, pose.turn(sub(geometry.marker(own), pin)));
             on_line(state, condition, along, from)
         }
-        Condition::Through { line, point } | Condition::TravelThrough { line, point, .. } => {
+        Condition::Through { line, point }
+        | Condition::LineBeside { line, point, .. }
+        | Condition::TravelThrough { line, point, .. } => {
             let local = geometry.line(line);
             let along = pose.turn(local.direction);
             let from = sub(
@@ -67,6 +71,10 @@ fn locus_in_place<T: Number, const ALL: bool>(
             match condition {
                 Condition::TravelThrough { input, .. } => {
                     Locus::Line(along, dot(along, from) - state.inputs[input.index()].value)
+                }
+                Condition::LineBeside { input, .. } => {
+                    let off = state.inputs[input.index()].value;
+                    Locus::Line(left(along), dot(left(along), from) - off)
                 }
                 _ => Locus::Line(left(along), dot(left(along), from)),
             }
@@ -132,7 +140,7 @@ fn rolling<T: Number>(
     Locus::Line(along, dot(along, from) + roll - k.constant)
 }
 
-/// A point on the line through `from` along `along`, or with the drive's coordinate along it.
+/// A point on the line through `from` along `along`, or with the drive's coordinate along it or beside it.
 #[cfg_attr(not(debug_assertions), inline(always))]
 fn on_line<T: Number>(
     state: &Configuration<T>,
@@ -143,6 +151,10 @@ fn on_line<T: Number>(
     match condition {
         Condition::TravelOn { input, .. } => {
             Locus::Line(along, dot(along, from) + state.inputs[input.index()].value)
+        }
+        Condition::BesideLine { input, .. } => {
+            let off = state.inputs[input.index()].value;
+            Locus::Line(left(along), dot(left(along), from) + off)
         }
         _ => Locus::Line(left(along), dot(left(along), from)),
     }
@@ -178,7 +190,7 @@ pub(crate) fn cross_loci<T: Number, const ALL: bool>(
     determinant
 }
 
-/// A body pinned to a placed point, its angle from a condition on its tip.
+/// A body pinned to a placed point, its angle from a condition on its tip. The placed point is `off` from its marker.
 #[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn swing<T: Number, const ALL: bool>(
     design: &Design<T>,
@@ -186,6 +198,7 @@ pub(crate) fn swing<T: Number, const ALL: bool>(
     state: &mut Configuration<T>,
     step: &Swing,
     sign: f64,
+    off: Option<[T; 2]>,
 ) -> T {
     let Swing {
         own,
@@ -194,7 +207,10 @@ pub(crate) fn swing<T: Number, const ALL: bool>(
         condition,
         partner,
     } = *step;
-    let center = place(design, state, at);
+    let mut center = place(design, state, at);
+    if let Some(off) = off {
+        center = add(center, off);
+    }
     let pin = design.geometry.marker(own);
     let tip = match (partner, condition) {
         (None, Condition::ArcThrough { arc, .. }) => design.geometry.arc(arc).center,
@@ -209,7 +225,12 @@ pub(crate) fn swing<T: Number, const ALL: bool>(
             place(design, state, center),
             state.inputs[input.index()].value,
         ),
-        (None, Condition::OnLine { line, .. } | Condition::TravelOn { line, .. }) => {
+        (
+            None,
+            Condition::OnLine { line, .. }
+            | Condition::BesideLine { line, .. }
+            | Condition::TravelOn { line, .. },
+        ) => {
             let (origin, along) = state.placed_line(design, line);
             on_line(state, condition, along, origin)
         }
@@ -224,7 +245,10 @@ pub(crate) fn swing<T: Number, const ALL: bool>(
         // Conditions with a line of the swinging body are `SwingLine`s.
         (
             None,
-            Condition::Through { .. } | Condition::TravelThrough { .. } | Condition::Roll { .. },
+            Condition::Through { .. }
+            | Condition::LineBeside { .. }
+            | Condition::TravelThrough { .. }
+            | Condition::Roll { .. },
         ) => {
             return T::from_f64(f64::NAN);
         }
@@ -243,13 +267,14 @@ pub(crate) fn swing<T: Number, const ALL: bool>(
     h
 }
 
-/// A body pinned to a placed point, one of its lines through another.
+/// A body pinned to a placed point, one of its lines through another. The placed points are `off` from their markers.
 #[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn swing_line<T: Number>(
     design: &Design<T>,
     state: &mut Configuration<T>,
     step: &SwingLine,
     sign: f64,
+    off: Option<[[T; 2]; 2]>,
 ) -> T {
     let SwingLine {
         own,
@@ -259,7 +284,10 @@ pub(crate) fn swing_line<T: Number>(
         partner,
     } = *step;
     let geometry = &design.geometry;
-    let (center, far) = (place(design, state, at), place(design, state, toward));
+    let (mut center, mut far) = (place(design, state, at), place(design, state, toward));
+    if let Some([at, toward]) = off {
+        (center, far) = (add(center, at), add(far, toward));
+    }
     let pin = geometry.marker(own);
     let v = sub(far, center);
     // Turn of the partner against the body, as a unit vector.

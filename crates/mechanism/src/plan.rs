@@ -83,7 +83,7 @@ impl Plan {
                     }
                 }
             };
-            if let Step::Dyad(_) = step {
+            if let Step::Dyad(_) = step.closed() {
                 plan.dyads += 1;
             }
             plan.steps.push(step);

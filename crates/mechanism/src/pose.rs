@@ -173,6 +173,12 @@ fn cross_called<T: Number>(a: &[T; 2], b: &[T; 2]) -> T {
     cross_in_place(a, b)
 }
 
+/// Sum of two vectors.
+#[cfg_attr(not(debug_assertions), inline(always))]
+pub fn add<T: Number>(a: [T; 2], b: [T; 2]) -> [T; 2] {
+    [a[0] + b[0], a[1] + b[1]]
+}
+
 /// Difference of two vectors.
 #[cfg_attr(not(debug_assertions), inline(always))]
 pub fn sub<T: Number>(a: [T; 2], b: [T; 2]) -> [T; 2] {

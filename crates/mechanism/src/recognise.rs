@@ -1,5 +1,6 @@
 //! Which closed form solves a block: the Assur groups of class II, driven links and gears.
 
+use crate::apart::{self, Tie};
 use crate::blocks::{Block, Row, Unknown};
 use crate::constraint::{Constraint, Joint, Unit};
 use crate::ids::{BodyId, Marker};
@@ -26,20 +27,34 @@ fn constraints_of<'m>(structure: &'m Structure, rows: &[Row]) -> Option<Vec<&'m 
 /// Finds the closed form of a block, if there is one; `dyads` are known already.
 pub(crate) fn recognise(structure: &Structure, block: &Block, dyads: usize) -> Option<Step> {
     let rows: Vec<Row> = block.rows.iter().chain(&block.surplus).copied().collect();
-    let constraints = constraints_of(structure, &rows)?;
+    let constraints = Tie::all(&constraints_of(structure, &rows)?)?;
+    let closed = closed_form(structure, block, &constraints, dyads)?;
+    apart::of(closed, &constraints)
+}
+
+/// The closed form of a block where its pins hold.
+fn closed_form(
+    structure: &Structure,
+    block: &Block,
+    constraints: &[Tie],
+    dyads: usize,
+) -> Option<Step> {
     match (block.unknowns.as_slice(), block.surplus.len()) {
-        ([Unknown::Angle(body)], 0) => constraints[0].turn(*body, block.rows[0].constraint),
-        ([Unknown::Place(body)], 0) => place_alone(*body, &constraints),
+        ([Unknown::Angle(body)], 0) => constraints
+            .first()?
+            .constraint
+            .turn(*body, block.rows[0].constraint),
+        ([Unknown::Place(body)], 0) => place_alone(*body, constraints),
         ([Unknown::Angle(body), Unknown::Place(_)], 0) if body.index() > 0 && one_body(block) => {
-            swing(*body, &constraints).or_else(|| pinion(*body, block, structure))
+            swing(*body, constraints).or_else(|| pinion(*body, block, structure))
         }
         ([Unknown::Angle(body), Unknown::Place(_)], 1) if one_body(block) => {
-            two_pins(*body, &constraints)
+            two_pins(*body, constraints)
         }
-        ([Unknown::Place(i), Unknown::Place(j)], 0) => prp(*i, *j, &constraints),
-        ([_, _, _], 0) => rrp(block, &constraints),
+        ([Unknown::Place(i), Unknown::Place(j)], 0) => prp(*i, *j, constraints),
+        ([_, _, _], 0) => rrp(block, constraints),
         ([_, _, _, _], 0) => two_bodies(block)
-            .and_then(|(i, j)| rrr(i, j, &constraints, dyads).or_else(|| rpr(i, j, &constraints))),
+            .and_then(|(i, j)| rrr(i, j, constraints, dyads).or_else(|| rpr(i, j, constraints))),
         _ => None,
     }
 }
@@ -64,12 +79,15 @@ fn two_bodies(block: &Block) -> Option<(BodyId, BodyId)> {
     }
 }
 
-fn place_alone(body: BodyId, constraints: &[&Constraint]) -> Option<Step> {
+fn place_alone(body: BodyId, constraints: &[Tie]) -> Option<Step> {
     match constraints {
         [pin] => pin.pin(body).map(|(own, at)| Step::Pin { own, at }),
         [first, second] => {
             let carrier = Carrier { body, pin: None };
-            let conditions = [first.condition(body)?, second.condition(body)?];
+            let conditions = [
+                first.constraint.condition(body)?,
+                second.constraint.condition(body)?,
+            ];
             Some(Step::Cross {
                 carriers: [carrier; 2],
                 conditions,
@@ -80,7 +98,7 @@ fn place_alone(body: BodyId, constraints: &[&Constraint]) -> Option<Step> {
 }
 
 /// One pin to something placed and one more condition.
-fn swing(body: BodyId, constraints: &[&Constraint]) -> Option<Step> {
+fn swing(body: BodyId, constraints: &[Tie]) -> Option<Step> {
     let [first, second] = constraints else {
         return None;
     };
@@ -90,7 +108,7 @@ fn swing(body: BodyId, constraints: &[&Constraint]) -> Option<Step> {
         (second, first)
     };
     let (own, at) = pin.pin(body)?;
-    match other.condition(body)? {
+    match other.constraint.condition(body)? {
         Condition::Through { line, point } => Some(Step::SwingLine(SwingLine {
             own,
             at,
@@ -105,8 +123,8 @@ fn swing(body: BodyId, constraints: &[&Constraint]) -> Option<Step> {
             reach: Reach::Travel { line, input },
             partner: None,
         })),
-        // The travel depends on the angle sought.
-        Condition::Roll { .. } => None,
+        // The travel depends on the angle sought; of a line that is let go no closed form is known.
+        Condition::Roll { .. } | Condition::LineBeside { .. } => None,
         condition @ Condition::ArcThrough { .. } => Some(Step::Swing(Swing {
             own,
             at,
@@ -115,6 +133,7 @@ fn swing(body: BodyId, constraints: &[&Constraint]) -> Option<Step> {
             partner: None,
         })),
         condition @ (Condition::OnLine { own: tip, .. }
+        | Condition::BesideLine { own: tip, .. }
         | Condition::TravelOn { own: tip, .. }
         | Condition::OnArc { own: tip, .. }
         | Condition::Radius { own: tip, .. }) => Some(Step::Swing(Swing {
@@ -140,7 +159,7 @@ fn pinion(body: BodyId, block: &Block, structure: &Structure) -> Option<Step> {
         .find_map(|row| constraint(row).roll((own, at), row.constraint))
 }
 
-fn two_pins(body: BodyId, constraints: &[&Constraint]) -> Option<Step> {
+fn two_pins(body: BodyId, constraints: &[Tie]) -> Option<Step> {
     let [first, second] = constraints else {
         return None;
     };
@@ -149,26 +168,29 @@ fn two_pins(body: BodyId, constraints: &[&Constraint]) -> Option<Step> {
 }
 
 /// The pin between two bodies, as `(on i, on j)`.
-fn pin_between(i: BodyId, j: BodyId, constraint: &Constraint) -> Option<(Marker, Marker)> {
+fn pin_between(i: BodyId, j: BodyId, constraint: &Tie) -> Option<(Marker, Marker)> {
     constraint.pin(i).filter(|(_, other)| other.body == j)
 }
 
-fn prp(i: BodyId, j: BodyId, constraints: &[&Constraint]) -> Option<Step> {
+fn prp(i: BodyId, j: BodyId, constraints: &[Tie]) -> Option<Step> {
     let inner = constraints.iter().find_map(|c| pin_between(i, j, c))?;
-    let outer: Vec<&&Constraint> = constraints
+    let outer: Vec<&Tie> = constraints
         .iter()
         .filter(|c| pin_between(i, j, c).is_none())
         .collect();
     let [first, second] = outer.as_slice() else {
         return None;
     };
-    let (first, second) = if first.condition(i).is_some() {
+    let (first, second) = if first.constraint.condition(i).is_some() {
         (first, second)
     } else {
         (second, first)
     };
-    let conditions = [first.condition(i)?, second.condition(j)?];
-    if touches(first, j) || touches(second, i) {
+    let conditions = [
+        first.constraint.condition(i)?,
+        second.constraint.condition(j)?,
+    ];
+    if first.touches(j) || second.touches(i) {
         return None;
     }
     let carriers = [
@@ -188,22 +210,14 @@ fn prp(i: BodyId, j: BodyId, constraints: &[&Constraint]) -> Option<Step> {
 }
 
 /// The pin of a body to anything but its partner, as `(own, other)`.
-fn outer_pin(
-    body: BodyId,
-    partner: BodyId,
-    constraints: &[&Constraint],
-) -> Option<(Marker, Marker)> {
+fn outer_pin(body: BodyId, partner: BodyId, constraints: &[Tie]) -> Option<(Marker, Marker)> {
     (constraints.iter())
-        .filter(|c| !touches(c, partner))
+        .filter(|c| !c.touches(partner))
         .find_map(|c| c.pin(body))
 }
 
-fn touches(constraint: &Constraint, body: BodyId) -> bool {
-    constraint.bodies().any(|b| b == body)
-}
-
 /// Angle and place of one body, place of a second whose angle is known.
-fn rrp(block: &Block, constraints: &[&Constraint]) -> Option<Step> {
+fn rrp(block: &Block, constraints: &[Tie]) -> Option<Step> {
     let swinging = block
         .unknowns
         .iter()
@@ -225,8 +239,8 @@ fn rrp(block: &Block, constraints: &[&Constraint]) -> Option<Step> {
     let outer = outer_pin(swinging, sliding, constraints)?;
     let condition = constraints
         .iter()
-        .filter(|c| !touches(c, swinging))
-        .find_map(|c| c.condition(sliding))?;
+        .filter(|c| !c.touches(swinging))
+        .find_map(|c| c.constraint.condition(sliding))?;
     (constraints.len() == 3).then_some(Step::Swing(Swing {
         own: outer.0,
         at: outer.1,
@@ -239,7 +253,7 @@ fn rrp(block: &Block, constraints: &[&Constraint]) -> Option<Step> {
     }))
 }
 
-fn rrr(i: BodyId, j: BodyId, constraints: &[&Constraint], constants: usize) -> Option<Step> {
+fn rrr(i: BodyId, j: BodyId, constraints: &[Tie], constants: usize) -> Option<Step> {
     if constraints.len() != 3 {
         return None;
     }
@@ -258,32 +272,34 @@ fn rrr(i: BodyId, j: BodyId, constraints: &[&Constraint], constants: usize) -> O
     }))
 }
 
-fn rpr(i: BodyId, j: BodyId, constraints: &[&Constraint]) -> Option<Step> {
+fn rpr(i: BodyId, j: BodyId, constraints: &[Tie]) -> Option<Step> {
     if constraints.len() != 4 {
         return None;
     }
     let (outer_i, outer_j) = (outer_pin(i, j, constraints)?, outer_pin(j, i, constraints)?);
     // How the second turns with the first.
-    let tied =
-        (constraints.iter()).find(|c| c.unit() == Unit::Angle && touches(c, i) && touches(c, j));
+    let tied = (constraints.iter())
+        .find(|c| c.constraint.unit() == Unit::Angle && c.touches(i) && c.touches(j));
     let Step::Turn {
         offset,
         input,
         reversed,
         ..
-    } = tied?.turn(j, 0)?
+    } = tied?.constraint.turn(j, 0)?
     else {
         return None;
     };
-    let reach = constraints.iter().find_map(|c| match c.condition(i)? {
-        Condition::Through { line, point } if point.body == j => {
-            Some(Reach::PartnerPoint { line, point })
-        }
-        Condition::OnLine { own, line } if line.body == j => {
-            Some(Reach::PartnerLine { point: own, line })
-        }
-        _ => None,
-    })?;
+    let reach = constraints
+        .iter()
+        .find_map(|c| match c.constraint.condition(i)? {
+            Condition::Through { line, point } if point.body == j => {
+                Some(Reach::PartnerPoint { line, point })
+            }
+            Condition::OnLine { own, line } if line.body == j => {
+                Some(Reach::PartnerLine { point: own, line })
+            }
+            _ => None,
+        })?;
     let partner = Some(Sliding {
         outer: outer_j.0,
         offset,

@@ -2,6 +2,7 @@
 
 use kempe_number::Number;
 
+use crate::apart;
 use crate::bound_dyad::BoundDyad;
 use crate::branch::Branch;
 use crate::closed_form::direction;
@@ -13,7 +14,7 @@ use crate::local_marker::LocalMarker;
 use crate::newton::PlanNumber;
 use crate::pinned_group::{cross_loci, swing, swing_line};
 use crate::plan::{Plan, Step};
-use crate::pose::{Pose, dot, sub};
+use crate::pose::{Pose, add, dot, sub};
 
 /// Solves one step for every state and, in `ALL`, keeps its determinant. A macro, because a closure would not be
 /// compiled for the caller's vector instructions.
@@ -134,7 +135,7 @@ impl Plan {
             }
             Step::Dyad(step) => {
                 let step = BoundDyad::new(design, step);
-                for_each!(states, index, |state| step.solve(state, sign));
+                for_each!(states, index, |state| step.solve(state, sign, None));
             }
             _ if const { size_of::<T>() > IN_PLACE } => {
                 self.call_step::<T, ALL>(index, sign, design, branch, states);
@@ -169,11 +170,13 @@ impl Plan {
         match &self.steps[index] {
             Step::Swing(step) => {
                 for_each!(states, index, |state| swing::<T, ALL>(
-                    design, branch, state, step, sign
+                    design, branch, state, step, sign, None
                 ));
             }
             Step::SwingLine(step) => {
-                for_each!(states, index, |state| swing_line(design, state, step, sign));
+                for_each!(states, index, |state| swing_line(
+                    design, state, step, sign, None
+                ));
             }
             Step::Cross {
                 carriers,
@@ -182,12 +185,7 @@ impl Plan {
                 cross_loci::<T, ALL>(design, branch, state, (carriers, conditions), sign)
             }),
             &Step::TwoPins { a, at_a, b, at_b } => for_each!(states, index, |state| {
-                let (wa, wb) = (state.place(design, at_a), state.place(design, at_b));
-                let seen = sub(wb, wa);
-                let own = sub(design.geometry.marker(b), design.geometry.marker(a));
-                let [c, s] = direction(own, seen, (dot(own, own) * dot(seen, seen)).sqrt());
-                state.poses[a.body.index()] = Pose::pinned(c, s, design.geometry.marker(a), wa);
-                T::one()
+                pin_twice(design, state, [(a, at_a), (b, at_b)], None)
             }),
             &Step::Hold { body } => for_each!(states, index, |state| {
                 point(state, body, [T::one(), T::zero()])
@@ -202,6 +200,9 @@ impl Plan {
             }),
             &Step::Gear { body, constraint } if ALL => for_each!(states, index, |state| {
                 turn_gear(design, branch, state, (body, constraint))
+            }),
+            Step::Apart(step) if ALL => for_each!(states, index, |state| {
+                apart::solve(design, branch, state, step, sign)
             }),
             &Step::Newton { block } if ALL => for_each!(states, index, |state| {
                 T::solve_newton(&self.newton_blocks[block], design, branch, state)
@@ -231,6 +232,25 @@ fn driven<T: Number>(input: &Input<T>, reversed: bool) -> [T; 2] {
 fn point<T: Number>(state: &mut Configuration<T>, body: BodyId, [c, s]: [T; 2]) -> T {
     let pose = &mut state.poses[body.index()];
     (pose.c, pose.s) = (c, s);
+    T::one()
+}
+
+/// Places a body by two pins, `(own, at)`, to placed points that are `off` from their markers.
+#[cfg_attr(not(debug_assertions), inline(always))]
+pub(crate) fn pin_twice<T: Number>(
+    design: &Design<T>,
+    state: &mut Configuration<T>,
+    [(a, at_a), (b, at_b)]: [(Marker, Marker); 2],
+    off: Option<[[T; 2]; 2]>,
+) -> T {
+    let (mut wa, mut wb) = (state.place(design, at_a), state.place(design, at_b));
+    if let Some([a, b]) = off {
+        (wa, wb) = (add(wa, a), add(wb, b));
+    }
+    let seen = sub(wb, wa);
+    let own = sub(design.geometry.marker(b), design.geometry.marker(a));
+    let [c, s] = direction(own, seen, (dot(own, own) * dot(seen, seen)).sqrt());
+    state.poses[a.body.index()] = Pose::pinned(c, s, design.geometry.marker(a), wa);
     T::one()
 }
 

@@ -2,6 +2,7 @@
 
 use kempe_model::DriveId;
 
+use crate::apart::Apart;
 use crate::ids::{ArcRef, BodyId, LineRef, Marker};
 
 /// A condition on a body whose other side is already placed.
@@ -20,6 +21,24 @@ pub enum Condition {
         line: LineRef,
         /// The placed point.
         point: Marker,
+    },
+    /// A point of the body is as far to the left of a placed line as the drive's coordinate.
+    BesideLine {
+        /// The body's point.
+        own: Marker,
+        /// The placed line.
+        line: LineRef,
+        /// The drive.
+        input: DriveId,
+    },
+    /// A placed point is as far to the left of a line of the body as the drive's coordinate.
+    LineBeside {
+        /// The body's line.
+        line: LineRef,
+        /// The placed point.
+        point: Marker,
+        /// The drive.
+        input: DriveId,
     },
     /// A point of the body has the drive's coordinate along a placed line.
     TravelOn {
@@ -160,6 +179,8 @@ pub enum Step {
     SwingLine(SwingLine),
     /// Two bodies pinned to each other and each to a placed point.
     Dyad(Dyad),
+    /// One of these whose pins are let go and stand open.
+    Apart(Box<Apart>),
     /// Everything else: Newton's method on the block's rows.
     Newton {
         /// Index into [`Plan::newton_blocks`](crate::Plan::newton_blocks).
@@ -267,20 +288,29 @@ pub struct Sliding {
 }
 
 impl Step {
+    /// The step as it would be if its pins held.
+    pub fn closed(&self) -> &Self {
+        match self {
+            Self::Apart(apart) => &apart.closed,
+            step => step,
+        }
+    }
+
     /// Whether the step has two assembly modes, told apart by a sign.
     pub fn has_modes(&self) -> bool {
-        match self {
+        match self.closed() {
             Step::Dyad { .. } | Step::Swing { .. } | Step::SwingLine { .. } => true,
             Step::Cross { conditions, .. } => conditions.iter().any(Condition::is_circle),
             _ => false,
         }
     }
 
-    /// Whether the step looks at the branch's guesses or turn counts: Newton blocks, gears and racks.
+    /// Whether the step looks at the branch's guesses or turn counts, or is as rare as those that do: Newton blocks, gears and
+    /// racks, open pins.
     pub fn needs_guess(&self) -> bool {
         let rolls = |condition: &Condition| matches!(condition, Condition::Roll { .. });
         match self {
-            Step::Newton { .. } | Step::Gear { .. } | Step::Roll { .. } => true,
+            Step::Newton { .. } | Step::Gear { .. } | Step::Roll { .. } | Step::Apart(_) => true,
             Step::Cross { conditions, .. } => conditions.iter().any(rolls),
             Step::Swing(swing) => rolls(&swing.condition),
             _ => false,

@@ -38,6 +38,12 @@ impl Polynomials {
         Some(Self::new(times, coefficients))
     }
 
+    /// The rate in the middle of one such polynomial that lasts so long, s.
+    pub fn middle_rate(long: f64, ends: [[f64; 3]; 2], quarters: [f64; 3]) -> f64 {
+        let half = 0.5 * long;
+        polynomial(half, ends, quarters)[1] / half
+    }
+
     /// The polynomials through values at equal parts of each, both ends included. `None` where the times do not rise, or there
     /// are not values for every polynomial.
     pub fn at_equal_parts(times: &[f64], values: &[[f64; COEFFICIENTS]]) -> Option<Self> {

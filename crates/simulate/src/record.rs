@@ -214,6 +214,9 @@ pub(crate) struct Machine {
     pub oil: Option<(Oil<f64>, usize)>,
 }
 
+/// Roundings of the places at the ends of a step in the speed between them, at most.
+const ROUNDINGS: f64 = 4.0;
+
 /// Without a jump between.
 #[derive(Default)]
 struct Stretch {
@@ -276,6 +279,37 @@ impl Record {
             stretch.ends[drive].push(*end);
             stretch.quarters[drive].push([0, 1, 2].map(|k| quarters[k][drive][2]));
         }
+    }
+
+    /// By how much the polynomials of such a step would miss speeds in its middle, as a part of the fastest of the same coordinate
+    /// there: the worst of the coordinates that tell the place. Below the speeds `slow` of these, parts of those count.
+    pub fn missed(
+        &self,
+        time: f64,
+        quarters: &[Vec<[f64; 3]>; 3],
+        end: &[[f64; 3]],
+        slow: &[f64],
+    ) -> f64 {
+        let Some(stretch) = self.stretches.last() else {
+            return 0.0;
+        };
+        let long = time - stretch.times.last().copied().unwrap_or(time);
+        let told = (end.len() - slow.len()..end.len()).zip(slow);
+        let of = |(column, slow): (usize, &f64)| {
+            let Some(begin) = stretch.ends[column].last() else {
+                return 0.0;
+            };
+            let ends = [*begin, end[column]];
+            let middle = quarters[1][column][1];
+            let accelerations = [0, 1, 2].map(|k| quarters[k][column][2]);
+            let off = Polynomials::middle_rate(long, ends, accelerations) - middle;
+            // What rounding of the places makes of it.
+            let rounds = f64::EPSILON * (ends[0][0].abs() + ends[1][0].abs()) / long;
+            let off = (off.abs() - ROUNDINGS * rounds).max(0.0);
+            let speeds = [ends[0][1], middle, ends[1][1]].map(f64::abs);
+            off / speeds.into_iter().fold(*slow, f64::max)
+        };
+        told.map(of).fold(0.0, f64::max)
     }
 
     /// The laws of all drives, of what tells the place, and of which does that; and of what is followed beside them.

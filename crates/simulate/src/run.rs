@@ -34,6 +34,12 @@ const NO_TIME: f64 = 1e-12;
 const BACK: f64 = 10.0;
 /// Parts of the whole time in which something that is held is looked at.
 const LOOKS: f64 = 500.0;
+/// A step whose speed in the middle is off by this part of the fastest there, or by so many tolerances, misses something inside, such
+/// as a force that begins or ends: it is taken again by halves, so often at most, and none that is such a part of the whole time.
+const MISSED: f64 = 1e-10;
+const MISSED_TOLERANCES: f64 = 100.0;
+const HALVINGS: usize = 6;
+const SHORT: f64 = 1e-6;
 /// A stop that is open by this much (in path scales) is touched.
 const TOUCHED: f64 = 1e-9;
 
@@ -257,6 +263,16 @@ fn split<'y>(plant: &Plant, y: &'y [f64]) -> (&'y [f64], &'y [f64]) {
     y[2 * plant.free.len()..].split_at(plant.inner.pressures())
 }
 
+/// What became of a step.
+enum Added {
+    /// It was taken.
+    Done,
+    /// What lies between its ends was missed.
+    Missed,
+    /// There is no state in it.
+    NoWay,
+}
+
 /// A simulation on its way.
 struct Run<'q> {
     question: &'q Question,
@@ -398,15 +414,16 @@ impl Run<'_> {
             ..
         } = self.plant.mode.clone();
         let began = self.time;
+        let (mut halvings, mut part) = (0, f64::INFINITY);
         let ending = loop {
             if self.time >= end {
                 break None;
             }
-            let next = if is_held {
-                end.min(self.time + until / LOOKS)
-            } else {
-                end
-            };
+            let mut next = end.min(self.time + std::mem::replace(&mut part, f64::INFINITY));
+            if is_held {
+                next = next.min(self.time + until / LOOKS);
+            }
+            let conditions = self.conditions.clone();
             if let Err(reason) = it.step(&mut self.plant, next) {
                 // Wherever its dead point is, it cannot tell how to go on.
                 let exchanged = self.exchange(f64::INFINITY, progress);
@@ -421,9 +438,23 @@ impl Run<'_> {
                 &mut found,
             );
             let to = watched.map_or(it.time(), |(time, _)| time);
-            if to > self.time && !self.add(&mut it, to, &mut found) {
-                let exchanged = self.exchange(f64::INFINITY, progress);
-                break (exchanged != Exchanged::Done).then_some(Ending::NoWay);
+            if to > self.time {
+                let last = halvings == HALVINGS || to - self.time <= SHORT * until;
+                match self.add(&mut it, to, &mut found, last) {
+                    Added::Done => halvings = 0,
+                    Added::Missed => {
+                        self.conditions = conditions;
+                        (halvings, part) = (halvings + 1, 0.5 * (to - self.time));
+                        if it.restart(&mut self.plant, self.time, &self.y) {
+                            continue;
+                        }
+                        break Some(Ending::NoWay);
+                    }
+                    Added::NoWay => {
+                        let exchanged = self.exchange(f64::INFINITY, progress);
+                        break (exchanged != Exchanged::Done).then_some(Ending::NoWay);
+                    }
+                }
             }
             if let Some((_, watch)) = watched {
                 break self.happens(watch);
@@ -520,8 +551,8 @@ impl Run<'_> {
         )
     }
 
-    /// Records the part of the last step up to a time, and goes there.
-    fn add(&mut self, it: &mut Integrator, to: f64, found: &mut [f64]) -> bool {
+    /// Records the part of the last step up to a time, and goes there; or stays, where the step missed what happens inside.
+    fn add(&mut self, it: &mut Integrator, to: f64, found: &mut [f64], last: bool) -> Added {
         let from = self.time;
         let now = beside(&self.plant, &self.y);
         let mut values: Vec<[f64; COEFFICIENTS]> = now.iter().map(|x| [*x; COEFFICIENTS]).collect();
@@ -529,7 +560,7 @@ impl Run<'_> {
             for k in 1..COEFFICIENTS {
                 let part = k as f64 / (COEFFICIENTS - 1) as f64;
                 if !it.between(&mut self.plant, from + part * (to - from), found) {
-                    return false;
+                    return Added::NoWay;
                 }
                 // Switches stand still within a step.
                 let (pressures, work) = split(&self.plant, found);
@@ -554,16 +585,22 @@ impl Run<'_> {
         for (quarter, part) in quarters.iter_mut().zip([0.25, 0.5, 0.75]) {
             match at(from + part * (to - from), self) {
                 Some(states) => *quarter = states,
-                None => return false,
+                None => return Added::NoWay,
             }
         }
-        let Some(last) = at(to, self) else {
-            return false;
+        let Some(end) = at(to, self) else {
+            return Added::NoWay;
         };
-        self.record.add(to, &quarters, &last, &values);
+        let slow = |scale: &f64| scale / self.question.until;
+        let slow: Vec<f64> = self.plant.scales.iter().map(slow).collect();
+        let missed = self.record.missed(to, &quarters, &end, &slow);
+        if !last && missed > MISSED.max(MISSED_TOLERANCES * self.question.tolerance) {
+            return Added::Missed;
+        }
+        self.record.add(to, &quarters, &end, &values);
         self.time = to;
         self.y.copy_from_slice(found);
-        true
+        Added::Done
     }
 
     /// Why there is no step.

@@ -67,6 +67,11 @@ pub trait Joint {
         None
     }
 
+    /// As a row of a pin that is let go.
+    fn opened(&self) -> Option<Opened> {
+        None
+    }
+
     /// As a condition on a body whose other side is placed, for the closed forms.
     fn condition(&self, _: BodyId) -> Option<Condition> {
         None
@@ -139,6 +144,17 @@ pub trait Joint {
     fn sliding<T: Number>(&self, _: &Situation<'_, T>) -> Option<Sliding<T>> {
         None
     }
+}
+
+/// A row of a pin that is let go.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Opened {
+    /// The pin's points: the second is off the first.
+    pub pin: [Marker; 2],
+    /// Which of its rows: 0 along the frame's x axis, 1 along y.
+    pub row: u8,
+    /// The drive whose coordinate tells how far.
+    pub input: DriveId,
 }
 
 /// In what rows are counted.

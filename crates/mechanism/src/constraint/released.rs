@@ -8,11 +8,12 @@ use kempe_model::{DriveId, LinkId};
 use kempe_number::Number;
 
 use super::isotropic::Isotropic;
-use super::joint::{Gradient, InAngles, Joint, Pairs, Touch, Unit};
+use super::joint::{Gradient, InAngles, Joint, Opened, Pairs, Touch, Unit};
 use super::loads::LoadPoint;
 use super::situation::Situation;
 use crate::ids::BodyId;
 use crate::parts::Parts;
+use crate::step::Condition;
 
 /// One row of a joint, off by the coordinate of a drive.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,6 +74,29 @@ impl<J: Joint> Joint for Released<J> {
             constant: it.constant + at.inputs[self.input.index()].value,
             ..it
         })
+    }
+
+    fn opened(&self) -> Option<Opened> {
+        // A pin's two rows are along the frame's axes, whichever of its bodies asks.
+        let [Some(Touch::Point(a)), Some(Touch::Point(b)), None] = self.joint.touches() else {
+            return None;
+        };
+        self.joint.pin(b.body).map(|_| Opened {
+            pin: [a, b],
+            row: self.row,
+            input: self.input,
+        })
+    }
+
+    fn condition(&self, body: BodyId) -> Option<Condition> {
+        let input = self.input;
+        match self.joint.condition(body)? {
+            Condition::OnLine { own, line } => Some(Condition::BesideLine { own, line, input }),
+            Condition::Through { line, point } => {
+                Some(Condition::LineBeside { line, point, input })
+            }
+            _ => None,
+        }
     }
 
     fn counts_turns(&self) -> bool {
