@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use kempe_integrate::{Integrator, Tolerance};
 use kempe_mechanism::{Design, Mechanism};
-use kempe_model::{Model, StudyKind, value};
+use kempe_model::{ClearanceAt, Contact, ContactStates, Model, Released, StudyKind, value};
 use kempe_motion::Silent;
 use kempe_number::Jet;
 use kempe_number::math::sin_cos;
@@ -120,6 +120,81 @@ fn by_hand(a: f64, start: [f64; 2], until: f64, tolerance: f64) -> [f64; 2] {
     [it.state()[0], it.state()[1]]
 }
 
+/// How far the motion of a journal that rattles in its bore, B5 of the references, is known: the first three contacts of each,
+/// when they begin (s) and how fast (m/s).
+const CONTACTS: [[[f64; 2]; 3]; 2] = [
+    [
+        [2.272_860_320_398e-4, 4.385_783_145_3],
+        [6.370_564_301_7e-4, 2.756_949_153],
+        [7.497_002_798e-4, 1.826_699_07],
+    ],
+    [
+        [2.272_860_320_398e-4, 4.385_783_145_3],
+        [5.733_715_053_8e-4, 2.267_401_295],
+        [7.191_523_59e-4, 2.119_139_99],
+    ],
+];
+
+/// Two turns of a slider-crank with play at its wrist pin, without friction and with it. The error is the largest relative one of
+/// the contacts that are known; motions like this one are chaotic, and after some more of them nothing can be compared.
+fn rattle() {
+    let text = include_str!("../../../examples/benchmarks/clearance-slider-crank.toml");
+    let read = Model::from_toml(text, "rattle", &mut |_| Err("no files".into()));
+    let Ok(read) = read else { panic!("rattle") };
+    let mut parameters = read.model.parameter_values();
+    let mu = (read.model.parameters.iter()).position(|p| p.name == "mu");
+    let mu = mu.expect("a parameter `mu`");
+    for (friction, known) in [0.0, 0.03].into_iter().zip(CONTACTS) {
+        parameters[mu] = friction;
+        let design = Design::new(&Mechanism::new(&read.model), &parameters);
+        let clearance = &read.model.clearances[0];
+        let ClearanceAt::Pin { point, .. } = clearance.at else {
+            panic!("no pin")
+        };
+        let link = *read.model.points[point.index()]
+            .links
+            .last()
+            .expect("links");
+        for tolerance in [1e-8, 1e-10, 1e-13] {
+            let question = Question {
+                contacts: vec![Contact {
+                    joint: Released::Pin { point, link },
+                    clearance: value(&clearance.radial, &parameters),
+                    properties: clearance.contact.clone(),
+                    states: ContactStates::Three,
+                    touches: Vec::new(),
+                    span: 0..0,
+                }],
+                free: Vec::new(),
+                start: Vec::new(),
+                until: 0.024,
+                tolerance,
+                method: Method::Choose,
+                stops: Vec::new(),
+                end_when: Vec::new(),
+            };
+            let (took, found) =
+                best(|| simulate(&design, &question, &mut Silent).expect("a motion"));
+            let contacts = found.touched.iter().zip(&known);
+            let off = contacts
+                .flat_map(|(touch, [from, speed])| {
+                    [touch.touching.from / from, touch.touching.speed / speed]
+                })
+                .map(|part| (part - 1.0).abs())
+                .fold(0.0, f64::max);
+            println!(
+                "{:<18} {:>9.0e} {:>8.3} ms {:>9.1e} {:>12}  {} contacts",
+                format!("rattle, mu {friction}"),
+                tolerance,
+                1e3 * took.as_secs_f64(),
+                off,
+                found.evaluations,
+                found.touched.len()
+            );
+        }
+    }
+}
+
 fn main() {
     println!(
         "{:<18} {:>9} {:>11} {:>9} {:>12} {:>9}",
@@ -163,4 +238,5 @@ fn main() {
             );
         }
     }
+    rattle();
 }
