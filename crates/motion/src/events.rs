@@ -83,14 +83,15 @@ pub fn locate_limit(follower: &mut Follower<'_, DrivePath>, from: &Node, to: &No
 ///
 /// At the crossing itself the constraints do not determine the tangent, so the pose is not computed there: it and the
 /// determinant are interpolated from four points on each side, close enough for full accuracy and far enough for good
-/// conditioning. With `by_plan` the plan finds them first; it may take other branches that come near. Returns the place on the step (0 to 1) and the node.
+/// conditioning. With `by_plan` the plan finds them first; it may take other branches that come near. Of the `others` those are
+/// named whose determinants vanish at the same pose.
 pub fn locate_change_point(
     follower: &mut Follower<'_, DrivePath>,
     from: &Node,
     to: &Node,
-    step: usize,
+    (step, others): (usize, &[usize]),
     by_plan: bool,
-) -> Option<(f64, Node)> {
+) -> Option<Located> {
     const OFFSETS: [f64; 8] = [-1.0, -0.75, -0.5, -0.25, 0.25, 0.5, 0.75, 1.0];
     let across = chord(from, to);
     let length = distance(&from.z, &to.z);
@@ -107,17 +108,21 @@ pub fn locate_change_point(
                 true => follower.correct_by_plan(&mut z, length, step),
                 false => None,
             };
-            let determinant = match known {
+            let mut row = Vec::with_capacity(1 + z.len() + others.len());
+            match known {
                 // The plan loses digits near a crossing.
-                Some(determinant) if !is_last => determinant,
+                Some(determinant) if !is_last => row.push(determinant),
                 _ if follower.correct(&mut z, &across).is_none() => continue,
-                _ => follower.determinants(&z)[step],
+                _ => row.push(follower.determinants(&z)[step]),
             };
-            let mut row = vec![determinant];
             if !row[0].is_finite() || row[0] == 0.0 {
                 continue;
             }
             row.extend(&z);
+            if is_last {
+                let determinants = follower.determinants(&z);
+                row.extend(others.iter().map(|other| determinants[*other]));
+            }
             places.push(place);
             values.push(row);
         }
@@ -145,9 +150,36 @@ pub fn locate_change_point(
         let mut tangent: Vec<f64> = z.iter().zip(&ahead).map(|(a, b)| b - a).collect();
         let length = tangent.iter().map(|t| t * t).sum::<f64>().sqrt();
         tangent.iter_mut().for_each(|t| *t /= length);
-        found = Some((s, Node::new(z, tangent)));
+        let vanishes = |index: usize| {
+            let [before, here, after] =
+                [s - SLIGHTLY, s, s + SLIGHTLY].map(|s| at(s, 1 + z.len() + index));
+            here.abs() <= SAME_PLACE * ((after - before) / (2.0 * SLIGHTLY)).abs()
+        };
+        let as_well = (others.iter().enumerate())
+            .filter(|(index, _)| is_last && vanishes(*index))
+            .map(|(_, other)| *other);
+        found = Some(Located {
+            s,
+            as_well: as_well.collect(),
+            at: Node::new(z, tangent),
+        });
     }
     found
+}
+
+/// Determinants that vanish this near each other, as a part of the step between two nodes, do so at one pose; and such a part by which
+/// their slopes are taken.
+const SAME_PLACE: f64 = 1e-8;
+const SLIGHTLY: f64 = 1e-3;
+
+/// Where a determinant vanishes.
+pub struct Located {
+    /// The place on the step from one node to the next, from 0 to 1.
+    pub s: f64,
+    /// The pose.
+    pub at: Node,
+    /// Other steps whose determinants vanish there, too.
+    pub as_well: Vec<usize>,
 }
 
 /// Neville's interpolation of one column.

@@ -169,12 +169,14 @@ impl Motion {
         flipped: impl Iterator<Item = usize>,
     ) -> Result<Vec<Change>, Unlocated> {
         let mut found: Vec<Change> = Vec::new();
-        for step in flipped {
+        let mut open: Vec<usize> = flipped.collect();
+        while !open.is_empty() {
+            let step = open.remove(0);
             let mut locate = |by_plan: bool| {
-                let located = locate_change_point(follower, node, next, step, by_plan);
+                let located = locate_change_point(follower, node, next, (step, &open), by_plan);
                 // Where nothing is located the middle of the step stands for it: a sign does not change without a place.
                 let z = match &located {
-                    Some((_, at)) => at.z.clone(),
+                    Some(located) => located.at.z.clone(),
                     None => hermite(node, next, 0.5),
                 };
                 let residual = follower.residual(&z);
@@ -192,7 +194,13 @@ impl Motion {
             if !(residual <= MEETING || residual <= MEETING + left_over()) {
                 return Err(Unlocated::Missed { z, residual });
             }
-            found.extend(located.map(|(s, at)| Change { s, at, step }));
+            if let Some(located) = located {
+                open.retain(|other| !located.as_well.contains(other));
+                for step in std::iter::once(step).chain(located.as_well) {
+                    let (s, at) = (located.s, located.at.clone());
+                    found.push(Change { s, at, step });
+                }
+            }
         }
         found.sort_by(|a, b| a.s.total_cmp(&b.s));
         Ok(found)
