@@ -30,6 +30,9 @@ const EVENTS: usize = 20_000;
 /// Most events in a time that is none, such as the accumulation of a bouncing ball; and that time, as a part of the whole.
 const AT_ONCE: usize = 500;
 const NO_TIME: f64 = 1e-12;
+/// So many steps without an event that together are this part of the whole time lead nowhere.
+const MANY: usize = 2_000;
+const HARDLY: f64 = 1e-8;
 /// So many times in the whole time a stop closes again by 1/e on which it rests and that errors open.
 const BACK: f64 = 10.0;
 /// Parts of the whole time in which something that is held is looked at.
@@ -415,6 +418,7 @@ impl Run<'_> {
         } = self.plant.mode.clone();
         let began = self.time;
         let (mut halvings, mut part) = (0, f64::INFINITY);
+        let mut since = (self.steps, began);
         let ending = loop {
             if self.time >= end {
                 break None;
@@ -469,6 +473,12 @@ impl Run<'_> {
             }
             if self.steps > STEPS {
                 break Some(Ending::TooMany);
+            }
+            if self.steps >= since.0 + MANY {
+                if self.time - since.1 < HARDLY * until {
+                    break Some(Ending::TooShort);
+                }
+                since = (self.steps, self.time);
             }
             if self.exchange(NEAR, progress) == Exchanged::Done {
                 break None;
