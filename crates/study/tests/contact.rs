@@ -1,7 +1,10 @@
 //! Studies of clearance in which contact is lost, as a user runs them.
 #![allow(clippy::unwrap_used)]
 
+use std::ops::ControlFlow;
+
 use kempe_model::Model;
+use kempe_motion::{Done, Stage};
 use kempe_study::{Figure, Silent, StudyResult, run};
 
 const FOUR_BAR: &str = r#"
@@ -27,11 +30,30 @@ rows    = 121
 columns = ["swing", "reaction(B)"]
 "#;
 
+fn model(text: &str) -> Model {
+    let read = Model::from_toml(text, "contact", &mut |_| Err("no files".into()));
+    read.unwrap().model
+}
+
 fn result(text: &str) -> StudyResult {
-    let model = Model::from_toml(text, "contact", &mut |_| Err("no files".into()))
-        .unwrap()
-        .model;
+    let model = model(text);
     run(&model, &model.studies[0], &mut Silent).unwrap()
+}
+
+fn column(result: &StudyResult, name: &str) -> Vec<f64> {
+    let found = result.table.column(name);
+    found.unwrap_or_else(|| panic!("{name}")).values.clone()
+}
+
+fn codes(result: &StudyResult) -> Vec<&'static str> {
+    result.diagnostics.iter().map(|d| d.code).collect()
+}
+
+/// The four-bar for a shorter time, with more in its file.
+fn four_bar(until: &str, more: &str) -> String {
+    let text = FOUR_BAR.replace("LAW", "rigid").replace("60 ms", until);
+    text.replace("rows    = 121", "rows    = 13")
+        .replace("[assembly]", &format!("{more}\n[assembly]"))
 }
 
 /// The crank keeps its law, against every impact, and stands still all at once where that ends, at 50 ms: what it gives is
@@ -78,4 +100,152 @@ fn energy_balances_where_a_drive_keeps_its_law_and_stops_at_once() {
             |figure: &Figure| matches!(figure, Figure::Hodograph(name, _) if name == "orbit of B");
         assert!(result.figures.iter().any(orbit));
     }
+}
+
+/// A load that a switch turns on acts in the ideal motion too, from the instant on at which it was turned on with play: there the
+/// motion is that of a study of forces with this load.
+#[test]
+fn a_switch_turns_a_load_on_in_the_ideal_motion_too() {
+    let switched = four_bar(
+        "30 ms",
+        "[switches]\nfar = { on = \"motor >= 45 deg\" }\n[loads]\npush = { torque = \"-2 N m * switch(far)\", on = \"rocker\" }",
+    )
+    .replace("\"mm\"", "\"mm\", angle = \"deg\"")
+    .replace("\"reaction(B)\"", "\"torque(motor)\", \"switch(far)\"");
+    let found = result(&switched);
+    let ideal: Vec<f64> = (column(&found, "torque(motor)").iter())
+        .zip(column(&found, "torque(motor) deviation"))
+        .map(|(value, deviation)| value - deviation)
+        .collect();
+    let forces = |push: f64| {
+        let text = switched
+            .split("[studies")
+            .next()
+            .unwrap()
+            .replace("-2 N m * switch(far)", &format!("{push} N m"));
+        let study = "[studies.loads]\nkind = \"forces\"\nstep = \"2.5 ms\"\ncolumns = [\"torque(motor)\"]\n";
+        column(&result(&(text + study)), "torque(motor)")
+    };
+    let (off, on) = (forces(0.0), forces(-2.0));
+    assert_eq!(
+        column(&found, "switch(far)"),
+        [vec![0.0; 10], vec![1.0; 3]].concat()
+    );
+    for row in 0..13 {
+        let known = if row < 10 { off[row] } else { on[row] };
+        assert!(
+            (ideal[row] - known).abs() < 1e-9,
+            "{row}: {} {known}",
+            ideal[row]
+        );
+    }
+    assert!((on[12] - off[12]).abs() > 0.1);
+}
+
+/// Whoever stops it while it shows what was found gets that, with its deviations; only before there is nothing.
+#[test]
+fn what_was_found_is_kept_whenever_it_is_stopped() {
+    let model = model(&four_bar("10 ms", ""));
+    let run_until = |calls: usize, again: bool| {
+        let (mut count, mut stages) = (0, Vec::new());
+        let mut progress = |stage: Stage, _: Done| {
+            count += 1;
+            stages.push(stage);
+            match count == calls || (again && count > calls) {
+                true => ControlFlow::Break(()),
+                false => ControlFlow::Continue(()),
+            }
+        };
+        let found = run(&model, &model.studies[0], &mut progress);
+        (found, stages)
+    };
+    let (whole, stages) = run_until(usize::MAX, false);
+    let whole = whole.unwrap();
+    assert!(!whole.interrupted());
+    let first = |stage: Stage| stages.iter().position(|s| *s == stage).unwrap();
+    let last = stages
+        .iter()
+        .rposition(|s| *s == Stage::Simulating)
+        .unwrap();
+    // On the way, and wherever what shows the motion comes to another stage.
+    let changes = (last + 1..stages.len()).filter(|k| stages[*k] != stages[*k - 1]);
+    let calls: Vec<usize> = [0, first(Stage::Simulating) + 200, last]
+        .into_iter()
+        .chain(changes)
+        .chain([first(Stage::Rows) + 4])
+        .collect();
+    for (call, again) in calls
+        .into_iter()
+        .flat_map(|call| [(call, true), (call, false)])
+    {
+        let stage = stages[call];
+        let found = match run_until(call + 1, again).0 {
+            Err(told) => {
+                assert_eq!((told[0].code, call), ("stopped", 0), "{stage:?}");
+                continue;
+            }
+            Ok(found) => found,
+        };
+        let rows = found.table.rows();
+        assert!(rows > 0 && rows <= 13, "{stage:?} {call}");
+        assert_eq!(column(&found, "swing deviation").len(), rows);
+        assert_eq!(column(&found, "B touching").len(), rows);
+        assert!(found.interrupted() || rows == 13, "{stage:?} {call}");
+        for name in ["swing", "swing deviation"] {
+            let pairs = column(&whole, name).into_iter().zip(column(&found, name));
+            for (whole, found) in pairs.take(rows - 1) {
+                assert!((whole - found).abs() < 1e-9, "{name}, {stage:?} {call}");
+            }
+        }
+    }
+}
+
+/// Where there is play the contact rubs, or nothing does: in the motion with play, in the ideal one, and in what is told.
+#[test]
+fn friction_of_a_joint_with_play_is_left_out_and_told() {
+    let smooth = result(&four_bar("10 ms", ""));
+    assert_eq!(codes(&smooth), [""; 0]);
+    let rubs = four_bar("10 ms", "[friction]\nB = { coefficient = 0.1, radius = 5 }");
+    let found = result(&rubs);
+    assert_eq!(codes(&found), ["friction-left-out"]);
+    for name in ["swing", "reaction(B)", "reaction(B) deviation"] {
+        assert_eq!(column(&found, name), column(&smooth, name), "{name}");
+    }
+    let all = rubs.replace("\nB = { coefficient", "\nall = { coefficient");
+    // Elsewhere it is refused, and why is told in words of such a study.
+    let file = model(&all);
+    let refused = run(&file, &file.studies[0], &mut Silent).unwrap_err();
+    assert_eq!(refused[0].code, "cannot-simulate");
+    assert!(
+        refused[0].message.contains("joints with play"),
+        "{refused:?}"
+    );
+    let worn = all.replace("B = { radial", "all = { radial");
+    let told = &kempe_study::check(&model(&worn)).diagnostics;
+    let told: Vec<&str> = told.iter().map(|d| d.message.as_str()).collect();
+    assert!(
+        told.iter()
+            .any(|m| m.contains("[friction] at A, D, B and C is left out")),
+        "{told:?}"
+    );
+}
+
+/// The ideal mechanism stops at its limit; with play it goes on a little.
+#[test]
+fn rows_that_the_ideal_motion_does_not_reach_are_told() {
+    let text = include_str!("../../cli/tests/bad/no-ideal-motion.toml");
+    let found = result(text);
+    assert_eq!(codes(&found), ["no-ideal-motion"]);
+    let known: Vec<bool> = (column(&found, "angle(rocker) deviation").iter())
+        .map(|x| x.is_finite())
+        .collect();
+    let reached = known.iter().filter(|known| **known).count();
+    assert!(0 < reached && reached < known.len() && known[..reached].iter().all(|x| *x));
+    assert!(
+        column(&found, "angle(rocker)")
+            .iter()
+            .all(|x| x.is_finite())
+    );
+    let told = format!("{} rows from", known.len() - reached);
+    assert!(found.diagnostics[0].message.contains(&told), "{found:?}");
 }

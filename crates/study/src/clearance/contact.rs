@@ -1,27 +1,22 @@
 //! Studies of clearance in which contact is lost: the mechanism moves in time with its joints let go, whose bodies touch and part.
 
-use kempe_dynamics::Acting;
-use kempe_dynamics::clearance::Play;
-use kempe_mechanism::Mechanism;
-use kempe_mechanism::constraint::Source;
-use kempe_model::{
-    ClearanceAt, Contact, ContactProperties, ContactStates, ContactStudy, Diagnostic, DriveKind,
-    Model, Released,
-};
+use kempe_mechanism::Design;
+use kempe_model::{Contact, ContactStudy, Diagnostic, DriveKind, Model, Released, Severity};
 use kempe_motion::progress::Progress;
 use kempe_simulate::{Happened, Simulated, Touched};
 use kempe_units::{Dimension, Unit};
 
 use super::columns::{Deviation, deviation_of};
-use super::joints::{Joints, joint_name, not_released, of};
+use super::joints::joint_name;
+use super::prepared::WithContacts;
 use super::summary;
-use crate::along::{Along, force_problems};
+use crate::along::Along;
 use crate::columns::Asked;
-use crate::motion_findings::refused;
-use crate::prepared::{design, motion};
+use crate::prepared::motion;
 use crate::quantity::Quantity;
 use crate::result::{Figure, Listing, StudyResult};
 use crate::rows::RowPlace;
+use crate::shows::Shows;
 use crate::simulation::{place_name, simulation};
 use crate::table::Column;
 use crate::unit::Units;
@@ -36,18 +31,21 @@ pub(crate) fn contact(
     study: &ContactStudy,
     progress: &mut dyn Progress,
 ) -> Result<StudyResult, Vec<Diagnostic>> {
-    let (joints, contacts) = prepared(model, study)?;
-    let (mut result, found) = simulation(model, name, &study.motion, &contacts, progress)?;
-    result.diagnostics.extend(joints.left_out(model));
+    let prepared = WithContacts::new(model, name, study)?;
+    let (model, contacts) = (prepared.model(), &*prepared.contacts);
+    let (mut result, found) = simulation(model, name, &study.motion, contacts, progress)?;
     let units = Units::of(model);
     let times = (result.table.columns.first()).map_or(Vec::new(), Column::si);
     let touching = (contacts.iter().enumerate())
         .map(|(index, contact)| touching(model, contact, index, &found, &times));
     let touching: Vec<Column> = touching.collect();
-    result.figures.extend(orbits(model, &contacts, &result));
+    result.figures.extend(orbits(model, contacts, &result));
     // Where a drive is let go the ideal mechanism would go another way.
     if study.motion.released.is_empty() {
-        let deviations = deviations(model, study, &result, progress)?;
+        // Pressures and switches are in the ideal motion what they were with play: it moves under the same loads.
+        let ideal = prepared.design.with_inner_laws(found.inner.clone());
+        let progress = &mut Shows::new(progress, false);
+        let deviations = deviations(&ideal, study, &mut result, progress);
         let columns = deviations.iter().map(|it| it.deviation.clone());
         result.table.columns.extend(columns);
         let scalars = summary::scalars(&deviations, &result.table, 0);
@@ -56,68 +54,24 @@ pub(crate) fn contact(
     result.table.columns.extend(touching);
     result
         .listings
-        .push(counted(model, &contacts, &units, &found));
+        .push(counted(model, contacts, &units, &found));
     result
         .listings
-        .extend(listed(model, &contacts, &units, &found));
+        .extend(listed(model, contacts, &units, &found));
+    result.diagnostics.extend(prepared.findings);
     Ok(result)
 }
 
 /// What is to be told of such a study before anything moves.
-pub(crate) fn findings_of_contact(model: &Model, study: &ContactStudy) -> Vec<Diagnostic> {
-    match prepared(model, study) {
-        Ok((joints, _)) => joints.left_out(model).into_iter().collect(),
+pub(crate) fn findings_of_contact(
+    model: &Model,
+    name: &str,
+    study: &ContactStudy,
+) -> Vec<Diagnostic> {
+    match WithContacts::new(model, name, study) {
+        Ok(prepared) => prepared.findings,
         Err(refused) => refused,
     }
-}
-
-/// The joints with play and the contacts that they make, if these can be counted.
-fn prepared(
-    model: &Model,
-    study: &ContactStudy,
-) -> Result<(Joints, Vec<Contact>), Vec<Diagnostic>> {
-    let design = design(model);
-    let joints = Joints::new(&design.mechanism, &design.parameters);
-    if !joints.refused.is_empty() {
-        return Err(joints.refused);
-    }
-    let contacts = contacts(&design.mechanism, &joints.plays, study.states);
-    if contacts.is_empty() {
-        let error = Diagnostic::error("no-clearance-there", "no joint has any play to move in")
-            .help("give a clearance that is not zero: [clearance] B = { radial = \"50 um\" }");
-        return Err(vec![match model.clearances.first() {
-            Some(first) => error.at(first.span.clone(), ""),
-            None => error,
-        }]);
-    }
-    let open = kempe_simulate::with_play(&design, &contacts)
-        .map_err(|why| vec![not_released(&design.mechanism, why)])?;
-    Acting::new(&open.mechanism, &open.geometry, &open.parameters).map_err(force_problems)?;
-    Ok((joints, contacts))
-}
-
-/// The contacts that the file's clearances make.
-fn contacts(mechanism: &Mechanism, plays: &[Play], states: ContactStates) -> Vec<Contact> {
-    let clearances = &mechanism.model.clearances;
-    let of_all = clearances.iter().find(|c| c.at == ClearanceAt::All);
-    let others = of_all.map_or_else(ContactProperties::default, |c| c.contact.clone());
-    let contact = |play: &Play| {
-        let entry = of(mechanism, play.joint)?;
-        let joint = match play.joint {
-            Source::Pin { point, link } => Released::Pin { point, link },
-            Source::Joint(id) => Released::Joint(id),
-            Source::Drive(_) => return None,
-        };
-        Some(Contact {
-            joint,
-            clearance: play.radial,
-            properties: entry.contact.or(&others),
-            states,
-            touches: Vec::new(),
-            span: entry.span.clone(),
-        })
-    };
-    plays.iter().filter_map(contact).collect()
 }
 
 /// At how many places the bodies of a joint touch in every row.
@@ -170,30 +124,78 @@ fn orbits(model: &Model, contacts: &[Contact], result: &StudyResult) -> Vec<Figu
     figures.collect()
 }
 
-/// How far every column is from that of the motion without clearance at the same times.
+/// How far every column is from that of the motion without clearance at the same times; the result tells where there is none.
 fn deviations(
-    model: &Model,
+    design: &Design<f64>,
     study: &ContactStudy,
-    result: &StudyResult,
+    result: &mut StudyResult,
     progress: &mut dyn Progress,
-) -> Result<Vec<Deviation>, Vec<Diagnostic>> {
-    let design = design(model);
-    let ideal = motion(&design, progress)?;
-    if refused(&ideal) {
-        return Ok(Vec::new());
-    }
+) -> Vec<Deviation> {
     let asked = Asked::of_forces(&design.mechanism, &study.motion.along);
     let quantities: Vec<&Quantity> = asked.columns.iter().collect();
     let times = (result.table.columns.first()).map_or(Vec::new(), Column::si);
-    let places: Vec<RowPlace> = times.iter().map(|t| RowPlace::Time(*t)).collect();
-    let mut sampler = Along::with_progress(model, &ideal, &quantities, true, &places, progress)?;
-    let rows: Vec<Vec<f64>> = places.iter().map(|place| sampler.values(*place)).collect();
+    let rows = match ideal_rows(design, &quantities, &times, progress) {
+        Ok(rows) => rows,
+        Err(why) => {
+            result.diagnostics.push(no_ideal_motion(&result.name, &why));
+            return Vec::new();
+        }
+    };
+    let missed = times.iter().zip(&rows);
+    let missed = missed.filter(|(_, row)| !row.is_empty() && row.iter().all(|x| x.is_nan()));
+    let missed: Vec<f64> = missed.map(|(time, _)| *time).collect();
+    let units = Units::of(&design.mechanism.model);
+    (result.diagnostics).extend(rows_without_ideal(&result.name, &units, &missed));
     let of = |(index, quantity): (usize, &&Quantity)| {
         let value = result.table.column(&quantity.name)?.clone();
         let ideal: Vec<f64> = rows.iter().map(|row| row[index]).collect();
         Some(deviation_of(&design.mechanism, quantity, value, &ideal))
     };
-    Ok(quantities.iter().enumerate().filter_map(of).collect())
+    quantities.iter().enumerate().filter_map(of).collect()
+}
+
+/// Values (SI) of the motion without clearance at some times, s.
+fn ideal_rows(
+    design: &Design<f64>,
+    quantities: &[&Quantity],
+    times: &[f64],
+    progress: &mut dyn Progress,
+) -> Result<Vec<Vec<f64>>, Vec<Diagnostic>> {
+    let ideal = motion(design, progress)?;
+    let places: Vec<RowPlace> = times.iter().map(|t| RowPlace::Time(*t)).collect();
+    let model = &design.mechanism.model;
+    let mut sampler = Along::with_progress(model, &ideal, quantities, true, &places, progress)?;
+    Ok(places.iter().map(|place| sampler.values(*place)).collect())
+}
+
+/// That no deviations are told: why there is no motion without play.
+fn no_ideal_motion(name: &str, why: &[Diagnostic]) -> Diagnostic {
+    let message =
+        format!("study `{name}`: without play there is no motion to tell deviations from");
+    let errors = why.iter().filter(|d| d.severity == Severity::Error);
+    let warning = errors.fold(
+        Diagnostic::warning("no-ideal-motion", message),
+        |warning, error| warning.note(error.message.clone()),
+    );
+    warning.help("let a drive go by `release`: then no deviations are asked for")
+}
+
+/// That the motion without play does not come to some of the times, s.
+fn rows_without_ideal(name: &str, units: &Units, missed: &[f64]) -> Option<Diagnostic> {
+    let (first, last) = (missed.first()?, missed.last()?);
+    let rows = match missed {
+        [one] => format!("the row at {} has", units.text(*one, Dimension::TIME)),
+        _ => {
+            let range = units.range_text((*first, *last), Dimension::TIME);
+            format!("{} rows from {range} have", missed.len())
+        }
+    };
+    let message =
+        format!("study `{name}`: {rows} no deviations: without play the drives do not go there");
+    Some(
+        Diagnostic::warning("no-ideal-motion", message)
+            .help("let the drives go where the mechanism goes without play, too"),
+    )
 }
 
 /// An impact or a touch, for the lists.

@@ -4,6 +4,7 @@ mod columns;
 mod contact;
 mod findings;
 mod joints;
+mod prepared;
 mod summary;
 
 use kempe_dynamics::clearance::{Clearances, NoClearances, NotSettled};

@@ -1,7 +1,7 @@
 //! Why there is no simulation, why it ended early, and where its oil boils.
 
 use kempe_mechanism::Design;
-use kempe_model::{Diagnostic, Model, SimulateStudy};
+use kempe_model::{Contact, Diagnostic, Model, SimulateStudy};
 use kempe_motion::{EndReason, Stage};
 use kempe_simulate::{Ending, Happened, NoStart, Simulated, Unsimulated};
 use kempe_units::Dimension;
@@ -83,6 +83,7 @@ pub(super) fn cavitation(
 pub(super) fn explain(
     design: &Design<f64>,
     stops: &[Named],
+    contacts: &[Contact],
     error: Unsimulated,
 ) -> Vec<Diagnostic> {
     let model = &design.mechanism.model;
@@ -111,6 +112,12 @@ pub(super) fn explain(
         )
         .note("links have no mass unless it is given")
         .help("give the links that move their mass and inertia, or start away from a dead point"),
+        Unsimulated::FrictionOfSeveral if !contacts.is_empty() => cannot(
+            "friction of a joint without play is simulated where one coordinate moves alone, and here joints with play move too"
+                .to_owned(),
+        )
+        .note("which of several joints stick is not decided yet")
+        .help("give the joints that rub play, and their contacts a `friction`, or describe what takes the energy by [dampers]"),
         Unsimulated::FrictionOfSeveral => cannot(
             "friction is simulated where one coordinate moves alone, and here several do"
                 .to_owned(),
