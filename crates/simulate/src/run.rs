@@ -212,6 +212,7 @@ pub fn simulate(
         inner_laws[place] = Some(law);
     }
     Ok(Simulated {
+        tied: run.plant.tied(),
         free: question.free.clone(),
         touched: touched(&run.plant.forces.acting.contacts, &laws.drives, end),
         rigid_from: question.stops.len(),

@@ -243,7 +243,17 @@ fn counted(model: &Model, contacts: &[Contact], units: &Units, found: &Simulated
         let fastest = own.iter().map(|met| met.speed).fold(0.0, f64::max);
         let touches = || own.iter().filter_map(|met| met.touch.as_ref());
         let force = touches().map(|touch| touch.force[0]).fold(0.0, f64::max);
-        let lasts = covered(touches().map(|t| [t.touching.from, t.touching.to]));
+        // Impacts at once take no time; what rests does.
+        let rests = found.held.iter().filter(|held| {
+            let places = held.stops.iter().filter_map(|stop| found.place_of(*stop));
+            places.map(|at| at.contact).any(|contact| contact == index)
+        });
+        let touching = touches().map(|t| [t.touching.from, t.touching.to]);
+        let lasts = covered(
+            touching
+                .chain(rests.map(|held| [held.from, held.to]))
+                .collect(),
+        );
         let or_none = |known: bool, text: String| if known { text } else { "-".to_owned() };
         let gives = touches().next().is_some();
         vec![
@@ -254,7 +264,10 @@ fn counted(model: &Model, contacts: &[Contact], units: &Units, found: &Simulated
                 units.text(fastest, Dimension::LENGTH / Dimension::TIME),
             ),
             or_none(gives, units.text(force, Dimension::FORCE)),
-            or_none(gives, format!("{:.1} %", 100.0 * lasts / found.end)),
+            or_none(
+                found.end > 0.0,
+                format!("{:.1} %", 100.0 * lasts / found.end),
+            ),
         ]
     });
     Listing {
@@ -272,8 +285,9 @@ fn counted(model: &Model, contacts: &[Contact], units: &Units, found: &Simulated
     }
 }
 
-/// How long any of some times lasts that begin one after the other.
-fn covered(times: impl Iterator<Item = [f64; 2]>) -> f64 {
+/// How long any of some times lasts.
+fn covered(mut times: Vec<[f64; 2]>) -> f64 {
+    times.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let (mut sum, mut until) = (0.0, f64::NEG_INFINITY);
     for [from, to] in times {
         sum += (to - from.max(until)).max(0.0);
