@@ -3,7 +3,7 @@
 use kempe_mechanism::Design;
 use kempe_model::{Contact, ContactStudy, Diagnostic, DriveKind, Model, Released, Severity};
 use kempe_motion::progress::Progress;
-use kempe_simulate::{Happened, Simulated, Touched};
+use kempe_simulate::{Happened, Place, Simulated};
 use kempe_units::{Dimension, Unit};
 
 use super::columns::{Deviation, deviation_of};
@@ -14,7 +14,7 @@ use crate::along::Along;
 use crate::columns::Asked;
 use crate::prepared::motion;
 use crate::quantity::Quantity;
-use crate::result::{Figure, Listing, StudyResult};
+use crate::result::{ContactMet, Figure, Listing, StudyResult, TouchMet};
 use crate::rows::RowPlace;
 use crate::shows::Shows;
 use crate::simulation::{place_name, simulation};
@@ -24,13 +24,13 @@ use crate::unit::Units;
 /// At most so many contacts are listed.
 const LISTED: usize = 30;
 
-/// Runs a study of clearance in which contact is lost.
+/// Runs a study of clearance in which contact is lost; with what the simulation found.
 pub(crate) fn contact(
     model: &Model,
     name: &str,
     study: &ContactStudy,
     progress: &mut dyn Progress,
-) -> Result<StudyResult, Vec<Diagnostic>> {
+) -> Result<(StudyResult, Simulated), Vec<Diagnostic>> {
     let prepared = WithContacts::new(model, name, study)?;
     let (model, contacts) = (prepared.model(), &*prepared.contacts);
     let (mut result, found) = simulation(model, name, &study.motion, contacts, progress)?;
@@ -52,14 +52,13 @@ pub(crate) fn contact(
         result.scalars.extend(scalars);
     }
     result.table.columns.extend(touching);
-    result
-        .listings
-        .push(counted(model, contacts, &units, &found));
-    result
-        .listings
-        .extend(listed(model, contacts, &units, &found));
+    let all = met(model, contacts, &found);
+    let counted = counted(model, contacts, &all, &units, &found);
+    result.listings.push(counted);
+    result.listings.extend(listed(&all, &units));
+    result.contacts = all;
     result.diagnostics.extend(prepared.findings);
-    Ok(result)
+    Ok((result, found))
 }
 
 /// What is to be told of such a study before anything moves.
@@ -198,72 +197,88 @@ fn rows_without_ideal(name: &str, units: &Units, missed: &[f64]) -> Option<Diagn
     )
 }
 
-/// An impact or a touch, for the lists.
-struct Met {
-    at: kempe_simulate::Place,
-    time: f64,
-    speed: f64,
-    parting: Option<f64>,
-    touch: Option<Touched>,
-}
-
 /// All impacts and touches, in order of time.
-fn met(found: &Simulated) -> Vec<Met> {
-    let soft = found.touched.iter().map(|touch| Met {
-        at: touch.at,
-        time: touch.touching.from,
-        speed: touch.touching.speed,
-        parting: touch.parting,
-        touch: Some(*touch),
+fn met(model: &Model, contacts: &[Contact], found: &Simulated) -> Vec<ContactMet> {
+    let named = |at: Place| {
+        let joint = contacts.get(at.contact).map(|c| c.joint.into());
+        let joint = joint.map_or(String::new(), |joint| joint_name(model, joint));
+        (joint, place_name(model, contacts, at))
+    };
+    let soft = found.touched.iter().map(|it| {
+        let (joint, place) = named(it.at);
+        ContactMet {
+            joint,
+            place,
+            time: it.touching.from,
+            speed: it.touching.speed,
+            speed_after: it.parting,
+            touch: Some(TouchMet {
+                until: it.touching.to,
+                force: it.force[0],
+                depth: it.depth[0],
+            }),
+        }
     });
     let rigid = found.happenings.iter().filter_map(|it| match it.what {
         Happened::Strikes {
             stop,
             before,
             after,
-        } => Some(Met {
-            at: found.place_of(stop)?,
-            time: it.time,
-            speed: -before,
-            parting: Some(after),
-            touch: None,
-        }),
+        } => {
+            let (joint, place) = named(found.place_of(stop)?);
+            Some(ContactMet {
+                joint,
+                place,
+                time: it.time,
+                speed: -before,
+                speed_after: Some(after),
+                touch: None,
+            })
+        }
         _ => None,
     });
-    let mut all: Vec<Met> = soft.chain(rigid).collect();
+    let mut all: Vec<ContactMet> = soft.chain(rigid).collect();
     all.sort_by(|a, b| a.time.total_cmp(&b.time));
     all
 }
 
 /// How often, how long and how hard each joint touches.
-fn counted(model: &Model, contacts: &[Contact], units: &Units, found: &Simulated) -> Listing {
-    let all = met(found);
+fn counted(
+    model: &Model,
+    contacts: &[Contact],
+    all: &[ContactMet],
+    units: &Units,
+    found: &Simulated,
+) -> Listing {
     let rows = contacts.iter().enumerate().map(|(index, contact)| {
-        let own: Vec<&Met> = all.iter().filter(|met| met.at.contact == index).collect();
+        let name = joint_name(model, contact.joint.into());
+        let own: Vec<&ContactMet> = all.iter().filter(|met| met.joint == name).collect();
         let fastest = own.iter().map(|met| met.speed).fold(0.0, f64::max);
-        let touches = || own.iter().filter_map(|met| met.touch.as_ref());
-        let force = touches().map(|touch| touch.force[0]).fold(0.0, f64::max);
+        let touches = || {
+            let touches = own.iter().copied();
+            touches.filter_map(|met| Some((met.time, met.touch.as_ref()?)))
+        };
+        let force = touches().map(|(_, touch)| touch.force).fold(0.0, f64::max);
         // Impacts at once take no time; what rests does.
         let rests = found.held.iter().filter(|held| {
             let places = held.stops.iter().filter_map(|stop| found.place_of(*stop));
             places.map(|at| at.contact).any(|contact| contact == index)
         });
-        let touching = touches().map(|t| [t.touching.from, t.touching.to]);
-        let lasts = covered(
-            touching
-                .chain(rests.map(|held| [held.from, held.to]))
-                .collect(),
-        );
+        let rests = rests.map(|held| [held.from, held.to]);
+        let touching = touches().map(|(from, touch)| [from, touch.until]);
+        let lasts = covered(touching.chain(rests).collect());
         let or_none = |known: bool, text: String| if known { text } else { "-".to_owned() };
-        let gives = touches().next().is_some();
         vec![
-            joint_name(model, contact.joint.into()),
+            name,
             own.len().to_string(),
             or_none(
                 !own.is_empty(),
                 units.text(fastest, Dimension::LENGTH / Dimension::TIME),
             ),
-            or_none(gives, units.text(force, Dimension::FORCE)),
+            or_none(
+                touches().next().is_some(),
+                units.text(force, Dimension::FORCE),
+            ),
             or_none(
                 found.end > 0.0,
                 format!("{:.1} %", 100.0 * lasts / found.end),
@@ -297,13 +312,7 @@ fn covered(mut times: Vec<[f64; 2]>) -> f64 {
 }
 
 /// The contacts one by one.
-fn listed(
-    model: &Model,
-    contacts: &[Contact],
-    units: &Units,
-    found: &Simulated,
-) -> Option<Listing> {
-    let all = met(found);
+fn listed(all: &[ContactMet], units: &Units) -> Option<Listing> {
     let time = |t: f64| units.text(t, Dimension::TIME);
     let speed = |v: f64| units.text(v, Dimension::LENGTH / Dimension::TIME);
     let none = || "-".to_owned();
@@ -311,12 +320,12 @@ fn listed(
         let touch = met.touch.as_ref();
         vec![
             time(met.time),
-            place_name(model, contacts, met.at),
+            met.place.clone(),
             speed(met.speed),
-            met.parting.map_or_else(none, speed),
-            touch.map_or_else(none, |t| time(t.touching.to - t.touching.from)),
-            touch.map_or_else(none, |t| units.text(t.force[0], Dimension::FORCE)),
-            touch.map_or_else(none, |t| units.text(t.depth[0], Dimension::LENGTH)),
+            met.speed_after.map_or_else(none, speed),
+            touch.map_or_else(none, |t| time(t.until - met.time)),
+            touch.map_or_else(none, |t| units.text(t.force, Dimension::FORCE)),
+            touch.map_or_else(none, |t| units.text(t.depth, Dimension::LENGTH)),
         ]
     });
     let mut rows: Vec<Vec<String>> = rows.collect();
