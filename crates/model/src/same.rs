@@ -172,6 +172,10 @@ impl Model {
                         start.at.iter_mut().for_each(&mut *f);
                         start.rate.iter_mut().for_each(&mut *f);
                     }
+                    for play in &mut study.plays {
+                        play.place.iter_mut().flatten().for_each(&mut *f);
+                        play.rate.iter_mut().flatten().for_each(&mut *f);
+                    }
                     for stop in &mut study.stops {
                         stop.between.iter_mut().flatten().for_each(&mut *f);
                         match &mut stop.resistance {

@@ -249,3 +249,155 @@ fn rows_that_the_ideal_motion_does_not_reach_are_told() {
     let told = format!("{} rows from", known.len() - reached);
     assert!(found.diagnostics[0].message.contains(&told), "{found:?}");
 }
+
+/// A bob of 2 kg on a pin with a play of 10 mm, whose drive stands: it falls and flies as a point does.
+fn bob(law: &str, start: &str) -> String {
+    format!(
+        "units = {{ length = \"mm\" }}\n[links]\nframe = {{ A = [0, 0] }}\nbob = {{ A = [0, 0], mass = 2, inertia = 1 }}\n\
+         [clearance]\nA = {{ radial = 10, radius = 50, {law} }}\n[drives]\nturn = {{ turns = \"bob\", at = 0 }}\n\
+         [studies.s]\nkind = \"clearance\"\nmodel = \"three-state\"\nuntil = \"60 ms\"\nrows = 7\n\
+         start = {{ {start} }}\ncolumns = [\"reaction(A)\"]\n"
+    )
+}
+
+const BLOCK: &str = "units = { length = \"mm\" }\n[links]\nframe = { O = [0, 0], X = [1000, 0] }\n\
+     block = { C = [0, 0], mass = 1, inertia = \"500 kg mm^2\" }\n[joints]\nway = { slider = \"block\", at = \"C\", on = \"O -> X\" }\n\
+     [drives]\ntravel = { slides = \"way\", at = 100 }\n[clearance]\n\
+     way = { radial = 0.1, length = 40, height = 20, restitution = 0.3 }\n[studies.s]\nkind = \"clearance\"\n\
+     model = \"three-state\"\nuntil = \"10 ms\"\nrows = 3\nstart = { START }\ncolumns = [\"y(C)\"]\n";
+
+/// A journal starts where, and as fast as, it is told to: flights are those of a thrown stone.
+#[test]
+fn a_journal_starts_where_it_is_told() {
+    const G: f64 = 9.81;
+    let rigid = "law = \"rigid\", restitution = 0.5";
+    let flight = |way: f64, up: f64| (up + (up * up + 2.0 * G * way).sqrt()) / G;
+    for (start, way, up) in [
+        ("A = [0, 4]", 0.014, 0.0),
+        ("A = [\"4 mm\", \"90 deg\"]", 0.014, 0.0),
+        ("A_rate = [0, 100]", 0.01, 0.1),
+        (
+            "A = [0, -6], A_rate = [\"0.1 m/s\", \"90 deg\"]",
+            0.004,
+            0.1,
+        ),
+    ] {
+        let found = result(&bob(rigid, start));
+        let known = flight(way, up);
+        let time = found.contacts[0].time;
+        assert!(
+            (time / known - 1.0).abs() < 1e-10,
+            "{start}: {time} {known}"
+        );
+        let speed = found.contacts[0].speed;
+        assert!(
+            (speed / (G * known - up) - 1.0).abs() < 1e-10,
+            "{start}: {speed}"
+        );
+        assert_eq!(codes(&found), [""; 0], "{start}");
+    }
+    // The left side of its line is above it.
+    for (start, way) in [("way = [0.05, 0]", 1.5e-4), ("way = [-0.05, 0]", 0.5e-4)] {
+        let found = result(&BLOCK.replace("START", start));
+        let (time, known) = (found.contacts[0].time, flight(way, 0.0));
+        assert!(
+            (time / known - 1.0).abs() < 1e-10,
+            "{start}: {time} {known}"
+        );
+    }
+    // Turned by 1 mrad its lower front corner is 20 um lower: it falls by so much less.
+    let turned = result(&BLOCK.replace("START", "way = [0, \"-1 mrad\"]"));
+    let (time, known) = (turned.contacts[0].time, flight(0.8e-4, 0.0));
+    assert!((time / known - 1.0).abs() < 1e-3, "{time} {known}");
+    assert_eq!(turned.contacts[0].place, "the front right corner of way");
+    let turning = result(&BLOCK.replace("START", "way_rate = [0, -0.5]"));
+    assert_eq!(turning.contacts[0].place, "the front right corner of way");
+}
+
+/// What starts at the bottom lies there, or gives and rises again: by energy, Hertz's law comes to five halves of the weight.
+#[test]
+fn a_journal_may_start_pressed_on_its_bore() {
+    let weight = 2.0 * 9.81;
+    let bottom = "A = [\"10 mm\", \"-90 deg\"]";
+    let rests = result(&bob("law = \"rigid\", restitution = 0.5", bottom));
+    assert!(
+        column(&rests, "reaction(A)")
+            .iter()
+            .all(|n| (n - weight).abs() < 1e-9)
+    );
+    assert_eq!(column(&rests, "A touching"), [1.0; 7]);
+    assert!(rests.contacts.is_empty());
+    let counted = |it: &StudyResult| {
+        let found = it.listings.iter().find(|it| it.title == "Contacts");
+        found.unwrap().rows[0].clone()
+    };
+    assert_eq!(counted(&rests)[4], "100.0 %");
+    for law in [
+        "law = \"hertz\", stiffness = 1e9",
+        "restitution = 0.5, stiffness = 1e9",
+    ] {
+        let gives = result(&bob(law, bottom));
+        let touch = gives.contacts[0].touch.unwrap();
+        assert_eq!(gives.contacts[0].time, 0.0, "{law}");
+        assert!(
+            (touch.force / (2.5 * weight) - 1.0).abs() < 1e-6,
+            "{law}: {}",
+            touch.force
+        );
+        let deepest = (2.5 * weight / 1e9_f64).powf(2.0 / 3.0);
+        assert!(
+            (touch.depth / deepest - 1.0).abs() < 1e-6,
+            "{law}: {}",
+            touch.depth
+        );
+    }
+}
+
+#[test]
+fn starts_that_cannot_be_are_refused() {
+    let rigid = "law = \"rigid\", restitution = 0.5";
+    let refused = |text: &str| {
+        let file = Model::from_toml(text, "contact", &mut |_| Err("no files".into()));
+        let told = match file {
+            Err(told) => told,
+            Ok(file) => run(&file.model, &file.model.studies[0], &mut Silent).unwrap_err(),
+        };
+        let first = &told[0];
+        assert!(first.help.is_some(), "{first:?}");
+        (first.code, first.message.clone())
+    };
+    let (code, told) = refused(&bob(rigid, "A = [0, 10.5]"));
+    assert_eq!(code, "cannot-simulate");
+    assert!(
+        told.starts_with("A starts with its bodies in each other, by 0.5 mm"),
+        "{told}"
+    );
+    let (code, told) = refused(&BLOCK.replace("START", "way = [0.09, \"1 deg\"]"));
+    assert_eq!(code, "cannot-simulate");
+    assert!(told.contains("corner of way"), "{told}");
+    for (start, wanted) in [
+        ("A = 3", "wrong-type"),
+        ("A = [1, 2, 3]", "wrong-type"),
+        ("A = [\"1 kg\", 2]", "unit-mismatch"),
+        ("A = [1, \"2 kg\"]", "unit-mismatch"),
+        ("A_rate = [1, \"2 mm\"]", "unit-mismatch"),
+        ("E = [1, 2]", "unknown-name"),
+        ("turn = 3", "contradictory-values"),
+        ("nothing = 3", "unknown-name"),
+    ] {
+        assert_eq!(refused(&bob(rigid, start)).0, wanted, "{start}");
+    }
+    assert_eq!(
+        refused(&four_bar("5 ms", "").replace("columns", "start = { C = [0, 0] }\ncolumns")).0,
+        "no-clearance-there"
+    );
+    let three = four_bar("5 ms", "").replace(
+        "B-C = 50,",
+        "B-C = 50, C-E = 9, B-E = 50, E = \"left of B -> C\",",
+    );
+    let three = three.replace("[clearance]", "lid = { B-F = 9 }\n[clearance]");
+    let three = three.replace("[drives]", "[drives]\nlift = { turns = \"lid\", at = 3 }");
+    let (code, told) = refused(&three.replace("columns", "start = { B = [0, 0] }\ncolumns"));
+    assert_eq!(code, "no-clearance-there");
+    assert!(told.contains("several links"), "{told}");
+}

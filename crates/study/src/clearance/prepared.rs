@@ -6,7 +6,7 @@ use kempe_mechanism::constraint::Source;
 use kempe_mechanism::{Design, Mechanism};
 use kempe_model::{
     ClearanceAt, Contact, ContactProperties, ContactStates, ContactStudy, Diagnostic, FrictionAt,
-    Model, Released,
+    Model, PlayAt, Released, Scalar, value,
 };
 
 use super::joints::{Joints, joint_name, not_released, of};
@@ -37,7 +37,7 @@ impl WithContacts {
         if !joints.refused.is_empty() {
             return Err(joints.refused);
         }
-        let contacts = contacts(mechanism, &joints.plays, study.states);
+        let mut contacts = contacts(mechanism, &joints.plays, study.states);
         if contacts.is_empty() {
             let error = Diagnostic::error("no-clearance-there", "no joint has any play to move in")
                 .help("give a clearance that is not zero: [clearance] B = { radial = \"50 um\" }");
@@ -45,6 +45,10 @@ impl WithContacts {
                 Some(first) => error.at(first.span.clone(), ""),
                 None => error,
             }]);
+        }
+        let unknown = start(model, name, study, &mut contacts);
+        if !unknown.is_empty() {
+            return Err(unknown);
         }
         findings.extend(friction_left_out(model, name, &contacts));
         let smooth = contacts.iter().map(|contact| contact.joint).collect();
@@ -82,11 +86,66 @@ fn contacts(mechanism: &Mechanism, plays: &[Play], states: ContactStates) -> Vec
             clearance: play.radial,
             properties: entry.contact.or(&others),
             states,
+            start: [[0.0; 2]; 2],
             touches: Vec::new(),
             span: entry.span.clone(),
         })
     };
     plays.iter().filter_map(contact).collect()
+}
+
+/// Takes up where contacts start; tells of starts of what is none of them.
+fn start(
+    model: &Model,
+    name: &str,
+    study: &ContactStudy,
+    contacts: &mut [Contact],
+) -> Vec<Diagnostic> {
+    let parameters: Vec<f64> = model.parameter_values();
+    let mut unknown = Vec::new();
+    for it in &study.motion.plays {
+        let joint = match it.at {
+            PlayAt::Pin(point) => model.points.get(point.index()).map(|p| &p.name),
+            PlayAt::Joint(joint) => model.joints.get(joint.index()).map(|j| &j.name),
+        };
+        let is_meant = |contact: &&mut Contact| match (contact.joint, it.at) {
+            (Released::Pin { point, .. }, PlayAt::Pin(named)) => point == named,
+            (Released::Joint(joint), PlayAt::Joint(named)) => joint == named,
+            _ => false,
+        };
+        let mut meant: Vec<&mut Contact> = contacts.iter_mut().filter(is_meant).collect();
+        let [contact] = meant.as_mut_slice() else {
+            let joint = joint.map_or("", String::as_str);
+            let (why, help) = match meant.is_empty() {
+                true => (
+                    "has no play to start in",
+                    "give it some under [clearance], or leave its start out",
+                ),
+                false => (
+                    "has play on several links: which of them is meant is not clear",
+                    "name one link that has play there, [clearance] B = { radial = …, on = \"rod\" }, or leave its start out",
+                ),
+            };
+            let message = format!("study `{name}`: {joint} {why}");
+            let error = Diagnostic::error("no-clearance-there", message);
+            unknown.push(error.at(it.span.clone(), "").help(help));
+            continue;
+        };
+        let of = |pair: &Option<[Scalar; 2]>| {
+            let pair = pair.as_ref();
+            pair.map_or([0.0; 2], |pair| {
+                pair.each_ref().map(|x| value(x, &parameters))
+            })
+        };
+        let (place, rate) = (of(&it.place), of(&it.rate));
+        let mut rows = [[place[0], rate[0]], [place[1], rate[1]]];
+        if let PlayAt::Joint(_) = it.at {
+            // The rows of a slider are its angle and its distance.
+            rows.reverse();
+        }
+        contact.start = rows;
+    }
+    unknown
 }
 
 /// That friction of the file counts for nothing at joints with play: a warning for each entry that tells of some.

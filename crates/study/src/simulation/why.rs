@@ -12,7 +12,7 @@ use crate::explain::{cannot_move, stopped};
 use crate::unit::Units;
 
 use super::question::Named;
-use super::words::chamber;
+use super::words::{chamber, place_name};
 
 /// That it ended before it was to.
 pub(super) fn early(model: &Model, units: &Units, found: &Simulated) -> Option<Diagnostic> {
@@ -177,6 +177,12 @@ pub(super) fn explain(
                 units.text(by, dimension)
             ))
             .help("start between the stops, or move them")
+        }
+        Unsimulated::BeyondPlay(place, by) => {
+            let place = place_name(model, contacts, place);
+            let by = units.text(by, Dimension::LENGTH);
+            cannot(format!("{place} starts with its bodies in each other, by {by}"))
+                .help("`start` in a study of clearance tells where a pin or slider is in its play, seen from the middle: no farther off than radial")
         }
         Unsimulated::NoPlay(why) => not_released(&design.mechanism, why),
     }]
