@@ -81,7 +81,7 @@ mod tests {
     fn columns(study: &str) -> (Vec<String>, StudyResult) {
         let text = format!(
             "units = {{ length = \"mm\", angle = \"deg\" }}\n[links]\nframe = {{ A = [0, 0], D = [60, 0] }}\n\
-             crank = {{ A-B = 20, mass = 1 }}\ncoupler = {{ B-C = 50 }}\nrocker = {{ D-C = 40 }}\n[drives]\n\
+             crank = {{ A-B = 20, mass = 1 }}\ncoupler = {{ B-C = 50, mass = 1, inertia = 1 }}\nrocker = {{ D-C = 40 }}\n[drives]\n\
              motor = {{ turns = \"crank\", from = 0, to = 360, speed = \"1 rad/s\" }}\n[assembly]\n\
              C = \"left of B -> D\"\n{study}"
         );

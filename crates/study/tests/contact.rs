@@ -344,7 +344,7 @@ fn a_journal_may_start_pressed_on_its_bore() {
             "{law}: {}",
             touch.force
         );
-        let deepest = (2.5 * weight / 1e9_f64).powf(2.0 / 3.0);
+        let deepest = kempe_number::math::powf(2.5 * weight / 1e9, 2.0 / 3.0);
         assert!(
             (touch.depth / deepest - 1.0).abs() < 1e-6,
             "{law}: {}",
