@@ -95,23 +95,19 @@ impl<T: ForceNumber> Friction<T> {
         parameters: &[T],
         problems: &mut Vec<Problem>,
     ) -> Vec<Self> {
-        let given = &mechanism.model.actions.friction;
-        for friction in given {
+        for friction in &mechanism.model.actions.friction {
             Self::check(mechanism, friction, parameters, problems);
         }
         let mut list = Vec::new();
         for (constraint, (joint, source)) in mechanism.constraints.iter().enumerate() {
-            let own = match source {
-                Source::Pin { point, .. } => FrictionAt::Pin(*point),
-                Source::Joint(joint) => FrictionAt::Joint(*joint),
-                Source::Drive(_) => continue,
-            };
+            if matches!(source, Source::Drive(_)) {
+                continue;
+            }
             let Some(rubs) = joint.rubs() else {
                 problems.extend(no_axes(mechanism, source, joint.drive().is_some()));
                 continue;
             };
-            let of_own = given.iter().rev().find(|f| f.at == own);
-            let of_all = || given.iter().rev().find(|f| f.at == FrictionAt::All);
+            let (of_own, of_all) = told(&mechanism.model, *source);
             let mut add = |bearing, law| {
                 list.push(Self {
                     constraint,
@@ -122,12 +118,12 @@ impl<T: ForceNumber> Friction<T> {
             let law = |friction| FrictionLaw::new(friction, parameters);
             match rubs {
                 Rubs::AlongGuide => {
-                    if let Some(friction) = of_own.or_else(of_all) {
+                    if let Some(friction) = of_own.or(of_all) {
                         add(Bearing::Guide, law(friction));
                     }
                 }
                 Rubs::AboutPin => {
-                    if let Some(friction) = of_own.or_else(of_all) {
+                    if let Some(friction) = of_own.or(of_all) {
                         let radius = (friction.radius.as_ref())
                             .map_or(T::zero(), |radius| model::value(radius, parameters));
                         add(Bearing::Pin(radius), law(friction));
@@ -303,6 +299,30 @@ pub(crate) fn directions(
         _ => of_speed,
     };
     found.map_or(Interval::new(-1.0, 1.0), Interval::from_f64)
+}
+
+/// What the file says of friction at a joint, and what it says there of all pins, sliders and slots.
+fn told(
+    model: &model::Model,
+    joint: Source,
+) -> (Option<&model::Friction>, Option<&model::Friction>) {
+    let own = match joint {
+        Source::Pin { point, .. } => FrictionAt::Pin(point),
+        Source::Joint(joint) => FrictionAt::Joint(joint),
+        Source::Drive(_) => return (None, None),
+    };
+    let smooth = model.actions.smooth.iter();
+    if smooth.copied().any(|smooth| joint == smooth.into()) {
+        return (None, None);
+    }
+    let at = |at| model.actions.friction.iter().rev().find(|f| f.at == at);
+    (at(own), at(FrictionAt::All))
+}
+
+/// What the file says of friction at a pin, slider or slot.
+pub fn told_of(model: &model::Model, joint: Source) -> Option<&model::Friction> {
+    let (own, all) = told(model, joint);
+    own.or(all)
 }
 
 fn slides(mechanism: &Mechanism, joint: JointId) -> bool {

@@ -166,6 +166,7 @@ pub const LATER_CODES: &[Code] = &[
     code("no-contact-law", "nothing says how the bodies of a joint with play resist each other, or what does makes no sense"),
     code("no-equilibrium", "a mechanism whose drives are let go comes to no equilibrium"),
     code("no-file", "a file cannot be opened"),
+    code("no-ideal-motion", "the motion without play, from which deviations are told, does not exist"),
     code("no-mass", "a drive that is let go moves no mass"),
     code("no-time", "forces are asked for where there is no time, and so no speed"),
     code("no-value", "a measure has no finite value"),

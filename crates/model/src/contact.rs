@@ -142,6 +142,9 @@ pub struct Contact {
     pub properties: ContactProperties,
     /// The states it can have.
     pub states: ContactStates,
+    /// Where its bodies start, by the coordinates of its rows: how far it stands open, and how fast that grows. Of a pin along the frame's x and
+    /// y, m; of a slider the angle by which it is turned, rad, and how far it is off its line, m.
+    pub start: [[f64; 2]; 2],
     /// When its bodies touch, in order of time for each place.
     pub touches: Vec<Touching>,
     /// Where its clearance stands in the file.

@@ -551,7 +551,7 @@ static SPRING_STUDY: Kind = kind("study", "spring",
 /// Of studies that find how things move in time.
 static IN_TIME: [Key; 6] = [
     may("release", T::AnyOf(&[DRIVE, T::List(&DRIVE, 1)]), "[\"motor\"]", "Drives that are let go and give nothing but what their motors can; all unless said otherwise, the others keep their laws."),
-    may("start", T::Values(&T::AnyValue), "{ motor = \"30 deg\", motor_rate = \"2 rad/s\" }", "Where drives that are let go start, and with `_rate` how fast; where their laws start, and at rest, unless said otherwise."),
+    may("start", T::Values(&T::AnyOf(&[T::AnyValue, T::Two(&T::AnyValue)])), "{ motor = \"30 deg\", motor_rate = \"2 rad/s\" }", "Where drives that are let go start, and with `_rate` how fast; where their laws start, and at rest, unless said otherwise. Where contact may be lost, also joints with play: B = [\"3 um\", \"-2 um\"]."),
     may("stops", T::Values(&T::AnyOf(&[T::Two(&END), T::Table(&STOP)])), "{ rocker = [\"-10 deg\", \"95 deg\"] }", "Least and largest angle of a link, coordinate of a drive or value of a measure, where it is stopped."),
     may("end_when", T::AnyOf(&[T::Measure, T::List(&T::Measure, 1)]), "\"angle(rocker) <= 0 deg\"", "It ends when this comes to hold."),
     may("tolerance", positive(D::NONE), "1e-10", "Error of a step, in parts of what moves; 1e-13 unless said otherwise."),

@@ -6,6 +6,7 @@
 use kempe_units::Dimension;
 
 use crate::contact::Contact;
+use crate::drive::Released;
 use crate::ids::{DriveId, JointId, LinkId, LinkPointRef, PointId, Scalar, Span};
 use crate::measure::Measure;
 
@@ -30,6 +31,8 @@ pub struct Actions {
     pub motors: Vec<Motor>,
     /// Joints with play whose bodies touch and part; no file says so, studies do.
     pub contacts: Vec<Contact>,
+    /// Joints at which `friction` counts for nothing, as play lets what rubs there be the contact's own; no file says so, studies do.
+    pub smooth: Vec<Released>,
     /// Limit switches, which loads, valves and motors may go by.
     pub switches: Vec<crate::switch::Switch>,
 }

@@ -164,6 +164,7 @@ impl Namings {
         let mut finder = Finder {
             text,
             common: BTreeMap::new(),
+            points: BTreeSet::new(),
             out: Self::default(),
         };
         for key in &outline.keys {
@@ -244,11 +245,21 @@ struct Finder<'t> {
     text: &'t str,
     /// Names of the space that parameters, links, joints, drives and measures share.
     common: BTreeMap<String, PartKind>,
+    /// Names of points.
+    points: BTreeSet<String>,
     out: Namings,
 }
 
 impl Finder<'_> {
     fn declare(&mut self, key: &KeyMark) {
+        if let [section, .., name] = key.path.as_slice()
+            && ["links", "places"].contains(&section.as_str())
+        {
+            let single = is_point_name(name).then_some(name.as_str());
+            let pair = pair_of(name).map(<[&str; 2]>::from);
+            let named = single.into_iter().chain(pair.into_iter().flatten());
+            self.points.extend(named.map(str::to_owned));
+        }
         let [section, name] = key.path.as_slice() else {
             return;
         };
@@ -308,10 +319,15 @@ impl Finder<'_> {
             [section, _, of, name]
                 if section == "studies" && ["at", "start", "stops"].contains(&of.as_str()) =>
             {
-                // of how fast a drive starts, the drive
-                let drive = name.strip_suffix(RATE).filter(|_| of == "start");
-                let named = [Some(name.as_str()), drive].into_iter().flatten();
-                let mut known = named.filter_map(|name| Some((name, self.common(name)?)));
+                // of how fast a drive starts, the drive; of how fast a journal does, its point
+                let rate_of = name.strip_suffix(RATE).filter(|_| of == "start");
+                let named = [Some(name.as_str()), rate_of].into_iter().flatten();
+                let point = |name: &str| {
+                    let known = of == "start" && self.points.contains(name);
+                    known.then(|| Part::new(PartKind::Point, name))
+                };
+                let mut known = named
+                    .filter_map(|name| Some((name, self.common(name).or_else(|| point(name))?)));
                 if let Some((name, part)) = known.next() {
                     self.push(part, within(0, name), &key.path, here(false));
                 }

@@ -34,6 +34,7 @@ mod parameters;
 mod phrase;
 mod place;
 mod places;
+mod play_start;
 mod plots;
 mod sections;
 pub(crate) mod simulate;

@@ -54,7 +54,13 @@ impl Model {
         self.drives.iter_mut().for_each(|p| forget(&mut p.span));
         self.assembly.iter_mut().for_each(|p| forget(&mut p.span));
         self.measures.iter_mut().for_each(|p| forget(&mut p.span));
-        self.studies.iter_mut().for_each(|p| forget(&mut p.span));
+        for study in &mut self.studies {
+            forget(&mut study.span);
+            if let StudyKind::Contact(contact) = &mut study.kind {
+                let plays = contact.motion.plays.iter_mut();
+                plays.for_each(|p| forget(&mut p.span));
+            }
+        }
         let acting = &mut self.actions;
         acting.loads.iter_mut().for_each(|p| forget(&mut p.span));
         acting.masses.iter_mut().for_each(|p| forget(&mut p.span));
@@ -171,6 +177,10 @@ impl Model {
                     for start in &mut study.start {
                         start.at.iter_mut().for_each(&mut *f);
                         start.rate.iter_mut().for_each(&mut *f);
+                    }
+                    for play in &mut study.plays {
+                        play.place.iter_mut().flatten().for_each(&mut *f);
+                        play.rate.iter_mut().flatten().for_each(&mut *f);
                     }
                     for stop in &mut study.stops {
                         stop.between.iter_mut().flatten().for_each(&mut *f);

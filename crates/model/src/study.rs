@@ -4,7 +4,7 @@ use kempe_units::{Dimension, Expr};
 
 use crate::clearance::ClearanceStudy;
 use crate::contact::ContactStudy;
-use crate::ids::{DriveId, LinkId, PointId, Scalar, Span};
+use crate::ids::{DriveId, JointId, LinkId, PointId, Scalar, Span};
 use crate::measure::{Leaf, Measure};
 
 /// A measure with the user's name for it.
@@ -73,6 +73,9 @@ pub struct SimulateStudy {
     pub released: Vec<DriveId>,
     /// Where drives that are let go start, and how fast; elsewhere where their laws do, and at rest.
     pub start: Vec<DriveStart>,
+    /// Where the bodies of joints with play start in them, and how fast; elsewhere in the middle, and moving as without play. Of studies of
+    /// clearance alone.
+    pub plays: Vec<PlayStart>,
     /// How long, s.
     pub until: Scalar,
     /// What stops it.
@@ -103,6 +106,29 @@ pub struct DriveStart {
     pub at: Option<Scalar>,
     /// How fast, rad/s or m/s.
     pub rate: Option<Scalar>,
+}
+
+/// How the bodies of a joint with play start.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlayStart {
+    /// The joint.
+    pub at: PlayAt,
+    /// Where: of a pin the later link's point seen from the first one's, along the frame's axes, m; of a slider how far it is off its line, m,
+    /// and by which angle it is turned, rad.
+    pub place: Option<[Scalar; 2]>,
+    /// The rates of these.
+    pub rate: Option<[Scalar; 2]>,
+    /// Where it stands in the file.
+    pub span: Span,
+}
+
+/// A joint as a study names it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PlayAt {
+    /// The pin of a point, which has play on one link.
+    Pin(PointId),
+    /// A slider.
+    Joint(JointId),
 }
 
 /// Bounds that an angle or a length cannot pass.

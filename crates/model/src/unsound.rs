@@ -33,7 +33,7 @@ impl Model {
 
 impl Model {
     /// A value in the file's units, for people.
-    pub(crate) fn shown(&self, x: f64, dimension: Dimension) -> String {
+    pub fn shown(&self, x: f64, dimension: Dimension) -> String {
         let preferred: Vec<Unit> = [&self.units.length, &self.units.angle]
             .into_iter()
             .chain(&self.units.more)

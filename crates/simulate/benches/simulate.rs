@@ -162,6 +162,7 @@ fn rattle() {
                     clearance: value(&clearance.radial, &parameters),
                     properties: clearance.contact.clone(),
                     states: ContactStates::Three,
+                    start: [[0.0; 2]; 2],
                     touches: Vec::new(),
                     span: 0..0,
                 }],

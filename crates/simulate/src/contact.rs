@@ -124,7 +124,7 @@ impl Plant {
         })
     }
 
-    fn gap_at(&self, at: Place, y: &[f64]) -> Gap {
+    pub(crate) fn gap_at(&self, at: Place, y: &[f64]) -> Gap {
         let in_time = |_, [q, v]: [f64; 2]| Jet::<f64, 3>::from_coefficients([q, v, 0.0]);
         let [open, rate, bend] = *self.opening_in(at, y, in_time).coefficients();
         let along = |coordinate: usize| {

@@ -31,24 +31,37 @@ pub fn with_play(closed: &Design<f64>, contacts: &[Contact]) -> Result<Design<f6
     Ok(design.with_model(|model| model.actions.contacts = contacts.to_vec()))
 }
 
-/// The start with the joints let go, and the coordinates of their rows with the clearance of each.
+/// The coordinate of a row of a joint with play.
+pub(crate) struct OpenRow {
+    pub drive: DriveId,
+    /// How far the joint may open, m.
+    pub clearance: f64,
+    /// Where it starts, and how fast.
+    pub start: [f64; 2],
+}
+
+/// The start with the joints let go, in the middle of their play, and the coordinates of their rows.
 pub(crate) fn opened(
     start: Start,
     contacts: &[Contact],
-) -> Result<(Start, Vec<(DriveId, f64)>), NotReleased> {
+) -> Result<(Start, Vec<OpenRow>), NotReleased> {
     if contacts.is_empty() {
         return Ok((start, Vec::new()));
     }
     let design = with_play(&start.design, contacts)?;
     let drives = &design.mechanism.model.drives;
     let rows = drives.iter().enumerate().filter_map(|(index, drive)| {
-        let DriveKind::Release { of, .. } = drive.kind else {
+        let DriveKind::Release { of, row } = drive.kind else {
             return None;
         };
         let contact = contacts.iter().find(|c| c.joint == of)?;
-        Some((DriveId(index as u32), contact.clearance))
+        Some(OpenRow {
+            drive: DriveId(index as u32),
+            clearance: contact.clearance,
+            start: contact.start.get(usize::from(row)).copied()?,
+        })
     });
-    let rows: Vec<(DriveId, f64)> = rows.collect();
+    let rows: Vec<OpenRow> = rows.collect();
     let mut coordinates = start.coordinates;
     coordinates.resize(drives.len(), 0.0);
     let start = Start {
@@ -112,6 +125,19 @@ impl Plant {
         *self.opening_in(at, y, in_time).coefficients()
     }
 
+    /// A place whose bodies are deeper in each other than this part of their play, and how deep, m.
+    pub fn beyond_play(&self, part: f64, y: &[f64]) -> Option<(Place, f64)> {
+        let contacts = self.forces.acting.contacts.iter().enumerate();
+        let places = contacts
+            .flat_map(|(contact, it)| (0..it.places()).map(move |place| Place { contact, place }));
+        let model = &self.forces.design.mechanism.model;
+        let beyond = places.map(|at| (at, -self.opening(at, y)[0]));
+        beyond.into_iter().find(|(at, deep)| {
+            let contact = model.actions.contacts.get(at.contact);
+            contact.is_some_and(|contact| *deep > part * contact.clearance)
+        })
+    }
+
     /// Every place of the contacts that give.
     pub fn contact_places(&self) -> Vec<Place> {
         let contacts = self.forces.acting.contacts.iter().enumerate();
@@ -129,9 +155,24 @@ impl Plant {
         last.is_some_and(|touch| touch.to == f64::INFINITY)
     }
 
-    /// Lets a place touch from a time on; how fast its bodies come together there, m/s.
-    pub fn touch(&mut self, at: Place, time: f64, y: &[f64]) -> f64 {
-        let speed = -self.opening(at, y)[1];
+    /// The places at which bodies that give touch and come together, or are pressed, at a state that accelerates so: how fast, m/s.
+    /// `part` of the play, and of the speeds, is none.
+    pub fn pressed(&self, part: f64, y: &[f64], accelerations: &[f64]) -> Vec<(Place, f64)> {
+        let model = &self.forces.design.mechanism.model;
+        let n = self.free.len();
+        let places = self.contact_places().into_iter().filter_map(|at| {
+            let clearance = model.actions.contacts.get(at.contact)?.clearance;
+            let gap = self.gap_at(at, y);
+            let none = part * gap.scale(&y[n..2 * n]);
+            let comes = gap.rate < -none || gap.rate <= none && gap.opening(accelerations) < 0.0;
+            let speed = if gap.rate < -none { -gap.rate } else { 0.0 };
+            (gap.open.abs() <= part * clearance && comes).then_some((at, speed))
+        });
+        places.collect()
+    }
+
+    /// Lets a place touch from a time on, whose bodies come together with a speed, m/s.
+    pub fn touch(&mut self, at: Place, time: f64, speed: f64) {
         let contact = self.forces.acting.contacts.get(at.contact);
         let touches = contact.iter().flat_map(|c| c.touches.iter().flatten());
         let fastest = touches.map(|touch| touch.speed).fold(0.0, f64::max);
@@ -144,7 +185,6 @@ impl Plant {
                 counts_as: speed.max(SLOWEST * fastest),
             });
         }
-        speed
     }
 
     /// Lets a place part at a time.

@@ -50,6 +50,19 @@ pub(crate) struct Tells {
     pub ahead: f64,
 }
 
+/// Why no link's angle may tell the place in the stead of a coordinate that is let go.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Tied {
+    /// Joints with play are told by how far they stand open.
+    Play,
+    /// What oil gives goes by its own drive.
+    Oil,
+    /// So does what a throttled motor gives.
+    Throttle,
+    /// Something that acts, stops, switches or ends it asks for a derivative along the drive.
+    Asked,
+}
+
 /// A motor of a drive that is let go.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Turned {
@@ -187,21 +200,17 @@ impl Plant {
         self
     }
 
-    /// Whether the coordinates that are let go must tell the place themselves: joints with play are told by how far they stand
-    /// open, what oil or a throttled motor gives goes by its own drive, and so do derivatives along it that something asks for.
-    pub fn is_tied(&self) -> bool {
+    /// What makes the coordinates that are let go tell the place themselves, if something does.
+    pub fn tied(&self) -> Option<Tied> {
         let throttled = |turned: &Turned| turned.throttle.is_some();
-        !self
-            .forces
-            .design
-            .mechanism
-            .model
-            .actions
-            .contacts
-            .is_empty()
-            || !self.inner.moved.is_empty()
-            || self.motors.iter().flatten().any(throttled)
-            || self.asked_along
+        let actions = &self.forces.design.mechanism.model.actions;
+        let ties = [
+            (!actions.contacts.is_empty(), Tied::Play),
+            (!self.inner.moved.is_empty(), Tied::Oil),
+            (self.motors.iter().flatten().any(throttled), Tied::Throttle),
+            (self.asked_along, Tied::Asked),
+        ];
+        ties.into_iter().find(|(is, _)| *is).map(|(_, tied)| tied)
     }
 
     /// Looks at the pose of a state and how it moves, whatever acts: false where there is none.

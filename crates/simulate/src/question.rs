@@ -20,7 +20,7 @@ pub struct Question {
     pub stops: Vec<Stop>,
     /// It ends when one of these becomes positive or zero.
     pub end_when: Vec<Measure>,
-    /// Joints with play, which are let go too, their bodies at first in the middle of their play.
+    /// Joints with play, which are let go too.
     pub contacts: Vec<Contact>,
 }
 

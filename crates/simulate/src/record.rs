@@ -13,6 +13,7 @@ use kempe_units::Expr;
 
 use crate::happening::{Happening, Held};
 use crate::joints::{Place, Touched};
+use crate::plant::Tied;
 
 /// Why a simulation ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,6 +47,8 @@ pub struct Simulated {
     pub end: f64,
     /// Why.
     pub ending: Ending,
+    /// Why it ends where a coordinate that is let go comes to a dead point of its own, if it does.
+    pub tied: Option<Tied>,
     /// What happened on the way, in order.
     pub happenings: Vec<Happening>,
     /// When stops or friction held it, in order.

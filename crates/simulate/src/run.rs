@@ -9,7 +9,7 @@ use kempe_integrate::{Integrator, Stopped, Tolerance, Used};
 use kempe_measure::measure::visit_leaves;
 use kempe_mechanism::{Design, Mechanism, NotReleased};
 use kempe_model::{COEFFICIENTS, DriveId, Law, Leaf, Measure, PoseMeasure};
-use kempe_motion::{Done, MotionError, Progress, Stage};
+use kempe_motion::{Done, MotionError, Placed, Progress, Stage};
 use kempe_units::Dimension;
 
 use crate::contact::Barrier;
@@ -43,7 +43,7 @@ const MISSED: f64 = 1e-10;
 const MISSED_TOLERANCES: f64 = 100.0;
 const HALVINGS: usize = 6;
 const SHORT: f64 = 1e-6;
-/// A stop that is open by this much (in path scales) is touched.
+/// A stop that is open by this much (in path scales, or of its play) is touched.
 const TOUCHED: f64 = 1e-9;
 
 /// Why there is no simulation.
@@ -61,6 +61,8 @@ pub enum Unsimulated {
     FrictionOfSeveral,
     /// It starts beyond this stop, by so much.
     BeyondStop(usize, f64),
+    /// A joint with play starts with its bodies in each other, so deep, m.
+    BeyondPlay(Place, f64),
     /// A joint cannot have play.
     NoPlay(NotReleased),
 }
@@ -89,16 +91,19 @@ pub fn simulate(
     let design = from.design.with_laws(laws);
     let model = &design.mechanism.model.clone();
     coordinates.resize(model.drives.len(), 0.0);
+    for row in &rows {
+        coordinates[row.drive.index()] = row.start[0];
+    }
     let question = &Question {
         free: (question.free.iter().copied())
-            .chain(rows.iter().map(|row| row.0))
+            .chain(rows.iter().map(|row| row.drive))
             .collect(),
         start: (question.start.iter().copied())
-            .chain(rows.iter().map(|_| [0.0; 2]))
+            .chain(rows.iter().map(|row| row.start))
             .collect(),
         ..question.clone()
     };
-    let (placed, first_motion) = (from.placed.clone(), from.first.clone());
+    let (mut placed, first_motion) = (from.placed.clone(), from.first.clone());
     let mut forces = Forces::new(design.clone()).map_err(Unsimulated::Problems)?;
     for spring in &mut forces.acting.springs {
         spring.align(&forces.design.geometry, &placed.near);
@@ -122,7 +127,10 @@ pub fn simulate(
         .collect();
     breaks.sort_by(f64::total_cmp);
     breaks.dedup();
-    let play = |drive: &DriveId| rows.iter().find(|row| row.0 == *drive).map(|row| row.1);
+    let play = |drive: &DriveId| {
+        let row = rows.iter().find(|row| row.drive == *drive);
+        row.map(|row| row.clearance)
+    };
     let scales: Vec<f64> = (question.free.iter())
         .map(|drive| match model.drives[drive.index()].dimension {
             Dimension::ANGLE => 1.0,
@@ -156,6 +164,20 @@ pub fn simulate(
         .chain(question.start.iter().map(|s| s[1]))
         .chain(vec![0.0; plant.inner.pressures() + 1])
         .collect();
+    // What was placed is the pose in the middle of all play.
+    if rows.iter().any(|row| row.start[0] != 0.0) {
+        if let Some((place, by)) = plant.beyond_play(TOUCHED, &y) {
+            return Err(Unsimulated::BeyondPlay(place, by));
+        }
+        if !plant.look(0.0, &y) {
+            return Err(Unsimulated::NoMass);
+        }
+        let instant = plant.instant();
+        placed = Placed {
+            poses: instant.poses.clone(),
+            near: instant.angles.clone(),
+        };
+    }
     // Switches may go by pressures, and pressures by loads that are switched.
     Toggle::all(&mut plant, &y);
     if !plant.pressures_at_start(&mut y) {
@@ -220,6 +242,7 @@ pub fn simulate(
         inner_laws[place] = Some(law);
     }
     Ok(Simulated {
+        tied: run.plant.tied(),
         free: question.free.clone(),
         touched: touched(&run.plant.forces.acting.contacts, &laws.drives, end),
         rigid_from: question.stops.len(),
@@ -383,6 +406,10 @@ impl Run<'_> {
         let mut rates = vec![0.0; self.y.len()];
         if !self.plant.accelerate(0.0, &self.y, &mut rates) {
             return Err(Unsimulated::NoMass);
+        }
+        let n = self.plant.free.len();
+        for (at, speed) in self.plant.pressed(TOUCHED, &self.y, &rates[n..2 * n]) {
+            self.meets(at, speed);
         }
         self.rest(0.0, &[]);
         Ok(())

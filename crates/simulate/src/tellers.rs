@@ -94,7 +94,7 @@ impl Tellers {
         within: f64,
         progress: &mut dyn Progress,
     ) -> Exchanged {
-        if plant.is_tied()
+        if plant.tied().is_some()
             || plant.mode.stuck
             || (within.is_finite() && poor(plant, within).is_none())
         {

@@ -168,6 +168,7 @@ fn off(law: Law, words: &str, rises: bool, states: ContactStates, times: &[f64])
         clearance: value(&clearance.radial, &free.design.parameters),
         properties: clearance.contact.clone(),
         states,
+        start: [[0.0; 2]; 2],
         touches: Vec::new(),
         span: 0..0,
     }];

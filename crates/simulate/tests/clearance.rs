@@ -21,6 +21,7 @@ fn with_play(free: &mut Free, joint: Released, states: ContactStates) {
         clearance: value(&clearance.radial, &free.design.parameters),
         properties: clearance.contact.clone(),
         states,
+        start: [[0.0; 2]; 2],
         touches: Vec::new(),
         span: 0..0,
     }];

@@ -219,7 +219,9 @@ pub(crate) fn not_answerable(mechanism: &Mechanism, study: &Study) -> Vec<Diagno
     let quantities: Vec<&Quantity> = asked.all().collect();
     let measures: Vec<_> = quantities.iter().map(|q| &q.measure).collect();
     let mut problems = unmeasurable(mechanism, &measures);
-    if let StudyKind::Simulate(study) = &study.kind {
+    if let StudyKind::Simulate(study) | StudyKind::Contact(ContactStudy { motion: study, .. }) =
+        &study.kind
+    {
         problems.retain(|p| {
             let measure = measures.get(p.index);
             p.reason != NoMeasure::OnlySimulated

@@ -147,6 +147,7 @@ pub(crate) fn run_circuit(
         figures: rows.figures(&study.plots),
         table: rows.table,
         frames,
+        contacts: Vec::new(),
         listings: Vec::new(),
         shapes: Vec::new(),
         along: 0,

@@ -146,9 +146,11 @@ pub(crate) fn noise(result: &StudyResult) -> f64 {
     NO_FORCE * largest.filter(|v| v.is_finite()).fold(0.0, f64::max)
 }
 
+/// A curve in the plane; of forces without the noise in them, SI.
 pub(crate) fn hodograph(name: &str, [x, y]: &[Column; 2], along: &Column, noise: f64) -> PlotSpec {
     let values = |column: &Column| -> Vec<f64> {
-        let plain = |v: &f64| match column.unit.to_si(*v).abs() < noise {
+        let is_force = column.unit.dimension() == Dimension::FORCE;
+        let plain = |v: &f64| match is_force && column.unit.to_si(*v).abs() < noise {
             true => 0.0,
             false => *v,
         };

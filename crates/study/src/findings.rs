@@ -494,7 +494,7 @@ fn of_study(
         StudyKind::Clearance(play) => {
             findings_of_clearance(&mechanism.model, &study.name, play, motion)
         }
-        StudyKind::Contact(play) => findings_of_contact(&mechanism.model, play),
+        StudyKind::Contact(play) => findings_of_contact(&mechanism.model, &study.name, play),
         // Without a motion it has been told why there is none.
         StudyKind::Vibrations(asked) if motion.is_some() => {
             findings_of_vibrations(&mechanism.model, &study.name, asked, progress)

@@ -72,6 +72,7 @@ mod room;
 mod rows;
 mod run;
 mod sensitivities;
+mod shows;
 mod simulation;
 mod sink;
 mod slot_ends;

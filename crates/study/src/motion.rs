@@ -119,6 +119,7 @@ pub(crate) fn rows_of(
         figures: rows.figures(&study.plots),
         table: rows.table,
         frames,
+        contacts: Vec::new(),
         listings: Vec::new(),
         shapes: Vec::new(),
         along,

@@ -38,6 +38,10 @@ pub(crate) fn plotted(model: &Model, result: &StudyResult) -> Vec<Column> {
                 let name = model.points.get(point.index()).map_or("", |p| &p.name);
                 ["x", "y"].map(|axis| format!("{axis}({name})"))
             }
+            // Axes that have names of their own are columns, as of an orbit.
+            Figure::Hodograph(_, [x, y]) if x.name != y.name => {
+                [&x.name, &y.name].map(String::clone)
+            }
             Figure::Hodograph(name, _) => ["x", "y"].map(|axis| component(name, axis)),
         };
         if let Some(curve) = plot.curves.first() {
@@ -77,7 +81,7 @@ mod tests {
     fn columns(study: &str) -> (Vec<String>, StudyResult) {
         let text = format!(
             "units = {{ length = \"mm\", angle = \"deg\" }}\n[links]\nframe = {{ A = [0, 0], D = [60, 0] }}\n\
-             crank = {{ A-B = 20, mass = 1 }}\ncoupler = {{ B-C = 50 }}\nrocker = {{ D-C = 40 }}\n[drives]\n\
+             crank = {{ A-B = 20, mass = 1 }}\ncoupler = {{ B-C = 50, mass = 1, inertia = 1 }}\nrocker = {{ D-C = 40 }}\n[drives]\n\
              motor = {{ turns = \"crank\", from = 0, to = 360, speed = \"1 rad/s\" }}\n[assembly]\n\
              C = \"left of B -> D\"\n{study}"
         );
@@ -101,6 +105,25 @@ mod tests {
         ];
         assert_eq!(more, names);
         assert!(result.table.column("x(C)").is_some());
+    }
+
+    #[test]
+    fn an_orbit_is_told_by_the_columns_of_its_journal_alone() {
+        let study = "[clearance]\nB = { radial = \"0.1 mm\", radius = 5, restitution = 0.5 }\n[studies.rattle]\nkind = \"clearance\"\n\
+                     model = \"three-state\"\nuntil = \"2 ms\"\nrows = 5\ncolumns = [\"x(C)\"]\nplot = [\"x(C)\"]\n";
+        let (more, result) = columns(study);
+        assert_eq!(more, [""; 0]);
+        assert!(
+            result
+                .figures
+                .iter()
+                .any(|f| matches!(f, Figure::Hodograph(name, _) if name == "orbit of B"))
+        );
+        assert!(
+            ["B play x", "B play y"]
+                .iter()
+                .all(|name| result.table.column(name).is_some())
+        );
     }
 
     #[test]

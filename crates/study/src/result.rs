@@ -22,6 +22,8 @@ pub struct StudyResult {
     pub figures: Vec<Figure>,
     /// What is told besides, in words.
     pub listings: Vec<Listing>,
+    /// Contacts of joints with play, in order of time.
+    pub contacts: Vec<ContactMet>,
     /// The pose at each row.
     pub frames: Vec<Frame>,
     /// Natural vibrations about one pose, one for each row.
@@ -38,6 +40,36 @@ pub struct StudyResult {
     pub diagnostics: Vec<Diagnostic>,
     /// Rows that were asked for; the table has fewer when the study was stopped.
     pub demanded_rows: usize,
+}
+
+/// A contact of the bodies of a joint with play, SI.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct ContactMet {
+    /// What the joint is called.
+    pub joint: String,
+    /// Where it touches: the joint, or a corner of its block.
+    pub place: String,
+    /// When it begins, s.
+    pub time: f64,
+    /// How fast the bodies come together, m/s.
+    pub speed: f64,
+    /// How fast they part, m/s; none where they still touch at the end.
+    pub speed_after: Option<f64>,
+    /// How it goes; none of an impact that takes no time.
+    pub touch: Option<TouchMet>,
+}
+
+/// How a contact goes that lasts, SI.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct TouchMet {
+    /// When it ends, s.
+    pub until: f64,
+    /// The largest force that presses, N.
+    pub force: f64,
+    /// The deepest indentation, m.
+    pub depth: f64,
 }
 
 impl StudyResult {

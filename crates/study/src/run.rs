@@ -40,7 +40,9 @@ pub fn run(
         }
         StudyKind::Spring(choice) => spring(model, &study.name, choice, progress),
         StudyKind::Clearance(play) => clearance(model, &study.name, play, progress),
-        StudyKind::Contact(play) => contact(model, &study.name, play, progress),
+        StudyKind::Contact(play) => {
+            contact(model, &study.name, play, progress).map(|(result, _)| result)
+        }
         StudyKind::Vibrations(asked) => vibrations(model, &study.name, asked, progress),
     }
 }

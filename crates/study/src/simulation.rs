@@ -14,7 +14,7 @@ use std::sync::Arc;
 use kempe_mechanism::Design;
 use kempe_model::{Contact, Diagnostic, Model, MotionStudy, Rows, SimulateStudy, StudyKind};
 use kempe_motion::Motion;
-use kempe_motion::progress::{Progress, Silent};
+use kempe_motion::progress::Progress;
 use kempe_simulate::{Ending, Question, Simulated, simulate};
 use kempe_units::Expr;
 
@@ -24,6 +24,7 @@ use crate::motion_findings::{motion_findings, refused};
 use crate::prepared::design;
 use crate::result::StudyResult;
 use crate::rows::count;
+use crate::shows::Shows;
 use crate::unit::Units;
 
 use self::balance::{balance, held_at, hidden, out_of_balance};
@@ -77,7 +78,7 @@ impl Run {
         let (mut question, mut stops) = question(study, model, &design.parameters);
         question.contacts = contacts.to_vec();
         let found = simulate(&design, &question, progress)
-            .map_err(|error| explain(&design, &stops, error))?;
+            .map_err(|error| explain(&design, &stops, contacts, error))?;
         let rigid = found.rigid.iter();
         stops.extend(rigid.map(|at| Named {
             owner: String::new(),
@@ -112,9 +113,8 @@ pub(crate) fn simulation(
 ) -> Result<(StudyResult, Simulated), Vec<Diagnostic>> {
     let study = &with_strokes(model, study);
     let run = Run::new(model, study, contacts, progress)?;
-    // What was found until it was stopped is shown.
     let was_stopped = run.found.ending == Ending::Stopped;
-    let progress: &mut dyn Progress = if was_stopped { &mut Silent } else { progress };
+    let progress = &mut Shows::new(progress, was_stopped);
     let motion = run.motion(progress)?;
     let Run {
         question,

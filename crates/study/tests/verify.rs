@@ -100,3 +100,58 @@ fn broken_cases_are_refused() {
         assert!(error.to_string().contains(word), "{text}: {error}");
     }
 }
+
+/// What a case may ask of the contacts of a study, and what it is told where there is no such thing.
+#[test]
+fn contacts_are_asked_for_one_by_one() {
+    let model = MODEL
+        .replace("A-B = 20 ", "A-B = 20, mass = 1, inertia = 0 ")
+        .replace("P = [25, 0]", "P = [25, 0], mass = 1, inertia = 0")
+        .replace("1 rad/s", "30 rad/s")
+        + "[clearance]\nB = { radial = \"50 um\", law = \"rigid\", restitution = 0.3 }\n[studies.rattle]\nkind = \"clearance\"\n\
+           model = \"three-state\"\nuntil = \"2.3 ms\"\nrows = 3\ncolumns = [\"y(P)\"]\n";
+    let asked = [
+        ("contacts", "", "1"),
+        ("contacts at B", "", "1"),
+        ("contacts at C", "", "1"),
+        ("time", "contact = 1", "1 s"),
+        ("speed", "contact at B = 1", "1 m/s"),
+        ("speed", "contact at B = 1", "1 s"),
+        ("speed", "contact at C = 1", "1 m/s"),
+        ("speed", "contact = 2", "1 m/s"),
+        ("speed", "contact = first", "1 m/s"),
+        ("deepest", "contact = 1", "1 m"),
+        ("motor", "contact = 1", "1 deg"),
+        ("nothing", "contact = 1", "1 deg"),
+    ];
+    let values = asked.map(|(measure, at, expect)| {
+        let at = if at.is_empty() {
+            String::new()
+        } else {
+            format!("at = \"{at}\"\n")
+        };
+        format!("[[value]]\n{at}measure = \"{measure}\"\nexpect = \"{expect}\"\n")
+    });
+    let text = format!("model = \"x\"\nstudy = \"rattle\"\n{}", values.concat());
+    let case = Case::parse(&text, &mut nothing).unwrap();
+    let found = compare(&case, &model, &mut nothing).unwrap();
+    let ours: Vec<f64> = found.iter().map(|c| c.ours).collect();
+    assert_eq!(ours[..2], [1.0, 1.0]);
+    let (time, speed, motor) = (ours[3], ours[4], ours[10]);
+    assert!(time > 0.0 && time < 2.3e-3 && speed > 0.0, "{time} {speed}");
+    assert!((motor.to_radians() - 30.0 * time).abs() < 1e-12, "{motor}");
+    let told: Vec<&str> = found.iter().filter_map(|c| c.problem.as_deref()).collect();
+    let starts = [
+        "the study has no contact at `C`",
+        "ours is a speed",
+        "the study has no contact at `C`",
+        "the study has no contact = 2",
+        "write `contact = 2`",
+        "this contact takes no time",
+        "unknown name `nothing`",
+    ];
+    for (told, start) in told.iter().zip(starts) {
+        assert!(told.starts_with(start), "{told}");
+    }
+    assert_eq!(told.len(), starts.len());
+}

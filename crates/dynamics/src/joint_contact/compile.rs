@@ -8,6 +8,7 @@ use kempe_model::{
     Contact, ContactLaw, ContactStates, Dissipation, DriveId, DriveKind, JointId, JointKind,
     LinkId, LinkPointRef, PointId, Released, Scalar, value,
 };
+use kempe_units::Dimension;
 
 use super::{JointContact, Resists, Shape};
 use crate::number::ForceNumber;
@@ -90,8 +91,60 @@ impl Compile<'_> {
         Problem::new("no-contact-law", &self.contact.span, message)
     }
 
+    /// What makes no sense, in the file's units, with what to write instead.
     fn unfit(&self, why: Unfit) -> Problem {
-        self.problem(&format!("makes no sense: {why}"))
+        let model = &self.mechanism.model;
+        let length = |x: f64| model.shown(x, Dimension::LENGTH);
+        let speed = |x: f64| model.shown(x, Dimension::SPEED);
+        let (what, remedy) = match why {
+            Unfit::Restitution(given) => (
+                format!(
+                    "has a restitution of {given}, which no law that gives delivers: it is the part of the speed that an impact gives back, above 0 and at most 1"
+                ),
+                "restitution = 0.1 for one that gives back little, or law = \"rigid\", which can take all, beside radial",
+            ),
+            Unfit::NoRoom { around, inside } => (
+                format!(
+                    "has no room: {} do not fit into {}",
+                    length(inside),
+                    length(around)
+                ),
+                "make radial positive: it is what lies between them",
+            ),
+            Unfit::NoClearance(radius) => (
+                format!(
+                    "has no room that could be computed with: {} beside a radius of {}",
+                    length(self.contact.clearance),
+                    length(radius)
+                ),
+                "give a larger radial, or the stiffness itself: stiffness = 6.6e10 (N/m^1.5), beside radial",
+            ),
+            Unfit::NotPositive { what, value } => (
+                format!("makes no sense: its {what} comes to {value}, and is a number above 0"),
+                "look at the values beside radial, and at their units",
+            ),
+            Unfit::Negative { what, value } => (
+                format!(
+                    "makes no sense: its {what} comes to {value}, and is a number that is not negative"
+                ),
+                "look at the values beside radial, and at their units",
+            ),
+            Unfit::Poisson(ratio) => (
+                format!(
+                    "has a Poisson's ratio of {ratio}: that of an elastic material is above -1 and at most 0.5"
+                ),
+                "poisson = 0.3 for steel, beside radial",
+            ),
+            Unfit::Onset { from, to } => (
+                format!(
+                    "rubs from {} on and in full from {} on, which do not rise",
+                    speed(from),
+                    speed(to)
+                ),
+                "friction_speeds = [\"1 mm/s\", \"10 mm/s\"], beside radial",
+            ),
+        };
+        self.problem(&what).remedy(remedy)
     }
 
     /// That it is no joint whose bodies could part.

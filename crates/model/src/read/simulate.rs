@@ -21,9 +21,11 @@ use crate::read::context::{Context, Meaning, MeasureState};
 use crate::read::entry::{Entry, bounds_of};
 use crate::read::measure_names::Measures;
 use crate::read::nature::nature;
+use crate::read::play_start;
 use crate::read::studies::{both_ways, count, entries, few_enough};
 use crate::study::{
-    Condition, DriveStart, MotionStudy, Rows, SimulateStudy, Stop, StopResistance, StudyKind,
+    Condition, DriveStart, MotionStudy, PlayStart, Rows, SimulateStudy, Stop, StopResistance,
+    StudyKind,
 };
 
 /// Rows of a table when the file does not say.
@@ -78,7 +80,8 @@ pub(crate) fn in_time(
         false => Some(Vec::new()),
     };
     let start = match &released {
-        Some(released) => start(cx, entry, released),
+        // Drives keep their laws unless it is said otherwise where joints have play.
+        Some(released) => start(cx, entry, released, !all),
         None => None,
     };
     let stops = stops(cx, entry);
@@ -92,10 +95,12 @@ pub(crate) fn in_time(
             text.and_then(|text| condition(cx, node, text))
         })
         .collect();
+    let (start, plays) = start?;
     Some(SimulateStudy {
         along,
         released: released?,
-        start: start?,
+        start,
+        plays,
         until: until?,
         stops: stops?,
         end_when: end_when?,
@@ -149,21 +154,27 @@ pub(crate) fn drive_of(cx: &mut Context<'_>, name: &str, span: Span) -> Option<D
     None
 }
 
-/// Where and how fast drives start.
-fn start(cx: &mut Context<'_>, entry: &Entry<'_>, released: &[DriveId]) -> Option<Vec<DriveStart>> {
+/// Where and how fast drives start, and the bodies of joints where these may have play.
+fn start(
+    cx: &mut Context<'_>,
+    entry: &Entry<'_>,
+    released: &[DriveId],
+    have_play: bool,
+) -> Option<(Vec<DriveStart>, Vec<PlayStart>)> {
+    let (mut list, mut plays) = (Vec::new(), Vec::new());
     let Some(node) = entry.get("start") else {
-        return Some(Vec::new());
+        return Some((list, plays));
     };
     let table = cx.table(node, &entry.place_of("start"), entry.example_of("start"))?;
-    let mut list: Vec<DriveStart> = Vec::new();
     let mut sound = true;
     for (key, node) in &table.entries {
-        match start_of(cx, key, node, released, &mut list) {
-            Some(()) => {}
-            None => sound = false,
-        }
+        let read = match have_play && play_start::names(cx, &key.name) {
+            true => play_start::read(cx, key, node, &mut plays),
+            false => start_of(cx, key, node, released, &mut list),
+        };
+        sound &= read.is_some();
     }
-    sound.then_some(list)
+    sound.then_some((list, plays))
 }
 
 fn start_of(

@@ -11,8 +11,8 @@ use crate::key_table::clearance::{MODELS, RATES};
 use crate::key_table::{GOALS, METHODS, word_of};
 use crate::read::springs::tension;
 use crate::study::{
-    BalanceGoal, MotionStudy, Plot, Rows, SimulateStudy, Stop, StopResistance, Study, StudyKind,
-    VibrationStudy,
+    BalanceGoal, MotionStudy, PlayAt, Plot, Rows, SimulateStudy, Stop, StopResistance, Study,
+    StudyKind, VibrationStudy,
 };
 use crate::write::spelling::Writer;
 
@@ -130,6 +130,23 @@ impl Writer<'_> {
                 let rate = self.scalar(rate, coordinate / Dimension::TIME);
                 start.push((format!("{name}_rate"), rate));
             }
+        }
+        for it in &study.plays {
+            let (name, second) = match it.at {
+                PlayAt::Pin(point) => (self.point(point), Dimension::LENGTH),
+                PlayAt::Joint(joint) => (self.joint(joint), Dimension::ANGLE),
+            };
+            let pair = |[a, b]: &[Scalar; 2], per: Dimension| {
+                let pair = [(a, Dimension::LENGTH), (b, second)];
+                Item::List(pair.map(|(x, of)| self.scalar(x, of / per)).into())
+            };
+            let place = it
+                .place
+                .iter()
+                .map(|at| (name.to_owned(), pair(at, Dimension::NONE)));
+            start.extend(place);
+            let rate = it.rate.iter();
+            start.extend(rate.map(|rate| (format!("{name}_rate"), pair(rate, Dimension::TIME))));
         }
         if !start.is_empty() {
             put("start", Item::Table(start));

@@ -4,6 +4,7 @@ use kempe_linear::Lu;
 
 use crate::contact::{Gap, along};
 use crate::happening::Happened;
+use crate::joints::Place;
 use crate::question::Resistance;
 use crate::record::Ending;
 use crate::toggle::Toggled;
@@ -145,8 +146,8 @@ impl Run<'_> {
                 self.plant.mode.touched.retain(|s| *s != stop);
             }
             Watch::Meets(at) => {
-                let speed = self.plant.touch(at, self.time, &self.y);
-                self.tell(Happened::Meets { at, speed });
+                let speed = -self.plant.opening(at, &self.y)[1];
+                self.meets(at, speed);
             }
             Watch::Separates(at) => {
                 self.plant.part(at, self.time);
@@ -189,6 +190,12 @@ impl Run<'_> {
             }
         }
         None
+    }
+
+    /// Bodies of a joint with play come together.
+    pub(super) fn meets(&mut self, at: Place, speed: f64) {
+        self.plant.touch(at, self.time, speed);
+        self.tell(Happened::Meets { at, speed });
     }
 
     /// Turns something on or off.

@@ -1,27 +1,22 @@
 //! Studies of clearance in which contact is lost: the mechanism moves in time with its joints let go, whose bodies touch and part.
 
-use kempe_dynamics::Acting;
-use kempe_dynamics::clearance::Play;
-use kempe_mechanism::Mechanism;
-use kempe_mechanism::constraint::Source;
-use kempe_model::{
-    ClearanceAt, Contact, ContactProperties, ContactStates, ContactStudy, Diagnostic, DriveKind,
-    Model, Released,
-};
+use kempe_mechanism::Design;
+use kempe_model::{Contact, ContactStudy, Diagnostic, DriveKind, Model, Released, Severity};
 use kempe_motion::progress::Progress;
-use kempe_simulate::{Happened, Simulated, Touched};
+use kempe_simulate::{Happened, Place, Simulated};
 use kempe_units::{Dimension, Unit};
 
 use super::columns::{Deviation, deviation_of};
-use super::joints::{Joints, joint_name, not_released, of};
+use super::joints::joint_name;
+use super::prepared::WithContacts;
 use super::summary;
-use crate::along::{Along, force_problems};
+use crate::along::Along;
 use crate::columns::Asked;
-use crate::motion_findings::refused;
-use crate::prepared::{design, motion};
+use crate::prepared::motion;
 use crate::quantity::Quantity;
-use crate::result::{Figure, Listing, StudyResult};
+use crate::result::{ContactMet, Figure, Listing, StudyResult, TouchMet};
 use crate::rows::RowPlace;
+use crate::shows::Shows;
 use crate::simulation::{place_name, simulation};
 use crate::table::Column;
 use crate::unit::Units;
@@ -29,95 +24,53 @@ use crate::unit::Units;
 /// At most so many contacts are listed.
 const LISTED: usize = 30;
 
-/// Runs a study of clearance in which contact is lost.
+/// Runs a study of clearance in which contact is lost; with what the simulation found.
 pub(crate) fn contact(
     model: &Model,
     name: &str,
     study: &ContactStudy,
     progress: &mut dyn Progress,
-) -> Result<StudyResult, Vec<Diagnostic>> {
-    let (joints, contacts) = prepared(model, study)?;
-    let (mut result, found) = simulation(model, name, &study.motion, &contacts, progress)?;
-    result.diagnostics.extend(joints.left_out(model));
+) -> Result<(StudyResult, Simulated), Vec<Diagnostic>> {
+    let prepared = WithContacts::new(model, name, study)?;
+    let (model, contacts) = (prepared.model(), &*prepared.contacts);
+    let (mut result, found) = simulation(model, name, &study.motion, contacts, progress)?;
     let units = Units::of(model);
     let times = (result.table.columns.first()).map_or(Vec::new(), Column::si);
     let touching = (contacts.iter().enumerate())
         .map(|(index, contact)| touching(model, contact, index, &found, &times));
     let touching: Vec<Column> = touching.collect();
-    result.figures.extend(orbits(model, &contacts, &result));
+    result.figures.extend(orbits(model, contacts, &result));
     // Where a drive is let go the ideal mechanism would go another way.
     if study.motion.released.is_empty() {
-        let deviations = deviations(model, study, &result, progress)?;
+        // Pressures and switches are in the ideal motion what they were with play: it moves under the same loads.
+        let ideal = prepared.design.with_inner_laws(found.inner.clone());
+        let progress = &mut Shows::new(progress, false);
+        let deviations = deviations(&ideal, study, &mut result, progress);
         let columns = deviations.iter().map(|it| it.deviation.clone());
         result.table.columns.extend(columns);
         let scalars = summary::scalars(&deviations, &result.table, 0);
         result.scalars.extend(scalars);
     }
     result.table.columns.extend(touching);
-    result
-        .listings
-        .push(counted(model, &contacts, &units, &found));
-    result
-        .listings
-        .extend(listed(model, &contacts, &units, &found));
-    Ok(result)
+    let all = met(model, contacts, &found);
+    let counted = counted(model, contacts, &all, &units, &found);
+    result.listings.push(counted);
+    result.listings.extend(listed(&all, &units));
+    result.contacts = all;
+    result.diagnostics.extend(prepared.findings);
+    Ok((result, found))
 }
 
 /// What is to be told of such a study before anything moves.
-pub(crate) fn findings_of_contact(model: &Model, study: &ContactStudy) -> Vec<Diagnostic> {
-    match prepared(model, study) {
-        Ok((joints, _)) => joints.left_out(model).into_iter().collect(),
+pub(crate) fn findings_of_contact(
+    model: &Model,
+    name: &str,
+    study: &ContactStudy,
+) -> Vec<Diagnostic> {
+    match WithContacts::new(model, name, study) {
+        Ok(prepared) => prepared.findings,
         Err(refused) => refused,
     }
-}
-
-/// The joints with play and the contacts that they make, if these can be counted.
-fn prepared(
-    model: &Model,
-    study: &ContactStudy,
-) -> Result<(Joints, Vec<Contact>), Vec<Diagnostic>> {
-    let design = design(model);
-    let joints = Joints::new(&design.mechanism, &design.parameters);
-    if !joints.refused.is_empty() {
-        return Err(joints.refused);
-    }
-    let contacts = contacts(&design.mechanism, &joints.plays, study.states);
-    if contacts.is_empty() {
-        let error = Diagnostic::error("no-clearance-there", "no joint has any play to move in")
-            .help("give a clearance that is not zero: [clearance] B = { radial = \"50 um\" }");
-        return Err(vec![match model.clearances.first() {
-            Some(first) => error.at(first.span.clone(), ""),
-            None => error,
-        }]);
-    }
-    let open = kempe_simulate::with_play(&design, &contacts)
-        .map_err(|why| vec![not_released(&design.mechanism, why)])?;
-    Acting::new(&open.mechanism, &open.geometry, &open.parameters).map_err(force_problems)?;
-    Ok((joints, contacts))
-}
-
-/// The contacts that the file's clearances make.
-fn contacts(mechanism: &Mechanism, plays: &[Play], states: ContactStates) -> Vec<Contact> {
-    let clearances = &mechanism.model.clearances;
-    let of_all = clearances.iter().find(|c| c.at == ClearanceAt::All);
-    let others = of_all.map_or_else(ContactProperties::default, |c| c.contact.clone());
-    let contact = |play: &Play| {
-        let entry = of(mechanism, play.joint)?;
-        let joint = match play.joint {
-            Source::Pin { point, link } => Released::Pin { point, link },
-            Source::Joint(id) => Released::Joint(id),
-            Source::Drive(_) => return None,
-        };
-        Some(Contact {
-            joint,
-            clearance: play.radial,
-            properties: entry.contact.or(&others),
-            states,
-            touches: Vec::new(),
-            span: entry.span.clone(),
-        })
-    };
-    plays.iter().filter_map(contact).collect()
 }
 
 /// At how many places the bodies of a joint touch in every row.
@@ -170,89 +123,166 @@ fn orbits(model: &Model, contacts: &[Contact], result: &StudyResult) -> Vec<Figu
     figures.collect()
 }
 
-/// How far every column is from that of the motion without clearance at the same times.
+/// How far every column is from that of the motion without clearance at the same times; the result tells where there is none.
 fn deviations(
-    model: &Model,
+    design: &Design<f64>,
     study: &ContactStudy,
-    result: &StudyResult,
+    result: &mut StudyResult,
     progress: &mut dyn Progress,
-) -> Result<Vec<Deviation>, Vec<Diagnostic>> {
-    let design = design(model);
-    let ideal = motion(&design, progress)?;
-    if refused(&ideal) {
-        return Ok(Vec::new());
-    }
+) -> Vec<Deviation> {
     let asked = Asked::of_forces(&design.mechanism, &study.motion.along);
     let quantities: Vec<&Quantity> = asked.columns.iter().collect();
     let times = (result.table.columns.first()).map_or(Vec::new(), Column::si);
-    let places: Vec<RowPlace> = times.iter().map(|t| RowPlace::Time(*t)).collect();
-    let mut sampler = Along::with_progress(model, &ideal, &quantities, true, &places, progress)?;
-    let rows: Vec<Vec<f64>> = places.iter().map(|place| sampler.values(*place)).collect();
+    let rows = match ideal_rows(design, &quantities, &times, progress) {
+        Ok(rows) => rows,
+        Err(why) => {
+            result.diagnostics.push(no_ideal_motion(&result.name, &why));
+            return Vec::new();
+        }
+    };
+    let missed = times.iter().zip(&rows);
+    let missed = missed.filter(|(_, row)| !row.is_empty() && row.iter().all(|x| x.is_nan()));
+    let missed: Vec<f64> = missed.map(|(time, _)| *time).collect();
+    let units = Units::of(&design.mechanism.model);
+    (result.diagnostics).extend(rows_without_ideal(&result.name, &units, &missed));
     let of = |(index, quantity): (usize, &&Quantity)| {
         let value = result.table.column(&quantity.name)?.clone();
         let ideal: Vec<f64> = rows.iter().map(|row| row[index]).collect();
         Some(deviation_of(&design.mechanism, quantity, value, &ideal))
     };
-    Ok(quantities.iter().enumerate().filter_map(of).collect())
+    quantities.iter().enumerate().filter_map(of).collect()
 }
 
-/// An impact or a touch, for the lists.
-struct Met {
-    at: kempe_simulate::Place,
-    time: f64,
-    speed: f64,
-    parting: Option<f64>,
-    touch: Option<Touched>,
+/// Values (SI) of the motion without clearance at some times, s.
+fn ideal_rows(
+    design: &Design<f64>,
+    quantities: &[&Quantity],
+    times: &[f64],
+    progress: &mut dyn Progress,
+) -> Result<Vec<Vec<f64>>, Vec<Diagnostic>> {
+    let ideal = motion(design, progress)?;
+    let places: Vec<RowPlace> = times.iter().map(|t| RowPlace::Time(*t)).collect();
+    let model = &design.mechanism.model;
+    let mut sampler = Along::with_progress(model, &ideal, quantities, true, &places, progress)?;
+    Ok(places.iter().map(|place| sampler.values(*place)).collect())
+}
+
+/// That no deviations are told: why there is no motion without play.
+fn no_ideal_motion(name: &str, why: &[Diagnostic]) -> Diagnostic {
+    let message =
+        format!("study `{name}`: without play there is no motion to tell deviations from");
+    let errors = why.iter().filter(|d| d.severity == Severity::Error);
+    let warning = errors.fold(
+        Diagnostic::warning("no-ideal-motion", message),
+        |warning, error| warning.note(error.message.clone()),
+    );
+    warning.help("let a drive go by `release`: then no deviations are asked for")
+}
+
+/// That the motion without play does not come to some of the times, s.
+fn rows_without_ideal(name: &str, units: &Units, missed: &[f64]) -> Option<Diagnostic> {
+    let (first, last) = (missed.first()?, missed.last()?);
+    let rows = match missed {
+        [one] => format!("the row at {} has", units.text(*one, Dimension::TIME)),
+        _ => {
+            let range = units.range_text((*first, *last), Dimension::TIME);
+            format!("{} rows from {range} have", missed.len())
+        }
+    };
+    let message =
+        format!("study `{name}`: {rows} no deviations: without play the drives do not go there");
+    Some(
+        Diagnostic::warning("no-ideal-motion", message)
+            .help("let the drives go where the mechanism goes without play, too"),
+    )
 }
 
 /// All impacts and touches, in order of time.
-fn met(found: &Simulated) -> Vec<Met> {
-    let soft = found.touched.iter().map(|touch| Met {
-        at: touch.at,
-        time: touch.touching.from,
-        speed: touch.touching.speed,
-        parting: touch.parting,
-        touch: Some(*touch),
+fn met(model: &Model, contacts: &[Contact], found: &Simulated) -> Vec<ContactMet> {
+    let named = |at: Place| {
+        let joint = contacts.get(at.contact).map(|c| c.joint.into());
+        let joint = joint.map_or(String::new(), |joint| joint_name(model, joint));
+        (joint, place_name(model, contacts, at))
+    };
+    let soft = found.touched.iter().map(|it| {
+        let (joint, place) = named(it.at);
+        ContactMet {
+            joint,
+            place,
+            time: it.touching.from,
+            speed: it.touching.speed,
+            speed_after: it.parting,
+            touch: Some(TouchMet {
+                until: it.touching.to,
+                force: it.force[0],
+                depth: it.depth[0],
+            }),
+        }
     });
     let rigid = found.happenings.iter().filter_map(|it| match it.what {
         Happened::Strikes {
             stop,
             before,
             after,
-        } => Some(Met {
-            at: found.place_of(stop)?,
-            time: it.time,
-            speed: -before,
-            parting: Some(after),
-            touch: None,
-        }),
+        } => {
+            let (joint, place) = named(found.place_of(stop)?);
+            Some(ContactMet {
+                joint,
+                place,
+                time: it.time,
+                speed: -before,
+                speed_after: Some(after),
+                touch: None,
+            })
+        }
         _ => None,
     });
-    let mut all: Vec<Met> = soft.chain(rigid).collect();
+    let mut all: Vec<ContactMet> = soft.chain(rigid).collect();
     all.sort_by(|a, b| a.time.total_cmp(&b.time));
     all
 }
 
 /// How often, how long and how hard each joint touches.
-fn counted(model: &Model, contacts: &[Contact], units: &Units, found: &Simulated) -> Listing {
-    let all = met(found);
+fn counted(
+    model: &Model,
+    contacts: &[Contact],
+    all: &[ContactMet],
+    units: &Units,
+    found: &Simulated,
+) -> Listing {
     let rows = contacts.iter().enumerate().map(|(index, contact)| {
-        let own: Vec<&Met> = all.iter().filter(|met| met.at.contact == index).collect();
+        let name = joint_name(model, contact.joint.into());
+        let own: Vec<&ContactMet> = all.iter().filter(|met| met.joint == name).collect();
         let fastest = own.iter().map(|met| met.speed).fold(0.0, f64::max);
-        let touches = || own.iter().filter_map(|met| met.touch.as_ref());
-        let force = touches().map(|touch| touch.force[0]).fold(0.0, f64::max);
-        let lasts = covered(touches().map(|t| [t.touching.from, t.touching.to]));
+        let touches = || {
+            let touches = own.iter().copied();
+            touches.filter_map(|met| Some((met.time, met.touch.as_ref()?)))
+        };
+        let force = touches().map(|(_, touch)| touch.force).fold(0.0, f64::max);
+        // Impacts at once take no time; what rests does.
+        let rests = found.held.iter().filter(|held| {
+            let places = held.stops.iter().filter_map(|stop| found.place_of(*stop));
+            places.map(|at| at.contact).any(|contact| contact == index)
+        });
+        let rests = rests.map(|held| [held.from, held.to]);
+        let touching = touches().map(|(from, touch)| [from, touch.until]);
+        let lasts = covered(touching.chain(rests).collect());
         let or_none = |known: bool, text: String| if known { text } else { "-".to_owned() };
-        let gives = touches().next().is_some();
         vec![
-            joint_name(model, contact.joint.into()),
+            name,
             own.len().to_string(),
             or_none(
                 !own.is_empty(),
                 units.text(fastest, Dimension::LENGTH / Dimension::TIME),
             ),
-            or_none(gives, units.text(force, Dimension::FORCE)),
-            or_none(gives, format!("{:.1} %", 100.0 * lasts / found.end)),
+            or_none(
+                touches().next().is_some(),
+                units.text(force, Dimension::FORCE),
+            ),
+            or_none(
+                found.end > 0.0,
+                format!("{:.1} %", 100.0 * lasts / found.end),
+            ),
         ]
     });
     Listing {
@@ -270,8 +300,9 @@ fn counted(model: &Model, contacts: &[Contact], units: &Units, found: &Simulated
     }
 }
 
-/// How long any of some times lasts that begin one after the other.
-fn covered(times: impl Iterator<Item = [f64; 2]>) -> f64 {
+/// How long any of some times lasts.
+fn covered(mut times: Vec<[f64; 2]>) -> f64 {
+    times.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let (mut sum, mut until) = (0.0, f64::NEG_INFINITY);
     for [from, to] in times {
         sum += (to - from.max(until)).max(0.0);
@@ -281,13 +312,7 @@ fn covered(times: impl Iterator<Item = [f64; 2]>) -> f64 {
 }
 
 /// The contacts one by one.
-fn listed(
-    model: &Model,
-    contacts: &[Contact],
-    units: &Units,
-    found: &Simulated,
-) -> Option<Listing> {
-    let all = met(found);
+fn listed(all: &[ContactMet], units: &Units) -> Option<Listing> {
     let time = |t: f64| units.text(t, Dimension::TIME);
     let speed = |v: f64| units.text(v, Dimension::LENGTH / Dimension::TIME);
     let none = || "-".to_owned();
@@ -295,12 +320,12 @@ fn listed(
         let touch = met.touch.as_ref();
         vec![
             time(met.time),
-            place_name(model, contacts, met.at),
+            met.place.clone(),
             speed(met.speed),
-            met.parting.map_or_else(none, speed),
-            touch.map_or_else(none, |t| time(t.touching.to - t.touching.from)),
-            touch.map_or_else(none, |t| units.text(t.force[0], Dimension::FORCE)),
-            touch.map_or_else(none, |t| units.text(t.depth[0], Dimension::LENGTH)),
+            met.speed_after.map_or_else(none, speed),
+            touch.map_or_else(none, |t| time(t.until - met.time)),
+            touch.map_or_else(none, |t| units.text(t.force, Dimension::FORCE)),
+            touch.map_or_else(none, |t| units.text(t.depth, Dimension::LENGTH)),
         ]
     });
     let mut rows: Vec<Vec<String>> = rows.collect();

@@ -4,6 +4,7 @@ mod columns;
 mod contact;
 mod findings;
 mod joints;
+mod prepared;
 mod summary;
 
 use kempe_dynamics::clearance::{Clearances, NoClearances, NotSettled};
@@ -141,6 +142,7 @@ pub(crate) fn clearance(
         name: name.to_owned(),
         events: met,
         scalars: summary::scalars(&summary, &table, along),
+        contacts: Vec::new(),
         listings: summary::listings(&summary, &table, along, &joints),
         shapes: Vec::new(),
         figures,

@@ -22,6 +22,15 @@
 //! expect  = "37.742 mm"
 //! source  = "closed form"
 //!
+//! [[value]]                                        # of a study of clearance that loses contact: how many contacts (or "contacts at B")
+//! measure = "contacts"
+//! expect  = "25"
+//!
+//! [[value]]                                        # the second of them (or "contact at B = 2"): its time, speed, speed after, until, lasts,
+//! at      = "contact = 2"                          # largest force or deepest, as the study lists them, or a measure just before it
+//! measure = "speed"
+//! expect  = "2.267401295 m/s"
+//!
 //! [[value]]                                        # where a limit or change point is: the nearest one counts
 //! event   = "change-point"
 //! expect  = "117.5122065166410849 deg"

@@ -1,38 +1,158 @@
 //! Reference values of the columns and numbers of a study.
 
-use kempe_model::{Diagnostic, Model, Study};
+use kempe_model::{Diagnostic, Model, Study, StudyKind};
+use kempe_motion::MotionError;
 use kempe_motion::progress::Silent;
+use kempe_simulate::Simulated;
 use kempe_units::{Dimension, Unit};
 
 use super::compare::dimension_fits;
+use crate::along::Along;
+use crate::clearance::contact;
+use crate::explain::cannot_move;
 use crate::pose::Setting;
-use crate::result::StudyResult;
+use crate::prepared::design;
+use crate::quantity::Quantity;
+use crate::result::{ContactMet, StudyResult};
+use crate::rows::RowPlace;
 use crate::run::run;
 
 /// A row stands where it is asked for up to this part of its place.
 const SAME_PLACE: f64 = 1e-9;
 
+/// How a place among the contacts of a study begins, and how their number is asked for.
+const CONTACT: &str = "contact";
+const CONTACTS: &str = "contacts";
+
 /// A study of a model that was run.
 pub(super) struct OfStudy<'m> {
     model: &'m Model,
     result: StudyResult,
+    /// What was found where joints have contacts.
+    found: Option<Simulated>,
 }
 
 impl<'m> OfStudy<'m> {
     /// Runs a study of the model.
     pub fn new(model: &'m Model, study: &Study) -> Result<Self, Vec<Diagnostic>> {
-        let result = run(model, study, &mut Silent)?;
-        Ok(Self { model, result })
+        let (result, found) = match &study.kind {
+            StudyKind::Contact(play) => {
+                let (result, found) = contact(model, &study.name, play, &mut Silent)?;
+                (result, Some(found))
+            }
+            _ => (run(model, study, &mut Silent)?, None),
+        };
+        Ok(Self {
+            model,
+            result,
+            found,
+        })
     }
 
-    /// A column at a place such as `lock = -40 deg`, or without a place a number of the study, in a unit; with its dimension.
+    /// A column at a place such as `lock = -40 deg`, something of a contact at one such as `contact = 2` or `contact at B = 2`, or without
+    /// a place a number of the study, in a unit; with its dimension.
     pub fn value(&self, name: &str, place: &str, unit: &Unit) -> Result<(f64, Dimension), String> {
-        let (si, dimension) = match place {
-            "" => self.number(name)?,
+        let (si, dimension) = match (place, &self.found) {
+            ("", Some(_)) if name.split_once(" at ").map_or(name, |it| it.0) == CONTACTS => {
+                let joint = name.split_once(" at ").map(|(_, joint)| joint);
+                let count = self.contacts(joint)?.count();
+                (count as f64, Dimension::NONE)
+            }
+            ("", _) => self.number(name)?,
+            (_, Some(found)) if place.starts_with(CONTACT) => {
+                self.of_contact(name, place, found)?
+            }
             _ => self.cell(name, place)?,
         };
         dimension_fits(dimension, unit)?;
         Ok((unit.from_si(si), dimension))
+    }
+
+    /// The contacts of a joint, or of all, in order of time.
+    fn contacts<'a>(
+        &'a self,
+        joint: Option<&'a str>,
+    ) -> Result<impl Iterator<Item = &'a ContactMet>, String> {
+        let known = |name: &str| {
+            self.result
+                .table
+                .column(&format!("{name} touching"))
+                .is_some()
+        };
+        if let Some(name) = joint.filter(|name| !known(name)) {
+            return Err(format!("the study has no contact at `{name}`"));
+        }
+        let all = self.result.contacts.iter();
+        Ok(all.filter(move |met| joint.is_none_or(|name| met.joint == name)))
+    }
+
+    /// What the list of contacts tells of one, or a measure just before it.
+    fn of_contact(
+        &self,
+        name: &str,
+        place: &str,
+        found: &Simulated,
+    ) -> Result<(f64, Dimension), String> {
+        let wanted = || format!("write `{CONTACT} = 2` or `{CONTACT} at B = 2`, not `{place}`");
+        let (which, number) = place.split_once('=').ok_or_else(wanted)?;
+        let number: usize = number.trim().parse().map_err(|_| wanted())?;
+        let joint = match which.trim().strip_prefix(CONTACT).map(str::trim) {
+            Some("") => None,
+            Some(at) => Some(at.strip_prefix("at ").ok_or_else(wanted)?.trim()),
+            None => return Err(wanted()),
+        };
+        let mut contacts = self.contacts(joint)?;
+        let met = number.checked_sub(1).and_then(|index| contacts.nth(index));
+        let met = met.ok_or_else(|| format!("the study has no {place}"))?;
+        let touch = || {
+            let touch = met.touch.ok_or(
+                "this contact takes no time: it has a `time`, a `speed` and a `speed after` alone",
+            );
+            touch.map_err(str::to_owned)
+        };
+        let speed = Dimension::LENGTH / Dimension::TIME;
+        Ok(match name {
+            "time" => (met.time, Dimension::TIME),
+            "speed" => (met.speed, speed),
+            "speed after" => {
+                let after = met.speed_after.ok_or("it lasts to the end")?;
+                (after, speed)
+            }
+            "until" => (touch()?.until, Dimension::TIME),
+            "lasts" => (touch()?.until - met.time, Dimension::TIME),
+            "largest force" => (touch()?.force, Dimension::FORCE),
+            "deepest" => (touch()?.depth, Dimension::LENGTH),
+            // Of speeds that an impact changes those before it are meant.
+            _ => self.just_before(name, met.time, found)?,
+        })
+    }
+
+    /// A measure on the motion that was found, just before a time, s.
+    fn just_before(
+        &self,
+        name: &str,
+        time: f64,
+        found: &Simulated,
+    ) -> Result<(f64, Dimension), String> {
+        let first =
+            |told: Vec<Diagnostic>| told.first().map_or(String::new(), |d| d.message.clone());
+        let measure = self.model.measure(name).map_err(first)?;
+        let quantity = Quantity {
+            name: name.to_owned(),
+            measure: measure.measure.clone(),
+            dimension: measure.dimension,
+        };
+        let why = |error: MotionError| cannot_move(&design(self.model), &error).message;
+        let motion = found.motion(&mut Silent).map_err(why)?;
+        let model = &motion.mechanism().model;
+        let sampler = Along::new(model, &motion, &[&quantity], measure.needs_forces);
+        let values = sampler
+            .map_err(first)?
+            .values(RowPlace::Time(time.next_down()));
+        match values.first() {
+            Some(value) if value.is_finite() => Ok((*value, quantity.dimension)),
+            _ => Err("no value".to_owned()),
+        }
     }
 
     fn number(&self, name: &str) -> Result<(f64, Dimension), String> {
