@@ -1,12 +1,12 @@
 //! Everything that acts on a mechanism, evaluated for one design.
 
 use kempe_mechanism::{Geometry, Mechanism};
-use kempe_model::{self as model, DriveId};
+use kempe_model::{self as model, DriveId, InnerState, Leaf, Measure};
 
 use crate::amount::Amount;
 use crate::cylinder::Cylinder;
 use crate::damper::Damper;
-use crate::friction::Friction;
+use crate::friction::{Friction, Sense};
 use crate::inertia::Mass;
 use crate::instant::Instant;
 use crate::joint_contact::JointContact;
@@ -31,7 +31,7 @@ pub struct Acting<T: ForceNumber> {
     pub masses: Vec<Mass<T>>,
     /// Loads.
     pub loads: Vec<Load>,
-    /// What the loads vary with.
+    /// What the loads vary with, then the parts of the friction that is followed.
     pub amounts: Vec<Amount<T>>,
     /// Springs, in the model's order.
     pub springs: Vec<Spring<T>>,
@@ -80,12 +80,21 @@ impl<T: ForceNumber> Acting<T> {
         let oils = (actions.cylinders.iter().zip(&cylinders))
             .filter_map(|(c, machine)| Oil::new(mechanism, c, machine, parameters, &mut problems))
             .collect();
+        let mut friction = Friction::all(mechanism, geometry, parameters, &mut problems);
+        let followed = 0..actions.followed_friction;
+        for (place, it) in followed.zip(friction.iter_mut().filter(|f| f.rubs())) {
+            it.sense = Sense::Amount(amounts.len());
+            amounts.push(Amount {
+                measure: Measure::Leaf(Leaf::Inner(InnerState::Friction(place))),
+                curve: None,
+            });
+        }
         let it = Self {
             gravity,
             masses: Mass::all(mechanism, geometry, parameters, &mut problems),
             springs: Spring::all(mechanism, geometry, parameters, &mut problems),
             dampers: Damper::all(mechanism, geometry, parameters, &mut problems),
-            friction: Friction::all(mechanism, geometry, parameters, &mut problems),
+            friction,
             motors: (actions.motors.iter())
                 .map(|m| Motor::new(mechanism, m, parameters, &mut problems))
                 .collect(),

@@ -8,7 +8,7 @@ use kempe_mechanism::{Geometry, Mechanism};
 use kempe_model::{self as model, FrictionAt, JointId, PointId, ToothSize};
 use kempe_number::{Interval, Number};
 
-use crate::number::{ForceNumber, PlainNumber};
+use crate::number::ForceNumber;
 use crate::problem::Problem;
 use crate::teeth::Teeth;
 use crate::vector::sign;
@@ -76,6 +76,17 @@ pub enum Bearing<T> {
     Flanks(T),
 }
 
+/// What tells in which sense friction acts, and how much of it.
+#[derive(Clone, Copy, Debug)]
+pub enum Sense<T> {
+    /// The way that its joint slides, or is about to.
+    BySpeed,
+    /// The amount in this place: the part of the greatest friction that acts, positive where it resists sliding forwards.
+    Amount(usize),
+    /// It resists with so much, N m at a pin, N on a line, whatever the load.
+    Resists(T),
+}
+
 /// Friction at one joint of a mechanism, or the force that parts its wheels.
 #[derive(Clone, Copy, Debug)]
 pub struct Friction<T> {
@@ -85,6 +96,8 @@ pub struct Friction<T> {
     pub bearing: Bearing<T>,
     /// The law; flanks need none.
     pub law: FrictionLaw<T>,
+    /// What tells its sense.
+    pub sense: Sense<T>,
 }
 
 impl<T: ForceNumber> Friction<T> {
@@ -113,6 +126,7 @@ impl<T: ForceNumber> Friction<T> {
                     constraint,
                     bearing,
                     law,
+                    sense: Sense::BySpeed,
                 });
             };
             let law = |friction| FrictionLaw::new(friction, parameters);
@@ -215,14 +229,14 @@ impl<T: ForceNumber> Friction<T> {
     /// Resistance (N m at a pin, N on a line) to a relative speed (rad/s or m/s) under a load (N), with the sign of
     /// `direction`; what it does is the opposite of its sign. Viscous resistance and drag included.
     #[inline]
-    pub fn resistance(&self, speed: T, direction: T::Plain, load: T) -> T {
-        (self.per_load(speed) * load).times(direction) + self.apart_from_load(speed, direction)
+    pub fn resistance(&self, speed: T, direction: T, load: T) -> T {
+        self.per_load(speed) * load * direction + self.apart_from_load(speed, direction)
     }
 
     /// The part of the resistance that does not depend on the load.
     #[inline]
-    pub(crate) fn apart_from_load(&self, speed: T, direction: T::Plain) -> T {
-        self.law.drag.times(direction) + self.law.viscous * speed
+    pub(crate) fn apart_from_load(&self, speed: T, direction: T) -> T {
+        self.law.drag * direction + self.law.viscous * speed
     }
 
     /// Resistance over load. The load of a line is its normal force; that of a pin is its whole force, friction included,
@@ -248,8 +262,13 @@ impl<T: ForceNumber> Friction<T> {
     }
 
     /// Whether it is friction, and no force that parts wheels.
-    pub(crate) fn rubs(&self) -> bool {
+    pub fn rubs(&self) -> bool {
         !matches!(self.bearing, Bearing::Flanks(_))
+    }
+
+    /// Whether its speed is that of an angle, rad/s: a length's otherwise, m/s.
+    pub fn turns(&self) -> bool {
+        matches!(self.bearing, Bearing::Pin(_))
     }
 
     /// How much of it acts where this share of the friction does: what parts wheels acts all the time.
@@ -259,9 +278,9 @@ impl<T: ForceNumber> Friction<T> {
 
     /// Derivative of the resistance to the load, in a lane.
     #[inline]
-    pub(crate) fn slope(&self, speed: T, direction: T::Plain, lane: usize) -> f64 {
+    pub(crate) fn slope(&self, speed: T, direction: T, lane: usize) -> f64 {
         let speed = T::from_f64(speed.value_in(lane));
-        self.per_load(speed).value_in(lane) * direction.lane_value(lane)
+        self.per_load(speed).value_in(lane) * direction.value_in(lane)
     }
 }
 

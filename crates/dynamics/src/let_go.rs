@@ -9,6 +9,7 @@ use kempe_model::DriveId;
 use crate::acting::Acting;
 use crate::energy;
 use crate::equations_of_motion::factorize;
+use crate::equilibrium::Rubbing;
 use crate::forces::Forces;
 use crate::inertia::Moved;
 use crate::instant::Instant;
@@ -30,6 +31,34 @@ impl LetGo {
     /// The accelerations that generalised forces (N or N m) along the coordinates alone would give, in place.
     pub fn respond(&self, forces: &mut [f64]) {
         solve_positive(forces.len(), &self.factors, forces);
+    }
+
+    /// Changes rows of derivatives to the coordinates, so that the product of two is what masses yield along one to a unit of force along
+    /// the other.
+    pub fn halve(&self, row: &mut [f64]) {
+        let n = row.len();
+        for i in 0..n {
+            for k in 0..i {
+                row[i] -= self.factors[i * n + k] * row[k];
+            }
+        }
+        for (i, x) in row.iter_mut().enumerate() {
+            *x /= self.factors[i * n + i].sqrt();
+        }
+    }
+
+    /// What is left of forces given along the coordinates, N or N m, where they accelerate so far: [`Forces::left_by_friction`].
+    pub fn left(&self) -> &[f64] {
+        &self.change
+    }
+
+    /// Lets the coordinates accelerate by so much more.
+    pub fn accelerate(&mut self, at: &mut Instant<f64>, free: &[DriveId], more: &[f64]) {
+        let all = free.iter().zip(&mut self.accelerations).zip(more);
+        for ((drive, acceleration), more) in all {
+            at.accelerate(*drive, *more);
+            *acceleration += more;
+        }
     }
 
     /// Fills the factors of the mass matrix of these coordinates.
@@ -78,6 +107,43 @@ impl Forces<f64> {
         given: &[f64],
         found: &mut LetGo,
     ) -> bool {
+        if !self.let_go_smoothly(at, free, given, found) {
+            return false;
+        }
+        if self.acting.friction.is_empty() {
+            return true;
+        }
+        let first = size_of(&found.accelerations).max(SLIGHT);
+        let mut before = f64::INFINITY;
+        for _ in 0..CORRECTIONS {
+            self.left_by_friction(at, free, given, found);
+            solve_positive(free.len(), &found.factors, &mut found.change);
+            let more = std::mem::take(&mut found.change);
+            found.accelerate(at, free, &more);
+            found.change = more;
+            let change = size_of(&found.change);
+            // Where terms cancel, rounding is more than a small part of what is left: then nothing gets smaller any more.
+            let rounds = change <= NEARLY * first && change > 0.5 * before;
+            let settled = rounds || change <= SETTLED * size_of(&found.accelerations);
+            before = change;
+            if !found.accelerations.iter().all(|a| a.is_finite()) {
+                return false;
+            }
+            if settled {
+                return true;
+            }
+        }
+        false
+    }
+
+    /// The same with friction left out, from which its own is found.
+    pub fn let_go_smoothly(
+        &mut self,
+        at: &mut Instant<f64>,
+        free: &[DriveId],
+        given: &[f64],
+        found: &mut LetGo,
+    ) -> bool {
         self.take_up(at);
         if !found.factorize(&self.acting, at, free) {
             return false;
@@ -92,35 +158,22 @@ impl Forces<f64> {
         for (drive, acceleration) in free.iter().zip(&found.accelerations) {
             at.accelerate(*drive, *acceleration);
         }
-        if self.acting.friction.is_empty() {
-            return found.accelerations.iter().all(|a| a.is_finite());
-        }
-        let first = size_of(&found.accelerations).max(SLIGHT);
-        let mut before = f64::INFINITY;
-        for _ in 0..CORRECTIONS {
-            self.solve(at);
-            found.change.clear();
-            let forces = free.iter().zip(given);
-            (found.change)
-                .extend(forces.map(|(drive, given)| given - self.drives[drive.index()].value));
-            solve_positive(free.len(), &found.factors, &mut found.change);
-            for (k, drive) in free.iter().enumerate() {
-                at.accelerate(*drive, found.change[k]);
-                found.accelerations[k] += found.change[k];
-            }
-            let change = size_of(&found.change);
-            // Where terms cancel, rounding is more than a small part of what is left: then nothing gets smaller any more.
-            let rounds = change <= NEARLY * first && change > 0.5 * before;
-            let settled = rounds || change <= SETTLED * size_of(&found.accelerations);
-            before = change;
-            if !found.accelerations.iter().all(|a| a.is_finite()) {
-                return false;
-            }
-            if settled {
-                return true;
-            }
-        }
-        false
+        found.accelerations.iter().all(|a| a.is_finite())
+    }
+
+    /// Finds all forces where it accelerates as it was found to, and what of those given is left: see [`LetGo::left`].
+    pub fn left_by_friction(
+        &mut self,
+        at: &Instant<f64>,
+        free: &[DriveId],
+        given: &[f64],
+        found: &mut LetGo,
+    ) {
+        self.solve(at);
+        found.change.clear();
+        let forces = free.iter().zip(given);
+        (found.change)
+            .extend(forces.map(|(drive, given)| given - self.drives[drive.index()].value));
     }
 }
 
@@ -154,6 +207,18 @@ impl Forces<f64> {
             return virtual_power::project(&self.needed, &at.coefficients[drive.index()]).value;
         }
         self.drives[drive.index()].value
+    }
+
+    /// How the joints that rub slide at an instant; loads are those last found.
+    pub fn sliding(&mut self, at: &Instant<f64>) -> Vec<Rubbing<f64>> {
+        let design = &self.design;
+        (self.equilibrium).find_contacts(
+            &design.mechanism,
+            &design.geometry,
+            &self.acting.friction,
+            at,
+        );
+        self.equilibrium.rubbing(&self.acting.friction).collect()
     }
 
     /// The power, W, that loads, motors of drives that hold nothing, dampers, contacts and, after [`Forces::let_go`], friction give to the mechanism. `storage` has a place

@@ -23,18 +23,21 @@ impl Chamber {
 pub enum InnerState {
     /// The pressure in a chamber of a drive's cylinder, Pa.
     Pressure(DriveId, Chamber),
+    /// Which part of the greatest friction acts in a place where something rubs, positive where it resists sliding forwards: -1 to 1.
+    Friction(usize),
     /// Whether a switch is on: 1 or 0.
     Switch(usize),
 }
 
 impl Model {
-    /// All inner states of the model: the pressures of its cylinders with oil, then its switches.
+    /// All inner states of the model: the pressures of its cylinders with oil, friction that is followed, then its switches.
     pub fn inner_states(&self) -> Vec<InnerState> {
         let oils = self.actions.cylinders.iter().filter(|c| c.oil.is_some());
         let pressures =
             oils.flat_map(|c| Chamber::BOTH.map(|side| InnerState::Pressure(c.drive, side)));
+        let friction = (0..self.actions.followed_friction).map(InnerState::Friction);
         let switches = (0..self.actions.switches.len()).map(InnerState::Switch);
-        pressures.chain(switches).collect()
+        pressures.chain(friction).chain(switches).collect()
     }
 
     /// The place of an inner state among [all](Self::inner_states).
@@ -45,9 +48,11 @@ impl Model {
                 let place = oils.position(|c| c.drive == drive)?;
                 Some(2 * place + usize::from(side == Chamber::Ring))
             }
-            InnerState::Switch(index) => {
-                (index < self.actions.switches.len()).then(|| 2 * oils.count() + index)
+            InnerState::Friction(index) => {
+                (index < self.actions.followed_friction).then(|| 2 * oils.count() + index)
             }
+            InnerState::Switch(index) => (index < self.actions.switches.len())
+                .then(|| 2 * oils.count() + self.actions.followed_friction + index),
         }
     }
 

@@ -35,6 +35,8 @@ pub struct Actions {
     pub smooth: Vec<Released>,
     /// Limit switches, which loads, valves and motors may go by.
     pub switches: Vec<crate::switch::Switch>,
+    /// In how many places friction is followed: which part of it acts there. None unless several coordinates are simulated.
+    pub followed_friction: usize,
 }
 
 /// A force or a torque.

@@ -59,6 +59,16 @@ pub enum Happened {
     Sticks,
     /// Friction lets it go.
     Slips,
+    /// Friction holds one of the places that rub.
+    Holds {
+        /// Its place among [those](crate::Simulated::rubbing).
+        place: usize,
+    },
+    /// Friction lets one of the places go.
+    LetsGo {
+        /// Its place among [those](crate::Simulated::rubbing).
+        place: usize,
+    },
     /// A switch goes on or off.
     Switches {
         /// Which of the model's.

@@ -108,12 +108,11 @@ impl Inner {
 impl Plant {
     /// Adds what the oil of cylinders pushes to the forces along the coordinates that are let go.
     pub(crate) fn push_by_oil(&mut self) {
-        let sense = self.mode.sense;
-        for moved in &self.inner.moved {
+        for (index, moved) in self.inner.moved.iter().enumerate() {
             let oil = &self.forces.acting.oils[moved.oil];
             let speed = self.coordinates[oil.drive.index()].coefficient(1);
             let push = oil.push(self.inner.of(moved), speed);
-            self.given[moved.free] += push - sense * oil.friction;
+            self.given[moved.free] += push - self.seals_resist(index, oil.friction);
         }
     }
 

@@ -11,6 +11,7 @@
 //! | `places.rs` | poses from coordinates: `curve.rs` along the followed motion of one coordinate, `several.rs` by the plan |
 //! | `tellers.rs` | which coordinates tell the place: others where one comes to its own dead point |
 //! | `plant.rs` | accelerations of a state, with motors, stops and friction |
+//! | `rubbing.rs`, `sticking.rs` | friction where several coordinates move: what slides in which sense, and what holds what is at rest |
 //! | `amounts.rs` | values that loads, valves and motors go by |
 //! | `inner.rs`, `toggle.rs` | pressures of cylinders, and what is switched on and off |
 //! | `watch.rs` | what is looked for between steps |
@@ -30,8 +31,10 @@ mod plant;
 mod question;
 mod record;
 mod run;
+mod rubbing;
 mod several;
 mod start;
+mod sticking;
 mod tellers;
 mod toggle;
 mod watch;
@@ -43,5 +46,6 @@ pub use joints::{Place, Touched, with_play};
 pub use plant::Tied;
 pub use question::{Question, Resistance, Stop};
 pub use record::{Ending, Simulated};
+pub use rubbing::Rubs;
 pub use run::{Unsimulated, simulate};
 pub use start::NoStart;

@@ -15,6 +15,7 @@ use crate::amounts::{Amounts, Known};
 use crate::contact::{Barrier, Gap, along};
 use crate::inner::Inner;
 use crate::places::Places;
+use crate::rubbing::{Rub, Rubbing};
 
 /// A coordinate that moves against the sense in which friction is looked at moves this slowly (rad/s, or m/s) instead: so
 /// friction goes on smoothly a little beyond where it turns.
@@ -37,8 +38,10 @@ pub(crate) struct Mode {
     pub touched: Vec<usize>,
     /// Friction holds it.
     pub stuck: bool,
-    /// The sense in which friction is looked at; 0 where nothing rubs.
+    /// The sense in which friction is looked at where one coordinate moves; 0 where nothing rubs.
     pub sense: f64,
+    /// How every place that rubs is looked at, where several move.
+    pub rubs: Vec<Rub>,
 }
 
 /// How one coordinate of the state tells the place.
@@ -117,6 +120,8 @@ pub(crate) struct Plant {
     pub inner: Inner,
     /// Motors of the drives that are let go.
     pub motors: Vec<Option<Turned>>,
+    /// What rubs, where several coordinates move.
+    pub rubbing: Rubbing,
     storage: Vec<Wrench<f64>>,
 }
 
@@ -180,6 +185,7 @@ impl Plant {
             end: f64::INFINITY,
             back: 0.0,
             asked_along: false,
+            rubbing: Rubbing::default(),
             motors,
             amounts,
             inner,
@@ -234,22 +240,6 @@ impl Plant {
     /// The instant last looked at.
     pub fn instant(&self) -> &Instant<f64> {
         &self.instant
-    }
-
-    /// Whether anything rubs.
-    pub fn rubs(&self) -> bool {
-        let acting = &self.forces.acting;
-        let seals = |oil: &usize| acting.oils[*oil].friction > 0.0;
-        acting
-            .friction
-            .iter()
-            .any(|f| !matches!(f.bearing, kempe_dynamics::friction::Bearing::Flanks(_)))
-            || self
-                .inner
-                .moved
-                .iter()
-                .map(|m| m.oil)
-                .any(|oil| seals(&oil))
     }
 
     /// Takes the coordinates of a state; those let go do not accelerate.
@@ -323,7 +313,10 @@ impl Plant {
     }
 
     /// Accelerations and pushes where the stops hold on which it rests.
-    fn held(&mut self, time: f64, y: &[f64]) -> bool {
+    pub(crate) fn held(&mut self, time: f64, y: &[f64]) -> bool {
+        if self.holds_somewhere() {
+            return self.hold_still(time, y);
+        }
         self.let_go_at(time, y, &[]) && (self.mode.resting.is_empty() || self.hold(time, y))
     }
 
@@ -334,7 +327,16 @@ impl Plant {
     }
 
     /// Accelerations where stops besides push along the coordinates.
-    fn let_go_at(&mut self, time: f64, y: &[f64], pushes: &[f64]) -> bool {
+    pub(crate) fn let_go_at(&mut self, time: f64, y: &[f64], pushes: &[f64]) -> bool {
+        if !self.act(time, y, pushes) {
+            return false;
+        }
+        let (forces, instant) = (&mut self.forces, &mut self.instant);
+        forces.let_go(instant, &self.free, &self.given, &mut self.let_go)
+    }
+
+    /// Finds what acts along the coordinates at a state, where stops besides push.
+    pub(crate) fn act(&mut self, time: f64, y: &[f64], pushes: &[f64]) -> bool {
         if !self.look(time, y) || !self.amounts_at(time) {
             return false;
         }
@@ -351,11 +353,7 @@ impl Plant {
             *given = push + motor.as_ref().map_or(0.0, turns);
         }
         self.push_by_oil();
-        if !self.mode.touched.is_empty() && !self.push(time, y) {
-            return false;
-        }
-        let (forces, instant) = (&mut self.forces, &mut self.instant);
-        forces.let_go(instant, &self.free, &self.given, &mut self.let_go)
+        self.mode.touched.is_empty() || self.push(time, y)
     }
 
     /// Changes the speeds of what is let go as jumps in the speeds of drives that keep their laws do, from before a time to behind

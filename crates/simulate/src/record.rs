@@ -14,6 +14,7 @@ use kempe_units::Expr;
 use crate::happening::{Happening, Held};
 use crate::joints::{Place, Touched};
 use crate::plant::Tied;
+use crate::rubbing::Rubs;
 
 /// Why a simulation ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,6 +56,8 @@ pub struct Simulated {
     pub held: Vec<Held>,
     /// Touches of bodies in joints with play that give, in order.
     pub touched: Vec<Touched>,
+    /// What rubs, where several coordinates move: each place slides or is held by itself.
+    pub rubbing: Vec<Rubs>,
     /// The places with play that resist at once, as stops behind those of the question.
     pub rigid: Vec<Place>,
     /// How many stops the question has.
@@ -106,11 +109,12 @@ impl Simulated {
                 Some(Some(law)) => law.at(time, &[]),
                 _ => f64::NAN,
             };
-            let seals = if speed == 0.0 {
-                0.0
-            } else {
-                oil.friction * speed.signum()
+            let sense = match machine.seals.and_then(|place| self.inner.get(place)) {
+                Some(Some(law)) => law.at(time, &[]),
+                _ if speed == 0.0 => 0.0,
+                _ => speed.signum(),
             };
+            let seals = oil.friction * sense;
             oil.push([pressure(*first), pressure(*first + 1)], speed) - seals
         });
         motor + oil
@@ -215,6 +219,8 @@ pub(crate) struct Machine {
     pub motor: Option<(Motor<f64>, f64)>,
     /// Its oil and the place of its first pressure among the inner states.
     pub oil: Option<(Oil<f64>, usize)>,
+    /// The place among the inner states of the part of its seals' friction that acts, where that is followed.
+    pub seals: Option<usize>,
 }
 
 /// Roundings of the places at the ends of a step in the speed between them, at most.

@@ -8,7 +8,9 @@ use kempe_dynamics::{Forces, Problem};
 use kempe_integrate::{Integrator, Stopped, Tolerance, Used};
 use kempe_measure::measure::visit_leaves;
 use kempe_mechanism::{Design, Mechanism, NotReleased};
-use kempe_model::{COEFFICIENTS, DriveId, Law, Leaf, Measure, PoseMeasure};
+use kempe_model::{
+    COEFFICIENTS, DriveId, Law, Leaf, Measure, Model, PoseMeasure,
+};
 use kempe_motion::{Done, MotionError, Placed, Progress, Stage};
 use kempe_units::Dimension;
 
@@ -19,6 +21,7 @@ use crate::places::Places;
 use crate::plant::{Mode, Plant, motor_sense};
 use crate::question::Question;
 use crate::record::{Ending, Machine, Pilots, Record, Simulated};
+use crate::rubbing::places_that_rub;
 use crate::start::{NoStart, start};
 use crate::tellers::{Exchanged, NEAR, Tellers};
 use crate::toggle::Toggle;
@@ -57,8 +60,6 @@ pub enum Unsimulated {
     Problems(Vec<Problem>),
     /// Nothing that is let go moves mass there, or friction jams.
     NoMass,
-    /// Friction where several coordinates move: what sticks is not known.
-    FrictionOfSeveral,
     /// It starts beyond this stop, by so much.
     BeyondStop(usize, f64),
     /// A joint with play starts with its bodies in each other, so deep, m.
@@ -87,8 +88,8 @@ pub fn simulate(
     let from = start(design, &coordinates, progress).map_err(Unsimulated::Start)?;
     // Laws are those of the file: what was found may stand still.
     let laws = |index: usize| model.drives.get(index).map(|d| d.law.clone());
-    let (from, rows) = opened(from, &question.contacts).map_err(Unsimulated::NoPlay)?;
-    let design = from.design.with_laws(laws);
+    let (mut from, rows) = opened(from, &question.contacts).map_err(Unsimulated::NoPlay)?;
+    let mut design = from.design.with_laws(laws);
     let model = &design.mechanism.model.clone();
     coordinates.resize(model.drives.len(), 0.0);
     for row in &rows {
@@ -104,13 +105,6 @@ pub fn simulate(
         ..question.clone()
     };
     let (mut placed, first_motion) = (from.placed.clone(), from.first.clone());
-    let mut forces = Forces::new(design.clone()).map_err(Unsimulated::Problems)?;
-    for spring in &mut forces.acting.springs {
-        spring.align(&forces.design.geometry, &placed.near);
-    }
-    let (rigid, barriers): (Vec<Place>, Vec<Barrier>) =
-        rigid_stops(&forces.acting.contacts).into_iter().unzip();
-    let stops = question.stops.iter().map(Barrier::of).chain(barriers);
     let driven: Vec<DriveId> = (0..model.drives.len() as u32)
         .map(DriveId)
         .filter(|drive| {
@@ -119,6 +113,23 @@ pub fn simulate(
         })
         .collect();
     let moving: Vec<DriveId> = question.free.iter().chain(&driven).copied().collect();
+    let mut forces = Forces::new(design.clone()).map_err(Unsimulated::Problems)?;
+    // Where several coordinates move, places that rub slide each in its own sense, which the motion that is found keeps.
+    let followed = match moving.len() {
+        0 | 1 => 0,
+        _ => places_that_rub(&forces.acting, &question.free),
+    };
+    if followed > 0 {
+        let follow = |model: &mut Model| model.actions.followed_friction = followed;
+        (from.design, design) = (from.design.with_model(follow), design.with_model(follow));
+        forces = Forces::new(design.clone()).map_err(Unsimulated::Problems)?;
+    }
+    for spring in &mut forces.acting.springs {
+        spring.align(&forces.design.geometry, &placed.near);
+    }
+    let (rigid, barriers): (Vec<Place>, Vec<Barrier>) =
+        rigid_stops(&forces.acting.contacts).into_iter().unzip();
+    let stops = question.stops.iter().map(Barrier::of).chain(barriers);
     let places = Places::new(from, &moving, progress).map_err(Unsimulated::Motion)?;
     let mut breaks: Vec<f64> = (driven.iter())
         .flat_map(|drive| model.drives[drive.index()].law.breaks(&parameters))
@@ -157,8 +168,8 @@ pub fn simulate(
         stops.collect(),
     );
     plant.back = BACK / question.until;
-    if plant.rubs() && moving.len() > 1 {
-        return Err(Unsimulated::FrictionOfSeveral);
+    if followed > 0 {
+        plant.follow_friction();
     }
     let mut y: Vec<f64> = (question.start.iter().map(|s| s[0]))
         .chain(question.start.iter().map(|s| s[1]))
@@ -218,10 +229,14 @@ pub fn simulate(
         .map(|it| Machine {
             motor: it.map(|it| (acting.motors[it.motor].clone(), it.sense)),
             oil: None,
+            seals: None,
         })
         .collect();
     for moved in &run.plant.inner.moved {
         machines[moved.free].oil = Some((acting.oils[moved.oil].clone(), moved.place));
+    }
+    for (moved, place) in run.plant.seals() {
+        machines[moved.free].seals = Some(place);
     }
     let end = run.time;
     let (used, evaluations) = run.effort();
@@ -237,13 +252,15 @@ pub fn simulate(
     let inner = &run.plant.inner;
     let mut inner_laws: Vec<Option<Law>> = vec![None; inner.values.len()];
     let pressures = inner.moved.iter().flat_map(|m| [m.place, m.place + 1]);
+    let friction = run.plant.friction_places();
     let switches = inner.values.len() - inner.switches().len()..inner.values.len();
-    for (place, law) in pressures.chain(switches).zip(laws.beside) {
+    for (place, law) in pressures.chain(friction).chain(switches).zip(laws.beside) {
         inner_laws[place] = Some(law);
     }
     Ok(Simulated {
         tied: run.plant.tied(),
         free: question.free.clone(),
+        rubbing: run.plant.what_rubs(),
         touched: touched(&run.plant.forces.acting.contacts, &laws.drives, end),
         rigid_from: question.stops.len(),
         rigid,
@@ -277,11 +294,11 @@ fn asks_along(mechanism: &Mechanism, measure: &Measure, drives: &[DriveId]) -> b
     found
 }
 
-/// What is followed beside the drives: the work, the pressures, the switches.
+/// What is followed beside the drives: the work, the pressures, the parts of friction, the switches.
 fn beside(plant: &Plant, y: &[f64]) -> Vec<f64> {
     let (pressures, work) = split(plant, y);
     let switches = plant.inner.switches();
-    [work, pressures, switches].concat()
+    [work, pressures, &plant.friction_values(), switches].concat()
 }
 
 /// The pressures and the work of a state.
@@ -378,10 +395,9 @@ impl Run<'_> {
             Some(stop) => {
                 let struck = self.strikes(stop);
                 let known = struck.is_some();
-                self.settle(struck.unwrap_or_default(), &before);
-                known
+                self.settle(struck.unwrap_or_default(), &before) && known
             }
-            None => true,
+            None => !jerked || self.rub(true, None, &[]),
         }
     }
 
@@ -397,7 +413,11 @@ impl Run<'_> {
         for (armed, condition) in self.conditions.iter_mut().zip(&self.ends) {
             *armed = (self.plant.value(condition, 0.0, &self.y)).is_some_and(|x| x < 0.0);
         }
-        if self.plant.rubs() {
+        if !self.plant.mode.rubs.is_empty() {
+            if !self.rub(true, None, &[]) {
+                return Err(Unsimulated::NoMass);
+            }
+        } else if places_that_rub(&self.plant.forces.acting, &self.plant.free) > 0 {
             self.plant.mode.sense = match self.y[1] {
                 v if v != 0.0 => v.signum(),
                 _ => self.slip_or_stick().ok_or(Unsimulated::NoMass)?,
@@ -412,7 +432,11 @@ impl Run<'_> {
             self.meets(at, speed);
         }
         self.rest(0.0, &[]);
-        Ok(())
+        let rests = !self.plant.mode.resting.is_empty();
+        match !rests || self.rub(false, None, &[]) {
+            true => Ok(()),
+            false => Err(Unsimulated::NoMass),
+        }
     }
 
     fn scale(&self) -> f64 {
@@ -603,6 +627,21 @@ impl Run<'_> {
                 let (pressures, work) = split(&self.plant, found);
                 for (values, there) in values.iter_mut().zip(work.iter().chain(pressures)) {
                     values[k] = *there;
+                }
+            }
+        }
+        if self.plant.holds_somewhere() {
+            let first = 1 + self.plant.inner.pressures();
+            for k in 0..COEFFICIENTS {
+                let time = from + k as f64 / (COEFFICIENTS - 1) as f64 * (to - from);
+                if !it.between(&mut self.plant, time, found) {
+                    return Added::NoWay;
+                }
+                let Some(parts) = self.plant.friction_parts(time, found) else {
+                    return Added::NoWay;
+                };
+                for (values, part) in values[first..].iter_mut().zip(parts) {
+                    values[k] = part;
                 }
             }
         }

@@ -220,7 +220,9 @@ impl Tellers {
         )
         .telling(tells, followed.collect(), own);
         new.mode = old.mode.clone();
+        new.rubbing = old.rubbing.clone();
         new.inner = old.inner.clone();
+        new.take_senses();
         new.end = old.end;
         new.back = old.back;
         let body =

@@ -6,6 +6,7 @@ use kempe_model::Measure;
 use crate::joints::Place;
 use crate::plant::Plant;
 use crate::question::Resistance;
+use crate::rubbing::Rub;
 
 /// Places within a step that are looked at.
 const PARTS: usize = 8;
@@ -31,7 +32,9 @@ pub(crate) enum Watch {
     Separates(Place),
     /// The only coordinate, which rubs, comes to rest.
     Turns,
-    /// Friction lets it go.
+    /// A place that rubs comes to rest.
+    Turned(usize),
+    /// Friction lets something go that it holds.
     Slips,
     /// A condition holds; whether it did not, yet.
     Ends(usize, bool),
@@ -46,6 +49,14 @@ pub(crate) fn watches(plant: &Plant, conditions: &[bool]) -> Vec<Watch> {
     } else {
         if mode.sense != 0.0 && mode.resting.is_empty() {
             list.push(Watch::Turns);
+        }
+        for (place, rub) in mode.rubs.iter().enumerate() {
+            if matches!(rub, Rub::Slides(_)) {
+                list.push(Watch::Turned(place));
+            }
+        }
+        if plant.holds_somewhere() {
+            list.push(Watch::Slips);
         }
         list.extend((0..mode.resting.len()).map(Watch::Leaves));
         for (index, stop) in plant.stops.iter().enumerate() {
@@ -84,6 +95,8 @@ impl Watch {
             Self::Meets(at) => Some(plant.opening(at, y)[0]),
             Self::Separates(at) => Some(-plant.opening(at, y)[0]),
             Self::Turns => Some(y.get(1)? * plant.mode.sense),
+            Self::Turned(place) => plant.slides(place, time, y),
+            Self::Slips if plant.holds_somewhere() => plant.firmness(time, y).map(|(firm, _)| firm),
             Self::Slips => plant.grip(time, y),
             Self::Ends(k, _) => plant.value(ends.get(k)?, time, y).map(|above| -above),
         }

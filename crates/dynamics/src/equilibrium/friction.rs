@@ -2,10 +2,11 @@
 
 use kempe_mechanism::constraint::{Joint, Sliding};
 use kempe_mechanism::{BodyId, Geometry, Mechanism};
+use kempe_model::DriveId;
 use kempe_number::Number;
 
 use super::Equilibrium;
-use crate::friction::{Bearing, Friction};
+use crate::friction::{Bearing, Friction, Sense};
 use crate::instant::Instant;
 use crate::number::{ForceNumber, PlainNumber};
 use crate::vector::{cross, dot, length, sub};
@@ -37,10 +38,43 @@ pub(crate) struct FrictionContact<T: ForceNumber> {
     pub row: usize,
     /// Relative speed, rad/s or m/s; of flanks that at which they part.
     pub speed: T,
-    /// Sense of sliding.
-    pub direction: T::Plain,
+    /// The rate of that speed where it is none, rad/s^2 or m/s^2.
+    pub gain: T,
+    /// Sense of sliding, or the part of the greatest friction that acts.
+    pub direction: T,
+    /// The resistance, where no load tells it.
+    pub resists: Option<T>,
     /// What a unit of resistance does: to the body that slides and to the other.
     pub unit: [(BodyId, Wrench<T>); 2],
+}
+
+/// A joint that rubs, at an instant.
+#[derive(Clone, Copy, Debug)]
+pub struct Rubbing<T: ForceNumber> {
+    /// Its place among the friction that acts.
+    pub friction: usize,
+    /// How fast it slides, rad/s at a pin, m/s on a line.
+    pub speed: T,
+    /// The rate of that where it is none, rad/s^2 or m/s^2.
+    pub gain: T,
+    /// What dry friction resists with at most, N m or N.
+    pub limit: T,
+    /// What viscous friction resists with, N m or N.
+    pub viscous: T,
+    /// What a unit of resistance does: to the body that slides and to the other.
+    unit: [(BodyId, Wrench<T>); 2],
+}
+
+impl<T: ForceNumber> Rubbing<T> {
+    /// How fast it slides where one drive moves alone with unit speed.
+    pub fn slope(&self, at: &Instant<T>, drive: DriveId) -> T {
+        let moved = &at.coefficients[drive.index()];
+        let power = |(body, unit): &(BodyId, Wrench<T>)| {
+            let by = moved[body.index()];
+            unit[0] * by[0] + unit[1] * by[1] + unit[2] * by[2]
+        };
+        -(power(&self.unit[0]) + power(&self.unit[1]))
+    }
 }
 
 /// How the friction loop ended.
@@ -66,7 +100,7 @@ pub enum FrictionOutcome {
 }
 
 impl<T: ForceNumber> Equilibrium<T> {
-    pub(super) fn find_contacts(
+    pub(crate) fn find_contacts(
         &mut self,
         mechanism: &Mechanism,
         geometry: &Geometry<T>,
@@ -88,11 +122,19 @@ impl<T: ForceNumber> Equilibrium<T> {
         for (index, friction) in frictions.iter().enumerate() {
             let row = self.layout.first_row[friction.constraint];
             let (zero, one) = (T::zero(), T::one());
-            let contact = |speed, direction, unit| FrictionContact {
+            let contact = |speed, gain, direction: T::Plain, unit| FrictionContact {
                 friction: index,
                 row,
                 speed,
-                direction,
+                gain,
+                direction: match friction.sense {
+                    Sense::Amount(place) => at.amounts[place],
+                    _ => zero.plus(0, direction),
+                },
+                resists: match friction.sense {
+                    Sense::Resists(resistance) => Some(resistance),
+                    _ => None,
+                },
                 unit,
             };
             let (v, w) = (&at.velocities, &at.accelerations);
@@ -103,7 +145,7 @@ impl<T: ForceNumber> Equilibrium<T> {
                     let gain = w[b.index()][2] - w[a.index()][2];
                     let direction = speed.plain().direction(gain.plain(), still);
                     let unit = [(b, [zero, zero, -one]), (a, [zero, zero, one])];
-                    Some(contact(speed, direction, unit))
+                    Some(contact(speed, gain, direction, unit))
                 }
                 Some(Sliding::Along { point, on, tangent }) => {
                     let arm = at.arm(point.body, geometry.marker(point));
@@ -119,7 +161,8 @@ impl<T: ForceNumber> Equilibrium<T> {
                     let own = [-tangent[0], -tangent[1], -cross(arm, tangent)];
                     let other = [tangent[0], tangent[1], cross(arm_guide, tangent)];
                     let direction = speed.plain().direction(gain.plain(), still_sliding);
-                    Some(contact(speed, direction, [(point.body, own), (on, other)]))
+                    let unit = [(point.body, own), (on, other)];
+                    Some(contact(speed, gain, direction, unit))
                 }
                 Some(Sliding::Rolling {
                     a,
@@ -139,7 +182,7 @@ impl<T: ForceNumber> Equilibrium<T> {
                             let pose = &at.poses[body.index()];
                             dot(off, at.velocity(body, sub(point, [pose.x, pose.y])))
                         };
-                        contact(speed(a) - speed(b), T::Plain::one(), unit)
+                        contact(speed(a) - speed(b), zero, T::Plain::one(), unit)
                     }
                     bearing => {
                         let path = match bearing {
@@ -150,7 +193,7 @@ impl<T: ForceNumber> Equilibrium<T> {
                         let gain = w[b.index()][2] - w[a.index()][2];
                         let direction = turning.plain().direction(gain.plain(), still);
                         let unit = [(b, [zero, zero, -path]), (a, [zero, zero, path])];
-                        contact(turning * path, direction, unit)
+                        contact(turning * path, gain * path, direction, unit)
                     }
                 }),
                 None => None,
@@ -201,6 +244,27 @@ impl<T: ForceNumber> Equilibrium<T> {
         }
     }
 
+    /// How every joint that rubs slides at an instant, and what it resists with at most by the loads last found: those are to be
+    /// found again where anything moved otherwise.
+    pub fn rubbing<'a>(
+        &'a self,
+        frictions: &'a [Friction<T>],
+    ) -> impl Iterator<Item = Rubbing<T>> + 'a {
+        let rubbing = self.contacts.iter().filter(|c| frictions[c.friction].rubs());
+        rubbing.map(|contact| {
+            let friction = &frictions[contact.friction];
+            let load = load(friction, contact, &self.lambda);
+            Rubbing {
+                friction: contact.friction,
+                speed: contact.speed,
+                gain: contact.gain,
+                limit: friction.per_load(contact.speed) * load + friction.law.drag,
+                viscous: friction.law.viscous * contact.speed,
+                unit: contact.unit,
+            }
+        })
+    }
+
     /// Power that friction takes, W: never positive.
     pub fn friction_power(&self, frictions: &[Friction<T>]) -> T {
         let mut sum = T::zero();
@@ -226,11 +290,14 @@ impl<T: ForceNumber> Equilibrium<T> {
     /// in any of them.
     pub fn rests(&self, frictions: &[Friction<T>]) -> bool {
         self.contacts.iter().any(|contact| {
-            let law = &frictions[contact.friction].law;
-            (0..T::Plain::LANES).any(|lane| {
+            let friction = &frictions[contact.friction];
+            let law = &friction.law;
+            let by_speed = matches!(friction.sense, Sense::BySpeed);
+            let still = |lane: usize| {
                 let dry = law.kinetic.value_in(lane) > 0.0 || law.drag.value_in(lane) > 0.0;
-                contact.direction.lane_value(lane) == 0.0 && dry
-            })
+                contact.direction.value_in(lane) == 0.0 && dry
+            };
+            by_speed && (0..T::Plain::LANES).any(still)
         })
     }
 }
@@ -241,9 +308,16 @@ pub(super) fn resistance<T: ForceNumber>(
     lambda: &[T],
 ) -> T {
     let friction = &frictions[contact.friction];
-    let load = match lambda[contact.row..][..friction.rows()] {
+    contact.resists.unwrap_or_else(|| {
+        let load = load(friction, contact, lambda);
+        friction.resistance(contact.speed, contact.direction, load)
+    })
+}
+
+/// The load of a joint that rubs, N.
+fn load<T: ForceNumber>(friction: &Friction<T>, contact: &FrictionContact<T>, lambda: &[T]) -> T {
+    match lambda[contact.row..][..friction.rows()] {
         [x, y] => length([x, y]),
         _ => lambda[contact.row].abs(),
-    };
-    friction.resistance(contact.speed, contact.direction, load)
+    }
 }

@@ -22,7 +22,7 @@ use kempe_mechanism::{BodyId, Geometry, Mechanism};
 use kempe_number::Number;
 
 use self::friction::{FrictionContact, resistance};
-pub use self::friction::{FrictionOutcome, Pace, STILL, UNMOVED};
+pub use self::friction::{FrictionOutcome, Pace, Rubbing, STILL, UNMOVED};
 use self::order::Order;
 pub use self::plain::{FRICTION_STEP, FRICTION_STEPS, PlainEquilibrium};
 use crate::friction::Friction;

@@ -146,7 +146,9 @@ impl PlainEquilibrium {
             }
         }
         if let Some((lambda, share)) = friction_at {
-            for contact in equations.contacts {
+            // What resists whatever the load has no slope.
+            let by_load = equations.contacts.iter().filter(|c| c.resists.is_none());
+            for contact in by_load {
                 let friction = &equations.frictions[contact.friction];
                 let slope =
                     friction.slope(contact.speed, contact.direction, *lane) * friction.share(share);
@@ -198,10 +200,16 @@ impl PlainEquilibrium {
         }
         for contact in equations.contacts {
             let friction = &equations.frictions[contact.friction];
-            let load = load_of(&self.lambda[contact.row..][..friction.rows()]);
-            let apart = friction.apart_from_load(contact.speed, contact.direction);
-            let slope = friction.slope(contact.speed, contact.direction, lane);
-            let resistance = (slope * load + apart.value_in(lane)) * friction.share(share);
+            let resistance = match contact.resists {
+                Some(resistance) => resistance.value_in(lane),
+                None => {
+                    let load = load_of(&self.lambda[contact.row..][..friction.rows()]);
+                    let apart = friction.apart_from_load(contact.speed, contact.direction);
+                    let slope = friction.slope(contact.speed, contact.direction, lane);
+                    slope * load + apart.value_in(lane)
+                }
+            };
+            let resistance = resistance * friction.share(share);
             for (body, unit) in contact.unit.iter().filter(|u| u.0 != BodyId::GROUND) {
                 for k in 0..3 {
                     right[3 * (body.index() - 1) + k] -= unit[k].value_in(lane) * resistance;

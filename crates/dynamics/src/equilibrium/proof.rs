@@ -198,7 +198,7 @@ impl<T: ForceNumber<Plain = Interval>> Equilibrium<T> {
         let any_sense = Interval::new(-1.0, 1.0);
         for contact in &self.contacts {
             let friction = &frictions[contact.friction];
-            let slope = friction.per_load(contact.speed).plain() * contact.direction;
+            let slope = friction.per_load(contact.speed).plain() * contact.direction.plain();
             let rows = contact.row..contact.row + friction.rows();
             let load = match &lambda[rows.clone()] {
                 [x, y] => length([*x, *y]),

@@ -322,7 +322,9 @@ impl Spelling<Leaf> for Writer<'_> {
             Leaf::Drive(id) => Natural::fixed(self.coordinate(*id)),
             Leaf::Time => Natural::fixed(Dimension::TIME),
             Leaf::Inner(InnerState::Pressure(..)) => Natural::fixed(Dimension::PRESSURE),
-            Leaf::Inner(InnerState::Switch(_)) => Natural::fixed(Dimension::NONE),
+            Leaf::Inner(InnerState::Friction(_) | InnerState::Switch(_)) => {
+                Natural::fixed(Dimension::NONE)
+            }
             Leaf::Pose(pose) => self.pose(pose),
             Leaf::Rate(inner, n) => of(inner, &|d| rate(d, *n as i32)),
             Leaf::Coefficient(inner, drive, n) => of(inner, &|d| d / self.per(*drive, *n)),
@@ -350,6 +352,8 @@ impl Spelling<Leaf> for Writer<'_> {
                 };
                 call(function, vec![name(self.drive(*drive))])
             }
+            // No file can ask for it.
+            Leaf::Inner(InnerState::Friction(_)) => name("?"),
             Leaf::Inner(InnerState::Switch(i)) => {
                 let switch = self.model.actions.switches.get(*i);
                 call(

@@ -7,6 +7,7 @@ use crate::happening::Happened;
 use crate::joints::Place;
 use crate::question::Resistance;
 use crate::record::Ending;
+use crate::rubbing::Rub;
 use crate::toggle::Toggled;
 use crate::watch::Watch;
 
@@ -39,6 +40,38 @@ impl Run<'_> {
         }
         // Where it just slips one of them is zero, and rounding would choose.
         Some(if up + down > 0.0 { 1.0 } else { -1.0 })
+    }
+
+    /// Decides what friction holds where several coordinates move: see [`Plant::decide_rubbing`](crate::plant::Plant). Tells of what it holds from here on,
+    /// and of what it lets go.
+    pub(super) fn rub(&mut self, jumped: bool, turns: Option<usize>, lets_go: &[usize]) -> bool {
+        if self.plant.mode.rubs.is_empty() {
+            return true;
+        }
+        let before = self.plant.mode.clone();
+        let state = (self.time, self.y.as_mut_slice());
+        if !(self.plant).decide_rubbing(state, jumped, turns, lets_go) {
+            return false;
+        }
+        let (rubs, stuck) = (self.plant.mode.rubs.clone(), self.plant.mode.stuck);
+        if stuck || before.stuck {
+            match (before.stuck, stuck) {
+                (false, true) => self.tell(Happened::Sticks),
+                (true, false) => self.tell(Happened::Slips),
+                _ => {}
+            }
+            return true;
+        }
+        for (place, (before, now)) in before.rubs.iter().zip(&rubs).enumerate() {
+            match (*before == Rub::Held, *now == Rub::Held) {
+                (false, true) => self.tell(Happened::Holds { place }),
+                // Nothing held it before it began.
+                (true, false) if self.time > 0.0 => self.tell(Happened::LetsGo { place }),
+                (true, true) if jumped && self.time == 0.0 => self.tell(Happened::Holds { place }),
+                _ => {}
+            }
+        }
+        true
     }
 
     /// Takes up the stops on which it comes to rest: closed, hardly opening, and pressed on. `struck` is the fastest rate of an
@@ -113,8 +146,13 @@ impl Run<'_> {
 
     /// Takes up the stops on which it rests after something was struck, or jerked. `before` are those on which it did: what it leaves is
     /// told, unless it was struck.
-    pub(super) fn settle(&mut self, struck: Struck, before: &[usize]) {
+    pub(super) fn settle(&mut self, struck: Struck, before: &[usize]) -> bool {
+        // What holds what is known before what rests, and again where that changes it.
+        let known = self.rub(true, None, &[]);
+        let resting = self.plant.mode.resting.len();
         self.rest(struck.fastest, before);
+        let changed = self.plant.mode.resting.len() != resting;
+        let known = known && (!changed || self.rub(false, None, &[]));
         let leaves = before.iter().filter(|stop| {
             let mode = &self.plant.mode;
             !mode.resting.contains(stop)
@@ -124,17 +162,21 @@ impl Run<'_> {
         for stop in leaves.copied().collect::<Vec<_>>() {
             self.tell(Happened::Leaves { stop });
         }
+        known
     }
 
     /// What an event does.
     pub(super) fn happens(&mut self, watch: Watch) -> Option<Ending> {
+        if std::env::var("DBG").is_ok() { eprintln!("{} {:?} {:?} {:?}", self.time, watch, self.plant.mode.rubs, self.y); }
         match watch {
             Watch::Strikes(stop) => {
                 let before = self.plant.mode.resting.clone();
                 let Some(struck) = self.strikes(stop) else {
                     return Some(Ending::NoWay);
                 };
-                self.settle(struck, &before);
+                if !self.settle(struck, &before) {
+                    return Some(Ending::NoWay);
+                }
             }
             Watch::Touches(stop) => {
                 self.plant.mode.touched.push(stop);
@@ -158,6 +200,20 @@ impl Run<'_> {
                 let stop = self.plant.mode.resting.remove(place);
                 self.plant.mode.beside.clear();
                 self.tell(Happened::Leaves { stop });
+                if !self.rub(false, None, &[]) {
+                    return Some(Ending::NoWay);
+                }
+            }
+            Watch::Turned(place) => {
+                if !self.rub(false, Some(place), &[]) {
+                    return Some(Ending::NoWay);
+                }
+            }
+            Watch::Slips if self.plant.holds_somewhere() => {
+                let first = self.plant.firmness(self.time, &self.y);
+                if !first.is_some_and(|(_, first)| self.rub(false, None, &first)) {
+                    return Some(Ending::NoWay);
+                }
             }
             Watch::Turns => {
                 self.y[1] = 0.0;
@@ -181,7 +237,12 @@ impl Run<'_> {
             }
             Watch::Ends(condition, _) => {
                 match condition.checked_sub(self.question.end_when.len()) {
-                    Some(toggle) => self.toggle(toggle, condition),
+                    Some(toggle) => {
+                        self.toggle(toggle, condition);
+                        if !self.rub(false, None, &[]) {
+                            return Some(Ending::NoWay);
+                        }
+                    }
                     None => {
                         self.tell(Happened::Ends { condition });
                         return Some(Ending::Condition(condition));

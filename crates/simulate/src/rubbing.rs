@@ -1,0 +1,600 @@
+//! Friction where several coordinates move: each place that rubs slides in a sense of its own, or is held.
+//!
+//! A place that slides resists with all its friction against the sense in which it does, until its speed changes sign. One that is held
+//! resists with what it takes to stay at rest, by itself or together with others ([`crate::sticking`]), until that is more than its limit.
+
+use kempe_dynamics::Acting;
+use kempe_dynamics::friction::Sense;
+use kempe_mechanism::structure::Source;
+use kempe_model::{DriveId, InnerState};
+
+use crate::contact::{Gap, dot};
+use crate::inner::Moved;
+use crate::plant::Plant;
+use crate::sticking::{leave_out, limited, shared, spanned, together, yielding};
+
+/// A speed that is this part of the fastest of its place is none.
+const REST: f64 = 1e-9;
+/// A row that is this part of the longest of all is none: its place hardly slides by any coordinate.
+const UNMOVED: f64 = 1e-12;
+/// Corrections of what holds, at most.
+const CORRECTIONS: usize = 200;
+/// Accelerations are settled when they change by this part, or by this one and by no less any more.
+const SETTLED: f64 = 4.0 * f64::EPSILON;
+const NEARLY: f64 = 1e-10;
+/// A row that is this part of its length off those of stops stands still where they do.
+const APART: f64 = 1e-9;
+/// Places bear as much as the one that bears most, where it is less by this part.
+const AS_MUCH: f64 = 1e-9;
+/// An acceleration that is this part of what acts is none.
+const LEFT_OVER: f64 = 1e-10;
+
+/// What rubs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rubs {
+    /// A joint.
+    Joint(Source),
+    /// The seals of the cylinder of a drive.
+    Seals(DriveId),
+}
+
+/// What a place is to the plant.
+#[derive(Clone, Copy, Debug)]
+enum Acts {
+    /// A joint: its place among the friction that acts, and that of its part among the amounts.
+    Joint(usize, usize),
+    /// The seals of a cylinder, by its place among those that oil moves.
+    Seals(usize),
+}
+
+/// How a place that rubs is looked at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Rub {
+    /// It slides in this sense.
+    Slides(f64),
+    /// Friction holds it.
+    Held,
+}
+
+/// A place that rubs.
+#[derive(Clone, Copy, Debug)]
+struct Site {
+    what: Acts,
+    /// The place of its part among the inner states.
+    inner: usize,
+    /// Speed that counts as 1/s: 1 of what turns, the mechanism's size of what slides.
+    size: f64,
+    /// The fastest that it was seen to slide.
+    fastest: f64,
+    /// What it resists with while it is held, N m or N.
+    resists: f64,
+}
+
+/// The places that rub.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Rubbing {
+    sites: Vec<Site>,
+}
+
+/// A place at the state last looked at.
+struct Here {
+    speed: f64,
+    /// The rate of the speed where it is none.
+    gain: f64,
+    limit: f64,
+    viscous: f64,
+    /// Derivatives of the speed to those of the coordinates that are let go.
+    gradient: Vec<f64>,
+}
+
+/// Rows at an instant: how they accelerate, which forces act along them, and how large these may be.
+struct Now<'a> {
+    accelerations: &'a [f64],
+    forces: &'a [f64],
+    limits: &'a [f64],
+}
+
+/// What came of it.
+struct Acted {
+    /// How many of the rows are those of stops.
+    stops: usize,
+    /// How rows accelerate, and the size of what adds up to that.
+    after: Vec<f64>,
+    terms: Vec<f64>,
+}
+
+/// Adds so many times a vector to another.
+fn add(sum: &mut [f64], times: f64, row: &[f64]) {
+    for (sum, x) in sum.iter_mut().zip(row) {
+        *sum += times * x;
+    }
+}
+
+/// What forces along rows come to.
+fn sum(rows: &[Vec<f64>], forces: &[f64]) -> Vec<f64> {
+    let mut whole = vec![0.0; rows.first().map_or(0, Vec::len)];
+    for (row, force) in rows.iter().zip(forces) {
+        add(&mut whole, *force, row);
+    }
+    whole
+}
+
+/// How many places rub where these drives are let go.
+pub(crate) fn places_that_rub(acting: &Acting<f64>, free: &[DriveId]) -> usize {
+    let joints = acting.friction.iter().filter(|f| f.rubs());
+    let seals = acting.oils.iter().filter(|oil| oil.friction > 0.0 && free.contains(&oil.drive));
+    joints.count() + seals.count()
+}
+
+impl Plant {
+    /// What rubs, in the order of the places.
+    pub fn what_rubs(&self) -> Vec<Rubs> {
+        let sites = self.rubbing.sites.iter().map(|site| match site.what {
+            Acts::Joint(index, _) => {
+                let constraint = self.forces.acting.friction[index].constraint;
+                Rubs::Joint(self.forces.design.mechanism.constraints[constraint].1)
+            }
+            Acts::Seals(moved) => Rubs::Seals(self.free[self.inner.moved[moved].free]),
+        });
+        sites.collect()
+    }
+
+    /// The places among the inner states of the parts of friction.
+    pub fn friction_places(&self) -> Vec<usize> {
+        self.rubbing.sites.iter().map(|site| site.inner).collect()
+    }
+
+    /// The parts of friction, as last known.
+    pub fn friction_values(&self) -> Vec<f64> {
+        let sites = self.rubbing.sites.iter();
+        sites.map(|site| self.inner.values[site.inner]).collect()
+    }
+
+    /// Cylinders whose seals rub, with the places of their parts among the inner states.
+    pub fn seals(&self) -> Vec<(Moved, usize)> {
+        let sites = self.rubbing.sites.iter().filter_map(|site| match site.what {
+            Acts::Seals(moved) => Some((self.inner.moved[moved], site.inner)),
+            Acts::Joint(..) => None,
+        });
+        sites.collect()
+    }
+
+    /// Looks at every place that rubs by itself from now on; the model must follow as many.
+    pub fn follow_friction(&mut self) {
+        let model = &self.forces.design.mechanism.model;
+        let size = self.forces.design.size();
+        let friction = self.forces.acting.friction.iter().enumerate();
+        let joints = friction.filter(|(_, f)| f.rubs()).filter_map(|(index, f)| {
+            let Sense::Amount(amount) = f.sense else {
+                return None;
+            };
+            Some((Acts::Joint(index, amount), if f.turns() { 1.0 } else { size }))
+        });
+        let seals = self.inner.moved.iter().enumerate();
+        let seals = seals
+            .filter(|(_, m)| self.forces.acting.oils[m.oil].friction > 0.0)
+            .map(|(index, _)| (Acts::Seals(index), size));
+        let sites = joints.chain(seals).enumerate().filter_map(|(place, (what, size))| {
+            Some(Site {
+                what,
+                inner: model.inner_place(InnerState::Friction(place))?,
+                size,
+                fastest: 0.0,
+                resists: 0.0,
+            })
+        });
+        self.rubbing.sites = sites.collect();
+        self.mode.rubs = vec![Rub::Held; self.rubbing.sites.len()];
+        self.take_senses();
+    }
+
+    /// Hands what is known of every place to what acts.
+    pub(crate) fn take_senses(&mut self) {
+        for (site, rub) in self.rubbing.sites.iter().zip(&self.mode.rubs) {
+            if let Rub::Slides(sense) = rub {
+                self.inner.values[site.inner] = *sense;
+            }
+            if let Acts::Joint(index, amount) = site.what {
+                self.forces.acting.friction[index].sense = match rub {
+                    Rub::Slides(_) => Sense::Amount(amount),
+                    Rub::Held => Sense::Resists(site.resists),
+                };
+            }
+        }
+    }
+
+    /// What the seals of a cylinder resist with, by its place among those that oil moves.
+    pub(crate) fn seals_resist(&self, moved: usize, friction: f64) -> f64 {
+        let own = |site: &&(&Site, &Rub)| matches!(site.0.what, Acts::Seals(k) if k == moved);
+        let sites = self.rubbing.sites.iter().zip(&self.mode.rubs);
+        let found = sites.collect::<Vec<_>>();
+        match found.iter().find(own) {
+            // What holds is found with the rest.
+            Some((_, Rub::Held)) => 0.0,
+            Some((_, Rub::Slides(sense))) => sense * friction,
+            None => self.mode.sense * friction,
+        }
+    }
+
+    /// The places at the state last looked at, with the loads and accelerations last found.
+    fn rubbing_here(&mut self) -> Vec<Here> {
+        let joints = self.forces.sliding(&self.instant);
+        let n = self.free.len();
+        let of = |site: &Site| match site.what {
+            Acts::Joint(index, _) => {
+                let rubbing = joints.iter().find(|r| r.friction == index);
+                rubbing.map(|r| Here {
+                    speed: r.speed,
+                    gain: r.gain,
+                    limit: r.limit,
+                    viscous: r.viscous,
+                    gradient: (self.free.iter()).map(|d| r.slope(&self.instant, *d)).collect(),
+                })
+            }
+            Acts::Seals(moved) => {
+                let moved = &self.inner.moved[moved];
+                let drive = self.free[moved.free];
+                let mut gradient = vec![0.0; n];
+                gradient[moved.free] = 1.0;
+                Some(Here {
+                    speed: self.coordinates[drive.index()].coefficient(1),
+                    gain: self.let_go.accelerations.get(moved.free).copied().unwrap_or(0.0),
+                    limit: self.forces.acting.oils[moved.oil].friction,
+                    viscous: 0.0,
+                    gradient,
+                })
+            }
+        };
+        let nothing = || Here {
+            speed: 0.0,
+            gain: 0.0,
+            limit: 0.0,
+            viscous: 0.0,
+            gradient: vec![0.0; n],
+        };
+        let sites = self.rubbing.sites.iter();
+        sites.map(|site| of(site).unwrap_or_else(nothing)).collect()
+    }
+
+    /// Whether anything is held that is looked at by itself.
+    pub fn holds_somewhere(&self) -> bool {
+        self.mode.rubs.contains(&Rub::Held)
+    }
+
+    /// Rows of stops on which it rests and of places, as [`crate::sticking`] sees them: first the stops, then the places; those of places
+    /// that hardly slide by any coordinate are nothing.
+    fn rows(&self, gaps: &[Gap], here: &[Here], places: &[usize]) -> Vec<Vec<f64>> {
+        let halved = |gradient: &Vec<f64>| {
+            let mut row = gradient.clone();
+            self.let_go.halve(&mut row);
+            row
+        };
+        let sizes = places.iter().map(|k| self.rubbing.sites[*k].size);
+        let sizes: Vec<f64> = sizes.collect();
+        let mut own: Vec<Vec<f64>> = places.iter().map(|k| halved(&here[*k].gradient)).collect();
+        let long = |(row, size): (&Vec<f64>, &f64)| dot(row, row).sqrt() / size;
+        let longest = own.iter().zip(&sizes).map(long).fold(0.0, f64::max);
+        for (row, size) in own.iter_mut().zip(&sizes) {
+            if long((row, size)) <= UNMOVED * longest {
+                row.fill(0.0);
+            }
+        }
+        let stops = gaps.iter().map(|gap| halved(&gap.gradient));
+        stops.chain(own).collect()
+    }
+
+    /// Lets stops push and places resist so that nothing opens and nothing slides that is held. False where nothing can.
+    pub(crate) fn hold_still(&mut self, time: f64, y: &[f64]) -> bool {
+        let held = self.held_places();
+        let found = self.act_in(time, y, &held, |rows, stops, now| {
+            let all: Vec<usize> = (0..rows.len()).collect();
+            let (by_stops, of_stops) = spanned(rows, &all[..stops], Vec::new());
+            if of_stops.len() < stops {
+                return None;
+            }
+            let (_, of_places) = spanned(rows, &all[stops..], by_stops.clone());
+            let independent = [of_stops, of_places].concat();
+            let left = independent.iter().map(|k| -now.accelerations[*k]).collect();
+            let more = yielding(rows, &independent, left)?;
+            let mut whole = sum(rows, now.forces);
+            for (k, more) in independent.iter().zip(more) {
+                add(&mut whole, more, &rows[*k]);
+            }
+            // What slides only with a stop's gap stands still with it.
+            let apart = rows[stops..].iter().map(|row| {
+                let mut off = row.clone();
+                leave_out(&by_stops, &mut off);
+                match dot(&off, &off) <= APART * APART * dot(row, row) {
+                    true => vec![0.0; off.len()],
+                    false => off,
+                }
+            });
+            let apart: Vec<Vec<f64>> = apart.collect();
+            let mut target = whole.clone();
+            leave_out(&by_stops, &mut target);
+            let borne = shared(&apart, &now.limits[stops..], &target)?;
+            for (row, force) in rows[stops..].iter().zip(&borne) {
+                add(&mut whole, -force, row);
+            }
+            let pushes = together(rows, &all[..stops], &whole)?;
+            Some([pushes, borne].concat())
+        });
+        found.is_some()
+    }
+
+    /// The places that are held.
+    fn held_places(&self) -> Vec<usize> {
+        let rubs = self.mode.rubs.iter().enumerate();
+        rubs.filter(|(_, rub)| **rub == Rub::Held).map(|(k, _)| k).collect()
+    }
+
+    /// Finds how everything accelerates while the stops on which it rests push and some places resist as `choose` says of their rows
+    /// (see [`crate::sticking`]), the first so many of which are those of the stops: the forces along them. How they accelerate along the rows then.
+    fn act_in(
+        &mut self,
+        time: f64,
+        y: &[f64],
+        places: &[usize],
+        mut choose: impl FnMut(&[Vec<f64>], usize, &Now<'_>) -> Option<Vec<f64>>,
+    ) -> Option<Acted> {
+        let stops = self.mode.resting.clone();
+        let gaps: Option<Vec<Gap>> = stops.iter().map(|s| self.gap(*s, time, y)).collect();
+        let gaps = gaps?;
+        self.pushes = vec![0.0; gaps.len()];
+        self.take_senses();
+        if !self.act(time, y, &[]) {
+            return None;
+        }
+        let given = self.given.clone();
+        if !(self.forces).let_go_smoothly(&mut self.instant, &self.free, &given, &mut self.let_go) {
+            return None;
+        }
+        let rows = {
+            let here = self.rubbing_here();
+            self.rows(&gaps, &here, places)
+        };
+        let back = self.back;
+        let (mut before, mut first) = (f64::INFINITY, 0.0_f64);
+        for _ in 0..CORRECTIONS {
+            self.take_senses();
+            self.given.copy_from_slice(&given);
+            for (gap, push) in gaps.iter().zip(&self.pushes) {
+                add(&mut self.given, *push, &gap.gradient);
+            }
+            for k in places {
+                let site = &self.rubbing.sites[*k];
+                if let Acts::Seals(moved) = site.what {
+                    self.given[self.inner.moved[moved].free] -= site.resists;
+                }
+            }
+            (self.forces).left_by_friction(&self.instant, &self.free, &self.given, &mut self.let_go);
+            let here = self.rubbing_here();
+            let mut left = self.let_go.left().to_vec();
+            self.let_go.halve(&mut left);
+            let by_stops = gaps.iter().map(|gap| {
+                let opens = gap.opening(&self.let_go.accelerations);
+                opens + back * (2.0 * gap.rate + back * gap.open)
+            });
+            let by_places = places.iter().map(|k| here[*k].gain + back * here[*k].speed);
+            let accelerations: Vec<f64> = (by_stops.chain(by_places).zip(&rows))
+                .map(|(a, row)| a + dot(row, &left))
+                .collect();
+            let resist = places.iter().map(|k| -self.rubbing.sites[*k].resists);
+            let forces: Vec<f64> = self.pushes.iter().copied().chain(resist).collect();
+            let limits: Vec<f64> = (std::iter::repeat_n(f64::INFINITY, gaps.len()))
+                .chain(places.iter().map(|k| here[*k].limit))
+                .collect();
+            let now = Now {
+                accelerations: &accelerations,
+                forces: &forces,
+                limits: &limits,
+            };
+            let found = choose(&rows, gaps.len(), &now)?;
+            let mut more = self.let_go.left().to_vec();
+            let gradients = gaps.iter().map(|gap| &gap.gradient);
+            let gradients = gradients.chain(places.iter().map(|k| &here[*k].gradient));
+            let mut changes = vec![0.0; self.free.len()];
+            for ((gradient, row), (new, old)) in gradients.zip(&rows).zip(found.iter().zip(&forces)) {
+                add(&mut changes, new - old, row);
+                // What hardly slides by any coordinate is none of the rows.
+                if row.iter().any(|x| *x != 0.0) {
+                    add(&mut more, new - old, gradient);
+                }
+            }
+            self.let_go.respond(&mut more);
+            (self.let_go).accelerate(&mut self.instant, &self.free, &more);
+            self.pushes.copy_from_slice(&found[..gaps.len()]);
+            for (k, force) in places.iter().zip(&found[gaps.len()..]) {
+                self.rubbing.sites[*k].resists = -force;
+            }
+            let change = more.iter().zip(&self.scales).map(|(a, s)| (a / s).abs());
+            let change = change.fold(0.0, |a: f64, b| if b <= a { a } else { b });
+            let whole = self.let_go.accelerations.iter().zip(&self.scales);
+            let whole = whole.map(|(a, s)| (a / s).abs()).fold(0.0, f64::max);
+            if !change.is_finite() {
+                return None;
+            }
+            first = first.max(whole).max(change);
+            let rounds = change <= NEARLY * first && change > 0.5 * before;
+            before = change;
+            if rounds || change <= SETTLED * whole || change == 0.0 {
+                self.take_senses();
+                let after = accelerations.iter().zip(&rows).map(|(a, row)| a + dot(row, &changes));
+                return Some(Acted {
+                    stops: gaps.len(),
+                    after: after.collect(),
+                    terms: (accelerations.iter().zip(&rows))
+                        .map(|(a, row)| {
+                            let by = rows.iter().zip(&found).map(|(r, f)| (dot(row, r) * f).abs());
+                            a.abs() + by.sum::<f64>()
+                        })
+                        .collect(),
+                });
+            }
+        }
+        None
+    }
+
+    /// How far everything that is held is from giving way, as a part of its limit: negative where something does. With what gives way
+    /// first.
+    pub fn firmness(&mut self, time: f64, y: &[f64]) -> Option<(f64, Vec<usize>)> {
+        if !self.held(time, y) {
+            return None;
+        }
+        let here = self.rubbing_here();
+        let fastest = self.rubbing.sites.iter().map(|s| s.fastest / s.size).fold(0.0, f64::max);
+        let part = |k: usize| {
+            let (site, here) = (&self.rubbing.sites[k], &here[k]);
+            let dry = (site.resists - here.viscous).abs();
+            // What nothing can hold slides.
+            let sliding = here.speed.abs() / (REST * (fastest * site.size).max(f64::MIN_POSITIVE));
+            let borne = if dry == 0.0 { 0.0 } else { dry / here.limit };
+            match here.gradient.iter().all(|x| *x == 0.0) {
+                true => 0.0,
+                false => borne.max(if site.resists == 0.0 { sliding } else { 0.0 }),
+            }
+        };
+        let held = (0..here.len()).filter(|k| self.mode.rubs[*k] == Rub::Held);
+        let parts: Vec<(usize, f64)> = held.map(|k| (k, part(k))).collect();
+        let most = parts.iter().map(|(_, part)| *part).fold(0.0, f64::max);
+        let first = parts.iter().filter(|(_, part)| *part >= most * (1.0 - AS_MUCH));
+        Some((1.0 - most.min(2.0), first.map(|(k, _)| *k).collect()))
+    }
+
+    /// How fast a place slides in its sense, in a state.
+    pub fn slides(&mut self, place: usize, time: f64, y: &[f64]) -> Option<f64> {
+        let Rub::Slides(sense) = *self.mode.rubs.get(place)? else {
+            return None;
+        };
+        if !self.look(time, y) {
+            return None;
+        }
+        let here = self.rubbing_here();
+        for (site, here) in self.rubbing.sites.iter_mut().zip(&here) {
+            site.fastest = site.fastest.max(here.speed.abs());
+        }
+        Some(here.get(place)?.speed * sense)
+    }
+
+    /// Decides in a state, whose speeds it clears of what should be none, which places are held and in which sense the others slide.
+    /// Those that were held stay at rest, unless speeds `jumped`; `turns` is at rest too, and `lets_go` gives way. False where it cannot be known.
+    pub fn decide_rubbing(
+        &mut self,
+        (time, y): (f64, &mut [f64]),
+        jumped: bool,
+        turns: Option<usize>,
+        lets_go: &[usize],
+    ) -> bool {
+        self.mode.stuck = false;
+        if !self.look(time, y) {
+            return false;
+        }
+        let here = self.rubbing_here();
+        let fastest = (self.rubbing.sites.iter().zip(&here))
+            .map(|(site, here)| site.fastest.max(here.speed.abs()) / site.size)
+            .fold(0.0, f64::max);
+        let mut candidates = Vec::new();
+        for (k, here) in here.iter().enumerate() {
+            let site = &self.rubbing.sites[k];
+            let rests = here.speed.abs() <= REST * fastest * site.size;
+            let was_held = self.mode.rubs[k] == Rub::Held && !jumped;
+            self.mode.rubs[k] = if lets_go.contains(&k) {
+                let sense = match site.resists {
+                    _ if !rests => here.speed,
+                    resists => resists,
+                };
+                Rub::Slides(sense.signum())
+            } else if was_held || rests || turns == Some(k) {
+                candidates.push(k);
+                Rub::Held
+            } else {
+                Rub::Slides(here.speed.signum())
+            };
+        }
+        self.decide_among(time, y, &candidates) && self.clear_speeds(time, y)
+    }
+
+    /// Finds which of some places at rest are held, and how the others begin to slide.
+    fn decide_among(&mut self, time: f64, y: &[f64], candidates: &[usize]) -> bool {
+        for k in candidates {
+            self.rubbing.sites[*k].resists = 0.0;
+        }
+        let found = self.act_in(time, y, candidates, |rows, _, now| {
+            let whole = sum(rows, now.forces);
+            let free: Vec<f64> = (now.accelerations.iter().zip(rows))
+                .map(|(a, row)| a - dot(row, &whole))
+                .collect();
+            Some(limited(rows, &free, now.limits))
+        });
+        let Some(found) = found else { return false };
+        let after = found.after.iter().zip(&found.terms).skip(found.stops);
+        for (k, (after, terms)) in candidates.iter().zip(after) {
+            self.mode.rubs[*k] = match after.abs() > LEFT_OVER * terms {
+                true => Rub::Slides(after.signum()),
+                false => Rub::Held,
+            };
+        }
+        self.take_senses();
+        true
+    }
+
+    /// Takes what is left of their speeds from what is held; all that moves stands still where that holds everything.
+    fn clear_speeds(&mut self, time: f64, y: &mut [f64]) -> bool {
+        let here = self.rubbing_here();
+        let held = self.held_places();
+        if held.is_empty() {
+            return true;
+        }
+        let stops = self.mode.resting.clone();
+        let gaps: Option<Vec<Gap>> = stops.iter().map(|s| self.gap(*s, time, y)).collect();
+        let Some(gaps) = gaps else { return false };
+        let rows = self.rows(&gaps, &here, &held);
+        let all: Vec<usize> = (0..rows.len()).collect();
+        let (_, independent) = spanned(&rows, &all, Vec::new());
+        let n = self.free.len();
+        if independent.len() == n && self.driven.is_empty() {
+            self.mode.stuck = true;
+            y[n..2 * n].fill(0.0);
+            return true;
+        }
+        let rates: Vec<f64> = (independent.iter())
+            .map(|k| match k.checked_sub(gaps.len()) {
+                None => -gaps[*k].rate,
+                Some(place) => -here[held[place]].speed,
+            })
+            .collect();
+        let Some(impulses) = yielding(&rows, &independent, rates) else {
+            return false;
+        };
+        let mut change = vec![0.0; n];
+        for (k, impulse) in independent.iter().zip(&impulses) {
+            let gradient = match k.checked_sub(gaps.len()) {
+                None => &gaps[*k].gradient,
+                Some(place) => &here[held[place]].gradient,
+            };
+            add(&mut change, *impulse, gradient);
+        }
+        self.let_go.respond(&mut change);
+        for (v, change) in y[n..2 * n].iter_mut().zip(&change) {
+            *v += change;
+        }
+        true
+    }
+
+    /// The parts of their greatest friction that act in all places, at a state.
+    pub fn friction_parts(&mut self, time: f64, y: &[f64]) -> Option<Vec<f64>> {
+        if self.holds_somewhere() && !self.held(time, y) {
+            return None;
+        }
+        let here = self.rubbing_here();
+        let places = self.rubbing.sites.iter().zip(&self.mode.rubs).zip(&here);
+        let parts = places.map(|((site, rub), here)| match rub {
+            Rub::Slides(sense) => *sense,
+            Rub::Held => match site.resists - here.viscous {
+                0.0 => 0.0,
+                dry => dry / here.limit,
+            },
+        });
+        Some(parts.collect())
+    }
+}

@@ -1,0 +1,199 @@
+//! Friction where several coordinates move: against motions known exactly, against one coordinate alone, and against inverse dynamics.
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use common::{Free, at};
+use kempe_dynamics::ForceSampler;
+use kempe_motion::Silent;
+use kempe_number::Number;
+use kempe_simulate::{Ending, Happened, Simulated};
+
+const G: f64 = 9.81;
+
+/// A block slides on a plank that slides on the ground.
+fn plank(deck: &str, ground: &str) -> String {
+    format!(
+        r#"
+        units = {{ length = "m", angle = "rad" }}
+        gravity = [0, "-9.81 m/s^2"]
+        [links]
+        frame = {{ O = [0, 0], X = [1, 0] }}
+        plank = {{ A = [0, 0], Q = [1, 0], mass = 2, inertia = 1, center = [0, 0] }}
+        block = {{ C = [0, 0], mass = 1, inertia = 1, center = [0, 0] }}
+        [joints]
+        floor = {{ slider = "plank", at = "A", on = "O -> X" }}
+        deck  = {{ slider = "block", at = "C", on = "A -> Q" }}
+        [friction]
+        floor = {{ {ground} }}
+        deck  = {{ {deck} }}
+        [drives]
+        under = {{ slides = "floor", at = 0 }}
+        over  = {{ slides = "deck", at = 0 }}
+        "#
+    )
+}
+
+fn near(found: &Simulated, drive: usize, time: f64, wanted: [f64; 2]) {
+    let is = at(found, drive, time);
+    for (is, wanted) in is.iter().zip(wanted) {
+        assert!(
+            (is - wanted).abs() < 1e-11 * (1.0 + wanted.abs()),
+            "drive {drive} at {time}: {is} instead of {wanted}"
+        );
+    }
+}
+
+#[test]
+fn a_block_slides_on_a_plank_rides_on_it_and_both_come_to_rest() {
+    let mut free = Free::new(&plank("coefficient = 0.4", "coefficient = 0.05"), 8.0);
+    free.question.start[1][1] = 3.0;
+    let found = free.run();
+    assert_eq!(found.ending, Ending::Until);
+    // (0.4 - 0.05 3) g / 2 forwards, and 0.4 g against it.
+    let (plank, block) = (0.125 * G, -0.4 * G);
+    let together = 3.0 / (plank - block);
+    let fast = plank * together;
+    let rest = together + fast / (0.05 * G);
+    for k in 0..=20 {
+        let t = together * f64::from(k) / 20.0;
+        near(&found, 0, t, [0.5 * plank * t * t, plank * t]);
+        let s = block - plank;
+        near(&found, 1, t, [3.0 * t + 0.5 * s * t * t, 3.0 + s * t]);
+        let later = together + (rest - together) * f64::from(k) / 20.0;
+        let dt = later - together;
+        let way = 0.5 * fast * together + fast * dt - 0.025 * G * dt * dt;
+        near(&found, 0, later, [way, fast - 0.05 * G * dt]);
+        near(&found, 1, later, [1.5 * together, 0.0]);
+    }
+    let way = 0.5 * fast * rest;
+    near(&found, 0, 8.0, [way, 0.0]);
+    let told: Vec<Happened> = found.happenings.iter().map(|h| h.what).collect();
+    assert_eq!(told, [Happened::Holds { place: 1 }, Happened::Sticks]);
+    assert!((found.happenings[0].time - together).abs() < 1e-12);
+    assert!((found.happenings[1].time - rest).abs() < 1e-11);
+}
+
+/// A crank-rocker with friction in all its pins and a motor that lets it stop; beside it, whatever hangs there.
+fn rocker(beside: &str, drive: &str) -> String {
+    format!(
+        r#"
+        units = {{ length = "m", angle = "rad" }}
+        gravity = [0, "-9.81 m/s^2"]
+        [links]
+        frame   = {{ A = [0, 0], D = [0.6, 0], O = [3, 0] }}
+        crank   = {{ A-B = 0.2, mass = 3, inertia = 0.02, center = [0.15, 0] }}
+        coupler = {{ B-C = 0.5, mass = 2, inertia = 0.05, center = [0.25, 0] }}
+        rocker  = {{ D-C = 0.4, mass = 2, inertia = 0.04, center = [0.2, 0] }}
+        {beside}
+        [assembly]
+        C = "left of B -> D"
+        [friction]
+        A = {{ coefficient = 0.2, radius = 0.03, drag = 0.1 }}
+        B = {{ coefficient = 0.3, radius = 0.02 }}
+        C = {{ drag = 1.5 }}
+        D = {{ coefficient = 0.2, radius = 0.02, viscous = 0.05 }}
+        [drives]
+        motor = {{ turns = "crank", at = 1 }}
+        {drive}
+        "#
+    )
+}
+
+#[test]
+fn beside_another_mechanism_each_moves_as_it_does_alone() {
+    let pendulum = "rod = { O-P = 1, mass = 1, inertia = 0.1, center = [0.5, 0] }";
+    let swing = "swing = { turns = \"rod\", at = 0.3 }";
+    for (start, until) in [(0.0, 6.0), (9.0, 4.0), (-6.0, 4.0)] {
+        let mut alone = Free::new(&rocker("", ""), until);
+        alone.question.start[0][1] = start;
+        let alone = alone.run();
+        let mut both = Free::new(&rocker(pendulum, swing), until);
+        both.question.start[0][1] = start;
+        let both = both.run();
+        assert_eq!(both.ending, Ending::Until, "{} {:?}", both.end, &both.happenings[..both.happenings.len().min(8)]);
+        for k in 0..=200 {
+            let t = until * f64::from(k) / 200.0;
+            let (one, other) = (at(&alone, 0, t), at(&both, 0, t));
+            for (one, other) in one.iter().zip(other) {
+                assert!((one - other).abs() < 1e-9, "start {start}, {t}: {one} {other}");
+            }
+        }
+        let sticks = |found: &Simulated| {
+            let told = found.happenings.iter();
+            told.filter(|h| matches!(h.what, Happened::Sticks)).count()
+        };
+        println!("{start}: {} {:?} {} {}", sticks(&alone), both.happenings, alone.evaluations, both.evaluations);
+    }
+}
+
+/// What inverse dynamics of the motion that was found asks of the coordinates that were let go, over the largest load anywhere: nothing, if the
+/// friction that it finds is the one that acted.
+fn unbalanced(found: &Simulated, until: f64) -> f64 {
+    let motion = found.motion(&mut Silent).unwrap();
+    let mut sampler = ForceSampler::new(&motion, &[]).unwrap();
+    let mut worst = 0.0_f64;
+    for k in 0..=400 {
+        let sample = sampler.at_time(until * f64::from(k) / 400.0);
+        let evidence = sample.evidence.unwrap();
+        assert!(evidence.route_difference < 1e-9, "{evidence:?}");
+        let (forces, _) = sampler.solved();
+        let largest = forces.equilibrium.lanes[0].largest;
+        for drive in found.telling() {
+            let asked = forces.drives[drive.index()].value.value();
+            if asked.abs() / largest > 1e-10 { println!("{k} {drive:?} {asked:e} {largest:e}"); }
+            worst = worst.max(asked.abs() / largest);
+        }
+    }
+    worst
+}
+
+#[test]
+fn inverse_dynamics_of_what_was_found_asks_for_nothing() {
+    let mut free = Free::new(&plank("coefficient = 0.4", "coefficient = 0.05"), 8.0);
+    free.question.start[1][1] = 3.0;
+    let off = unbalanced(&free.run(), 8.0);
+    assert!(off < 1e-11, "{off:e}");
+    let pendulum = "rod = { O-P = 1, mass = 1, inertia = 0.1, center = [0.5, 0] }";
+    let swing = "swing = { turns = \"rod\", at = 0.3 }";
+    let free = Free::new(&rocker(pendulum, swing), 6.0);
+    let off = unbalanced(&Free::new(&rocker("", ""), 6.0).run(), 6.0); println!("alone {off:e}");
+    let off = unbalanced(&free.run(), 6.0);
+    assert!(off < 1e-9, "{off:e}");
+}
+
+/// A five-bar whose cranks are let go, with friction in its pins.
+const FIVE_BAR: &str = r#"
+    units = { length = "m", angle = "rad" }
+    gravity = [0, "-9.81 m/s^2"]
+    [links]
+    frame = { A = [0, 0], E = [0.5, 0] }
+    left  = { A-B = 0.25, mass = 1, inertia = 0.01, center = [0.12, 0] }
+    reach = { B-C = 0.5, mass = 1.2, inertia = 0.03, center = [0.25, 0.02] }
+    arm   = { D-C = 0.5, mass = 0.8, inertia = 0.02, center = [0.25, 0] }
+    right = { E-D = 0.25, mass = 1, inertia = 0.01, center = [0.1, 0.03] }
+    [assembly]
+    C = "left of B -> D"
+    [friction]
+    all = { coefficient = 0.15, radius = 0.02 }
+    B = { coefficient = 0.2, static = 0.3, stribeck = "10 mm/s", radius = 0.02, drag = 0.05 }
+    C = { drag = 0.3, viscous = 0.02 }
+    [drives]
+    one = { turns = "left", at = 2.2 }
+    two = { turns = "right", at = 0.9 }
+"#;
+
+#[test]
+fn a_five_bar_with_friction_in_all_pins_swings_until_it_rests() {
+    let mut free = Free::new(FIVE_BAR, 6.0);
+    free.question.start = vec![[2.2, 1.0], [0.9, -2.0]];
+    free.question.tolerance = 1e-11;
+    let found = free.run();
+    println!("{:?} {} {}", found.ending, found.end, found.evaluations);
+    for h in &found.happenings {
+        println!("{:?}", h);
+    }
+    assert_eq!(found.ending, Ending::Until);
+    let off = unbalanced(&found, 6.0);
+    assert!(off < 1e-8, "{off:e}");
+}
