@@ -17,9 +17,6 @@ use crate::inner::Inner;
 use crate::places::Places;
 use crate::rubbing::{Rub, Rubbing};
 
-/// A coordinate that moves against the sense in which friction is looked at moves this slowly (rad/s, or m/s) instead: so
-/// friction goes on smoothly a little beyond where it turns.
-const SLOW: f64 = 1e-9;
 /// Speeds on both sides of a break that differ by this part are the same.
 const SMOOTH: f64 = 1e-9;
 /// Corrections of what holds a rest where friction acts, at most.
@@ -36,11 +33,9 @@ pub(crate) struct Mode {
     pub beside: Vec<usize>,
     /// Soft stops that are touched.
     pub touched: Vec<usize>,
-    /// Friction holds it.
+    /// Friction holds all of it.
     pub stuck: bool,
-    /// The sense in which friction is looked at where one coordinate moves; 0 where nothing rubs.
-    pub sense: f64,
-    /// How every place that rubs is looked at, where several move.
+    /// How every place that rubs is looked at.
     pub rubs: Vec<Rub>,
 }
 
@@ -120,7 +115,7 @@ pub(crate) struct Plant {
     pub inner: Inner,
     /// Motors of the drives that are let go.
     pub motors: Vec<Option<Turned>>,
-    /// What rubs, where several coordinates move.
+    /// What rubs.
     pub rubbing: Rubbing,
     storage: Vec<Wrench<f64>>,
 }
@@ -265,13 +260,7 @@ impl Plant {
             self.coordinates[drive.index()] = Rates::constant(*q);
         }
         for (k, drive) in self.free.iter().enumerate() {
-            let mut v = y[n + k];
-            if self.mode.sense != 0.0 && v * self.mode.sense < SLOW {
-                v = SLOW * self.mode.sense;
-            }
-            if self.mode.stuck {
-                v = 0.0;
-            }
+            let v = if self.mode.stuck { 0.0 } else { y[n + k] };
             self.coordinates[drive.index()] = Rates::from_coefficients([y[k], v, 0.0]);
         }
         self.inner.take(&y[2 * n..]);
@@ -290,7 +279,7 @@ impl Plant {
     pub fn accelerate(&mut self, time: f64, y: &[f64], rates: &mut [f64]) -> bool {
         let n = self.free.len();
         rates[..n].copy_from_slice(&y[n..2 * n]);
-        // It stands still, and not only but for rounding: friction would be asked which way that goes.
+        // It stands still, and not only but for rounding.
         let rests = self.is_alone() && !self.mode.resting.is_empty();
         if self.mode.stuck || rests {
             rates.fill(0.0);
@@ -472,34 +461,8 @@ impl Plant {
             let speed = self.coordinates[drive.index()].coefficient(1);
             power += self.forces.given_by(&self.instant, *drive) * speed;
         }
-        // Beyond where friction turns, power goes on as the speed does.
-        let slow = match (self.mode.sense == 0.0, self.free.first(), speeds.first()) {
-            (false, Some(drive), Some(speed)) => {
-                speed / self.coordinates[drive.index()].coefficient(1)
-            }
-            _ => 1.0,
-        };
         let (forces, storage) = (&self.forces, &mut self.storage);
-        power + slow * forces.power_from_outside(&self.instant, storage)
-    }
-
-    /// The acceleration of the only coordinate that is let go where it slips in a sense, at rest.
-    pub fn slipping(&mut self, sense: f64, time: f64, y: &[f64]) -> Option<f64> {
-        let mode = self.mode.clone();
-        (self.mode.sense, self.mode.stuck) = (sense, false);
-        let mut at_rest = y.to_vec();
-        at_rest[1] = 0.0;
-        let mut rates = vec![0.0; y.len()];
-        let found = self.accelerate(time, &at_rest, &mut rates);
-        self.mode = mode;
-        found.then(|| rates[1])
-    }
-
-    /// How far friction is from letting go of the only coordinate, as an acceleration: negative where it slips.
-    pub fn grip(&mut self, time: f64, y: &[f64]) -> Option<f64> {
-        let up = self.slipping(1.0, time, y)?;
-        let down = self.slipping(-1.0, time, y)?;
-        Some((-up).min(down))
+        power + forces.power_from_outside(&self.instant, storage)
     }
 
     /// Coordinate, speed and acceleration at a state with these rates: of every drive of the model, and behind them of the coordinates

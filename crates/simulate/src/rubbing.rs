@@ -1,4 +1,4 @@
-//! Friction where several coordinates move: each place that rubs slides in a sense of its own, or is held.
+//! Friction: each place that rubs slides in a sense of its own, or is held.
 //!
 //! A place that slides resists with all its friction against the sense in which it does, until its speed changes sign. One that is held
 //! resists with what it takes to stay at rest, by itself or together with others ([`crate::sticking`]), until that is more than its limit.
@@ -122,7 +122,10 @@ fn sum(rows: &[Vec<f64>], forces: &[f64]) -> Vec<f64> {
 /// How many places rub where these drives are let go.
 pub(crate) fn places_that_rub(acting: &Acting<f64>, free: &[DriveId]) -> usize {
     let joints = acting.friction.iter().filter(|f| f.rubs());
-    let seals = acting.oils.iter().filter(|oil| oil.friction > 0.0 && free.contains(&oil.drive));
+    let seals = acting
+        .oils
+        .iter()
+        .filter(|oil| oil.friction > 0.0 && free.contains(&oil.drive));
     joints.count() + seals.count()
 }
 
@@ -152,10 +155,14 @@ impl Plant {
 
     /// Cylinders whose seals rub, with the places of their parts among the inner states.
     pub fn seals(&self) -> Vec<(Moved, usize)> {
-        let sites = self.rubbing.sites.iter().filter_map(|site| match site.what {
-            Acts::Seals(moved) => Some((self.inner.moved[moved], site.inner)),
-            Acts::Joint(..) => None,
-        });
+        let sites = self
+            .rubbing
+            .sites
+            .iter()
+            .filter_map(|site| match site.what {
+                Acts::Seals(moved) => Some((self.inner.moved[moved], site.inner)),
+                Acts::Joint(..) => None,
+            });
         sites.collect()
     }
 
@@ -168,21 +175,27 @@ impl Plant {
             let Sense::Amount(amount) = f.sense else {
                 return None;
             };
-            Some((Acts::Joint(index, amount), if f.turns() { 1.0 } else { size }))
+            Some((
+                Acts::Joint(index, amount),
+                if f.turns() { 1.0 } else { size },
+            ))
         });
         let seals = self.inner.moved.iter().enumerate();
         let seals = seals
             .filter(|(_, m)| self.forces.acting.oils[m.oil].friction > 0.0)
             .map(|(index, _)| (Acts::Seals(index), size));
-        let sites = joints.chain(seals).enumerate().filter_map(|(place, (what, size))| {
-            Some(Site {
-                what,
-                inner: model.inner_place(InnerState::Friction(place))?,
-                size,
-                fastest: 0.0,
-                resists: 0.0,
-            })
-        });
+        let sites = joints
+            .chain(seals)
+            .enumerate()
+            .filter_map(|(place, (what, size))| {
+                Some(Site {
+                    what,
+                    inner: model.inner_place(InnerState::Friction(place))?,
+                    size,
+                    fastest: 0.0,
+                    resists: 0.0,
+                })
+            });
         self.rubbing.sites = sites.collect();
         self.mode.rubs = vec![Rub::Held; self.rubbing.sites.len()];
         self.take_senses();
@@ -212,7 +225,7 @@ impl Plant {
             // What holds is found with the rest.
             Some((_, Rub::Held)) => 0.0,
             Some((_, Rub::Slides(sense))) => sense * friction,
-            None => self.mode.sense * friction,
+            None => 0.0,
         }
     }
 
@@ -228,7 +241,9 @@ impl Plant {
                     gain: r.gain,
                     limit: r.limit,
                     viscous: r.viscous,
-                    gradient: (self.free.iter()).map(|d| r.slope(&self.instant, *d)).collect(),
+                    gradient: (self.free.iter())
+                        .map(|d| r.slope(&self.instant, *d))
+                        .collect(),
                 })
             }
             Acts::Seals(moved) => {
@@ -238,7 +253,12 @@ impl Plant {
                 gradient[moved.free] = 1.0;
                 Some(Here {
                     speed: self.coordinates[drive.index()].coefficient(1),
-                    gain: self.let_go.accelerations.get(moved.free).copied().unwrap_or(0.0),
+                    gain: self
+                        .let_go
+                        .accelerations
+                        .get(moved.free)
+                        .copied()
+                        .unwrap_or(0.0),
                     limit: self.forces.acting.oils[moved.oil].friction,
                     viscous: 0.0,
                     gradient,
@@ -325,7 +345,9 @@ impl Plant {
     /// The places that are held.
     fn held_places(&self) -> Vec<usize> {
         let rubs = self.mode.rubs.iter().enumerate();
-        rubs.filter(|(_, rub)| **rub == Rub::Held).map(|(k, _)| k).collect()
+        rubs.filter(|(_, rub)| **rub == Rub::Held)
+            .map(|(k, _)| k)
+            .collect()
     }
 
     /// Finds how everything accelerates while the stops on which it rests push and some places resist as `choose` says of their rows
@@ -367,7 +389,12 @@ impl Plant {
                     self.given[self.inner.moved[moved].free] -= site.resists;
                 }
             }
-            (self.forces).left_by_friction(&self.instant, &self.free, &self.given, &mut self.let_go);
+            (self.forces).left_by_friction(
+                &self.instant,
+                &self.free,
+                &self.given,
+                &mut self.let_go,
+            );
             let here = self.rubbing_here();
             let mut left = self.let_go.left().to_vec();
             self.let_go.halve(&mut left);
@@ -394,7 +421,8 @@ impl Plant {
             let gradients = gaps.iter().map(|gap| &gap.gradient);
             let gradients = gradients.chain(places.iter().map(|k| &here[*k].gradient));
             let mut changes = vec![0.0; self.free.len()];
-            for ((gradient, row), (new, old)) in gradients.zip(&rows).zip(found.iter().zip(&forces)) {
+            for ((gradient, row), (new, old)) in gradients.zip(&rows).zip(found.iter().zip(&forces))
+            {
                 add(&mut changes, new - old, row);
                 // What hardly slides by any coordinate is none of the rows.
                 if row.iter().any(|x| *x != 0.0) {
@@ -419,13 +447,19 @@ impl Plant {
             before = change;
             if rounds || change <= SETTLED * whole || change == 0.0 {
                 self.take_senses();
-                let after = accelerations.iter().zip(&rows).map(|(a, row)| a + dot(row, &changes));
+                let after = accelerations
+                    .iter()
+                    .zip(&rows)
+                    .map(|(a, row)| a + dot(row, &changes));
                 return Some(Acted {
                     stops: gaps.len(),
                     after: after.collect(),
                     terms: (accelerations.iter().zip(&rows))
                         .map(|(a, row)| {
-                            let by = rows.iter().zip(&found).map(|(r, f)| (dot(row, r) * f).abs());
+                            let by = rows
+                                .iter()
+                                .zip(&found)
+                                .map(|(r, f)| (dot(row, r) * f).abs());
                             a.abs() + by.sum::<f64>()
                         })
                         .collect(),
@@ -442,7 +476,12 @@ impl Plant {
             return None;
         }
         let here = self.rubbing_here();
-        let fastest = self.rubbing.sites.iter().map(|s| s.fastest / s.size).fold(0.0, f64::max);
+        let fastest = self
+            .rubbing
+            .sites
+            .iter()
+            .map(|s| s.fastest / s.size)
+            .fold(0.0, f64::max);
         let part = |k: usize| {
             let (site, here) = (&self.rubbing.sites[k], &here[k]);
             let dry = (site.resists - here.viscous).abs();
@@ -457,7 +496,9 @@ impl Plant {
         let held = (0..here.len()).filter(|k| self.mode.rubs[*k] == Rub::Held);
         let parts: Vec<(usize, f64)> = held.map(|k| (k, part(k))).collect();
         let most = parts.iter().map(|(_, part)| *part).fold(0.0, f64::max);
-        let first = parts.iter().filter(|(_, part)| *part >= most * (1.0 - AS_MUCH));
+        let first = parts
+            .iter()
+            .filter(|(_, part)| *part >= most * (1.0 - AS_MUCH));
         Some((1.0 - most.min(2.0), first.map(|(k, _)| *k).collect()))
     }
 
@@ -550,9 +591,12 @@ impl Plant {
         let Some(gaps) = gaps else { return false };
         let rows = self.rows(&gaps, &here, &held);
         let all: Vec<usize> = (0..rows.len()).collect();
-        let (_, independent) = spanned(&rows, &all, Vec::new());
+        let (by_stops, of_stops) = spanned(&rows, &all[..gaps.len()], Vec::new());
+        let (_, of_places) = spanned(&rows, &all[gaps.len()..], by_stops);
         let n = self.free.len();
-        if independent.len() == n && self.driven.is_empty() {
+        let by_friction = !of_places.is_empty();
+        let independent = [of_stops, of_places].concat();
+        if by_friction && independent.len() == n && self.driven.is_empty() {
             self.mode.stuck = true;
             y[n..2 * n].fill(0.0);
             return true;

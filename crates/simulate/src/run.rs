@@ -8,9 +8,7 @@ use kempe_dynamics::{Forces, Problem};
 use kempe_integrate::{Integrator, Stopped, Tolerance, Used};
 use kempe_measure::measure::visit_leaves;
 use kempe_mechanism::{Design, Mechanism, NotReleased};
-use kempe_model::{
-    COEFFICIENTS, DriveId, Law, Leaf, Measure, Model, PoseMeasure,
-};
+use kempe_model::{COEFFICIENTS, DriveId, Law, Leaf, Measure, Model, PoseMeasure};
 use kempe_motion::{Done, MotionError, Placed, Progress, Stage};
 use kempe_units::Dimension;
 
@@ -114,11 +112,8 @@ pub fn simulate(
         .collect();
     let moving: Vec<DriveId> = question.free.iter().chain(&driven).copied().collect();
     let mut forces = Forces::new(design.clone()).map_err(Unsimulated::Problems)?;
-    // Where several coordinates move, places that rub slide each in its own sense, which the motion that is found keeps.
-    let followed = match moving.len() {
-        0 | 1 => 0,
-        _ => places_that_rub(&forces.acting, &question.free),
-    };
+    // Places that rub slide each in its own sense, which the motion that is found keeps.
+    let followed = places_that_rub(&forces.acting, &question.free);
     if followed > 0 {
         let follow = |model: &mut Model| model.actions.followed_friction = followed;
         (from.design, design) = (from.design.with_model(follow), design.with_model(follow));
@@ -413,15 +408,8 @@ impl Run<'_> {
         for (armed, condition) in self.conditions.iter_mut().zip(&self.ends) {
             *armed = (self.plant.value(condition, 0.0, &self.y)).is_some_and(|x| x < 0.0);
         }
-        if !self.plant.mode.rubs.is_empty() {
-            if !self.rub(true, None, &[]) {
-                return Err(Unsimulated::NoMass);
-            }
-        } else if places_that_rub(&self.plant.forces.acting, &self.plant.free) > 0 {
-            self.plant.mode.sense = match self.y[1] {
-                v if v != 0.0 => v.signum(),
-                _ => self.slip_or_stick().ok_or(Unsimulated::NoMass)?,
-            };
+        if !self.rub(true, None, &[]) {
+            return Err(Unsimulated::NoMass);
         }
         let mut rates = vec![0.0; self.y.len()];
         if !self.plant.accelerate(0.0, &self.y, &mut rates) {

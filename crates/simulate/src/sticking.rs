@@ -59,7 +59,11 @@ pub(crate) fn spanned(
 }
 
 /// The forces along independent rows that together are a vector, which lies in their span.
-pub(crate) fn together(rows: &[Vec<f64>], independent: &[usize], target: &[f64]) -> Option<Vec<f64>> {
+pub(crate) fn together(
+    rows: &[Vec<f64>],
+    independent: &[usize],
+    target: &[f64],
+) -> Option<Vec<f64>> {
     let products: Vec<f64> = independent.iter().map(|k| dot(&rows[*k], target)).collect();
     yielding(rows, independent, products)
 }
@@ -107,7 +111,10 @@ pub(crate) fn shared(rows: &[Vec<f64>], limits: &[f64], target: &[f64]) -> Optio
     loop {
         let (span, independent) = spanned(rows, &left, Vec::new());
         if independent.len() == left.len() {
-            for (k, force) in independent.iter().zip(together(rows, &independent, &target)?) {
+            for (k, force) in independent
+                .iter()
+                .zip(together(rows, &independent, &target)?)
+            {
                 forces[*k] = force;
             }
             return Some(forces);
@@ -120,7 +127,11 @@ pub(crate) fn shared(rows: &[Vec<f64>], limits: &[f64], target: &[f64]) -> Optio
             let slides: Vec<f64> = (left.iter())
                 .map(|k| {
                     let (along, long) = (dot(&rows[*k], &way), dot(&rows[*k], &rows[*k]).sqrt());
-                    if along.abs() <= DEPENDENT * long { 0.0 } else { along }
+                    if along.abs() <= DEPENDENT * long {
+                        0.0
+                    } else {
+                        along
+                    }
                 })
                 .collect();
             let most: f64 = (left.iter().zip(&slides))
@@ -237,7 +248,9 @@ mod tests {
 
     /// Numbers from -1 to 1.
     fn numbers(seed: &mut u64) -> f64 {
-        *seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        *seed = seed
+            .wrapping_mul(6364136223846793005)
+            .wrapping_add(1442695040888963407);
         (*seed >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     }
 
@@ -303,10 +316,15 @@ mod tests {
             let forces = limited(&rows, &free, &limits);
             for k in 0..5 {
                 let left: f64 = free[k]
-                    + (0..5).map(|j| dot(&rows[k], &rows[j]) * forces[j]).sum::<f64>();
+                    + (0..5)
+                        .map(|j| dot(&rows[k], &rows[j]) * forces[j])
+                        .sum::<f64>();
                 assert!(forces[k].abs() <= limits[k]);
                 let slides = left.abs() > 1e-9;
-                assert!(!slides || forces[k] == -limits[k] * left.signum(), "{left} {forces:?}");
+                assert!(
+                    !slides || forces[k] == -limits[k] * left.signum(),
+                    "{left} {forces:?}"
+                );
             }
         }
     }

@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 use kempe_dynamics::Forces;
 use kempe_mechanism::constraint::MOST_PILOTS;
-use kempe_mechanism::{BodyId, Design, Mechanism};
+use kempe_mechanism::{Design, Mechanism};
 use kempe_model::{DriveId, FRAME, LinkId};
 use kempe_motion::{Motion, Placed, Progress};
 
@@ -111,7 +111,7 @@ impl Tellers {
         match self.instead(plant, place, &turning) {
             Some(link) => {
                 let before = self.links[place].replace(link);
-                match self.plant(plant, (time, y), place, &turning, progress) {
+                match self.plant(plant, (time, y), place, progress) {
                     Some(new) => {
                         *plant = new;
                         Exchanged::Done
@@ -157,7 +157,6 @@ impl Tellers {
         old: &mut Plant,
         (time, y): (f64, &mut [f64]),
         place: usize,
-        turning: &[f64],
         progress: &mut dyn Progress,
     ) -> Option<Plant> {
         let n = self.free.len();
@@ -225,9 +224,6 @@ impl Tellers {
         new.take_senses();
         new.end = old.end;
         new.back = old.back;
-        let body =
-            self.links[place].map_or(BodyId::GROUND, |link| self.design.mechanism.body_of(link));
-        new.mode.sense *= turning[body.index()].signum();
         let mut rates = vec![0.0; y.len()];
         if !new.accelerate(time, &state, &mut rates) {
             return None;

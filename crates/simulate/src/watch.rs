@@ -30,8 +30,6 @@ pub(crate) enum Watch {
     Meets(Place),
     /// They part.
     Separates(Place),
-    /// The only coordinate, which rubs, comes to rest.
-    Turns,
     /// A place that rubs comes to rest.
     Turned(usize),
     /// Friction lets something go that it holds.
@@ -44,21 +42,16 @@ pub(crate) enum Watch {
 pub(crate) fn watches(plant: &Plant, conditions: &[bool]) -> Vec<Watch> {
     let mode = &plant.mode;
     let mut list = Vec::new();
-    if mode.stuck {
+    if plant.holds_somewhere() {
         list.push(Watch::Slips);
-    } else {
-        if mode.sense != 0.0 && mode.resting.is_empty() {
-            list.push(Watch::Turns);
-        }
+    }
+    list.extend((0..mode.resting.len()).map(Watch::Leaves));
+    if !mode.stuck {
         for (place, rub) in mode.rubs.iter().enumerate() {
             if matches!(rub, Rub::Slides(_)) {
                 list.push(Watch::Turned(place));
             }
         }
-        if plant.holds_somewhere() {
-            list.push(Watch::Slips);
-        }
-        list.extend((0..mode.resting.len()).map(Watch::Leaves));
         for (index, stop) in plant.stops.iter().enumerate() {
             match stop.resistance {
                 Resistance::Rigid { .. } => {
@@ -94,10 +87,8 @@ impl Watch {
             Self::Leaves(k) => plant.pushed(k, time, y),
             Self::Meets(at) => Some(plant.opening(at, y)[0]),
             Self::Separates(at) => Some(-plant.opening(at, y)[0]),
-            Self::Turns => Some(y.get(1)? * plant.mode.sense),
             Self::Turned(place) => plant.slides(place, time, y),
-            Self::Slips if plant.holds_somewhere() => plant.firmness(time, y).map(|(firm, _)| firm),
-            Self::Slips => plant.grip(time, y),
+            Self::Slips => plant.firmness(time, y).map(|(firm, _)| firm),
             Self::Ends(k, _) => plant.value(ends.get(k)?, time, y).map(|above| -above),
         }
     }

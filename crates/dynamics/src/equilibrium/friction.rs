@@ -250,7 +250,10 @@ impl<T: ForceNumber> Equilibrium<T> {
         &'a self,
         frictions: &'a [Friction<T>],
     ) -> impl Iterator<Item = Rubbing<T>> + 'a {
-        let rubbing = self.contacts.iter().filter(|c| frictions[c.friction].rubs());
+        let rubbing = self
+            .contacts
+            .iter()
+            .filter(|c| frictions[c.friction].rubs());
         rubbing.map(|contact| {
             let friction = &frictions[contact.friction];
             let load = load(friction, contact, &self.lambda);

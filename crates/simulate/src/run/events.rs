@@ -30,19 +30,7 @@ pub(super) struct Struck {
 }
 
 impl Run<'_> {
-    /// Where the only coordinate, which rubs, is at rest: whether friction holds it; the sense in which it slips otherwise.
-    pub(super) fn slip_or_stick(&mut self) -> Option<f64> {
-        let up = self.plant.slipping(1.0, self.time, &self.y)?;
-        let down = self.plant.slipping(-1.0, self.time, &self.y)?;
-        self.plant.mode.stuck = up <= 0.0 && down >= 0.0;
-        if self.plant.mode.stuck {
-            self.tell(Happened::Sticks);
-        }
-        // Where it just slips one of them is zero, and rounding would choose.
-        Some(if up + down > 0.0 { 1.0 } else { -1.0 })
-    }
-
-    /// Decides what friction holds where several coordinates move: see [`Plant::decide_rubbing`](crate::plant::Plant). Tells of what it holds from here on,
+    /// Decides what friction holds: see [`Plant::decide_rubbing`](crate::plant::Plant). Tells of what it holds from here on,
     /// and of what it lets go.
     pub(super) fn rub(&mut self, jumped: bool, turns: Option<usize>, lets_go: &[usize]) -> bool {
         if self.plant.mode.rubs.is_empty() {
@@ -77,9 +65,8 @@ impl Run<'_> {
     /// Takes up the stops on which it comes to rest: closed, hardly opening, and pressed on. `struck` is the fastest rate of an
     /// impact just before; on `before` it rested already.
     pub(super) fn rest(&mut self, struck: f64, before: &[usize]) {
-        let free = self.plant.mode.stuck;
         let mut rates = vec![0.0; self.y.len()];
-        if free || !self.plant.accelerate(self.time, &self.y, &mut rates) {
+        if self.plant.mode.stuck || !self.plant.accelerate(self.time, &self.y, &mut rates) {
             return;
         }
         let n = self.plant.free.len();
@@ -167,7 +154,6 @@ impl Run<'_> {
 
     /// What an event does.
     pub(super) fn happens(&mut self, watch: Watch) -> Option<Ending> {
-        if std::env::var("DBG").is_ok() { eprintln!("{} {:?} {:?} {:?}", self.time, watch, self.plant.mode.rubs, self.y); }
         match watch {
             Watch::Strikes(stop) => {
                 let before = self.plant.mode.resting.clone();
@@ -209,31 +195,11 @@ impl Run<'_> {
                     return Some(Ending::NoWay);
                 }
             }
-            Watch::Slips if self.plant.holds_somewhere() => {
+            Watch::Slips => {
                 let first = self.plant.firmness(self.time, &self.y);
                 if !first.is_some_and(|(_, first)| self.rub(false, None, &first)) {
                     return Some(Ending::NoWay);
                 }
-            }
-            Watch::Turns => {
-                self.y[1] = 0.0;
-                let Some(sense) = self.slip_or_stick() else {
-                    return Some(Ending::NoWay);
-                };
-                self.plant.mode.sense = sense;
-            }
-            Watch::Slips => {
-                self.plant.mode.stuck = false;
-                let Some(sense) = self.slip_or_stick() else {
-                    return Some(Ending::NoWay);
-                };
-                // It was found to slip: at rest still, it does so the way that holds least.
-                if self.plant.mode.stuck {
-                    self.plant.mode.stuck = false;
-                    self.happenings.pop();
-                }
-                self.plant.mode.sense = sense;
-                self.tell(Happened::Slips);
             }
             Watch::Ends(condition, _) => {
                 match condition.checked_sub(self.question.end_when.len()) {
@@ -326,9 +292,6 @@ impl Run<'_> {
         }
         if let Some(work) = self.y.last_mut() {
             *work += impact.work;
-        }
-        if self.plant.mode.sense != 0.0 && self.y[1] != 0.0 {
-            self.plant.mode.sense = self.y[1].signum();
         }
         Some(struck)
     }

@@ -150,20 +150,6 @@ pub(super) fn explain(
         )
         .note("links have no mass unless it is given")
         .help("give the links that move their mass and inertia, or start away from a dead point"),
-        Unsimulated::FrictionOfSeveral if !contacts.is_empty() => cannot(
-            "friction of a joint without play is simulated where one coordinate moves alone, and here joints with play move too"
-                .to_owned(),
-        )
-        .note("which of several joints stick is not decided yet")
-        .help("give the joints that rub play, and their contacts a `friction`, or describe what takes the energy by [dampers]"),
-        Unsimulated::FrictionOfSeveral => cannot(
-            "friction is simulated where one coordinate moves alone, and here several do"
-                .to_owned(),
-        )
-        .note("which of several joints stick is not decided yet")
-        .help(
-            "let one drive go and hold the others, or describe what takes the energy by [dampers]",
-        ),
         Unsimulated::BeyondStop(index, by) => {
             let stop = stops.get(index);
             let (name, is_angle) = stop.map_or(("", false), |s| (s.owner.as_str(), s.is_angle));

@@ -197,6 +197,8 @@ pub(super) fn happened(
             Happened::Leaves { stop } => format!("leaves {}", name(stop)),
             Happened::Sticks => "friction holds it".to_owned(),
             Happened::Slips => "friction lets it go".to_owned(),
+            Happened::Holds { place } => format!("friction holds {}", rubs(*place)),
+            Happened::LetsGo { place } => format!("friction lets {} go", rubs(*place)),
             Happened::Switches { switch, on } => {
                 let named = model.actions.switches.get(*switch);
                 let name = named.map_or("", |s| s.name.as_str());
