@@ -13,6 +13,7 @@ use kempe_units::Expr;
 
 use crate::happening::{Happening, Held};
 use crate::joints::{Place, Touched};
+use crate::lack::{Lack, Sought};
 use crate::plant::Tied;
 
 /// Why a simulation ended.
@@ -24,12 +25,20 @@ pub enum Ending {
     Condition(usize),
     /// The mechanism comes to where its coordinates cannot tell how it goes on: a limit of the coordinate that is let go.
     Limit(EndReason),
-    /// No pose, or no acceleration, was found just ahead.
-    NoWay,
+    /// Nothing is known of accelerations just ahead.
+    NoWay(Lack),
+    /// Something that it goes by has no value just ahead.
+    NoValue(Sought),
+    /// This stop is reached where nothing that is let go gives way.
+    Unyielding(usize),
     /// No step is short enough: something runs away or jumps.
     TooShort,
-    /// More steps or events than anybody waits for.
-    TooMany,
+    /// No step is short enough: this runs away.
+    RunsAway(Sought),
+    /// More steps than anybody waits for.
+    TooManySteps,
+    /// More events than anybody waits for.
+    TooManyEvents,
     /// It was stopped from outside.
     Stopped,
 }

@@ -1,5 +1,7 @@
 //! What is looked for between steps.
 
+use std::cell::Cell;
+
 use kempe_integrate::{Integrator, crossing};
 use kempe_model::Measure;
 
@@ -75,6 +77,17 @@ pub(crate) fn watches(plant: &Plant, conditions: &[bool]) -> Vec<Watch> {
     list
 }
 
+/// Something that happened in a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Event {
+    /// When, s.
+    pub time: f64,
+    /// What.
+    pub watch: Watch,
+    /// Whether it did: otherwise what it goes by has no value from there on.
+    pub has_value: bool,
+}
+
 impl Watch {
     fn value(self, plant: &mut Plant, ends: &[Measure], time: f64, y: &[f64]) -> Option<f64> {
         match self {
@@ -114,19 +127,21 @@ pub(crate) fn first(
     ends: &[Measure],
     conditions: &mut [bool],
     y: &mut [f64],
-) -> Option<(f64, Watch)> {
+) -> Option<Event> {
     let (from, to) = (it.before(), it.time());
     let place = |k: usize| match k {
         PARTS => to,
         k => from + (to - from) * (k as f64 / PARTS as f64),
     };
-    let mut earliest: Option<(f64, Watch)> = None;
+    let mut earliest: Option<Event> = None;
     for watch in watches(plant, conditions) {
+        // Whether there was a pose but no value where it was asked for last.
+        let valueless = Cell::new(false);
         let mut at = |time: f64, plant: &mut Plant, y: &mut [f64]| -> f64 {
-            if !it.between(plant, time, y) {
-                return f64::NAN;
-            }
-            watch.value(plant, ends, time, y).unwrap_or(f64::NAN)
+            let there = it.between(plant, time, y);
+            let value = there.then(|| watch.value(plant, ends, time, y)).flatten();
+            valueless.set(value.is_some_and(|x| !x.is_finite()));
+            value.unwrap_or(f64::NAN)
         };
         let mut armed = !matches!(watch, Watch::Ends(_, false));
         let mut low = from;
@@ -137,13 +152,40 @@ pub(crate) fn first(
         } else {
             watch.slack(plant, from, y)
         };
+        // The last place at which it had a value, and whether it had none at the last.
+        let (mut known, mut lost) = (from, valueless.get());
         for k in 1..=PARTS {
             let high = place(k);
             // What comes behind the first event does not come.
-            if earliest.is_some_and(|(first, _)| first < high) && !armed {
+            if earliest.is_some_and(|first| first.time < high) && !armed {
                 break;
             }
             let value = at(high, plant, y);
+            // At an instant alone it may have none, as the curvature of a path where its point turns back.
+            if valueless.get() && lost {
+                let mut none = high;
+                for _ in 0..HALVINGS {
+                    let middle = 0.5 * (known + none);
+                    at(middle, plant, y);
+                    *(if valueless.get() {
+                        &mut none
+                    } else {
+                        &mut known
+                    }) = middle;
+                }
+                if earliest.is_none_or(|first| known < first.time) {
+                    earliest = Some(Event {
+                        time: known,
+                        watch,
+                        has_value: false,
+                    });
+                }
+                break;
+            }
+            lost = valueless.get();
+            if !lost {
+                known = high;
+            }
             if value > 0.0 || (value == 0.0 && open) {
                 (low, open, armed) = (high, true, true);
                 continue;
@@ -166,9 +208,13 @@ pub(crate) fn first(
                 }
             };
             if let Some(time) = found
-                && earliest.is_none_or(|(t, _)| time < t)
+                && earliest.is_none_or(|first| time < first.time)
             {
-                earliest = Some((time, watch));
+                earliest = Some(Event {
+                    time,
+                    watch,
+                    has_value: true,
+                });
             }
             break;
         }

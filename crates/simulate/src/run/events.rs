@@ -5,10 +5,11 @@ use kempe_linear::Lu;
 use crate::contact::{Gap, along};
 use crate::happening::Happened;
 use crate::joints::Place;
+use crate::lack::Sought;
 use crate::question::Resistance;
 use crate::record::Ending;
 use crate::toggle::Toggled;
-use crate::watch::Watch;
+use crate::watch::{Event, Watch};
 
 use super::{Run, TOUCHED};
 
@@ -28,7 +29,7 @@ pub(super) struct Struck {
     stops: Vec<usize>,
 }
 
-impl Run<'_> {
+impl Run {
     /// Where the only coordinate, which rubs, is at rest: whether friction holds it; the sense in which it slips otherwise.
     pub(super) fn slip_or_stick(&mut self) -> Option<f64> {
         let up = self.plant.slipping(1.0, self.time, &self.y)?;
@@ -127,12 +128,18 @@ impl Run<'_> {
     }
 
     /// What an event does.
-    pub(super) fn happens(&mut self, watch: Watch) -> Option<Ending> {
-        match watch {
+    pub(super) fn happens(&mut self, event: Event) -> Option<Ending> {
+        if !event.has_value {
+            return self.without_value(event.watch);
+        }
+        match event.watch {
             Watch::Strikes(stop) => {
+                if !self.plant.gives_way_at(stop, self.time, &self.y) {
+                    return Some(Ending::Unyielding(stop));
+                }
                 let before = self.plant.mode.resting.clone();
                 let Some(struck) = self.strikes(stop) else {
-                    return Some(Ending::NoWay);
+                    return Some(self.no_way_at_once());
                 };
                 self.settle(struck, &before);
             }
@@ -162,14 +169,14 @@ impl Run<'_> {
             Watch::Turns => {
                 self.y[1] = 0.0;
                 let Some(sense) = self.slip_or_stick() else {
-                    return Some(Ending::NoWay);
+                    return Some(self.no_way_at_once());
                 };
                 self.plant.mode.sense = sense;
             }
             Watch::Slips => {
                 self.plant.mode.stuck = false;
                 let Some(sense) = self.slip_or_stick() else {
-                    return Some(Ending::NoWay);
+                    return Some(self.no_way_at_once());
                 };
                 // It was found to slip: at rest still, it does so the way that holds least.
                 if self.plant.mode.stuck {
@@ -190,6 +197,16 @@ impl Run<'_> {
             }
         }
         None
+    }
+
+    /// What is watched has no value any more.
+    fn without_value(&self, watch: Watch) -> Option<Ending> {
+        let sought = match watch {
+            Watch::Strikes(stop) | Watch::Touches(stop) | Watch::Parts(stop) => Sought::Stop(stop),
+            Watch::Ends(condition, _) => self.sought(condition)?,
+            _ => return None,
+        };
+        Some(Ending::NoValue(sought))
     }
 
     /// Bodies of a joint with play come together.
