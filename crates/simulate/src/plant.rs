@@ -8,7 +8,7 @@ use kempe_linear::Lu;
 use kempe_measure::State;
 use kempe_measure::measure::{Along, History, measure};
 use kempe_mechanism::Design;
-use kempe_model::{DriveId, Law, Leaf, Measure};
+use kempe_model::{DriveId, DriveKind, Law, Leaf, Measure};
 use kempe_number::{Jet, Number};
 
 use crate::amounts::{Amounts, Known};
@@ -84,6 +84,8 @@ pub(crate) struct Plant {
     pub free: Vec<DriveId>,
     /// Drives that keep laws by which they move.
     pub driven: Vec<DriveId>,
+    /// Which of these are lengths of cylinders.
+    pub cylinders: Vec<usize>,
     /// Sizes of the coordinates that are let go: 1 rad, or the mechanism's.
     pub scales: Vec<f64>,
     pub stops: Vec<Barrier>,
@@ -193,6 +195,13 @@ impl Plant {
             tells: vec![Tells::default(); free.len()],
             followed: Vec::new(),
             own: model.drives.len(),
+            cylinders: (free.iter().enumerate())
+                .filter(|(_, drive)| {
+                    let drive = model.drives.get(drive.index());
+                    drive.is_some_and(|d| matches!(d.kind, DriveKind::Cylinder { .. }))
+                })
+                .map(|(k, _)| k)
+                .collect(),
             storage: vec![[0.0; 3]; model.links.len()],
             mode: Mode::default(),
             end: f64::INFINITY,

@@ -31,6 +31,8 @@ pub enum Ending {
     NoValue(Sought),
     /// This stop is reached where nothing that is let go gives way.
     Unyielding(usize),
+    /// The two points of the cylinder of this drive meet: it has no length there, and none beyond.
+    NoLength(DriveId),
     /// No step is short enough: something runs away or jumps.
     TooShort,
     /// No step is short enough: this runs away.
@@ -229,6 +231,11 @@ pub(crate) struct Machine {
 /// Roundings of the places at the ends of a step in the speed between them, at most.
 const ROUNDINGS: f64 = 4.0;
 
+/// A step this short, as a part of the whole time, is a parabola; and so are those of a last stretch of this length, beyond whose end
+/// the motion is looked at farther than that.
+const NO_STEP: f64 = 1e-10;
+const NO_STRETCH: f64 = 1e-8;
+
 /// Without a jump between.
 #[derive(Default)]
 struct Stretch {
@@ -333,12 +340,17 @@ impl Record {
             let first = stretch.times[0];
             stretch.times.iter().map(|t| t - first).collect()
         };
+        let least = |stretch: &Stretch| match stretch.times.as_slice() {
+            [first, .., last] if *last == end && last - first < NO_STRETCH * end => end,
+            _ => NO_STEP * end,
+        };
         let of = |column: usize, start: f64| {
             let of = |stretch: &Stretch| {
                 Polynomials::through(
                     &local(stretch),
                     &stretch.ends[column],
                     &stretch.quarters[column],
+                    least(stretch),
                 )
             };
             law(start, end, stretches.iter().filter_map(of))
@@ -354,7 +366,8 @@ impl Record {
         let choices = (0..told).map(|k| {
             let of = |stretch: &Stretch| {
                 let steady = vec![[stretch.choices[k], 0.0, 0.0]; stretch.times.len()];
-                Polynomials::through(&local(stretch), &steady, &vec![[0.0; 3]; steady.len() - 1])
+                let none = vec![[0.0; 3]; steady.len() - 1];
+                Polynomials::through(&local(stretch), &steady, &none, 0.0)
             };
             let first = stretches.first().map_or(0.0, |s| s.choices[k]);
             law(first, end, stretches.iter().filter_map(of))

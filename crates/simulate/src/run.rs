@@ -6,7 +6,7 @@ mod events;
 use std::sync::Arc;
 
 use kempe_integrate::{Integrator, Stopped, Tolerance, Used};
-use kempe_model::{COEFFICIENTS, Measure};
+use kempe_model::{COEFFICIENTS, Measure, SAME_END};
 use kempe_motion::{Done, Progress, Stage};
 
 pub use self::begin::{Ready, Unsimulated, ready, simulate};
@@ -104,7 +104,12 @@ impl Run {
                 return self.no_way_at_once();
             }
             self.plant.end = *end;
-            while self.time < *end {
+            // What is left behind an event is nothing where it is less than the end of a law is known to.
+            let nothing = match *end == self.question.until {
+                true => SAME_END * end,
+                false => 0.0,
+            };
+            while self.time < *end - nothing {
                 // What tells the place may change as often as it likes.
                 events += usize::from(!std::mem::take(&mut self.exchanged));
                 if self.time > since + NO_TIME * self.question.until {

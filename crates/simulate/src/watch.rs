@@ -16,6 +16,9 @@ const GRAZES: f64 = 1e-13;
 /// Halvings towards the beginning of a step before what began at zero counts as never having been open.
 const HALVINGS: usize = 40;
 
+/// A cylinder whose points are this near each other (in mechanism sizes) has no length.
+const NO_LENGTH: f64 = 1e-9;
+
 /// Something that happens when its value becomes negative.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Watch {
@@ -35,6 +38,8 @@ pub(crate) enum Watch {
     Turns,
     /// Friction lets it go.
     Slips,
+    /// The two points of a cylinder meet, by the place of its drive among the coordinates.
+    Shrinks(usize),
     /// A condition holds; whether it did not, yet.
     Ends(usize, bool),
 }
@@ -73,6 +78,7 @@ pub(crate) fn watches(plant: &Plant, conditions: &[bool]) -> Vec<Watch> {
                 }),
         );
     }
+    list.extend(plant.cylinders.iter().map(|k| Watch::Shrinks(*k)));
     list.extend((conditions.iter().enumerate()).map(|(k, armed)| Watch::Ends(k, *armed)));
     list
 }
@@ -98,6 +104,7 @@ impl Watch {
             Self::Separates(at) => Some(-plant.opening(at, y)[0]),
             Self::Turns => Some(y.get(1)? * plant.mode.sense),
             Self::Slips => plant.grip(time, y),
+            Self::Shrinks(k) => Some(y.get(k)? - NO_LENGTH * plant.scales.get(k)?),
             Self::Ends(k, _) => plant.value(ends.get(k)?, time, y).map(|above| -above),
         }
     }

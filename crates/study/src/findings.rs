@@ -517,7 +517,7 @@ fn of_study(
             told.extend(findings_of_clearance(model, &study.name, play, motion));
             told
         }
-        StudyKind::Simulate(it) => findings_of_simulation(model, it, &[], progress),
+        StudyKind::Simulate(it) => findings_of_simulation(model, &study.name, it, &[], progress),
         StudyKind::Contact(play) => findings_of_contact(model, &study.name, play, progress),
         StudyKind::Vibrations(asked) => findings_of_vibrations(model, &study.name, asked, progress),
     };

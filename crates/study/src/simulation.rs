@@ -44,10 +44,11 @@ use self::why::{cavitation, early, explain};
 /// What keeps it from starting.
 pub(crate) fn simulated_motion(
     model: &Model,
+    name: &str,
     study: &SimulateStudy,
     progress: &mut dyn Progress,
 ) -> Result<Arc<Motion>, Vec<Diagnostic>> {
-    let prepared = Prepared::new(model, study, &[], progress)?;
+    let prepared = Prepared::new(model, (name, study), &[], progress)?;
     let found = prepared.ready.simulate(progress);
     motion(&prepared.design, &found, progress)
 }
@@ -64,11 +65,12 @@ fn motion(
 /// what it is warned of.
 pub(crate) fn findings_of_simulation(
     model: &Model,
+    name: &str,
     study: &SimulateStudy,
     contacts: &[Contact],
     progress: &mut dyn Progress,
 ) -> Vec<Diagnostic> {
-    match Prepared::new(model, study, contacts, progress) {
+    match Prepared::new(model, (name, study), contacts, progress) {
         Ok(prepared) => prepared.findings,
         Err(refused) => refused,
     }
@@ -88,19 +90,19 @@ struct Prepared {
 impl Prepared {
     fn new(
         model: &Model,
-        study: &SimulateStudy,
+        (name, study): (&str, &SimulateStudy),
         contacts: &[Contact],
         progress: &mut dyn Progress,
     ) -> Result<Self, Vec<Diagnostic>> {
         let design = design(model);
-        let mut refused = unfollowed(&design, study);
+        let mut refused = unfollowed(&design, name, study);
         refused.extend(not_simulated(&design.mechanism, study));
         if !refused.is_empty() {
             return Err(refused);
         }
         let (mut question, stops) = question(study, model, &design.parameters);
         question.contacts = contacts.to_vec();
-        let told = Told::new(model, study, &stops, contacts);
+        let told = Told::new(model, (name, study), &stops, contacts);
         let ready =
             ready(&design, &question, progress).map_err(|error| explain(&design, &told, error))?;
         let findings = motion_findings(ready.first());
@@ -131,7 +133,7 @@ pub(crate) fn simulation(
         mut stops,
         ready,
         findings: mut diagnostics,
-    } = Prepared::new(model, study, contacts, progress)?;
+    } = Prepared::new(model, (name, study), contacts, progress)?;
     let found = ready.simulate(progress);
     stops.extend((found.rigid.iter()).map(|at| Named::of_place(model, contacts, *at)));
     let was_stopped = found.ending == Ending::Stopped;
@@ -148,7 +150,7 @@ pub(crate) fn simulation(
         progress,
     )?;
     diagnostics.append(&mut result.diagnostics);
-    let told = Told::new(model, study, &stops, contacts);
+    let told = Told::new(model, (name, study), &stops, contacts);
     let times = result
         .table
         .columns

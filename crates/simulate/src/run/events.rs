@@ -186,6 +186,9 @@ impl Run {
                 self.plant.mode.sense = sense;
                 self.tell(Happened::Slips);
             }
+            Watch::Shrinks(k) => {
+                return self.plant.free.get(k).map(|drive| Ending::NoLength(*drive));
+            }
             Watch::Ends(condition, _) => {
                 match condition.checked_sub(self.question.end_when.len()) {
                     Some(toggle) => self.toggle(toggle, condition),

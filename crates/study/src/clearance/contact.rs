@@ -78,7 +78,7 @@ pub(crate) fn findings_of_contact(
         Err(refused) => return refused,
     };
     let (model, contacts) = (prepared.model(), &*prepared.contacts);
-    let mut findings = findings_of_simulation(model, &study.motion, contacts, progress);
+    let mut findings = findings_of_simulation(model, name, &study.motion, contacts, progress);
     if study.motion.released.is_empty()
         && !refuses(&findings)
         && let Err(why) = motion(&prepared.design, progress)

@@ -102,7 +102,11 @@ pub(super) fn question(
 }
 
 /// What goes by the pressure of a cylinder that the study does not let go.
-pub(super) fn unfollowed(design: &Design<f64>, study: &SimulateStudy) -> Vec<Diagnostic> {
+pub(super) fn unfollowed(
+    design: &Design<f64>,
+    name: &str,
+    study: &SimulateStudy,
+) -> Vec<Diagnostic> {
     let model = &design.mechanism.model;
     let actions = &model.actions;
     let measure = |amount: &Amount| match amount {
@@ -139,11 +143,11 @@ pub(super) fn unfollowed(design: &Design<f64>, study: &SimulateStudy) -> Vec<Dia
         .chain(switches)
         .chain(ends);
     let unknown = all.filter(|(_, measure)| !is_followed(&design.mechanism, study, measure));
-    let told = Told::new(model, study, &[], &[]);
+    let told = Told::new(model, (name, study), &[], &[]);
     let unknown = unknown.map(|(sought, _)| {
         let (what, span) = told.sought(sought);
         let message = format!(
-            "{what} goes by the pressure of a cylinder that keeps its law: nothing follows its oil"
+            "study `{name}`: {what} goes by the pressure of a cylinder that keeps its law: nothing follows its oil"
         );
         let error = Diagnostic::error("needs-simulation", message);
         let error = match span {

@@ -15,6 +15,8 @@ const STAYS: f64 = 1e-9;
 /// What names are needed to tell of a simulation.
 pub(super) struct Told<'a> {
     pub model: &'a Model,
+    /// The name of the study.
+    pub name: &'a str,
     pub units: Units,
     pub study: &'a SimulateStudy,
     /// What stops it; behind those that were asked for the places with play that do.
@@ -25,13 +27,14 @@ pub(super) struct Told<'a> {
 impl<'a> Told<'a> {
     pub fn new(
         model: &'a Model,
-        study: &'a SimulateStudy,
+        (name, study): (&'a str, &'a SimulateStudy),
         stops: &'a [Named],
         contacts: &'a [Contact],
     ) -> Self {
         Self {
             units: Units::of(model),
             model,
+            name,
             study,
             stops,
             contacts,

@@ -47,6 +47,10 @@ pub(super) fn early(told: &Told<'_>, found: &Simulated) -> Option<Diagnostic> {
             (why, GIVE_VALUE)
         }
         Ending::Unyielding(stop) => kept_from_stop(told, stop),
+        Ending::NoLength(drive) => (
+            format!("the two points of the cylinder `{}` meet there, and it has no length", told.drive(drive)),
+            "let it stop before, by `stops`, end the study there by `end_when`, or let a drive go that turns a link",
+        ),
         Ending::RunsAway(it) => {
             let why = format!("{} grows without bound there, so that no step is short enough", sought(it));
             (why, "bound it, as by min() or max(), or end the study before, by `until` or `end_when`")
@@ -71,7 +75,10 @@ pub(super) fn early(told: &Told<'_>, found: &Simulated) -> Option<Diagnostic> {
             format!("{} = {}", drive.name, told.units.text(q, drive.dimension))
         })
         .collect();
-    let message = format!("the simulation goes no farther than {at}");
+    let message = format!(
+        "study `{}`: the simulation goes no farther than {at}",
+        told.name
+    );
     let error = Diagnostic::error("simulation-ended", message);
     let error = match span {
         Some(span) => error.at(span, ""),
@@ -204,6 +211,11 @@ pub(super) fn cavitation(told: &Told<'_>, found: &Simulated) -> Option<Diagnosti
     )
 }
 
+/// That there is no simulation.
+fn cannot(told: &Told<'_>, why: &str) -> Diagnostic {
+    Diagnostic::error("cannot-simulate", format!("study `{}`: {why}", told.name))
+}
+
 /// Why there is no simulation.
 pub(super) fn explain(
     design: &Design<f64>,
@@ -211,7 +223,7 @@ pub(super) fn explain(
     error: Unsimulated,
 ) -> Vec<Diagnostic> {
     let (model, units) = (told.model, &told.units);
-    let cannot = |message: String| Diagnostic::error("cannot-simulate", message);
+    let cannot = |message: String| cannot(told, &message);
     let has_play = !told.contacts.is_empty();
     vec![match error {
         Unsimulated::Problems(problems) => return force_problems(problems),
@@ -286,7 +298,7 @@ fn beyond_stop(told: &Told<'_>, index: usize, by: f64) -> Diagnostic {
         Dimension::LENGTH
     };
     let by = told.units.text(by, dimension);
-    let cannot = |message: String| Diagnostic::error("cannot-simulate", message);
+    let cannot = |message: String| cannot(told, &message);
     let Some((drive, stroke)) = stop.and_then(|stop| stop.stroke) else {
         return cannot(format!("it starts beyond {}, by {by}", told.stop(index)))
             .help("start between the stops, or move them");

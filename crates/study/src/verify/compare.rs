@@ -96,8 +96,10 @@ pub fn compare(
         }
     }
     let design = design(&model);
-    let motion = match study.map(|study| &study.kind) {
-        Some(StudyKind::Simulate(study)) => simulated_motion(&model, study, &mut Silent)?,
+    let motion = match study.map(|study| (&study.name, &study.kind)) {
+        Some((name, StudyKind::Simulate(study))) => {
+            simulated_motion(&model, name, study, &mut Silent)?
+        }
         _ => motion(&design, &mut Silent)?,
     };
     let named: Vec<NamedMeasure> = (measures.iter())
