@@ -81,6 +81,17 @@ impl LetGo {
     }
 }
 
+/// Why nothing is known of how coordinates that are let go accelerate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NotLetGo {
+    /// They move no mass.
+    NoMass,
+    /// Friction jams them, or has no one answer.
+    Friction,
+    /// A force is infinite, or no number.
+    NotFinite,
+}
+
 /// Corrections of accelerations for friction, at most: each is a small part of the one before.
 const CORRECTIONS: usize = 200;
 /// A correction below this part of the acceleration is rounding.
@@ -99,19 +110,20 @@ fn size_of(numbers: &[f64]) -> f64 {
 impl Forces<f64> {
     /// How coordinates that are let go accelerate where these forces (N or N m) act along them, friction included. `at` holds
     /// the state, with the coordinates let go not accelerating; it accelerates with them when this is done. Allocates nothing
-    /// once warm. False where they move no mass, where friction jams, or where it has no one answer.
+    /// once warm.
+    ///
+    /// # Errors
+    /// Why they are not known.
     pub fn let_go(
         &mut self,
         at: &mut Instant<f64>,
         free: &[DriveId],
         given: &[f64],
         found: &mut LetGo,
-    ) -> bool {
-        if !self.let_go_smoothly(at, free, given, found) {
-            return false;
-        }
+    ) -> Result<(), NotLetGo> {
+        self.let_go_smoothly(at, free, given, found)?;
         if self.acting.friction.is_empty() {
-            return true;
+            return Ok(());
         }
         let first = size_of(&found.accelerations).max(SLIGHT);
         let mut before = f64::INFINITY;
@@ -127,26 +139,29 @@ impl Forces<f64> {
             let settled = rounds || change <= SETTLED * size_of(&found.accelerations);
             before = change;
             if !found.accelerations.iter().all(|a| a.is_finite()) {
-                return false;
+                break;
             }
             if settled {
-                return true;
+                return Ok(());
             }
         }
-        false
+        Err(NotLetGo::Friction)
     }
 
     /// The same with friction left out, from which its own is found.
+    ///
+    /// # Errors
+    /// Where they move no mass, or what acts is not finite.
     pub fn let_go_smoothly(
         &mut self,
         at: &mut Instant<f64>,
         free: &[DriveId],
         given: &[f64],
         found: &mut LetGo,
-    ) -> bool {
+    ) -> Result<(), NotLetGo> {
         self.take_up(at);
         if !found.factorize(&self.acting, at, free) {
-            return false;
+            return Err(NotLetGo::NoMass);
         }
         let needed = |it: &Self, drive: &DriveId| {
             virtual_power::project(&it.needed, &at.coefficients[drive.index()]).value
@@ -158,7 +173,10 @@ impl Forces<f64> {
         for (drive, acceleration) in free.iter().zip(&found.accelerations) {
             at.accelerate(*drive, *acceleration);
         }
-        found.accelerations.iter().all(|a| a.is_finite())
+        match found.accelerations.iter().all(|a| a.is_finite()) {
+            true => Ok(()),
+            false => Err(NotLetGo::NotFinite),
+        }
     }
 
     /// Finds all forces where it accelerates as it was found to, and what of those given is left: see [`LetGo::left`].

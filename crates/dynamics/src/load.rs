@@ -1,5 +1,7 @@
 //! Forces and torques from outside.
 
+use std::ops::Range;
+
 use kempe_mechanism::structure::Marker;
 use kempe_mechanism::{Geometry, Mechanism};
 use kempe_model::{LinkId, LoadKind};
@@ -36,6 +38,14 @@ pub enum Load {
 }
 
 impl Load {
+    /// The places of its amounts in [`Instant::amounts`].
+    pub fn amounts(&self) -> Range<usize> {
+        match *self {
+            Self::Force { amount, .. } => amount..amount + 2,
+            Self::Torque { amount, .. } => amount..amount + 1,
+        }
+    }
+
     /// Compiles the model's loads and what they vary with.
     pub(crate) fn all<T: Number>(
         mechanism: &Mechanism,

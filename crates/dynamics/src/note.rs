@@ -6,7 +6,6 @@ use kempe_model::{Chamber, DriveId, DriveKind, InnerState};
 use crate::equilibrium::FrictionOutcome;
 use crate::forces::Forces;
 use crate::instant::{Instant, Rates};
-use crate::load::Load;
 use crate::reaction::Carrier;
 
 /// A difference of the two routes, in parts of the terms of a drive's force, above which a row is marked.
@@ -292,11 +291,9 @@ pub(crate) fn notes(forces: &Forces<Rates>, at: &Instant<Rates>, condition: f64)
     let plain = &equilibrium.lanes[0];
     let mut notes = Vec::new();
     let without_value = forces.acting.loads.iter().position(|load| {
-        let amounts = match *load {
-            Load::Force { amount, .. } => amount..amount + 2,
-            Load::Torque { amount, .. } => amount..amount + 1,
-        };
-        at.amounts[amounts].iter().any(|a| !a.value().is_finite())
+        at.amounts[load.amounts()]
+            .iter()
+            .any(|a| !a.value().is_finite())
     });
     if let Some(load) = without_value {
         notes.push(ForceNote::NoLoad { load });

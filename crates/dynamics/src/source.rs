@@ -101,7 +101,10 @@ impl<B: ForceNumber> ForceSource<B> for Source<B> {
 }
 
 /// Refuses loads that go by what only a simulation follows, where none has.
-fn only_simulated(mechanism: &Mechanism) -> Result<(), Vec<Problem>> {
+///
+/// # Errors
+/// A problem for each of them.
+pub fn only_simulated(mechanism: &Mechanism) -> Result<(), Vec<Problem>> {
     let mut problems = Vec::new();
     for load in &mechanism.model.actions.loads {
         let measures = load.kind.amounts().map(|amount| match amount {

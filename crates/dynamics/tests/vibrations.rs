@@ -644,6 +644,6 @@ fn vibrations_and_free_motion_need_the_same_mass() {
         source.instant.value_into(&mut instant);
         let mut forces = Forces::new(bench.motion.design.clone()).unwrap();
         let moves = forces.let_go(&mut instant, &bench.free, &[0.0; 2], &mut LetGo::default());
-        assert_eq!(moves, !refused, "{knee:e}");
+        assert_eq!(moves.is_ok(), !refused, "{knee:e}");
     }
 }

@@ -89,25 +89,14 @@ impl DriveKind {
         let Self::Release { of, row } = self else {
             return None;
         };
-        let (name, rows) = match *of {
-            Released::Pin { point, link } => {
-                let point = model.points.get(point.index())?;
-                let several = (point.links.len() > 2).then(|| model.links.get(link.index()));
-                let name = match several.flatten() {
-                    Some(link) => format!("{} of {}", point.name, link.name),
-                    None => point.name.clone(),
-                };
-                (name, ["play x", "play y"])
-            }
-            Released::Joint(joint) => {
-                let joint = model.joints.get(joint.index())?;
-                let rows = match joint.kind {
-                    JointKind::Slider { .. } => ["play angle", "play"],
-                    _ => ["play", "play 2"],
-                };
-                (joint.name.clone(), rows)
-            }
+        let rows = match *of {
+            Released::Pin { .. } => ["play x", "play y"],
+            Released::Joint(joint) => match model.joints.get(joint.index())?.kind {
+                JointKind::Slider { .. } => ["play angle", "play"],
+                _ => ["play", "play 2"],
+            },
         };
+        let name = of.name(model)?;
         let row = rows.get(usize::from(*row)).copied().unwrap_or("play");
         Some(format!("{name} {row}"))
     }
@@ -125,6 +114,23 @@ pub enum Released {
     },
     /// A joint of the file.
     Joint(JointId),
+}
+
+impl Released {
+    /// What it is called: `B`, or `B of rod` where the point has more than two links.
+    pub fn name(&self, model: &Model) -> Option<String> {
+        match *self {
+            Self::Pin { point, link } => {
+                let point = model.points.get(point.index())?;
+                let several = (point.links.len() > 2).then(|| model.links.get(link.index()));
+                Some(match several.flatten() {
+                    Some(link) => format!("{} of {}", point.name, link.name),
+                    None => point.name.clone(),
+                })
+            }
+            Self::Joint(joint) => Some(model.joints.get(joint.index())?.name.clone()),
+        }
+    }
 }
 
 /// How a drive moves in time.

@@ -23,16 +23,25 @@ pub struct Polynomials {
 
 impl Polynomials {
     /// The polynomials through given states, coordinate, speed and acceleration at the ends of each, and given accelerations at
-    /// its quarters: an error of places inside, which a second derivative would magnify, has no part in them. `None` where the
+    /// its quarters: an error of places inside, which a second derivative would magnify, has no part in them. Those shorter than
+    /// `least`, s, are parabolas about the state at their end: what else rounding makes of them has no meaning. `None` where the
     /// times do not rise or the numbers of times, states and quarters do not agree.
-    pub fn through(times: &[f64], ends: &[[f64; 3]], quarters: &[[f64; 3]]) -> Option<Self> {
+    pub fn through(
+        times: &[f64],
+        ends: &[[f64; 3]],
+        quarters: &[[f64; 3]],
+        least: f64,
+    ) -> Option<Self> {
         let fits = times.len() == ends.len() && ends.len() == quarters.len() + 1;
         if !fits || quarters.is_empty() || !times.windows(2).all(|w| w[0] < w[1]) {
             return None;
         }
         let of = |(k, quarters): (usize, &[f64; 3])| {
             let half = 0.5 * (times[k + 1] - times[k]);
-            polynomial(half, [ends[k], ends[k + 1]], *quarters)
+            match 2.0 * half < least {
+                true => parabola(half, ends[k + 1]),
+                false => polynomial(half, [ends[k], ends[k + 1]], *quarters),
+            }
         };
         let coefficients = quarters.iter().enumerate().map(of).collect();
         Some(Self::new(times, coefficients))
@@ -224,6 +233,14 @@ fn polynomial(half: f64, ends: [[f64; 3]; 2], quarters: [f64; 3]) -> [f64; COEFF
     [c0, c1, c2, c3, c4, c5, c6, c7, c8]
 }
 
+/// The parabola with coordinate, speed and acceleration at 1, where `half` is the time of 1.
+fn parabola(half: f64, [q, v, a]: [f64; 3]) -> [f64; COEFFICIENTS] {
+    let (slope, bend) = (v * half, 0.5 * a * half * half);
+    let mut c = [0.0; COEFFICIENTS];
+    c[..3].copy_from_slice(&[q - slope + bend, slope - 2.0 * bend, bend]);
+    c
+}
+
 /// The polynomial through values at equal parts from -1 to 1: Newton's divided differences, then powers.
 fn through_values(values: &[f64; COEFFICIENTS]) -> [f64; COEFFICIENTS] {
     let place = |k: usize| 2.0 * k as f64 / (COEFFICIENTS - 1) as f64 - 1.0;
@@ -317,7 +334,7 @@ mod tests {
             |w: &[f64]| [0.25, 0.5, 0.75].map(|part| state(w[0] + part * (w[1] - w[0]))[2]);
         let quarters: Vec<[f64; 3]> = times.windows(2).map(quarter).collect();
         let ends: Vec<[f64; 3]> = times.iter().map(|t| state(*t)).collect();
-        Polynomials::through(&times, &ends, &quarters).unwrap()
+        Polynomials::through(&times, &ends, &quarters, 0.0).unwrap()
     }
 
     #[test]
@@ -345,7 +362,8 @@ mod tests {
             [0, 1, 2].map(|k| series.derivative(k))
         };
         let quarters = [0.375, 0.75, 1.125].map(|t| state(t)[2]);
-        let it = Polynomials::through(&[0.0, 1.5], &[0.0, 1.5].map(state), &[quarters]).unwrap();
+        let it =
+            Polynomials::through(&[0.0, 1.5], &[0.0, 1.5].map(state), &[quarters], 0.0).unwrap();
         for k in 0..=15 {
             let t = Jet::variable(0.1 * f64::from(k));
             let (found, exact): (Jet<f64, 3>, _) = (it.at(t), value(t));

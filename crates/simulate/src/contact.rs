@@ -16,6 +16,9 @@ const NEAR: f64 = 1e-3;
 /// An impulse that changes by less than this part is settled.
 const SETTLED: f64 = 1e-15;
 
+/// Beside the start is this far off (in path scales).
+const BESIDE: f64 = 1e-3;
+
 /// What tells how far a stop is open.
 #[derive(Clone, Debug)]
 pub(crate) enum Opens {
@@ -91,6 +94,23 @@ impl Plant {
         self.take_as_it_is(time, y);
         let state = self.state(time)?;
         Some(measure(&state, &History::default(), None, what, Along::Time).coefficient(0))
+    }
+
+    /// Whether something that is let go moves what a stop bounds, or nothing at all does: what only drives that keep their laws move
+    /// gives way nowhere. At the start, and a little beside it, as there it may be at a turning point.
+    pub fn gives_way_at_start(&mut self, stop: usize, y: &[f64]) -> bool {
+        let mut beside = y.to_vec();
+        for (k, scale) in self.scales.iter().enumerate() {
+            beside[k] += BESIDE * scale;
+        }
+        self.gives_way_at(stop, 0.0, y) || self.gives_way_at(stop, 0.0, &beside)
+    }
+
+    /// Whether something that is let go moves what a stop bounds at a state, or nothing at all does; where that is not known it may.
+    pub fn gives_way_at(&mut self, stop: usize, time: f64, y: &[f64]) -> bool {
+        let stands = |slope: &f64| *slope == 0.0;
+        self.gap(stop, time, y)
+            .is_none_or(|gap| !gap.gradient.iter().all(stands) || gap.by_driven.iter().all(stands))
     }
 
     /// How far a stop is open at a state.

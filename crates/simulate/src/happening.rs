@@ -1,6 +1,7 @@
 //! What happens during a motion.
 
 use crate::joints::Place;
+use crate::rubbing::Rubs;
 use kempe_model::Chamber;
 
 /// Something that happened at a time.
@@ -61,13 +62,13 @@ pub enum Happened {
     Slips,
     /// Friction holds one of the places that rub.
     Holds {
-        /// Its place among [those](crate::Simulated::rubbing).
-        place: usize,
+        /// Which.
+        at: Rubs,
     },
     /// Friction lets one of the places go.
     LetsGo {
-        /// Its place among [those](crate::Simulated::rubbing).
-        place: usize,
+        /// Which.
+        at: Rubs,
     },
     /// A switch goes on or off.
     Switches {

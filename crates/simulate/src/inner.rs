@@ -7,6 +7,7 @@ use kempe_measure::Series;
 use kempe_measure::state::ORDER;
 use kempe_model::{Chamber, DriveId, InnerState, Model};
 
+use crate::lack::Lack;
 use crate::plant::Plant;
 
 /// A cylinder that its oil moves.
@@ -116,8 +117,8 @@ impl Plant {
         }
     }
 
-    /// Rates of the pressures at the state last taken, for the amounts last found. False where a cylinder holds no oil any more.
-    pub(crate) fn pressure_rates(&self, rates: &mut [f64]) -> bool {
+    /// Rates of the pressures at the state last taken, for the amounts last found.
+    pub(crate) fn pressure_rates(&self, rates: &mut [f64]) -> Result<(), Lack> {
         let opening = |place: Option<usize>| place.map(|place| self.amounts.values[place]);
         for (moved, rates) in self.inner.moved.iter().zip(rates.chunks_exact_mut(2)) {
             let oil = &self.forces.acting.oils[moved.oil];
@@ -127,10 +128,10 @@ impl Plant {
             let length = [q.coefficient(0), q.coefficient(1)];
             match oil.rates(length, self.inner.of(moved), openings) {
                 Some(found) => rates.copy_from_slice(&found),
-                None => return false,
+                None => return Err(Lack::Oil(oil.drive)),
             }
         }
-        true
+        Ok(())
     }
 
     /// Pressures at the start, into the state `y`: those that are told, and of the other cylinders those that hold them where they
@@ -164,6 +165,7 @@ impl Plant {
             .collect();
         let mut factors = Lu::new(holds.len());
         if !factors.factor(|row, column| answers[column][holds[row].1.free]) {
+            self.lack = Some(Lack::Mass);
             return false;
         }
         let mut forces: Vec<f64> = (holds.iter()).map(|(_, m)| -rates[n + m.free]).collect();
@@ -172,6 +174,8 @@ impl Plant {
             let both = self.forces.acting.oils[moved.oil].holding(more);
             y[2 * (n + k)..2 * (n + k + 1)].copy_from_slice(&both);
         }
-        y.iter().all(|x| x.is_finite())
+        let holds = y.iter().all(|x| x.is_finite());
+        self.lack = (!holds).then_some(Lack::Force);
+        holds
     }
 }

@@ -17,7 +17,8 @@
 //! | `watch.rs` | what is looked for between steps |
 //! | `contact.rs` | stops: impacts, and what holds a rest |
 //! | `joints.rs` | joints with play, whose bodies touch and part |
-//! | `run.rs` | from step to step and from event to event; `run/events.rs` what events do |
+//! | `run.rs` | from step to step and from event to event; `run/begin.rs` what keeps it from beginning, `run/events.rs` what events do |
+//! | `lack.rs` | why a state has no accelerations, and what has no value |
 //! | `record.rs` | what was found, as laws of the drives |
 
 mod amounts;
@@ -26,6 +27,7 @@ mod curve;
 mod happening;
 mod inner;
 mod joints;
+mod lack;
 mod places;
 mod plant;
 mod question;
@@ -43,9 +45,10 @@ pub use kempe_integrate::{Method, Used};
 
 pub use happening::{Happened, Happening, Held};
 pub use joints::{Place, Touched, with_play};
+pub use lack::{Lack, Sought};
 pub use plant::Tied;
 pub use question::{Question, Resistance, Stop};
 pub use record::{Ending, Simulated};
 pub use rubbing::Rubs;
-pub use run::{Unsimulated, simulate};
+pub use run::{Ready, Unsimulated, ready, simulate};
 pub use start::NoStart;

@@ -8,14 +8,16 @@ use kempe_linear::Lu;
 use kempe_measure::State;
 use kempe_measure::measure::{Along, History, measure};
 use kempe_mechanism::Design;
-use kempe_model::{DriveId, Law, Leaf, Measure};
+use kempe_model::{DriveId, DriveKind, Law, Leaf, Measure};
 use kempe_number::{Jet, Number};
 
 use crate::amounts::{Amounts, Known};
 use crate::contact::{Barrier, Gap, along};
 use crate::inner::Inner;
+use crate::lack::{Lack, Sought};
 use crate::places::Places;
 use crate::rubbing::{Rub, Rubbing};
+use crate::run::Unsimulated;
 
 /// Speeds on both sides of a break that differ by this part are the same.
 const SMOOTH: f64 = 1e-9;
@@ -80,6 +82,8 @@ pub(crate) struct Plant {
     pub free: Vec<DriveId>,
     /// Drives that keep laws by which they move.
     pub driven: Vec<DriveId>,
+    /// Which of these are lengths of cylinders.
+    pub cylinders: Vec<usize>,
     /// Sizes of the coordinates that are let go: 1 rad, or the mechanism's.
     pub scales: Vec<f64>,
     pub stops: Vec<Barrier>,
@@ -90,6 +94,10 @@ pub(crate) struct Plant {
     pub back: f64,
     /// Whether something goes by derivatives along drives that are let go.
     pub asked_along: bool,
+    /// Why no accelerations were known where they were asked for last, if they were not.
+    pub lack: Option<Lack>,
+    /// What the amounts are of.
+    pub sought: Vec<Sought>,
     /// Whether anything does work but weights and springs.
     pub works: bool,
     /// Coordinates of all drives in time, as last taken.
@@ -134,8 +142,13 @@ impl Plant {
         let acting = &forces.acting;
         let of_loads = acting.amounts.len();
         let mut amounts = acting.amounts.clone();
-        let mut place = |amount: Option<&Amount<f64>>| {
+        let mut sought = vec![Sought::Load(0); of_loads];
+        for (index, load) in acting.loads.iter().enumerate() {
+            sought[load.amounts()].fill(Sought::Load(index));
+        }
+        let mut place = |amount: Option<&Amount<f64>>, of: Sought| {
             amounts.push(amount?.clone());
+            sought.push(of);
             Some(amounts.len() - 1)
         };
         let motors: Vec<Option<Turned>> = (free.iter())
@@ -145,12 +158,19 @@ impl Plant {
                 Some(Turned {
                     motor,
                     sense: motor_sense(law, parameters),
-                    throttle: place(acting.motors[motor].throttle.as_ref()),
+                    throttle: place(
+                        acting.motors[motor].throttle.as_ref(),
+                        Sought::Throttle(*drive),
+                    ),
                 })
             })
             .collect();
         let inner = Inner::new(model, &acting.oils, &free, |oil| {
-            [place(Some(&oil.valve.0)), place(oil.valve.1.as_ref())]
+            let of = Sought::Valve(oil.drive);
+            [
+                place(Some(&oil.valve.0), of),
+                place(oil.valve.1.as_ref(), of),
+            ]
         });
         let amounts = Amounts::new(&design.mechanism, parameters, amounts);
         let works = !acting.loads.is_empty()
@@ -175,12 +195,21 @@ impl Plant {
             tells: vec![Tells::default(); free.len()],
             followed: Vec::new(),
             own: model.drives.len(),
+            cylinders: (free.iter().enumerate())
+                .filter(|(_, drive)| {
+                    let drive = model.drives.get(drive.index());
+                    drive.is_some_and(|d| matches!(d.kind, DriveKind::Cylinder { .. }))
+                })
+                .map(|(k, _)| k)
+                .collect(),
             storage: vec![[0.0; 3]; model.links.len()],
             mode: Mode::default(),
             end: f64::INFINITY,
             back: 0.0,
             asked_along: false,
             rubbing: Rubbing::default(),
+            lack: None,
+            sought,
             motors,
             amounts,
             inner,
@@ -275,8 +304,22 @@ impl Plant {
         }
     }
 
-    /// Rates of a state: speeds, accelerations, and the power of all that does work.
+    /// Rates of a state: speeds, accelerations, and the power of all that does work. False where they are not known, for what is lacking.
     pub fn accelerate(&mut self, time: f64, y: &[f64], rates: &mut [f64]) -> bool {
+        let found = self.rates_of(time, y, rates);
+        self.lack = found.err();
+        found.is_ok()
+    }
+
+    /// Why nothing may begin, where no accelerations were known just now.
+    pub fn lacks(&self) -> Unsimulated {
+        match self.lack {
+            Some(Lack::Value(sought)) => Unsimulated::NoValue(sought),
+            lack => Unsimulated::Lacks(lack.unwrap_or(Lack::Pose)),
+        }
+    }
+
+    fn rates_of(&mut self, time: f64, y: &[f64], rates: &mut [f64]) -> Result<(), Lack> {
         let n = self.free.len();
         rates[..n].copy_from_slice(&y[n..2 * n]);
         // It stands still, and not only but for rounding.
@@ -284,51 +327,62 @@ impl Plant {
         if self.mode.stuck || rests {
             rates.fill(0.0);
             self.take(time, y);
-            return self.inner.moved.is_empty()
-                || (self.amounts_at(time) && self.pressure_rates(&mut rates[2 * n..]));
+            if self.inner.moved.is_empty() {
+                return Ok(());
+            }
+            self.amounts_at(time)?;
+            return self.pressure_rates(&mut rates[2 * n..]);
         }
-        if !self.held(time, y) {
-            return false;
-        }
+        self.held(time, y)?;
         rates[n..2 * n].copy_from_slice(&self.let_go.accelerations);
-        if !self.pressure_rates(&mut rates[2 * n..]) {
-            return false;
-        }
+        self.pressure_rates(&mut rates[2 * n..])?;
         rates[2 * n + self.inner.pressures()] = match self.works {
             true => self.power(&y[n..2 * n]),
             false => 0.0,
         };
-        rates.iter().all(|r| r.is_finite())
+        match rates.iter().all(|r| r.is_finite()) {
+            true => Ok(()),
+            false => Err(Lack::Force),
+        }
     }
 
     /// Accelerations and pushes where the stops hold on which it rests.
-    pub(crate) fn held(&mut self, time: f64, y: &[f64]) -> bool {
+    pub(crate) fn held(&mut self, time: f64, y: &[f64]) -> Result<(), Lack> {
         if self.holds_somewhere() {
             return self.hold_still(time, y);
         }
-        self.let_go_at(time, y, &[]) && (self.mode.resting.is_empty() || self.hold(time, y))
+        self.let_go_at(time, y, &[])?;
+        match self.mode.resting.is_empty() {
+            true => Ok(()),
+            false => self.hold(time, y),
+        }
     }
 
     /// What a stop pushes on which it rests, by its place among those: nothing where that is not known.
     pub fn pushed(&mut self, place: usize, time: f64, y: &[f64]) -> Option<f64> {
-        let known = self.held(time, y);
+        let known = self.held(time, y).is_ok();
         self.pushes.get(place).copied().filter(|_| known)
     }
 
     /// Accelerations where stops besides push along the coordinates.
-    pub(crate) fn let_go_at(&mut self, time: f64, y: &[f64], pushes: &[f64]) -> bool {
-        if !self.act(time, y, pushes) {
-            return false;
-        }
+    pub(crate) fn let_go_at(&mut self, time: f64, y: &[f64], pushes: &[f64]) -> Result<(), Lack> {
+        self.act(time, y, pushes)?;
         let (forces, instant) = (&mut self.forces, &mut self.instant);
-        forces.let_go(instant, &self.free, &self.given, &mut self.let_go)
+        let found = forces.let_go(instant, &self.free, &self.given, &mut self.let_go);
+        found.map_err(Lack::of)
     }
 
     /// Finds what acts along the coordinates at a state, where stops besides push.
-    pub(crate) fn act(&mut self, time: f64, y: &[f64], pushes: &[f64]) -> bool {
-        if !self.look(time, y) || !self.amounts_at(time) {
-            return false;
+    pub(crate) fn act(&mut self, time: f64, y: &[f64], pushes: &[f64]) -> Result<(), Lack> {
+        let posed = self.look(time, y);
+        let law = |drive: &&DriveId| !self.coordinates[drive.index()].value().is_finite();
+        if let Some(drive) = self.driven.iter().find(law) {
+            return Err(Lack::Value(Sought::Law(*drive)));
         }
+        if !posed {
+            return Err(Lack::Pose);
+        }
+        self.amounts_at(time)?;
         for (given, (k, motor)) in self.given.iter_mut().zip(self.motors.iter().enumerate()) {
             let push = pushes.get(k).copied().unwrap_or(0.0);
             let speed = self.coordinates[self.free[k].index()].coefficient(1);
@@ -342,7 +396,10 @@ impl Plant {
             *given = push + motor.as_ref().map_or(0.0, turns);
         }
         self.push_by_oil();
-        self.mode.touched.is_empty() || self.push(time, y)
+        match self.mode.touched.is_empty() || self.push(time, y) {
+            true => Ok(()),
+            false => Err(Lack::Pose),
+        }
     }
 
     /// Changes the speeds of what is let go as jumps in the speeds of drives that keep their laws do, from before a time to behind
@@ -386,12 +443,9 @@ impl Plant {
     }
 
     /// Finds what loads, valves and motors go by, at the state last taken.
-    fn amounts_at(&mut self, time: f64) -> bool {
+    fn amounts_at(&mut self, time: f64) -> Result<(), Lack> {
         let state = match self.amounts.ask_pose() {
-            true => match self.state(time) {
-                Some(state) => Some(state),
-                None => return false,
-            },
+            true => Some(self.state(time).ok_or(Lack::Pose)?),
             false => None,
         };
         let design = &self.forces.design;
@@ -404,7 +458,11 @@ impl Plant {
         (self.amounts).find(&design.mechanism.model, &known, state.as_ref());
         let of_loads = self.instant.amounts.len();
         (self.instant.amounts).copy_from_slice(&self.amounts.values[..of_loads]);
-        true
+        let lost = self.amounts.values.iter().position(|x| !x.is_finite());
+        match lost.and_then(|amount| self.sought.get(amount)) {
+            Some(sought) => Err(Lack::Value(*sought)),
+            None => Ok(()),
+        }
     }
 
     /// The state last taken, for measures; rates of inner states are not known in it.
@@ -415,16 +473,14 @@ impl Plant {
     }
 
     /// Lets the stops on which it rests push so that none of their gaps accelerates.
-    fn hold(&mut self, time: f64, y: &[f64]) -> bool {
+    fn hold(&mut self, time: f64, y: &[f64]) -> Result<(), Lack> {
         let stops = self.mode.resting.clone();
         let gaps: Option<Vec<Gap>> = stops.iter().map(|s| self.gap(*s, time, y)).collect();
-        let Some(gaps) = gaps else {
-            return false;
-        };
+        let gaps = gaps.ok_or(Lack::Pose)?;
         let matrix = self.yielding(&gaps);
         let mut factors = Lu::new(gaps.len());
         if !factors.factor(|row, column| matrix[row][column]) {
-            return false;
+            return Err(Lack::Rest);
         }
         // What errors open comes back slowly, unless nothing can.
         let back = if self.is_alone() { 0.0 } else { self.back };
@@ -446,11 +502,9 @@ impl Plant {
                 *push += more;
             }
             let along = along(&gaps, &self.pushes, self.free.len());
-            if !self.let_go_at(time, y, &along) {
-                return false;
-            }
+            self.let_go_at(time, y, &along)?;
         }
-        true
+        Ok(())
     }
 
     /// Power of all that does work but weights and springs, W.

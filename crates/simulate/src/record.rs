@@ -6,15 +6,17 @@ use kempe_dynamics::motor::Motor;
 use kempe_dynamics::oil::Oil;
 use kempe_integrate::Used;
 use kempe_mechanism::{Design, Mechanism};
-use kempe_model::{COEFFICIENTS, DriveId, Law, LawPiece, LinkId, Measure, Polynomials, Stretches};
+use kempe_model::{
+    COEFFICIENTS, DriveId, Law, LawPiece, LinkId, Measure, Model, Polynomials, Stretches,
+};
 use kempe_motion::drive_path::DrivePath;
 use kempe_motion::{Demand, EndReason, Motion, MotionError, Placed, Progress};
 use kempe_units::Expr;
 
 use crate::happening::{Happening, Held};
 use crate::joints::{Place, Touched};
+use crate::lack::{Lack, Sought};
 use crate::plant::Tied;
-use crate::rubbing::Rubs;
 
 /// Why a simulation ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,12 +27,22 @@ pub enum Ending {
     Condition(usize),
     /// The mechanism comes to where its coordinates cannot tell how it goes on: a limit of the coordinate that is let go.
     Limit(EndReason),
-    /// No pose, or no acceleration, was found just ahead.
-    NoWay,
+    /// Nothing is known of accelerations just ahead.
+    NoWay(Lack),
+    /// Something that it goes by has no value just ahead.
+    NoValue(Sought),
+    /// This stop is reached where nothing that is let go gives way.
+    Unyielding(usize),
+    /// The two points of the cylinder of this drive meet: it has no length there, and none beyond.
+    NoLength(DriveId),
     /// No step is short enough: something runs away or jumps.
     TooShort,
-    /// More steps or events than anybody waits for.
-    TooMany,
+    /// No step is short enough: this runs away.
+    RunsAway(Sought),
+    /// More steps than anybody waits for.
+    TooManySteps,
+    /// More events than anybody waits for.
+    TooManyEvents,
     /// It was stopped from outside.
     Stopped,
 }
@@ -56,8 +68,6 @@ pub struct Simulated {
     pub held: Vec<Held>,
     /// Touches of bodies in joints with play that give, in order.
     pub touched: Vec<Touched>,
-    /// What rubs, where several coordinates move: each place slides or is held by itself.
-    pub rubbing: Vec<Rubs>,
     /// The places with play that resist at once, as stops behind those of the question.
     pub rigid: Vec<Place>,
     /// How many stops the question has.
@@ -172,6 +182,13 @@ impl Simulated {
         told
     }
 
+    /// How inner states of a model that has not all of them go, as they were found.
+    pub fn inner_laws_of(&self, model: &Model) -> Vec<Option<Law>> {
+        let own = &self.design.mechanism.model;
+        let law = |state| self.inner.get(own.inner_place(state)?)?.clone();
+        model.inner_states().into_iter().map(law).collect()
+    }
+
     /// The mechanism that was asked about, its drives moving as was found.
     pub fn mechanism(&self) -> Arc<Mechanism> {
         let design = self.design.with_laws(|index| self.laws.get(index).cloned());
@@ -225,6 +242,11 @@ pub(crate) struct Machine {
 
 /// Roundings of the places at the ends of a step in the speed between them, at most.
 const ROUNDINGS: f64 = 4.0;
+
+/// A step this short, as a part of the whole time, is a parabola; and so are those of a last stretch of this length, beyond whose end
+/// the motion is looked at farther than that.
+const NO_STEP: f64 = 1e-10;
+const NO_STRETCH: f64 = 1e-8;
 
 /// Without a jump between.
 #[derive(Default)]
@@ -330,12 +352,17 @@ impl Record {
             let first = stretch.times[0];
             stretch.times.iter().map(|t| t - first).collect()
         };
+        let least = |stretch: &Stretch| match stretch.times.as_slice() {
+            [first, .., last] if *last == end && last - first < NO_STRETCH * end => end,
+            _ => NO_STEP * end,
+        };
         let of = |column: usize, start: f64| {
             let of = |stretch: &Stretch| {
                 Polynomials::through(
                     &local(stretch),
                     &stretch.ends[column],
                     &stretch.quarters[column],
+                    least(stretch),
                 )
             };
             law(start, end, stretches.iter().filter_map(of))
@@ -351,7 +378,8 @@ impl Record {
         let choices = (0..told).map(|k| {
             let of = |stretch: &Stretch| {
                 let steady = vec![[stretch.choices[k], 0.0, 0.0]; stretch.times.len()];
-                Polynomials::through(&local(stretch), &steady, &vec![[0.0; 3]; steady.len() - 1])
+                let none = vec![[0.0; 3]; steady.len() - 1];
+                Polynomials::through(&local(stretch), &steady, &none, 0.0)
             };
             let first = stretches.first().map_or(0.0, |s| s.choices[k]);
             law(first, end, stretches.iter().filter_map(of))

@@ -10,6 +10,7 @@ use kempe_model::{DriveId, InnerState};
 
 use crate::contact::{Gap, dot};
 use crate::inner::Moved;
+use crate::lack::Lack;
 use crate::plant::Plant;
 use crate::sticking::{leave_out, limited, shared, spanned, together, yielding};
 
@@ -198,6 +199,9 @@ impl Plant {
             });
         self.rubbing.sites = sites.collect();
         self.mode.rubs = vec![Rub::Held; self.rubbing.sites.len()];
+        for site in &self.rubbing.sites {
+            self.inner.values[site.inner] = 0.0;
+        }
         self.take_senses();
     }
 
@@ -303,8 +307,8 @@ impl Plant {
         stops.chain(own).collect()
     }
 
-    /// Lets stops push and places resist so that nothing opens and nothing slides that is held. False where nothing can.
-    pub(crate) fn hold_still(&mut self, time: f64, y: &[f64]) -> bool {
+    /// Lets stops push and places resist so that nothing opens and nothing slides that is held. Why nothing can, if it cannot.
+    pub(crate) fn hold_still(&mut self, time: f64, y: &[f64]) -> Result<(), Lack> {
         let held = self.held_places();
         let found = self.act_in(time, y, &held, |rows, stops, now| {
             let all: Vec<usize> = (0..rows.len()).collect();
@@ -339,7 +343,7 @@ impl Plant {
             let pushes = together(rows, &all[..stops], &whole)?;
             Some([pushes, borne].concat())
         });
-        found.is_some()
+        found.map(|_| ())
     }
 
     /// The places that are held.
@@ -350,6 +354,12 @@ impl Plant {
             .collect()
     }
 
+    /// The stops on which it rests, at a state.
+    fn resting_gaps(&mut self, time: f64, y: &[f64]) -> Option<Vec<Gap>> {
+        let stops = self.mode.resting.clone();
+        stops.iter().map(|stop| self.gap(*stop, time, y)).collect()
+    }
+
     /// Finds how everything accelerates while the stops on which it rests push and some places resist as `choose` says of their rows
     /// (see [`crate::sticking`]), the first so many of which are those of the stops: the forces along them. How they accelerate along the rows then.
     fn act_in(
@@ -358,19 +368,15 @@ impl Plant {
         y: &[f64],
         places: &[usize],
         mut choose: impl FnMut(&[Vec<f64>], usize, &Now<'_>) -> Option<Vec<f64>>,
-    ) -> Option<Acted> {
-        let stops = self.mode.resting.clone();
-        let gaps: Option<Vec<Gap>> = stops.iter().map(|s| self.gap(*s, time, y)).collect();
-        let gaps = gaps?;
+    ) -> Result<Acted, Lack> {
+        let gaps = self.resting_gaps(time, y).ok_or(Lack::Pose)?;
         self.pushes = vec![0.0; gaps.len()];
         self.take_senses();
-        if !self.act(time, y, &[]) {
-            return None;
-        }
+        self.act(time, y, &[])?;
         let given = self.given.clone();
-        if !(self.forces).let_go_smoothly(&mut self.instant, &self.free, &given, &mut self.let_go) {
-            return None;
-        }
+        let (forces, instant) = (&mut self.forces, &mut self.instant);
+        (forces.let_go_smoothly(instant, &self.free, &given, &mut self.let_go))
+            .map_err(Lack::of)?;
         let rows = {
             let here = self.rubbing_here();
             self.rows(&gaps, &here, places)
@@ -416,7 +422,7 @@ impl Plant {
                 forces: &forces,
                 limits: &limits,
             };
-            let found = choose(&rows, gaps.len(), &now)?;
+            let found = choose(&rows, gaps.len(), &now).ok_or(Lack::Friction)?;
             let mut more = self.let_go.left().to_vec();
             let gradients = gaps.iter().map(|gap| &gap.gradient);
             let gradients = gradients.chain(places.iter().map(|k| &here[*k].gradient));
@@ -440,7 +446,7 @@ impl Plant {
             let whole = self.let_go.accelerations.iter().zip(&self.scales);
             let whole = whole.map(|(a, s)| (a / s).abs()).fold(0.0, f64::max);
             if !change.is_finite() {
-                return None;
+                return Err(Lack::Friction);
             }
             first = first.max(whole).max(change);
             let rounds = change <= NEARLY * first && change > 0.5 * before;
@@ -451,7 +457,7 @@ impl Plant {
                     .iter()
                     .zip(&rows)
                     .map(|(a, row)| a + dot(row, &changes));
-                return Some(Acted {
+                return Ok(Acted {
                     stops: gaps.len(),
                     after: after.collect(),
                     terms: (accelerations.iter().zip(&rows))
@@ -466,13 +472,13 @@ impl Plant {
                 });
             }
         }
-        None
+        Err(Lack::Friction)
     }
 
     /// How far everything that is held is from giving way, as a part of its limit: negative where something does. With what gives way
     /// first.
     pub fn firmness(&mut self, time: f64, y: &[f64]) -> Option<(f64, Vec<usize>)> {
-        if !self.held(time, y) {
+        if self.held(time, y).is_err() {
             return None;
         }
         let here = self.rubbing_here();
@@ -518,17 +524,17 @@ impl Plant {
     }
 
     /// Decides in a state, whose speeds it clears of what should be none, which places are held and in which sense the others slide.
-    /// Those that were held stay at rest, unless speeds `jumped`; `turns` is at rest too, and `lets_go` gives way. False where it cannot be known.
+    /// Those that were held stay at rest, unless speeds `jumped`; `turns` is at rest too, and `lets_go` gives way. Why it cannot be known, if it cannot.
     pub fn decide_rubbing(
         &mut self,
         (time, y): (f64, &mut [f64]),
         jumped: bool,
         turns: Option<usize>,
         lets_go: &[usize],
-    ) -> bool {
+    ) -> Result<(), Lack> {
         self.mode.stuck = false;
         if !self.look(time, y) {
-            return false;
+            return Err(Lack::Pose);
         }
         let here = self.rubbing_here();
         let fastest = (self.rubbing.sites.iter().zip(&here))
@@ -552,11 +558,12 @@ impl Plant {
                 Rub::Slides(here.speed.signum())
             };
         }
-        self.decide_among(time, y, &candidates) && self.clear_speeds(time, y)
+        self.decide_among(time, y, &candidates)?;
+        self.clear_speeds(time, y)
     }
 
     /// Finds which of some places at rest are held, and how the others begin to slide.
-    fn decide_among(&mut self, time: f64, y: &[f64], candidates: &[usize]) -> bool {
+    fn decide_among(&mut self, time: f64, y: &[f64], candidates: &[usize]) -> Result<(), Lack> {
         for k in candidates {
             self.rubbing.sites[*k].resists = 0.0;
         }
@@ -566,8 +573,7 @@ impl Plant {
                 .map(|(a, row)| a - dot(row, &whole))
                 .collect();
             Some(limited(rows, &free, now.limits))
-        });
-        let Some(found) = found else { return false };
+        })?;
         let after = found.after.iter().zip(&found.terms).skip(found.stops);
         for (k, (after, terms)) in candidates.iter().zip(after) {
             self.mode.rubs[*k] = match after.abs() > LEFT_OVER * terms {
@@ -576,19 +582,17 @@ impl Plant {
             };
         }
         self.take_senses();
-        true
+        Ok(())
     }
 
     /// Takes what is left of their speeds from what is held; all that moves stands still where that holds everything.
-    fn clear_speeds(&mut self, time: f64, y: &mut [f64]) -> bool {
+    fn clear_speeds(&mut self, time: f64, y: &mut [f64]) -> Result<(), Lack> {
         let here = self.rubbing_here();
         let held = self.held_places();
         if held.is_empty() {
-            return true;
+            return Ok(());
         }
-        let stops = self.mode.resting.clone();
-        let gaps: Option<Vec<Gap>> = stops.iter().map(|s| self.gap(*s, time, y)).collect();
-        let Some(gaps) = gaps else { return false };
+        let gaps = self.resting_gaps(time, y).ok_or(Lack::Pose)?;
         let rows = self.rows(&gaps, &here, &held);
         let all: Vec<usize> = (0..rows.len()).collect();
         let (by_stops, of_stops) = spanned(&rows, &all[..gaps.len()], Vec::new());
@@ -599,7 +603,7 @@ impl Plant {
         if by_friction && independent.len() == n && self.driven.is_empty() {
             self.mode.stuck = true;
             y[n..2 * n].fill(0.0);
-            return true;
+            return Ok(());
         }
         let rates: Vec<f64> = (independent.iter())
             .map(|k| match k.checked_sub(gaps.len()) {
@@ -607,9 +611,7 @@ impl Plant {
                 Some(place) => -here[held[place]].speed,
             })
             .collect();
-        let Some(impulses) = yielding(&rows, &independent, rates) else {
-            return false;
-        };
+        let impulses = yielding(&rows, &independent, rates).ok_or(Lack::Rest)?;
         let mut change = vec![0.0; n];
         for (k, impulse) in independent.iter().zip(&impulses) {
             let gradient = match k.checked_sub(gaps.len()) {
@@ -622,12 +624,12 @@ impl Plant {
         for (v, change) in y[n..2 * n].iter_mut().zip(&change) {
             *v += change;
         }
-        true
+        Ok(())
     }
 
     /// The parts of their greatest friction that act in all places, at a state.
     pub fn friction_parts(&mut self, time: f64, y: &[f64]) -> Option<Vec<f64>> {
-        if self.holds_somewhere() && !self.held(time, y) {
+        if self.holds_somewhere() && self.held(time, y).is_err() {
             return None;
         }
         let here = self.rubbing_here();

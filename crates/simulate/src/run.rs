@@ -1,28 +1,23 @@
 //! From step to step and from event to event.
 
+mod begin;
 mod events;
 
 use std::sync::Arc;
 
-use kempe_dynamics::{Forces, Problem};
 use kempe_integrate::{Integrator, Stopped, Tolerance, Used};
-use kempe_measure::measure::visit_leaves;
-use kempe_mechanism::{Design, Mechanism, NotReleased};
-use kempe_model::{COEFFICIENTS, DriveId, Law, Leaf, Measure, Model, PoseMeasure};
-use kempe_motion::{Done, MotionError, Placed, Progress, Stage};
-use kempe_units::Dimension;
+use kempe_model::{COEFFICIENTS, Measure, SAME_END};
+use kempe_motion::{Done, Progress, Stage};
 
-use crate::contact::Barrier;
+pub use self::begin::{Ready, Unsimulated, ready, simulate};
+
 use crate::happening::{Happened, Happening, Held};
-use crate::joints::{Place, opened, rigid_stops, touched};
-use crate::places::Places;
-use crate::plant::{Mode, Plant, motor_sense};
+use crate::lack::{Lack, Sought};
+use crate::plant::{Mode, Plant};
 use crate::question::Question;
-use crate::record::{Ending, Machine, Pilots, Record, Simulated};
-use crate::rubbing::places_that_rub;
-use crate::start::{NoStart, start};
+use crate::record::{Ending, Record, Simulated};
 use crate::tellers::{Exchanged, NEAR, Tellers};
-use crate::toggle::Toggle;
+use crate::toggle::{Toggle, Toggled};
 use crate::watch::first;
 
 /// Most steps and events: what is kept of a step or of a stretch between two events takes some hundred bytes.
@@ -44,250 +39,10 @@ const MISSED: f64 = 1e-10;
 const MISSED_TOLERANCES: f64 = 100.0;
 const HALVINGS: usize = 6;
 const SHORT: f64 = 1e-6;
+/// What has grown to so many times its value at the start where no step is short enough any more runs away.
+const RUNS_AWAY: f64 = 1e6;
 /// A stop that is open by this much (in path scales, or of its play) is touched.
 const TOUCHED: f64 = 1e-9;
-
-/// Why there is no simulation.
-#[derive(Debug)]
-pub enum Unsimulated {
-    /// The mechanism does not come to the start.
-    Start(NoStart),
-    /// It cannot move there.
-    Motion(MotionError),
-    /// What acts on it makes no sense.
-    Problems(Vec<Problem>),
-    /// Nothing that is let go moves mass there, or friction jams.
-    NoMass,
-    /// It starts beyond this stop, by so much.
-    BeyondStop(usize, f64),
-    /// A joint with play starts with its bodies in each other, so deep, m.
-    BeyondPlay(Place, f64),
-    /// A joint cannot have play.
-    NoPlay(NotReleased),
-}
-
-/// Simulates a design.
-///
-/// # Errors
-/// Why it cannot begin. What ends it early is told with what was found until then.
-pub fn simulate(
-    design: &Design<f64>,
-    question: &Question,
-    progress: &mut dyn Progress,
-) -> Result<Simulated, Unsimulated> {
-    let model = &design.mechanism.model;
-    let parameters = design.parameters.clone();
-    let mut coordinates: Vec<f64> = (model.drives.iter())
-        .map(|d| d.law.at(0.0, &parameters))
-        .collect();
-    for (drive, [q, _]) in question.free.iter().zip(&question.start) {
-        coordinates[drive.index()] = *q;
-    }
-    let from = start(design, &coordinates, progress).map_err(Unsimulated::Start)?;
-    // Laws are those of the file: what was found may stand still.
-    let laws = |index: usize| model.drives.get(index).map(|d| d.law.clone());
-    let (mut from, rows) = opened(from, &question.contacts).map_err(Unsimulated::NoPlay)?;
-    let mut design = from.design.with_laws(laws);
-    let model = &design.mechanism.model.clone();
-    coordinates.resize(model.drives.len(), 0.0);
-    for row in &rows {
-        coordinates[row.drive.index()] = row.start[0];
-    }
-    let question = &Question {
-        free: (question.free.iter().copied())
-            .chain(rows.iter().map(|row| row.drive))
-            .collect(),
-        start: (question.start.iter().copied())
-            .chain(rows.iter().map(|row| row.start))
-            .collect(),
-        ..question.clone()
-    };
-    let (mut placed, first_motion) = (from.placed.clone(), from.first.clone());
-    let driven: Vec<DriveId> = (0..model.drives.len() as u32)
-        .map(DriveId)
-        .filter(|drive| {
-            let law = &model.drives[drive.index()].law;
-            !question.free.contains(drive) && law.duration(&parameters) > 0.0
-        })
-        .collect();
-    let moving: Vec<DriveId> = question.free.iter().chain(&driven).copied().collect();
-    let mut forces = Forces::new(design.clone()).map_err(Unsimulated::Problems)?;
-    // Places that rub slide each in its own sense, which the motion that is found keeps.
-    let followed = places_that_rub(&forces.acting, &question.free);
-    if followed > 0 {
-        let follow = |model: &mut Model| model.actions.followed_friction = followed;
-        (from.design, design) = (from.design.with_model(follow), design.with_model(follow));
-        forces = Forces::new(design.clone()).map_err(Unsimulated::Problems)?;
-    }
-    for spring in &mut forces.acting.springs {
-        spring.align(&forces.design.geometry, &placed.near);
-    }
-    let (rigid, barriers): (Vec<Place>, Vec<Barrier>) =
-        rigid_stops(&forces.acting.contacts).into_iter().unzip();
-    let stops = question.stops.iter().map(Barrier::of).chain(barriers);
-    let places = Places::new(from, &moving, progress).map_err(Unsimulated::Motion)?;
-    let mut breaks: Vec<f64> = (driven.iter())
-        .flat_map(|drive| model.drives[drive.index()].law.breaks(&parameters))
-        .filter(|t| 0.0 < *t && *t < question.until)
-        .chain([question.until])
-        .collect();
-    breaks.sort_by(f64::total_cmp);
-    breaks.dedup();
-    let play = |drive: &DriveId| {
-        let row = rows.iter().find(|row| row.drive == *drive);
-        row.map(|row| row.clearance)
-    };
-    let scales: Vec<f64> = (question.free.iter())
-        .map(|drive| match model.drives[drive.index()].dimension {
-            Dimension::ANGLE => 1.0,
-            // What has play is hardly ever off by more.
-            _ => play(drive).unwrap_or_else(|| design.size()),
-        })
-        .collect();
-    let senses = question.free.iter().map(|drive| {
-        let law = model.drives.get(drive.index()).map(|d| &d.law);
-        law.map_or(1.0, |law| motor_sense(law, &parameters))
-    });
-    let tellers = Tellers::new(
-        design.clone(),
-        first_motion.clone(),
-        [question.free.clone(), driven.clone()],
-        senses.collect(),
-    );
-    let mut plant = Plant::new(
-        &design,
-        forces,
-        places,
-        [question.free.clone(), driven],
-        scales,
-        stops.collect(),
-    );
-    plant.back = BACK / question.until;
-    if followed > 0 {
-        plant.follow_friction();
-    }
-    let mut y: Vec<f64> = (question.start.iter().map(|s| s[0]))
-        .chain(question.start.iter().map(|s| s[1]))
-        .chain(vec![0.0; plant.inner.pressures() + 1])
-        .collect();
-    // What was placed is the pose in the middle of all play.
-    if rows.iter().any(|row| row.start[0] != 0.0) {
-        if let Some((place, by)) = plant.beyond_play(TOUCHED, &y) {
-            return Err(Unsimulated::BeyondPlay(place, by));
-        }
-        if !plant.look(0.0, &y) {
-            return Err(Unsimulated::NoMass);
-        }
-        let instant = plant.instant();
-        placed = Placed {
-            poses: instant.poses.clone(),
-            near: instant.angles.clone(),
-        };
-    }
-    // Switches may go by pressures, and pressures by loads that are switched.
-    Toggle::all(&mut plant, &y);
-    if !plant.pressures_at_start(&mut y) {
-        return Err(Unsimulated::NoMass);
-    }
-    let toggles = Toggle::all(&mut plant, &y);
-    let asked = (question.stops.iter().map(|stop| &stop.gap))
-        .chain(&question.end_when)
-        .chain(toggles.iter().flat_map(Toggle::measures))
-        .chain(plant.amounts.measures());
-    plant.asked_along = asked
-        .into_iter()
-        .any(|what| asks_along(&design.mechanism, what, &question.free));
-    let mut run = Run {
-        record: Record::new(coordinates, beside(&plant, &y)),
-        time: 0.0,
-        y,
-        ends: (question.end_when.iter())
-            .chain(toggles.iter().map(|toggle| &toggle.awaits))
-            .cloned()
-            .collect(),
-        conditions: vec![false; question.end_when.len() + toggles.len()],
-        toggles,
-        happenings: Vec::new(),
-        held: Vec::new(),
-        steps: 0,
-        integrator: None,
-        earlier: (Used::default(), 0),
-        resized: false,
-        exchanged: false,
-        question,
-        tellers,
-        plant,
-    };
-    let ending = run.whole(&breaks, progress)?;
-    let acting = &run.plant.forces.acting;
-    let mut machines: Vec<Machine> = (run.plant.motors.iter())
-        .map(|it| Machine {
-            motor: it.map(|it| (acting.motors[it.motor].clone(), it.sense)),
-            oil: None,
-            seals: None,
-        })
-        .collect();
-    for moved in &run.plant.inner.moved {
-        machines[moved.free].oil = Some((acting.oils[moved.oil].clone(), moved.place));
-    }
-    for (moved, place) in run.plant.seals() {
-        machines[moved.free].seals = Some(place);
-    }
-    let end = run.time;
-    let (used, evaluations) = run.effort();
-    let mut laws = run.record.laws(end);
-    let links = run.tellers.used();
-    let pilots = (!links.is_empty()).then(|| Pilots {
-        mechanism: run.tellers.piloted(),
-        count: laws.places.len(),
-        laws: [laws.places, laws.choices].concat(),
-        links: links.to_vec(),
-    });
-    let work = laws.beside.remove(0);
-    let inner = &run.plant.inner;
-    let mut inner_laws: Vec<Option<Law>> = vec![None; inner.values.len()];
-    let pressures = inner.moved.iter().flat_map(|m| [m.place, m.place + 1]);
-    let friction = run.plant.friction_places();
-    let switches = inner.values.len() - inner.switches().len()..inner.values.len();
-    for (place, law) in pressures.chain(friction).chain(switches).zip(laws.beside) {
-        inner_laws[place] = Some(law);
-    }
-    Ok(Simulated {
-        tied: run.plant.tied(),
-        free: question.free.clone(),
-        rubbing: run.plant.what_rubs(),
-        touched: touched(&run.plant.forces.acting.contacts, &laws.drives, end),
-        rigid_from: question.stops.len(),
-        rigid,
-        laws: laws.drives,
-        work,
-        end,
-        ending,
-        happenings: run.happenings,
-        held: run.held,
-        used,
-        evaluations,
-        first: first_motion,
-        pilots,
-        inner: inner_laws,
-        machines,
-        design,
-        placed,
-    })
-}
-
-/// Whether a measure asks for a derivative along one of these drives, itself or by another measure.
-fn asks_along(mechanism: &Mechanism, measure: &Measure, drives: &[DriveId]) -> bool {
-    let mut found = false;
-    visit_leaves(mechanism, measure, &mut |leaf| {
-        found |= match leaf {
-            Leaf::Coefficient(_, drive, _)
-            | Leaf::Pose(PoseMeasure::MechanicalAdvantage(_, drive)) => drives.contains(drive),
-            _ => false,
-        };
-    });
-    found
-}
 
 /// What is followed beside the drives: the work, the pressures, the parts of friction, the switches.
 fn beside(plant: &Plant, y: &[f64]) -> Vec<f64> {
@@ -312,8 +67,8 @@ enum Added {
 }
 
 /// A simulation on its way.
-struct Run<'q> {
-    question: &'q Question,
+struct Run {
+    question: Question,
     plant: Plant,
     record: Record,
     time: f64,
@@ -336,23 +91,25 @@ struct Run<'q> {
     /// Whether coordinates have other sizes than those for which the integrator was made.
     resized: bool,
     tellers: Tellers,
+    /// What loads, valves and throttles gave at the start.
+    at_start: Vec<f64>,
 }
 
-impl Run<'_> {
+impl Run {
     /// All stretches between breaks of laws.
-    fn whole(
-        &mut self,
-        breaks: &[f64],
-        progress: &mut dyn Progress,
-    ) -> Result<Ending, Unsimulated> {
-        self.begin()?;
+    fn whole(&mut self, breaks: &[f64], progress: &mut dyn Progress) -> Ending {
         let (mut events, mut at_once, mut since) = (0, 0, 0.0);
         for end in breaks {
             if self.time > 0.0 && !self.follow_jump(*end) {
-                return Ok(Ending::NoWay);
+                return self.no_way_at_once();
             }
             self.plant.end = *end;
-            while self.time < *end {
+            // What is left behind an event is nothing where it is less than the end of a law is known to.
+            let nothing = match *end == self.question.until {
+                true => SAME_END * end,
+                false => 0.0,
+            };
+            while self.time < *end - nothing {
                 // What tells the place may change as often as it likes.
                 events += usize::from(!std::mem::take(&mut self.exchanged));
                 if self.time > since + NO_TIME * self.question.until {
@@ -360,18 +117,18 @@ impl Run<'_> {
                 }
                 at_once += 1;
                 if events > EVENTS || at_once > AT_ONCE {
-                    return Ok(Ending::TooMany);
+                    return Ending::TooManyEvents;
                 }
                 let done = Done::Part(self.time / self.question.until);
                 if progress.reached(Stage::Simulating, done).is_break() {
-                    return Ok(Ending::Stopped);
+                    return Ending::Stopped;
                 }
                 if let Some(ending) = self.stretch(*end, progress) {
-                    return Ok(ending);
+                    return ending;
                 }
             }
         }
-        Ok(Ending::Until)
+        Ending::Until
     }
 
     /// Follows a jump in the speeds of drives that keep their laws, at the time at hand, where the next stretch ends at `end`:
@@ -398,23 +155,17 @@ impl Run<'_> {
 
     /// Decides what holds it at the start.
     fn begin(&mut self) -> Result<(), Unsimulated> {
-        for stop in 0..self.plant.stops.len() {
-            let gap = self.plant.gap(stop, 0.0, &self.y);
-            let open = gap.map_or(f64::NAN, |gap| gap.open);
-            if open < -TOUCHED * self.scale() {
-                return Err(Unsimulated::BeyondStop(stop, -open));
-            }
-        }
         for (armed, condition) in self.conditions.iter_mut().zip(&self.ends) {
             *armed = (self.plant.value(condition, 0.0, &self.y)).is_some_and(|x| x < 0.0);
         }
         if !self.rub(true, None, &[]) {
-            return Err(Unsimulated::NoMass);
+            return Err(self.plant.lacks());
         }
         let mut rates = vec![0.0; self.y.len()];
         if !self.plant.accelerate(0.0, &self.y, &mut rates) {
-            return Err(Unsimulated::NoMass);
+            return Err(self.plant.lacks());
         }
+        self.at_start.clone_from(&self.plant.amounts.values);
         let n = self.plant.free.len();
         for (at, speed) in self.plant.pressed(TOUCHED, &self.y, &rates[n..2 * n]) {
             self.meets(at, speed);
@@ -423,12 +174,19 @@ impl Run<'_> {
         let rests = !self.plant.mode.resting.is_empty();
         match !rests || self.rub(false, None, &[]) {
             true => Ok(()),
-            false => Err(Unsimulated::NoMass),
+            false => Err(self.plant.lacks()),
         }
     }
 
-    fn scale(&self) -> f64 {
-        self.plant.scales.iter().copied().fold(0.0, f64::max)
+    /// What a condition is of, for what has no value: nothing that the file told of, where it watches for a vacuum.
+    fn sought(&self, condition: usize) -> Option<Sought> {
+        match condition.checked_sub(self.question.end_when.len()) {
+            None => Some(Sought::Condition(condition)),
+            Some(toggle) => match self.toggles.get(toggle)?.what {
+                Toggled::Switch(switch) => Some(Sought::Switch(switch)),
+                Toggled::Vacuum(..) => None,
+            },
+        }
     }
 
     fn tell(&mut self, what: Happened) {
@@ -442,7 +200,7 @@ impl Run<'_> {
     fn stretch(&mut self, end: f64, progress: &mut dyn Progress) -> Option<Ending> {
         let until = self.question.until;
         let Some(mut it) = self.integrator_here() else {
-            return Some(Ending::NoWay);
+            return Some(self.no_way_at_once());
         };
         let states = self.plant.drives_at(self.time, &self.y, it.rates());
         let choices = self.plant.tells.iter().map(|tells| tells.choice);
@@ -469,8 +227,9 @@ impl Run<'_> {
             let conditions = self.conditions.clone();
             if let Err(reason) = it.step(&mut self.plant, next) {
                 // Wherever its dead point is, it cannot tell how to go on.
+                let lack = self.plant.lack;
                 let exchanged = self.exchange(f64::INFINITY, progress);
-                break (exchanged != Exchanged::Done).then(|| self.no_way(reason));
+                break (exchanged != Exchanged::Done).then(|| self.no_way(reason, lack));
             }
             self.steps += 1;
             let watched = first(
@@ -480,7 +239,7 @@ impl Run<'_> {
                 &mut self.conditions,
                 &mut found,
             );
-            let to = watched.map_or(it.time(), |(time, _)| time);
+            let to = watched.map_or(it.time(), |event| event.time);
             if to > self.time {
                 let last = halvings == HALVINGS || to - self.time <= SHORT * until;
                 match self.add(&mut it, to, &mut found, last) {
@@ -491,16 +250,17 @@ impl Run<'_> {
                         if it.restart(&mut self.plant, self.time, &self.y) {
                             continue;
                         }
-                        break Some(Ending::NoWay);
+                        break Some(self.no_way_at_once());
                     }
                     Added::NoWay => {
+                        let ending = self.no_way_at_once();
                         let exchanged = self.exchange(f64::INFINITY, progress);
-                        break (exchanged != Exchanged::Done).then_some(Ending::NoWay);
+                        break (exchanged != Exchanged::Done).then_some(ending);
                     }
                 }
             }
-            if let Some((_, watch)) = watched {
-                break self.happens(watch);
+            if let Some(event) = watched {
+                break self.happens(event);
             }
             if self
                 .plant
@@ -508,14 +268,14 @@ impl Run<'_> {
                 .go_on(&self.plant.coordinates, progress)
                 .is_err()
             {
-                break Some(Ending::NoWay);
+                break Some(Ending::NoWay(Lack::Pose));
             }
             if self.steps > STEPS {
-                break Some(Ending::TooMany);
+                break Some(Ending::TooManySteps);
             }
             if self.steps >= since.0 + MANY {
                 if self.time - since.1 < HARDLY * until {
-                    break Some(Ending::TooShort);
+                    break Some(self.too_short());
                 }
                 since = (self.steps, self.time);
             }
@@ -667,13 +427,37 @@ impl Run<'_> {
         Added::Done
     }
 
-    /// Why there is no step.
-    fn no_way(&mut self, reason: Stopped) -> Ending {
+    /// Why there is no step, where nothing was known of accelerations because of a lack.
+    fn no_way(&mut self, reason: Stopped, lack: Option<Lack>) -> Ending {
         self.plant.take(self.time, &self.y);
-        match (self.plant.places.end_at(&self.plant.coordinates), reason) {
+        match (self.plant.places.end_at(&self.plant.coordinates), lack) {
+            (_, Some(Lack::Value(sought))) => Ending::NoValue(sought),
             (Some(end), _) => Ending::Limit(end),
-            (None, Stopped::NoRates) => Ending::NoWay,
-            (None, Stopped::TooShort) => Ending::TooShort,
+            (None, Some(lack)) if reason == Stopped::NoRates => Ending::NoWay(lack),
+            _ => self.too_short(),
+        }
+    }
+
+    /// Why nothing is known of what comes, where nothing was known of accelerations just now.
+    fn no_way_at_once(&self) -> Ending {
+        match self.plant.lack {
+            Some(Lack::Value(sought)) => Ending::NoValue(sought),
+            lack => Ending::NoWay(lack.unwrap_or(Lack::Pose)),
+        }
+    }
+
+    /// Why no step is short enough: what grew most beyond what it was at the start, if anything did by far.
+    fn too_short(&mut self) -> Ending {
+        let mut rates = vec![0.0; self.y.len()];
+        self.plant.accelerate(self.time, &self.y, &mut rates);
+        let grown = self.plant.amounts.values.iter().zip(&self.at_start);
+        let grown = grown.map(|(now, before)| (now / before).abs());
+        let most = (grown.enumerate())
+            .filter(|(_, grown)| RUNS_AWAY < *grown && grown.is_finite())
+            .max_by(|a, b| a.1.total_cmp(&b.1));
+        match most.and_then(|(amount, _)| self.plant.sought.get(amount)) {
+            Some(sought) => Ending::RunsAway(*sought),
+            None => Ending::TooShort,
         }
     }
 }

@@ -1,5 +1,7 @@
 //! What is looked for between steps.
 
+use std::cell::Cell;
+
 use kempe_integrate::{Integrator, crossing};
 use kempe_model::Measure;
 
@@ -14,6 +16,9 @@ const PARTS: usize = 8;
 const GRAZES: f64 = 1e-13;
 /// Halvings towards the beginning of a step before what began at zero counts as never having been open.
 const HALVINGS: usize = 40;
+
+/// A cylinder whose points are this near each other (in mechanism sizes) has no length.
+const NO_LENGTH: f64 = 1e-9;
 
 /// Something that happens when its value becomes negative.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,6 +39,8 @@ pub(crate) enum Watch {
     Turned(usize),
     /// Friction lets something go that it holds.
     Slips,
+    /// The two points of a cylinder meet, by the place of its drive among the coordinates.
+    Shrinks(usize),
     /// A condition holds; whether it did not, yet.
     Ends(usize, bool),
 }
@@ -75,8 +82,20 @@ pub(crate) fn watches(plant: &Plant, conditions: &[bool]) -> Vec<Watch> {
                 }),
         );
     }
+    list.extend(plant.cylinders.iter().map(|k| Watch::Shrinks(*k)));
     list.extend((conditions.iter().enumerate()).map(|(k, armed)| Watch::Ends(k, *armed)));
     list
+}
+
+/// Something that happened in a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Event {
+    /// When, s.
+    pub time: f64,
+    /// What.
+    pub watch: Watch,
+    /// Whether it did: otherwise what it goes by has no value from there on.
+    pub has_value: bool,
 }
 
 impl Watch {
@@ -89,6 +108,7 @@ impl Watch {
             Self::Separates(at) => Some(-plant.opening(at, y)[0]),
             Self::Turned(place) => plant.slides(place, time, y),
             Self::Slips => plant.firmness(time, y).map(|(firm, _)| firm),
+            Self::Shrinks(k) => Some(y.get(k)? - NO_LENGTH * plant.scales.get(k)?),
             Self::Ends(k, _) => plant.value(ends.get(k)?, time, y).map(|above| -above),
         }
     }
@@ -118,19 +138,21 @@ pub(crate) fn first(
     ends: &[Measure],
     conditions: &mut [bool],
     y: &mut [f64],
-) -> Option<(f64, Watch)> {
+) -> Option<Event> {
     let (from, to) = (it.before(), it.time());
     let place = |k: usize| match k {
         PARTS => to,
         k => from + (to - from) * (k as f64 / PARTS as f64),
     };
-    let mut earliest: Option<(f64, Watch)> = None;
+    let mut earliest: Option<Event> = None;
     for watch in watches(plant, conditions) {
+        // Whether there was a pose but no value where it was asked for last.
+        let valueless = Cell::new(false);
         let mut at = |time: f64, plant: &mut Plant, y: &mut [f64]| -> f64 {
-            if !it.between(plant, time, y) {
-                return f64::NAN;
-            }
-            watch.value(plant, ends, time, y).unwrap_or(f64::NAN)
+            let there = it.between(plant, time, y);
+            let value = there.then(|| watch.value(plant, ends, time, y)).flatten();
+            valueless.set(value.is_some_and(|x| !x.is_finite()));
+            value.unwrap_or(f64::NAN)
         };
         let mut armed = !matches!(watch, Watch::Ends(_, false));
         let mut low = from;
@@ -141,13 +163,40 @@ pub(crate) fn first(
         } else {
             watch.slack(plant, from, y)
         };
+        // The last place at which it had a value, and whether it had none at the last.
+        let (mut known, mut lost) = (from, valueless.get());
         for k in 1..=PARTS {
             let high = place(k);
             // What comes behind the first event does not come.
-            if earliest.is_some_and(|(first, _)| first < high) && !armed {
+            if earliest.is_some_and(|first| first.time < high) && !armed {
                 break;
             }
             let value = at(high, plant, y);
+            // At an instant alone it may have none, as the curvature of a path where its point turns back.
+            if valueless.get() && lost {
+                let mut none = high;
+                for _ in 0..HALVINGS {
+                    let middle = 0.5 * (known + none);
+                    at(middle, plant, y);
+                    *(if valueless.get() {
+                        &mut none
+                    } else {
+                        &mut known
+                    }) = middle;
+                }
+                if earliest.is_none_or(|first| known < first.time) {
+                    earliest = Some(Event {
+                        time: known,
+                        watch,
+                        has_value: false,
+                    });
+                }
+                break;
+            }
+            lost = valueless.get();
+            if !lost {
+                known = high;
+            }
             if value > 0.0 || (value == 0.0 && open) {
                 (low, open, armed) = (high, true, true);
                 continue;
@@ -170,9 +219,13 @@ pub(crate) fn first(
                 }
             };
             if let Some(time) = found
-                && earliest.is_none_or(|(t, _)| time < t)
+                && earliest.is_none_or(|first| time < first.time)
             {
-                earliest = Some((time, watch));
+                earliest = Some(Event {
+                    time,
+                    watch,
+                    has_value: true,
+                });
             }
             break;
         }

@@ -358,7 +358,7 @@ fn rattling_without_loss_comes_to_an_end_that_is_told() {
         resistance: Resistance::Rigid { restitution: 0.5 },
     });
     let found = free.run();
-    assert_eq!(found.ending, Ending::TooMany);
+    assert_eq!(found.ending, Ending::TooManyEvents);
     assert!(found.happenings.len() > 100);
 }
 

@@ -726,7 +726,7 @@ P = { near = [30, 0] }
 "#;
     let (_, found) = run(text, [0.06, 0.5], 1.0);
     assert!(
-        matches!(found.ending, Ending::Limit(_) | Ending::NoWay),
+        matches!(found.ending, Ending::Limit(_) | Ending::NoWay(_)),
         "{:?}",
         found.ending
     );

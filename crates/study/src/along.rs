@@ -2,14 +2,15 @@
 
 use std::sync::Arc;
 
-use kempe_dynamics::{ForceArrow, ForceError, ForceEvidence, ForceNote, ForceSampler, Problem};
+use kempe_dynamics::{
+    ForceArrow, ForceError, ForceEvidence, ForceNote, ForceSampler, Problem, only_simulated,
+};
 use kempe_measure::force_source::NoForces;
 use kempe_measure::measure::{NoMeasure, visit_leaves};
 use kempe_measure::{Sample, Sampler, StatisticNote, Unmeasurable, Unprepared, unmeasurable};
 use kempe_mechanism::Mechanism;
 use kempe_model::{
-    ContactStudy, Diagnostic, DriveId, InnerState, Leaf, Measure, Model, SimulateStudy, Study,
-    StudyKind,
+    Diagnostic, DriveId, InnerState, Leaf, Measure, Model, SimulateStudy, Study, StudyKind,
 };
 use kempe_motion::{Motion, Progress, Silent, Stage};
 
@@ -202,32 +203,53 @@ pub(crate) fn unprepared(
     }
 }
 
-/// What a study asks for that no motion of the mechanism can answer, as diagnostics over the model file.
+/// What a study along the drives' laws asks for that no motion of the mechanism can answer, as diagnostics over the model file.
 pub(crate) fn not_answerable(mechanism: &Mechanism, study: &Study) -> Vec<Diagnostic> {
     let asked = match &study.kind {
         StudyKind::Motion(along) => Asked::of_motion(&mechanism.model, along),
         StudyKind::Forces(along) => Asked::of_forces(mechanism, along),
-        StudyKind::Simulate(study) | StudyKind::Contact(ContactStudy { motion: study, .. }) => {
-            Asked::of_forces(mechanism, &study.along)
-        }
         StudyKind::Clearance(play) => Asked::of_clearance(mechanism, &play.along),
-        // They ask for columns of their own, which every mechanism answers.
-        StudyKind::Balance(_) | StudyKind::Spring(_) | StudyKind::Vibrations(_) => {
-            return Vec::new();
-        }
+        // They ask for columns of their own, which every mechanism answers, or refuse what they do not know themselves.
+        StudyKind::Balance(_)
+        | StudyKind::Spring(_)
+        | StudyKind::Vibrations(_)
+        | StudyKind::Simulate(_)
+        | StudyKind::Contact(_) => Asked::default(),
     };
+    let mut found = unanswered(mechanism, &asked, |_| true);
+    if !matches!(
+        study.kind,
+        StudyKind::Motion(_) | StudyKind::Simulate(_) | StudyKind::Contact(_)
+    ) {
+        found.extend(
+            only_simulated(mechanism)
+                .err()
+                .map_or_else(Vec::new, force_problems),
+        );
+    }
+    found
+}
+
+/// What a simulation asks for that none can answer, as diagnostics over the model file.
+pub(crate) fn not_simulated(mechanism: &Mechanism, study: &SimulateStudy) -> Vec<Diagnostic> {
+    let asked = Asked::of_forces(mechanism, &study.along);
+    unanswered(mechanism, &asked, |measure| {
+        !is_followed(mechanism, study, measure)
+    })
+}
+
+/// What of it no motion of the mechanism can answer; what only a simulation follows where `unknown` says so.
+fn unanswered(
+    mechanism: &Mechanism,
+    asked: &Asked,
+    unknown: impl Fn(&Measure) -> bool,
+) -> Vec<Diagnostic> {
     let quantities: Vec<&Quantity> = asked.all().collect();
     let measures: Vec<_> = quantities.iter().map(|q| &q.measure).collect();
     let mut problems = unmeasurable(mechanism, &measures);
-    if let StudyKind::Simulate(study) | StudyKind::Contact(ContactStudy { motion: study, .. }) =
-        &study.kind
-    {
-        problems.retain(|p| {
-            let measure = measures.get(p.index);
-            p.reason != NoMeasure::OnlySimulated
-                || measure.is_none_or(|m| !is_followed(mechanism, study, m))
-        });
-    }
+    problems.retain(|p| {
+        p.reason != NoMeasure::OnlySimulated || measures.get(p.index).is_none_or(|m| unknown(m))
+    });
     not_measurable(&mechanism.model, &quantities, &problems)
 }
 

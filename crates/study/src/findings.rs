@@ -1,7 +1,5 @@
 //! What is to be known of a mechanism before it moves, in the names and units of its file.
 
-use std::sync::Arc;
-
 use kempe_mechanism::Design;
 use kempe_mechanism::mobility::Mobility;
 use kempe_mechanism::structure::BodyId;
@@ -25,6 +23,7 @@ use crate::findings_text::kind_text;
 use crate::hints;
 use crate::motion_findings::{motion_findings, of_freedoms, of_mechanism};
 use crate::prepared::design;
+use crate::simulation::findings_of_simulation;
 use crate::unit::Units;
 use crate::vibrations::findings_of_vibrations;
 use crate::words::{list, source_name};
@@ -443,10 +442,35 @@ fn diagnostics(
     found: &Findings,
     progress: &mut dyn Progress,
 ) -> Vec<Diagnostic> {
-    let mut diagnostics = match &found.motion {
-        Some(_) => Vec::new(),
-        None => crate::findings_forces::problems(design),
+    let mut diagnostics: Vec<Diagnostic> = Vec::new();
+    let mut tell = |told: Vec<Diagnostic>| {
+        for it in told {
+            if !diagnostics.contains(&it) {
+                diagnostics.push(it);
+            }
+        }
     };
+    // Without a study it is asked how the drives' laws move it.
+    if model.studies.is_empty() {
+        tell(of_motion(model, design, found, motion_findings));
+    }
+    for study in &model.studies {
+        tell(of_study(design, study, found, progress));
+    }
+    diagnostics
+}
+
+/// What is to be told of the motion that the drives' laws demand, or of why there is none; `of` tells it of one that there is.
+fn of_motion(
+    model: &Model,
+    design: &Design<f64>,
+    found: &Findings,
+    of: impl Fn(&Motion) -> Vec<Diagnostic>,
+) -> Vec<Diagnostic> {
+    if let Some(motion) = &found.motion {
+        return of(motion);
+    }
+    let mut diagnostics = crate::findings_forces::problems(design);
     if let Some(problem) = &found.problem {
         let problem = cannot_move(design, problem);
         // A file need not say what moves it: only what asks for a motion cannot do without.
@@ -455,30 +479,20 @@ fn diagnostics(
                 Diagnostic::warning("no-drive", "nothing can move: the links hold each other")
                     .help("a mechanism has a joint more, or a link less")
             }
-            "no-drive" => problem.with_severity(Severity::Warning),
+            "no-drive" if model.studies.is_empty() => problem.with_severity(Severity::Warning),
             _ => problem,
         });
     }
-    match &found.motion {
-        Some(motion) if is_led_elsewhere(model) => diagnostics.extend(of_mechanism(motion)),
-        Some(motion) => diagnostics.extend(motion_findings(motion)),
-        None if found.searched => diagnostics.extend(of_freedoms(
+    diagnostics.extend(match found.searched {
+        true => of_freedoms(
             design,
             &Mobility {
                 by_rank: None,
                 ..found.mobility
             },
-        )),
-        None => diagnostics.extend(of_freedoms(design, &found.mobility)),
-    }
-    let motion = found.motion.as_ref();
-    for study in &model.studies {
-        for problem in of_study(design, study, motion, progress) {
-            if !diagnostics.contains(&problem) {
-                diagnostics.push(problem);
-            }
-        }
-    }
+        ),
+        false => of_freedoms(design, &found.mobility),
+    });
     diagnostics
 }
 
@@ -486,32 +500,29 @@ fn diagnostics(
 fn of_study(
     design: &Design<f64>,
     study: &Study,
-    motion: Option<&Arc<Motion>>,
+    found: &Findings,
     progress: &mut dyn Progress,
 ) -> Vec<Diagnostic> {
     let mechanism = &*design.mechanism;
-    let mut found = match &study.kind {
+    let model = &mechanism.model;
+    let along = |of: fn(&Motion) -> Vec<Diagnostic>| of_motion(model, design, found, of);
+    let mut told = match &study.kind {
+        // A circuit goes wherever it leads.
+        StudyKind::Motion(motion) if motion.circuit => along(of_mechanism),
+        StudyKind::Motion(_) | StudyKind::Forces(_) => along(motion_findings),
+        StudyKind::Balance(_) | StudyKind::Spring(_) => along(motion_findings),
         StudyKind::Clearance(play) => {
-            findings_of_clearance(&mechanism.model, &study.name, play, motion)
+            let motion = found.motion.as_ref();
+            let mut told = along(motion_findings);
+            told.extend(findings_of_clearance(model, &study.name, play, motion));
+            told
         }
-        StudyKind::Contact(play) => findings_of_contact(&mechanism.model, &study.name, play),
-        // Without a motion it has been told why there is none.
-        StudyKind::Vibrations(asked) if motion.is_some() => {
-            findings_of_vibrations(&mechanism.model, &study.name, asked, progress)
-        }
-        _ => Vec::new(),
+        StudyKind::Simulate(it) => findings_of_simulation(model, &study.name, it, &[], progress),
+        StudyKind::Contact(play) => findings_of_contact(model, &study.name, play, progress),
+        StudyKind::Vibrations(asked) => findings_of_vibrations(model, &study.name, asked, progress),
     };
-    if !refuses(&found) {
-        found.extend(not_answerable(mechanism, study));
+    if !refuses(&told) {
+        told.extend(not_answerable(mechanism, study));
     }
-    found
-}
-
-/// Whether no study goes along the motion that the drives' laws demand: a circuit goes wherever it leads, and about the poses of
-/// vibrations rows that are not reached are rows with a note.
-fn is_led_elsewhere(model: &Model) -> bool {
-    let elsewhere = |study: &Study| {
-        study.kind.along().circuit || matches!(study.kind, StudyKind::Vibrations(_))
-    };
-    !model.studies.is_empty() && model.studies.iter().all(elsewhere)
+    told
 }

@@ -10,6 +10,7 @@ use kempe_model::{
 use kempe_number::text::significant;
 use kempe_units::Dimension;
 
+use crate::along::force_problems;
 use crate::clearance::given;
 use crate::unit::Units;
 use crate::words::list;
@@ -217,9 +218,6 @@ pub(crate) fn problems(design: &Design<f64>) -> Vec<Diagnostic> {
     let parameters: Vec<f64> = mechanism.model.parameter_values();
     match Acting::new(mechanism, &design.geometry, &parameters) {
         Ok(_) => Vec::new(),
-        Err(problems) => problems
-            .into_iter()
-            .map(|p| Diagnostic::error(p.code, p.message).at(p.span, ""))
-            .collect(),
+        Err(problems) => force_problems(problems),
     }
 }

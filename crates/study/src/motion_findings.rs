@@ -14,7 +14,7 @@ use crate::drawn::gives_hint;
 use crate::explain::beyond_limit;
 use crate::lone_points::with_lone_points;
 use crate::unit::Units;
-use crate::words::list;
+use crate::words::{and_more, list};
 use crate::{alternatives, findings_forces, hints};
 
 /// A `near` angle that is missed by more than this, rad, was not meant: an eighth of a turn.
@@ -205,7 +205,7 @@ fn several(
         });
     }
     if !lines.is_empty() && lines.len() < alike {
-        warning = warning.note(format!("and {} more", alike - lines.len()));
+        warning = warning.note(and_more(alike - lines.len()));
     }
     for (index, why) in idle.iter().filter(|(index, _)| !gives_hint(model, *index)) {
         let span = model.assembly[*index].span.clone();

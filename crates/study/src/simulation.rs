@@ -5,101 +5,117 @@
 //! gives nothing.
 
 mod balance;
+mod happened;
+mod how;
 mod question;
+mod told;
 mod why;
-mod words;
 
 use std::sync::Arc;
 
 use kempe_mechanism::Design;
-use kempe_model::{Contact, Diagnostic, Model, MotionStudy, Rows, SimulateStudy, StudyKind};
+use kempe_model::{Contact, Diagnostic, Model, MotionStudy, Rows, SimulateStudy};
 use kempe_motion::Motion;
 use kempe_motion::progress::Progress;
-use kempe_simulate::{Ending, Question, Simulated, simulate};
+use kempe_simulate::{Ending, Question, Ready, Simulated, ready};
 use kempe_units::Expr;
 
+use crate::along::not_simulated;
 use crate::explain::cannot_move;
 use crate::motion::rows_of;
-use crate::motion_findings::{motion_findings, refused};
+use crate::motion_findings::{motion_findings, refused as refused_motion};
 use crate::prepared::design;
 use crate::result::StudyResult;
 use crate::rows::count;
 use crate::shows::Shows;
-use crate::unit::Units;
 
 use self::balance::{balance, held_at, hidden, out_of_balance};
-use self::question::{Named, question, unfollowed, with_strokes};
+use self::happened::happened;
+use self::how::how;
+use self::question::{Named, question, unfollowed};
+use self::told::Told;
+pub(crate) use self::told::place_name;
 use self::why::{cavitation, early, explain};
-pub(crate) use self::words::place_name;
-use self::words::{happened, how, what_holds};
 
 /// The motion that a simulation of the model finds.
 ///
 /// # Errors
 ///
-/// That there is no such simulation, and what keeps it from starting.
+/// What keeps it from starting.
 pub(crate) fn simulated_motion(
     model: &Model,
     name: &str,
+    study: &SimulateStudy,
     progress: &mut dyn Progress,
 ) -> Result<Arc<Motion>, Vec<Diagnostic>> {
-    let named = model.studies.iter().find(|s| s.name == name);
-    let Some(StudyKind::Simulate(study)) = named.map(|s| &s.kind) else {
-        let message = format!("there is no simulation called `{name}`");
-        return Err(vec![Diagnostic::error("unknown-name", message)]);
-    };
-    let run = Run::new(model, &with_strokes(model, study), &[], progress)?;
-    run.motion(progress)
+    let prepared = Prepared::new(model, (name, study), &[], progress)?;
+    let found = prepared.ready.simulate(progress);
+    motion(&prepared.design, &found, progress)
 }
 
-/// A simulation that was run.
-struct Run {
+fn motion(
+    design: &Design<f64>,
+    found: &Simulated,
+    progress: &mut dyn Progress,
+) -> Result<Arc<Motion>, Vec<Diagnostic>> {
+    (found.motion(progress)).map_err(|error| vec![cannot_move(design, &error)])
+}
+
+/// What is to be told of a simulation, where joints have contacts also of these, before anything moves: what keeps it from starting, and
+/// what it is warned of.
+pub(crate) fn findings_of_simulation(
+    model: &Model,
+    name: &str,
+    study: &SimulateStudy,
+    contacts: &[Contact],
+    progress: &mut dyn Progress,
+) -> Vec<Diagnostic> {
+    match Prepared::new(model, (name, study), contacts, progress) {
+        Ok(prepared) => prepared.findings,
+        Err(refused) => refused,
+    }
+}
+
+/// A simulation that can begin.
+struct Prepared {
     design: Design<f64>,
     question: Question,
     /// What stops it, as the question has them.
     stops: Vec<Named>,
-    found: Simulated,
+    ready: Ready,
     /// What is to be told of the mechanism, whatever moves it.
     findings: Vec<Diagnostic>,
 }
 
-impl Run {
+impl Prepared {
     fn new(
         model: &Model,
-        study: &SimulateStudy,
+        (name, study): (&str, &SimulateStudy),
         contacts: &[Contact],
         progress: &mut dyn Progress,
     ) -> Result<Self, Vec<Diagnostic>> {
         let design = design(model);
-        let unknown = unfollowed(&design, study);
-        if !unknown.is_empty() {
-            return Err(unknown);
+        let mut refused = unfollowed(&design, name, study);
+        refused.extend(not_simulated(&design.mechanism, study));
+        if !refused.is_empty() {
+            return Err(refused);
         }
-        let (mut question, mut stops) = question(study, model, &design.parameters);
+        let (mut question, stops) = question(study, model, &design.parameters);
         question.contacts = contacts.to_vec();
-        let found = simulate(&design, &question, progress)
-            .map_err(|error| explain(&design, &stops, contacts, error))?;
-        let rigid = found.rigid.iter();
-        stops.extend(rigid.map(|at| Named {
-            owner: String::new(),
-            text: place_name(model, contacts, *at),
-            is_angle: false,
-        }));
-        let findings = motion_findings(&found.first);
-        if refused(&found.first) {
-            return Err(findings);
+        let told = Told::new(model, (name, study), &stops, contacts);
+        let ready =
+            ready(&design, &question, progress).map_err(|error| explain(&design, &told, error))?;
+        let findings = motion_findings(ready.first());
+        match refused_motion(ready.first()) {
+            true => Err(findings),
+            false => Ok(Self {
+                design,
+                question,
+                stops,
+                ready,
+                findings,
+            }),
         }
-        Ok(Self {
-            design,
-            question,
-            stops,
-            found,
-            findings,
-        })
-    }
-
-    fn motion(&self, progress: &mut dyn Progress) -> Result<Arc<Motion>, Vec<Diagnostic>> {
-        (self.found.motion(progress)).map_err(|error| vec![cannot_move(&self.design, &error)])
     }
 }
 
@@ -111,18 +127,18 @@ pub(crate) fn simulation(
     contacts: &[Contact],
     progress: &mut dyn Progress,
 ) -> Result<(StudyResult, Simulated), Vec<Diagnostic>> {
-    let study = &with_strokes(model, study);
-    let run = Run::new(model, study, contacts, progress)?;
-    let was_stopped = run.found.ending == Ending::Stopped;
-    let progress = &mut Shows::new(progress, was_stopped);
-    let motion = run.motion(progress)?;
-    let Run {
+    let Prepared {
+        design,
         question,
-        stops,
-        found,
+        mut stops,
+        ready,
         findings: mut diagnostics,
-        ..
-    } = run;
+    } = Prepared::new(model, (name, study), contacts, progress)?;
+    let found = ready.simulate(progress);
+    stops.extend((found.rigid.iter()).map(|at| Named::of_place(model, contacts, *at)));
+    let was_stopped = found.ending == Ending::Stopped;
+    let progress = &mut Shows::new(progress, was_stopped);
+    let motion = motion(&design, &found, progress)?;
     let hidden = hidden(&found.telling(), &found);
     let along = in_time(&study.along, question.until);
     let (mut result, values) = rows_of(
@@ -134,7 +150,7 @@ pub(crate) fn simulation(
         progress,
     )?;
     diagnostics.append(&mut result.diagnostics);
-    let units = Units::of(model);
+    let told = Told::new(model, (name, study), &stops, contacts);
     let times = result
         .table
         .columns
@@ -144,23 +160,21 @@ pub(crate) fn simulation(
     let balance = balance(&question, &found, &times, &values);
     diagnostics.extend(out_of_balance(
         name,
-        &units,
+        &told.units,
         &balance,
         &times,
         question.tolerance,
     ));
-    diagnostics.extend(early(model, &units, &found));
-    diagnostics.extend(cavitation(model, &units, study, &found));
+    diagnostics.extend(early(&told, &found));
+    diagnostics.extend(cavitation(&told, &found));
     result.table.balance = Some(balance);
     for (note, time) in result.table.notes.iter_mut().zip(&times) {
-        let held = held_at(&found, *time).map(|held| what_holds(held, &stops));
+        let held = held_at(&found, *time).map(|held| told.what_holds(held));
         let all: Vec<String> = note.take().into_iter().chain(held).collect();
         *note = (!all.is_empty()).then(|| all.join("; "));
     }
     result.listings.push(how(model, &question, &found, &result));
-    result
-        .listings
-        .extend(happened(model, &units, study, &stops, &found));
+    result.listings.extend(happened(&told, &found));
     if was_stopped {
         let all = count(
             model,

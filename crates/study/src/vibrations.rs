@@ -35,7 +35,7 @@ pub(crate) fn findings_of_vibrations(
         let failed = bench.failed(bench::Failure::NoModes(why));
         bench.diagnostics.push(failed);
     }
-    bench.diagnostics
+    bench.told()
 }
 
 /// Runs a study of natural vibrations.

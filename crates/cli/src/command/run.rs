@@ -7,8 +7,7 @@ mod write;
 use std::path::{Path, PathBuf};
 
 use kempe_model::{Diagnostic, Model, Study};
-use kempe_study::{StudyOutcome, encode, of_other_design, room_for, study_bytes};
-use kempe_units::nearest;
+use kempe_study::{StudyOutcome, encode, of_other_design, room_for, study_bytes, study_named};
 
 use crate::arguments::Run;
 use crate::clock;
@@ -321,8 +320,7 @@ fn chosen<'m>(
 ) -> Result<Vec<&'m Study>, Box<Diagnostic>> {
     let mut studies: Vec<&Study> = Vec::new();
     for name in names {
-        let study = model.studies.iter().find(|s| s.name == *name);
-        let study = study.ok_or_else(|| Box::new(unknown_study(model, name, file)))?;
+        let study = named(model, name, file)?;
         if studies.iter().all(|s| s.name != study.name) {
             studies.push(study);
         }
@@ -356,35 +354,18 @@ pub fn nothing_to_run(model: &Model) -> Diagnostic {
     .help("ask for the motion: [studies.turn] with the line kind = \"motion\"")
 }
 
-/// A study named on the command line that cannot be meant.
-fn unknown_study(model: &Model, name: &str, file: &str) -> Diagnostic {
-    if let Some(skipped) = model.announced.iter().find(|s| s.name == *name) {
-        let message = format!(
-            "study `{name}` cannot run: this version has no `{}` studies",
-            skipped.kind
-        );
-        return Diagnostic::error("study-not-available", message).help(others(model));
-    }
-    let diagnostic = Diagnostic::error("unknown-study", format!("there is no study `{name}`"));
-    if Path::new(name).extension().is_some_and(|e| e == "toml") || Path::new(name).is_file() {
-        return diagnostic
-            .note(format!(
-                "what follows the model file {file} are its studies"
-            ))
-            .help(format!("one model file at a time: kempe run {name}"));
-    }
-    let known = model.studies.iter().map(|s| s.name.as_str());
-    match nearest(name, known) {
-        Some(near) => diagnostic.help(format!("did you mean `{near}`?")),
-        None => diagnostic.help(others(model)),
-    }
-}
-
-/// The studies that can run.
-fn others(model: &Model) -> String {
-    let known: Vec<&str> = model.studies.iter().map(|s| s.name.as_str()).collect();
-    match known.is_empty() {
-        true => "the file has no other study; ask for the motion: [studies.turn] with the line kind = \"motion\"".to_owned(),
-        false => format!("the file has: {}", known.join(", ")),
-    }
+/// A study named on the command line.
+fn named<'m>(model: &'m Model, name: &str, file: &str) -> Result<&'m Study, Box<Diagnostic>> {
+    study_named(model, name).map_err(|unknown| {
+        let is_file =
+            Path::new(name).extension().is_some_and(|e| e == "toml") || Path::new(name).is_file();
+        Box::new(match is_file && unknown.code == "unknown-study" {
+            true => unknown
+                .note(format!(
+                    "what follows the model file {file} are its studies"
+                ))
+                .help(format!("one model file at a time: kempe run {name}")),
+            false => unknown,
+        })
+    })
 }

@@ -184,20 +184,9 @@ impl<'d> LawReader<'_, 'd> {
         }
     }
 
-    /// A cylinder's length is positive.
     fn check_coordinate(&self, cx: &mut Context<'_>, scalar: &Scalar, span: &Span) {
-        if self.entry.kind.name != "cylinder" {
-            return;
-        }
-        if cx.number(scalar) > 0.0 {
-            let what = format!("{}: a cylinder's length", self.place);
-            cx.bound(scalar, span, &what, self.dimension, Keeps::Positive);
-        } else {
-            cx.push(
-                Diagnostic::error("bad-size", format!("{}: a cylinder's length must be positive", self.place))
-                    .at(span.clone(), "")
-                    .help("the coordinate of a cylinder is the distance of its two points, not its stroke"),
-            );
+        if self.entry.kind.name == "cylinder" {
+            length_of_cylinder(cx, &self.place, scalar, span);
         }
     }
 
@@ -514,4 +503,24 @@ fn rise_law<'d>(
             .help(help),
     );
     None
+}
+
+/// Refuses a coordinate of a cylinder that is no length: that is positive.
+pub(crate) fn length_of_cylinder(
+    cx: &mut Context<'_>,
+    place: &str,
+    scalar: &Scalar,
+    span: &Span,
+) -> Option<()> {
+    if cx.number(scalar) > 0.0 {
+        let what = format!("{place}: a cylinder's length");
+        cx.bound(scalar, span, &what, Dimension::LENGTH, Keeps::Positive);
+        return Some(());
+    }
+    cx.refuse(
+        "bad-size",
+        format!("{place}: a cylinder's length must be positive"),
+        span,
+        "the coordinate of a cylinder is the distance of its two points, not its stroke",
+    )
 }

@@ -14,11 +14,13 @@
 use kempe_units::{Comparison, Dimension, Expr, check_condition, parse_condition};
 
 use crate::document::{Key, Node, Text, Value};
+use crate::drive::DriveKind;
 use crate::ids::{DriveId, Scalar, Span};
 use crate::key_table::{METHODS, STOP};
 use crate::measure::{Leaf, Measure, PoseMeasure};
 use crate::read::context::{Context, Meaning, MeasureState};
 use crate::read::entry::{Entry, bounds_of};
+use crate::read::laws::length_of_cylinder;
 use crate::read::measure_names::Measures;
 use crate::read::nature::nature;
 use crate::read::play_start;
@@ -200,12 +202,13 @@ fn start_of(
             format!("let it go too, release = [\"{name}\"], or leave its start out"),
         );
     }
-    let coordinate = cx.model.drives.get(drive.index())?.dimension;
-    let dimension = match is_rate {
-        true => coordinate / Dimension::TIME,
-        false => coordinate,
+    let value = match is_rate {
+        true => {
+            let coordinate = cx.model.drives.get(drive.index())?.dimension;
+            cx.scalar(node, coordinate / Dimension::TIME)?
+        }
+        false => coordinate(cx, drive, name, node)?,
     };
-    let value = cx.scalar(node, dimension)?;
     let place = match list.iter().position(|s| s.drive == drive) {
         Some(place) => place,
         None => {
@@ -224,6 +227,22 @@ fn start_of(
         &mut known.at
     }) = Some(value);
     Some(())
+}
+
+/// A coordinate of a drive that a study names.
+pub(crate) fn coordinate(
+    cx: &mut Context<'_>,
+    drive: DriveId,
+    name: &str,
+    node: &Node,
+) -> Option<Scalar> {
+    let named = cx.model.drives.get(drive.index())?;
+    let is_length = matches!(named.kind, DriveKind::Cylinder { .. });
+    let value = cx.scalar(node, named.dimension)?;
+    if is_length {
+        length_of_cylinder(cx, &format!("drive `{name}`"), &value, &node.span)?;
+    }
+    Some(value)
 }
 
 fn stops(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<Vec<Stop>> {

@@ -17,7 +17,7 @@ use crate::document::Key;
 use crate::ids::{DriveId, Scalar, Span};
 use crate::read::context::Context;
 use crate::read::entry::Entry;
-use crate::read::simulate::{drive_of, released};
+use crate::read::simulate::{coordinate, drive_of, released};
 use crate::read::studies::rows;
 use crate::study::{MotionStudy, Rows, StudyKind, VibrationStudy};
 
@@ -94,8 +94,8 @@ fn places(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<Vec<(DriveId, Scala
     let mut whole = true;
     for (key, node) in &table.entries {
         let place = drive_of(cx, &key.name, key.span.clone()).and_then(|drive| {
-            let dimension = cx.model.drives.get(drive.index())?.dimension;
-            Some((drive, cx.scalar(node, dimension)?, key.span.clone()))
+            let at = coordinate(cx, drive, &key.name, node)?;
+            Some((drive, at, key.span.clone()))
         });
         whole &= place.is_some();
         found.extend(place);

@@ -5,11 +5,12 @@ use kempe_linear::Lu;
 use crate::contact::{Gap, along};
 use crate::happening::Happened;
 use crate::joints::Place;
+use crate::lack::Sought;
 use crate::question::Resistance;
 use crate::record::Ending;
 use crate::rubbing::Rub;
 use crate::toggle::Toggled;
-use crate::watch::Watch;
+use crate::watch::{Event, Watch};
 
 use super::{Run, TOUCHED};
 
@@ -29,7 +30,7 @@ pub(super) struct Struck {
     stops: Vec<usize>,
 }
 
-impl Run<'_> {
+impl Run {
     /// Decides what friction holds: see [`Plant::decide_rubbing`](crate::plant::Plant). Tells of what it holds from here on,
     /// and of what it lets go.
     pub(super) fn rub(&mut self, jumped: bool, turns: Option<usize>, lets_go: &[usize]) -> bool {
@@ -38,7 +39,9 @@ impl Run<'_> {
         }
         let before = self.plant.mode.clone();
         let state = (self.time, self.y.as_mut_slice());
-        if !(self.plant).decide_rubbing(state, jumped, turns, lets_go) {
+        let decided = (self.plant).decide_rubbing(state, jumped, turns, lets_go);
+        self.plant.lack = decided.err();
+        if decided.is_err() {
             return false;
         }
         let (rubs, stuck) = (self.plant.mode.rubs.clone(), self.plant.mode.stuck);
@@ -50,12 +53,13 @@ impl Run<'_> {
             }
             return true;
         }
-        for (place, (before, now)) in before.rubs.iter().zip(&rubs).enumerate() {
+        let places = self.plant.what_rubs();
+        for ((before, now), at) in before.rubs.iter().zip(&rubs).zip(places) {
             match (*before == Rub::Held, *now == Rub::Held) {
-                (false, true) => self.tell(Happened::Holds { place }),
+                (false, true) => self.tell(Happened::Holds { at }),
                 // Nothing held it before it began.
-                (true, false) if self.time > 0.0 => self.tell(Happened::LetsGo { place }),
-                (true, true) if jumped && self.time == 0.0 => self.tell(Happened::Holds { place }),
+                (true, false) if self.time > 0.0 => self.tell(Happened::LetsGo { at }),
+                (true, true) if jumped && self.time == 0.0 => self.tell(Happened::Holds { at }),
                 _ => {}
             }
         }
@@ -153,15 +157,21 @@ impl Run<'_> {
     }
 
     /// What an event does.
-    pub(super) fn happens(&mut self, watch: Watch) -> Option<Ending> {
-        match watch {
+    pub(super) fn happens(&mut self, event: Event) -> Option<Ending> {
+        if !event.has_value {
+            return self.without_value(event.watch);
+        }
+        match event.watch {
             Watch::Strikes(stop) => {
+                if !self.plant.gives_way_at(stop, self.time, &self.y) {
+                    return Some(Ending::Unyielding(stop));
+                }
                 let before = self.plant.mode.resting.clone();
                 let Some(struck) = self.strikes(stop) else {
-                    return Some(Ending::NoWay);
+                    return Some(self.no_way_at_once());
                 };
                 if !self.settle(struck, &before) {
-                    return Some(Ending::NoWay);
+                    return Some(self.no_way_at_once());
                 }
             }
             Watch::Touches(stop) => {
@@ -187,26 +197,29 @@ impl Run<'_> {
                 self.plant.mode.beside.clear();
                 self.tell(Happened::Leaves { stop });
                 if !self.rub(false, None, &[]) {
-                    return Some(Ending::NoWay);
+                    return Some(self.no_way_at_once());
                 }
             }
             Watch::Turned(place) => {
                 if !self.rub(false, Some(place), &[]) {
-                    return Some(Ending::NoWay);
+                    return Some(self.no_way_at_once());
                 }
             }
             Watch::Slips => {
                 let first = self.plant.firmness(self.time, &self.y);
                 if !first.is_some_and(|(_, first)| self.rub(false, None, &first)) {
-                    return Some(Ending::NoWay);
+                    return Some(self.no_way_at_once());
                 }
+            }
+            Watch::Shrinks(k) => {
+                return self.plant.free.get(k).map(|drive| Ending::NoLength(*drive));
             }
             Watch::Ends(condition, _) => {
                 match condition.checked_sub(self.question.end_when.len()) {
                     Some(toggle) => {
                         self.toggle(toggle, condition);
                         if !self.rub(false, None, &[]) {
-                            return Some(Ending::NoWay);
+                            return Some(self.no_way_at_once());
                         }
                     }
                     None => {
@@ -217,6 +230,16 @@ impl Run<'_> {
             }
         }
         None
+    }
+
+    /// What is watched has no value any more.
+    fn without_value(&self, watch: Watch) -> Option<Ending> {
+        let sought = match watch {
+            Watch::Strikes(stop) | Watch::Touches(stop) | Watch::Parts(stop) => Sought::Stop(stop),
+            Watch::Ends(condition, _) => self.sought(condition)?,
+            _ => return None,
+        };
+        Some(Ending::NoValue(sought))
     }
 
     /// Bodies of a joint with play come together.

@@ -7,6 +7,7 @@ use kempe_simulate::{Happened, Place, Simulated};
 use kempe_units::{Dimension, Unit};
 
 use super::columns::{Deviation, deviation_of};
+use super::findings::refuses;
 use super::joints::joint_name;
 use super::prepared::WithContacts;
 use super::summary;
@@ -17,9 +18,10 @@ use crate::quantity::Quantity;
 use crate::result::{ContactMet, Figure, Listing, StudyResult, TouchMet};
 use crate::rows::RowPlace;
 use crate::shows::Shows;
-use crate::simulation::{place_name, simulation};
+use crate::simulation::{findings_of_simulation, place_name, simulation};
 use crate::table::Column;
 use crate::unit::Units;
+use crate::words::cut;
 
 /// At most so many contacts are listed.
 const LISTED: usize = 30;
@@ -33,7 +35,10 @@ pub(crate) fn contact(
 ) -> Result<(StudyResult, Simulated), Vec<Diagnostic>> {
     let prepared = WithContacts::new(model, name, study)?;
     let (model, contacts) = (prepared.model(), &*prepared.contacts);
-    let (mut result, found) = simulation(model, name, &study.motion, contacts, progress)?;
+    let (mut result, found) = match simulation(model, name, &study.motion, contacts, progress) {
+        Ok(found) => found,
+        Err(refused) => return Err([refused, prepared.findings].concat()),
+    };
     let units = Units::of(model);
     let times = (result.table.columns.first()).map_or(Vec::new(), Column::si);
     let touching = (contacts.iter().enumerate())
@@ -43,7 +48,9 @@ pub(crate) fn contact(
     // Where a drive is let go the ideal mechanism would go another way.
     if study.motion.released.is_empty() {
         // Pressures and switches are in the ideal motion what they were with play: it moves under the same loads.
-        let ideal = prepared.design.with_inner_laws(found.inner.clone());
+        let ideal = &prepared.design;
+        let inner = found.inner_laws_of(&ideal.mechanism.model);
+        let ideal = ideal.with_inner_laws(inner);
         let progress = &mut Shows::new(progress, false);
         let deviations = deviations(&ideal, study, &mut result, progress);
         let columns = deviations.iter().map(|it| it.deviation.clone());
@@ -66,11 +73,22 @@ pub(crate) fn findings_of_contact(
     model: &Model,
     name: &str,
     study: &ContactStudy,
+    progress: &mut dyn Progress,
 ) -> Vec<Diagnostic> {
-    match WithContacts::new(model, name, study) {
-        Ok(prepared) => prepared.findings,
-        Err(refused) => refused,
+    let prepared = match WithContacts::new(model, name, study) {
+        Ok(prepared) => prepared,
+        Err(refused) => return refused,
+    };
+    let (model, contacts) = (prepared.model(), &*prepared.contacts);
+    let mut findings = findings_of_simulation(model, name, &study.motion, contacts, progress);
+    if study.motion.released.is_empty()
+        && !refuses(&findings)
+        && let Err(why) = motion(&prepared.design, progress)
+    {
+        findings.push(no_ideal_motion(name, &why));
     }
+    findings.extend(prepared.findings);
+    findings
 }
 
 /// At how many places the bodies of a joint touch in every row.
@@ -316,7 +334,7 @@ fn listed(all: &[ContactMet], units: &Units) -> Option<Listing> {
     let time = |t: f64| units.text(t, Dimension::TIME);
     let speed = |v: f64| units.text(v, Dimension::LENGTH / Dimension::TIME);
     let none = || "-".to_owned();
-    let rows = all.iter().take(LISTED).map(|met| {
+    let rows = all.iter().map(|met| {
         let touch = met.touch.as_ref();
         vec![
             time(met.time),
@@ -328,11 +346,7 @@ fn listed(all: &[ContactMet], units: &Units) -> Option<Listing> {
             touch.map_or_else(none, |t| units.text(t.depth, Dimension::LENGTH)),
         ]
     });
-    let mut rows: Vec<Vec<String>> = rows.collect();
-    let more = all.len().saturating_sub(LISTED);
-    if more > 0 {
-        rows.push(vec!["…".to_owned(), format!("and {more} more")]);
-    }
+    let rows = cut(rows.collect(), LISTED);
     let head = [
         "time",
         "where",

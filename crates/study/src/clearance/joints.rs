@@ -3,7 +3,7 @@
 use kempe_dynamics::clearance::Play;
 use kempe_mechanism::constraint::Source;
 use kempe_mechanism::{Mechanism, NotReleased};
-use kempe_model::{Clearance, ClearanceAt, Diagnostic, JointKind, LinkId, Model, PointId, value};
+use kempe_model::{Clearance, ClearanceAt, Diagnostic, JointKind, LinkId, Model, Released, value};
 use kempe_units::Dimension;
 
 use crate::unit::Units;
@@ -150,23 +150,12 @@ fn welded(mechanism: &Mechanism, at: &ClearanceAt) -> Option<String> {
 
 /// What a joint is called.
 pub(crate) fn joint_name(model: &Model, source: Source) -> String {
-    let point = |id: PointId| model.points.get(id.index());
-    match source {
-        Source::Pin { point: id, link } => {
-            let name = point(id).map_or("?", |p| p.name.as_str());
-            let link = model.links.get(link.index()).map_or("?", |l| &l.name);
-            match point(id).is_some_and(|p| p.links.len() > 2) {
-                true => format!("{name} of {link}"),
-                false => name.to_owned(),
-            }
-        }
-        Source::Joint(id) => {
-            (model.joints.get(id.index())).map_or(String::new(), |j| j.name.clone())
-        }
-        Source::Drive(id) => {
-            (model.drives.get(id.index())).map_or(String::new(), |d| d.name.clone())
-        }
-    }
+    let name = match source {
+        Source::Pin { point, link } => Released::Pin { point, link }.name(model),
+        Source::Joint(id) => Released::Joint(id).name(model),
+        Source::Drive(id) => model.drives.get(id.index()).map(|d| d.name.clone()),
+    };
+    name.unwrap_or_default()
 }
 
 /// A joint that the file gives a clearance and that cannot have one.

@@ -2,12 +2,15 @@
 
 use kempe_mechanism::Design;
 use kempe_model::{
-    Amount, Diagnostic, DriveId, Leaf, Model, SimulateStudy, StepMethod, StopResistance, value,
+    Amount, Contact, Diagnostic, DriveId, Leaf, Model, SimulateStudy, StepMethod, StopResistance,
+    value,
 };
-use kempe_simulate::{Method, Question, Resistance, Stop};
+use kempe_simulate::{Method, Place, Question, Resistance, Sought, Stop};
 use kempe_units::Expr;
 
 use crate::along::is_followed;
+
+use super::told::{Told, place_name};
 
 /// Error of a step where the file does not say, in parts of what moves.
 const TOLERANCE: f64 = 1e-13;
@@ -16,11 +19,22 @@ const FINEST: f64 = 1e-15;
 
 /// Something that stops the motion, in words.
 pub(super) struct Named {
-    /// What it stops, as the study calls it.
-    pub owner: String,
     /// `the lower stop of rocker`.
     pub text: String,
     pub is_angle: bool,
+    /// The drive of the cylinder whose stroke ends there, with the lengths between which that is, m; none of a stop that the study has.
+    pub stroke: Option<(DriveId, [f64; 2])>,
+}
+
+impl Named {
+    /// A place of a joint with play that resists at once.
+    pub fn of_place(model: &Model, contacts: &[Contact], at: Place) -> Self {
+        Self {
+            text: place_name(model, contacts, at),
+            is_angle: false,
+            stroke: None,
+        }
+    }
 }
 
 /// What is asked, with its stops in words.
@@ -39,7 +53,14 @@ pub(super) fn question(
         [at.unwrap_or_else(of_law), rate]
     });
     let (mut stops, mut names) = (Vec::new(), Vec::new());
-    for stop in &study.stops {
+    let own = study.stops.iter().map(|stop| (stop.clone(), None));
+    let strokes = strokes(model, study);
+    let strokes = strokes.into_iter().map(|(drive, stop)| {
+        let between = stop.between.each_ref();
+        let between = between.map(|end| end.as_ref().map_or(f64::NAN, number));
+        (stop, Some((drive, between)))
+    });
+    for (stop, stroke) in own.chain(strokes) {
         let resistance = match &stop.resistance {
             StopResistance::Rigid { restitution } => Resistance::Rigid {
                 restitution: restitution.as_ref().map_or(0.0, number),
@@ -53,9 +74,9 @@ pub(super) fn question(
             stops.push(Stop { gap, resistance });
             let end = if least { "lower" } else { "upper" };
             names.push(Named {
-                owner: stop.name.clone(),
                 text: format!("the {end} stop of {}", stop.name),
                 is_angle: stop.is_angle,
+                stroke,
             });
         }
     }
@@ -81,69 +102,68 @@ pub(super) fn question(
 }
 
 /// What goes by the pressure of a cylinder that the study does not let go.
-pub(super) fn unfollowed(design: &Design<f64>, study: &SimulateStudy) -> Vec<Diagnostic> {
+pub(super) fn unfollowed(
+    design: &Design<f64>,
+    name: &str,
+    study: &SimulateStudy,
+) -> Vec<Diagnostic> {
     let model = &design.mechanism.model;
     let actions = &model.actions;
     let measure = |amount: &Amount| match amount {
         Amount::Measure(measure) => measure.clone(),
         Amount::Table { over, .. } => (**over).clone(),
     };
-    let loads = actions.loads.iter().flat_map(|load| {
+    let loads = actions.loads.iter().enumerate().flat_map(|(index, load)| {
         let measures = load.kind.amounts().map(measure);
-        measures.map(|m| (format!("the load `{}`", load.name), m, load.span.clone()))
+        measures.map(move |m| (Sought::Load(index), m))
     });
-    let name = |drive: DriveId| {
-        model
-            .drives
-            .get(drive.index())
-            .map_or("", |d| d.name.as_str())
-    };
     let valves = (actions.cylinders.iter())
         .filter(|cylinder| study.released.contains(&cylinder.drive))
         .flat_map(|cylinder| {
             let oil = cylinder.oil.iter();
             let openings = oil.flat_map(|oil| std::iter::once(&oil.valve.0).chain(&oil.valve.1));
-            let what = format!("the valve of `{}`", name(cylinder.drive));
-            openings.map(move |it| (what.clone(), measure(it), cylinder.span.clone()))
+            openings.map(move |it| (Sought::Valve(cylinder.drive), measure(it)))
         });
     let throttles = (actions.motors.iter())
         .filter(|motor| study.released.contains(&motor.drive))
         .filter_map(|motor| {
-            let what = format!("the throttle of `{}`", name(motor.drive));
-            Some((what, measure(motor.throttle.as_ref()?), motor.span.clone()))
+            Some((
+                Sought::Throttle(motor.drive),
+                measure(motor.throttle.as_ref()?),
+            ))
         });
-    let switches = actions.switches.iter().flat_map(|switch| {
+    let switches = (actions.switches.iter().enumerate()).flat_map(|(index, switch)| {
         let conditions = std::iter::once(&switch.on).chain(&switch.off);
-        let what = format!("the switch `{}`", switch.name);
-        conditions.map(move |it| (what.clone(), it.above.clone(), switch.span.clone()))
+        conditions.map(move |it| (Sought::Switch(index), it.above.clone()))
     });
-    let ends = study.end_when.iter();
-    let ends = ends.map(|it| (format!("`{}`", it.text), it.above.clone(), 0..0));
+    let ends = study.end_when.iter().enumerate();
+    let ends = ends.map(|(index, it)| (Sought::Condition(index), it.above.clone()));
     let all = (loads.chain(valves))
         .chain(throttles)
         .chain(switches)
         .chain(ends);
-    let unknown = all.filter(|(_, measure, _)| !is_followed(&design.mechanism, study, measure));
-    let told = unknown.map(|(what, _, span)| {
+    let unknown = all.filter(|(_, measure)| !is_followed(&design.mechanism, study, measure));
+    let told = Told::new(model, (name, study), &[], &[]);
+    let unknown = unknown.map(|(sought, _)| {
+        let (what, span) = told.sought(sought);
         let message = format!(
-            "{what} goes by the pressure of a cylinder that keeps its law: nothing follows its oil"
+            "study `{name}`: {what} goes by the pressure of a cylinder that keeps its law: nothing follows its oil"
         );
         let error = Diagnostic::error("needs-simulation", message);
-        let error = if span.is_empty() {
-            error
-        } else {
-            error.at(span, "")
+        let error = match span {
+            Some(span) => error.at(span, ""),
+            None => error,
         };
         error.help(
             "let its drive go too, by `release`, or go by where things are and how fast they move",
         )
     });
-    told.collect()
+    unknown.collect()
 }
 
-/// The study with the ends of the strokes of cylinders that their oil moves as stops, where it has none of its own for them.
-pub(super) fn with_strokes(model: &Model, study: &SimulateStudy) -> SimulateStudy {
-    let mut study = study.clone();
+/// The ends of the strokes of cylinders that their oil moves, as stops, where the study has none of its own for them.
+fn strokes(model: &Model, study: &SimulateStudy) -> Vec<(DriveId, kempe_model::Stop)> {
+    let mut all = Vec::new();
     for cylinder in &model.actions.cylinders {
         let drive = cylinder.drive;
         let what = Expr::Leaf(Leaf::Drive(drive));
@@ -157,13 +177,14 @@ pub(super) fn with_strokes(model: &Model, study: &SimulateStudy) -> SimulateStud
             continue;
         }
         let open = Expr::Add(Box::new(closed.clone()), Box::new(stroke));
-        study.stops.push(kempe_model::Stop {
+        let stop = kempe_model::Stop {
             name: named.name.clone(),
             what,
             is_angle: false,
             between: [Some(closed), Some(open)],
             resistance: StopResistance::Rigid { restitution: None },
-        });
+        };
+        all.push((drive, stop));
     }
-    study
+    all
 }

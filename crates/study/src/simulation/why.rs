@@ -1,37 +1,35 @@
 //! Why there is no simulation, why it ended early, and where its oil boils.
 
 use kempe_mechanism::Design;
-use kempe_model::{Contact, Diagnostic, Model, SimulateStudy};
-use kempe_motion::{EndReason, Stage};
-use kempe_simulate::{Ending, Happened, NoStart, Simulated, Tied, Unsimulated};
+use kempe_model::Diagnostic;
+use kempe_motion::Stage;
+use kempe_simulate::{Ending, Happened, Lack, NoStart, Simulated, Sought, Tied, Unsimulated};
 use kempe_units::Dimension;
 
 use crate::along::force_problems;
 use crate::clearance::not_released;
 use crate::explain::{cannot_move, stopped};
-use crate::unit::Units;
 
-use super::question::Named;
-use super::words::{chamber, place_name};
+use super::happened::most_frequent;
+use super::told::{Told, place_name};
+
+/// Among so many things that happened last what is most frequent is what repeats.
+const REPEATS: usize = 500;
+
+/// What can be done where something has no value.
+const GIVE_VALUE: &str = "look in it for a quotient by zero, for the root, the logarithm or the asin of what has none, or for what has no direction there";
 
 /// That it ended before it was to.
-pub(super) fn early(model: &Model, units: &Units, found: &Simulated) -> Option<Diagnostic> {
-    let at = units.text(found.end, Dimension::TIME);
+pub(super) fn early(told: &Told<'_>, found: &Simulated) -> Option<Diagnostic> {
+    let at = told.units.text(found.end, Dimension::TIME);
+    let mut span = None;
+    let mut sought = |it: Sought| {
+        let (name, place) = told.sought(it);
+        span = place;
+        name
+    };
     let (why, help) = match found.ending {
         Ending::Until | Ending::Condition(_) | Ending::Stopped => return None,
-        Ending::Limit(EndReason::Covered) | Ending::NoWay => match found.tied {
-            None => (
-                "no pose or no acceleration was found just ahead: nothing moves mass there, or what is let go comes to a dead point where no link turns on".to_owned(),
-                "give the links that move there mass and inertia, or let another drive go, one whose coordinate goes on there",
-            ),
-            Some(tied) => {
-                let (why, help) = at_own_dead_point(tied);
-                let why = format!(
-                    "no pose or no acceleration was found just ahead: nothing moves mass there, or what is let go comes to a dead point of its own, where it ends, because {why}"
-                );
-                (why, help)
-            }
-        },
         Ending::Limit(_) => match found.tied {
             None => (
                 "what is let go comes to a dead point of its own, and no link turns on there whose angle would tell where the mechanism goes".to_owned(),
@@ -43,28 +41,129 @@ pub(super) fn early(model: &Model, units: &Units, found: &Simulated) -> Option<D
                 (why, help)
             }
         },
+        Ending::NoWay(lack) => no_way(told, found.tied, lack),
+        Ending::NoValue(it) => {
+            let why = format!("{} is infinite or not a number from there on", sought(it));
+            (why, GIVE_VALUE)
+        }
+        Ending::Unyielding(stop) => kept_from_stop(told, stop),
+        Ending::NoLength(drive) => (
+            format!("the two points of the cylinder `{}` meet there, and it has no length", told.drive(drive)),
+            "let it stop before, by `stops`, end the study there by `end_when`, or let a drive go that turns a link",
+        ),
+        Ending::RunsAway(it) => {
+            let why = format!("{} grows without bound there, so that no step is short enough", sought(it));
+            (why, "bound it, as by min() or max(), or end the study before, by `until` or `end_when`")
+        }
         Ending::TooShort => (
             "no step is short enough: something runs away, jumps, or is very stiff".to_owned(),
             "look for a load, spring or stop that is very large there, or ask for a larger `tolerance`",
         ),
-        Ending::TooMany => (
-            "there is no end of steps or impacts".to_owned(),
-            "look for stops between which it rattles, or loads that jump to and fro, or ask for a shorter time",
+        Ending::TooManySteps => (
+            "it takes more steps than are made".to_owned(),
+            "ask for a shorter time or a larger `tolerance`, or for method = \"implicit\" where something is stiff",
+        ),
+        Ending::TooManyEvents => (
+            repeats(told, found),
+            "look for stops between which it rattles, or for what it switches to and fro; let the stop take more of the speed, or ask for a shorter time",
         ),
     };
+    let model = told.model;
     let drives: Vec<String> = (found.laws.iter().zip(&model.drives))
         .map(|(law, drive)| {
             let q = law.at(found.end, &[]);
-            format!("{} = {}", drive.name, units.text(q, drive.dimension))
+            format!("{} = {}", drive.name, told.units.text(q, drive.dimension))
         })
         .collect();
+    let message = format!(
+        "study `{}`: the simulation goes no farther than {at}",
+        told.name
+    );
+    let error = Diagnostic::error("simulation-ended", message);
+    let error = match span {
+        Some(span) => error.at(span, ""),
+        None => error,
+    };
     Some(
-        Diagnostic::error(
-            "simulation-ended",
-            format!("the simulation goes no farther than {at}"),
-        )
-        .note(format!("{why} ({})", drives.join(", ")))
-        .help(help),
+        error
+            .note(format!("{why} ({})", drives.join(", ")))
+            .help(help),
+    )
+}
+
+/// What happens again and again.
+fn repeats(told: &Told<'_>, found: &Simulated) -> String {
+    let Some(line) = most_frequent(told, found, REPEATS) else {
+        return "more happens than is followed".to_owned();
+    };
+    let time = |t: f64| told.units.text(t, Dimension::TIME);
+    format!(
+        "more happens than is followed: it {} {} times between {} and {}",
+        told.what(&line.first.what),
+        line.count,
+        time(line.first.time),
+        time(line.last)
+    )
+}
+
+/// Why nothing is known of accelerations just ahead.
+fn no_way(told: &Told<'_>, tied: Option<Tied>, lack: Lack) -> (String, &'static str) {
+    match (lack, tied) {
+        (Lack::Pose, Some(tied)) => {
+            let (why, help) = at_own_dead_point(tied);
+            let why = format!("no pose was found just ahead: what is let go comes to a dead point of its own, and ends there, because {why}");
+            (why, help)
+        }
+        (Lack::Pose, None) => (
+            "no pose was found just ahead: what is let go comes to a dead point of its own where no link turns on".to_owned(),
+            "let another drive go, one whose coordinate goes on there, or keep it from there by `stops`",
+        ),
+        (lack, _) => lacks(told, lack),
+    }
+}
+
+/// Why nothing is known of accelerations, and what can be done.
+fn lacks(told: &Told<'_>, lack: Lack) -> (String, &'static str) {
+    match lack {
+        Lack::Pose => (
+            "the pose there is singular: it stands at a dead point of what is let go, along which it moves in no direction".to_owned(),
+            "start a little beside the dead point, or let another drive go, one whose coordinate goes on there",
+        ),
+        Lack::Value(sought) => {
+            let why = format!("{} is infinite or not a number there", told.sought(sought).0);
+            (why, GIVE_VALUE)
+        }
+        Lack::Oil(drive) => (
+            format!("on one side of the cylinder of `{}` there is no oil left", told.drive(drive)),
+            "give more `volume`, or let its stroke end before, by `closed` and `stroke` or by `stops`",
+        ),
+        Lack::Mass => (
+            "what is let go moves no mass: its acceleration is not determined".to_owned(),
+            "give the links that move their mass and inertia, or hold the drive that moves none",
+        ),
+        Lack::Friction => (
+            "friction jams it, or lets it move in more than one way: its acceleration is not determined".to_owned(),
+            "lower the coefficients, or start elsewhere",
+        ),
+        Lack::Force => (
+            "a force is infinite there, or has no direction, as that of a spring or damper whose ends lie upon each other".to_owned(),
+            "keep the ends of what acts apart, by `stops` or by where they are",
+        ),
+        Lack::Rest => (
+            "it rests on stops that repeat each other, so that what each of them pushes is not known".to_owned(),
+            "leave one of these stops out",
+        ),
+    }
+}
+
+/// That what a stop bounds goes by drives that keep their laws, and what can be done.
+fn kept_from_stop(told: &Told<'_>, stop: usize) -> (String, &'static str) {
+    (
+        format!(
+            "nothing that is let go gives way at {}: drives that keep their laws go on, whatever stands in their way",
+            told.stop(stop)
+        ),
+        "let the drive go that moves it, by `release`, end its law before the stop, or leave the stop out",
     )
 }
 
@@ -91,12 +190,7 @@ fn at_own_dead_point(tied: Tied) -> (&'static str, &'static str) {
 }
 
 /// That the pressure in a cylinder fell below that of a vacuum, where it did first.
-pub(super) fn cavitation(
-    model: &Model,
-    units: &Units,
-    study: &SimulateStudy,
-    found: &Simulated,
-) -> Option<Diagnostic> {
+pub(super) fn cavitation(told: &Told<'_>, found: &Simulated) -> Option<Diagnostic> {
     let first = found.happenings.iter().find_map(|it| match it.what {
         Happened::Cavitates { free, side } => Some((it.time, free, side)),
         _ => None,
@@ -104,12 +198,12 @@ pub(super) fn cavitation(
     let (time, free, side) = first?;
     let message = format!(
         "{} falls below that of a vacuum at {}: oil would boil or let its air go, and what follows is not known",
-        chamber(model, study, free, side),
-        units.text(time, Dimension::TIME)
+        told.chamber(free, side),
+        told.units.text(time, Dimension::TIME)
     );
     let warning = Diagnostic::warning("cavitation", message);
-    let drive = study.released.get(free);
-    let span = drive.and_then(|drive| Some(model.drives.get(drive.index())?.span.clone()));
+    let drive = told.study.released.get(free);
+    let span = drive.and_then(|drive| Some(told.model.drives.get(drive.index())?.span.clone()));
     Some(
         warning
             .at(span.unwrap_or_default(), "")
@@ -117,16 +211,19 @@ pub(super) fn cavitation(
     )
 }
 
+/// That there is no simulation.
+fn cannot(told: &Told<'_>, why: &str) -> Diagnostic {
+    Diagnostic::error("cannot-simulate", format!("study `{}`: {why}", told.name))
+}
+
 /// Why there is no simulation.
 pub(super) fn explain(
     design: &Design<f64>,
-    stops: &[Named],
-    contacts: &[Contact],
+    told: &Told<'_>,
     error: Unsimulated,
 ) -> Vec<Diagnostic> {
-    let model = &design.mechanism.model;
-    let units = Units::of(model);
-    let cannot = |message: String| Diagnostic::error("cannot-simulate", message);
+    let (model, units) = (told.model, &told.units);
+    let cannot = |message: String| cannot(told, &message);
     vec![match error {
         Unsimulated::Problems(problems) => return force_problems(problems),
         Unsimulated::Start(NoStart::Motion(error)) | Unsimulated::Motion(error) => {
@@ -144,32 +241,65 @@ pub(super) fn explain(
             .at(drive.span.clone(), "")
             .help("start it where it comes to, or describe another assembly under [assembly]")
         }
-        Unsimulated::NoMass => cannot(
-            "what is let go moves no mass, or friction jams it: its acceleration is not determined"
-                .to_owned(),
-        )
-        .note("links have no mass unless it is given")
-        .help("give the links that move their mass and inertia, or start away from a dead point"),
-        Unsimulated::BeyondStop(index, by) => {
-            let stop = stops.get(index);
-            let (name, is_angle) = stop.map_or(("", false), |s| (s.owner.as_str(), s.is_angle));
-            let dimension = if is_angle {
-                Dimension::ANGLE
-            } else {
-                Dimension::LENGTH
-            };
-            cannot(format!(
-                "it starts beyond the stop of `{name}`, by {}",
-                units.text(by, dimension)
-            ))
-            .help("start between the stops, or move them")
+        Unsimulated::Lacks(lack) => {
+            let (why, help) = lacks(told, lack);
+            let error = cannot(format!("it cannot begin: {why}")).help(help);
+            match lack {
+                Lack::Mass => error.note("links have no mass unless it is given"),
+                _ => error,
+            }
         }
+        Unsimulated::NoValue(sought) => {
+            let (what, span) = told.sought(sought);
+            let error = cannot(format!(
+                "it cannot begin: {what} is infinite or not a number at the start"
+            ));
+            let error = match span {
+                Some(span) => error.at(span, ""),
+                None => error,
+            };
+            error.help(GIVE_VALUE)
+        }
+        Unsimulated::KeptFromStop(stop) => {
+            let (why, help) = kept_from_stop(told, stop);
+            cannot(why).help(help)
+        }
+        Unsimulated::BeyondStop(index, by) => beyond_stop(told, index, by),
         Unsimulated::BeyondPlay(place, by) => {
-            let place = place_name(model, contacts, place);
+            let place = place_name(model, told.contacts, place);
             let by = units.text(by, Dimension::LENGTH);
             cannot(format!("{place} starts with its bodies in each other, by {by}"))
                 .help("`start` in a study of clearance tells where a pin or slider is in its play, seen from the middle: no farther off than radial")
         }
         Unsimulated::NoPlay(why) => not_released(&design.mechanism, why),
     }]
+}
+
+/// That it starts beyond a stop of the study, or outside the stroke of a cylinder, by so much.
+fn beyond_stop(told: &Told<'_>, index: usize, by: f64) -> Diagnostic {
+    let stop = told.stops.get(index);
+    let is_angle = stop.is_some_and(|stop| stop.is_angle);
+    let dimension = if is_angle {
+        Dimension::ANGLE
+    } else {
+        Dimension::LENGTH
+    };
+    let by = told.units.text(by, dimension);
+    let cannot = |message: String| cannot(told, &message);
+    let Some((drive, stroke)) = stop.and_then(|stop| stop.stroke) else {
+        return cannot(format!("it starts beyond {}, by {by}", told.stop(index)))
+            .help("start between the stops, or move them");
+    };
+    let [closed, open] = told.units.texts(stroke, dimension);
+    let cylinders = &told.model.actions.cylinders;
+    let cylinder = cylinders.iter().find(|it| it.drive == drive);
+    let error = cannot(format!(
+        "drive `{}` starts outside the stroke of its cylinder, by {by}: that goes from {closed} to {open}",
+        told.drive(drive)
+    ));
+    let error = match cylinder {
+        Some(cylinder) => error.at(cylinder.span.clone(), ""),
+        None => error,
+    };
+    error.help("start the drive within the stroke, or change `closed` and `stroke` of the oil")
 }

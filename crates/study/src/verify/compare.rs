@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use kempe_model::{Diagnostic, Model, NamedMeasure, Study, StudyKind};
+use kempe_model::{Diagnostic, Model, NamedMeasure, StudyKind};
 use kempe_motion::Motion;
 use kempe_motion::events::EventKind;
 use kempe_units::{Dimension, Unit};
@@ -12,6 +12,7 @@ use super::case::{Case, Expected, Target};
 use super::of_study::OfStudy;
 use crate::along::{Along, Row};
 use crate::findings::check;
+use crate::named::study_named;
 use crate::pose::Setting;
 use crate::prepared::{design, motion};
 use crate::quantity::Quantity;
@@ -66,8 +67,10 @@ pub fn compare(
     files: &mut dyn FnMut(&str) -> Result<String, String>,
 ) -> Result<Vec<Comparison>, Vec<Diagnostic>> {
     let model = Model::from_toml_with(text, &case.title, files, &case.set)?.model;
-    let named = |study: &&Study| Some(&study.name) == case.study.as_ref();
-    let study = model.studies.iter().find(named);
+    let study = match &case.study {
+        Some(name) => Some(study_named(&model, name).map_err(|unknown| vec![unknown])?),
+        None => None,
+    };
     if let Some(study) = study.filter(|s| !matches!(s.kind, StudyKind::Simulate(_))) {
         let study = OfStudy::new(&model, study)?;
         let compared = case.expected.iter().map(|expected| {
@@ -93,9 +96,11 @@ pub fn compare(
         }
     }
     let design = design(&model);
-    let motion = match &case.study {
-        Some(name) => simulated_motion(&model, name, &mut Silent)?,
-        None => motion(&design, &mut Silent)?,
+    let motion = match study.map(|study| (&study.name, &study.kind)) {
+        Some((name, StudyKind::Simulate(study))) => {
+            simulated_motion(&model, name, study, &mut Silent)?
+        }
+        _ => motion(&design, &mut Silent)?,
     };
     let named: Vec<NamedMeasure> = (measures.iter())
         .map(|text| model.measure(text))

@@ -1,0 +1,345 @@
+//! What has to be known before a simulation begins, and what keeps it from that.
+
+use std::sync::Arc;
+
+use kempe_dynamics::{Forces, Problem};
+use kempe_integrate::Used;
+use kempe_measure::measure::visit_leaves;
+use kempe_mechanism::{Design, Mechanism, NotReleased};
+use kempe_model::{DriveId, Law, Leaf, Measure, Model, PoseMeasure};
+use kempe_motion::{Motion, MotionError, Placed, Progress};
+use kempe_units::Dimension;
+
+use crate::contact::Barrier;
+use crate::joints::{Place, opened, rigid_stops, touched};
+use crate::lack::{Lack, Sought};
+use crate::places::Places;
+use crate::plant::{Plant, motor_sense};
+use crate::question::Question;
+use crate::record::{Machine, Pilots, Record, Simulated};
+use crate::rubbing::places_that_rub;
+use crate::start::{NoStart, start};
+use crate::tellers::Tellers;
+use crate::toggle::Toggle;
+
+use super::{BACK, Run, TOUCHED, beside};
+
+/// Why there is no simulation.
+#[derive(Debug)]
+pub enum Unsimulated {
+    /// The mechanism does not come to the start.
+    Start(NoStart),
+    /// It cannot move there.
+    Motion(MotionError),
+    /// What acts on it makes no sense.
+    Problems(Vec<Problem>),
+    /// Nothing is known of how what is let go accelerates there.
+    Lacks(Lack),
+    /// Something that the simulation goes by has no value at the start.
+    NoValue(Sought),
+    /// What this stop bounds goes by drives that keep their laws alone.
+    KeptFromStop(usize),
+    /// It starts beyond this stop, by so much.
+    BeyondStop(usize, f64),
+    /// A joint with play starts with its bodies in each other, so deep, m.
+    BeyondPlay(Place, f64),
+    /// A joint cannot have play.
+    NoPlay(NotReleased),
+}
+
+/// A simulation that can begin.
+pub struct Ready {
+    run: Run,
+    /// Ends of stretches between which the laws of drives are smooth, s.
+    breaks: Vec<f64>,
+    rigid: Vec<Place>,
+    first: Arc<Motion>,
+    design: Design<f64>,
+    placed: Placed,
+}
+
+impl Ready {
+    /// The motion on which the pose of the start was found: the assembly that was chosen, and what it has to say.
+    pub fn first(&self) -> &Motion {
+        &self.first
+    }
+
+    /// Simulates. What ends it early is told with what was found until then.
+    pub fn simulate(self, progress: &mut dyn Progress) -> Simulated {
+        let Ready {
+            mut run,
+            breaks,
+            rigid,
+            first,
+            design,
+            placed,
+        } = self;
+        let ending = run.whole(&breaks, progress);
+        let acting = &run.plant.forces.acting;
+        let mut machines: Vec<Machine> = (run.plant.motors.iter())
+            .map(|it| Machine {
+                motor: it.map(|it| (acting.motors[it.motor].clone(), it.sense)),
+                oil: None,
+                seals: None,
+            })
+            .collect();
+        for moved in &run.plant.inner.moved {
+            machines[moved.free].oil = Some((acting.oils[moved.oil].clone(), moved.place));
+        }
+        for (moved, place) in run.plant.seals() {
+            machines[moved.free].seals = Some(place);
+        }
+        let end = run.time;
+        let (used, evaluations) = run.effort();
+        let mut laws = run.record.laws(end);
+        let links = run.tellers.used();
+        let pilots = (!links.is_empty()).then(|| Pilots {
+            mechanism: run.tellers.piloted(),
+            count: laws.places.len(),
+            laws: [laws.places, laws.choices].concat(),
+            links: links.to_vec(),
+        });
+        let work = laws.beside.remove(0);
+        let inner = &run.plant.inner;
+        let mut inner_laws: Vec<Option<Law>> = vec![None; inner.values.len()];
+        let pressures = inner.moved.iter().flat_map(|m| [m.place, m.place + 1]);
+        let friction = run.plant.friction_places();
+        let switches = inner.values.len() - inner.switches().len()..inner.values.len();
+        for (place, law) in pressures.chain(friction).chain(switches).zip(laws.beside) {
+            inner_laws[place] = Some(law);
+        }
+        Simulated {
+            tied: run.plant.tied(),
+            free: run.question.free.clone(),
+            touched: touched(&run.plant.forces.acting.contacts, &laws.drives, end),
+            rigid_from: run.question.stops.len(),
+            rigid,
+            laws: laws.drives,
+            work,
+            end,
+            ending,
+            happenings: run.happenings,
+            held: run.held,
+            used,
+            evaluations,
+            first,
+            pilots,
+            inner: inner_laws,
+            machines,
+            design,
+            placed,
+        }
+    }
+}
+
+/// Makes a simulation of a design ready to begin.
+///
+/// # Errors
+/// Why it cannot begin.
+pub fn ready(
+    design: &Design<f64>,
+    question: &Question,
+    progress: &mut dyn Progress,
+) -> Result<Ready, Unsimulated> {
+    let model = &design.mechanism.model;
+    let parameters = design.parameters.clone();
+    let mut coordinates: Vec<f64> = (model.drives.iter())
+        .map(|d| d.law.at(0.0, &parameters))
+        .collect();
+    for (drive, [q, _]) in question.free.iter().zip(&question.start) {
+        coordinates[drive.index()] = *q;
+    }
+    let from = start(design, &coordinates, progress).map_err(Unsimulated::Start)?;
+    // Laws are those of the file: what was found may stand still.
+    let laws = |index: usize| model.drives.get(index).map(|d| d.law.clone());
+    let (mut from, rows) = opened(from, &question.contacts).map_err(Unsimulated::NoPlay)?;
+    let mut design = from.design.with_laws(laws);
+    let model = &design.mechanism.model.clone();
+    coordinates.resize(model.drives.len(), 0.0);
+    for row in &rows {
+        coordinates[row.drive.index()] = row.start[0];
+    }
+    let question = Question {
+        free: (question.free.iter().copied())
+            .chain(rows.iter().map(|row| row.drive))
+            .collect(),
+        start: (question.start.iter().copied())
+            .chain(rows.iter().map(|row| row.start))
+            .collect(),
+        ..question.clone()
+    };
+    let (mut placed, first_motion) = (from.placed.clone(), from.first.clone());
+    let mut forces = Forces::new(design.clone()).map_err(Unsimulated::Problems)?;
+    // Places that rub slide each in its own sense, which the motion that is found keeps.
+    let followed = places_that_rub(&forces.acting, &question.free);
+    if followed > 0 {
+        let follow = |model: &mut Model| model.actions.followed_friction = followed;
+        (from.design, design) = (from.design.with_model(follow), design.with_model(follow));
+        forces = Forces::new(design.clone()).map_err(Unsimulated::Problems)?;
+    }
+    for spring in &mut forces.acting.springs {
+        spring.align(&forces.design.geometry, &placed.near);
+    }
+    let (rigid, barriers): (Vec<Place>, Vec<Barrier>) =
+        rigid_stops(&forces.acting.contacts).into_iter().unzip();
+    let stops = question.stops.iter().map(Barrier::of).chain(barriers);
+    let driven: Vec<DriveId> = (0..model.drives.len() as u32)
+        .map(DriveId)
+        .filter(|drive| {
+            let law = &model.drives[drive.index()].law;
+            !question.free.contains(drive) && law.duration(&parameters) > 0.0
+        })
+        .collect();
+    let moving: Vec<DriveId> = question.free.iter().chain(&driven).copied().collect();
+    let places = Places::new(from, &moving, progress).map_err(Unsimulated::Motion)?;
+    let mut breaks: Vec<f64> = (driven.iter())
+        .flat_map(|drive| model.drives[drive.index()].law.breaks(&parameters))
+        .filter(|t| 0.0 < *t && *t < question.until)
+        .chain([question.until])
+        .collect();
+    breaks.sort_by(f64::total_cmp);
+    breaks.dedup();
+    let play = |drive: &DriveId| {
+        let row = rows.iter().find(|row| row.drive == *drive);
+        row.map(|row| row.clearance)
+    };
+    let scales: Vec<f64> = (question.free.iter())
+        .map(|drive| match model.drives[drive.index()].dimension {
+            Dimension::ANGLE => 1.0,
+            // What has play is hardly ever off by more.
+            _ => play(drive).unwrap_or_else(|| design.size()),
+        })
+        .collect();
+    let senses = question.free.iter().map(|drive| {
+        let law = model.drives.get(drive.index()).map(|d| &d.law);
+        law.map_or(1.0, |law| motor_sense(law, &parameters))
+    });
+    let tellers = Tellers::new(
+        design.clone(),
+        first_motion.clone(),
+        [question.free.clone(), driven.clone()],
+        senses.collect(),
+    );
+    let mut plant = Plant::new(
+        &design,
+        forces,
+        places,
+        [question.free.clone(), driven],
+        scales,
+        stops.collect(),
+    );
+    plant.back = BACK / question.until;
+    if followed > 0 {
+        plant.follow_friction();
+    }
+    let mut y: Vec<f64> = (question.start.iter().map(|s| s[0]))
+        .chain(question.start.iter().map(|s| s[1]))
+        .chain(vec![0.0; plant.inner.pressures() + 1])
+        .collect();
+    for stop in 0..question.stops.len() {
+        if !plant.gives_way_at_start(stop, &y) {
+            return Err(Unsimulated::KeptFromStop(stop));
+        }
+    }
+    between_stops(&mut plant, question.stops.len(), &y)?;
+    // What was placed is the pose in the middle of all play.
+    if rows.iter().any(|row| row.start[0] != 0.0) {
+        if let Some((place, by)) = plant.beyond_play(TOUCHED, &y) {
+            return Err(Unsimulated::BeyondPlay(place, by));
+        }
+        if !plant.look(0.0, &y) {
+            return Err(Unsimulated::Lacks(Lack::Pose));
+        }
+        let instant = plant.instant();
+        placed = Placed {
+            poses: instant.poses.clone(),
+            near: instant.angles.clone(),
+        };
+    }
+    // Switches may go by pressures, and pressures by loads that are switched.
+    Toggle::all(&mut plant, &y);
+    if !plant.pressures_at_start(&mut y) {
+        return Err(plant.lacks());
+    }
+    let toggles = Toggle::all(&mut plant, &y);
+    let asked = (question.stops.iter().map(|stop| &stop.gap))
+        .chain(&question.end_when)
+        .chain(toggles.iter().flat_map(Toggle::measures))
+        .chain(plant.amounts.measures());
+    plant.asked_along = asked
+        .into_iter()
+        .any(|what| asks_along(&design.mechanism, what, &question.free));
+    let mut run = Run {
+        record: Record::new(coordinates, beside(&plant, &y)),
+        time: 0.0,
+        y,
+        ends: (question.end_when.iter())
+            .chain(toggles.iter().map(|toggle| &toggle.awaits))
+            .cloned()
+            .collect(),
+        conditions: vec![false; question.end_when.len() + toggles.len()],
+        toggles,
+        happenings: Vec::new(),
+        held: Vec::new(),
+        steps: 0,
+        integrator: None,
+        earlier: (Used::default(), 0),
+        resized: false,
+        exchanged: false,
+        at_start: Vec::new(),
+        question,
+        tellers,
+        plant,
+    };
+    run.begin()?;
+    Ok(Ready {
+        run,
+        breaks,
+        rigid,
+        first: first_motion,
+        design,
+        placed,
+    })
+}
+
+/// Simulates a design.
+///
+/// # Errors
+/// Why it cannot begin. What ends it early is told with what was found until then.
+pub fn simulate(
+    design: &Design<f64>,
+    question: &Question,
+    progress: &mut dyn Progress,
+) -> Result<Simulated, Unsimulated> {
+    ready(design, question, progress).map(|ready| ready.simulate(progress))
+}
+
+/// Whether a measure asks for a derivative along one of these drives, itself or by another measure.
+fn asks_along(mechanism: &Mechanism, measure: &Measure, drives: &[DriveId]) -> bool {
+    let mut found = false;
+    visit_leaves(mechanism, measure, &mut |leaf| {
+        found |= match leaf {
+            Leaf::Coefficient(_, drive, _)
+            | Leaf::Pose(PoseMeasure::MechanicalAdvantage(_, drive)) => drives.contains(drive),
+            _ => false,
+        };
+    });
+    found
+}
+
+/// Refuses a state that is beyond a stop, or where one has no value; the first `own` are the question's.
+fn between_stops(plant: &mut Plant, own: usize, y: &[f64]) -> Result<(), Unsimulated> {
+    let scale = plant.scales.iter().copied().fold(0.0, f64::max);
+    for stop in 0..plant.stops.len() {
+        let Some(open) = plant.open(stop, 0.0, y) else {
+            return Err(Unsimulated::Lacks(Lack::Pose));
+        };
+        if !open.is_finite() && stop < own {
+            return Err(Unsimulated::NoValue(Sought::Stop(stop)));
+        }
+        if open < -TOUCHED * scale {
+            return Err(Unsimulated::BeyondStop(stop, -open));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,112 @@
+//! How a simulation was done, and how well, in words.
+
+use kempe_model::{LinkId, Model};
+use kempe_simulate::{Question, Simulated};
+use kempe_units::Dimension;
+
+use crate::result::{Listing, StudyResult};
+use crate::table::largest;
+use crate::unit::Units;
+
+/// At most so many changes of what tells the place are listed.
+const TOLD: usize = 4;
+
+/// How it was done, and how well.
+pub(super) fn how(
+    model: &Model,
+    question: &Question,
+    found: &Simulated,
+    result: &StudyResult,
+) -> Listing {
+    let units = &Units::of(model);
+    let balance = result.table.balance.as_ref();
+    let worst = |column: Option<&Vec<f64>>| {
+        let sizes: Vec<f64> = column.into_iter().flatten().map(|x| x.abs()).collect();
+        largest(&sizes).map_or("not known".to_owned(), |(_, off)| format!("{off:.1e}"))
+    };
+    let used = found.used;
+    let explicit = "explicit Runge-Kutta of order 8 (Dormand and Prince)";
+    let implicit = "implicit Runge-Kutta of order 5 (Radau IIA)";
+    let methods: Vec<String> = match used.implicit_from {
+        None => vec![explicit.to_owned()],
+        Some(_) if used.explicit == 0 => vec![implicit.to_owned()],
+        Some(from) => vec![
+            format!("{explicit}, {} steps,", used.explicit),
+            format!(
+                "{implicit}, {} steps, first at {}",
+                used.implicit,
+                units.text(from, Dimension::TIME)
+            ),
+        ],
+    };
+    let mut rows = vec![
+        vec![
+            "method".to_owned(),
+            format!("minimal coordinates, {}", methods.join(" and ")),
+        ],
+        vec![
+            "steps".to_owned(),
+            format!(
+                "{}, {} evaluations",
+                used.explicit + used.implicit,
+                found.evaluations
+            ),
+        ],
+        vec![
+            "energy".to_owned(),
+            format!(
+                "balanced to {} of the most that was moved",
+                worst(balance.map(|b| &b.energy))
+            ),
+        ],
+        vec![
+            "power".to_owned(),
+            format!(
+                "inverse dynamics asks no more of what is let go than it gives, to {}",
+                worst(balance.map(|b| &b.power))
+            ),
+        ],
+    ];
+    if let Some(told) = told(model, question, found) {
+        rows.insert(1, vec!["coordinates".to_owned(), told]);
+    }
+    Listing {
+        title: "How it was simulated".to_owned(),
+        head: Vec::new(),
+        rows,
+    }
+}
+
+/// What told the place of the mechanism, where that was not what was let go all the time: `travel, from 0.1 s angle(crank)`.
+fn told(model: &Model, question: &Question, found: &Simulated) -> Option<String> {
+    let units = Units::of(model);
+    let drive = |place: usize| {
+        let id = question.free.get(place)?;
+        Some(model.drives.get(id.index())?.name.clone())
+    };
+    let link = |link: &LinkId| {
+        let link = model.links.get(link.index())?;
+        Some(format!("angle({})", link.name))
+    };
+    let told = found.told_by();
+    let mut parts: Vec<String> = (told.iter().enumerate().take(TOLD))
+        .map(|(index, (since, links))| {
+            let names = links.iter().enumerate();
+            let names: Vec<String> = names
+                .filter_map(|(place, it)| it.as_ref().map_or_else(|| drive(place), link))
+                .collect();
+            match index {
+                0 => names.join(" and "),
+                _ => format!(
+                    "from {} {}",
+                    units.text(*since, Dimension::TIME),
+                    names.join(" and ")
+                ),
+            }
+        })
+        .collect();
+    if told.len() > TOLD {
+        parts.push(format!("and so on, {} times", told.len() - 1));
+    }
+    (!parts.is_empty()).then(|| parts.join(", "))
+}
