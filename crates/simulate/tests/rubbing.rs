@@ -5,9 +5,11 @@ mod common;
 
 use common::{Free, at};
 use kempe_dynamics::ForceSampler;
+use kempe_mechanism::constraint::Source;
+use kempe_model::JointId;
 use kempe_motion::Silent;
 use kempe_number::Number;
-use kempe_simulate::{Ending, Happened, Simulated};
+use kempe_simulate::{Ending, Happened, Rubs, Simulated};
 
 const G: f64 = 9.81;
 
@@ -69,7 +71,8 @@ fn a_block_slides_on_a_plank_rides_on_it_and_both_come_to_rest() {
     let way = 0.5 * fast * rest;
     near(&found, 0, 8.0, [way, 0.0]);
     let told: Vec<Happened> = found.happenings.iter().map(|h| h.what).collect();
-    assert_eq!(told, [Happened::Holds { place: 1 }, Happened::Sticks]);
+    let deck = Rubs::Joint(Source::Joint(JointId(1)));
+    assert_eq!(told, [Happened::Holds { at: deck }, Happened::Sticks]);
     assert!((found.happenings[0].time - together).abs() < 1e-12);
     assert!((found.happenings[1].time - rest).abs() < 1e-11);
 }
