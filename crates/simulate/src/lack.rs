@@ -24,7 +24,7 @@ pub enum Sought {
 /// Why nothing is known of how what is let go accelerates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Lack {
-    /// The links do not close there, or not on this branch.
+    /// The links do not close there, or not on this branch; or it stands at a dead point of what is let go.
     Pose,
     /// Something is infinite, or no number.
     Value(Sought),

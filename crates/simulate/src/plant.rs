@@ -412,6 +412,7 @@ impl Plant {
         let (forces, instant) = (&mut self.forces, &mut self.instant);
         let found = forces.let_go(instant, &self.free, &self.given, &mut self.let_go);
         found.map_err(|why| match why {
+            NotLetGo::Singular => Lack::Pose,
             NotLetGo::NoMass => Lack::Mass,
             NotLetGo::Friction => Lack::Friction,
             NotLetGo::NotFinite => Lack::Force,
