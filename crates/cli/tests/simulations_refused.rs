@@ -119,7 +119,7 @@ fn refused() -> Vec<(&'static str, String, &'static str)> {
         ),
         (
             "a load without a value",
-            held("[loads]\nl = { torque = \"1 N m / (angle(crank) / 1 deg - 30)\", on = \"crank\" }\n")
+            held("[loads]\nl = { torque = \"1 N m / (time / 1 s)\", on = \"crank\" }\n")
                 + SIMULATE,
             "the load `l` has no finite value at the start",
         ),
