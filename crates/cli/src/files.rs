@@ -140,7 +140,7 @@ fn unreadable(path: &Path, unread: &Unread) -> Diagnostic {
 }
 
 /// A file in the same folder whose name is near.
-fn near_file(path: &Path) -> Option<String> {
+pub fn near_file(path: &Path) -> Option<String> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty());
     let entries = fs::read_dir(folder.unwrap_or(Path::new("."))).ok()?;
     let mut names: Vec<String> = entries

@@ -62,7 +62,12 @@ impl LetGo {
     }
 
     /// Fills the factors of the mass matrix of these coordinates.
-    fn factorize(&mut self, acting: &Acting<f64>, at: &Instant<f64>, free: &[DriveId]) -> bool {
+    fn factorize(
+        &mut self,
+        acting: &Acting<f64>,
+        at: &Instant<f64>,
+        free: &[DriveId],
+    ) -> Result<(), NotLetGo> {
         let n = free.len();
         self.factors.clear();
         self.factors.resize(n * n, 0.0);
@@ -77,13 +82,21 @@ impl LetGo {
                 }
             }
         }
-        factorize(n, &mut self.factors)
+        if !self.factors.iter().all(|m| m.is_finite()) {
+            return Err(NotLetGo::Singular);
+        }
+        match factorize(n, &mut self.factors) {
+            true => Ok(()),
+            false => Err(NotLetGo::NoMass),
+        }
     }
 }
 
 /// Why nothing is known of how coordinates that are let go accelerate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NotLetGo {
+    /// It stands at a dead point of one of them, along which links move without bound.
+    Singular,
     /// They move no mass.
     NoMass,
     /// Friction jams them, or has no one answer.
@@ -160,9 +173,7 @@ impl Forces<f64> {
         found: &mut LetGo,
     ) -> Result<(), NotLetGo> {
         self.take_up(at);
-        if !found.factorize(&self.acting, at, free) {
-            return Err(NotLetGo::NoMass);
-        }
+        found.factorize(&self.acting, at, free)?;
         let needed = |it: &Self, drive: &DriveId| {
             virtual_power::project(&it.needed, &at.coefficients[drive.index()]).value
         };

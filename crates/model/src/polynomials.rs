@@ -374,6 +374,28 @@ mod tests {
         }
     }
 
+    /// What rounding of the places would make of a step of a femtosecond has no part in it, and beyond its end it goes on as it did.
+    #[test]
+    fn a_step_of_no_length_is_a_parabola_about_its_end() {
+        let (from, to) = (1.0, 1.0 + 1e-15);
+        let noise = 1e-16;
+        let ends = [[0.5 + noise, 2.0, -9.81], [0.5, 2.0, -9.81]];
+        let times = [0.0, to - from];
+        let of = |least| Polynomials::through(&times, &ends, &[[-9.81; 3]], least).unwrap();
+        let accelerates =
+            |it: &Polynomials, t: f64| it.at(Jet::<f64, 3>::variable(t)).derivative(2);
+        assert!((accelerates(&of(0.0), 0.1 * (to - from)) + 9.81).abs() > 1e3);
+        let short = of(1e-10);
+        for t in [0.0, to - from, 1e-9, 1e-3] {
+            assert!((accelerates(&short, t) + 9.81).abs() < 1e-9, "{t}");
+        }
+        let later = short.at(1e-3);
+        assert!(
+            (later - (0.5 + 2e-3 - 0.5 * 9.81e-6)).abs() < 1e-12,
+            "{later}"
+        );
+    }
+
     #[test]
     fn it_turns_where_its_speed_vanishes() {
         let swing = swing();
@@ -395,7 +417,7 @@ mod tests {
         }
         let still = Polynomials::at_equal_parts(&[0.0, 1.0], &[[3.0; COEFFICIENTS]]).unwrap();
         assert_eq!((still.turns().len(), still.is_constant(3.0)), (2, true));
-        assert!(Polynomials::through(&[0.0, 0.0], &[[0.0; 3]; 2], &[[0.0; 3]]).is_none());
-        assert!(Polynomials::through(&[0.0, 1.0], &[[0.0; 3]; 3], &[[0.0; 3]]).is_none());
+        assert!(Polynomials::through(&[0.0, 0.0], &[[0.0; 3]; 2], &[[0.0; 3]], 0.0).is_none());
+        assert!(Polynomials::through(&[0.0, 1.0], &[[0.0; 3]; 3], &[[0.0; 3]], 0.0).is_none());
     }
 }

@@ -25,7 +25,7 @@ pub enum Sought {
 /// Why nothing is known of how what is let go accelerates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Lack {
-    /// The links do not close there, or not on this branch.
+    /// The links do not close there, or not on this branch; or it stands at a dead point of what is let go.
     Pose,
     /// Something is infinite, or no number.
     Value(Sought),
@@ -44,6 +44,7 @@ pub enum Lack {
 impl Lack {
     pub(crate) fn of(why: NotLetGo) -> Self {
         match why {
+            NotLetGo::Singular => Self::Pose,
             NotLetGo::NoMass => Self::Mass,
             NotLetGo::Friction => Self::Friction,
             NotLetGo::NotFinite => Self::Force,

@@ -39,6 +39,8 @@ const MISSED: f64 = 1e-10;
 const MISSED_TOLERANCES: f64 = 100.0;
 const HALVINGS: usize = 6;
 const SHORT: f64 = 1e-6;
+/// Just behind the start, as a part of the whole time.
+const BEGINS: f64 = 1e-6;
 /// What has grown to so many times its value at the start where no step is short enough any more runs away.
 const RUNS_AWAY: f64 = 1e6;
 /// A stop that is open by this much (in path scales, or of its play) is touched.
@@ -166,6 +168,9 @@ impl Run {
             return Err(self.plant.lacks());
         }
         self.at_start.clone_from(&self.plant.amounts.values);
+        if let Some(sought) = self.without_value_from_start(&rates) {
+            return Err(Unsimulated::NoValue(sought));
+        }
         let n = self.plant.free.len();
         for (at, speed) in self.plant.pressed(TOUCHED, &self.y, &rates[n..2 * n]) {
             self.meets(at, speed);
@@ -176,6 +181,24 @@ impl Run {
             true => Ok(()),
             false => Err(self.plant.lacks()),
         }
+    }
+
+    /// A condition that has no value at the start, where these are the rates, nor just behind it: right there it may have none.
+    fn without_value_from_start(&mut self, rates: &[f64]) -> Option<Sought> {
+        let soon = BEGINS * self.question.until;
+        let along = self.y.iter().zip(rates);
+        let then: Vec<f64> = along.map(|(y, rate)| y + soon * rate).collect();
+        let now = self.y.clone();
+        (0..self.ends.len())
+            .find_map(|k| {
+                let measure = self.ends[k].clone();
+                let mut lost = |time: f64, y: &[f64]| {
+                    let value = self.plant.value(&measure, time, y);
+                    value.is_some_and(|x| !x.is_finite())
+                };
+                (lost(0.0, &now) && lost(soon, &then)).then_some(k)
+            })
+            .and_then(|k| self.sought(k))
     }
 
     /// What a condition is of, for what has no value: nothing that the file told of, where it watches for a vacuum.

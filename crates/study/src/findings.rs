@@ -1,5 +1,7 @@
 //! What is to be known of a mechanism before it moves, in the names and units of its file.
 
+use std::cell::OnceCell;
+
 use kempe_mechanism::Design;
 use kempe_mechanism::mobility::Mobility;
 use kempe_mechanism::structure::BodyId;
@@ -450,14 +452,51 @@ fn diagnostics(
             }
         }
     };
+    let laws = OfLaws {
+        model,
+        design,
+        found,
+        motion: OnceCell::new(),
+        mechanism: OnceCell::new(),
+    };
     // Without a study it is asked how the drives' laws move it.
     if model.studies.is_empty() {
-        tell(of_motion(model, design, found, motion_findings));
+        tell(laws.motion().to_vec());
     }
     for study in &model.studies {
-        tell(of_study(design, study, found, progress));
+        tell(of_study(&laws, study, progress));
     }
     diagnostics
+}
+
+/// What is to be told of the motion that the drives' laws demand, found when it is asked for.
+struct OfLaws<'a> {
+    model: &'a Model,
+    design: &'a Design<f64>,
+    found: &'a Findings,
+    motion: OnceCell<Vec<Diagnostic>>,
+    mechanism: OnceCell<Vec<Diagnostic>>,
+}
+
+impl OfLaws<'_> {
+    /// Of the motion and its range.
+    fn motion(&self) -> &[Diagnostic] {
+        self.motion
+            .get_or_init(|| of_motion(self.model, self.design, self.found, motion_findings))
+    }
+
+    /// Of the mechanism, wherever the drives go.
+    fn mechanism(&self) -> &[Diagnostic] {
+        self.mechanism
+            .get_or_init(|| of_motion(self.model, self.design, self.found, of_mechanism))
+    }
+
+    /// Why there is no motion, if there is none.
+    fn lack(&self) -> Option<Diagnostic> {
+        let problem = self.found.problem.as_ref();
+        let problem = problem.filter(|_| self.found.motion.is_none())?;
+        Some(cannot_move(self.design, problem))
+    }
 }
 
 /// What is to be told of the motion that the drives' laws demand, or of why there is none; `of` tells it of one that there is.
@@ -497,32 +536,24 @@ fn of_motion(
 }
 
 /// What is to be told of a study before it is run.
-fn of_study(
-    design: &Design<f64>,
-    study: &Study,
-    found: &Findings,
-    progress: &mut dyn Progress,
-) -> Vec<Diagnostic> {
-    let mechanism = &*design.mechanism;
-    let model = &mechanism.model;
-    let along = |of: fn(&Motion) -> Vec<Diagnostic>| of_motion(model, design, found, of);
+fn of_study(laws: &OfLaws<'_>, study: &Study, progress: &mut dyn Progress) -> Vec<Diagnostic> {
+    let (model, name) = (laws.model, study.name.as_str());
     let mut told = match &study.kind {
         // A circuit goes wherever it leads.
-        StudyKind::Motion(motion) if motion.circuit => along(of_mechanism),
-        StudyKind::Motion(_) | StudyKind::Forces(_) => along(motion_findings),
-        StudyKind::Balance(_) | StudyKind::Spring(_) => along(motion_findings),
+        StudyKind::Motion(motion) if motion.circuit => laws.mechanism().to_vec(),
+        StudyKind::Motion(_) | StudyKind::Forces(_) => laws.motion().to_vec(),
+        StudyKind::Balance(_) | StudyKind::Spring(_) => laws.motion().to_vec(),
         StudyKind::Clearance(play) => {
-            let motion = found.motion.as_ref();
-            let mut told = along(motion_findings);
-            told.extend(findings_of_clearance(model, &study.name, play, motion));
-            told
+            let motion = laws.found.motion.as_ref();
+            let own = findings_of_clearance(model, name, play, motion);
+            [laws.motion().to_vec(), own].concat()
         }
-        StudyKind::Simulate(it) => findings_of_simulation(model, &study.name, it, &[], progress),
-        StudyKind::Contact(play) => findings_of_contact(model, &study.name, play, progress),
-        StudyKind::Vibrations(asked) => findings_of_vibrations(model, &study.name, asked, progress),
+        StudyKind::Simulate(it) => findings_of_simulation(model, name, it, &[], progress),
+        StudyKind::Contact(play) => findings_of_contact(model, name, play, laws.lack(), progress),
+        StudyKind::Vibrations(asked) => findings_of_vibrations(model, name, asked, progress),
     };
     if !refuses(&told) {
-        told.extend(not_answerable(mechanism, study));
+        told.extend(not_answerable(&laws.design.mechanism, study));
     }
     told
 }

@@ -41,9 +41,13 @@ pub(crate) fn run_along(
     }
     let along = abscissa(&motion, &motion.design.parameters);
     let shown = motion.mechanism().clone();
-    let (mut result, _) = rows_of(&motion, &shown, name, study, (forces, along, &[]), progress)?;
-    result.diagnostics.splice(0..0, diagnostics);
-    Ok(result)
+    match rows_of(&motion, &shown, name, study, (forces, along, &[]), progress) {
+        Ok((mut result, _)) => {
+            result.diagnostics.splice(0..0, diagnostics);
+            Ok(result)
+        }
+        Err(refused) => Err([diagnostics, refused].concat()),
+    }
 }
 
 /// Rows along a motion, with forces or without, and the column that they run along; the values (SI) of what is `hidden` in no

@@ -148,7 +148,8 @@ pub(crate) fn simulation(
         &along,
         (true, 0, &hidden),
         progress,
-    )?;
+    )
+    .map_err(|refused| [diagnostics.clone(), refused].concat())?;
     diagnostics.append(&mut result.diagnostics);
     let told = Told::new(model, (name, study), &stops, contacts);
     let times = result

@@ -8,7 +8,6 @@ mod pose;
 mod shapes;
 mod sweep;
 
-use kempe_dynamics::modes;
 use kempe_model::{Diagnostic, Model, Rows, VibrationStudy};
 use kempe_motion::Progress;
 
@@ -16,26 +15,25 @@ use crate::result::StudyResult;
 
 pub(crate) use shapes::SHAPE_POSES;
 
-/// What is to be told of a study of natural vibrations before anything is let go: what keeps it from starting, and what it leaves
-/// out.
+/// What is to be told of a study of natural vibrations without its rows: of one about a pose everything, of one along a motion what
+/// keeps it from starting, and what it leaves out.
 pub(crate) fn findings_of_vibrations(
     model: &Model,
     name: &str,
     study: &VibrationStudy,
     progress: &mut dyn Progress,
 ) -> Vec<Diagnostic> {
-    let mut bench = match bench::Bench::new(model, name, study, progress) {
-        Ok(bench) => bench,
-        Err(refused) => return refused,
-    };
-    // Along a motion a row without vibrations is a row with a note.
-    if study.along.rows == Rows::Count(1)
-        && let Err(why) = modes(&bench.here(0.0))
-    {
-        let failed = bench.failed(bench::Failure::NoModes(why));
-        bench.diagnostics.push(failed);
+    // One pose is known in no time; along a motion a row without vibrations is a row with a note.
+    if study.along.rows == Rows::Count(1) {
+        return match vibrations(model, name, study, progress) {
+            Ok(found) => found.diagnostics,
+            Err(refused) => refused,
+        };
     }
-    bench.told()
+    match bench::Bench::new(model, name, study, progress) {
+        Ok(bench) => bench.told(),
+        Err(refused) => refused,
+    }
 }
 
 /// Runs a study of natural vibrations.

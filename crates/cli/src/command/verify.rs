@@ -9,6 +9,7 @@ use serde_json::json;
 
 use crate::arguments::Verify;
 use crate::exit::Exit;
+use crate::files::near_file;
 use crate::read::{Tables, plain, read_named};
 use crate::say::{Speaker, print_json, put};
 
@@ -150,10 +151,13 @@ fn gather(paths: &[PathBuf]) -> Result<Vec<Found>, Box<Diagnostic>> {
             .collect());
     }
     let refuse = |path: &Path, why: &str| {
-        Box::new(Diagnostic::error(
-            "no-file",
-            format!("{} cannot be read: {why}", path.display()),
-        ))
+        let message = format!("{} cannot be read: {why}", path.display());
+        let error = Diagnostic::error("no-file", message);
+        let near = near_file(path).filter(|_| !path.exists());
+        Box::new(error.help(match near {
+            Some(near) => format!("did you mean {near}?"),
+            None => "name a file of reference values or a folder of them; without any those that came with the program are re-computed".to_owned(),
+        }))
     };
     let mut files: Vec<PathBuf> = Vec::new();
     for path in paths {

@@ -68,11 +68,12 @@ pub(crate) fn contact(
     Ok((result, found))
 }
 
-/// What is to be told of such a study before anything moves.
+/// What is to be told of such a study before anything moves; `no_ideal` says why the drives' laws move nothing, where they do not.
 pub(crate) fn findings_of_contact(
     model: &Model,
     name: &str,
     study: &ContactStudy,
+    no_ideal: Option<Diagnostic>,
     progress: &mut dyn Progress,
 ) -> Vec<Diagnostic> {
     let prepared = match WithContacts::new(model, name, study) {
@@ -83,9 +84,9 @@ pub(crate) fn findings_of_contact(
     let mut findings = findings_of_simulation(model, name, &study.motion, contacts, progress);
     if study.motion.released.is_empty()
         && !refuses(&findings)
-        && let Err(why) = motion(&prepared.design, progress)
+        && let Some(why) = no_ideal
     {
-        findings.push(no_ideal_motion(name, &why));
+        findings.push(no_ideal_motion(name, &[why]));
     }
     findings.extend(prepared.findings);
     findings

@@ -54,11 +54,6 @@ impl Prepared {
             findings,
         }
     }
-
-    /// Whether nothing can be found.
-    pub fn refused(&self) -> bool {
-        refuses(&self.findings)
-    }
 }
 
 /// What is to be told of a study of clearance called `name` before its rows are known; of joints that repeat others, as they do
@@ -79,7 +74,11 @@ pub(crate) fn findings_of_clearance(
             .collect();
         repeat_each_other(name, &it.joints, &repeated)
     };
-    let repeated = if it.refused() { None } else { repeated() };
+    let repeated = if refuses(&it.findings) {
+        None
+    } else {
+        repeated()
+    };
     it.findings.into_iter().chain(repeated).collect()
 }
 

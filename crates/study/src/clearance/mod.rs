@@ -42,37 +42,38 @@ pub(crate) fn clearance(
     study: &ClearanceStudy,
     progress: &mut dyn Progress,
 ) -> Result<StudyResult, Vec<Diagnostic>> {
-    let prepared = Prepared::new(model, name, study);
-    if prepared.refused() {
-        return Err(prepared.findings);
-    }
     let Prepared {
         design,
         joints,
         asked,
         findings,
-    } = prepared;
+    } = Prepared::new(model, name, study);
     let model = &design.mechanism.model;
-    let motion = motion(&design, progress)?;
-    let mut diagnostics = motion_findings(&motion);
-    if refused(&motion) {
+    let nothing_found = refuses(&findings);
+    let motion = match motion(&design, progress) {
+        Ok(motion) => motion,
+        Err(refused) => return Err([refused, findings].concat()),
+    };
+    let diagnostics = [motion_findings(&motion), findings].concat();
+    if refused(&motion) || nothing_found {
         return Err(diagnostics);
     }
-    diagnostics.extend(findings);
+    let mut diagnostics = diagnostics;
     let parameters = &design.parameters;
     let units = Units::of(model);
     let mut deviations = Deviations::new(&design.mechanism, &units, &asked, &joints.plays);
     let quantities: Vec<&Quantity> = deviations.quantities().collect();
     let measures: Vec<Measure> = quantities.iter().map(|q| q.measure.clone()).collect();
     let turning = study.rates == ClearanceRates::Turning;
-    let mut clearances = Clearances::new(&motion, &joints.plays, turning, &measures).map_err(
-        |error| match error {
+    let clearances =
+        Clearances::new(&motion, &joints.plays, turning, &measures).map_err(|error| match error {
             NoClearances::NotReleased(why) => vec![not_released(&design.mechanism, why)],
             NoClearances::Problems(problems) => force_problems(problems),
-        },
-    )?;
+        });
+    let mut clearances = clearances.map_err(|refused| [diagnostics.clone(), refused].concat())?;
     let places = places_along(&motion, &study.along, parameters);
-    let mut sampler = Along::with_progress(model, &motion, &quantities, true, &places, progress)?;
+    let mut sampler = Along::with_progress(model, &motion, &quantities, true, &places, progress)
+        .map_err(|refused| [diagnostics.clone(), refused].concat())?;
     let instants = times(&motion, &places);
     diagnostics.extend(idle_joints(
         &mut clearances,

@@ -22,7 +22,7 @@ pub(super) fn how(
     let balance = result.table.balance.as_ref();
     let worst = |column: Option<&Vec<f64>>| {
         let sizes: Vec<f64> = column.into_iter().flatten().map(|x| x.abs()).collect();
-        largest(&sizes).map_or("not known".to_owned(), |(_, off)| format!("{off:.1e}"))
+        largest(&sizes).map(|(_, off)| format!("{off:.1e}"))
     };
     let used = found.used;
     let explicit = "explicit Runge-Kutta of order 8 (Dormand and Prince)";
@@ -54,17 +54,20 @@ pub(super) fn how(
         ],
         vec![
             "energy".to_owned(),
-            format!(
-                "balanced to {} of the most that was moved",
-                worst(balance.map(|b| &b.energy))
-            ),
+            match worst(balance.map(|b| &b.energy)) {
+                Some(off) => format!("balanced to {off} of the most that was moved"),
+                None => "none was moved".to_owned(),
+            },
         ],
         vec![
             "power".to_owned(),
-            format!(
-                "inverse dynamics asks no more of what is let go than it gives, to {}",
-                worst(balance.map(|b| &b.power))
-            ),
+            match worst(balance.map(|b| &b.power)) {
+                Some(off) => format!(
+                    "inverse dynamics asks no more of what is let go than it gives, to {off}"
+                ),
+                None => "none was asked for: in every row it rests on a stop, or friction holds it"
+                    .to_owned(),
+            },
         ],
     ];
     if let Some(told) = told(model, question, found) {

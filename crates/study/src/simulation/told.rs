@@ -58,16 +58,17 @@ impl<'a> Told<'a> {
     pub fn sought(&self, sought: Sought) -> (String, Option<Span>) {
         let actions = &self.model.actions;
         match sought {
-            Sought::Stop(index) => (self.stop(index).to_owned(), None),
+            Sought::Stop(index) => (format!("what {} bounds", self.stop(index)), None),
             Sought::Condition(index) => {
                 let condition = self.study.end_when.get(index);
-                (format!("`{}`", condition.map_or("", |c| &c.text)), None)
+                let text = condition.map_or("", |c| &c.text);
+                (format!("the condition `{text}`"), None)
             }
             Sought::Switch(index) => {
                 let switch = actions.switches.get(index);
                 let name = switch.map_or("", |s| &s.name);
                 (
-                    format!("the switch `{name}`"),
+                    format!("what turns the switch `{name}`"),
                     switch.map(|s| s.span.clone()),
                 )
             }

@@ -43,7 +43,7 @@ pub(super) fn early(told: &Told<'_>, found: &Simulated) -> Option<Diagnostic> {
         },
         Ending::NoWay(lack) => no_way(told, found.tied, lack),
         Ending::NoValue(it) => {
-            let why = format!("{} is infinite or not a number from there on", sought(it));
+            let why = format!("{} has no finite value from there on", sought(it));
             (why, GIVE_VALUE)
         }
         Ending::Unyielding(stop) => kept_from_stop(told, stop),
@@ -130,7 +130,7 @@ fn lacks(told: &Told<'_>, lack: Lack) -> (String, &'static str) {
             "start a little beside the dead point, or let another drive go, one whose coordinate goes on there",
         ),
         Lack::Value(sought) => {
-            let why = format!("{} is infinite or not a number there", told.sought(sought).0);
+            let why = format!("{} has no finite value there", told.sought(sought).0);
             (why, GIVE_VALUE)
         }
         Lack::Oil(drive) => (
@@ -251,9 +251,7 @@ pub(super) fn explain(
         }
         Unsimulated::NoValue(sought) => {
             let (what, span) = told.sought(sought);
-            let error = cannot(format!(
-                "it cannot begin: {what} is infinite or not a number at the start"
-            ));
+            let error = cannot(format!("it cannot begin: {what} has no finite value at the start"));
             let error = match span {
                 Some(span) => error.at(span, ""),
                 None => error,

@@ -26,7 +26,13 @@ pub(super) fn about(
     progress: &mut dyn Progress,
 ) -> Result<StudyResult, Vec<Diagnostic>> {
     let asked = (bench.stance.coordinates().to_vec(), bench.here(0.0));
-    let it = (bench.settled(0.0, progress)).map_err(|why| vec![bench.failed(why)])?;
+    let it = match bench.settled(0.0, progress) {
+        Ok(it) => it,
+        Err(why) => {
+            let failed = bench.failed(why);
+            return Err([bench.told(), vec![failed]].concat());
+        }
+    };
     let place: Vec<String> = (bench.free().iter())
         .map(|d| bench.place(*d, bench.stance.coordinates()[d.index()]))
         .collect();
