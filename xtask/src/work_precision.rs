@@ -1,7 +1,5 @@
 //! Time beside error: what the same error costs several programs.
 
-use std::fmt::Write as _;
-
 /// The program whose time is 1.
 const OWN: &str = "Kempe";
 
@@ -18,21 +16,18 @@ pub struct Run {
     seconds: f64,
 }
 
-/// Runs from lines `case,peer,method,error,seconds` below a heading. A method with commas is in quotes.
+/// Runs from lines `case,peer,method,error,seconds` below a heading; what has commas is in quotes.
 ///
 /// # Errors
 ///
 /// The line that is no run.
 pub fn read(text: &str) -> Result<Vec<Run>, String> {
     let run = |line: &str| {
-        let (case, rest) = line.split_once(',')?;
-        let (peer, rest) = rest.split_once(',')?;
-        let (rest, seconds) = rest.rsplit_once(',')?;
-        let (method, error) = rest.rsplit_once(',')?;
+        let [case, peer, method, error, seconds] = fields(line).try_into().ok()?;
         Some(Run {
-            case: case.into(),
-            peer: peer.into(),
-            method: method.trim_matches('"').into(),
+            case,
+            peer,
+            method,
             error: error.parse().ok()?,
             seconds: seconds.parse().ok()?,
         })
@@ -41,6 +36,23 @@ pub fn read(text: &str) -> Result<Vec<Run>, String> {
     lines
         .map(|line| run(line).ok_or_else(|| format!("`{line}` is no run of a benchmark")))
         .collect()
+}
+
+/// The fields of a line, without the quotes around them.
+fn fields(line: &str) -> Vec<String> {
+    let mut fields = vec![String::new()];
+    for (k, part) in line.split('"').enumerate() {
+        let mut pieces = match k % 2 {
+            0 => part.split(',').collect(),
+            _ => vec![part],
+        }
+        .into_iter();
+        if let (Some(last), Some(first)) = (fields.last_mut(), pieces.next()) {
+            last.push_str(first);
+        }
+        fields.extend(pieces.map(String::from));
+    }
+    fields
 }
 
 /// The fastest run of a program on a case whose error is at most `level`.
@@ -61,31 +73,31 @@ fn once<'a>(names: impl Iterator<Item = &'a String>) -> Vec<&'a str> {
     seen
 }
 
-/// For every case that a peer has run and every error: the time in ms of the fastest run that keeps below it, of Kempe and of each
-/// peer, how many times Kempe's time a peer's is, and how it was found. A dash stands where no run keeps below it.
+/// For every case that a peer has run, every error and every peer: the time of the fastest run that keeps below the error, of Kempe
+/// and of the peer, the peer's in parts of Kempe's, and how the peer did it. A dash stands where no run keeps below the error.
 pub fn table(runs: &[Run]) -> String {
-    let peers = once(runs.iter().map(|run| &run.peer).filter(|peer| *peer != OWN));
-    let compared = runs.iter().filter(|run| run.peer != OWN);
-    let mut text = format!("{:<18} {:>7} {:>11}", "time in ms", "error <", OWN);
-    for peer in &peers {
-        let _ = write!(text, " {peer:>16} {:>9}  {:<34}", "x Kempe", "");
-    }
-    let mut lines = vec![text];
-    for case in once(compared.map(|run| &run.case)) {
+    let theirs = || runs.iter().filter(|run| run.peer != OWN);
+    let peers = once(theirs().map(|run| &run.peer));
+    let mut lines = vec![format!(
+        "{:<18} {:>7} {OWN:>10} ms  {:<14} {:>10} ms {:>9}  method",
+        "", "error <", "peer", "its time", "ratio"
+    )];
+    for case in once(theirs().map(|run| &run.case)) {
         for level in LEVELS {
             let own = fastest(runs, case, OWN, level);
-            let mut line = format!("{case:<18} {level:>7.0e} {:>11}", milliseconds(own));
             for peer in &peers {
                 let found = fastest(runs, case, peer, level);
                 let ratio = match (own, found) {
                     (Some(own), Some(found)) => format!("{:.2}", found.seconds / own.seconds),
                     _ => "-".into(),
                 };
-                let method = found.map_or("", |run| &run.method);
-                let time = milliseconds(found);
-                let _ = write!(line, " {time:>16} {ratio:>9}  {method:<34}");
+                lines.push(format!(
+                    "{case:<18} {level:>7.0e} {:>10} ms  {peer:<14} {:>10} ms {ratio:>9}  {}",
+                    milliseconds(own),
+                    milliseconds(found),
+                    found.map_or("", |run| &run.method)
+                ));
             }
-            lines.push(line);
         }
     }
     lines
@@ -122,22 +134,32 @@ fall,other 1.0,explicit,8e-6,0.05
         let words: Vec<Vec<&str>> = (shown.lines())
             .map(|line| line.split_whitespace().collect())
             .collect();
-        let first = [
-            "fall", "1e-3", "1.000", "10.000", "10.00", "alpha,", "100", "steps",
+        let known: [&[&str]; 4] = [
+            &[
+                "fall", "1e-3", "1.000", "ms", "other", "1.0", "10.000", "ms", "10.00", "alpha,",
+                "100", "steps",
+            ],
+            &[
+                "fall", "1e-5", "4.000", "ms", "other", "1.0", "50.000", "ms", "12.50", "explicit",
+            ],
+            &[
+                "fall", "1e-7", "4.000", "ms", "other", "1.0", "-", "ms", "-",
+            ],
+            &["fall", "1e-9", "-", "ms", "other", "1.0", "-", "ms", "-"],
         ];
-        assert_eq!(words[1], first);
-        assert_eq!(
-            words[2],
-            ["fall", "1e-5", "4.000", "50.000", "12.50", "explicit"]
-        );
-        assert_eq!(words[3], ["fall", "1e-7", "4.000", "-", "-"]);
-        assert_eq!(words[4], ["fall", "1e-9", "-", "-", "-"]);
+        assert_eq!(words[1..5], known);
         assert_eq!(words.len(), 5, "a case without peers stands alone already");
     }
 
     #[test]
     fn what_is_no_run_is_told() {
-        let error = read("case,peer,method,error,seconds\nfall,Kempe,fast,1e-3").unwrap_err();
-        assert!(error.contains("`fall,Kempe,fast,1e-3`"), "{error}");
+        for line in [
+            "fall,Kempe,fast,1e-3",
+            "a, b,Kempe,fast,1e-3,1",
+            "fall,Kempe,fast,right,1",
+        ] {
+            let error = read(&format!("heading\n{line}")).unwrap_err();
+            assert!(error.contains(line), "{error}");
+        }
     }
 }

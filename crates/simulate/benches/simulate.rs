@@ -51,7 +51,7 @@ struct Runs(String);
 impl Runs {
     fn new() -> Self {
         println!(
-            "{:<18} {:<34} {:>9} {:>14} {:>12} {:>9}",
+            "{:<18} {:<38} {:>9} {:>14} {:>12} {:>9}",
             "Kempe", "method", "error", "time", "evaluations", "by hand"
         );
         Self("case,peer,method,error,seconds\n".into())
@@ -68,7 +68,7 @@ impl Runs {
     ) {
         let method = format!("tolerance {tolerance:.0e}");
         println!(
-            "{case:<18} {method:<34} {error:>9.1e} {:>11.3} ms {evaluations:>12} {beside:>9}",
+            "{case:<18} {method:<38} {error:>9.1e} {:>11.3} ms {evaluations:>12} {beside:>9}",
             1e3 * took.as_secs_f64(),
         );
         let seconds = took.as_secs_f64();
@@ -216,7 +216,7 @@ fn rattle(runs: &mut Runs) {
                 .fold(0.0, f64::max);
             let case = match friction {
                 0.0 => "rattle",
-                _ => "rattle, rubbing",
+                _ => "rattle-rubbing",
             };
             let beside = format!("{} contacts", found.touched.len());
             runs.add(case, tolerance, off, took, found.evaluations, &beside);

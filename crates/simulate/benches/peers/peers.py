@@ -15,10 +15,10 @@ import time
 PEERS = ["exudyn", "scipy"]
 REPEATS = 5
 # Seconds: no more repeats once so many are spent, and no finer run where it would take longer than this.
-ENOUGH = 3.0
-LONGEST = 12.0
+ENOUGH = 2.0
+LONGEST = 10.0
 # How much longer the next finer run takes, about.
-FINER = 3.0
+FINER = 2.0
 
 
 def read_known(path):
@@ -59,7 +59,7 @@ def tell(peer, known, write):
         for way in peer.runs(case, until):
             for method, run in way:
                 took, found = best(run)
-                told = f"{case:<18} {method:<34}"
+                told = f"{case:<18} {method:<38}"
                 if isinstance(found, str):
                     print(f"{told} {'failed':>9} {1e3 * took:>11.3f} ms  {found}", flush=True)
                 else:
@@ -81,7 +81,7 @@ def main(known_path, results_path):
             except ImportError as error:
                 print(f"\n{name} is left out: {error}")
                 continue
-            print(f"\n{peer.NAME:<18} {'method':<34} {'error':>9} {'time':>14}")
+            print(f"\n{peer.NAME:<18} {'method':<38} {'error':>9} {'time':>14}")
             tell(peer, known, write)
 
 
