@@ -79,7 +79,7 @@ fn environment(requirements: &Path) -> Result<PathBuf, String> {
         run(&mut command, &format!("{python} -m venv"))?;
     }
     let wanted = text(requirements)?;
-    let wanted: Vec<&str> = wanted.lines().collect();
+    let wanted: Vec<&str> = wanted.lines().filter(|line| !line.is_empty()).collect();
     let installed = wanted.iter().filter(|peer| install(&own, peer)).count();
     match installed {
         0 => Err(format!(
