@@ -2,21 +2,24 @@
 
 mod chromium;
 mod fuzz;
+mod peers;
 mod shell;
 mod slim;
 mod tasks;
 mod wasm;
+mod work_precision;
 
 use std::process::ExitCode;
 
 const HELP: &str = "\
 Developer tasks.
 
-  cargo xtask test         everything below but bench and fuzz: format, lints, docs, all tests and doctests, slim, wasm
+  cargo xtask test         everything below but bench, peers and fuzz: format, lints, docs, all tests and doctests, slim, wasm
   cargo xtask test --fast  format, all tests and doctests
   cargo xtask slim         the library without default features builds and pulls nothing it should not
   cargo xtask wasm         the WebAssembly module gives the native bytes under node; installs its target where it can
-  cargo xtask bench        all benchmarks, ratios printed
+  cargo xtask bench        all benchmarks, ratios printed, peers beside them; arguments as for `cargo bench`, then without peers
+  cargo xtask peers        simulations beside other programs, as far as these can be installed: errors, times, their ratios
   cargo xtask fuzz [SECS]  every fuzz target for SECS seconds (30); needs a nightly toolchain and cargo-fuzz
 ";
 
@@ -27,6 +30,7 @@ fn main() -> ExitCode {
         ["test"] => tasks::test(false),
         ["test", "--fast"] => tasks::test(true),
         ["bench", rest @ ..] => tasks::bench(rest),
+        ["peers"] => peers::peers(),
         ["slim"] => slim::slim(),
         ["wasm"] => wasm::wasm(),
         ["fuzz"] => fuzz::fuzz(30),

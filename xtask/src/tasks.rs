@@ -1,7 +1,7 @@
 //! The tasks.
 
 use crate::shell::{cargo, has};
-use crate::{chromium, fuzz, slim, wasm};
+use crate::{chromium, fuzz, peers, slim, wasm};
 
 /// Format, lints, docs, tests, doctests, the slim library, the fuzz targets, the module for browsers. All steps run; the
 /// failures are told at the end.
@@ -57,7 +57,7 @@ pub fn test(fast: bool) -> Result<(), String> {
     }
 }
 
-/// All benchmarks.
+/// All benchmarks, or those that are asked for as of `cargo bench`; peers stand beside all of them.
 ///
 /// # Errors
 ///
@@ -65,5 +65,9 @@ pub fn test(fast: bool) -> Result<(), String> {
 pub fn bench(rest: &[&str]) -> Result<(), String> {
     let mut arguments = vec!["bench", "--workspace", "--benches"];
     arguments.extend(rest);
-    cargo(&arguments, &[])
+    cargo(&arguments, &[])?;
+    match rest.is_empty() {
+        true => peers::beside(),
+        false => Ok(()),
+    }
 }

@@ -1,7 +1,9 @@
 //! Benchmarks of multibody dynamics in time, each with its error beside its time: `cargo bench -p kempe-simulate`. Times are those of the
 //! whole call, from a model that is read to laws that are found, tracing included; the fastest of several counts. The pendulum and the
-//! four-bars stand beside the same integrator on the one equation that they come to by hand.
+//! four-bars stand beside the same integrator on the one equation that they come to by hand. What the benchmarks come to is in
+//! `known.csv`, which `peers/` reads too; runs are left for `cargo xtask peers` in `simulate.csv` of cargo's folder for benchmarks.
 
+use std::fmt::Write as _;
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
@@ -15,41 +17,70 @@ use kempe_simulate::{Method, Question, Simulated, simulate};
 
 const REPEATS: usize = 5;
 
-/// A benchmark of `examples/benchmarks`, with what its first drive and its rate are at the end.
+/// A line for each benchmark of `examples/benchmarks`.
+const KNOWN: &str = include_str!("known.csv");
+
+/// A benchmark, with what its first drive and its rate are at the end.
 struct Case {
     name: &'static str,
+    until: f64,
     exact: [f64; 2],
 }
 
-const CASES: [Case; 6] = [
-    // Elliptic functions; angles to whole turns.
-    Case {
-        name: "pendulum",
-        exact: [-1.849_477_000_364_879_5, 4.343_160_692_864_683],
-    },
-    Case {
-        name: "n-four-bar-2",
-        exact: [1.236_125_675_706_727_2, -1.506_642_180_841_829_5],
-    },
-    Case {
-        name: "n-four-bar-40",
-        exact: [1.389_289_118_707_091_3, -1.167_622_108_751_707],
-    },
-    // In quadruple precision.
-    Case {
-        name: "andrews",
-        exact: [15.810_771_195_153_707, 1_139.920_302_259_106_1],
-    },
-    // Another integrator.
-    Case {
-        name: "free-slider-crank",
-        exact: [5.642_329_982_104_728, 10.176_525_166_012_459],
-    },
-    Case {
-        name: "crank-rocker",
-        exact: [38.927_179_540_111_24, 33.027_805_163_307_81],
-    },
-];
+/// The benchmarks of `known.csv`.
+fn cases() -> Vec<Case> {
+    let lines = KNOWN.lines().filter(|line| !line.starts_with('#'));
+    let case = |line: &'static str| {
+        let fields: Vec<&str> = line.split(',').collect();
+        let [name, until, value, rate] = fields[..] else {
+            panic!("{line}")
+        };
+        let number = |text: &str| text.parse().expect("a number");
+        Case {
+            name,
+            until: number(until),
+            exact: [number(value), number(rate)],
+        }
+    };
+    lines.skip(1).map(case).collect()
+}
+
+/// Prints runs as they come, in the columns of the peers, and keeps them as they do.
+struct Runs(String);
+
+impl Runs {
+    fn new() -> Self {
+        println!(
+            "{:<18} {:<38} {:>9} {:>14} {:>12} {:>9}",
+            "Kempe", "method", "error", "time", "evaluations", "by hand"
+        );
+        Self("case,peer,method,error,seconds\n".into())
+    }
+
+    fn add(
+        &mut self,
+        case: &str,
+        tolerance: f64,
+        error: f64,
+        took: Duration,
+        evaluations: usize,
+        beside: &str,
+    ) {
+        let method = format!("tolerance {tolerance:.0e}");
+        println!(
+            "{case:<18} {method:<38} {error:>9.1e} {:>11.3} ms {evaluations:>12} {beside:>9}",
+            1e3 * took.as_secs_f64(),
+        );
+        let seconds = took.as_secs_f64();
+        writeln!(self.0, "{case},Kempe,{method},{error:.3e},{seconds:.6e}")
+            .expect("text takes text");
+    }
+
+    fn keep(self) {
+        let path = concat!(env!("CARGO_TARGET_TMPDIR"), "/simulate.csv");
+        std::fs::write(path, self.0).expect("a file in cargo's folder");
+    }
+}
 
 fn question(model: &Model, tolerance: f64) -> (Design<f64>, Question) {
     let parameters = model.parameter_values();
@@ -137,7 +168,7 @@ const CONTACTS: [[[f64; 2]; 3]; 2] = [
 
 /// Two turns of a slider-crank with play at its wrist pin, without friction and with it. The error is the largest relative one of
 /// the contacts that are known; motions like this one are chaotic, and after some more of them nothing can be compared.
-fn rattle() {
+fn rattle(runs: &mut Runs) {
     let text = include_str!("../../../examples/benchmarks/clearance-slider-crank.toml");
     let read = Model::from_toml(text, "rattle", &mut |_| Err("no files".into()));
     let Ok(read) = read else { panic!("rattle") };
@@ -183,25 +214,19 @@ fn rattle() {
                 })
                 .map(|part| (part - 1.0).abs())
                 .fold(0.0, f64::max);
-            println!(
-                "{:<18} {:>9.0e} {:>8.3} ms {:>9.1e} {:>12}  {} contacts",
-                format!("rattle, mu {friction}"),
-                tolerance,
-                1e3 * took.as_secs_f64(),
-                off,
-                found.evaluations,
-                found.touched.len()
-            );
+            let case = match friction {
+                0.0 => "rattle",
+                _ => "rattle-rubbing",
+            };
+            let beside = format!("{} contacts", found.touched.len());
+            runs.add(case, tolerance, off, took, found.evaluations, &beside);
         }
     }
 }
 
 fn main() {
-    println!(
-        "{:<18} {:>9} {:>11} {:>9} {:>12} {:>9}",
-        "", "tolerance", "time", "error", "evaluations", "by hand"
-    );
-    for case in &CASES {
+    let mut runs = Runs::new();
+    for case in cases() {
         let path = format!(
             "{}/../../examples/benchmarks/{}.toml",
             env!("CARGO_MANIFEST_DIR"),
@@ -210,8 +235,9 @@ fn main() {
         let text = std::fs::read_to_string(&path).expect("a benchmark");
         let read = Model::from_toml(&text, case.name, &mut |_| Err("no files".into()));
         let Ok(read) = read else { panic!("{path}") };
-        for tolerance in [1e-7, 1e-10, 1e-13] {
+        for tolerance in [1e-4, 1e-7, 1e-10, 1e-13] {
             let (design, question) = question(&read.model, tolerance);
+            assert!(question.until == case.until, "{}: another time", case.name);
             let (took, found) =
                 best(|| simulate(&design, &question, &mut Silent).expect("a motion"));
             let n = match case.name {
@@ -228,16 +254,10 @@ fn main() {
                 let (hand, _) = best(|| by_hand(a, start, question.until, tolerance));
                 format!("{:.1} x", took.as_secs_f64() / hand.as_secs_f64())
             });
-            println!(
-                "{:<18} {:>9.0e} {:>8.3} ms {:>9.1e} {:>12} {:>9}",
-                case.name,
-                tolerance,
-                1e3 * took.as_secs_f64(),
-                error(&found, case.exact, question.until),
-                found.evaluations,
-                hand
-            );
+            let error = error(&found, case.exact, question.until);
+            runs.add(case.name, tolerance, error, took, found.evaluations, &hand);
         }
     }
-    rattle();
+    rattle(&mut runs);
+    runs.keep();
 }

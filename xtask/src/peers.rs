@@ -1,0 +1,102 @@
+//! Other programs on the benchmarks of `kempe-simulate`, where they can be installed: `crates/simulate/benches/peers`.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use crate::shell::{answers, cargo, root, run, target_folder};
+use crate::work_precision::{read, table};
+
+/// Names under which Python is installed; the variable `PYTHON` says another.
+const PYTHONS: [&str; 2] = ["python3", "python"];
+
+/// Numeric libraries of the peers keep to the one thread that Kempe's simulations take.
+const ONE_THREAD: [(&str, &str); 3] = [
+    ("OMP_NUM_THREADS", "1"),
+    ("OPENBLAS_NUM_THREADS", "1"),
+    ("MKL_NUM_THREADS", "1"),
+];
+
+/// Kempe's runs of the benchmarks in time, those of the peers, and what the same error costs each. Where no peer can be installed,
+/// this is told, and Kempe's runs stand alone.
+///
+/// # Errors
+///
+/// What failed.
+pub fn peers() -> Result<(), String> {
+    cargo(
+        &["bench", "-p", "kempe-simulate", "--bench", "simulate"],
+        &[],
+    )?;
+    beside()
+}
+
+/// The peers beside the runs that the benchmarks of `kempe-simulate` left last.
+///
+/// # Errors
+///
+/// What failed.
+pub fn beside() -> Result<(), String> {
+    let folder = root().join("crates/simulate/benches");
+    let own = target_folder().join("tmp/simulate.csv");
+    let theirs = target_folder().join("tmp/peers.csv");
+    let python = match environment(&folder.join("peers/requirements.txt")) {
+        Ok(python) => python,
+        Err(reason) => {
+            println!("\npeers are left out: {reason}");
+            return Ok(());
+        }
+    };
+    let mut command = Command::new(python);
+    command.arg("-B").arg(folder.join("peers/peers.py"));
+    command.arg(folder.join("known.csv")).arg(&theirs);
+    run(command.envs(ONE_THREAD), "python peers.py")?;
+    let mut runs = read(&text(&own)?)?;
+    runs.extend(read(&text(&theirs)?)?);
+    print!("\n{}", table(&runs));
+    Ok(())
+}
+
+fn text(path: &Path) -> Result<String, String> {
+    fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))
+}
+
+/// The Python of an environment of its own in cargo's folder, with those peers that could be installed there.
+fn environment(requirements: &Path) -> Result<PathBuf, String> {
+    let named = std::env::var("PYTHON").ok().filter(|name| !name.is_empty());
+    let names = named.map_or(PYTHONS.map(String::from).to_vec(), |name| vec![name]);
+    let python = (names.iter())
+        .find(|name| answers(name, &["--version"]))
+        .ok_or("there is no Python. PYTHON=/path/to/python3 says where one is")?;
+    let folder = target_folder().join("peers");
+    let own = match cfg!(windows) {
+        true => folder.join("Scripts/python.exe"),
+        false => folder.join("bin/python"),
+    };
+    if !answers(&own.to_string_lossy(), &["-m", "pip", "--version"]) {
+        let mut command = Command::new(python);
+        command.args(["-m", "venv", "--clear"]).arg(&folder);
+        run(&mut command, &format!("{python} -m venv"))?;
+    }
+    let wanted = text(requirements)?;
+    let wanted: Vec<&str> = wanted.lines().filter(|line| !line.is_empty()).collect();
+    let installed = wanted.iter().filter(|peer| install(&own, peer)).count();
+    match installed {
+        0 => Err(format!(
+            "none of {} is there for this Python, or no way to it",
+            wanted.join(", ")
+        )),
+        _ => Ok(own),
+    }
+}
+
+/// Installs a peer of one version unless it is there; whether it is there now. What has to be compiled is not taken: it would be
+/// another program.
+fn install(python: &Path, peer: &str) -> bool {
+    let mut command = Command::new(python);
+    command.args(["-m", "pip", "install", "--quiet"]);
+    command.args(["--disable-pip-version-check", "--only-binary", ":all:"]);
+    command.args(["--retries", "1", "--timeout", "20", peer]);
+    let done = run(&mut command, &format!("pip install {peer}"));
+    done.is_ok()
+}
