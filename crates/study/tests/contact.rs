@@ -216,7 +216,7 @@ fn friction_of_a_joint_with_play_is_left_out_and_told() {
     let found = result(&all);
     assert_eq!(codes(&found), ["friction-left-out"]);
     assert_ne!(column(&found, "swing"), column(&smooth, "swing"));
-    let balance = found.balance.as_ref().unwrap();
+    let balance = found.table.balance.as_ref().unwrap();
     assert!(balance.energy.iter().all(|x| x.abs() < 1e-7));
     let worn = all.replace("B = { radial", "all = { radial");
     let told = &kempe_study::check(&model(&worn)).diagnostics;

@@ -327,14 +327,14 @@ fn asks_along(mechanism: &Mechanism, measure: &Measure, drives: &[DriveId]) -> b
     found
 }
 
-/// Refuses a state that is beyond a stop, or where one has no value; the first `own` are the question's.
+/// Refuses a state that is beyond one of the `own` stops of the question, or where one has no value.
 fn between_stops(plant: &mut Plant, own: usize, y: &[f64]) -> Result<(), Unsimulated> {
     let scale = plant.scales.iter().copied().fold(0.0, f64::max);
-    for stop in 0..plant.stops.len() {
+    for stop in 0..own {
         let Some(open) = plant.open(stop, 0.0, y) else {
             return Err(Unsimulated::Lacks(Lack::Pose));
         };
-        if !open.is_finite() && stop < own {
+        if !open.is_finite() {
             return Err(Unsimulated::NoValue(Sought::Stop(stop)));
         }
         if open < -TOUCHED * scale {

@@ -251,7 +251,9 @@ pub(super) fn explain(
         }
         Unsimulated::NoValue(sought) => {
             let (what, span) = told.sought(sought);
-            let error = cannot(format!("it cannot begin: {what} has no finite value at the start"));
+            let error = cannot(format!(
+                "it cannot begin: {what} has no finite value at the start"
+            ));
             let error = match span {
                 Some(span) => error.at(span, ""),
                 None => error,
