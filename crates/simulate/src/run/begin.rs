@@ -241,7 +241,6 @@ pub fn ready(
             return Err(Unsimulated::KeptFromStop(stop));
         }
     }
-    between_stops(&mut plant, question.stops.len(), &y)?;
     // What was placed is the pose in the middle of all play.
     if rows.iter().any(|row| row.start[0] != 0.0) {
         if let Some((place, by)) = plant.beyond_play(TOUCHED, &y) {
@@ -258,10 +257,15 @@ pub fn ready(
     }
     // Switches may go by pressures, and pressures by loads that are switched.
     Toggle::all(&mut plant, &y);
+    let own = question.stops.len();
     if !plant.pressures_at_start(&mut y) {
-        return Err(plant.lacks());
+        let lacks = plant.lacks();
+        // Beyond its stroke a cylinder may hold no oil: the stroke is the cause.
+        between_stops(&mut plant, own, &y)?;
+        return Err(lacks);
     }
     let toggles = Toggle::all(&mut plant, &y);
+    between_stops(&mut plant, own, &y)?;
     let asked = (question.stops.iter().map(|stop| &stop.gap))
         .chain(&question.end_when)
         .chain(toggles.iter().flat_map(Toggle::measures))
