@@ -113,6 +113,13 @@ fn refused() -> Vec<(&'static str, String, &'static str)> {
             "nothing that is let go gives way at the upper stop of arm",
         ),
         (
+            "a stop that time alone closes",
+            held("[measures]\nh = \"10 mm - 1 mm * time / 1 s\"\n")
+                + SIMULATE
+                + "stops = { h = [0, \"none\"] }\n",
+            "nothing that is let go gives way at the lower stop of h",
+        ),
+        (
             "oil whose start is outside the stroke",
             cylinder("closed = \"0.5 m\"\nstroke = \"0.4 m\"", "0.45"),
             "starts outside the stroke of its cylinder, by 0.05 m: that goes from 0.5 m to 0.9 m",
