@@ -25,7 +25,7 @@ fn crank_rocker(drive: &str, rest: &str) -> String {
         "units = {{ length = \"mm\", angle = \"deg\" }}\n[links]\nframe = {{ A = [0, 0], D = [60, 0] }}\n\
          crank = {{ A-B = 20, mass = 1, inertia = \"100 kg mm^2\" }}\n\
          coupler = {{ B-C = 50, mass = 1, inertia = \"100 kg mm^2\" }}\n\
-         rocker = {{ D-C = 40, mass = 1, inertia = \"100 kg mm^2\" }}\n[assembly]\nC = {{ near = [50, 40] }}\nB = {{ near = [15, 14] }}\n\
+         rocker = {{ D-C = 40, mass = 1, inertia = \"100 kg mm^2\" }}\n[assembly]\nC = {{ near = [50, 40] }}\nB = {{ near = [10, 18] }}\n\
          [drives]\nmotor = {{ {drive} }}\n{rest}"
     )
 }
@@ -111,6 +111,13 @@ fn refused() -> Vec<(&'static str, String, &'static str)> {
             pendulums(SIMULATE)
                 + "release = \"free\"\nstops = { arm = { between = [\"none\", 45], stiffness = \"5 N m/deg\" } }\n",
             "nothing that is let go gives way at the upper stop of arm",
+        ),
+        (
+            "a stop that time alone closes",
+            held("[measures]\nh = \"10 mm - 1 mm * time / 1 s\"\n")
+                + SIMULATE
+                + "stops = { h = [0, \"none\"] }\n",
+            "nothing that is let go gives way at the lower stop of h",
         ),
         (
             "oil whose start is outside the stroke",

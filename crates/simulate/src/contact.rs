@@ -69,6 +69,11 @@ impl Gap {
         along.map(|(j, scale)| (j * scale).abs()).sum()
     }
 
+    /// Whether anything that is let go opens or closes it.
+    pub fn gives_way(&self) -> bool {
+        self.gradient.iter().any(|slope| *slope != 0.0)
+    }
+
     /// What the terms of [`Gap::opening`] come to, all of one sign.
     pub fn terms(&self, accelerations: &[f64]) -> f64 {
         self.bend.abs() + self.scale(accelerations)
@@ -96,21 +101,21 @@ impl Plant {
         Some(measure(&state, &History::default(), None, what, Along::Time).coefficient(0))
     }
 
-    /// Whether something that is let go moves what a stop bounds, or nothing at all does: what only drives that keep their laws move
-    /// gives way nowhere. At the start, and a little beside it, as there it may be at a turning point.
-    pub fn gives_way_at_start(&mut self, stop: usize, y: &[f64]) -> bool {
+    /// Whether what a stop bounds goes on by itself at the start, `y`: by drives that keep their laws or by time, and by nothing that is
+    /// let go. That may be so right there alone, where it turns back; so a little beside it, too.
+    pub fn goes_by_itself(&mut self, stop: usize, y: &[f64]) -> bool {
         let mut beside = y.to_vec();
-        for (k, scale) in self.scales.iter().enumerate() {
-            beside[k] += BESIDE * scale;
+        for (q, scale) in beside.iter_mut().zip(&self.scales) {
+            *q += BESIDE * scale;
         }
-        self.gives_way_at(stop, 0.0, y) || self.gives_way_at(stop, 0.0, &beside)
-    }
-
-    /// Whether something that is let go moves what a stop bounds at a state, or nothing at all does; where that is not known it may.
-    pub fn gives_way_at(&mut self, stop: usize, time: f64, y: &[f64]) -> bool {
-        let stands = |slope: &f64| *slope == 0.0;
-        self.gap(stop, time, y)
-            .is_none_or(|gap| !gap.gradient.iter().all(stands) || gap.by_driven.iter().all(stands))
+        let mut by_itself = |y: &[f64]| {
+            let gap = self.gap(stop, 0.0, y);
+            gap.is_some_and(|gap| {
+                let moves = gap.rate != 0.0 || gap.by_driven.iter().any(|slope| *slope != 0.0);
+                moves && !gap.gives_way()
+            })
+        };
+        by_itself(y) && by_itself(&beside)
     }
 
     /// How far a stop is open at a state.

@@ -190,13 +190,13 @@ impl Run {
         let then: Vec<f64> = along.map(|(y, rate)| y + soon * rate).collect();
         let now = self.y.clone();
         (0..self.ends.len())
-            .find_map(|k| {
-                let measure = self.ends[k].clone();
+            .find(|k| {
+                let measure = self.ends[*k].clone();
                 let mut lost = |time: f64, y: &[f64]| {
                     let value = self.plant.value(&measure, time, y);
                     value.is_some_and(|x| !x.is_finite())
                 };
-                (lost(0.0, &now) && lost(soon, &then)).then_some(k)
+                lost(0.0, &now) && lost(soon, &then)
             })
             .and_then(|k| self.sought(k))
     }

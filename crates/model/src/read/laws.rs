@@ -186,7 +186,7 @@ impl<'d> LawReader<'_, 'd> {
 
     fn check_coordinate(&self, cx: &mut Context<'_>, scalar: &Scalar, span: &Span) {
         if self.entry.kind.name == "cylinder" {
-            length_of_cylinder(cx, &self.place, scalar, span);
+            length_of_cylinder(cx, self.place, scalar, span);
         }
     }
 

@@ -37,7 +37,13 @@ pub enum Unsimulated {
     Lacks(Lack),
     /// Something that the simulation goes by has no value at the start.
     NoValue(Sought),
+<<<<<<< HEAD
     /// What this stop bounds goes by drives that keep their laws alone.
+=======
+    /// Friction where several coordinates move: what sticks is not known.
+    FrictionOfSeveral,
+    /// What this stop bounds goes by drives that keep their laws, or by time, and by nothing that is let go.
+>>>>>>> parity
     KeptFromStop(usize),
     /// It starts beyond this stop, by so much.
     BeyondStop(usize, f64),
@@ -237,7 +243,7 @@ pub fn ready(
         .chain(vec![0.0; plant.inner.pressures() + 1])
         .collect();
     for stop in 0..question.stops.len() {
-        if !plant.gives_way_at_start(stop, &y) {
+        if plant.goes_by_itself(stop, &y) {
             return Err(Unsimulated::KeptFromStop(stop));
         }
     }

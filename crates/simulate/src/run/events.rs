@@ -163,7 +163,8 @@ impl Run {
         }
         match event.watch {
             Watch::Strikes(stop) => {
-                if !self.plant.gives_way_at(stop, self.time, &self.y) {
+                let gap = self.plant.gap(stop, self.time, &self.y);
+                if gap.is_some_and(|gap| !gap.gives_way()) {
                     return Some(Ending::Unyielding(stop));
                 }
                 let before = self.plant.mode.resting.clone();

@@ -160,7 +160,7 @@ fn lacks(told: &Told<'_>, lack: Lack) -> (String, &'static str) {
 fn kept_from_stop(told: &Told<'_>, stop: usize) -> (String, &'static str) {
     (
         format!(
-            "nothing that is let go gives way at {}: drives that keep their laws go on, whatever stands in their way",
+            "nothing that is let go gives way at {}: what it bounds goes by drives that keep their laws, or by time, whatever stands in its way",
             told.stop(stop)
         ),
         "let the drive go that moves it, by `release`, end its law before the stop, or leave the stop out",
