@@ -206,6 +206,11 @@ impl Qr {
         })
     }
 
+    /// The diagonal of R: of each column what the columns before it do not explain, with a sign.
+    pub fn diagonal(&self) -> &[f64] {
+        &self.diagonal
+    }
+
     /// Smallest over largest diagonal entry of R: a cheap measure of how near the matrix is to losing rank.
     pub fn smallest_pivot_ratio(&self) -> f64 {
         let (low, high) = self
