@@ -1,1 +1,63 @@
-fn main() {}
+//! Times of synthesis problems, the fastest of some repeats: `cargo bench -p kempe-synthesis`.
+//!
+//! Aims: all dyads of five poses in 20 us, the curves of 1000 problems of four poses in 50 ms.
+
+#[path = "../tests/support/mod.rs"]
+mod support;
+
+use std::hint::black_box;
+use std::time::Instant;
+
+use kempe_number::Random;
+use kempe_synthesis::{BurmesterCurve, CurveDrawing, Pose, dyads};
+use support::RandomFourBar;
+
+/// Problems of each kind, and repeats of which the fastest counts.
+const PROBLEMS: usize = 1000;
+const REPEATS: usize = 10;
+
+fn fastest(mut work: impl FnMut()) -> f64 {
+    (0..REPEATS)
+        .map(|_| {
+            let begin = Instant::now();
+            work();
+            begin.elapsed().as_secs_f64()
+        })
+        .fold(f64::INFINITY, f64::min)
+}
+
+fn main() {
+    let mut random = Random(1);
+    let mut problems: Vec<Vec<Pose>> = Vec::new();
+    while problems.len() < PROBLEMS {
+        let bar = RandomFourBar::new(&mut random);
+        if let Some((poses, _)) = bar.poses(&mut random, 5, 0.3) {
+            problems.push(poses);
+        }
+    }
+    let each = 1e6 / PROBLEMS as f64;
+    let five = fastest(|| {
+        for poses in &problems {
+            black_box(dyads(black_box(poses), &[]).ok());
+        }
+    });
+    println!("five poses, all dyads      {:8.2} us", five * each);
+    let mut points = 0;
+    let curves = fastest(|| {
+        points = 0;
+        for poses in &problems {
+            let four = [poses[0], poses[1], poses[2], poses[3]];
+            let Ok(curve) = BurmesterCurve::new(black_box(&four)) else {
+                continue;
+            };
+            let drawn = curve.drawn(CurveDrawing::default());
+            points += drawn.iter().map(|p| p.points.len()).sum::<usize>();
+            black_box(drawn);
+        }
+    });
+    println!(
+        "four poses, both curves    {:8.2} us, {} points",
+        curves * each,
+        points / PROBLEMS
+    );
+}

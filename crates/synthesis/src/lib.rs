@@ -3,9 +3,11 @@
 //! | file | for |
 //! | --- | --- |
 //! | `motion.rs`, `sliders.rs` | dyads that guide a body through two to five poses |
+//! | `burmester_curve.rs` | the curves of all pivots of four poses |
 //!
 //! Lengths are in any one unit, angles in rad, counter-clockwise positive; plane vectors are complex numbers.
 
+mod burmester_curve;
 mod conics;
 mod displacements;
 mod dyad;
@@ -18,6 +20,7 @@ mod sliders;
 
 pub use kempe_linear::C;
 
+pub use burmester_curve::{BurmesterCurve, CurveDrawing, CurvePiece, CurvePoint};
 pub use dyad::{Dyad, DyadSolution};
 pub use error::SynthesisError;
 pub use motion::{DyadCondition, dyads};

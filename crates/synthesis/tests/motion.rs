@@ -512,7 +512,10 @@ fn a_double_dyad_counts_twice() {
         let Ok(found) = dyads(&poses(low), &[]) else {
             continue;
         };
-        if angles[..4].iter().any(|a| (a[0] - low).sin().abs() < 1e-6) {
+        if angles[..4]
+            .iter()
+            .any(|a| kempe_number::math::sin(a[0] - low).abs() < 1e-6)
+        {
             continue;
         }
         seen += 1;

@@ -64,7 +64,7 @@ impl RandomFourBar {
             let angle = between(random, -3.1, 3.1);
             if angles
                 .iter()
-                .any(|a| ((a - angle) * 0.5).sin().abs() < 0.5 * apart)
+                .any(|a| kempe_number::math::sin((a - angle) * 0.5).abs() < 0.5 * apart)
             {
                 continue;
             }
