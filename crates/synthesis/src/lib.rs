@@ -4,25 +4,34 @@
 //! | --- | --- |
 //! | `motion.rs`, `sliders.rs` | dyads that guide a body through two to five poses |
 //! | `burmester_curve.rs` | the curves of all pivots of four poses |
+//! | `linkage.rs`, `four_bar.rs`, `slider_crank.rs`, `defects.rs` | pairs of dyads, how their links turn, and whether they pass the poses on one circuit, on one branch and in order |
 //!
 //! Lengths are in any one unit, angles in rad, counter-clockwise positive; plane vectors are complex numbers.
 
 mod burmester_curve;
 mod conics;
+mod defects;
 mod displacements;
 mod dyad;
 mod error;
+mod four_bar;
 mod kernel;
+mod linkage;
 mod motion;
 mod polynomial;
 mod pose;
+mod slider_crank;
 mod sliders;
 
 pub use kempe_linear::C;
 
 pub use burmester_curve::{BurmesterCurve, CurveDrawing, CurvePiece, CurvePoint};
+pub use defects::{Passage, passage};
 pub use dyad::{Dyad, DyadSolution};
 pub use error::SynthesisError;
+pub use four_bar::{Driver, FourBar, Grashof, Turning};
+pub use linkage::{Linkage, pairs};
 pub use motion::{DyadCondition, dyads};
 pub use pose::{Line, Pose, image_pole, pole};
+pub use slider_crank::{InvertedSliderCrank, SliderCrank};
 pub use sliders::{SliderCondition, fixed_guides, moving_guides};
