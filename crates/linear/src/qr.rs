@@ -53,6 +53,12 @@ impl Qr {
         self.a[column * self.rows + row] += value;
     }
 
+    /// The lengths of the matrix's columns, before [`Qr::factor`].
+    pub fn column_lengths(&self) -> Vec<f64> {
+        let columns = self.a.chunks_exact(self.rows.max(1));
+        columns.map(|c| dot(c, c).sqrt()).collect()
+    }
+
     /// Factors the matrix in place.
     pub fn factor(&mut self) {
         let m = self.rows;

@@ -5,6 +5,7 @@
 //! | `motion.rs`, `sliders.rs` | dyads that guide a body through two to five poses |
 //! | `burmester_curve.rs` | the curves of all pivots of four poses |
 //! | `linkage.rs`, `four_bar.rs`, `slider_crank.rs`, `defects.rs` | pairs of dyads, how their links turn, and whether they pass the poses on one circuit, on one branch and in order |
+//! | `function.rs` and its folder | four-bars and slider-cranks that turn or slide as a crank's angle asks: exactly, or in least squares |
 //!
 //! Lengths are in any one unit, angles in rad, counter-clockwise positive; plane vectors are complex numbers.
 
@@ -15,8 +16,10 @@ mod displacements;
 mod dyad;
 mod error;
 mod four_bar;
+mod function;
 mod kernel;
 mod linkage;
+mod marquardt;
 mod motion;
 mod polynomial;
 mod pose;
@@ -30,6 +33,11 @@ pub use defects::{Passage, passage};
 pub use dyad::{Dyad, DyadSolution};
 pub use error::SynthesisError;
 pub use four_bar::{Driver, FourBar, Grashof, Turning};
+pub use function::{
+    DialZeros, Dials, Fit, FunctionFourBar, InvertedSliderFunction, PrecisionPoint, SliderFunction,
+    SliderPoint, TwoLengths, chebyshev_spacing, fit_function, fit_lengths, functions,
+    inverted_slider_functions, slider_functions, two_lengths,
+};
 pub use linkage::{Linkage, pairs};
 pub use motion::{DyadCondition, dyads};
 pub use pose::{Line, Pose, image_pole, pole};

@@ -1,4 +1,5 @@
 //! Circuits, branches, order and transmission against linkages turned step by step.
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
 mod support;
 

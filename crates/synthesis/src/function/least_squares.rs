@@ -1,0 +1,259 @@
+//! Four-bars that come near to more pairs of angles than they can keep.
+
+use kempe_linear::{C, Qr, independent_least_squares};
+
+use super::{DialZeros, FunctionFourBar, PrecisionPoint, SAME_ANGLE, distinct, functions, rows_of};
+use crate::error::{SynthesisError, all_finite};
+use crate::marquardt::{Model, smallest};
+
+/// A four-bar near to pairs of angles.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fit {
+    /// The four-bar.
+    pub bar: FunctionFourBar,
+    /// The branch it is on, with the first link driven.
+    pub branch: i8,
+    /// Its output's angle less the one wanted at every pair, rad.
+    pub errors: Vec<f64>,
+}
+
+impl Fit {
+    /// The root of the mean square of the errors, rad.
+    pub fn rms(&self) -> f64 {
+        (self.errors.iter().map(|e| e * e).sum::<f64>() / self.errors.len() as f64).sqrt()
+    }
+}
+
+/// The four-bar with both dial zeros given that keeps Freudenstein's equation best in the sum of squares of what is left of it,
+/// K1 cos(output) - K2 cos(input) + K3 - cos(input - output): linear, exact for three pairs.
+///
+/// # Errors
+/// Fewer than three pairs, not finite, repeated or contradictory, or pairs that leave a length free.
+pub fn fit_lengths(
+    points: &[PrecisionPoint],
+    input_zero: f64,
+    output_zero: f64,
+) -> Result<FunctionFourBar, SynthesisError> {
+    all_finite(points.iter().map(PrecisionPoint::is_finite))?;
+    if points.len() < 3 {
+        return Err(SynthesisError::TooFew {
+            equations: points.len(),
+            unknowns: 3,
+        });
+    }
+    let pairs: Vec<[f64; 2]> = points.iter().map(|p| [p.input, p.output]).collect();
+    distinct(&pairs, |_| SAME_ANGLE, true)?;
+    let (input, output) = (
+        C::from_polar(1.0, input_zero),
+        C::from_polar(1.0, output_zero),
+    );
+    let turned: Vec<[C; 2]> = (points.iter())
+        .map(|p| {
+            [
+                input * C::from_polar(1.0, p.input),
+                output * C::from_polar(1.0, p.output),
+            ]
+        })
+        .collect();
+    let column = |of: fn(&[C; 2]) -> f64| turned.iter().map(of).collect::<Vec<f64>>();
+    let columns = [
+        column(|[_, q]| q.re),
+        column(|[e, _]| -e.re),
+        column(|_| 1.0),
+    ];
+    let target = column(|[e, q]| e.re * q.re + e.im * q.im);
+    let k = independent_least_squares(&[&columns[0], &columns[1], &columns[2]], &target);
+    // K1 = 1 / a, K2 = 1 / c, K3 = (a^2 - b^2 + c^2 + 1) / 2ac.
+    let (a, c) = (1.0 / k[0], 1.0 / k[1]);
+    let square = a * a + c * c + 1.0 - 2.0 * a * c * k[2];
+    if !(a.is_finite() && c.is_finite()) {
+        return Err(SynthesisError::Dependent {
+            datum: points.len() - 1,
+        });
+    }
+    if !(square > 0.0) {
+        return Err(SynthesisError::None);
+    }
+    Ok(FunctionFourBar {
+        input: input.scale(a),
+        output: output.scale(c),
+        coupler: square.sqrt(),
+    })
+}
+
+/// Local minima of the sum of squares of the output's errors over more pairs of angles than can be kept, the best first: from the exact
+/// solutions of pairs spread over the list, by Marquardt's method. Zeros of dials that are given are kept.
+///
+/// # Errors
+/// As of [`functions`], and [`SynthesisError::None`] where no four-bar on one branch comes out of any start.
+pub fn fit_function(
+    points: &[PrecisionPoint],
+    zeros: DialZeros,
+) -> Result<Vec<Fit>, SynthesisError> {
+    all_finite(points.iter().map(PrecisionPoint::is_finite))?;
+    let exact = 5 - usize::from(zeros.input.is_some()) - usize::from(zeros.output.is_some());
+    if points.len() < exact {
+        return Err(SynthesisError::TooFew {
+            equations: points.len(),
+            unknowns: exact,
+        });
+    }
+    let pairs: Vec<[f64; 2]> = points.iter().map(|p| [p.input, p.output]).collect();
+    distinct(&pairs, |_| SAME_ANGLE, true)?;
+    let mut starts = Vec::new();
+    for shift in 0..SPREADS {
+        let chosen: Vec<PrecisionPoint> = (0..exact)
+            .map(|k| {
+                // Spread as Chebyshev's points, and drawn in from both ends by turns.
+                let part = (k as f64 + 0.5 * (1.0 + SHIFTS[shift])) / exact as f64;
+                let at = (part * points.len() as f64) as usize;
+                PrecisionPoint::new(
+                    points[at.min(points.len() - 1)].input,
+                    points[at.min(points.len() - 1)].output,
+                )
+            })
+            .collect();
+        if let Ok(found) = functions(&chosen, zeros) {
+            starts.extend(found);
+        }
+    }
+    if let (Some(input), Some(output)) = (zeros.input, zeros.output)
+        && let Ok(bar) = fit_lengths(points, input, output)
+    {
+        starts.push(bar);
+    }
+    let mut fits: Vec<Fit> = Vec::new();
+    for start in starts {
+        for branch in [1, -1] {
+            let problem = Errors {
+                points,
+                zeros,
+                branch,
+            };
+            let Some(at) = smallest(&problem, &problem.unknowns(&start)) else {
+                continue;
+            };
+            let bar = problem.bar(&at);
+            let Some(errors) = problem.errors(&bar) else {
+                continue;
+            };
+            let near = |a: C, b: C| (a - b).norm() <= SAME_FIT * (1.0 + a.norm());
+            if !fits.iter().any(|f| {
+                near(f.bar.input, bar.input) && near(f.bar.output, bar.output) && f.branch == branch
+            }) {
+                fits.push(Fit {
+                    bar,
+                    branch,
+                    errors,
+                });
+            }
+        }
+    }
+    fits.sort_by(|a, b| a.rms().total_cmp(&b.rms()));
+    if fits.is_empty() {
+        return Err(SynthesisError::None);
+    }
+    Ok(fits)
+}
+
+/// Choices of pairs to start from, and how they are shifted, in parts of half their distance.
+const SPREADS: usize = 3;
+const SHIFTS: [f64; SPREADS] = [0.0, 0.6, -0.6];
+/// Links nearer than this part of their size are those of one minimum.
+const SAME_FIT: f64 = 1e-5;
+
+/// The output's errors as a function of links.
+struct Errors<'a> {
+    points: &'a [PrecisionPoint],
+    zeros: DialZeros,
+    branch: i8,
+}
+
+impl Errors<'_> {
+    /// Coupler, and each link as a vector, or as a length along its given zero.
+    fn unknowns(&self, bar: &FunctionFourBar) -> Vec<f64> {
+        let mut all = vec![bar.coupler];
+        for (link, zero) in [
+            (bar.input, self.zeros.input),
+            (bar.output, self.zeros.output),
+        ] {
+            match zero {
+                Some(zero) => all.push((link * C::from_polar(1.0, -zero)).re),
+                None => all.extend([link.re, link.im]),
+            }
+        }
+        all
+    }
+
+    fn bar(&self, unknowns: &[f64]) -> FunctionFourBar {
+        let mut rest = unknowns[1..].iter().copied();
+        let mut link = |zero: Option<f64>| {
+            let first = rest.next().unwrap_or(0.0);
+            match zero {
+                Some(zero) => C::from_polar(1.0, zero).scale(first),
+                None => C::new(first, rest.next().unwrap_or(0.0)),
+            }
+        };
+        FunctionFourBar {
+            input: link(self.zeros.input),
+            output: link(self.zeros.output),
+            coupler: unknowns[0],
+        }
+    }
+
+    fn errors(&self, bar: &FunctionFourBar) -> Option<Vec<f64>> {
+        (self.points.iter())
+            .map(|p| {
+                bar.output_angle(p.input, self.branch, p.output)
+                    .map(|angle| angle - p.output)
+            })
+            .collect()
+    }
+}
+
+impl Model for Errors<'_> {
+    fn residuals(&self, unknowns: &[f64]) -> Option<Vec<f64>> {
+        self.errors(&self.bar(unknowns))
+    }
+
+    /// d output / d unknown = -(dF / d unknown) / (dF / d output), F = |coupler|^2 / 2 - b^2 / 2.
+    fn jacobian(&self, unknowns: &[f64], residuals: &[f64], jacobian: &mut Qr) -> bool {
+        let bar = self.bar(unknowns);
+        for (k, (point, error)) in self.points.iter().zip(residuals).enumerate() {
+            let output = point.output + error;
+            let coupler = bar.coupler_at(point.input, output);
+            let (e, q) = (C::from_polar(1.0, point.input), C::from_polar(1.0, output));
+            let by = |change: C| coupler.re * change.re + coupler.im * change.im;
+            let slope = by(C::i() * bar.output * q);
+            if slope == 0.0 {
+                return false;
+            }
+            jacobian.add(k, 0, bar.coupler / slope);
+            let mut column = 1;
+            for (turned, zero) in [(-e, self.zeros.input), (q, self.zeros.output)] {
+                let directions = match zero {
+                    Some(zero) => vec![C::from_polar(1.0, zero)],
+                    None => vec![C::one(), C::i()],
+                };
+                for direction in directions {
+                    jacobian.add(k, column, -by(direction * turned) / slope);
+                    column += 1;
+                }
+            }
+        }
+        true
+    }
+}
+
+/// What is left of Freudenstein's equation, halved, at a pair: for those who want it beside the angle's error.
+impl FunctionFourBar {
+    /// K + Re(v q) - Re(u e) - Re(u conj(v) e / q) at a pair of angles: half of how much the square of the coupler's length is missed by.
+    pub fn equation_error(&self, point: &PrecisionPoint) -> f64 {
+        let (u, v) = (self.input, self.output);
+        let k = 0.5 * (1.0 + u.norm_sqr() + v.norm_sqr() - self.coupler * self.coupler);
+        let p = u * v.conj();
+        let all = [k, v.re, v.im, u.re, u.im, p.re, p.im];
+        let row = rows_of(&PrecisionPoint::new(point.input, point.output))[0];
+        row.iter().zip(&all).map(|(a, b)| a * b).sum()
+    }
+}
