@@ -6,10 +6,12 @@
 //! | `burmester_curve.rs` | the curves of all pivots of four poses |
 //! | `linkage.rs`, `four_bar.rs`, `slider_crank.rs`, `defects.rs` | pairs of dyads, how their links turn, and whether they pass the poses on one circuit, on one branch and in order |
 //! | `function.rs` and its folder | four-bars and slider-cranks that turn or slide as a crank's angle asks: exactly, or in least squares |
+//! | `path.rs` and its folder, `cognates.rs` | four-bars whose coupler point passes points; the three of one curve |
 //!
 //! Lengths are in any one unit, angles in rad, counter-clockwise positive; plane vectors are complex numbers.
 
 mod burmester_curve;
+mod cognates;
 mod conics;
 mod defects;
 mod displacements;
@@ -21,6 +23,7 @@ mod kernel;
 mod linkage;
 mod marquardt;
 mod motion;
+mod path;
 mod polynomial;
 mod pose;
 mod slider_crank;
@@ -29,6 +32,7 @@ mod sliders;
 pub use kempe_linear::C;
 
 pub use burmester_curve::{BurmesterCurve, CurveDrawing, CurvePiece, CurvePoint};
+pub use cognates::{CouplerCurve, ParallelMotion};
 pub use defects::{Passage, passage};
 pub use dyad::{Dyad, DyadSolution};
 pub use error::SynthesisError;
@@ -40,6 +44,9 @@ pub use function::{
 };
 pub use linkage::{Linkage, pairs};
 pub use motion::{DyadCondition, dyads};
+pub use path::{
+    GroundPivotPaths, PathLinkage, paths_with_crank, paths_with_ground_pivots, timed_paths,
+};
 pub use pose::{Line, Pose, image_pole, pole};
 pub use slider_crank::{InvertedSliderCrank, SliderCrank};
 pub use sliders::{SliderCondition, fixed_guides, moving_guides};

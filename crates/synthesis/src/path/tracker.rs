@@ -1,0 +1,294 @@
+//! The equations of a path with given ground pivots, and their solutions led from one set of points to another.
+//!
+//! Isotropic coordinates, ground pivots at 0 and 1, points d_0 to d_m (A. P. Morgan and C. W. Wampler, J. Mech. Design 112:544, 1990): the moving
+//! pivots x and y as seen from the point, the coupler's turns T_j, and for j = 1 to m
+//!
+//!   T T' = 1,  (d + T x)(d' + T' x') = (d_0 + x)(d'_0 + x'),  (d - 1 + T y)(d' - 1 + T' y') = (d_0 - 1 + y)(d'_0 - 1 + y')
+//!
+//! with ' for conjugate coordinates. Only the equations of place j feel T_j, so what remains of a linear system when these are
+//! eliminated is one equation per place in x, x', y, y'. With four places that is all; with three, x lies on a line besides.
+
+use kempe_linear::{C, solve_complex};
+use kempe_number::math;
+
+/// Places after the first, at most.
+pub(super) const PLACES: usize = 4;
+/// Unknowns, at most: x, x', y, y', then T and T' of each place.
+const UNKNOWNS: usize = 4 + 2 * PLACES;
+
+/// A solution.
+pub(super) type State = [C; UNKNOWNS];
+
+/// What is given: points and their conjugates, and of a line c x + c' x' = e the factors.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Given {
+    /// Places after the first: three with the line, four without it.
+    pub(super) places: usize,
+    pub(super) d: [C; PLACES + 1],
+    pub(super) conjugate: [C; PLACES + 1],
+    pub(super) line: [C; 3],
+}
+
+impl Given {
+    /// What lies a part of the way to another.
+    fn towards(&self, other: &Self, part: f64) -> Self {
+        let between = |a: C, b: C| a * (1.0 - part) + b * part;
+        Self {
+            places: self.places,
+            d: std::array::from_fn(|k| between(self.d[k], other.d[k])),
+            conjugate: std::array::from_fn(|k| between(self.conjugate[k], other.conjugate[k])),
+            line: std::array::from_fn(|k| between(self.line[k], other.line[k])),
+        }
+    }
+
+    fn less(&self, other: &Self) -> Self {
+        Self {
+            places: self.places,
+            d: std::array::from_fn(|k| self.d[k] - other.d[k]),
+            conjugate: std::array::from_fn(|k| self.conjugate[k] - other.conjugate[k]),
+            line: std::array::from_fn(|k| self.line[k] - other.line[k]),
+        }
+    }
+}
+
+/// The correction of Newton's method at a place, and how the solution moves as what is given moves at `rate`, both to be taken off.
+fn solve(at: &State, given: &Given, rate: &Given) -> Option<[State; 2]> {
+    let [x, x1, y, y1] = [at[0], at[1], at[2], at[3]];
+    let (d0, c0) = (given.d[0], given.conjugate[0]);
+    let (d0_rate, c0_rate) = (rate.d[0], rate.conjugate[0]);
+    let one = C::one();
+    let mut matrix = [C::zero(); 16];
+    let mut right = [[C::zero(); 2]; 4];
+    // Of each place its three equations: factors of T, of T', of x, x', y, y', and both right sides.
+    let mut rows = [[[C::zero(); 8]; 3]; PLACES];
+    for j in 0..given.places {
+        let (t, t1) = (at[4 + 2 * j], at[5 + 2 * j]);
+        let (d, c) = (given.d[j + 1], given.conjugate[j + 1]);
+        let (d_rate, c_rate) = (rate.d[j + 1], rate.conjugate[j + 1]);
+        let zero = C::zero();
+        rows[j][0] = [t1, t, zero, zero, zero, zero, t * t1 - one, zero];
+        for (k, (p, p1, pivot)) in [(x, x1, zero), (y, y1, one)].into_iter().enumerate() {
+            let (d, c, d0, c0) = (d - pivot, c - pivot, d0 - pivot, c0 - pivot);
+            let value = c * t * p + d * t1 * p1 - c0 * p - d0 * p1 + d * c - d0 * c0;
+            let change = c_rate * t * p + d_rate * t1 * p1 - c0_rate * p - d0_rate * p1
+                + d_rate * c
+                + d * c_rate
+                - d0_rate * c0
+                - d0 * c0_rate;
+            let mut row = [c * p, d * p1, zero, zero, zero, zero, value, change];
+            row[2 + 2 * k] = c * t - c0;
+            row[3 + 2 * k] = d * t1 - d0;
+            rows[j][k + 1] = row;
+        }
+        // The combination that does not feel T and T'.
+        let [a, b, e] = [&rows[j][0], &rows[j][1], &rows[j][2]];
+        let factors = [
+            b[0] * e[1] - e[0] * b[1],
+            e[0] * a[1] - a[0] * e[1],
+            a[0] * b[1] - b[0] * a[1],
+        ];
+        let size = factors.iter().fold(0.0, |m: f64, f| m.max(f.re.abs() + f.im.abs()));
+        let scale = 1.0 / size;
+        for k in 0..6 {
+            let column = k + 2;
+            let sum = factors[0] * a[column] + factors[1] * b[column] + factors[2] * e[column];
+            if k < 4 {
+                matrix[4 * j + k] = sum * scale;
+            } else {
+                right[j][k - 4] = sum * scale;
+            }
+        }
+    }
+    if given.places < PLACES {
+        let ([c, c1, e], [c_rate, c1_rate, e_rate]) = (given.line, rate.line);
+        matrix[12] = c;
+        matrix[13] = c1;
+        right[3] = [c * x + c1 * x1 - e, c_rate * x + c1_rate * x1 - e_rate];
+    }
+    if !solve_complex(&mut matrix, &mut right, 4) {
+        return None;
+    }
+    let mut found = [[C::zero(); UNKNOWNS]; 2];
+    for (side, found) in found.iter_mut().enumerate() {
+        for k in 0..4 {
+            found[k] = right[k][side];
+        }
+        for j in 0..given.places {
+            // The two equations that tell T and T' best.
+            let [a, b, e] = &rows[j];
+            let minor = |p: &[C; 8], q: &[C; 8]| p[0] * q[1] - q[0] * p[1];
+            let (p, q, det) = [(a, b), (a, e), (b, e)]
+                .map(|(p, q)| (p, q, minor(p, q)))
+                .into_iter()
+                .max_by(|p, q| p.2.norm_sqr().total_cmp(&q.2.norm_sqr()))?;
+            let left = |row: &[C; 8]| (0..4).fold(row[6 + side], |s, k| s - row[2 + k] * found[k]);
+            let (f, g, inverse) = (left(p), left(q), det.recip());
+            found[4 + 2 * j] = (f * q[1] - g * p[1]) * inverse;
+            found[5 + 2 * j] = (p[0] * g - q[0] * f) * inverse;
+        }
+    }
+    found.iter().flatten().all(|x| x.is_finite()).then_some(found)
+}
+
+/// How carefully a path is followed: the first correction after a step, beside the unknowns' size, that is aimed at and that is too much.
+#[derive(Clone, Copy)]
+pub(super) struct Care {
+    aim: f64,
+    most: f64,
+}
+
+/// The usual care, and that for paths that were lost or met another.
+pub(super) const CARES: [Care; 2] = [
+    Care {
+        aim: 1e-6,
+        most: 3e-5,
+    },
+    Care {
+        aim: 1e-9,
+        most: 1e-7,
+    },
+];
+
+/// Where a path ended.
+pub(super) enum End {
+    /// At a regular solution.
+    Finite(State),
+    /// Its unknowns grew without bound.
+    Infinite,
+    /// It could not be followed.
+    Lost,
+}
+
+/// Unknowns beyond which a path has gone to infinity, in units of the frame.
+const INFINITY: f64 = 1e8;
+/// Steps of a path at most, and the shortest.
+const STEPS: usize = 5000;
+const SHORTEST: f64 = 1e-12;
+/// A correction, beside the unknowns' size, after which the next changes nothing on the way, and at the end.
+const ON_THE_WAY: f64 = 1e-9;
+const AT_THE_END: f64 = 1e-13;
+/// Corrections at one place at most.
+const CORRECTIONS: usize = 4;
+
+/// Leads a solution from what is given at the start to the end.
+pub(super) fn follow(start: &State, from: &Given, to: &Given, care: Care) -> End {
+    let rate = to.less(from);
+    let (mut x, mut t, mut step) = (*start, 0.0, 0.02_f64);
+    let mut before: Option<(f64, State, State)> = None;
+    let Some([_, slope]) = solve(&x, from, &rate) else {
+        return End::Lost;
+    };
+    let mut slope = slope;
+    for _ in 0..STEPS {
+        if t >= 1.0 {
+            break;
+        }
+        let now = step.min(1.0 - t);
+        let next_t = if now == 1.0 - t { 1.0 } else { t + now };
+        let predicted = match &before {
+            None => runge_kutta(&x, &slope, from, to, &rate, t, now),
+            Some((t0, x0, slope0)) => Some(hermite(*t0, x0, slope0, t, &x, &slope, next_t)),
+        };
+        let given = from.towards(to, next_t);
+        let corrected = predicted.and_then(|guess| correct(guess, &given, &rate, care, next_t == 1.0));
+        match corrected {
+            Some((there, first, tangent)) => {
+                before = Some((t, x, slope));
+                (x, slope, t) = (there, tangent, next_t);
+                if largest(&x) > INFINITY {
+                    return End::Infinite;
+                }
+                let room = care.aim / first.max(f64::MIN_POSITIVE);
+                step = now * math::powf(room, 0.25).clamp(0.3, 2.0);
+            }
+            None => {
+                step = now * 0.35;
+                if step < SHORTEST {
+                    break;
+                }
+            }
+        }
+    }
+    if t >= 1.0 {
+        End::Finite(x)
+    } else if largest(&x) > 1e4 {
+        // A path that runs away slows down as it grows.
+        End::Infinite
+    } else {
+        End::Lost
+    }
+}
+
+fn largest(x: &State) -> f64 {
+    x.iter().fold(0.0, |m: f64, c| m.max(c.norm_sqr())).sqrt()
+}
+
+/// Newton's method from a guess: the solution, the first correction, and the tangent.
+fn correct(
+    mut x: State,
+    given: &Given,
+    rate: &Given,
+    care: Care,
+    is_end: bool,
+) -> Option<(State, f64, State)> {
+    let (mut first, mut last) = (0.0, f64::INFINITY);
+    let enough = if is_end { AT_THE_END } else { ON_THE_WAY };
+    for round in 0..if is_end { 2 * CORRECTIONS } else { CORRECTIONS } {
+        let [correction, tangent] = solve(&x, given, rate)?;
+        let mut change = 0.0_f64;
+        for (a, b) in x.iter_mut().zip(&correction) {
+            *a -= *b;
+            change = change.max(b.norm() / (1.0 + a.norm()));
+        }
+        if round == 0 {
+            first = change;
+        }
+        if !(change <= if round == 0 { care.most } else { last }) {
+            // At the end rounding stops the corrections from shrinking.
+            return (is_end && last < 1e-9).then_some((x, first, tangent));
+        }
+        last = change;
+        if change <= enough {
+            return Some((x, first, tangent));
+        }
+    }
+    (is_end && last < 1e-9).then(|| solve(&x, given, rate).map(|[_, tangent]| (x, first, tangent)))?
+}
+
+/// x - slope * step and so on: slopes are taken off.
+fn ahead(x: &State, slope: &State, step: f64) -> State {
+    std::array::from_fn(|k| x[k] - slope[k] * step)
+}
+
+fn runge_kutta(
+    x: &State,
+    k1: &State,
+    from: &Given,
+    to: &Given,
+    rate: &Given,
+    t: f64,
+    step: f64,
+) -> Option<State> {
+    let slope = |x: &State, t: f64| Some(solve(x, &from.towards(to, t), rate)?[1]);
+    let k2 = slope(&ahead(x, k1, 0.5 * step), t + 0.5 * step)?;
+    let k3 = slope(&ahead(x, &k2, 0.5 * step), t + 0.5 * step)?;
+    let k4 = slope(&ahead(x, &k3, step), t + step)?;
+    Some(std::array::from_fn(|k| {
+        x[k] - (k1[k] + (k2[k] + k3[k]) * 2.0 + k4[k]) * (step / 6.0)
+    }))
+}
+
+/// The cubic through two places with their tangents, further on.
+fn hermite(t0: f64, x0: &State, slope0: &State, t1: f64, x1: &State, slope1: &State, t: f64) -> State {
+    let h = t1 - t0;
+    let s = (t - t0) / h;
+    let (s2, r) = (s * s, 1.0 - s);
+    let (a, b) = ((1.0 + 2.0 * s) * r * r, s2 * (3.0 - 2.0 * s));
+    let (c, d) = (s * r * r * h, -s2 * r * h);
+    std::array::from_fn(|k| x0[k] * a + x1[k] * b - slope0[k] * c - slope1[k] * d)
+}
+
+/// Whether two solutions are one.
+pub(super) fn is_same(x: &State, y: &State) -> bool {
+    (x.iter().zip(y)).all(|(a, b)| (*a - *b).norm() < 1e-6 * (1.0 + a.norm()))
+}
