@@ -64,7 +64,9 @@ fn five_points_in_line_with_ground_pivots() {
     let pivots = [C::zero(), C::one()];
     let found = paths_with_ground_pivots(&points, pivots, None).unwrap();
     println!("{} {} {} {}", found.generic, found.finite, found.infinite, found.lost);
-    assert_eq!((found.generic, found.finite), (36, 36));
+    // Three of the 36 go to infinity, like cube roots: a coupler on endless links that slides along the line without turning. (Counts of 36
+    // finite solutions take them for finite; 33 is also what a program with an endgame reports.)
+    assert_eq!((found.generic, found.finite, found.infinite), (36, 33, 3));
     assert_eq!(found.linkages.len(), 15);
     holds(&found.linkages, &points, 1e-12);
     for [x, x1, y, y1] in known {
@@ -85,7 +87,7 @@ fn five_points_in_line_with_ground_pivots() {
     // In other units, turned and moved.
     let other = |p: C| C::new(3e5, -2e5) + C::from_polar(1e6, 2.0) * p;
     let moved = paths_with_ground_pivots(&points.map(other), pivots.map(other), None).unwrap();
-    assert_eq!((moved.finite, moved.linkages.len()), (36, 15));
+    assert_eq!((moved.finite, moved.linkages.len()), (33, 15));
 }
 
 #[test]

@@ -140,8 +140,8 @@ pub(super) struct Care {
 /// The usual care, and that for paths that were lost or met another.
 pub(super) const CARES: [Care; 2] = [
     Care {
-        aim: 1e-6,
-        most: 3e-5,
+        aim: 1e-5,
+        most: 3e-4,
     },
     Care {
         aim: 1e-9,
@@ -165,8 +165,12 @@ const INFINITY: f64 = 1e8;
 const STEPS: usize = 5000;
 const SHORTEST: f64 = 1e-12;
 /// A correction, beside the unknowns' size, after which the next changes nothing on the way, and at the end.
-const ON_THE_WAY: f64 = 1e-9;
+const ON_THE_WAY: f64 = 1e-7;
 const AT_THE_END: f64 = 1e-13;
+/// What is left of the way to a solution at infinity where following ends, and by how much the unknowns there have grown at least
+/// while a hundredth of it remained: like its sixth root.
+const NEAR_THE_END: f64 = 1e-3;
+const GROWTH: f64 = 2.1;
 /// Corrections at one place at most.
 const CORRECTIONS: usize = 4;
 
@@ -174,6 +178,8 @@ const CORRECTIONS: usize = 4;
 pub(super) fn follow(start: &State, from: &Given, to: &Given, care: Care) -> End {
     let rate = to.less(from);
     let (mut x, mut t, mut step) = (*start, 0.0, 0.02_f64);
+    // How much was left of the way, and the unknowns' size, whenever a hundredth of what was left last remained.
+    let mut sizes: Vec<(f64, f64)> = vec![(1.0, largest(start))];
     let mut before: Option<(f64, State, State)> = None;
     let Some([_, slope]) = solve(&x, from, &rate) else {
         return End::Lost;
@@ -198,6 +204,9 @@ pub(super) fn follow(start: &State, from: &Given, to: &Given, care: Care) -> End
                 if largest(&x) > INFINITY {
                     return End::Infinite;
                 }
+                if sizes.last().is_some_and(|(left, _)| 1.0 - t < 1e-2 * left) {
+                    sizes.push((1.0 - t, largest(&x)));
+                }
                 let room = care.aim / first.max(f64::MIN_POSITIVE);
                 step = now * math::powf(room, 0.25).clamp(0.3, 2.0);
             }
@@ -211,8 +220,11 @@ pub(super) fn follow(start: &State, from: &Given, to: &Given, care: Care) -> End
     }
     if t >= 1.0 {
         End::Finite(x)
-    } else if largest(&x) > 1e4 {
-        // A path that runs away slows down as it grows.
+    } else if let [.., (_, before), (left, size)] = sizes[..]
+        && left < NEAR_THE_END
+        && size > GROWTH * before
+    {
+        // A path that runs away slows down as it grows: like a root of what is left of the way.
         End::Infinite
     } else {
         End::Lost
