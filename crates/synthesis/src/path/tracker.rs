@@ -171,6 +171,8 @@ const AT_THE_END: f64 = 1e-13;
 /// while a hundredth of it remained: like its sixth root.
 const NEAR_THE_END: f64 = 1e-3;
 const GROWTH: f64 = 2.1;
+/// Places passed that the predictor looks back to.
+const MEMORY: usize = 3;
 /// Corrections at one place at most.
 const CORRECTIONS: usize = 4;
 
@@ -180,27 +182,31 @@ pub(super) fn follow(start: &State, from: &Given, to: &Given, care: Care) -> End
     let (mut x, mut t, mut step) = (*start, 0.0, 0.02_f64);
     // How much was left of the way, and the unknowns' size, whenever a hundredth of what was left last remained.
     let mut sizes: Vec<(f64, f64)> = vec![(1.0, largest(start))];
-    let mut before: Option<(f64, State, State)> = None;
     let Some([_, slope]) = solve(&x, from, &rate) else {
         return End::Lost;
     };
-    let mut slope = slope;
+    let mut passed = vec![Passed { t, x, slope }];
     for _ in 0..STEPS {
         if t >= 1.0 {
             break;
         }
         let now = step.min(1.0 - t);
         let next_t = if now == 1.0 - t { 1.0 } else { t + now };
-        let predicted = match &before {
-            None => runge_kutta(&x, &slope, from, to, &rate, t, now),
-            Some((t0, x0, slope0)) => Some(hermite(*t0, x0, slope0, t, &x, &slope, next_t)),
+        let predicted = match passed.as_slice() {
+            [first] => runge_kutta(&first.x, &first.slope, from, to, &rate, t, now),
+            several => Some(hermite(several, next_t)),
         };
         let given = from.towards(to, next_t);
         let corrected = predicted.and_then(|guess| correct(guess, &given, &rate, care, next_t == 1.0));
         match corrected {
-            Some((there, first, tangent)) => {
-                before = Some((t, x, slope));
-                (x, slope, t) = (there, tangent, next_t);
+            Some((there, first, slope)) => {
+                // The predictor's error goes with the power of the step that the places passed give.
+                let order = 2 * passed.len().max(2);
+                (x, t) = (there, next_t);
+                if passed.len() == MEMORY {
+                    passed.remove(0);
+                }
+                passed.push(Passed { t, x, slope });
                 if largest(&x) > INFINITY {
                     return End::Infinite;
                 }
@@ -208,10 +214,12 @@ pub(super) fn follow(start: &State, from: &Given, to: &Given, care: Care) -> End
                     sizes.push((1.0 - t, largest(&x)));
                 }
                 let room = care.aim / first.max(f64::MIN_POSITIVE);
-                step = now * math::powf(room, 0.25).clamp(0.3, 2.0);
+                step = now * math::powf(room, 1.0 / order as f64).clamp(0.3, 2.0);
             }
             None => {
                 step = now * 0.35;
+                // What lies far back does not help where the path bends.
+                passed.drain(..passed.len().saturating_sub(2));
                 if step < SHORTEST {
                     break;
                 }
@@ -290,14 +298,33 @@ fn runge_kutta(
     }))
 }
 
-/// The cubic through two places with their tangents, further on.
-fn hermite(t0: f64, x0: &State, slope0: &State, t1: f64, x1: &State, slope1: &State, t: f64) -> State {
-    let h = t1 - t0;
-    let s = (t - t0) / h;
-    let (s2, r) = (s * s, 1.0 - s);
-    let (a, b) = ((1.0 + 2.0 * s) * r * r, s2 * (3.0 - 2.0 * s));
-    let (c, d) = (s * r * r * h, -s2 * r * h);
-    std::array::from_fn(|k| x0[k] * a + x1[k] * b - slope0[k] * c - slope1[k] * d)
+/// A place passed, with the solution and its slope there.
+#[derive(Clone, Copy)]
+struct Passed {
+    t: f64,
+    x: State,
+    slope: State,
+}
+
+/// The polynomial through places with their slopes (C. Hermite), further on.
+fn hermite(passed: &[Passed], t: f64) -> State {
+    let mut found = [C::zero(); UNKNOWNS];
+    for (i, here) in passed.iter().enumerate() {
+        let (mut basis, mut slope) = (1.0, 0.0);
+        for (j, other) in passed.iter().enumerate() {
+            if j != i {
+                basis *= (t - other.t) / (here.t - other.t);
+                slope += 1.0 / (here.t - other.t);
+            }
+        }
+        let square = basis * basis;
+        let of_value = (1.0 - 2.0 * (t - here.t) * slope) * square;
+        let of_slope = (t - here.t) * square;
+        for (sum, (x, s)) in found.iter_mut().zip(here.x.iter().zip(&here.slope)) {
+            *sum += *x * of_value - *s * of_slope;
+        }
+    }
+    found
 }
 
 /// Whether two solutions are one.
