@@ -48,10 +48,7 @@ impl CouplerCurve {
         let inverse = (x - y).recip();
         let next = Self {
             fixed: [self.point + (b * x - a * y) * inverse, self.fixed[0]],
-            moving: [
-                self.point + (x - a) * y * inverse,
-                self.point + a - x,
-            ],
+            moving: [self.point + (x - a) * y * inverse, self.point + a - x],
             point: self.point,
         };
         let finite = next.fixed.iter().chain(&next.moving).all(|p| p.is_finite());

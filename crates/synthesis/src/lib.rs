@@ -7,12 +7,15 @@
 //! | `linkage.rs`, `four_bar.rs`, `slider_crank.rs`, `defects.rs` | pairs of dyads, how their links turn, and whether they pass the poses on one circuit, on one branch and in order |
 //! | `function.rs` and its folder | four-bars and slider-cranks that turn or slide as a crank's angle asks: exactly, or in least squares |
 //! | `path.rs` and its folder, `cognates.rs` | four-bars whose coupler point passes points; the three of one curve |
+//! | `bloch.rs`, `dead_centres.rs` | four-bars by rates at a pose; crank-rockers and slider-cranks by stroke and time ratio |
 //!
 //! Lengths are in any one unit, angles in rad, counter-clockwise positive; plane vectors are complex numbers.
 
+mod bloch;
 mod burmester_curve;
 mod cognates;
 mod conics;
+mod dead_centres;
 mod defects;
 mod displacements;
 mod dyad;
@@ -31,8 +34,13 @@ mod sliders;
 
 pub use kempe_linear::C;
 
+pub use bloch::{LinkRates, VectorLoop, bloch};
 pub use burmester_curve::{BurmesterCurve, CurveDrawing, CurvePiece, CurvePoint};
 pub use cognates::{CouplerCurve, ParallelMotion};
+pub use dead_centres::{
+    CrankRocker, SliderCrankChoice, StrokeSliderCrank, best_crank_rocker, best_stroke_slider_crank,
+    crank_rockers, imbalance, stroke_slider_crank, time_ratio,
+};
 pub use defects::{Passage, passage};
 pub use dyad::{Dyad, DyadSolution};
 pub use error::SynthesisError;

@@ -16,7 +16,11 @@ fn nearest(found: &[PathLinkage], fixed: [C; 2], moving: [C; 2]) -> f64 {
         .filter_map(|f| match f.linkage {
             Linkage::FourBar(bar) => {
                 let places = bar.places(&f.poses[0]);
-                let off = |k: usize| (bar.fixed[k] - fixed[k]).norm().max((places[k] - moving[k]).norm());
+                let off = |k: usize| {
+                    (bar.fixed[k] - fixed[k])
+                        .norm()
+                        .max((places[k] - moving[k]).norm())
+                };
                 Some(off(0).max(off(1)))
             }
             _ => None,
@@ -27,7 +31,9 @@ fn nearest(found: &[PathLinkage], fixed: [C; 2], moving: [C; 2]) -> f64 {
 /// Lengths are kept and the origin is at the points, in every pose.
 fn holds(found: &[PathLinkage], points: &[C], tolerance: f64) {
     for f in found {
-        let Linkage::FourBar(bar) = f.linkage else { continue };
+        let Linkage::FourBar(bar) = f.linkage else {
+            continue;
+        };
         let size = 1.0 + bar.lengths[0] + bar.lengths[1];
         for (pose, point) in f.poses.iter().zip(points) {
             assert!((pose.origin - *point).norm() < 1e-12 * size);
@@ -42,8 +48,14 @@ fn holds(found: &[PathLinkage], points: &[C], tolerance: f64) {
 #[test]
 fn five_points_in_line_with_ground_pivots() {
     // Morgan and Wampler's problem 7.
-    let points = [(0.50, 1.06), (-0.83, -0.27), (-0.34, 0.22), (-0.13, 0.43), (0.22, 0.78)]
-        .map(|(x, y)| C::new(x, y));
+    let points = [
+        (0.50, 1.06),
+        (-0.83, -0.27),
+        (-0.34, 0.22),
+        (-0.13, 0.43),
+        (0.22, 0.78),
+    ]
+    .map(|(x, y)| C::new(x, y));
     let known = [
         [1.4739209688, -1.7112847482, -0.6546798465, 0.0289071669],
         [-11.0926159017, 0.4508639353, -0.3962073023, -1.0417282129],
@@ -63,7 +75,10 @@ fn five_points_in_line_with_ground_pivots() {
     ];
     let pivots = [C::zero(), C::one()];
     let found = paths_with_ground_pivots(&points, pivots, None).unwrap();
-    println!("{} {} {} {}", found.generic, found.finite, found.infinite, found.lost);
+    println!(
+        "{} {} {} {}",
+        found.generic, found.finite, found.infinite, found.lost
+    );
     // Three of the 36 go to infinity, like cube roots: a coupler on endless links that slides along the line without turning. (Counts of 36
     // finite solutions take them for finite; 33 is also what a program with an endgame reports.)
     assert_eq!((found.generic, found.finite, found.infinite), (36, 33, 3));
@@ -76,12 +91,23 @@ fn five_points_in_line_with_ground_pivots() {
     }
     // The published one with its turns.
     let published = (found.linkages.iter())
-        .find(|f| nearest(std::slice::from_ref(f), pivots, [
-            C::new(-0.0877960434509, -0.851386907516) + points[0],
-            C::new(0.235837391307, -1.41899202704) + points[0],
-        ]) < 1e-11)
+        .find(|f| {
+            nearest(
+                std::slice::from_ref(f),
+                pivots,
+                [
+                    C::new(-0.0877960434509, -0.851386907516) + points[0],
+                    C::new(0.235837391307, -1.41899202704) + points[0],
+                ],
+            ) < 1e-11
+        })
         .unwrap();
-    for (pose, turn) in published.poses[1..].iter().zip([1.44734213756, 0.928413708131, 0.751699211109, 0.387116282208]) {
+    for (pose, turn) in published.poses[1..].iter().zip([
+        1.44734213756,
+        0.928413708131,
+        0.751699211109,
+        0.387116282208,
+    ]) {
         assert!((pose.angle - turn).abs() < 1e-11);
     }
     // In other units, turned and moved.
@@ -97,7 +123,9 @@ fn random_four_bars_are_among_those_with_their_ground_pivots() {
     let count = if cfg!(debug_assertions) { 40 } else { 300 };
     while cases < count {
         let bar = RandomFourBar::new(&mut random);
-        let Some((poses, _)) = bar.poses(&mut random, 5, 0.3) else { continue };
+        let Some((poses, _)) = bar.poses(&mut random, 5, 0.3) else {
+            continue;
+        };
         cases += 1;
         let points: Vec<C> = poses.iter().map(|p| p.origin).collect();
         let moving = bar.moving.map(|m| poses[0].place(m));
@@ -123,13 +151,17 @@ fn random_four_bars_are_among_those_with_their_timing() {
     let (mut cases, mut missed) = (0, [0; 3]);
     while cases < 10_000 {
         let bar = RandomFourBar::new(&mut random);
-        let Some((poses, angles)) = bar.poses(&mut random, 5, 0.2) else { continue };
+        let Some((poses, angles)) = bar.poses(&mut random, 5, 0.2) else {
+            continue;
+        };
         cases += 1;
         let points: Vec<C> = poses.iter().map(|p| p.origin).collect();
         let zero = between(&mut random, -3.0, 3.0);
         let turns: Vec<f64> = angles.iter().map(|a| a - zero).collect();
         let moving = bar.moving.map(|m| poses[0].place(m));
-        let on = [0, 1].map(|k| DyadCondition::FixedOn(Line::at_angle(bar.fixed[k], between(&mut random, 0.0, 3.0))));
+        let on = [0, 1].map(|k| {
+            DyadCondition::FixedOn(Line::at_angle(bar.fixed[k], between(&mut random, 0.0, 3.0)))
+        });
         let at = bar.fixed.map(DyadCondition::FixedAt);
         let asked = [
             (5, vec![], vec![]),
@@ -155,11 +187,14 @@ fn random_four_bars_are_among_those_with_their_crank() {
     let (mut cases, mut missed) = (0, [0; 3]);
     while cases < 10_000 {
         let bar = RandomFourBar::new(&mut random);
-        let Some((poses, _)) = bar.poses(&mut random, 5, 0.2) else { continue };
+        let Some((poses, _)) = bar.poses(&mut random, 5, 0.2) else {
+            continue;
+        };
         cases += 1;
         let points: Vec<C> = poses.iter().map(|p| p.origin).collect();
         let moving = bar.moving.map(|m| poses[0].place(m));
-        let on = DyadCondition::FixedOn(Line::at_angle(bar.fixed[1], between(&mut random, 0.0, 3.0)));
+        let on =
+            DyadCondition::FixedOn(Line::at_angle(bar.fixed[1], between(&mut random, 0.0, 3.0)));
         let asked = [
             (5, vec![]),
             (4, vec![on]),
@@ -169,12 +204,16 @@ fn random_four_bars_are_among_those_with_their_crank() {
             if k == 0 && cases % 10 > 0 {
                 continue;
             }
-            let found = paths_with_crank(&points[..*count], bar.fixed[0], moving[0], other).unwrap();
+            let found =
+                paths_with_crank(&points[..*count], bar.fixed[0], moving[0], other).unwrap();
             missed[k] += usize::from(nearest(&found, bar.fixed, moving) > 1e-5);
         }
     }
     println!("{missed:?}");
-    assert!(missed[0] <= 1 && missed.iter().all(|m| *m <= 10), "{missed:?}");
+    assert!(
+        missed[0] <= 1 && missed.iter().all(|m| *m <= 10),
+        "{missed:?}"
+    );
 }
 
 #[test]
@@ -183,9 +222,15 @@ fn cognates_trace_one_curve_and_the_third_of_the_third_is_the_first() {
     let mut cases = 0;
     while cases < 500 {
         let bar = RandomFourBar::new(&mut random);
-        let Some((poses, _)) = bar.poses(&mut random, 6, 0.05) else { continue };
+        let Some((poses, _)) = bar.poses(&mut random, 6, 0.05) else {
+            continue;
+        };
         cases += 1;
-        let four_bar = FourBar { fixed: bar.fixed, moving: bar.moving, lengths: bar.lengths };
+        let four_bar = FourBar {
+            fixed: bar.fixed,
+            moving: bar.moving,
+            lengths: bar.lengths,
+        };
         let point = place(&mut random, 2.0);
         let at = |k: usize| CouplerCurve::of(&four_bar, &poses[k], point);
         let first = at(0);
@@ -216,7 +261,10 @@ fn cognates_trace_one_curve_and_the_third_of_the_third_is_the_first() {
                 }
             }
             // The carried link does not turn, the shared one is rigid, the added one keeps its length.
-            let (six, six_there) = (first.parallel_motion().unwrap(), there.parallel_motion().unwrap());
+            let (six, six_there) = (
+                first.parallel_motion().unwrap(),
+                there.parallel_motion().unwrap(),
+            );
             let still = |s: &kempe_synthesis::ParallelMotion| s.carried[1] - s.carried[0];
             assert!((still(&six) - still(&six_there)).norm() < 1e-10 * size * size);
             assert!((six.carried[0] - first.point).norm() == 0.0);
@@ -227,7 +275,10 @@ fn cognates_trace_one_curve_and_the_third_of_the_third_is_the_first() {
             assert!(shape.norm() < 1e-9 * size * size, "{shape:?}");
             let link = |s: &kempe_synthesis::ParallelMotion| (s.coupler[1] - s.coupler[0]).norm();
             assert!((link(&six) - link(&six_there)).abs() < 1e-10 * size * size);
-            assert!((six.coupler[1] - six.carried[1]).norm() == 0.0 && (six.coupler[0] - p).norm() == 0.0);
+            assert!(
+                (six.coupler[1] - six.carried[1]).norm() == 0.0
+                    && (six.coupler[0] - p).norm() == 0.0
+            );
         }
     }
 }
@@ -240,22 +291,34 @@ fn special_data_are_told() {
         .collect();
     assert_eq!(
         timed_paths(&points, &[0.0, 1.0], &[], &[]),
-        Err(SynthesisError::Lengths { first: 5, second: 2 })
+        Err(SynthesisError::Lengths {
+            first: 5,
+            second: 2
+        })
     );
     let mut repeated = points.clone();
     repeated[3] = repeated[1];
     let pivots = [C::new(0.0, 1.0), C::new(2.0, 1.0)];
     assert_eq!(
         paths_with_ground_pivots(&repeated, pivots, None),
-        Err(SynthesisError::Repeated { first: 1, second: 3 })
+        Err(SynthesisError::Repeated {
+            first: 1,
+            second: 3
+        })
     );
     assert_eq!(
         paths_with_ground_pivots(&points, [pivots[0]; 2], None),
-        Err(SynthesisError::Repeated { first: 5, second: 6 })
+        Err(SynthesisError::Repeated {
+            first: 5,
+            second: 6
+        })
     );
     assert!(matches!(
         paths_with_ground_pivots(&points[..4], pivots, None),
-        Err(SynthesisError::TooFew { equations: 3, unknowns: 4 })
+        Err(SynthesisError::TooFew {
+            equations: 3,
+            unknowns: 4
+        })
     ));
     assert!(matches!(
         paths_with_crank(&points, C::new(0.0, 9.0), C::new(0.0, 8.0), &[]),

@@ -195,7 +195,11 @@ fn generic(places: usize) -> &'static Generic {
                     solutions.push(x);
                 }
             }
-            quiet = if solutions.len() > before { 0 } else { quiet + 1 };
+            quiet = if solutions.len() > before {
+                0
+            } else {
+                quiet + 1
+            };
             if quiet == QUIET_LOOPS {
                 break;
             }
@@ -241,5 +245,8 @@ fn made_up(places: usize, random: &mut Random) -> Option<(Given, State)> {
     let (c, c1) = (random.complex(), random.complex());
     given.line = [c, c1, c * x + c1 * x1];
     let finite = state.iter().chain(&given.d).chain(&given.conjugate);
-    finite.clone().all(|z| z.is_finite()).then_some((given, state))
+    finite
+        .clone()
+        .all(|z| z.is_finite())
+        .then_some((given, state))
 }

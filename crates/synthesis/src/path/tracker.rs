@@ -87,7 +87,9 @@ fn solve(at: &State, given: &Given, rate: &Given) -> Option<[State; 2]> {
             e[0] * a[1] - a[0] * e[1],
             a[0] * b[1] - b[0] * a[1],
         ];
-        let size = factors.iter().fold(0.0, |m: f64, f| m.max(f.re.abs() + f.im.abs()));
+        let size = factors
+            .iter()
+            .fold(0.0, |m: f64, f| m.max(f.re.abs() + f.im.abs()));
         let scale = 1.0 / size;
         for k in 0..6 {
             let column = k + 2;
@@ -127,7 +129,11 @@ fn solve(at: &State, given: &Given, rate: &Given) -> Option<[State; 2]> {
             found[5 + 2 * j] = (p[0] * g - q[0] * f) * inverse;
         }
     }
-    found.iter().flatten().all(|x| x.is_finite()).then_some(found)
+    found
+        .iter()
+        .flatten()
+        .all(|x| x.is_finite())
+        .then_some(found)
 }
 
 /// How carefully a path is followed: the first correction after a step, beside the unknowns' size, that is aimed at and that is too much.
@@ -197,7 +203,8 @@ pub(super) fn follow(start: &State, from: &Given, to: &Given, care: Care) -> End
             several => Some(hermite(several, next_t)),
         };
         let given = from.towards(to, next_t);
-        let corrected = predicted.and_then(|guess| correct(guess, &given, &rate, care, next_t == 1.0));
+        let corrected =
+            predicted.and_then(|guess| correct(guess, &given, &rate, care, next_t == 1.0));
         match corrected {
             Some((there, first, slope)) => {
                 // The predictor's error goes with the power of the step that the places passed give.
@@ -272,7 +279,8 @@ fn correct(
             return Some((x, first, tangent));
         }
     }
-    (is_end && last < 1e-9).then(|| solve(&x, given, rate).map(|[_, tangent]| (x, first, tangent)))?
+    (is_end && last < 1e-9)
+        .then(|| solve(&x, given, rate).map(|[_, tangent]| (x, first, tangent)))?
 }
 
 /// x - slope * step and so on: slopes are taken off.
