@@ -97,6 +97,8 @@ pub struct CurvePiece {
 
 /// Parts into which a loop is cut before it is looked where it bends.
 const PARTS: usize = 24;
+/// Equations of a point of the curve agree to this part of their terms.
+const TOLD: f64 = 1e-7;
 /// Halvings of such a part at most.
 const HALVINGS: u32 = 10;
 /// Halvings towards the place where the curve leaves the picture.
@@ -113,6 +115,7 @@ impl BurmesterCurve {
     /// Poses that are not finite, repeated, without turns or about one point, or that leave more than a curve.
     pub fn new(poses: &[Pose; 4]) -> Result<Self, SynthesisError> {
         let displacements = Displacements::new(poses)?;
+        displacements.must_turn()?;
         let found: Vec<Row> = displacements.rows().collect();
         let dependent =
             |DependentRow(row): DependentRow| SynthesisError::Dependent { datum: row + 1 };
@@ -160,11 +163,13 @@ impl BurmesterCurve {
         self.loops.len()
     }
 
-    /// The dyad at a parameter, from 0 to a whole turn, of a loop; `None` where a pivot lies at infinity, or there is no such loop.
+    /// The dyad at a parameter, from 0 to a whole turn, of a loop; `None` where a pivot lies at infinity, where the curve
+    /// crosses itself so that a fixed pivot has many moving ones, or where there is no such loop.
     pub fn dyad(&self, of_loop: usize, parameter: f64) -> Option<Dyad> {
         let point = self.at(self.loops.get(of_loop)?, parameter);
         let (fixed, moving) = self.point(&point);
-        (fixed.is_finite() && moving.is_finite()).then(|| Dyad::rr(fixed, moving, &self.first))
+        let is_there = point.is_told && fixed.is_finite() && moving.is_finite();
+        is_there.then(|| Dyad::rr(fixed, moving, &self.first))
     }
 
     /// The whole curve as it is to be drawn.
@@ -308,10 +313,15 @@ impl BurmesterCurve {
             }
         }
         let [w, x, y] = best;
-        let w = 1.0 / w;
+        let z = C::new(x / w, y / w);
+        // Where the curve crosses itself the moving pivot is what rounding makes it.
+        let left = rows.iter().fold(0.0, |m: f64, row| {
+            math::max(m, (row[0] + row[1] * z.re + row[2] * z.im).abs())
+        });
         Homogeneous {
             fixed: g,
-            moving: C::new(x * w, y * w),
+            moving: z,
+            is_told: left <= TOLD * (1.0 + g.norm()) * (1.0 + z.norm()),
         }
     }
 
@@ -328,6 +338,8 @@ impl BurmesterCurve {
 struct Homogeneous {
     fixed: C,
     moving: C,
+    /// Whether the three equations agree on the moving pivot.
+    is_told: bool,
 }
 
 /// Draws one loop.
@@ -352,7 +364,7 @@ impl<F: Fn(C, C) -> bool> Pen<'_, F> {
     fn look(&self, parameter: f64) -> Seen {
         let at = self.curve.at(self.part, parameter);
         let near = |p: C| p.norm_sqr() <= self.drawing.reach * self.drawing.reach;
-        let mut inside = near(at.fixed) && near(at.moving);
+        let mut inside = at.is_told && near(at.fixed) && near(at.moving);
         if inside {
             let (fixed, moving) = self.curve.point(&at);
             inside = (self.wanted)(fixed, moving);

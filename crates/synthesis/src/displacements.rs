@@ -12,6 +12,11 @@ use crate::pose::{Pose, dot, turn_less_one};
 /// Turns and shifts below this are none: two poses are one, a set of poses is turned about one point or not at all.
 const NONE: f64 = 1e-11;
 
+/// The body's origin is far from what moves where shifts about the point moved least are this part of its own.
+const FAR_OFF: f64 = 0.5;
+/// Largest unit of length, beside the shifts.
+const MOST_SCALE: f64 = 1e4;
+
 /// A displacement z -> shift + turn z of points of the body, given by their places in the first pose.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Displacement {
@@ -29,7 +34,10 @@ pub(crate) struct Displacements {
     centre: C,
     /// Their unit.
     pub(crate) scale: f64,
+    /// The shifts' size, in the unit of the poses.
+    pub(crate) size: f64,
     pub(crate) all: Vec<Displacement>,
+    does_turn: bool,
 }
 
 /// One of the seven products that all conditions on a pair of pivots are linear in: 1, the moving pivot's place in the first pose z, the
@@ -38,7 +46,7 @@ pub(crate) type Row = [f64; 7];
 
 impl Displacements {
     /// # Errors
-    /// A pose that is not finite or repeats another, or poses that do not turn, or only about one point.
+    /// A pose that is not finite or repeats another, or poses that are turns about one point.
     pub(crate) fn new(poses: &[Pose]) -> Result<Self, SynthesisError> {
         all_finite(poses.iter().map(Pose::is_finite))?;
         let Some((first, later)) = poses.split_first() else {
@@ -61,48 +69,68 @@ impl Displacements {
         let sum = |f: &dyn Fn(&Displacement) -> f64| all.iter().map(f).sum::<f64>();
         let turns = sum(&|d| d.turn_less_one.norm_sqr());
         let shifts = sum(&|d| d.shift.norm_sqr());
-        if !all.is_empty() && turns.sqrt() <= NONE {
-            repeated(&all, shifts.sqrt(), 1.0)?;
-            return Err(SynthesisError::Translations);
-        }
+        let does_turn = turns.sqrt() > NONE;
         let mut centre = C::zero();
-        let mut scale = (shifts / turns).sqrt();
-        if all.len() > 1 {
-            // The point moved least; once more, because far away the first answer is rounded.
+        let mut size = shifts.sqrt();
+        if does_turn && all.len() > 1 {
+            // About the point moved least; once more, because far away the first answer is rounded.
+            let mut about = all.clone();
             for _ in 0..2 {
                 let mut least = C::zero();
-                for d in &all {
+                for d in &about {
                     least -= d.turn_less_one.conj() * d.shift;
                 }
                 let least = least.scale(1.0 / turns);
-                for d in &mut all {
+                for d in &mut about {
                     d.shift += d.turn_less_one * least;
                 }
                 centre += least;
             }
-            let far = scale;
-            let left = all.iter().map(|d| d.shift.norm_sqr()).sum::<f64>();
-            scale = (left / turns).sqrt();
-            if !(scale > NONE * far) {
+            let left = about.iter().map(|d| d.shift.norm_sqr()).sum::<f64>().sqrt();
+            if !(left > NONE * size) {
                 repeated(&all, 0.0, turns.sqrt())?;
                 return Err(SynthesisError::OnePole {
                     pole: first.origin + centre,
                 });
             }
-        } else if scale == 0.0 {
+            if left < FAR_OFF * size {
+                (all, size) = (about, left);
+            } else {
+                centre = C::zero();
+            }
+        }
+        // Poses turned by little have their poles far away; where they are hardly turned these are no measure.
+        let mut scale = size;
+        if does_turn {
+            scale *= math::min(1.0 / turns.sqrt(), MOST_SCALE);
+        }
+        if !(scale > 0.0) {
             // A turn about the body's origin has no length of its own.
             scale = 1.0;
         }
         for d in &mut all {
             d.shift = d.shift.scale(1.0 / scale);
         }
-        repeated(&all, turns.sqrt(), turns.sqrt())?;
+        let turn = if does_turn { turns.sqrt() } else { 1.0 };
+        repeated(&all, size / scale, turn)?;
         Ok(Self {
+            does_turn,
             first: *first,
             centre: first.origin + centre,
             scale,
+            size: if size > 0.0 { size } else { scale },
             all,
         })
+    }
+
+    /// # Errors
+    /// Poses that only shift the body.
+    pub(crate) fn must_turn(&self) -> Result<(), SynthesisError> {
+        if self.does_turn {
+            Ok(())
+        } else {
+            Err(SynthesisError::Translations)
+        }
     }
 
     /// A place in these coordinates.

@@ -60,6 +60,15 @@ impl Dyad {
         }
     }
 
+    /// How far its pivots lie from the origins of their planes.
+    pub(crate) fn reach(&self) -> f64 {
+        match *self {
+            Self::Rr { fixed, moving, .. } => fixed.norm() + moving.norm(),
+            Self::Pr { guide, moving } => guide.point.norm() + moving.norm(),
+            Self::Rp { fixed, guide } => fixed.norm() + guide.point.norm(),
+        }
+    }
+
     /// The same dyad of the inverted motion, in which the body is fixed and the frame moves.
     pub fn inverse(&self) -> Self {
         match *self {

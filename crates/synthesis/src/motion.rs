@@ -85,8 +85,8 @@ const UNKNOWNS: usize = 4;
 /// meaning. About 10 us for five poses.
 ///
 /// # Errors
-/// Poses that are too few or too many for the conditions, not finite, repeated, without turns or with turns about one point; data that
-/// leave a dyad free. Data are counted with the poses first. Poses that no real dyad keeps give an empty list.
+/// Poses that are too few or too many for the conditions, not finite, repeated, with turns about one point or (without a given pivot) none;
+/// data that leave a dyad free. Data are counted with the poses first. Poses that no real dyad keeps give an empty list.
 ///
 /// # Example
 /// ```
@@ -137,6 +137,10 @@ pub fn dyads(
     }
 }
 
+/// A dyad that misses a pose by more than this part of the body's shifts, and this of how far its pivots lie, does not keep it: pivots so
+/// far away solve the equations but for rounding.
+const KEEPS: f64 = 1e-8;
+const ROUNDED: f64 = 1e-13;
 /// A pivot lies in a pole where what its place leaves of a row is this part of it.
 const IN_POLE: f64 = 1e-12;
 
@@ -200,6 +204,7 @@ impl<'a> Problem<'a> {
     }
 
     fn general(&self) -> Result<Vec<DyadSolution>, SynthesisError> {
+        self.displacements.must_turn()?;
         let found = plane_dyads(&self.displacements, self.poses, &self.rows)
             .map_err(|row| self.dependent(row))?;
         let Some(found) = found else {
@@ -214,7 +219,10 @@ impl<'a> Problem<'a> {
         let scale = self.displacements.scale;
         let kept = (found.into_iter().flatten())
             .filter(|dyad| self.conditions.iter().all(|c| c.is_kept(dyad, scale)));
-        gathered(kept, self.poses, scale)
+        let mut found = gathered(kept, self.poses, scale);
+        let most = KEEPS * self.displacements.size;
+        found.retain(|d| d.residual <= most + ROUNDED * d.dyad.reach());
+        found
     }
 }
 

@@ -72,6 +72,7 @@ pub fn fixed_guides(
         ));
     }
     let displacements = Displacements::new(poses)?;
+    displacements.must_turn()?;
     let mut rows: Vec<[f64; 4]> = (displacements.all.iter())
         .map(|d| {
             let t = d.turn_less_one;

@@ -447,7 +447,7 @@ fn special_poses_are_told() {
         dyads(&poses[..3], &[in_pole]),
         Err(SynthesisError::Dependent { .. })
     ));
-    // A parallelogram carries its coupler along: every point of it moves on a circle of one size, any pose.
+    // A parallelogram carries its coupler along without turning it: any of its like does. Given a pivot there is one.
     let parallel: Vec<Pose> = (0..5)
         .map(|k| Pose {
             origin: C::from_polar(1.0, 0.4 * k as f64),
@@ -455,6 +455,21 @@ fn special_poses_are_told() {
         })
         .collect();
     assert_eq!(dyads(&parallel, &[]), Err(SynthesisError::Translations));
+    let pivot = C::new(2.0, 3.0);
+    let found = rr(&dyads(&parallel[..3], &[DyadCondition::FixedAt(pivot)]).unwrap());
+    assert!((found[0].2 - 1.0).abs() < 1e-13);
+    assert!((parallel[0].place(found[0].1) - pivot - parallel[0].origin).norm() < 1e-13);
+    let back = rr(&dyads(&parallel[..3], &[DyadCondition::MovingAt(found[0].1)]).unwrap());
+    assert!((back[0].0 - pivot).norm() < 1e-13);
+    // Shifts along a line: no circle.
+    let along = [0.0, 1.0, 3.0].map(|x| Pose::new(x, 0.0, 0.2));
+    let found = dyads(&along, &[DyadCondition::FixedAt(pivot)]);
+    assert!(
+        found
+            .as_ref()
+            .is_ok_and(|f| f.iter().all(|d| !matches!(d.dyad, Dyad::Rr { .. }))),
+        "{found:?}"
+    );
 }
 
 /// Poses for which a dyad is a double one: the turn of its link in the last is where the equations' derivative is singular.

@@ -2,7 +2,7 @@
 
 use kempe_linear::{C, Qr, independent_least_squares};
 
-use super::{DialZeros, FunctionFourBar, PrecisionPoint, SAME_ANGLE, distinct, functions, rows_of};
+use super::{DialZeros, FunctionFourBar, PrecisionPoint, SAME_ANGLE, distinct, functions};
 use crate::error::{SynthesisError, all_finite};
 use crate::marquardt::{Model, smallest};
 
@@ -101,16 +101,12 @@ pub fn fit_function(
     let pairs: Vec<[f64; 2]> = points.iter().map(|p| [p.input, p.output]).collect();
     distinct(&pairs, |_| SAME_ANGLE, true)?;
     let mut starts = Vec::new();
-    for shift in 0..SPREADS {
+    for shift in SHIFTS {
         let chosen: Vec<PrecisionPoint> = (0..exact)
             .map(|k| {
-                // Spread as Chebyshev's points, and drawn in from both ends by turns.
-                let part = (k as f64 + 0.5 * (1.0 + SHIFTS[shift])) / exact as f64;
-                let at = (part * points.len() as f64) as usize;
-                PrecisionPoint::new(
-                    points[at.min(points.len() - 1)].input,
-                    points[at.min(points.len() - 1)].output,
-                )
+                let part = (k as f64 + 0.5 + shift) / exact as f64;
+                let at = ((part * points.len() as f64) as usize).min(points.len() - 1);
+                PrecisionPoint::new(points[at].input, points[at].output)
             })
             .collect();
         if let Ok(found) = functions(&chosen, zeros) {
@@ -156,9 +152,8 @@ pub fn fit_function(
     Ok(fits)
 }
 
-/// Choices of pairs to start from, and how they are shifted, in parts of half their distance.
-const SPREADS: usize = 3;
-const SHIFTS: [f64; SPREADS] = [0.0, 0.6, -0.6];
+/// Choices of pairs to start from: evenly spread over the list, and shifted by this part of their distance.
+const SHIFTS: [f64; 3] = [0.0, 0.3, -0.3];
 /// Links nearer than this part of their size are those of one minimum.
 const SAME_FIT: f64 = 1e-5;
 
@@ -242,18 +237,5 @@ impl Model for Errors<'_> {
             }
         }
         true
-    }
-}
-
-/// What is left of Freudenstein's equation, halved, at a pair: for those who want it beside the angle's error.
-impl FunctionFourBar {
-    /// K + Re(v q) - Re(u e) - Re(u conj(v) e / q) at a pair of angles: half of how much the square of the coupler's length is missed by.
-    pub fn equation_error(&self, point: &PrecisionPoint) -> f64 {
-        let (u, v) = (self.input, self.output);
-        let k = 0.5 * (1.0 + u.norm_sqr() + v.norm_sqr() - self.coupler * self.coupler);
-        let p = u * v.conj();
-        let all = [k, v.re, v.im, u.re, u.im, p.re, p.im];
-        let row = rows_of(&PrecisionPoint::new(point.input, point.output))[0];
-        row.iter().zip(&all).map(|(a, b)| a * b).sum()
     }
 }
