@@ -17,6 +17,9 @@ const STEPS: usize = 2880;
 
 /// A driven linkage by brute force: whether it closes at an angle, and its poses on both branches.
 trait Turned {
+    fn driver(&self) -> Driver {
+        Driver::First
+    }
     fn poses(&self, angle: f64) -> Option<[Pose; 2]>;
     fn linkage(&self) -> Linkage;
 }
@@ -99,6 +102,61 @@ impl Turned for InvertedSliderCrank {
     }
 }
 
+/// The same linkages driven at the slider: by an "angle" that stands for its place, and at the guide.
+struct AtSlider(SliderCrank);
+
+impl Turned for AtSlider {
+    fn driver(&self) -> Driver {
+        Driver::Second
+    }
+    fn poses(&self, angle: f64) -> Option<[Pose; 2]> {
+        let s = &self.0;
+        let [a, b, _] = s.dimensions();
+        let reach = 1.1 * (a + b);
+        // Half a turn of steps lies beyond all reach, so that runs end.
+        let along = reach * (2.0 * angle / std::f64::consts::PI - 1.0);
+        let foot = s.fixed - C::i() * s.guide.direction * s.guide.distance(s.fixed);
+        let slider = foot + s.guide.direction * along;
+        let meet = circles(s.fixed, a, slider, b)?;
+        Some(meet.map(|end| carried(s.moving, [end, slider])))
+    }
+    fn linkage(&self) -> Linkage {
+        Linkage::SliderCrank(self.0)
+    }
+}
+
+struct AtGuide(InvertedSliderCrank);
+
+impl Turned for AtGuide {
+    fn driver(&self) -> Driver {
+        Driver::Second
+    }
+    fn poses(&self, angle: f64) -> Option<[Pose; 2]> {
+        let s = &self.0;
+        let u = C::from_polar(1.0, angle);
+        // The crank's end stays this far beside the guide's parallel through the pivot: on a line across the crank's circle.
+        let beside = s.guide.distance(s.moving);
+        let middle = s.fixed[1] + C::i() * u * beside;
+        let to = s.fixed[0] - middle;
+        let along = u.re * to.re + u.im * to.im;
+        let off = to.norm() * to.norm() - along * along;
+        let square = s.crank * s.crank - off;
+        (square >= 0.0).then(|| {
+            [1.0, -1.0].map(|side| {
+                let end = middle + u * (along + side * square.sqrt());
+                let turn = u * s.guide.direction.conj();
+                Pose {
+                    origin: end - turn * s.moving,
+                    angle: turn.arg(),
+                }
+            })
+        })
+    }
+    fn linkage(&self) -> Linkage {
+        Linkage::InvertedSliderCrank(self.0)
+    }
+}
+
 /// Where the runs of steps that close begin and how long they are; one of all steps where all close.
 fn runs(closes: &[bool]) -> Vec<(usize, usize)> {
     if closes.iter().all(|c| *c) {
@@ -163,7 +221,7 @@ fn check(turned: &dyn Turned, random: &mut Random) -> bool {
         return false;
     }
     let poses: Vec<Pose> = stations.iter().map(|s| s.4).collect();
-    let known = passage(&turned.linkage(), &poses, Driver::First).unwrap();
+    let known = passage(&turned.linkage(), &poses, turned.driver()).unwrap();
     let one_circuit = stations.iter().all(|s| s.0 == stations[0].0);
     assert_eq!(known.one_circuit, one_circuit, "circuit");
     let one_branch = stations.iter().all(|s| s.2 == stations[0].2);
@@ -190,7 +248,7 @@ fn check(turned: &dyn Turned, random: &mut Random) -> bool {
 #[test]
 fn passages_agree_with_linkages_turned_step_by_step() {
     let mut random = Random(41);
-    let mut seen = [0; 3];
+    let mut seen = [0; 5];
     while seen.iter().any(|n| *n < 700) {
         let bar = RandomFourBar::new(&mut random);
         let four_bar = FourBar {
@@ -211,7 +269,8 @@ fn passages_agree_with_linkages_turned_step_by_step() {
             moving: bar.moving[0],
             guide,
         };
-        let kinds: [&dyn Turned; 3] = [&four_bar, &slider, &inverted];
+        let (at_slider, at_guide) = (AtSlider(slider), AtGuide(inverted));
+        let kinds: [&dyn Turned; 5] = [&four_bar, &slider, &inverted, &at_slider, &at_guide];
         for (kind, count) in kinds.iter().zip(&mut seen) {
             *count += usize::from(check(*kind, &mut random));
         }
@@ -314,7 +373,7 @@ fn the_linkage_whose_poses_are_given_is_a_clean_pair() {
                     return false;
                 };
                 let known = passage(linkage, &poses, driver).unwrap();
-                let swept = known.driver_angles[4] - known.driver_angles[0];
+                let swept = known.driver[4] - known.driver[0];
                 known.is_clean() && known.crank && (swept.abs() - 3.6).abs() < 1e-7
             }
             _ => false,

@@ -88,7 +88,7 @@ fn special_poses() {
                         for driver in [Driver::First, Driver::Second] {
                             let known = passage(&linkage, &poses[..*count], driver);
                             if let Some(known) = known {
-                                assert!(known.driver_angles.iter().all(|a| a.is_finite()));
+                                assert!(known.driver.iter().all(|a| a.is_finite()));
                                 let ranges = known.transmission.unwrap_or_default();
                                 assert!(
                                     ranges.as_flattened().iter().all(|a| a.is_finite()),
