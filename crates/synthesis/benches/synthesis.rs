@@ -9,7 +9,10 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use kempe_number::Random;
-use kempe_synthesis::{BurmesterCurve, CurveDrawing, Pose, dyads};
+use kempe_synthesis::{
+    BurmesterCurve, C, CurveDrawing, DialZeros, Pose, PrecisionPoint, dyads, functions,
+    paths_with_ground_pivots, timed_paths,
+};
 use support::RandomFourBar;
 
 /// Problems of each kind, and repeats of which the fastest counts.
@@ -29,10 +32,14 @@ fn fastest(mut work: impl FnMut()) -> f64 {
 fn main() {
     let mut random = Random(1);
     let mut problems: Vec<Vec<Pose>> = Vec::new();
+    let mut turns: Vec<Vec<f64>> = Vec::new();
+    let mut pivots: Vec<[C; 2]> = Vec::new();
     while problems.len() < PROBLEMS {
         let bar = RandomFourBar::new(&mut random);
-        if let Some((poses, _)) = bar.poses(&mut random, 5, 0.3) {
+        if let Some((poses, angles)) = bar.poses(&mut random, 5, 0.3) {
             problems.push(poses);
+            turns.push(angles);
+            pivots.push(bar.fixed);
         }
     }
     let each = 1e6 / PROBLEMS as f64;
@@ -59,5 +66,40 @@ fn main() {
         "four poses, both curves    {:8.2} us, {} points",
         curves * each,
         points / PROBLEMS
+    );
+
+    let pairs: Vec<Vec<PrecisionPoint>> = (problems.iter().zip(&turns))
+        .map(|(poses, angles)| {
+            (poses.iter().zip(angles))
+                .map(|(pose, angle)| PrecisionPoint::new(*angle, pose.angle))
+                .collect()
+        })
+        .collect();
+    let five = fastest(|| {
+        for pairs in &pairs {
+            black_box(functions(black_box(pairs), DialZeros::default()).ok());
+        }
+    });
+    println!("five pairs, all four-bars  {:8.2} us", five * each);
+
+    let points: Vec<Vec<C>> = (problems.iter())
+        .map(|poses| poses.iter().map(|p| p.origin).collect())
+        .collect();
+    let timed = fastest(|| {
+        for (points, turns) in points.iter().zip(&turns) {
+            black_box(timed_paths(black_box(points), turns, &[], &[]).ok());
+        }
+    });
+    println!("five timed points          {:8.2} us", timed * each);
+
+    let count = 20;
+    let led = fastest(|| {
+        for (points, pivots) in points.iter().zip(&pivots).take(count) {
+            black_box(paths_with_ground_pivots(black_box(points), *pivots, None).ok());
+        }
+    });
+    println!(
+        "five points, both pivots   {:8.2} ms",
+        led * 1e3 / count as f64
     );
 }

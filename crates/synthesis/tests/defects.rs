@@ -382,3 +382,87 @@ fn the_linkage_whose_poses_are_given_is_a_clean_pair() {
         seen += 1;
     }
 }
+
+/// The angle between two vectors, rad, 0 to pi.
+fn angle_of(a: C, b: C) -> f64 {
+    math::acos(((a.re * b.re + a.im * b.im) / (a.norm() * b.norm())).clamp(-1.0, 1.0))
+}
+
+#[test]
+fn transmission_angles_of_sliders_are_those_seen_in_their_poses() {
+    let mut random = Random(45);
+    let mut seen = 0;
+    while seen < 500 {
+        let bar = RandomFourBar::new(&mut random);
+        let guide = Line::at_angle(place(&mut random, 2.0), between(&mut random, -3.0, 3.0));
+        let slider = SliderCrank {
+            fixed: bar.fixed[0],
+            crank: bar.lengths[0],
+            moving: bar.moving,
+            guide,
+        };
+        let inverted = InvertedSliderCrank {
+            fixed: bar.fixed,
+            crank: bar.lengths[0],
+            moving: bar.moving[0],
+            guide,
+        };
+        let angle = between(&mut random, -3.0, 3.0);
+        let (Some(at_crank), Some(at_slider), Some(at_guide)) = (
+            slider.poses(angle),
+            AtSlider(slider).poses(angle.abs()),
+            AtGuide(inverted).poses(angle),
+        ) else {
+            continue;
+        };
+        seen += 1;
+        let normal = C::i() * guide.direction;
+        for pose in at_crank.iter().chain(&at_slider) {
+            let [a, b] = slider.moving.map(|m| pose.place(m));
+            let angle = slider.crank_angle(pose);
+            assert!((slider.transmission_angle(angle) - angle_of(b - a, normal)).abs() < 1e-7);
+            let place = slider.slider_place(pose);
+            let known = angle_of(b - a, slider.fixed - a);
+            assert!((slider.slider_transmission_angle(place) - known).abs() < 1e-7);
+            // Within the travel, whose ends are where crank and coupler are in line.
+            let [middle, half] = slider.travel(place);
+            assert!((place - middle).abs() <= half + 1e-9);
+        }
+        for pose in &at_guide {
+            let crank = pose.place(inverted.moving) - inverted.fixed[0];
+            let normal = C::i() * pose.turn() * inverted.guide.direction;
+            let angle = inverted.guide_angle(pose);
+            let known = angle_of(crank, normal);
+            let told = inverted.guide_transmission_angle(angle);
+            assert!((told - known).abs() < 1e-7 || (told - (PI - known)).abs() < 1e-7);
+        }
+        let (from, by) = (
+            between(&mut random, -3.0, 3.0),
+            between(&mut random, -3.0, 3.0),
+        );
+        type Angle<'a> = &'a dyn Fn(f64) -> f64;
+        let kinds: [(Angle, [f64; 2]); 3] = [
+            (
+                &|x| slider.transmission_angle(x),
+                slider.transmission_range(from, by),
+            ),
+            (
+                &|x| slider.slider_transmission_angle(x),
+                slider.slider_transmission_range(from, by),
+            ),
+            (
+                &|x| inverted.guide_transmission_angle(x),
+                inverted.guide_transmission_range(from, by),
+            ),
+        ];
+        for (angle, [low, high]) in kinds {
+            let samples = (0..=2000).map(|k| angle(from + by * f64::from(k) / 2000.0));
+            let (least, most) = samples.fold((PI, 0.0_f64), |(l, m), x| (l.min(x), m.max(x)));
+            assert!(low <= least + 1e-12 && high >= most - 1e-12);
+            assert!(
+                least - low < 2e-2 && high - most < 2e-2,
+                "{least} {low} {high} {most}"
+            );
+        }
+    }
+}

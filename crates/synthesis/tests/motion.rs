@@ -387,6 +387,84 @@ fn other_units_places_and_directions_change_nothing() {
 }
 
 #[test]
+fn five_poses_of_a_guide_on_the_body() {
+    let mut random = Random(12);
+    for _ in 0..2000 {
+        let pivot = place(&mut random, 2.0);
+        let guide = Line::at_angle(place(&mut random, 2.0), between(&mut random, -3.0, 3.0));
+        // The guide's point at the pivot is another in every pose.
+        let poses: Vec<Pose> = (0..5)
+            .map(|_| {
+                let angle = between(&mut random, -3.0, 3.0);
+                let on = guide.point + guide.direction.scale(between(&mut random, -3.0, 3.0));
+                Pose {
+                    origin: pivot - C::from_polar(1.0, angle) * on,
+                    angle,
+                }
+            })
+            .collect();
+        let hit = |found: &[kempe_synthesis::DyadSolution]| {
+            found.iter().any(|d| match d.dyad {
+                Dyad::Rp { fixed, guide: g } => {
+                    (fixed - pivot).norm() < 1e-6 && g.distance(guide.point).abs() < 1e-6
+                }
+                _ => false,
+            })
+        };
+        assert!(hit(&dyads(&poses, &[]).unwrap()));
+        // Given the pivot and three poses: also the guide, since no circle does it.
+        assert!(hit(
+            &dyads(&poses[..3], &[DyadCondition::FixedAt(pivot)]).unwrap()
+        ));
+    }
+}
+
+#[test]
+fn small_displacements_and_far_origins_keep_their_dyads() {
+    let mut random = Random(13);
+    let (mut cases, mut worst, mut missed) = (0, [0.0_f64; 2], 0);
+    while cases < 1000 {
+        let bar = RandomFourBar::new(&mut random);
+        let start = between(&mut random, -3.0, 3.0);
+        // Five poses within a hundredth of a turn: pivots are known to what is left of the digits.
+        let angles = [0.0, 0.02, 0.035, 0.05, 0.06].map(|a| start + a);
+        let poses: Vec<Pose> = angles.iter().filter_map(|a| bar.pose(*a)).collect();
+        if poses.len() < 5 {
+            continue;
+        }
+        cases += 1;
+        let Ok(found) = dyads(&poses, &[]) else {
+            continue;
+        };
+        for k in 0..2 {
+            let near = nearest(&found, bar.fixed[k], bar.moving[k]);
+            if near < 0.01 {
+                worst[0] = worst[0].max(near);
+            } else {
+                missed += 1;
+            }
+        }
+        // The body's origin a thousand lengths away.
+        let Some((poses, _)) = bar.poses(&mut random, 5, 0.3) else {
+            continue;
+        };
+        let away = C::new(1200.0, -700.0);
+        let far: Vec<Pose> = (poses.iter())
+            .map(|p| Pose {
+                origin: p.place(away),
+                ..*p
+            })
+            .collect();
+        let found = dyads(&far, &[]).unwrap();
+        for k in 0..2 {
+            worst[1] = worst[1].max(nearest(&found, bar.fixed[k], bar.moving[k] - away));
+        }
+    }
+    println!("{worst:?}, {missed} missed of {}", 2 * cases);
+    assert!(worst[1] < 1e-5 && missed <= 2);
+}
+
+#[test]
 fn special_poses_are_told() {
     let poses = degrees(&[
         (0.0, 0.0, 0.0),
