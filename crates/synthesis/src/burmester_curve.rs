@@ -5,16 +5,24 @@
 //! the ray's angle and a sign tell all points of the curve; where the two become one the curve turns back. These angles are roots of a
 //! quartic, which therefore says how the curve hangs together before any point of it is found.
 
-use std::f64::consts::{PI, TAU};
+mod cubic;
+mod drawing;
+
+pub use drawing::{CurveDrawing, CurvePiece, CurvePoint};
+
+use std::f64::consts::PI;
 
 use kempe_linear::C;
 use kempe_number::math;
 
-use crate::displacements::{Displacements, Row, with_fixed};
+use cubic::Cubic;
+
+use crate::displacements::{Displacements, with_fixed};
 use crate::dyad::Dyad;
 use crate::error::SynthesisError;
 use crate::kernel::{DependentRow, kernel};
-use crate::polynomial::roots;
+use crate::newton::Row;
+use crate::polynomial::{along, roots};
 use crate::pose::{Pose, pole};
 
 /// The dyads with two pins that guide a body through four poses: a curve of fixed pivots and one of moving pivots, point by point.
@@ -41,68 +49,8 @@ enum Loop {
     Between { middle: f64, half: f64 },
 }
 
-/// How a curve is drawn, in units of the problem: the distance that the displacements' shifts are over their turns.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct CurveDrawing {
-    /// Farthest that the curve may lie from a chord of the drawing. 0.01 by default, which one does not see in a picture of `reach`.
-    pub flatness: f64,
-    /// How far pivots may lie from the point that the displacements move least. 10 by default: beyond, links are ten times the
-    /// size of the task.
-    pub reach: f64,
-}
-
-impl Default for CurveDrawing {
-    fn default() -> Self {
-        Self {
-            flatness: 0.01,
-            reach: 10.0,
-        }
-    }
-}
-
-impl CurveDrawing {
-    /// The same with another flatness.
-    pub fn with_flatness(self, flatness: f64) -> Self {
-        Self { flatness, ..self }
-    }
-
-    /// The same with another reach.
-    pub fn with_reach(self, reach: f64) -> Self {
-        Self { reach, ..self }
-    }
-}
-
-/// A dyad on a drawn curve.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CurvePoint {
-    /// Its parameter on the loop, for [`BurmesterCurve::dyad`].
-    pub parameter: f64,
-    /// The fixed pivot.
-    pub fixed: C,
-    /// The moving pivot, as a point of the body.
-    pub moving: C,
-}
-
-/// An unbroken part of the curve.
-#[derive(Clone, Debug, PartialEq)]
-pub struct CurvePiece {
-    /// The loop that it is of.
-    pub of_loop: usize,
-    /// Whether it returns to its first point, which is then not repeated.
-    pub closed: bool,
-    /// Its points in order.
-    pub points: Vec<CurvePoint>,
-}
-
-/// Parts into which a loop is cut before it is looked where it bends.
-const PARTS: usize = 24;
 /// Equations of a point of the curve agree to this part of their terms.
 const TOLD: f64 = 1e-7;
-/// Halvings of such a part at most.
-const HALVINGS: u32 = 10;
-/// Halvings towards the place where the curve leaves the picture.
-const TO_THE_EDGE: u32 = 8;
 /// Rays among which the one with the largest discriminant is looked for.
 const RAYS: usize = 8;
 /// A root this near to the real axis, beside 1, is a real one, double but for rounding.
@@ -183,21 +131,9 @@ impl BurmesterCurve {
         drawing: CurveDrawing,
         wanted: impl Fn(C, C) -> bool,
     ) -> Vec<CurvePiece> {
-        let mut pieces = Vec::new();
-        for (of_loop, part) in self.loops.iter().enumerate() {
-            let mut pen = Pen {
-                curve: self,
-                part,
-                of_loop,
-                drawing,
-                wanted: &wanted,
-                pieces: Vec::new(),
-                down: false,
-            };
-            pen.draw();
-            pieces.append(&mut pen.pieces);
-        }
-        pieces
+        (self.loops.iter().enumerate())
+            .flat_map(|(of_loop, part)| drawing::draw(self, part, of_loop, drawing, &wanted))
+            .collect()
     }
 
     /// b^2 - 4 a e as a quartic in c and s, by the power of s.
@@ -231,24 +167,7 @@ impl BurmesterCurve {
             .map(|k| PI * k as f64 / RAYS as f64)
             .max_by(|p, q| value(*p).abs().total_cmp(&value(*q).abs()))
             .unwrap_or(0.0);
-        let (s0, c0) = math::sin_cos(start);
-        // As a polynomial in t, the ray (c0, s0) t + (-s0, c0): c = c0 t - s0, s = s0 t + c0.
-        let mut in_t = [0.0; 5];
-        for (k, q) in quartic.iter().enumerate() {
-            let mut term = vec![*q];
-            for factor in 0..4 {
-                let [constant, slope] = if factor < k { [c0, s0] } else { [-s0, c0] };
-                let mut next = vec![0.0; term.len() + 1];
-                for (i, x) in term.iter().enumerate() {
-                    next[i] += x * constant;
-                    next[i + 1] += x * slope;
-                }
-                term = next;
-            }
-            for (sum, x) in in_t.iter_mut().zip(&term) {
-                *sum += x;
-            }
-        }
+        let in_t = along(&quartic, math::sin_cos(start));
         let mut turns: Vec<f64> = (roots(&in_t).into_iter())
             .filter(|t| t.im.abs() <= NEARLY_REAL * (1.0 + t.norm()))
             .map(|t| start + math::atan2(1.0, t.re))
@@ -340,204 +259,4 @@ struct Homogeneous {
     moving: C,
     /// Whether the three equations agree on the moving pivot.
     is_told: bool,
-}
-
-/// Draws one loop.
-struct Pen<'a, F> {
-    curve: &'a BurmesterCurve,
-    part: &'a Loop,
-    of_loop: usize,
-    drawing: CurveDrawing,
-    wanted: &'a F,
-    pieces: Vec<CurvePiece>,
-    down: bool,
-}
-
-#[derive(Clone, Copy)]
-struct Seen {
-    parameter: f64,
-    at: Homogeneous,
-    inside: bool,
-}
-
-impl<F: Fn(C, C) -> bool> Pen<'_, F> {
-    fn look(&self, parameter: f64) -> Seen {
-        let at = self.curve.at(self.part, parameter);
-        let near = |p: C| p.norm_sqr() <= self.drawing.reach * self.drawing.reach;
-        let mut inside = at.is_told && near(at.fixed) && near(at.moving);
-        if inside {
-            let (fixed, moving) = self.curve.point(&at);
-            inside = (self.wanted)(fixed, moving);
-        }
-        Seen {
-            parameter,
-            at,
-            inside,
-        }
-    }
-
-    fn draw(&mut self) {
-        let first = self.look(0.0);
-        if first.inside {
-            self.put(&first);
-        }
-        let mut last = first;
-        for k in 1..=PARTS {
-            let mut next = if k < PARTS {
-                self.look(TAU * k as f64 / PARTS as f64)
-            } else {
-                first
-            };
-            next.parameter = TAU * k as f64 / PARTS as f64;
-            self.part(&last, &next, 0);
-            last = next;
-        }
-        let unbroken = self.down;
-        let Some(final_piece) = self.pieces.last_mut() else {
-            return;
-        };
-        // The last piece ends where the first began.
-        if unbroken && first.inside {
-            final_piece.points.pop();
-            if self.pieces.len() == 1 {
-                self.pieces[0].closed = true;
-            } else if let Some(mut end) = self.pieces.pop() {
-                end.points.append(&mut self.pieces[0].points);
-                self.pieces[0].points = end.points;
-            }
-        }
-    }
-
-    fn put(&mut self, seen: &Seen) {
-        let (fixed, moving) = self.curve.point(&seen.at);
-        let point = CurvePoint {
-            parameter: seen.parameter,
-            fixed,
-            moving,
-        };
-        match self.pieces.last_mut().filter(|_| self.down) {
-            Some(piece) => piece.points.push(point),
-            None => self.pieces.push(CurvePiece {
-                of_loop: self.of_loop,
-                closed: false,
-                points: vec![point],
-            }),
-        }
-        self.down = true;
-    }
-
-    /// Draws from one place, which is drawn, to another.
-    fn part(&mut self, from: &Seen, to: &Seen, halvings: u32) {
-        let middle = self.look(0.5 * (from.parameter + to.parameter));
-        let inside = [from, &middle, to].map(|s| s.inside);
-        if inside == [true; 3] {
-            if self.is_flat(from, &middle, to) || halvings >= HALVINGS {
-                // Two points near each other on both sides of infinity are not joined.
-                if halvings >= HALVINGS && !self.is_near(from, to) {
-                    self.down = false;
-                }
-                self.put(to);
-                return;
-            }
-        } else if inside == [false; 3] {
-            return;
-        } else if halvings >= TO_THE_EDGE {
-            if !middle.inside || !to.inside {
-                if middle.inside {
-                    self.put(&middle);
-                }
-                self.down = false;
-            } else if !from.inside {
-                self.put(&middle);
-            }
-            if to.inside {
-                self.put(to);
-            }
-            return;
-        }
-        self.part(from, &middle, halvings + 1);
-        self.part(&middle, to, halvings + 1);
-    }
-
-    fn is_flat(&self, from: &Seen, middle: &Seen, to: &Seen) -> bool {
-        let off = |of: fn(&Homogeneous) -> C| {
-            let (a, m, b) = (of(&from.at), of(&middle.at), of(&to.at));
-            let (chord, side) = (b - a, m - a);
-            let square = chord.norm_sqr();
-            // Beside the chord; where the curve turns back, as far as it goes.
-            let along = (crate::pose::dot(chord, side) / square).clamp(0.0, 1.0);
-            let along = if square > 0.0 { along } else { 0.0 };
-            (side - chord.scale(along)).norm_sqr()
-        };
-        let flatness = self.drawing.flatness * self.drawing.flatness;
-        off(|h| h.fixed) <= flatness && off(|h| h.moving) <= flatness
-    }
-
-    fn is_near(&self, from: &Seen, to: &Seen) -> bool {
-        let apart = |a: C, b: C| (a - b).norm() <= 0.5 * self.drawing.reach;
-        apart(from.at.fixed, to.at.fixed) && apart(from.at.moving, to.at.moving)
-    }
-}
-
-/// A cubic in two variables: coefficients by the powers of x and y.
-struct Cubic([[f64; 4]; 4]);
-
-impl Cubic {
-    /// The determinant of the three rows that a fixed pivot x + i y leaves.
-    fn of(rows: &[Row; 3]) -> Self {
-        // Each row is p + x q + y r.
-        let parts: [[[f64; 3]; 3]; 3] = std::array::from_fn(|k| {
-            let p = with_fixed(&rows[k], C::zero());
-            let along = |g: C| {
-                let there = with_fixed(&rows[k], g);
-                std::array::from_fn(|i| there[i] - p[i])
-            };
-            [p, along(C::one()), along(C::i())]
-        });
-        let mut cubic = [[0.0; 4]; 4];
-        for (i, a) in parts[0].iter().enumerate() {
-            for (j, b) in parts[1].iter().enumerate() {
-                let product = [
-                    a[1] * b[2] - a[2] * b[1],
-                    a[2] * b[0] - a[0] * b[2],
-                    a[0] * b[1] - a[1] * b[0],
-                ];
-                for (k, c) in parts[2].iter().enumerate() {
-                    let powers = |of: usize| [i, j, k].iter().filter(|p| **p == of).count();
-                    cubic[powers(1)][powers(2)] +=
-                        product[0] * c[0] + product[1] * c[1] + product[2] * c[2];
-                }
-            }
-        }
-        Self(cubic)
-    }
-
-    /// Value and gradient at a point.
-    fn about(&self, at: C) -> [f64; 3] {
-        let (x, y, c) = (at.re, at.im, &self.0);
-        let power = |b: f64, n: usize| kempe_number::powi(b, n as i32);
-        let mut sum = [0.0; 3];
-        for i in 0..4 {
-            for j in 0..4 - i {
-                sum[0] += c[i][j] * power(x, i) * power(y, j);
-                if i > 0 {
-                    sum[1] += c[i][j] * i as f64 * power(x, i - 1) * power(y, j);
-                }
-                if j > 0 {
-                    sum[2] += c[i][j] * j as f64 * power(x, i) * power(y, j - 1);
-                }
-            }
-        }
-        sum
-    }
-
-    /// Its quadratic part about a point: the factors of dx^2, dx dy and dy^2.
-    fn second_about(&self, at: C) -> [f64; 3] {
-        let (x, y, c) = (at.re, at.im, &self.0);
-        [
-            c[2][0] + 3.0 * c[3][0] * x + c[2][1] * y,
-            c[1][1] + 2.0 * (c[2][1] * x + c[1][2] * y),
-            c[0][2] + c[1][2] * x + 3.0 * c[0][3] * y,
-        ]
-    }
 }

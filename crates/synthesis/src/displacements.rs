@@ -7,6 +7,7 @@ use kempe_linear::C;
 use kempe_number::math;
 
 use crate::error::{SynthesisError, all_finite};
+use crate::newton::Row;
 use crate::pose::{Pose, dot, turn_less_one};
 
 /// Turns and shifts below this are none: two poses are one, a set of poses is turned about one point or not at all.
@@ -39,10 +40,6 @@ pub(crate) struct Displacements {
     pub(crate) all: Vec<Displacement>,
     does_turn: bool,
 }
-
-/// One of the seven products that all conditions on a pair of pivots are linear in: 1, the moving pivot's place in the first pose z, the
-/// fixed pivot g, and z conj(g).
-pub(crate) type Row = [f64; 7];
 
 impl Displacements {
     /// # Errors
@@ -182,7 +179,8 @@ impl Displacements {
     }
 }
 
-/// The products that rows are multiplied with.
+/// The seven products that all conditions on a pair of pivots are linear in: 1, the moving pivot's place in the first pose z, the fixed pivot g,
+/// and z conj(g).
 pub(crate) fn products(moving: C, fixed: C) -> Row {
     let p = moving * fixed.conj();
     [1.0, moving.re, moving.im, fixed.re, fixed.im, p.re, p.im]

@@ -17,12 +17,13 @@ pub use least_squares::{Fit, fit_function, fit_lengths};
 pub use slider::{SliderFunction, SliderPoint, slider_functions};
 pub use two_lengths::{TwoLengths, two_lengths};
 
-use kempe_linear::{C, Lu};
+use kempe_linear::C;
 use kempe_number::math;
 
 use crate::error::{SynthesisError, all_finite, balanced};
 use crate::kernel::{DependentRow, kernel};
-use crate::polynomial::roots;
+use crate::newton::{Products, Row, polished};
+use crate::polynomial::directions;
 use crate::pose::cross;
 
 /// A pair of angles that a linkage is to take together, both from the zero of their dials, and how they are to change there.
@@ -133,8 +134,6 @@ impl FunctionFourBar {
     }
 }
 
-/// Unknowns in which the conditions are linear: K, v, u, p.
-type Row = [f64; 7];
 /// Conditions that leave a cubic.
 const CONDITIONS: usize = 5;
 /// Two dial angles nearer than this, rad, are one.
@@ -260,41 +259,8 @@ fn distinct(
     Ok(())
 }
 
-/// A ratio of the two kernel vectors that is complex by more than this, beside 1, is no real solution.
-const NEARLY_REAL: f64 = 1e-6;
 /// Conditions of a solution vanish to this part of their terms.
 const SOLVED: f64 = 1e-11;
-
-/// The real directions in a plane in which a cubic form vanishes, by the powers of the second coordinate.
-fn directions(cubic: [f64; 4]) -> Vec<[f64; 2]> {
-    // Turned by an angle of no meaning, so that no direction lies along an axis: (x, y) = (c t - s, s t + c).
-    let (c, s) = (0.8, 0.6);
-    let mut in_t = [0.0; 4];
-    for (k, factor) in cubic.iter().enumerate() {
-        let mut term = vec![*factor];
-        for power in 0..3 {
-            let [constant, slope] = if power < k { [c, s] } else { [-s, c] };
-            let mut next = vec![0.0; term.len() + 1];
-            for (i, x) in term.iter().enumerate() {
-                next[i] += x * constant;
-                next[i + 1] += x * slope;
-            }
-            term = next;
-        }
-        for (sum, x) in in_t.iter_mut().zip(&term) {
-            *sum += x;
-        }
-    }
-    let found = roots(&in_t);
-    let mut all: Vec<[f64; 2]> = (found.iter())
-        .filter(|t| t.im.abs() <= NEARLY_REAL * (1.0 + t.norm()))
-        .map(|t| [c * t.re - s, s * t.re + c])
-        .collect();
-    if found.len() < 3 {
-        all.push([c, s]);
-    }
-    all
-}
 
 /// The four-bars among the combinations of two vectors of unknowns.
 fn of_plane(rows: &[Row], one: &Row, other: &Row) -> Vec<FunctionFourBar> {
@@ -314,7 +280,7 @@ fn of_plane(rows: &[Row], one: &Row, other: &Row) -> Vec<FunctionFourBar> {
         }
     }
     let mut found: Vec<FunctionFourBar> = Vec::new();
-    for [x, y] in directions(cubic) {
+    for [x, y] in directions(&cubic) {
         let q = square[0] * (x * x) + square[1] * (x * y) + square[2] * (y * y);
         let l = p1 * x + p2 * y;
         let factor = (l * q.conj()).re / q.norm_sqr();
@@ -325,7 +291,7 @@ fn of_plane(rows: &[Row], one: &Row, other: &Row) -> Vec<FunctionFourBar> {
         if !at.iter().all(|x| x.is_finite()) {
             continue;
         }
-        let Some(bar) = polished(rows, at) else {
+        let Some(bar) = improved(rows, at) else {
             continue;
         };
         let twice = found.iter().any(|known| {
@@ -339,62 +305,44 @@ fn of_plane(rows: &[Row], one: &Row, other: &Row) -> Vec<FunctionFourBar> {
     found
 }
 
-/// Newton's steps on a solution at most.
-const STEPS: usize = 5;
+/// K, v and u.
+struct Links;
 
-/// Newton's method in K, v and u; `None` where they do not solve the conditions or a link has no length.
-fn polished(rows: &[Row], start: [f64; 5]) -> Option<FunctionFourBar> {
-    let unknowns = |x: &[f64; 5]| -> Row {
-        let (v, u) = (C::new(x[1], x[2]), C::new(x[3], x[4]));
-        let p = u * v.conj();
+impl Products<CONDITIONS> for Links {
+    fn products(x: &[f64; CONDITIONS]) -> Row {
+        let p = C::new(x[3], x[4]) * C::new(x[1], -x[2]);
         [x[0], x[1], x[2], x[3], x[4], p.re, p.im]
-    };
-    let values = |all: &Row| -> [f64; 5] {
-        std::array::from_fn(|k| rows[k].iter().zip(all).map(|(a, b)| a * b).sum())
-    };
-    let worst = |x: &[f64; 5]| {
-        let all = unknowns(x);
-        let size = all.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
-        values(&all).iter().fold(0.0, |m: f64, f| m.max(f.abs())) / size
-    };
-    let (mut x, mut left) = (start, worst(&start));
-    let mut lu = Lu::new(5);
-    for _ in 0..STEPS {
-        let mut step = values(&unknowns(&x));
-        let (v, u) = (C::new(x[1], x[2]), C::new(x[3], x[4]));
-        let regular = lu.factor(|i, j| {
-            let row = &rows[i];
-            // p = u conj(v): Re(c p) with c = (row[5], -row[6]).
-            let c = C::new(row[5], -row[6]);
-            row[j]
-                + match j {
-                    1 => (c * u).re,
-                    2 => (c * u).im,
-                    3 => (c * v.conj()).re,
-                    4 => -(c * v.conj()).im,
-                    _ => 0.0,
-                }
-        });
-        if !regular {
-            break;
-        }
-        lu.solve(&mut step);
-        let next: [f64; 5] = std::array::from_fn(|k| x[k] - step[k]);
-        let there = worst(&next);
-        if !(there < left) {
-            break;
-        }
-        (x, left) = (next, there);
     }
+
+    /// p = u conj(v): Re(c p) with c = (row[5], -row[6]).
+    fn derivatives(row: &Row, x: &[f64; CONDITIONS]) -> [f64; CONDITIONS] {
+        let c = C::new(row[5], -row[6]);
+        let (by_v, by_u) = (c * C::new(x[3], x[4]), c * C::new(x[1], -x[2]));
+        [
+            row[0],
+            row[1] + by_v.re,
+            row[2] + by_v.im,
+            row[3] + by_u.re,
+            row[4] - by_u.im,
+        ]
+    }
+}
+
+/// The four-bar of unknowns improved; `None` where they do not solve the conditions or a link has no length.
+fn improved(rows: &[Row], start: [f64; CONDITIONS]) -> Option<FunctionFourBar> {
+    let (x, left) = polished::<CONDITIONS, Links>(rows, start, f64::INFINITY);
     let (output, input) = (C::new(x[1], x[2]), C::new(x[3], x[4]));
     let square = 1.0 + input.norm_sqr() + output.norm_sqr() - 2.0 * x[0];
     // The frame seen as a link of length zero solves every such system.
-    let least = SOLVED.sqrt() * math::max(1.0, input.norm());
+    let shortest = SHORTEST * math::max(1.0, input.norm());
     let is_linkage =
-        input.norm() > SOLVED.sqrt() && output.norm() > SOLVED.sqrt() && square > least * least;
+        input.norm() > SHORTEST && output.norm() > SHORTEST && square > shortest * shortest;
     (left <= SOLVED && is_linkage).then(|| FunctionFourBar {
         input,
         output,
         coupler: square.sqrt(),
     })
 }
+
+/// Links shorter than this, beside the frame, are none.
+const SHORTEST: f64 = 3e-6;

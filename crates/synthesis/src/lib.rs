@@ -26,6 +26,7 @@ mod kernel;
 mod linkage;
 mod marquardt;
 mod motion;
+mod newton;
 mod path;
 mod polynomial;
 mod pose;

@@ -5,13 +5,14 @@
 //! products of its points, w p = z conj(g), are two conics there: they meet in four points, the four dyads of L. Burmester's five poses
 //! (1888). Conditions that are linear in a pivot, a line that it is to lie on, count as a pose each.
 
-use kempe_linear::{C, Lu};
+use kempe_linear::C;
 
 use crate::conics::{Form, meet};
-use crate::displacements::{Displacements, Row, products, with_fixed, with_moving};
+use crate::displacements::{Displacements, products, with_fixed, with_moving};
 use crate::dyad::{Dyad, DyadSolution, gathered};
 use crate::error::{SynthesisError, all_finite, balanced};
 use crate::kernel::{DependentRow, kernel};
+use crate::newton::{Products, Row, polished, residual};
 use crate::pose::{Line, Pose, dot};
 
 /// What a dyad is to keep besides its poses.
@@ -243,16 +244,21 @@ fn plane_dyads(
     let Some(points) = meet(&first, &second) else {
         return Ok(None);
     };
-    let mut newton = Newton::new(rows);
+    let rows: Vec<Row> = (rows.iter())
+        .map(|row| {
+            let length = row.iter().map(|x| x * x).sum::<f64>().sqrt();
+            row.map(|x| x / length)
+        })
+        .collect();
     let real = points.iter().filter_map(|point| {
         let (point, unreal) = nearest_real(point)?;
-        let mut at: Row = std::array::from_fn(|k| (0..3).map(|b| point[b] * basis[b][k]).sum());
+        let at: Row = std::array::from_fn(|k| (0..3).map(|b| point[b] * basis[b][k]).sum());
         if unreal > NEARLY_REAL {
             return None;
         }
-        newton.polish(&mut at, unreal);
+        let at = improved(&rows, at, unreal);
         let size = at.iter().map(|x| x * x).sum::<f64>().sqrt();
-        let left = newton.residual(&at) / size;
+        let left = residual(&rows, &at);
         let products = (C::new(at[1], at[2]) * C::new(at[3], at[4]).conj()
             - C::new(at[5], at[6]).scale(at[0]))
         .norm()
@@ -296,73 +302,34 @@ fn nearest_real(point: &[C; 3]) -> Option<([f64; 3], f64)> {
     (length.is_finite() && unreal.is_finite()).then(|| (real.map(|x| x / length), unreal))
 }
 
-/// Newton's method in the pivots' coordinates: the rows in the original unknowns.
-struct Newton {
-    rows: Vec<Row>,
-    lu: Lu<f64>,
-}
-
-/// Steps at most.
-const STEPS: usize = 6;
-/// A first step longer than this part of the pivots' size leads to another solution.
+/// A first step of Newton's method longer than this part of the pivots' size leads to another solution.
 const FIRST_STEP: f64 = 1e-5;
 
-impl Newton {
-    fn new(rows: &[Row]) -> Self {
-        let unit = |row: &Row| {
-            let length = row.iter().map(|x| x * x).sum::<f64>().sqrt();
-            row.map(|x| x / length)
-        };
-        Self {
-            rows: rows.iter().map(unit).collect(),
-            lu: Lu::new(UNKNOWNS),
-        }
+/// The moving and the fixed pivot, in which conditions are linear as [`products`] says.
+struct Pivots;
+
+impl Products<UNKNOWNS> for Pivots {
+    fn products(p: &[f64; UNKNOWNS]) -> Row {
+        products(C::new(p[0], p[1]), C::new(p[2], p[3]))
     }
 
-    fn residual(&self, at: &Row) -> f64 {
-        (self.rows.iter())
-            .map(|row| row.iter().zip(at).map(|(a, b)| a * b).sum::<f64>().abs())
-            .fold(0.0, f64::max)
+    fn derivatives(row: &Row, p: &[f64; UNKNOWNS]) -> [f64; UNKNOWNS] {
+        let [_, zx, zy] = with_fixed(row, C::new(p[2], p[3]));
+        let [_, gx, gy] = with_moving(row, C::new(p[0], p[1]));
+        [zx, zy, gx, gy]
     }
+}
 
-    /// Improves a homogeneous point whose pivots are finite; leaves it where that leads nowhere better.
-    fn polish(&mut self, at: &mut Row, unreal: f64) {
-        let w = at[0];
-        let mut pivots = [at[1] / w, at[2] / w, at[3] / w, at[4] / w];
-        let here = |p: &[f64; 4]| products(C::new(p[0], p[1]), C::new(p[2], p[3]));
-        let relative = |of: &Row| of.iter().map(|x| x * x).sum::<f64>().sqrt();
-        let mut row = here(&pivots);
-        let mut left = self.residual(&row) / relative(&row);
-        for step in 0..STEPS {
-            let (z, g) = (C::new(pivots[0], pivots[1]), C::new(pivots[2], pivots[3]));
-            let mut right = [0.0; UNKNOWNS];
-            let mut matrix = [[0.0; UNKNOWNS]; UNKNOWNS];
-            for (k, known) in self.rows.iter().enumerate() {
-                right[k] = known.iter().zip(&row).map(|(a, b)| a * b).sum();
-                let [_, zx, zy] = with_fixed(known, g);
-                let [_, gx, gy] = with_moving(known, z);
-                matrix[k] = [zx, zy, gx, gy];
-            }
-            if !self.lu.factor(|i, j| matrix[i][j]) {
-                break;
-            }
-            self.lu.solve(&mut right);
-            let size = pivots.iter().fold(1.0, |m: f64, x| m.max(x.abs()));
-            let moved = right.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
-            if step == 0 && moved > size * (FIRST_STEP + 10.0 * unreal) {
-                break;
-            }
-            let next: [f64; 4] = std::array::from_fn(|k| pivots[k] - right[k]);
-            let there = here(&next);
-            let now = self.residual(&there) / relative(&there);
-            if !(now < left) {
-                break;
-            }
-            (pivots, row, left) = (next, there, now);
-        }
-        if left.is_finite() && left <= self.residual(at) / relative(at) {
-            *at = row;
-        }
+/// A homogeneous point improved in the pivots' coordinates, where these are finite and that helps.
+fn improved(rows: &[Row], at: Row, unreal: f64) -> Row {
+    let w = at[0];
+    let start = [at[1] / w, at[2] / w, at[3] / w, at[4] / w];
+    let most = FIRST_STEP + 10.0 * unreal;
+    let (pivots, left) = polished::<UNKNOWNS, Pivots>(rows, start, most);
+    if left <= residual(rows, &at) {
+        Pivots::products(&pivots)
+    } else {
+        at
     }
 }
 

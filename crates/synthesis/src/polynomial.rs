@@ -69,10 +69,44 @@ fn quadratic(a: f64, b: f64, c: f64) -> [C; 2] {
     [C::from(q / a), C::from(other)]
 }
 
-/// The real roots of a real quadratic a x^2 + b x + c.
-pub(crate) fn real_quadratic(a: f64, b: f64, c: f64) -> Option<[f64; 2]> {
-    let [p, q] = quadratic(a, b, c);
-    (p.im == 0.0 && p.is_finite() && q.is_finite()).then_some([p.re, q.re])
+/// A form in two variables by the powers of the second, along the line (x, y) = (c, s) t + (-s, c): a polynomial in t, the constant first.
+pub(crate) fn along(form: &[f64], (s, c): (f64, f64)) -> Vec<f64> {
+    let degree = form.len() - 1;
+    let mut sum = vec![0.0; form.len()];
+    for (k, factor) in form.iter().enumerate() {
+        let mut term = vec![*factor];
+        for power in 0..degree {
+            let [constant, slope] = if power < k { [c, s] } else { [-s, c] };
+            let mut next = vec![0.0; term.len() + 1];
+            for (i, x) in term.iter().enumerate() {
+                next[i] += x * constant;
+                next[i + 1] += x * slope;
+            }
+            term = next;
+        }
+        for (sum, x) in sum.iter_mut().zip(&term) {
+            *sum += x;
+        }
+    }
+    sum
+}
+
+/// A root that is complex by no more than this, beside 1, is a real one, double but for rounding.
+const NEARLY_REAL: f64 = 1e-6;
+
+/// The real directions (x, y) in which a form in two variables, by the powers of the second, vanishes.
+pub(crate) fn directions(form: &[f64]) -> Vec<[f64; 2]> {
+    // Turned by an angle of no meaning, so that no direction lies along an axis.
+    let (s, c) = (0.6, 0.8);
+    let found = roots(&along(form, (s, c)));
+    let mut all: Vec<[f64; 2]> = (found.iter())
+        .filter(|t| t.im.abs() <= NEARLY_REAL * (1.0 + t.norm()))
+        .map(|t| [c * t.re - s, s * t.re + c])
+        .collect();
+    if found.len() + 1 < form.len() {
+        all.push([c, s]);
+    }
+    all
 }
 
 #[cfg(test)]
@@ -113,7 +147,18 @@ mod tests {
     fn a_vanishing_leading_coefficient_is_left_out() {
         assert_eq!(roots(&[-6.0, 2.0, 1e-17]), [C::from(3.0)]);
         assert!(roots(&[1.0]).is_empty() && roots(&[0.0, 0.0]).is_empty());
-        let [a, b] = real_quadratic(1.0, -1e9, 1.0).unwrap();
+        let [a, b] = quadratic(1.0, -1e9, 1.0).map(|x| x.re);
         assert!((a - 1e9).abs() < 1e-6 && (b - 1e-9).abs() < 1e-24);
+    }
+
+    #[test]
+    fn a_form_vanishes_in_its_directions() {
+        // x y (x - 2 y), with directions along both axes.
+        let found = directions(&[0.0, 1.0, -2.0, 0.0]);
+        assert_eq!(found.len(), 3);
+        for [x, y] in found {
+            assert!((x * y * (x - 2.0 * y)).abs() < 1e-14 * (x * x + y * y));
+        }
+        assert!(directions(&[1.0, 0.0, 1.0]).is_empty());
     }
 }

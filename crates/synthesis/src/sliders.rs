@@ -9,7 +9,7 @@ use crate::displacements::Displacements;
 use crate::dyad::{Dyad, DyadSolution, gathered};
 use crate::error::{SynthesisError, all_finite, balanced};
 use crate::kernel::kernel;
-use crate::polynomial::real_quadratic;
+use crate::polynomial::directions;
 use crate::pose::{Line, Pose, cross, dot};
 
 /// What a slider is to keep besides its poses.
@@ -104,16 +104,9 @@ pub fn fixed_guides(
                 let q = C::new(r[2], r[3]);
                 dot(m, q * n) - at * dot(n, n2)
             };
-            let (of_a, of_b, mixed) = (form(&a, &a), form(&b, &b), form(&a, &b) + form(&b, &a));
-            // a x + b with the larger of the two squares in front.
-            let (a, b, of_a, of_b) = if of_a.abs() >= of_b.abs() {
-                (a, b, of_a, of_b)
-            } else {
-                (b, a, of_b, of_a)
-            };
-            let factors = real_quadratic(of_a, mixed, of_b).map_or(Vec::new(), |x| x.to_vec());
-            (factors.iter())
-                .map(|x| std::array::from_fn(|k| a[k] * x + b[k]))
+            let mixed = form(&a, &b) + form(&b, &a);
+            (directions(&[form(&a, &a), mixed, form(&b, &b)]).into_iter())
+                .map(|[x, y]| std::array::from_fn(|k| a[k] * x + b[k] * y))
                 .collect()
         }
         _ => {

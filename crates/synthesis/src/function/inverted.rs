@@ -9,6 +9,7 @@ use kempe_number::math;
 use super::{DialZeros, PrecisionPoint, SAME_ANGLE, distinct};
 use crate::error::{SynthesisError, all_finite, balanced};
 use crate::kernel::{DependentRow, kernel};
+use crate::polynomial::directions;
 
 /// An inverted slider-crank that generates a function, with the fixed pivots at 0 and 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,16 +65,9 @@ pub fn inverted_slider_functions(
             let turn = C::from_polar(1.0, -zero);
             let form =
                 |p: &[f64; 5], r: &[f64; 5]| (C::new(p[2], p[3]) * C::new(r[0], r[1]) * turn).im;
-            let (of_a, of_b) = (form(&a, &a), form(&b, &b));
             let mixed = form(&a, &b) + form(&b, &a);
-            let (a, b, of_a, of_b) = if of_a.abs() >= of_b.abs() {
-                (a, b, of_a, of_b)
-            } else {
-                (b, a, of_b, of_a)
-            };
-            let factors = crate::polynomial::real_quadratic(of_a, mixed, of_b);
-            (factors.iter().flatten())
-                .map(|x| std::array::from_fn(|k| a[k] * x + b[k]))
+            (directions(&[form(&a, &a), mixed, form(&b, &b)]).into_iter())
+                .map(|[x, y]| std::array::from_fn(|k| a[k] * x + b[k] * y))
                 .collect()
         }
     };

@@ -4,12 +4,14 @@
 //! the zero of its scale. |u e - (X + s) - i h| = b is, halved, K + s X + s^2 / 2 - s Re(u e) - Re(m e) = 0 with m = u (X - i h), linear in K, X,
 //! u, m and the factor of s^2 / 2. Five conditions leave a plane, and Re(m / u) = X is a cubic there.
 
-use kempe_linear::{C, Lu};
+use kempe_linear::C;
 use kempe_number::math;
 
-use super::{CONDITIONS, SAME_ANGLE, directions};
+use super::{CONDITIONS, SAME_ANGLE};
 use crate::error::{SynthesisError, all_finite, balanced};
 use crate::kernel::{DependentRow, kernel};
+use crate::newton::{Products, Row, polished};
+use crate::polynomial::directions;
 
 /// A crank's angle and a slider's place, both from the zero of their scales, and how the slider is to move there.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -90,9 +92,6 @@ impl SliderFunction {
     }
 }
 
-/// K, X, the factor of s^2 / 2, u and m.
-type Row = [f64; 7];
-
 /// All slider-cranks whose slider is at places as its crank is at angles: five conditions, counting each pair, rate, change of a rate, a given
 /// zero of the crank's dial (its angle from the guide there, rad) and a given place of the slider's zero (from the crank's pivot) as
 /// one. Up to three with both free.
@@ -159,9 +158,9 @@ pub fn slider_functions(
     let [one, other] = kernel::<7, 2>(&rows)
         .map_err(|DependentRow(row)| SynthesisError::Dependent { datum: datum[row] })?;
     let mut found: Vec<SliderFunction> = Vec::new();
-    for [x, y] in directions(cubic(&one, &other)) {
+    for [x, y] in directions(&cubic(&one, &other)) {
         let at: Row = std::array::from_fn(|k| x * one[k] + y * other[k]);
-        let Some(scaled) = polished(&rows, &at) else {
+        let Some(scaled) = improved(&rows, &at) else {
             continue;
         };
         let bar = SliderFunction {
@@ -219,13 +218,35 @@ fn cubic(one: &Row, other: &Row) -> [f64; 4] {
     cubic
 }
 
-/// Newton's steps at most, what is left of a solution's conditions, the shortest crank, all in units of the slider's way.
-const STEPS: usize = 5;
+/// What is left of a solution's conditions, and the shortest crank and coupler in units of the slider's way.
 const SOLVED: f64 = 1e-11;
 const SHORTEST: f64 = 1e-6;
 
-/// Newton's method in K, X, h and u; `None` where they do not solve the conditions or no linkage is meant.
-fn polished(rows: &[Row], at: &Row) -> Option<SliderFunction> {
+/// K, X, h and u.
+struct CrankAndSlider;
+
+impl Products<CONDITIONS> for CrankAndSlider {
+    fn products(x: &[f64; CONDITIONS]) -> Row {
+        let m = C::new(x[3], x[4]) * C::new(x[1], -x[2]);
+        [x[0], x[1], 1.0, x[3], x[4], m.re, m.im]
+    }
+
+    /// m = u (X - i h): Re(c m) with c = (row[5], -row[6]).
+    fn derivatives(row: &Row, x: &[f64; CONDITIONS]) -> [f64; CONDITIONS] {
+        let c = C::new(row[5], -row[6]);
+        let (by_slider, by_u) = (c * C::new(x[3], x[4]), c * C::new(x[1], -x[2]));
+        [
+            row[0],
+            row[1] + by_slider.re,
+            by_slider.im,
+            row[3] + by_u.re,
+            row[4] - by_u.im,
+        ]
+    }
+}
+
+/// The slider-crank of a point of the plane; `None` where it does not solve the conditions or no linkage is meant.
+fn improved(rows: &[Row], at: &Row) -> Option<SliderFunction> {
     let w = at[2];
     let u = C::new(at[3], at[4]).scale(1.0 / w);
     let m = C::new(at[5], at[6]).scale(1.0 / w);
@@ -234,45 +255,7 @@ fn polished(rows: &[Row], at: &Row) -> Option<SliderFunction> {
     if !start.iter().all(|x| x.is_finite()) || u.norm() < SHORTEST {
         return None;
     }
-    let unknowns = |x: &[f64; 5]| -> Row {
-        let m = C::new(x[3], x[4]) * C::new(x[1], -x[2]);
-        [x[0], x[1], 1.0, x[3], x[4], m.re, m.im]
-    };
-    let values = |all: &Row| -> [f64; 5] {
-        std::array::from_fn(|k| rows[k].iter().zip(all).map(|(a, b)| a * b).sum())
-    };
-    let worst = |x: &[f64; 5]| {
-        let all = unknowns(x);
-        let size = all.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
-        values(&all).iter().fold(0.0, |m: f64, f| m.max(f.abs())) / size
-    };
-    let (mut x, mut left) = (start, worst(&start));
-    let mut lu = Lu::new(5);
-    for _ in 0..STEPS {
-        let mut step = values(&unknowns(&x));
-        let (u, place) = (C::new(x[3], x[4]), C::new(x[1], -x[2]));
-        let regular = lu.factor(|i, j| {
-            let row = &rows[i];
-            let c = C::new(row[5], -row[6]);
-            match j {
-                0 => row[0],
-                1 => row[1] + (c * u).re,
-                2 => (c * u).im,
-                3 => row[3] + (c * place).re,
-                _ => row[4] - (c * place).im,
-            }
-        });
-        if !regular {
-            break;
-        }
-        lu.solve(&mut step);
-        let next: [f64; 5] = std::array::from_fn(|k| x[k] - step[k]);
-        let there = worst(&next);
-        if !(there < left) {
-            break;
-        }
-        (x, left) = (next, there);
-    }
+    let (x, left) = polished::<CONDITIONS, CrankAndSlider>(rows, start, f64::INFINITY);
     let (crank, slider) = (C::new(x[3], x[4]), C::new(x[1], x[2]));
     let square = crank.norm_sqr() + slider.norm_sqr() - 2.0 * x[0];
     (left <= SOLVED && square > SHORTEST * SHORTEST).then(|| SliderFunction {
