@@ -135,38 +135,46 @@ pub(crate) fn gathered(
     found
 }
 
-/// Two places nearer than this part of their size are those of one solution: a double one is found only to the root of rounding.
+/// Pivots nearer to each other than this part of the problem and of the link are those of one solution: a double one is found only to the
+/// root of rounding.
 const SAME: f64 = 3e-7;
 
-/// Whether two dyads are one, found twice.
+/// Whether two dyads are one, found twice, in a problem of this size.
 pub(crate) fn same(a: &Dyad, b: &Dyad, scale: f64) -> bool {
-    let near = |p: C, q: C| (p - q).norm() <= SAME * (scale + p.norm());
+    let near = |p: C, q: C, size: f64| (p - q).norm() <= SAME * size;
     let along = |a: &Line, b: &Line| {
         cross(a.direction, b.direction).abs() <= SAME && a.distance(b.point).abs() <= SAME * scale
     };
     match (a, b) {
         (
-            Dyad::Rr { fixed, moving, .. },
+            Dyad::Rr {
+                fixed,
+                moving,
+                length,
+            },
             Dyad::Rr {
                 fixed: other_fixed,
                 moving: other_moving,
                 ..
             },
-        ) => near(*fixed, *other_fixed) && near(*moving, *other_moving),
+        ) => {
+            let size = scale + length;
+            near(*fixed, *other_fixed, size) && near(*moving, *other_moving, size)
+        }
         (
-            Dyad::Pr { guide, moving },
+            Dyad::Pr { guide, moving: pin } | Dyad::Rp { guide, fixed: pin },
             Dyad::Pr {
-                guide: other_guide,
-                moving: other_moving,
+                guide: other,
+                moving: other_pin,
+            }
+            | Dyad::Rp {
+                guide: other,
+                fixed: other_pin,
             },
-        ) => near(*moving, *other_moving) && along(guide, other_guide),
-        (
-            Dyad::Rp { fixed, guide },
-            Dyad::Rp {
-                fixed: other_fixed,
-                guide: other_guide,
-            },
-        ) => near(*fixed, *other_fixed) && along(guide, other_guide),
+        ) => {
+            let of_a_kind = std::mem::discriminant(a) == std::mem::discriminant(b);
+            of_a_kind && near(*pin, *other_pin, scale) && along(guide, other)
+        }
         _ => false,
     }
 }

@@ -74,8 +74,7 @@ impl Linkage {
                 },
             )),
             (_, Dyad::Rr { .. }) => Self::of(second, first),
-            _ => (!crate::dyad::same(&first, &second, 1.0))
-                .then_some(Self::TwoSliders(first, second)),
+            _ => (first != second).then_some(Self::TwoSliders(first, second)),
         }
     }
 }

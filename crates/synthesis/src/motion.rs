@@ -61,14 +61,17 @@ impl DyadCondition {
             Dyad::Pr { moving, .. } => (None, Some(moving)),
             Dyad::Rp { fixed, .. } => (Some(fixed), None),
         };
-        let near = |pivot: Option<C>, beside: &dyn Fn(C) -> f64| {
-            pivot.is_some_and(|p| beside(p).abs() <= ON_CONDITION * (scale + p.norm()))
+        let near = |pivot: Option<C>, place: C, beside: &dyn Fn(C) -> f64| {
+            pivot.is_some_and(|p| {
+                let size = scale + (p - place).norm();
+                beside(p).abs() <= ON_CONDITION * size
+            })
         };
         match *self {
-            Self::FixedAt(point) => near(fixed, &|p| (p - point).norm()),
-            Self::MovingAt(point) => near(moving, &|p| (p - point).norm()),
-            Self::FixedOn(line) => near(fixed, &|p| line.distance(p)),
-            Self::MovingOn(line) => near(moving, &|p| line.distance(p)),
+            Self::FixedAt(point) => near(fixed, point, &|p| (p - point).norm()),
+            Self::MovingAt(point) => near(moving, point, &|p| (p - point).norm()),
+            Self::FixedOn(line) => near(fixed, line.point, &|p| line.distance(p)),
+            Self::MovingOn(line) => near(moving, line.point, &|p| line.distance(p)),
         }
     }
 }
@@ -141,7 +144,7 @@ pub fn dyads(
 /// A dyad that misses a pose by more than this part of the body's shifts, and this of how far its pivots lie, does not keep it: pivots so
 /// far away solve the equations but for rounding.
 const KEEPS: f64 = 1e-8;
-const ROUNDED: f64 = 1e-13;
+const ROUNDED: f64 = 1e-14;
 /// A pivot lies in a pole where what its place leaves of a row is this part of it.
 const IN_POLE: f64 = 1e-12;
 
@@ -335,7 +338,7 @@ fn improved(rows: &[Row], at: Row, unreal: f64) -> Row {
 
 /// A pivot further away than this, in units of the problem, is tried at infinity.
 const FAR: f64 = 1e6;
-/// A dyad with a slider that keeps the poses to this part of the problem's size is one.
+/// A dyad with a slider that keeps the poses to this part of the body's shifts is one.
 const FITS: f64 = 1e-11;
 
 /// The dyad of a homogeneous point (w, z, g, p); `None` where both pivots lie at infinity.
@@ -365,12 +368,8 @@ pub(crate) fn dyad_of(displacements: &Displacements, poses: &[Pose], point: &Row
             }
         };
         let worst = (poses.iter()).fold(0.0, |m: f64, pose| m.max(slider.residual(pose).abs()));
-        let pivot = match slider {
-            Dyad::Pr { moving, .. } => moving,
-            Dyad::Rp { fixed, .. } => fixed,
-            Dyad::Rr { .. } => C::zero(),
-        };
-        if pivot.is_finite() && worst <= FITS * (displacements.scale + pivot.norm()) {
+        let most = FITS * displacements.size + ROUNDED * slider.reach();
+        if slider.reach().is_finite() && worst <= most {
             return Some(slider);
         }
     }
