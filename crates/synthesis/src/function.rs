@@ -9,12 +9,14 @@ mod dials;
 mod inverted;
 mod least_squares;
 mod slider;
+mod slider_fit;
 mod two_lengths;
 
 pub use dials::{Dials, chebyshev_spacing};
 pub use inverted::{InvertedSliderFunction, inverted_slider_functions};
 pub use least_squares::{Fit, fit_function, fit_lengths};
 pub use slider::{SliderFunction, SliderPoint, slider_functions};
+pub use slider_fit::{SliderFit, fit_slider_function};
 pub use two_lengths::{TwoLengths, two_lengths};
 
 use kempe_linear::C;

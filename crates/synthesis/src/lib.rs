@@ -47,9 +47,9 @@ pub use dyad::{Dyad, DyadSolution};
 pub use error::SynthesisError;
 pub use four_bar::{Driver, FourBar, Grashof, Turning};
 pub use function::{
-    DialZeros, Dials, Fit, FunctionFourBar, InvertedSliderFunction, PrecisionPoint, SliderFunction,
-    SliderPoint, TwoLengths, chebyshev_spacing, fit_function, fit_lengths, functions,
-    inverted_slider_functions, slider_functions, two_lengths,
+    DialZeros, Dials, Fit, FunctionFourBar, InvertedSliderFunction, PrecisionPoint, SliderFit,
+    SliderFunction, SliderPoint, TwoLengths, chebyshev_spacing, fit_function, fit_lengths,
+    fit_slider_function, functions, inverted_slider_functions, slider_functions, two_lengths,
 };
 pub use linkage::{Linkage, pairs};
 pub use motion::{DyadCondition, dyads};

@@ -6,8 +6,8 @@ mod support;
 use kempe_number::{Random, math};
 use kempe_synthesis::{
     C, DialZeros, Dials, FunctionFourBar, InvertedSliderFunction, PrecisionPoint, SliderFunction,
-    SliderPoint, SynthesisError, chebyshev_spacing, fit_function, fit_lengths, functions,
-    inverted_slider_functions, slider_functions, two_lengths,
+    SliderPoint, SynthesisError, chebyshev_spacing, fit_function, fit_lengths, fit_slider_function,
+    functions, inverted_slider_functions, slider_functions, two_lengths,
 };
 use support::{between, place};
 
@@ -726,6 +726,71 @@ fn least_squares_find_the_linkage_and_only_improve() {
                 })
                 .sum();
             assert!(errors.is_none_or(|sum| (sum / 12.0).sqrt() > best.rms()));
+        }
+    }
+}
+
+#[test]
+fn least_squares_of_sliders_find_the_linkage_and_only_improve() {
+    let mut random = Random(56);
+    let (mut cases, mut missed) = (0, 0);
+    while cases < 200 {
+        let scale = [1e-6, 1.0, 1e6][cases % 3];
+        let bar = SliderFunction {
+            crank: C::from_polar(
+                between(&mut random, 0.3, 1.0),
+                between(&mut random, -3.0, 3.0),
+            )
+            .scale(scale),
+            slider: C::new(
+                between(&mut random, -2.0, 2.0),
+                between(&mut random, -0.5, 0.5),
+            )
+            .scale(scale),
+            coupler: between(&mut random, 1.6, 4.0) * scale,
+        };
+        cases += 1;
+        let points: Vec<SliderPoint> = (0..12)
+            .map(|k| {
+                let angle = -2.5 + 0.4 * f64::from(k);
+                SliderPoint::new(angle, bar.place(angle, 1).unwrap())
+            })
+            .collect();
+        for zeros in [
+            (None, None),
+            (Some(bar.crank.arg()), None),
+            (Some(bar.crank.arg()), Some(bar.slider.re)),
+        ] {
+            let fits = fit_slider_function(&points, zeros.0, zeros.1);
+            missed += usize::from(!fits.is_ok_and(|f| f[0].rms() < 1e-9 * scale));
+        }
+    }
+    println!("{missed}");
+    assert!(missed <= 2);
+    // A slider that is to go evenly: no small change of a length makes the sum of squares smaller.
+    let points: Vec<SliderPoint> = (0..10)
+        .map(|k| SliderPoint::new(0.15 * f64::from(k), 0.2 * f64::from(k)))
+        .collect();
+    let fits = fit_slider_function(&points, None, None).unwrap();
+    let best = &fits[0];
+    assert!(best.rms() > 1e-9 && best.rms() < 1e-2, "{}", best.rms());
+    for k in 0..5 {
+        for h in [-1e-4, 1e-4] {
+            let mut bar = best.bar;
+            match k {
+                0 => bar.coupler += h,
+                1 => bar.crank.re += h,
+                2 => bar.crank.im += h,
+                3 => bar.slider.re += h,
+                _ => bar.slider.im += h,
+            }
+            let errors: Option<f64> = (points.iter())
+                .map(|p| {
+                    bar.place(p.angle, best.branch)
+                        .map(|s| (s - p.place) * (s - p.place))
+                })
+                .sum();
+            assert!(errors.is_none_or(|sum| (sum / 10.0).sqrt() > best.rms()));
         }
     }
 }

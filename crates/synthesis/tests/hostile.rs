@@ -8,7 +8,8 @@ use kempe_synthesis::{
     BurmesterCurve, C, CurveDrawing, DialZeros, Driver, Dyad, DyadCondition, DyadSolution, Line,
     LinkRates, Pose, PrecisionPoint, SliderCondition, SliderPoint, bloch, crank_rockers, dyads,
     fit_function, fixed_guides, functions, inverted_slider_functions, moving_guides, pairs,
-    passage, paths_with_crank, slider_functions, timed_paths, two_lengths,
+    passage, paths_with_crank, paths_with_ground_pivots, slider_functions, timed_paths,
+    two_lengths,
 };
 
 /// A number of a few, so that data repeat, lie in line, are symmetric.
@@ -244,4 +245,50 @@ fn special_points() {
             }
         }
     }
+}
+
+#[test]
+fn special_points_with_ground_pivots() {
+    let mut random = Random(84);
+    let (mut counts, mut cases) = ([0; 4], 0);
+    for _ in 0..if cfg!(debug_assertions) { 60 } else { 600 } {
+        let points: Vec<C> = (0..5).map(|_| point(&mut random)).collect();
+        let pivots = [point(&mut random), point(&mut random)];
+        let line = Line::at_angle(point(&mut random), angle(&mut random));
+        for (count, line) in [(5, None), (4, Some(line))] {
+            let Ok(found) = paths_with_ground_pivots(&points[..count], pivots, line) else {
+                continue;
+            };
+            cases += 1;
+            assert_eq!(found.finite + found.infinite + found.lost, found.generic);
+            for (sum, n) in counts.iter_mut().zip([
+                found.finite,
+                found.infinite,
+                found.lost,
+                found.linkages.len(),
+            ]) {
+                *sum += n;
+            }
+            for f in &found.linkages {
+                let kempe_synthesis::Linkage::FourBar(bar) = f.linkage else {
+                    continue;
+                };
+                for (pose, point) in f.poses.iter().zip(&points) {
+                    assert!((pose.origin - *point).norm() < 1e-12);
+                    for (k, place) in bar.places(pose).into_iter().enumerate() {
+                        let off = ((place - bar.fixed[k]).norm() - bar.lengths[k]).abs();
+                        assert!(
+                            off < 1e-6 * (1.0 + bar.lengths[k]),
+                            "{off:e} {bar:?} {points:?}"
+                        );
+                    }
+                }
+                if let Some(line) = line {
+                    let start = bar.places(&f.poses[0])[0];
+                    assert!(line.distance(start).abs() < 1e-7 * (1.0 + start.norm()));
+                }
+            }
+        }
+    }
+    println!("{cases}: finite, infinite, lost, real {counts:?}");
 }

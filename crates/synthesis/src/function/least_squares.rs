@@ -101,17 +101,11 @@ pub fn fit_function(
     let pairs: Vec<[f64; 2]> = points.iter().map(|p| [p.input, p.output]).collect();
     distinct(&pairs, |_| SAME_ANGLE, true)?;
     let mut starts = Vec::new();
-    for shift in SHIFTS {
-        let chosen: Vec<PrecisionPoint> = (0..exact)
-            .map(|k| {
-                let part = (k as f64 + 0.5 + shift) / exact as f64;
-                let at = ((part * points.len() as f64) as usize).min(points.len() - 1);
-                PrecisionPoint::new(points[at].input, points[at].output)
-            })
+    for chosen in spreads(points.len(), exact) {
+        let chosen: Vec<PrecisionPoint> = (chosen.into_iter())
+            .map(|k| PrecisionPoint::new(points[k].input, points[k].output))
             .collect();
-        if let Ok(found) = functions(&chosen, zeros) {
-            starts.extend(found);
-        }
+        starts.extend(functions(&chosen, zeros).unwrap_or_default());
     }
     if let (Some(input), Some(output)) = (zeros.input, zeros.output)
         && let Ok(bar) = fit_lengths(points, input, output)
@@ -152,10 +146,19 @@ pub fn fit_function(
     Ok(fits)
 }
 
-/// Choices of pairs to start from: evenly spread over the list, and shifted by this part of their distance.
-const SHIFTS: [f64; 3] = [0.0, 0.3, -0.3];
+/// Choices of so many of a list to start from: evenly spread, and shifted by parts of their distance.
+pub(super) fn spreads(count: usize, chosen: usize) -> impl Iterator<Item = Vec<usize>> {
+    [0.0, 0.3, -0.3].into_iter().map(move |shift| {
+        let at = |k: usize| {
+            let part = (k as f64 + 0.5 + shift) / chosen as f64;
+            ((part * count as f64) as usize).min(count - 1)
+        };
+        (0..chosen).map(at).collect()
+    })
+}
+
 /// Links nearer than this part of their size are those of one minimum.
-const SAME_FIT: f64 = 1e-5;
+pub(super) const SAME_FIT: f64 = 1e-5;
 
 /// The output's errors as a function of links.
 struct Errors<'a> {

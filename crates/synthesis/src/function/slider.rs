@@ -53,7 +53,7 @@ impl SliderPoint {
         }
     }
 
-    fn is_finite(&self) -> bool {
+    pub(super) fn is_finite(&self) -> bool {
         let all = [
             Some(self.angle),
             Some(self.place),
