@@ -420,6 +420,31 @@ fn five_poses_of_a_guide_on_the_body() {
     }
 }
 
+/// Complex solutions of real equations come in pairs, so the real ones of four are even in number, wherever the points lie.
+#[test]
+fn five_poses_have_an_even_number_of_dyads() {
+    let mut random = Random(14);
+    let mut counts = [0; 5];
+    for case in 0..20_000 {
+        let line = Line::at_angle(place(&mut random, 2.0), between(&mut random, -3.0, 3.0));
+        let poses: Vec<Pose> = (0..5)
+            .map(|_| Pose {
+                origin: if case % 2 == 0 {
+                    line.point + line.direction.scale(between(&mut random, -3.0, 3.0))
+                } else {
+                    place(&mut random, 2.0)
+                },
+                angle: between(&mut random, -3.0, 3.0),
+            })
+            .collect();
+        let found = dyads(&poses, &[]).unwrap();
+        counts[found.iter().map(|d| d.multiplicity).sum::<usize>()] += 1;
+    }
+    println!("{counts:?}");
+    assert!(counts[1] + counts[3] <= 2, "{counts:?}");
+    assert!(counts[0] > 100 && counts[2] > 1000 && counts[4] > 100);
+}
+
 #[test]
 fn small_displacements_and_far_origins_keep_their_dyads() {
     let mut random = Random(13);

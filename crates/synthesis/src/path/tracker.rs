@@ -59,29 +59,25 @@ fn solve(at: &State, given: &Given, rate: &Given) -> Option<[State; 2]> {
     let one = C::one();
     let mut matrix = [C::zero(); 16];
     let mut right = [[C::zero(); 2]; 4];
-    // Of each place its three equations: factors of T, of T', of x, x', y, y', and both right sides.
-    let mut rows = [[[C::zero(); 8]; 3]; PLACES];
+    // Of each place its three equations: factors of T and T', of x, x' or y, y', and both right sides.
+    let mut rows = [[[C::zero(); 6]; 3]; PLACES];
     for j in 0..given.places {
         let (t, t1) = (at[4 + 2 * j], at[5 + 2 * j]);
         let (d, c) = (given.d[j + 1], given.conjugate[j + 1]);
         let (d_rate, c_rate) = (rate.d[j + 1], rate.conjugate[j + 1]);
         let zero = C::zero();
-        rows[j][0] = [t1, t, zero, zero, zero, zero, t * t1 - one, zero];
+        rows[j][0] = [t1, t, zero, zero, t * t1 - one, zero];
         for (k, (p, p1, pivot)) in [(x, x1, zero), (y, y1, one)].into_iter().enumerate() {
             let (d, c, d0, c0) = (d - pivot, c - pivot, d0 - pivot, c0 - pivot);
-            let value = c * t * p + d * t1 * p1 - c0 * p - d0 * p1 + d * c - d0 * c0;
-            let change = c_rate * t * p + d_rate * t1 * p1 - c0_rate * p - d0_rate * p1
-                + d_rate * c
-                + d * c_rate
-                - d0_rate * c0
-                - d0 * c0_rate;
-            let mut row = [c * p, d * p1, zero, zero, zero, zero, value, change];
-            row[2 + 2 * k] = c * t - c0;
-            row[3 + 2 * k] = d * t1 - d0;
-            rows[j][k + 1] = row;
+            let (turned, turned1) = (t * p, t1 * p1);
+            let value = c * turned + d * turned1 - c0 * p - d0 * p1 + d * c - d0 * c0;
+            let change = c_rate * (turned + d) + d_rate * (turned1 + c)
+                - c0_rate * (p + d0)
+                - d0_rate * (p1 + c0);
+            rows[j][k + 1] = [c * p, d * p1, c * t - c0, d * t1 - d0, value, change];
         }
         // The combination that does not feel T and T'.
-        let [a, b, e] = [&rows[j][0], &rows[j][1], &rows[j][2]];
+        let [a, b, e] = &rows[j];
         let factors = [
             b[0] * e[1] - e[0] * b[1],
             e[0] * a[1] - a[0] * e[1],
@@ -89,17 +85,13 @@ fn solve(at: &State, given: &Given, rate: &Given) -> Option<[State; 2]> {
         ];
         let size = factors
             .iter()
-            .fold(0.0, |m: f64, f| m.max(f.re.abs() + f.im.abs()));
-        let scale = 1.0 / size;
-        for k in 0..6 {
-            let column = k + 2;
-            let sum = factors[0] * a[column] + factors[1] * b[column] + factors[2] * e[column];
-            if k < 4 {
-                matrix[4 * j + k] = sum * scale;
-            } else {
-                right[j][k - 4] = sum * scale;
-            }
-        }
+            .fold(0.0, |m, f| math::max(m, f.re.abs() + f.im.abs()));
+        let [f, g, h] = factors.map(|f| f.scale(1.0 / size));
+        matrix[4 * j] = g * b[2];
+        matrix[4 * j + 1] = g * b[3];
+        matrix[4 * j + 2] = h * e[2];
+        matrix[4 * j + 3] = h * e[3];
+        right[j] = [f * a[4] + g * b[4] + h * e[4], g * b[5] + h * e[5]];
     }
     if given.places < PLACES {
         let ([c, c1, e], [c_rate, c1_rate, e_rate]) = (given.line, rate.line);
@@ -117,14 +109,21 @@ fn solve(at: &State, given: &Given, rate: &Given) -> Option<[State; 2]> {
         }
         for j in 0..given.places {
             // The two equations that tell T and T' best.
-            let [a, b, e] = &rows[j];
-            let minor = |p: &[C; 8], q: &[C; 8]| p[0] * q[1] - q[0] * p[1];
-            let (p, q, det) = [(a, b), (a, e), (b, e)]
-                .map(|(p, q)| (p, q, minor(p, q)))
+            let left = |k: usize| {
+                let row = &rows[j][k];
+                let own = 2 * k.saturating_sub(1);
+                row[4 + side] - row[2] * found[own] - row[3] * found[own + 1]
+            };
+            let minor = |i: usize, k: usize| {
+                let (p, q) = (&rows[j][i], &rows[j][k]);
+                p[0] * q[1] - q[0] * p[1]
+            };
+            let (i, k, det) = [(0, 1), (0, 2), (1, 2)]
+                .map(|(i, k)| (i, k, minor(i, k)))
                 .into_iter()
                 .max_by(|p, q| p.2.norm_sqr().total_cmp(&q.2.norm_sqr()))?;
-            let left = |row: &[C; 8]| (0..4).fold(row[6 + side], |s, k| s - row[2 + k] * found[k]);
-            let (f, g, inverse) = (left(p), left(q), det.recip());
+            let (p, q) = (&rows[j][i], &rows[j][k]);
+            let (f, g, inverse) = (left(i), left(k), det.recip());
             found[4 + 2 * j] = (f * q[1] - g * p[1]) * inverse;
             found[5 + 2 * j] = (p[0] * g - q[0] * f) * inverse;
         }
@@ -262,11 +261,12 @@ fn correct(
     let enough = if is_end { AT_THE_END } else { ON_THE_WAY };
     for round in 0..if is_end { 2 * CORRECTIONS } else { CORRECTIONS } {
         let [correction, tangent] = solve(&x, given, rate)?;
-        let mut change = 0.0_f64;
+        let mut square = 0.0_f64;
         for (a, b) in x.iter_mut().zip(&correction) {
             *a -= *b;
-            change = change.max(b.norm() / (1.0 + a.norm()));
+            square = math::max(square, b.norm_sqr() / (1.0 + a.norm_sqr()));
         }
+        let change = square.sqrt();
         if round == 0 {
             first = change;
         }
