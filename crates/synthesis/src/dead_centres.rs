@@ -11,6 +11,8 @@ use kempe_number::math;
 
 use crate::error::SynthesisError;
 use crate::four_bar::{FourBar, Grashof, Turning};
+use crate::pose::Line;
+use crate::slider_crank::SliderCrank;
 
 /// The angle, rad, by which a crank's turn one way exceeds half a turn, where the way there takes so many times the way back:
 /// pi (ratio - 1) / (ratio + 1).
@@ -204,6 +206,19 @@ pub struct StrokeSliderCrank {
 }
 
 impl StrokeSliderCrank {
+    /// The slider-crank with its pivot at 0 and its guide along the first axis; the coupler lies along its own first axis.
+    pub fn slider_crank(&self) -> SliderCrank {
+        SliderCrank {
+            fixed: C::zero(),
+            crank: self.crank,
+            moving: [C::zero(), C::from(self.coupler)],
+            guide: Line {
+                point: C::new(0.0, self.offset),
+                direction: C::one(),
+            },
+        }
+    }
+
     /// How far the angle between coupler and the guide's normal stays from 0 and pi, rad.
     pub fn transmission(&self) -> f64 {
         math::acos(math::min((self.offset + self.crank) / self.coupler, 1.0))

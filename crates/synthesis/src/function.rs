@@ -23,10 +23,11 @@ use kempe_linear::C;
 use kempe_number::math;
 
 use crate::error::{SynthesisError, all_finite, balanced};
+use crate::four_bar::{FourBar, sign};
 use crate::kernel::{DependentRow, kernel};
 use crate::newton::{Products, Row, polished};
 use crate::polynomial::directions;
-use crate::pose::cross;
+use crate::pose::{Pose, cross};
 
 /// A pair of angles that a linkage is to take together, both from the zero of their dials, and how they are to change there.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -105,10 +106,10 @@ impl FunctionFourBar {
         C::one() + self.output * C::from_polar(1.0, output) - self.input * C::from_polar(1.0, input)
     }
 
-    /// On which side of the coupler's vector the second link is at two angles of the dials, rad: the branch with the first link driven.
+    /// The branch with the first link driven, at two angles of the dials, rad: as of [`FourBar::branch`].
     pub fn branch(&self, input: f64, output: f64) -> i8 {
         let turned = self.output * C::from_polar(1.0, output);
-        crate::four_bar::sign(cross(turned, self.coupler_at(input, output)))
+        sign(cross(self.coupler_at(input, output), turned))
     }
 
     /// The output's angle (rad, from the zero of its dial, within half a turn of `near`) at an input's, on a branch; `None` where
@@ -121,17 +122,25 @@ impl FunctionFourBar {
         if !(cos.abs() <= 1.0) {
             return None;
         }
-        let side = if branch < 0 { 1.0 } else { -1.0 };
+        let side = f64::from(branch);
         let turned = x * C::new(cos, side * (1.0 - cos * cos).sqrt()) * self.output.conj();
         Some(near + math::within_half_a_turn(math::atan2(turned.im, turned.re) - near))
     }
 
-    /// Its four-bar: fixed pivots at 0 and 1, moving ones as points of a coupler that lies along the first axis.
-    pub fn four_bar(&self) -> crate::FourBar {
-        crate::FourBar {
+    /// Its four-bar: fixed pivots at 0 and 1, moving ones as points of a coupler that lies along its own first axis.
+    pub fn four_bar(&self) -> FourBar {
+        FourBar {
             fixed: [C::zero(), C::one()],
             moving: [C::zero(), C::from(self.coupler)],
             lengths: [self.input.norm(), self.output.norm()],
+        }
+    }
+
+    /// The pose of that coupler at two angles of the dials, rad, which it takes together.
+    pub fn pose(&self, input: f64, output: f64) -> Pose {
+        Pose {
+            origin: self.input * C::from_polar(1.0, input),
+            angle: self.coupler_at(input, output).arg(),
         }
     }
 }

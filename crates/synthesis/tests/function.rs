@@ -5,9 +5,10 @@ mod support;
 
 use kempe_number::{Random, math};
 use kempe_synthesis::{
-    C, DialZeros, Dials, FunctionFourBar, InvertedSliderFunction, PrecisionPoint, SliderFunction,
-    SliderPoint, SynthesisError, chebyshev_spacing, fit_function, fit_lengths, fit_slider_function,
-    functions, inverted_slider_functions, slider_functions, two_lengths,
+    C, DialZeros, Dials, Driver, FunctionFourBar, InvertedSliderFunction, Linkage, Pose,
+    PrecisionPoint, SliderFunction, SliderPoint, SynthesisError, chebyshev_spacing, fit_function,
+    fit_lengths, fit_slider_function, functions, inverted_slider_functions, passage,
+    slider_functions, two_lengths,
 };
 use support::{between, place};
 
@@ -610,6 +611,66 @@ fn random_inverted_slider_functions_are_recovered() {
     }
     println!("{missed:?}");
     assert!(missed.iter().all(|m| *m <= 10), "{missed:?}");
+}
+
+/// What is found stands as a linkage in poses, with the links where the dials are and on one branch.
+#[test]
+fn generators_stand_as_linkages_in_poses() {
+    let mut random = Random(57);
+    let mut cases = 0;
+    while cases < 300 {
+        let bar = random_bar(&mut random);
+        let Some(points) = pairs_of(&bar, &mut random, 5) else {
+            continue;
+        };
+        cases += 1;
+        let four_bar = bar.four_bar();
+        let poses: Vec<Pose> = points.iter().map(|p| bar.pose(p.input, p.output)).collect();
+        for (pose, p) in poses.iter().zip(&points) {
+            let [a, b] = four_bar.places(pose);
+            assert!((a - bar.input * C::from_polar(1.0, p.input)).norm() < 1e-12);
+            assert!((b - C::one() - bar.output * C::from_polar(1.0, p.output)).norm() < 1e-12);
+            assert_eq!(four_bar.branch(pose), bar.branch(p.input, p.output));
+        }
+        let known = passage(&Linkage::FourBar(four_bar), &poses, Driver::First).unwrap();
+        assert!(known.one_branch);
+
+        let slider = SliderFunction {
+            crank: bar.input,
+            slider: bar.output,
+            coupler: bar.coupler + 1.0,
+        };
+        let branch = if cases % 2 == 0 { 1 } else { -1 };
+        let pairs: Vec<[f64; 2]> = (points.iter())
+            .filter_map(|p| Some([p.input, slider.place(p.input, branch)?]))
+            .collect();
+        let poses: Vec<Pose> = pairs.iter().map(|[a, s]| slider.pose(*a, *s)).collect();
+        let linkage = slider.slider_crank();
+        for (pose, [_, place]) in poses.iter().zip(&pairs) {
+            let pin = pose.place(linkage.moving[1]);
+            assert!((pin - slider.slider - C::from(*place)).norm() < 1e-12);
+            assert!(linkage.guide.distance(pin).abs() < 1e-12);
+            assert_eq!(linkage.branch(pose), branch);
+        }
+
+        let inverted = InvertedSliderFunction {
+            crank: bar.input,
+            guide: bar.output.scale(1.0 / bar.output.norm()),
+            offset: 0.1,
+        };
+        let linkage = inverted.slider_crank();
+        for p in &points {
+            let end = inverted.crank * C::from_polar(1.0, p.input) - C::one();
+            let sine = inverted.offset / end.norm();
+            if sine > 0.9 {
+                continue;
+            }
+            let guide = end.arg() - math::asin(sine) - inverted.guide.arg();
+            let pose = inverted.pose(p.input, guide);
+            assert!(linkage.guide.distance(pose.body_point(C::one())).abs() < 1e-12);
+            assert!((pose.place(linkage.moving).norm() - linkage.crank).abs() < 1e-12);
+        }
+    }
 }
 
 #[test]

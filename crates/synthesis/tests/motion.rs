@@ -30,7 +30,7 @@ fn rr(found: &[kempe_synthesis::DyadSolution]) -> Vec<(C, C, f64)> {
 
 #[test]
 fn five_poses_with_four_dyads() {
-    // Independent: digits of a program in 50 digits.
+    // Twelve decimals of a program apart from this one.
     let poses = degrees(&[
         (0.0, 0.0, 0.0),
         (2.9, -2.0, 15.0),

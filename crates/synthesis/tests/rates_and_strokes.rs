@@ -235,6 +235,14 @@ fn random_slider_cranks_are_recovered() {
                         < 1e-5
                 });
             missed += usize::from(!hit);
+            // The slider travels the stroke, the transmission angle stays as far off as told.
+            if let Ok(found) = stroke_slider_crank(stroke, theta, choice) {
+                let linkage = found.slider_crank();
+                assert!((2.0 * linkage.travel(1.0)[1] - stroke).abs() < 1e-7 * (1.0 + b));
+                let [low, high] = linkage.transmission_range(0.0, std::f64::consts::TAU);
+                let off = low.min(std::f64::consts::PI - high);
+                assert!((off - found.transmission()).abs() < 1e-7);
+            }
         }
     }
     println!("{missed}");

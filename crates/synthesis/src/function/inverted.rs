@@ -10,6 +10,8 @@ use super::{DialZeros, PrecisionPoint, SAME_ANGLE, distinct};
 use crate::error::{SynthesisError, all_finite, balanced};
 use crate::kernel::{DependentRow, kernel};
 use crate::polynomial::directions;
+use crate::pose::{Line, Pose, cross};
+use crate::slider_crank::InvertedSliderCrank;
 
 /// An inverted slider-crank that generates a function, with the fixed pivots at 0 and 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,7 +30,28 @@ impl InvertedSliderFunction {
     pub fn residual(&self, crank: f64, guide: f64) -> f64 {
         let along = self.guide * C::from_polar(1.0, guide);
         let end = self.crank * C::from_polar(1.0, crank) - C::one();
-        crate::pose::cross(along, end) - self.offset
+        cross(along, end) - self.offset
+    }
+
+    /// Its inverted slider-crank: fixed pivots at 0 and 1, the crank's end as the origin of a body whose first axis is along the guide.
+    pub fn slider_crank(&self) -> InvertedSliderCrank {
+        InvertedSliderCrank {
+            fixed: [C::zero(), C::one()],
+            crank: self.crank.norm(),
+            moving: C::zero(),
+            guide: Line {
+                point: C::new(0.0, -self.offset),
+                direction: C::one(),
+            },
+        }
+    }
+
+    /// The pose of that body at two angles of the dials, rad, which it takes together.
+    pub fn pose(&self, crank: f64, guide: f64) -> Pose {
+        Pose {
+            origin: self.crank * C::from_polar(1.0, crank),
+            angle: self.guide.arg() + guide,
+        }
     }
 }
 

@@ -9,9 +9,12 @@ use kempe_number::math;
 
 use super::{CONDITIONS, SAME_ANGLE};
 use crate::error::{SynthesisError, all_finite, balanced};
+use crate::four_bar::sign;
 use crate::kernel::{DependentRow, kernel};
 use crate::newton::{Products, Row, polished};
 use crate::polynomial::directions;
+use crate::pose::{Line, Pose};
+use crate::slider_crank::SliderCrank;
 
 /// A crank's angle and a slider's place, both from the zero of their scales, and how the slider is to move there.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -88,7 +91,29 @@ impl SliderFunction {
     /// On which side of the crank's end the slider is, at an angle (rad) and a place: 1 ahead, -1 behind.
     pub fn branch(&self, angle: f64, place: f64) -> i8 {
         let end = self.crank * C::from_polar(1.0, angle);
-        crate::four_bar::sign(self.slider.re + place - end.re)
+        sign(self.slider.re + place - end.re)
+    }
+
+    /// Its slider-crank: the crank's pivot at 0, moving pivots as points of a coupler that lies along its own first axis.
+    pub fn slider_crank(&self) -> SliderCrank {
+        SliderCrank {
+            fixed: C::zero(),
+            crank: self.crank.norm(),
+            moving: [C::zero(), C::from(self.coupler)],
+            guide: Line {
+                point: C::new(0.0, self.slider.im),
+                direction: C::one(),
+            },
+        }
+    }
+
+    /// The pose of that coupler at an angle (rad) and a place that it takes together.
+    pub fn pose(&self, angle: f64, place: f64) -> Pose {
+        let end = self.crank * C::from_polar(1.0, angle);
+        Pose {
+            origin: end,
+            angle: (self.slider + C::from(place) - end).arg(),
+        }
     }
 }
 
