@@ -2,7 +2,7 @@
 //!
 //! | file | for |
 //! | --- | --- |
-//! | `motion.rs`, `sliders.rs` | dyads that guide a body through two to five poses |
+//! | `motion.rs`, `sliders.rs`, `timed.rs` | dyads that guide a body through two to five poses |
 //! | `burmester_curve.rs` | the curves of all pivots of four poses |
 //! | `linkage.rs`, `four_bar.rs`, `slider_crank.rs`, `defects.rs` | pairs of dyads, how their links turn, and whether they pass the poses on one circuit, on one branch and in order |
 //! | `function.rs` and its folder | four-bars and slider-cranks that turn or slide as a crank's angle asks: exactly, or in least squares |
@@ -32,6 +32,7 @@ mod polynomial;
 mod pose;
 mod slider_crank;
 mod sliders;
+mod timed;
 
 pub use kempe_linear::C;
 
@@ -59,3 +60,4 @@ pub use path::{
 pub use pose::{Line, Pose, image_pole, pole};
 pub use slider_crank::{InvertedSliderCrank, SliderCrank};
 pub use sliders::{SliderCondition, fixed_guides, moving_guides};
+pub use timed::timed_dyad;

@@ -83,8 +83,10 @@ fn three_pairs_by_freudenstein() {
             bar.coupler,
             along(bar.output, zeros[1]),
         ];
+        // The last case is printed with nine decimals.
+        let digits = if zeros[0] == 0.0 { 1e-12 } else { 1e-9 };
         for (f, k) in found.iter().zip([a, b, c]) {
-            assert!((f - k).abs() < 1e-9, "{found:?}");
+            assert!((f - k).abs() < digits, "{found:?}");
         }
         let linear = fit_lengths(&points, zeros[0], zeros[1]).unwrap();
         assert!((linear.input - bar.input).norm() + (linear.coupler - bar.coupler).abs() < 1e-12);

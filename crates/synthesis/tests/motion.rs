@@ -5,7 +5,7 @@ mod support;
 use kempe_number::Random;
 use kempe_synthesis::{
     C, Dyad, DyadCondition, Line, Pose, SliderCondition, SynthesisError, dyads, fixed_guides,
-    image_pole, moving_guides, pole,
+    image_pole, moving_guides, pole, timed_dyad,
 };
 use support::{RandomFourBar, between, moved, nearest, place};
 
@@ -170,71 +170,81 @@ fn three_poses_with_a_pivot_and_their_poles() {
     close(image, mirrored);
 }
 
-/// Norton's examples 5-1 and 5-2 in standard form: W (e^(i beta) - 1) + Z (e^(i alpha) - 1) = P.
+/// Norton's examples 5-1 and 5-2, in standard form W (e^(i beta) - 1) + Z (e^(i alpha) - 1) = P.
 #[test]
-fn textbook_dyads_in_standard_form() {
+fn textbook_dyads_with_given_turns() {
     let polar = |r: f64, a: f64| C::from_polar(r, a.to_radians());
-    let check =
-        |shifts: &[C], alphas: &[f64], fixed_side: (f64, f64), coupler: C, tolerance: f64| {
-            // The coupler's vector Z from the pin to the point gives the moving pivot; W follows.
-            let mut poses = vec![Pose::new(0.0, 0.0, 0.0)];
-            for (p, a) in shifts.iter().zip(alphas) {
-                poses.push(Pose {
-                    origin: *p,
-                    angle: a.to_radians(),
-                });
-            }
-            let found = if shifts.len() == 2 {
-                dyads(&poses, &[DyadCondition::MovingAt(-coupler)]).unwrap()
-            } else {
-                let w = polar(fixed_side.0, fixed_side.1);
-                let along = Line::at_angle(-coupler, w.arg());
-                dyads(
-                    &poses,
-                    &[
-                        DyadCondition::MovingAt(-coupler),
-                        DyadCondition::FixedOn(along),
-                    ],
-                )
-                .unwrap()
-            };
-            let [(fixed, moving, _)] = rr(&found)[..] else {
-                panic!()
-            };
-            let w = moving - fixed;
-            let known = polar(fixed_side.0, fixed_side.1);
-            assert!((w - known).norm() < tolerance, "{w:?} {known:?}");
+    let poses = |shifts: &[C], alphas: &[f64]| -> Vec<Pose> {
+        let later = shifts.iter().zip(alphas).map(|(p, a)| Pose {
+            origin: *p,
+            angle: a.to_radians(),
+        });
+        [Pose::new(0.0, 0.0, 0.0)]
+            .into_iter()
+            .chain(later)
+            .collect()
+    };
+    let turns =
+        |betas: &[f64]| -> Vec<f64> { [0.0].iter().chain(betas).map(|b| b.to_radians()).collect() };
+    // The link W from the fixed to the moving pivot, Z from there to the body's origin, at the first pose.
+    let solved = |poses: &[Pose], betas: &[f64], conditions: &[DyadCondition]| {
+        let found = timed_dyad(poses, &turns(betas), conditions).unwrap();
+        assert!(found.residual < 1e-13);
+        let Dyad::Rr { fixed, moving, .. } = found.dyad else {
+            panic!()
         };
-    check(
-        &[polar(2.416, 165.2)],
-        &[43.3],
-        (2.4669, 71.571),
-        polar(1.298, 26.5),
-        1e-4,
+        // The link has turned as asked.
+        for (pose, beta) in poses.iter().zip(turns(betas)) {
+            let link = pose.place(moving) - fixed;
+            let turned = (moving - fixed) * C::from_polar(1.0, beta);
+            assert!((link - turned).norm() < 1e-12);
+        }
+        (moving - fixed, -moving)
+    };
+    let near = |v: C, length: f64, angle: f64, digits: f64| {
+        let off = (v.norm() - length).abs() + (v * polar(1.0, -angle)).arg().to_degrees().abs();
+        assert!(
+            off < digits,
+            "{} {} {length} {angle}",
+            v.norm(),
+            v.arg().to_degrees()
+        );
+    };
+    let two = poses(&[polar(2.416, 165.2)], &[43.3]);
+    let at = |z: C| [DyadCondition::MovingAt(-z)];
+    near(
+        solved(&two, &[38.4], &at(polar(1.298, 26.5))).0,
+        2.4669,
+        71.571,
+        1e-3,
     );
-    check(
-        &[polar(2.416, 165.2)],
-        &[43.3],
-        (1.48563, 15.416),
-        polar(1.035, 104.1),
-        1e-4,
+    near(
+        solved(&two, &[85.6], &at(polar(1.035, 104.1))).0,
+        1.48563,
+        15.416,
+        1e-3,
     );
-    let shifts = [polar(2.798, -31.19), polar(3.919, -16.34)];
-    // Three poses: Z determines W. Z = 1.507734 at 38.551 degrees, S = 1.490764 at 94.185.
-    check(
-        &shifts,
-        &[-45.0, 9.3],
-        (6.831999, 89.541),
-        polar(1.507734, 38.551),
-        2e-3,
+    let three = poses(&[polar(2.798, -31.19), polar(3.919, -16.34)], &[-45.0, 9.3]);
+    let (w, z) = solved(&three, &[342.3, 324.8], &[]);
+    near(w, 6.831999, 89.541, 6e-4);
+    near(z, 1.507734, 38.551, 6e-4);
+    let (u, s) = solved(&three, &[30.9, 80.6], &[]);
+    near(u, 3.199670, -145.217, 6e-4);
+    near(s, 1.490764, 94.185, 6e-4);
+    // The same links come without their turns from the moving pivot alone, and each turn back from its link.
+    let found = dyads(&three, &at(z)).unwrap();
+    assert!(nearest(&found, -z - w, -z) < 1e-12);
+    let again = timed_dyad(
+        &three[..2],
+        &turns(&[342.3]),
+        &[DyadCondition::FixedAt(-z - w)],
     );
-    check(
-        &shifts,
-        &[-45.0, 9.3],
-        (3.199670, -145.217),
-        polar(1.490764, 94.185),
-        2e-3,
-    );
+    assert!(nearest(&[again.unwrap()], -z - w, -z) < 1e-12);
+    // A link that turns as the body does may be anywhere.
+    assert!(matches!(
+        timed_dyad(&three, &turns(&[-45.0, 9.3]), &[]),
+        Err(SynthesisError::Dependent { .. })
+    ));
 }
 
 #[test]
@@ -271,11 +281,11 @@ fn random_linkages_are_among_the_dyads_of_five_poses() {
 #[test]
 fn random_linkages_with_conditions() {
     let mut random = Random(6);
-    let mut missed = [0; 6];
+    let mut missed = [0; 7];
     let mut cases = 0;
     while cases < 10_000 {
         let bar = RandomFourBar::new(&mut random);
-        let Some((poses, _)) = bar.poses(&mut random, 4, 0.1) else {
+        let Some((poses, angles)) = bar.poses(&mut random, 4, 0.1) else {
             continue;
         };
         cases += 1;
@@ -302,6 +312,8 @@ fn random_linkages_with_conditions() {
                 missed[k] += 1;
             }
         }
+        let timed = timed_dyad(&poses[..3], &angles[..3], &[]);
+        missed[6] += usize::from(!timed.is_ok_and(|d| nearest(&[d], g, z) < 1e-6));
     }
     println!("{missed:?}");
     assert!(missed.iter().all(|m| *m <= 10), "{missed:?}");

@@ -19,7 +19,7 @@ pub fn chebyshev_spacing(from: f64, to: f64, count: usize) -> Vec<f64> {
 /// Scales that show x on the first dial and y on the second, evenly; angles in rad.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dials {
-    /// The range of x, and the angles of the first dial there.
+    /// The range of x.
     pub x: [f64; 2],
     /// Angles of the first dial at the ends of the range of x.
     pub input: [f64; 2],

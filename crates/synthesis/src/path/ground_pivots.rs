@@ -32,7 +32,8 @@ pub struct GroundPivotPaths {
 }
 
 /// All four-bars with given ground pivots whose coupler carries a point through five points, or through four with the first link's moving pivot,
-/// when the coupler is at the first of them, on a line. About 10 ms.
+/// when the coupler is at the first of them, on a line. About 10 ms; the first time some tenths of a second more, for the generic
+/// solutions.
 ///
 /// # Errors
 /// Data that are not finite, repeated, too few or too many; ground pivots that are one.
