@@ -113,7 +113,7 @@ pub fn dyads(
     let finite = poses.iter().map(Pose::is_finite);
     all_finite(finite.chain(conditions.iter().map(DyadCondition::is_finite)))?;
     let asked: usize = conditions.iter().map(DyadCondition::equations).sum();
-    balanced(poses.len().saturating_sub(1) + asked, UNKNOWNS)?;
+    balanced(equations(poses.len(), asked), UNKNOWNS)?;
 
     let at = |wanted: fn(&DyadCondition) -> Option<C>| conditions.iter().find_map(wanted);
     let fixed = at(|c| match c {
@@ -147,6 +147,11 @@ const KEEPS: f64 = 1e-8;
 const ROUNDED: f64 = 1e-14;
 /// A pivot lies in a pole where what its place leaves of a row is this part of it.
 const IN_POLE: f64 = 1e-12;
+
+/// The equations of poses and conditions: what is asked of a body that has no pose is nothing.
+pub(crate) fn equations(poses: usize, asked: usize) -> usize {
+    if poses == 0 { 0 } else { poses - 1 + asked }
+}
 
 /// The rows of a problem and what they are of.
 struct Problem<'a> {

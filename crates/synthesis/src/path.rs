@@ -15,7 +15,7 @@ use kempe_number::math;
 use crate::dyad::{Dyad, same};
 use crate::error::{SynthesisError, all_finite, balanced};
 use crate::linkage::Linkage;
-use crate::motion::{DyadCondition, dyads};
+use crate::motion::{DyadCondition, dyads, equations};
 use crate::pose::{Line, Pose};
 
 /// A linkage whose coupler carries its origin through the points, with the coupler's poses there.
@@ -103,7 +103,7 @@ pub fn paths_with_crank(
     let finite = points.iter().chain([&pivot, &end]).map(|p| p.is_finite());
     all_finite(finite)?;
     let asked: usize = other.iter().map(DyadCondition::equations).sum();
-    balanced(points.len().saturating_sub(1) + asked, 4)?;
+    balanced(equations(points.len(), asked), 4)?;
     let (crank, arm) = ((end - pivot).norm(), (points[0] - end).norm());
     let mut ends = vec![vec![end]];
     for (datum, point) in points.iter().enumerate().skip(1) {

@@ -9,6 +9,7 @@ use crate::displacements::Displacements;
 use crate::dyad::{Dyad, DyadSolution, gathered};
 use crate::error::{SynthesisError, all_finite, balanced};
 use crate::kernel::kernel;
+use crate::motion::equations;
 use crate::polynomial::directions;
 use crate::pose::{Line, Pose, cross, dot};
 
@@ -46,7 +47,7 @@ const UNKNOWNS: usize = 3;
 const FAR: f64 = 1e9;
 
 /// All dyads with a slider on a fixed guide and a pin on the body. Poses after the first and conditions must make three equations: four
-/// poses, three and a direction or a line for the pin, two and a pin.
+/// poses, three and a direction or a line for the pin, two and a pin, one with pin and direction.
 ///
 /// # Errors
 /// As of [`dyads`](crate::dyads).
@@ -57,19 +58,14 @@ pub fn fixed_guides(
     let finite = poses.iter().map(Pose::is_finite);
     all_finite(finite.chain(conditions.iter().map(SliderCondition::is_finite)))?;
     let asked: usize = conditions.iter().map(SliderCondition::equations).sum();
-    balanced(poses.len().saturating_sub(1) + asked, UNKNOWNS)?;
-    if let [SliderCondition::PinAt(pin)] = conditions {
-        let places = [0, 1].map(|k| poses[k].place(*pin));
-        let guide =
-            Line::through(places[0], places[1]).ok_or(SynthesisError::Dependent { datum: 1 })?;
-        return Ok(gathered(
-            [Dyad::Pr {
-                guide,
-                moving: *pin,
-            }],
-            poses,
-            0.0,
-        ));
+    balanced(equations(poses.len(), asked), UNKNOWNS)?;
+    let given = conditions.iter().find_map(|condition| match condition {
+        SliderCondition::PinAt(pin) => Some(*pin),
+        _ => None,
+    });
+    if let Some(pin) = given {
+        return through_pin(poses, pin, conditions)
+            .map(|guide| gathered([Dyad::Pr { guide, moving: pin }], poses, 0.0));
     }
     let displacements = Displacements::new(poses)?;
     displacements.must_turn()?;
@@ -139,6 +135,24 @@ pub fn fixed_guides(
         })
     });
     Ok(gathered(found, poses, displacements.scale))
+}
+
+/// The guide of a given pin: through its places in two poses, or through the one along a direction.
+fn through_pin(
+    poses: &[Pose],
+    pin: C,
+    conditions: &[SliderCondition],
+) -> Result<Line, SynthesisError> {
+    let along = conditions.iter().find_map(|condition| match condition {
+        SliderCondition::Along(angle) => Some(*angle),
+        _ => None,
+    });
+    let dependent = SynthesisError::Dependent { datum: poses.len() };
+    match (poses, along) {
+        ([pose], Some(angle)) => Ok(Line::at_angle(pose.place(pin), angle)),
+        ([one, other], None) => Line::through(one.place(pin), other.place(pin)).ok_or(dependent),
+        _ => Err(dependent),
+    }
 }
 
 /// All dyads with a fixed pin in a straight guide of the body, by the inverted motion: directions and lines of conditions are those of

@@ -292,3 +292,33 @@ fn special_points_with_ground_pivots() {
     }
     println!("{cases}: finite, infinite, lost, real {counts:?}");
 }
+
+#[test]
+fn nothing_given_is_told() {
+    let both = [
+        DyadCondition::FixedAt(C::one()),
+        DyadCondition::MovingAt(C::i()),
+    ];
+    assert!(dyads(&[], &both).is_err());
+    assert!(dyads(&[], &[]).is_err());
+    let one = dyads(&[Pose::new(1.0, 2.0, 0.5)], &both).unwrap();
+    assert_eq!(one.len(), 1);
+    let pin = [
+        SliderCondition::PinAt(C::one()),
+        SliderCondition::Along(0.3),
+    ];
+    for guides in [fixed_guides, moving_guides] {
+        assert!(guides(&[], &pin).is_err() && guides(&[], &[]).is_err());
+        let one = guides(&[Pose::new(1.0, 2.0, 0.5)], &pin).unwrap();
+        assert!(one.len() == 1 && one[0].residual < 1e-15);
+    }
+    assert!(paths_with_crank(&[], C::zero(), C::one(), &both).is_err());
+    assert!(timed_paths(&[], &[], &both, &both).is_err());
+    assert!(paths_with_ground_pivots(&[], [C::zero(), C::one()], None).is_err());
+    assert!(functions(&[], DialZeros::default()).is_err());
+    assert!(slider_functions(&[], None, None).is_err());
+    assert!(inverted_slider_functions(&[], DialZeros::default()).is_err());
+    assert!(fit_function(&[], DialZeros::default()).is_err());
+    assert!(two_lengths(1.0, 1.0, &[]).is_err());
+    assert!(pairs(&[]).is_empty());
+}
