@@ -3,7 +3,7 @@
 //! A drive that is let go gives nothing but what acts along it. Its acceleration is the one with which inverse dynamics, friction included,
 //! asks of it just that.
 
-use kempe_linear::solve_positive;
+use kempe_linear::{Anderson, solve_positive};
 use kempe_model::DriveId;
 
 use crate::acting::Acting;
@@ -105,8 +105,10 @@ pub enum NotLetGo {
     NotFinite,
 }
 
-/// Corrections of accelerations for friction, at most: each is a small part of the one before.
+/// Corrections of accelerations for friction, at most: each is a small part of the one before, as a rule.
 const CORRECTIONS: usize = 200;
+/// After so many corrections they come nearer too slowly by themselves.
+pub const SLOW: usize = 12;
 /// A correction below this part of the acceleration is rounding.
 const SETTLED: f64 = 4.0 * f64::EPSILON;
 /// Corrections below this part of the acceleration without friction are settled where they get no smaller.
@@ -140,10 +142,14 @@ impl Forces<f64> {
         }
         let first = size_of(&found.accelerations).max(SLIGHT);
         let mut before = f64::INFINITY;
-        for _ in 0..CORRECTIONS {
+        let mut mixing = Anderson::default();
+        for correction in 0..CORRECTIONS {
             self.left_by_friction(at, free, given, found);
             solve_positive(free.len(), &found.factors, &mut found.change);
-            let more = std::mem::take(&mut found.change);
+            let mut more = std::mem::take(&mut found.change);
+            if correction >= SLOW {
+                more = mixing.step(&found.accelerations, &more);
+            }
             found.accelerate(at, free, &more);
             found.change = more;
             let change = size_of(&found.change);

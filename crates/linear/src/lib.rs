@@ -11,6 +11,7 @@
 //! | `rank.rs` | the rank of large sparse matrices |
 //! | `singular.rs` | how near to losing rank a matrix is |
 //! | `dependent.rs` | least squares with columns that may explain each other |
+//! | `fixed_point.rs` | fixed points that a repeated map comes near to slowly |
 //! | `symmetric.rs`, `eigenvalues.rs` | eigenvalues: of symmetric matrices with their vectors, of any real matrix |
 
 mod affine;
@@ -18,6 +19,7 @@ mod complex;
 mod dependent;
 mod eigenvalues;
 mod elimination;
+mod fixed_point;
 mod lu;
 mod positive;
 mod qr;
@@ -31,6 +33,7 @@ pub use complex::{C, solve_complex};
 pub use dependent::independent_least_squares;
 pub use eigenvalues::eigenvalues;
 pub use elimination::{Elimination, Matrix, Plain};
+pub use fixed_point::Anderson;
 pub use lu::{Entry, Lu};
 pub use positive::{factor_positive, is_pivot, solve_positive};
 pub use qr::Qr;

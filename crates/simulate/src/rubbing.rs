@@ -5,6 +5,8 @@
 
 use kempe_dynamics::Acting;
 use kempe_dynamics::friction::Sense;
+use kempe_dynamics::let_go::SLOW;
+use kempe_linear::Anderson;
 use kempe_mechanism::structure::Source;
 use kempe_model::{DriveId, InnerState};
 
@@ -17,7 +19,7 @@ use crate::sticking::{leave_out, limited, shared, spanned, together, yielding};
 /// A speed that is this part of the fastest of its place is none.
 const REST: f64 = 1e-9;
 /// A row that is this part of the longest of all is none: its place hardly slides by any coordinate.
-const UNMOVED: f64 = 1e-12;
+const UNMOVED: f64 = 1e-10;
 /// Corrections of what holds, at most.
 const CORRECTIONS: usize = 200;
 /// Accelerations are settled when they change by this part, or by this one and by no less any more.
@@ -55,6 +57,8 @@ pub(crate) enum Rub {
     Slides(f64),
     /// Friction holds it.
     Held,
+    /// Nothing that is let go moves it.
+    Idle,
 }
 
 /// A place that rubs.
@@ -102,6 +106,8 @@ struct Acted {
     /// How rows accelerate, and the size of what adds up to that.
     after: Vec<f64>,
     terms: Vec<f64>,
+    /// Which of the places anything moves that is let go.
+    moves: Vec<bool>,
 }
 
 /// Adds so many times a vector to another.
@@ -208,12 +214,13 @@ impl Plant {
     /// Hands what is known of every place to what acts.
     pub(crate) fn take_senses(&mut self) {
         for (site, rub) in self.rubbing.sites.iter().zip(&self.mode.rubs) {
-            if let Rub::Slides(sense) = rub {
-                self.inner.values[site.inner] = *sense;
-            }
+            self.inner.values[site.inner] = match rub {
+                Rub::Slides(sense) => *sense,
+                Rub::Held | Rub::Idle => 0.0,
+            };
             if let Acts::Joint(index, amount) = site.what {
                 self.forces.acting.friction[index].sense = match rub {
-                    Rub::Slides(_) => Sense::Amount(amount),
+                    Rub::Slides(_) | Rub::Idle => Sense::Amount(amount),
                     Rub::Held => Sense::Resists(site.resists),
                 };
             }
@@ -227,7 +234,7 @@ impl Plant {
         let found = sites.collect::<Vec<_>>();
         match found.iter().find(own) {
             // What holds is found with the rest.
-            Some((_, Rub::Held)) => 0.0,
+            Some((_, Rub::Held | Rub::Idle)) => 0.0,
             Some((_, Rub::Slides(sense))) => sense * friction,
             None => 0.0,
         }
@@ -293,16 +300,16 @@ impl Plant {
             self.let_go.halve(&mut row);
             row
         };
-        let sizes = places.iter().map(|k| self.rubbing.sites[*k].size);
-        let sizes: Vec<f64> = sizes.collect();
-        let mut own: Vec<Vec<f64>> = places.iter().map(|k| halved(&here[*k].gradient)).collect();
-        let long = |(row, size): (&Vec<f64>, &f64)| dot(row, row).sqrt() / size;
-        let longest = own.iter().zip(&sizes).map(long).fold(0.0, f64::max);
-        for (row, size) in own.iter_mut().zip(&sizes) {
-            if long((row, size)) <= UNMOVED * longest {
-                row.fill(0.0);
-            }
-        }
+        let all: Vec<Vec<f64>> = here.iter().map(|here| halved(&here.gradient)).collect();
+        let sites = self.rubbing.sites.iter();
+        let long: Vec<f64> = (sites.zip(&all))
+            .map(|(site, row)| dot(row, row).sqrt() / site.size)
+            .collect();
+        let longest = long.iter().copied().fold(0.0, f64::max);
+        let own = places.iter().map(|k| match long[*k] <= UNMOVED * longest {
+            true => vec![0.0; self.free.len()],
+            false => all[*k].clone(),
+        });
         let stops = gaps.iter().map(|gap| halved(&gap.gradient));
         stops.chain(own).collect()
     }
@@ -383,7 +390,8 @@ impl Plant {
         };
         let back = self.back;
         let (mut before, mut first) = (f64::INFINITY, 0.0_f64);
-        for _ in 0..CORRECTIONS {
+        let mut mixing = Anderson::default();
+        for correction in 0..CORRECTIONS {
             self.take_senses();
             self.given.copy_from_slice(&given);
             for (gap, push) in gaps.iter().zip(&self.pushes) {
@@ -417,6 +425,9 @@ impl Plant {
             let limits: Vec<f64> = (std::iter::repeat_n(f64::INFINITY, gaps.len()))
                 .chain(places.iter().map(|k| here[*k].limit))
                 .collect();
+            if !limits.iter().chain(&accelerations).all(|x| !x.is_nan()) {
+                return Err(Lack::Friction);
+            }
             let now = Now {
                 accelerations: &accelerations,
                 forces: &forces,
@@ -436,6 +447,28 @@ impl Plant {
                 }
             }
             self.let_go.respond(&mut more);
+            let mut found = found;
+            if correction >= SLOW {
+                // All of a size: accelerations in path scales, forces in parts of the largest.
+                let largest = found
+                    .iter()
+                    .map(|f| f.abs())
+                    .fold(f64::MIN_POSITIVE, f64::max);
+                let sizes: Vec<f64> = (self.scales.iter().copied())
+                    .chain(found.iter().map(|_| largest))
+                    .collect();
+                let whole = self.let_go.accelerations.iter().chain(&forces);
+                let by = found.iter().zip(&forces).map(|(new, old)| new - old);
+                let by = more.iter().copied().chain(by);
+                let whole: Vec<f64> = whole.zip(&sizes).map(|(x, size)| x / size).collect();
+                let by: Vec<f64> = by.zip(&sizes).map(|(x, size)| x / size).collect();
+                let step = mixing.step(&whole, &by);
+                let mut step = step.iter().zip(&sizes).map(|(x, size)| x * size);
+                more.iter_mut().zip(&mut step).for_each(|(x, new)| *x = new);
+                for (new, (old, step)) in found.iter_mut().zip(forces.iter().zip(step)) {
+                    *new = old + step;
+                }
+            }
             (self.let_go).accelerate(&mut self.instant, &self.free, &more);
             self.pushes.copy_from_slice(&found[..gaps.len()]);
             for (k, force) in places.iter().zip(&found[gaps.len()..]) {
@@ -460,6 +493,9 @@ impl Plant {
                 return Ok(Acted {
                     stops: gaps.len(),
                     after: after.collect(),
+                    moves: (rows[gaps.len()..].iter())
+                        .map(|row| row.iter().any(|x| *x != 0.0))
+                        .collect(),
                     terms: (accelerations.iter().zip(&rows))
                         .map(|(a, row)| {
                             let by = rows
@@ -482,22 +518,13 @@ impl Plant {
             return None;
         }
         let here = self.rubbing_here();
-        let fastest = self
-            .rubbing
-            .sites
-            .iter()
-            .map(|s| s.fastest / s.size)
-            .fold(0.0, f64::max);
         let part = |k: usize| {
             let (site, here) = (&self.rubbing.sites[k], &here[k]);
             let dry = (site.resists - here.viscous).abs();
             // What nothing can hold slides.
-            let sliding = here.speed.abs() / (REST * (fastest * site.size).max(f64::MIN_POSITIVE));
+            let sliding = here.speed.abs() / self.hardly(k);
             let borne = if dry == 0.0 { 0.0 } else { dry / here.limit };
-            match here.gradient.iter().all(|x| *x == 0.0) {
-                true => 0.0,
-                false => borne.max(if site.resists == 0.0 { sliding } else { 0.0 }),
-            }
+            borne.max(if site.resists == 0.0 { sliding } else { 0.0 })
         };
         let held = (0..here.len()).filter(|k| self.mode.rubs[*k] == Rub::Held);
         let parts: Vec<(usize, f64)> = held.map(|k| (k, part(k))).collect();
@@ -508,11 +535,15 @@ impl Plant {
         Some((1.0 - most.min(2.0), first.map(|(k, _)| *k).collect()))
     }
 
-    /// How fast a place slides in its sense, in a state.
+    /// A speed that is none in a place.
+    pub fn hardly(&self, place: usize) -> f64 {
+        let fastest = self.rubbing.sites.iter().map(|s| s.fastest / s.size);
+        let size = self.rubbing.sites.get(place).map_or(0.0, |site| site.size);
+        REST * size * fastest.fold(self.back, f64::max)
+    }
+
+    /// How fast a place slides in its sense, in a state; by how much it is slower than anything that moves, where it is idle.
     pub fn slides(&mut self, place: usize, time: f64, y: &[f64]) -> Option<f64> {
-        let Rub::Slides(sense) = *self.mode.rubs.get(place)? else {
-            return None;
-        };
         if !self.look(time, y) {
             return None;
         }
@@ -520,7 +551,11 @@ impl Plant {
         for (site, here) in self.rubbing.sites.iter_mut().zip(&here) {
             site.fastest = site.fastest.max(here.speed.abs());
         }
-        Some(here.get(place)?.speed * sense)
+        let speed = here.get(place)?.speed;
+        match self.mode.rubs.get(place)? {
+            Rub::Slides(sense) => Some(speed * sense),
+            Rub::Idle | Rub::Held => Some(self.hardly(place) - speed.abs()),
+        }
     }
 
     /// Decides in a state, whose speeds it clears of what should be none, which places are held and in which sense the others slide.
@@ -537,14 +572,14 @@ impl Plant {
             return Err(Lack::Pose);
         }
         let here = self.rubbing_here();
-        let fastest = (self.rubbing.sites.iter().zip(&here))
-            .map(|(site, here)| site.fastest.max(here.speed.abs()) / site.size)
-            .fold(0.0, f64::max);
+        for (site, here) in self.rubbing.sites.iter_mut().zip(&here) {
+            site.fastest = site.fastest.max(here.speed.abs());
+        }
         let mut candidates = Vec::new();
         for (k, here) in here.iter().enumerate() {
             let site = &self.rubbing.sites[k];
-            let rests = here.speed.abs() <= REST * fastest * site.size;
-            let was_held = self.mode.rubs[k] == Rub::Held && !jumped;
+            let rests = here.speed.abs() <= self.hardly(k);
+            let was_held = !jumped && !matches!(self.mode.rubs[k], Rub::Slides(_));
             self.mode.rubs[k] = if lets_go.contains(&k) {
                 let sense = match site.resists {
                     _ if !rests => here.speed,
@@ -574,11 +609,22 @@ impl Plant {
                 .collect();
             Some(limited(rows, &free, now.limits))
         })?;
-        let after = found.after.iter().zip(&found.terms).skip(found.stops);
-        for (k, (after, terms)) in candidates.iter().zip(after) {
-            self.mode.rubs[*k] = match after.abs() > LEFT_OVER * terms {
-                true => Rub::Slides(after.signum()),
-                false => Rub::Held,
+        let here = self.rubbing_here();
+        let sites = self.rubbing.sites.iter();
+        let most = sites
+            .zip(&here)
+            .map(|(site, here)| here.gain.abs() / site.size);
+        let most = most.fold(0.0, f64::max);
+        for (place, k) in candidates.iter().enumerate() {
+            let (after, terms) = (
+                found.after[found.stops + place],
+                found.terms[found.stops + place],
+            );
+            let slides = after.abs() > LEFT_OVER * terms.max(most * self.rubbing.sites[*k].size);
+            self.mode.rubs[*k] = match (slides, found.moves[place]) {
+                (true, _) => Rub::Slides(after.signum()),
+                (false, true) => Rub::Held,
+                (false, false) => Rub::Idle,
             };
         }
         self.take_senses();
@@ -636,6 +682,7 @@ impl Plant {
         let places = self.rubbing.sites.iter().zip(&self.mode.rubs).zip(&here);
         let parts = places.map(|((site, rub), here)| match rub {
             Rub::Slides(sense) => *sense,
+            Rub::Idle => 0.0,
             Rub::Held => match site.resists - here.viscous {
                 0.0 => 0.0,
                 dry => dry / here.limit,

@@ -37,6 +37,8 @@ pub(crate) enum Watch {
     Separates(Place),
     /// A place that rubs comes to rest.
     Turned(usize),
+    /// A place that rubs begins to slide, that nothing moved.
+    Stirs(usize),
     /// Friction lets something go that it holds.
     Slips,
     /// The two points of a cylinder meet, by the place of its drive among the coordinates.
@@ -55,8 +57,10 @@ pub(crate) fn watches(plant: &Plant, conditions: &[bool]) -> Vec<Watch> {
     list.extend((0..mode.resting.len()).map(Watch::Leaves));
     if !mode.stuck {
         for (place, rub) in mode.rubs.iter().enumerate() {
-            if matches!(rub, Rub::Slides(_)) {
-                list.push(Watch::Turned(place));
+            match rub {
+                Rub::Slides(_) => list.push(Watch::Turned(place)),
+                Rub::Idle => list.push(Watch::Stirs(place)),
+                Rub::Held => {}
             }
         }
         for (index, stop) in plant.stops.iter().enumerate() {
@@ -106,7 +110,7 @@ impl Watch {
             Self::Leaves(k) => plant.pushed(k, time, y),
             Self::Meets(at) => Some(plant.opening(at, y)[0]),
             Self::Separates(at) => Some(-plant.opening(at, y)[0]),
-            Self::Turned(place) => plant.slides(place, time, y),
+            Self::Turned(place) | Self::Stirs(place) => plant.slides(place, time, y),
             Self::Slips => plant.firmness(time, y).map(|(firm, _)| firm),
             Self::Shrinks(k) => Some(y.get(k)? - NO_LENGTH * plant.scales.get(k)?),
             Self::Ends(k, _) => plant.value(ends.get(k)?, time, y).map(|above| -above),
@@ -123,6 +127,8 @@ impl Watch {
                 gap.map_or(0.0, |gap| gap.scale(&plant.scales))
             }
             Self::Meets(_) | Self::Separates(_) => 0.0,
+            // What friction just lets go may begin to slide the wrong way, by rounding.
+            Self::Turned(place) => return plant.hardly(place),
             _ => return 0.0,
         };
         // A stop on what stands still has none of its own.

@@ -2,39 +2,25 @@
 //! Newton's and Euler's equations of each body, no plan, no coefficients and no reduced mass anywhere.
 #![allow(clippy::unwrap_used, clippy::disallowed_methods)]
 
+mod common;
 #[path = "../../motion/tests/support/mod.rs"]
 mod mechanisms;
 
+use common::weigh;
 use kempe_dynamics::Forces;
 use kempe_integrate::{Integrator, Method as Steps, Tolerance};
 use kempe_linear::Lu;
 use kempe_mechanism::configuration::input_of;
 use kempe_mechanism::constraint::Joint;
 use kempe_mechanism::{Design, Input, Pose, Situation};
-use kempe_model::{Center, DriveId, Inertia, Model, Place};
+use kempe_model::DriveId;
 use kempe_motion::Silent;
 use kempe_number::{Jet, Number};
 use kempe_simulate::{Ending, Method, Question, simulate};
-use kempe_units::Expr;
 use mechanisms::generate::{make, recipe};
 use mechanisms::{Case, Rng};
 
 type Series = Jet<f64, 3>;
-
-/// Gives every link some mass, in proportion to a scale (m).
-fn weigh(model: &mut Model, scale: f64, rng: &mut Rng) {
-    for link in &mut model.links {
-        let mut number = |low: f64, high: f64| Expr::Const(rng.range(low, high));
-        link.inertia = Some(Inertia {
-            mass: Some(number(0.1, 2.0)),
-            moment: Some(number(0.05 * scale * scale, 0.2 * scale * scale)),
-            center: Center::Place(Place::Cartesian {
-                x: number(-0.3 * scale, 0.3 * scale),
-                y: number(-0.3 * scale, 0.3 * scale),
-            }),
-        });
-    }
-}
 
 /// All bodies of a mechanism, by their own equations.
 struct Absolute {
@@ -191,7 +177,7 @@ fn minimal_coordinates_move_as_absolute_ones_do() {
         let mut rng = Rng(seed ^ 0x5eed);
         let mut model = Case::of(&make(&recipe(seed)).spec).model;
         let size = Case::from_model(model.clone()).design.size();
-        weigh(&mut model, size, &mut rng);
+        weigh(&mut model, size, |low, high| rng.range(low, high));
         model.actions.friction.clear();
         let case = Case::from_model(model);
         let plan = &case.mechanism.plan;

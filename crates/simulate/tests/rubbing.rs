@@ -2,14 +2,21 @@
 #![allow(clippy::unwrap_used)]
 
 mod common;
+#[path = "../../motion/tests/support/mod.rs"]
+mod mechanisms;
 
-use common::{Free, at};
+use common::{Free, at, weigh};
 use kempe_dynamics::ForceSampler;
+use kempe_mechanism::Design;
 use kempe_mechanism::constraint::Source;
-use kempe_model::JointId;
+use kempe_model::{DriveId, Friction, FrictionAt, JointId};
 use kempe_motion::Silent;
 use kempe_number::Number;
-use kempe_simulate::{Ending, Happened, Rubs, Simulated};
+use kempe_number::math::{cos, sin};
+use kempe_simulate::{Ending, Happened, Happening, Method, Question, Rubs, Simulated, simulate};
+use kempe_units::Expr;
+use mechanisms::generate::{make, recipe};
+use mechanisms::{Case, Rng};
 
 const G: f64 = 9.81;
 
@@ -212,4 +219,189 @@ fn a_five_bar_with_friction_in_all_pins_swings_until_it_rests() {
     assert_eq!(found.ending, Ending::Until);
     let off = unbalanced(&found, 6.0);
     assert!(off < 1e-8, "{off:e}");
+}
+
+/// A block on a belt, held back by a spring.
+fn belt(friction: &str) -> String {
+    format!(
+        r#"
+        units = {{ length = "m", angle = "rad" }}
+        gravity = [0, "-9.81 m/s^2"]
+        [links]
+        frame = {{ O = [0, 0], X = [1, 0], W = [-1, 0] }}
+        belt  = {{ A = [0, 0], Q = [1, 0] }}
+        block = {{ C = [0, 0], mass = 2, inertia = 1, center = "C" }}
+        [joints]
+        rollers = {{ slider = "belt", at = "A", on = "O -> X" }}
+        contact = {{ slider = "block", at = "C", on = "A -> Q" }}
+        [springs]
+        back = {{ between = "W-C", stiffness = "2000 N/m", free = 1 }}
+        [friction]
+        contact = {{ {friction} }}
+        [drives]
+        feed = {{ slides = "rollers", from = 0, to = 0.2, speed = "0.1 m/s" }}
+        slip = {{ slides = "contact", at = 0 }}
+        "#
+    )
+}
+
+fn on_belt(friction: &str, until: f64) -> Free {
+    let mut free = Free::new(&belt(friction), until);
+    free.question.free.remove(0);
+    free.question.start.remove(0);
+    free
+}
+
+/// Stuck until the spring pulls as hard as friction holds, by a harmonic motion about that place where it slides.
+#[test]
+fn a_block_on_a_belt_sticks_and_slips_as_it_must() {
+    let (mass, rate, speed): (f64, f64, f64) = (2.0, 2000.0, 0.1);
+    let mut free = on_belt("coefficient = 0.3", 0.5);
+    // It starts against the belt, and comes back slowly enough for friction to catch it.
+    free.question.start = vec![[0.0, -2.5 * speed]];
+    let found = free.run();
+    assert_eq!(found.ending, Ending::Until);
+    let (w, middle) = ((rate / mass).sqrt(), 0.3 * mass * G / rate);
+    let (a, b) = (-middle, -1.5 * speed / w);
+    let place = |t: f64| middle + a * cos(w * t) + b * sin(w * t);
+    let velocity = |t: f64| w * (b * cos(w * t) - a * sin(w * t));
+    // It comes back, and is as fast as the belt before it is fastest.
+    let fastest = (std::f64::consts::PI - kempe_number::math::atan2(a / b, 1.0)) / w;
+    let (mut low, mut high) = (0.0, fastest);
+    for _ in 0..200 {
+        let middle = 0.5 * (low + high);
+        if velocity(middle) < speed {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    let sticks = low;
+    let slips = sticks + (middle - place(sticks)) / speed;
+    let half = slips + std::f64::consts::PI / w;
+    assert!(half < 0.5, "{half}");
+    for k in 0..=300 {
+        let t = half * f64::from(k) / 300.0;
+        let (x, v) = if t < sticks {
+            (place(t), velocity(t))
+        } else if t < slips {
+            (place(sticks) + speed * (t - sticks), speed)
+        } else {
+            let phase = w * (t - slips);
+            (middle + speed / w * sin(phase), speed * cos(phase))
+        };
+        near(&found, 1, t, [x - speed * t, v - speed]);
+    }
+    let told: Vec<(f64, Happened)> = found.happenings.iter().map(|h| (h.time, h.what)).collect();
+    let contact = Rubs::Joint(Source::Joint(JointId(1)));
+    assert_eq!(told[0].1, Happened::Holds { at: contact });
+    assert_eq!(told[1].1, Happened::LetsGo { at: contact });
+    assert!(
+        (told[0].0 - sticks).abs() < 1e-11 && (told[1].0 - slips).abs() < 1e-10,
+        "{told:?}"
+    );
+}
+
+/// With a coefficient that falls it goes on sticking and slipping, each time alike.
+#[test]
+fn a_falling_coefficient_keeps_a_block_juddering() {
+    for tolerance in [1e-9, 1e-11, 1e-13] {
+        let mut free = on_belt(
+            "coefficient = 0.15, static = 0.3, stribeck = \"5 mm/s\"",
+            2.0,
+        );
+        free.question.tolerance = tolerance;
+        let found = free.run();
+        assert_eq!(found.ending, Ending::Until);
+        let slips = |h: &&Happening| matches!(h.what, Happened::LetsGo { .. });
+        let slips: Vec<f64> = found
+            .happenings
+            .iter()
+            .filter(slips)
+            .map(|h| h.time)
+            .collect();
+        assert_eq!(slips.len(), 10, "{slips:?}");
+        assert!((slips[0] - 0.3 * 2.0 * G / 2000.0 / 0.1).abs() < 1e-12);
+        for pair in slips.windows(2) {
+            assert!(
+                (pair[1] - pair[0] - 0.20364199375).abs() < 1e4 * tolerance.max(1e-11),
+                "{slips:?}"
+            );
+        }
+        let off = unbalanced(&found, 2.0);
+        assert!(off < 1e-6, "{off:e}");
+    }
+}
+
+/// Random mechanisms whose drives are let go, with friction wherever anything turns or slides: what is found is balanced as well as it is
+/// without friction. Some jam: friction circles are wider than links are long.
+#[test]
+fn random_mechanisms_with_friction_are_balanced() {
+    let (mut done, mut several, mut held, mut jams) = (0, 0, 0, 0);
+    for seed in 0..48 {
+        let mut rng = Rng(seed ^ 0xf00d);
+        let mut model = Case::of(&make(&recipe(seed)).spec).model;
+        let size = Case::from_model(model.clone()).design.size();
+        weigh(&mut model, size, |low, high| rng.range(low, high));
+        model.actions.friction = vec![Friction {
+            at: FrictionAt::All,
+            coefficient: Expr::Const(0.1),
+            static_coefficient: None,
+            stribeck_speed: None,
+            viscous: None,
+            drag: None,
+            radius: Some(Expr::Const(0.005 * size)),
+            span: model.drives[0].span.clone(),
+        }];
+        let case = Case::from_model(model);
+        let plan = &case.mechanism.plan;
+        if !plan.decomposition.surplus.is_empty()
+            || plan.blocks.iter().any(|block| !block.surplus.is_empty())
+        {
+            continue;
+        }
+        let drives = &case.model.drives;
+        let until = 0.5 * (size / 9.81).sqrt();
+        let start = drives.iter().map(|drive| {
+            let angle = drive.dimension == kempe_units::Dimension::ANGLE;
+            let unit = if angle { 1.0 } else { size };
+            let law = drive.law.at(0.0, &case.parameters);
+            [law, 0.1 * unit * rng.range(-1.0, 1.0) / until]
+        });
+        let question = Question {
+            free: (0..drives.len() as u32).map(DriveId).collect(),
+            start: start.collect(),
+            until,
+            tolerance: 1e-10,
+            method: Method::Choose,
+            stops: Vec::new(),
+            end_when: Vec::new(),
+            contacts: Vec::new(),
+        };
+        let off = |design: &Design<f64>| {
+            let found = simulate(design, &question, &mut Silent).ok()?;
+            (found.ending == Ending::Until).then(|| (unbalanced(&found, until), found.happenings))
+        };
+        let smooth = case
+            .design
+            .with_model(|model| model.actions.friction.clear());
+        let Some((without, _)) = off(&smooth) else {
+            continue;
+        };
+        let Some((with, happenings)) = off(&case.design) else {
+            jams += 1;
+            continue;
+        };
+        assert!(
+            with < 3e-5 + 1e3 * without,
+            "seed {seed}: {with:e} instead of {without:e}"
+        );
+        done += 1;
+        several += usize::from(drives.len() > 1);
+        held += usize::from(!happenings.is_empty());
+    }
+    assert!(
+        done > 30 && several > 10 && held > 0 && jams < 6,
+        "{done} done, {several} of several freedoms, {held} held, {jams} jam"
+    );
 }

@@ -37,13 +37,7 @@ pub enum Unsimulated {
     Lacks(Lack),
     /// Something that the simulation goes by has no value at the start.
     NoValue(Sought),
-<<<<<<< HEAD
-    /// What this stop bounds goes by drives that keep their laws alone.
-=======
-    /// Friction where several coordinates move: what sticks is not known.
-    FrictionOfSeveral,
     /// What this stop bounds goes by drives that keep their laws, or by time, and by nothing that is let go.
->>>>>>> parity
     KeptFromStop(usize),
     /// It starts beyond this stop, by so much.
     BeyondStop(usize, f64),

@@ -206,6 +206,11 @@ impl Run {
                     return Some(self.no_way_at_once());
                 }
             }
+            Watch::Stirs(place) => {
+                if !self.rub(false, None, &[place]) {
+                    return Some(self.no_way_at_once());
+                }
+            }
             Watch::Slips => {
                 let first = self.plant.firmness(self.time, &self.y);
                 if !first.is_some_and(|(_, first)| self.rub(false, None, &first)) {

@@ -2,9 +2,10 @@
 #![allow(clippy::unwrap_used, dead_code)]
 
 use kempe_mechanism::{Design, Mechanism};
-use kempe_model::{DriveId, Measure, Model};
+use kempe_model::{Center, DriveId, Inertia, Measure, Model, Place};
 use kempe_motion::Silent;
 use kempe_simulate::{Method, Question, Resistance, Simulated, Stop, simulate};
+use kempe_units::Expr;
 
 /// A mechanism whose drives are all let go.
 pub struct Free {
@@ -63,4 +64,19 @@ pub fn at(found: &Simulated, drive: usize, time: f64) -> [f64; 2] {
     use kempe_number::Jet;
     let q: Jet<f64, 2> = found.laws[drive].at(Jet::variable(time), &[]);
     [q.derivative(0), q.derivative(1)]
+}
+
+/// Gives every link some mass, in proportion to a scale (m).
+pub fn weigh(model: &mut Model, scale: f64, mut random: impl FnMut(f64, f64) -> f64) {
+    for link in &mut model.links {
+        let mut number = |low: f64, high: f64| Expr::Const(random(low, high));
+        link.inertia = Some(Inertia {
+            mass: Some(number(0.1, 2.0)),
+            moment: Some(number(0.05 * scale * scale, 0.2 * scale * scale)),
+            center: Center::Place(Place::Cartesian {
+                x: number(-0.3 * scale, 0.3 * scale),
+                y: number(-0.3 * scale, 0.3 * scale),
+            }),
+        });
+    }
 }
