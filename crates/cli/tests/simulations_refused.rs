@@ -87,16 +87,6 @@ fn refused() -> Vec<(&'static str, String, &'static str)> {
             "moves no mass",
         ),
         (
-            "friction of several",
-            pendulums("[friction]\nA = { coefficient = 0.1, radius = 5 }\n") + SIMULATE,
-            "friction is simulated where one coordinate moves alone",
-        ),
-        (
-            "friction beside play",
-            held("[friction]\nD = { coefficient = 0.1, radius = 5 }\n") + CONTACT,
-            "here joints with play move too",
-        ),
-        (
             "a dead point",
             DEAD_POINT.to_owned(),
             "it stands at a dead point of what is let go",
