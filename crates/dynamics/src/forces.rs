@@ -319,6 +319,8 @@ fn holds_nothing(mechanism: &Mechanism, drive: usize) -> bool {
 
 /// Loads below this part of what friction takes are rounding: nothing is held at a dead point itself.
 const NO_LOAD: f64 = 1e-9;
+/// A drive that gives this part of what it would without friction gives nothing: it is let go, and friction holds or brakes the mechanism.
+const GIVES_NOTHING: f64 = 1e-6;
 
 impl Forces<Rates> {
     /// Whether friction holds a drive against what acts on the mechanism, masses at rest: without friction the drive would
@@ -344,7 +346,7 @@ impl Forces<Rates> {
             resting.lanes[0].frictionless[row],
             resting.lambda[row].value(),
         );
-        let loaded = free.abs() > NO_LOAD * held.abs();
+        let loaded = free.abs() > NO_LOAD * held.abs() && held.abs() > GIVES_NOTHING * free.abs();
         let holds = loaded && free * speed < 0.0 && held * speed > 0.0;
         let load = virtual_power::project(&needed, &at.coefficients[drive]).value;
         let per_drive = load.coefficient(1) / speed;
