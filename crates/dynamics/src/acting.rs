@@ -82,7 +82,7 @@ impl<T: ForceNumber> Acting<T> {
             .collect();
         let mut friction = Friction::all(mechanism, geometry, parameters, &mut problems);
         let followed = 0..actions.followed_friction;
-        for (place, it) in followed.zip(friction.iter_mut().filter(|f| f.rubs())) {
+        for (place, it) in followed.zip(friction.iter_mut().filter(|f| f.is_dry())) {
             it.sense = Sense::Amount(amounts.len());
             amounts.push(Amount {
                 measure: Measure::Leaf(Leaf::Inner(InnerState::Friction(place))),

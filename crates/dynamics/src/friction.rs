@@ -261,8 +261,20 @@ impl<T: ForceNumber> Friction<T> {
         }
     }
 
+    /// Whether anything of it resists at rest: what is viscous alone does not, nor a pin without a radius.
+    pub fn is_dry(&self) -> bool {
+        let law = &self.law;
+        let positive = |x: T| x.any_lane(|x| x > 0.0);
+        let pressed = match self.bearing {
+            Bearing::Pin(radius) => positive(radius),
+            Bearing::Guide | Bearing::Teeth(_) => true,
+            Bearing::Flanks(_) => false,
+        };
+        pressed && (positive(law.kinetic) || positive(law.at_rest)) || positive(law.drag)
+    }
+
     /// Whether it is friction, and no force that parts wheels.
-    pub fn rubs(&self) -> bool {
+    pub(crate) fn rubs(&self) -> bool {
         !matches!(self.bearing, Bearing::Flanks(_))
     }
 

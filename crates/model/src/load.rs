@@ -35,7 +35,7 @@ pub struct Actions {
     pub smooth: Vec<Released>,
     /// Limit switches, which loads, valves and motors may go by.
     pub switches: Vec<crate::switch::Switch>,
-    /// In how many places friction is followed: which part of it acts there. None unless several coordinates are simulated.
+    /// In how many places friction is followed: which part of it acts there. No file says so, simulations do.
     pub followed_friction: usize,
 }
 

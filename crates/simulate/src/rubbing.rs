@@ -128,7 +128,7 @@ fn sum(rows: &[Vec<f64>], forces: &[f64]) -> Vec<f64> {
 
 /// How many places rub where these drives are let go.
 pub(crate) fn places_that_rub(acting: &Acting<f64>, free: &[DriveId]) -> usize {
-    let joints = acting.friction.iter().filter(|f| f.rubs());
+    let joints = acting.friction.iter().filter(|f| f.is_dry());
     let seals = acting
         .oils
         .iter()
@@ -178,15 +178,17 @@ impl Plant {
         let model = &self.forces.design.mechanism.model;
         let size = self.forces.design.size();
         let friction = self.forces.acting.friction.iter().enumerate();
-        let joints = friction.filter(|(_, f)| f.rubs()).filter_map(|(index, f)| {
-            let Sense::Amount(amount) = f.sense else {
-                return None;
-            };
-            Some((
-                Acts::Joint(index, amount),
-                if f.turns() { 1.0 } else { size },
-            ))
-        });
+        let joints = friction
+            .filter(|(_, f)| f.is_dry())
+            .filter_map(|(index, f)| {
+                let Sense::Amount(amount) = f.sense else {
+                    return None;
+                };
+                Some((
+                    Acts::Joint(index, amount),
+                    if f.turns() { 1.0 } else { size },
+                ))
+            });
         let seals = self.inner.moved.iter().enumerate();
         let seals = seals
             .filter(|(_, m)| self.forces.acting.oils[m.oil].friction > 0.0)
@@ -204,10 +206,8 @@ impl Plant {
                 })
             });
         self.rubbing.sites = sites.collect();
-        self.mode.rubs = vec![Rub::Held; self.rubbing.sites.len()];
-        for site in &self.rubbing.sites {
-            self.inner.values[site.inner] = 0.0;
-        }
+        // Nothing rubs until that is decided: what is found before, such as pressures that hold, counts no friction.
+        self.mode.rubs = vec![Rub::Idle; self.rubbing.sites.len()];
         self.take_senses();
     }
 
@@ -229,14 +229,11 @@ impl Plant {
 
     /// What the seals of a cylinder resist with, by its place among those that oil moves.
     pub(crate) fn seals_resist(&self, moved: usize, friction: f64) -> f64 {
-        let own = |site: &&(&Site, &Rub)| matches!(site.0.what, Acts::Seals(k) if k == moved);
-        let sites = self.rubbing.sites.iter().zip(&self.mode.rubs);
-        let found = sites.collect::<Vec<_>>();
-        match found.iter().find(own) {
-            // What holds is found with the rest.
-            Some((_, Rub::Held | Rub::Idle)) => 0.0,
+        let mut sites = self.rubbing.sites.iter().zip(&self.mode.rubs);
+        match sites.find(|(site, _)| matches!(site.what, Acts::Seals(k) if k == moved)) {
             Some((_, Rub::Slides(sense))) => sense * friction,
-            None => 0.0,
+            // What holds is found with the rest.
+            Some((_, Rub::Held | Rub::Idle)) | None => 0.0,
         }
     }
 
@@ -685,7 +682,8 @@ impl Plant {
             Rub::Idle => 0.0,
             Rub::Held => match site.resists - here.viscous {
                 0.0 => 0.0,
-                dry => dry / here.limit,
+                // Where nothing presses there is no limit to speak of.
+                dry => (dry / here.limit).clamp(-1.0, 1.0),
             },
         });
         Some(parts.collect())

@@ -120,6 +120,23 @@ fn seals_hold_until_the_oil_breaks_them_loose() {
     assert!(at(&found, 0, 0.05)[1] > 0.0);
 }
 
+/// Pressures that are not told hold what acts on the block by themselves: seals and guides may let go at any time.
+#[test]
+fn pressures_at_the_start_count_no_friction() {
+    let load = "[loads]\npush_back = { at = \"B\", force = [-4000, 0] }\n";
+    let guide = "[friction]\nguide = { coefficient = 0.2, drag = \"1 kN\" }\n";
+    let at_start = |seals: &str, rest: &str| {
+        let found = Free::new(&block(&format!("{seals}{SHUT}"), rest), 0.01).run();
+        pressures(&found, 0.0)
+    };
+    let smooth = at_start("", load);
+    assert!((smooth[0] * 0.002 - smooth[1] * 0.0012 - 4000.0).abs() < 1e-6);
+    let rough = at_start("friction = \"6 kN\"\n", &format!("{load}{guide}"));
+    for (a, b) in smooth.iter().zip(rough) {
+        assert!((a - b).abs() < 1e-3, "{smooth:?} {rough:?}");
+    }
+}
+
 #[test]
 fn a_valve_that_opens_sinks_to_the_tank_however_stiff() {
     // Drained against nothing it goes to zero, by the root and below 0.1 bar smoothly; both methods tell the same.

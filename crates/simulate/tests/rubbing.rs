@@ -405,3 +405,41 @@ fn random_mechanisms_with_friction_are_balanced() {
         "{done} done, {several} of several freedoms, {held} held, {jams} jam"
     );
 }
+
+/// What is viscous alone never holds anything: it is a damper.
+#[test]
+fn what_has_no_dry_friction_is_never_held() {
+    let pendulum = |friction: &str| {
+        format!(
+            r#"
+            units = {{ length = "m", angle = "rad" }}
+            gravity = [0, "-9.81 m/s^2"]
+            [links]
+            frame = {{ O = [0, 0] }}
+            upper = {{ O-P = 1, mass = 1, inertia = 0.1, center = [0.5, 0] }}
+            lower = {{ P-Q = 1, mass = 1, inertia = 0.1, center = [0.5, 0] }}
+            {friction}
+            [drives]
+            one = {{ turns = "upper", at = "-90 deg" }}
+            two = {{ turns = "lower", at = "-90 deg" }}
+            "#
+        )
+    };
+    let mut ends = Vec::new();
+    for friction in [
+        "[dampers]\nhinge = { links = [\"upper\", \"lower\"], damping = \"0.2 N m s\" }",
+        "[friction]\nP = { coefficient = 0, radius = 0.1, viscous = \"0.2 N m s\" }",
+    ] {
+        // Hanging still, and swinging.
+        let still = Free::new(&pendulum(friction), 1.0).run();
+        assert!(still.happenings.is_empty() && still.ending == Ending::Until);
+        let mut free = Free::new(&pendulum(friction), 3.0);
+        free.question.start[1][1] = 4.0;
+        let found = free.run();
+        assert!(found.happenings.is_empty(), "{:?}", found.happenings);
+        ends.push([at(&found, 0, 3.0), at(&found, 1, 3.0)]);
+    }
+    for (one, other) in ends[0].iter().flatten().zip(ends[1].iter().flatten()) {
+        assert!((one - other).abs() < 1e-10, "{ends:?}");
+    }
+}

@@ -57,9 +57,7 @@ impl Run {
         for ((before, now), at) in before.rubs.iter().zip(&rubs).zip(places) {
             match (*before == Rub::Held, *now == Rub::Held) {
                 (false, true) => self.tell(Happened::Holds { at }),
-                // Nothing held it before it began.
-                (true, false) if self.time > 0.0 => self.tell(Happened::LetsGo { at }),
-                (true, true) if jumped && self.time == 0.0 => self.tell(Happened::Holds { at }),
+                (true, false) => self.tell(Happened::LetsGo { at }),
                 _ => {}
             }
         }
