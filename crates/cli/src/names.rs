@@ -22,6 +22,11 @@ pub fn picture(model: &Model, study: &str, picture: &str) -> String {
     format!("{study}{mark}{picture}.svg")
 }
 
+/// The name of a file of a mechanism that a study found, in the study's folder: `generator/01.toml`.
+pub fn design(study: &str, file: &str) -> String {
+    format!("{study}/{file}")
+}
+
 /// The name of a file of the other one of two designs: `turn.against.csv`. No study has a dot in its name.
 pub fn of_other_design(name: &str) -> String {
     match name.rsplit_once('.') {
@@ -43,6 +48,8 @@ pub fn comparison(model: &Model) -> &'static str {
 /// The name of a file of a run: of one that was stopped, `turn.csv` is `turn.partial.csv`.
 pub fn of_run(name: &str, partial: bool) -> String {
     match name.rsplit_once('.') {
+        // What a study had found by then stands in a folder of its own, so that files that name each other find each other.
+        _ if partial && name.contains('/') => name.replacen('/', ".partial/", 1),
         Some((stem, ending)) if partial => format!("{stem}.partial.{ending}"),
         _ => name.to_owned(),
     }

@@ -36,6 +36,8 @@ pub struct Output {
     inputs: Vec<PathBuf>,
     record: Record,
     waiting: Vec<Waiting>,
+    /// Folders in it from which old files go.
+    renewed: Vec<String>,
     /// Folders that were made for this run, the outermost first.
     made: Vec<PathBuf>,
     lock: Option<Lock>,
@@ -114,6 +116,7 @@ impl Output {
             inputs: inputs.to_vec(),
             record: Record::default(),
             waiting: Vec::new(),
+            renewed: Vec::new(),
             made,
             lock: None,
         };
@@ -164,6 +167,9 @@ impl Output {
             ));
         }
         let failed = |error: io::Error| cannot_write(&path, &error);
+        if let Some((inner, _)) = name.split_once('/') {
+            self.make_inner(inner).map_err(failed)?;
+        }
         let (hidden, mut file) = hidden::create(&self.folder).map_err(failed)?;
         self.waiting.push(Waiting {
             name: name.to_owned(),
@@ -173,6 +179,40 @@ impl Output {
             kept: None,
         });
         (file.write_all(bytes).and_then(|()| file.sync_all())).map_err(failed)
+    }
+
+    /// Makes a folder in this one, which goes again where nothing comes into it.
+    fn make_inner(&mut self, inner: &str) -> io::Result<()> {
+        let path = self.folder.join(inner);
+        match fs::symlink_metadata(&path) {
+            Ok(metadata) if metadata.is_dir() => return Ok(()),
+            Ok(_) => return Err(io::Error::other("it is no folder")),
+            Err(_) => {}
+        }
+        fs::create_dir(&path)?;
+        self.made.push(path);
+        Ok(())
+    }
+
+    /// Of a folder in this one nothing of earlier runs is to stay but what this run writes anew: what Kempe wrote goes once all has
+    /// appeared, unless somebody changed it.
+    pub fn renew(&mut self, inner: &str) {
+        self.renewed.push(inner.to_owned());
+    }
+
+    /// Removes what earlier runs wrote into folders that are renewed.
+    fn remove_old(&mut self) {
+        let mut old = Vec::new();
+        for inner in &self.renewed {
+            let own = self.record.files_in(inner).filter(|name| {
+                self.waiting.iter().all(|w| w.name != *name)
+                    && self.record.owner(&self.folder, name) == record::Owner::Kempe
+            });
+            old.extend(own.map(|name| self.folder.join(name)));
+        }
+        for path in old {
+            let _ = fs::remove_file(path);
+        }
     }
 
     /// Lets all files appear. On an error none of them does, and what was there before is put back.
@@ -201,6 +241,7 @@ impl Output {
                 return Err(self.taken_back(index, &path, &error));
             }
         }
+        self.remove_old();
         self.record.appeared();
         if let Err(error) = self.record.write(&self.folder) {
             let all = self.waiting.len();

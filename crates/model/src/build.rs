@@ -279,6 +279,15 @@ impl ModelBuilder {
         builder
     }
 
+    /// With another title.
+    #[must_use]
+    pub fn titled(mut self, title: &str) -> Self {
+        self.file.head.retain(|(key, _)| key != "title");
+        let title = ("title".to_owned(), Item::text(title));
+        self.file.head.insert(0, title);
+        self
+    }
+
     /// The units of bare lengths and angles.
     #[must_use]
     pub fn units(self, length: &str, angle: &str) -> Self {

@@ -41,6 +41,7 @@ pub(crate) mod simulate;
 pub(crate) mod springs;
 pub(crate) mod studies;
 mod switches;
+mod synthesis;
 mod transmission;
 mod value;
 mod vibrations;
@@ -50,6 +51,7 @@ use crate::document;
 use crate::model::Model;
 use context::Context;
 pub use csv::{MAX_TABLE_BYTES, PARTIAL_TABLE, partial_table};
+pub use one_measure::Compared;
 
 /// A model that stands, and what a careful engineer would want to be told about its file.
 #[derive(Clone, Debug)]

@@ -60,6 +60,9 @@ impl Model {
                 let plays = contact.motion.plays.iter_mut();
                 plays.for_each(|p| forget(&mut p.span));
             }
+            if let StudyKind::Synthesize(asked) = &mut study.kind {
+                asked.visit_places(&mut |span| *span = 0..0);
+            }
         }
         let acting = &mut self.actions;
         acting.loads.iter_mut().for_each(|p| forget(&mut p.span));
@@ -201,6 +204,10 @@ impl Model {
                     study.at.iter_mut().for_each(|(_, at)| f(at));
                     &mut study.along
                 }
+                StudyKind::Synthesize(study) => {
+                    study.visit_scalars(f);
+                    &mut study.along
+                }
             };
             match &mut along.rows {
                 Rows::DriveStep(step) | Rows::TimeStep(step) => f(step),
@@ -310,6 +317,7 @@ impl Model {
                 }
                 StudyKind::Clearance(study) => &mut study.along,
                 StudyKind::Vibrations(study) => &mut study.along,
+                StudyKind::Synthesize(study) => &mut study.along,
             };
             let mut column = |c: &mut Column| f(&mut c.measure);
             along.columns.iter_mut().for_each(&mut column);

@@ -6,6 +6,7 @@ use crate::clearance::ClearanceStudy;
 use crate::contact::ContactStudy;
 use crate::ids::{DriveId, JointId, LinkId, PointId, Scalar, Span};
 use crate::measure::{Leaf, Measure};
+use crate::synthesis::SynthesizeStudy;
 
 /// A measure with the user's name for it.
 #[derive(Clone, Debug, PartialEq)]
@@ -62,6 +63,8 @@ pub enum StudyKind {
     Contact(ContactStudy),
     /// The natural vibrations about a pose, or about the poses of a motion.
     Vibrations(VibrationStudy),
+    /// The linkages that do something: it needs no mechanism.
+    Synthesize(Box<SynthesizeStudy>),
 }
 
 /// How a mechanism moves in time under what acts on it.
@@ -252,6 +255,7 @@ impl StudyKind {
             Self::Clearance(study) => &study.along,
             Self::Contact(study) => &study.motion.along,
             Self::Vibrations(study) => &study.along,
+            Self::Synthesize(study) => &study.along,
         }
     }
 }

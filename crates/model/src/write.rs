@@ -6,6 +6,7 @@ mod links;
 mod mechanism;
 mod spelling;
 mod studies;
+mod synthesis;
 
 use crate::item::{File, Item};
 use crate::key_table::UNITS;

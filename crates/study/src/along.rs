@@ -214,12 +214,16 @@ pub(crate) fn not_answerable(mechanism: &Mechanism, study: &Study) -> Vec<Diagno
         | StudyKind::Spring(_)
         | StudyKind::Vibrations(_)
         | StudyKind::Simulate(_)
-        | StudyKind::Contact(_) => Asked::default(),
+        | StudyKind::Contact(_)
+        | StudyKind::Synthesize(_) => Asked::default(),
     };
     let mut found = unanswered(mechanism, &asked, |_| true);
     if !matches!(
         study.kind,
-        StudyKind::Motion(_) | StudyKind::Simulate(_) | StudyKind::Contact(_)
+        StudyKind::Motion(_)
+            | StudyKind::Simulate(_)
+            | StudyKind::Contact(_)
+            | StudyKind::Synthesize(_)
     ) {
         found.extend(
             only_simulated(mechanism)

@@ -150,6 +150,7 @@ pub(crate) fn run_circuit(
         contacts: Vec::new(),
         listings: Vec::new(),
         shapes: Vec::new(),
+        designs: Vec::new(),
         along: 0,
         assemblies: (circuit.assemblies.list.len(), circuit.assemblies.rejected),
         diagnostics,

@@ -52,6 +52,11 @@ pub fn cannot_move(design: &Design<f64>, error: &MotionError) -> Diagnostic {
     let plan = &mechanism.plan;
     let model = &mechanism.model;
     match error {
+        MotionError::NoDrive if model.links.len() == 1 => Diagnostic::error(
+            "no-mechanism",
+            "the file asks for linkages, and has none of its own",
+        )
+        .help("run it with --out results: the linkages found are model files there"),
         MotionError::NoDrive => Diagnostic::error("no-drive", "nothing moves the mechanism")
             .help("say what moves: [drives] motor = { turns = \"crank\", from = 0, to = 360, speed = \"1 rad/s\" }"),
         MotionError::Undetermined { bodies } => {

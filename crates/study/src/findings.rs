@@ -26,6 +26,7 @@ use crate::hints;
 use crate::motion_findings::{motion_findings, of_freedoms, of_mechanism};
 use crate::prepared::design;
 use crate::simulation::findings_of_simulation;
+use crate::synthesis::findings_of_synthesis;
 use crate::unit::Units;
 use crate::vibrations::findings_of_vibrations;
 use crate::words::{list, source_name};
@@ -337,7 +338,7 @@ fn assumptions(model: &Model, units: &Units) -> Vec<String> {
         ));
     }
     assumed.extend(teeth(model));
-    if model.assembly.is_empty() {
+    if model.assembly.is_empty() && model.links.len() > 1 {
         assumed.push("assembly: the first found, as the file names none".to_owned());
     }
     assumed.extend(model.studies.iter().map(|study| {
@@ -391,6 +392,7 @@ fn study_text(model: &Model, study: &Study, parameters: &[f64], units: &Units) -
         StudyKind::Clearance(_) => "clearance",
         StudyKind::Contact(_) => "clearance in which contact is lost",
         StudyKind::Vibrations(_) => "natural vibrations",
+        StudyKind::Synthesize(asked) => return crate::synthesis::in_words(asked),
     };
     let along = study.kind.along();
     let moving = |d: &&Drive| {
@@ -551,6 +553,7 @@ fn of_study(laws: &OfLaws<'_>, study: &Study, progress: &mut dyn Progress) -> Ve
         StudyKind::Simulate(it) => findings_of_simulation(model, name, it, &[], progress),
         StudyKind::Contact(play) => findings_of_contact(model, name, play, laws.lack(), progress),
         StudyKind::Vibrations(asked) => findings_of_vibrations(model, name, asked, progress),
+        StudyKind::Synthesize(asked) => findings_of_synthesis(model, asked),
     };
     if !refuses(&told) {
         told.extend(not_answerable(&laws.design.mechanism, study));

@@ -21,7 +21,15 @@ impl Report {
             .any(|d| d.severity == Severity::Error)
     }
 
+    /// Whether the file has a mechanism, and not only a frame on which studies find some.
+    fn has_mechanism(&self) -> bool {
+        self.links > 1
+    }
+
     fn facts(&self) -> Vec<(String, String)> {
+        if !self.has_mechanism() {
+            return Vec::new();
+        }
         let mut facts = vec![(
             "Mobility by count".to_owned(),
             format!(
@@ -56,6 +64,9 @@ impl Report {
     }
 
     fn motion_facts(&self) -> Vec<(String, String)> {
+        if !self.has_mechanism() {
+            return Vec::new();
+        }
         let others = match self.assemblies_rejected {
             0 => String::new(),
             n => format!(", {n} more on other sides"),
@@ -132,10 +143,18 @@ impl Report {
 
     /// The findings as sections of the HTML report.
     pub fn sections(&self) -> Vec<Section> {
-        let mut sections = vec![Section {
+        let mut sections = Vec::new();
+        if !self.has_mechanism() {
+            sections.push(Section {
+                title: "Taken as".to_owned(),
+                blocks: vec![Block::List(self.assumptions.clone())],
+            });
+            return sections;
+        }
+        sections.push(Section {
             title: "Freedoms".to_owned(),
             blocks: vec![Block::Facts(self.facts())],
-        }];
+        });
         if !self.drawn.is_empty() {
             let facts = self.drawn.iter();
             let facts = facts.map(|d| (d.link.clone(), d.lengths.join(", ")));

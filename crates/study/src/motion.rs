@@ -34,6 +34,17 @@ pub(crate) fn run_along(
     forces: bool,
     progress: &mut dyn Progress,
 ) -> Result<StudyResult, Vec<Diagnostic>> {
+    run_along_with(model, name, study, (forces, &[]), progress).map(|(result, _)| result)
+}
+
+/// The same with values (SI) of what is `hidden` in no column, by row.
+pub(crate) fn run_along_with(
+    model: &Model,
+    name: &str,
+    study: &MotionStudy,
+    (forces, hidden): (bool, &[Quantity]),
+    progress: &mut dyn Progress,
+) -> Result<(StudyResult, Vec<Vec<f64>>), Vec<Diagnostic>> {
     let motion = motion(&design(model), progress)?;
     let diagnostics = motion_findings(&motion);
     if refused(&motion) {
@@ -41,10 +52,17 @@ pub(crate) fn run_along(
     }
     let along = abscissa(&motion, &motion.design.parameters);
     let shown = motion.mechanism().clone();
-    match rows_of(&motion, &shown, name, study, (forces, along, &[]), progress) {
-        Ok((mut result, _)) => {
+    match rows_of(
+        &motion,
+        &shown,
+        name,
+        study,
+        (forces, along, hidden),
+        progress,
+    ) {
+        Ok((mut result, values)) => {
             result.diagnostics.splice(0..0, diagnostics);
-            Ok(result)
+            Ok((result, values))
         }
         Err(refused) => Err([diagnostics, refused].concat()),
     }
@@ -126,6 +144,7 @@ pub(crate) fn rows_of(
         contacts: Vec::new(),
         listings: Vec::new(),
         shapes: Vec::new(),
+        designs: Vec::new(),
         along,
         assemblies: (motion.assemblies.list.len(), motion.assemblies.rejected),
         diagnostics,

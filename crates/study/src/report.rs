@@ -17,6 +17,7 @@ use crate::parameters_section::parameters_section;
 use crate::plotted::plotted;
 use crate::point_vectors::point_vectors;
 use crate::report_against::{beside, findings_of_other, other_source};
+use crate::report_designs::{designs_section, moving_designs};
 use crate::report_shapes::mode_shapes;
 use crate::result::StudyResult;
 use crate::table::{Column, largest};
@@ -94,7 +95,10 @@ pub fn report(
 ) -> Report {
     let results = studies.iter().filter_map(|s| s.result.as_ref().ok());
     let mut sections: Vec<Section> = against.map_or_else(Vec::new, |a| a.comparison.sections());
-    sections.extend(results.flat_map(|r| values_section(r).into_iter().chain(listings(r))));
+    sections.extend(results.flat_map(|r| {
+        let found = designs_section(r).into_iter();
+        found.chain(values_section(r)).chain(listings(r))
+    }));
     sections.extend(parameters_section(model, origin));
     sections.extend(check.sections());
     let mut findings: Vec<Diagnostic> = warnings.to_vec();
@@ -111,6 +115,9 @@ pub fn report(
     let motions = studies.iter().flat_map(|outcome| {
         let study = outcome.study.kind.along();
         match &outcome.result {
+            Ok(result) if result.frames.is_empty() && !result.designs.is_empty() => {
+                moving_designs(result)
+            }
             Ok(result) if result.shapes.is_empty() => vec![motion(model, study, result, against)],
             Ok(result) => mode_shapes(model, study, result),
             Err(_) => Vec::new(),
@@ -169,7 +176,7 @@ pub(crate) fn shown(column: &Column) -> Shown {
     )
 }
 
-fn motion(
+pub(crate) fn motion(
     model: &Model,
     study: &MotionStudy,
     result: &StudyResult,

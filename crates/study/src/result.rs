@@ -2,7 +2,7 @@
 
 use kempe_dynamics::ForceArrow;
 use kempe_measure::PointRates;
-use kempe_model::{Diagnostic, PointId};
+use kempe_model::{Diagnostic, Model, ModelFile, PointId};
 use kempe_motion::events::EventKind;
 use kempe_units::Unit;
 
@@ -28,6 +28,8 @@ pub struct StudyResult {
     pub frames: Vec<Frame>,
     /// Natural vibrations about one pose, one for each row.
     pub shapes: Vec<ModeShape>,
+    /// Mechanisms that the study found, as models of their own, the best first.
+    pub designs: Vec<FoundDesign>,
     /// Limits and change points met.
     pub events: Vec<Event>,
     /// Index into the columns of the quantity the rows run along: a drive, or time.
@@ -87,6 +89,22 @@ impl StudyResult {
     pub fn abscissa(&self) -> Option<&Column> {
         self.table.columns.get(self.along)
     }
+}
+
+/// A mechanism that a study found, as a model of its own.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct FoundDesign {
+    /// Its name: `01`.
+    pub name: String,
+    /// What stands under its picture.
+    pub title: String,
+    /// Its file, with the tables that it names.
+    pub file: ModelFile,
+    /// The model that the file says.
+    pub model: Model,
+    /// How it moves, by the first study of its file; none where nothing of it moves.
+    pub motion: Option<Box<StudyResult>>,
 }
 
 /// A natural vibration in real poses, as large as is good to look at.

@@ -61,6 +61,9 @@ fn arrows(model: &Model) -> usize {
     2 * between + actions.loads.len() + model.links.len()
 }
 
+/// A linkage that is kept, with its motion.
+const BYTES_OF_LINKAGE: usize = 1 << 19;
+
 /// What a study holds: so many rows of so many bytes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Held {
@@ -100,6 +103,10 @@ pub fn study_bytes(model: &Model, study: &Study) -> Held {
         // Stiffness and preload.
         StudyKind::Spring(choice) => bytes_of_choice(model, &choice.along, 2),
         StudyKind::Vibrations(asked) => bytes_of_vibrations(model, asked),
+        StudyKind::Synthesize(asked) => Held {
+            rows: asked.keep as f64,
+            row: BYTES_OF_LINKAGE,
+        },
     }
 }
 

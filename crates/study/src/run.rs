@@ -10,6 +10,7 @@ use crate::motion::run_along;
 use crate::result::StudyResult;
 use crate::room::{bytes_of_motion, has_room, room_for};
 use crate::simulation::simulation;
+use crate::synthesis::synthesis;
 use crate::vibrations::vibrations;
 use kempe_motion::progress::Progress;
 
@@ -44,6 +45,7 @@ pub fn run(
             contact(model, &study.name, play, progress).map(|(result, _)| result)
         }
         StudyKind::Vibrations(asked) => vibrations(model, &study.name, asked, progress),
+        StudyKind::Synthesize(asked) => synthesis(model, &study.name, asked, progress),
     }
 }
 

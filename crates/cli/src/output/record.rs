@@ -202,6 +202,12 @@ impl Record {
         })
     }
 
+    /// The files right in a folder of this one.
+    pub fn files_in<'r>(&'r self, inner: &'r str) -> impl Iterator<Item = &'r str> {
+        let names = self.files.keys().map(String::as_str);
+        names.filter(move |name| name.split_once('/').is_some_and(|(own, _)| own == inner))
+    }
+
     /// All that was about to appear has appeared.
     pub fn appeared(&mut self) {
         let appearing = std::mem::take(&mut self.appearing);
@@ -232,11 +238,14 @@ impl Record {
     }
 }
 
-/// Whether a name is one of a file right in the folder.
+/// Whether a name is one of a file right in the folder, or in a folder right in it: `turn.csv`, `generator/01.toml`.
 fn is_plain_name(name: &str) -> bool {
-    let mut parts = Path::new(name).components();
-    matches!(parts.next(), Some(std::path::Component::Normal(part)) if part == name)
-        && parts.next().is_none()
+    let parts: Vec<_> = Path::new(name).components().collect();
+    let normal = |part: &std::path::Component<'_>| matches!(part, std::path::Component::Normal(_));
+    let written = parts.iter().map(|part| part.as_os_str().to_string_lossy());
+    (1..=2).contains(&parts.len())
+        && parts.iter().all(normal)
+        && written.collect::<Vec<_>>().join("/") == name
 }
 
 #[cfg(test)]
@@ -281,6 +290,8 @@ mod tests {
             r#"{"files": {"a": 3}}"#,
             r#"{"files": {}, "appearing": {"../a": {"bytes": 1, "fnv1a64": "0"}}}"#,
             r#"{"files": {}, "appearing": {"..": {"bytes": 1, "fnv1a64": "0"}}}"#,
+            r#"{"files": {}, "appearing": {"a/../b": {"bytes": 1, "fnv1a64": "0"}}}"#,
+            r#"{"files": {}, "appearing": {"a/b/c": {"bytes": 1, "fnv1a64": "0"}}}"#,
             r#"{"files": {}, "appearing": {"a": {"bytes": 1, "fnv1a64": "0", "kept": "b"}}}"#,
         ] {
             fs::write(at.join(RECORD), text).unwrap();

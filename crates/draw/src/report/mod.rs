@@ -13,6 +13,7 @@ mod sections;
 mod vectors;
 
 use crate::plot::{MarkerKind, PlotSpec};
+use crate::scene::Scene;
 use crate::view::{Frame, LoadUnit, MechanismView};
 
 /// Most poses and rows that a report carries of one motion; more are thinned out evenly.
@@ -256,6 +257,8 @@ pub enum Block {
         /// Rows of cells.
         rows: Vec<Vec<String>>,
     },
+    /// Pictures side by side, each with what stands under it.
+    Pictures(Vec<(String, Scene)>),
     /// A warning or an error.
     Finding {
         /// How serious.

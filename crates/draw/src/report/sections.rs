@@ -2,6 +2,8 @@
 
 use super::{Block, Check, Evidence, Level, MotionReport, Section};
 use crate::escape::escape;
+use crate::scene::Scene;
+use crate::svg;
 use kempe_number::text::significant;
 
 /// Most rows of a table that are written out.
@@ -16,7 +18,11 @@ const SHORT: usize = 24;
 /// A section with its heading.
 pub(super) fn section(section: &Section, id: &str) -> String {
     let blocks: String = section.blocks.iter().map(block).collect();
-    let is_wide = |block: &Block| matches!(block, Block::Table { head, .. } if head.len() > WIDE);
+    let is_wide = |block: &Block| match block {
+        Block::Table { head, .. } => head.len() > WIDE,
+        Block::Pictures(_) => true,
+        _ => false,
+    };
     let wide = match section.blocks.iter().any(is_wide) {
         true => " wide",
         false => "",
@@ -41,6 +47,15 @@ fn block(block: &Block) -> String {
         }
         Block::Facts(facts) => self::facts(facts),
         Block::Table { head, rows } => table(head, rows),
+        Block::Pictures(pictures) => {
+            let picture = |(title, scene): &(String, Scene)| {
+                let scene = svg::element(scene, "class=\"small\"");
+                let title = escape(title);
+                format!("<figure>{scene}<figcaption>{title}</figcaption></figure>")
+            };
+            let pictures: String = pictures.iter().map(picture).collect();
+            format!("<div class=\"pictures\">{pictures}</div>")
+        }
         Block::Finding {
             level,
             code,

@@ -1,10 +1,11 @@
 //! One measure more, asked of a model that is read already.
 
-use kempe_units::{Dimension, check, parse};
+use kempe_units::{Comparison, Dimension, Expr, check, check_condition, parse, parse_condition};
 
 use crate::diagnostic::Diagnostic;
 use crate::ids::{DriveId, JointId, LinkId, ParameterId, PointId};
 use crate::load::LoadKind;
+use crate::measure::Measure;
 use crate::model::Model;
 use crate::read::context::{Context, Meaning, MeasureState};
 use crate::read::measure_names::Measures;
@@ -44,6 +45,61 @@ impl Model {
                 .map(|issue| Diagnostic::of_issue(issue, "measure", text).tamed())
                 .collect()),
         }
+    }
+}
+
+/// Two measures that a condition compares.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Compared {
+    /// The left side, named by its text.
+    pub left: NamedMeasure,
+    /// Left less right where the left side is to be the larger one, right less left where it is to be the smaller: not negative where the
+    /// condition holds.
+    pub above: Measure,
+    /// Whether the left side is to be the larger one.
+    pub at_least: bool,
+}
+
+impl Model {
+    /// Reads a condition, such as `min(transmission_angle(C)) >= 35 deg`, as if it stood in the file.
+    ///
+    /// # Errors
+    ///
+    /// What is wrong with it, labelled in `text`.
+    pub fn condition(&self, text: &str) -> Result<Compared, Vec<Diagnostic>> {
+        let mut files = |_: &str| Err(String::new());
+        let cx = Context::of(self, &mut files);
+        let read = parse_condition(text).and_then(|tree| {
+            let checked = check_condition(&tree, &mut Measures(&cx))?;
+            Ok((tree, checked))
+        });
+        let (tree, found) = read.map_err(|issues| {
+            let told = issues.into_iter();
+            told.map(|issue| Diagnostic::of_issue(issue, "condition", text).tamed())
+                .collect::<Vec<_>>()
+        })?;
+        let at_least = matches!(
+            found.comparison,
+            Comparison::Greater | Comparison::GreaterEqual
+        );
+        let written = text.get(..tree.comparison_span.start).unwrap_or(text);
+        let (large, small) = match at_least {
+            true => (found.left.clone(), found.right),
+            false => (found.right, found.left.clone()),
+        };
+        let above = Expr::Sub(Box::new(large), Box::new(small));
+        Ok(Compared {
+            left: NamedMeasure {
+                needs_forces: nature(&above, &cx.natures).forces,
+                name: written.trim().to_owned(),
+                measure: found.left,
+                dimension: found.dimension,
+                span: tree.left.span,
+            },
+            above,
+            at_least,
+        })
     }
 }
 

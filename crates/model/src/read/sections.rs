@@ -13,7 +13,7 @@ use crate::read::context::Context;
 use crate::read::entry::Entry;
 use crate::read::{
     actuators, assembly, clearance, controls, drawn, drives, friction, joints, links, loads,
-    masses, measures, names, parameters, places, springs, studies, switches,
+    masses, measures, names, parameters, places, springs, studies, switches, synthesis,
 };
 use crate::study::StudyKind;
 
@@ -54,7 +54,10 @@ pub(crate) fn read(cx: &mut Context<'_>, root: &Table, overrides: &[(String, Str
         .get("links")
         .is_none_or(|n| matches!(n.value, Value::Table(_)));
     places::read(cx, sections.of("places"));
-    links::read(cx, sections.of("links"), sections.first_link, whole);
+    // a file that asks for linkages alone has a frame without points
+    if file.has("links") || file.has("places") || !synthesis::asked(sections.of("studies")) {
+        links::read(cx, sections.of("links"), sections.first_link, whole);
+    }
     places::frame_as_drawn(cx);
     joints::read(cx, sections.of("joints"));
     drives::read(cx, sections.of("drives"));

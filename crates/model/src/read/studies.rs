@@ -15,7 +15,7 @@ use crate::read::context::Context;
 use crate::read::entry::Entry;
 use crate::read::names::long_name;
 use crate::read::plots::plot;
-use crate::read::{choices, clearance, simulate, vibrations};
+use crate::read::{choices, clearance, simulate, synthesis, vibrations};
 use crate::study::{AnnouncedStudy, Column, MotionStudy, Plot, Rows, Study, StudyKind};
 
 /// Rows of a table by default, when a step is not the thing to say.
@@ -141,8 +141,13 @@ fn read_study(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<StudyKind> {
         });
         return None;
     }
+    if name == synthesis::KIND {
+        return synthesis::read(cx, entry);
+    }
     let Some(known) = STUDIES.iter().find(|kind| kind.name == name) else {
-        let kinds = STUDIES.map(|kind| kind.name);
+        let of_motion = STUDIES.iter().map(|kind| kind.name);
+        let of_motion = of_motion.filter(|name| !name.contains(' '));
+        let kinds: Vec<&str> = of_motion.chain([synthesis::KIND]).collect();
         let all = kinds.iter().chain(ANNOUNCED_STUDIES).copied();
         let near = kempe_units::nearest(name, all);
         let help = match near {

@@ -156,6 +156,32 @@ impl Context<'_> {
         Some(scalar)
     }
 
+    /// A plain number as a formula over the parameters and one number more, with its text.
+    pub fn formula_of(
+        &mut self,
+        node: &Node,
+        variable: &str,
+    ) -> Option<(String, Expr<Option<ParameterId>>)> {
+        let text = self.text(
+            node,
+            &format!("a formula of {variable}"),
+            &format!("\"{variable}^2\""),
+        )?;
+        let mut names = OneMore {
+            parameters: Parameters(self),
+            more: Some((variable, Dimension::NONE)),
+        };
+        let checked = parse(&text.content)
+            .and_then(|tree| check_as(&tree, &mut names, Dimension::NONE, &Unit::one()));
+        match checked {
+            Ok((formula, _)) => Some((text.content.trim().to_owned(), formula)),
+            Err(issues) => {
+                self.issues(text, issues);
+                None
+            }
+        }
+    }
+
     /// A dimension of the design whose dimension is to be seen from the text; a bare number measures `bare`.
     pub fn inferred(&mut self, node: &Node, bare: Dimension) -> Option<(Scalar, Dimension)> {
         let Value::Text(text) = &node.value else {

@@ -44,10 +44,16 @@ impl Writer<'_> {
             StudyKind::Simulate(_) => "simulate",
             StudyKind::Clearance(_) | StudyKind::Contact(_) => "clearance",
             StudyKind::Vibrations(_) => "vibrations",
+            StudyKind::Synthesize(_) => "synthesize",
         };
         let mut entries = vec![("kind".to_owned(), Item::text(kind))];
         let one_pose = |study: &VibrationStudy| study.along.rows == Rows::Count(1);
-        if !matches!(&study.kind, StudyKind::Vibrations(study) if one_pose(study)) {
+        let no_rows = match &study.kind {
+            StudyKind::Vibrations(study) => one_pose(study),
+            StudyKind::Synthesize(_) => true,
+            _ => false,
+        };
+        if !no_rows {
             self.along(study.kind.along(), &mut entries);
         }
         let mut put = |key: &str, item: Item| entries.push((key.to_owned(), item));
@@ -106,6 +112,7 @@ impl Writer<'_> {
                 self.in_time(study, self.model.drives.len(), &mut put);
             }
             StudyKind::Vibrations(study) => self.vibrations(study, &mut put),
+            StudyKind::Synthesize(study) => self.synthesis(study, &mut put),
         }
         entries
     }

@@ -146,6 +146,7 @@ pub(crate) fn clearance(
         contacts: Vec::new(),
         listings: summary::listings(&summary, &table, along, &joints),
         shapes: Vec::new(),
+        designs: Vec::new(),
         figures,
         table,
         frames,

@@ -5,7 +5,7 @@ use kempe_model::Diagnostic;
 use kempe_motion::events::EventKind;
 use serde_json::{Value, json};
 
-use crate::result::{Event, Scalar, StudyResult};
+use crate::result::{Event, FoundDesign, Scalar, StudyResult};
 use crate::table::{Column, Table};
 
 /// A table: its columns with name, unit and values.
@@ -57,10 +57,18 @@ pub fn result(result: &StudyResult, with_table: bool) -> Value {
         "worst_condition": result.table.worst_condition().map(|(_, c)| c),
         "diagnostics": result.diagnostics.iter().map(diagnostic).collect::<Vec<_>>(),
     });
+    if !result.designs.is_empty() {
+        out["designs"] = result.designs.iter().map(design).collect();
+    }
     if with_table {
         out["table"] = table(&result.table);
     }
     out
+}
+
+/// A mechanism that was found, with its file.
+fn design(design: &FoundDesign) -> Value {
+    json!({ "name": design.name, "title": design.title, "model": design.file.toml })
 }
 
 fn event(event: &Event) -> Value {

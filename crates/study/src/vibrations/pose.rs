@@ -63,6 +63,7 @@ pub(super) fn about(
         scalars,
         figures: Vec::new(),
         shapes,
+        designs: Vec::new(),
         events: Vec::new(),
         along: 0,
         assemblies,

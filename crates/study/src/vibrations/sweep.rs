@@ -159,6 +159,7 @@ pub(super) fn along(
         listings: Vec::new(),
         frames,
         shapes: Vec::new(),
+        designs: Vec::new(),
         events: Vec::new(),
         along,
         assemblies,

@@ -63,7 +63,7 @@ pub fn summary(
             );
             out.push('\n');
         }
-        if folder.is_none() {
+        if folder.is_none() && result.designs.is_empty() {
             out.push_str(&aligned(extremes(result).iter(), 2));
         }
         for listing in &result.listings {

@@ -8,7 +8,8 @@ use kempe_draw::{DrawOptions, Frame, Outline, Stage, Theme, svg};
 use kempe_model::{Diagnostic, Model, PARTIAL_TABLE, Study};
 use kempe_study::{
     CheckReport, MECHANISM, ModeShape, Proof, ReportAgainst, ReportOrigin, StudyOutcome,
-    StudyResult, drawing_frames, drawn, encode, figures, figures_against, mechanism_view, outline,
+    StudyResult, design_picture, drawing_frames, drawn, encode, figures, figures_against,
+    mechanism_view, outline,
 };
 
 use super::against::Against;
@@ -70,6 +71,13 @@ impl Results<'_> {
     /// Writes all files, each whole or none. Those of a run that was stopped have names of their own and say so inside.
     pub fn write(&self, mut output: Output) -> Result<Vec<PathBuf>, Box<Diagnostic>> {
         let partial = self.stopped.is_some();
+        for result in self.outcomes.iter().filter_map(|o| o.result.as_ref().ok()) {
+            if let Some((inner, _)) =
+                names::of_run(&names::design(&result.name, ""), partial).split_once('/')
+            {
+                output.renew(inner);
+            }
+        }
         let mut add = |name: &str, bytes: &[u8]| output.add(&names::of_run(name, partial), bytes);
         let model = &self.loaded.checked.model;
         for outcome in self.outcomes {
@@ -78,10 +86,25 @@ impl Results<'_> {
             };
             let name = &result.name;
             self.write_table(self.loaded, result, |name| name.to_owned(), &mut add)?;
-            add(
-                &names::picture(model, name, MECHANISM),
-                self.picture(outcome.study, result).as_bytes(),
-            )?;
+            if !result.frames.is_empty() {
+                add(
+                    &names::picture(model, name, MECHANISM),
+                    self.picture(outcome.study, result).as_bytes(),
+                )?;
+            }
+            for design in &result.designs {
+                let own = |ending: &str| names::design(name, &format!("{}.{ending}", design.name));
+                add(&own("toml"), design.file.toml.as_bytes())?;
+                for (table, text) in design.file.tables.iter() {
+                    add(&names::design(name, table), text.as_bytes())?;
+                }
+                if let Some(picture) = design_picture(design) {
+                    add(
+                        &own("svg"),
+                        svg::document(&picture, Theme::Light).as_bytes(),
+                    )?;
+                }
+            }
             for (shape, picture) in shape_pictures(model, outcome.study, result) {
                 add(&names::picture(model, name, &shape), picture.as_bytes())?;
             }
@@ -147,6 +170,10 @@ impl Results<'_> {
     }
 
     fn plots(&self, result: &StudyResult) -> Vec<(String, PlotSpec)> {
+        // Of mechanisms that were found each has its own.
+        if result.frames.is_empty() {
+            return Vec::new();
+        }
         let model = &self.loaded.checked.model;
         match self.beside(result) {
             Some((other_model, other)) => figures_against(model, result, other_model, other),

@@ -1,0 +1,83 @@
+//! The keys of studies that ask for linkages: of each task its own.
+
+use kempe_units::Dimension as D;
+
+use super::{ANGLE, MEASURES, STUDY_KINDS, any, kind, may, must, one_of, positive, words};
+use crate::keys::{Key, Kind, Takes};
+use crate::synthesis::LinkageKind;
+use Takes as T;
+
+/// How many linkages may be kept.
+pub(crate) const MAX_KEPT: usize = 1000;
+
+/// What stands for an angle that the synthesis finds.
+pub(crate) const FREE: &str = "free";
+const FREE_WORDS: T = T::Words(&[FREE]);
+
+/// The kinds of linkage.
+pub(crate) const LINKAGES: [(&str, LinkageKind); 3] = [
+    ("four-bar", LinkageKind::FourBar),
+    ("slider-crank", LinkageKind::SliderCrank),
+    ("inverted slider-crank", LinkageKind::InvertedSliderCrank),
+];
+const LINKAGE_WORDS: T = T::Words(&words(&LINKAGES));
+
+const EITHER: T = T::AnyOf(&[any(D::ANGLE), any(D::LENGTH)]);
+
+static HEAD: [Key; 1] = [must("kind", STUDY_KINDS, "\"synthesize\"", "What kind of study it is.")];
+
+static WANTED: [Key; 4] = [
+    may("accept", MEASURES, "[\"min(transmission_angle) >= 35 deg\", \"max(link_ratio) <= 5\"]", "What a linkage must keep over its motion through what is asked; those that do not are told with the reason."),
+    may("rank", T::Measure, "\"max(link_ratio)\"", "The linkages come in the order of this, the smallest first; the link ratio unless said otherwise."),
+    may("columns", MEASURES, "[\"min(transmission_angle)\"]", "Measures to tabulate besides."),
+    may("keep", T::Count(MAX_KEPT), "12", "So many linkages are kept at most; 20 unless said otherwise."),
+];
+
+/// The tasks, each with the keys of its own.
+pub(crate) static TASKS: [&Kind; 3] = [&FUNCTION, &RATES, &DEAD_CENTRES];
+
+static FUNCTION: Kind = kind("study", "synthesize function",
+    "kind = \"synthesize\", task = \"function\", pairs = [[45, 52], [90, 82], [135, 112]], ground = \"50 mm\"",
+    "The linkages whose output goes as the input asks, through all pairs where they are as many as can be kept, near to them where they are more.",
+    &[&HEAD, &[
+        must("task", T::Words(&["function"]), "\"function\"", "What the linkage is to do."),
+        may("linkage", LINKAGE_WORDS, "\"slider-crank\"", "Its kind; a four-bar unless said otherwise."),
+        one_of("pairs", T::List(&T::List(&EITHER, 2), 1), "[[45, 52], [90, 82], [135, 112]]", "Angles of input and output that go together (of a slider-crank the slider's places); a third and fourth value are the output's change for the input's, and the change of that."),
+        one_of("function", T::Table(&CURVE), "{ y = \"ln(x) / ln(10)\", x = [1, 2], input = [\"45 deg\", \"105 deg\"], output = [\"135 deg\", \"225 deg\"], points = 3 }", "A curve that two dials show, met where Chebyshev's spacing says."),
+        may("zeros", T::Two(&T::AnyOf(&[EITHER, FREE_WORDS])), "[\"20 deg\", \"free\"]", "Where input and output stand, counted from the line of the fixed pivots, as the pairs say 0; at 0 unless said otherwise. Each that is free takes one pair more."),
+        may("ground", positive(D::LENGTH), "\"50 mm\"", "Distance of the fixed pivots; 1 in the file's unit unless said otherwise."),
+    ], &WANTED]);
+
+pub(crate) static CURVE: Kind = kind("function", "function",
+    "function = { y = \"ln(x) / ln(10)\", x = [1, 2], input = [\"45 deg\", \"105 deg\"], output = [\"135 deg\", \"225 deg\"], points = 3 }",
+    "A curve that two dials show evenly.",
+    &[&[
+        must("y", T::Text, "\"ln(x) / ln(10)\"", "A number as a formula of the number x."),
+        must("x", T::Two(&any(D::NONE)), "[1, 2]", "Both ends of x."),
+        must("input", T::Two(&ANGLE), "[\"45 deg\", \"105 deg\"]", "The input's angles at both ends of x."),
+        must("output", T::Two(&EITHER), "[\"135 deg\", \"225 deg\"]", "The output's angles (of a slider-crank its places) at both ends of x."),
+        may("points", T::Count(100), "3", "In so many places it is met, or approached; as many as the free zeros allow unless said otherwise."),
+    ]]);
+
+static RATES: Kind = kind("study", "synthesize rates",
+    "kind = \"synthesize\", task = \"rates\", speeds = [\"20 rad/s\", \"8.5 rad/s\", \"13 rad/s\"], accelerations = [\"0 rad/s^2\", \"-10 rad/s^2\", \"-160 rad/s^2\"], ground = \"100 mm\"",
+    "The four-bar whose crank, coupler and rocker have given angular speeds and accelerations at one pose.",
+    &[&HEAD, &[
+        must("task", T::Words(&["rates"]), "\"rates\"", "What the linkage is to do."),
+        must("speeds", T::List(&any(D::ANGULAR_SPEED), 3), "[\"20 rad/s\", \"8.5 rad/s\", \"13 rad/s\"]", "Angular speeds of crank, coupler and rocker."),
+        must("accelerations", T::List(&any(D::ANGULAR_ACCELERATION), 3), "[\"0 rad/s^2\", \"-10 rad/s^2\", \"-160 rad/s^2\"]", "Their angular accelerations."),
+        may("ground", positive(D::LENGTH), "\"100 mm\"", "Distance of the fixed pivots; 1 in the file's unit unless said otherwise."),
+    ], &WANTED]);
+
+static DEAD_CENTRES: Kind = kind("study", "synthesize dead-centres",
+    "kind = \"synthesize\", task = \"dead-centres\", swing = \"60 deg\", time_ratio = 1.2, rocker = \"40 mm\"",
+    "The crank-rocker or slider-crank that goes so far, and takes so much longer there than back as its crank turns evenly.",
+    &[&HEAD, &[
+        must("task", T::Words(&["dead-centres"]), "\"dead-centres\"", "What the linkage is to do."),
+        one_of("swing", positive(D::ANGLE), "\"60 deg\"", "By which angle a rocker swings."),
+        one_of("stroke", positive(D::LENGTH), "\"80 mm\"", "How far a slider goes."),
+        may("time_ratio", positive(D::NONE), "1.2", "The time of the slower way over that of the quicker; 1 unless said otherwise."),
+        may("rocker", positive(D::LENGTH), "\"40 mm\"", "The rocker's length; 1 in the file's unit unless said otherwise."),
+        may("coupler", positive(D::LENGTH), "\"90 mm\"", "The coupler's length; where it is not given, that of the best transmission angle."),
+        may("offset", super::not_negative(D::LENGTH), "\"12 mm\"", "How far a slider's guide passes beside the crank's pivot, instead of the coupler."),
+    ], &WANTED]);

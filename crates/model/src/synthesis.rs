@@ -1,0 +1,221 @@
+//! Studies that ask for linkages: from what one is to do to all that do it.
+
+use kempe_units::Expr;
+
+use crate::ids::{ParameterId, Scalar, Span};
+use crate::study::MotionStudy;
+
+/// Which linkages do something.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SynthesizeStudy {
+    /// Rows of what every linkage found is drawn and measured by; no columns or plots.
+    pub along: MotionStudy,
+    /// What is to be done.
+    pub task: SynthesisTask,
+    /// Conditions that a linkage must keep, over the motion through what is asked: `min(transmission_angle) >= 35 deg`.
+    pub accept: Vec<Asked>,
+    /// The measure by which linkages are ordered, the smallest first.
+    pub rank: Option<Asked>,
+    /// Measures to tabulate besides.
+    pub columns: Vec<Asked>,
+    /// So many linkages are kept at most.
+    pub keep: usize,
+}
+
+/// A measure or condition in the names of the linkages that are found; their files read it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Asked {
+    /// As written.
+    pub text: String,
+    /// Where it stands in the file.
+    pub span: Span,
+}
+
+/// The kinds of linkage that can be asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LinkageKind {
+    /// Four links, four pins.
+    FourBar,
+    /// A crank, a coupler and a slider on the frame.
+    SliderCrank,
+    /// A crank whose end slides along a link that turns.
+    InvertedSliderCrank,
+}
+
+/// What a linkage is to do.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SynthesisTask {
+    /// Its output goes as its input asks.
+    Function(FunctionTask),
+    /// Its links have given rates at one pose.
+    Rates(RatesTask),
+    /// Its output goes so far, and takes so much longer there than back.
+    DeadCentres(DeadCentresTask),
+}
+
+/// An output as an input asks.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FunctionTask {
+    /// Of which kind.
+    pub linkage: LinkageKind,
+    /// What goes with what.
+    pub wanted: WantedFunction,
+    /// Angles of the links, rad from the line of the fixed pivots (a slider's place, m from the crank's pivot along its guide) where input and
+    /// output are zero; `None` where the synthesis finds them.
+    pub zeros: [Option<Scalar>; 2],
+    /// Distance of the fixed pivots, m; of a slider-crank none.
+    pub ground: Option<Scalar>,
+}
+
+/// What goes with what.
+#[derive(Clone, Debug, PartialEq)]
+pub enum WantedFunction {
+    /// Pairs.
+    Pairs(Vec<WantedPair>),
+    /// A curve, met where its error stays smallest.
+    Curve(Box<WantedCurve>),
+}
+
+/// An input with its output.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WantedPair {
+    /// The input's angle, rad.
+    pub input: Scalar,
+    /// The output's angle, rad, or place, m.
+    pub output: Scalar,
+    /// The output's change for the input's.
+    pub ratio: Option<Scalar>,
+    /// The change of that, for the input's.
+    pub ratio_rate: Option<Scalar>,
+    /// Where it stands in the file.
+    pub span: Span,
+}
+
+/// y of x, shown on two dials.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WantedCurve {
+    /// y as written.
+    pub text: String,
+    /// y, over parameters and x, which is `None`.
+    pub y: Expr<Option<ParameterId>>,
+    /// x at both ends.
+    pub x: [Scalar; 2],
+    /// The input's angles there, rad.
+    pub input: [Scalar; 2],
+    /// The output's there: rad, or m of a slider.
+    pub output: [Scalar; 2],
+    /// In so many places it is met.
+    pub points: usize,
+    /// Where it stands in the file.
+    pub span: Span,
+}
+
+/// Links with given rates at one pose.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RatesTask {
+    /// Angular speeds of crank, coupler and rocker, rad/s.
+    pub speeds: [Scalar; 3],
+    /// Their angular accelerations, rad/s^2.
+    pub accelerations: [Scalar; 3],
+    /// Distance of the fixed pivots, m.
+    pub ground: Scalar,
+}
+
+/// An output that goes to and fro as a crank turns.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DeadCentresTask {
+    /// How far it goes, and what is chosen.
+    pub stroke: Stroke,
+    /// The time of the slower way over that of the quicker.
+    pub time_ratio: Scalar,
+}
+
+/// How far an output goes.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Stroke {
+    /// A rocker.
+    Swing {
+        /// By which angle, rad.
+        swing: Scalar,
+        /// Its length, m.
+        rocker: Scalar,
+        /// The coupler's length, m; the one of the best transmission where it is not given.
+        coupler: Option<Scalar>,
+    },
+    /// A slider.
+    Travel {
+        /// How far, m.
+        travel: Scalar,
+        /// The coupler's length, m.
+        coupler: Option<Scalar>,
+        /// How far the guide passes beside the crank's pivot, m. Of both none where the one of the best transmission is wanted.
+        offset: Option<Scalar>,
+    },
+}
+
+impl SynthesizeStudy {
+    /// Where its parts stand in the file.
+    pub(crate) fn visit_places(&mut self, f: &mut dyn FnMut(&mut Span)) {
+        let asked = (self.accept.iter_mut())
+            .chain(&mut self.rank)
+            .chain(&mut self.columns);
+        asked.for_each(|asked| f(&mut asked.span));
+        if let SynthesisTask::Function(task) = &mut self.task {
+            match &mut task.wanted {
+                WantedFunction::Pairs(pairs) => pairs.iter_mut().for_each(|p| f(&mut p.span)),
+                WantedFunction::Curve(curve) => f(&mut curve.span),
+            }
+        }
+    }
+
+    /// Every expression over parameters.
+    pub(crate) fn visit_scalars(&mut self, f: &mut dyn FnMut(&mut Scalar)) {
+        match &mut self.task {
+            SynthesisTask::Function(task) => {
+                task.zeros.iter_mut().flatten().for_each(&mut *f);
+                task.ground.iter_mut().for_each(&mut *f);
+                match &mut task.wanted {
+                    WantedFunction::Pairs(pairs) => {
+                        for pair in pairs {
+                            f(&mut pair.input);
+                            f(&mut pair.output);
+                            let more = pair.ratio.iter_mut().chain(&mut pair.ratio_rate);
+                            more.for_each(&mut *f);
+                        }
+                    }
+                    WantedFunction::Curve(curve) => {
+                        let ends = [&mut curve.x, &mut curve.input, &mut curve.output];
+                        ends.into_iter().flatten().for_each(f);
+                    }
+                }
+            }
+            SynthesisTask::Rates(task) => {
+                let all = task.speeds.iter_mut().chain(&mut task.accelerations);
+                all.chain([&mut task.ground]).for_each(f);
+            }
+            SynthesisTask::DeadCentres(task) => {
+                f(&mut task.time_ratio);
+                match &mut task.stroke {
+                    Stroke::Swing {
+                        swing,
+                        rocker,
+                        coupler,
+                    } => {
+                        [swing, rocker].into_iter().chain(coupler).for_each(f);
+                    }
+                    Stroke::Travel {
+                        travel,
+                        coupler,
+                        offset,
+                    } => {
+                        [travel]
+                            .into_iter()
+                            .chain(coupler)
+                            .chain(offset)
+                            .for_each(f);
+                    }
+                }
+            }
+        }
+    }
+}

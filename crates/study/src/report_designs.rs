@@ -1,0 +1,73 @@
+//! Mechanisms that a study found in the report: side by side, and the first ones moving.
+
+use kempe_draw::report::{Block, MotionReport, Section};
+use kempe_draw::scene::Scene;
+use kempe_draw::{DrawOptions, Stage};
+
+use crate::report::motion;
+use crate::result::{FoundDesign, StudyResult};
+use crate::view::{drawing_frames, mechanism_view};
+
+/// So many move in the page; the files of all move when they are run.
+const MOVING: usize = 6;
+/// So many are drawn side by side.
+const DRAWN: usize = 60;
+/// Poses drawn behind the first one.
+const GHOSTS: usize = 4;
+/// Width and height of a picture beside others, mm.
+const SMALL: [f64; 2] = [70.0, 60.0];
+
+/// A mechanism that was found, at its first pose with some of its others behind; none where it does not move.
+pub fn design_picture(design: &FoundDesign) -> Option<Scene> {
+    picture(design, DrawOptions::default())
+}
+
+fn picture(design: &FoundDesign, options: DrawOptions) -> Option<Scene> {
+    let motion = design.motion.as_ref()?;
+    let study = design.model.studies.first();
+    let view = mechanism_view(&design.model, study.map(|s| s.kind.along()));
+    let frames = drawing_frames(&design.model, motion);
+    let last = frames.len().checked_sub(1)?;
+    let ghosts = (1..=GHOSTS).map(|k| k * last / GHOSTS);
+    let options = DrawOptions {
+        ghosts: ghosts.collect(),
+        ..options
+    };
+    Some(Stage::new(&view, &frames, options).scene(0))
+}
+
+/// All that were found side by side.
+pub(crate) fn designs_section(result: &StudyResult) -> Option<Section> {
+    let small = || DrawOptions {
+        width: SMALL[0],
+        max_height: SMALL[1],
+        labels: false,
+        ..DrawOptions::default()
+    };
+    let designs = result.designs.iter().take(DRAWN);
+    let pictures: Vec<(String, Scene)> = designs
+        .filter_map(|design| Some((design.title.clone(), picture(design, small())?)))
+        .collect();
+    (!pictures.is_empty()).then(|| Section {
+        title: format!("{}: side by side", result.name),
+        blocks: vec![Block::Pictures(pictures)],
+    })
+}
+
+/// The first ones with their motions.
+pub(crate) fn moving_designs(result: &StudyResult) -> Vec<MotionReport> {
+    let moving = result.designs.iter().filter_map(|design| {
+        let study = design.model.studies.first()?;
+        let own = motion(
+            &design.model,
+            study.kind.along(),
+            design.motion.as_ref()?,
+            None,
+        );
+        Some(MotionReport {
+            name: format!("{}-{}", result.name, design.name),
+            ..own
+        })
+    });
+    moving.take(MOVING).collect()
+}

@@ -1,0 +1,129 @@
+//! Measures and conditions that a request names, read in the names of the linkages' files.
+
+use kempe_model::{Asked, Diagnostic, Model, Span, SynthesizeStudy, value};
+
+use super::candidate::Candidate;
+use super::file::file_of;
+use crate::unit::{Units, shown};
+
+/// What is asked of every linkage.
+pub(super) struct Questions<'a> {
+    /// The model that asks.
+    pub request: &'a Model,
+    /// The study.
+    pub study: &'a SynthesizeStudy,
+    /// Parameters of the request that its texts name, as they are written into a linkage's file.
+    pub parameters: Vec<(String, String)>,
+}
+
+impl<'a> Questions<'a> {
+    /// Looks at every question in the names of a linkage of the kind.
+    ///
+    /// # Errors
+    ///
+    /// What is wrong with them, over the model file.
+    pub fn new(
+        request: &'a Model,
+        study: &'a SynthesizeStudy,
+        sample: &Candidate,
+    ) -> Result<Self, Vec<Diagnostic>> {
+        let questions = Self {
+            request,
+            study,
+            parameters: parameters(request, study, sample),
+        };
+        let linkage = match file_of(sample, &questions).build() {
+            Ok(checked) => checked.model,
+            Err(error) => return Err(not_a_file(error.diagnostics)),
+        };
+        let mut told = Vec::new();
+        for asked in &study.accept {
+            match linkage.condition(&asked.text) {
+                Ok(found) if found.left.needs_forces => told.push(needs_forces(asked)),
+                Ok(_) => {}
+                Err(wrong) => told.extend(wrong.into_iter().map(|d| placed(d, asked))),
+            }
+        }
+        for asked in study.rank.iter().chain(&study.columns) {
+            match linkage.measure(&asked.text) {
+                Ok(found) if found.needs_forces => told.push(needs_forces(asked)),
+                Ok(_) => {}
+                Err(wrong) => told.extend(wrong.into_iter().map(|d| placed(d, asked))),
+            }
+        }
+        match told.is_empty() {
+            true => Ok(questions),
+            false => Err(told),
+        }
+    }
+}
+
+/// What is wrong with the text of a question, where that stands in the model file.
+fn placed(mut diagnostic: Diagnostic, asked: &Asked) -> Diagnostic {
+    let start = asked.span.start;
+    for label in &mut diagnostic.labels {
+        if label.source.take().is_some() {
+            let Span {
+                start: from,
+                end: to,
+            } = label.span;
+            label.span = start + from..start + to;
+        }
+    }
+    diagnostic.note("the linkages have points A to D (P, where one is guided), links `crank`, `coupler` and `rocker` (or `slider`, `lever`), the drive `motor`, and the measures `transmission_angle` and `link_ratio`")
+}
+
+fn needs_forces(asked: &Asked) -> Diagnostic {
+    Diagnostic::error(
+        "needs-forces-study",
+        format!("`{}` asks for a force", asked.text),
+    )
+    .at(
+        asked.span.clone(),
+        "nothing acts on the linkages that are found",
+    )
+    .help("ask how they move; forces belong to a study of the linkage's own file")
+}
+
+/// A linkage's file that cannot be read: only what the request adds to it can be wrong with it.
+fn not_a_file(diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
+    let told = diagnostics.into_iter().map(|mut d| {
+        d.labels.clear();
+        d.note("in the file of a linkage that was found")
+            .help("parameters that the study names go into the linkages' files: give them names that no part of these has")
+    });
+    told.collect()
+}
+
+/// The parameters that the texts of a study name.
+fn parameters(
+    request: &Model,
+    study: &SynthesizeStudy,
+    sample: &Candidate,
+) -> Vec<(String, String)> {
+    let asked = study.accept.iter().chain(&study.rank).chain(&study.columns);
+    let own = sample.measures.iter().map(|(_, text)| text.as_str());
+    let texts: Vec<&str> = asked.map(|a| a.text.as_str()).chain(own).collect();
+    let values = request.parameter_values::<f64>();
+    let units = Units::of(request);
+    let named = request
+        .parameters
+        .iter()
+        .filter(|p| texts.iter().any(|t| names(t, &p.name)));
+    named
+        .map(|p| {
+            let unit = units.unit(p.dimension);
+            let number = shown(value(&p.value, &values), &unit);
+            (
+                p.name.clone(),
+                format!("{number} {}", unit.text()).trim_end().to_owned(),
+            )
+        })
+        .collect()
+}
+
+/// Whether a text has a name in it.
+pub(super) fn names(text: &str, name: &str) -> bool {
+    let part_of_name = |c: char| c.is_alphanumeric() || c == '_';
+    text.split(|c| !part_of_name(c)).any(|word| word == name)
+}

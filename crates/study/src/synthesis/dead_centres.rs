@@ -1,0 +1,131 @@
+//! Crank-rockers and slider-cranks by stroke and time ratio.
+
+use std::f64::consts::TAU;
+
+use kempe_model::{DeadCentresTask, Diagnostic, Model, Stroke, value};
+use kempe_synthesis::Pose;
+use kempe_synthesis::{
+    C, CrankRocker, FourBar, Linkage, SliderCrank, SliderCrankChoice, StrokeSliderCrank,
+    SynthesisError, best_crank_rocker, best_stroke_slider_crank, crank_rockers, imbalance,
+    stroke_slider_crank,
+};
+
+use super::candidate::{Candidate, Found, Wanted};
+use super::refused::Data;
+
+pub(super) fn candidates(model: &Model, task: &DeadCentresTask) -> Result<Found, Box<Diagnostic>> {
+    let parameters = model.parameter_values::<f64>();
+    let number = |scalar| value::<f64>(scalar, &parameters);
+    let ratio: f64 = number(&task.time_ratio);
+    let slower = ratio.max(1.0 / ratio);
+    let data = Data {
+        what: "value",
+        spans: Vec::new(),
+        whole: model
+            .studies
+            .iter()
+            .map(|s| s.span.clone())
+            .next()
+            .unwrap_or(0..0),
+        remedy:
+            "ask for a smaller time ratio, another stroke, or leave the coupler to the synthesis"
+                .to_owned(),
+    };
+    let off = imbalance(slower);
+    let linkages: Result<Vec<(Linkage, f64)>, SynthesisError> = match &task.stroke {
+        Stroke::Swing {
+            swing,
+            rocker,
+            coupler,
+        } => {
+            let (swing, rocker): (f64, f64) = (number(swing), number(rocker));
+            let found = match coupler {
+                Some(coupler) => crank_rockers(swing, off, number(coupler) / rocker),
+                None => best_crank_rocker(swing, off).map(|best| vec![best]),
+            };
+            found.map(|all| {
+                let all = all.iter();
+                all.map(|it| (Linkage::FourBar(scaled(it, rocker)), swing))
+                    .collect()
+            })
+        }
+        Stroke::Travel {
+            travel,
+            coupler,
+            offset,
+        } => {
+            let stroke: f64 = number(travel);
+            let found = match (coupler, offset) {
+                (Some(coupler), _) => {
+                    stroke_slider_crank(stroke, off, SliderCrankChoice::Coupler(number(coupler)))
+                }
+                (_, Some(offset)) => {
+                    stroke_slider_crank(stroke, off, SliderCrankChoice::Offset(number(offset)))
+                }
+                _ => best_stroke_slider_crank(stroke, off),
+            };
+            found.map(|it| vec![(Linkage::SliderCrank(slider_crank(&it)), stroke)])
+        }
+    };
+    let linkages = linkages.map_err(|error| data.refused(&error))?;
+    let candidates = linkages.into_iter().filter_map(|(linkage, stroke)| {
+        let (start, output) = match &linkage {
+            Linkage::FourBar(bar) => (bar.pose(0.0, 1)?, "angle(rocker)"),
+            Linkage::SliderCrank(it) => (stretched(it)?, "x(C)"),
+            _ => return None,
+        };
+        let measures = vec![
+            ("stroke".to_owned(), format!("range({output})")),
+            ("time_ratio".to_owned(), format!("time_ratio({output})")),
+        ];
+        let all = [("stroke", stroke), ("time_ratio", slower)];
+        let wanted = all.map(|(measure, value)| Wanted {
+            measure: measure.to_owned(),
+            at: 0.0,
+            value,
+        });
+        Some(Candidate {
+            linkage,
+            start,
+            drive: [0.0, TAU],
+            point: None,
+            keeps_axes: false,
+            parameters: Vec::new(),
+            measures,
+            wanted: wanted.into(),
+        })
+    });
+    Ok(Found {
+        candidates: candidates.collect(),
+        rejected: Vec::new(),
+        searched: "one for each sense in which the crank may go round".to_owned(),
+    })
+}
+
+fn scaled(it: &CrankRocker, rocker: f64) -> FourBar {
+    let own = it.four_bar();
+    FourBar {
+        fixed: own.fixed.map(|p| p.scale(rocker)),
+        moving: own.moving.map(|p| p.scale(rocker)),
+        lengths: own.lengths.map(|l| l * rocker),
+    }
+}
+
+fn slider_crank(it: &StrokeSliderCrank) -> SliderCrank {
+    it.slider_crank()
+}
+
+/// The coupler where the crank lies along the guide, the slider ahead.
+fn stretched(it: &SliderCrank) -> Option<Pose> {
+    let [crank, coupler, _] = it.dimensions();
+    let end = it.fixed + it.guide.direction.scale(crank);
+    let height = it.guide.distance(end);
+    let square = coupler * coupler - height * height;
+    let along = C::new(square.max(0.0).sqrt(), -height);
+    let own = it.moving[1] - it.moving[0];
+    let turn = it.guide.direction * along * own.conj();
+    let angle = turn.arg();
+    let turned = C::from_polar(1.0, angle);
+    let origin = end - turned * it.moving[0];
+    (square > 0.0).then(|| Pose::new(origin.re, origin.im, angle))
+}

@@ -1,0 +1,268 @@
+//! Studies that ask for linkages: all that do it, which of them can be used, and why the others cannot.
+//!
+//! A task becomes candidates (`function.rs`, `rates.rs`, `dead_centres.rs`), each right where it is asked; every candidate becomes a model
+//! file (`file.rs`), is moved as any other model, and is judged by what it then does (`judge.rs`).
+
+mod asked;
+mod candidate;
+mod dead_centres;
+mod file;
+mod function;
+mod judge;
+mod rates;
+mod refused;
+
+use kempe_model::{
+    Diagnostic, LinkageKind, Model, Stroke, SynthesisTask, SynthesizeStudy, WantedFunction,
+};
+use kempe_motion::progress::{Done, Progress, Stage};
+use kempe_units::{Dimension, Unit};
+
+use crate::clearance::refuses;
+use crate::explain::stopped;
+use crate::result::{FoundDesign, Listing, StudyResult};
+use crate::table::{Column, Table};
+use crate::unit::{Units, number_text};
+use asked::Questions;
+use candidate::{Candidate, Found};
+use file::file_of;
+use judge::{Judged, judge};
+
+/// What a study asks for, in words, for `check`.
+pub(crate) fn in_words(study: &SynthesizeStudy) -> String {
+    let kept = format!("at most {} kept", study.keep);
+    let task = match &study.task {
+        SynthesisTask::Function(task) => {
+            let what = match task.linkage {
+                LinkageKind::FourBar => "four-bars",
+                LinkageKind::SliderCrank => "slider-cranks",
+                LinkageKind::InvertedSliderCrank => "inverted slider-cranks",
+            };
+            match &task.wanted {
+                WantedFunction::Pairs(pairs) => format!("{what} through {} pairs", pairs.len()),
+                WantedFunction::Curve(curve) => {
+                    format!("{what} for {}, met in {} places", curve.text, curve.points)
+                }
+            }
+        }
+        SynthesisTask::Rates(_) => "the four-bar of given rates at one pose".to_owned(),
+        SynthesisTask::DeadCentres(task) => match task.stroke {
+            Stroke::Swing { .. } => "crank-rockers by swing and time ratio".to_owned(),
+            Stroke::Travel { .. } => "slider-cranks by stroke and time ratio".to_owned(),
+        },
+    };
+    format!("{task}, {kept}")
+}
+
+/// What is to be told of a study before any linkage is moved; `check` and `run` say the same.
+pub(crate) fn findings_of_synthesis(model: &Model, study: &SynthesizeStudy) -> Vec<Diagnostic> {
+    match candidates(model, study) {
+        Ok((found, told)) => {
+            let sample = found.candidates.first();
+            let more = sample.map_or_else(Vec::new, |sample| {
+                Questions::new(model, study, sample)
+                    .err()
+                    .unwrap_or_default()
+            });
+            [told, more].concat()
+        }
+        Err(told) => told,
+    }
+}
+
+/// All that do what is asked, and what is to be told of the request; errors where it cannot be answered.
+fn candidates(
+    model: &Model,
+    study: &SynthesizeStudy,
+) -> Result<(Found, Vec<Diagnostic>), Vec<Diagnostic>> {
+    let found = match &study.task {
+        SynthesisTask::Function(task) => function::candidates(model, task),
+        SynthesisTask::Rates(task) => rates::candidates(model, task),
+        SynthesisTask::DeadCentres(task) => dead_centres::candidates(model, task),
+    };
+    let found = found.map_err(|refused| vec![*refused])?;
+    let told = match found.candidates.is_empty() && found.rejected.is_empty() {
+        true => vec![none_does(&found)],
+        false => Vec::new(),
+    };
+    Ok((found, told))
+}
+
+/// A study that asks for linkages.
+pub(crate) fn synthesis(
+    model: &Model,
+    name: &str,
+    study: &SynthesizeStudy,
+    progress: &mut dyn Progress,
+) -> Result<StudyResult, Vec<Diagnostic>> {
+    let (found, mut diagnostics) = candidates(model, study)?;
+    let units = Units::of(model);
+    let mut accepted: Vec<Judged> = Vec::new();
+    let mut rejected = found.rejected;
+    let questions = match found.candidates.first() {
+        Some(sample) => Some(Questions::new(model, study, sample)?),
+        None => None,
+    };
+    let all = found.candidates.len();
+    for (done, candidate) in found.candidates.into_iter().enumerate() {
+        let Some(questions) = &questions else {
+            break;
+        };
+        match judge(candidate, questions, &units) {
+            Ok(judged) => accepted.push(judged),
+            Err(why) => rejected.push(*why),
+        }
+        if progress
+            .reached(Stage::Rows, Done::Of(done + 1, all))
+            .is_break()
+        {
+            if accepted.is_empty() {
+                return Err(vec![stopped(Stage::Rows)]);
+            }
+            break;
+        }
+    }
+    accepted.sort_by(|a, b| a.rank.total_cmp(&b.rank));
+    if accepted.is_empty() && !rejected.is_empty() {
+        diagnostics.push(none_accepted(rejected.len()));
+    }
+    let left_out = accepted.len().saturating_sub(study.keep);
+    accepted.truncate(study.keep);
+    debug_assert!(!refuses(&diagnostics));
+    let table = table(name, &accepted);
+    let mut listings = Vec::new();
+    if !accepted.is_empty() {
+        listings.push(listed(&table));
+    }
+    if left_out > 0 {
+        listings.push(Listing {
+            title: format!(
+                "accepted, but beyond the {} that are kept: {left_out}",
+                study.keep
+            ),
+            head: Vec::new(),
+            rows: Vec::new(),
+        });
+    }
+    if !rejected.is_empty() {
+        let rows = rejected.into_iter().map(|r| vec![r.what, r.why]);
+        listings.push(Listing {
+            title: "found, but not accepted".to_owned(),
+            head: vec!["linkage".to_owned(), "why".to_owned()],
+            rows: rows.collect(),
+        });
+    }
+    let demanded_rows = table.rows();
+    let digits = accepted.len().to_string().len().max(2);
+    let designs = accepted.into_iter().enumerate().filter_map(|(i, judged)| {
+        let number = format!("{:0digits$}", i + 1);
+        let title = format!("{}: {name} {number}", model.title);
+        let file = file_of(&judged.candidate, questions.as_ref()?)
+            .titled(&title)
+            .file();
+        Some(FoundDesign {
+            title: format!("{number}: {}", judged.what),
+            name: number,
+            file,
+            model: Model {
+                title,
+                ..judged.model
+            },
+            motion: Some(Box::new(judged.motion)),
+        })
+    });
+    Ok(StudyResult {
+        name: name.to_owned(),
+        table,
+        scalars: Vec::new(),
+        figures: Vec::new(),
+        listings,
+        contacts: Vec::new(),
+        frames: Vec::new(),
+        shapes: Vec::new(),
+        designs: designs.collect(),
+        events: Vec::new(),
+        along: 0,
+        assemblies: (0, 0),
+        diagnostics,
+        demanded_rows,
+    })
+}
+
+/// A row for each linkage: its number, its dimensions and what is asked of it.
+fn table(name: &str, accepted: &[Judged]) -> Table {
+    let mut number = Column::new("linkage", Unit::one());
+    number.values = (1..=accepted.len()).map(|i| i as f64).collect();
+    let mut columns = vec![number];
+    for (k, value) in accepted
+        .first()
+        .map_or(&[][..], |j| &j.values)
+        .iter()
+        .enumerate()
+    {
+        let mut column = Column::new(&value.name, value.unit.clone());
+        let values = accepted
+            .iter()
+            .map(|j| j.values.get(k).map_or(f64::NAN, |v| v.value));
+        column.values = values.collect();
+        columns.push(column);
+    }
+    Table {
+        name: name.to_owned(),
+        columns,
+        places: 1,
+        closure: accepted
+            .iter()
+            .map(|j| j.motion.table.worst_closure())
+            .collect(),
+        smallest_singular_value: (accepted.iter())
+            .map(|j| j.motion.table.least_singular_value())
+            .collect(),
+        forces: None,
+        balance: None,
+        notes: vec![None; accepted.len()],
+    }
+}
+
+/// A table as words.
+fn listed(table: &Table) -> Listing {
+    let row = |row: usize| {
+        let values = table.columns.iter().map(|c| c.values.get(row));
+        values
+            .map(|v| v.map_or_else(String::new, |v| number_text(*v)))
+            .collect()
+    };
+    Listing {
+        title: "linkages, the best first".to_owned(),
+        head: table.columns.iter().map(Column::head).collect(),
+        rows: (0..table.rows()).map(row).collect(),
+    }
+}
+
+fn none_does(found: &Found) -> Diagnostic {
+    Diagnostic::warning("no-linkage", "no linkage of this kind does what is asked")
+        .note(found.searched.clone())
+        .help("change the data a little, or leave a zero free")
+}
+
+fn none_accepted(found: usize) -> Diagnostic {
+    let message = match found {
+        1 => "one linkage does what is asked, and it is not accepted".to_owned(),
+        _ => format!("{found} linkages do what is asked, and none is accepted"),
+    };
+    Diagnostic::warning("none-accepted", message)
+        .help("the reasons are listed; change the data, or ask for less under `accept`")
+}
+
+/// Dimensions of a linkage in words: `crank 27.6 mm, coupler 57.2 mm`.
+fn dimensions_in_words(candidate: &Candidate, units: &Units) -> String {
+    let all = candidate.lengths().into_iter();
+    let all = all.map(|(name, length)| {
+        format!(
+            "{} {}",
+            name.trim_end_matches("_length"),
+            units.text(length, Dimension::LENGTH)
+        )
+    });
+    all.collect::<Vec<_>>().join(", ")
+}

@@ -1,0 +1,102 @@
+//! Links with given rates at one pose (S. S. Bloch).
+
+use kempe_model::{Diagnostic, Model, RatesTask, value};
+use kempe_synthesis::{C, LinkRates, Linkage, Pose, SynthesisError, Turning, bloch};
+use kempe_units::Dimension;
+
+use super::candidate::{Candidate, Found, Wanted};
+use super::refused::Data;
+use crate::unit::{Units, shown};
+
+/// How far the crank is moved to either side of the pose, rad, where it can.
+const SHOWN: f64 = 0.35;
+/// And in parts of the way to the next dead centre.
+const PART: f64 = 0.9;
+
+pub(super) fn candidates(model: &Model, task: &RatesTask) -> Result<Found, Box<Diagnostic>> {
+    let parameters = model.parameter_values::<f64>();
+    let number = |scalar| value::<f64>(scalar, &parameters);
+    let speeds = task.speeds.each_ref().map(number);
+    let accelerations = task.accelerations.each_ref().map(number);
+    let ground: f64 = number(&task.ground);
+    let rates = [0, 1, 2].map(|k| LinkRates {
+        velocity: speeds[k],
+        acceleration: accelerations[k],
+    });
+    let data = Data {
+        what: "link",
+        spans: Vec::new(),
+        whole: model.studies.iter().map(|s| s.span.clone()).next().unwrap_or(0..0),
+        remedy: "two links that turn alike, or all that turn by one law, leave more than size and direction open: change a speed or an acceleration".to_owned(),
+    };
+    let refused = |error: &SynthesisError| data.refused(error);
+    let found = bloch(rates).map_err(|e| refused(&e))?;
+    let vectors = found.with_frame(C::new(-ground, 0.0));
+    let vectors = vectors.ok_or_else(|| refused(&SynthesisError::None))?;
+    let bar = vectors.four_bar();
+    let pose = Pose::new(0.0, 0.0, 0.0);
+    let angle = bar.first_angle(&pose);
+    let drive = match bar.turning(angle) {
+        Turning::Crank => [angle - SHOWN, angle + SHOWN],
+        Turning::Rocker { middle, half } => {
+            let off = kempe_number::math::within_half_a_turn(angle - middle);
+            let room = PART * (half - off.abs()).max(0.0);
+            [angle - room.min(SHOWN), angle + room.min(SHOWN)]
+        }
+    };
+    // The pose where the drive starts: the same branch.
+    let start = bar.pose(drive[0], bar.branch(&pose)).unwrap_or(pose);
+    let units = Units::of(model);
+    let text = |si: f64, dimension| {
+        let unit = units.unit(dimension);
+        format!("{} {}", shown(si, &unit), unit.text())
+    };
+    let parameters = vec![
+        (
+            "crank_speed".to_owned(),
+            text(speeds[0], Dimension::ANGULAR_SPEED),
+        ),
+        (
+            "crank_acceleration".to_owned(),
+            text(accelerations[0], Dimension::ANGULAR_ACCELERATION),
+        ),
+    ];
+    // With the crank at its speed and acceleration, wherever it stands.
+    let of = |link: &str| {
+        let speed = format!("d(angle({link}), motor) * crank_speed");
+        let acceleration = format!(
+            "d(angle({link}), motor) * crank_acceleration + d(angle({link}), motor, 2) * crank_speed^2"
+        );
+        [
+            (format!("{link}_speed"), speed),
+            (format!("{link}_acceleration"), acceleration),
+        ]
+    };
+    let measures: Vec<(String, String)> =
+        ["coupler", "rocker"].iter().flat_map(|l| of(l)).collect();
+    let values = [speeds[1], accelerations[1], speeds[2], accelerations[2]];
+    let wanted = measures
+        .iter()
+        .zip(values)
+        .map(|((name, _), value)| Wanted {
+            measure: name.clone(),
+            at: angle,
+            value,
+        });
+    let wanted = wanted.collect();
+    let candidate = Candidate {
+        linkage: Linkage::FourBar(bar),
+        start,
+        drive,
+        point: None,
+        keeps_axes: false,
+        parameters,
+        measures,
+        wanted,
+    };
+    Ok(Found {
+        candidates: vec![candidate],
+        rejected: Vec::new(),
+        searched: "there is one, but for its size and direction".to_owned(),
+    })
+}
