@@ -20,6 +20,8 @@ pub struct SynthesizeStudy {
     pub columns: Vec<Asked>,
     /// So many linkages are kept at most.
     pub keep: usize,
+    /// Where the study's name stands in the file.
+    pub span: Span,
 }
 
 /// A measure or condition in the names of the linkages that are found; their files read it.
@@ -119,6 +121,8 @@ pub struct RatesTask {
     pub accelerations: [Scalar; 3],
     /// Distance of the fixed pivots, m.
     pub ground: Scalar,
+    /// Where the speeds of the links stand in the file.
+    pub spans: [Span; 3],
 }
 
 /// An output that goes to and fro as a crank turns.
@@ -128,6 +132,8 @@ pub struct DeadCentresTask {
     pub stroke: Stroke,
     /// The time of the slower way over that of the quicker.
     pub time_ratio: Scalar,
+    /// Where how far it goes, the time ratio, and what is chosen besides stand in the file; nowhere what is not given.
+    pub spans: [Span; 3],
 }
 
 /// How far an output goes.
@@ -160,11 +166,14 @@ impl SynthesizeStudy {
             .chain(&mut self.rank)
             .chain(&mut self.columns);
         asked.for_each(|asked| f(&mut asked.span));
-        if let SynthesisTask::Function(task) = &mut self.task {
-            match &mut task.wanted {
+        f(&mut self.span);
+        match &mut self.task {
+            SynthesisTask::Function(task) => match &mut task.wanted {
                 WantedFunction::Pairs(pairs) => pairs.iter_mut().for_each(|p| f(&mut p.span)),
                 WantedFunction::Curve(curve) => f(&mut curve.span),
-            }
+            },
+            SynthesisTask::Rates(task) => task.spans.iter_mut().for_each(f),
+            SynthesisTask::DeadCentres(task) => task.spans.iter_mut().for_each(f),
         }
     }
 

@@ -182,7 +182,8 @@ fn names_where_names_are_wanted() {
             "spring",
             "simulate",
             "clearance",
-            "vibrations"
+            "vibrations",
+            "synthesize"
         ]
     );
     assert_eq!(

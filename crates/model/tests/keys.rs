@@ -84,6 +84,31 @@ fn entry(section: &str, kind: &Kind) -> (&'static str, Vec<(&'static str, &'stat
         ("studies", "clearance") => ("x", vec![("kind", "'clearance'")]),
         ("studies", "simulate") => ("x", vec![("kind", "'simulate'"), ("until", "1")]),
         ("studies", "vibrations") => ("x", vec![("kind", "'vibrations'"), ("release", "['lift']")]),
+        ("studies", "synthesize function") => {
+            let base = vec![
+                ("kind", "'synthesize'"),
+                ("task", "'function'"),
+                ("pairs", "[[1, 2], [2, 3], [4, 4]]"),
+            ];
+            ("x", base)
+        }
+        ("studies", "synthesize rates") => {
+            let base = vec![
+                ("kind", "'synthesize'"),
+                ("task", "'rates'"),
+                ("speeds", "[1, 2, 3]"),
+                ("accelerations", "[1, 0, 3]"),
+            ];
+            ("x", base)
+        }
+        ("studies", "synthesize dead-centres") => {
+            let base = vec![
+                ("kind", "'synthesize'"),
+                ("task", "'dead-centres'"),
+                ("swing", "60"),
+            ];
+            ("x", base)
+        }
         ("studies", _) => (
             "x",
             vec![
@@ -130,6 +155,18 @@ fn with(section: &str, kind: &Kind, key: &str, value: &str) -> String {
                 inner(&[("between", "[0, 9]")])
             ),
         ),
+        "function" => {
+            let curve = inner(&[
+                ("y", "'x'"),
+                ("x", "[1, 2]"),
+                ("input", "[0, 1]"),
+                ("output", "[0, 1]"),
+            ]);
+            (
+                "x",
+                format!("{{ kind = 'synthesize', task = 'function', function = {curve} }}"),
+            )
+        }
         "oil of" => {
             let stroke: &[(&str, &str)] = match key {
                 "closed" | "wall_modulus" => &[("stroke", "1"), ("closed", "1")],

@@ -42,6 +42,8 @@ pub(crate) fn designs_section(result: &StudyResult) -> Option<Section> {
         width: SMALL[0],
         max_height: SMALL[1],
         labels: false,
+        title: false,
+        caption: false,
         ..DrawOptions::default()
     };
     let designs = result.designs.iter().take(DRAWN);

@@ -81,6 +81,7 @@ pub(crate) fn read(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<StudyKin
         rank,
         columns,
         keep: keep?,
+        span: key.span.clone(),
     })))
 }
 
@@ -302,15 +303,18 @@ fn rates(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<RatesTask> {
         let dimension = entry.dimension(key);
         let all = [first, coupler, second].map(|node| cx.scalar(node, dimension));
         let [first, coupler, second] = all;
-        Some([first?, coupler?, second?])
+        let spans = [&items[0], &items[1], &items[2]].map(|node| node.span.clone());
+        Some(([first?, coupler?, second?], spans))
     };
     let speeds = three(cx, "speeds");
     let accelerations = three(cx, "accelerations");
     let ground = ground(cx, entry);
+    let (speeds, spans) = speeds?;
     Some(RatesTask {
-        speeds: speeds?,
-        accelerations: accelerations?,
+        speeds,
+        accelerations: accelerations?.0,
         ground: ground?,
+        spans,
     })
 }
 
@@ -362,8 +366,18 @@ fn dead_centres(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<DeadCentresTa
             return None;
         }
     };
+    let span_of = |keys: [&str; 2]| {
+        let given = keys.iter().find_map(|key| entry.get(key));
+        given.map_or(0..0, |node| node.span.clone())
+    };
+    let choices = [
+        ["swing", "stroke"],
+        ["time_ratio"; 2],
+        ["coupler", "offset"],
+    ];
     Some(DeadCentresTask {
         stroke,
         time_ratio: time_ratio?,
+        spans: choices.map(span_of),
     })
 }

@@ -2,34 +2,50 @@
 
 use std::f64::consts::TAU;
 
-use kempe_model::{DeadCentresTask, Diagnostic, Model, Stroke, value};
+use kempe_model::{DeadCentresTask, Diagnostic, Model, Span, Stroke, value};
 use kempe_synthesis::Pose;
 use kempe_synthesis::{
-    C, CrankRocker, FourBar, Linkage, SliderCrank, SliderCrankChoice, StrokeSliderCrank,
-    SynthesisError, best_crank_rocker, best_stroke_slider_crank, crank_rockers, imbalance,
-    stroke_slider_crank,
+    C, CrankRocker, FourBar, Linkage, SliderCrank, SliderCrankChoice, SynthesisError,
+    best_crank_rocker, best_stroke_slider_crank, crank_rockers, imbalance, stroke_slider_crank,
 };
+use kempe_units::Dimension;
 
 use super::candidate::{Candidate, Found, Wanted};
-use super::refused::Data;
+use super::refused::{Data, Datum};
+use crate::unit::Units;
 
-pub(super) fn candidates(model: &Model, task: &DeadCentresTask) -> Result<Found, Box<Diagnostic>> {
+pub(super) fn candidates(
+    model: &Model,
+    task: &DeadCentresTask,
+    whole: Span,
+) -> Result<Found, Box<Diagnostic>> {
     let parameters = model.parameter_values::<f64>();
     let number = |scalar| value::<f64>(scalar, &parameters);
     let ratio: f64 = number(&task.time_ratio);
     let slower = ratio.max(1.0 / ratio);
+    let units = Units::of(model);
+    let goes = match task.stroke {
+        Stroke::Swing { .. } => ("the swing", Dimension::ANGLE),
+        Stroke::Travel { .. } => ("the stroke", Dimension::LENGTH),
+    };
+    let names = [
+        goes,
+        ("the time ratio", Dimension::NONE),
+        ("what is chosen besides", Dimension::LENGTH),
+    ];
     let data = Data {
-        what: "value",
-        spans: Vec::new(),
-        whole: model
-            .studies
-            .iter()
-            .map(|s| s.span.clone())
-            .next()
-            .unwrap_or(0..0),
+        data: (names.into_iter().zip(&task.spans))
+            .map(|((name, dimension), span)| Datum {
+                name: name.to_owned(),
+                span: span.clone(),
+                dimension,
+            })
+            .collect(),
+        whole,
         remedy:
             "ask for a smaller time ratio, another stroke, or leave the coupler to the synthesis"
                 .to_owned(),
+        units: &units,
     };
     let off = imbalance(slower);
     let linkages: Result<Vec<(Linkage, f64)>, SynthesisError> = match &task.stroke {
@@ -64,7 +80,7 @@ pub(super) fn candidates(model: &Model, task: &DeadCentresTask) -> Result<Found,
                 }
                 _ => best_stroke_slider_crank(stroke, off),
             };
-            found.map(|it| vec![(Linkage::SliderCrank(slider_crank(&it)), stroke)])
+            found.map(|it| vec![(Linkage::SliderCrank(it.slider_crank()), stroke)])
         }
     };
     let linkages = linkages.map_err(|error| data.refused(&error))?;
@@ -109,10 +125,6 @@ fn scaled(it: &CrankRocker, rocker: f64) -> FourBar {
         moving: own.moving.map(|p| p.scale(rocker)),
         lengths: own.lengths.map(|l| l * rocker),
     }
-}
-
-fn slider_crank(it: &StrokeSliderCrank) -> SliderCrank {
-    it.slider_crank()
 }
 
 /// The coupler where the crank lies along the guide, the slider ahead.

@@ -16,7 +16,7 @@ use kempe_units::Dimension;
 
 use super::candidate::{Candidate, Found, Rejected, Wanted};
 use super::dimensions_in_words;
-use super::refused::Data;
+use super::refused::{Data, Datum};
 use crate::unit::{Units, shown};
 
 /// An input with its output, SI, in the order of the inputs.
@@ -45,7 +45,7 @@ struct Asked<'a> {
 pub(super) fn candidates(model: &Model, task: &FunctionTask) -> Result<Found, Box<Diagnostic>> {
     let parameters = model.parameter_values::<f64>();
     let number = |scalar| value::<f64>(scalar, &parameters);
-    let (points, spans, whole) = match &task.wanted {
+    let (points, given, whole) = match &task.wanted {
         WantedFunction::Pairs(pairs) => {
             let mut both: Vec<(Point, &WantedPair)> = pairs
                 .iter()
@@ -61,12 +61,21 @@ pub(super) fn candidates(model: &Model, task: &FunctionTask) -> Result<Found, Bo
                 .collect();
             // A function has no order of its own: its input passes them one after the other.
             both.sort_by(|a, b| a.0.input.total_cmp(&b.0.input));
-            let spans: Vec<_> = both.iter().map(|(_, pair)| pair.span.clone()).collect();
+            // They are called by their order in the file.
+            let data = both.iter().map(|(_, pair)| Datum {
+                name: format!(
+                    "pair {}",
+                    1 + pairs.iter().take_while(|p| p.span != pair.span).count()
+                ),
+                span: pair.span.clone(),
+                dimension: Dimension::ANGLE,
+            });
+            let data: Vec<Datum> = data.collect();
             let ends = pairs.first().zip(pairs.last());
             let whole = ends.map_or(0..0, |(a, b)| a.span.start..b.span.end);
             (
                 both.into_iter().map(|(point, _)| point).collect(),
-                spans,
+                data,
                 whole,
             )
         }
@@ -97,10 +106,10 @@ pub(super) fn candidates(model: &Model, task: &FunctionTask) -> Result<Found, Bo
         model,
     };
     let data = Data {
-        what: "pair",
-        spans,
+        data: given,
         whole,
         remedy: asked.remedy(),
+        units: &asked.units,
     };
     let found = match task.linkage {
         LinkageKind::FourBar => asked.four_bars(),

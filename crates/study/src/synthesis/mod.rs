@@ -75,10 +75,17 @@ fn candidates(
     model: &Model,
     study: &SynthesizeStudy,
 ) -> Result<(Found, Vec<Diagnostic>), Vec<Diagnostic>> {
+    let own =
+        |s: &&Study| matches!(&s.kind, StudyKind::Synthesize(it) if std::ptr::eq(&**it, study));
+    let place = model
+        .studies
+        .iter()
+        .find(own)
+        .map_or(0..0, |s| s.span.clone());
     let found = match &study.task {
         SynthesisTask::Function(task) => function::candidates(model, task),
-        SynthesisTask::Rates(task) => rates::candidates(model, task),
-        SynthesisTask::DeadCentres(task) => dead_centres::candidates(model, task),
+        SynthesisTask::Rates(task) => rates::candidates(model, task, place),
+        SynthesisTask::DeadCentres(task) => dead_centres::candidates(model, task, place),
     };
     let found = found.map_err(|refused| vec![*refused])?;
     let told = match found.candidates.is_empty() && found.rejected.is_empty() {

@@ -1,11 +1,11 @@
 //! Links with given rates at one pose (S. S. Bloch).
 
-use kempe_model::{Diagnostic, Model, RatesTask, value};
+use kempe_model::{Diagnostic, Model, RatesTask, Span, value};
 use kempe_synthesis::{C, LinkRates, Linkage, Pose, SynthesisError, Turning, bloch};
 use kempe_units::Dimension;
 
 use super::candidate::{Candidate, Found, Wanted};
-use super::refused::Data;
+use super::refused::{Data, Datum};
 use crate::unit::{Units, shown};
 
 /// How far the crank is moved to either side of the pose, rad, where it can.
@@ -13,7 +13,11 @@ const SHOWN: f64 = 0.35;
 /// And in parts of the way to the next dead centre.
 const PART: f64 = 0.9;
 
-pub(super) fn candidates(model: &Model, task: &RatesTask) -> Result<Found, Box<Diagnostic>> {
+pub(super) fn candidates(
+    model: &Model,
+    task: &RatesTask,
+    whole: Span,
+) -> Result<Found, Box<Diagnostic>> {
     let parameters = model.parameter_values::<f64>();
     let number = |scalar| value::<f64>(scalar, &parameters);
     let speeds = task.speeds.each_ref().map(number);
@@ -23,11 +27,21 @@ pub(super) fn candidates(model: &Model, task: &RatesTask) -> Result<Found, Box<D
         velocity: speeds[k],
         acceleration: accelerations[k],
     });
+    let units = Units::of(model);
+    let links = ["the crank", "the coupler", "the rocker"]
+        .iter()
+        .zip(&task.spans);
     let data = Data {
-        what: "link",
-        spans: Vec::new(),
-        whole: model.studies.iter().map(|s| s.span.clone()).next().unwrap_or(0..0),
+        data: links
+            .map(|(name, span)| Datum {
+                name: (*name).to_owned(),
+                span: span.clone(),
+                dimension: Dimension::ANGULAR_SPEED,
+            })
+            .collect(),
+        whole,
         remedy: "two links that turn alike, or all that turn by one law, leave more than size and direction open: change a speed or an acceleration".to_owned(),
+        units: &units,
     };
     let refused = |error: &SynthesisError| data.refused(error);
     let found = bloch(rates).map_err(|e| refused(&e))?;
@@ -46,7 +60,6 @@ pub(super) fn candidates(model: &Model, task: &RatesTask) -> Result<Found, Box<D
     };
     // The pose where the drive starts: the same branch.
     let start = bar.pose(drive[0], bar.branch(&pose)).unwrap_or(pose);
-    let units = Units::of(model);
     let text = |si: f64, dimension| {
         let unit = units.unit(dimension);
         format!("{} {}", shown(si, &unit), unit.text())

@@ -2,24 +2,43 @@
 
 use kempe_model::{Diagnostic, Span};
 use kempe_synthesis::SynthesisError;
+use kempe_units::Dimension;
 
-/// Data of a request as the file has them: what one of them is called, and where each stands.
+use crate::unit::Units;
+
+/// A datum of a request as the file has it.
+pub(super) struct Datum {
+    /// `pair 2`.
+    pub name: String,
+    /// Where it stands.
+    pub span: Span,
+    /// What it measures.
+    pub dimension: Dimension,
+}
+
+/// Data of a request, in the order in which the synthesis counts them.
 pub(super) struct Data<'a> {
-    /// `pair`.
-    pub what: &'a str,
-    /// Where each stands, in the order in which the synthesis counts them.
-    pub spans: Vec<Span>,
-    /// What is asked, where it stands as a whole.
+    pub data: Vec<Datum>,
+    /// Where what is asked stands as a whole.
     pub whole: Span,
     /// What may be done where data are too few or too many.
     pub remedy: String,
+    pub units: &'a Units,
 }
 
 impl Data<'_> {
     /// What is wrong with the request.
     pub fn refused(&self, error: &SynthesisError) -> Box<Diagnostic> {
-        let at = |datum: usize| self.spans.get(datum).unwrap_or(&self.whole).clone();
-        let what = self.what;
+        let at = |datum: usize| {
+            self.data
+                .get(datum)
+                .map_or(&self.whole, |d| &d.span)
+                .clone()
+        };
+        let name = |datum: usize| {
+            let known = self.data.get(datum);
+            known.map_or_else(|| format!("datum {}", datum + 1), |d| d.name.clone())
+        };
         Box::new(match *error {
             SynthesisError::TooFew { equations, unknowns } => Diagnostic::error(
                 "data-too-few",
@@ -35,29 +54,33 @@ impl Data<'_> {
             .help(&*self.remedy),
             SynthesisError::Repeated { first, second } => Diagnostic::error(
                 "data-repeated",
-                format!("{what} {} says what {what} {} says", second + 1, first + 1),
+                format!("{} says what {} says", name(second), name(first)),
             )
             .at(at(second), "again")
             .see(at(first), "the first time")
             .help("leave one of them out, or give another in its place"),
             SynthesisError::Contradictory { first, second } => Diagnostic::error(
                 "data-contradictory",
-                format!("{what} {} contradicts {what} {}", second + 1, first + 1),
+                format!("{} contradicts {}", name(second), name(first)),
             )
             .at(at(second), "no linkage does both")
             .see(at(first), "")
             .help("one input has one output: leave one of them out"),
             SynthesisError::Dependent { datum } => Diagnostic::error(
                 "data-dependent",
-                format!("{what} {} says nothing that the others do not say: infinitely many linkages keep them", datum + 1),
+                format!("{} says nothing that the others do not say: infinitely many linkages keep them", name(datum)),
             )
             .at(at(datum), "follows from the others")
             .help("give another in its place"),
-            SynthesisError::OutOfRange { datum, .. } => Diagnostic::error("data-out-of-range", format!("{what} {}: {error}", datum + 1))
-                .at(at(datum), "")
-                .help("give a value within these bounds"),
+            SynthesisError::OutOfRange { datum, value, least, most } => {
+                let dimension = self.data.get(datum).map_or(Dimension::NONE, |d| d.dimension);
+                let [value, least, most] = [value, least, most].map(|x| self.units.text(x, dimension));
+                Diagnostic::error("data-out-of-range", format!("{} is {value}", name(datum)))
+                    .at(at(datum), format!("it must lie between {least} and {most}"))
+                    .help("give a value within these bounds")
+            }
             SynthesisError::NotFinite { datum } => {
-                Diagnostic::error("not-finite", format!("{what} {} is not a number", datum + 1)).at(at(datum), "")
+                Diagnostic::error("not-finite", format!("{} is not a number", name(datum))).at(at(datum), "")
             }
             ref other => Diagnostic::error("no-answer", other.to_string())
                 .at(self.whole.clone(), "")
