@@ -168,7 +168,12 @@ fn function(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<FunctionTask> {
             let free = zeros
                 .as_ref()
                 .map_or(0, |z| z.iter().filter(|z| z.is_none()).count());
-            curve(cx, key, node, of_output, 3 + free).map(|c| WantedFunction::Curve(Box::new(c)))
+            let exact = match linkage {
+                LinkageKind::InvertedSliderCrank => 2,
+                _ => 3,
+            };
+            curve(cx, key, node, of_output, exact + free)
+                .map(|c| WantedFunction::Curve(Box::new(c)))
         }
         (None, None) => {
             entry.required(cx, "pairs");

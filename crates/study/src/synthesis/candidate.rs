@@ -1,6 +1,6 @@
 //! A linkage that is right where it is asked, before anybody has looked how it moves there.
 
-use kempe_synthesis::{C, Linkage, Pose};
+use kempe_synthesis::{C, Linkage, Pose, Turning};
 use kempe_units::Dimension;
 
 /// What a task leads to.
@@ -37,6 +37,8 @@ pub(super) struct Candidate {
     pub parameters: Vec<(String, String)>,
     /// Named measures of its file.
     pub measures: Vec<(String, String)>,
+    /// Numbers that are told of it besides: name, value (SI), what it measures. The first is what it is ordered by where nothing else is said.
+    pub told: Vec<(String, f64, Dimension)>,
     /// What it must do, so that it can be held against what it does.
     pub wanted: Vec<Wanted>,
 }
@@ -85,6 +87,15 @@ impl Candidate {
             Linkage::TwoSliders(..) => Vec::new(),
         }
     }
+
+    /// The lengths of its links, m.
+    pub fn links(&self) -> Vec<f64> {
+        let links = self
+            .lengths()
+            .into_iter()
+            .filter(|(name, _)| *name != "offset");
+        links.map(|(_, length)| length).collect()
+    }
 }
 
 /// Whether two values of a measure are one but for whole turns of an angle; what is between them.
@@ -93,4 +104,21 @@ pub(super) fn apart(a: f64, b: f64, dimension: Dimension) -> f64 {
         true => kempe_number::math::within_half_a_turn(a - b).abs(),
         false => (a - b).abs(),
     }
+}
+
+/// How far a crank is moved to either side of a place that stands alone, rad, where it can.
+const AROUND: f64 = 0.35;
+/// And in parts of the way to the next dead centre.
+const PART: f64 = 0.9;
+
+/// From where to where a crank is moved that is asked for at one angle (rad, counted as its turning is).
+pub(super) fn around(angle: f64, turning: Turning) -> [f64; 2] {
+    let room = match turning {
+        Turning::Crank => AROUND,
+        Turning::Rocker { middle, half } => {
+            let off = kempe_number::math::within_half_a_turn(angle - middle);
+            (PART * (half - off.abs()).max(0.0)).min(AROUND)
+        }
+    };
+    [angle - room, angle + room]
 }

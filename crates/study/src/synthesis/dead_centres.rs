@@ -108,6 +108,7 @@ pub(super) fn candidates(
             keeps_axes: false,
             parameters: Vec::new(),
             measures,
+            told: Vec::new(),
             wanted: wanted.into(),
         })
     });

@@ -2,7 +2,6 @@
 
 use kempe_model::FileUnits;
 use kempe_model::build::{Entry, ModelBuilder, link, pin_in_slot, slider, study, turns};
-use kempe_number::math;
 use kempe_synthesis::{C, FourBar, InvertedSliderCrank, Line, Linkage, SliderCrank};
 use kempe_units::{Dimension, Unit};
 
@@ -172,14 +171,23 @@ impl Pen {
         it: &InvertedSliderCrank,
     ) -> ModelBuilder {
         let [a, d] = it.fixed;
-        let direction = candidate.start.turn() * it.guide.direction;
-        let [_, _, offset] = it.dimensions();
         let ground = (d - a).norm();
-        // The guide in the axes of the link that carries it: along its first axis, the pivot at the origin.
-        let guide = Line::at_angle(C::new(0.0, offset), 0.0);
-        let [g, h] = self.guide(&guide, C::zero(), ground + it.crank);
-        let angle = math::atan2(direction.im, direction.re);
-        let near = Entry::new().with("near", self.exact(angle, Dimension::ANGLE));
+        // In the axes of the link that carries it, from its pin on both sides.
+        let reach = ground + it.crank;
+        let back = Line {
+            point: it.guide.point - it.guide.direction.scale(reach),
+            ..it.guide
+        };
+        let near = it.moving - it.guide.direction.scale(reach);
+        let [g, h] = self.guide(&back, near, 2.0 * reach);
+        let near = Entry::new().with("near", self.exact(candidate.start.angle, Dimension::ANGLE));
+        let mut lever = link()
+            .point("B", self.place(it.moving))
+            .point("G", g)
+            .point("H", h);
+        if let Some(point) = candidate.point {
+            lever = lever.point("P", self.place(point));
+        }
         let frame = match a == C::zero() && d.im == 0.0 && d.re > 0.0 {
             true => link().point("A", [0.0, 0.0]).point("D", ("ground", 0)),
             false => link().point("A", self.place(a)).point("D", self.place(d)),
@@ -191,11 +199,8 @@ impl Pen {
             )
             .link("frame", frame)
             .link("crank", link().distance("A", "B", "crank_length"))
-            .link(
-                "lever",
-                link().point("D", [0.0, 0.0]).point("G", g).point("H", h),
-            )
-            .joint("slot", pin_in_slot("B", ["G", "H"]))
+            .link("lever", lever)
+            .joint("slot", pin_in_slot("D", ["G", "H"]))
             .entry("assembly", "lever", near)
             .measure("transmission_angle", "acos(abs(offset) / distance(B, D))")
     }

@@ -8,16 +8,19 @@ use kempe_model::{
 use kempe_number::math;
 use kempe_synthesis::{
     C, DialZeros, FunctionFourBar, InvertedSliderFunction, Linkage, Passage, Pose, PrecisionPoint,
-    SliderFunction, SliderPoint, SynthesisError, chebyshev_spacing, fit_function,
+    SliderFunction, SliderPoint, SynthesisError, Turning, chebyshev_spacing, fit_function,
     fit_slider_function, functions, inverted_slider_functions, passage, slider_functions,
 };
 use kempe_synthesis::{Driver, FourBar, InvertedSliderCrank, SliderCrank};
 use kempe_units::Dimension;
 
-use super::candidate::{Candidate, Found, Rejected, Wanted};
+use super::candidate::{Candidate, Found, Rejected, Wanted, around};
 use super::dimensions_in_words;
 use super::refused::{Data, Datum};
 use crate::unit::{Units, shown};
+
+/// A fit whose error is more than this part of the output's range is none.
+const POOR: f64 = 0.2;
 
 /// An input with its output, SI, in the order of the inputs.
 #[derive(Clone, Copy)]
@@ -166,19 +169,17 @@ fn points_of(curve: &WantedCurve, parameters: &[f64]) -> Result<Vec<Point>, Box<
 
 impl Asked<'_> {
     fn remedy(&self) -> String {
-        let free = self.zeros.iter().filter(|zero| zero.is_none()).count();
-        let exact = self.exact() - (2 - free).min(self.exact());
-        match free {
-            2 => format!(
-                "both zeros are free: {exact} conditions are kept exactly, and more, without ratios, as nearly as can be"
-            ),
-            _ => format!(
-                "with zeros = [{}] {exact} conditions are kept exactly, and more, without ratios, as nearly as can be; a zero that is \"free\" takes one more",
-                self.zeros
-                    .map(|z| if z.is_some() { "given" } else { "free" })
-                    .join(", ")
-            ),
-        }
+        let given = self.zeros.iter().flatten().count();
+        let exact = self.exact() - given;
+        let more = match self.task.linkage {
+            LinkageKind::InvertedSliderCrank => "",
+            _ => ", and more pairs without changes as nearly as can be",
+        };
+        let free = match given {
+            0 => "",
+            _ => "; a zero that is \"free\" takes one more",
+        };
+        format!("with these zeros {exact} conditions are kept exactly{more}{free}")
     }
 
     /// Conditions that determine a linkage, zeros that are given among them.
@@ -219,12 +220,21 @@ impl Asked<'_> {
 
     fn four_bars(&self) -> Result<Found, SynthesisError> {
         let points = self.angles();
-        let bars: Vec<FunctionFourBar> = match self.is_fit() {
-            true => fit_function(&points, self.dials())?
-                .into_iter()
-                .map(|fit| fit.bar)
-                .collect(),
-            false => functions(&points, self.dials())?,
+        let first = self.points.first();
+        let bars: Vec<(FunctionFourBar, i8, Vec<f64>)> = match self.is_fit() {
+            true => {
+                let fits = fit_function(&points, self.dials())?.into_iter();
+                fits.map(|fit| (fit.bar, fit.branch, fit.errors)).collect()
+            }
+            false => {
+                let exact = functions(&points, self.dials())?.into_iter();
+                exact
+                    .map(|bar| {
+                        let branch = first.map_or(1, |p| bar.branch(p.input, p.output));
+                        (bar, branch, Vec::new())
+                    })
+                    .collect()
+            }
         };
         let known = format!(
             "all of up to {}, by the roots of one polynomial",
@@ -241,7 +251,7 @@ impl Asked<'_> {
             }
         );
         let mut found = self.found(known);
-        for bar in bars {
+        for (bar, branch, errors) in bars {
             let own = bar.four_bar();
             let linkage = Linkage::FourBar(FourBar {
                 fixed: own.fixed.map(|p| p.scale(self.ground)),
@@ -249,10 +259,6 @@ impl Asked<'_> {
                 lengths: own.lengths.map(|l| l * self.ground),
             });
             // Of a fit the output is where the linkage has it, not where it is wanted.
-            let branch = self
-                .points
-                .first()
-                .map_or(1, |p| bar.branch(p.input, p.output));
             let met: Option<Vec<Pose>> = (self.points.iter())
                 .map(|p| {
                     let output = match self.is_fit() {
@@ -263,17 +269,21 @@ impl Asked<'_> {
                 })
                 .collect();
             let zero = self.zero(0, bar.input);
+            let range = self.range(zero, &|angle| own.turning(angle));
             let start = bar
-                .output_angle(self.range[0], branch, 0.0)
-                .map(|output| scaled_pose(bar.pose(self.range[0], output), self.ground));
-            self.add(
-                &mut found,
+                .output_angle(range[0], branch, 0.0)
+                .map(|output| scaled_pose(bar.pose(range[0], output), self.ground));
+            let reading = self.dial("rocker", self.zero(1, bar.output));
+            let solution = Solution {
                 linkage,
                 met,
                 start,
+                range,
                 zero,
-                self.dial("rocker", self.zero(1, bar.output)),
-            );
+                reading,
+                errors,
+            };
+            self.add(&mut found, solution);
         }
         Ok(found)
     }
@@ -288,20 +298,25 @@ impl Asked<'_> {
             })
             .collect();
         let [crank, slider] = self.zeros;
-        let bars: Vec<SliderFunction> = match self.is_fit() {
-            true => fit_slider_function(&points, crank, slider)?
-                .into_iter()
-                .map(|fit| fit.bar)
-                .collect(),
-            false => slider_functions(&points, crank, slider)?,
+        let first = self.points.first();
+        let bars: Vec<(SliderFunction, i8, Vec<f64>)> = match self.is_fit() {
+            true => {
+                let fits = fit_slider_function(&points, crank, slider)?.into_iter();
+                fits.map(|fit| (fit.bar, fit.branch, fit.errors)).collect()
+            }
+            false => {
+                let exact = slider_functions(&points, crank, slider)?.into_iter();
+                exact
+                    .map(|bar| {
+                        let branch = first.map_or(1, |p| bar.branch(p.input, p.output));
+                        (bar, branch, Vec::new())
+                    })
+                    .collect()
+            }
         };
         let mut found = self.found("all of up to 3, by the roots of one polynomial".to_owned());
-        for bar in bars {
+        for (bar, branch, errors) in bars {
             let it: SliderCrank = bar.slider_crank();
-            let branch = self
-                .points
-                .first()
-                .map_or(1, |p| bar.branch(p.input, p.output));
             let met: Option<Vec<Pose>> = (self.points.iter())
                 .map(|p| {
                     let place = match self.is_fit() {
@@ -311,18 +326,23 @@ impl Asked<'_> {
                     Some(bar.pose(p.input, place))
                 })
                 .collect();
-            let place = bar.place(self.range[0], branch);
-            let start = place.map(|place| bar.pose(self.range[0], place));
-            let zero = self.units.unit(Dimension::LENGTH);
-            let reading = format!("x(C) - ({} {})", shown(bar.slider.re, &zero), zero.text());
-            self.add(
-                &mut found,
-                Linkage::SliderCrank(it),
+            let zero = self.zero(0, bar.crank);
+            let range = self.range(zero, &|angle| it.turning(angle));
+            let place = bar.place(range[0], branch);
+            let start = place.map(|place| bar.pose(range[0], place));
+            let unit = self.units.unit(Dimension::LENGTH);
+            let reading = format!("x(C) - ({} {})", shown(bar.slider.re, &unit), unit.text());
+            let linkage = Linkage::SliderCrank(it);
+            let solution = Solution {
+                linkage,
                 met,
                 start,
-                bar.crank.arg(),
+                range,
+                zero,
                 reading,
-            );
+                errors,
+            };
+            self.add(&mut found, solution);
         }
         Ok(found)
     }
@@ -347,14 +367,19 @@ impl Asked<'_> {
             let first = self.points.first().copied();
             let start = first.map(|p| scaled_pose(bar.pose(p.input, p.output), self.ground));
             let reading = self.dial("lever", self.zero(1, bar.guide));
-            self.add(
-                &mut found,
+            let (met, zero) = (Some(poses.collect()), self.zero(0, bar.crank));
+            let range = self.range(zero, &|_| own.turning());
+            let errors = Vec::new();
+            let solution = Solution {
                 linkage,
-                Some(poses.collect()),
+                met,
                 start,
-                bar.crank.arg(),
+                range,
+                zero,
                 reading,
-            );
+                errors,
+            };
+            self.add(&mut found, solution);
         }
         Ok(found)
     }
@@ -391,17 +416,29 @@ impl Asked<'_> {
         }
     }
 
-    /// Adds a linkage whose coupler is `met` where it is asked, with its crank at `zero` (rad) as its dial shows nothing, and what its output
-    /// shows.
-    fn add(
-        &self,
-        found: &mut Found,
-        linkage: Linkage,
-        met: Option<Vec<Pose>>,
-        start: Option<Pose>,
-        zero: f64,
-        reading: String,
-    ) {
+    /// From where to where the input goes; of a single pair a little to both sides, on a linkage whose crank stands at `zero` as its dial
+    /// shows nothing.
+    fn range(&self, zero: f64, turning: &dyn Fn(f64) -> Turning) -> [f64; 2] {
+        match self.range[0] == self.range[1] {
+            true => {
+                let angle = zero + self.range[0];
+                around(angle, turning(angle)).map(|angle| angle - zero)
+            }
+            false => self.range,
+        }
+    }
+
+    /// Adds a linkage.
+    fn add(&self, found: &mut Found, solution: Solution) {
+        let Solution {
+            linkage,
+            met,
+            start,
+            range,
+            zero,
+            reading,
+            errors,
+        } = solution;
         let mut measures = vec![
             ("input".to_owned(), self.dial("crank", zero)),
             ("output".to_owned(), reading),
@@ -410,25 +447,32 @@ impl Asked<'_> {
             measures.push(("wanted".to_owned(), self.formula(curve)));
             measures.push(("structural_error".to_owned(), "output - wanted".to_owned()));
         }
-        let points = self.points.iter();
-        let wanted = points.map(|p| Wanted {
-            measure: "output".to_owned(),
-            at: zero + p.input,
-            value: p.output,
-        });
+        let mut wanted = Vec::new();
+        for (k, point) in self.points.iter().enumerate() {
+            let error = errors.get(k).copied().unwrap_or(0.0);
+            let all = [
+                ("output", Some(point.output + error)),
+                ("d(output, motor)", point.ratio),
+                ("d(output, motor, 2)", point.ratio_rate),
+            ];
+            wanted.extend(all.into_iter().filter_map(|(measure, value)| {
+                Some(Wanted {
+                    measure: measure.to_owned(),
+                    at: zero + point.input,
+                    value: value?,
+                })
+            }));
+        }
         let mut candidate = Candidate {
             linkage,
             start: Pose::new(0.0, 0.0, 0.0),
-            drive: self.range.map(|input| zero + input),
+            drive: range.map(|input| zero + input),
             point: None,
             keeps_axes: false,
             parameters: Vec::new(),
             measures,
-            wanted: if self.is_fit() {
-                Vec::new()
-            } else {
-                wanted.collect()
-            },
+            told: self.errors_told(&errors),
+            wanted,
         };
         let (Some(met), Some(start)) = (met, start) else {
             let what = dimensions_in_words(&candidate, &self.units);
@@ -437,6 +481,19 @@ impl Asked<'_> {
             return;
         };
         candidate.start = start;
+        let outputs = self.points.iter().map(|p| p.output);
+        let [low, high] = outputs.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
+            [low.min(x), high.max(x)]
+        });
+        if let Some((_, rms, dimension)) = candidate.told.first()
+            && *rms > POOR * (high - low)
+        {
+            let what = dimensions_in_words(&candidate, &self.units);
+            let rms = self.units.text(*rms, *dimension);
+            let why = format!("it comes no nearer than {rms} in the root of the mean square");
+            found.rejected.push(Rejected { what, why });
+            return;
+        }
         let passed = passage(&candidate.linkage, &met, Driver::First);
         match passed.as_ref().and_then(|p| defect(p, self.points.len())) {
             Some(why) => {
@@ -445,6 +502,23 @@ impl Asked<'_> {
             }
             None => found.candidates.push(candidate),
         }
+    }
+
+    /// How near a fit comes.
+    fn errors_told(&self, errors: &[f64]) -> Vec<(String, f64, Dimension)> {
+        if errors.is_empty() {
+            return Vec::new();
+        }
+        let dimension = match self.task.linkage {
+            LinkageKind::SliderCrank => Dimension::LENGTH,
+            _ => Dimension::ANGLE,
+        };
+        let square = errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64;
+        let largest = errors.iter().fold(0.0, |m: f64, e| m.max(e.abs()));
+        vec![
+            ("rms_error".to_owned(), square.sqrt(), dimension),
+            ("largest_error".to_owned(), largest, dimension),
+        ]
     }
 
     /// What the output's dial should show, as a measure of the linkage's file.
@@ -476,6 +550,23 @@ impl Asked<'_> {
             format_args!("({}) - ({})", ends[1], ends[0]),
         )
     }
+}
+
+/// A linkage that does what is asked, or comes near to it.
+struct Solution {
+    linkage: Linkage,
+    /// Where its coupler is at the pairs; none where it cannot be closed all along.
+    met: Option<Vec<Pose>>,
+    /// Where its coupler is as the input starts.
+    start: Option<Pose>,
+    /// From where to where its input goes.
+    range: [f64; 2],
+    /// Where its crank stands as its dial shows nothing, rad.
+    zero: f64,
+    /// What its output's dial shows.
+    reading: String,
+    /// By how much its output misses the pairs, where it only comes near.
+    errors: Vec<f64>,
 }
 
 /// A pose in a plane that is so much larger.

@@ -39,6 +39,9 @@ pub(super) struct Value {
 /// What is missed beyond this, rad or in parts of the linkage's longest link, is not what was asked.
 const MISSED: f64 = 1e-7;
 
+/// A linkage whose links differ by more has one that is as good as none.
+const MOST_RATIO: f64 = 1e5;
+
 /// Moves a linkage and looks whether it does what is asked, or why it is of no use.
 pub(super) fn judge(
     candidate: Candidate,
@@ -50,6 +53,16 @@ pub(super) fn judge(
         let what = what.clone();
         Box::new(Rejected { what, why })
     };
+    let lengths = candidate.links();
+    let [shortest, longest] = [f64::min, f64::max].map(|pick| lengths.iter().copied().reduce(pick));
+    if let (Some(shortest), Some(longest)) = (shortest, longest)
+        && !(longest < MOST_RATIO * shortest)
+    {
+        return Err(reject(format!(
+            "its shortest link is nothing beside its longest: 1 : {}",
+            kempe_number::text::significant(longest / shortest, 3)
+        )));
+    }
     let built = file_of(&candidate, questions).build().map_err(|error| {
         let first = error.diagnostics.first();
         reject(first.map_or_else(String::new, |d| d.message.clone()))
@@ -84,6 +97,9 @@ pub(super) fn judge(
     for (name, length) in candidate.lengths() {
         tell(name, length, Dimension::LENGTH);
     }
+    for (name, si, dimension) in &candidate.told {
+        tell(name, *si, *dimension);
+    }
     for k in numbers
         .conditions
         .iter()
@@ -98,7 +114,10 @@ pub(super) fn judge(
     if !candidate.wanted.is_empty() {
         tell("miss", missed, Dimension::NONE);
     }
-    let rank = values[numbers.told.start];
+    let rank = match (&questions.study.rank, candidate.told.first()) {
+        (None, Some((_, own, _))) => *own,
+        _ => values[numbers.told.start],
+    };
     Ok(Judged {
         what,
         candidate,
@@ -241,8 +260,7 @@ fn missed(
     values: &[f64],
     units: &Units,
 ) -> Result<f64, String> {
-    let lengths = candidate.lengths();
-    let longest = lengths.iter().fold(0.0, |m: f64, (_, l)| m.max(l.abs()));
+    let longest = candidate.links().iter().fold(0.0, |m: f64, l| m.max(*l));
     let mut worst = 0.0_f64;
     for (wanted, k) in candidate.wanted.iter().zip(numbers.wanted.clone()) {
         let dimension = numbers.all[k].dimension;

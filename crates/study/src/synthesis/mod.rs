@@ -75,13 +75,7 @@ fn candidates(
     model: &Model,
     study: &SynthesizeStudy,
 ) -> Result<(Found, Vec<Diagnostic>), Vec<Diagnostic>> {
-    let own =
-        |s: &&Study| matches!(&s.kind, StudyKind::Synthesize(it) if std::ptr::eq(&**it, study));
-    let place = model
-        .studies
-        .iter()
-        .find(own)
-        .map_or(0..0, |s| s.span.clone());
+    let place = study.span.clone();
     let found = match &study.task {
         SynthesisTask::Function(task) => function::candidates(model, task),
         SynthesisTask::Rates(task) => rates::candidates(model, task, place),

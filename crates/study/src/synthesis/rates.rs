@@ -1,17 +1,12 @@
 //! Links with given rates at one pose (S. S. Bloch).
 
 use kempe_model::{Diagnostic, Model, RatesTask, Span, value};
-use kempe_synthesis::{C, LinkRates, Linkage, Pose, SynthesisError, Turning, bloch};
+use kempe_synthesis::{C, LinkRates, Linkage, Pose, SynthesisError, bloch};
 use kempe_units::Dimension;
 
-use super::candidate::{Candidate, Found, Wanted};
+use super::candidate::{Candidate, Found, Wanted, around};
 use super::refused::{Data, Datum};
 use crate::unit::{Units, shown};
-
-/// How far the crank is moved to either side of the pose, rad, where it can.
-const SHOWN: f64 = 0.35;
-/// And in parts of the way to the next dead centre.
-const PART: f64 = 0.9;
 
 pub(super) fn candidates(
     model: &Model,
@@ -50,14 +45,7 @@ pub(super) fn candidates(
     let bar = vectors.four_bar();
     let pose = Pose::new(0.0, 0.0, 0.0);
     let angle = bar.first_angle(&pose);
-    let drive = match bar.turning(angle) {
-        Turning::Crank => [angle - SHOWN, angle + SHOWN],
-        Turning::Rocker { middle, half } => {
-            let off = kempe_number::math::within_half_a_turn(angle - middle);
-            let room = PART * (half - off.abs()).max(0.0);
-            [angle - room.min(SHOWN), angle + room.min(SHOWN)]
-        }
-    };
+    let drive = around(angle, bar.turning(angle));
     // The pose where the drive starts: the same branch.
     let start = bar.pose(drive[0], bar.branch(&pose)).unwrap_or(pose);
     let text = |si: f64, dimension| {
@@ -105,6 +93,7 @@ pub(super) fn candidates(
         keeps_axes: false,
         parameters,
         measures,
+        told: Vec::new(),
         wanted,
     };
     Ok(Found {
