@@ -102,13 +102,21 @@ fn parameters(
     sample: &Candidate,
 ) -> Vec<(String, String)> {
     let asked = study.accept.iter().chain(&study.rank).chain(&study.columns);
-    let own = sample.measures.iter().map(|(_, text)| text.as_str());
-    let texts: Vec<&str> = asked.map(|a| a.text.as_str()).chain(own).collect();
+    let measures = sample.measures.iter().map(|(_, text)| text.as_str());
+    let texts: Vec<&str> = asked.map(|a| a.text.as_str()).chain(measures).collect();
     let values = request.parameter_values::<f64>();
     let units = Units::of(request);
+    // What the linkage has a name for is the linkage's.
+    let own = sample
+        .lengths()
+        .into_iter()
+        .map(|(name, _)| name.to_owned());
+    let more = sample.parameters.iter().map(|(name, _)| name.clone());
+    let own: Vec<String> = own.chain(more).chain(["link_ratio".to_owned()]).collect();
     let named = request
         .parameters
         .iter()
+        .filter(|p| !own.contains(&p.name))
         .filter(|p| texts.iter().any(|t| names(t, &p.name)));
     named
         .map(|p| {

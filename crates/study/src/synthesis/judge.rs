@@ -210,12 +210,20 @@ impl Numbers {
             let dimension = it.dimension;
             end = ask(over(Statistic::Min, it), dimension);
         }
+        let parameters = model.parameter_values::<f64>();
+        let law = model.drives.first().map(|drive| &drive.law);
+        let range = law.map_or((f64::NEG_INFINITY, f64::INFINITY), |law| {
+            law.extent(&parameters)
+        });
+        let inside = INSIDE * (range.1 - range.0);
+        let (low, high) = (range.0 + inside, range.1 - inside);
         for wanted in &candidate.wanted {
             let it = model.measure(&wanted.measure)?;
             let dimension = it.dimension;
+            // An end of the range is where it should be but for rounding, and nothing is known beyond it.
             let at = Statistic::At {
                 drive: Some(DriveId(0)),
-                value: wanted.at,
+                value: wanted.at.clamp(low, high),
             };
             ask(over(at, it), dimension);
         }
@@ -228,6 +236,9 @@ impl Numbers {
         })
     }
 }
+
+/// So far inside of the drive's range its ends are looked at, in parts of it.
+const INSIDE: f64 = 1e-13;
 
 /// What linkages are ordered by where nothing else is said.
 const LINK_RATIO: &str = "link_ratio";
