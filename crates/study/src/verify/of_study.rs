@@ -161,9 +161,26 @@ impl<'m> OfStudy<'m> {
         Ok((scalar.unit.to_si(scalar.value), scalar.unit.dimension()))
     }
 
+    /// A place such as `linkage = 2`, where the rows are numbered by their first column and stand along no drive.
+    fn numbered(&self, place: &str) -> Option<Setting> {
+        let (name, number) = place.split_once('=')?;
+        let first = self.result.table.columns.first()?;
+        let drives = &self.model.drives;
+        let counts = first.name == name.trim() && drives.iter().all(|d| d.name != first.name);
+        let value = number.trim().parse().ok().filter(|_| counts)?;
+        Some(Setting {
+            name: first.name.clone(),
+            value,
+            text: place.to_owned(),
+        })
+    }
+
     fn cell(&self, name: &str, place: &str) -> Result<(f64, Dimension), String> {
         let table = &self.result.table;
-        let setting = Setting::parse(self.model, place).map_err(|d| d.message)?;
+        let setting = match self.numbered(place) {
+            Some(setting) => setting,
+            None => Setting::parse(self.model, place).map_err(|d| d.message)?,
+        };
         let along = table.column(&setting.name);
         let along = along.ok_or_else(|| format!("the study has no column `{}`", setting.name))?;
         let near =
