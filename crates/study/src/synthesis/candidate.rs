@@ -27,6 +27,8 @@ pub(super) struct Candidate {
     pub linkage: Linkage,
     /// The coupler where the drive starts.
     pub start: Pose,
+    /// The link whose angle is looked at, and that angle where the drive starts, rad: whole turns count.
+    pub turned: Option<(&'static str, f64)>,
     /// Where its crank goes from and to, rad from the frame's first axis.
     pub drive: [f64; 2],
     /// A point of the coupler that is looked at, in the coupler's own axes, m.

@@ -103,6 +103,7 @@ pub(super) fn candidates(
         Some(Candidate {
             linkage,
             start,
+            turned: None,
             drive: [0.0, TAU],
             point: None,
             keeps_axes: false,

@@ -30,6 +30,15 @@ pub(super) fn file_of(candidate: &Candidate, questions: &Questions<'_>) -> Model
         Linkage::InvertedSliderCrank(it) => writer.inverted(file, candidate, it),
         Linkage::TwoSliders(..) => file,
     };
+    // Which way a lever points decides between both assemblies, too.
+    let lever = match candidate.linkage {
+        Linkage::InvertedSliderCrank(_) => Some(("lever", candidate.start.angle)),
+        _ => None,
+    };
+    if let Some((name, angle)) = candidate.turned.or(lever) {
+        let near = Entry::new().with("near", writer.exact(angle, Dimension::ANGLE));
+        file = file.entry("assembly", name, near);
+    }
     let [from, to] = candidate
         .drive
         .map(|angle| writer.exact(angle, Dimension::ANGLE));
@@ -180,7 +189,6 @@ impl Pen {
         };
         let near = it.moving - it.guide.direction.scale(reach);
         let [g, h] = self.guide(&back, near, 2.0 * reach);
-        let near = Entry::new().with("near", self.exact(candidate.start.angle, Dimension::ANGLE));
         let mut lever = link()
             .point("B", self.place(it.moving))
             .point("G", g)
@@ -201,7 +209,6 @@ impl Pen {
             .link("crank", link().distance("A", "B", "crank_length"))
             .link("lever", lever)
             .joint("slot", pin_in_slot("D", ["G", "H"]))
-            .entry("assembly", "lever", near)
             .measure("transmission_angle", "acos(abs(offset) / distance(B, D))")
     }
 }

@@ -270,14 +270,17 @@ impl Asked<'_> {
                 .collect();
             let zero = self.zero(0, bar.input);
             let range = self.range(zero, &|angle| own.turning(angle));
-            let start = bar
-                .output_angle(range[0], branch, 0.0)
-                .map(|output| scaled_pose(bar.pose(range[0], output), self.ground));
-            let reading = self.dial("rocker", self.zero(1, bar.output));
+            let near = first.map_or(0.0, |p| p.output);
+            let output = bar.output_angle(range[0], branch, near);
+            let start = output.map(|output| scaled_pose(bar.pose(range[0], output), self.ground));
+            let stands = self.zero(1, bar.output);
+            let turned = output.map(|output| ("rocker", stands + output));
+            let reading = self.dial("rocker", stands);
             let solution = Solution {
                 linkage,
                 met,
                 start,
+                turned,
                 range,
                 zero,
                 reading,
@@ -332,11 +335,12 @@ impl Asked<'_> {
             let start = place.map(|place| bar.pose(range[0], place));
             let unit = self.units.unit(Dimension::LENGTH);
             let reading = format!("x(C) - ({} {})", shown(bar.slider.re, &unit), unit.text());
-            let linkage = Linkage::SliderCrank(it);
+            let (linkage, turned) = (Linkage::SliderCrank(it), None);
             let solution = Solution {
                 linkage,
                 met,
                 start,
+                turned,
                 range,
                 zero,
                 reading,
@@ -366,7 +370,9 @@ impl Asked<'_> {
             let poses = poses.map(|p| scaled_pose(bar.pose(p.input, p.output), self.ground));
             let first = self.points.first().copied();
             let start = first.map(|p| scaled_pose(bar.pose(p.input, p.output), self.ground));
-            let reading = self.dial("lever", self.zero(1, bar.guide));
+            let stands = self.zero(1, bar.guide);
+            let turned = first.map(|p| ("lever", stands + p.output));
+            let reading = self.dial("lever", stands);
             let (met, zero) = (Some(poses.collect()), self.zero(0, bar.crank));
             let range = self.range(zero, &|_| own.turning());
             let errors = Vec::new();
@@ -374,6 +380,7 @@ impl Asked<'_> {
                 linkage,
                 met,
                 start,
+                turned,
                 range,
                 zero,
                 reading,
@@ -434,6 +441,7 @@ impl Asked<'_> {
             linkage,
             met,
             start,
+            turned,
             range,
             zero,
             reading,
@@ -466,6 +474,7 @@ impl Asked<'_> {
         let mut candidate = Candidate {
             linkage,
             start: Pose::new(0.0, 0.0, 0.0),
+            turned,
             drive: range.map(|input| zero + input),
             point: None,
             keeps_axes: false,
@@ -559,6 +568,8 @@ struct Solution {
     met: Option<Vec<Pose>>,
     /// Where its coupler is as the input starts.
     start: Option<Pose>,
+    /// The link whose dial the output is, and its angle there, rad.
+    turned: Option<(&'static str, f64)>,
     /// From where to where its input goes.
     range: [f64; 2],
     /// Where its crank stands as its dial shows nothing, rad.

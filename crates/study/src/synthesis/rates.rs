@@ -88,6 +88,7 @@ pub(super) fn candidates(
     let candidate = Candidate {
         linkage: Linkage::FourBar(bar),
         start,
+        turned: None,
         drive,
         point: None,
         keeps_axes: false,
