@@ -272,6 +272,31 @@ plot = ["m1", "hodograph(bore)"]
 [studies.play]
 kind = "clearance"
 model = "continuous"
+[studies.swing]
+kind = "synthesize"
+task = "dead-centres"
+swing = "2 * 30 deg"
+time_ratio = 1.2
+rocker = "40 mm"
+coupler = "41 mm"
+keep = 3
+
+[studies.stroke]
+kind = "synthesize"
+task = "dead-centres"
+stroke = "80 mm"
+offset = "9 mm"
+accept = ["min(transmission_angle) >= 35 deg"]
+rank = "-link_ratio"
+columns = ["crank_length"]
+
+[studies.generated]
+kind = "synthesize"
+task = "function"
+linkage = "slider-crank"
+pairs = [[10, "20 mm", 0.5, 0.1], [20, 30]]
+zeros = ["free", "2 mm"]
+
 [studies.modes]
 kind = "vibrations"
 [studies.swings]

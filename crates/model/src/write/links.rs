@@ -10,6 +10,12 @@ use crate::write::spelling::Writer;
 
 impl Writer<'_> {
     pub fn links(&self, file: &mut File) {
+        // A file that asks for linkages alone has a frame that it does not tell.
+        if let [frame] = self.model.links.as_slice()
+            && frame.points.is_empty()
+        {
+            return;
+        }
         let links = self.model.links.iter().enumerate();
         *file.section("links") = links
             .map(|(i, link)| (link.name.clone(), self.one_link(LinkId(i as u32), link)))
