@@ -69,11 +69,23 @@
 //! # }
 //! ```
 //!
+//! A file may ask for linkages; what a study finds are models again:
+//!
+//! ```
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! # let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/seeds/function-generator.toml");
+//! let result = kempe::Model::from_path(path)?.run("crank-first")?;
+//! let best: kempe::Model = result.designs[0].file.toml.parse()?;
+//! assert_eq!(best.run("motion")?.table.rows(), 181);
+//! # Ok(())
+//! # }
+//! ```
+//!
 //! Everything that comes back is owned, and `Send + Sync`. Lengths are in metres and angles in radians wherever no unit stands beside them; tables carry their units. The same
 //! model gives the same bytes on every machine.
 //!
 //! The parts that this crate puts together are there under their own names: [`number`], [`units`], [`model`],
-//! [`mechanism`], [`homotopy`], [`motion`], [`measure`], [`proof`], [`dynamics`], [`study`], [`draw`].
+//! [`mechanism`], [`homotopy`], [`motion`], [`measure`], [`proof`], [`dynamics`], [`simulate`], [`synthesis`], [`study`], [`draw`].
 
 mod block;
 mod compiled;
@@ -113,7 +125,9 @@ pub use kempe_model as model;
 pub use kempe_motion as motion;
 pub use kempe_number as number;
 pub use kempe_proof as proof;
+pub use kempe_simulate as simulate;
 pub use kempe_study as study;
+pub use kempe_synthesis as synthesis;
 pub use kempe_units as units;
 
 /// What most programs need.

@@ -39,6 +39,11 @@ pub const STARTERS: &[Starter] = &[
         doc: "two gear meshes one after the other, with the torque",
         text: include_str!("starter/gear-train.toml"),
     },
+    Starter {
+        name: "generator",
+        doc: "a four-bar found from the angles that its rocker should take",
+        text: include_str!("starter/generator.toml"),
+    },
 ];
 
 /// The starter file of a name.
