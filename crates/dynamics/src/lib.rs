@@ -87,6 +87,6 @@ pub use number::{ForceNumber, PlainNumber};
 pub use problem::Problem;
 pub use reaction::{Carrier, JointLoad, Reaction};
 pub use sampler::{ForceError, ForceEvidence, ForceSample, ForceSampler};
-pub use sensitivity::sensitivities;
+pub use sensitivity::{sensitivities, sensitivities_at};
 pub use source::{Source, only_simulated};
 pub use static_equilibrium::{Unsettled, settle};

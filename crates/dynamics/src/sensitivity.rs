@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
-use kempe_measure::{Held, Sensitivities, Unprepared, Varying, sensitivities_with};
+use kempe_measure::{
+    Held, Sensitivities, Unprepared, Varying, sensitivities_at as measured_at, sensitivities_with,
+};
 use kempe_model::{Measure, ParameterId};
 use kempe_motion::Motion;
 
@@ -24,5 +26,22 @@ pub fn sensitivities(
     // The values are those of the plain source, in which there were no problems.
     let varying = |values: &[Varying]| Source::new(motion, values).ok();
     sensitivities_with(motion, held, measures, parameters, plain, varying)
+        .map_err(|list| ForceError::Unprepared(Unprepared::Unmeasurable(list)))
+}
+
+/// As [`sensitivities`] at several places of the motion, in their order.
+///
+/// # Errors
+/// As [`sensitivities`].
+pub fn sensitivities_at(
+    motion: &Arc<Motion>,
+    held: &[Held],
+    measures: &[&Measure],
+    parameters: &[ParameterId],
+) -> Result<Vec<Sensitivities>, ForceError> {
+    let plain = Source::new(motion, &motion.design.parameters).map_err(ForceError::Problems)?;
+    // The values are those of the plain source, in which there were no problems.
+    let varying = |values: &[Varying]| Source::new(motion, values).ok();
+    measured_at(motion, held, measures, parameters, plain, varying)
         .map_err(|list| ForceError::Unprepared(Unprepared::Unmeasurable(list)))
 }

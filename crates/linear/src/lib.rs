@@ -11,6 +11,7 @@
 //! | `rank.rs` | the rank of large sparse matrices |
 //! | `singular.rs` | how near to losing rank a matrix is |
 //! | `dependent.rs` | least squares with columns that may explain each other |
+//! | `marquardt.rs` | nonlinear least squares |
 //! | `fixed_point.rs` | fixed points that a repeated map comes near to slowly |
 //! | `symmetric.rs`, `eigenvalues.rs` | eigenvalues: of symmetric matrices with their vectors, of any real matrix |
 
@@ -21,6 +22,7 @@ mod eigenvalues;
 mod elimination;
 mod fixed_point;
 mod lu;
+mod marquardt;
 mod positive;
 mod qr;
 mod rank;
@@ -35,6 +37,7 @@ pub use eigenvalues::eigenvalues;
 pub use elimination::{Elimination, Matrix, Plain};
 pub use fixed_point::Anderson;
 pub use lu::{Entry, Lu};
+pub use marquardt::{Residuals, smallest_squares};
 pub use positive::{factor_positive, is_pivot, solve_positive};
 pub use qr::Qr;
 pub use rank::{RANK_TOLERANCE, SparseRow, rank};

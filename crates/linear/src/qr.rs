@@ -59,6 +59,20 @@ impl Qr {
         columns.map(|c| dot(c, c).sqrt()).collect()
     }
 
+    /// Sums of the columns' first entries with as many factors, before [`Qr::factor`].
+    pub fn transposed_times(&self, factors: &[f64]) -> Vec<f64> {
+        let columns = self.a.chunks_exact(self.rows.max(1));
+        let columns = columns.map(|c| dot(&c[..factors.len().min(c.len())], factors));
+        columns.collect()
+    }
+
+    /// Makes of a column a unit vector with its one at a row, before [`Qr::factor`]: what it is the factor of becomes what stands there.
+    pub fn hold(&mut self, column: usize, row: usize) {
+        let rows = self.rows;
+        self.a[column * rows..(column + 1) * rows].fill(0.0);
+        self.a[column * rows + row] = 1.0;
+    }
+
     /// Factors the matrix in place.
     pub fn factor(&mut self) {
         let m = self.rows;

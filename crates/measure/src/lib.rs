@@ -26,7 +26,9 @@ pub use force_source::{Curve, ForceSource, NoForces};
 pub use prepare::{Unmeasurable, Unprepared, unmeasurable};
 pub use row_note::RowNote;
 pub use sampler::{CLOSURE_LIMIT, PointRates, Sample, Sampler};
-pub use sensitivity::{Held, Sensitivities, Varying, sensitivities, sensitivities_with};
+pub use sensitivity::{
+    Held, Sensitivities, Varying, sensitivities, sensitivities_at, sensitivities_with,
+};
 pub use state::{Abscissa, ORDER, Series, State};
 pub use states_along::Base;
 pub use statistic_note::StatisticNote;

@@ -91,21 +91,41 @@ pub fn sensitivities_with<F: ForceSource, G: ForceSource<Varying>>(
     measures: &[&Measure],
     parameters: &[ParameterId],
     plain: F,
-    mut varying: impl FnMut(&[Varying]) -> G,
+    varying: impl FnMut(&[Varying]) -> G,
 ) -> Result<Sensitivities, Vec<Unmeasurable>> {
+    let found = sensitivities_at(motion, &[held], measures, parameters, plain, varying)?;
+    // One place, one answer.
+    found.into_iter().next().ok_or_else(Vec::new)
+}
+
+/// As [`sensitivities_with`] at several places of the motion, in their order.
+///
+/// # Errors
+/// As [`sensitivities`].
+pub fn sensitivities_at<F: ForceSource, G: ForceSource<Varying>>(
+    motion: &Arc<Motion>,
+    held: &[Held],
+    measures: &[&Measure],
+    parameters: &[ParameterId],
+    plain: F,
+    mut varying: impl FnMut(&[Varying]) -> G,
+) -> Result<Vec<Sensitivities>, Vec<Unmeasurable>> {
     // Unwrapped directions and the times of extremes come from the plain motion.
     let mut sampler = Sampler::with_forces(motion, measures, plain)?;
-    let (parameter, time) = match held {
-        Held::Path(p) => (p, sampler.clock().time_at(p)),
-        Held::Time(t) => (sampler.clock().parameter_at(t), t),
+    let empty = |held: &Held, sampler: &Sampler<F>| {
+        let (parameter, time) = match *held {
+            Held::Path(p) => (p, sampler.clock().time_at(p)),
+            Held::Time(t) => (sampler.clock().parameter_at(t), t),
+        };
+        Sensitivities {
+            parameter,
+            time,
+            values: vec![f64::NAN; measures.len()],
+            notes: measures.iter().map(|m| sampler.notes_of(m)).collect(),
+            derivatives: vec![Vec::with_capacity(parameters.len()); measures.len()],
+        }
     };
-    let mut it = Sensitivities {
-        parameter,
-        time,
-        values: vec![f64::NAN; measures.len()],
-        notes: measures.iter().map(|m| sampler.notes_of(m)).collect(),
-        derivatives: vec![Vec::with_capacity(parameters.len()); measures.len()],
-    };
+    let mut all: Vec<Sensitivities> = held.iter().map(|held| empty(held, &sampler)).collect();
     // Without parameters the values are still wanted.
     let chunks = parameters
         .chunks(CHUNK)
@@ -115,27 +135,31 @@ pub fn sensitivities_with<F: ForceSource, G: ForceSource<Varying>>(
         let forces = varying(&values);
         let mut varied = Varied::new(motion, &mut sampler, &values, forces);
         varied.prepare(measures);
-        let place = varied.place(held);
-        let results: Vec<Varying> = measures.iter().map(|m| varied.value(m, place)).collect();
-        for (index, result) in results.iter().enumerate() {
-            it.values[index] = result.re;
-            // What has no value has no derivatives either.
-            let slopes = result.eps.iter().take(chunk.len());
-            it.derivatives[index]
-                .extend(slopes.map(|d| if result.re.is_nan() { f64::NAN } else { *d }));
+        for (it, held) in all.iter_mut().zip(held) {
+            let place = varied.place(*held);
+            let results: Vec<Varying> = measures.iter().map(|m| varied.value(m, place)).collect();
+            for (index, result) in results.iter().enumerate() {
+                it.values[index] = result.re;
+                // What has no value has no derivatives either.
+                let slopes = result.eps.iter().take(chunk.len());
+                it.derivatives[index]
+                    .extend(slopes.map(|d| if result.re.is_nan() { f64::NAN } else { *d }));
+            }
         }
     }
     // What is infinite somewhere has no derivatives, and the value that rows have.
-    let plain = match held {
-        Held::Path(p) => sampler.values_at_parameter(p),
-        Held::Time(t) => sampler.values_at_time(t),
-    };
-    for (index, value) in plain.into_iter().enumerate() {
-        let infinite = |note: &StatisticNote| matches!(note, StatisticNote::Infinite { .. });
-        if value.is_infinite() || it.notes[index].iter().any(infinite) {
-            it.values[index] = value;
-            it.derivatives[index].fill(f64::NAN);
+    for (it, held) in all.iter_mut().zip(held) {
+        let plain = match *held {
+            Held::Path(p) => sampler.values_at_parameter(p),
+            Held::Time(t) => sampler.values_at_time(t),
+        };
+        for (index, value) in plain.into_iter().enumerate() {
+            let infinite = |note: &StatisticNote| matches!(note, StatisticNote::Infinite { .. });
+            if value.is_infinite() || it.notes[index].iter().any(infinite) {
+                it.values[index] = value;
+                it.derivatives[index].fill(f64::NAN);
+            }
         }
     }
-    Ok(it)
+    Ok(all)
 }

@@ -1,6 +1,7 @@
 //! The keys of the model file, all of them: the one table that the reader, the schema, help and the docs go by.
 
 pub(crate) mod clearance;
+pub(crate) mod adjust;
 pub(crate) mod synthesis;
 
 use kempe_units::Dimension as D;
@@ -48,7 +49,7 @@ pub(crate) const LAWS: [(&str, RiseLaw); 4] = [
 ];
 
 /// Kinds of study of the language that this version has not got.
-pub const ANNOUNCED_STUDIES: &[&str] = &["sweep", "tolerance", "adjust", "optimize"];
+pub const ANNOUNCED_STUDIES: &[&str] = &["sweep", "tolerance", "optimize"];
 
 const fn words<W: Copy, const N: usize>(of: &[(&'static str, W); N]) -> [&'static str; N] {
     let mut words = [""; N];
@@ -503,12 +504,12 @@ pub(crate) static SWITCH: Kind = kind("switch", "switch",
     ]]);
 
 /// The kinds of studies.
-pub(crate) static STUDIES: [&Kind; 7 + synthesis::TASKS.len()] = [
-    &MOTION, &FORCES, &BALANCE, &SPRING_STUDY, &SIMULATE, &clearance::STUDY, &VIBRATIONS,
+pub(crate) static STUDIES: [&Kind; 8 + synthesis::TASKS.len()] = [
+    &MOTION, &FORCES, &BALANCE, &SPRING_STUDY, &SIMULATE, &clearance::STUDY, &VIBRATIONS, &adjust::STUDY,
     synthesis::TASKS[0], synthesis::TASKS[1], synthesis::TASKS[2],
 ];
 
-const STUDY_KINDS: T = T::Words(&["motion", "forces", "balance", "spring", "simulate", "clearance", "vibrations", "synthesize"]);
+const STUDY_KINDS: T = T::Words(&["motion", "forces", "balance", "spring", "simulate", "clearance", "vibrations", "adjust", "synthesize"]);
 
 static OF_STUDIES: [Key; 3] = [
     must("kind", STUDY_KINDS, "\"motion\"", "What kind of study it is."),

@@ -82,6 +82,8 @@ pub enum Named {
     Link,
     /// A link that slides, or the joint that guides it.
     Slider,
+    /// A parameter.
+    Parameter,
     /// A drive.
     Drive,
     /// A spring.
@@ -210,6 +212,7 @@ impl Named {
             Self::Point => "the name of a point",
             Self::Link => "the name of a link",
             Self::Slider => "the name of a slider, or of the joint that guides it",
+            Self::Parameter => "the name of a parameter",
             Self::Drive => "the name of a drive",
             Self::Spring => "the name of a spring",
             Self::File => "the name of a file beside the model",

@@ -1,5 +1,6 @@
 //! Kempe's model file and what it means.
 
+mod adjust;
 mod bound;
 pub mod build;
 mod clearance;
@@ -49,6 +50,7 @@ mod text_edit;
 mod unsound;
 mod write;
 
+pub use adjust::*;
 pub use bound::{Bound, Keeps};
 pub use clearance::*;
 pub use codes::{CODES, Code, LATER_CODES};

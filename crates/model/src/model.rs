@@ -3,6 +3,8 @@
 //! Every dimension is an expression over the parameters, so that one model serves a whole space of designs: evaluate
 //! the parameters on any [`Number`](kempe_number::Number) and everything else follows.
 
+use std::sync::Arc;
+
 use kempe_units::Dimension;
 
 use crate::bound::Bound;
@@ -48,6 +50,8 @@ pub struct Model {
     pub bounds: Vec<Bound>,
     /// How its [inner states](Model::inner_states) go in time, where a simulation has found that: none in a model that was read.
     pub inner_laws: Vec<Option<crate::drive::Law>>,
+    /// The text that says it all, where it was read from one that names no table.
+    pub source: Option<Arc<str>>,
     /// Parameters whose values went into plain numbers when the file was read (the place of an `at`, the period of a table).
     pub settled: Vec<ParameterId>,
 }

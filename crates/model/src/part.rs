@@ -332,6 +332,14 @@ impl Finder<'_> {
                     self.push(part, within(0, name), &key.path, here(false));
                 }
             }
+            [section, _, of, name]
+                if section == "studies" && ["deviations", "bounds"].contains(&of.as_str()) =>
+            {
+                self.named_key(name, within(0, name), key);
+            }
+            [section, _, of, _, name] if section == "studies" && of == "match" => {
+                self.named_key(name, within(0, name), key);
+            }
             [section, _, name] if section == "links" => {
                 let single = is_point_name(name).then_some((0, name.as_str()));
                 let pair = pair_of(name).map(|(a, b)| {
@@ -349,6 +357,13 @@ impl Finder<'_> {
                 }
             }
             _ => {}
+        }
+    }
+
+    /// A key that is the name of something declared elsewhere.
+    fn named_key(&mut self, name: &str, span: Span, key: &KeyMark) {
+        if let Some(part) = self.common(name) {
+            self.push(part, span, &key.path, Some((false, key.span.clone())));
         }
     }
 

@@ -1,6 +1,7 @@
 //! From the text of a model file to a [`Model`], with everything that is to be said about it.
 
 mod actuators;
+mod adjust;
 mod algebra;
 mod arguments;
 mod assembly;
@@ -46,8 +47,13 @@ mod transmission;
 mod value;
 mod vibrations;
 
+use std::borrow::Cow;
+use std::sync::Arc;
+
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::document;
+use crate::edit::set_value;
+use crate::item::{number, quoted};
 use crate::model::Model;
 use context::Context;
 pub use csv::{MAX_TABLE_BYTES, PARTIAL_TABLE, partial_table};
@@ -115,7 +121,12 @@ impl Model {
         if text.len() > MAX_FILE_BYTES {
             return Err(vec![too_large(text.len())]);
         }
-        let mut cx = Context::new(name, files);
+        let mut tables = 0;
+        let mut files = |name: &str| {
+            tables += 1;
+            files(name)
+        };
+        let mut cx = Context::new(name, &mut files);
         let root = document::parse(text, &mut cx.found, &mut cx.broken);
         let own = cx.found.len();
         sections::read(&mut cx, &root, overrides);
@@ -141,9 +152,13 @@ impl Model {
         if found.iter().any(|d| d.severity == Severity::Error) {
             return Err(found);
         }
-        cx.model.settled = cx.settled.into_inner().into_iter().collect();
+        let mut model = cx.model;
+        model.settled = cx.settled.into_inner().into_iter().collect();
+        if tables == 0 {
+            model.source = with_overrides(text, overrides);
+        }
         Ok(Checked {
-            model: cx.model,
+            model,
             warnings: found,
         })
     }
@@ -186,6 +201,24 @@ impl Model {
                 ])
             }
         }
+    }
+}
+
+/// The text with parameters set in it.
+fn with_overrides(text: &str, overrides: &[(String, String)]) -> Option<Arc<str>> {
+    let mut text = Cow::Borrowed(text);
+    for (name, value) in overrides {
+        let value = toml_value(value);
+        text = Cow::Owned(set_value(&text, &["parameters", name], &value).ok()?);
+    }
+    Some(text.into())
+}
+
+/// What is given for a parameter as TOML: a number, or a text.
+fn toml_value(value: &str) -> String {
+    match value.trim().parse::<f64>() {
+        Ok(x) => number(x),
+        Err(_) => quoted(value),
     }
 }
 

@@ -28,6 +28,7 @@ impl Model {
         // What values must keep to follows from the rest; what was put into numbers is in them.
         model.bounds.clear();
         model.settled.clear();
+        model.source = None;
         // So are links, drives and hints that were drawn; not where drives are drawn that start elsewhere.
         let parameters = model.parameter_values::<f64>();
         let coordinates = match model.starting_elsewhere(&parameters).is_empty() {
@@ -59,6 +60,9 @@ impl Model {
             if let StudyKind::Contact(contact) = &mut study.kind {
                 let plays = contact.motion.plays.iter_mut();
                 plays.for_each(|p| forget(&mut p.span));
+            }
+            if let StudyKind::Adjust(asked) = &mut study.kind {
+                asked.visit_places(&mut |span| *span = 0..0);
             }
             if let StudyKind::Synthesize(asked) = &mut study.kind {
                 asked.visit_places(&mut |span| *span = 0..0);
@@ -204,6 +208,10 @@ impl Model {
                     study.at.iter_mut().for_each(|(_, at)| f(at));
                     &mut study.along
                 }
+                StudyKind::Adjust(study) => {
+                    study.visit_scalars(f);
+                    &mut study.along
+                }
                 StudyKind::Synthesize(study) => {
                     study.visit_scalars(f);
                     &mut study.along
@@ -317,6 +325,10 @@ impl Model {
                 }
                 StudyKind::Clearance(study) => &mut study.along,
                 StudyKind::Vibrations(study) => &mut study.along,
+                StudyKind::Adjust(study) => {
+                    study.measures.iter_mut().for_each(|c| f(&mut c.measure));
+                    &mut study.along
+                }
                 StudyKind::Synthesize(study) => &mut study.along,
             };
             let mut column = |c: &mut Column| f(&mut c.measure);

@@ -101,7 +101,8 @@ fn table(kind: &Kind) -> Value {
     let mut patterns = Map::new();
     for row in kind.keys() {
         let mut schema = match row.name {
-            "kind" => json!({ "const": kind.name }),
+            // a word of a task stands behind that of the kind
+            "kind" => json!({ "const": kind.name.split(' ').next().unwrap_or(kind.name) }),
             _ => of(&row.takes),
         };
         tell(&mut schema, row);

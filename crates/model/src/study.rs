@@ -2,6 +2,7 @@
 
 use kempe_units::{Dimension, Expr};
 
+use crate::adjust::AdjustStudy;
 use crate::clearance::ClearanceStudy;
 use crate::contact::ContactStudy;
 use crate::ids::{DriveId, JointId, LinkId, PointId, Scalar, Span};
@@ -63,6 +64,8 @@ pub enum StudyKind {
     Contact(ContactStudy),
     /// The natural vibrations about a pose, or about the poses of a motion.
     Vibrations(VibrationStudy),
+    /// Values of parameters with which it does what was measured.
+    Adjust(Box<AdjustStudy>),
     /// The linkages that do something: it needs no mechanism.
     Synthesize(Box<SynthesizeStudy>),
 }
@@ -255,6 +258,7 @@ impl StudyKind {
             Self::Clearance(study) => &study.along,
             Self::Contact(study) => &study.motion.along,
             Self::Vibrations(study) => &study.along,
+            Self::Adjust(study) => &study.along,
             Self::Synthesize(study) => &study.along,
         }
     }

@@ -1,6 +1,7 @@
 //! A model as a file that reads back the same.
 
 mod actions;
+mod adjust;
 mod laws;
 mod links;
 mod mechanism;
@@ -8,6 +9,8 @@ mod spelling;
 mod studies;
 mod synthesis;
 
+use crate::edit::set_value;
+use crate::ids::ParameterId;
 use crate::item::{File, Item};
 use crate::key_table::UNITS;
 use crate::keys::{Key, Takes};
@@ -83,6 +86,38 @@ impl Model {
             toml: file.to_toml(),
             tables: writer.tables,
         }
+    }
+}
+
+impl Model {
+    /// The model with other values (SI) of some parameters, and as a file: the text that it was read from with just these values changed, or
+    /// where it names tables, or was not read, [the model as text](Self::to_toml).
+    pub fn with_values(&self, values: &[(ParameterId, f64)]) -> (Self, ModelFile) {
+        let mut model = self.clone();
+        for (id, value) in values {
+            if let Some(parameter) = model.parameters.get_mut(id.index()) {
+                parameter.value = kempe_units::Expr::Const(*value);
+            }
+        }
+        let writer = Writer::new(&model);
+        let mut text = model.source.as_deref().map(str::to_owned);
+        for (id, _) in values {
+            let parameter = model.parameters.get(id.index());
+            text = text.zip(parameter).and_then(|(text, parameter)| {
+                let mut value = String::new();
+                writer.parameter(parameter).write(&mut value);
+                set_value(&text, &["parameters", &parameter.name], &value).ok()
+            });
+        }
+        model.source = text.as_deref().map(Into::into);
+        let file = match text {
+            Some(toml) => ModelFile {
+                toml,
+                tables: Tables::default(),
+            },
+            None => model.to_toml(),
+        };
+        (model, file)
     }
 }
 

@@ -183,6 +183,7 @@ fn names_where_names_are_wanted() {
             "simulate",
             "clearance",
             "vibrations",
+            "adjust",
             "synthesize"
         ]
     );

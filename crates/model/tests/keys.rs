@@ -84,6 +84,14 @@ fn entry(section: &str, kind: &Kind) -> (&'static str, Vec<(&'static str, &'stat
         ("studies", "clearance") => ("x", vec![("kind", "'clearance'")]),
         ("studies", "simulate") => ("x", vec![("kind", "'simulate'"), ("until", "1")]),
         ("studies", "vibrations") => ("x", vec![("kind", "'vibrations'"), ("release", "['lift']")]),
+        ("studies", "adjust") => {
+            let base = vec![
+                ("kind", "'adjust'"),
+                ("unknown", "['area']"),
+                ("match", "[{ motor = 1, rocker = 1 }]"),
+            ];
+            ("x", base)
+        }
         ("studies", "synthesize function") => {
             let base = vec![
                 ("kind", "'synthesize'"),
@@ -165,6 +173,13 @@ fn with(section: &str, kind: &Kind, key: &str, value: &str) -> String {
             (
                 "x",
                 format!("{{ kind = 'synthesize', task = 'function', function = {curve} }}"),
+            )
+        }
+        "measured table" => {
+            let table = inner(&[("table", "'t.csv'")]);
+            (
+                "x",
+                format!("{{ kind = 'adjust', unknown = ['area'], match = {table} }}"),
             )
         }
         "oil of" => {

@@ -105,6 +105,20 @@ fn files_that_read_are_valid() {
 }
 
 #[test]
+fn examples_of_the_repository_are_valid() {
+    for folder in ["seeds", "gallery", "benchmarks"] {
+        let folder = format!("{}/../../examples/{folder}", env!("CARGO_MANIFEST_DIR"));
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.extension().is_some_and(|e| e == "toml") {
+                let text = std::fs::read_to_string(&path).unwrap();
+                assert!(check(&text), "{}", path.display());
+            }
+        }
+    }
+}
+
+#[test]
 fn files_of_the_wrong_shape_are_not() {
     for name in [
         "unknown-key",

@@ -120,7 +120,8 @@ impl Motion {
     }
 
     /// What is asked of the motion by the laws of the file.
-    pub(crate) fn demand(design: &Design<f64>) -> Demand {
+    /// What the laws of a design ask of its motion.
+    pub fn demand(design: &Design<f64>) -> Demand {
         let (model, parameters) = (&design.mechanism.model, &design.parameters);
         let path = DrivePath::new(model, parameters, design.size());
         Demand {

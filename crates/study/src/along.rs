@@ -215,6 +215,7 @@ pub(crate) fn not_answerable(mechanism: &Mechanism, study: &Study) -> Vec<Diagno
         | StudyKind::Vibrations(_)
         | StudyKind::Simulate(_)
         | StudyKind::Contact(_)
+        | StudyKind::Adjust(_)
         | StudyKind::Synthesize(_) => Asked::default(),
     };
     let mut found = unanswered(mechanism, &asked, |_| true);
@@ -240,6 +241,11 @@ pub(crate) fn not_simulated(mechanism: &Mechanism, study: &SimulateStudy) -> Vec
     unanswered(mechanism, &asked, |measure| {
         !is_followed(mechanism, study, measure)
     })
+}
+
+/// What of this no motion of the mechanism can answer, as diagnostics over the model file.
+pub(crate) fn not_answered(mechanism: &Mechanism, asked: &Asked) -> Vec<Diagnostic> {
+    unanswered(mechanism, asked, |_| true)
 }
 
 /// What of it no motion of the mechanism can answer; what only a simulation follows where `unknown` says so.

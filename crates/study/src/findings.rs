@@ -16,6 +16,7 @@ use kempe_motion::{EndReason, Findings, Motion};
 use kempe_units::Dimension;
 use serde::Serialize;
 
+use crate::adjust::findings_of_adjustment;
 use crate::along::not_answerable;
 use crate::clearance::{findings_of_clearance, findings_of_contact, refuses};
 use crate::drawn::{self, DrawnLink};
@@ -392,6 +393,7 @@ fn study_text(model: &Model, study: &Study, parameters: &[f64], units: &Units) -
         StudyKind::Clearance(_) => "clearance",
         StudyKind::Contact(_) => "clearance in which contact is lost",
         StudyKind::Vibrations(_) => "natural vibrations",
+        StudyKind::Adjust(asked) => return crate::adjust::in_words(model, asked),
         StudyKind::Synthesize(asked) => return crate::synthesis::in_words(asked),
     };
     let along = study.kind.along();
@@ -553,6 +555,10 @@ fn of_study(laws: &OfLaws<'_>, study: &Study, progress: &mut dyn Progress) -> Ve
         StudyKind::Simulate(it) => findings_of_simulation(model, name, it, &[], progress),
         StudyKind::Contact(play) => findings_of_contact(model, name, play, laws.lack(), progress),
         StudyKind::Vibrations(asked) => findings_of_vibrations(model, name, asked, progress),
+        StudyKind::Adjust(asked) => {
+            let own = findings_of_adjustment(model, asked);
+            [laws.motion().to_vec(), own].concat()
+        }
         StudyKind::Synthesize(asked) => findings_of_synthesis(model, asked),
     };
     if !refuses(&told) {

@@ -30,6 +30,7 @@
 //! assert!(encode::csv(&result.table).starts_with("time [s],motor [deg],swing [deg],closure [1]"));
 //! ```
 
+mod adjust;
 mod along;
 mod alternatives;
 mod choice;

@@ -103,6 +103,11 @@ pub fn study_bytes(model: &Model, study: &Study) -> Held {
         // Stiffness and preload.
         StudyKind::Spring(choice) => bytes_of_choice(model, &choice.along, 2),
         StudyKind::Vibrations(asked) => bytes_of_vibrations(model, asked),
+        StudyKind::Adjust(asked) => {
+            let row = row_bytes(model, &Asked::default(), 0, false);
+            let columns = (3 + asked.unknown.len()) * (asked.measures.len() + model.drives.len());
+            held(model, &asked.along, row + columns * (1 + HELD) * NUMBER)
+        }
         StudyKind::Synthesize(asked) => Held {
             rows: asked.keep as f64,
             row: BYTES_OF_LINKAGE,

@@ -2,6 +2,7 @@
 
 use kempe_model::{Diagnostic, Model, MotionStudy, Study, StudyKind};
 
+use crate::adjust::adjustment;
 use crate::choice::{balance, spring};
 use crate::circuit::run_circuit;
 use crate::clearance::{clearance, contact};
@@ -45,6 +46,7 @@ pub fn run(
             contact(model, &study.name, play, progress).map(|(result, _)| result)
         }
         StudyKind::Vibrations(asked) => vibrations(model, &study.name, asked, progress),
+        StudyKind::Adjust(asked) => adjustment(model, &study.name, asked, progress),
         StudyKind::Synthesize(asked) => synthesis(model, &study.name, asked, progress),
     }
 }

@@ -24,7 +24,6 @@ mod four_bar;
 mod function;
 mod kernel;
 mod linkage;
-mod marquardt;
 mod motion;
 mod newton;
 mod path;

@@ -53,6 +53,7 @@ impl Cursor<'_> {
             (Named::Point, ..) => self.parts(&[PartKind::Point]),
             (Named::Link, ..) => self.parts(&[PartKind::Link]),
             (Named::Slider, ..) => self.parts(&[PartKind::Joint, PartKind::Link]),
+            (Named::Parameter, ..) => self.parts(&[PartKind::Parameter]),
             (Named::Drive, ..) => self.parts(&[PartKind::Drive]),
             (Named::Spring, ..) => self.parts(&[PartKind::Spring]),
             (Named::File | Named::Column, ..) => Vec::new(),

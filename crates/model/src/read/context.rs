@@ -153,6 +153,7 @@ impl<'a> Context<'a> {
                 announced: Vec::new(),
                 bounds: Vec::new(),
                 inner_laws: Vec::new(),
+                source: None,
                 settled: Vec::new(),
             },
         }

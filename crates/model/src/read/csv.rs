@@ -1,4 +1,4 @@
-//! Tables from files beside the model: two columns of a CSV file, the first of them rising.
+//! Tables from files beside the model: columns of a CSV file.
 
 use kempe_units::{Dimension, Unit, nearest};
 
@@ -42,24 +42,151 @@ pub(crate) struct Ask {
     pub dimension: Dimension,
 }
 
-/// What is said of rows that do not fit.
+/// What is asked of rows, and said of those that do not fit.
 pub(crate) struct Words {
-    /// The first column does not rise.
-    pub not_rising: &'static str,
+    /// The first column does not rise; `None` where it need not.
+    pub not_rising: Option<&'static str>,
     /// What rows are.
     pub order: &'static str,
-    /// There are fewer than two.
+    /// So many are needed.
+    pub least: usize,
+    /// There are fewer.
     pub few: &'static str,
 }
 
-/// Two columns of the file that `file` names, in SI; the first one rises. Columns are parted by a semicolon, a tabulator or a
-/// comma; a head may name its unit in brackets, `p [bar]`.
+/// Two columns of a file, the first of which rises: see [`all_columns`].
 pub(crate) fn columns(
     cx: &mut Context<'_>,
     file: &Node,
-    [first, second]: [&Ask; 2],
+    asks: [&Ask; 2],
     words: &Words,
 ) -> Option<(Vec<f64>, Vec<f64>)> {
+    let mut found = all_columns(cx, file, &asks, words)?.into_iter();
+    Some((found.next()?, found.next()?))
+}
+
+/// Columns of the file that `file` names, in SI. They are parted by a semicolon, a tabulator or a
+/// comma; a head may name its unit in brackets, `p [bar]`.
+pub(crate) fn all_columns(
+    cx: &mut Context<'_>,
+    file: &Node,
+    asks: &[&Ask],
+    words: &Words,
+) -> Option<Vec<Vec<f64>>> {
+    let table = opened(cx, file)?;
+    let (name, heads, separator) = (&table.name, &table.heads(), table.separator);
+    let lines = table.lines().skip(1);
+    let places: Vec<Option<(usize, Unit)>> = asks
+        .iter()
+        .map(|ask| find_column(cx, heads, name, ask))
+        .collect();
+    let places: Vec<(usize, Unit)> = places.into_iter().collect::<Option<_>>()?;
+    let last = places.iter().map(|(i, _)| *i).max().unwrap_or(0);
+    let mut found: Vec<Vec<f64>> = vec![Vec::new(); places.len()];
+    let mut rows = 0;
+    for (number, line) in lines {
+        let cells: Vec<&str> = line.split(separator).map(unquoted).collect();
+        let filled = cells.len() - cells.iter().rev().take_while(|c| c.is_empty()).count();
+        let room = rows < MAX_ROWS && cx.table_rows < MAX_ALL_ROWS;
+        let one_of_many = || format!("{}, at most {MAX_ROWS} of them", words.order);
+        let mut values = Vec::with_capacity(places.len());
+        let mut trouble = None;
+        if filled > heads.len() {
+            let help = match separator {
+                ',' => "a decimal point is written `.`; or part the columns by a semicolon",
+                _ => "each row has as many cells as the first line has heads",
+            };
+            trouble = Some((cells_and_heads(filled, heads.len()), help.to_owned()));
+        } else if filled <= last {
+            trouble = Some((
+                cells_and_heads(filled, heads.len()),
+                "each row has a cell under each head".to_owned(),
+            ));
+        }
+        for (i, unit) in &places {
+            match cell(cells.get(*i).copied().unwrap_or(""), unit) {
+                Ok(value) => values.push(value),
+                Err((wrong, help)) => {
+                    trouble = trouble.or_else(|| Some((in_column(heads, *i, &wrong), help)));
+                }
+            }
+        }
+        if !room {
+            trouble = trouble.or_else(|| Some(("one row too many".to_owned(), one_of_many())));
+        }
+        if let (Some(not_rising), Some((i, _)), Some(value)) =
+            (words.not_rising, places.first(), values.first())
+            && let Some(before) = found.first().and_then(|column| column.last())
+            && !(value - before > NEAREST)
+        {
+            let wrong = in_column(heads, *i, not_rising);
+            trouble = trouble.or_else(|| Some((wrong, one_of_many())));
+        }
+        let Some((trouble, help)) = trouble else {
+            for (column, value) in found.iter_mut().zip(values) {
+                column.push(value);
+            }
+            rows += 1;
+            cx.table_rows += 1;
+            continue;
+        };
+        cx.push(
+            Diagnostic::error(
+                "table-values",
+                format!("`{name}`, line {}: {trouble}", number + 1),
+            )
+            .at(file.span.clone(), "")
+            .note(format!(
+                "the line is: {}",
+                line.chars().take(80).collect::<String>()
+            ))
+            .help(help),
+        );
+        return None;
+    }
+    if rows < words.least {
+        return cx.refuse(
+            "table-values",
+            format!("`{name}` has {rows} rows of data"),
+            &file.span,
+            words.few,
+        );
+    }
+    Some(found)
+}
+
+/// A file with its first line read.
+struct Table {
+    name: String,
+    content: String,
+    separator: char,
+}
+
+impl Table {
+    /// Lines that say something, with their numbers.
+    fn lines(&self) -> impl Iterator<Item = (usize, &str)> {
+        let lines = self.content.lines().enumerate();
+        lines.filter(|(_, l)| !l.trim().is_empty() && !l.starts_with('#'))
+    }
+
+    fn header(&self) -> &str {
+        let first = self.lines().next();
+        first.map_or("", |(_, line)| line.trim_start_matches('\u{feff}'))
+    }
+
+    fn heads(&self) -> Vec<&str> {
+        self.header().split(self.separator).map(unquoted).collect()
+    }
+}
+
+/// The names of the columns of a file, without their units.
+pub(crate) fn names_of_columns(cx: &mut Context<'_>, file: &Node) -> Option<Vec<String>> {
+    let table = opened(cx, file)?;
+    let heads = table.heads().into_iter();
+    Some(heads.map(|head| split_head(head).0).collect())
+}
+
+fn opened(cx: &mut Context<'_>, file: &Node) -> Option<Table> {
     let name = cx
         .text(file, "`table`", "\"measured.csv\"")?
         .content
@@ -91,17 +218,15 @@ pub(crate) fn columns(
             "run its study to the end; to use the rows it has, take away its first line",
         );
     }
-    let mut lines = content
-        .lines()
-        .enumerate()
-        .filter(|(_, l)| !l.trim().is_empty() && !l.starts_with('#'));
-    let header = lines
-        .next()
-        .map_or("", |(_, line)| line.trim_start_matches('\u{feff}'));
-    let separator = [';', '\t', ',']
-        .into_iter()
-        .find(|c| header.contains(*c))
-        .unwrap_or(',');
+    let mut table = Table {
+        name,
+        content,
+        separator: ',',
+    };
+    let known = [';', '\t', ','].into_iter();
+    let separator = known.into_iter().find(|c| table.header().contains(*c));
+    table.separator = separator.unwrap_or(',');
+    let (name, header, heads) = (&table.name, table.header(), table.heads());
     if header.trim().is_empty() {
         return cx.refuse(
             "table-column",
@@ -110,7 +235,6 @@ pub(crate) fn columns(
             "its first line names the columns, with their units: t [s], angle [deg]",
         );
     }
-    let heads: Vec<&str> = header.split(separator).map(unquoted).collect();
     if heads.iter().all(|head| head.parse::<f64>().is_ok()) {
         cx.push(
             Diagnostic::error(
@@ -122,70 +246,7 @@ pub(crate) fn columns(
         );
         return None;
     }
-    let first = find_column(cx, &heads, &name, first);
-    let second = find_column(cx, &heads, &name, second);
-    let ((first, first_unit), (second, second_unit)) = (first?, second?);
-    let (mut abscissas, mut values) = (Vec::new(), Vec::new());
-    for (number, line) in lines {
-        let cells: Vec<&str> = line.split(separator).map(unquoted).collect();
-        let filled = cells.len() - cells.iter().rev().take_while(|c| c.is_empty()).count();
-        let room = abscissas.len() < MAX_ROWS && cx.table_rows < MAX_ALL_ROWS;
-        let read = |i: usize, unit: &Unit| cell(cells.get(i).copied().unwrap_or(""), unit);
-        let (trouble, help) = match (read(first, &first_unit), read(second, &second_unit)) {
-            _ if filled > heads.len() => {
-                let help = match separator {
-                    ',' => "a decimal point is written `.`; or part the columns by a semicolon",
-                    _ => "each row has as many cells as the first line has heads",
-                };
-                (cells_and_heads(filled, heads.len()), help.to_owned())
-            }
-            _ if filled <= first.max(second) => (
-                cells_and_heads(filled, heads.len()),
-                "each row has a cell under each head".to_owned(),
-            ),
-            (Err((trouble, help)), _) => (in_column(&heads, first, &trouble), help),
-            (_, Err((trouble, help))) => (in_column(&heads, second, &trouble), help),
-            _ if !room => (
-                "one row too many".to_owned(),
-                format!("{}, at most {MAX_ROWS} of them", words.order),
-            ),
-            (Ok(t), Ok(x)) => {
-                if abscissas.last().is_none_or(|last| t - last > NEAREST) {
-                    abscissas.push(t);
-                    values.push(x);
-                    cx.table_rows += 1;
-                    continue;
-                }
-                let trouble = in_column(&heads, first, words.not_rising);
-                (
-                    trouble,
-                    format!("{}, at most {MAX_ROWS} of them", words.order),
-                )
-            }
-        };
-        cx.push(
-            Diagnostic::error(
-                "table-values",
-                format!("`{name}`, line {}: {trouble}", number + 1),
-            )
-            .at(file.span.clone(), "")
-            .note(format!(
-                "the line is: {}",
-                line.chars().take(80).collect::<String>()
-            ))
-            .help(help),
-        );
-        return None;
-    }
-    if abscissas.len() < 2 {
-        return cx.refuse(
-            "table-values",
-            format!("`{name}` has {} rows of data", abscissas.len()),
-            &file.span,
-            words.few,
-        );
-    }
-    Some((abscissas, values))
+    Some(table)
 }
 
 /// Places nearer to each other than this, in SI, are one: no slope between them is a number.
@@ -250,6 +311,17 @@ fn unquoted(cell: &str) -> &str {
 }
 
 /// The column that is meant, with the unit in its head: `angle [deg]`, or the file's unit.
+/// A head as a name and the unit in brackets behind it.
+fn split_head(head: &str) -> (String, Option<String>) {
+    match head.split_once('[') {
+        Some((name, unit)) => (
+            name.trim().to_owned(),
+            Some(unit.trim_end_matches(']').trim().to_owned()),
+        ),
+        None => (head.trim().to_owned(), None),
+    }
+}
+
 fn find_column(
     cx: &mut Context<'_>,
     heads: &[&str],
@@ -257,14 +329,7 @@ fn find_column(
     ask: &Ask,
 ) -> Option<(usize, Unit)> {
     let (dimension, span) = (ask.dimension, ask.span.clone());
-    let split = |head: &str| match head.split_once('[') {
-        Some((name, unit)) => (
-            name.trim().to_owned(),
-            Some(unit.trim_end_matches(']').trim().to_owned()),
-        ),
-        None => (head.trim().to_owned(), None),
-    };
-    let names: Vec<(String, Option<String>)> = heads.iter().map(|h| split(h)).collect();
+    let names: Vec<(String, Option<String>)> = heads.iter().map(|h| split_head(h)).collect();
     let place = match &ask.pick {
         Pick::Name(name) => heads
             .iter()

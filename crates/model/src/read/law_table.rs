@@ -10,7 +10,8 @@ use crate::read::entry::Entry;
 use crate::spline::moments;
 
 const WORDS: Words = Words {
-    not_rising: "its time is not later than that of the row before",
+    not_rising: Some("its time is not later than that of the row before"),
+    least: 2,
     order: "rows are numbers in order of increasing time",
     few: "a motion needs at least two rows",
 };

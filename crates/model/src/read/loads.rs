@@ -35,7 +35,8 @@ use crate::read::nature::{as_scalar, nature};
 use crate::read::springs::plain_name;
 
 const WORDS: Words = Words {
-    not_rising: "its argument is not larger than that of the row before",
+    not_rising: Some("its argument is not larger than that of the row before"),
+    least: 2,
     order: "rows are numbers in order of increasing argument",
     few: "a curve needs at least two rows",
 };

@@ -15,7 +15,7 @@ use crate::read::context::Context;
 use crate::read::entry::Entry;
 use crate::read::names::long_name;
 use crate::read::plots::plot;
-use crate::read::{choices, clearance, simulate, synthesis, vibrations};
+use crate::read::{adjust, choices, clearance, simulate, synthesis, vibrations};
 use crate::study::{AnnouncedStudy, Column, MotionStudy, Plot, Rows, Study, StudyKind};
 
 /// Rows of a table by default, when a step is not the thing to say.
@@ -173,6 +173,9 @@ fn read_study(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<StudyKind> {
     let mut entry = Entry::new(cx, entry, known)?;
     if name == "vibrations" {
         return vibrations::read(cx, &entry);
+    }
+    if name == "adjust" {
+        return adjust::read(cx, &entry, key);
     }
     let in_time = name == "simulate" || (name == "clearance" && clearance::loses_contact(&entry));
     let rows = match in_time {

@@ -44,13 +44,14 @@ impl Writer<'_> {
             StudyKind::Simulate(_) => "simulate",
             StudyKind::Clearance(_) | StudyKind::Contact(_) => "clearance",
             StudyKind::Vibrations(_) => "vibrations",
+            StudyKind::Adjust(_) => "adjust",
             StudyKind::Synthesize(_) => "synthesize",
         };
         let mut entries = vec![("kind".to_owned(), Item::text(kind))];
         let one_pose = |study: &VibrationStudy| study.along.rows == Rows::Count(1);
         let no_rows = match &study.kind {
             StudyKind::Vibrations(study) => one_pose(study),
-            StudyKind::Synthesize(_) => true,
+            StudyKind::Synthesize(_) | StudyKind::Adjust(_) => true,
             _ => false,
         };
         if !no_rows {
@@ -112,6 +113,7 @@ impl Writer<'_> {
                 self.in_time(study, self.model.drives.len(), &mut put);
             }
             StudyKind::Vibrations(study) => self.vibrations(study, &mut put),
+            StudyKind::Adjust(study) => self.adjust(study, &mut put),
             StudyKind::Synthesize(study) => self.synthesis(study, &mut put),
         }
         entries
@@ -226,7 +228,7 @@ impl Writer<'_> {
         }
     }
 
-    fn bounds(&self, bounds: &[Option<Scalar>; 2], dimension: Dimension) -> Item {
+    pub fn bounds(&self, bounds: &[Option<Scalar>; 2], dimension: Dimension) -> Item {
         let bound = |bound: &Option<Scalar>| match bound {
             Some(bound) => self.scalar(bound, dimension),
             None => Item::text("none"),

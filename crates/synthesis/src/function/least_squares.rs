@@ -1,10 +1,9 @@
 //! Four-bars that come near to more pairs of angles than they can keep.
 
-use kempe_linear::{C, Qr, independent_least_squares};
+use kempe_linear::{C, Qr, Residuals, independent_least_squares, smallest_squares};
 
 use super::{DialZeros, FunctionFourBar, PrecisionPoint, SAME_ANGLE, distinct, functions};
 use crate::error::{SynthesisError, all_finite};
-use crate::marquardt::{Model, smallest};
 
 /// A four-bar near to pairs of angles.
 #[derive(Clone, Debug, PartialEq)]
@@ -120,7 +119,7 @@ pub fn fit_function(
                 zeros,
                 branch,
             };
-            let Some(at) = smallest(&problem, &problem.unknowns(&start)) else {
+            let Some(at) = smallest_squares(&problem, &problem.unknowns(&start)) else {
                 continue;
             };
             let bar = problem.bar(&at);
@@ -209,7 +208,7 @@ impl Errors<'_> {
     }
 }
 
-impl Model for Errors<'_> {
+impl Residuals for Errors<'_> {
     fn residuals(&self, unknowns: &[f64]) -> Option<Vec<f64>> {
         self.errors(&self.bar(unknowns))
     }

@@ -1,12 +1,11 @@
 //! Slider-cranks that come near to more pairs of angle and place than they can keep.
 
-use kempe_linear::{C, Qr};
+use kempe_linear::{C, Qr, Residuals, smallest_squares};
 
 use super::SAME_ANGLE;
 use super::least_squares::{SAME_FIT, spreads};
 use super::slider::{SliderFunction, SliderPoint, slider_functions};
 use crate::error::{SynthesisError, all_finite};
-use crate::marquardt::{Model, smallest};
 
 /// A slider-crank near to pairs of angle and place.
 #[derive(Clone, Debug, PartialEq)]
@@ -60,7 +59,7 @@ pub fn fit_slider_function(
                 slider_zero,
                 branch,
             };
-            let Some(at) = smallest(&problem, &problem.unknowns(start)) else {
+            let Some(at) = smallest_squares(&problem, &problem.unknowns(start)) else {
                 continue;
             };
             let bar = problem.bar(&at);
@@ -135,7 +134,7 @@ impl Errors<'_> {
     }
 }
 
-impl Model for Errors<'_> {
+impl Residuals for Errors<'_> {
     fn residuals(&self, unknowns: &[f64]) -> Option<Vec<f64>> {
         self.errors(&self.bar(unknowns))
     }
