@@ -18,6 +18,7 @@ mod ends;
 mod entry;
 mod force_names;
 mod friction;
+mod guidance;
 mod joints;
 mod law_table;
 pub(crate) mod laws;
