@@ -117,6 +117,8 @@ pub(super) fn candidates(
         candidates: candidates.collect(),
         rejected: Vec::new(),
         searched: "one for each sense in which the crank may go round".to_owned(),
+        tried: None,
+        guided: Vec::new(),
     })
 }
 

@@ -400,6 +400,8 @@ impl Asked<'_> {
             candidates: Vec::new(),
             rejected: Vec::new(),
             searched,
+            tried: None,
+            guided: Vec::new(),
         }
     }
 

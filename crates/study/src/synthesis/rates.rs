@@ -101,5 +101,7 @@ pub(super) fn candidates(
         candidates: vec![candidate],
         rejected: Vec::new(),
         searched: "there is one, but for its size and direction".to_owned(),
+        tried: None,
+        guided: Vec::new(),
     })
 }
