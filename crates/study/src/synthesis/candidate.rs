@@ -15,6 +15,8 @@ pub(super) struct Found {
     pub searched: String,
     /// What was tried where not all linkages are known.
     pub tried: Option<Listing>,
+    /// Linkages ruled out that are only counted there.
+    pub counted: usize,
     /// Poses that a body is guided through, where that is the task.
     pub guided: Vec<Pose>,
 }

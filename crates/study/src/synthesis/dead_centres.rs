@@ -118,6 +118,7 @@ pub(super) fn candidates(
         rejected: Vec::new(),
         searched: "one for each sense in which the crank may go round".to_owned(),
         tried: None,
+        counted: 0,
         guided: Vec::new(),
     })
 }

@@ -401,6 +401,7 @@ impl Asked<'_> {
             rejected: Vec::new(),
             searched,
             tried: None,
+            counted: 0,
             guided: Vec::new(),
         }
     }

@@ -95,7 +95,8 @@ fn candidates(
         SynthesisTask::Motion(task) => motion::candidates(model, task),
     };
     let found = found.map_err(|refused| vec![*refused])?;
-    let told = match found.candidates.is_empty() && found.rejected.is_empty() {
+    let none = found.candidates.is_empty() && found.rejected.is_empty();
+    let told = match none && found.counted == 0 {
         true => vec![none_does(&found)],
         false => Vec::new(),
     };
@@ -137,8 +138,9 @@ pub(crate) fn synthesis(
         }
     }
     accepted.sort_by(|a, b| a.rank.total_cmp(&b.rank));
-    if accepted.is_empty() && !rejected.is_empty() {
-        diagnostics.push(none_accepted(rejected.len()));
+    let unused = rejected.len() + found.counted;
+    if accepted.is_empty() && unused > 0 {
+        diagnostics.push(none_accepted(unused));
     }
     let left_out = accepted.len().saturating_sub(study.keep);
     accepted.truncate(study.keep);
@@ -162,7 +164,11 @@ pub(crate) fn synthesis(
     }
     listings.extend(found.tried);
     if !rejected.is_empty() {
-        let rows = rejected.into_iter().map(|r| vec![r.what, r.why]);
+        let more = rejected.len().saturating_sub(LISTED);
+        let rows = rejected.into_iter().take(LISTED);
+        let rows = rows.map(|r| vec![r.what, r.why]);
+        let rest = (more > 0).then(|| vec![format!("and {more} more"), String::new()]);
+        let rows = rows.chain(rest);
         listings.push(Listing {
             title: "found, but not accepted".to_owned(),
             head: vec!["linkage".to_owned(), "why".to_owned()],
@@ -205,6 +211,9 @@ pub(crate) fn synthesis(
         demanded_rows,
     })
 }
+
+/// So many linkages that are not accepted are listed one by one.
+const LISTED: usize = 60;
 
 /// A row for each linkage: its number, its dimensions and what is asked of it.
 fn table(name: &str, accepted: &[Judged]) -> Table {

@@ -356,6 +356,7 @@ impl<'a> Search<'a> {
         let many = self.rejected.len() > LISTED;
         let is_told = self.is_search || many || right > MOST_MOVED;
         let tried = is_told.then(|| self.told(&how, right));
+        let counted = if many { self.rejected.len() } else { 0 };
         let rejected = match many {
             true => Vec::new(),
             false => (self.rejected.iter())
@@ -376,6 +377,7 @@ impl<'a> Search<'a> {
             rejected,
             searched: how,
             tried,
+            counted,
             guided: self.asked.poses.clone(),
         }
     }

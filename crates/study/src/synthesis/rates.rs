@@ -102,6 +102,7 @@ pub(super) fn candidates(
         rejected: Vec::new(),
         searched: "there is one, but for its size and direction".to_owned(),
         tried: None,
+        counted: 0,
         guided: Vec::new(),
     })
 }

@@ -20,7 +20,7 @@ const DIRECTIONS: usize = 36;
 /// Fits of a dyad that are paired with others, the best.
 const FITS: usize = 12;
 /// How far curves are followed, in units of the task: as far as any box of use.
-const REACH: f64 = 300.0;
+pub(super) const REACH: f64 = 300.0;
 
 /// How one of the two joints on a dyad is made.
 #[derive(Clone, Copy, PartialEq, Eq)]

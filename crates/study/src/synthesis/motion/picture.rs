@@ -4,6 +4,7 @@ use kempe_model::Model;
 use kempe_synthesis::{BurmesterCurve, C, CurveDrawing, Linkage, Pose};
 use kempe_units::Dimension;
 
+use super::dyads::REACH;
 use crate::result::{Figure, PlaneCurve};
 use crate::synthesis::candidate::Candidate;
 use crate::unit::{Units, shown};
@@ -80,7 +81,7 @@ pub(in crate::synthesis) fn picture(
         let (low, high) = (low - margin, high + margin);
         let in_picture =
             |p: C| (low.re..=high.re).contains(&p.re) && (low.im..=high.im).contains(&p.im);
-        let drawing = CurveDrawing::default();
+        let drawing = CurveDrawing::default().with_reach(REACH);
         let closed = |points: Vec<C>, closed: bool| {
             let again = points.first().copied().filter(|_| closed);
             points.into_iter().chain(again).collect::<Vec<C>>()
