@@ -276,7 +276,7 @@ fn listed(table: &Table) -> Listing {
 fn none_does(found: &Found) -> Diagnostic {
     Diagnostic::warning("no-linkage", "no linkage of this kind does what is asked")
         .note(found.searched.clone())
-        .help("change the data a little, or leave a zero free")
+        .help("change the data a little, or leave more of them open")
 }
 
 fn none_accepted(found: usize) -> Diagnostic {

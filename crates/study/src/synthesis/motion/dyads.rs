@@ -71,6 +71,19 @@ impl Asked {
             Sort::Slider | Sort::Slot => self.guides(given, sort),
         }?;
         found.dyads.retain(|dyad| sort_of(dyad) == sort);
+        if let Some(tried) = &mut found.tried {
+            // Of what is only tried nobody misses one that lies outside; of all there are each is accounted for.
+            let before = found.dyads.len();
+            found.dyads.retain(|dyad| match *dyad {
+                Dyad::Rr { fixed, moving, .. } => self.inside(Some(fixed), Some(moving)),
+                Dyad::Pr { moving, .. } => self.inside(None, Some(moving)),
+                Dyad::Rp { fixed, .. } => self.inside(Some(fixed), None),
+            });
+            let outside = before - found.dyads.len();
+            if outside > 0 {
+                tried.push_str(&format!(" ({outside} of them outside the boxes)"));
+            }
+        }
         Ok(found)
     }
 
