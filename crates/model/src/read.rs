@@ -19,6 +19,7 @@ mod ends;
 mod entry;
 mod force_names;
 mod friction;
+mod guidance;
 mod joints;
 mod law_table;
 pub(crate) mod laws;

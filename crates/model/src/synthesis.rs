@@ -53,6 +53,8 @@ pub enum SynthesisTask {
     Rates(RatesTask),
     /// Its output goes so far, and takes so much longer there than back.
     DeadCentres(DeadCentresTask),
+    /// Its coupler passes poses.
+    Motion(Box<GuidanceTask>),
 }
 
 /// An output as an input asks.
@@ -159,6 +161,60 @@ pub enum Stroke {
     },
 }
 
+/// A body that is guided through poses.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GuidanceTask {
+    /// The poses, in the order in which they are passed; at least two.
+    pub poses: Vec<WantedPose>,
+    /// Of which kind; any where it is not said.
+    pub linkage: Option<LinkageKind>,
+    /// What is given of the dyad that is driven, and of the other.
+    pub dyads: [DyadGiven; 2],
+    /// Two corners of a box in which the fixed pivots must lie, m.
+    pub pivots_in: Option<[[Scalar; 2]; 2]>,
+    /// Two corners of a box in the body's own axes in which the moving pivots must lie, m.
+    pub pins_in: Option<[[Scalar; 2]; 2]>,
+    /// Where the poses as a whole stand in the file.
+    pub span: Span,
+}
+
+/// A pose of a body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WantedPose {
+    /// The place of the body's origin, m.
+    pub origin: [Scalar; 2],
+    /// Its angle, rad.
+    pub angle: Scalar,
+    /// Where it stands in the file.
+    pub span: Span,
+}
+
+/// What is given of a dyad, a link or a slider between the frame and a body.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct DyadGiven {
+    /// The place of its fixed pivot, m.
+    pub fixed: Option<[Scalar; 2]>,
+    /// Two points of a line on which its fixed pivot lies, m.
+    pub fixed_on: Option<[[Scalar; 2]; 2]>,
+    /// Its moving pivot as a point of the body, m.
+    pub moving: Option<[Scalar; 2]>,
+    /// Two points of a line of the body on which its moving pivot lies, m.
+    pub moving_on: Option<[[Scalar; 2]; 2]>,
+    /// The direction of a slider's guide, rad: on the frame, or of an inverted slider-crank on the body.
+    pub along: Option<Scalar>,
+    /// Where it stands in the file; nowhere where nothing is given.
+    pub span: Span,
+}
+
+impl DyadGiven {
+    fn visit_scalars(&mut self, f: &mut dyn FnMut(&mut Scalar)) {
+        let points = self.fixed.iter_mut().chain(&mut self.moving);
+        let lines = self.fixed_on.iter_mut().chain(&mut self.moving_on);
+        let places = points.chain(lines.flatten());
+        places.flatten().chain(&mut self.along).for_each(f);
+    }
+}
+
 impl SynthesizeStudy {
     /// Where its parts stand in the file.
     pub(crate) fn visit_places(&mut self, f: &mut dyn FnMut(&mut Span)) {
@@ -174,6 +230,11 @@ impl SynthesizeStudy {
             },
             SynthesisTask::Rates(task) => task.spans.iter_mut().for_each(f),
             SynthesisTask::DeadCentres(task) => task.spans.iter_mut().for_each(f),
+            SynthesisTask::Motion(task) => {
+                let poses = task.poses.iter_mut().map(|pose| &mut pose.span);
+                let dyads = task.dyads.iter_mut().map(|dyad| &mut dyad.span);
+                poses.chain(dyads).chain([&mut task.span]).for_each(f);
+            }
         }
     }
 
@@ -201,6 +262,15 @@ impl SynthesizeStudy {
             SynthesisTask::Rates(task) => {
                 let all = task.speeds.iter_mut().chain(&mut task.accelerations);
                 all.chain([&mut task.ground]).for_each(f);
+            }
+            SynthesisTask::Motion(task) => {
+                for pose in &mut task.poses {
+                    let all = pose.origin.iter_mut().chain([&mut pose.angle]);
+                    all.for_each(&mut *f);
+                }
+                task.dyads.iter_mut().for_each(|dyad| dyad.visit_scalars(f));
+                let boxes = task.pivots_in.iter_mut().chain(&mut task.pins_in);
+                boxes.flatten().flatten().for_each(f);
             }
             SynthesisTask::DeadCentres(task) => {
                 f(&mut task.time_ratio);

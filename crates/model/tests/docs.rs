@@ -220,7 +220,7 @@ const OTHER: &[&str] = &[
     "amplitude", "angular_frequency", "damped_frequency", "damping_ratio", "frequency", "growth", "modal_inertia", "modal_mass", "period", "shape",
     // names of the linkages that studies find
     "coupler_acceleration", "coupler_length", "coupler_speed", "crank", "crank_length", "lever", "link_ratio", "miss", "motor",
-    "rocker_acceleration", "rocker_length", "rocker_speed", "structural_error",
+    "rms_error", "rms_turn", "rocker_acceleration", "rocker_length", "rocker_speed", "structural_error",
     // on the command line
     "kempe", "check", "new", "run", "draw", "schema",
     // parts of names and phrases, and names of the page's own models

@@ -117,6 +117,14 @@ fn entry(section: &str, kind: &Kind) -> (&'static str, Vec<(&'static str, &'stat
             ];
             ("x", base)
         }
+        ("studies", "synthesize motion") => {
+            let base = vec![
+                ("kind", "'synthesize'"),
+                ("task", "'motion'"),
+                ("poses", "[[0, 0, 0], [12, 6, 20], [20, 18, 55]]"),
+            ];
+            ("x", base)
+        }
         ("studies", _) => (
             "x",
             vec![
@@ -180,6 +188,16 @@ fn with(section: &str, kind: &Kind, key: &str, value: &str) -> String {
             (
                 "x",
                 format!("{{ kind = 'adjust', unknown = ['area'], match = {table} }}"),
+            )
+        }
+        "dyad" => {
+            let dyad = inner(&[]);
+            let poses = "[[0, 0, 0], [12, 6, 20], [20, 18, 55]]";
+            (
+                "x",
+                format!(
+                    "{{ kind = 'synthesize', task = 'motion', poses = {poses}, crank = {dyad} }}"
+                ),
             )
         }
         "oil of" => {

@@ -297,6 +297,22 @@ linkage = "slider-crank"
 pairs = [[10, "20 mm", 0.5, 0.1], [20, 30]]
 zeros = ["free", "2 mm"]
 
+[studies.guide]
+kind = "synthesize"
+task = "motion"
+linkage = "four-bar"
+poses = [[0, 0, "0 deg"], ["a + 12 mm", 6, "tilt"], [20, 18, "55 deg"]]
+crank = { moving = ["11 mm", "30 deg"], along = "90 deg" }
+rocker = { fixed = ["2 * a", 8], moving_on = [[0, 5], [1, "a"]] }
+pivots_in = [[-50, "-a"], [50, 50]]
+
+[studies.guides]
+kind = "synthesize"
+task = "motion"
+poses = [[0, 0, "0 deg"], [12, 6, 20]]
+crank = { fixed_on = [[0, 5], [1, 6]], moving = [1, 2] }
+pins_in = [[-50, 0], [50, 50]]
+
 [studies.modes]
 kind = "vibrations"
 [studies.swings]

@@ -5,7 +5,7 @@ use kempe_model::Model;
 use kempe_motion::events::EventKind;
 use kempe_units::{Dimension, Unit};
 
-use crate::result::{Event, Figure, StudyResult};
+use crate::result::{Event, Figure, PlaneCurve, StudyResult};
 use crate::table::Column;
 
 /// The kind of mark an event gets.
@@ -54,6 +54,7 @@ pub fn figures(model: &Model, result: &StudyResult) -> Vec<(String, PlotSpec)> {
             Figure::Hodograph(name, axes) => {
                 (name.clone(), hodograph(name, axes, x, noise(result)))
             }
+            Figure::Plane { name, unit, curves } => (name.clone(), plane(unit, curves)),
             Figure::Path(point) => {
                 let name = model.points.get(point.index()).map_or("", |p| &p.name);
                 (
@@ -136,7 +137,7 @@ pub(crate) fn noise(result: &StudyResult) -> f64 {
         Figure::Hodograph(_, axes) => axes.as_slice(),
         Figure::Curves { curves, .. } => curves.as_slice(),
         Figure::Within { curve, .. } => std::slice::from_ref(curve),
-        Figure::Path(_) => &[],
+        Figure::Path(_) | Figure::Plane { .. } => &[],
     });
     let columns = result.table.columns.iter().chain(of_figures);
     let values = columns.filter(|c| force(&c.unit)).flat_map(Column::si);
@@ -144,6 +145,24 @@ pub(crate) fn noise(result: &StudyResult) -> f64 {
     let arrows = arrows.flat_map(|a| a.force);
     let largest = values.chain(arrows).map(f64::abs);
     NO_FORCE * largest.filter(|v| v.is_finite()).fold(0.0, f64::max)
+}
+
+/// Curves in the plane.
+fn plane(unit: &Unit, curves: &[PlaneCurve]) -> PlotSpec {
+    let curves = curves.iter().map(|curve| Curve {
+        label: curve.name.clone(),
+        x: curve.points.iter().map(|p| p[0]).collect(),
+        y: curve.points.iter().map(|p| p[1]).collect(),
+        dashed: curve.dashed,
+        ..Curve::default()
+    });
+    PlotSpec {
+        x: Axis::new("x", unit.text()),
+        y: Axis::new("y", unit.text()),
+        curves: curves.collect(),
+        equal_aspect: true,
+        ..PlotSpec::default()
+    }
 }
 
 /// A curve in the plane; of forces without the noise in them, SI.

@@ -17,7 +17,7 @@ use crate::parameters_section::parameters_section;
 use crate::plotted::plotted;
 use crate::point_vectors::point_vectors;
 use crate::report_against::{beside, findings_of_other, other_source};
-use crate::report_designs::{designs_section, moving_designs};
+use crate::report_designs::{designs_section, moving_designs, planes_section};
 use crate::report_shapes::mode_shapes;
 use crate::result::StudyResult;
 use crate::table::{Column, largest};
@@ -97,6 +97,7 @@ pub fn report(
     let mut sections: Vec<Section> = against.map_or_else(Vec::new, |a| a.comparison.sections());
     sections.extend(results.flat_map(|r| {
         let found = designs_section(r).into_iter();
+        let found = found.chain(planes_section(model, r));
         found.chain(values_section(r)).chain(listings(r))
     }));
     sections.extend(parameters_section(model, origin));

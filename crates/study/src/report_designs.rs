@@ -3,9 +3,11 @@
 use kempe_draw::report::{Block, MotionReport, Section};
 use kempe_draw::scene::Scene;
 use kempe_draw::{DrawOptions, Stage};
+use kempe_model::Model;
 
+use crate::figures::figures;
 use crate::report::motion;
-use crate::result::{FoundDesign, StudyResult};
+use crate::result::{Figure, FoundDesign, StudyResult};
 use crate::view::{drawing_frames, mechanism_view};
 
 /// So many move in the page; the files of all move when they are run.
@@ -53,6 +55,23 @@ pub(crate) fn designs_section(result: &StudyResult) -> Option<Section> {
     (!pictures.is_empty()).then(|| Section {
         title: format!("{}: side by side", result.name),
         blocks: vec![Block::Pictures(pictures)],
+    })
+}
+
+/// Width and height of a picture of the plane, mm.
+const PLANE: [f64; 2] = [170.0, 130.0];
+
+/// What a study shows in the plane beside the mechanisms that it found.
+pub(crate) fn planes_section(model: &Model, result: &StudyResult) -> Option<Section> {
+    let is_plane = (result.figures.iter()).any(|figure| matches!(figure, Figure::Plane { .. }));
+    if !result.frames.is_empty() || !is_plane {
+        return None;
+    }
+    let plots = figures(model, result).into_iter();
+    let pictures = plots.map(|(name, plot)| (name, plot.draw(PLANE[0], PLANE[1]).scene));
+    Some(Section {
+        title: format!("{}: in the plane", result.name),
+        blocks: vec![Block::Pictures(pictures.collect())],
     })
 }
 

@@ -173,6 +173,47 @@ pub enum Figure {
     Path(PointId),
     /// The force of a joint: name, x and y.
     Hodograph(String, [Column; 2]),
+    /// Curves in the plane that belong to no motion.
+    Plane {
+        /// Its name.
+        name: String,
+        /// The unit of both axes.
+        unit: Unit,
+        /// Its curves.
+        curves: Vec<PlaneCurve>,
+    },
+}
+
+/// A curve in the plane.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct PlaneCurve {
+    /// Name in the legend.
+    pub name: String,
+    /// Its points in the figure's unit; a gap where they are not finite.
+    pub points: Vec<[f64; 2]>,
+    /// Whether it is dashed.
+    pub dashed: bool,
+}
+
+impl PlaneCurve {
+    pub(crate) fn new(name: &str, dashed: bool) -> Self {
+        Self {
+            name: name.to_owned(),
+            points: Vec::new(),
+            dashed,
+        }
+    }
+
+    /// On to a point.
+    pub(crate) fn to(&mut self, point: [f64; 2]) {
+        self.points.push(point);
+    }
+
+    /// The pen is lifted.
+    pub(crate) fn gap(&mut self) {
+        self.points.push([f64::NAN; 2]);
+    }
 }
 
 /// Where everything is in one row, SI.

@@ -234,7 +234,7 @@ mod tests {
                 }
                 crate::Figure::Hodograph(_, [x, y]) => x.values.len() + y.values.len(),
                 crate::Figure::Within { curve, bound } => curve.values.len() + bound.values.len(),
-                crate::Figure::Path(_) => 0,
+                crate::Figure::Path(_) | crate::Figure::Plane { .. } => 0,
             };
         }
         let mut bytes = numbers * NUMBER + table.notes.len() * size_of::<Option<String>>();

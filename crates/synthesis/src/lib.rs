@@ -3,6 +3,7 @@
 //! | file | for |
 //! | --- | --- |
 //! | `motion.rs`, `sliders.rs`, `timed.rs` | dyads that guide a body through two to five poses |
+//! | `guidance_fit.rs` | dyads that come near to six and more |
 //! | `burmester_curve.rs` | the curves of all pivots of four poses |
 //! | `linkage.rs`, `four_bar.rs`, `slider_crank.rs`, `defects.rs` | pairs of dyads, how their links turn, and whether they pass the poses on one circuit, on one branch and in order |
 //! | `function.rs` and its folder | four-bars and slider-cranks that turn or slide as a crank's angle asks: exactly, or in least squares |
@@ -22,6 +23,7 @@ mod dyad;
 mod error;
 mod four_bar;
 mod function;
+mod guidance_fit;
 mod kernel;
 mod linkage;
 mod motion;
@@ -51,6 +53,7 @@ pub use function::{
     SliderFunction, SliderPoint, TwoLengths, chebyshev_spacing, fit_function, fit_lengths,
     fit_slider_function, functions, inverted_slider_functions, slider_functions, two_lengths,
 };
+pub use guidance_fit::{DyadFit, fit_dyads};
 pub use linkage::{Linkage, pairs};
 pub use motion::{DyadCondition, dyads};
 pub use path::{

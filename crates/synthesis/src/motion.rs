@@ -37,7 +37,7 @@ impl DyadCondition {
         }
     }
 
-    fn is_finite(&self) -> bool {
+    pub(crate) fn is_finite(&self) -> bool {
         match self {
             Self::FixedAt(point) | Self::MovingAt(point) => point.is_finite(),
             Self::FixedOn(line) | Self::MovingOn(line) => line.is_finite(),

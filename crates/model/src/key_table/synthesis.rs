@@ -2,7 +2,7 @@
 
 use kempe_units::Dimension as D;
 
-use super::{ANGLE, MEASURES, STUDY_KINDS, any, kind, may, must, one_of, positive, words};
+use super::{ANGLE, MEASURES, PLACE, STUDY_KINDS, any, kind, may, must, one_of, positive, words};
 use crate::keys::{Key, Kind, Takes};
 use crate::synthesis::LinkageKind;
 use Takes as T;
@@ -34,7 +34,7 @@ static WANTED: [Key; 4] = [
 ];
 
 /// The tasks, each with the keys of its own.
-pub(crate) static TASKS: [&Kind; 3] = [&FUNCTION, &RATES, &DEAD_CENTRES];
+pub(crate) static TASKS: [&Kind; 4] = [&FUNCTION, &RATES, &DEAD_CENTRES, &GUIDANCE];
 
 static FUNCTION: Kind = kind("study", "synthesize function",
     "kind = \"synthesize\", task = \"function\", pairs = [[45, 52], [90, 82], [135, 112]], ground = \"50 mm\"",
@@ -81,3 +81,29 @@ static DEAD_CENTRES: Kind = kind("study", "synthesize dead-centres",
         may("coupler", positive(D::LENGTH), "\"90 mm\"", "The coupler's length; where it is not given, that of the best transmission angle."),
         may("offset", super::not_negative(D::LENGTH), "\"12 mm\"", "How far a slider's guide passes beside the crank's pivot, instead of the coupler."),
     ], &WANTED]);
+
+const POSES: &str = "[[0, 0, \"0 deg\"], [12, 6, \"20 deg\"], [20, 18, \"55 deg\"]]";
+
+static GUIDANCE: Kind = kind("study", "synthesize motion",
+    "kind = \"synthesize\", task = \"motion\", poses = [[0, 0, \"0 deg\"], [12, 6, \"20 deg\"], [20, 18, \"55 deg\"]], crank = { moving = [-10, 5] }, rocker = { moving = [8, 5] }",
+    "The linkages whose coupler passes through poses: two to five, or near to more.",
+    &[&HEAD, &[
+        must("task", T::Words(&["motion"]), "\"motion\"", "The task: a body that is guided through poses."),
+        must("poses", T::List(&T::List(&EITHER, 3), 2), POSES, "The poses in their order: the place of the body's origin, and the body's angle."),
+        may("linkage", LINKAGE_WORDS, "\"four-bar\"", "Its kind; all kinds unless said otherwise."),
+        may("crank", T::Table(&DYAD), "{ moving = [-10, 5] }", "What is given of the dyad that is driven."),
+        may("rocker", T::Table(&DYAD), "{ moving = [8, 5] }", "What is given of the other dyad: the rocker, the slider, or the slot."),
+        may("pivots_in", T::Two(&PLACE), "[[-50, -50], [50, 50]]", "Two corners of a box in which the fixed pivots must lie, and are looked for."),
+        may("pins_in", T::Two(&PLACE), "[[-20, -20], [20, 20]]", "Two corners of a box in the body's own axes in which the moving pivots must lie."),
+    ], &WANTED]);
+
+pub(crate) static DYAD: Kind = kind("dyad", "dyad",
+    "{ moving = [-10, 5] }",
+    "What is given of one of the two links or sliders that guide a body. A point counts as two poses, a line or a direction as one.",
+    &[&[
+        may("fixed", PLACE, "[30, -5]", "The place of its fixed pivot."),
+        may("fixed_on", T::Two(&PLACE), "[[0, -20], [1, -20]]", "Two points of a line on which its fixed pivot lies."),
+        may("moving", PLACE, "[-10, 5]", "Its moving pivot as a point of the body."),
+        may("moving_on", T::Two(&PLACE), "[[0, 5], [1, 5]]", "Two points of a line of the body on which its moving pivot lies."),
+        may("along", ANGLE, "\"90 deg\"", "The direction of its guide where it is a slider: on the frame, or of an inverted slider-crank on the body."),
+    ]]);

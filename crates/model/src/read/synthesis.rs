@@ -3,7 +3,7 @@
 //! ```toml
 //! [studies.generator]
 //! kind   = "synthesize"
-//! task   = "function"                       # or "rates", "dead-centres"
+//! task   = "function"                       # or "rates", "dead-centres", "motion"
 //! pairs  = [[45, 52], [90, 82], [135, 112]]
 //! ground = "50 mm"
 //! accept = ["min(transmission_angle) >= 35 deg", "max(link_ratio) <= 5"]
@@ -19,6 +19,7 @@ use crate::key_table::synthesis::{CURVE, FREE, LINKAGES, TASKS};
 use crate::keys::Kind;
 use crate::read::context::Context;
 use crate::read::entry::Entry;
+use crate::read::guidance;
 use crate::read::studies::entries;
 use crate::study::{MotionStudy, Rows, StudyKind};
 use crate::synthesis::{
@@ -63,6 +64,7 @@ pub(crate) fn read(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<StudyKin
     let task = match task_of(kind) {
         "rates" => rates(cx, &entry).map(SynthesisTask::Rates),
         "dead-centres" => dead_centres(cx, &entry).map(SynthesisTask::DeadCentres),
+        "motion" => guidance::read(cx, &entry).map(|task| SynthesisTask::Motion(Box::new(task))),
         _ => function(cx, &entry).map(SynthesisTask::Function),
     };
     let accept = texts(cx, &entry, "accept");

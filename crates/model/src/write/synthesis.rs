@@ -7,8 +7,8 @@ use crate::item::Item;
 use crate::key_table::synthesis::{FREE, LINKAGES};
 use crate::key_table::word_of;
 use crate::synthesis::{
-    Asked, DeadCentresTask, FunctionTask, LinkageKind, RatesTask, Stroke, SynthesisTask,
-    SynthesizeStudy, WantedCurve, WantedFunction, WantedPair,
+    Asked, DeadCentresTask, DyadGiven, FunctionTask, GuidanceTask, LinkageKind, RatesTask, Stroke,
+    SynthesisTask, SynthesizeStudy, WantedCurve, WantedFunction, WantedPair,
 };
 use crate::write::spelling::Writer;
 
@@ -18,6 +18,7 @@ impl Writer<'_> {
             SynthesisTask::Function(task) => self.function(task, put),
             SynthesisTask::Rates(task) => self.rates(task, put),
             SynthesisTask::DeadCentres(task) => self.dead_centres(task, put),
+            SynthesisTask::Motion(task) => self.guidance(task, put),
         }
         let texts = |asked: &[Asked]| {
             let texts = asked.iter().map(|asked| Item::text(&asked.text));
@@ -129,5 +130,58 @@ impl Writer<'_> {
             put("swing", self.scalar(swing, Dimension::ANGLE));
         }
         put("time_ratio", self.scalar(&task.time_ratio, Dimension::NONE));
+    }
+
+    fn guidance(&self, task: &GuidanceTask, put: &mut dyn FnMut(&str, Item)) {
+        put("task", Item::text("motion"));
+        if let Some(kind) = &task.linkage {
+            put("linkage", Item::text(word_of(&LINKAGES, kind)));
+        }
+        let poses = task.poses.iter().map(|pose| {
+            let origin = (pose.origin.iter()).map(|x| self.scalar(x, Dimension::LENGTH));
+            let angle = self.scalar(&pose.angle, Dimension::ANGLE);
+            Item::List(origin.chain([angle]).collect())
+        });
+        put("poses", Item::List(poses.collect()));
+        for (name, dyad) in ["crank", "rocker"].iter().zip(&task.dyads) {
+            if *dyad
+                != (DyadGiven {
+                    span: dyad.span.clone(),
+                    ..DyadGiven::default()
+                })
+            {
+                put(name, self.dyad(dyad));
+            }
+        }
+        for (name, corners) in [("pivots_in", &task.pivots_in), ("pins_in", &task.pins_in)] {
+            if let Some(corners) = corners {
+                put(name, self.two_places(corners));
+            }
+        }
+    }
+
+    fn two_places(&self, both: &[[Scalar; 2]; 2]) -> Item {
+        let places = both.iter().map(|p| self.listed(p, Dimension::LENGTH));
+        Item::List(places.collect())
+    }
+
+    fn dyad(&self, dyad: &DyadGiven) -> Item {
+        let mut entries = Vec::new();
+        let points = [
+            ("fixed", &dyad.fixed, &dyad.fixed_on),
+            ("moving", &dyad.moving, &dyad.moving_on),
+        ];
+        for (name, point, line) in points {
+            if let Some(point) = point {
+                entries.push((name.to_owned(), self.listed(point, Dimension::LENGTH)));
+            }
+            if let Some(line) = line {
+                entries.push((format!("{name}_on"), self.two_places(line)));
+            }
+        }
+        if let Some(along) = &dyad.along {
+            entries.push(("along".to_owned(), self.scalar(along, Dimension::ANGLE)));
+        }
+        Item::Table(entries)
     }
 }

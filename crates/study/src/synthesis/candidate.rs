@@ -3,6 +3,8 @@
 use kempe_synthesis::{C, Linkage, Pose, Turning};
 use kempe_units::Dimension;
 
+use crate::result::Listing;
+
 /// What a task leads to.
 pub(super) struct Found {
     /// All linkages that are right where it is asked.
@@ -11,6 +13,12 @@ pub(super) struct Found {
     pub rejected: Vec<Rejected>,
     /// How many there can be, and how they were looked for.
     pub searched: String,
+    /// What was tried where not all linkages are known.
+    pub tried: Option<Listing>,
+    /// Linkages ruled out that are only counted there.
+    pub counted: usize,
+    /// Poses that a body is guided through, where that is the task.
+    pub guided: Vec<Pose>,
 }
 
 /// A linkage that is of no use.

@@ -117,6 +117,9 @@ pub(super) fn candidates(
         candidates: candidates.collect(),
         rejected: Vec::new(),
         searched: "one for each sense in which the crank may go round".to_owned(),
+        tried: None,
+        counted: 0,
+        guided: Vec::new(),
     })
 }
 

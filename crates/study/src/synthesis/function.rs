@@ -400,6 +400,9 @@ impl Asked<'_> {
             candidates: Vec::new(),
             rejected: Vec::new(),
             searched,
+            tried: None,
+            counted: 0,
+            guided: Vec::new(),
         }
     }
 

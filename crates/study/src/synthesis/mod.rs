@@ -9,6 +9,7 @@ mod dead_centres;
 mod file;
 mod function;
 mod judge;
+mod motion;
 mod rates;
 mod refused;
 
@@ -28,16 +29,20 @@ use candidate::{Candidate, Found};
 use file::file_of;
 use judge::{Judged, judge};
 
+fn kinds(linkage: LinkageKind) -> &'static str {
+    match linkage {
+        LinkageKind::FourBar => "four-bars",
+        LinkageKind::SliderCrank => "slider-cranks",
+        LinkageKind::InvertedSliderCrank => "inverted slider-cranks",
+    }
+}
+
 /// What a study asks for, in words, for `check`.
 pub(crate) fn in_words(study: &SynthesizeStudy) -> String {
     let kept = format!("at most {} kept", study.keep);
     let task = match &study.task {
         SynthesisTask::Function(task) => {
-            let what = match task.linkage {
-                LinkageKind::FourBar => "four-bars",
-                LinkageKind::SliderCrank => "slider-cranks",
-                LinkageKind::InvertedSliderCrank => "inverted slider-cranks",
-            };
+            let what = kinds(task.linkage);
             match &task.wanted {
                 WantedFunction::Pairs(pairs) => format!("{what} through {} pairs", pairs.len()),
                 WantedFunction::Curve(curve) => {
@@ -50,6 +55,13 @@ pub(crate) fn in_words(study: &SynthesizeStudy) -> String {
             Stroke::Swing { .. } => "crank-rockers by swing and time ratio".to_owned(),
             Stroke::Travel { .. } => "slider-cranks by stroke and time ratio".to_owned(),
         },
+        SynthesisTask::Motion(task) => {
+            let what = task.linkage.map_or("linkages", kinds);
+            format!(
+                "{what} that guide a body through {} poses",
+                task.poses.len()
+            )
+        }
     };
     format!("{task}, {kept}")
 }
@@ -80,9 +92,11 @@ fn candidates(
         SynthesisTask::Function(task) => function::candidates(model, task),
         SynthesisTask::Rates(task) => rates::candidates(model, task, place),
         SynthesisTask::DeadCentres(task) => dead_centres::candidates(model, task, place),
+        SynthesisTask::Motion(task) => motion::candidates(model, task),
     };
     let found = found.map_err(|refused| vec![*refused])?;
-    let told = match found.candidates.is_empty() && found.rejected.is_empty() {
+    let none = found.candidates.is_empty() && found.rejected.is_empty();
+    let told = match none && found.counted == 0 {
         true => vec![none_does(&found)],
         false => Vec::new(),
     };
@@ -124,13 +138,16 @@ pub(crate) fn synthesis(
         }
     }
     accepted.sort_by(|a, b| a.rank.total_cmp(&b.rank));
-    if accepted.is_empty() && !rejected.is_empty() {
-        diagnostics.push(none_accepted(rejected.len()));
+    let unused = rejected.len() + found.counted;
+    if accepted.is_empty() && unused > 0 {
+        diagnostics.push(none_accepted(unused));
     }
     let left_out = accepted.len().saturating_sub(study.keep);
     accepted.truncate(study.keep);
     debug_assert!(!refuses(&diagnostics));
     let table = table(name, &accepted);
+    let kept: Vec<&Candidate> = accepted.iter().map(|judged| &judged.candidate).collect();
+    let figures = motion::picture(model, &found.guided, &kept);
     let mut listings = Vec::new();
     if !accepted.is_empty() {
         listings.push(listed(&table));
@@ -145,8 +162,13 @@ pub(crate) fn synthesis(
             rows: Vec::new(),
         });
     }
+    listings.extend(found.tried);
     if !rejected.is_empty() {
-        let rows = rejected.into_iter().map(|r| vec![r.what, r.why]);
+        let more = rejected.len().saturating_sub(LISTED);
+        let rows = rejected.into_iter().take(LISTED);
+        let rows = rows.map(|r| vec![r.what, r.why]);
+        let rest = (more > 0).then(|| vec![format!("and {more} more"), String::new()]);
+        let rows = rows.chain(rest);
         listings.push(Listing {
             title: "found, but not accepted".to_owned(),
             head: vec!["linkage".to_owned(), "why".to_owned()],
@@ -176,7 +198,7 @@ pub(crate) fn synthesis(
         name: name.to_owned(),
         table,
         scalars: Vec::new(),
-        figures: Vec::new(),
+        figures: figures.into_iter().collect(),
         listings,
         contacts: Vec::new(),
         frames: Vec::new(),
@@ -190,22 +212,33 @@ pub(crate) fn synthesis(
     })
 }
 
+/// So many linkages that are not accepted are listed one by one.
+const LISTED: usize = 60;
+
 /// A row for each linkage: its number, its dimensions and what is asked of it.
 fn table(name: &str, accepted: &[Judged]) -> Table {
     let mut number = Column::new("linkage", Unit::one());
     number.values = (1..=accepted.len()).map(|i| i as f64).collect();
     let mut columns = vec![number];
-    for (k, value) in accepted
-        .first()
-        .map_or(&[][..], |j| &j.values)
-        .iter()
-        .enumerate()
-    {
+    // Linkages of several kinds have each their own dimensions: what one has not is left empty.
+    let mut told: Vec<&judge::Value> = Vec::new();
+    for value in accepted.iter().flat_map(|j| &j.values) {
+        if told.iter().all(|known| known.name != value.name) {
+            told.push(value);
+        }
+    }
+    for value in told {
         let mut column = Column::new(&value.name, value.unit.clone());
-        let values = accepted
+        let own = |j: &Judged| {
+            j.values
+                .iter()
+                .find(|v| v.name == value.name)
+                .map(|v| v.value)
+        };
+        column.values = accepted
             .iter()
-            .map(|j| j.values.get(k).map_or(f64::NAN, |v| v.value));
-        column.values = values.collect();
+            .map(|j| own(j).unwrap_or(f64::NAN))
+            .collect();
         columns.push(column);
     }
     Table {
@@ -243,7 +276,7 @@ fn listed(table: &Table) -> Listing {
 fn none_does(found: &Found) -> Diagnostic {
     Diagnostic::warning("no-linkage", "no linkage of this kind does what is asked")
         .note(found.searched.clone())
-        .help("change the data a little, or leave a zero free")
+        .help("change the data a little, or leave more of them open")
 }
 
 fn none_accepted(found: usize) -> Diagnostic {

@@ -101,5 +101,8 @@ pub(super) fn candidates(
         candidates: vec![candidate],
         rejected: Vec::new(),
         searched: "there is one, but for its size and direction".to_owned(),
+        tried: None,
+        counted: 0,
+        guided: Vec::new(),
     })
 }

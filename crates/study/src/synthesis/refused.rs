@@ -72,6 +72,18 @@ impl Data<'_> {
             )
             .at(at(datum), "follows from the others")
             .help("give another in its place"),
+            SynthesisError::Translations => Diagnostic::error(
+                "data-dependent",
+                "the body does not turn from pose to pose: infinitely many links lead it, as sides of parallelograms",
+            )
+            .at(self.whole.clone(), "no turn from one to another")
+            .help("give a moving pivot of each link, or let the body turn"),
+            SynthesisError::OnePole { pole } => {
+                let [x, y] = [pole.re, pole.im].map(|x| self.units.text(x, Dimension::LENGTH));
+                Diagnostic::error("data-dependent", format!("all poses are turns about one point ({x}, {y})"))
+                    .at(self.whole.clone(), "infinitely many links lead it")
+                    .help("a pin at this point does it; or move a pose away from these turns")
+            }
             SynthesisError::OutOfRange { datum, value, least, most } => {
                 let dimension = self.data.get(datum).map_or(Dimension::NONE, |d| d.dimension);
                 let [value, least, most] = [value, least, most].map(|x| self.units.text(x, dimension));

@@ -170,8 +170,8 @@ impl Results<'_> {
     }
 
     fn plots(&self, result: &StudyResult) -> Vec<(String, PlotSpec)> {
-        // Of mechanisms that were found each has its own.
-        if result.frames.is_empty() {
+        // Of mechanisms that were found each has its own, but for what belongs to no motion.
+        if result.frames.is_empty() && result.figures.is_empty() {
             return Vec::new();
         }
         let model = &self.loaded.checked.model;
