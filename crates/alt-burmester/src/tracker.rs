@@ -1,0 +1,253 @@
+//! The steps of one path: prediction from places passed, and what a correction says of it.
+//!
+//! The predictor goes through the last places with their slopes (Hermite's interpolation), so that one linear system per correction is all a step
+//! takes. Steps aim at a first correction of a size; a step is taken back where the first is too large or the next does not shrink as
+//! Newton's corrections do: then another solution may be near.
+
+use kempe_number::math;
+
+use crate::equations::State;
+use crate::flock::MEMORY;
+
+/// How carefully paths are followed. Corrections are measured beside the unknowns' size.
+#[derive(Clone, Copy, Debug)]
+pub struct Care {
+    /// The first correction after a step that is aimed at.
+    pub aim: f64,
+    /// The first correction that is too much.
+    pub most: f64,
+    /// A correction after which a place needs no other.
+    pub enough: f64,
+    /// Steps of a path at most.
+    pub steps: usize,
+}
+
+/// The usual care, and that for paths that were lost or met another.
+pub const CARES: [Care; 3] = [
+    Care {
+        aim: 1e-6,
+        most: 3e-5,
+        enough: 3e-6,
+        steps: 4000,
+    },
+    Care {
+        aim: 1e-8,
+        most: 1e-6,
+        enough: 1e-7,
+        steps: 20_000,
+    },
+    Care {
+        aim: 1e-10,
+        most: 1e-8,
+        enough: 1e-9,
+        steps: 100_000,
+    },
+];
+
+/// Where a path ended.
+#[derive(Clone, Debug, PartialEq)]
+pub enum End {
+    /// At a regular solution.
+    Arrived(Box<State>),
+    /// Its unknowns grew without bound at the end of the way.
+    Infinite,
+    /// It came near a singular solution at the end of the way.
+    Singular,
+    /// It could not be followed.
+    Lost,
+}
+
+/// The first step, as a part of the way.
+const FIRST_STEP: f64 = 1e-4;
+/// The shortest step.
+const SHORTEST: f64 = 1e-13;
+/// By how much a step may be longer than the last.
+const LONGER: f64 = 2.0;
+/// A part less than what the corrections would allow.
+const SAFETY: f64 = 0.85;
+/// Corrections at one place at most.
+const CORRECTIONS: usize = 4;
+/// By how much a correction must be smaller than the one before, where it is not small enough anyway.
+const CONTRACTION: f64 = 0.02;
+/// A correction at the end of the way after which nothing is left to correct, and one that rounding may leave where the equations are badly
+/// conditioned.
+const AT_THE_END: f64 = 1e-13;
+const ROUNDED: f64 = 1e-8;
+/// Corrections at the end of the way at most.
+const LAST_CORRECTIONS: usize = 8;
+/// What is left of the way where a path that cannot go on has met the end.
+const NEAR_THE_END: f64 = 1e-3;
+/// The pivot coordinates that count as infinite there, in units of the data.
+const INFINITY: f64 = 1e5;
+
+/// What is to be done in the path's lane.
+pub(crate) enum Next {
+    /// Another correction.
+    Correct,
+    /// The iterate is a place passed: predict the next.
+    Step,
+    /// Predict again, nearer.
+    Back,
+    /// The corrected iterate is where the path ends.
+    Arrived,
+    /// It ends without a solution.
+    Ended(End),
+}
+
+/// A path.
+#[derive(Clone, Copy)]
+pub(crate) struct Tracker {
+    care: Care,
+    /// Where it was last, how far it wants to go next, and where it looks now.
+    t: f64,
+    step: f64,
+    pub at: f64,
+    /// Places passed, the last first.
+    passed: [f64; MEMORY],
+    count: usize,
+    corrections: usize,
+    first: f64,
+    last: f64,
+    steps: usize,
+    /// Whether the last step was taken back.
+    back: bool,
+    largest: f64,
+}
+
+impl Tracker {
+    pub fn new(care: Care) -> Self {
+        Self {
+            care,
+            t: 0.0,
+            step: FIRST_STEP,
+            at: 0.0,
+            passed: [0.0; MEMORY],
+            count: 0,
+            corrections: 0,
+            first: 0.0,
+            last: 0.0,
+            steps: 0,
+            back: false,
+            largest: 0.0,
+        }
+    }
+
+    /// What a correction of this squared size, beside unknowns of this squared size, says.
+    pub fn decide(&mut self, correction: f64, largest: f64) -> Next {
+        let size = correction.sqrt();
+        if self.corrections == 0 {
+            self.first = size;
+        }
+        self.corrections += 1;
+        // NaN is too much.
+        let fits = if self.corrections == 1 {
+            size <= self.care.most || self.count == 0 && size <= 1e-3
+        } else {
+            size <= self.care.enough || size <= CONTRACTION * self.last
+        };
+        let at_the_end = self.at == 1.0;
+        let rounded = self.corrections > 1 && size <= ROUNDED && size > CONTRACTION * self.last;
+        self.last = size;
+        if at_the_end && self.corrections > 1 {
+            if size <= AT_THE_END || rounded {
+                return Next::Arrived;
+            }
+            if fits && self.corrections < LAST_CORRECTIONS {
+                return Next::Correct;
+            }
+            return self.go_back();
+        }
+        if !fits {
+            return self.go_back();
+        }
+        if size > self.care.enough || at_the_end {
+            return if self.corrections < CORRECTIONS {
+                Next::Correct
+            } else {
+                self.go_back()
+            };
+        }
+        self.largest = largest;
+        self.passed = [self.at, self.passed[0], self.passed[1]];
+        if self.count > 0 {
+            let most = if self.back { 1.0 } else { LONGER };
+            self.step = (self.at - self.t) * self.factor().clamp(0.2, most);
+        }
+        self.back = false;
+        self.count = (self.count + 1).min(MEMORY);
+        self.t = self.at;
+        self.steps += 1;
+        if self.steps > self.care.steps {
+            return self.stuck();
+        }
+        self.look();
+        Next::Step
+    }
+
+    /// By how much the step may be longer for the correction that is aimed at.
+    fn factor(&self) -> f64 {
+        // A prediction through n places with slopes misses by the step to 2 n.
+        let order = 2.0 * self.count as f64;
+        SAFETY * math::powf(self.care.aim / (self.first + 1e-30), 1.0 / order)
+    }
+
+    fn go_back(&mut self) -> Next {
+        if self.count == 0 {
+            return Next::Ended(End::Lost);
+        }
+        let factor = self.factor();
+        let factor = if factor.is_finite() {
+            factor.clamp(0.1, 0.5)
+        } else {
+            0.25
+        };
+        self.step = (self.at - self.t) * factor;
+        self.back = true;
+        self.steps += 1;
+        if !(self.step > SHORTEST) || self.steps > self.care.steps {
+            return self.stuck();
+        }
+        self.look();
+        Next::Back
+    }
+
+    fn look(&mut self) {
+        self.corrections = 0;
+        self.at = if self.t + self.step >= 1.0 {
+            1.0
+        } else {
+            self.t + self.step
+        };
+    }
+
+    fn stuck(&self) -> Next {
+        Next::Ended(if 1.0 - self.t > NEAR_THE_END {
+            End::Lost
+        } else if self.largest >= INFINITY * INFINITY {
+            End::Infinite
+        } else {
+            End::Singular
+        })
+    }
+
+    /// Factors of the places passed and of their slopes (which are to be taken off) in the prediction of the next place.
+    pub fn weights(&self) -> [[f64; 2]; MEMORY] {
+        let mut weights = [[0.0; 2]; MEMORY];
+        let t = self.at;
+        for k in 0..self.count {
+            let own = self.passed[k];
+            let (mut basis, mut slope) = (1.0, 0.0);
+            for j in (0..self.count).filter(|j| *j != k) {
+                let over = 1.0 / (own - self.passed[j]);
+                basis *= (t - self.passed[j]) * over;
+                slope += over;
+            }
+            let square = basis * basis;
+            weights[k] = [
+                square * (1.0 - 2.0 * (t - own) * slope),
+                -square * (t - own),
+            ];
+        }
+        weights
+    }
+}
