@@ -1,20 +1,68 @@
 //! Several paths side by side in lanes: one linear system each, and what follows from the decisions of their trackers.
 
 use kempe_linear::{C, Plain};
-use kempe_number::{Lanes, Number, multiversion};
+use kempe_number::{Lanes4, multiversion};
 
+use crate::double::Double;
 use crate::equations::{PIVOTS, State, UNKNOWNS, Way, Z, solve};
 
-/// Paths side by side: their working memory fits into a core's nearest cache.
-pub(crate) const LANES: usize = 4;
-type P = Lanes<LANES>;
+/// Numbers that paths are followed in.
+pub(crate) trait Pack: Plain {
+    /// Paths side by side.
+    const LANES: usize;
+
+    /// The plain number in a lane.
+    fn lane(self, lane: usize) -> f64;
+
+    /// Puts a plain number into a lane.
+    fn set_lane(&mut self, lane: usize, x: f64);
+
+    /// Carries out the orders, then solves in every lane at its place of the way.
+    fn advance(way: &Way, flock: &mut Flock<Self>, orders: &Orders<Self>);
+}
+
+/// Four paths: their working memory fits into a core's nearest cache.
+impl Pack for Lanes4 {
+    const LANES: usize = 4;
+
+    #[inline(always)]
+    fn lane(self, lane: usize) -> f64 {
+        self.0[lane]
+    }
+
+    #[inline(always)]
+    fn set_lane(&mut self, lane: usize, x: f64) {
+        self.0[lane] = x;
+    }
+
+    fn advance(way: &Way, flock: &mut Flock<Self>, orders: &Orders<Self>) {
+        advance_four(way, flock, orders);
+    }
+}
+
+/// One path with twice the digits.
+impl Pack for Double {
+    const LANES: usize = 1;
+
+    fn lane(self, _: usize) -> f64 {
+        self.high
+    }
+
+    fn set_lane(&mut self, _: usize, x: f64) {
+        *self = Self { high: x, low: 0.0 };
+    }
+
+    fn advance(way: &Way, flock: &mut Flock<Self>, orders: &Orders<Self>) {
+        advance_inner(way, flock, orders);
+    }
+}
 
 /// Places passed that the predictor looks back to.
 pub(crate) const MEMORY: usize = 3;
 
 /// What a tracker decides for its lane after a solve. Numbers are 1 for yes and -1 for no.
 #[derive(Clone, Copy)]
-pub(crate) struct Orders {
+pub(crate) struct Orders<P> {
     /// Whether the corrected iterate is a place passed.
     pub accept: P,
     /// Whether the next iterate is a predicted one; otherwise the corrected one.
@@ -23,7 +71,7 @@ pub(crate) struct Orders {
     pub weights: [[P; 2]; MEMORY],
 }
 
-impl Orders {
+impl<P: Pack> Orders<P> {
     pub fn none() -> Self {
         Self {
             accept: P::from_f64(-1.0),
@@ -34,7 +82,7 @@ impl Orders {
 }
 
 /// Paths side by side.
-pub(crate) struct Flock {
+pub(crate) struct Flock<P> {
     /// Where on the way each is looked at.
     pub t: P,
     /// Iterates.
@@ -49,7 +97,7 @@ pub(crate) struct Flock {
     pub largest: P,
 }
 
-impl Flock {
+impl<P: Pack> Flock<P> {
     pub fn new() -> Self {
         let zeros = [Z::zero(); UNKNOWNS];
         Self {
@@ -64,14 +112,14 @@ impl Flock {
 
     /// Puts a path into a lane.
     pub fn load(&mut self, lane: usize, state: &State) {
-        self.t.0[lane] = 0.0;
+        self.t.set_lane(lane, 0.0);
         for (k, x) in state.iter().enumerate() {
-            self.x[k].re.0[lane] = x.re;
-            self.x[k].im.0[lane] = x.im;
+            self.x[k].re.set_lane(lane, x.re);
+            self.x[k].im.set_lane(lane, x.im);
             let old = self.passed.iter_mut().flatten().chain(&mut self.found);
             for of in old {
-                of[k].re.0[lane] = 0.0;
-                of[k].im.0[lane] = 0.0;
+                of[k].re.set_lane(lane, 0.0);
+                of[k].im.set_lane(lane, 0.0);
             }
         }
     }
@@ -80,18 +128,17 @@ impl Flock {
     pub fn corrected(&self, lane: usize) -> State {
         std::array::from_fn(|k| {
             let x = self.x[k] - self.found[0][k];
-            C::new(x.re.0[lane], x.im.0[lane])
+            C::new(x.re.lane(lane), x.im.lane(lane))
         })
     }
 }
 
 multiversion! {
-    /// Carries out the orders, then solves in every lane at its place of the way.
-    pub(crate) fn advance(way: &Way, flock: &mut Flock, orders: &Orders) = advance_inner;
+    fn advance_four(way: &Way, flock: &mut Flock<Lanes4>, orders: &Orders<Lanes4>) = advance_inner;
 }
 
 #[inline(always)]
-fn advance_inner(way: &Way, flock: &mut Flock, orders: &Orders) {
+fn advance_inner<P: Pack>(way: &Way, flock: &mut Flock<P>, orders: &Orders<P>) {
     let unknowns = way.from.kind.unknowns();
     let any_accepted = orders.accept.any_positive();
     let any_predicted = orders.predict.any_positive();
@@ -136,7 +183,7 @@ fn advance_inner(way: &Way, flock: &mut Flock, orders: &Orders) {
 }
 
 #[inline(always)]
-fn where_yes(key: P, yes: Z<P>, no: Z<P>) -> Z<P> {
+fn where_yes<P: Plain>(key: P, yes: Z<P>, no: Z<P>) -> Z<P> {
     Z::new(
         P::where_positive(key, yes.re, no.re),
         P::where_positive(key, yes.im, no.im),

@@ -4,7 +4,10 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use crate::equations::{State, Way};
-use crate::flock::{Flock, LANES, Orders, advance};
+use kempe_number::Lanes4;
+
+use crate::double::Double;
+use crate::flock::{Flock, Orders, Pack};
 use crate::given::Given;
 use crate::tracker::{Care, End, Next, Tracker};
 
@@ -23,6 +26,20 @@ pub fn follow_all(
     care: Care,
     progress: Progress,
 ) -> Option<Vec<End>> {
+    if care.doubled {
+        follow_in::<Double>(from, to, starts, care, progress)
+    } else {
+        follow_in::<Lanes4>(from, to, starts, care, progress)
+    }
+}
+
+fn follow_in<P: Pack>(
+    from: &Given,
+    to: &Given,
+    starts: &[State],
+    care: Care,
+    progress: Progress,
+) -> Option<Vec<End>> {
     let way = Way::new(from, to);
     let queue = Queue {
         starts,
@@ -30,8 +47,8 @@ pub fn follow_all(
         ended: AtomicUsize::new(0),
         stopped: AtomicBool::new(false),
     };
-    let work = |progress: Option<Progress>| queue.work(&way, care, progress);
-    let helpers = threads().min(starts.len().div_ceil(LANES)).max(1) - 1;
+    let work = |progress: Option<Progress>| queue.work::<P>(&way, care, progress);
+    let helpers = threads().min(starts.len().div_ceil(P::LANES)).max(1) - 1;
     let mut ended: Vec<(usize, End)> = Vec::with_capacity(starts.len());
     if helpers == 0 {
         ended = work(Some(progress));
@@ -76,33 +93,38 @@ impl Queue<'_> {
     }
 
     /// Follows paths of the queue until it is empty: ends by index.
-    fn work(&self, way: &Way, care: Care, progress: Option<Progress>) -> Vec<(usize, End)> {
+    fn work<P: Pack>(
+        &self,
+        way: &Way,
+        care: Care,
+        progress: Option<Progress>,
+    ) -> Vec<(usize, End)> {
         let mut ends = Vec::new();
-        let mut flock = Flock::new();
+        let mut flock = Flock::<P>::new();
         let mut orders = Orders::none();
-        let mut lanes: [Option<(usize, Tracker)>; LANES] = [None; LANES];
-        for lane in 0..LANES {
+        let mut lanes: Vec<Option<(usize, Tracker)>> = vec![None; P::LANES];
+        for lane in 0..P::LANES {
             lanes[lane] = self.fill(&mut flock, lane, care);
         }
         let mut solved = 0;
         while lanes.iter().any(Option::is_some) {
-            advance(way, &mut flock, &orders);
+            P::advance(way, &mut flock, &orders);
             orders = Orders::none();
-            for lane in 0..LANES {
+            for lane in 0..P::LANES {
                 let Some((index, tracker)) = &mut lanes[lane] else {
                     continue;
                 };
-                let next = tracker.decide(flock.correction.0[lane], flock.largest.0[lane]);
+                let next = tracker.decide(flock.correction.lane(lane), flock.largest.lane(lane));
                 if let Next::Step | Next::Back = next {
                     if let Next::Step = next {
-                        orders.accept.0[lane] = 1.0;
+                        orders.accept.set_lane(lane, 1.0);
                     }
-                    orders.predict.0[lane] = 1.0;
+                    orders.predict.set_lane(lane, 1.0);
                     for (order, weights) in orders.weights.iter_mut().zip(tracker.weights()) {
-                        order[0].0[lane] = weights[0];
-                        order[1].0[lane] = weights[1];
+                        order[0].set_lane(lane, weights[0]);
+                        order[1].set_lane(lane, weights[1]);
                     }
-                    flock.t.0[lane] = tracker.at;
+                    flock.t.set_lane(lane, tracker.at);
                     continue;
                 }
                 let end = match next {
@@ -110,19 +132,29 @@ impl Queue<'_> {
                     Next::Ended(end) => end,
                     Next::Correct | Next::Step | Next::Back => continue,
                 };
+                if matches!(end, End::Lost) && std::env::var("SHOW").is_ok() {
+                    println!("lost {index} {tracker:?}");
+                }
                 ends.push((*index, end));
                 self.ended.fetch_add(1, Ordering::Relaxed);
                 lanes[lane] = self.fill(&mut flock, lane, care);
             }
             solved += 1;
-            if solved % BETWEEN_CALLS == 0 && self.should_stop(progress) {
+            if solved % (BETWEEN_CALLS / (if care.doubled { 20 } else { 1 })) == 0
+                && self.should_stop(progress)
+            {
                 break;
             }
         }
         ends
     }
 
-    fn fill(&self, flock: &mut Flock, lane: usize, care: Care) -> Option<(usize, Tracker)> {
+    fn fill<P: Pack>(
+        &self,
+        flock: &mut Flock<P>,
+        lane: usize,
+        care: Care,
+    ) -> Option<(usize, Tracker)> {
         let index = self.take()?;
         flock.load(lane, &self.starts[index]);
         Some((index, Tracker::new(care)))

@@ -12,16 +12,23 @@
 //! Lengths are in any one unit, angles in rad.
 
 mod class;
+mod double;
 mod equations;
 mod flock;
 mod follow;
 mod given;
 mod monodromy;
+mod real;
+mod solve;
+mod starts;
 mod tracker;
 
 pub use class::Class;
 pub use equations::{PIVOTS, State, UNKNOWNS, correction, residuals, with_turns};
-pub use follow::follow_all;
+pub use follow::{Progress, follow_all};
 pub use given::{Given, Kind, PLACES, TURNS};
 pub use monodromy::{Found, made_up, monodromy};
-pub use tracker::{Care, End};
+pub use real::real;
+pub use solve::{Solved, solve};
+pub use starts::StartSet;
+pub use tracker::{CARES, Care, End};

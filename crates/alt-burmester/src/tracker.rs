@@ -12,38 +12,50 @@ use crate::flock::MEMORY;
 /// How carefully paths are followed. Corrections are measured beside the unknowns' size.
 #[derive(Clone, Copy, Debug)]
 pub struct Care {
-    /// The first correction after a step that is aimed at.
+    /// The first correction after a step that is aimed at where Newton's method converges well.
     pub aim: f64,
-    /// The first correction that is too much.
-    pub most: f64,
-    /// A correction after which a place needs no other.
-    pub enough: f64,
+    /// That where it converges badly: the next correction beside the first.
+    pub calm: f64,
+    /// The least first correction aimed at, so that rounding does not look like bad convergence.
+    pub least: f64,
+    /// A correction after which a place is good enough even where rounding leaves corrections that do not shrink.
+    pub rounded: f64,
     /// Steps of a path at most.
     pub steps: usize,
+    /// Whether it is followed with twice the digits.
+    pub doubled: bool,
 }
 
 /// The usual care, and that for paths that were lost or met another.
 pub const CARES: [Care; 3] = [
     Care {
-        aim: 1e-6,
-        most: 3e-5,
-        enough: 3e-6,
+        aim: 1e-3,
+        calm: 1e-2,
+        least: 1e-7,
+        rounded: 1e-8,
         steps: 4000,
+        doubled: false,
     },
     Care {
-        aim: 1e-8,
-        most: 1e-6,
-        enough: 1e-7,
+        aim: 1e-5,
+        calm: 1e-3,
+        least: 1e-9,
+        rounded: 1e-10,
         steps: 20_000,
+        doubled: false,
     },
     Care {
-        aim: 1e-10,
-        most: 1e-8,
-        enough: 1e-9,
-        steps: 100_000,
+        aim: 1e-4,
+        calm: 1e-3,
+        least: 1e-15,
+        rounded: 1e-18,
+        steps: 20_000,
+        doubled: true,
     },
 ];
 
+/// The first correction that is too much, in what is aimed at.
+const TOO_MUCH: f64 = 10.0;
 /// Where a path ended.
 #[derive(Clone, Debug, PartialEq)]
 pub enum End {
@@ -65,8 +77,6 @@ const SHORTEST: f64 = 1e-13;
 const LONGER: f64 = 2.0;
 /// A part less than what the corrections would allow.
 const SAFETY: f64 = 0.85;
-/// Corrections at one place at most.
-const CORRECTIONS: usize = 4;
 /// By how much a correction must be smaller than the one before, where it is not small enough anyway.
 const CONTRACTION: f64 = 0.02;
 /// A correction at the end of the way after which nothing is left to correct, and one that rounding may leave where the equations are badly
@@ -95,7 +105,7 @@ pub(crate) enum Next {
 }
 
 /// A path.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Tracker {
     care: Care,
     /// Where it was last, how far it wants to go next, and where it looks now.
@@ -108,7 +118,9 @@ pub(crate) struct Tracker {
     corrections: usize,
     first: f64,
     last: f64,
-    steps: usize,
+    /// The last second correction over the square of the first before it.
+    bend: f64,
+    pub steps: usize,
     /// Whether the last step was taken back.
     back: bool,
     largest: f64,
@@ -126,6 +138,7 @@ impl Tracker {
             corrections: 0,
             first: 0.0,
             last: 0.0,
+            bend: 1.0,
             steps: 0,
             back: false,
             largest: 0.0,
@@ -139,11 +152,15 @@ impl Tracker {
             self.first = size;
         }
         self.corrections += 1;
+        if self.corrections == 2 {
+            self.bend = size / (self.first * self.first);
+        }
+        let aim = self.aim();
         // NaN is too much.
         let fits = if self.corrections == 1 {
-            size <= self.care.most || self.count == 0 && size <= 1e-3
+            size <= TOO_MUCH * aim || self.count == 0 && size <= 1e-3
         } else {
-            size <= self.care.enough || size <= CONTRACTION * self.last
+            size <= aim && size <= CONTRACTION * self.first || size <= self.care.rounded
         };
         let at_the_end = self.at == 1.0;
         let rounded = self.corrections > 1 && size <= ROUNDED && size > CONTRACTION * self.last;
@@ -160,12 +177,8 @@ impl Tracker {
         if !fits {
             return self.go_back();
         }
-        if size > self.care.enough || at_the_end {
-            return if self.corrections < CORRECTIONS {
-                Next::Correct
-            } else {
-                self.go_back()
-            };
+        if self.corrections == 1 || at_the_end {
+            return Next::Correct;
         }
         self.largest = largest;
         self.passed = [self.at, self.passed[0], self.passed[1]];
@@ -184,11 +197,19 @@ impl Tracker {
         Next::Step
     }
 
+    /// The first correction that is aimed at.
+    fn aim(&self) -> f64 {
+        math::max(
+            math::min(self.care.aim, self.care.calm / self.bend),
+            self.care.least,
+        )
+    }
+
     /// By how much the step may be longer for the correction that is aimed at.
     fn factor(&self) -> f64 {
         // A prediction through n places with slopes misses by the step to 2 n.
         let order = 2.0 * self.count as f64;
-        SAFETY * math::powf(self.care.aim / (self.first + 1e-30), 1.0 / order)
+        SAFETY * math::powf(self.aim() / (self.first + 1e-30), 1.0 / order)
     }
 
     fn go_back(&mut self) -> Next {
