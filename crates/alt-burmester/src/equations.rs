@@ -10,7 +10,7 @@
 //! eight pivot coordinates. At a pose g is given and the first two are such equations. Eight of them are left in all.
 
 use kempe_linear::{C, Plain};
-use kempe_number::Complex;
+use kempe_number::{Complex, Number};
 
 use crate::given::{Given, PLACES, TURNS};
 
@@ -74,15 +74,15 @@ fn larger<P: Plain>(a: P, b: P) -> P {
 /// Both link equations of a place, or the one of a link: factors of g and g', of its four pivot coordinates, the value, and how it changes along the
 /// way.
 #[derive(Clone, Copy)]
-struct Row<P> {
-    turn: [Z<P>; 2],
-    pivot: [Z<P>; 4],
-    right: [Z<P>; 2],
+pub(crate) struct Row<P> {
+    pub turn: [Z<P>; 2],
+    pub pivot: [Z<P>; 4],
+    pub right: [Z<P>; 2],
 }
 
 /// The equation of one link at a place.
 #[inline(always)]
-fn link<P: Plain>(
+pub(crate) fn link<P: Number>(
     [x, a, x1, a1]: [Z<P>; 4],
     [g, g1]: [Z<P>; 2],
     [d, c]: [Z<P>; 2],

@@ -11,6 +11,7 @@
 //!
 //! Lengths are in any one unit, angles in rad.
 
+mod certify;
 mod class;
 mod double;
 mod equations;
@@ -23,6 +24,7 @@ mod solve;
 mod starts;
 mod tracker;
 
+pub use certify::{Bounds, Proved};
 pub use class::Class;
 pub use equations::{PIVOTS, State, UNKNOWNS, correction, residuals, with_turns};
 pub use follow::{Progress, follow_all};

@@ -27,7 +27,7 @@ const DOUBLED: usize = 64;
 
 /// All solutions of some data. `None` where the progress stopped it; it hears of paths that have ended, of all.
 ///
-/// Paths that were lost, that seem to end singularly or that met others are followed again with more care, the last time with twice
+/// Paths that did not arrive or that met others are followed again with more care, the last time with twice
 /// the digits.
 pub fn solve(start: &StartSet, target: &Given, progress: Progress) -> Option<Solved> {
     let kind = target.kind;
@@ -82,7 +82,7 @@ pub fn solve(start: &StartSet, target: &Given, progress: Progress) -> Option<Sol
     Some(solved)
 }
 
-/// Paths that are to be followed again: lost or singular ones, and all that met.
+/// Paths that are to be followed again: those that did not arrive, and all that met.
 fn doubtful(kind: Kind, ends: &[End]) -> Vec<usize> {
     let mut again = vec![false; ends.len()];
     let mut known = Classes::default();
@@ -95,8 +95,7 @@ fn doubtful(kind: Kind, ends: &[End]) -> Vec<usize> {
                     None => known.add(class, k),
                 }
             }
-            End::Lost | End::Singular => again[k] = true,
-            End::Infinite => {}
+            End::Lost | End::Singular | End::Infinite => again[k] = true,
         }
     }
     (0..ends.len()).filter(|k| again[*k]).collect()

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::time::Instant;
 
-use kempe_alt_burmester::{Given, Kind, StartSet, State, real, solve};
+use kempe_alt_burmester::{Bounds, Given, Kind, StartSet, State, real, solve};
 use kempe_linear::C;
 
 /// The nine points of C. W. Wampler, A. P. Morgan and A. J. Sommese (1992), as in FourBarLinkages.jl.
@@ -90,6 +90,19 @@ fn three_problems_have_as_many_real_answers_as_published() {
             begin.elapsed().as_secs_f64()
         );
         assert_eq!(found.len(), count);
+        let begin = Instant::now();
+        let bounds = Bounds::of(&given);
+        let proved: Vec<_> = found.iter().filter_map(|s| bounds.certify(s)).collect();
+        println!(
+            "{} proved, {:.1} us each",
+            proved.len(),
+            begin.elapsed().as_secs_f64() * 1e6 / count as f64
+        );
+        assert_eq!(proved.len(), count);
+        for (k, one) in proved.iter().enumerate() {
+            assert!(one.contains(&found[k]));
+            assert!(proved[..k].iter().all(|other| one.differs(other)));
+        }
         assert!((centroids - point(sum)).norm() < 1e-9);
         assert!(
             solved.solutions.len() >= finite,
