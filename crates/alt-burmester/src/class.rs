@@ -4,8 +4,8 @@
 
 use kempe_linear::C;
 
-use crate::equations::State;
-use crate::given::Kind;
+use crate::equations::{State, UNKNOWNS};
+use crate::given::{Given, Kind};
 
 /// What all forms of an answer share: each number with the size of what it is a sum of.
 #[derive(Clone, Copy, Debug)]
@@ -40,8 +40,34 @@ impl Class {
 }
 
 /// The third focus, seen as the first two.
-pub(crate) fn third_focus([x, a, y, b]: [C; 4]) -> C {
+fn third_focus([x, a, y, b]: [C; 4]) -> C {
     (b * x - a * y) * (x - y).recip()
+}
+
+/// The next of the three four-bars of nine points that trace one coupler curve, at the same points; thrice back. Its links turn as this one's second link, coupler and
+/// first link do: no number where the moving pivots are one.
+///
+/// (x, a, y, b) goes to ((x - a) y / (x - y), (b x - a y) / (x - y), a - x, a), and its coupler turns as the first link did.
+pub fn cognate(given: &Given, state: &State) -> State {
+    let mut next = [C::zero(); UNKNOWNS];
+    for hat in [0, 2] {
+        let [x, a, y, b] = [0, 1, 4, 5].map(|k| state[k + hat]);
+        let over = (x - y).recip();
+        next[hat] = (x - a) * y * over;
+        next[1 + hat] = (b * x - a * y) * over;
+        next[4 + hat] = a - x;
+        next[5 + hat] = a;
+        let link = (x - a).recip();
+        for j in 0..given.kind.points() {
+            let (place, turn) = if hat == 0 {
+                (given.place[j], 8 + 2 * j)
+            } else {
+                (given.hat[j], 9 + 2 * j)
+            };
+            next[turn] = (place + state[turn] * x) * link;
+        }
+    }
+    next
 }
 
 fn four(kind: Kind, pivots: [C; 4]) -> [(C, f64); 4] {

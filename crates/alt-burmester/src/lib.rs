@@ -25,7 +25,7 @@ mod starts;
 mod tracker;
 
 pub use certify::{Bounds, Proved};
-pub use class::Class;
+pub use class::{Class, cognate};
 pub use equations::{PIVOTS, State, UNKNOWNS, correction, residuals, with_turns};
 pub use follow::{Progress, follow_all};
 pub use given::{Given, Kind, PLACES, TURNS};

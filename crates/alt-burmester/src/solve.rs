@@ -42,8 +42,11 @@ pub fn solve(start: &StartSet, target: &Given, progress: Progress) -> Option<Sol
     let mut ends = follow_all(&start.given, target, &start.solutions, CARES[0], progress)?;
     let all = ends.len();
     for care in &CARES[1..] {
-        let again = doubtful(kind, &ends);
-        if again.is_empty() || care.doubled && again.len() > DOUBLED {
+        let mut again = doubtful(kind, &ends);
+        if care.doubled {
+            again.truncate(DOUBLED);
+        }
+        if again.is_empty() {
             break;
         }
         let starts: Vec<State> = again.iter().map(|k| start.solutions[*k]).collect();
@@ -82,21 +85,25 @@ pub fn solve(start: &StartSet, target: &Given, progress: Progress) -> Option<Sol
     Some(solved)
 }
 
-/// Paths that are to be followed again: those that did not arrive, and all that met.
+/// Paths that are to be followed again: all that met and those that did not arrive, those first that tell least.
 fn doubtful(kind: Kind, ends: &[End]) -> Vec<usize> {
-    let mut again = vec![false; ends.len()];
+    let mut doubts = vec![0; ends.len()];
     let mut known = Classes::default();
     for (k, end) in ends.iter().enumerate() {
         match end {
             End::Arrived(state) => {
                 let class = Class::of(kind, state);
                 match known.find(&class) {
-                    Some(other) => (again[k], again[other]) = (true, true),
+                    Some(other) => (doubts[k], doubts[other]) = (3, 3),
                     None => known.add(class, k),
                 }
             }
-            End::Lost | End::Singular | End::Infinite => again[k] = true,
+            End::Lost => doubts[k] = 4,
+            End::Singular => doubts[k] = 2,
+            End::Infinite => doubts[k] = 1,
         }
     }
-    (0..ends.len()).filter(|k| again[*k]).collect()
+    let mut again: Vec<usize> = (0..ends.len()).filter(|k| doubts[*k] > 0).collect();
+    again.sort_by_key(|k| std::cmp::Reverse(doubts[*k]));
+    again
 }
