@@ -39,8 +39,8 @@ pub const CARES: [Care; 3] = [
     Care {
         aim: 1e-5,
         calm: 1e-3,
-        least: 1e-9,
-        rounded: 1e-10,
+        least: 1e-8,
+        rounded: 3e-9,
         steps: 20_000,
         doubled: false,
     },
@@ -79,10 +79,8 @@ const LONGER: f64 = 2.0;
 const SAFETY: f64 = 0.85;
 /// By how much a correction must be smaller than the one before, where it is not small enough anyway.
 const CONTRACTION: f64 = 0.02;
-/// A correction at the end of the way after which nothing is left to correct, and one that rounding may leave where the equations are badly
-/// conditioned.
+/// A correction at the end of the way after which nothing is left to correct.
 const AT_THE_END: f64 = 1e-13;
-const ROUNDED: f64 = 1e-8;
 /// Corrections at the end of the way at most.
 const LAST_CORRECTIONS: usize = 8;
 /// What is left of the way where a path that cannot go on has met the end.
@@ -163,7 +161,8 @@ impl Tracker {
             size <= aim && size <= CONTRACTION * self.first || size <= self.care.rounded
         };
         let at_the_end = self.at == 1.0;
-        let rounded = self.corrections > 1 && size <= ROUNDED && size > CONTRACTION * self.last;
+        let rounded =
+            self.corrections > 1 && size <= self.care.rounded && size > CONTRACTION * self.last;
         self.last = size;
         if at_the_end && self.corrections > 1 {
             if size <= AT_THE_END || rounded {

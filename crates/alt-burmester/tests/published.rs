@@ -1,4 +1,5 @@
 //! Published problems of nine points: how many coupler curves pass them, and which.
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
 use std::ops::ControlFlow;
 use std::time::Instant;

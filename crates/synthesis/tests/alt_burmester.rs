@@ -117,7 +117,7 @@ fn three_cognates_trace_each_curve() {
     let points: Vec<C> = all.iter().map(|p| p.origin).collect();
     let found = four_bars_through(&[], &points, &go_on).unwrap();
     let all: Vec<(FourBar, &[Pose])> = bars(&found).collect();
-    assert!(!all.is_empty() && all.len() % 3 == 0);
+    assert!(!all.is_empty() && all.len().is_multiple_of(3));
     for (three, of) in all.chunks(3).zip(found.four_bars.chunks(3)) {
         assert!(of.iter().all(|f| f.solution == of[0].solution));
         let curve = |k: usize| CouplerCurve::of(&three[k].0, &three[k].1[0], C::zero());
