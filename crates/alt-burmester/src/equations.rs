@@ -111,6 +111,31 @@ struct Point<P> {
     rest: Z<P>,
 }
 
+/// Storage of [`solve`], made once.
+pub(crate) struct Storage<P> {
+    points: [Point<P>; PLACES],
+    system: System<P>,
+}
+
+impl<P: Plain> Storage<P> {
+    pub fn new() -> Self {
+        let zero = Z::zero();
+        let nothing = Row {
+            turn: [zero; 2],
+            pivot: [zero; 4],
+            right: [zero; 2],
+        };
+        Self {
+            points: [Point {
+                links: [nothing; 2],
+                unit: [zero; 2],
+                rest: zero,
+            }; PLACES],
+            system: [[zero; PIVOTS + 2]; PIVOTS],
+        }
+    }
+}
+
 /// A linear system in lanes: eight rows, eight unknowns, two right-hand sides.
 type System<P> = [[Z<P>; PIVOTS + 2]; PIVOTS];
 
@@ -122,21 +147,13 @@ pub(crate) fn solve<P: Plain>(
     t: P,
     at: &[Z<P>; UNKNOWNS],
     found: &mut [[Z<P>; UNKNOWNS]; 2],
+    storage: &mut Storage<P>,
 ) {
+    let Storage { points, system } = storage;
     let kind = way.from.kind;
     let zero = Z::<P>::zero();
-    let pivots = [[at[0], at[1], at[2], at[3]], [at[4], at[5], at[6], at[7]]];
-    let nothing = Row {
-        turn: [zero; 2],
-        pivot: [zero; 4],
-        right: [zero; 2],
-    };
-    let mut points = [Point {
-        links: [nothing; 2],
-        unit: [zero; 2],
-        rest: zero,
-    }; PLACES];
-    let mut system = [[zero; PIVOTS + 2]; PIVOTS];
+    let first_link = [at[0], at[1], at[2], at[3]];
+    let second_link = [at[4], at[5], at[6], at[7]];
     for j in 0..kind.points() {
         let turn = [at[8 + 2 * j], at[9 + 2 * j]];
         let place = [
@@ -144,13 +161,16 @@ pub(crate) fn solve<P: Plain>(
             along(way.from.hat[j], way.rate.hat[j], t),
         ];
         let rate = [wide(way.rate.place[j]), wide(way.rate.hat[j])];
-        let links = pivots.map(|pivots| link(pivots, turn, place, rate));
+        // Not mapped over arrays: that would not be compiled into this function.
+        let point = &mut points[j];
+        point.links[0] = link(first_link, turn, place, rate);
+        point.links[1] = link(second_link, turn, place, rate);
         let [g, g1] = turn;
         let one = Z::<P>::one();
         let unit = [g1 + one, g + one];
         let rest = g * unit[0] + g1;
         // The combination that does not feel g and g'.
-        let [l, m] = [links[0].turn, links[1].turn];
+        let (l, m) = (point.links[0].turn, point.links[1].turn);
         let factors = [
             m[0] * unit[1] - unit[0] * m[1],
             unit[0] * l[1] - l[0] * unit[1],
@@ -158,15 +178,18 @@ pub(crate) fn solve<P: Plain>(
         ];
         let scale = larger(larger(size(factors[0]), size(factors[1])), size(factors[2]));
         let inverse = P::one() / scale;
-        let [f, g, h] = factors.map(|f| f.scale(inverse));
+        let f = factors[0].scale(inverse);
+        let g = factors[1].scale(inverse);
+        let h = factors[2].scale(inverse);
         let row = &mut system[j];
         for k in 0..4 {
-            row[k] = f * links[0].pivot[k];
-            row[4 + k] = g * links[1].pivot[k];
+            row[k] = f * point.links[0].pivot[k];
+            row[4 + k] = g * point.links[1].pivot[k];
         }
-        row[8] = f * links[0].right[0] + g * links[1].right[0] + h * rest;
-        row[9] = f * links[0].right[1] + g * links[1].right[1];
-        points[j] = Point { links, unit, rest };
+        row[8] = f * point.links[0].right[0] + g * point.links[1].right[0] + h * rest;
+        row[9] = f * point.links[0].right[1] + g * point.links[1].right[1];
+        point.unit = unit;
+        point.rest = rest;
     }
     let first = kind.points();
     for k in 0..kind.turns() {
@@ -177,16 +200,20 @@ pub(crate) fn solve<P: Plain>(
         ];
         let rate = [wide(way.rate.place[j]), wide(way.rate.hat[j])];
         let (turn, turn_rate) = turn_on_the_way(way, k, t);
-        for (side, pivots) in pivots.into_iter().enumerate() {
-            let of_link = link(pivots, turn, place, rate);
+        for side in 0..2 {
+            let own = if side == 0 { first_link } else { second_link };
+            let of_link = link(own, turn, place, rate);
             let row = &mut system[first + 2 * k + side];
-            row[4 * side..4 * side + 4].copy_from_slice(&of_link.pivot);
+            for m in 0..4 {
+                row[4 * side + m] = of_link.pivot[m];
+                row[4 - 4 * side + m] = zero;
+            }
             row[8] = of_link.right[0];
             row[9] =
                 of_link.right[1] + of_link.turn[0] * turn_rate[0] + of_link.turn[1] * turn_rate[1];
         }
     }
-    eliminate(&mut system);
+    eliminate(system);
     for side in 0..2 {
         for k in 0..PIVOTS {
             found[side][k] = system[k][8 + side];
@@ -195,18 +222,27 @@ pub(crate) fn solve<P: Plain>(
             let point = &points[j];
             let rest = if side == 0 { point.rest } else { zero };
             let of = &found[side];
-            let mut left = [zero, zero, rest];
-            for (k, link) in point.links.iter().enumerate() {
-                left[k] = link.right[side]
-                    - link.pivot[0] * of[4 * k]
-                    - link.pivot[1] * of[4 * k + 1]
-                    - link.pivot[2] * of[4 * k + 2]
-                    - link.pivot[3] * of[4 * k + 3];
-            }
-            let [g, g1] = turns([point.links[0].turn, point.links[1].turn, point.unit], left);
+            let first = point.links[0].left(&of[..4], side);
+            let second = point.links[1].left(&of[4..8], side);
+            let [g, g1] = turns(
+                [point.links[0].turn, point.links[1].turn, point.unit],
+                [first, second, rest],
+            );
             found[side][8 + 2 * j] = g;
             found[side][9 + 2 * j] = g1;
         }
+    }
+}
+
+impl<P: Plain> Row<P> {
+    /// What is left of a right-hand side for the turn when the pivots are known.
+    #[inline(always)]
+    fn left(&self, pivots: &[Z<P>], side: usize) -> Z<P> {
+        self.right[side]
+            - self.pivot[0] * pivots[0]
+            - self.pivot[1] * pivots[1]
+            - self.pivot[2] * pivots[2]
+            - self.pivot[3] * pivots[3]
     }
 }
 
@@ -238,7 +274,7 @@ fn turns<P: Plain>(rows: [[Z<P>; 2]; 3], left: [Z<P>; 3]) -> [Z<P>; 2] {
         sums[1] += minor * (p[0] * left[k] - q[0] * left[i]);
     }
     let inverse = P::one() / weight;
-    sums.map(|sum| sum.scale(inverse))
+    [sums[0].scale(inverse), sums[1].scale(inverse)]
 }
 
 /// Gaussian elimination with partial pivoting, each lane by its own pivots; the solutions take the place of the right-hand sides.
@@ -302,7 +338,7 @@ pub fn residuals(given: &Given, at: &State) -> [C; 3 * PLACES] {
 /// Newton's correction at given data, to be taken off; `None` where the system is singular.
 pub fn correction(given: &Given, at: &State) -> Option<State> {
     let mut found = [[C::zero(); UNKNOWNS]; 2];
-    solve::<f64>(&Way::at(given), 0.0, at, &mut found);
+    solve::<f64>(&Way::at(given), 0.0, at, &mut found, &mut Storage::new());
     let finite = found[0].iter().all(|z| z.is_finite());
     finite.then_some(found[0])
 }

@@ -1,10 +1,10 @@
 //! Several paths side by side in lanes: one linear system each, and what follows from the decisions of their trackers.
 
 use kempe_linear::{C, Plain};
-use kempe_number::{Lanes4, multiversion};
+use kempe_number::{Lanes8, multiversion};
 
 use crate::double::Double;
-use crate::equations::{PIVOTS, State, UNKNOWNS, Way, Z, solve};
+use crate::equations::{PIVOTS, State, Storage, UNKNOWNS, Way, Z, solve};
 
 /// Numbers that paths are followed in.
 pub(crate) trait Pack: Plain {
@@ -21,9 +21,9 @@ pub(crate) trait Pack: Plain {
     fn advance(way: &Way, flock: &mut Flock<Self>, orders: &Orders<Self>);
 }
 
-/// Four paths: their working memory fits into a core's nearest cache.
-impl Pack for Lanes4 {
-    const LANES: usize = 4;
+/// Eight paths, as wide as the widest vector instructions: a fifth faster than four.
+impl Pack for Lanes8 {
+    const LANES: usize = 8;
 
     #[inline(always)]
     fn lane(self, lane: usize) -> f64 {
@@ -36,7 +36,7 @@ impl Pack for Lanes4 {
     }
 
     fn advance(way: &Way, flock: &mut Flock<Self>, orders: &Orders<Self>) {
-        advance_four(way, flock, orders);
+        advance_eight(way, flock, orders);
     }
 }
 
@@ -91,6 +91,7 @@ pub(crate) struct Flock<P> {
     found: [[Z<P>; UNKNOWNS]; 2],
     /// Places passed and slopes there, the last first.
     passed: [[[Z<P>; UNKNOWNS]; 2]; MEMORY],
+    storage: Storage<P>,
     /// The squares of the corrections' sizes, beside the unknowns'.
     pub correction: P,
     /// The squares of the largest pivot coordinates.
@@ -105,6 +106,7 @@ impl<P: Pack> Flock<P> {
             x: zeros,
             found: [zeros; 2],
             passed: [[zeros; 2]; MEMORY],
+            storage: Storage::new(),
             correction: P::zero(),
             largest: P::zero(),
         }
@@ -134,7 +136,7 @@ impl<P: Pack> Flock<P> {
 }
 
 multiversion! {
-    fn advance_four(way: &Way, flock: &mut Flock<Lanes4>, orders: &Orders<Lanes4>) = advance_inner;
+    fn advance_eight(way: &Way, flock: &mut Flock<Lanes8>, orders: &Orders<Lanes8>) = advance_inner;
 }
 
 #[inline(always)]
@@ -167,7 +169,7 @@ fn advance_inner<P: Pack>(way: &Way, flock: &mut Flock<P>, orders: &Orders<P>) {
             flock.x[k] = where_yes(orders.predict, sum, fresh);
         }
     }
-    solve(way, flock.t, &flock.x, &mut flock.found);
+    solve(way, flock.t, &flock.x, &mut flock.found, &mut flock.storage);
     let (mut worst, mut largest) = (P::zero(), P::zero());
     for k in 0..unknowns {
         let square = flock.x[k].norm_sqr();

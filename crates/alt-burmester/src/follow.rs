@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use crate::equations::{State, Way};
-use kempe_number::Lanes4;
+use kempe_number::Lanes8;
 
 use crate::double::Double;
 use crate::flock::{Flock, Orders, Pack};
@@ -29,7 +29,7 @@ pub fn follow_all(
     if care.doubled {
         follow_in::<Double>(from, to, starts, care, progress)
     } else {
-        follow_in::<Lanes4>(from, to, starts, care, progress)
+        follow_in::<Lanes8>(from, to, starts, care, progress)
     }
 }
 

@@ -3,7 +3,7 @@
 use kempe_linear::C;
 
 use crate::double::Double;
-use crate::equations::{PIVOTS, State, UNKNOWNS, Way, Z, correction, solve};
+use crate::equations::{PIVOTS, State, Storage, UNKNOWNS, Way, Z, correction, solve};
 use crate::given::Given;
 
 /// Hats that are the conjugates to this part of their size may be those of a real solution.
@@ -79,7 +79,13 @@ fn in_double(given: &Given, state: &State) -> State {
     };
     let at: [Z<Double>; UNKNOWNS] = std::array::from_fn(|k| wide(&state[k]));
     let mut found = [[Z::zero(); UNKNOWNS]; 2];
-    solve(&Way::at(given), wide(&C::zero()).re, &at, &mut found);
+    solve(
+        &Way::at(given),
+        wide(&C::zero()).re,
+        &at,
+        &mut found,
+        &mut Storage::new(),
+    );
     let better: State = std::array::from_fn(|k| {
         let z = at[k] - found[0][k];
         C::new(z.re.high, z.im.high)

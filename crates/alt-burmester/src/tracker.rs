@@ -180,7 +180,8 @@ impl Tracker {
             return Next::Correct;
         }
         self.largest = largest;
-        self.passed = [self.at, self.passed[0], self.passed[1]];
+        self.passed.rotate_right(1);
+        self.passed[0] = self.at;
         if self.count > 0 {
             let most = if self.back { 1.0 } else { LONGER };
             self.step = (self.at - self.t) * self.factor().clamp(0.2, most);
@@ -207,8 +208,8 @@ impl Tracker {
     /// By how much the step may be longer for the correction that is aimed at.
     fn factor(&self) -> f64 {
         // A prediction through n places with slopes misses by the step to 2 n.
-        let order = 2.0 * self.count as f64;
-        SAFETY * math::powf(self.aim() / (self.first + 1e-30), 1.0 / order)
+        let part = self.aim() / (self.first + 1e-30);
+        SAFETY * root(part, 2 * self.count as u64)
     }
 
     fn go_back(&mut self) -> Next {
@@ -270,4 +271,17 @@ impl Tracker {
         }
         weights
     }
+}
+
+/// A root of a positive number to a few hundredths: the exponent is divided, and the digits with it.
+fn root(x: f64, degree: u64) -> f64 {
+    let one = 1.0_f64.to_bits();
+    if !(x.is_finite() && x > 0.0) {
+        return x;
+    }
+    f64::from_bits(if x >= 1.0 {
+        one + (x.to_bits() - one) / degree
+    } else {
+        one - (one - x.to_bits()) / degree
+    })
 }
