@@ -70,6 +70,8 @@ pub enum SynthesisError {
     },
     /// No such linkage keeps the data.
     None,
+    /// The search was stopped before its end.
+    Stopped,
 }
 
 impl std::fmt::Display for SynthesisError {
@@ -128,6 +130,7 @@ impl std::fmt::Display for SynthesisError {
                 datum + 1
             ),
             Self::None => write!(f, "no linkage of this kind does it"),
+            Self::Stopped => write!(f, "stopped before all linkages were found"),
         }
     }
 }

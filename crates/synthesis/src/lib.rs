@@ -57,7 +57,8 @@ pub use guidance_fit::{DyadFit, fit_dyads};
 pub use linkage::{Linkage, pairs};
 pub use motion::{DyadCondition, dyads};
 pub use path::{
-    GroundPivotPaths, PathLinkage, paths_with_crank, paths_with_ground_pivots, timed_paths,
+    FourBarThrough, FourBarsThrough, GroundPivotPaths, PathLinkage, four_bars_through,
+    paths_with_crank, paths_with_ground_pivots, timed_paths,
 };
 pub use pose::{Line, Pose, image_pole, pole};
 pub use slider_crank::{InvertedSliderCrank, SliderCrank};

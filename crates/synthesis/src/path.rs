@@ -2,11 +2,14 @@
 //!
 //! Where the crank's turns are given, the crank and the coupler's arm are a dyad that is found as one of motion generation; where the crank
 //! is given, its places are. Both tell how the coupler turns, and its second dyad is one of motion generation again. With both ground
-//! pivots given and nothing else, the equations are solved by following paths (`path/ground_pivots.rs`).
+//! pivots given and nothing else, the equations are solved by following paths (`path/ground_pivots.rs`), and so they are where as many points
+//! and poses are given as a four-bar can pass (`path/alt_burmester.rs`).
 
+mod alt_burmester;
 mod ground_pivots;
 mod tracker;
 
+pub use alt_burmester::{FourBarThrough, FourBarsThrough, four_bars_through};
 pub use ground_pivots::{GroundPivotPaths, paths_with_ground_pivots};
 
 use kempe_linear::C;

@@ -1,0 +1,111 @@
+//! All solutions of given data, led there from generic ones.
+
+use std::ops::ControlFlow;
+
+use crate::class::{Class, Classes};
+use crate::equations::State;
+use crate::follow::{Progress, follow_all};
+use crate::given::{Given, Kind};
+use crate::starts::StartSet;
+use crate::tracker::{CARES, End};
+
+/// The finite regular solutions of some data, and what became of the other paths.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Solved {
+    /// One solution of each class, in the order of the starts.
+    pub solutions: Vec<State>,
+    /// Paths that went to infinity: special data have fewer solutions.
+    pub infinite: usize,
+    /// Paths that ended in singular solutions, or several in one: multiple solutions, or families of them, of special data.
+    pub singular: usize,
+    /// Paths that could not be followed to the end.
+    pub lost: usize,
+}
+
+/// So many paths at most are followed with twice the digits: each takes up to a fifth of a second.
+const DOUBLED: usize = 24;
+
+/// All solutions of some data. `None` where the progress stopped it; it hears of paths that have ended, of all.
+///
+/// Paths that did not arrive or that met others are followed again with more care, the last time with twice
+/// the digits.
+pub fn solve(start: &StartSet, target: &Given, progress: Progress) -> Option<Solved> {
+    let kind = target.kind;
+    if start.given.kind != kind {
+        return Some(Solved {
+            solutions: Vec::new(),
+            infinite: 0,
+            singular: 0,
+            lost: start.solutions.len(),
+        });
+    }
+    let mut ends = follow_all(&start.given, target, &start.solutions, CARES[0], progress)?;
+    let all = ends.len();
+    for care in &CARES[1..] {
+        let mut again = doubtful(kind, &ends);
+        if care.doubled && again.len() > DOUBLED {
+            // The data are special: many paths end singularly, however they are followed.
+            again.retain(|k| ends[*k] == End::Lost);
+            again.truncate(DOUBLED);
+        }
+        if again.is_empty() {
+            break;
+        }
+        let starts: Vec<State> = again.iter().map(|k| start.solutions[*k]).collect();
+        let quiet = |_, _| match progress(all, all) {
+            ControlFlow::Continue(()) => ControlFlow::Continue(()),
+            stop => stop,
+        };
+        let new = follow_all(&start.given, target, &starts, *care, &quiet)?;
+        for (k, end) in again.into_iter().zip(new) {
+            ends[k] = end;
+        }
+    }
+    let mut solved = Solved {
+        solutions: Vec::new(),
+        infinite: 0,
+        singular: 0,
+        lost: 0,
+    };
+    let mut known = Classes::default();
+    for end in ends {
+        match end {
+            End::Arrived(state) => {
+                let class = Class::of(kind, &state);
+                if known.find(&class).is_some() {
+                    solved.singular += 1;
+                } else {
+                    known.add(class, solved.solutions.len());
+                    solved.solutions.push(*state);
+                }
+            }
+            End::Infinite => solved.infinite += 1,
+            End::Singular => solved.singular += 1,
+            End::Lost => solved.lost += 1,
+        }
+    }
+    Some(solved)
+}
+
+/// Paths that are to be followed again: all that met and those that did not arrive, those first that tell least.
+fn doubtful(kind: Kind, ends: &[End]) -> Vec<usize> {
+    let mut doubts = vec![0; ends.len()];
+    let mut known = Classes::default();
+    for (k, end) in ends.iter().enumerate() {
+        match end {
+            End::Arrived(state) => {
+                let class = Class::of(kind, state);
+                match known.find(&class) {
+                    Some(other) => (doubts[k], doubts[other]) = (3, 3),
+                    None => known.add(class, k),
+                }
+            }
+            End::Lost => doubts[k] = 4,
+            End::Singular => doubts[k] = 2,
+            End::Infinite => doubts[k] = 1,
+        }
+    }
+    let mut again: Vec<usize> = (0..ends.len()).filter(|k| doubts[*k] > 0).collect();
+    again.sort_by_key(|k| std::cmp::Reverse(doubts[*k]));
+    again
+}
