@@ -33,6 +33,7 @@ mod nature;
 mod oil;
 mod one_measure;
 mod parameters;
+mod path;
 mod phrase;
 mod place;
 mod places;

@@ -55,6 +55,8 @@ pub enum SynthesisTask {
     DeadCentres(DeadCentresTask),
     /// Its coupler passes poses.
     Motion(Box<GuidanceTask>),
+    /// A point of its coupler passes points.
+    Path(Box<PathTask>),
 }
 
 /// An output as an input asks.
@@ -178,6 +180,32 @@ pub struct GuidanceTask {
     pub span: Span,
 }
 
+/// A point that a coupler carries through points.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PathTask {
+    /// The points, in the order in which they are passed; at least three.
+    pub points: Vec<WantedPoint>,
+    /// The crank's angles at the points from any zero, rad, where they are asked for.
+    pub angles: Option<Vec<Scalar>>,
+    /// What is given of the dyad that is driven, and of the other. The coupler's axes lie in the first point, and are not turned there.
+    pub dyads: [DyadGiven; 2],
+    /// Two corners of a box in which the fixed pivots must lie, m.
+    pub pivots_in: Option<[[Scalar; 2]; 2]>,
+    /// Where the points as a whole stand in the file.
+    pub span: Span,
+}
+
+/// A point of a path.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WantedPoint {
+    /// Where it is, m.
+    pub place: [Scalar; 2],
+    /// The coupler's angle there, rad, where it is asked for.
+    pub angle: Option<Scalar>,
+    /// Where it stands in the file.
+    pub span: Span,
+}
+
 /// A pose of a body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WantedPose {
@@ -235,6 +263,11 @@ impl SynthesizeStudy {
                 let dyads = task.dyads.iter_mut().map(|dyad| &mut dyad.span);
                 poses.chain(dyads).chain([&mut task.span]).for_each(f);
             }
+            SynthesisTask::Path(task) => {
+                let points = task.points.iter_mut().map(|point| &mut point.span);
+                let dyads = task.dyads.iter_mut().map(|dyad| &mut dyad.span);
+                points.chain(dyads).chain([&mut task.span]).for_each(f);
+            }
         }
     }
 
@@ -271,6 +304,15 @@ impl SynthesizeStudy {
                 task.dyads.iter_mut().for_each(|dyad| dyad.visit_scalars(f));
                 let boxes = task.pivots_in.iter_mut().chain(&mut task.pins_in);
                 boxes.flatten().flatten().for_each(f);
+            }
+            SynthesisTask::Path(task) => {
+                for point in &mut task.points {
+                    let all = point.place.iter_mut().chain(&mut point.angle);
+                    all.for_each(&mut *f);
+                }
+                let angles = task.angles.iter_mut().flatten();
+                angles.chain(task.pivots_in.iter_mut().flatten().flatten()).for_each(&mut *f);
+                task.dyads.iter_mut().for_each(|dyad| dyad.visit_scalars(f));
             }
             SynthesisTask::DeadCentres(task) => {
                 f(&mut task.time_ratio);

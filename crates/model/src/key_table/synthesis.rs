@@ -3,7 +3,7 @@
 use kempe_units::Dimension as D;
 
 use super::{ANGLE, MEASURES, PLACE, STUDY_KINDS, any, kind, may, must, one_of, positive, words};
-use crate::keys::{Key, Kind, Takes};
+use crate::keys::{Key, Kind, Named, Takes};
 use crate::synthesis::LinkageKind;
 use Takes as T;
 
@@ -34,7 +34,7 @@ static WANTED: [Key; 4] = [
 ];
 
 /// The tasks, each with the keys of its own.
-pub(crate) static TASKS: [&Kind; 4] = [&FUNCTION, &RATES, &DEAD_CENTRES, &GUIDANCE];
+pub(crate) static TASKS: [&Kind; 5] = [&FUNCTION, &RATES, &DEAD_CENTRES, &GUIDANCE, &PATH];
 
 static FUNCTION: Kind = kind("study", "synthesize function",
     "kind = \"synthesize\", task = \"function\", pairs = [[45, 52], [90, 82], [135, 112]], ground = \"50 mm\"",
@@ -96,6 +96,29 @@ static GUIDANCE: Kind = kind("study", "synthesize motion",
         may("pivots_in", T::Two(&PLACE), "[[-50, -50], [50, 50]]", "Two corners of a box in which the fixed pivots must lie, and are looked for."),
         may("pins_in", T::Two(&PLACE), "[[-20, -20], [20, 20]]", "Two corners of a box in the body's own axes in which the moving pivots must lie."),
     ], &WANTED]);
+
+const POINTS: &str = "[[0, 0], [10, 8], [25, 12], [40, 10], [52, 2]]";
+
+static PATH: Kind = kind("study", "synthesize path",
+    "kind = \"synthesize\", task = \"path\", points = [[0, 0], [10, 8], [25, 12], [40, 10], [52, 2]], crank = { fixed = [0, -20] }, rocker = { fixed = [40, -25] }",
+    "The four-bars of which a point of the coupler passes points: nine; or fewer where the crank's angles, pivots or angles of the coupler are given.",
+    &[&HEAD, &[
+        must("task", T::Words(&["path"]), "\"path\"", "The task: a point that is carried through points."),
+        must("points", T::AnyOf(&[T::List(&T::List(&EITHER, 2), 3), T::Table(&POINT_TABLE)]), POINTS, "The points in their order; a third value is the coupler's angle there."),
+        may("angles", T::List(&ANGLE, 3), "[0, 30, 60, 90, 120]", "The crank's angles at the points, from any zero."),
+        may("crank", T::Table(&DYAD), "{ fixed = [0, -20] }", "What is given of the link that is driven; its moving pivot as seen from the first point, the coupler not being turned there."),
+        may("rocker", T::Table(&DYAD), "{ fixed = [40, -25] }", "What is given of the other link."),
+        may("pivots_in", T::Two(&PLACE), "[[-50, -50], [50, 50]]", "Two corners of a box in which the fixed pivots must lie."),
+    ], &WANTED]);
+
+pub(crate) static POINT_TABLE: Kind = kind("point table", "points",
+    "points = { table = \"nine.csv\", x = \"x\", y = \"y\" }",
+    "Points from a table beside the file.",
+    &[&[
+        must("table", T::Name(Named::File), "\"nine.csv\"", "The file, in the model's folder."),
+        may("x", T::Name(Named::Column), "\"x\"", "Its column of x; `x` unless said otherwise."),
+        may("y", T::Name(Named::Column), "\"y\"", "Its column of y; `y` unless said otherwise."),
+    ]]);
 
 pub(crate) static DYAD: Kind = kind("dyad", "dyad",
     "{ moving = [-10, 5] }",

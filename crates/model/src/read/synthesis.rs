@@ -64,6 +64,7 @@ pub(crate) fn read(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<StudyKin
     let task = match task_of(kind) {
         "rates" => rates(cx, &entry).map(SynthesisTask::Rates),
         "dead-centres" => dead_centres(cx, &entry).map(SynthesisTask::DeadCentres),
+        "path" => path::read(cx, &entry).map(|task| SynthesisTask::Path(Box::new(task))),
         "motion" => guidance::read(cx, &entry).map(|task| SynthesisTask::Motion(Box::new(task))),
         _ => function(cx, &entry).map(SynthesisTask::Function),
     };

@@ -19,6 +19,7 @@ impl Writer<'_> {
             SynthesisTask::Rates(task) => self.rates(task, put),
             SynthesisTask::DeadCentres(task) => self.dead_centres(task, put),
             SynthesisTask::Motion(task) => self.guidance(task, put),
+            SynthesisTask::Path(task) => self.path(task, put),
         }
         let texts = |asked: &[Asked]| {
             let texts = asked.iter().map(|asked| Item::text(&asked.text));
@@ -143,7 +144,35 @@ impl Writer<'_> {
             Item::List(origin.chain([angle]).collect())
         });
         put("poses", Item::List(poses.collect()));
-        for (name, dyad) in ["crank", "rocker"].iter().zip(&task.dyads) {
+        self.dyads(&task.dyads, put);
+        for (name, corners) in [("pivots_in", &task.pivots_in), ("pins_in", &task.pins_in)] {
+            if let Some(corners) = corners {
+                put(name, self.two_places(corners));
+            }
+        }
+    }
+
+    fn path(&self, task: &PathTask, put: &mut dyn FnMut(&str, Item)) {
+        put("task", Item::text("path"));
+        let points = task.points.iter().map(|point| {
+            let place = (point.place.iter()).map(|x| self.scalar(x, Dimension::LENGTH));
+            let angle = point.angle.iter();
+            let angle = angle.map(|angle| self.scalar(angle, Dimension::ANGLE));
+            Item::List(place.chain(angle).collect())
+        });
+        put("points", Item::List(points.collect()));
+        if let Some(angles) = &task.angles {
+            let angles = angles.iter().map(|a| self.scalar(a, Dimension::ANGLE));
+            put("angles", Item::List(angles.collect()));
+        }
+        self.dyads(&task.dyads, put);
+        if let Some(corners) = &task.pivots_in {
+            put("pivots_in", self.two_places(corners));
+        }
+    }
+
+    fn dyads(&self, dyads: &[DyadGiven; 2], put: &mut dyn FnMut(&str, Item)) {
+        for (name, dyad) in ["crank", "rocker"].iter().zip(dyads) {
             if *dyad
                 != (DyadGiven {
                     span: dyad.span.clone(),
@@ -151,11 +180,6 @@ impl Writer<'_> {
                 })
             {
                 put(name, self.dyad(dyad));
-            }
-        }
-        for (name, corners) in [("pivots_in", &task.pivots_in), ("pins_in", &task.pins_in)] {
-            if let Some(corners) = corners {
-                put(name, self.two_places(corners));
             }
         }
     }
