@@ -736,3 +736,22 @@ fn bad_requests_are_told_by_check_and_run_alike() {
     );
     assert_eq!(told, ["no-linkage"]);
 }
+
+/// Poses and boxes at the ends of what can be computed with: an answer or a reason, and no harm.
+#[test]
+fn hostile_numbers_do_no_harm() {
+    let area = "pivots_in = [[-50, -50], [50, 50]]\n";
+    for task in [
+        format!("poses = [[0, 0, 0], [1e25, 0, 20], [3, 1e-20, 40]]\n{area}"),
+        format!("poses = [[0, 0, 0], [1e-20, 0, 20], [0, 1e-20, 40], [0, 0, 50]]\n{area}"),
+        "poses = [[0, 0, 0], [1e20, 1e20, 20], [2e20, 5, 40], [0, 1e20, 50], [3, 4, 5]]\n".to_owned(),
+        format!("poses = [[0, 0, 0], [10, 0, 180], [0, 10, 360]]\n{area}"),
+        format!("poses = [[0, 0, 0], [10, 0, 1e9], [0, 10, -1e9]]\n{area}keep = 1\n"),
+        format!("poses = [[0, 0, 0], [10, 0, 1e-9], [0, 10, 2e-9]]\n{area}keep = 1\n"),
+        "poses = [[0, 0, 0], [10, 0, 20], [0, 10, 50]]\npivots_in = [[5, 5], [5, 5]]\n".to_owned(),
+        "poses = [[0, 0, 0], [10, 0, 20], [0, 10, 50], [5, 5, 70]]\npivots_in = [[-1e25, -1e25], [1e25, 1e25]]\n".to_owned(),
+    ] {
+        let told = refused(&task);
+        assert!(told.len() <= 1, "{task}: {told:?}");
+    }
+}
