@@ -196,7 +196,7 @@ fn with(section: &str, kind: &Kind, key: &str, value: &str) -> String {
             (
                 "x",
                 format!(
-                    "{{ kind = 'synthesize', task = 'motion', poses = {poses}, crank = {dyad} }}"
+                    "{{ kind = 'synthesize', task = 'motion', poses = {poses}, rocker = {dyad} }}"
                 ),
             )
         }

@@ -300,10 +300,10 @@ zeros = ["free", "2 mm"]
 [studies.guide]
 kind = "synthesize"
 task = "motion"
-linkage = "four-bar"
+linkage = "slider-crank"
 poses = [[0, 0, "0 deg"], ["a + 12 mm", 6, "tilt"], [20, 18, "55 deg"]]
-crank = { moving = ["11 mm", "30 deg"], along = "90 deg" }
-rocker = { fixed = ["2 * a", 8], moving_on = [[0, 5], [1, "a"]] }
+crank = { moving = ["11 mm", "30 deg"], fixed_on = [[0, 5], [1, "a"]] }
+rocker = { moving_on = [["2 * a", 5], [1, "a"]], along = "90 deg" }
 pivots_in = [[-50, "-a"], [50, 50]]
 
 [studies.guides]

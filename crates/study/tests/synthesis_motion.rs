@@ -638,6 +638,58 @@ fn more_poses_are_approached() {
     }
 }
 
+/// Linkages of all kinds stand in one table: what a kind has not is empty.
+#[test]
+fn all_kinds_stand_in_one_table() {
+    let result = found(&format!(
+        "{HAN}crank = {{ moving = [0, 0] }}\npivots_in = [[-50, -50], [50, 50]]\npins_in = [[-40, -40], [40, 40]]\nkeep = 60\n"
+    ));
+    let [rocker, offset, ground] =
+        ["rocker_length", "offset", "ground"].map(|name| column(&result, name));
+    let mut counts = [0; 3];
+    for k in 0..rocker.len() {
+        let has = [rocker[k], offset[k], ground[k]].map(f64::is_finite);
+        let kind = match has {
+            [true, false, true] => 0,
+            [false, true, false] => 1,
+            [false, true, true] => 2,
+            other => panic!("{other:?}"),
+        };
+        counts[kind] += 1;
+    }
+    assert!(counts.iter().all(|count| *count > 2), "{counts:?}");
+    assert!(column(&result, "miss").iter().all(|m| *m < 1e-9));
+    assert!(column(&result, "link_ratio").is_sorted());
+}
+
+/// What is given of a dyad is kept exactly where the poses are only approached.
+#[test]
+fn given_pivots_are_kept_by_fits() {
+    let mut random = Random(2);
+    let (fixed, crank, _, other, poses) = std::iter::repeat_with(|| bar_poses(&mut random, 7))
+        .flatten()
+        .next()
+        .expect("one of them");
+    let task = format!(
+        "{}crank = {{ fixed = [{:?}, {:?}] }}\nrocker = {{ fixed_on = {} }}\nlinkage = 'four-bar'\n{COLUMNS}",
+        written(&poses),
+        fixed.re,
+        fixed.im,
+        line(other)
+    );
+    let result = found(&task);
+    assert!(
+        has_crank(&result, fixed, crank),
+        "{task}{:#?}",
+        result.listings
+    );
+    let places = column(&result, "min(x(A))");
+    assert!(
+        places.iter().all(|x| (x - fixed.re).abs() < 1e-9),
+        "{places:?}"
+    );
+}
+
 #[test]
 fn parameters_stand_in_poses_and_conditions() {
     let text = "units = { length = 'mm', angle = 'deg' }\n[parameters]\nlift = 6\nturn = '20 deg'\n[studies.s]\nkind = 'synthesize'\ntask = 'motion'\n\
@@ -668,6 +720,9 @@ fn bad_requests_are_told_by_check_and_run_alike() {
         (format!("{HAN}crank = {{ moving = [1, 2], moving_on = [[1, 2], [2, 3]] }}\n"), "contradictory-values"),
         (format!("{HAN}crank = {{ moving_on = [[1, 2], [1, 2]] }}\n"), "bad-size"),
         (format!("{HAN}linkage = 'five-bar'\n{given}"), "bad-choice"),
+        (format!("{HAN}crank = {{ along = 20 }}\n"), "bad-choice"),
+        (format!("{HAN}linkage = 'four-bar'\nrocker = {{ along = 20 }}\n"), "bad-choice"),
+        (format!("{HAN}linkage = 'slider-crank'\nrocker = {{ fixed = [1, 2] }}\n"), "bad-choice"),
         ("poses = [[0, 0, '3 mm'], [1, 2, 3]]\n".to_owned(), "unit-mismatch"),
         (format!("{HAN}pivots_in = [1, 2]\n{given}"), "wrong-type"),
     ];
@@ -680,4 +735,23 @@ fn bad_requests_are_told_by_check_and_run_alike() {
         "poses = [[0, 0, 0], [10, 0, 20], [25, 0, 35]]\nlinkage = 'four-bar'\ncrank = { moving = [0, 0] }\nrocker = { moving = [15, 10] }\n",
     );
     assert_eq!(told, ["no-linkage"]);
+}
+
+/// Poses and boxes at the ends of what can be computed with: an answer or a reason, and no harm.
+#[test]
+fn hostile_numbers_do_no_harm() {
+    let area = "pivots_in = [[-50, -50], [50, 50]]\n";
+    for task in [
+        format!("poses = [[0, 0, 0], [1e25, 0, 20], [3, 1e-20, 40]]\n{area}"),
+        format!("poses = [[0, 0, 0], [1e-20, 0, 20], [0, 1e-20, 40], [0, 0, 50]]\n{area}"),
+        "poses = [[0, 0, 0], [1e20, 1e20, 20], [2e20, 5, 40], [0, 1e20, 50], [3, 4, 5]]\n".to_owned(),
+        format!("poses = [[0, 0, 0], [10, 0, 180], [0, 10, 360]]\n{area}"),
+        format!("poses = [[0, 0, 0], [10, 0, 1e9], [0, 10, -1e9]]\n{area}keep = 1\n"),
+        format!("poses = [[0, 0, 0], [10, 0, 1e-9], [0, 10, 2e-9]]\n{area}keep = 1\n"),
+        "poses = [[0, 0, 0], [10, 0, 20], [0, 10, 50]]\npivots_in = [[5, 5], [5, 5]]\n".to_owned(),
+        "poses = [[0, 0, 0], [10, 0, 20], [0, 10, 50], [5, 5, 70]]\npivots_in = [[-1e25, -1e25], [1e25, 1e25]]\n".to_owned(),
+    ] {
+        let told = refused(&task);
+        assert!(told.len() <= 1, "{task}: {told:?}");
+    }
 }

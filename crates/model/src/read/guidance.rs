@@ -18,15 +18,25 @@ use crate::key_table::synthesis::{DYAD, LINKAGES};
 use crate::read::algebra::place_in_xy;
 use crate::read::context::Context;
 use crate::read::entry::Entry;
-use crate::synthesis::{DyadGiven, GuidanceTask, WantedPose};
+use crate::synthesis::{DyadGiven, GuidanceTask, LinkageKind, WantedPose};
 
 /// The fewest poses between which there is a motion.
 const FEWEST: usize = 2;
 
 pub(crate) fn read(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<GuidanceTask> {
     let linkage = entry.choice(cx, "linkage", &LINKAGES);
-    let crank = dyad(cx, entry, "crank");
-    let rocker = dyad(cx, entry, "rocker");
+    let kind = linkage.flatten();
+    // Which keys mean nothing, and why.
+    let crank = dyad(cx, entry, "crank", (&["along"], "a crank has two pins"));
+    let of_rocker: (&[&str], &str) = match kind {
+        Some(LinkageKind::FourBar) => (&["along"], "a four-bar has no guide"),
+        Some(LinkageKind::SliderCrank) => (&["fixed", "fixed_on"], "a slider has no fixed pivot"),
+        Some(LinkageKind::InvertedSliderCrank) => {
+            (&["moving", "moving_on"], "a slot has no moving pivot")
+        }
+        None => (&[], ""),
+    };
+    let rocker = dyad(cx, entry, "rocker", of_rocker);
     let pivots_in = corners(cx, entry, "pivots_in");
     let pins_in = corners(cx, entry, "pins_in");
     let node = entry.required(cx, "poses")?;
@@ -80,7 +90,12 @@ fn poses(cx: &mut Context<'_>, entry: &Entry<'_>, node: &Node) -> Option<Vec<Wan
 }
 
 /// What is given of a dyad; nothing where its key is not there.
-fn dyad(cx: &mut Context<'_>, entry: &Entry<'_>, key: &str) -> Option<DyadGiven> {
+fn dyad(
+    cx: &mut Context<'_>,
+    entry: &Entry<'_>,
+    key: &str,
+    (idle, why): (&[&str], &str),
+) -> Option<DyadGiven> {
     let Some((name, node)) = entry.entry(key) else {
         return Some(DyadGiven::default());
     };
@@ -90,6 +105,14 @@ fn dyad(cx: &mut Context<'_>, entry: &Entry<'_>, key: &str) -> Option<DyadGiven>
     let moving = point(cx, &inner, "moving");
     let moving_on = line(cx, &inner, "moving_on");
     let along = inner.value(cx, "along");
+    if let Some((idle, _)) = idle.iter().find_map(|key| inner.entry(key)) {
+        return cx.refuse(
+            "bad-choice",
+            format!("{why}: `{}` of {} can be nothing", idle.name, inner.place),
+            &idle.span,
+            "leave it out, or ask for another `linkage`",
+        );
+    }
     for [point, line] in [["fixed", "fixed_on"], ["moving", "moving_on"]] {
         if inner.has(point) && inner.has(line) {
             inner.contradiction(

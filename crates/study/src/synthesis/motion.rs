@@ -24,7 +24,7 @@ pub(super) use picture::picture;
 /// So many linkages are moved at most: the most compact that transmit best.
 const MOST_MOVED: usize = 200;
 /// So many that cannot be used are listed one by one; more are counted.
-const LISTED: usize = 60;
+const LISTED: usize = 30;
 /// A fit whose error is more than this part of the body's way is none.
 const POOR: f64 = 0.2;
 /// Poses nearer to each other than this part of the body's way and of a turn are one.
@@ -60,9 +60,12 @@ pub(super) fn candidates(model: &Model, task: &GuidanceTask) -> Result<Found, Bo
         }
         match asked.family(rocker, sort) {
             Ok(others) => {
+                any = true;
+                if !asked.can_be(sort) {
+                    continue;
+                }
                 search.tried(second_name(kind), &others);
                 search.pairs(&cranks.dyads, &others.dyads);
-                any = true;
             }
             Err(error) => {
                 wrong.get_or_insert(error);

@@ -87,6 +87,16 @@ impl Asked {
         Ok(found)
     }
 
+    /// Whether what is given of the dyad that is not driven can be of a sort.
+    pub fn can_be(&self, sort: Sort) -> bool {
+        let [_, given] = &self.given;
+        match sort {
+            Sort::Link => given.along.is_none(),
+            Sort::Slider => given.of_slider(false).is_some(),
+            Sort::Slot => given.of_slider(true).is_some(),
+        }
+    }
+
     fn links(&self, given: &Given) -> Result<Family, SynthesisError> {
         const UNKNOWNS: usize = 4;
         let poses = &self.poses;
