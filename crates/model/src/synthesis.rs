@@ -311,7 +311,9 @@ impl SynthesizeStudy {
                     all.for_each(&mut *f);
                 }
                 let angles = task.angles.iter_mut().flatten();
-                angles.chain(task.pivots_in.iter_mut().flatten().flatten()).for_each(&mut *f);
+                angles
+                    .chain(task.pivots_in.iter_mut().flatten().flatten())
+                    .for_each(&mut *f);
                 task.dyads.iter_mut().for_each(|dyad| dyad.visit_scalars(f));
             }
             SynthesisTask::DeadCentres(task) => {

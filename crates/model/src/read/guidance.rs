@@ -90,7 +90,7 @@ fn poses(cx: &mut Context<'_>, entry: &Entry<'_>, node: &Node) -> Option<Vec<Wan
 }
 
 /// What is given of a dyad; nothing where its key is not there.
-fn dyad(
+pub(crate) fn dyad(
     cx: &mut Context<'_>,
     entry: &Entry<'_>,
     key: &str,
@@ -147,7 +147,11 @@ fn point(cx: &mut Context<'_>, entry: &Entry<'_>, key: &str) -> Option<Option<[S
 }
 
 /// Two points that may be given; the outer `None` where they are wrong.
-fn corners(cx: &mut Context<'_>, entry: &Entry<'_>, key: &str) -> Option<Option<[[Scalar; 2]; 2]>> {
+pub(crate) fn corners(
+    cx: &mut Context<'_>,
+    entry: &Entry<'_>,
+    key: &str,
+) -> Option<Option<[[Scalar; 2]; 2]>> {
     let Some(node) = entry.get(key) else {
         return Some(None);
     };

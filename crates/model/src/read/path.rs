@@ -46,7 +46,11 @@ pub(crate) fn read(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<PathTask> 
     if let (Some(angles), Some(node)) = (&angles, entry.get("angles"))
         && angles.len() != points.len()
     {
-        let message = format!("{} points and {} angles of the crank", points.len(), angles.len());
+        let message = format!(
+            "{} points and {} angles of the crank",
+            points.len(),
+            angles.len()
+        );
         let help = "give an angle for each point, in their order";
         return cx.refuse("contradictory-values", message, &node.span, help);
     }
@@ -89,7 +93,12 @@ fn points(cx: &mut Context<'_>, entry: &Entry<'_>, node: &Node) -> Option<Vec<Wa
     }
     if items.len() < FEWEST {
         let message = format!("{place} are {}", items.len());
-        return cx.refuse("missing-key", message, &node.span, "a path has at least three points");
+        return cx.refuse(
+            "missing-key",
+            message,
+            &node.span,
+            "a path has at least three points",
+        );
     }
     (found.len() == items.len()).then_some(found)
 }
@@ -99,8 +108,7 @@ fn from_table(cx: &mut Context<'_>, entry: &Entry<'_>, node: &Node) -> Option<Ve
     let file = table.required(cx, "table")?;
     let mut column = |key: &str| {
         let known = column_name(cx, &table, key)?;
-        let (pick, span) =
-            known.unwrap_or_else(|| (Pick::Name(key.to_owned()), file.span.clone()));
+        let (pick, span) = known.unwrap_or_else(|| (Pick::Name(key.to_owned()), file.span.clone()));
         Some(Ask {
             pick,
             span,

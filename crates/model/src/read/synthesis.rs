@@ -19,8 +19,8 @@ use crate::key_table::synthesis::{CURVE, FREE, LINKAGES, TASKS};
 use crate::keys::Kind;
 use crate::read::context::Context;
 use crate::read::entry::Entry;
-use crate::read::guidance;
 use crate::read::studies::entries;
+use crate::read::{guidance, path};
 use crate::study::{MotionStudy, Rows, StudyKind};
 use crate::synthesis::{
     Asked, DeadCentresTask, FunctionTask, LinkageKind, RatesTask, Stroke, SynthesisTask,

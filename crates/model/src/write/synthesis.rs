@@ -7,8 +7,8 @@ use crate::item::Item;
 use crate::key_table::synthesis::{FREE, LINKAGES};
 use crate::key_table::word_of;
 use crate::synthesis::{
-    Asked, DeadCentresTask, DyadGiven, FunctionTask, GuidanceTask, LinkageKind, RatesTask, Stroke,
-    SynthesisTask, SynthesizeStudy, WantedCurve, WantedFunction, WantedPair,
+    Asked, DeadCentresTask, DyadGiven, FunctionTask, GuidanceTask, LinkageKind, PathTask,
+    RatesTask, Stroke, SynthesisTask, SynthesizeStudy, WantedCurve, WantedFunction, WantedPair,
 };
 use crate::write::spelling::Writer;
 

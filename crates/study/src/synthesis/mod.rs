@@ -10,6 +10,8 @@ mod file;
 mod function;
 mod judge;
 mod motion;
+mod passing;
+mod path;
 mod rates;
 mod refused;
 
@@ -55,6 +57,12 @@ pub(crate) fn in_words(study: &SynthesizeStudy) -> String {
             Stroke::Swing { .. } => "crank-rockers by swing and time ratio".to_owned(),
             Stroke::Travel { .. } => "slider-cranks by stroke and time ratio".to_owned(),
         },
+        SynthesisTask::Path(task) => {
+            format!(
+                "four-bars of which a point passes {} points",
+                task.points.len()
+            )
+        }
         SynthesisTask::Motion(task) => {
             let what = task.linkage.map_or("linkages", kinds);
             format!(
@@ -93,6 +101,7 @@ fn candidates(
         SynthesisTask::Rates(task) => rates::candidates(model, task, place),
         SynthesisTask::DeadCentres(task) => dead_centres::candidates(model, task, place),
         SynthesisTask::Motion(task) => motion::candidates(model, task),
+        SynthesisTask::Path(task) => path::candidates(model, task),
     };
     let found = found.map_err(|refused| vec![*refused])?;
     let none = found.candidates.is_empty() && found.rejected.is_empty();

@@ -9,22 +9,18 @@ mod picture;
 
 use kempe_model::{Diagnostic, GuidanceTask, LinkageKind, Model};
 use kempe_number::math;
-use kempe_synthesis::{C, Driver, Dyad, Linkage, Passage, Pose, SynthesisError, passage};
+use kempe_synthesis::{C, Dyad, Linkage, Pose, SynthesisError};
 use kempe_units::Dimension;
 
-use super::candidate::{Candidate, Found, Rejected, Wanted};
-use super::dimensions_in_words;
+use super::candidate::{Candidate, Found};
+use super::passing::{Defect, Passing, pose_wanted};
 use super::refused::{Data, Datum};
-use crate::result::Listing;
 use crate::unit::Units;
 use dyads::{Family, MANY, Sort};
 use given::Asked;
+pub(super) use given::{Area, Given, place};
 pub(super) use picture::picture;
 
-/// So many linkages are moved at most: the most compact that transmit best.
-const MOST_MOVED: usize = 200;
-/// So many that cannot be used are listed one by one; more are counted.
-const LISTED: usize = 30;
 /// A fit whose error is more than this part of the body's way is none.
 const POOR: f64 = 0.2;
 /// Poses nearer to each other than this part of the body's way and of a turn are one.
@@ -138,69 +134,10 @@ fn repeated(asked: &Asked) -> Option<SynthesisError> {
         .map(|(first, second)| SynthesisError::Repeated { first, second })
 }
 
-/// Why a linkage that is right in every pose is not moved.
-enum Defect {
-    /// A fixed pivot lies outside its box.
-    Fixed(C),
-    /// A moving pivot does.
-    Moving(C),
-    Circuits,
-    Branches,
-    /// The crank does not meet the poses one after the other; whether the other link would.
-    Order,
-    /// Of a fit: it does not close where the crank should stand.
-    Open,
-    /// Of a fit: it comes no nearer than this, m.
-    Poor(f64),
-}
-
-impl Defect {
-    fn text(&self, units: &Units) -> String {
-        let at = |place: &C| {
-            let [x, y] = [place.re, place.im].map(|x| units.text(x, Dimension::LENGTH));
-            format!("({x}, {y})")
-        };
-        match self {
-            Self::Fixed(place) => {
-                format!("a fixed pivot lies at {}, outside `pivots_in`", at(place))
-            }
-            Self::Moving(place) => format!(
-                "a moving pivot lies at {} of the body, outside `pins_in`",
-                at(place)
-            ),
-            Self::Poor(error) => format!(
-                "it comes no nearer than {} in the root of the mean square",
-                units.text(*error, Dimension::LENGTH)
-            ),
-            _ => self.kind().to_owned(),
-        }
-    }
-
-    /// The same without its numbers, for counting.
-    fn kind(&self) -> &'static str {
-        match self {
-            Self::Fixed(_) => "a fixed pivot lies outside `pivots_in`",
-            Self::Moving(_) => "a moving pivot lies outside `pins_in`",
-            Self::Circuits => {
-                "its poses lie on two circuits: it would have to be taken apart between them"
-            }
-            Self::Branches => {
-                "its poses lie on two branches: the crank cannot drive it through the dead centre between them"
-            }
-            Self::Order => "the crank, turning one way, does not meet the poses in their order",
-            Self::Open => "it cannot be closed at all poses",
-            Self::Poor(_) => "it does not come near the poses",
-        }
-    }
-}
-
-/// Linkages that are gone through.
+/// Pairs of dyads that are gone through.
 struct Search<'a> {
     asked: &'a Asked,
-    units: &'a Units,
-    candidates: Vec<(f64, Candidate)>,
-    rejected: Vec<(Candidate, Defect, bool)>,
-    paired: usize,
+    passing: Passing<'a>,
     /// How dyads were looked for.
     how: Vec<String>,
     is_search: bool,
@@ -210,10 +147,7 @@ impl<'a> Search<'a> {
     fn new(asked: &'a Asked, units: &'a Units) -> Self {
         Self {
             asked,
-            units,
-            candidates: Vec::new(),
-            rejected: Vec::new(),
-            paired: 0,
+            passing: Passing::new(units, "poses"),
             how: Vec::new(),
             is_search: false,
         }
@@ -252,56 +186,21 @@ impl<'a> Search<'a> {
         let Some(linkage) = Linkage::of(crank, other) else {
             return;
         };
-        self.paired += 1;
-        let mut candidate = Candidate {
-            linkage,
-            start: self.asked.poses[0],
-            turned: None,
-            drive: [0.0; 2],
-            point: Some(C::new(0.0, 0.0)),
-            keeps_axes: true,
-            parameters: Vec::new(),
-            measures: Vec::new(),
-            told: Vec::new(),
-            wanted: Vec::new(),
-        };
+        let mut candidate = Passing::candidate(linkage, self.asked.poses[0]);
         if let Some(outside) = self.outside(&candidate.linkage) {
-            self.rejected.push((candidate, outside, false));
+            self.passing.reject(candidate, outside);
             return;
         }
         let met = match self.met(&mut candidate) {
             Ok(met) => met,
             Err(defect) => {
-                self.rejected.push((candidate, defect, false));
+                self.passing.reject(candidate, defect);
                 return;
             }
         };
-        let Some(passed) = passage(&candidate.linkage, &met, Driver::First) else {
-            return;
-        };
-        if let Some(defect) = defect(&passed) {
-            // Whether it only has to be driven at its other link.
-            let other = match candidate.linkage {
-                Linkage::FourBar(_) => passage(&candidate.linkage, &met, Driver::Second),
-                _ => None,
-            };
-            let other_way = other.is_some_and(|other| self::defect(&other).is_none());
-            self.rejected.push((candidate, defect, other_way));
-            return;
-        }
-        let reference = reference(&candidate.linkage);
-        let driver: Vec<f64> = passed
-            .driver
-            .iter()
-            .map(|angle| angle + reference)
-            .collect();
-        if let (Some(from), Some(to)) = (driver.first(), driver.last()) {
-            candidate.drive = [*from, *to];
-        }
-        candidate.start = met[0];
-        candidate.wanted = wanted(&candidate.linkage, &met, &driver);
-        self.candidates
-            .push((merit(&candidate, &passed), candidate));
+        let wanted =
+            |linkage: &Linkage, _: usize, pose: &Pose, at: f64| pose_wanted(linkage, pose, at);
+        self.passing.pass(candidate, &met, &wanted);
     }
 
     fn outside(&self, linkage: &Linkage) -> Option<Defect> {
@@ -351,123 +250,9 @@ impl<'a> Search<'a> {
         Ok(met)
     }
 
-    fn found(mut self) -> Found {
-        let right = self.candidates.len();
-        self.candidates.sort_by(|a, b| a.0.total_cmp(&b.0));
-        self.candidates.truncate(MOST_MOVED);
+    fn found(self) -> Found {
         let how = self.how.join("; ");
-        let many = self.rejected.len() > LISTED;
-        let is_told = self.is_search || many || right > MOST_MOVED;
-        let tried = is_told.then(|| self.told(&how, right));
-        let counted = if many { self.rejected.len() } else { 0 };
-        let rejected = match many {
-            true => Vec::new(),
-            false => (self.rejected.iter())
-                .map(|(candidate, defect, other_way)| {
-                    let more = match other_way {
-                        true => "; driven at its other link it passes them",
-                        false => "",
-                    };
-                    Rejected {
-                        what: dimensions_in_words(candidate, self.units),
-                        why: defect.text(self.units) + more,
-                    }
-                })
-                .collect(),
-        };
-        Found {
-            candidates: self.candidates.into_iter().map(|(_, c)| c).collect(),
-            rejected,
-            searched: how,
-            tried,
-            counted,
-            guided: self.asked.poses.clone(),
-        }
+        let guided = self.asked.poses.clone();
+        self.passing.found(how, self.is_search, guided)
     }
-
-    /// What was tried, and how much of it is of use.
-    fn told(&self, how: &str, right: usize) -> Listing {
-        let mut rows: Vec<(String, usize)> = vec![("in all".to_owned(), self.paired)];
-        for (_, defect, _) in &self.rejected {
-            let kind = defect.kind();
-            match rows.iter_mut().find(|(known, _)| known == kind) {
-                Some((_, count)) => *count += 1,
-                None => rows.push((kind.to_owned(), 1)),
-            }
-        }
-        rows.push(("they pass the poses".to_owned(), right));
-        if right > MOST_MOVED {
-            let of = "of these moved, those of the least link ratio over the sine of the transmission angle";
-            rows.push((of.to_owned(), MOST_MOVED));
-        }
-        let rows = rows.into_iter();
-        Listing {
-            title: format!("linkages tried: {how}"),
-            head: vec!["pairs of dyads".to_owned(), "how many".to_owned()],
-            rows: rows
-                .map(|(what, count)| vec![what, count.to_string()])
-                .collect(),
-        }
-    }
-}
-
-/// What keeps a linkage from being led through the poses.
-fn defect(passed: &Passage) -> Option<Defect> {
-    if !passed.one_circuit {
-        return Some(Defect::Circuits);
-    }
-    if !passed.one_branch {
-        return Some(Defect::Branches);
-    }
-    let goes = |sense: f64| {
-        let mut pairs = passed.driver.windows(2);
-        pairs.all(|pair| sense * (pair[1] - pair[0]) > 0.0)
-    };
-    // A rocker meets all of three on its circuit in some order, but not on one way.
-    (!passed.in_order || !(goes(1.0) || goes(-1.0))).then_some(Defect::Order)
-}
-
-/// The angle of the line from which a linkage's crank is counted.
-fn reference(linkage: &Linkage) -> f64 {
-    match linkage {
-        Linkage::FourBar(it) => (it.fixed[1] - it.fixed[0]).arg(),
-        Linkage::SliderCrank(it) => it.guide.direction.arg(),
-        Linkage::InvertedSliderCrank(it) => (it.fixed[1] - it.fixed[0]).arg(),
-        Linkage::TwoSliders(..) => 0.0,
-    }
-}
-
-fn wanted(linkage: &Linkage, met: &[Pose], driver: &[f64]) -> Vec<Wanted> {
-    let angle = match linkage {
-        Linkage::InvertedSliderCrank(_) => "angle(lever)",
-        _ => "angle(coupler)",
-    };
-    let of_pose = |(pose, at): (&Pose, &f64)| {
-        let all = [
-            ("x(P)", pose.origin.re),
-            ("y(P)", pose.origin.im),
-            (angle, pose.angle),
-        ];
-        let at = *at;
-        all.map(|(measure, value)| Wanted {
-            measure: measure.to_owned(),
-            at,
-            value,
-        })
-    };
-    met.iter().zip(driver).flat_map(of_pose).collect()
-}
-
-/// How large a linkage's links are beside each other, over how well it transmits: the less the better.
-fn merit(candidate: &Candidate, passed: &Passage) -> f64 {
-    if let Some((_, error, _)) = candidate.told.first() {
-        return *error;
-    }
-    let links = candidate.links();
-    let [least, most] =
-        [f64::min, f64::max].map(|pick| links.iter().copied().reduce(pick).unwrap_or(1.0));
-    let transmits = passed
-        .transmission
-        .map_or(1.0, |[_, [low, high]]| math::sin(low).min(math::sin(high)));
-    most / least / transmits.max(f64::MIN_POSITIVE)
 }

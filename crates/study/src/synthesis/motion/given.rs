@@ -5,13 +5,13 @@ use kempe_synthesis::{C, DyadCondition, Line, Pose, SliderCondition};
 
 /// A box by two of its corners.
 #[derive(Clone, Copy)]
-pub(super) struct Area {
+pub(in crate::synthesis) struct Area {
     pub low: C,
     pub high: C,
 }
 
 impl Area {
-    fn of([a, b]: [C; 2]) -> Self {
+    pub fn of([a, b]: [C; 2]) -> Self {
         Self {
             low: C::new(a.re.min(b.re), a.im.min(b.im)),
             high: C::new(a.re.max(b.re), a.im.max(b.im)),
@@ -51,14 +51,14 @@ impl Area {
 const EDGE: f64 = 1e-9;
 
 /// What is given of a dyad, in numbers.
-pub(super) struct Given {
+pub(in crate::synthesis) struct Given {
     pub conditions: Vec<DyadCondition>,
     /// The direction of a guide, rad.
     pub along: Option<f64>,
 }
 
 impl Given {
-    fn of(given: &DyadGiven, parameters: &[f64]) -> Self {
+    pub fn of(given: &DyadGiven, parameters: &[f64]) -> Self {
         let place = |at: &[Scalar; 2]| place(at, parameters);
         let line = |both: &[[Scalar; 2]; 2]| {
             let [a, b] = both.each_ref().map(place);
@@ -153,7 +153,7 @@ impl Asked {
     }
 }
 
-fn place(at: &[Scalar; 2], parameters: &[f64]) -> C {
+pub(in crate::synthesis) fn place(at: &[Scalar; 2], parameters: &[f64]) -> C {
     let [x, y] = at.each_ref().map(|x| value::<f64>(x, parameters));
     C::new(x, y)
 }
