@@ -9,7 +9,7 @@
 //! Acta Numerica 19:287, 2010, theorem 13.2).
 
 use kempe_linear::{C, Lu};
-use kempe_number::{Complex, Interval, Number};
+use kempe_number::{Complex, Interval, Number, math};
 
 use crate::equations::{PIVOTS, Row, State, link};
 use crate::given::{Given, Kind, PLACES, TURNS};
@@ -28,6 +28,9 @@ const SMALLEST: f64 = 1e-17;
 const ROUNDING: f64 = 4e-15;
 /// Sums of a few dozen non-negative numbers are too small by less than this part.
 const SUMMED: f64 = 1.0 + 1e-12;
+
+/// A linkage is near a proved one by this part of its size: far below what lies between linkages that an engineer would tell apart.
+const NEAR: f64 = 1e-8;
 
 /// Real data as bounds: where the proof says that a linkage exists for all data within them.
 #[derive(Clone, Copy, Debug)]
@@ -232,11 +235,39 @@ impl Proved {
         std::array::from_fn(|k| Z::new(self.pivots[2 * k], self.pivots[2 * k + 1]))
     }
 
+    /// The next cognate of nine points, which exists with this one: as of [`cognate`](crate::cognate).
+    pub fn cognate(&self) -> Self {
+        let [x, a, y, b] = self.pivots();
+        let over = (x - y).recip();
+        let next = [(x - a) * y * over, (b * x - a * y) * over, a - x, a];
+        Self {
+            kind: self.kind,
+            pivots: std::array::from_fn(|k| {
+                let z = next[k / 2];
+                if k % 2 == 0 { z.re } else { z.im }
+            }),
+        }
+    }
+
+    /// Whether a plain solution is certainly near it.
+    pub fn is_near(&self, state: &State) -> bool {
+        let plain = [0, 1, 4, 5].map(|k| state[k]);
+        (self.pivots().iter().zip(plain)).all(|(z, p): (&Z, C)| {
+            let off = math::max(
+                (z.re - Interval::from_f64(p.re)).mag(),
+                (z.im - Interval::from_f64(p.im)).mag(),
+            );
+            off <= NEAR * (1.0 + p.norm())
+        })
+    }
+
     /// Whether another linkage is certainly of another class: by the foci of nine points, by both dyads otherwise.
     pub fn differs(&self, other: &Self) -> bool {
         let (own, of_other) = (self.pivots(), other.pivots());
         if self.kind == Kind::NinePoints {
-            return any_apart(&symmetric(own), &symmetric(of_other));
+            let centre = |[x, a, y, b]: [Z; 4]| a + b + (b * x - a * y) * (x - y).recip();
+            return any_apart(&[centre(own)], &[centre(of_other)])
+                || any_apart(&symmetric(own), &symmetric(of_other));
         }
         let [x, a, y, b] = of_other;
         any_apart(&own, &of_other) && any_apart(&own, &[y, b, x, a])
@@ -255,8 +286,8 @@ fn any_apart<const N: usize>(a: &[Z; N], b: &[Z; N]) -> bool {
     (a.iter().zip(b)).any(|(a, b)| apart(a.re, b.re) || apart(a.im, b.im))
 }
 
-/// The symmetric functions of the three foci.
-fn symmetric([x, a, y, b]: [Z; 4]) -> [Z; 3] {
+/// The symmetric functions of the three foci beside their sum.
+fn symmetric([x, a, y, b]: [Z; 4]) -> [Z; 2] {
     let c = (b * x - a * y) * (x - y).recip();
-    [a + b + c, a * b + b * c + c * a, a * b * c]
+    [a * b + b * c + c * a, a * b * c]
 }

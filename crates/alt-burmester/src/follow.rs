@@ -14,8 +14,8 @@ use crate::tracker::{Care, End, Next, Tracker};
 /// Hears how many paths of how many have ended, now and then, and may stop the rest.
 pub type Progress<'a> = &'a dyn Fn(usize, usize) -> ControlFlow<()>;
 
-/// Linear systems that are solved between two calls of the progress, in every lane.
-const BETWEEN_CALLS: usize = 2000;
+/// Linear systems that are solved between two calls of the progress, in every lane; those with twice the digits take longer.
+const BETWEEN_CALLS: [usize; 2] = [2000, 100];
 
 /// Leads solutions from data to other data, on the threads that the machine has. The ends come in the order of the starts and do not depend on
 /// threads. `None` where the progress stopped it.
@@ -140,10 +140,11 @@ impl Queue<'_> {
                 lanes[lane] = self.fill(&mut flock, lane, care);
             }
             solved += 1;
-            if solved % (BETWEEN_CALLS / (if care.doubled { 20 } else { 1 })) == 0
-                && self.should_stop(progress)
-            {
-                break;
+            if solved == BETWEEN_CALLS[usize::from(care.doubled)] {
+                solved = 0;
+                if self.should_stop(progress) {
+                    break;
+                }
             }
         }
         ends

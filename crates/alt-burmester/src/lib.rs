@@ -4,6 +4,7 @@
 //! | --- | --- |
 //! | `given.rs`, `equations.rs` | the problem in isotropic coordinates, and its linear systems, solved place by place |
 //! | `flock.rs`, `tracker.rs`, `follow.rs` | solutions led from data to other data: in lanes, each lane by its own steps; all of them, on threads |
+//! | `double.rs` | twice the digits, for paths that need them |
 //! | `class.rs` | what relabelling and cognates leave alone: by it solutions are told apart |
 //! | `monodromy.rs`, `starts.rs` | all solutions of generic data, found from a single one; as bytes |
 //! | `solve.rs` | all solutions of given data, led there from generic ones |

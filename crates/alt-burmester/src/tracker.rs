@@ -73,8 +73,15 @@ pub enum End {
 const FIRST_STEP: f64 = 1e-4;
 /// The shortest step.
 const SHORTEST: f64 = 1e-13;
-/// By how much a step may be longer than the last.
+/// By how much a step may be longer or shorter than the last.
 const LONGER: f64 = 2.0;
+const SHORTER: f64 = 0.2;
+/// What is left of a step that is taken back, least and most.
+const BACK: [f64; 2] = [0.1, 0.5];
+/// The first correction of a start at most.
+const AT_THE_START: f64 = 1e-3;
+/// What corrections that vanish are taken for where something is divided by them.
+const TINY: f64 = 1e-300;
 /// A part less than what the corrections would allow.
 const SAFETY: f64 = 0.85;
 /// By how much a correction must be smaller than the one before, where it is not small enough anyway.
@@ -118,7 +125,7 @@ pub(crate) struct Tracker {
     last: f64,
     /// The last second correction over the square of the first before it.
     bend: f64,
-    pub steps: usize,
+    steps: usize,
     /// Whether the last step was taken back.
     back: bool,
     largest: f64,
@@ -151,12 +158,12 @@ impl Tracker {
         }
         self.corrections += 1;
         if self.corrections == 2 {
-            self.bend = size / (self.first * self.first);
+            self.bend = size / math::max(self.first * self.first, TINY);
         }
         let aim = self.aim();
         // NaN is too much.
         let fits = if self.corrections == 1 {
-            size <= TOO_MUCH * aim || self.count == 0 && size <= 1e-3
+            size <= TOO_MUCH * aim || self.count == 0 && size <= AT_THE_START
         } else {
             size <= aim && size <= CONTRACTION * self.first || size <= self.care.rounded
         };
@@ -184,7 +191,7 @@ impl Tracker {
         self.passed[0] = self.at;
         if self.count > 0 {
             let most = if self.back { 1.0 } else { LONGER };
-            self.step = (self.at - self.t) * self.factor().clamp(0.2, most);
+            self.step = (self.at - self.t) * self.factor().clamp(SHORTER, most);
         }
         self.back = false;
         self.count = (self.count + 1).min(MEMORY);
@@ -208,7 +215,7 @@ impl Tracker {
     /// By how much the step may be longer for the correction that is aimed at.
     fn factor(&self) -> f64 {
         // A prediction through n places with slopes misses by the step to 2 n.
-        let part = self.aim() / (self.first + 1e-30);
+        let part = self.aim() / math::max(self.first, TINY);
         SAFETY * root(part, 2 * self.count as u64)
     }
 
@@ -217,10 +224,11 @@ impl Tracker {
             return Next::Ended(End::Lost);
         }
         let factor = self.factor();
-        let factor = if factor.is_finite() {
-            factor.clamp(0.1, 0.5)
+        // What is no number asks for the shortest.
+        let factor = if factor >= BACK[0] {
+            factor.min(BACK[1])
         } else {
-            0.25
+            BACK[0]
         };
         self.step = (self.at - self.t) * factor;
         self.back = true;

@@ -6,7 +6,7 @@
 use std::ops::ControlFlow;
 use std::sync::OnceLock;
 
-use kempe_alt_burmester::{Bounds, Given, Kind, StartSet, State, cognate, real, solve};
+use kempe_alt_burmester::{Bounds, Given, Kind, Proved, StartSet, State, cognate, real, solve};
 use kempe_linear::C;
 use kempe_number::{Complex, Interval, math};
 
@@ -43,7 +43,8 @@ pub struct FourBarThrough {
     pub path: PathLinkage,
     /// Which solution it belongs to, counted from 0: the three cognates of a coupler curve share one.
     pub solution: usize,
-    /// Whether interval arithmetic has proved that such a four-bar exists near this one, and no other as near.
+    /// Whether interval arithmetic has proved that such a four-bar exists near this one, and is not that of another
+    /// solution.
     pub certified: bool,
 }
 
@@ -81,20 +82,18 @@ pub fn four_bars_through(
         singular: solved.singular,
         lost: solved.lost,
     };
-    let forms = if kind == Kind::NinePoints { 3 } else { 1 };
-    let mut solution = 0;
+    let (mut solution, mut known) = (0, Vec::<Proved>::new());
     for state in &solved.solutions {
         let Some(state) = real(&task.given, state) else {
             continue;
         };
         let before = found.four_bars.len();
-        let mut form = state;
-        found.four_bars.extend(task.four_bar(&form, solution));
-        for _ in 1..forms {
-            let next = cognate(&task.given, &form);
-            // A cognate loses digits where moving pivots are near each other.
-            form = real(&task.given, &next).unwrap_or(next);
-            found.four_bars.extend(task.four_bar(&form, solution));
+        let (forms, proof) = task.forms(state);
+        let differs = proof.is_some_and(|proof| known.iter().all(|other| other.differs(&proof)));
+        known.extend(proof);
+        for (form, proved) in forms {
+            let four_bar = task.four_bar(&form, solution, proved && differs);
+            found.four_bars.extend(four_bar);
         }
         if found.four_bars.len() > before {
             solution += 1;
@@ -229,8 +228,39 @@ impl<'a> Task<'a> {
         })
     }
 
+    /// All forms of a real solution, the cognates of nine points, and whether each is proved; a proof of any.
+    fn forms(&self, state: State) -> (Vec<(State, bool)>, Option<Proved>) {
+        let mut forms = vec![state];
+        if self.given.kind == Kind::NinePoints {
+            for k in 0..2 {
+                let next = cognate(&self.given, &forms[k]);
+                // A cognate loses digits where moving pivots are near each other.
+                forms.push(real(&self.given, &next).unwrap_or(next));
+            }
+        }
+        let proved: Vec<Option<Proved>> = forms.iter().map(|f| self.bounds.certify(f)).collect();
+        let count = forms.len();
+        let any = proved.iter().flatten().next().copied();
+        let forms = forms.into_iter().enumerate();
+        let forms = forms
+            .map(|(k, form)| {
+                // Where rounding hides the proof of one cognate, another's proves it.
+                let mut from = (1..count).filter_map(|back| {
+                    let mut proof = proved[(k + count - back) % count]?;
+                    for _ in 0..back {
+                        proof = proof.cognate();
+                    }
+                    Some(proof)
+                });
+                let certified = proved[k].is_some() || from.any(|proof| proof.is_near(&form));
+                (form, certified)
+            })
+            .collect();
+        (forms, any)
+    }
+
     /// The linkage of a real solution; `None` where it is none, as pivots are one or numbers too large.
-    fn four_bar(&self, state: &State, solution: usize) -> Option<FourBarThrough> {
+    fn four_bar(&self, state: &State, solution: usize, certified: bool) -> Option<FourBarThrough> {
         let back = C::from_polar(1.0, -self.first.angle);
         let dyad = |side: usize| {
             let [moving, fixed] = [state[4 * side], state[4 * side + 1]];
@@ -249,7 +279,6 @@ impl<'a> Task<'a> {
         let (first, second) = (dyad(0), dyad(1));
         let finite = first.reach().is_finite() && second.reach().is_finite();
         let linkage = Linkage::of(first, second).filter(|_| finite)?;
-        let certified = self.bounds.certify(state).is_some();
         Some(FourBarThrough {
             path: PathLinkage { linkage, poses },
             solution,
