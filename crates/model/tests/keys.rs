@@ -92,6 +92,14 @@ fn entry(section: &str, kind: &Kind) -> (&'static str, Vec<(&'static str, &'stat
             ];
             ("x", base)
         }
+        ("studies", "synthesize path") => {
+            let base = vec![
+                ("kind", "'synthesize'"),
+                ("task", "'path'"),
+                ("points", "[[0, 0], [10, 8], [25, 12]]"),
+            ];
+            ("x", base)
+        }
         ("studies", "synthesize function") => {
             let base = vec![
                 ("kind", "'synthesize'"),
@@ -188,6 +196,13 @@ fn with(section: &str, kind: &Kind, key: &str, value: &str) -> String {
             (
                 "x",
                 format!("{{ kind = 'adjust', unknown = ['area'], match = {table} }}"),
+            )
+        }
+        "point table" => {
+            let table = inner(&[("table", "'t.csv'")]);
+            (
+                "x",
+                format!("{{ kind = 'synthesize', task = 'path', points = {table} }}"),
             )
         }
         "dyad" => {
