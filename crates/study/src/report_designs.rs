@@ -68,10 +68,10 @@ pub(crate) fn planes_section(model: &Model, result: &StudyResult) -> Option<Sect
         return None;
     }
     let plots = figures(model, result).into_iter();
-    let pictures = plots.map(|(name, plot)| (name, plot.draw(PLANE[0], PLANE[1]).scene));
+    let pictures = plots.map(|(_, plot)| Block::Picture(plot.draw(PLANE[0], PLANE[1]).scene));
     Some(Section {
         title: format!("{}: in the plane", result.name),
-        blocks: vec![Block::Pictures(pictures.collect())],
+        blocks: pictures.collect(),
     })
 }
 

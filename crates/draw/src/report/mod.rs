@@ -259,6 +259,8 @@ pub enum Block {
     },
     /// Pictures side by side, each with what stands under it.
     Pictures(Vec<(String, Scene)>),
+    /// A picture of its own, as wide as is good to read.
+    Picture(Scene),
     /// A warning or an error.
     Finding {
         /// How serious.

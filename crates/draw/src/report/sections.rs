@@ -20,7 +20,7 @@ pub(super) fn section(section: &Section, id: &str) -> String {
     let blocks: String = section.blocks.iter().map(block).collect();
     let is_wide = |block: &Block| match block {
         Block::Table { head, .. } => head.len() > WIDE,
-        Block::Pictures(_) => true,
+        Block::Pictures(_) | Block::Picture(_) => true,
         _ => false,
     };
     let wide = match section.blocks.iter().any(is_wide) {
@@ -56,6 +56,7 @@ fn block(block: &Block) -> String {
             let pictures: String = pictures.iter().map(picture).collect();
             format!("<div class=\"pictures\">{pictures}</div>")
         }
+        Block::Picture(scene) => svg::element(scene, "class=\"own\""),
         Block::Finding {
             level,
             code,

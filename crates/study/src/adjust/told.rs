@@ -61,14 +61,14 @@ impl<'b, 'm> Teller<'b, 'm> {
         texts.collect::<Vec<_>>().join(", ")
     }
 
-    /// The largest miss in words: `box by 0.33 deg in row 4`.
+    /// The largest miss in words: box by 0.33 deg in row 4.
     fn worst(&self, solution: &Solution) -> String {
         let values = self.bench.data.values.iter().zip(&solution.misses);
         let worst = values.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
         worst.map_or_else(String::new, |(datum, miss)| {
             let miss = self.units.text((miss * datum.scale).abs(), datum.dimension);
             let name = &self.bench.study.measures[datum.measure].name;
-            format!("`{name}` by {miss} in row {}", datum.row + 1)
+            format!("{name} by {miss} in row {}", datum.row + 1)
         })
     }
 
@@ -221,7 +221,7 @@ impl<'b, 'm> Teller<'b, 'm> {
         }
         Ok(StudyResult {
             name: self.name.to_owned(),
-            figures: self.figures(&table),
+            figures: self.figures(&table, best.is_exact(self.bench)),
             scalars: self.scalars(best, known, square),
             listings: self.listings(found, best, known, square),
             contacts: Vec::new(),

@@ -158,7 +158,7 @@ impl Teller<'_, '_> {
     }
 
     /// What was measured and what is, over where; and what is missed.
-    pub(super) fn figures(&self, table: &Table) -> Vec<Figure> {
+    pub(super) fn figures(&self, table: &Table, exact: bool) -> Vec<Figure> {
         if table.rows() < 2 {
             return Vec::new();
         }
@@ -168,7 +168,8 @@ impl Teller<'_, '_> {
             .flat_map(|asked| {
                 let both =
                     ["measured", "adjusted"].map(|what| column(format!("{} {what}", asked.name)));
-                let missed = column(format!("{} missed", asked.name));
+                // Of what is met only rounding is missed.
+                let missed = column(format!("{} missed", asked.name)).filter(|_| !exact);
                 [
                     both.into_iter().flatten().collect::<Vec<_>>(),
                     missed.into_iter().collect(),

@@ -154,7 +154,7 @@ impl Teller<'_, '_> {
         let by = own.from_si(by) - own.from_si(0.0);
         let name = &self.bench.study.measures[datum.measure].name;
         format!(
-            "{} {} by 0.1 {} of `{name}` in row {}",
+            "{} {} by 0.1 {} of {name} in row {}",
             significant(by, 3),
             own.text(),
             unit.text(),
