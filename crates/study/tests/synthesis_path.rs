@@ -153,13 +153,13 @@ fn five_points_between_two_pivots_are_all_accounted_for() {
         .expect("a listing");
     assert_eq!(result.table.rows() + listing.rows.len(), 15);
     // The published one, by the lengths of its links.
-    let (x, y) = (
+    let (x, y): ([f64; 2], [f64; 2]) = (
         [-0.0877960434509, -0.851386907516],
         [0.235837391307, -1.41899202704],
     );
     let crank = (0.5_f64 + x[0]).hypot(1.06 + x[1]);
     let rocker = (0.5_f64 + y[0] - 1.0).hypot(1.06 + y[1]);
-    let coupler = (x[0] - y[0] as f64).hypot(x[1] - y[1]);
+    let coupler = (x[0] - y[0]).hypot(x[1] - y[1]);
     let numbers = |text: &str| -> Vec<f64> {
         let words = text.split([' ', ',']);
         words.filter_map(|word| word.parse().ok()).collect()
