@@ -28,6 +28,10 @@ fn every_example_closes_over_its_whole_range() {
             let case = Case::read_with(&text, &name, &mut |file| {
                 std::fs::read_to_string(format!("{root}/{file}")).map_err(|e| e.to_string())
             });
+            // What asks for linkages has no mechanism of its own.
+            if case.model.drives.is_empty() {
+                continue;
+            }
             let motion = case.must_move();
             assert_eq!(
                 motion.ends,

@@ -187,6 +187,8 @@ pub struct PathTask {
     pub points: Vec<WantedPoint>,
     /// The crank's angles at the points from any zero, rad, where they are asked for.
     pub angles: Option<Vec<Scalar>>,
+    /// Whether the other two four-bars of each coupler curve are looked at, too.
+    pub cognates: bool,
     /// What is given of the dyad that is driven, and of the other. The coupler's axes lie in the first point, and are not turned there.
     pub dyads: [DyadGiven; 2],
     /// Two corners of a box in which the fixed pivots must lie, m.

@@ -257,6 +257,34 @@ fn points_with_both_pivots_or_the_crank_give_it_back() {
     }
 }
 
+/// Cognates pass the same points: their files are moved and measured as all others.
+#[test]
+fn cognates_pass_the_same_points() {
+    let mut random = Random(8);
+    let bar = Bar::random(&mut random);
+    let ([x, y], pivot) = (bar.rocker_pivot(), bar.at);
+    let given = format!(
+        "{}\ncrank = {{ fixed = [{}, {}] }}\nrocker = {{ fixed = [{x}, {y}] }}",
+        points(&bar, &stations(&mut random, 5), 0),
+        pivot[0],
+        pivot[1]
+    );
+    let (plain, more) = (found(&given), found(&(given.clone() + "\ncognates = true")));
+    assert!(bar.is_in(&more));
+    // Of a crank-rocker's cognates one is a crank-rocker, too.
+    assert!(more.table.rows() > plain.table.rows());
+    let missed = more.table.column("miss").expect("a column");
+    assert!(
+        missed.values.iter().all(|miss| *miss < 1e-9),
+        "{:?}",
+        missed.values
+    );
+    assert_eq!(
+        code(&(given + "\nangles = [0, 1, 2, 3, 4]\ncognates = true")),
+        "contradictory-values"
+    );
+}
+
 #[test]
 fn what_cannot_be_answered_is_told() {
     let five = "points = [[0.5, 1.06], [-0.83, -0.27], [-0.34, 0.22], [-0.13, 0.43], [0.22, 0.78]]";

@@ -108,6 +108,7 @@ static PATH: Kind = kind("study", "synthesize path",
         may("angles", T::List(&ANGLE, 3), "[0, 30, 60, 90, 120]", "The crank's angles at the points, from any zero."),
         may("crank", T::Table(&DYAD), "{ fixed = [0, -20] }", "What is given of the link that is driven; its moving pivot as seen from the first point, the coupler not being turned there."),
         may("rocker", T::Table(&DYAD), "{ fixed = [40, -25] }", "What is given of the other link."),
+        may("cognates", T::Flag, "true", "Whether the other two four-bars that trace the same coupler curve are looked at, too, wherever their pivots are; of nine points they always are."),
         may("pivots_in", T::Two(&PLACE), "[[-50, -50], [50, 50]]", "Two corners of a box in which the fixed pivots must lie."),
     ], &WANTED]);
 

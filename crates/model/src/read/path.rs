@@ -37,6 +37,10 @@ pub(crate) fn read(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<PathTask> 
     let rocker = dyad(cx, entry, "rocker", of_dyad);
     let pivots_in = corners(cx, entry, "pivots_in");
     let angles = angles(cx, entry);
+    let cognates = match entry.has("cognates") {
+        true => entry.flag(cx, "cognates"),
+        false => Some(false),
+    };
     let node = entry.required(cx, "points")?;
     let points = match &node.value {
         Value::Table(_) => from_table(cx, entry, node),
@@ -54,9 +58,21 @@ pub(crate) fn read(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<PathTask> 
         let help = "give an angle for each point, in their order";
         return cx.refuse("contradictory-values", message, &node.span, help);
     }
+    let turned = points.iter().any(|point| point.angle.is_some());
+    if let (Some(true), Some(node)) = (cognates, entry.get("cognates"))
+        && (angles.is_some() || turned)
+    {
+        return cx.refuse(
+            "contradictory-values",
+            "angles are those of one four-bar: its cognates turn otherwise",
+            &node.span,
+            "leave out `cognates`, or the angles",
+        );
+    }
     Some(PathTask {
         points,
         angles,
+        cognates: cognates?,
         dyads: [crank?, rocker?],
         pivots_in: pivots_in?,
         span: node.span.clone(),

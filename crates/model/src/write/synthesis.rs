@@ -165,6 +165,9 @@ impl Writer<'_> {
             let angles = angles.iter().map(|a| self.scalar(a, Dimension::ANGLE));
             put("angles", Item::List(angles.collect()));
         }
+        if task.cognates {
+            put("cognates", Item::Flag(true));
+        }
         self.dyads(&task.dyads, put);
         if let Some(corners) = &task.pivots_in {
             put("pivots_in", self.two_places(corners));

@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 
 use kempe_model::{Diagnostic, Model, PathTask, value};
 use kempe_synthesis::{
-    C, DyadCondition, FourBarsThrough, Linkage, PathLinkage, Pose, SynthesisError,
+    C, CouplerCurve, DyadCondition, FourBarsThrough, Linkage, PathLinkage, Pose, SynthesisError,
     four_bars_through, paths_with_crank, paths_with_ground_pivots, timed_paths,
 };
 use kempe_units::Dimension;
@@ -31,12 +31,21 @@ pub(super) fn candidates(model: &Model, task: &PathTask) -> Result<Found, Box<Di
     }
     let Answer {
         linkages,
-        how,
+        mut how,
         either_way,
         complete,
     } = asked.answer().map_err(|error| refused(&error))?;
+    // What passes nine points comes with its cognates already.
+    let more: Vec<PathLinkage> = match task.cognates && !asked.is_bare() {
+        true => linkages.iter().flat_map(cognates).collect(),
+        false => Vec::new(),
+    };
+    if !more.is_empty() {
+        how += &format!("; {} cognates of these", more.len());
+    }
+    let own = linkages.iter().map(|it| (it, either_way));
     let mut passing = Passing::new(&units, "points");
-    for found in &linkages {
+    for (found, either_way) in own.chain(more.iter().map(|it| (it, true))) {
         let mut both = vec![found.linkage];
         if let (true, Linkage::FourBar(bar)) = (either_way, &found.linkage) {
             both.push(Linkage::FourBar(bar.exchanged()));
@@ -60,6 +69,34 @@ pub(super) fn candidates(model: &Model, task: &PathTask) -> Result<Found, Box<Di
         }
     }
     Ok(passing.found(how, !complete, Vec::new()))
+}
+
+/// The other two four-bars that trace a linkage's coupler curve (S. Roberts 1875), with their couplers' poses at the points.
+fn cognates(of: &PathLinkage) -> Vec<PathLinkage> {
+    let Linkage::FourBar(bar) = &of.linkage else {
+        return Vec::new();
+    };
+    let at = |pose: &Pose| CouplerCurve::of(bar, pose, C::zero()).cognates();
+    let Some(both) = of.poses.first().and_then(at) else {
+        return Vec::new();
+    };
+    let turn = |curve: &CouplerCurve| curve.moving[1] - curve.moving[0];
+    let which = both.iter().enumerate();
+    which
+        .filter_map(|(k, first)| {
+            let poses = of.poses.iter().map(|pose| {
+                let there = turn(&at(pose)?[k]) * turn(first).conj();
+                Some(Pose {
+                    origin: pose.origin,
+                    angle: there.arg(),
+                })
+            });
+            Some(PathLinkage {
+                linkage: Linkage::FourBar(first.four_bar()),
+                poses: poses.collect::<Option<_>>()?,
+            })
+        })
+        .collect()
 }
 
 /// What is asked, in numbers.
@@ -134,6 +171,16 @@ impl Asked {
         Some(SynthesisError::Repeated { first, second })
     }
 
+    /// Whether nothing is given of the links.
+    fn is_bare(&self) -> bool {
+        self.angles.is_none() && self.crank.is_free() && self.rocker.is_free()
+    }
+
+    /// How many points have an angle of the coupler.
+    fn posed(&self) -> usize {
+        self.turns.iter().flatten().count()
+    }
+
     fn answer(&self) -> Result<Answer, SynthesisError> {
         let fixed = |given: &Given| {
             given
@@ -152,8 +199,8 @@ impl Asked {
                 DyadCondition::MovingAt(pin) => Some(*pin),
                 _ => None,
             });
-        let free = self.crank.is_free() && self.rocker.is_free();
-        let turned = self.turns.iter().any(Option::is_some);
+        let free = self.is_bare();
+        let turned = self.posed() > 0;
         let pivots = (fixed(&self.crank), fixed(&self.rocker));
         match (&self.angles, pivots, moving) {
             (Some(angles), ..) => self.timed(angles),
@@ -222,7 +269,7 @@ impl Asked {
         let count = self.places.len();
         let mut order: Vec<usize> = (0..count).collect();
         order.sort_by_key(|k| self.turns[*k].is_none());
-        let posed = self.turns.iter().flatten().count();
+        let posed = self.posed();
         let poses: Vec<Pose> = order[..posed]
             .iter()
             .map(|k| Pose {
