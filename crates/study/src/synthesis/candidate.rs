@@ -6,6 +6,7 @@ use kempe_units::Dimension;
 use crate::result::Listing;
 
 /// What a task leads to.
+#[derive(Default)]
 pub(super) struct Found {
     /// All linkages that are right where it is asked.
     pub candidates: Vec<Candidate>,
@@ -15,8 +16,10 @@ pub(super) struct Found {
     pub searched: String,
     /// What was tried where not all linkages are known.
     pub tried: Option<Listing>,
-    /// Linkages ruled out that are only counted there.
+    /// Linkages ruled out, or not looked at, that are only counted there.
     pub counted: usize,
+    /// What became of the solutions that generic data have: names and numbers.
+    pub counts: Vec<(&'static str, usize)>,
     /// Poses that a body is guided through, where that is the task.
     pub guided: Vec<Pose>,
 }

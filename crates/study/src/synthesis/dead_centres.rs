@@ -115,11 +115,8 @@ pub(super) fn candidates(
     });
     Ok(Found {
         candidates: candidates.collect(),
-        rejected: Vec::new(),
         searched: "one for each sense in which the crank may go round".to_owned(),
-        tried: None,
-        counted: 0,
-        guided: Vec::new(),
+        ..Found::default()
     })
 }
 

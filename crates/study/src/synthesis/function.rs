@@ -397,12 +397,8 @@ impl Asked<'_> {
             false => searched,
         };
         Found {
-            candidates: Vec::new(),
-            rejected: Vec::new(),
             searched,
-            tried: None,
-            counted: 0,
-            guided: Vec::new(),
+            ..Found::default()
         }
     }
 

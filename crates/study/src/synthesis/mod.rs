@@ -23,7 +23,7 @@ use kempe_units::{Dimension, Unit};
 
 use crate::clearance::refuses;
 use crate::explain::stopped;
-use crate::result::{FoundDesign, Listing, StudyResult};
+use crate::result::{FoundDesign, Listing, Scalar, StudyResult};
 use crate::table::{Column, Table};
 use crate::unit::{Units, number_text};
 use asked::Questions;
@@ -148,6 +148,17 @@ pub(crate) fn synthesis(
     }
     accepted.sort_by(|a, b| a.rank.total_cmp(&b.rank));
     let unused = rejected.len() + found.counted;
+    let counts = found.counts.iter().copied();
+    let scalars = counts.chain([
+        ("linkages", accepted.len() + unused),
+        ("accepted", accepted.len()),
+    ]);
+    let scalars = scalars.map(|(name, count)| Scalar {
+        name: name.to_owned(),
+        unit: Unit::one(),
+        value: count as f64,
+    });
+    let scalars: Vec<Scalar> = scalars.collect();
     if accepted.is_empty() && unused > 0 {
         diagnostics.push(none_accepted(unused));
     }
@@ -206,7 +217,7 @@ pub(crate) fn synthesis(
     Ok(StudyResult {
         name: name.to_owned(),
         table,
-        scalars: Vec::new(),
+        scalars,
         figures: figures.into_iter().collect(),
         listings,
         contacts: Vec::new(),

@@ -156,7 +156,7 @@ impl<'a> Passing<'a> {
         let many = self.rejected.len() > LISTED;
         let is_told = is_search || many || right > MOST_MOVED;
         let tried = is_told.then(|| self.told(&how, right));
-        let counted = if many { self.rejected.len() } else { 0 };
+        let counted = if many { self.rejected.len() } else { 0 } + right.saturating_sub(MOST_MOVED);
         let rejected = match many {
             true => Vec::new(),
             false => (self.rejected.iter())
@@ -178,6 +178,7 @@ impl<'a> Passing<'a> {
             searched: how,
             tried,
             counted,
+            counts: Vec::new(),
             guided,
         }
     }

@@ -7,8 +7,8 @@ use std::ops::ControlFlow;
 
 use kempe_model::{Diagnostic, Model, PathTask, value};
 use kempe_synthesis::{
-    C, CouplerCurve, DyadCondition, FourBarsThrough, Linkage, PathLinkage, Pose, SynthesisError,
-    four_bars_through, paths_with_crank, paths_with_ground_pivots, timed_paths,
+    C, CouplerCurve, DyadCondition, Linkage, PathLinkage, Pose, SynthesisError, four_bars_through,
+    paths_with_crank, paths_with_ground_pivots, timed_paths,
 };
 use kempe_units::Dimension;
 
@@ -34,6 +34,7 @@ pub(super) fn candidates(model: &Model, task: &PathTask) -> Result<Found, Box<Di
         mut how,
         either_way,
         complete,
+        counts,
     } = asked.answer().map_err(|error| refused(&error))?;
     // What passes nine points comes with its cognates already.
     let more: Vec<PathLinkage> = match task.cognates && !asked.is_bare() {
@@ -68,7 +69,10 @@ pub(super) fn candidates(model: &Model, task: &PathTask) -> Result<Found, Box<Di
             passing.pass(candidate, &found.poses, &wanted);
         }
     }
-    Ok(passing.found(how, !complete, Vec::new()))
+    Ok(Found {
+        counts,
+        ..passing.found(how, !complete, Vec::new())
+    })
 }
 
 /// The other two four-bars that trace a linkage's coupler curve (S. Roberts 1875), with their couplers' poses at the points.
@@ -120,6 +124,8 @@ struct Answer {
     either_way: bool,
     /// Whether they are all there are.
     complete: bool,
+    /// What became of the solutions of generic data, where they were followed.
+    counts: Vec<(&'static str, usize)>,
 }
 
 impl Asked {
@@ -212,6 +218,7 @@ impl Asked {
                     how: "the crank has two places at every point after the first, and each choice makes poses of the points".to_owned(),
                     either_way: false,
                     complete: true,
+                    counts: Vec::new(),
                 })
             }
             (None, (Some(first), Some(second)), None) => self.between([first, second]),
@@ -235,6 +242,7 @@ impl Asked {
             how: "up to four cranks, each with up to four links to guide the poses that it makes of the points".to_owned(),
             either_way: false,
             complete: true,
+            counts: Vec::new(),
         })
     }
 
@@ -249,14 +257,17 @@ impl Asked {
                 _ => None,
             });
         let found = paths_with_ground_pivots(&self.places, pivots, line)?;
+        let met = Met {
+            generic: found.generic,
+            finite: found.finite,
+            gone: found.infinite,
+            lost: found.lost,
+            real: found.linkages.len(),
+            proved: 0,
+        };
         Ok(Answer {
-            how: counts(
-                found.generic,
-                found.finite,
-                found.infinite,
-                found.lost,
-                found.linkages.len(),
-            ),
+            how: met.text(),
+            counts: met.numbers(),
             complete: found.lost == 0,
             linkages: found.linkages,
             either_way: false,
@@ -280,8 +291,14 @@ impl Asked {
         let points: Vec<C> = order[posed..].iter().map(|k| self.places[*k]).collect();
         let found = four_bars_through(&poses, &points, &|_, _| ControlFlow::Continue(()));
         let found = found.map_err(|error| in_order(error, &order))?;
-        let how = how_many(&found);
-        let complete = found.lost == 0;
+        let met = Met {
+            generic: found.generic,
+            finite: found.finite,
+            gone: found.infinite + found.singular,
+            lost: found.lost,
+            real: found.four_bars.len(),
+            proved: found.four_bars.iter().filter(|it| it.certified).count(),
+        };
         let linkages = found.four_bars.into_iter().map(|it| {
             let mut poses = vec![it.path.poses[0]; count];
             for (pose, k) in it.path.poses.iter().zip(&order) {
@@ -294,9 +311,10 @@ impl Asked {
         });
         Ok(Answer {
             linkages: linkages.collect(),
-            how,
+            how: met.text(),
+            counts: met.numbers(),
             either_way: true,
-            complete,
+            complete: met.lost == 0,
         })
     }
 }
@@ -318,35 +336,56 @@ fn in_order(error: SynthesisError, order: &[usize]) -> SynthesisError {
     }
 }
 
-fn how_many(found: &FourBarsThrough) -> String {
-    let proved = found.four_bars.iter().filter(|it| it.certified).count();
-    let real = found.four_bars.len();
-    let mut text = counts(
-        found.generic,
-        found.finite,
-        found.infinite + found.singular,
-        found.lost,
-        real,
-    );
-    if proved > 0 {
-        text += &format!(", {proved} of them proved by intervals");
-    }
-    text
+/// What became of the solutions that generic data have.
+struct Met {
+    generic: usize,
+    finite: usize,
+    /// Gone to infinity, or fallen together.
+    gone: usize,
+    lost: usize,
+    /// Linkages that are real.
+    real: usize,
+    /// Of these, by intervals.
+    proved: usize,
 }
 
-/// What became of the solutions of generic data, in words.
-fn counts(generic: usize, finite: usize, gone: usize, lost: usize, real: usize) -> String {
-    let gone = match gone {
-        0 => String::new(),
-        gone => format!(", {gone} gone to infinity or fallen together"),
-    };
-    let lost = match lost {
-        0 => String::new(),
-        lost => format!(", {lost} lost, which may hide a linkage"),
-    };
-    format!(
-        "{finite} of the {generic} solutions of generic data{gone}{lost}; {real} real four-bars"
-    )
+impl Met {
+    fn text(&self) -> String {
+        let Self {
+            generic,
+            finite,
+            real,
+            ..
+        } = self;
+        let gone = match self.gone {
+            0 => String::new(),
+            gone => format!(", {gone} gone to infinity or fallen together"),
+        };
+        let lost = match self.lost {
+            0 => String::new(),
+            lost => format!(", {lost} lost, which may hide a linkage"),
+        };
+        let proved = match self.proved {
+            0 => String::new(),
+            proved => format!(", {proved} of them proved by intervals"),
+        };
+        format!(
+            "{finite} of the {generic} solutions of generic data{gone}{lost}; {real} real four-bars{proved}"
+        )
+    }
+
+    fn numbers(&self) -> Vec<(&'static str, usize)> {
+        let mut all = vec![
+            ("solutions", self.generic),
+            ("finite solutions", self.finite),
+            ("lost solutions", self.lost),
+            ("real four-bars", self.real),
+        ];
+        if self.proved > 0 {
+            all.push(("proved four-bars", self.proved));
+        }
+        all
+    }
 }
 
 /// The data of a request as the synthesis counts them: points, then what is given of the links.

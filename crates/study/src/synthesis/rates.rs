@@ -99,10 +99,7 @@ pub(super) fn candidates(
     };
     Ok(Found {
         candidates: vec![candidate],
-        rejected: Vec::new(),
         searched: "there is one, but for its size and direction".to_owned(),
-        tried: None,
-        counted: 0,
-        guided: Vec::new(),
+        ..Found::default()
     })
 }

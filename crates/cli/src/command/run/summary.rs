@@ -31,7 +31,11 @@ pub fn summary(
             continue;
         };
         let table = &result.table;
-        out.push_str(&format!("{}: {} rows", result.name, table.rows()));
+        let rows = match table.rows() {
+            1 => "1 row".to_owned(),
+            rows => format!("{rows} rows"),
+        };
+        out.push_str(&format!("{}: {rows}", result.name));
         if result.interrupted() {
             out.push_str(&format!(" of {}, stopped", result.demanded_rows));
         }
