@@ -629,6 +629,15 @@ fn more_poses_are_approached() {
         let errors = column(&result, "rms_error");
         assert!(errors.is_sorted() && errors[0] < 3.0 * wrong, "{errors:?}");
         assert!(column(&result, "miss").iter().all(|m| *m < 1e-9));
+        let [least, most] = [errors[0], errors[errors.len() - 1]];
+        let between = 0.5 * (least + most);
+        let kept = found(&format!(
+            "linkage = 'four-bar'\n{}accept = ['rms_error <= {between} mm']\nrank = 'rms_turn'\n",
+            written(&poses)
+        ));
+        assert!(column(&kept, "rms_error").iter().all(|e| *e <= between));
+        assert!(column(&kept, "rms_turn").is_sorted());
+        assert!(kept.designs.len() < result.designs.len() || least == most);
         let exact = found(&format!("linkage = 'four-bar'\n{}", written(&made)));
         assert!(
             column(&exact, "rms_error")[0] < 1e-7,

@@ -68,10 +68,37 @@ pub enum SynthesisError {
         /// The datum, as far as one can be named, that adds nothing to the ones before it.
         datum: usize,
     },
+    /// More places of a coupler's point lie on one line or circle than a coupler curve can have in common with it.
+    OneCurve {
+        /// On what.
+        curve: OnCurve,
+        /// How many.
+        count: usize,
+        /// One of them.
+        datum: usize,
+    },
     /// No such linkage keeps the data.
     None,
     /// The search was stopped before its end.
     Stopped,
+}
+
+/// A curve on which places lie that are too special.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OnCurve {
+    /// A straight line.
+    Line,
+    /// A circle.
+    Circle,
+}
+
+impl std::fmt::Display for OnCurve {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Line => "line",
+            Self::Circle => "circle",
+        })
+    }
 }
 
 impl std::fmt::Display for SynthesisError {
@@ -128,6 +155,10 @@ impl std::fmt::Display for SynthesisError {
                 f,
                 "datum {} adds nothing to the others: infinitely many linkages do it",
                 datum + 1
+            ),
+            Self::OneCurve { curve, count, .. } => write!(
+                f,
+                "{count} places lie on one {curve}, which a coupler curve meets in at most six"
             ),
             Self::None => write!(f, "no linkage of this kind does it"),
             Self::Stopped => write!(f, "stopped before all linkages were found"),

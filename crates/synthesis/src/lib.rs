@@ -46,7 +46,7 @@ pub use dead_centres::{
 };
 pub use defects::{Passage, passage};
 pub use dyad::{Dyad, DyadSolution};
-pub use error::SynthesisError;
+pub use error::{OnCurve, SynthesisError};
 pub use four_bar::{Driver, FourBar, Grashof, Turning};
 pub use function::{
     DialZeros, Dials, Fit, FunctionFourBar, InvertedSliderFunction, PrecisionPoint, SliderFit,

@@ -7,6 +7,7 @@
 
 mod alt_burmester;
 mod ground_pivots;
+mod one_curve;
 mod tracker;
 
 pub use alt_burmester::{FourBarThrough, FourBarsThrough, four_bars_through};

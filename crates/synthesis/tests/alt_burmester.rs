@@ -8,7 +8,8 @@ use std::ops::ControlFlow;
 
 use kempe_number::Random;
 use kempe_synthesis::{
-    C, CouplerCurve, FourBar, FourBarsThrough, Linkage, Pose, SynthesisError, four_bars_through,
+    C, CouplerCurve, FourBar, FourBarsThrough, Linkage, OnCurve, Pose, SynthesisError,
+    four_bars_through,
 };
 use support::{RandomFourBar, moved};
 
@@ -156,17 +157,32 @@ fn neither_unit_nor_origin_matter() {
 
 #[test]
 fn special_points_are_answered() {
-    let line: Vec<C> = (0..9).map(|k| C::new(f64::from(k), 0.0)).collect();
-    let circle: Vec<C> = (0..9)
-        .map(|k| C::from_polar(1.0, 0.6 * f64::from(k)))
-        .collect();
+    let line = |k: u32| C::new(f64::from(k), 0.0);
+    let circle = |k: u32| C::from_polar(1.0, 0.6 * f64::from(k));
+    for (curve, made) in [
+        (OnCurve::Line, &line as &dyn Fn(u32) -> C),
+        (OnCurve::Circle, &circle),
+    ] {
+        let points: Vec<C> = (0..9).map(made).collect();
+        let refused = four_bars_through(&[], &points, &go_on).unwrap_err();
+        assert!(
+            matches!(refused, SynthesisError::OneCurve { curve: on, count: 9, .. } if on == curve),
+            "{refused:?}"
+        );
+    }
+    // As many as a coupler curve can have.
+    let six = |made: &dyn Fn(u32) -> C| -> Vec<C> {
+        let others = [(1.3, 1.7), (2.4, -1.1), (4.1, 0.9)];
+        let others = others.map(|(x, y)| C::new(x, y));
+        (0..6).map(made).chain(others).collect()
+    };
     let mirrored: Vec<C> = (0..9)
         .map(|k| {
             let t = f64::from(k) - 4.0;
             C::new(t, 0.1 * t * t + 0.05 * t * t * t * t * 0.1)
         })
         .collect();
-    for points in [line, circle, mirrored] {
+    for points in [six(&line), six(&circle), mirrored] {
         let begin = std::time::Instant::now();
         let found = four_bars_through(&[], &points, &go_on).unwrap();
         println!(

@@ -301,8 +301,8 @@ fn none_does(found: &Found) -> Diagnostic {
 
 fn none_accepted(found: usize) -> Diagnostic {
     let message = match found {
-        1 => "one linkage does what is asked, and it is not accepted".to_owned(),
-        _ => format!("{found} linkages do what is asked, and none is accepted"),
+        1 => "one linkage is found, and it is not accepted".to_owned(),
+        _ => format!("{found} linkages are found, and none is accepted"),
     };
     Diagnostic::warning("none-accepted", message)
         .help("the reasons are listed; change the data, or ask for less under `accept`")

@@ -15,7 +15,7 @@ use kempe_units::Dimension;
 use super::candidate::{Candidate, Found};
 use super::passing::{Defect, Passing, pose_wanted};
 use super::refused::{Data, Datum};
-use crate::unit::Units;
+use crate::unit::{Units, shown};
 use dyads::{Family, MANY, Sort};
 use given::Asked;
 pub(super) use given::{Area, Given, place};
@@ -138,6 +138,7 @@ fn repeated(asked: &Asked) -> Option<SynthesisError> {
 struct Search<'a> {
     asked: &'a Asked,
     passing: Passing<'a>,
+    units: &'a Units,
     /// How dyads were looked for.
     how: Vec<String>,
     is_search: bool,
@@ -148,6 +149,7 @@ impl<'a> Search<'a> {
         Self {
             asked,
             passing: Passing::new(units, "poses"),
+            units,
             how: Vec::new(),
             is_search: false,
         }
@@ -247,6 +249,13 @@ impl<'a> Search<'a> {
             ("rms_error".to_owned(), error, Dimension::LENGTH),
             ("rms_turn".to_owned(), turn, Dimension::ANGLE),
         ];
+        // Conditions can name them.
+        let written = candidate.told.iter().map(|(name, si, dimension)| {
+            let unit = self.units.unit(*dimension);
+            let value = format!("{} {}", shown(*si, &unit), unit.text());
+            (name.clone(), value)
+        });
+        candidate.parameters = written.collect();
         Ok(met)
     }
 

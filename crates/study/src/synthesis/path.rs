@@ -332,6 +332,15 @@ fn in_order(error: SynthesisError, order: &[usize]) -> SynthesisError {
         }
         SynthesisError::Dependent { datum } => SynthesisError::Dependent { datum: at(datum) },
         SynthesisError::NotFinite { datum } => SynthesisError::NotFinite { datum: at(datum) },
+        SynthesisError::OneCurve {
+            curve,
+            count,
+            datum,
+        } => SynthesisError::OneCurve {
+            curve,
+            count,
+            datum: at(datum),
+        },
         other => other,
     }
 }

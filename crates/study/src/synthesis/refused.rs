@@ -1,7 +1,7 @@
 //! Why a request has no answer, by the data of the file.
 
 use kempe_model::{Diagnostic, Span};
-use kempe_synthesis::SynthesisError;
+use kempe_synthesis::{OnCurve, SynthesisError};
 use kempe_units::Dimension;
 
 use crate::unit::Units;
@@ -90,6 +90,16 @@ impl Data<'_> {
                 Diagnostic::error("data-out-of-range", format!("{} is {value}", name(datum)))
                     .at(at(datum), format!("it must lie between {least} and {most}"))
                     .help("give a value within these bounds")
+            }
+            SynthesisError::OneCurve { curve, count, datum } => {
+                let besides = match curve {
+                    OnCurve::Line => "",
+                    OnCurve::Circle => " unless the curve is this circle: a crank's end and a parallelogram's coupler go in circles",
+                };
+                Diagnostic::error("data-contradictory", format!("{count} points lie on one {curve}"))
+                    .at(at(datum), "this one and others")
+                    .note(format!("a coupler curve is of sixth order and meets a {curve} in at most six points{besides}"))
+                    .help("move one away by what may be missed, or ask for fewer points and give pivots")
             }
             SynthesisError::NotFinite { datum } => {
                 Diagnostic::error("not-finite", format!("{} is not a number", name(datum))).at(at(datum), "")

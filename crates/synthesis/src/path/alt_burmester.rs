@@ -11,6 +11,7 @@ use kempe_linear::C;
 use kempe_number::{Complex, Interval, math};
 
 use super::PathLinkage;
+use super::one_curve::of_one_curve;
 use crate::dyad::Dyad;
 use crate::error::{SynthesisError, all_finite, balanced};
 use crate::linkage::{Linkage, pairs};
@@ -201,6 +202,8 @@ impl<'a> Task<'a> {
                 }
             }
         }
+        let seen: Vec<C> = origins.iter().map(|p| place(*p)).collect();
+        of_one_curve(&seen)?;
         let further = &points[usize::from(poses.is_empty())..];
         let turned = poses.get(1..).unwrap_or_default();
         let places: Vec<C> = further.iter().map(|p| place(*p)).collect();
