@@ -217,6 +217,31 @@ fn random_linkages_are_recovered() {
     assert!(missed.is_empty(), "{missed:?}");
 }
 
+/// Two readings that three linkages meet: the one that is nearly the file's is taken, the others are told.
+#[test]
+fn of_several_the_nearest_is_taken() {
+    let text = |c: f64, d: f64| {
+        format!(
+            "title = 't'\nunits = {{ length = 'm', angle = 'rad' }}\n[parameters]\nc = '{c:?} m'\nd = '{d:?} m'\n\
+             [links]\nframe = {{ A = [0, 0], D = ['d', 0] }}\ncrank = {{ A-B = 1.0276726355817551 }}\n\
+             coupler = {{ B-C = 1.0385226579705424 }}\nrocker = {{ D-C = 'c' }}\n[assembly]\nC = 'right of B -> D'\n\
+             [drives]\nmotor = {{ turns = 'crank', from = -1.983734646066699, to = -0.8447805854392223, speed = '1 rad/s' }}\n\
+             [studies.s]\nkind = 'adjust'\nunknown = ['c', 'd']\nmatch = [{{ motor = -1.983734646066699, rocker = -1.4586943788712636 }}, \
+             {{ motor = -1.712006648898155, rocker = -1.2192469307662028 }}]\n"
+        )
+    };
+    let both = [[1.515344331890046, 0.28975348904667475], [1.46062, 0.32878]];
+    for [near, other] in [[both[0], both[1]], [both[1], both[0]]] {
+        let result = found(&text(near[0] * 1.002, near[1] * 0.999));
+        for (name, value) in [("c", near[0]), ("d", near[1])] {
+            assert!((scalar(&result, name) - value).abs() < 1e-5, "{near:?}");
+        }
+        let listed = format!("{:?}", result.listings);
+        let digits = format!("c = {:.4}", other[0]);
+        assert!(listed.contains(&digits), "{digits}: {listed}");
+    }
+}
+
 /// Measured values moved a little move the lengths as the columns of derivatives say, and so do the drive's.
 #[test]
 fn errors_of_measurement_do_what_is_told() {
