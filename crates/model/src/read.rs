@@ -15,6 +15,7 @@ mod csv;
 mod draft;
 mod drawn;
 mod drives;
+mod dwell;
 mod ends;
 mod entry;
 mod force_names;

@@ -2,7 +2,7 @@
 
 use kempe_units::Expr;
 
-use crate::ids::{ParameterId, Scalar, Span};
+use crate::ids::{DriveId, ParameterId, PointId, Scalar, Span};
 use crate::study::MotionStudy;
 
 /// Which linkages do something.
@@ -57,6 +57,8 @@ pub enum SynthesisTask {
     Motion(Box<GuidanceTask>),
     /// A point of its coupler passes points.
     Path(Box<PathTask>),
+    /// An output beside the file's own mechanism rests while this moves on.
+    Dwell(Box<DwellTask>),
 }
 
 /// An output as an input asks.
@@ -208,6 +210,36 @@ pub struct WantedPoint {
     pub span: Span,
 }
 
+/// An output that a point of the file's own mechanism moves, and that rests for a while.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DwellTask {
+    /// The point that moves it.
+    pub point: PointId,
+    /// The drive by which the rest is measured.
+    pub drive: DriveId,
+    /// How far the drive goes meanwhile, rad or m.
+    pub dwell: Scalar,
+    /// What rests.
+    pub output: DwellOutput,
+    /// By how much the output is to move in all, rad (of a slider m); that of the best transmission where it is not given.
+    pub stroke: Option<Scalar>,
+    /// Two corners of a box in which a lever's fixed pivot must lie, m.
+    pub pivots_in: Option<[[Scalar; 2]; 2]>,
+    /// Where the point, the dwell and the stroke stand in the file; nowhere what is not given.
+    pub spans: [Span; 3],
+}
+
+/// What rests while a point goes along an arc.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DwellOutput {
+    /// A lever that the point turns by a rod: the point stays on a circle about the rod's other end.
+    Lever,
+    /// A slider that the point pushes by a rod.
+    Slider,
+    /// A lever with a slot for the point: it stays on a line through the lever's pivot.
+    Slot,
+}
+
 /// A pose of a body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WantedPose {
@@ -270,6 +302,7 @@ impl SynthesizeStudy {
                 let dyads = task.dyads.iter_mut().map(|dyad| &mut dyad.span);
                 points.chain(dyads).chain([&mut task.span]).for_each(f);
             }
+            SynthesisTask::Dwell(task) => task.spans.iter_mut().for_each(f),
         }
     }
 
@@ -317,6 +350,11 @@ impl SynthesizeStudy {
                     .chain(task.pivots_in.iter_mut().flatten().flatten())
                     .for_each(&mut *f);
                 task.dyads.iter_mut().for_each(|dyad| dyad.visit_scalars(f));
+            }
+            SynthesisTask::Dwell(task) => {
+                f(&mut task.dwell);
+                task.stroke.iter_mut().for_each(&mut *f);
+                task.pivots_in.iter_mut().flatten().flatten().for_each(f);
             }
             SynthesisTask::DeadCentres(task) => {
                 f(&mut task.time_ratio);

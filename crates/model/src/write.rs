@@ -90,6 +90,18 @@ impl Model {
 }
 
 impl Model {
+    /// The text that the model was read from, with what was set from outside; where it names tables, or was not read,
+    /// [the model as text](Self::to_toml).
+    pub fn as_written(&self) -> ModelFile {
+        match self.source.as_deref() {
+            Some(text) => ModelFile {
+                toml: text.to_owned(),
+                tables: Tables::default(),
+            },
+            None => self.to_toml(),
+        }
+    }
+
     /// The model with other values (SI) of some parameters, and as a file: the text that it was read from with just these values changed, or
     /// where it names tables, or was not read, [the model as text](Self::to_toml).
     pub fn with_values(&self, values: &[(ParameterId, f64)]) -> (Self, ModelFile) {
@@ -110,13 +122,7 @@ impl Model {
             });
         }
         model.source = text.as_deref().map(Into::into);
-        let file = match text {
-            Some(toml) => ModelFile {
-                toml,
-                tables: Tables::default(),
-            },
-            None => model.to_toml(),
-        };
+        let file = model.as_written();
         (model, file)
     }
 }

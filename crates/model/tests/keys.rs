@@ -125,6 +125,16 @@ fn entry(section: &str, kind: &Kind) -> (&'static str, Vec<(&'static str, &'stat
             ];
             ("x", base)
         }
+        ("studies", "synthesize dwell") => {
+            let base = vec![
+                ("kind", "'synthesize'"),
+                ("task", "'dwell'"),
+                ("point", "'B'"),
+                ("dwell", "100"),
+                ("drive", "'motor'"),
+            ];
+            ("x", base)
+        }
         ("studies", "synthesize motion") => {
             let base = vec![
                 ("kind", "'synthesize'"),
@@ -204,6 +214,12 @@ fn with(section: &str, kind: &Kind, key: &str, value: &str) -> String {
                 "x",
                 format!("{{ kind = 'synthesize', task = 'path', points = {table} }}"),
             )
+        }
+        // Only a slider has a stroke.
+        _ if kind.name == "synthesize dwell" && key == "stroke" => {
+            let (name, mut needed) = entry(section, kind);
+            needed.push(("output", "'slider'"));
+            (name, inner(&needed))
         }
         "dyad" => {
             let dyad = inner(&[]);

@@ -290,6 +290,25 @@ accept = ["min(transmission_angle) >= 35 deg"]
 rank = "-link_ratio"
 columns = ["crank_length"]
 
+[studies.rest]
+kind = "synthesize"
+task = "dwell"
+point = "C"
+drive = "motor"
+dwell = "tilt"
+swing = "30 deg"
+pivots_in = [[-50, "-a"], [50, 50]]
+accept = ["stir <= 0.1 deg"]
+
+[studies.slide]
+kind = "synthesize"
+task = "dwell"
+point = "C"
+drive = "motor"
+dwell = "40 deg"
+output = "slider"
+stroke = "a"
+
 [studies.generated]
 kind = "synthesize"
 task = "function"

@@ -7,6 +7,7 @@ use kempe_motion::events::EventKind;
 use kempe_units::Unit;
 
 use crate::table::{Column, Table};
+use crate::unit::shown;
 
 /// The answer of a motion study, with its evidence.
 #[derive(Clone, Debug)]
@@ -197,22 +198,28 @@ pub struct PlaneCurve {
 }
 
 impl PlaneCurve {
-    pub(crate) fn new(name: &str, dashed: bool) -> Self {
+    /// Lines through places, m, with the pen lifted between them.
+    pub(crate) fn lines<L>(
+        name: &str,
+        dashed: bool,
+        lines: impl IntoIterator<Item = L>,
+        unit: &Unit,
+    ) -> Self
+    where
+        L: IntoIterator<Item = [f64; 2]>,
+    {
+        let mut points = Vec::new();
+        for line in lines {
+            if !points.is_empty() {
+                points.push([f64::NAN; 2]);
+            }
+            points.extend(line.into_iter().map(|p| p.map(|x| shown(x, unit))));
+        }
         Self {
             name: name.to_owned(),
-            points: Vec::new(),
+            points,
             dashed,
         }
-    }
-
-    /// On to a point.
-    pub(crate) fn to(&mut self, point: [f64; 2]) {
-        self.points.push(point);
-    }
-
-    /// The pen is lifted.
-    pub(crate) fn gap(&mut self) {
-        self.points.push([f64::NAN; 2]);
     }
 }
 

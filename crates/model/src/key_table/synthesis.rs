@@ -2,9 +2,9 @@
 
 use kempe_units::Dimension as D;
 
-use super::{ANGLE, MEASURES, PLACE, STUDY_KINDS, any, kind, may, must, one_of, positive, words};
-use crate::keys::{Key, Kind, Named, Takes};
-use crate::synthesis::LinkageKind;
+use super::{ANGLE, DRIVE, MEASURES, PLACE, POINT, STUDY_KINDS, any, kind, may, must, one_of, positive, value, words};
+use crate::keys::{Key, Kind, Named, Sign, Takes};
+use crate::synthesis::{DwellOutput, LinkageKind};
 use Takes as T;
 
 /// How many linkages may be kept.
@@ -22,6 +22,13 @@ pub(crate) const LINKAGES: [(&str, LinkageKind); 3] = [
 ];
 const LINKAGE_WORDS: T = T::Words(&words(&LINKAGES));
 
+/// What may rest.
+pub(crate) const OUTPUTS: [(&str, DwellOutput); 3] = [
+    ("lever", DwellOutput::Lever),
+    ("slider", DwellOutput::Slider),
+    ("slot", DwellOutput::Slot),
+];
+
 const EITHER: T = T::AnyOf(&[any(D::ANGLE), any(D::LENGTH)]);
 
 static HEAD: [Key; 1] = [must("kind", STUDY_KINDS, "\"synthesize\"", "What kind of study it is.")];
@@ -34,7 +41,7 @@ static WANTED: [Key; 4] = [
 ];
 
 /// The tasks, each with the keys of its own.
-pub(crate) static TASKS: [&Kind; 5] = [&FUNCTION, &RATES, &DEAD_CENTRES, &GUIDANCE, &PATH];
+pub(crate) static TASKS: [&Kind; 6] = [&FUNCTION, &RATES, &DEAD_CENTRES, &GUIDANCE, &PATH, &DWELL];
 
 static FUNCTION: Kind = kind("study", "synthesize function",
     "kind = \"synthesize\", task = \"function\", pairs = [[45, 52], [90, 82], [135, 112]], ground = \"50 mm\"",
@@ -110,6 +117,20 @@ static PATH: Kind = kind("study", "synthesize path",
         may("rocker", T::Table(&DYAD), "{ fixed = [40, -25] }", "What is given of the other link."),
         may("cognates", T::Flag, "true", "Whether the other two four-bars that trace the same coupler curve are looked at, too, wherever their pivots are; of nine points they always are."),
         may("pivots_in", T::Two(&PLACE), "[[-50, -50], [50, 50]]", "Two corners of a box in which the fixed pivots must lie."),
+    ], &WANTED]);
+
+static DWELL: Kind = kind("study", "synthesize dwell",
+    "kind = \"synthesize\", task = \"dwell\", point = \"P\", dwell = \"120 deg\"",
+    "The outputs beside the file's mechanism that rest while its drive goes on: a point of a coupler moves them, and goes along an arc or a line meanwhile.",
+    &[&HEAD, &[
+        must("task", T::Words(&["dwell"]), "\"dwell\"", "The task: an output that rests."),
+        must("point", POINT, "\"C\"", "The point that moves the output."),
+        must("dwell", value(D::LENGTH, D::ANGLE, Sign::Positive), "\"120 deg\"", "How far the drive goes while the output rests."),
+        may("drive", DRIVE, "\"motor\"", "The drive by which the rest is measured; may be left out where there is one only."),
+        may("output", T::Words(&words(&OUTPUTS)), "\"slot\"", "What rests: a lever or a slider that the point moves by a rod, or a lever with a slot for the point; a lever unless said otherwise."),
+        may("swing", positive(D::ANGLE), "\"30 deg\"", "By how much the lever is to swing in all; of a slot it must be given, else as transmits best unless said otherwise."),
+        may("stroke", positive(D::LENGTH), "\"40 mm\"", "How far the slider is to go in all; as transmits best unless said otherwise."),
+        may("pivots_in", T::Two(&PLACE), "[[-50, -50], [50, 50]]", "Two corners of a box in which the lever's fixed pivot must lie; half the mechanism's size around it unless said otherwise."),
     ], &WANTED]);
 
 pub(crate) static POINT_TABLE: Kind = kind("point table", "points",

@@ -133,7 +133,7 @@ fn spring_named(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<(usize, Dimen
     None
 }
 
-fn drive_named(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<(DriveId, Dimension)> {
+pub(crate) fn drive_named(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<(DriveId, Dimension)> {
     let found = |cx: &Context<'_>, id: DriveId| {
         let drive = cx.model.drives.get(id.index())?;
         Some((id, drive.dimension))

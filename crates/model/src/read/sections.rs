@@ -55,7 +55,7 @@ pub(crate) fn read(cx: &mut Context<'_>, root: &Table, overrides: &[(String, Str
         .is_none_or(|n| matches!(n.value, Value::Table(_)));
     places::read(cx, sections.of("places"));
     // a file that asks for linkages alone has a frame without points
-    if file.has("links") || file.has("places") || !synthesis::asked(sections.of("studies")) {
+    if file.has("links") || file.has("places") || !synthesis::alone(sections.of("studies")) {
         links::read(cx, sections.of("links"), sections.first_link, whole);
     }
     places::frame_as_drawn(cx);

@@ -3,7 +3,7 @@
 //! ```toml
 //! [studies.generator]
 //! kind   = "synthesize"
-//! task   = "function"                       # or "rates", "dead-centres", "motion"
+//! task   = "function"                       # or "rates", "dead-centres", "motion", "path", "dwell"
 //! pairs  = [[45, 52], [90, 82], [135, 112]]
 //! ground = "50 mm"
 //! accept = ["min(transmission_angle) >= 35 deg", "max(link_ratio) <= 5"]
@@ -20,7 +20,7 @@ use crate::keys::Kind;
 use crate::read::context::Context;
 use crate::read::entry::Entry;
 use crate::read::studies::entries;
-use crate::read::{guidance, path};
+use crate::read::{dwell, guidance, path};
 use crate::study::{MotionStudy, Rows, StudyKind};
 use crate::synthesis::{
     Asked, DeadCentresTask, FunctionTask, LinkageKind, RatesTask, Stroke, SynthesisTask,
@@ -35,16 +35,18 @@ const KEPT: usize = 20;
 /// Rows of the motion that measures are taken over and pictures made of.
 const ROWS: usize = 181;
 
-/// Whether one of the studies asks for linkages: a file of these alone needs no mechanism.
-pub(crate) fn asked(studies: &[&(Key, Node)]) -> bool {
-    let is_kind = |(key, node): &(Key, Node)| {
-        key.name == "kind"
-            && matches!(&node.value, Value::Text(text) if text.content.trim() == KIND)
-    };
-    studies.iter().any(|(_, node)| match &node.value {
-        Value::Table(table) => table.entries.iter().any(is_kind),
+/// Whether all that is asked for are linkages, and none beside a mechanism of the file's own: such a file needs none.
+pub(crate) fn alone(studies: &[&(Key, Node)]) -> bool {
+    let says = |node: &Node, key: &str, word: &str| match &node.value {
+        Value::Table(table) => match table.get(key).map(|node| &node.value) {
+            Some(Value::Text(text)) => text.content.trim() == word,
+            _ => false,
+        },
         _ => false,
-    })
+    };
+    let asked = |(_, node): &&(Key, Node)| says(node, "kind", KIND);
+    let beside = |(_, node): &&(Key, Node)| says(node, "task", task_of(TASKS[5]));
+    studies.iter().any(asked) && !studies.iter().any(beside)
 }
 
 /// The task of a kind of table: `function` of `synthesize function`.
@@ -60,12 +62,13 @@ pub(crate) fn read(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<StudyKin
     let any = Entry::of(table, &key.span, place, TASKS[0]);
     any.required_like(cx, "task", any.example_of("task"))?;
     let kind = any.choice(cx, "task", &words)??;
-    let entry = Entry::new(cx, entry, kind)?;
+    let mut entry = Entry::new(cx, entry, kind)?;
     let task = match task_of(kind) {
         "rates" => rates(cx, &entry).map(SynthesisTask::Rates),
         "dead-centres" => dead_centres(cx, &entry).map(SynthesisTask::DeadCentres),
         "path" => path::read(cx, &entry).map(|task| SynthesisTask::Path(Box::new(task))),
         "motion" => guidance::read(cx, &entry).map(|task| SynthesisTask::Motion(Box::new(task))),
+        "dwell" => dwell::read(cx, &mut entry).map(|task| SynthesisTask::Dwell(Box::new(task))),
         _ => function(cx, &entry).map(SynthesisTask::Function),
     };
     let accept = texts(cx, &entry, "accept");

@@ -4,11 +4,12 @@ use kempe_units::Dimension;
 
 use crate::ids::Scalar;
 use crate::item::Item;
-use crate::key_table::synthesis::{FREE, LINKAGES};
+use crate::key_table::synthesis::{FREE, LINKAGES, OUTPUTS};
 use crate::key_table::word_of;
 use crate::synthesis::{
-    Asked, DeadCentresTask, DyadGiven, FunctionTask, GuidanceTask, LinkageKind, PathTask,
-    RatesTask, Stroke, SynthesisTask, SynthesizeStudy, WantedCurve, WantedFunction, WantedPair,
+    Asked, DeadCentresTask, DwellOutput, DwellTask, DyadGiven, FunctionTask, GuidanceTask,
+    LinkageKind, PathTask, RatesTask, Stroke, SynthesisTask, SynthesizeStudy, WantedCurve,
+    WantedFunction, WantedPair,
 };
 use crate::write::spelling::Writer;
 
@@ -20,6 +21,7 @@ impl Writer<'_> {
             SynthesisTask::DeadCentres(task) => self.dead_centres(task, put),
             SynthesisTask::Motion(task) => self.guidance(task, put),
             SynthesisTask::Path(task) => self.path(task, put),
+            SynthesisTask::Dwell(task) => self.dwell(task, put),
         }
         let texts = |asked: &[Asked]| {
             let texts = asked.iter().map(|asked| Item::text(&asked.text));
@@ -169,6 +171,26 @@ impl Writer<'_> {
             put("cognates", Item::Flag(true));
         }
         self.dyads(&task.dyads, put);
+        if let Some(corners) = &task.pivots_in {
+            put("pivots_in", self.two_places(corners));
+        }
+    }
+
+    fn dwell(&self, task: &DwellTask, put: &mut dyn FnMut(&str, Item)) {
+        put("task", Item::text("dwell"));
+        put("point", Item::text(self.point(task.point)));
+        put("drive", Item::text(self.drive(task.drive)));
+        let drive = self.model.drives.get(task.drive.index());
+        let coordinate = drive.map_or(Dimension::ANGLE, |d| d.dimension);
+        put("dwell", self.scalar(&task.dwell, coordinate));
+        put("output", Item::text(word_of(&OUTPUTS, &task.output)));
+        let (key, dimension) = match task.output {
+            DwellOutput::Slider => ("stroke", Dimension::LENGTH),
+            _ => ("swing", Dimension::ANGLE),
+        };
+        if let Some(stroke) = &task.stroke {
+            put(key, self.scalar(stroke, dimension));
+        }
         if let Some(corners) = &task.pivots_in {
             put("pivots_in", self.two_places(corners));
         }

@@ -1,9 +1,8 @@
 //! Measures and conditions that a request names, read in the names of the linkages' files.
 
-use kempe_model::{Asked, Diagnostic, Model, Span, SynthesizeStudy, value};
+use kempe_model::{Asked, Diagnostic, Model, ModelFile, Span, SynthesizeStudy, value};
 
 use super::candidate::Candidate;
-use super::file::file_of;
 use crate::unit::{Units, shown};
 
 /// What is asked of every linkage.
@@ -32,10 +31,12 @@ impl<'a> Questions<'a> {
             study,
             parameters: parameters(request, study, sample),
         };
-        let linkage = match file_of(sample, &questions).build() {
-            Ok(checked) => checked.model,
-            Err(error) => return Err(not_a_file(error.diagnostics)),
+        let file = sample.file(&request.title, &questions);
+        let linkage = match read(&file) {
+            Ok(model) => model,
+            Err(wrong) => return Err(not_a_file(wrong, sample)),
         };
+        let placed = |d: Diagnostic, asked: &Asked| placed(d, asked, sample);
         let mut told = Vec::new();
         for asked in &study.accept {
             match linkage.condition(&asked.text) {
@@ -59,7 +60,7 @@ impl<'a> Questions<'a> {
 }
 
 /// What is wrong with the text of a question, where that stands in the model file.
-fn placed(mut diagnostic: Diagnostic, asked: &Asked) -> Diagnostic {
+fn placed(mut diagnostic: Diagnostic, asked: &Asked, sample: &Candidate) -> Diagnostic {
     let start = asked.span.start;
     for label in &mut diagnostic.labels {
         if label.source.take().is_some() {
@@ -70,7 +71,7 @@ fn placed(mut diagnostic: Diagnostic, asked: &Asked) -> Diagnostic {
             label.span = start + from..start + to;
         }
     }
-    diagnostic.note("the linkages have points A to D (P, where one is guided), links `crank`, `coupler` and `rocker` (or `slider`, `lever`), the drive `motor`, and the measures `transmission_angle` and `link_ratio`")
+    diagnostic.note(format!("the linkages have {}", sample.names()))
 }
 
 fn needs_forces(asked: &Asked) -> Diagnostic {
@@ -85,22 +86,38 @@ fn needs_forces(asked: &Asked) -> Diagnostic {
     .help("ask how they move; forces belong to a study of the linkage's own file")
 }
 
-/// A linkage's file that cannot be read: only what the request adds to it can be wrong with it.
-fn not_a_file(diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
+/// A linkage's file that cannot be read: only what the request adds to it can be wrong with it, or what is joined to the request's own links.
+fn not_a_file(diagnostics: Vec<Diagnostic>, sample: &Candidate) -> Vec<Diagnostic> {
     let told = diagnostics.into_iter().map(|mut d| {
         d.labels.clear();
-        d.note("in the file of a linkage that was found")
-            .help("parameters that the study names go into the linkages' files: give them names that no part of these has")
+        match sample {
+            Candidate::Linkage(_) => d
+                .note("in the file of a linkage that was found")
+                .help("parameters that the study names go into the linkages' files: give them names that no part of these has"),
+            Candidate::Beside(it) => d.note(format!(
+                "in this file with what was found joined to it: {}",
+                it.names
+            )),
+        }
     });
     told.collect()
 }
 
-/// The parameters that the texts of a study name.
+/// A file that was made, read.
+pub(super) fn read(file: &ModelFile) -> Result<Model, Vec<Diagnostic>> {
+    let read = Model::from_toml(&file.toml, "", &mut file.tables.files());
+    read.map(|checked| checked.model)
+}
+
+/// The parameters that the texts of a study name; what stands beside the request's own mechanism has them all.
 fn parameters(
     request: &Model,
     study: &SynthesizeStudy,
     sample: &Candidate,
 ) -> Vec<(String, String)> {
+    let Candidate::Linkage(sample) = sample else {
+        return Vec::new();
+    };
     let asked = study.accept.iter().chain(&study.rank).chain(&study.columns);
     let measures = sample.measures.iter().map(|(_, text)| text.as_str());
     let texts: Vec<&str> = asked.map(|a| a.text.as_str()).chain(measures).collect();

@@ -1,14 +1,18 @@
 //! A linkage that is right where it is asked, before anybody has looked how it moves there.
 
+use kempe_model::{DriveId, Model, ModelFile};
 use kempe_synthesis::{C, Linkage, Pose, Turning};
 use kempe_units::Dimension;
 
-use crate::result::Listing;
+use super::asked::Questions;
+use super::beside::Beside;
+use super::file::{STUDY, file_of};
+use crate::result::{Figure, Listing};
 
 /// What a task leads to.
 #[derive(Default)]
 pub(super) struct Found {
-    /// All linkages that are right where it is asked.
+    /// All that are right where it is asked.
     pub candidates: Vec<Candidate>,
     /// Those that already their geometry rules out.
     pub rejected: Vec<Rejected>,
@@ -22,6 +26,8 @@ pub(super) struct Found {
     pub counts: Vec<(&'static str, usize)>,
     /// Poses that a body is guided through, where that is the task.
     pub guided: Vec<Pose>,
+    /// What is drawn of the task itself.
+    pub figure: Option<Figure>,
 }
 
 /// A linkage that is of no use.
@@ -32,8 +38,125 @@ pub(super) struct Rejected {
     pub why: String,
 }
 
+/// What is right where it is asked, before anybody has looked how it moves.
+pub(super) enum Candidate {
+    /// A linkage of its own.
+    Linkage(Box<OwnLinkage>),
+    /// Links beside those of the request.
+    Beside(Box<Beside>),
+}
+
+impl From<OwnLinkage> for Candidate {
+    fn from(it: OwnLinkage) -> Self {
+        Self::Linkage(Box::new(it))
+    }
+}
+
+impl From<Beside> for Candidate {
+    fn from(it: Beside) -> Self {
+        Self::Beside(Box::new(it))
+    }
+}
+
+impl Candidate {
+    /// Its file under a title, with the parameters of the request that its measures name.
+    pub fn file(&self, title: &str, questions: &Questions<'_>) -> ModelFile {
+        match self {
+            Self::Linkage(it) => file_of(it, questions).titled(title).file(),
+            Self::Beside(it) => it.titled(title),
+        }
+    }
+
+    /// Its own parameters and links by their names in its file, for questions that name something else.
+    pub fn names(&self) -> String {
+        match self {
+            Self::Linkage(_) => "points A to D (P, where one is guided), links `crank`, `coupler` and `rocker` (or `slider`, `lever`), the drive `motor`, and the measures `transmission_angle` and `link_ratio`".to_owned(),
+            Self::Beside(it) => format!("all that this file names, and {}", it.names),
+        }
+    }
+
+    /// The study of its file that moves it.
+    pub fn study(&self) -> &str {
+        match self {
+            Self::Linkage(_) => STUDY,
+            Self::Beside(it) => &it.study,
+        }
+    }
+
+    /// The drive that moves it.
+    pub fn driven(&self, model: &Model) -> Option<DriveId> {
+        let id = match self {
+            Self::Linkage(_) => DriveId(0),
+            Self::Beside(it) => it.drive,
+        };
+        model.drives.get(id.index()).map(|_| id)
+    }
+
+    /// The lengths by which it is known, by their names in its file, m.
+    pub fn lengths(&self) -> Vec<(&str, f64)> {
+        match self {
+            Self::Linkage(it) => it.lengths(),
+            Self::Beside(it) => {
+                let lengths = it.lengths.iter();
+                lengths
+                    .map(|(name, length)| (name.as_str(), *length))
+                    .collect()
+            }
+        }
+    }
+
+    /// The lengths of its links, m.
+    pub fn links(&self) -> Vec<f64> {
+        links_of(&self.lengths())
+    }
+
+    /// Numbers that are told of it besides: name, value (SI), what it measures.
+    pub fn told(&self) -> &[(String, f64, Dimension)] {
+        match self {
+            Self::Linkage(it) => &it.told,
+            Self::Beside(it) => &it.told,
+        }
+    }
+
+    /// Measures that are told of it, whatever is asked.
+    pub fn columns(&self) -> &[String] {
+        match self {
+            Self::Linkage(_) => &[],
+            Self::Beside(it) => &it.columns,
+        }
+    }
+
+    /// What it must do, so that it can be held against what it does.
+    pub fn wanted(&self) -> &[Wanted] {
+        match self {
+            Self::Linkage(it) => &it.wanted,
+            Self::Beside(it) => &it.wanted,
+        }
+    }
+
+    /// What it is ordered by where nothing else is said: a number that is known, or else a measure.
+    pub fn order(&self) -> Order<'_> {
+        match self {
+            Self::Linkage(it) => match it.told.first() {
+                Some((_, known, _)) => Order::Known(*known),
+                None => Order::Measure(LINK_RATIO),
+            },
+            Self::Beside(it) => Order::Measure(&it.rank),
+        }
+    }
+}
+
+/// What linkages are ordered by.
+pub(super) enum Order<'a> {
+    Known(f64),
+    Measure(&'a str),
+}
+
+/// The measure of a linkage by which it is ordered where nothing else is said.
+pub(super) const LINK_RATIO: &str = "link_ratio";
+
 /// A linkage with the motion that leads it through what is asked. Its first dyad is the driven crank.
-pub(super) struct Candidate {
+pub(super) struct OwnLinkage {
     /// Its geometry, m.
     pub linkage: Linkage,
     /// The coupler where the drive starts.
@@ -66,7 +189,7 @@ pub(super) struct Wanted {
     pub value: f64,
 }
 
-impl Candidate {
+impl OwnLinkage {
     /// The lengths by which it is known, by their names in its file, m.
     pub fn lengths(&self) -> Vec<(&'static str, f64)> {
         match &self.linkage {
@@ -103,12 +226,14 @@ impl Candidate {
 
     /// The lengths of its links, m.
     pub fn links(&self) -> Vec<f64> {
-        let links = self
-            .lengths()
-            .into_iter()
-            .filter(|(name, _)| *name != "offset");
-        links.map(|(_, length)| length).collect()
+        links_of(&self.lengths())
     }
+}
+
+/// Of lengths in a linkage's file those of its links.
+fn links_of(lengths: &[(&str, f64)]) -> Vec<f64> {
+    let links = lengths.iter().filter(|(name, _)| *name != "offset");
+    links.map(|(_, length)| *length).collect()
 }
 
 /// Whether two values of a measure are one but for whole turns of an angle; what is between them.

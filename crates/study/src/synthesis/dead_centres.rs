@@ -10,7 +10,7 @@ use kempe_synthesis::{
 };
 use kempe_units::Dimension;
 
-use super::candidate::{Candidate, Found, Wanted};
+use super::candidate::{Candidate, Found, OwnLinkage, Wanted};
 use super::refused::{Data, Datum};
 use crate::unit::Units;
 
@@ -100,7 +100,7 @@ pub(super) fn candidates(
             at: 0.0,
             value,
         });
-        Some(Candidate {
+        Some(OwnLinkage {
             linkage,
             start,
             turned: None,
@@ -114,7 +114,7 @@ pub(super) fn candidates(
         })
     });
     Ok(Found {
-        candidates: candidates.collect(),
+        candidates: candidates.map(Candidate::from).collect(),
         searched: "one for each sense in which the crank may go round".to_owned(),
         ..Found::default()
     })

@@ -1,12 +1,12 @@
 //! Linkages as model files, in the names that every mechanism of their kind has: frame A and D, crank A-B, coupler B-C, rocker D-C.
 
-use kempe_model::FileUnits;
 use kempe_model::build::{Entry, ModelBuilder, link, pin_in_slot, slider, study, turns};
+use kempe_model::{FileUnits, Model};
 use kempe_synthesis::{C, FourBar, InvertedSliderCrank, Line, Linkage, SliderCrank};
 use kempe_units::{Dimension, Unit};
 
 use super::asked::Questions;
-use super::candidate::Candidate;
+use super::candidate::OwnLinkage;
 use crate::unit::Units;
 
 /// The study of a linkage's file.
@@ -15,11 +15,9 @@ pub(super) const STUDY: &str = "motion";
 pub(super) const DRIVE: &str = "motor";
 
 /// The file of a linkage, with the parameters of the request that its measures name.
-pub(super) fn file_of(candidate: &Candidate, questions: &Questions<'_>) -> ModelBuilder {
+pub(super) fn file_of(candidate: &OwnLinkage, questions: &Questions<'_>) -> ModelBuilder {
     let request = questions.request;
-    let writer = Pen {
-        units: Units::of(request),
-    };
+    let writer = Pen::of(request);
     let mut file = units(ModelBuilder::new(&request.title), &request.units);
     for (name, value) in questions.parameters.iter().chain(&candidate.parameters) {
         file = file.parameter(name, value.as_str());
@@ -72,13 +70,19 @@ fn units(file: ModelBuilder, own: &FileUnits) -> ModelBuilder {
 }
 
 /// Writes numbers in the file's units.
-struct Pen {
+pub(super) struct Pen {
     units: Units,
 }
 
 impl Pen {
+    pub fn of(request: &Model) -> Self {
+        Self {
+            units: Units::of(request),
+        }
+    }
+
     /// A value with all its digits and its unit.
-    fn exact(&self, si: f64, dimension: Dimension) -> String {
+    pub fn exact(&self, si: f64, dimension: Dimension) -> String {
         let unit = self.units.unit(dimension);
         format!("{} {}", crate::unit::shown(si, &unit), unit.text())
     }
@@ -89,7 +93,13 @@ impl Pen {
         [at.re, at.im].map(|x| crate::unit::shown(x, &unit) + 0.0)
     }
 
-    fn lengths(&self, mut file: ModelBuilder, candidate: &Candidate) -> ModelBuilder {
+    /// The same as the file writes it.
+    pub fn place_text(&self, at: C) -> String {
+        let [x, y] = self.place(at);
+        format!("[{x}, {y}]")
+    }
+
+    fn lengths(&self, mut file: ModelBuilder, candidate: &OwnLinkage) -> ModelBuilder {
         for (name, length) in candidate.lengths() {
             file = file.parameter(name, self.exact(length, Dimension::LENGTH));
         }
@@ -97,7 +107,7 @@ impl Pen {
     }
 
     /// The coupler with its moving pivots, and the point that is looked at.
-    fn coupler(&self, candidate: &Candidate, [b, c]: [C; 2]) -> Entry {
+    fn coupler(&self, candidate: &OwnLinkage, [b, c]: [C; 2]) -> Entry {
         let mut coupler = link();
         if !candidate.keeps_axes && candidate.point.is_none() {
             return coupler.distance("B", "C", "coupler_length");
@@ -109,7 +119,7 @@ impl Pen {
         }
     }
 
-    fn four_bar(&self, file: ModelBuilder, candidate: &Candidate, bar: &FourBar) -> ModelBuilder {
+    fn four_bar(&self, file: ModelBuilder, candidate: &OwnLinkage, bar: &FourBar) -> ModelBuilder {
         let [a, d] = bar.fixed;
         let along = a == C::zero() && d.im == 0.0 && d.re > 0.0;
         let frame = match along {
@@ -144,7 +154,7 @@ impl Pen {
     fn slider_crank(
         &self,
         file: ModelBuilder,
-        candidate: &Candidate,
+        candidate: &OwnLinkage,
         it: &SliderCrank,
     ) -> ModelBuilder {
         let [crank, coupler, _] = it.dimensions();
@@ -176,7 +186,7 @@ impl Pen {
     fn inverted(
         &self,
         file: ModelBuilder,
-        candidate: &Candidate,
+        candidate: &OwnLinkage,
         it: &InvertedSliderCrank,
     ) -> ModelBuilder {
         let [a, d] = it.fixed;

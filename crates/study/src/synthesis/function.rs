@@ -14,7 +14,7 @@ use kempe_synthesis::{
 use kempe_synthesis::{Driver, FourBar, InvertedSliderCrank, SliderCrank};
 use kempe_units::Dimension;
 
-use super::candidate::{Candidate, Found, Rejected, Wanted, around};
+use super::candidate::{Found, OwnLinkage, Rejected, Wanted, around};
 use super::dimensions_in_words;
 use super::refused::{Data, Datum};
 use crate::unit::{Units, shown};
@@ -470,7 +470,7 @@ impl Asked<'_> {
                 })
             }));
         }
-        let mut candidate = Candidate {
+        let mut candidate = OwnLinkage {
             linkage,
             start: Pose::new(0.0, 0.0, 0.0),
             turned,
@@ -483,7 +483,7 @@ impl Asked<'_> {
             wanted,
         };
         let (Some(met), Some(start)) = (met, start) else {
-            let what = dimensions_in_words(&candidate, &self.units);
+            let what = dimensions_in_words(&candidate.lengths(), &self.units);
             let why = "it cannot be closed all along the range".to_owned();
             found.rejected.push(Rejected { what, why });
             return;
@@ -496,7 +496,7 @@ impl Asked<'_> {
         if let Some((_, rms, dimension)) = candidate.told.first()
             && *rms > POOR * (high - low)
         {
-            let what = dimensions_in_words(&candidate, &self.units);
+            let what = dimensions_in_words(&candidate.lengths(), &self.units);
             let rms = self.units.text(*rms, *dimension);
             let why = format!("it comes no nearer than {rms} in the root of the mean square");
             found.rejected.push(Rejected { what, why });
@@ -505,10 +505,10 @@ impl Asked<'_> {
         let passed = passage(&candidate.linkage, &met, Driver::First);
         match passed.as_ref().and_then(|p| defect(p, self.points.len())) {
             Some(why) => {
-                let what = dimensions_in_words(&candidate, &self.units);
+                let what = dimensions_in_words(&candidate.lengths(), &self.units);
                 found.rejected.push(Rejected { what, why });
             }
-            None => found.candidates.push(candidate),
+            None => found.candidates.push(candidate.into()),
         }
     }
 

@@ -1,14 +1,13 @@
 //! What a linkage does when it is moved, and whether that is wanted.
 
 use kempe_mechanism::Mechanism;
-use kempe_model::{DriveId, Leaf, Measure, Model, NamedMeasure, Statistic, StudyKind};
+use kempe_model::{Leaf, Measure, Model, NamedMeasure, Statistic, StudyKind};
 use kempe_motion::progress::Silent;
 use kempe_units::{Dimension, Expr, Unit};
 
-use super::asked::Questions;
-use super::candidate::{Candidate, Rejected, apart};
+use super::asked::{Questions, read};
+use super::candidate::{Candidate, LINK_RATIO, Order, Rejected, apart};
 use super::dimensions_in_words;
-use super::file::{DRIVE, STUDY, file_of};
 use crate::columns::is_of_whole_motion;
 use crate::motion::run_along_with;
 use crate::quantity::Quantity;
@@ -48,7 +47,7 @@ pub(super) fn judge(
     questions: &Questions<'_>,
     units: &Units,
 ) -> Result<Judged, Box<Rejected>> {
-    let what = dimensions_in_words(&candidate, units);
+    let what = dimensions_in_words(&candidate.lengths(), units);
     let reject = |why: String| {
         let what = what.clone();
         Box::new(Rejected { what, why })
@@ -63,14 +62,14 @@ pub(super) fn judge(
             kempe_number::text::significant(longest / shortest, 3)
         )));
     }
-    let built = file_of(&candidate, questions).build().map_err(|error| {
-        let first = error.diagnostics.first();
+    let file = candidate.file(&questions.request.title, questions);
+    let model = read(&file).map_err(|wrong| {
+        let first = wrong.first();
         reject(first.map_or_else(String::new, |d| d.message.clone()))
     })?;
-    let model = built.model;
     let numbers = Numbers::of(&model, &candidate, questions);
     let numbers = numbers.map_err(|_| reject("it cannot be measured as asked".to_owned()))?;
-    let (motion, values) = moved(&model, &numbers.all)
+    let (motion, values) = moved(&model, candidate.study(), &numbers.all)
         .map_err(|why| reject(format!("it cannot be moved through what is asked: {why}")))?;
     for (condition, text) in numbers.conditions.iter().zip(&questions.study.accept) {
         let [left, above] = [condition, &(condition + 1)].map(|k| values[*k]);
@@ -82,7 +81,7 @@ pub(super) fn judge(
             return Err(reject(format!("{name} = {value}: not {}", text.text)));
         }
     }
-    let missed = missed(&candidate, &numbers, &values, units).map_err(reject)?;
+    let missed = missed(&candidate, &model, &numbers, &values, units).map_err(reject)?;
     let mut told: Vec<Value> = Vec::new();
     let mut tell = |name: &str, si: f64, dimension: Dimension| {
         if told.iter().all(|v| v.name != name) {
@@ -97,7 +96,7 @@ pub(super) fn judge(
     for (name, length) in candidate.lengths() {
         tell(name, length, Dimension::LENGTH);
     }
-    for (name, si, dimension) in &candidate.told {
+    for (name, si, dimension) in candidate.told() {
         tell(name, *si, *dimension);
     }
     for k in numbers
@@ -111,11 +110,11 @@ pub(super) fn judge(
         } = &numbers.all[k];
         tell(name, values[k], *dimension);
     }
-    if !candidate.wanted.is_empty() {
+    if !candidate.wanted().is_empty() {
         tell("miss", missed, Dimension::NONE);
     }
-    let rank = match (&questions.study.rank, candidate.told.first()) {
-        (None, Some((_, own, _))) => *own,
+    let rank = match (&questions.study.rank, candidate.order()) {
+        (None, Order::Known(own)) => own,
         _ => values[numbers.told.start],
     };
     Ok(Judged {
@@ -199,11 +198,13 @@ impl Numbers {
             });
             all.len()
         };
-        let rank = study
-            .rank
-            .as_ref()
-            .map_or(LINK_RATIO, |asked| asked.text.as_str());
-        let more = study.columns.iter().map(|asked| asked.text.as_str());
+        let rank = match (&study.rank, candidate.order()) {
+            (Some(asked), _) => asked.text.as_str(),
+            (None, Order::Measure(own)) => own,
+            (None, Order::Known(_)) => LINK_RATIO,
+        };
+        let own = candidate.columns().iter().map(String::as_str);
+        let more = own.chain(study.columns.iter().map(|asked| asked.text.as_str()));
         let mut end = first;
         for text in std::iter::once(rank).chain(more) {
             let it = model.measure(text)?;
@@ -211,18 +212,20 @@ impl Numbers {
             end = ask(over(Statistic::Min, it), dimension);
         }
         let parameters = model.parameter_values::<f64>();
-        let law = model.drives.first().map(|drive| &drive.law);
+        let driven = candidate.driven(model);
+        let drive = driven.and_then(|id| model.drives.get(id.index()));
+        let law = drive.map(|drive| &drive.law);
         let range = law.map_or((f64::NEG_INFINITY, f64::INFINITY), |law| {
             law.extent(&parameters)
         });
         let inside = INSIDE * (range.1 - range.0);
         let (low, high) = (range.0 + inside, range.1 - inside);
-        for wanted in &candidate.wanted {
+        for wanted in candidate.wanted() {
             let it = model.measure(&wanted.measure)?;
             let dimension = it.dimension;
             // An end of the range is where it should be but for rounding, and nothing is known beyond it.
             let at = Statistic::At {
-                drive: Some(DriveId(0)),
+                drive: driven,
                 value: wanted.at.clamp(low, high),
             };
             ask(over(at, it), dimension);
@@ -240,16 +243,17 @@ impl Numbers {
 /// So far inside of the drive's range its ends are looked at, in parts of it.
 const INSIDE: f64 = 1e-13;
 
-/// What linkages are ordered by where nothing else is said.
-const LINK_RATIO: &str = "link_ratio";
-
 /// How a linkage's file moves it, with numbers (SI) over its motion; or why it does not.
-fn moved(model: &Model, numbers: &[Quantity]) -> Result<(StudyResult, Vec<f64>), String> {
-    let own = model.studies.first().map(|study| &study.kind);
-    let Some(StudyKind::Motion(own)) = own else {
+fn moved(
+    model: &Model,
+    study: &str,
+    numbers: &[Quantity],
+) -> Result<(StudyResult, Vec<f64>), String> {
+    let own = model.studies.iter().find(|own| own.name == study);
+    let Some(StudyKind::Motion(own)) = own.map(|own| &own.kind) else {
         return Err("its file asks for no motion".to_owned());
     };
-    let ran = run_along_with(model, STUDY, own, (false, numbers), &mut Silent);
+    let ran = run_along_with(model, study, own, (false, numbers), &mut Silent);
     let (motion, values) = ran.map_err(|told| {
         let first = told.first();
         first.map_or_else(String::new, |d| d.message.clone())
@@ -267,13 +271,14 @@ fn moved(model: &Model, numbers: &[Quantity]) -> Result<(StudyResult, Vec<f64>),
 /// By how much a linkage misses what it must do, or where it does something else.
 fn missed(
     candidate: &Candidate,
+    model: &Model,
     numbers: &Numbers,
     values: &[f64],
     units: &Units,
 ) -> Result<f64, String> {
     let longest = candidate.links().iter().fold(0.0, |m: f64, l| m.max(*l));
     let mut worst = 0.0_f64;
-    for (wanted, k) in candidate.wanted.iter().zip(numbers.wanted.clone()) {
+    for (wanted, k) in candidate.wanted().iter().zip(numbers.wanted.clone()) {
         let dimension = numbers.all[k].dimension;
         let size = match dimension {
             Dimension::LENGTH => longest,
@@ -283,12 +288,17 @@ fn missed(
         let by = apart(values[k], wanted.value, dimension) / size;
         worst = worst.max(by);
         if !(by <= MISSED) {
+            let driven = candidate.driven(model);
+            let drive = driven.and_then(|id| model.drives.get(id.index()));
+            let at = drive.map_or_else(String::new, |drive| {
+                let at = units.text(wanted.at, drive.dimension);
+                format!(" ({} = {at})", drive.name)
+            });
             return Err(format!(
-                "moved there, {} is {} where it should be {} ({DRIVE} = {})",
+                "moved there, {} is {} where it should be {}{at}",
                 wanted.measure,
                 units.text(values[k], dimension),
                 units.text(wanted.value, dimension),
-                units.text(wanted.at, Dimension::ANGLE)
             ));
         }
     }

@@ -4,8 +4,10 @@
 //! file (`file.rs`), is moved as any other model, and is judged by what it then does (`judge.rs`).
 
 mod asked;
+mod beside;
 mod candidate;
 mod dead_centres;
+mod dwell;
 mod file;
 mod function;
 mod judge;
@@ -16,9 +18,11 @@ mod rates;
 mod refused;
 
 use kempe_model::{
-    Diagnostic, LinkageKind, Model, Stroke, SynthesisTask, SynthesizeStudy, WantedFunction,
+    Diagnostic, DwellOutput, LinkageKind, Model, Stroke, SynthesisTask, SynthesizeStudy,
+    WantedFunction,
 };
 use kempe_motion::progress::{Done, Progress, Stage};
+use kempe_synthesis::Linkage;
 use kempe_units::{Dimension, Unit};
 
 use crate::clearance::refuses;
@@ -28,7 +32,6 @@ use crate::table::{Column, Table};
 use crate::unit::{Units, number_text};
 use asked::Questions;
 use candidate::{Candidate, Found};
-use file::file_of;
 use judge::{Judged, judge};
 
 fn kinds(linkage: LinkageKind) -> &'static str {
@@ -62,6 +65,14 @@ pub(crate) fn in_words(study: &SynthesizeStudy) -> String {
                 "four-bars of which a point passes {} points",
                 task.points.len()
             )
+        }
+        SynthesisTask::Dwell(task) => {
+            let what = match task.output {
+                DwellOutput::Lever => "levers at a rod",
+                DwellOutput::Slider => "sliders at a rod",
+                DwellOutput::Slot => "slotted levers",
+            };
+            format!("{what} that rest while the drive goes on")
         }
         SynthesisTask::Motion(task) => {
             let what = task.linkage.map_or("linkages", kinds);
@@ -102,6 +113,7 @@ fn candidates(
         SynthesisTask::DeadCentres(task) => dead_centres::candidates(model, task, place),
         SynthesisTask::Motion(task) => motion::candidates(model, task),
         SynthesisTask::Path(task) => path::candidates(model, task),
+        SynthesisTask::Dwell(task) => dwell::candidates(model, task, place),
     };
     let found = found.map_err(|refused| vec![*refused])?;
     let none = found.candidates.is_empty() && found.rejected.is_empty();
@@ -166,8 +178,14 @@ pub(crate) fn synthesis(
     accepted.truncate(study.keep);
     debug_assert!(!refuses(&diagnostics));
     let table = table(name, &accepted);
-    let kept: Vec<&Candidate> = accepted.iter().map(|judged| &judged.candidate).collect();
+    let kept: Vec<&Linkage> = (accepted.iter())
+        .filter_map(|judged| match &judged.candidate {
+            Candidate::Linkage(it) => Some(&it.linkage),
+            Candidate::Beside(_) => None,
+        })
+        .collect();
     let figures = motion::picture(model, &found.guided, &kept);
+    let figures = figures.or(found.figure);
     let mut listings = Vec::new();
     if !accepted.is_empty() {
         listings.push(listed(&table));
@@ -200,9 +218,7 @@ pub(crate) fn synthesis(
     let designs = accepted.into_iter().enumerate().filter_map(|(i, judged)| {
         let number = format!("{:0digits$}", i + 1);
         let title = format!("{}: {name} {number}", model.title);
-        let file = file_of(&judged.candidate, questions.as_ref()?)
-            .titled(&title)
-            .file();
+        let file = judged.candidate.file(&title, questions.as_ref()?);
         Some(FoundDesign {
             title: format!("{number}: {}", judged.what),
             name: number,
@@ -308,14 +324,13 @@ fn none_accepted(found: usize) -> Diagnostic {
         .help("the reasons are listed; change the data, or ask for less under `accept`")
 }
 
-/// Dimensions of a linkage in words: `crank 27.6 mm, coupler 57.2 mm`.
-fn dimensions_in_words(candidate: &Candidate, units: &Units) -> String {
-    let all = candidate.lengths().into_iter();
-    let all = all.map(|(name, length)| {
+/// Lengths in words: `crank 27.6 mm, coupler 57.2 mm`.
+fn dimensions_in_words(lengths: &[(&str, f64)], units: &Units) -> String {
+    let all = lengths.iter().map(|(name, length)| {
         format!(
             "{} {}",
             name.trim_end_matches("_length"),
-            units.text(length, Dimension::LENGTH)
+            units.text(*length, Dimension::LENGTH)
         )
     });
     all.collect::<Vec<_>>().join(", ")

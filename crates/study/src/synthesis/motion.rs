@@ -12,7 +12,7 @@ use kempe_number::math;
 use kempe_synthesis::{C, Dyad, Linkage, Pose, SynthesisError};
 use kempe_units::Dimension;
 
-use super::candidate::{Candidate, Found};
+use super::candidate::{Found, OwnLinkage};
 use super::passing::{Defect, Passing, pose_wanted};
 use super::refused::{Data, Datum};
 use crate::unit::{Units, shown};
@@ -223,7 +223,7 @@ impl<'a> Search<'a> {
     }
 
     /// Where the coupler is at the poses: in them, or of a fit near to them, which is told.
-    fn met(&self, candidate: &mut Candidate) -> Result<Vec<Pose>, Defect> {
+    fn met(&self, candidate: &mut OwnLinkage) -> Result<Vec<Pose>, Defect> {
         let poses = &self.asked.poses;
         let (true, Linkage::FourBar(bar)) = (poses.len() >= MANY, &candidate.linkage) else {
             return Ok(poses.clone());

@@ -4,7 +4,7 @@ use kempe_number::math;
 use kempe_synthesis::{C, Driver, Linkage, Passage, Pose, passage};
 use kempe_units::Dimension;
 
-use super::candidate::{Candidate, Found, Rejected, Wanted};
+use super::candidate::{Found, OwnLinkage, Rejected, Wanted};
 use super::dimensions_in_words;
 use crate::result::Listing;
 use crate::unit::Units;
@@ -80,8 +80,8 @@ pub(super) struct Passing<'a> {
     units: &'a Units,
     /// What is passed: poses, points.
     places: &'static str,
-    candidates: Vec<(f64, Candidate)>,
-    rejected: Vec<(Candidate, Defect, bool)>,
+    candidates: Vec<(f64, OwnLinkage)>,
+    rejected: Vec<(OwnLinkage, Defect, bool)>,
 }
 
 impl<'a> Passing<'a> {
@@ -95,8 +95,8 @@ impl<'a> Passing<'a> {
     }
 
     /// A linkage whose coupler carries its own origin.
-    pub fn candidate(linkage: Linkage, start: Pose) -> Candidate {
-        Candidate {
+    pub fn candidate(linkage: Linkage, start: Pose) -> OwnLinkage {
+        OwnLinkage {
             linkage,
             start,
             turned: None,
@@ -110,12 +110,12 @@ impl<'a> Passing<'a> {
         }
     }
 
-    pub fn reject(&mut self, candidate: Candidate, defect: Defect) {
+    pub fn reject(&mut self, candidate: OwnLinkage, defect: Defect) {
         self.rejected.push((candidate, defect, false));
     }
 
     /// Whether the crank leads a linkage through poses of its coupler, from the first to the last.
-    pub fn pass(&mut self, mut candidate: Candidate, met: &[Pose], wanted: WantedAt<'_>) {
+    pub fn pass(&mut self, mut candidate: OwnLinkage, met: &[Pose], wanted: WantedAt<'_>) {
         let Some(passed) = passage(&candidate.linkage, met, Driver::First) else {
             return;
         };
@@ -166,20 +166,21 @@ impl<'a> Passing<'a> {
                         false => "",
                     };
                     Rejected {
-                        what: dimensions_in_words(candidate, self.units),
+                        what: dimensions_in_words(&candidate.lengths(), self.units),
                         why: defect.text(self.units, self.places) + more,
                     }
                 })
                 .collect(),
         };
         Found {
-            candidates: self.candidates.into_iter().map(|(_, c)| c).collect(),
+            candidates: self.candidates.into_iter().map(|(_, c)| c.into()).collect(),
             rejected,
             searched: how,
             tried,
             counted,
             counts: Vec::new(),
             guided,
+            figure: None,
         }
     }
 
@@ -262,7 +263,7 @@ fn reference(linkage: &Linkage) -> f64 {
 }
 
 /// How large a linkage's links are beside each other, over how well it transmits: the less the better.
-fn merit(candidate: &Candidate, passed: &Passage) -> f64 {
+fn merit(candidate: &OwnLinkage, passed: &Passage) -> f64 {
     if let Some((_, error, _)) = candidate.told.first() {
         return *error;
     }

@@ -4,7 +4,7 @@ use kempe_model::{Diagnostic, Model, RatesTask, Span, value};
 use kempe_synthesis::{C, LinkRates, Linkage, Pose, SynthesisError, bloch};
 use kempe_units::Dimension;
 
-use super::candidate::{Candidate, Found, Wanted, around};
+use super::candidate::{Found, OwnLinkage, Wanted, around};
 use super::refused::{Data, Datum};
 use crate::unit::{Units, shown};
 
@@ -85,7 +85,7 @@ pub(super) fn candidates(
             value,
         });
     let wanted = wanted.collect();
-    let candidate = Candidate {
+    let candidate = OwnLinkage {
         linkage: Linkage::FourBar(bar),
         start,
         turned: None,
@@ -98,7 +98,7 @@ pub(super) fn candidates(
         wanted,
     };
     Ok(Found {
-        candidates: vec![candidate],
+        candidates: vec![candidate.into()],
         searched: "there is one, but for its size and direction".to_owned(),
         ..Found::default()
     })

@@ -6,8 +6,7 @@ use kempe_units::Dimension;
 
 use super::dyads::REACH;
 use crate::result::{Figure, PlaneCurve};
-use crate::synthesis::candidate::Candidate;
-use crate::unit::{Units, shown};
+use crate::unit::Units;
 
 /// The axes of a pose are drawn so long, as a part of the body's way.
 const AXES: f64 = 0.08;
@@ -20,14 +19,14 @@ const AROUND: f64 = 0.6;
 pub(in crate::synthesis) fn picture(
     model: &Model,
     poses: &[Pose],
-    kept: &[&Candidate],
+    kept: &[&Linkage],
 ) -> Option<Figure> {
     let first = poses.first()?;
     let unit = Units::of(model).unit(Dimension::LENGTH);
     let mut fixed: Vec<C> = Vec::new();
     let mut moving: Vec<C> = Vec::new();
-    for candidate in kept {
-        let (of_frame, of_body): (&[C], &[C]) = match &candidate.linkage {
+    for linkage in kept {
+        let (of_frame, of_body): (&[C], &[C]) = match linkage {
             Linkage::FourBar(it) => (&it.fixed, &it.moving),
             Linkage::SliderCrank(it) => (std::slice::from_ref(&it.fixed), &it.moving),
             Linkage::InvertedSliderCrank(it) => (&it.fixed, std::slice::from_ref(&it.moving)),
@@ -56,16 +55,8 @@ pub(in crate::synthesis) fn picture(
         if lines.is_empty() {
             return;
         }
-        let mut curve = PlaneCurve::new(name, dashed);
-        for (k, line) in lines.into_iter().enumerate() {
-            if k > 0 {
-                curve.gap();
-            }
-            for place in line {
-                curve.to([place.re, place.im].map(|x| shown(x, &unit)));
-            }
-        }
-        curves.push(curve);
+        let lines = lines.iter().map(|line| line.iter().map(|p| [p.re, p.im]));
+        curves.push(PlaneCurve::lines(name, dashed, lines, &unit));
     };
     let arm = AXES * if way > 0.0 { way } else { size };
     let axes = poses.iter().map(|pose| {
