@@ -8,6 +8,7 @@ mod assembly;
 mod carrier;
 mod choices;
 mod clearance;
+mod cognates;
 mod column;
 mod context;
 mod controls;

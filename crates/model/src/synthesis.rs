@@ -59,6 +59,8 @@ pub enum SynthesisTask {
     Path(Box<PathTask>),
     /// An output beside the file's own mechanism rests while this moves on.
     Dwell(Box<DwellTask>),
+    /// The coupler curve of the file's own four-bar is traced by others, or by a body that does not turn.
+    Cognates(CognatesTask),
 }
 
 /// An output as an input asks.
@@ -229,6 +231,19 @@ pub struct DwellTask {
     pub spans: [Span; 3],
 }
 
+/// A coupler curve of the file's own four-bar, traced otherwise.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CognatesTask {
+    /// The coupler point.
+    pub point: PointId,
+    /// The drive that leads it along its curve.
+    pub drive: DriveId,
+    /// Whether a body is wanted that goes along the curve without turning, instead of the other four-bars.
+    pub parallel: bool,
+    /// Where the point stands in the file.
+    pub span: Span,
+}
+
 /// What rests while a point goes along an arc.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DwellOutput {
@@ -303,6 +318,7 @@ impl SynthesizeStudy {
                 points.chain(dyads).chain([&mut task.span]).for_each(f);
             }
             SynthesisTask::Dwell(task) => task.spans.iter_mut().for_each(f),
+            SynthesisTask::Cognates(task) => f(&mut task.span),
         }
     }
 
@@ -356,6 +372,7 @@ impl SynthesizeStudy {
                 task.stroke.iter_mut().for_each(&mut *f);
                 task.pivots_in.iter_mut().flatten().flatten().for_each(f);
             }
+            SynthesisTask::Cognates(_) => {}
             SynthesisTask::DeadCentres(task) => {
                 f(&mut task.time_ratio);
                 match &mut task.stroke {

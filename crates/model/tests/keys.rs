@@ -135,6 +135,15 @@ fn entry(section: &str, kind: &Kind) -> (&'static str, Vec<(&'static str, &'stat
             ];
             ("x", base)
         }
+        ("studies", "synthesize cognates") => {
+            let base = vec![
+                ("kind", "'synthesize'"),
+                ("task", "'cognates'"),
+                ("point", "'B'"),
+                ("drive", "'motor'"),
+            ];
+            ("x", base)
+        }
         ("studies", "synthesize motion") => {
             let base = vec![
                 ("kind", "'synthesize'"),

@@ -309,6 +309,20 @@ dwell = "40 deg"
 output = "slider"
 stroke = "a"
 
+[studies.others]
+kind = "synthesize"
+task = "cognates"
+point = "C"
+drive = "motor"
+
+[studies.platform]
+kind = "synthesize"
+task = "cognates"
+point = "C"
+drive = "motor"
+parallel = true
+columns = ["turn"]
+
 [studies.generated]
 kind = "synthesize"
 task = "function"

@@ -41,7 +41,9 @@ static WANTED: [Key; 4] = [
 ];
 
 /// The tasks, each with the keys of its own.
-pub(crate) static TASKS: [&Kind; 6] = [&FUNCTION, &RATES, &DEAD_CENTRES, &GUIDANCE, &PATH, &DWELL];
+pub(crate) static TASKS: [&Kind; 7] = [&FUNCTION, &RATES, &DEAD_CENTRES, &GUIDANCE, &PATH, &DWELL, &COGNATES];
+/// Those that ask what belongs to the file's own mechanism.
+pub(crate) static OF_THE_FILE: [&Kind; 2] = [&DWELL, &COGNATES];
 
 static FUNCTION: Kind = kind("study", "synthesize function",
     "kind = \"synthesize\", task = \"function\", pairs = [[45, 52], [90, 82], [135, 112]], ground = \"50 mm\"",
@@ -131,6 +133,16 @@ static DWELL: Kind = kind("study", "synthesize dwell",
         may("swing", positive(D::ANGLE), "\"30 deg\"", "By how much the lever is to swing in all; of a slot it must be given, else as transmits best unless said otherwise."),
         may("stroke", positive(D::LENGTH), "\"40 mm\"", "How far the slider is to go in all; as transmits best unless said otherwise."),
         may("pivots_in", T::Two(&PLACE), "[[-50, -50], [50, 50]]", "Two corners of a box in which the lever's fixed pivot must lie; half the mechanism's size around it unless said otherwise."),
+    ], &WANTED]);
+
+static COGNATES: Kind = kind("study", "synthesize cognates",
+    "kind = \"synthesize\", task = \"cognates\", point = \"P\"",
+    "The other four-bars that lead a point along the coupler curve of the file's own, or six-bars in which a body goes along it without turning.",
+    &[&HEAD, &[
+        must("task", T::Words(&["cognates"]), "\"cognates\"", "The task: a coupler curve traced otherwise."),
+        must("point", POINT, "\"C\"", "The coupler point."),
+        may("drive", DRIVE, "\"motor\"", "The drive that leads it along its curve; may be left out where there is one only."),
+        may("parallel", T::Flag, "true", "Whether a body is wanted that goes along the curve without turning, joined to the file's mechanism, instead of the other four-bars."),
     ], &WANTED]);
 
 pub(crate) static POINT_TABLE: Kind = kind("point table", "points",

@@ -13,7 +13,7 @@
 use kempe_units::Dimension;
 
 use crate::diagnostic::Diagnostic;
-use crate::ids::FRAME;
+use crate::ids::{FRAME, PointId, Span};
 use crate::key_table::synthesis::OUTPUTS;
 use crate::read::choices::drive_named;
 use crate::read::context::Context;
@@ -21,22 +21,36 @@ use crate::read::entry::Entry;
 use crate::read::guidance::corners;
 use crate::synthesis::{DwellOutput, DwellTask};
 
-pub(crate) fn read(cx: &mut Context<'_>, entry: &mut Entry<'_>) -> Option<DwellTask> {
-    let point = entry.point(cx, "point");
-    let drive = drive_named(cx, entry);
-    let output = entry.choice(cx, "output", &OUTPUTS);
-    let output = output.map(|it| it.unwrap_or(DwellOutput::Lever));
-    let pivots_in = corners(cx, entry, "pivots_in");
-    let (point, node) = point?;
+/// The study's point, and where it is named; none of the frame.
+pub(crate) fn moving_point(
+    cx: &mut Context<'_>,
+    entry: &Entry<'_>,
+    help: &str,
+) -> Option<(PointId, Span)> {
+    let (point, node) = entry.point(cx, "point")?;
     if cx.carriers(point).contains(&FRAME) {
         let name = cx.point_name(point).to_owned();
         return cx.refuse(
             "bad-choice",
             format!("`{name}` stands still"),
             &node.span,
-            "name a point of a link that moves: what it moves can then rest for a while",
+            help,
         );
     }
+    Some((point, node.span.clone()))
+}
+
+pub(crate) fn read(cx: &mut Context<'_>, entry: &mut Entry<'_>) -> Option<DwellTask> {
+    let point = moving_point(
+        cx,
+        entry,
+        "name a point of a link that moves: what it moves can then rest for a while",
+    );
+    let drive = drive_named(cx, entry);
+    let output = entry.choice(cx, "output", &OUTPUTS);
+    let output = output.map(|it| it.unwrap_or(DwellOutput::Lever));
+    let pivots_in = corners(cx, entry, "pivots_in");
+    let (point, place) = point?;
     let (drive, coordinate) = drive?;
     entry.turning = coordinate == Dimension::ANGLE;
     let dwell = entry.needed(cx, "dwell");
@@ -76,6 +90,6 @@ pub(crate) fn read(cx: &mut Context<'_>, entry: &mut Entry<'_>) -> Option<DwellT
         output: output?,
         stroke: stroke?,
         pivots_in: pivots_in?,
-        spans: [node.span.clone(), span_of("dwell"), span_of(own)],
+        spans: [place, span_of("dwell"), span_of(own)],
     })
 }

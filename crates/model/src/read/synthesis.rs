@@ -3,7 +3,7 @@
 //! ```toml
 //! [studies.generator]
 //! kind   = "synthesize"
-//! task   = "function"                       # or "rates", "dead-centres", "motion", "path", "dwell"
+//! task   = "function"                       # or "rates", "dead-centres", "motion", "path", "dwell", "cognates"
 //! pairs  = [[45, 52], [90, 82], [135, 112]]
 //! ground = "50 mm"
 //! accept = ["min(transmission_angle) >= 35 deg", "max(link_ratio) <= 5"]
@@ -15,12 +15,12 @@ use kempe_units::{Dimension, Expr};
 use crate::diagnostic::Diagnostic;
 use crate::document::{Key, Node, Value};
 use crate::ids::Scalar;
-use crate::key_table::synthesis::{CURVE, FREE, LINKAGES, TASKS};
+use crate::key_table::synthesis::{CURVE, FREE, LINKAGES, OF_THE_FILE, TASKS};
 use crate::keys::Kind;
 use crate::read::context::Context;
 use crate::read::entry::Entry;
 use crate::read::studies::entries;
-use crate::read::{dwell, guidance, path};
+use crate::read::{cognates, dwell, guidance, path};
 use crate::study::{MotionStudy, Rows, StudyKind};
 use crate::synthesis::{
     Asked, DeadCentresTask, FunctionTask, LinkageKind, RatesTask, Stroke, SynthesisTask,
@@ -35,7 +35,7 @@ const KEPT: usize = 20;
 /// Rows of the motion that measures are taken over and pictures made of.
 const ROWS: usize = 181;
 
-/// Whether all that is asked for are linkages, and none beside a mechanism of the file's own: such a file needs none.
+/// Whether all that is asked for are linkages, and none that belongs to a mechanism of the file's own: such a file needs none.
 pub(crate) fn alone(studies: &[&(Key, Node)]) -> bool {
     let says = |node: &Node, key: &str, word: &str| match &node.value {
         Value::Table(table) => match table.get(key).map(|node| &node.value) {
@@ -45,8 +45,10 @@ pub(crate) fn alone(studies: &[&(Key, Node)]) -> bool {
         _ => false,
     };
     let asked = |(_, node): &&(Key, Node)| says(node, "kind", KIND);
-    let beside = |(_, node): &&(Key, Node)| says(node, "task", task_of(TASKS[5]));
-    studies.iter().any(asked) && !studies.iter().any(beside)
+    let own = |(_, node): &&(Key, Node)| {
+        (OF_THE_FILE.iter()).any(|kind| says(node, "task", task_of(kind)))
+    };
+    studies.iter().any(asked) && !studies.iter().any(own)
 }
 
 /// The task of a kind of table: `function` of `synthesize function`.
@@ -69,6 +71,7 @@ pub(crate) fn read(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<StudyKin
         "path" => path::read(cx, &entry).map(|task| SynthesisTask::Path(Box::new(task))),
         "motion" => guidance::read(cx, &entry).map(|task| SynthesisTask::Motion(Box::new(task))),
         "dwell" => dwell::read(cx, &mut entry).map(|task| SynthesisTask::Dwell(Box::new(task))),
+        "cognates" => cognates::read(cx, &entry).map(SynthesisTask::Cognates),
         _ => function(cx, &entry).map(SynthesisTask::Function),
     };
     let accept = texts(cx, &entry, "accept");

@@ -7,9 +7,9 @@ use crate::item::Item;
 use crate::key_table::synthesis::{FREE, LINKAGES, OUTPUTS};
 use crate::key_table::word_of;
 use crate::synthesis::{
-    Asked, DeadCentresTask, DwellOutput, DwellTask, DyadGiven, FunctionTask, GuidanceTask,
-    LinkageKind, PathTask, RatesTask, Stroke, SynthesisTask, SynthesizeStudy, WantedCurve,
-    WantedFunction, WantedPair,
+    Asked, CognatesTask, DeadCentresTask, DwellOutput, DwellTask, DyadGiven, FunctionTask,
+    GuidanceTask, LinkageKind, PathTask, RatesTask, Stroke, SynthesisTask, SynthesizeStudy,
+    WantedCurve, WantedFunction, WantedPair,
 };
 use crate::write::spelling::Writer;
 
@@ -22,6 +22,7 @@ impl Writer<'_> {
             SynthesisTask::Motion(task) => self.guidance(task, put),
             SynthesisTask::Path(task) => self.path(task, put),
             SynthesisTask::Dwell(task) => self.dwell(task, put),
+            SynthesisTask::Cognates(task) => self.cognates(task, put),
         }
         let texts = |asked: &[Asked]| {
             let texts = asked.iter().map(|asked| Item::text(&asked.text));
@@ -193,6 +194,15 @@ impl Writer<'_> {
         }
         if let Some(corners) = &task.pivots_in {
             put("pivots_in", self.two_places(corners));
+        }
+    }
+
+    fn cognates(&self, task: &CognatesTask, put: &mut dyn FnMut(&str, Item)) {
+        put("task", Item::text("cognates"));
+        put("point", Item::text(self.point(task.point)));
+        put("drive", Item::text(self.drive(task.drive)));
+        if task.parallel {
+            put("parallel", Item::Flag(true));
         }
     }
 

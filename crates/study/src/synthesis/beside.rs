@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 
 use kempe_measure::Sample;
 use kempe_model::{
-    Diagnostic, DriveId, FRAME, Model, ModelFile, Part, PartKind, PointId, add_entry, apply,
-    delete, parts, set_value, value_edit,
+    Diagnostic, DriveId, FRAME, LinkId, Model, ModelFile, Part, PartKind, PointId, add_entry,
+    apply, delete, parts, set_value, value_edit,
 };
 use kempe_synthesis::C;
 use kempe_units::Dimension;
@@ -129,18 +129,52 @@ impl<'m> Extended<'m> {
 
     /// A point of the frame.
     pub fn frame_point(&mut self, name: &str, place: C) -> Result<(), Box<Diagnostic>> {
-        let frame = self.request.links[FRAME.index()].name.clone();
+        self.point_on(FRAME, name, place)
+    }
+
+    /// A point of a link, at a place in its axes.
+    pub fn point_on(&mut self, link: LinkId, name: &str, place: C) -> Result<(), Box<Diagnostic>> {
+        let link = self.request.links[link.index()].name.clone();
         let place = self.pen.place_text(place);
-        // A frame that lists its points is the same as a table of that list, which may have more.
-        let whole = value_edit(&self.file.toml, &["links", &frame], "[]");
+        // A link that lists its points is the same as a table of that list, which may have more.
+        let whole = value_edit(&self.file.toml, &["links", &link], "[]");
         let listed = whole.ok().and_then(|edit| self.file.toml.get(edit.span));
         if let Some(listed) = listed.filter(|text| is_array(text)) {
             let table = format!("{{ points = {listed}, {} = {place} }}", key(name));
-            let edit = value_edit(&self.file.toml, &["links", &frame], &table);
+            let edit = value_edit(&self.file.toml, &["links", &link], &table);
             return self.edit(edit.map_err(Box::new)?);
         }
-        let edit = value_edit(&self.file.toml, &["links", &frame, name], &place);
+        let edit = value_edit(&self.file.toml, &["links", &link, name], &place);
         self.edit(edit.map_err(Box::new)?)
+    }
+
+    /// A length as a parameter, by its name, which is added to those by which the whole is known.
+    pub fn length(
+        &mut self,
+        name: &str,
+        length: f64,
+        lengths: &mut Vec<(String, f64)>,
+    ) -> Result<String, Box<Diagnostic>> {
+        let name = self.name(name);
+        let text = text_value(&self.pen.exact(length, Dimension::LENGTH));
+        self.add("parameters", &name, &text)?;
+        lengths.push((name.clone(), length));
+        Ok(name)
+    }
+
+    /// A link of two points.
+    pub fn distance(
+        &mut self,
+        link: &str,
+        [a, b]: [&str; 2],
+        length: &str,
+    ) -> Result<(), Box<Diagnostic>> {
+        let key = key(&format!("{a}-{b}"));
+        self.add(
+            "links",
+            link,
+            &format!("{{ {key} = {} }}", text_value(length)),
+        )
     }
 
     /// Hints for what the drawing alone puts together: they count no more beside others.

@@ -1,28 +1,21 @@
 //! Outputs that rest while the file's own mechanism moves on: stretches of a point's way that come near to a circle or a line, and what a rod or a
 //! slot makes of them.
 //!
-//! `dwell/output.rs` writes the links that are added, `dwell/track.rs` follows the point, `dwell/picture.rs` shows the way with its stretches.
+//! `dwell/output.rs` writes the links that are added, `dwell/picture.rs` shows the way with its stretches.
 
 mod output;
 mod picture;
-mod track;
-
-use std::f64::consts::TAU;
 
 use kempe_measure::Sample;
 use kempe_model::{Diagnostic, DwellOutput, DwellTask, Model, Span, value};
-use kempe_motion::EndReason;
-use kempe_motion::drive_path::{DrivePath, WHOLE};
-use kempe_motion::progress::Silent;
 use kempe_synthesis::{C, Rest, Stretch, Way, nearest_circle, nearest_line, stretches};
 use kempe_units::Dimension;
 
 use super::candidate::Found;
-use crate::prepared::{design, motion};
+use super::point_way::{PointWay, lost};
 use crate::result::Listing;
 use crate::unit::Units;
 use output::{Output, Writing};
-use track::Track;
 
 /// So many stretches are looked at, the best first.
 const MOST_STRETCHES: usize = 12;
@@ -67,61 +60,18 @@ struct Asked<'a> {
 pub(super) fn candidates(
     model: &Model,
     task: &DwellTask,
-    whole: Span,
+    whole: &Span,
 ) -> Result<Found, Box<Diagnostic>> {
     let point = &model.points[task.point.index()].name;
-    let moved = motion(&design(model), &mut Silent).map_err(first)?;
-    let parameters = model.parameter_values::<f64>();
-    let drive = &model.drives[task.drive.index()];
-    match moved.path {
-        DrivePath::Coordinate { drive, .. } if drive == task.drive.index() => {}
-        _ => {
-            let error = Diagnostic::error(
-                "not-the-path",
-                format!("`{}` is not the only drive that moves", drive.name),
-            );
-            return Err(Box::new(error.at(whole, "").help(
-                "hold all drives but one: an output rests while that one goes on",
-            )));
-        }
-    }
-    if moved.ends.0 != EndReason::Covered || moved.ends.1 != EndReason::Covered {
-        let units = Units::of(model);
-        let error = Diagnostic::error(
-            "not-reached",
-            format!(
-                "the mechanism does not get through the range of `{}`",
-                drive.name
-            ),
-        );
-        let note = format!(
-            "it moves for {}",
-            units.range_text(moved.reached(), drive.dimension)
-        );
-        return Err(Box::new(error.at(task.spans[0].clone(), "its way is not whole").note(note).help(
-            "let the drive go as far as the mechanism does: `kempe run` of a motion study tells",
-        )));
-    }
-    let mut track = Track::new(model, &moved, point).map_err(first)?;
-    let (low, high) = moved.demanded;
-    let is_turn = drive.dimension == Dimension::ANGLE && high - low >= TAU * (1.0 - WHOLE);
-    let ends = [low, if is_turn { low + TAU } else { high }].map(|at| track.place(at));
-    let size = moved.size();
-    let closed = is_turn && matches!(ends, [Some(a), Some(b)] if (a - b).norm() <= WHOLE * size);
-    let range = [low, if closed { low + TAU } else { high }];
+    let mut track = PointWay::of(model, (task.point, &task.spans[0]), (task.drive, whole))?;
+    let PointWay { range, closed, .. } = track;
     let mut place = |at: f64| track.place(at);
     let mut way = Way {
         place: &mut place,
         range,
         closed,
     };
-    let no_way = || {
-        let error = Diagnostic::error(
-            "not-reached",
-            format!("`{point}` is not everywhere on its way"),
-        );
-        Box::new(error.at(task.spans[0].clone(), ""))
-    };
+    let no_way = || lost(point, &task.spans[0]);
     let places = way.places(STEPS).ok_or_else(no_way)?;
     let dwell: f64 = value(&task.dwell, &parameters);
     if !(dwell < range[1] - range[0]) {
@@ -169,7 +119,7 @@ pub(super) fn candidates(
         ));
     }
     let found = stretches(&mut way, dwell, MOST_STRETCHES, &nearest).ok_or_else(no_way)?;
-    let start = track.whole(moved.start);
+    let start = track.start.clone();
     let asked = Asked {
         model,
         task,
@@ -183,16 +133,6 @@ pub(super) fn candidates(
         start,
     };
     asked.found(&mut track, &found, extent)
-}
-
-/// The first of several errors.
-fn first(all: Vec<Diagnostic>) -> Box<Diagnostic> {
-    let mut errors = all.into_iter();
-    Box::new(
-        errors
-            .next()
-            .unwrap_or_else(|| Diagnostic::error("not-reached", "it does not move")),
-    )
 }
 
 /// A coordinate on a way, which a cycle comes back to.
@@ -228,7 +168,7 @@ fn corners(task: &DwellTask, parameters: &[f64], way: &[C], start: &Sample) -> [
 impl Asked<'_> {
     fn found(
         &self,
-        track: &mut Track,
+        track: &mut PointWay,
         stretches: &[Stretch<Near>],
         extent: f64,
     ) -> Result<Found, Box<Diagnostic>> {

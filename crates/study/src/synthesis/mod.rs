@@ -6,6 +6,7 @@
 mod asked;
 mod beside;
 mod candidate;
+mod cognates;
 mod dead_centres;
 mod dwell;
 mod file;
@@ -14,6 +15,7 @@ mod judge;
 mod motion;
 mod passing;
 mod path;
+mod point_way;
 mod rates;
 mod refused;
 
@@ -74,6 +76,12 @@ pub(crate) fn in_words(study: &SynthesizeStudy) -> String {
             };
             format!("{what} that rest while the drive goes on")
         }
+        SynthesisTask::Cognates(task) => match task.parallel {
+            true => {
+                "six-bars in which a body goes along a coupler curve without turning".to_owned()
+            }
+            false => "the other four-bars of a coupler curve".to_owned(),
+        },
         SynthesisTask::Motion(task) => {
             let what = task.linkage.map_or("linkages", kinds);
             format!(
@@ -113,7 +121,8 @@ fn candidates(
         SynthesisTask::DeadCentres(task) => dead_centres::candidates(model, task, place),
         SynthesisTask::Motion(task) => motion::candidates(model, task),
         SynthesisTask::Path(task) => path::candidates(model, task),
-        SynthesisTask::Dwell(task) => dwell::candidates(model, task, place),
+        SynthesisTask::Dwell(task) => dwell::candidates(model, task, &place),
+        SynthesisTask::Cognates(task) => cognates::candidates(model, task, &place),
     };
     let found = found.map_err(|refused| vec![*refused])?;
     let none = found.candidates.is_empty() && found.rejected.is_empty();

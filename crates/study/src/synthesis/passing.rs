@@ -1,5 +1,7 @@
 //! Linkages that are right at every place, looked at by their geometry: whether their crank can lead them from one place to the next.
 
+use std::f64::consts::TAU;
+
 use kempe_number::math;
 use kempe_synthesis::{C, Driver, Linkage, Passage, Pose, passage};
 use kempe_units::Dimension;
@@ -80,6 +82,8 @@ pub(super) struct Passing<'a> {
     units: &'a Units,
     /// What is passed: poses, points.
     places: &'static str,
+    /// Whether behind the last place comes the first.
+    round: bool,
     candidates: Vec<(f64, OwnLinkage)>,
     rejected: Vec<(OwnLinkage, Defect, bool)>,
 }
@@ -89,9 +93,15 @@ impl<'a> Passing<'a> {
         Self {
             units,
             places,
+            round: false,
             candidates: Vec::new(),
             rejected: Vec::new(),
         }
+    }
+
+    /// Whether behind the last place comes the first again, after a whole turn of the crank.
+    pub fn round(self, round: bool) -> Self {
+        Self { round, ..self }
     }
 
     /// A linkage whose coupler carries its own origin.
@@ -134,7 +144,8 @@ impl<'a> Passing<'a> {
             .map(|angle| angle + reference)
             .collect();
         if let (Some(from), Some(to)) = (driver.first(), driver.last()) {
-            candidate.drive = [*from, *to];
+            let turned = from + TAU.copysign(to - from);
+            candidate.drive = [*from, if self.round { turned } else { *to }];
         }
         if let Some(first) = met.first() {
             candidate.start = *first;

@@ -76,7 +76,7 @@ pub(super) fn candidates(model: &Model, task: &PathTask) -> Result<Found, Box<Di
 }
 
 /// The other two four-bars that trace a linkage's coupler curve (S. Roberts 1875), with their couplers' poses at the points.
-fn cognates(of: &PathLinkage) -> Vec<PathLinkage> {
+pub(super) fn cognates(of: &PathLinkage) -> Vec<PathLinkage> {
     let Linkage::FourBar(bar) = &of.linkage else {
         return Vec::new();
     };

@@ -5,10 +5,10 @@ use kempe_number::math;
 use kempe_synthesis::{C, DwellLever, DwellSlider, DwellSlot, Stretch, golden};
 use kempe_units::Dimension;
 
-use super::track::Track;
 use super::{Asked, Near, wrapped};
 use crate::synthesis::beside::{Beside, Extended, key, text_value};
 use crate::synthesis::candidate::Wanted;
+use crate::synthesis::point_way::PointWay;
 
 /// Places of a rest at which an output is looked at, and steps towards the one where it is furthest out.
 const LOOKS: usize = 192;
@@ -64,7 +64,7 @@ impl<'a> Writing<'a> {
     /// The mechanism with what rests on a stretch, in the middle of which the point is at a place.
     pub fn beside(
         &self,
-        track: &mut Track,
+        track: &mut PointWay,
         stretch: &Stretch<Near>,
         middle: C,
         output: &Output,
@@ -136,7 +136,13 @@ impl<'a> Writing<'a> {
     }
 
     /// Where the output is furthest back and furthest on during the rest: the drive's coordinate, and the point's place.
-    fn furthest(&self, track: &mut Track, from: f64, middle: C, output: &Output) -> [(f64, C); 2] {
+    fn furthest(
+        &self,
+        track: &mut PointWay,
+        from: f64,
+        middle: C,
+        output: &Output,
+    ) -> [(f64, C); 2] {
         let asked = self.asked;
         let mut look = |at: f64| -> (f64, C, f64) {
             let at = wrapped(at, asked.range, asked.closed);
@@ -171,11 +177,11 @@ impl<'a> Writing<'a> {
     ) -> Result<Measured, Box<Diagnostic>> {
         let [pivot, end] = ["O", "Q"].map(|name| file.name(name));
         let [rod_link, output] = ["rod", "output"].map(|name| file.name(name));
-        let rod_length = self.length(file, "rod_length", rod, lengths)?;
-        let lever_length = self.length(file, "lever_length", it.length, lengths)?;
+        let rod_length = file.length("rod_length", rod, lengths)?;
+        let lever_length = file.length("lever_length", it.length, lengths)?;
         file.frame_point(&pivot, it.pivot)?;
-        self.distance(file, &rod_link, [self.point(), &end], &rod_length)?;
-        self.distance(file, &output, [&pivot, &end], &lever_length)?;
+        file.distance(&rod_link, [self.point(), &end], &rod_length)?;
+        file.distance(&output, [&pivot, &end], &lever_length)?;
         let side = if it.side > 0.0 { "left" } else { "right" };
         let hint = format!("{side} of {pivot} -> {}", self.point());
         file.add("assembly", &end, &text_value(&hint))?;
@@ -200,13 +206,13 @@ impl<'a> Writing<'a> {
         let [from, to, end] = ["E", "F", "Q"].map(|name| file.name(name));
         let [rod_link, output] = ["rod", "output"].map(|name| file.name(name));
         let guide = file.name("guide");
-        let rod_length = self.length(file, "rod_length", rod, lengths)?;
+        let rod_length = file.length("rod_length", rod, lengths)?;
         // Behind all places of the slider, so that its distance from there is its way.
         let back = 2.0 * it.stroke + rod;
         let begin = centre - it.direction.scale(back);
         file.frame_point(&from, begin)?;
         file.frame_point(&to, centre + it.direction.scale(back))?;
-        self.distance(file, &rod_link, [self.point(), &end], &rod_length)?;
+        file.distance(&rod_link, [self.point(), &end], &rod_length)?;
         file.add("links", &output, &format!("{{ {} = [0, 0] }}", key(&end)))?;
         let joint = format!(
             "{{ slider = {}, at = {}, on = {} }}",
@@ -239,7 +245,7 @@ impl<'a> Writing<'a> {
         let slot = file.name("slot");
         file.frame_point(&pivot, it.pivot)?;
         let length = file.pen.exact(it.slot[1], Dimension::LENGTH);
-        self.distance(file, &output, [&pivot, &end], &length)?;
+        file.distance(&output, [&pivot, &end], &length)?;
         let joint = format!(
             "{{ pin = {}, on = {} }}",
             text_value(self.point()),
@@ -260,36 +266,5 @@ impl<'a> Writing<'a> {
     fn start(&self) -> C {
         let start = self.asked.start.points.get(self.asked.task.point.index());
         start.map_or(C::new(f64::NAN, f64::NAN), |[x, y]| C::new(*x, *y))
-    }
-
-    /// A length as a parameter of the file.
-    fn length(
-        &self,
-        file: &mut Extended<'_>,
-        name: &str,
-        length: f64,
-        lengths: &mut Vec<(String, f64)>,
-    ) -> Result<String, Box<Diagnostic>> {
-        let name = file.name(name);
-        let text = text_value(&file.pen.exact(length, Dimension::LENGTH));
-        file.add("parameters", &name, &text)?;
-        lengths.push((name.clone(), length));
-        Ok(name)
-    }
-
-    /// A link of two points.
-    fn distance(
-        &self,
-        file: &mut Extended<'_>,
-        link: &str,
-        [a, b]: [&str; 2],
-        length: &str,
-    ) -> Result<(), Box<Diagnostic>> {
-        let key = key(&format!("{a}-{b}"));
-        file.add(
-            "links",
-            link,
-            &format!("{{ {key} = {} }}", text_value(length)),
-        )
     }
 }
