@@ -506,7 +506,7 @@ pub(crate) static SWITCH: Kind = kind("switch", "switch",
 /// The kinds of studies.
 pub(crate) static STUDIES: [&Kind; 8 + synthesis::TASKS.len()] = [
     &MOTION, &FORCES, &BALANCE, &SPRING_STUDY, &SIMULATE, &clearance::STUDY, &VIBRATIONS, &adjust::STUDY,
-    synthesis::TASKS[0], synthesis::TASKS[1], synthesis::TASKS[2], synthesis::TASKS[3], synthesis::TASKS[4], synthesis::TASKS[5],
+    synthesis::TASKS[0], synthesis::TASKS[1], synthesis::TASKS[2], synthesis::TASKS[3], synthesis::TASKS[4], synthesis::TASKS[5], synthesis::TASKS[6],
 ];
 
 const STUDY_KINDS: T = T::Words(&["motion", "forces", "balance", "spring", "simulate", "clearance", "vibrations", "adjust", "synthesize"]);

@@ -5,7 +5,7 @@ mod beside;
 
 use beside::{HEAD, SYMMETRIC, code, column, found, moved, random_bar, tried};
 use kempe_number::Random;
-use kempe_study::StudyResult;
+use kempe_study::{FoundDesign, StudyResult};
 
 fn asked(more: &str) -> String {
     format!("\n[studies.s]\nkind = \"synthesize\"\ntask = \"cognates\"\npoint = \"P\"\n{more}\n")
@@ -49,28 +49,30 @@ fn off(places: &[[f64; 2]], way: &[[f64; 2]]) -> f64 {
     places.iter().map(nearest).fold(0.0, f64::max)
 }
 
-/// A length that the files found name, of each, mm.
+/// The way of the point in each file found, mm.
 fn places(result: &StudyResult) -> Vec<Vec<[f64; 2]>> {
     let designs = result.designs.iter();
     let own = designs.map(|design| {
-        let text = design
-            .file
-            .toml
-            .replace("plot = [\"path(P)\"]", "columns = [\"x(P)\", \"y(P)\"]");
-        assert!(text.contains("columns"), "{text}");
-        way_of(&text)
+        let own = with_columns(design, &["x(P)", "y(P)"]);
+        assert!(own.diagnostics.is_empty(), "{:?}", own.diagnostics);
+        let (x, y) = (column(&own, "x(P)"), column(&own, "y(P)"));
+        x.into_iter().zip(y).map(|(x, y)| [x, y]).collect()
     });
     own.collect()
 }
 
-fn way_of(text: &str) -> Vec<[f64; 2]> {
-    let own = moved(&kempe_model::ModelFile {
-        toml: text.to_owned(),
-        tables: kempe_model::Tables::default(),
-    });
-    assert!(own.diagnostics.is_empty(), "{:?}", own.diagnostics);
-    let (x, y) = (column(&own, "x(P)"), column(&own, "y(P)"));
-    x.into_iter().zip(y).map(|(x, y)| [x, y]).collect()
+/// A file that was found, moved with other columns.
+fn with_columns(design: &FoundDesign, columns: &[&str]) -> StudyResult {
+    let mut file = design.file.clone();
+    let text = file
+        .toml
+        .replace("plot = [", &format!("columns = {columns:?}, plot = ["));
+    let line = file
+        .toml
+        .replace("\nplot = [", &format!("\ncolumns = {columns:?}\nplot = ["));
+    file.toml = if line == file.toml { text } else { line };
+    assert!(file.toml.contains("columns"), "{}", file.toml);
+    moved(&file)
 }
 
 /// How many bodies do not turn; all that are accepted do not, and their far end goes as the point does.
@@ -78,14 +80,7 @@ fn assert_parallel(result: &StudyResult) -> usize {
     let turn = column(result, "turn");
     for (design, turn) in result.designs.iter().zip(&turn) {
         assert!(turn.abs() < 1e-7, "{turn}");
-        let text = design.file.toml.replace(
-            "plot = [",
-            "columns = [\"x(P)\", \"y(P)\", \"x(F)\", \"y(F)\"], plot = [",
-        );
-        let own = moved(&kempe_model::ModelFile {
-            toml: text,
-            tables: design.file.tables.clone(),
-        });
+        let own = with_columns(design, &["x(P)", "y(P)", "x(F)", "y(F)"]);
         for axis in ["x", "y"] {
             let [p, f] = ["P", "F"].map(|point| column(&own, &format!("{axis}({point})")));
             let apart: Vec<f64> = p.iter().zip(&f).map(|(p, f)| f - p).collect();
@@ -108,13 +103,13 @@ fn hoekens_line_has_chebyshevs_for_a_cognate() {
     let [crank, coupler, rocker, ground] =
         ["crank_length", "coupler_length", "rocker_length", "ground"]
             .map(|name| column(&result, name));
-    // The cognate whose crank turns is Hoeken's again, half as large as the third, which is Chebyshev's.
+    // The cognate whose crank turns is Hoeken's again, from the other side; the third is Chebyshev's, which does not turn.
     assert_eq!(crank.len(), 1, "{:?}", result.listings);
     for (length, wanted) in [
-        (crank[0], 40.0),
-        (coupler[0], 100.0),
-        (rocker[0], 100.0),
-        (ground[0], 80.0),
+        (crank[0], 20.0),
+        (coupler[0], 50.0),
+        (rocker[0], 50.0),
+        (ground[0], 40.0),
     ] {
         assert!((length - wanted).abs() < 1e-9, "{length} {wanted}");
     }
@@ -125,6 +120,10 @@ fn hoekens_line_has_chebyshevs_for_a_cognate() {
     }
     let rejected = &result.listings.last().expect("a list").rows;
     assert_eq!(rejected.len(), 3, "{rejected:?}");
+    assert!(
+        rejected[0][0].contains("ground 80 mm, crank 100 mm, coupler 40 mm, rocker 100 mm"),
+        "{rejected:?}"
+    );
 }
 
 #[test]
@@ -248,7 +247,7 @@ fn bad_requests_say_what_is_wrong() {
     };
     assert_eq!(code(&with(SYMMETRIC, "D")), "bad-choice");
     assert_eq!(code(&with(SYMMETRIC, "C")), "bad-choice");
-    assert_eq!(code(&with(SYMMETRIC, "X")), "unknown-point");
+    assert_eq!(code(&with(SYMMETRIC, "X")), "unknown-name");
     let slider = r#"[links]
 frame  = { A = [0, 0], E = [0, -5], F = [100, -5] }
 crank  = { A-B = 20 }
@@ -264,6 +263,6 @@ C = { near = [80, -5] }
     assert_eq!(code(&with(slider, "P")), "bad-choice");
     let told = tried(&with(slider, "P")).expect_err("no four-bar");
     assert!(told[0].message.contains("coupler"), "{}", told[0].message);
-    let beyond = SYMMETRIC.replace("D = [120, 0]", "D = [220, 0]");
+    let beyond = SYMMETRIC.replace("D = [120, 0]", "D = [300, 0]");
     assert_eq!(code(&with(&beyond, "P")), "not-reached");
 }

@@ -3,7 +3,8 @@
 #[path = "support/beside.rs"]
 mod beside;
 
-use beside::{HEAD, SYMMETRIC, code, column, found, moved, random_bar, tried};
+use beside::{HEAD, SYMMETRIC, code, column, found, moved, random_bar};
+use kempe_model::Model;
 use kempe_number::Random;
 use kempe_study::StudyResult;
 

@@ -35,7 +35,6 @@ pub(super) fn candidates(
 struct FourBar<'a> {
     model: &'a Model,
     task: &'a CognatesTask,
-    coupler: LinkId,
     /// The links between coupler and frame, with their fixed and moving pivots.
     dyads: [Dyad; 2],
 }
@@ -95,7 +94,6 @@ impl<'a> FourBar<'a> {
             return Ok(Self {
                 model,
                 task,
-                coupler: *coupler,
                 dyads: [first, second],
             });
         }
@@ -170,7 +168,7 @@ impl<'a> FourBar<'a> {
     }
 
     /// Bodies that go along the way without turning, one for each of the four-bar's links on the frame.
-    fn parallel(&self, mut way: PointWay) -> Result<Found, Box<Diagnostic>> {
+    fn parallel(&self, way: PointWay) -> Result<Found, Box<Diagnostic>> {
         let mut found = Found {
             searched: format!(
                 "a link with a third pivot, and a rod from there to the body at `{}`",

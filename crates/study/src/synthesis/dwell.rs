@@ -73,10 +73,12 @@ pub(super) fn candidates(
     };
     let no_way = || lost(point, &task.spans[0]);
     let places = way.places(STEPS).ok_or_else(no_way)?;
+    let parameters = model.parameter_values::<f64>();
     let dwell: f64 = value(&task.dwell, &parameters);
     if !(dwell < range[1] - range[0]) {
         let units = Units::of(model);
-        let [dwell, goes] = [dwell, range[1] - range[0]].map(|x| units.text(x, drive.dimension));
+        let coordinate = model.drives[task.drive.index()].dimension;
+        let [dwell, goes] = [dwell, range[1] - range[0]].map(|x| units.text(x, coordinate));
         let message = format!("a rest of {dwell} is all of the drive's range of {goes}, or more");
         let error = Diagnostic::error("data-out-of-range", message);
         return Err(Box::new(
