@@ -1,4 +1,4 @@
-//! Other programs on the benchmarks of `kempe-simulate`, where they can be installed: `crates/simulate/benches/peers`.
+//! Other programs on benchmarks of simulation and of synthesis, where they can be installed: `benches/peers` of these crates.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -10,46 +10,89 @@ use crate::work_precision::{read, table};
 /// Names under which Python is installed; the variable `PYTHON` says another.
 const PYTHONS: [&str; 2] = ["python3", "python"];
 
-/// Numeric libraries of the peers keep to the one thread that Kempe's simulations take.
+/// Numeric libraries of the peers keep to one thread, as Kempe's simulations do.
 const ONE_THREAD: [(&str, &str); 3] = [
     ("OMP_NUM_THREADS", "1"),
     ("OPENBLAS_NUM_THREADS", "1"),
     ("MKL_NUM_THREADS", "1"),
 ];
 
-/// Kempe's runs of the benchmarks in time, those of the peers, and what the same error costs each. Where no peer can be installed,
+/// A benchmark that has peers beside it.
+struct Benchmark {
+    /// The package `kempe-NAME`, in the folder `crates/NAME`; its benchmark, which leaves its own runs in `NAME.csv` of cargo's folder.
+    name: &'static str,
+    /// What the peers are given: a file beside the benchmark, or one that it leaves.
+    input: Input,
+}
+
+enum Input {
+    Kept(&'static str),
+    Left(&'static str),
+}
+
+const BENCHMARKS: [Benchmark; 2] = [
+    Benchmark {
+        name: "simulate",
+        input: Input::Kept("known.csv"),
+    },
+    Benchmark {
+        name: "synthesis",
+        input: Input::Left("synthesis-problems.txt"),
+    },
+];
+
+/// Kempe's runs of the benchmarks, or of those named, those of the peers, and what the same error costs each. Where no peer can be installed,
 /// this is told, and Kempe's runs stand alone.
 ///
 /// # Errors
 ///
 /// What failed.
-pub fn peers() -> Result<(), String> {
-    cargo(
-        &["bench", "-p", "kempe-simulate", "--bench", "simulate"],
-        &[],
-    )?;
-    beside()
+pub fn peers(names: &[&str]) -> Result<(), String> {
+    if let Some(name) = names
+        .iter()
+        .find(|name| BENCHMARKS.iter().all(|b| b.name != **name))
+    {
+        let known = BENCHMARKS.map(|b| b.name).join(", ");
+        return Err(format!("no peers of `{name}`; there are those of {known}"));
+    }
+    let wanted = |name: &str| names.is_empty() || names.contains(&name);
+    for Benchmark { name, .. } in BENCHMARKS.iter().filter(|b| wanted(b.name)) {
+        let package = format!("kempe-{name}");
+        cargo(&["bench", "-p", &package, "--bench", name], &[])?;
+    }
+    let mut all = BENCHMARKS.iter().filter(|b| wanted(b.name));
+    all.try_for_each(beside_one)
 }
 
-/// The peers beside the runs that the benchmarks of `kempe-simulate` left last.
+/// The peers beside the runs that the benchmarks left last.
 ///
 /// # Errors
 ///
 /// What failed.
 pub fn beside() -> Result<(), String> {
-    let folder = root().join("crates/simulate/benches");
-    let own = target_folder().join("tmp/simulate.csv");
-    let theirs = target_folder().join("tmp/peers.csv");
+    BENCHMARKS.iter().try_for_each(beside_one)
+}
+
+fn beside_one(benchmark: &Benchmark) -> Result<(), String> {
+    let name = benchmark.name;
+    let folder = root().join(format!("crates/{name}/benches"));
+    let left = target_folder().join("tmp");
+    let own = left.join(format!("{name}.csv"));
+    let theirs = left.join(format!("{name}-peers.csv"));
     let python = match environment(&folder.join("peers/requirements.txt")) {
         Ok(python) => python,
         Err(reason) => {
-            println!("\npeers are left out: {reason}");
+            println!("\npeers of {name} are left out: {reason}");
             return Ok(());
         }
     };
     let mut command = Command::new(python);
     command.arg("-B").arg(folder.join("peers/peers.py"));
-    command.arg(folder.join("known.csv")).arg(&theirs);
+    command.arg(match benchmark.input {
+        Input::Kept(file) => folder.join(file),
+        Input::Left(file) => left.join(file),
+    });
+    command.arg(&theirs);
     run(command.envs(ONE_THREAD), "python peers.py")?;
     let mut runs = read(&text(&own)?)?;
     runs.extend(read(&text(&theirs)?)?);
