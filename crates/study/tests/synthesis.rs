@@ -474,3 +474,59 @@ fn hostile_numbers_do_no_harm() {
         }
     }
 }
+
+/// A crank that is said to turn all around does, and no other.
+#[test]
+fn cranks_turn_fully_where_it_is_said() {
+    let mut random = Random(17);
+    let mut seen = [[0; 2]; 3];
+    let kinds = ["four-bar", "slider-crank", "inverted slider-crank"];
+    for k in 0..120 {
+        let mut between = |a: f64, b: f64| a + (b - a) * random.uniform();
+        let kind = k % 3;
+        let mut outputs = [
+            between(20.0, 160.0),
+            between(20.0, 160.0),
+            between(20.0, 160.0),
+        ];
+        outputs.sort_by(f64::total_cmp);
+        let count = if kind == 2 { 2 } else { 3 };
+        let first = between(0.0, 90.0);
+        let pairs: Vec<String> = (outputs.iter().take(count).enumerate())
+            .map(|(k, output)| match kind {
+                1 => format!("[{}, '{output} mm']", first + 40.0 * k as f64),
+                _ => format!("[{}, {output}]", first + 40.0 * k as f64),
+            })
+            .collect();
+        let ground = if kind == 1 { "" } else { "ground = '50 mm'" };
+        let text = text(&format!(
+            "task = 'function'\nlinkage = '{}'\n{ground}\npairs = [{}]\ncolumns = ['full_turn']\n",
+            kinds[kind],
+            pairs.join(", ")
+        ));
+        let asked = model(&text);
+        let Ok(result) = run(&asked, &asked.studies[0], &mut Silent) else {
+            continue;
+        };
+        for (row, design) in result.designs.iter().enumerate() {
+            let full = column(&result, "full_turn")[row];
+            let line = design.file.toml.lines().find(|l| l.starts_with("motor = "));
+            let from = line.and_then(|l| l.split("from = \"").nth(1)?.split(' ').next());
+            let from: f64 = from.expect("a start").parse().expect("a number");
+            let around = design.file.toml.replace(
+                line.expect("a drive"),
+                &format!(
+                    "motor = {{ turns = \"crank\", from = \"{from} deg\", to = \"{} deg\", speed = \"1 rad/s\" }}",
+                    from + 360.0
+                ),
+            );
+            let read = Model::from_toml(&around, "", &mut |_| Err(String::new()));
+            let moved = read.expect("a file").model;
+            let moved = run(&moved, &moved.studies[0], &mut Silent);
+            let turns = moved.is_ok_and(|moved| moved.table.unreached() == 0);
+            assert_eq!(turns, full >= 0.0, "{full}\n{around}");
+            seen[kind][usize::from(turns)] += 1;
+        }
+    }
+    assert!(seen.iter().flatten().all(|count| *count > 0), "{seen:?}");
+}

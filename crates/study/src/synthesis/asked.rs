@@ -129,7 +129,8 @@ fn parameters(
         .into_iter()
         .map(|(name, _)| name.to_owned());
     let more = sample.parameters.iter().map(|(name, _)| name.clone());
-    let own: Vec<String> = own.chain(more).chain(["link_ratio".to_owned()]).collect();
+    let formulas = ["link_ratio", "grashof", "full_turn"].map(str::to_owned);
+    let own: Vec<String> = own.chain(more).chain(formulas).collect();
     let named = request
         .parameters
         .iter()

@@ -70,7 +70,7 @@ impl Candidate {
     /// Its own parameters and links by their names in its file, for questions that name something else.
     pub fn names(&self) -> String {
         match self {
-            Self::Linkage(_) => "points A to D (P, where one is guided), links `crank`, `coupler` and `rocker` (or `slider`, `lever`), the drive `motor`, and the measures `transmission_angle` and `link_ratio`".to_owned(),
+            Self::Linkage(_) => "points A to D (P, where one is guided), links `crank`, `coupler` and `rocker` (or `slider`, `lever`), the drive `motor`, and the measures `transmission_angle`, `link_ratio`, `full_turn` and, of four-bars, `grashof`".to_owned(),
             Self::Beside(it) => format!("all that this file names, and {}", it.names),
         }
     }

@@ -132,6 +132,15 @@ impl Pen {
                 "link_ratio",
                 "max(ground, crank_length, coupler_length, rocker_length) / min(ground, crank_length, coupler_length, rocker_length)",
             )
+            .parameter(
+                "grashof",
+                "ground + crank_length + coupler_length + rocker_length - 2 * (max(ground, crank_length, coupler_length, rocker_length) + min(ground, crank_length, coupler_length, rocker_length))",
+            )
+            // Where crank and frame are stretched out and where they are folded the other two links must still meet.
+            .parameter(
+                "full_turn",
+                "min(coupler_length + rocker_length - ground - crank_length, abs(ground - crank_length) - abs(coupler_length - rocker_length))",
+            )
             .link("frame", frame)
             .link("crank", link().distance("A", "B", "crank_length"))
             .link("coupler", self.coupler(candidate, bar.moving))
@@ -165,6 +174,7 @@ impl Pen {
                 "link_ratio",
                 "max(crank_length, coupler_length) / min(crank_length, coupler_length)",
             )
+            .parameter("full_turn", "coupler_length - crank_length - abs(offset)")
             .link(
                 "frame",
                 link()
@@ -215,6 +225,7 @@ impl Pen {
                 "link_ratio",
                 "max(ground, crank_length) / min(ground, crank_length)",
             )
+            .parameter("full_turn", "abs(ground - crank_length) - abs(offset)")
             .link("frame", frame)
             .link("crank", link().distance("A", "B", "crank_length"))
             .link("lever", lever)
