@@ -3,7 +3,7 @@
 #[path = "support/beside.rs"]
 mod beside;
 
-use beside::{HEAD, SYMMETRIC, code, column, found, moved, random_bar};
+use beside::{HEAD, SYMMETRIC, code, column, found, moved, random_bar, tried};
 use kempe_model::Model;
 use kempe_number::Random;
 use kempe_study::StudyResult;
@@ -286,4 +286,21 @@ fn bad_requests_say_what_is_wrong() {
     );
     let text = format!("{HEAD}{}", asked("point = \"P\"\ndwell = 60"));
     assert_eq!(code(&text), "missing-key");
+}
+
+/// What is joined to a pin may leave a measure of the file without its meaning: it is told which.
+#[test]
+fn a_measure_that_loses_its_meaning_is_named() {
+    let watt = include_str!("../../../examples/gallery/watt-i.toml");
+    let text = format!("{watt}{}", asked("point = \"F\"\ndwell = 60"));
+    let told = tried(&text).expect_err("three links meet at F");
+    assert_eq!(told[0].code, "ambiguous-transmission");
+    let line = "where it says `gamma_f = \"transmission_angle(F)\"`";
+    assert!(
+        told[0].notes.iter().any(|note| note == line),
+        "{:?}",
+        told[0].notes
+    );
+    let named = text.replace("transmission_angle(F)", "transmission_angle(F, E, G)");
+    assert!(!found(&named).designs.is_empty());
 }

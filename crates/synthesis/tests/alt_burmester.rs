@@ -103,6 +103,12 @@ fn nine_points_of_a_four_bar_give_it_back() {
 }
 
 #[test]
+#[ignore = "minutes: cargo nextest run -p kempe-synthesis --run-ignored only --no-capture"]
+fn nine_points_of_two_hundred_four_bars_give_them_back() {
+    round_trip(0, 1..201);
+}
+
+#[test]
 fn poses_and_points_of_a_four_bar_give_it_back() {
     round_trip(1, 11..13);
     round_trip(2, 21..26);

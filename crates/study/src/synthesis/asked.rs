@@ -34,7 +34,7 @@ impl<'a> Questions<'a> {
         let file = sample.file(&request.title, &questions);
         let linkage = match read(&file) {
             Ok(model) => model,
-            Err(wrong) => return Err(not_a_file(wrong, sample)),
+            Err(wrong) => return Err(not_a_file(wrong, sample, &file)),
         };
         let placed = |d: Diagnostic, asked: &Asked| placed(d, asked, sample);
         let mut told = Vec::new();
@@ -87,9 +87,18 @@ fn needs_forces(asked: &Asked) -> Diagnostic {
 }
 
 /// A linkage's file that cannot be read: only what the request adds to it can be wrong with it, or what is joined to the request's own links.
-fn not_a_file(diagnostics: Vec<Diagnostic>, sample: &Candidate) -> Vec<Diagnostic> {
+fn not_a_file(
+    diagnostics: Vec<Diagnostic>,
+    sample: &Candidate,
+    file: &ModelFile,
+) -> Vec<Diagnostic> {
     let told = diagnostics.into_iter().map(|mut d| {
-        d.labels.clear();
+        let labels = std::mem::take(&mut d.labels);
+        let line = labels.first().and_then(|label| line_at(&file.toml, label.span.start));
+        let d = match line {
+            Some(line) => d.note(format!("where it says `{line}`")),
+            None => d,
+        };
         match sample {
             Candidate::Linkage(_) => d
                 .note("in the file of a linkage that was found")
@@ -101,6 +110,13 @@ fn not_a_file(diagnostics: Vec<Diagnostic>, sample: &Candidate) -> Vec<Diagnosti
         }
     });
     told.collect()
+}
+
+/// The line of a text that holds a place, without what stands around it.
+fn line_at(text: &str, at: usize) -> Option<&str> {
+    let before = text.get(..at)?;
+    let start = before.rfind('\n').map_or(0, |end| end + 1);
+    text[start..].lines().next().map(str::trim)
 }
 
 /// A file that was made, read.
