@@ -7,14 +7,19 @@
 //!
 //! lies in the interior of U, then x0 + U holds exactly one solution, and it is regular (R. Krawczyk, Computing 4:187, 1969; S. M. Rump,
 //! Acta Numerica 19:287, 2010, theorem 13.2).
+//!
+//! Of two solutions a ten thousandth apart rounding of F(x0) alone, times Y, is wider than the box may be. Where the data are exact F(x0) is then taken with
+//! twice the digits, at an x0 of as many.
 
 use kempe_linear::{C, Lu};
 use kempe_number::{Complex, Interval, Number, math};
 
+use crate::double::Double;
 use crate::equations::{PIVOTS, Row, State, link};
 use crate::given::{Given, Kind, PLACES, TURNS};
 
 type Z = Complex<Interval>;
+type Fine = Complex<Double>;
 
 /// Real unknowns, at most.
 const UNKNOWNS: usize = 8 + 2 * PLACES;
@@ -29,6 +34,12 @@ const ROUNDING: f64 = 4e-15;
 /// Sums of a few dozen non-negative numbers are too small by less than this part.
 const SUMMED: f64 = 1.0 + 1e-12;
 
+/// More than rounding takes from an equation in numbers of twice the digits, beside the sum of the sizes of its terms: each of some thirty operations on
+/// parts of complex numbers takes less than 2^-103.
+const FINE_ROUNDING: f64 = 5e-29;
+/// Corrections of a solution that is looked at with twice the digits.
+const CORRECTIONS: usize = 3;
+
 /// A linkage is near a proved one by this part of its size: far below what lies between linkages that an engineer would tell apart.
 const NEAR: f64 = 1e-8;
 
@@ -38,7 +49,15 @@ pub struct Bounds {
     kind: Kind,
     place: [Z; PLACES],
     turn: [Z; TURNS],
+    /// The places where they are exactly known, and no poses are given.
+    exact: Option<[Fine; PLACES]>,
 }
+
+/// Equations and their Jacobian on a box.
+type Values = [Interval; UNKNOWNS];
+type Jacobian = [Values; UNKNOWNS];
+/// Row i of a matrix by columns: `[k][i]`.
+type Inverse = [[f64; UNKNOWNS]; UNKNOWNS];
 
 impl Bounds {
     /// Bounds of data that are what they are.
@@ -51,6 +70,21 @@ impl Bounds {
             },
             |k| Interval::from_f64(given.log_turn[k].im),
         )
+        .with_exact(|k| [given.place[k].re, given.place[k].im].map(|x| [x, 0.0]))
+    }
+
+    /// With places (x and y) that are exactly sums of two numbers each, the second no more than rounding of the first. Where poses are given this
+    /// changes nothing: their turns have no end of digits.
+    pub fn with_exact(self, place: impl Fn(usize) -> [[f64; 2]; 2]) -> Self {
+        let sum = |[high, low]: [f64; 2]| Double { high, low };
+        let places = self.kind.places();
+        let exact = (self.kind.turns() == 0).then(|| {
+            std::array::from_fn(|k| {
+                let [x, y] = if k < places { place(k) } else { [[0.0; 2]; 2] };
+                Fine::new(sum(x), sum(y))
+            })
+        });
+        Self { exact, ..self }
     }
 
     /// Bounds of places less the first, and of angles (rad) of poses after the first, by their numbers.
@@ -64,6 +98,7 @@ impl Bounds {
             kind,
             place: [nothing; PLACES],
             turn: [nothing; TURNS],
+            exact: None,
         };
         for (k, bound) in bounds.place[..kind.places()].iter_mut().enumerate() {
             *bound = place(k);
@@ -77,20 +112,58 @@ impl Bounds {
 
     /// Proves a real solution near a state; `None` where that does not succeed, mostly because the solution is singular or nearly so.
     pub fn certify(&self, state: &State) -> Option<Proved> {
-        let n = self.kind.unknowns();
         let middle = real_unknowns(self.kind, state);
-        let point = middle.map(Interval::from_f64);
-        let (value, jacobian) = self.evaluate(&point);
+        let (value, jacobian) = self.evaluate(&middle.map(Interval::from_f64));
+        let inverse = self.inverse(&jacobian)?;
+        let nothing = [0.0; UNKNOWNS];
+        let proved = self.prove(&inverse, [&middle, &nothing], &value);
+        proved.or_else(|| self.certify_finely(&inverse, &middle))
+    }
+
+    /// The same with twice the digits, where the data have no bounds but themselves.
+    fn certify_finely(&self, inverse: &Inverse, middle: &[f64; UNKNOWNS]) -> Option<Proved> {
+        let places = self.exact.as_ref()?;
+        let n = self.kind.unknowns();
+        let mut at = middle.map(|high| Double { high, low: 0.0 });
+        let mut value = fine_values(places, &at);
+        for _ in 0..CORRECTIONS {
+            for i in 0..n {
+                let step = (0..n).fold(0.0, |sum, k| sum + inverse[k][i] * value[k].0.high);
+                at[i] -= Double {
+                    high: step,
+                    low: 0.0,
+                };
+            }
+            value = fine_values(places, &at);
+        }
+        let bounds = value.map(|(v, off)| Interval::around(v.high, (v.low.abs() + off) * SUMMED));
+        let parts = [at.map(|x| x.high), at.map(|x| x.low)];
+        self.prove(inverse, parts.each_ref(), &bounds)
+    }
+
+    /// An approximate inverse of the middle of a Jacobian.
+    fn inverse(&self, jacobian: &Jacobian) -> Option<Inverse> {
+        let n = self.kind.unknowns();
         let mut lu = Lu::new(n);
         if !lu.factor(|i, j| jacobian[i][j].midpoint()) {
             return None;
         }
-        // Row i of the inverse by columns: `inverse[k][i]`.
         let mut inverse = [[0.0; UNKNOWNS]; UNKNOWNS];
         for (k, column) in inverse[..n].iter_mut().enumerate() {
             column[k] = 1.0;
             lu.solve(&mut column[..n]);
         }
+        Some(inverse)
+    }
+
+    /// Krawczyk's operator about a point, the sum of two parts, where the equations have values within bounds.
+    fn prove(
+        &self,
+        inverse: &Inverse,
+        [middle, rest]: [&[f64; UNKNOWNS]; 2],
+        value: &Values,
+    ) -> Option<Proved> {
+        let n = self.kind.unknowns();
         let mut image = [Interval::from_f64(0.0); UNKNOWNS];
         for (k, column) in inverse[..n].iter().enumerate() {
             for i in 0..n {
@@ -101,13 +174,13 @@ impl Bounds {
         for i in 0..n {
             radius[i] = INFLATION * image[i].mag() + SMALLEST * (1.0 + middle[i].abs());
         }
+        let mut reach = [Interval::from_f64(0.0); UNKNOWNS];
         for _ in 0..INFLATIONS {
-            let mut reach = point;
             for i in 0..n {
-                reach[i] = Interval::around(middle[i], radius[i]);
+                reach[i] = Interval::around(middle[i], (radius[i] + rest[i].abs()).next_up());
             }
             let (_, jacobian) = self.evaluate(&reach);
-            let spread = deviation(&inverse, &jacobian, &radius, n);
+            let spread = deviation(inverse, &jacobian, &radius, n);
             let width: [f64; UNKNOWNS] =
                 std::array::from_fn(|i| (image[i].mag() + spread[i]) * SUMMED);
             // NaN is inside nothing.
@@ -125,10 +198,7 @@ impl Bounds {
     }
 
     /// The equations and their Jacobian on a box.
-    fn evaluate(
-        &self,
-        u: &[Interval; UNKNOWNS],
-    ) -> ([Interval; UNKNOWNS], [[Interval; UNKNOWNS]; UNKNOWNS]) {
+    fn evaluate(&self, u: &Values) -> (Values, Jacobian) {
         let zero = Interval::from_f64(0.0);
         let mut value = [zero; UNKNOWNS];
         let mut jacobian = [[zero; UNKNOWNS]; UNKNOWNS];
@@ -174,10 +244,40 @@ impl Bounds {
     }
 }
 
+/// The equations of nine points with twice the digits, each with a bound of what rounding takes from it.
+fn fine_values(places: &[Fine; PLACES], u: &[Double; UNKNOWNS]) -> [(Double, f64); UNKNOWNS] {
+    let zero = Double {
+        high: 0.0,
+        low: 0.0,
+    };
+    let at = |k: usize| Fine::new(u[2 * k], u[2 * k + 1]);
+    let size = |z: &Fine| z.re.high.abs() + z.im.high.abs();
+    let mut values = [(zero, 0.0); UNKNOWNS];
+    for (j, place) in places.iter().enumerate() {
+        let turn = at(4 + j);
+        let (d, g) = (size(place), size(&turn));
+        for side in 0..2 {
+            let (x, a) = (at(2 * side), at(2 * side + 1));
+            let row: Row<Double> = link(
+                [x, a, x.conj(), a.conj()],
+                [turn, turn.conj()],
+                [*place, place.conj()],
+                [Fine::zero(); 2],
+            );
+            let (of_x, of_a) = (size(&x), size(&a));
+            let terms = 2.0 * ((of_a + d) * of_x * g + (of_a + of_x + d) * d);
+            values[3 * j + side] = (row.right[0].re, FINE_ROUNDING * terms);
+        }
+        let unit = turn.norm_sqr() + turn.re * 2.0;
+        values[3 * j + 2] = (unit, FINE_ROUNDING * (g * g + 2.0 * g));
+    }
+    values
+}
+
 /// Bounds of |I - Y J| r, with J by its middle and half width, and what rounding takes from the product added.
 fn deviation(
-    inverse: &[[f64; UNKNOWNS]; UNKNOWNS],
-    jacobian: &[[Interval; UNKNOWNS]; UNKNOWNS],
+    inverse: &Inverse,
+    jacobian: &Jacobian,
     radius: &[f64; UNKNOWNS],
     n: usize,
 ) -> [f64; UNKNOWNS] {

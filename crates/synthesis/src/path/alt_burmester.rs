@@ -220,10 +220,16 @@ impl<'a> Task<'a> {
             let apart = bound(place) - bound(first.origin);
             Complex::new(apart.re / exactly(unit), apart.im / exactly(unit))
         };
+        // Differences of points as sums of two numbers, exactly, and so in a unit that is a power of two.
+        let exactly_apart = |k: usize| {
+            let point = further.get(k).copied().unwrap_or(first.origin);
+            let pairs = [(point.re, first.origin.re), (point.im, first.origin.im)];
+            pairs.map(|(a, b)| difference(a, b).map(|part| part / unit))
+        };
         let of_angle = |k: usize| exactly(turned[k].angle) - exactly(first.angle);
         Ok(Self {
             given,
-            bounds: Bounds::within(kind, of_place, of_angle),
+            bounds: Bounds::within(kind, of_place, of_angle).with_exact(exactly_apart),
             poses,
             points,
             first,
@@ -288,6 +294,13 @@ impl<'a> Task<'a> {
             certified,
         })
     }
+}
+
+/// A difference and what rounding took from it (D. E. Knuth).
+fn difference(a: f64, b: f64) -> [f64; 2] {
+    let apart = a - b;
+    let of_b = apart - a;
+    [apart, (a - (apart - of_b)) - (b + of_b)]
 }
 
 /// A number as it is.
