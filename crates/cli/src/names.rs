@@ -13,9 +13,8 @@ pub fn picture(model: &Model, study: &str, picture: &str) -> String {
         let start = format!("{}-", other.to_lowercase());
         other.len() > study.len() && name.starts_with(&start)
     };
-    let known = model.studies.iter().map(|s| s.name.as_str());
-    let skipped = model.announced.iter().map(|s| s.name.as_str());
-    let mark = match known.chain(skipped).any(may_be_of) {
+    let mut known = model.studies.iter().map(|s| s.name.as_str());
+    let mark = match known.any(may_be_of) {
         true => '.',
         false => '-',
     };
@@ -37,8 +36,7 @@ pub fn of_other_design(name: &str) -> String {
 
 /// The name of the table that sets two designs beside each other: `comparison.csv`, unless that is the table of a study.
 pub fn comparison(model: &Model) -> &'static str {
-    let known = model.studies.iter().map(|s| s.name.as_str());
-    let mut names = known.chain(model.announced.iter().map(|s| s.name.as_str()));
+    let mut names = model.studies.iter().map(|s| s.name.as_str());
     match names.any(|name| name.to_lowercase() == "comparison") {
         true => "report.comparison.csv",
         false => "comparison.csv",

@@ -2,6 +2,7 @@
 
 pub(crate) mod clearance;
 pub(crate) mod adjust;
+pub(crate) mod designs;
 pub(crate) mod synthesis;
 
 use kempe_units::Dimension as D;
@@ -47,9 +48,6 @@ pub(crate) const LAWS: [(&str, RiseLaw); 4] = [
     (RiseLaw::ALL[2].name(), RiseLaw::ALL[2]),
     (RiseLaw::ALL[3].name(), RiseLaw::ALL[3]),
 ];
-
-/// Kinds of study of the language that this version has not got.
-pub const ANNOUNCED_STUDIES: &[&str] = &["sweep", "tolerance", "optimize"];
 
 const fn words<W: Copy, const N: usize>(of: &[(&'static str, W); N]) -> [&'static str; N] {
     let mut words = [""; N];
@@ -504,12 +502,13 @@ pub(crate) static SWITCH: Kind = kind("switch", "switch",
     ]]);
 
 /// The kinds of studies.
-pub(crate) static STUDIES: [&Kind; 8 + synthesis::TASKS.len()] = [
+pub(crate) static STUDIES: [&Kind; 11 + synthesis::TASKS.len()] = [
     &MOTION, &FORCES, &BALANCE, &SPRING_STUDY, &SIMULATE, &clearance::STUDY, &VIBRATIONS, &adjust::STUDY,
+    &designs::SWEEP, &designs::TOLERANCE, &designs::OPTIMIZE,
     synthesis::TASKS[0], synthesis::TASKS[1], synthesis::TASKS[2], synthesis::TASKS[3], synthesis::TASKS[4], synthesis::TASKS[5], synthesis::TASKS[6],
 ];
 
-const STUDY_KINDS: T = T::Words(&["motion", "forces", "balance", "spring", "simulate", "clearance", "vibrations", "adjust", "synthesize"]);
+const STUDY_KINDS: T = T::Words(&["motion", "forces", "balance", "spring", "simulate", "clearance", "vibrations", "adjust", "sweep", "tolerance", "optimize", "synthesize"]);
 
 static OF_STUDIES: [Key; 3] = [
     must("kind", STUDY_KINDS, "\"motion\"", "What kind of study it is."),

@@ -88,6 +88,8 @@ pub enum Named {
     Drive,
     /// A spring.
     Spring,
+    /// A study.
+    Study,
     /// A file beside the model.
     File,
     /// A column of a file.
@@ -215,6 +217,7 @@ impl Named {
             Self::Parameter => "the name of a parameter",
             Self::Drive => "the name of a drive",
             Self::Spring => "the name of a spring",
+            Self::Study => "the name of a study",
             Self::File => "the name of a file beside the model",
             Self::Column => "the name of a column of the file",
         }

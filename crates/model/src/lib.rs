@@ -8,6 +8,7 @@ mod codes;
 mod complete;
 mod contact;
 mod decimal;
+mod designs;
 mod diagnostic;
 mod document;
 mod drawing;
@@ -56,6 +57,7 @@ pub use clearance::*;
 pub use codes::{CODES, Code, LATER_CODES};
 pub use complete::{Completion, CompletionKind, complete};
 pub use contact::*;
+pub use designs::*;
 pub use diagnostic::{Diagnostic, Label, Severity, Source};
 pub use drawing::{Drawing, DrawnPlace, StartsElsewhere};
 pub use drive::*;
@@ -91,6 +93,6 @@ pub use write::ModelFile;
 /// The words of the model file as data: every section, kind of entry and key, with what it takes, an example and a sentence.
 pub mod language {
     pub use crate::help::{help, visit_keys};
-    pub use crate::key_table::{ANNOUNCED_STUDIES, FILE};
+    pub use crate::key_table::FILE;
     pub use crate::keys::{Key, Kind, Named, Need, Quantity, Sign, Takes};
 }

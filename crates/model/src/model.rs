@@ -13,7 +13,7 @@ use crate::hint::AssemblyHint;
 use crate::ids::{ParameterId, Scalar, Span};
 use crate::joint::Joint;
 use crate::link::{Link, Point};
-use crate::study::{AnnouncedStudy, NamedMeasure, Study};
+use crate::study::{NamedMeasure, Study};
 
 /// A mechanism with its drives, measures and studies.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,8 +44,6 @@ pub struct Model {
     pub measures: Vec<NamedMeasure>,
     /// Studies in file order.
     pub studies: Vec<Study>,
-    /// Studies that are skipped: this version has not got their kind.
-    pub announced: Vec<AnnouncedStudy>,
     /// What the file's values must keep to, whatever the parameters are set to.
     pub bounds: Vec<Bound>,
     /// How its [inner states](Model::inner_states) go in time, where a simulation has found that: none in a model that was read.

@@ -333,7 +333,8 @@ impl Finder<'_> {
                 }
             }
             [section, _, of, name]
-                if section == "studies" && ["deviations", "bounds"].contains(&of.as_str()) =>
+                if section == "studies"
+                    && ["deviations", "bounds", "vary"].contains(&of.as_str()) =>
             {
                 self.named_key(name, within(0, name), key);
             }
@@ -392,14 +393,17 @@ impl Finder<'_> {
             }
             return;
         };
-        if takes
-            .iter()
-            .any(|t| matches!(t, Takes::Name(Named::Spring)))
-        {
+        // Springs and studies have names of their own.
+        let own = takes.iter().find_map(|t| match t {
+            Takes::Name(Named::Spring) => Some(PartKind::Spring),
+            Takes::Name(Named::Study) => Some(PartKind::Study),
+            _ => None,
+        });
+        if let Some(kind) = own {
             let name = text.content.trim().to_owned();
             let from = text.content.len() - text.content.trim_start().len();
             let span = text.span(from..from + name.len());
-            self.push(Part::new(PartKind::Spring, name), span, &value.path, None);
+            self.push(Part::new(kind, name), span, &value.path, None);
             return;
         }
         let is_word =

@@ -13,6 +13,7 @@ mod column;
 mod context;
 mod controls;
 mod csv;
+mod designs;
 mod draft;
 mod drawn;
 mod drives;

@@ -1,6 +1,7 @@
 //! Whether two models are the same but for how and where they are written.
 
 use crate::contact::ContactStudy;
+use crate::designs::measures_of;
 use crate::drawing::Drawing;
 use crate::drive::LawPiece;
 use crate::hint::HintKind;
@@ -66,6 +67,12 @@ impl Model {
             }
             if let StudyKind::Synthesize(asked) = &mut study.kind {
                 asked.visit_places(&mut |span| *span = 0..0);
+            }
+            match &mut study.kind {
+                StudyKind::Sweep(asked) => asked.visit_places(&mut |span| *span = 0..0),
+                StudyKind::Tolerance(asked) => asked.visit_places(&mut |span| *span = 0..0),
+                StudyKind::Optimize(asked) => asked.visit_places(&mut |span| *span = 0..0),
+                _ => {}
             }
         }
         let acting = &mut self.actions;
@@ -216,6 +223,18 @@ impl Model {
                     study.visit_scalars(f);
                     &mut study.along
                 }
+                StudyKind::Sweep(study) => {
+                    study.visit_scalars(f);
+                    &mut study.over.asked
+                }
+                StudyKind::Tolerance(study) => {
+                    study.visit_scalars(f);
+                    &mut study.over.asked
+                }
+                StudyKind::Optimize(study) => {
+                    study.visit_scalars(f);
+                    &mut study.over.asked
+                }
             };
             match &mut along.rows {
                 Rows::DriveStep(step) | Rows::TimeStep(step) => f(step),
@@ -330,6 +349,17 @@ impl Model {
                     &mut study.along
                 }
                 StudyKind::Synthesize(study) => &mut study.along,
+                StudyKind::Sweep(study) => &mut study.over.asked,
+                StudyKind::Tolerance(study) => {
+                    measures_of(&mut study.limits).for_each(&mut *f);
+                    &mut study.over.asked
+                }
+                StudyKind::Optimize(study) => {
+                    let goals = study.goals.iter_mut();
+                    goals.for_each(|goal| f(&mut goal.number.measure));
+                    measures_of(&mut study.subject_to).for_each(&mut *f);
+                    &mut study.over.asked
+                }
             };
             let mut column = |c: &mut Column| f(&mut c.measure);
             along.columns.iter_mut().for_each(&mut column);

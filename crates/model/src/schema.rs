@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
-use crate::key_table::{ANNOUNCED_STUDIES, FILE, PIECE};
+use crate::key_table::{FILE, PIECE};
 use crate::keys::{Key, Kind, Need, Takes};
 
 /// The JSON schema (draft-07) of the model file.
@@ -43,10 +43,7 @@ pub fn schema() -> Value {
     define(PIECE.what, table(&PIECE));
     for section in FILE.keys() {
         if let Takes::Entries(kinds) = section.takes {
-            let mut kinds_read: Vec<Value> = kinds.iter().map(|kind| entry(kind)).collect();
-            if section.name == "studies" {
-                kinds_read.push(announced_studies());
-            }
+            let kinds_read: Vec<Value> = kinds.iter().map(|kind| entry(kind)).collect();
             let schema = match <[Value; 1]>::try_from(kinds_read) {
                 Ok([one]) => one,
                 Err(several) => json!({ "anyOf": several }),
@@ -76,15 +73,6 @@ fn reference(definition: &str) -> Value {
 fn definition_of(kinds: &[&Kind]) -> &'static str {
     let what = kinds.first().map_or("", |kind| kind.what);
     what.split(' ').next().unwrap_or(what)
-}
-
-fn announced_studies() -> Value {
-    json!({
-        "description": "Read by later versions.",
-        "type": "object",
-        "required": ["kind"],
-        "properties": { "kind": { "enum": ANNOUNCED_STUDIES } }
-    })
 }
 
 /// An entry of a kind: its table, or the value that may stand alone for it.

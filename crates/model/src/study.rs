@@ -5,6 +5,7 @@ use kempe_units::{Dimension, Expr};
 use crate::adjust::AdjustStudy;
 use crate::clearance::ClearanceStudy;
 use crate::contact::ContactStudy;
+use crate::designs::{OptimizeStudy, OverStudy, SweepStudy, ToleranceStudy};
 use crate::ids::{DriveId, JointId, LinkId, PointId, Scalar, Span};
 use crate::measure::{Leaf, Measure};
 use crate::synthesis::SynthesizeStudy;
@@ -22,16 +23,6 @@ pub struct NamedMeasure {
     pub needs_forces: bool,
     /// Where it stands in the file.
     pub span: Span,
-}
-
-/// A study of a kind that the language keeps for later versions.
-#[derive(Clone, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub struct AnnouncedStudy {
-    /// Name.
-    pub name: String,
-    /// Its kind, as in `kind = "sweep"`.
-    pub kind: String,
 }
 
 /// A question asked of the model.
@@ -66,6 +57,12 @@ pub enum StudyKind {
     Vibrations(VibrationStudy),
     /// Values of parameters with which it does what was measured.
     Adjust(Box<AdjustStudy>),
+    /// Another study for given values of parameters.
+    Sweep(Box<SweepStudy>),
+    /// What tolerances do to another study's numbers.
+    Tolerance(Box<ToleranceStudy>),
+    /// The design that does something best.
+    Optimize(Box<OptimizeStudy>),
     /// The linkages that do something: it needs no mechanism.
     Synthesize(Box<SynthesizeStudy>),
 }
@@ -248,6 +245,16 @@ pub struct SpringStudy {
 }
 
 impl StudyKind {
+    /// What a study of many designs runs for each of them.
+    pub fn over(&self) -> Option<&OverStudy> {
+        match self {
+            Self::Sweep(study) => Some(&study.over),
+            Self::Tolerance(study) => Some(&study.over),
+            Self::Optimize(study) => Some(&study.over),
+            _ => None,
+        }
+    }
+
     /// Rows, columns and plots of a study, whatever it asks.
     pub fn along(&self) -> &MotionStudy {
         match self {
@@ -259,6 +266,9 @@ impl StudyKind {
             Self::Contact(study) => &study.motion.along,
             Self::Vibrations(study) => &study.along,
             Self::Adjust(study) => &study.along,
+            Self::Sweep(study) => &study.over.asked,
+            Self::Tolerance(study) => &study.over.asked,
+            Self::Optimize(study) => &study.over.asked,
             Self::Synthesize(study) => &study.along,
         }
     }

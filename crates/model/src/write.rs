@@ -2,6 +2,7 @@
 
 mod actions;
 mod adjust;
+mod designs;
 mod laws;
 mod links;
 mod mechanism;

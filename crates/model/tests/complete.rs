@@ -184,6 +184,9 @@ fn names_where_names_are_wanted() {
             "clearance",
             "vibrations",
             "adjust",
+            "sweep",
+            "tolerance",
+            "optimize",
             "synthesize"
         ]
     );

@@ -7,7 +7,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use kempe_model::language::{ANNOUNCED_STUDIES, Takes, visit_keys};
+use kempe_model::language::{Takes, visit_keys};
 use kempe_model::{Diagnostic, Model, Registry, Severity};
 use kempe_units::{Builtin, Unit};
 
@@ -179,8 +179,7 @@ fn words() -> BTreeSet<String> {
         }
     }
     let measures = Registry::all().iter().map(|m| m.name);
-    let all = measures.chain(ANNOUNCED_STUDIES.iter().copied());
-    let mut all: BTreeSet<String> = all.map(str::to_owned).collect();
+    let mut all: BTreeSet<String> = measures.map(str::to_owned).collect();
     visit_keys(&mut |_, _, key| {
         all.insert(key.name.to_owned());
         choices(&key.takes, &mut all);

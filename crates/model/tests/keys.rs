@@ -92,6 +92,22 @@ fn entry(section: &str, kind: &Kind) -> (&'static str, Vec<(&'static str, &'stat
             ];
             ("x", base)
         }
+        ("studies", "sweep") => (
+            "x",
+            vec![("kind", "'sweep'"), ("vary", "{ area = ['1 mm^2'] }")],
+        ),
+        ("studies", "tolerance") => (
+            "x",
+            vec![("kind", "'tolerance'"), ("vary", "{ area = '1 mm^2' }")],
+        ),
+        ("studies", "optimize") => (
+            "x",
+            vec![
+                ("kind", "'optimize'"),
+                ("vary", "{ area = ['0.5 mm^2', '2 mm^2'] }"),
+                ("minimize", "'max(x(C))'"),
+            ],
+        ),
         ("studies", "synthesize path") => {
             let base = vec![
                 ("kind", "'synthesize'"),
@@ -164,6 +180,15 @@ fn entry(section: &str, kind: &Kind) -> (&'static str, Vec<(&'static str, &'stat
     }
 }
 
+/// A study of many designs in which one parameter has such values.
+fn of_designs(kind: &str, values: &str) -> String {
+    let goal = match kind {
+        "optimize" => "minimize = 'max(x(C))', ",
+        _ => "",
+    };
+    format!("{{ kind = '{kind}', {goal}vary = {{ area = {values} }} }}")
+}
+
 /// A file in which a key of a kind has a value, what else its entry needs being there.
 fn with(section: &str, kind: &Kind, key: &str, value: &str) -> String {
     let inner = |needed: &[(&str, &str)]| {
@@ -216,6 +241,15 @@ fn with(section: &str, kind: &Kind, key: &str, value: &str) -> String {
                 "x",
                 format!("{{ kind = 'adjust', unknown = ['area'], match = {table} }}"),
             )
+        }
+        "swept values" => ("x", of_designs("sweep", &inner(&[]))),
+        "spread" => ("x", of_designs("tolerance", &inner(&[]))),
+        "choice" => {
+            let needed: &[(&str, &str)] = match key {
+                "step" => &[("between", "['1 mm^2', '2 mm^2']")],
+                _ => &[],
+            };
+            ("x", of_designs("optimize", &inner(needed)))
         }
         "point table" => {
             let table = inner(&[("table", "'t.csv'")]);

@@ -80,7 +80,14 @@ fn tractor_hitch() {
     let Checked {
         model, warnings, ..
     } = read("tractor-hitch");
-    assert_eq!(warnings.len(), 1, "{warnings:#?}");
+    assert!(warnings.is_empty(), "{warnings:#?}");
+    let StudyKind::Optimize(best) = &model.studies[1].kind else {
+        panic!()
+    };
+    assert_eq!(
+        (best.vary.len(), best.goals.len(), best.subject_to.len()),
+        (2, 2, 2)
+    );
     assert_eq!(model.measures.len(), 6);
     let inertia = model.links[4].inertia.clone().unwrap();
     assert_eq!(inertia.mass.unwrap().eval(&mut |_| 0.0), 1000.0);

@@ -163,12 +163,7 @@ fn the_schema_describes_every_key() {
         assert!(found, "{name}: {about}");
     }
     for (name, about) in all.iter().filter(|(name, _)| !name.starts_with('[')) {
-        // what is announced has a kind and no more
-        let announced = name == "kind" && about.is_empty();
-        assert!(
-            announced || known.contains(&(name, about)),
-            "{name}: {about}"
-        );
+        assert!(known.contains(&(name, about)), "{name}: {about}");
     }
 }
 

@@ -357,8 +357,33 @@ equilibrium = false
 kind = "vibrations"
 release = ["lift"]
 rows = 12
-[studies.later]
+[studies.grid]
+kind = "sweep"
+over = "loads"
+vary = { a = ["10 mm", "2 * ratio * 5 mm"], tilt = { from = "1 deg", to = "3 deg", count = 5 } }
+columns = ["max(x(C))"]
+plot = ["x(C)", "path(P)"]
+[studies.pairs]
+kind = "sweep"
+over = "loads"
+combine = "one at a time"
+vary = { a = { by = "7 %" }, tilt = { by = "ratio * 0.1 deg" } }
+[studies.pieces]
 kind = "tolerance"
+over = "loads"
+vary = { a = "0.1 mm", tilt = { normal = "0.1 deg" }, ratio = { normal = "7 %" }, area = { between = ["-1 mm^2", 0] } }
+limits = ["range(y(C)) >= 1 mm", "reaction(B) <= 2 kN"]
+samples = 5000
+seed = 3
+[studies.best]
+kind = "optimize"
+over = "loads"
+vary = { a = ["10 mm", "200 mm"], tilt = { only = ["1 deg", "2 deg"] }, ratio = { between = [1, 9], step = 0.5 } }
+minimize = ["max(reaction(B))", "range(x(C))"]
+maximize = "min(y(C))"
+subject_to = "min(transmission_angle(C)) >= 20 deg"
+method = "cma-es"
+designs = 700
 "#;
 
 #[test]

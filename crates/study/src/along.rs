@@ -216,6 +216,9 @@ pub(crate) fn not_answerable(mechanism: &Mechanism, study: &Study) -> Vec<Diagno
         | StudyKind::Simulate(_)
         | StudyKind::Contact(_)
         | StudyKind::Adjust(_)
+        | StudyKind::Sweep(_)
+        | StudyKind::Tolerance(_)
+        | StudyKind::Optimize(_)
         | StudyKind::Synthesize(_) => Asked::default(),
     };
     let mut found = unanswered(mechanism, &asked, |_| true);
@@ -224,6 +227,9 @@ pub(crate) fn not_answerable(mechanism: &Mechanism, study: &Study) -> Vec<Diagno
         StudyKind::Motion(_)
             | StudyKind::Simulate(_)
             | StudyKind::Contact(_)
+            | StudyKind::Sweep(_)
+            | StudyKind::Tolerance(_)
+            | StudyKind::Optimize(_)
             | StudyKind::Synthesize(_)
     ) {
         found.extend(

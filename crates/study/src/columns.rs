@@ -148,6 +148,12 @@ pub(crate) fn numbers(model: &Model) -> Vec<Quantity> {
     named(model, true).filter(is_number).collect()
 }
 
+/// Whether a measure is one number over the whole motion, itself or by those that it names.
+pub(crate) fn is_number(model: &Model, measure: &Measure) -> bool {
+    let constant = constants(model);
+    is_constant(measure, &|index| constant.get(index).copied())
+}
+
 /// The components of a joint's force.
 fn hodograph_axes(hodograph: &Hodograph) -> [Quantity; 2] {
     let axis = |measure: ForceMeasure| Quantity {

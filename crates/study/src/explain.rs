@@ -221,16 +221,27 @@ fn start_text(mechanism: &Mechanism, at: f64) -> String {
 struct Gap {
     message: String,
     links: Vec<String>,
+    /// By how much it does not meet, in sizes of the mechanism, where that is known.
+    by: Option<f64>,
+}
+
+/// By how much a mechanism that cannot be assembled does not meet, in its sizes, where that is known.
+pub(crate) fn open_by(design: &Design<f64>, error: &MotionError) -> Option<f64> {
+    match error {
+        MotionError::CannotAssemble { at, assemblies } if assemblies.rejected == 0 => {
+            gap(design, *at, assemblies.open_step.unwrap_or(0)).by
+        }
+        _ => None,
+    }
 }
 
 /// What does not meet in a step of the plan.
 fn gap(design: &Design<f64>, at: f64, step: usize) -> Gap {
     let mechanism = &*design.mechanism;
     let plan = &mechanism.plan;
-    let parameters: Vec<f64> = mechanism.model.parameter_values();
     let size = design.size();
     let mut coordinates = vec![0.0; mechanism.model.drives.len()];
-    DrivePath::new(&mechanism.model, &parameters, size).coordinates(at, &mut coordinates);
+    DrivePath::new(&mechanism.model, &design.parameters, size).coordinates(at, &mut coordinates);
     let mut state = Configuration::new(mechanism);
     state.set_inputs(mechanism, &coordinates);
     let mut branch = Branch::neutral(mechanism);
@@ -277,6 +288,7 @@ fn gap(design: &Design<f64>, at: f64, step: usize) -> Gap {
             _ => format!("the group of {} does not close", list(&quoted)),
         },
         links,
+        by: None,
     }
 }
 
@@ -389,7 +401,12 @@ fn measured(
     } else {
         return None;
     };
-    Some(Gap { message, links })
+    let by = (distance - (first + second)).max((first - second).abs() - distance);
+    Some(Gap {
+        message,
+        links,
+        by: Some(by / design.size()),
+    })
 }
 
 /// A demanded range that is not covered. `missed` are the ends that are not reached, with the reason.

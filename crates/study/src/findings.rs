@@ -19,6 +19,7 @@ use serde::Serialize;
 use crate::adjust::findings_of_adjustment;
 use crate::along::not_answerable;
 use crate::clearance::{findings_of_clearance, findings_of_contact, refuses};
+use crate::designs::{findings_of_optimization, findings_of_sweep, findings_of_tolerance};
 use crate::drawn::{self, DrawnLink};
 use crate::explain::cannot_move;
 use crate::findings_forces::on_links;
@@ -395,6 +396,18 @@ fn study_text(model: &Model, study: &Study, parameters: &[f64], units: &Units) -
         StudyKind::Vibrations(_) => "natural vibrations",
         StudyKind::Adjust(asked) => return crate::adjust::in_words(model, asked),
         StudyKind::Synthesize(asked) => return crate::synthesis::in_words(asked),
+        StudyKind::Sweep(asked) => {
+            let ids: Vec<_> = asked.vary.iter().map(|it| it.parameter).collect();
+            return crate::designs::in_words(model, "a sweep", &asked.over, &ids);
+        }
+        StudyKind::Tolerance(asked) => {
+            let ids: Vec<_> = asked.vary.iter().map(|it| it.parameter).collect();
+            return crate::designs::in_words(model, "tolerances", &asked.over, &ids);
+        }
+        StudyKind::Optimize(asked) => {
+            let ids: Vec<_> = asked.vary.iter().map(|it| it.parameter).collect();
+            return crate::designs::in_words(model, "an optimum", &asked.over, &ids);
+        }
     };
     let along = study.kind.along();
     let moving = |d: &&Drive| {
@@ -560,6 +573,9 @@ fn of_study(laws: &OfLaws<'_>, study: &Study, progress: &mut dyn Progress) -> Ve
             [laws.motion().to_vec(), own].concat()
         }
         StudyKind::Synthesize(asked) => findings_of_synthesis(model, asked),
+        StudyKind::Sweep(asked) => findings_of_sweep(model, asked),
+        StudyKind::Tolerance(asked) => findings_of_tolerance(model, asked),
+        StudyKind::Optimize(asked) => findings_of_optimization(model, asked),
     };
     if !refuses(&told) {
         told.extend(not_answerable(&laws.design.mechanism, study));

@@ -38,6 +38,7 @@ mod circuit;
 mod clearance;
 mod columns;
 mod comparison;
+mod designs;
 mod dimensions;
 mod drawn;
 pub mod encode;

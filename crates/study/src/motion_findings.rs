@@ -293,6 +293,11 @@ fn of_range(motion: &Motion) -> Option<Diagnostic> {
     (!missed.is_empty()).then(|| beyond_limit(motion, &missed))
 }
 
+/// In words, what keeps a motion from covering the range that is demanded.
+pub(crate) fn beyond_ends(motion: &Motion) -> Option<String> {
+    of_range(motion).map(|told| told.message)
+}
+
 /// The ends of the demanded range that are not reached, with the reason.
 fn missed_ends(motion: &Motion) -> Vec<(EndReason, f64)> {
     let ends = [

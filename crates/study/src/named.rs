@@ -7,17 +7,10 @@ use kempe_units::nearest;
 ///
 /// # Errors
 ///
-/// That there is none, with the name that is near, or that this version has none of its kind.
+/// That there is none, with the name that is near.
 pub fn study_named<'m>(model: &'m Model, name: &str) -> Result<&'m Study, Diagnostic> {
     if let Some(study) = model.studies.iter().find(|s| s.name == name) {
         return Ok(study);
-    }
-    if let Some(skipped) = model.announced.iter().find(|s| s.name == name) {
-        let message = format!(
-            "study `{name}` cannot run: this version has no `{}` studies",
-            skipped.kind
-        );
-        return Err(Diagnostic::error("study-not-available", message).help(others(model)));
     }
     let error = Diagnostic::error("unknown-study", format!("there is no study `{name}`"));
     let known = model.studies.iter().map(|s| s.name.as_str());

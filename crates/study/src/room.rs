@@ -108,6 +108,11 @@ pub fn study_bytes(model: &Model, study: &Study) -> Held {
             let columns = (3 + asked.unknown.len()) * (asked.measures.len() + model.drives.len());
             held(model, &asked.along, row + columns * (1 + HELD) * NUMBER)
         }
+        // They hold what they need in parts.
+        StudyKind::Sweep(_) | StudyKind::Tolerance(_) | StudyKind::Optimize(_) => Held {
+            rows: 1.0,
+            row: NUMBER,
+        },
         StudyKind::Synthesize(asked) => Held {
             rows: asked.keep as f64,
             row: BYTES_OF_LINKAGE,

@@ -6,6 +6,7 @@ use crate::adjust::adjustment;
 use crate::choice::{balance, spring};
 use crate::circuit::run_circuit;
 use crate::clearance::{clearance, contact};
+use crate::designs::{optimization, sweep, tolerance};
 use crate::findings_forces::something_acts;
 use crate::motion::run_along;
 use crate::result::StudyResult;
@@ -47,6 +48,9 @@ pub fn run(
         }
         StudyKind::Vibrations(asked) => vibrations(model, &study.name, asked, progress),
         StudyKind::Adjust(asked) => adjustment(model, &study.name, asked, progress),
+        StudyKind::Sweep(asked) => sweep(model, &study.name, asked, progress),
+        StudyKind::Tolerance(asked) => tolerance(model, &study.name, asked, progress),
+        StudyKind::Optimize(asked) => optimization(model, &study.name, asked, progress),
         StudyKind::Synthesize(asked) => synthesis(model, &study.name, asked, progress),
     }
 }

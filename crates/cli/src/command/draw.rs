@@ -240,7 +240,7 @@ fn motion(
     };
     let first = model.studies.first().filter(by_itself).cloned();
     let Some(study) = first.or_else(|| first_study(model, forces)) else {
-        return Err(Failure::Usage(nothing_to_run(model)));
+        return Err(Failure::Usage(nothing_to_run()));
     };
     room_for(model, &study).map_err(Failure::TooLarge)?;
     interrupt::listen();

@@ -329,29 +329,18 @@ fn chosen<'m>(
         studies.extend(&model.studies);
     }
     match studies.is_empty() {
-        true => Err(Box::new(nothing_to_run(model))),
+        true => Err(Box::new(nothing_to_run())),
         false => Ok(studies),
     }
 }
 
 /// Why a model without studies that can run has none.
-pub fn nothing_to_run(model: &Model) -> Diagnostic {
-    if model.drives.is_empty() {
-        return Diagnostic::error(
-            "no-drive",
-            "there is nothing to run: the file has no study and no drive",
-        )
-        .help("say what moves: [drives] motor = { turns = \"crank\", from = 0, to = 360, speed = \"1 rad/s\" }");
-    }
-    let skipped: Vec<String> = (model.announced.iter())
-        .map(|s| format!("`{}` is a study of kind \"{}\"", s.name, s.kind))
-        .collect();
+pub fn nothing_to_run() -> Diagnostic {
     Diagnostic::error(
-        "study-not-available",
-        "there is nothing to run: this version has none of the kinds of study that the file asks for",
+        "no-drive",
+        "there is nothing to run: the file has no study and no drive",
     )
-    .note(skipped.join(", "))
-    .help("ask for the motion: [studies.turn] with the line kind = \"motion\"")
+    .help("say what moves: [drives] motor = { turns = \"crank\", from = 0, to = 360, speed = \"1 rad/s\" }")
 }
 
 /// A study named on the command line.

@@ -56,6 +56,7 @@ impl Cursor<'_> {
             (Named::Parameter, ..) => self.parts(&[PartKind::Parameter]),
             (Named::Drive, ..) => self.parts(&[PartKind::Drive]),
             (Named::Spring, ..) => self.parts(&[PartKind::Spring]),
+            (Named::Study, ..) => self.parts(&[PartKind::Study]),
             (Named::File | Named::Column, ..) => Vec::new(),
         }
     }

@@ -86,14 +86,19 @@ fn unknown(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<Vec<ParameterId>> 
     whole.then_some(found)
 }
 
-/// A parameter that can be looked for: a number of the file, not a formula, that nothing has taken up.
+/// A parameter by its name in a string.
 fn unknown_parameter(cx: &mut Context<'_>, node: &Node, place: &str) -> Option<ParameterId> {
     let text = cx.text(node, place, "\"a\"")?;
     let (name, span) = (
         text.content.trim().to_owned(),
         text.span(0..text.content.len()),
     );
-    let id = parameter(cx, &name, &span)?;
+    free_parameter(cx, &name, &span)
+}
+
+/// A parameter that can take other values: a number of the file, not a formula, that nothing has taken up.
+pub(crate) fn free_parameter(cx: &mut Context<'_>, name: &str, span: &Span) -> Option<ParameterId> {
+    let id = parameter(cx, name, span)?;
     let refused = |message: String, why: &str, help: &str| {
         Diagnostic::error("bad-choice", message)
             .at(span.clone(), why.to_owned())
@@ -104,13 +109,13 @@ fn unknown_parameter(cx: &mut Context<'_>, node: &Node, place: &str) -> Option<P
         refused(
             format!("`{name}` is a formula of other parameters"),
             "it follows those",
-            "look for those instead, or give it a number",
+            "name those instead, or give it a number",
         )
     } else if cx.model.settled.contains(&id) {
         refused(
             format!("`{name}` went into a plain number"),
             "the place of an `at`, or the period of a table, depends on it",
-            "look for another parameter",
+            "name another parameter",
         )
     } else {
         return Some(id);

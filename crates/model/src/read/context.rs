@@ -150,7 +150,6 @@ impl<'a> Context<'a> {
                 drawing: Default::default(),
                 measures: Vec::new(),
                 studies: Vec::new(),
-                announced: Vec::new(),
                 bounds: Vec::new(),
                 inner_laws: Vec::new(),
                 source: None,
@@ -425,8 +424,11 @@ pub(crate) fn near_or_all<'n>(
     }
 }
 
-/// `loads`, `switches`.
+/// `loads`, `switches`, `studies`.
 pub(crate) fn plural(kind: &str) -> String {
-    let ending = if kind.ends_with("ch") { "es" } else { "s" };
-    format!("{kind}{ending}")
+    match kind.strip_suffix('y') {
+        Some(stem) => format!("{stem}ies"),
+        None if kind.ends_with("ch") => format!("{kind}es"),
+        None => format!("{kind}s"),
+    }
 }

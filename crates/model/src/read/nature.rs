@@ -20,6 +20,8 @@ pub(crate) struct Nature {
     pub pressure: bool,
     /// The rate of such.
     pub inner_rate: bool,
+    /// Something of an instant that no number over the motion takes in.
+    pub instant: bool,
 }
 
 impl Nature {
@@ -30,38 +32,49 @@ impl Nature {
             inner: self.inner || other.inner,
             pressure: self.pressure || other.pressure,
             inner_rate: self.inner_rate || other.inner_rate,
+            instant: self.instant || other.instant,
         }
     }
 }
 
 /// What a measure asks for, given what the named ones do.
 pub(crate) fn nature(measure: &Measure, named: &[Nature]) -> Nature {
+    let of_an_instant = Nature {
+        instant: true,
+        ..Nature::default()
+    };
     measure
         .leaves()
         .map(|leaf| match leaf {
-            Leaf::Parameter(_) | Leaf::Drive(_) | Leaf::Time => Nature::default(),
+            Leaf::Parameter(_) => Nature::default(),
+            Leaf::Drive(_) | Leaf::Time => of_an_instant,
             Leaf::Named(i) => named.get(*i).copied().unwrap_or_default(),
             Leaf::Force(_) => Nature {
                 forces: true,
-                ..Nature::default()
+                ..of_an_instant
             },
             Leaf::Inner(state) => Nature {
                 inner: true,
                 pressure: matches!(state, InnerState::Pressure(..)),
-                ..Nature::default()
+                ..of_an_instant
             },
             Leaf::Rate(inner, _) => {
                 let within = nature(inner, named);
                 Nature {
                     inner_rate: within.inner,
+                    instant: true,
                     ..within
                 }
             }
             Leaf::Pose(PoseMeasure::MechanicalAdvantage(inner, _))
-            | Leaf::Coefficient(inner, _, _) => nature(inner, named),
-            Leaf::Pose(_) => Nature::default(),
+            | Leaf::Coefficient(inner, _, _) => Nature {
+                instant: true,
+                ..nature(inner, named)
+            },
+            Leaf::Pose(_) => of_an_instant,
             Leaf::Over(_, inner) => Nature {
                 motion: true,
+                instant: false,
                 ..nature(inner, named)
             },
         })

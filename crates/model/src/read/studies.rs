@@ -8,15 +8,15 @@ use crate::diagnostic::Diagnostic;
 use crate::document::{Key, Node, Value};
 use crate::drive::LawPiece;
 use crate::ids::Scalar;
-use crate::key_table::{ANNOUNCED_STUDIES, DRIVES, MAX_ROWS, STUDIES};
+use crate::key_table::{DRIVES, MAX_ROWS, STUDIES};
 use crate::model::Model;
 use crate::read::column::column;
 use crate::read::context::Context;
 use crate::read::entry::Entry;
 use crate::read::names::long_name;
 use crate::read::plots::plot;
-use crate::read::{adjust, choices, clearance, simulate, synthesis, vibrations};
-use crate::study::{AnnouncedStudy, Column, MotionStudy, Plot, Rows, Study, StudyKind};
+use crate::read::{adjust, choices, clearance, designs, simulate, synthesis, vibrations};
+use crate::study::{Column, MotionStudy, Plot, Rows, Study, StudyKind};
 
 /// Rows of a table by default, when a step is not the thing to say.
 const DEFAULT_ROWS: usize = 181;
@@ -26,9 +26,26 @@ const CIRCUIT_ROWS: usize = 361;
 /// Reads all studies; without any, there is one motion study called `motion`.
 pub(crate) fn read(cx: &mut Context<'_>, entries: &[&(Key, Node)]) {
     tell_clashes(cx, entries);
-    for entry in entries {
-        let (key, _) = entry;
-        if let Some(kind) = read_study(cx, entry) {
+    // Studies of many designs come last: they run others.
+    let (of_designs, own): (Vec<usize>, Vec<usize>) =
+        (0..entries.len()).partition(|i| is_of_designs(&entries[*i].1));
+    let mut kinds: Vec<Option<StudyKind>> = vec![None; entries.len()];
+    for i in own {
+        kinds[i] = read_study(cx, entries[i], &designs::Others::default());
+    }
+    let own = kinds.clone();
+    let mut others = designs::Others::default();
+    for ((key, node), kind) in entries.iter().zip(&own) {
+        match is_of_designs(node) {
+            true => others.of_designs.push(&key.name),
+            false => others.own.push((&key.name, kind.as_ref())),
+        }
+    }
+    for i in of_designs {
+        kinds[i] = read_study(cx, entries[i], &others);
+    }
+    for ((key, _), kind) in entries.iter().zip(kinds) {
+        if let Some(kind) = kind {
             cx.model.studies.push(Study {
                 name: key.name.clone(),
                 kind,
@@ -108,7 +125,20 @@ fn tell_clashes(cx: &mut Context<'_>, entries: &[&(Key, Node)]) {
     }
 }
 
-fn read_study(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<StudyKind> {
+/// Whether a study is one of many designs.
+fn is_of_designs(node: &Node) -> bool {
+    let Value::Table(table) = &node.value else {
+        return false;
+    };
+    let kind = table.entry("kind").map(|(_, node)| &node.value);
+    matches!(kind, Some(Value::Text(text)) if designs::KINDS.contains(&text.content.trim()))
+}
+
+fn read_study(
+    cx: &mut Context<'_>,
+    entry: &(Key, Node),
+    others: &designs::Others<'_>,
+) -> Option<StudyKind> {
     let (key, node) = entry;
     let place = format!("study `{}`", key.name);
     if long_name(cx, &key.name, &key.span) {
@@ -126,21 +156,6 @@ fn read_study(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<StudyKind> {
     let kind = any.required_like(cx, "kind", any.example_of("kind"))?;
     let text = any.text(cx, "kind", kind)?;
     let name = text.content.trim();
-    if ANNOUNCED_STUDIES.contains(&name) {
-        cx.push(
-            Diagnostic::warning(
-                "study-not-available",
-                format!("{place} is skipped: this version has no `{name}` studies"),
-            )
-            .at(kind.span.clone(), "")
-            .help("the other studies of the file run without it"),
-        );
-        cx.model.announced.push(AnnouncedStudy {
-            name: key.name.clone(),
-            kind: name.to_owned(),
-        });
-        return None;
-    }
     if name == synthesis::KIND {
         return synthesis::read(cx, entry);
     }
@@ -148,8 +163,7 @@ fn read_study(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<StudyKind> {
         let of_motion = STUDIES.iter().map(|kind| kind.name);
         let of_motion = of_motion.filter(|name| !name.contains(' '));
         let kinds: Vec<&str> = of_motion.chain([synthesis::KIND]).collect();
-        let all = kinds.iter().chain(ANNOUNCED_STUDIES).copied();
-        let near = kempe_units::nearest(name, all);
+        let near = kempe_units::nearest(name, kinds.iter().copied());
         let help = match near {
             Some(near) => format!("did you mean `{near}`?"),
             None => format!("the kinds are {}", kinds.join(", ")),
@@ -176,6 +190,9 @@ fn read_study(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<StudyKind> {
     }
     if name == "adjust" {
         return adjust::read(cx, &entry, key);
+    }
+    if designs::KINDS.contains(&name) {
+        return designs::read(cx, &entry, key, others);
     }
     let in_time = name == "simulate" || (name == "clearance" && clearance::loses_contact(&entry));
     let rows = match in_time {
@@ -217,9 +234,6 @@ fn of_unknown_kind(
     place: &str,
     near: Option<&str>,
 ) {
-    if near.is_some_and(|near| ANNOUNCED_STUDIES.contains(&near)) {
-        return;
-    }
     let Value::Table(table) = &node.value else {
         return;
     };

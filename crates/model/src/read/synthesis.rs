@@ -112,7 +112,12 @@ fn texts(cx: &mut Context<'_>, entry: &Entry<'_>, key: &str) -> Vec<Asked> {
 }
 
 /// A whole number as the table of keys bounds it.
-fn count(cx: &mut Context<'_>, entry: &Entry<'_>, key: &str, default: usize) -> Option<usize> {
+pub(crate) fn count(
+    cx: &mut Context<'_>,
+    entry: &Entry<'_>,
+    key: &str,
+    default: usize,
+) -> Option<usize> {
     let Some(node) = entry.get(key) else {
         return Some(default);
     };

@@ -42,7 +42,7 @@ impl Writer<'_> {
         }
     }
 
-    fn named_parameter(&self, id: ParameterId) -> (&str, Dimension) {
+    pub fn named_parameter(&self, id: ParameterId) -> (&str, Dimension) {
         let known = self.model.parameters.get(id.index());
         known.map_or(("?", Dimension::NONE), |p| (p.name.as_str(), p.dimension))
     }

@@ -11,8 +11,8 @@ use crate::key_table::clearance::{MODELS, RATES};
 use crate::key_table::{GOALS, METHODS, word_of};
 use crate::read::springs::tension;
 use crate::study::{
-    BalanceGoal, MotionStudy, PlayAt, Plot, Rows, SimulateStudy, Stop, StopResistance, Study,
-    StudyKind, VibrationStudy,
+    BalanceGoal, MotionStudy, PlayAt, Rows, SimulateStudy, Stop, StopResistance, Study, StudyKind,
+    VibrationStudy,
 };
 use crate::write::spelling::Writer;
 
@@ -28,11 +28,6 @@ impl Writer<'_> {
             let entry = (study.name.clone(), Item::Table(self.study(study)));
             file.section("studies").push(entry);
         }
-        for study in &self.model.announced {
-            let kind = vec![("kind".to_owned(), Item::text(&study.kind))];
-            let entry = (study.name.clone(), Item::Table(kind));
-            file.section("studies").push(entry);
-        }
     }
 
     fn study(&self, study: &Study) -> Entries {
@@ -45,13 +40,20 @@ impl Writer<'_> {
             StudyKind::Clearance(_) | StudyKind::Contact(_) => "clearance",
             StudyKind::Vibrations(_) => "vibrations",
             StudyKind::Adjust(_) => "adjust",
+            StudyKind::Sweep(_) => "sweep",
+            StudyKind::Tolerance(_) => "tolerance",
+            StudyKind::Optimize(_) => "optimize",
             StudyKind::Synthesize(_) => "synthesize",
         };
         let mut entries = vec![("kind".to_owned(), Item::text(kind))];
         let one_pose = |study: &VibrationStudy| study.along.rows == Rows::Count(1);
         let no_rows = match &study.kind {
             StudyKind::Vibrations(study) => one_pose(study),
-            StudyKind::Synthesize(_) | StudyKind::Adjust(_) => true,
+            StudyKind::Synthesize(_)
+            | StudyKind::Adjust(_)
+            | StudyKind::Sweep(_)
+            | StudyKind::Tolerance(_)
+            | StudyKind::Optimize(_) => true,
             _ => false,
         };
         if !no_rows {
@@ -114,6 +116,9 @@ impl Writer<'_> {
             }
             StudyKind::Vibrations(study) => self.vibrations(study, &mut put),
             StudyKind::Adjust(study) => self.adjust(study, &mut put),
+            StudyKind::Sweep(study) => self.sweep(study, &mut put),
+            StudyKind::Tolerance(study) => self.tolerance(study, &mut put),
+            StudyKind::Optimize(study) => self.optimize(study, &mut put),
             StudyKind::Synthesize(study) => self.synthesis(study, &mut put),
         }
         entries
@@ -258,15 +263,8 @@ impl Writer<'_> {
             put("columns", Item::List(columns.collect()));
         }
         if !along.plots.is_empty() {
-            let plot = |plot: &Plot| match plot {
-                Plot::Curves(curves) => match curves.as_slice() {
-                    [one] => Item::text(&one.name),
-                    many => Item::List(many.iter().map(|c| Item::text(&c.name)).collect()),
-                },
-                Plot::Path(point) => Item::Text(format!("path({})", self.point(*point))),
-                Plot::Hodograph(hodograph) => Item::text(&hodograph.name),
-            };
-            put("plot", Item::List(along.plots.iter().map(plot).collect()));
+            let plots = along.plots.iter().map(|plot| self.plot(plot));
+            put("plot", Item::List(plots.collect()));
         }
     }
 }

@@ -40,7 +40,7 @@ impl Writer<'_> {
         put("keep", Item::Number(study.keep as f64));
     }
 
-    fn listed<const N: usize>(&self, values: &[Scalar; N], dimension: Dimension) -> Item {
+    pub fn listed(&self, values: &[Scalar], dimension: Dimension) -> Item {
         let items = values.iter().map(|value| self.scalar(value, dimension));
         Item::List(items.collect())
     }

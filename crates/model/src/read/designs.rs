@@ -1,0 +1,686 @@
+//! Studies of many designs.
+//!
+//! ```toml
+//! [studies.family]
+//! kind = "sweep"
+//! over = "lifting"
+//! vary = { k = { from = "350 mm", to = "500 mm", count = 7 } }
+//!
+//! [studies.spread]
+//! kind   = "tolerance"
+//! over   = "lifting"
+//! vary   = { k = "0.2 mm", m = { normal = "0.1 mm" } }
+//! limits = ["range(y(M)) >= 450 mm"]
+//!
+//! [studies.best]
+//! kind       = "optimize"
+//! over       = "lifting"
+//! vary       = { k = ["350 mm", "500 mm"], m = ["500 mm", "700 mm"] }
+//! minimize   = "max(load)"
+//! subject_to = ["range(y(M)) >= 450 mm"]
+//! ```
+
+use kempe_units::{Comparison, Dimension, Expr, check_condition, parse_condition};
+
+use crate::designs::{
+    Among, Change, Chosen, Combine, Goal, Limit, OptimizeStudy, OverStudy, Spread, SweepStudy,
+    Swept, SweptValues, ToleranceStudy, Toleranced,
+};
+use crate::document::{Key, Node, Value};
+use crate::ids::{ParameterId, Scalar, Span};
+use crate::key_table::designs::{AMONG, COMBINE, MAX_VARIED, OPTIMIZE_METHODS, SPREAD, SWEPT};
+use crate::read::adjust::free_parameter;
+use crate::read::column::column;
+use crate::read::context::Context;
+use crate::read::entry::Entry;
+use crate::read::measure_names::Measures;
+use crate::read::nature::nature;
+use crate::read::plots::plot;
+use crate::read::studies::entries;
+use crate::read::synthesis::count;
+use crate::study::{Column, Condition, MotionStudy, Plot, Rows, StudyKind};
+
+/// The words behind `kind`.
+pub(crate) const KINDS: [&str; 3] = ["sweep", "tolerance", "optimize"];
+
+/// Pieces that are drawn where the file does not say how many.
+const SAMPLES: usize = 10_000;
+
+/// The studies of the file that run by themselves, by their names (`None` of one that is wrong), and the names of those that run others.
+#[derive(Default)]
+pub(crate) struct Others<'a> {
+    pub own: Vec<(&'a str, Option<&'a StudyKind>)>,
+    pub of_designs: Vec<&'a str>,
+}
+
+pub(crate) fn read(
+    cx: &mut Context<'_>,
+    entry: &Entry<'_>,
+    name: &Key,
+    others: &Others<'_>,
+) -> Option<StudyKind> {
+    let over = over(cx, entry, others);
+    let forces = over.as_ref().is_none_or(|(_, forces)| *forces);
+    let columns = numbers(cx, entry, "columns", forces);
+    let plots = match entry.kind.key("plot") {
+        Some(_) => curves(cx, entry, forces),
+        None => Some(Vec::new()),
+    };
+    let over = |columns: Vec<Goal>, plots: Vec<Plot>| {
+        Some(OverStudy {
+            name: over?.0,
+            asked: MotionStudy {
+                rows: Rows::Count(1),
+                columns: columns.into_iter().map(|goal| goal.number).collect(),
+                plots,
+                circuit: false,
+            },
+            span: name.span.clone(),
+        })
+    };
+    match entry.kind.name {
+        "sweep" => {
+            let vary = varied(cx, entry, |cx, entry, id, node| swept(cx, entry, id, node));
+            let combine = entry.choice(cx, "combine", &COMBINE);
+            let combine = combine?.unwrap_or(Combine::Grid);
+            let vary: Vec<Swept> = vary?;
+            as_long(cx, entry, combine, &vary)?;
+            Some(StudyKind::Sweep(Box::new(SweepStudy {
+                over: over(columns?, plots?)?,
+                vary,
+                combine,
+            })))
+        }
+        "tolerance" => {
+            let vary = varied(cx, entry, toleranced);
+            let limits = limits(cx, entry, "limits", forces);
+            let samples = count(cx, entry, "samples", SAMPLES);
+            let seed = count(cx, entry, "seed", 1);
+            Some(StudyKind::Tolerance(Box::new(ToleranceStudy {
+                over: over(columns?, plots?)?,
+                vary: vary?,
+                samples: samples?,
+                seed: seed?,
+                limits: limits?,
+            })))
+        }
+        _ => {
+            let vary = varied(cx, entry, chosen);
+            let small = numbers(cx, entry, "minimize", forces);
+            let large = numbers(cx, entry, "maximize", forces);
+            let subject_to = limits(cx, entry, "subject_to", forces);
+            let method = entry.choice(cx, "method", &OPTIMIZE_METHODS);
+            let seed = count(cx, entry, "seed", 1);
+            let designs = count(cx, entry, "designs", 0);
+            let large = large?.into_iter().map(|goal| Goal {
+                maximize: true,
+                ..goal
+            });
+            let goals: Vec<Goal> = small?.into_iter().chain(large).collect();
+            if goals.is_empty() && !(entry.has("minimize") || entry.has("maximize")) {
+                entry.required_like(cx, "minimize", entry.example_of("minimize"))?;
+            }
+            Some(StudyKind::Optimize(Box::new(OptimizeStudy {
+                over: over(columns?, plots?)?,
+                vary: vary?,
+                goals,
+                subject_to: subject_to?,
+                method: method?,
+                seed: seed?,
+                designs: designs.map(|n| (n > 0).then_some(n))?,
+            })))
+        }
+    }
+}
+
+/// The study that is run, and whether it knows forces.
+fn over(cx: &mut Context<'_>, entry: &Entry<'_>, others: &Others<'_>) -> Option<(String, bool)> {
+    let forces_of = |kind: &StudyKind| match kind {
+        StudyKind::Motion(along) if along.circuit => None,
+        StudyKind::Motion(_) => Some(false),
+        StudyKind::Forces(_) | StudyKind::Simulate(_) => Some(true),
+        _ => None,
+    };
+    let Some(node) = entry.get("over") else {
+        let along = |kind: &&StudyKind| {
+            forces_of(kind).is_some() && !matches!(kind, StudyKind::Simulate(_))
+        };
+        let known = others
+            .own
+            .iter()
+            .filter(|(_, kind)| kind.as_ref().is_some_and(along));
+        let known: Vec<_> = known.collect();
+        return match known.as_slice() {
+            [(name, Some(kind))] => Some(((*name).to_owned(), forces_of(kind)?)),
+            // One that is wrong may be the one that is meant.
+            [] if others.own.iter().any(|(_, kind)| kind.is_none()) => None,
+            _ => {
+                let example = known.first().map_or_else(
+                    || "\"turn\", and [studies.turn] with the line kind = \"motion\"".to_owned(),
+                    |(name, _)| format!("\"{name}\""),
+                );
+                entry.required_like(cx, "over", &example);
+                None
+            }
+        };
+    };
+    let text = entry.text(cx, "over", node)?;
+    let name = text.content.trim();
+    let wrong_kind = |cx: &mut Context<'_>| {
+        cx.refuse(
+            "bad-choice",
+            format!("{} cannot be run for many designs", entry.place_of("over")),
+            &node.span,
+            "name a study of motion or forces, or a simulation; not one of a whole circuit",
+        )
+    };
+    if others.of_designs.contains(&name) {
+        return wrong_kind(cx);
+    }
+    let Some((_, kind)) = others.own.iter().find(|(known, _)| *known == name) else {
+        let known = others.own.iter().map(|(name, _)| *name);
+        let d = cx.no_such("study", name, node.span.clone(), known);
+        cx.push(d);
+        return None;
+    };
+    match forces_of((*kind)?) {
+        Some(forces) => Some((name.to_owned(), forces)),
+        None => wrong_kind(cx),
+    }
+}
+
+/// The parameters that vary, each with what is said of it.
+fn varied<T>(
+    cx: &mut Context<'_>,
+    entry: &Entry<'_>,
+    mut read: impl FnMut(&mut Context<'_>, &Entry<'_>, ParameterId, &Node) -> Option<T>,
+) -> Option<Vec<T>> {
+    let node = entry.required(cx, "vary")?;
+    let place = entry.place_of("vary");
+    let table = cx.table(node, &place, entry.example_of("vary"))?;
+    if table.entries.is_empty() || table.entries.len() > MAX_VARIED {
+        let message = format!("{place} names {} parameters", table.entries.len());
+        let help = format!("name 1 to {MAX_VARIED} of [parameters]");
+        return cx.refuse("wrong-type", message, &node.span, help);
+    }
+    let mut found = Vec::new();
+    let mut whole = true;
+    for (key, node) in &table.entries {
+        let one = free_parameter(cx, &key.name, &key.span).and_then(|id| read(cx, entry, id, node));
+        whole &= one.is_some();
+        found.extend(one);
+    }
+    whole.then_some(found)
+}
+
+/// A value of a parameter.
+fn value_of(cx: &mut Context<'_>, id: ParameterId, node: &Node) -> Option<Scalar> {
+    let dimension = cx.model.parameters[id.index()].dimension;
+    let value = cx.scalar(node, dimension)?;
+    apart_from(cx, id, &value, node)?;
+    Some(value)
+}
+
+/// What a parameter is to be cannot hang on itself.
+fn apart_from(cx: &mut Context<'_>, id: ParameterId, value: &Scalar, node: &Node) -> Option<()> {
+    // A parameter depends on earlier ones only.
+    let mut hangs = vec![false; cx.model.parameters.len()];
+    for (index, parameter) in cx.model.parameters.iter().enumerate() {
+        hangs[index] = index == id.index() || parameter.value.leaves().any(|it| hangs[it.index()]);
+    }
+    if !value.leaves().any(|it| hangs[it.index()]) {
+        return Some(());
+    }
+    let name = cx.model.parameters[id.index()].name.clone();
+    cx.refuse(
+        "bad-choice",
+        format!("a value of `{name}` depends on `{name}`"),
+        &node.span,
+        "write a number",
+    )
+}
+
+/// An amount by which a parameter changes, or a part of its value; not negative.
+fn change(cx: &mut Context<'_>, id: ParameterId, node: &Node, place: &str) -> Option<Change> {
+    let own = cx.model.parameters[id.index()].dimension;
+    let name = cx.model.parameters[id.index()].name.clone();
+    let part = match &node.value {
+        Value::Text(text) => text.content.contains('%'),
+        _ => false,
+    };
+    let dimension = match part {
+        true => Dimension::NONE,
+        false => own,
+    };
+    let value = cx.positive(
+        node,
+        dimension,
+        &format!("{place}: the change of `{name}`"),
+        false,
+    )?;
+    apart_from(cx, id, &value, node)?;
+    let zero = cx.values.get(id.index()) == Some(&0.0);
+    match part {
+        true if zero => cx.refuse(
+            "bad-size",
+            format!("`{name}` is 0, and a part of it is nothing"),
+            &node.span,
+            "give an amount with its unit",
+        ),
+        true => Some(Change::Part(value)),
+        false => Some(Change::By(value)),
+    }
+}
+
+/// Two values of a parameter, the first the smaller.
+fn in_order(
+    cx: &mut Context<'_>,
+    id: ParameterId,
+    node: &Node,
+    place: &str,
+    example: &str,
+) -> Option<[Scalar; 2]> {
+    let (a, b) = match cx.array(node, place, example)? {
+        [a, b] => (a, b),
+        items => {
+            let help = format!("write it like {example}");
+            cx.not_two(node, items, format!("{place} has two entries"), &help);
+            return None;
+        }
+    };
+    let (low, high) = (value_of(cx, id, a), value_of(cx, id, b));
+    let (low, high) = (low?, high?);
+    if !(cx.number(&low) < cx.number(&high)) {
+        let name = cx.model.parameters[id.index()].name.clone();
+        return cx.refuse(
+            "contradictory-values",
+            format!("of `{name}` the first value is not below the second one"),
+            &node.span,
+            "write [least, greatest]",
+        );
+    }
+    Some([low, high])
+}
+
+/// Values of a parameter in brackets.
+fn listed(
+    cx: &mut Context<'_>,
+    id: ParameterId,
+    node: &Node,
+    place: &str,
+    example: &str,
+) -> Option<Vec<Scalar>> {
+    let items = cx.array(node, place, example)?;
+    if items.is_empty() {
+        return cx.refuse(
+            "wrong-type",
+            format!("{place} has no value"),
+            &node.span,
+            format!("write it like {example}"),
+        );
+    }
+    let values: Vec<Option<Scalar>> = items.iter().map(|item| value_of(cx, id, item)).collect();
+    values.into_iter().collect()
+}
+
+fn swept(
+    cx: &mut Context<'_>,
+    entry: &Entry<'_>,
+    parameter: ParameterId,
+    node: &Node,
+) -> Option<Swept> {
+    let place = entry.place_of("vary");
+    let span = node.span.clone();
+    let example = "[\"1 mm\", \"2 mm\"]";
+    let values = match &node.value {
+        Value::Table(_) => {
+            let table = Entry::inner(cx, node, &node.span, place.clone(), &SWEPT)?;
+            even_or_around(cx, &table, parameter, &span)?
+        }
+        _ => SweptValues::These(listed(cx, parameter, node, &place, example)?),
+    };
+    Some(Swept {
+        parameter,
+        values,
+        span,
+    })
+}
+
+fn even_or_around(
+    cx: &mut Context<'_>,
+    table: &Entry<'_>,
+    id: ParameterId,
+    span: &Span,
+) -> Option<SweptValues> {
+    let around = table.get("by");
+    let even: Vec<&Key> = table.given(&["from", "to", "count"]).collect();
+    if let (Some(_), Some(key)) = (around, even.first()) {
+        return cx.refuse(
+            "over-specified",
+            format!(
+                "`by` goes around the file's own value: `{}` means nothing",
+                key.name
+            ),
+            &key.span,
+            "leave one of them out",
+        );
+    }
+    if let Some(node) = around {
+        return change(cx, id, node, &table.place).map(SweptValues::Around);
+    }
+    let missing = ["from", "to", "count"]
+        .into_iter()
+        .find(|key| !table.has(key));
+    let wrong_count = count(cx, table, "count", 2);
+    let ends = ["from", "to"].map(|key| table.get(key).map(|node| value_of(cx, id, node)));
+    if let Some(missing) = missing {
+        return cx.refuse(
+            "missing-key",
+            format!("{} has no `{missing}`", table.place),
+            span,
+            format!("write it like {}", SWEPT.example),
+        );
+    }
+    let [from, to] = ends.map(Option::flatten);
+    let count = wrong_count?;
+    if count < 2 {
+        return cx.refuse(
+            "bad-size",
+            "from one value to another there are at least two",
+            span,
+            "write count = 2 or more, or one value in brackets",
+        );
+    }
+    Some(SweptValues::Even {
+        from: from?,
+        to: to?,
+        count,
+    })
+}
+
+/// Values that go together are as many of each.
+fn as_long(
+    cx: &mut Context<'_>,
+    entry: &Entry<'_>,
+    combine: Combine,
+    vary: &[Swept],
+) -> Option<()> {
+    if combine != Combine::Together {
+        return Some(());
+    }
+    let first = vary.first()?.values.count();
+    match vary.iter().find(|swept| swept.values.count() != first) {
+        None => Some(()),
+        Some(odd) => cx.refuse(
+            "contradictory-values",
+            format!(
+                "{}: values that go together are as many of each, and here are {} beside {first}",
+                entry.place,
+                odd.values.count()
+            ),
+            &odd.span.clone(),
+            "give as many values of each parameter, or leave `combine` out: each with each",
+        ),
+    }
+}
+
+fn toleranced(
+    cx: &mut Context<'_>,
+    entry: &Entry<'_>,
+    parameter: ParameterId,
+    node: &Node,
+) -> Option<Toleranced> {
+    let place = entry.place_of("vary");
+    let span = node.span.clone();
+    let spread = match &node.value {
+        Value::Table(_) => {
+            let table = Entry::inner(cx, node, &node.span, place.clone(), &SPREAD)?;
+            let given: Vec<&Key> = table.given(&["uniform", "between", "normal"]).collect();
+            match given.as_slice() {
+                [] => {
+                    return cx.refuse(
+                        "missing-key",
+                        format!("{place} does not say how it differs"),
+                        &node.span,
+                        format!("write it like {}", SPREAD.example),
+                    );
+                }
+                [one] => {
+                    let node = table.get(&one.name)?;
+                    match one.name.as_str() {
+                        "uniform" => Spread::Even(change(cx, parameter, node, &place)?),
+                        "normal" => Spread::Normal(change(cx, parameter, node, &place)?),
+                        _ => {
+                            let example = table.example_of("between");
+                            let both = in_order(cx, parameter, node, &place, example)?;
+                            Spread::Between(both)
+                        }
+                    }
+                }
+                [first, second, ..] => {
+                    let [first, second] = [&first.name, &second.name];
+                    table.contradiction(
+                        cx,
+                        &[first, second],
+                        "it differs in one way",
+                        "leave one of them out",
+                    );
+                    return None;
+                }
+            }
+        }
+        _ => Spread::Even(change(cx, parameter, node, &place)?),
+    };
+    Some(Toleranced {
+        parameter,
+        spread,
+        span,
+    })
+}
+
+fn chosen(
+    cx: &mut Context<'_>,
+    entry: &Entry<'_>,
+    parameter: ParameterId,
+    node: &Node,
+) -> Option<Chosen> {
+    let place = entry.place_of("vary");
+    let span = node.span.clone();
+    let example = "[\"15 mm\", \"25 mm\"]";
+    let among = match &node.value {
+        Value::Table(_) => {
+            let table = Entry::inner(cx, node, &node.span, place.clone(), &AMONG)?;
+            match (table.get("between"), table.get("only"), table.get("step")) {
+                (Some(_), Some(_), _) | (_, Some(_), Some(_)) => {
+                    table.contradiction(
+                        cx,
+                        &["only", "between", "step"],
+                        "its values are told in two ways",
+                        "leave `only` out, or all else",
+                    );
+                    return None;
+                }
+                (None, Some(node), None) => {
+                    Among::Only(listed(cx, parameter, node, &place, example)?)
+                }
+                (Some(node), None, step) => {
+                    let between = in_order(cx, parameter, node, &place, example)?;
+                    match step {
+                        None => Among::Between(between),
+                        Some(node) => steps(cx, parameter, between, node)?,
+                    }
+                }
+                (None, None, step) => {
+                    if let Some(node) = step {
+                        let dimension = cx.model.parameters[parameter.index()].dimension;
+                        cx.positive(node, dimension, "a step", false)?;
+                    }
+                    return cx.refuse(
+                        "missing-key",
+                        format!("{place} does not say among which values it is chosen"),
+                        &node.span,
+                        format!("write it like {}", AMONG.example),
+                    );
+                }
+            }
+        }
+        _ => Among::Between(in_order(cx, parameter, node, &place, example)?),
+    };
+    Some(Chosen {
+        parameter,
+        among,
+        span,
+    })
+}
+
+/// Whole multiples of a step between two values.
+fn steps(
+    cx: &mut Context<'_>,
+    id: ParameterId,
+    between: [Scalar; 2],
+    node: &Node,
+) -> Option<Among> {
+    let dimension = cx.model.parameters[id.index()].dimension;
+    let step = cx.positive(node, dimension, "a step", false)?;
+    apart_from(cx, id, &step, node)?;
+    let [low, high] = between.each_ref().map(|end| cx.number(end));
+    let size = cx.number(&step);
+    let few = (high / size).floor() - (low / size).ceil();
+    if !(few >= 0.0) {
+        return cx.refuse(
+            "contradictory-values",
+            "no whole multiple of this step lies between the least and the greatest value",
+            &node.span,
+            "take a smaller step",
+        );
+    }
+    Some(Among::Steps { between, step })
+}
+
+/// Numbers over the motion, with their places in the file.
+fn numbers(cx: &mut Context<'_>, entry: &Entry<'_>, key: &str, forces: bool) -> Option<Vec<Goal>> {
+    let mut found = Vec::new();
+    let mut whole = true;
+    for node in entries(cx, entry, key) {
+        let one = column(cx, node, forces).and_then(|number| {
+            if number.measure.leaves().next().is_none() {
+                let name = number.name.clone();
+                return cx.refuse(
+                    "not-a-value",
+                    format!("`{name}` is the same for all designs"),
+                    &node.span,
+                    "name a number over the motion, such as max(x(C))",
+                );
+            }
+            if nature(&number.measure, &cx.natures).instant {
+                let name = &number.name;
+                return cx.refuse(
+                    "not-over-the-motion",
+                    format!("`{name}` has a value at every instant: which of them is meant?"),
+                    &node.span,
+                    format!("ask for one number: max({name}), min({name}), range({name}), mean({name}), at({name}, …)"),
+                );
+            }
+            Some(Goal {
+                number,
+                maximize: false,
+                span: node.span.clone(),
+            })
+        });
+        whole &= one.is_some();
+        found.extend(one);
+    }
+    whole.then_some(found)
+}
+
+/// What is plotted of several designs.
+fn curves(cx: &mut Context<'_>, entry: &Entry<'_>, forces: bool) -> Option<Vec<Plot>> {
+    let mut found = Vec::new();
+    let mut whole = true;
+    for node in entries(cx, entry, "plot") {
+        let one = match plot(cx, node, forces) {
+            Some(it @ (Plot::Curves(_) | Plot::Path(_))) => Some(it),
+            Some(Plot::Hodograph(_)) => cx.refuse(
+                "bad-choice",
+                "hodographs are not plotted for several designs",
+                &node.span,
+                "plot reaction(B) or its parts",
+            ),
+            None => None,
+        };
+        whole &= one.is_some();
+        found.extend(one);
+    }
+    whole.then_some(found)
+}
+
+/// Conditions on numbers over the motion, or on what has a value at every instant.
+fn limits(cx: &mut Context<'_>, entry: &Entry<'_>, key: &str, forces: bool) -> Option<Vec<Limit>> {
+    let place = entry.place_of(key);
+    let mut found = Vec::new();
+    let mut whole = true;
+    for node in entries(cx, entry, key) {
+        let one = limit(cx, node, &place, forces);
+        whole &= one.is_some();
+        found.extend(one);
+    }
+    whole.then_some(found)
+}
+
+fn limit(cx: &mut Context<'_>, node: &Node, place: &str, forces: bool) -> Option<Limit> {
+    let text = cx.text(node, place, "\"range(angle(rocker)) >= 59 deg\"")?;
+    let checked = parse_condition(&text.content).and_then(|tree| {
+        let found = check_condition(&tree, &mut Measures(cx))?;
+        let written = text.content.get(..tree.comparison_span.start);
+        Ok((written.unwrap_or_default().trim().to_owned(), found))
+    });
+    let (written, condition) = match checked {
+        Ok(found) => found,
+        Err(issues) => {
+            cx.issues(text, issues);
+            return None;
+        }
+    };
+    let at_least = matches!(
+        condition.comparison,
+        Comparison::Greater | Comparison::GreaterEqual
+    );
+    let (large, small) = match at_least {
+        true => (condition.left.clone(), condition.right),
+        false => (condition.right, condition.left.clone()),
+    };
+    let above = Expr::Sub(Box::new(large), Box::new(small));
+    if !forces && nature(&above, &cx.natures).forces {
+        return cx.refuse(
+            "needs-forces-study",
+            "the study that is run knows no forces",
+            &node.span,
+            "run a study of kind = \"forces\": over = …",
+        );
+    }
+    Some(Limit {
+        condition: Condition {
+            text: text.content.trim().to_owned(),
+            above,
+            dimension: condition.dimension,
+        },
+        left: Column {
+            name: written,
+            measure: condition.left,
+            dimension: condition.dimension,
+        },
+        at_least,
+        span: node.span.clone(),
+    })
+}
+
+impl SweptValues {
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        match self {
+            Self::These(values) => values.len(),
+            Self::Even { count, .. } => *count,
+            Self::Around(_) => 3,
+        }
+    }
+}

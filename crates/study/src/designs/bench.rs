@@ -1,0 +1,287 @@
+//! One design after the other on the bench: moved, and asked for numbers over its motion.
+
+use std::sync::Arc;
+
+use kempe_dynamics::sensitivities_at as with_forces;
+use kempe_measure::{Held, NoForces, Sensitivities, sensitivities_at};
+use kempe_mechanism::Design;
+use kempe_model::{
+    Diagnostic, Leaf, Measure, Model, ModelFile, OverStudy, ParameterId, Study, StudyKind, value,
+};
+use kempe_motion::{Motion, MotionError, Progress, Silent};
+
+use super::asked::knows_forces;
+use super::study_of;
+use crate::along::{Along, not_answered};
+use crate::columns::Asked;
+use crate::explain::cannot_move;
+use crate::motion_findings::{beyond_ends, motion_findings};
+use crate::prepared::{design, motion};
+use crate::quantity::Quantity;
+use crate::rows::RowPlace;
+use crate::simulation::simulated_motion;
+
+/// A design that cannot be asked.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Refused {
+    /// How far it is from one that can: below 1 the part of its way that is not reached, above 1 it does not even start. Infinite where the work
+    /// was stopped.
+    pub lack: f64,
+    /// Why.
+    pub why: String,
+}
+
+/// A number with its derivatives to the varied parameters, SI.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Sloped {
+    pub value: f64,
+    pub slope: Vec<f64>,
+}
+
+/// What designs are put on.
+#[derive(Clone)]
+pub(crate) struct Bench<'m> {
+    pub model: &'m Model,
+    /// The study that is run.
+    pub over: &'m Study,
+    /// The parameters that differ from design to design.
+    pub varied: Vec<ParameterId>,
+    /// The numbers that are asked of every design.
+    pub numbers: Vec<Quantity>,
+    own: Design<f64>,
+    /// The motion by the file's own values, from which others are found sooner.
+    first: Option<Arc<Motion>>,
+}
+
+impl<'m> Bench<'m> {
+    /// A bench for a study of designs.
+    ///
+    /// # Errors
+    ///
+    /// What of it no design can answer.
+    pub fn new(
+        model: &'m Model,
+        over: &OverStudy,
+        varied: Vec<ParameterId>,
+        numbers: Vec<Quantity>,
+    ) -> Result<Self, Vec<Diagnostic>> {
+        let over = study_of(model, over)?;
+        let own = design(model);
+        let asked = Asked {
+            columns: numbers.clone(),
+            ..Asked::default()
+        };
+        let unanswered = match over.kind {
+            // What it follows itself is known there.
+            StudyKind::Simulate(_) => Vec::new(),
+            _ => not_answered(&own.mechanism, &asked),
+        };
+        match unanswered.is_empty() {
+            false => Err(unanswered),
+            true => Ok(Self {
+                model,
+                over,
+                varied,
+                numbers,
+                own,
+                first: None,
+            }),
+        }
+    }
+
+    /// Moves the file's own design first: others are then found sooner. What is to be told of it; errors where it does not move as asked.
+    pub fn begin(
+        &mut self,
+        progress: &mut dyn Progress,
+    ) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> {
+        if let StudyKind::Simulate(_) = self.over.kind {
+            return Ok(Vec::new());
+        }
+        let first = motion(&self.own, progress)?;
+        let told = motion_findings(&first);
+        self.first = Some(first);
+        Ok(told)
+    }
+
+    /// The values of the varied parameters in the file, SI.
+    pub fn own_values(&self) -> Vec<f64> {
+        let all = &self.own.parameters;
+        self.varied.iter().map(|id| all[id.index()]).collect()
+    }
+
+    /// All parameters where the varied ones have these values, SI: formulas follow.
+    pub fn parameters(&self, values: &[f64]) -> Vec<f64> {
+        let mut all: Vec<f64> = Vec::with_capacity(self.model.parameters.len());
+        for (index, parameter) in self.model.parameters.iter().enumerate() {
+            let own = self.varied.iter().position(|id| id.index() == index);
+            let given = own.and_then(|k| values.get(k)).copied();
+            all.push(given.unwrap_or_else(|| value(&parameter.value, &all)));
+        }
+        all
+    }
+
+    /// The model with these values, and its file.
+    pub fn model_with(&self, values: &[f64]) -> (Model, ModelFile) {
+        let given: Vec<_> = self
+            .varied
+            .iter()
+            .copied()
+            .zip(values.iter().copied())
+            .collect();
+        self.model.with_values(&given)
+    }
+
+    /// The design with these values.
+    ///
+    /// # Errors
+    ///
+    /// Why its dimensions make no sense.
+    pub fn design(&self, values: &[f64]) -> Result<Design<f64>, Refused> {
+        let parameters = self.parameters(values);
+        let odd = (self.model.parameters.iter().zip(&parameters)).find(|(_, x)| !x.is_finite());
+        let why = match odd {
+            Some((p, x)) => Some(format!("parameter `{}` is {x}", p.name)),
+            None => (self.model.unsound(&parameters).into_iter().next()).map(|d| d.message),
+        };
+        match why {
+            Some(why) => Err(Refused { lack: 3.0, why }),
+            None => Ok(Design::new(&self.own.mechanism, &parameters)),
+        }
+    }
+
+    /// How the design with these values moves.
+    ///
+    /// # Errors
+    ///
+    /// Why it does not move as asked.
+    pub fn motion(
+        &self,
+        values: &[f64],
+        progress: &mut dyn Progress,
+    ) -> Result<Arc<Motion>, Refused> {
+        let design = self.design(values)?;
+        if let StudyKind::Simulate(study) = &self.over.kind {
+            let (model, _) = self.model_with(values);
+            let found = simulated_motion(&model, &self.over.name, study, progress);
+            return found.map_err(|told| Refused {
+                lack: 2.0,
+                why: told.first().map_or_else(String::new, |d| d.message.clone()),
+            });
+        }
+        let found = match &self.first {
+            Some(first) => first.again(&design, progress),
+            None => Motion::with_progress(&design, progress),
+        };
+        let moved = found.map_err(|error| Refused {
+            lack: match error {
+                MotionError::Stopped { .. } => f64::INFINITY,
+                MotionError::CannotAssemble { .. } => 1.0 + open_by(&design, &error),
+                _ => 2.0,
+            },
+            why: cannot_move(&design, &error).message,
+        })?;
+        match beyond_ends(&moved) {
+            None => Ok(moved),
+            Some(told) => {
+                let (asked, reached) = (moved.demanded, moved.reached());
+                let part = (reached.1 - reached.0).max(0.0) / (asked.1 - asked.0).abs();
+                Err(Refused {
+                    lack: (1.0 - part).clamp(f64::EPSILON, 1.0),
+                    why: told,
+                })
+            }
+        }
+    }
+
+    /// What moves along a motion on the bench, ready to be sampled for quantities.
+    ///
+    /// # Errors
+    ///
+    /// What cannot be measured, or what acts makes no sense.
+    pub fn along(
+        &self,
+        motion: &Arc<Motion>,
+        quantities: &[&Quantity],
+        progress: &mut dyn Progress,
+    ) -> Result<Along, Refused> {
+        let model = &motion.mechanism().model;
+        let forces =
+            knows_forces(self.over) && quantities.iter().any(|q| model.needs_forces(&q.measure));
+        Along::with_progress(model, motion, quantities, forces, &[], progress).map_err(|told| {
+            let stopped = told.iter().any(|d| d.code == "stopped");
+            Refused {
+                lack: if stopped { f64::INFINITY } else { 2.0 },
+                why: told.first().map_or_else(String::new, |d| d.message.clone()),
+            }
+        })
+    }
+
+    /// The numbers of the design with these values, SI; infinite or not a number where a number has no value.
+    ///
+    /// # Errors
+    ///
+    /// Why it has none at all.
+    pub fn numbers(&self, values: &[f64]) -> Result<Vec<f64>, Refused> {
+        let motion = self.motion(values, &mut Silent)?;
+        let quantities: Vec<&Quantity> = self.numbers.iter().collect();
+        let mut along = self.along(&motion, &quantities, &mut Silent)?;
+        Ok(along.values(RowPlace::Drive(motion.start)))
+    }
+
+    /// The numbers of the design with these values and their exact derivatives to the varied parameters, SI. Of simulations there are none.
+    ///
+    /// # Errors
+    ///
+    /// Why it does not move as asked.
+    pub fn slopes(&self, values: &[f64]) -> Result<Vec<Sloped>, Refused> {
+        let motion = self.motion(values, &mut Silent)?;
+        let measures: Vec<&Measure> = self.numbers.iter().map(|q| &q.measure).collect();
+        let found = self.sensitivities(&motion, &[Held::Path(motion.start)], &measures);
+        let found = found?.pop();
+        let found = found
+            .into_iter()
+            .flat_map(|it| it.values.into_iter().zip(it.derivatives));
+        Ok(found
+            .map(|(value, slope)| Sloped { value, slope })
+            .collect())
+    }
+
+    /// Measures of a design's motion at places, with their derivatives to the varied parameters.
+    ///
+    /// # Errors
+    ///
+    /// What cannot be measured.
+    pub fn sensitivities(
+        &self,
+        motion: &Arc<Motion>,
+        held: &[Held],
+        measures: &[&Measure],
+    ) -> Result<Vec<Sensitivities>, Refused> {
+        let model = &motion.mechanism().model;
+        let forces = measures.iter().any(|m| model.needs_forces(m));
+        let none = || Refused {
+            lack: 2.0,
+            why: "it cannot be measured as asked".to_owned(),
+        };
+        match forces {
+            true => with_forces(motion, held, measures, &self.varied).map_err(|_| none()),
+            false => {
+                let found =
+                    sensitivities_at(motion, held, measures, &self.varied, NoForces, |_| NoForces);
+                found.map_err(|_| none())
+            }
+        }
+    }
+}
+
+/// By how much a mechanism misses being assembled, in its sizes; 1 where that is not known.
+fn open_by(design: &Design<f64>, error: &MotionError) -> f64 {
+    crate::explain::open_by(design, error).unwrap_or(1.0)
+}
+
+/// Whether a measure asks for the varied parameters alone.
+pub(crate) fn is_of_parameters(measure: &Measure) -> bool {
+    measure
+        .leaves()
+        .all(|leaf| matches!(leaf, Leaf::Parameter(_)))
+}

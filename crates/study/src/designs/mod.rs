@@ -1,0 +1,28 @@
+//! Studies of many designs: another study, run again with other values of some parameters.
+//!
+//! `bench.rs` moves one design and tells the numbers that are asked of it, with their derivatives; `asked.rs` says which numbers these are.
+//! Sweeps, tolerances and optima differ only in which designs they put on the bench and in what they make of the answers.
+
+mod asked;
+mod bench;
+mod optimize;
+mod sweep;
+mod tolerance;
+
+pub(crate) use optimize::{findings_of_optimization, optimization};
+pub(crate) use sweep::{findings_of_sweep, sweep};
+pub(crate) use tolerance::{findings_of_tolerance, tolerance};
+
+use kempe_model::{Diagnostic, Model, OverStudy, ParameterId, Study};
+
+/// What a study of designs asks for, in words, for `check`.
+pub(crate) fn in_words(model: &Model, what: &str, over: &OverStudy, ids: &[ParameterId]) -> String {
+    let names = ids.iter().filter_map(|id| model.parameters.get(id.index()));
+    let names: Vec<&str> = names.map(|p| p.name.as_str()).collect();
+    format!("{what} of `{}` over {}", over.name, names.join(", "))
+}
+
+/// The study that is run for every design.
+fn study_of<'m>(model: &'m Model, over: &OverStudy) -> Result<&'m Study, Vec<Diagnostic>> {
+    crate::named::study_named(model, &over.name).map_err(|unknown| vec![unknown])
+}
