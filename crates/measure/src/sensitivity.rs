@@ -47,6 +47,8 @@ pub enum Held {
     Path(f64),
     /// Time, s.
     Time(f64),
+    /// None: the place is the end of a law's piece, or of the motion, that is nearest to this time, s, and goes with it.
+    Break(f64),
 }
 
 /// Values of measures with their derivatives to parameters, SI.
@@ -115,7 +117,7 @@ pub fn sensitivities_at<F: ForceSource, G: ForceSource<Varying>>(
     let empty = |held: &Held, sampler: &Sampler<F>| {
         let (parameter, time) = match *held {
             Held::Path(p) => (p, sampler.clock().time_at(p)),
-            Held::Time(t) => (sampler.clock().parameter_at(t), t),
+            Held::Time(t) | Held::Break(t) => (sampler.clock().parameter_at(t), t),
         };
         Sensitivities {
             parameter,
@@ -151,7 +153,7 @@ pub fn sensitivities_at<F: ForceSource, G: ForceSource<Varying>>(
     for (it, held) in all.iter_mut().zip(held) {
         let plain = match *held {
             Held::Path(p) => sampler.values_at_parameter(p),
-            Held::Time(t) => sampler.values_at_time(t),
+            Held::Time(t) | Held::Break(t) => sampler.values_at_time(t),
         };
         for (index, value) in plain.into_iter().enumerate() {
             let infinite = |note: &StatisticNote| matches!(note, StatisticNote::Infinite { .. });

@@ -89,7 +89,7 @@ fn values(model: &Model, held: Held, measures: &[&Measure]) -> Option<Vec<f64>> 
     let mut sampler = Sampler::new(&motion, measures).unwrap();
     let sample = match held {
         Held::Path(p) => sampler.at_parameter(p),
-        Held::Time(t) => sampler.at_time(t),
+        Held::Time(t) | Held::Break(t) => sampler.at_time(t),
     };
     sample.note.is_none().then_some(sample.values)
 }

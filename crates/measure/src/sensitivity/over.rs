@@ -199,7 +199,7 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
     }
 
     /// Times at which some law goes from one piece to the next, as they move with the parameters.
-    fn breaks(&self) -> Vec<Varying> {
+    pub(super) fn breaks(&self) -> Vec<Varying> {
         let mut list = vec![Varying::zero(), self.duration()];
         for drive in &self.motion.mechanism().model.drives {
             let mut law = drive.law.clone();

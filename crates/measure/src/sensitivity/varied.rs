@@ -14,8 +14,6 @@ use crate::sampler::Sampler;
 use crate::state::Series;
 pub(super) use crate::states_along::PathPlace;
 
-/// The values of all parameters of a motion's design with their derivatives to some. A varied parameter still follows those it is
-/// built on: d/d(each) is the same whatever else is asked for.
 /// The length of path that a point has swept, with its derivatives.
 pub(super) struct Cumulated {
     pub point: PointId,
@@ -23,6 +21,8 @@ pub(super) struct Cumulated {
     pub marks: Vec<(Varying, Varying)>,
 }
 
+/// The values of all parameters of a motion's design with their derivatives to some. A varied parameter still follows those it is
+/// built on: d/d(each) is the same whatever else is asked for.
 pub(super) fn varied_parameters(motion: &Motion, chunk: &[ParameterId]) -> Vec<Varying> {
     let model = &motion.mechanism().model;
     let mut values: Vec<Varying> = Vec::with_capacity(model.parameters.len());
@@ -71,6 +71,12 @@ impl<'s, F: ForceSource, G: ForceSource<Varying>> Varied<'s, F, G> {
     pub(super) fn place(&self, held: Held) -> PathPlace<Varying> {
         match (held, self.sampler.path_drive()) {
             (Held::Time(t), _) | (Held::Path(t), None) => self.at_time(Varying::from_f64(t)),
+            (Held::Break(t), _) => {
+                let apart = |b: &Varying| (b.re - t).abs();
+                let breaks = self.breaks().into_iter();
+                let near = breaks.min_by(|a, b| apart(a).total_cmp(&apart(b)));
+                self.at_time(near.unwrap_or(Varying::from_f64(t)))
+            }
             // The first time at which the path drive has this coordinate.
             (Held::Path(p), Some(drive)) => PathPlace {
                 time: self.passing(drive, self.sampler.clock().time_at(p)),

@@ -205,7 +205,7 @@ impl<'m> Bench<'m> {
         let motion = moved.through.as_ref()?;
         let places = self.places(motion);
         let reached = |held: &Held| match held {
-            Held::Path(p) | Held::Time(p) => motion.reaches(*p),
+            Held::Path(p) | Held::Time(p) | Held::Break(p) => motion.reaches(*p),
         };
         places
             .iter()
