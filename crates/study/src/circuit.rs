@@ -147,6 +147,7 @@ pub(crate) fn run_circuit(
         figures: rows.figures(&study.plots),
         table: rows.table,
         frames,
+        beside: Vec::new(),
         contacts: Vec::new(),
         listings: Vec::new(),
         shapes: Vec::new(),

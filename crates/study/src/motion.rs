@@ -141,6 +141,7 @@ pub(crate) fn rows_of(
         figures: rows.figures(&study.plots),
         table: rows.table,
         frames,
+        beside: Vec::new(),
         contacts: Vec::new(),
         listings: Vec::new(),
         shapes: Vec::new(),

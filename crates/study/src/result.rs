@@ -17,6 +17,8 @@ pub struct StudyResult {
     pub name: String,
     /// The rows.
     pub table: Table,
+    /// Tables besides, each with a name of its own.
+    pub beside: Vec<Table>,
     /// Measures that are one number over the whole motion, such as `range(angle(rocker))`.
     pub scalars: Vec<Scalar>,
     /// What the study asks to plot.

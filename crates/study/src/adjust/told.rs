@@ -224,6 +224,7 @@ impl<'b, 'm> Teller<'b, 'm> {
             figures: self.figures(&table, best.is_exact(self.bench)),
             scalars: self.scalars(best, known, square),
             listings: self.listings(found, best, known, square),
+            beside: Vec::new(),
             contacts: Vec::new(),
             frames,
             shapes: Vec::new(),

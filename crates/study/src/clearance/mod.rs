@@ -143,6 +143,7 @@ pub(crate) fn clearance(
         name: name.to_owned(),
         events: met,
         scalars: summary::scalars(&summary, &table, along),
+        beside: Vec::new(),
         contacts: Vec::new(),
         listings: summary::listings(&summary, &table, along, &joints),
         shapes: Vec::new(),

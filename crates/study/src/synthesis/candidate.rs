@@ -8,6 +8,7 @@ use super::asked::Questions;
 use super::beside::Beside;
 use super::file::{STUDY, file_of};
 use crate::result::{Figure, Listing};
+use crate::table::Table;
 
 /// What a task leads to.
 #[derive(Default)]
@@ -24,6 +25,8 @@ pub(super) struct Found {
     pub counted: usize,
     /// What became of the solutions that generic data have: names and numbers.
     pub counts: Vec<(&'static str, usize)>,
+    /// All that solve the equations, used or not, where they are to be seen.
+    pub solutions: Option<Table>,
     /// Poses that a body is guided through, where that is the task.
     pub guided: Vec<Pose>,
     /// What is drawn of the task itself.

@@ -18,6 +18,7 @@ mod path;
 mod point_way;
 mod rates;
 mod refused;
+mod solutions;
 
 use kempe_model::{
     Diagnostic, DwellOutput, LinkageKind, Model, Stroke, SynthesisTask, SynthesizeStudy,
@@ -245,6 +246,7 @@ pub(crate) fn synthesis(
         scalars,
         figures: figures.into_iter().collect(),
         listings,
+        beside: found.solutions.into_iter().collect(),
         contacts: Vec::new(),
         frames: Vec::new(),
         shapes: Vec::new(),

@@ -190,6 +190,7 @@ impl<'a> Passing<'a> {
             tried,
             counted,
             counts: Vec::new(),
+            solutions: None,
             guided,
             figure: None,
         }

@@ -16,6 +16,7 @@ use super::candidate::Found;
 use super::motion::{Area, Given, place};
 use super::passing::{Defect, Passing, point_wanted, pose_wanted};
 use super::refused::{Data, Datum};
+use super::solutions::solutions;
 use crate::unit::Units;
 
 /// Points nearer to each other than this part of their spread are one.
@@ -44,6 +45,7 @@ pub(super) fn candidates(model: &Model, task: &PathTask) -> Result<Found, Box<Di
     if !more.is_empty() {
         how += &format!("; {} cognates of these", more.len());
     }
+    let solutions = Some(solutions(&linkages, either_way, &units));
     let own = linkages.iter().map(|it| (it, either_way));
     let mut passing = Passing::new(&units, "points");
     for (found, either_way) in own.chain(more.iter().map(|it| (it, true))) {
@@ -71,6 +73,7 @@ pub(super) fn candidates(model: &Model, task: &PathTask) -> Result<Found, Box<Di
     }
     Ok(Found {
         counts,
+        solutions,
         ..passing.found(how, !complete, Vec::new())
     })
 }

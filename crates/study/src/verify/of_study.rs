@@ -16,6 +16,7 @@ use crate::quantity::Quantity;
 use crate::result::{ContactMet, StudyResult};
 use crate::rows::RowPlace;
 use crate::run::run;
+use crate::table::Table;
 
 /// A row stands where it is asked for up to this part of its place.
 const SAME_PLACE: f64 = 1e-9;
@@ -155,31 +156,59 @@ impl<'m> OfStudy<'m> {
         }
     }
 
+    /// A number of the study, or the sum of a column of a table besides: `sum(A_x)`.
     fn number(&self, name: &str) -> Result<(f64, Dimension), String> {
+        let summed = name
+            .strip_prefix("sum(")
+            .and_then(|rest| rest.strip_suffix(')'));
+        let mut besides = self.result.beside.iter();
+        if let Some(column) = summed.and_then(|name| besides.find_map(|table| table.column(name))) {
+            return Ok((column.si().iter().sum(), column.unit.dimension()));
+        }
         let scalar = self.result.scalars.iter().find(|s| s.name == name);
         let scalar = scalar.ok_or_else(|| format!("the study tells no `{name}`"))?;
         Ok((scalar.unit.to_si(scalar.value), scalar.unit.dimension()))
     }
 
-    /// A place such as `linkage = 2`, where the rows are numbered by their first column and stand along no drive.
-    fn numbered(&self, place: &str) -> Option<Setting> {
+    /// A place such as `linkage = 2`, where the rows are numbered by their first column and stand along no drive, or in a table besides one
+    /// by the value of any of its columns: `A_x = 0.195 m`. The table with it.
+    fn numbered(&self, place: &str) -> Option<(&Table, Setting)> {
         let (name, number) = place.split_once('=')?;
-        let first = self.result.table.columns.first()?;
-        let drives = &self.model.drives;
-        let counts = first.name == name.trim() && drives.iter().all(|d| d.name != first.name);
-        let value = number.trim().parse().ok().filter(|_| counts)?;
-        Some(Setting {
-            name: first.name.clone(),
+        let own = self
+            .result
+            .table
+            .columns
+            .first()
+            .map(|column| (&self.result.table, column));
+        let beside = self.result.beside.iter();
+        let beside =
+            beside.flat_map(|table| table.columns.iter().map(move |column| (table, column)));
+        let mut all = own.into_iter().chain(beside);
+        let (table, column) = all.find(|(_, column)| column.name == name.trim())?;
+        let is_drive = self.model.drives.iter().any(|d| d.name == column.name);
+        let number = number.trim();
+        let value = match number.split_once(' ') {
+            Some((number, unit)) => {
+                let unit = Unit::parse(unit.trim()).ok()?;
+                unit.to_si(number.parse().ok()?)
+            }
+            None => number.parse().ok()?,
+        };
+        let setting = Setting {
+            name: column.name.clone(),
             value,
             text: place.to_owned(),
-        })
+        };
+        (!is_drive).then_some((table, setting))
     }
 
     fn cell(&self, name: &str, place: &str) -> Result<(f64, Dimension), String> {
-        let table = &self.result.table;
-        let setting = match self.numbered(place) {
-            Some(setting) => setting,
-            None => Setting::parse(self.model, place).map_err(|d| d.message)?,
+        let (table, setting) = match self.numbered(place) {
+            Some(numbered) => numbered,
+            None => {
+                let setting = Setting::parse(self.model, place).map_err(|d| d.message)?;
+                (&self.result.table, setting)
+            }
         };
         let along = table.column(&setting.name);
         let along = along.ok_or_else(|| format!("the study has no column `{}`", setting.name))?;

@@ -155,6 +155,7 @@ pub(super) fn along(
         figures: figures(&table, fixed),
         table,
         scalars: Vec::new(),
+        beside: Vec::new(),
         contacts: Vec::new(),
         listings: Vec::new(),
         frames,

@@ -157,6 +157,14 @@ impl Results<'_> {
             None => add(&csv, table.as_bytes())?,
         }
         drop(table);
+        for table in &result.beside {
+            let name = named(&format!("{name}.{}.csv", table.name));
+            let table = encode::csv(table);
+            match &why {
+                Some(why) => add(&name, encode::marked_partial(&table, why).as_bytes())?,
+                None => add(&name, table.as_bytes())?,
+            }
+        }
         let bytes = encode::parquet(&result.table, &origin(loaded, why));
         let bytes = bytes.map_err(|error| not_encoded(&parquet, &error.to_string()))?;
         add(&parquet, &bytes)
