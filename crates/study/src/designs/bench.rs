@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use kempe_dynamics::sensitivities_at as with_forces;
 use kempe_measure::{Held, NoForces, Sensitivities, sensitivities_at};
-use kempe_mechanism::Design;
+use kempe_mechanism::{Design, Mechanism};
 use kempe_model::{
     Diagnostic, Leaf, Measure, Model, ModelFile, OverStudy, ParameterId, Study, StudyKind, value,
 };
@@ -101,6 +101,17 @@ impl<'m> Bench<'m> {
         let told = motion_findings(&first);
         self.first = Some(first);
         Ok(told)
+    }
+
+    /// Takes over what another bench of the same model knows of the file's own motion.
+    pub fn share(&mut self, other: &Self) {
+        self.own = other.own.clone();
+        self.first = other.first.clone();
+    }
+
+    /// The mechanism that all designs share.
+    pub fn mechanism(&self) -> &Mechanism {
+        &self.own.mechanism
     }
 
     /// The values of the varied parameters in the file, SI.

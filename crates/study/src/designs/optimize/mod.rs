@@ -1,19 +1,110 @@
-//! To come.
+//! Studies that optimise: the design that does something best, with what it hangs on.
+//!
+//! `problem.rs` puts designs before the methods of `kempe-optimize`, `pieces.rs` tells them where over a motion other peaks lie near the highest, `search.rs`
+//! runs a method, `discrete.rs` takes values of a catalogue, `told.rs` says what was found.
 
-use kempe_model::{Diagnostic, Model, OptimizeStudy};
-use kempe_motion::Progress;
+mod discrete;
+mod pieces;
+mod problem;
+mod search;
+mod told;
 
+use kempe_model::{Diagnostic, Model, OptimizeStudy, ParameterId};
+use kempe_motion::progress::{Progress, Silent, Stage};
+
+use super::asked::{kept, numbers_of};
+use super::bench::Bench;
+use super::study_of;
+use crate::clearance::refuses;
+use crate::explain::stopped;
+use crate::quantity::Quantity;
 use crate::result::StudyResult;
+use crate::unit::Units;
+use problem::Designs;
+use search::search;
+use told::Teller;
 
-pub(crate) fn findings_of_optimization(_: &Model, _: &OptimizeStudy) -> Vec<Diagnostic> {
-    Vec::new()
+/// The bench of a study, and a second one for what is told of designs besides.
+fn benches<'m>(
+    model: &'m Model,
+    study: &OptimizeStudy,
+) -> Result<(Bench<'m>, Bench<'m>), Vec<Diagnostic>> {
+    let ids: Vec<ParameterId> = study.vary.iter().map(|it| it.parameter).collect();
+    let goals = study.goals.iter().map(|goal| Quantity {
+        name: goal.number.name.clone(),
+        measure: goal.number.measure.clone(),
+        dimension: goal.number.dimension,
+    });
+    let limits = study.subject_to.iter().map(|limit| kept(model, limit));
+    let bench = Bench::new(
+        model,
+        &study.over,
+        ids.clone(),
+        goals.chain(limits).collect(),
+    )?;
+    let sides = study.subject_to.iter();
+    let mut told: Vec<Quantity> = sides
+        .map(|limit| super::asked::left_side(model, limit))
+        .collect();
+    if !study.over.asked.columns.is_empty() {
+        let over = study_of(model, &study.over)?;
+        told.extend(numbers_of(model, &study.over, over));
+    }
+    let beside = Bench::new(model, &study.over, ids, told)?;
+    Ok((bench, beside))
 }
 
+/// What is to be told of a study before any design is tried; `check` and `run` say the same.
+pub(crate) fn findings_of_optimization(model: &Model, study: &OptimizeStudy) -> Vec<Diagnostic> {
+    match benches(model, study) {
+        Ok((mut bench, _)) => before(&mut bench, study, &mut Silent),
+        Err(told) => told,
+    }
+}
+
+/// What is to be told before any design is tried.
+fn before(
+    bench: &mut Bench<'_>,
+    study: &OptimizeStudy,
+    progress: &mut dyn Progress,
+) -> Vec<Diagnostic> {
+    let own = bench.begin(progress);
+    let own = own.unwrap_or_else(|told| told.into_iter().map(softened).collect());
+    let units = Units::of(bench.model);
+    let problem = Designs::new(bench, study);
+    let mut told = own;
+    told.extend(told::outside(&problem, study, &units));
+    told.extend(told::idle_method(study));
+    told
+}
+
+/// What is wrong with the file's own design does not keep others from being tried.
+fn softened(d: Diagnostic) -> Diagnostic {
+    let mut d = d;
+    if refuses(std::slice::from_ref(&d)) {
+        d.severity = kempe_model::Severity::Warning;
+        d.message = format!("the file's own design: {}", d.message);
+    }
+    d
+}
+
+/// A study that optimises.
 pub(crate) fn optimization(
-    _: &Model,
+    model: &Model,
     name: &str,
-    _: &OptimizeStudy,
-    _: &mut dyn Progress,
+    study: &OptimizeStudy,
+    progress: &mut dyn Progress,
 ) -> Result<StudyResult, Vec<Diagnostic>> {
-    Err(vec![Diagnostic::error("unknown-study", name)])
+    let (mut bench, mut beside) = benches(model, study)?;
+    let diagnostics = before(&mut bench, study, progress);
+    // What was found of the file's own motion helps there, too.
+    beside.share(&bench);
+    let mut problem = Designs::new(&bench, study);
+    let Some(found) = search(&mut problem, study, progress) else {
+        return Err([diagnostics, vec![stopped(Stage::Trying)]].concat());
+    };
+    let teller = Teller::new(&bench, &beside, study, name);
+    teller
+        .result(&mut problem, found, diagnostics.clone())
+        .map_err(|refused| [diagnostics, refused].concat())
 }

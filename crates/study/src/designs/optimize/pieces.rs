@@ -7,10 +7,12 @@
 use std::sync::Arc;
 
 use kempe_measure::Held;
+use kempe_mechanism::Mechanism;
 use kempe_model::{Leaf, Measure, Model, Statistic};
 use kempe_motion::{Motion, Silent};
 use kempe_optimize::Piece;
 
+use crate::columns::is_of_whole_motion;
 use crate::designs::bench::{Bench, Refused};
 use crate::quantity::Quantity;
 use crate::rows::RowPlace;
@@ -23,8 +25,9 @@ const HIGH: f64 = 0.3;
 const MOST: usize = 8;
 /// Rounds in which a peak between three instants is closed in on.
 const ROUNDS: usize = 12;
-/// Two values of one number that differ by this part of its range are one peak.
+/// Two peaks that differ by these parts of their value and of their slope are one.
 const SAME: f64 = 1e-5;
+const SAME_SLOPE: f64 = 1e-2;
 /// Measures that name others more often than this are not looked into.
 const MOST_LEAVES: usize = 200;
 
@@ -38,8 +41,8 @@ pub(super) struct Wanted {
 }
 
 impl Wanted {
-    pub fn new(model: &Model, number: Quantity, sign: f64) -> Self {
-        let inner = inner(model, &number.measure).map(|measure| Quantity {
+    pub fn new(mechanism: &Mechanism, number: Quantity, sign: f64) -> Self {
+        let inner = inner(mechanism, &number.measure).map(|measure| Quantity {
             name: number.name.clone(),
             measure,
             dimension: number.dimension,
@@ -75,8 +78,8 @@ fn written_out(model: &Model, measure: &Measure, left: &mut usize) -> Option<Mea
 }
 
 /// What takes the place of a number at an instant: its measure with what stands in its one `max` or `min`.
-fn inner(model: &Model, measure: &Measure) -> Option<Measure> {
-    let out = written_out(model, measure, &mut { MOST_LEAVES })?;
+fn inner(mechanism: &Mechanism, measure: &Measure) -> Option<Measure> {
+    let out = written_out(&mechanism.model, measure, &mut { MOST_LEAVES })?;
     let mut over = out.leaves().filter(|leaf| matches!(leaf, Leaf::Over(..)));
     let first = over.next()?.clone();
     let Leaf::Over(Statistic::Max | Statistic::Min, within) = &first else {
@@ -86,8 +89,7 @@ fn inner(model: &Model, measure: &Measure) -> Option<Measure> {
         return None;
     }
     // One within another has no place of its own.
-    let nested = |leaf: &Leaf| matches!(leaf, Leaf::Over(..) | Leaf::Named(_));
-    if within.leaves().any(nested) {
+    if is_of_whole_motion(mechanism, within) {
         return None;
     }
     Some(out.substitute(&mut |leaf| match leaf {
@@ -143,12 +145,20 @@ pub(super) fn pieces(
             slope: found.derivatives[*which].iter().map(|d| sign * d).collect(),
         };
         let sound = piece.value.is_finite() && piece.slope.iter().all(|d| d.is_finite());
-        // The highest is known more exactly.
-        if sound && piece.value <= all[k][0].value {
-            all[k].push(piece);
+        if sound && !is_top(&piece, &all[k][0]) {
+            let value = piece.value.min(all[k][0].value);
+            all[k].push(Piece { value, ..piece });
         }
     }
     Ok(all)
+}
+
+/// Whether a peak is the highest itself, which is known more exactly: it has its value and its slope. Another peak may come as near in value.
+fn is_top(piece: &Piece, top: &Piece) -> bool {
+    let size = |slope: &[f64]| slope.iter().map(|d| d * d).sum::<f64>().sqrt();
+    let apart: Vec<f64> = piece.slope.iter().zip(&top.slope).map(|(a, b)| a - b).collect();
+    let near = (piece.value - top.value).abs() <= SAME * top.value.abs().max(piece.value.abs());
+    near && size(&apart) <= SAME_SLOPE * size(&top.slope)
 }
 
 /// Where measures have local peaks besides the highest: which of them, and its place.
@@ -159,10 +169,8 @@ fn peaks(
     inner: &[(usize, &Quantity)],
     exact: &[Vec<Piece>],
 ) -> Result<Vec<(usize, Held)>, Refused> {
-    let duration = kempe_motion::drive_path::duration(
-        &motion.mechanism().model,
-        &motion.design.parameters,
-    );
+    let duration =
+        kempe_motion::drive_path::duration(&motion.mechanism().model, &motion.design.parameters);
     let quantities: Vec<&Quantity> = inner.iter().map(|(_, q)| *q).collect();
     let mut along = bench.along(motion, &quantities, &mut Silent)?;
     let last = INSTANTS - 1;
@@ -206,8 +214,6 @@ fn peaks(
             own.push((value, held));
         }
         own.sort_by(|a, b| b.0.total_cmp(&a.0));
-        // The highest is there already, exactly.
-        own.retain(|(value, _)| top - value > SAME * range);
         own.truncate(MOST);
         found.extend(own.into_iter().map(|(_, held)| (which, held)));
     }

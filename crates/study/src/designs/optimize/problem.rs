@@ -27,14 +27,14 @@ pub(super) struct Designs<'b, 'm> {
 impl<'b, 'm> Designs<'b, 'm> {
     /// The problem of a study; the numbers of its bench are the goals and then what is kept.
     pub fn new(bench: &'b Bench<'m>, study: &OptimizeStudy) -> Self {
-        let model = bench.model;
+        let (model, mechanism) = (bench.model, bench.mechanism());
         let goals = study.goals.iter().zip(&bench.numbers);
         let goals = goals.map(|(goal, number)| {
             let sign = if goal.maximize { -1.0 } else { 1.0 };
-            Wanted::new(model, number.clone(), sign)
+            Wanted::new(mechanism, number.clone(), sign)
         });
         let limits = study.subject_to.iter();
-        let limits = limits.map(|limit| Wanted::new(model, kept(model, limit), -1.0));
+        let limits = limits.map(|limit| Wanted::new(mechanism, kept(model, limit), -1.0));
         Self {
             bench,
             wanted: goals.chain(limits).collect(),
@@ -85,7 +85,10 @@ impl<'b, 'm> Designs<'b, 'm> {
             let (below, first) = at(design[k] - step);
             let (above, second) = at(design[k] + step);
             self.asked += 2;
-            let (first, second) = (self.bench.numbers(&first).ok()?, self.bench.numbers(&second).ok()?);
+            let (first, second) = (
+                self.bench.numbers(&first).ok()?,
+                self.bench.numbers(&second).ok()?,
+            );
             for (slope, (a, b)) in slopes.iter_mut().zip(first.iter().zip(&second)) {
                 slope[k] = (b - a) / (above - below);
             }
@@ -115,7 +118,10 @@ impl Problem for Designs<'_, '_> {
     }
 
     fn evaluate(&mut self, designs: &[Vec<f64>]) -> Vec<Evaluation> {
-        designs.iter().map(|design| self.evaluated(design)).collect()
+        designs
+            .iter()
+            .map(|design| self.evaluated(design))
+            .collect()
     }
 
     fn slopes(&mut self, design: &[f64]) -> Option<Slopes> {

@@ -1,0 +1,165 @@
+//! Parameters that take some values alone, as of a catalogue.
+//!
+//! Where all do and there are few combinations, all are tried. Else the best design without regard to them is taken, each such parameter is put on the value
+//! below or above, and the rest is moved again (rounding with repair): a good design, and not shown to be the best of all combinations.
+
+use kempe_model::OptimizeStudy;
+use kempe_optimize::{
+    Evaluation, Hears, Optima, Optimum, Problem, Scales, Slopes, SqpOptions, compare, sqp,
+};
+
+use super::problem::{Designs, choices};
+use super::search::plain;
+
+/// So many combinations are tried one by one.
+const MOST_TRIED: usize = 2000;
+/// So many combinations of neighbours are tried about one design.
+const MOST_NEIGHBOURS: usize = 64;
+/// So many of the best are kept.
+const KEPT: usize = 10;
+
+/// The best of all combinations, where every parameter is discrete and there are few.
+pub(super) fn all_of(problem: &mut Designs<'_, '_>, study: &OptimizeStudy) -> Option<Optima> {
+    let values: Vec<Vec<f64>> = (study.vary.iter())
+        .map(|chosen| choices(problem.bench.model, &chosen.among))
+        .collect();
+    let count = values
+        .iter()
+        .try_fold(1_usize, |all, list| all.checked_mul(list.len()))?;
+    if count == 0 || count > MOST_TRIED {
+        return None;
+    }
+    let designs: Vec<Vec<f64>> = (0..count)
+        .map(|mut k| {
+            values
+                .iter()
+                .map(|list| {
+                    let value = list[k % list.len()];
+                    k /= list.len();
+                    value
+                })
+                .collect()
+        })
+        .collect();
+    let evaluations = problem.evaluate(&designs);
+    let scales = Scales::typical(&evaluations, problem.objectives(), problem.constraints());
+    let mut all: Vec<(Vec<f64>, Evaluation)> = designs.into_iter().zip(evaluations).collect();
+    all.sort_by(|a, b| compare(&a.1, &b.1, &scales));
+    all.truncate(KEPT);
+    let list: Vec<Optimum> = (all.into_iter())
+        .map(|(design, evaluation)| {
+            let violation = match evaluation.is_defined() {
+                true => evaluation.violation(&scales),
+                false => f64::INFINITY,
+            };
+            plain(design, evaluation, violation)
+        })
+        .collect();
+    Some(Optima {
+        reached: vec![1; list.len()],
+        list,
+        stopped: false,
+    })
+}
+
+/// A problem some of whose variables stand still.
+struct Held<'p, 'b, 'm> {
+    inner: &'p mut Designs<'b, 'm>,
+    bounds: Vec<[f64; 2]>,
+}
+
+impl Problem for Held<'_, '_, '_> {
+    fn bounds(&self) -> &[[f64; 2]] {
+        &self.bounds
+    }
+
+    fn constraints(&self) -> usize {
+        self.inner.constraints()
+    }
+
+    fn evaluate(&mut self, designs: &[Vec<f64>]) -> Vec<Evaluation> {
+        self.inner.evaluate(designs)
+    }
+
+    fn slopes(&mut self, design: &[f64]) -> Option<Slopes> {
+        self.inner.slopes(design)
+    }
+}
+
+/// Designs with values of the catalogues near to those that were found; `None` where no parameter is discrete.
+pub(super) fn with_choices(
+    problem: &mut Designs<'_, '_>,
+    study: &OptimizeStudy,
+    found: &Optima,
+    options: &SqpOptions,
+    hears: Hears,
+) -> Option<Optima> {
+    let model = problem.bench.model;
+    let values: Vec<Vec<f64>> = study
+        .vary
+        .iter()
+        .map(|chosen| choices(model, &chosen.among))
+        .collect();
+    if values.iter().all(Vec::is_empty) {
+        return None;
+    }
+    let mut list: Vec<Optimum> = Vec::new();
+    for optimum in found
+        .list
+        .iter()
+        .filter(|it| it.evaluation.is_defined())
+        .take(3)
+    {
+        let near: Vec<Vec<f64>> = optimum
+            .design
+            .iter()
+            .zip(&values)
+            .map(|(x, all)| neighbours(*x, all))
+            .collect();
+        let count = near
+            .iter()
+            .map(|n| n.len().max(1))
+            .product::<usize>()
+            .min(MOST_NEIGHBOURS);
+        for combination in 0..count {
+            let mut left = combination;
+            let mut bounds = problem.bounds().to_vec();
+            let mut start = optimum.design.clone();
+            for (k, near) in near.iter().enumerate().filter(|(_, near)| !near.is_empty()) {
+                let value = near[left % near.len()];
+                left /= near.len();
+                bounds[k] = [value, value];
+                start[k] = value;
+            }
+            let mut held = Held {
+                inner: &mut *problem,
+                bounds,
+            };
+            list.push(sqp(&mut held, &start, options, hears));
+        }
+    }
+    let scales = list
+        .iter()
+        .map(|it| it.scales.clone())
+        .find(|s| !s.objectives.is_empty())?;
+    list.sort_by(|a, b| compare(&a.evaluation, &b.evaluation, &scales));
+    list.dedup_by(|a, b| a.design == b.design);
+    list.truncate(KEPT);
+    Some(Optima {
+        reached: vec![1; list.len()],
+        list,
+        stopped: found.stopped,
+    })
+}
+
+/// The values next below and above; none where any may be taken.
+fn neighbours(x: f64, all: &[f64]) -> Vec<f64> {
+    let above = all.partition_point(|value| *value < x);
+    let mut near: Vec<f64> = [above.checked_sub(1), Some(above)]
+        .into_iter()
+        .flatten()
+        .filter_map(|k| all.get(k).copied())
+        .collect();
+    near.dedup();
+    near
+}
