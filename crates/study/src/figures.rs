@@ -55,6 +55,7 @@ pub fn figures(model: &Model, result: &StudyResult) -> Vec<(String, PlotSpec)> {
                 (name.clone(), hodograph(name, axes, x, noise(result)))
             }
             Figure::Plane { name, unit, curves } => (name.clone(), plane(unit, curves)),
+            Figure::Graph { name, x, y, curves } => (name.clone(), graph([x, y], curves)),
             Figure::Path(point) => {
                 let name = model.points.get(point.index()).map_or("", |p| &p.name);
                 (
@@ -137,7 +138,7 @@ pub(crate) fn noise(result: &StudyResult) -> f64 {
         Figure::Hodograph(_, axes) => axes.as_slice(),
         Figure::Curves { curves, .. } => curves.as_slice(),
         Figure::Within { curve, .. } => std::slice::from_ref(curve),
-        Figure::Path(_) | Figure::Plane { .. } => &[],
+        Figure::Path(_) | Figure::Plane { .. } | Figure::Graph { .. } => &[],
     });
     let columns = result.table.columns.iter().chain(of_figures);
     let values = columns.filter(|c| force(&c.unit)).flat_map(Column::si);
@@ -149,6 +150,15 @@ pub(crate) fn noise(result: &StudyResult) -> f64 {
 
 /// Curves in the plane.
 fn plane(unit: &Unit, curves: &[PlaneCurve]) -> PlotSpec {
+    let axis = |name: &str| (name.to_owned(), unit.clone());
+    PlotSpec {
+        equal_aspect: true,
+        ..graph([&axis("x"), &axis("y")], curves)
+    }
+}
+
+/// Curves of one quantity over another.
+fn graph([x, y]: [&(String, Unit); 2], curves: &[PlaneCurve]) -> PlotSpec {
     let curves = curves.iter().map(|curve| Curve {
         label: curve.name.clone(),
         x: curve.points.iter().map(|p| p[0]).collect(),
@@ -157,10 +167,9 @@ fn plane(unit: &Unit, curves: &[PlaneCurve]) -> PlotSpec {
         ..Curve::default()
     });
     PlotSpec {
-        x: Axis::new("x", unit.text()),
-        y: Axis::new("y", unit.text()),
+        x: Axis::new(&x.0, x.1.text()),
+        y: Axis::new(&y.0, y.1.text()),
         curves: curves.collect(),
-        equal_aspect: true,
         ..PlotSpec::default()
     }
 }

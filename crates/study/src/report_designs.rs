@@ -63,7 +63,8 @@ const PLANE: [f64; 2] = [170.0, 130.0];
 
 /// What a study shows in the plane beside the mechanisms that it found.
 pub(crate) fn planes_section(model: &Model, result: &StudyResult) -> Option<Section> {
-    let is_plane = (result.figures.iter()).any(|figure| matches!(figure, Figure::Plane { .. }));
+    let is_plane = (result.figures.iter())
+        .any(|figure| matches!(figure, Figure::Plane { .. } | Figure::Graph { .. }));
     if !result.frames.is_empty() || !is_plane {
         return None;
     }

@@ -176,6 +176,17 @@ pub enum Figure {
     Path(PointId),
     /// The force of a joint: name, x and y.
     Hodograph(String, [Column; 2]),
+    /// Curves of one quantity over another, each with values of its own.
+    Graph {
+        /// Its name.
+        name: String,
+        /// What runs to the right, and its unit.
+        x: (String, Unit),
+        /// What runs up.
+        y: (String, Unit),
+        /// Its curves, in these units.
+        curves: Vec<PlaneCurve>,
+    },
     /// Curves in the plane that belong to no motion.
     Plane {
         /// Its name.

@@ -239,7 +239,9 @@ mod tests {
                 }
                 crate::Figure::Hodograph(_, [x, y]) => x.values.len() + y.values.len(),
                 crate::Figure::Within { curve, bound } => curve.values.len() + bound.values.len(),
-                crate::Figure::Path(_) | crate::Figure::Plane { .. } => 0,
+                crate::Figure::Path(_)
+                | crate::Figure::Plane { .. }
+                | crate::Figure::Graph { .. } => 0,
             };
         }
         let mut bytes = numbers * NUMBER + table.notes.len() * size_of::<Option<String>>();

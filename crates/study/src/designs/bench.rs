@@ -6,7 +6,7 @@ use kempe_dynamics::sensitivities_at as with_forces;
 use kempe_measure::{Held, NoForces, Sensitivities, sensitivities_at};
 use kempe_mechanism::{Design, Mechanism};
 use kempe_model::{
-    Diagnostic, Leaf, Measure, Model, ModelFile, OverStudy, ParameterId, Study, StudyKind, value,
+    Diagnostic, Measure, Model, ModelFile, OverStudy, ParameterId, Study, StudyKind, value,
 };
 use kempe_motion::{Motion, MotionError, Progress, Silent};
 
@@ -29,6 +29,16 @@ pub(crate) struct Refused {
     pub lack: f64,
     /// Why.
     pub why: String,
+}
+
+/// What a design answers.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Answer {
+    /// Its numbers, SI; infinite or not a number where one has no value.
+    pub numbers: Vec<f64>,
+    /// Evidence of the pose in which its motion starts, as of a table's row.
+    pub closure: f64,
+    pub smallest_singular_value: f64,
 }
 
 /// A number with its derivatives to the varied parameters, SI.
@@ -227,16 +237,39 @@ impl<'m> Bench<'m> {
         })
     }
 
+    /// What the design with these values answers.
+    ///
+    /// # Errors
+    ///
+    /// Why it does not move as asked.
+    pub fn answer(&self, values: &[f64]) -> Result<Answer, Refused> {
+        let motion = self.motion(values, &mut Silent)?;
+        self.answer_of(&motion)
+    }
+
+    /// What a design answers whose motion is known.
+    ///
+    /// # Errors
+    ///
+    /// What cannot be measured.
+    pub fn answer_of(&self, motion: &Arc<Motion>) -> Result<Answer, Refused> {
+        let quantities: Vec<&Quantity> = self.numbers.iter().collect();
+        let mut along = self.along(motion, &quantities, &mut Silent)?;
+        let row = along.row(RowPlace::Drive(motion.start)).sample;
+        Ok(Answer {
+            numbers: row.values,
+            closure: row.closure,
+            smallest_singular_value: row.smallest_singular_value,
+        })
+    }
+
     /// The numbers of the design with these values, SI; infinite or not a number where a number has no value.
     ///
     /// # Errors
     ///
     /// Why it has none at all.
     pub fn numbers(&self, values: &[f64]) -> Result<Vec<f64>, Refused> {
-        let motion = self.motion(values, &mut Silent)?;
-        let quantities: Vec<&Quantity> = self.numbers.iter().collect();
-        let mut along = self.along(&motion, &quantities, &mut Silent)?;
-        Ok(along.values(RowPlace::Drive(motion.start)))
+        self.answer(values).map(|answer| answer.numbers)
     }
 
     /// The numbers of the design with these values and their exact derivatives to the varied parameters, SI. Of simulations there are none.
@@ -288,11 +321,4 @@ impl<'m> Bench<'m> {
 /// By how much a mechanism misses being assembled, in its sizes; 1 where that is not known.
 fn open_by(design: &Design<f64>, error: &MotionError) -> f64 {
     crate::explain::open_by(design, error).unwrap_or(1.0)
-}
-
-/// Whether a measure asks for the varied parameters alone.
-pub(crate) fn is_of_parameters(measure: &Measure) -> bool {
-    measure
-        .leaves()
-        .all(|leaf| matches!(leaf, Leaf::Parameter(_)))
 }

@@ -13,7 +13,7 @@ pub(crate) use optimize::{findings_of_optimization, optimization};
 pub(crate) use sweep::{findings_of_sweep, sweep};
 pub(crate) use tolerance::{findings_of_tolerance, tolerance};
 
-use kempe_model::{Diagnostic, Model, OverStudy, ParameterId, Study};
+use kempe_model::{Diagnostic, Model, OverStudy, ParameterId, Severity, Study};
 
 /// What a study of designs asks for, in words, for `check`.
 pub(crate) fn in_words(model: &Model, what: &str, over: &OverStudy, ids: &[ParameterId]) -> String {
@@ -25,4 +25,13 @@ pub(crate) fn in_words(model: &Model, what: &str, over: &OverStudy, ids: &[Param
 /// The study that is run for every design.
 fn study_of<'m>(model: &'m Model, over: &OverStudy) -> Result<&'m Study, Vec<Diagnostic>> {
     crate::named::study_named(model, &over.name).map_err(|unknown| vec![unknown])
+}
+
+/// What is wrong with the file's own design does not keep others from being tried.
+fn softened(mut told: Diagnostic) -> Diagnostic {
+    if told.severity == Severity::Error {
+        told.severity = Severity::Warning;
+        told.message = format!("the file's own design: {}", told.message);
+    }
+    told
 }

@@ -15,7 +15,6 @@ use kempe_motion::progress::{Progress, Silent, Stage};
 use super::asked::{kept, numbers_of};
 use super::bench::Bench;
 use super::study_of;
-use crate::clearance::refuses;
 use crate::explain::stopped;
 use crate::quantity::Quantity;
 use crate::result::StudyResult;
@@ -69,23 +68,13 @@ fn before(
     progress: &mut dyn Progress,
 ) -> Vec<Diagnostic> {
     let own = bench.begin(progress);
-    let own = own.unwrap_or_else(|told| told.into_iter().map(softened).collect());
+    let own = own.unwrap_or_else(|told| told.into_iter().map(super::softened).collect());
     let units = Units::of(bench.model);
     let problem = Designs::new(bench, study);
     let mut told = own;
     told.extend(told::outside(&problem, study, &units));
     told.extend(told::idle_method(study));
     told
-}
-
-/// What is wrong with the file's own design does not keep others from being tried.
-fn softened(d: Diagnostic) -> Diagnostic {
-    let mut d = d;
-    if refuses(std::slice::from_ref(&d)) {
-        d.severity = kempe_model::Severity::Warning;
-        d.message = format!("the file's own design: {}", d.message);
-    }
-    d
 }
 
 /// A study that optimises.

@@ -156,7 +156,12 @@ pub(super) fn pieces(
 /// Whether a peak is the highest itself, which is known more exactly: it has its value and its slope. Another peak may come as near in value.
 fn is_top(piece: &Piece, top: &Piece) -> bool {
     let size = |slope: &[f64]| slope.iter().map(|d| d * d).sum::<f64>().sqrt();
-    let apart: Vec<f64> = piece.slope.iter().zip(&top.slope).map(|(a, b)| a - b).collect();
+    let apart: Vec<f64> = piece
+        .slope
+        .iter()
+        .zip(&top.slope)
+        .map(|(a, b)| a - b)
+        .collect();
     let near = (piece.value - top.value).abs() <= SAME * top.value.abs().max(piece.value.abs());
     near && size(&apart) <= SAME_SLOPE * size(&top.slope)
 }

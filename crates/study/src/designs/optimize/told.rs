@@ -8,7 +8,7 @@ use kempe_units::{Dimension, Unit};
 
 use super::problem::Designs;
 use super::search::Sought;
-use crate::designs::bench::Bench;
+use crate::designs::bench::{Answer, Bench};
 use crate::motion::run_along;
 use crate::result::{Figure, FoundDesign, Listing, Scalar, StudyResult};
 use crate::table::{Column, Table};
@@ -35,8 +35,8 @@ pub(super) struct Teller<'b, 'm> {
 struct Told {
     design: Vec<f64>,
     evaluation: Evaluation,
-    /// Left sides of limits and further numbers, SI.
-    beside: Vec<f64>,
+    /// Left sides of limits and further numbers, with the evidence of where the motion starts.
+    beside: Answer,
     note: Option<String>,
 }
 
@@ -160,11 +160,12 @@ impl<'b, 'm> Teller<'b, 'm> {
         error.help("give bounds between which the mechanism can be assembled and goes all the way")
     }
 
-    fn besides(&self, values: &[f64]) -> Vec<f64> {
-        let count = self.beside.numbers.len();
-        self.beside
-            .numbers(values)
-            .unwrap_or_else(|_| vec![f64::NAN; count])
+    fn besides(&self, values: &[f64]) -> Answer {
+        self.beside.answer(values).unwrap_or_else(|_| Answer {
+            numbers: vec![f64::NAN; self.beside.numbers.len()],
+            closure: f64::NAN,
+            smallest_singular_value: f64::NAN,
+        })
     }
 
     fn told(&self, it: &Optimum, reached: usize) -> Told {
@@ -250,7 +251,7 @@ impl<'b, 'm> Teller<'b, 'm> {
             let mut column = Column::new(&quantity.name, unit.clone());
             column.values = rows
                 .iter()
-                .map(|(told, _)| shown(told.beside[k], &unit))
+                .map(|(told, _)| shown(told.beside.numbers[k], &unit))
                 .collect();
             columns.push(column);
         }
@@ -261,20 +262,15 @@ impl<'b, 'm> Teller<'b, 'm> {
             told.extend(more.into_iter().filter(|_| k == 0));
             designs.push(design);
         }
-        let evidence = |designs: &[FoundDesign], of: fn(&Table) -> f64| -> Vec<f64> {
-            let found = designs
-                .iter()
-                .map(|d| d.motion.as_ref().map_or(f64::NAN, |m| of(&m.table)));
-            let mut all: Vec<f64> = own.map(|_| f64::NAN).into_iter().chain(found).collect();
-            all.resize(rows.len(), f64::NAN);
-            all
+        let evidence = |of: fn(&Answer) -> f64| -> Vec<f64> {
+            rows.iter().map(|(told, _)| of(&told.beside)).collect()
         };
         let table = Table {
             name: self.name.to_owned(),
             columns,
             places: 1 + self.study.vary.len(),
-            closure: evidence(&designs, Table::worst_closure),
-            smallest_singular_value: evidence(&designs, Table::least_singular_value),
+            closure: evidence(|it| it.closure),
+            smallest_singular_value: evidence(|it| it.smallest_singular_value),
             forces: None,
             balance: None,
             notes: rows.iter().map(|(told, _)| told.note.clone()).collect(),
@@ -441,8 +437,8 @@ impl<'b, 'm> Teller<'b, 'm> {
             let quantity = &self.beside.numbers[k];
             rows.push(vec![
                 quantity.name.clone(),
-                text(own.map(|own| own.beside[k]), quantity.dimension),
-                text(Some(told.beside[k]), quantity.dimension),
+                text(own.map(|own| own.beside.numbers[k]), quantity.dimension),
+                text(Some(told.beside.numbers[k]), quantity.dimension),
                 limit.condition.text.clone(),
             ]);
         }
