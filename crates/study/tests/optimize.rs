@@ -93,7 +93,7 @@ fn the_largest_swing_at_a_least_transmission_angle() {
                 10.0 + 20.0 * f64::from(i) / 400.0,
                 45.0 + 20.0 * f64::from(j) / 400.0,
             );
-            let turns = a + 60.0 <= b + 40.0 && a <= 40.0;
+            let turns = a + 60.0 < b + 40.0 - 1e-9;
             if turns && least_mu(a, b) >= 40.0 {
                 dense = dense.max(swing(a, b));
             }
@@ -166,7 +166,7 @@ fn catalogues_by_trying_all_or_by_rounding() {
     let mut dense = (0.0, 0.0, 0.0);
     for a in [15.0, 18.0, 22.0, 28.0] {
         for b in (46..=60).step_by(2).map(f64::from) {
-            if a + 60.0 <= b + 40.0 && least_mu(a, b) >= 40.0 && swing(a, b) > dense.0 {
+            if a + 60.0 < b + 40.0 - 1e-9 && least_mu(a, b) >= 40.0 && swing(a, b) > dense.0 {
                 dense = (swing(a, b), a, b);
             }
         }
