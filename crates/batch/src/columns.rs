@@ -1,10 +1,19 @@
 //! From solved states to columns of numbers.
 
-use kempe_mechanism::{Configuration, Design};
+use kempe_mechanism::{Configuration, Design, Pose};
 use kempe_number::{Lanes, Number};
 
 use crate::wide::Wide;
 use crate::{Batch, BatchError};
+
+/// Columns of a body: x, y, and its direction.
+pub(super) const PARTS: usize = 4;
+
+/// The columns of a body's pose, in order.
+#[inline(always)]
+pub(super) fn parts<T: Copy>(pose: &Pose<T>) -> [T; PARTS] {
+    [pose.x, pose.y, pose.c, pose.s]
+}
 
 /// Where the results of one state go.
 #[derive(Clone, Copy, Default)]
@@ -50,6 +59,20 @@ pub(super) fn write_places<T: Wide<W>, const W: usize>(
             }
         }
     }
+    for (j, body) in batch.bodies.iter().enumerate() {
+        for (state, target) in states.iter().zip(targets) {
+            let parts = parts(&state.poses[*body]);
+            for order in 0..T::ORDERS {
+                for (k, part) in parts.iter().enumerate() {
+                    let column = target.column + first_of(batch, order, j) + k;
+                    let to = columns.get_mut(column);
+                    if let Some(to) = to.and_then(|c| c.get_mut(target.row..target.row + W)) {
+                        to.copy_from_slice(&part.order(order).0);
+                    }
+                }
+            }
+        }
+    }
     // What does not close is rare: it is found out behind what is written, and written again.
     if !all_zero(&(together * 0.0).0) {
         return write_wanted(batch, design, states, targets, columns);
@@ -72,27 +95,42 @@ fn write_wanted<T: Wide<W>, const W: usize>(
         let closing = closing_spares(batch, design) + closing(state, &batch.order.wanted);
         let closes = lanes_where(|lane| closing.0[lane].is_finite(), W);
         closed += (target.wanted & closes).count_ones() as usize;
-        for (j, marker) in batch.markers.iter().enumerate() {
-            let place = state.place(design, *marker);
-            for order in 0..T::ORDERS {
+        let mut write = |column: usize, values: &[f64; W]| {
+            let to = columns[target.column + column].iter_mut().skip(target.row);
+            for (lane, (to, value)) in to.zip(values).enumerate() {
+                if target.wanted >> lane & 1 == 1 {
+                    *to = if closes >> lane & 1 == 1 {
+                        *value
+                    } else {
+                        f64::NAN
+                    };
+                }
+            }
+        };
+        for order in 0..T::ORDERS {
+            for (j, marker) in batch.markers.iter().enumerate() {
+                let place = state.place(design, *marker);
                 for axis in 0..2 {
-                    let column = target.column + order * batch.columns() + 2 * j + axis;
-                    let values = place[axis].order(order).0;
-                    let to = columns[column].iter_mut().skip(target.row);
-                    for (lane, (to, value)) in to.zip(values).enumerate() {
-                        if target.wanted >> lane & 1 == 1 {
-                            *to = if closes >> lane & 1 == 1 {
-                                value
-                            } else {
-                                f64::NAN
-                            };
-                        }
-                    }
+                    write(
+                        order * batch.columns() + 2 * j + axis,
+                        &place[axis].order(order).0,
+                    );
+                }
+            }
+            for (j, body) in batch.bodies.iter().enumerate() {
+                for (k, part) in parts(&state.poses[*body]).iter().enumerate() {
+                    write(first_of(batch, order, j) + k, &part.order(order).0);
                 }
             }
         }
     }
     closed
+}
+
+/// The first column of a body.
+#[inline(always)]
+fn first_of(batch: &Batch, order: usize, body: usize) -> usize {
+    order * batch.columns() + 2 * batch.markers.len() + PARTS * body
 }
 
 /// Finite in every lane in which these bodies have a pose.

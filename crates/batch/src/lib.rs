@@ -27,9 +27,9 @@ pub use self::executor::{Executor, Serial, Task};
 pub use self::sweep::sweep_states;
 
 use kempe_mechanism::plan::Step;
-use kempe_mechanism::structure::Marker;
+use kempe_mechanism::structure::{BodyId, Marker};
 
-use self::columns::{check_length, split_columns};
+use self::columns::{PARTS, check_length, split_columns};
 use self::designs::{Places, Work, solve_designs, solve_guessed, solve_trees};
 use self::order::Order;
 use self::stretch::{ModeStretch, stretches};
@@ -112,6 +112,7 @@ impl std::error::Error for BatchError {}
 pub struct Batch {
     motion: Arc<Motion>,
     markers: Vec<Marker>,
+    bodies: Vec<usize>,
     set: InstructionSet,
     stretches: Vec<ModeStretch>,
     needs_guess: bool,
@@ -124,6 +125,20 @@ impl Batch {
     /// # Errors
     /// [`BatchError::NoSuchPoint`].
     pub fn new(motion: &Arc<Motion>, points: &[PointId]) -> Result<Self, BatchError> {
+        Self::with_bodies(motion, points, &[])
+    }
+
+    /// Prepares for points and for whole poses of moving bodies: behind the columns of the points come four for each body, the place of
+    /// its origin and its direction as a unit vector.
+    ///
+    /// # Errors
+    /// [`BatchError::NoSuchPoint`].
+    pub fn with_bodies(
+        motion: &Arc<Motion>,
+        points: &[PointId],
+        bodies: &[BodyId],
+    ) -> Result<Self, BatchError> {
+        let bodies: Vec<usize> = bodies.iter().map(|body| body.index()).collect();
         let mechanism = motion.mechanism();
         let markers: Vec<Marker> = (points.iter())
             .map(|&p| mechanism.any_marker(p).ok_or(BatchError::NoSuchPoint(p)))
@@ -133,8 +148,9 @@ impl Batch {
             set: InstructionSet::detect(),
             stretches: stretches(motion),
             needs_guess: motion.mechanism().plan.steps.iter().any(Step::needs_guess),
-            order: Order::new(mechanism, &markers),
+            order: Order::new(mechanism, &markers, &bodies),
             markers,
+            bodies,
         })
     }
 
@@ -144,9 +160,9 @@ impl Batch {
         self
     }
 
-    /// Columns of positions: two for each point.
+    /// Columns of positions: two for each point, and four for each body.
     pub fn columns(&self) -> usize {
-        2 * self.markers.len()
+        2 * self.markers.len() + PARTS * self.bodies.len()
     }
 
     /// Places of the points at every one of these path parameters of the motion, on the motion's branch: columns of

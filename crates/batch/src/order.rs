@@ -31,8 +31,8 @@ pub(super) struct Order {
 }
 
 impl Order {
-    /// For a batch that looks at these markers.
-    pub(super) fn new(mechanism: &Mechanism, markers: &[Marker]) -> Self {
+    /// For a batch that looks at these markers and bodies.
+    pub(super) fn new(mechanism: &Mechanism, markers: &[Marker], bodies: &[usize]) -> Self {
         let plan = &mechanism.plan;
         let mut it = Self {
             plan: plan.clone(),
@@ -61,7 +61,7 @@ impl Order {
             list.push(index);
         }
         it.moving = [&it.driven[..], &it.rest].concat();
-        it.leave_out(mechanism, markers);
+        it.leave_out(mechanism, markers, bodies);
         let watched = it.wanted.iter().filter(|body| !it.shows(**body, markers));
         it.watched = watched.copied().collect();
         it
@@ -93,8 +93,8 @@ impl Order {
         (self.plan).solve_all::<T, false>(steps, design, &self.neutral, states);
     }
 
-    /// Leaves out one body of every dyad where one carries none of the markers and no later step looks at it.
-    fn leave_out(&mut self, mechanism: &Mechanism, markers: &[Marker]) {
+    /// Leaves out one body of every dyad where one is not wanted itself, carries none of the markers, and no later step looks at it.
+    fn leave_out(&mut self, mechanism: &Mechanism, markers: &[Marker], bodies: &[usize]) {
         let mut uses = vec![0; mechanism.bodies];
         for block in &self.plan.blocks {
             let mut seen = vec![false; mechanism.bodies];
@@ -108,6 +108,9 @@ impl Order {
         }
         for marker in markers {
             uses[marker.body.index()] += 1;
+        }
+        for body in bodies {
+            uses[*body] += 1;
         }
         for step in &mut self.plan.steps {
             let Step::Dyad(dyad) = step else { continue };

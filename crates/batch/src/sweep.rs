@@ -7,7 +7,7 @@ use kempe_mechanism::{Branch, Configuration, Design, configuration::input_of};
 use kempe_number::{InstructionSet, Jet, Lanes, Number, multiversion};
 
 use crate::Batch;
-use crate::columns::{Target, all_lanes, closes, write_places};
+use crate::columns::{PARTS, Target, all_lanes, closes, parts, write_places};
 use crate::stretch::{find_stretch, stretches};
 use crate::wide::{Single, Wide};
 use kempe_motion::Motion;
@@ -135,8 +135,12 @@ pub(super) fn sweep_one_by_one<T: Single>(
         for (index, column) in out.iter_mut().enumerate() {
             let (order, rest) = (index / batch.columns(), index % batch.columns());
             column[row] = state.map_or(f64::NAN, |state| {
-                let place = state.place(&design, batch.markers[rest / 2]);
-                place[rest % 2].order(order)
+                let beyond = rest.checked_sub(2 * batch.markers.len());
+                match beyond {
+                    None => state.place(&design, batch.markers[rest / 2])[rest % 2],
+                    Some(part) => parts(&state.poses[batch.bodies[part / PARTS]])[part % PARTS],
+                }
+                .order(order)
             });
         }
     });

@@ -56,6 +56,16 @@ pub fn figures(model: &Model, result: &StudyResult) -> Vec<(String, PlotSpec)> {
             }
             Figure::Plane { name, unit, curves } => (name.clone(), plane(unit, curves)),
             Figure::Graph { name, x, y, curves } => (name.clone(), graph([x, y], curves)),
+            Figure::Histogram {
+                number,
+                unit,
+                edges,
+                counts,
+                limits,
+            } => (
+                format!("histogram-{number}"),
+                histogram((number, unit), edges, counts, limits),
+            ),
             Figure::Path(point) => {
                 let name = model.points.get(point.index()).map_or("", |p| &p.name);
                 (
@@ -138,7 +148,10 @@ pub(crate) fn noise(result: &StudyResult) -> f64 {
         Figure::Hodograph(_, axes) => axes.as_slice(),
         Figure::Curves { curves, .. } => curves.as_slice(),
         Figure::Within { curve, .. } => std::slice::from_ref(curve),
-        Figure::Path(_) | Figure::Plane { .. } | Figure::Graph { .. } => &[],
+        Figure::Path(_)
+        | Figure::Plane { .. }
+        | Figure::Graph { .. }
+        | Figure::Histogram { .. } => &[],
     });
     let columns = result.table.columns.iter().chain(of_figures);
     let values = columns.filter(|c| force(&c.unit)).flat_map(Column::si);
@@ -170,6 +183,45 @@ fn graph([x, y]: [&(String, Unit); 2], curves: &[PlaneCurve]) -> PlotSpec {
         x: Axis::new(&x.0, x.1.text()),
         y: Axis::new(&y.0, y.1.text()),
         curves: curves.collect(),
+        ..PlotSpec::default()
+    }
+}
+
+/// Counts over a number, in steps, with its limits as lines.
+fn histogram(
+    (number, unit): (&str, &Unit),
+    edges: &[f64],
+    counts: &[f64],
+    limits: &[(String, f64)],
+) -> PlotSpec {
+    let ends = edges.windows(2).zip(counts);
+    let steps = ends.flat_map(|(pair, count)| [[pair[0], *count], [pair[1], *count]]);
+    let first = edges.first().map(|x| [*x, 0.0]);
+    let last = edges.last().map(|x| [*x, 0.0]);
+    let outline: Vec<[f64; 2]> = first.into_iter().chain(steps).chain(last).collect();
+    let most = counts.iter().copied().fold(0.0, f64::max);
+    let line = |(name, at): &(String, f64)| Curve {
+        label: name.clone(),
+        x: vec![*at; 2],
+        y: vec![0.0, most],
+        dashed: true,
+        ..Curve::default()
+    };
+    let mut curves = vec![Curve {
+        label: if limits.is_empty() {
+            String::new()
+        } else {
+            number.to_owned()
+        },
+        x: outline.iter().map(|p| p[0]).collect(),
+        y: outline.iter().map(|p| p[1]).collect(),
+        ..Curve::default()
+    }];
+    curves.extend(limits.iter().map(line));
+    PlotSpec {
+        x: Axis::new(number, unit.text()),
+        y: Axis::new("pieces", ""),
+        curves,
         ..PlotSpec::default()
     }
 }

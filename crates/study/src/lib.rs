@@ -109,7 +109,7 @@ pub use report_designs::design_picture;
 pub use result::{Event, Figure, FoundDesign, Frame, Listing, ModeShape, Scalar, StudyResult};
 pub use room::{Held, MAX_STUDY_BYTES, room_for, study_bytes};
 pub use rows::RowPlace;
-pub use run::{run, run_motion};
+pub use run::{run, run_motion, run_with};
 pub use sensitivities::{Derivative, MeasureSensitivity, Sensitivities, sensitivities};
 pub use table::{Column, ForceColumns, Table};
 pub use unit::{Units, shown};

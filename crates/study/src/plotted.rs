@@ -29,7 +29,8 @@ pub(crate) fn plotted(model: &Model, result: &StudyResult) -> Vec<Column> {
             Figure::Path(_)
             | Figure::Hodograph(..)
             | Figure::Plane { .. }
-            | Figure::Graph { .. } => {}
+            | Figure::Graph { .. }
+            | Figure::Histogram { .. } => {}
         }
     }
     // A curve in the plane as it is plotted.
@@ -39,7 +40,8 @@ pub(crate) fn plotted(model: &Model, result: &StudyResult) -> Vec<Column> {
             Figure::Curves { .. }
             | Figure::Within { .. }
             | Figure::Plane { .. }
-            | Figure::Graph { .. } => continue,
+            | Figure::Graph { .. }
+            | Figure::Histogram { .. } => continue,
             Figure::Path(point) => {
                 let name = model.points.get(point.index()).map_or("", |p| &p.name);
                 ["x", "y"].map(|axis| format!("{axis}({name})"))

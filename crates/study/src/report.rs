@@ -8,7 +8,7 @@ use kempe_measure::CLOSURE_LIMIT;
 use kempe_model::{Diagnostic, Model, MotionStudy, Study};
 
 use crate::comparison::{Comparison, Design};
-use crate::figures::{figures, marker_kind};
+use crate::figures::marker_kind;
 use crate::figures_against::figures_against;
 use crate::findings::Report as CheckReport;
 use crate::findings_text::warnings_section;
@@ -17,7 +17,9 @@ use crate::parameters_section::parameters_section;
 use crate::plotted::plotted;
 use crate::point_vectors::point_vectors;
 use crate::report_against::{beside, findings_of_other, other_source};
-use crate::report_designs::{designs_section, moving_designs, planes_section};
+use crate::report_designs::{
+    along_the_motion, designs_section, histograms_section, moving_designs, planes_section,
+};
 use crate::report_shapes::mode_shapes;
 use crate::result::StudyResult;
 use crate::table::{Column, largest};
@@ -98,6 +100,7 @@ pub fn report(
     sections.extend(results.flat_map(|r| {
         let found = designs_section(r).into_iter();
         let found = found.chain(planes_section(model, r));
+        let found = found.chain(histograms_section(model, r));
         found.chain(values_section(r)).chain(listings(r))
     }));
     sections.extend(parameters_section(model, origin));
@@ -207,7 +210,7 @@ pub(crate) fn motion(
         mark: String::new(),
         plots: match other {
             Some((a, other)) => figures_against(model, result, a.design.model, other),
-            None => figures(model, result),
+            None => along_the_motion(model, result),
         }
         .into_iter()
         .map(|(_, plot)| plot)

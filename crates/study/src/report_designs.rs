@@ -1,11 +1,12 @@
 //! Mechanisms that a study found in the report: side by side, and the first ones moving.
 
+use kempe_draw::plot::PlotSpec;
 use kempe_draw::report::{Block, MotionReport, Section};
 use kempe_draw::scene::Scene;
 use kempe_draw::{DrawOptions, Stage};
 use kempe_model::Model;
 
-use crate::figures::figures;
+use crate::figures::{chosen, figures};
 use crate::report::motion;
 use crate::result::{Figure, FoundDesign, StudyResult};
 use crate::view::{drawing_frames, mechanism_view};
@@ -75,6 +76,31 @@ pub(crate) fn planes_section(model: &Model, result: &StudyResult) -> Option<Sect
         blocks: pictures.collect(),
     })
 }
+
+/// The plots of a study but for how often numbers have their values, which no place of the motion has.
+pub(crate) fn along_the_motion(model: &Model, result: &StudyResult) -> Vec<(String, PlotSpec)> {
+    let shown = chosen(model, result);
+    let plots = figures(model, result).into_iter().zip(&shown);
+    let along = plots.filter(|(_, figure)| !matches!(figure, Figure::Histogram { .. }));
+    along.map(|(plot, _)| plot).collect()
+}
+
+/// How often numbers have their values.
+pub(crate) fn histograms_section(model: &Model, result: &StudyResult) -> Option<Section> {
+    let shown = chosen(model, result);
+    let plots = figures(model, result).into_iter().zip(&shown);
+    let own = plots.filter(|(_, figure)| matches!(figure, Figure::Histogram { .. }));
+    let pictures: Vec<Block> = own
+        .map(|((_, plot), _)| Block::Picture(plot.draw(HISTOGRAM[0], HISTOGRAM[1]).scene))
+        .collect();
+    (!pictures.is_empty()).then(|| Section {
+        title: format!("{}: how often", result.name),
+        blocks: pictures,
+    })
+}
+
+/// Width and height of a histogram, mm.
+const HISTOGRAM: [f64; 2] = [140.0, 80.0];
 
 /// The first ones with their motions.
 pub(crate) fn moving_designs(result: &StudyResult) -> Vec<MotionReport> {

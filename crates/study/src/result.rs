@@ -187,6 +187,19 @@ pub enum Figure {
         /// Its curves, in these units.
         curves: Vec<PlaneCurve>,
     },
+    /// How often a number has its values.
+    Histogram {
+        /// Its name.
+        number: String,
+        /// Its unit.
+        unit: Unit,
+        /// Ends of the bins, in the unit.
+        edges: Vec<f64>,
+        /// How often it lies in each.
+        counts: Vec<f64>,
+        /// Limits of it, with their names.
+        limits: Vec<(String, f64)>,
+    },
     /// Curves in the plane that belong to no motion.
     Plane {
         /// Its name.

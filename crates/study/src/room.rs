@@ -5,12 +5,15 @@ use std::mem::size_of;
 use kempe_dynamics::ForceArrow;
 use kempe_mechanism::Mechanism;
 use kempe_model::{
-    ContactStudy, Diagnostic, Model, MotionStudy, Rows, Study, StudyKind, VibrationStudy, value,
+    ContactStudy, Diagnostic, Model, MotionStudy, Plot, Rows, Study, StudyKind, ToleranceStudy,
+    VibrationStudy, value,
 };
 
 use crate::clearance::COLUMNS;
 use crate::columns::Asked;
+use crate::designs::{DEFAULT_CURVES, KEPT, numbers_of};
 use crate::force_columns::standard_plots;
+use crate::named::study_named;
 use crate::result::Frame;
 use crate::rows::{count, most};
 use crate::vibrations::SHAPE_POSES;
@@ -109,7 +112,8 @@ pub fn study_bytes(model: &Model, study: &Study) -> Held {
             held(model, &asked.along, row + columns * (1 + HELD) * NUMBER)
         }
         // They hold what they need in parts.
-        StudyKind::Sweep(_) | StudyKind::Tolerance(_) | StudyKind::Optimize(_) => Held {
+        StudyKind::Tolerance(asked) => bytes_of_tolerance(model, asked),
+        StudyKind::Sweep(_) | StudyKind::Optimize(_) => Held {
             rows: 1.0,
             row: NUMBER,
         },
@@ -118,6 +122,32 @@ pub fn study_bytes(model: &Model, study: &Study) -> Held {
             row: BYTES_OF_LINKAGE,
         },
     }
+}
+
+/// What a study of tolerances will hold: the numbers of all pieces, or what its bands need along the motion.
+fn bytes_of_tolerance(model: &Model, study: &ToleranceStudy) -> Held {
+    let over = study_named(model, &study.over.name).ok();
+    let numbers = over.map_or(1, |over| numbers_of(model, &study.over, over).len());
+    // Of each number a sorted copy is made; two for each limit.
+    let pieces = Held {
+        rows: study.samples as f64,
+        row: (2 * (numbers + 2 * study.limits.len()) + 1) * NUMBER,
+    };
+    let plots = study.over.asked.plots.iter().map(|plot| match plot {
+        Plot::Curves(columns) => columns.len(),
+        _ => 2,
+    });
+    let curves = plots.sum::<usize>().max(DEFAULT_CURVES);
+    let kept = 2 * study.samples.min(KEPT);
+    let along = over.map(|over| {
+        let own = study_bytes(model, over);
+        Held {
+            row: own.row + curves * (kept + 5 * (1 + HELD)) * NUMBER,
+            ..own
+        }
+    });
+    let larger = along.filter(|along| along.bytes() > pieces.bytes());
+    larger.unwrap_or(pieces)
 }
 
 /// What a study of natural vibrations will hold.
@@ -241,7 +271,8 @@ mod tests {
                 crate::Figure::Within { curve, bound } => curve.values.len() + bound.values.len(),
                 crate::Figure::Path(_)
                 | crate::Figure::Plane { .. }
-                | crate::Figure::Graph { .. } => 0,
+                | crate::Figure::Graph { .. }
+                | crate::Figure::Histogram { .. } => 0,
             };
         }
         let mut bytes = numbers * NUMBER + table.notes.len() * size_of::<Option<String>>();

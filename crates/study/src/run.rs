@@ -1,5 +1,6 @@
 //! Running a study of any kind.
 
+use kempe_batch::{Executor, Serial};
 use kempe_model::{Diagnostic, Model, MotionStudy, Study, StudyKind};
 
 use crate::adjust::adjustment;
@@ -27,6 +28,20 @@ pub fn run(
     study: &Study,
     progress: &mut dyn Progress,
 ) -> Result<StudyResult, Vec<Diagnostic>> {
+    run_with(model, study, &Serial, progress)
+}
+
+/// As [`run`]; studies of many designs are run in pieces on an executor. The results are the same whichever it is.
+///
+/// # Errors
+///
+/// See [`run`].
+pub fn run_with(
+    model: &Model,
+    study: &Study,
+    executor: &dyn Executor,
+    progress: &mut dyn Progress,
+) -> Result<StudyResult, Vec<Diagnostic>> {
     room_for(model, study)?;
     match &study.kind {
         StudyKind::Motion(motion) => run_motion(model, &study.name, motion, progress),
@@ -49,7 +64,7 @@ pub fn run(
         StudyKind::Vibrations(asked) => vibrations(model, &study.name, asked, progress),
         StudyKind::Adjust(asked) => adjustment(model, &study.name, asked, progress),
         StudyKind::Sweep(asked) => sweep(model, &study.name, asked, progress),
-        StudyKind::Tolerance(asked) => tolerance(model, &study.name, asked, progress),
+        StudyKind::Tolerance(asked) => tolerance(model, &study.name, asked, executor, progress),
         StudyKind::Optimize(asked) => optimization(model, &study.name, asked, progress),
         StudyKind::Synthesize(asked) => synthesis(model, &study.name, asked, progress),
     }

@@ -6,6 +6,7 @@ mod write;
 
 use std::path::{Path, PathBuf};
 
+use kempe_batch::Threads;
 use kempe_model::{Diagnostic, Model, Study};
 use kempe_study::{StudyOutcome, encode, of_other_design, room_for, study_bytes, study_named};
 
@@ -245,9 +246,10 @@ fn run_all<'m>(
     speaker: &mut Speaker,
 ) -> Vec<StudyOutcome<'m>> {
     let mut outcomes = Vec::new();
+    let threads = Threads(std::thread::available_parallelism().map_or(1, usize::from));
     for study in studies {
         let mut bar = Bar::new(&format!("{}{whose}", study.name), quiet);
-        let result = kempe_study::run(&loaded.checked.model, study, &mut bar);
+        let result = kempe_study::run_with(&loaded.checked.model, study, &threads, &mut bar);
         drop(bar);
         match &result {
             Ok(result) => speaker.tell(&result.diagnostics),

@@ -9,9 +9,10 @@ mod optimize;
 mod sweep;
 mod tolerance;
 
+pub(crate) use asked::numbers_of;
 pub(crate) use optimize::{findings_of_optimization, optimization};
 pub(crate) use sweep::{findings_of_sweep, sweep};
-pub(crate) use tolerance::{findings_of_tolerance, tolerance};
+pub(crate) use tolerance::{CURVES as DEFAULT_CURVES, KEPT, findings_of_tolerance, tolerance};
 
 use kempe_model::{Diagnostic, Model, OverStudy, ParameterId, Severity, Study};
 

@@ -1,0 +1,459 @@
+//! What tolerances do: parameters that differ from piece to piece, and the numbers of a study.
+//!
+//! The linear answer comes from the exact derivatives of the numbers (`linear.rs`), the sampled one from pieces that are drawn as evenly as
+//! can be (`sobol.rs`, `spread.rs`). Numbers of poses are taken for many pieces at once, on the branch of the file's own design (`program.rs`
+//! says which, `lanes.rs` does it, `extreme.rs` finds extremes between places); the rest by moving piece after piece (`sampled.rs`). Some
+//! pieces are moved either way: what lanes miss by more than a small part of a number's deviation, they do not tell. `summary.rs` makes few
+//! numbers of many, `told.rs` says them.
+
+mod direction_numbers;
+mod extreme;
+mod lanes;
+mod linear;
+mod program;
+mod sampled;
+mod sobol;
+mod spread;
+mod summary;
+mod told;
+
+use kempe_batch::Executor;
+use kempe_model::{
+    Diagnostic, Leaf, Model, MotionStudy, OverStudy, Plot, PointId, PoseMeasure, StudyKind,
+    ToleranceStudy,
+};
+use kempe_motion::progress::{Progress, Silent, Stage};
+use kempe_units::{Dimension, Expr};
+
+use self::lanes::InLanes;
+use self::linear::Linear;
+pub(crate) use self::sampled::KEPT;
+use self::sampled::{CHECKED, Question, path_places};
+use self::sobol::Sobol;
+use self::spread::Deviation;
+use self::told::Teller;
+use super::asked::{kept, left_side, numbers_of};
+use super::bench::Bench;
+use crate::clearance::refuses;
+use crate::columns::Asked;
+use crate::explain::stopped;
+use crate::motion::run_along;
+use crate::quantity::Quantity;
+use crate::result::StudyResult;
+use crate::rows::{RowPlace, places_along};
+use crate::simulation::{findings_of_simulation, simulation};
+
+/// With fewer pieces than this their deviation is hardly known.
+const FEW: usize = 30;
+/// Measures that are followed along the motion where none is asked for.
+pub(crate) const CURVES: usize = 3;
+/// What lanes miss by more than this part of a number's deviation, they do not tell.
+const LANES_AGREE: f64 = 0.05;
+/// Pieces with normal parameters lie hardly farther out than so many times their ends.
+const FAR_OUT: f64 = 2.5;
+
+/// What is to be told of a study before any piece is drawn; `check` and `run` say the same.
+pub(crate) fn findings_of_tolerance(model: &Model, study: &ToleranceStudy) -> Vec<Diagnostic> {
+    match Ready::new(model, study, &mut Silent) {
+        Ok(ready) => ready.told,
+        Err(told) => told,
+    }
+}
+
+/// A limit of the study: where its number and how far it is kept stand among the numbers of the bench.
+struct Limited {
+    left: usize,
+    kept: usize,
+}
+
+/// A study whose own design moves, with the linear answer.
+struct Ready<'m> {
+    bench: Bench<'m>,
+    deviations: Vec<Deviation>,
+    /// So many of the bench's numbers are told, the first ones.
+    shown: usize,
+    limits: Vec<Limited>,
+    /// By number.
+    linear: Vec<Linear>,
+    told: Vec<Diagnostic>,
+}
+
+impl<'m> Ready<'m> {
+    fn new(
+        model: &'m Model,
+        study: &ToleranceStudy,
+        progress: &mut dyn Progress,
+    ) -> Result<Self, Vec<Diagnostic>> {
+        let over = super::study_of(model, &study.over)?;
+        let mut numbers = numbers_of(model, &study.over, over);
+        let mut place = |q: Quantity| {
+            let known = numbers.iter().position(|own| own.measure == q.measure);
+            known.unwrap_or_else(|| {
+                numbers.push(q);
+                numbers.len() - 1
+            })
+        };
+        let lefts = study.limits.iter().map(|limit| left_side(model, limit));
+        let lefts: Vec<usize> = lefts.map(&mut place).collect();
+        let shown = numbers.len();
+        let mut limits = Vec::new();
+        for (limit, left) in study.limits.iter().zip(lefts) {
+            numbers.push(kept(model, limit));
+            let kept = numbers.len() - 1;
+            limits.push(Limited { left, kept });
+        }
+        let varied = study.vary.iter().map(|it| it.parameter).collect();
+        let mut bench = Bench::new(model, &study.over, varied, numbers)?;
+        let mut told = match &over.kind {
+            StudyKind::Simulate(it) => findings_of_simulation(model, &over.name, it, &[], progress),
+            _ => bench.begin(progress)?,
+        };
+        if refuses(&told) {
+            return Err(told);
+        }
+        let own = bench.own_values();
+        let parameters = model.parameter_values();
+        let deviations: Vec<Deviation> = (study.vary.iter().zip(&own))
+            .map(|(it, own)| Deviation::new(&it.spread, &parameters, *own))
+            .collect();
+        let linear = linear(&bench, &own, &deviations).map_err(|why| vec![of_own(study, why)])?;
+        let it = Self {
+            bench,
+            deviations,
+            shown,
+            limits,
+            linear,
+            told: Vec::new(),
+        };
+        told.extend(it.findings(study));
+        Ok(Self { told, ..it })
+    }
+
+    fn findings(&self, study: &ToleranceStudy) -> Vec<Diagnostic> {
+        let mut told = Vec::new();
+        for (limit, own) in study.limits.iter().zip(&self.limits) {
+            if !(self.linear[own.kept].own >= 0.0) {
+                let text = &limit.condition.text;
+                let message = format!("the file's own design does not keep {text}");
+                told.push(
+                    Diagnostic::warning("limit-not-kept", message)
+                        .at(limit.span.clone(), "")
+                        .help("change the design, or the limit"),
+                );
+            }
+        }
+        for (k, it) in study.vary.iter().enumerate() {
+            if self.is_idle(k) {
+                let name = &self.bench.model.parameters[it.parameter.index()].name;
+                let message = format!("`{name}` changes none of the numbers");
+                told.push(
+                    Diagnostic::warning("idle-parameter", message)
+                        .at(it.span.clone(), "")
+                        .help("leave it out, or ask for a number that depends on it"),
+                );
+            }
+        }
+        if study.samples < FEW {
+            let message = format!(
+                "{} pieces are too few to tell how they differ",
+                study.samples
+            );
+            told.push(
+                Diagnostic::warning("few-pieces", message)
+                    .at(study.over.span.clone(), "")
+                    .help("draw more: samples = 1000"),
+            );
+        }
+        told
+    }
+
+    /// Whether a parameter has no effect at all: no derivative, and nothing changes at either end of its tolerance.
+    fn is_idle(&self, k: usize) -> bool {
+        if self.linear.iter().any(|it| it.slope[k] != 0.0) {
+            return false;
+        }
+        let own = self.linear.iter().map(|it| it.own);
+        let own: Vec<f64> = own.collect();
+        self.deviations[k].ends.iter().all(|end| {
+            let mut values = self.bench.own_values();
+            values[k] += end;
+            let near = |(a, b): (&f64, &f64)| (a - b).abs() <= SAME * a.abs();
+            (self.bench.numbers(&values)).is_ok_and(|found| own.iter().zip(&found).all(near))
+        })
+    }
+}
+
+/// Why the file's own design has no numbers.
+fn of_own(study: &ToleranceStudy, why: String) -> Diagnostic {
+    let error = Diagnostic::error("no-answer", why).at(study.over.span.clone(), "");
+    error.help("the file's own design must move as the study asks")
+}
+
+/// Numbers that differ by less than this part are the same but for rounding.
+const SAME: f64 = 1e-12;
+
+/// The linear answers, by exact derivatives; of a simulation, which has none, by differences over a standard deviation.
+fn linear(bench: &Bench<'_>, own: &[f64], deviations: &[Deviation]) -> Result<Vec<Linear>, String> {
+    if !matches!(bench.over.kind, StudyKind::Simulate(_)) {
+        let found = bench.slopes(own).map_err(|refused| refused.why)?;
+        let all = found.into_iter();
+        return Ok(all
+            .map(|it| Linear::new(it.value, it.slope, deviations))
+            .collect());
+    }
+    let middle = bench.numbers(own).map_err(|refused| refused.why)?;
+    let mut slopes = vec![Vec::new(); middle.len()];
+    for (k, deviation) in deviations.iter().enumerate() {
+        let step = deviation.deviation();
+        let beside = |sign: f64| {
+            let mut values = own.to_vec();
+            values[k] += sign * step;
+            bench.numbers(&values).ok()
+        };
+        let ends = (beside(-1.0), beside(1.0));
+        for (number, slope) in slopes.iter_mut().enumerate() {
+            slope.push(match &ends {
+                (Some(low), Some(high)) => (high[number] - low[number]) / (2.0 * step),
+                _ => f64::NAN,
+            });
+        }
+    }
+    let pairs = middle.into_iter().zip(slopes);
+    Ok(pairs
+        .map(|(own, slope)| Linear::new(own, slope, deviations))
+        .collect())
+}
+
+/// What tolerances do to a study's numbers.
+pub(crate) fn tolerance(
+    model: &Model,
+    name: &str,
+    study: &ToleranceStudy,
+    executor: &dyn Executor,
+    progress: &mut dyn Progress,
+) -> Result<StudyResult, Vec<Diagnostic>> {
+    let ready = Ready::new(model, study, progress)?;
+    let curves = curves(model, &study.over, &ready.bench.over.kind);
+    let mut base = own_motion(model, name, &ready.bench, &curves, progress)?;
+    if base.interrupted() {
+        return Err(vec![stopped(Stage::Rows)]);
+    }
+    // The file's own design was told of already.
+    for it in &ready.told {
+        if !base.diagnostics.contains(it) {
+            base.diagnostics.push(it.clone());
+        }
+    }
+    let bench = &ready.bench;
+    let own = bench.own_values();
+    let told = |why: String| vec![of_own(study, why)];
+    let motion = bench
+        .motion(&own, progress)
+        .map_err(|refused| match refused.lack {
+            lack if lack.is_infinite() => vec![stopped(Stage::Following)],
+            _ => told(refused.why),
+        })?;
+    let along = bench.over.kind.along();
+    let rows: Vec<RowPlace> = match &bench.over.kind {
+        StudyKind::Simulate(_) => {
+            let times = base.table.columns.first().map(|c| c.si());
+            let times = times.unwrap_or_default().into_iter();
+            times.map(RowPlace::Time).collect()
+        }
+        _ => places_along(&motion, along, &motion.design.parameters),
+    };
+    let ends: Vec<[f64; 2]> = ready.deviations.iter().map(|it| it.ends).collect();
+    let lanes = match &bench.over.kind {
+        StudyKind::Simulate(_) => None,
+        _ => InLanes::new(bench, &motion, &curves, &path_places(&motion, &rows), &ends),
+    };
+    let mut question = Question {
+        bench,
+        deviations: &ready.deviations,
+        sobol: Sobol::new(own.len(), study.seed as u64),
+        samples: study.samples,
+        curves: &curves,
+        rows: &rows,
+        may_be_unsound: may_be_unsound(bench, &own, &ready.deviations),
+        lanes,
+        own,
+    };
+    let missed = check(&mut question, &ready.linear);
+    let pieces = question.answer(executor, progress);
+    let teller = Teller {
+        ready: &ready,
+        study,
+        question: &question,
+        pieces: &pieces,
+        missed: &missed,
+    };
+    teller.tell(&mut base);
+    Ok(base)
+}
+
+/// Whether pieces may have dimensions that make no sense: then all are looked at.
+fn may_be_unsound(bench: &Bench<'_>, own: &[f64], deviations: &[Deviation]) -> bool {
+    let far = |k: usize, end: usize| own[k] + FAR_OUT * deviations[k].ends[end];
+    let sound = |values: &[f64]| bench.design(values).is_ok();
+    let one_by_one = (0..own.len()).all(|k| {
+        [0, 1].into_iter().all(|end| {
+            let mut values = own.to_vec();
+            values[k] = far(k, end);
+            sound(&values)
+        })
+    });
+    let together = |end: usize| (0..own.len()).map(|k| far(k, end)).collect::<Vec<f64>>();
+    !(one_by_one && sound(&together(0)) && sound(&together(1)))
+}
+
+/// By number: by how much lanes miss what the first pieces tell that are moved by themselves; none where lanes do not tell it. What they
+/// miss by too much they tell no more.
+fn check(question: &mut Question<'_, '_>, linear: &[Linear]) -> Vec<Option<f64>> {
+    let mut missed = vec![None; linear.len()];
+    let Some(lanes) = question.lanes.take() else {
+        return missed;
+    };
+    let mut lanes = lanes;
+    let by_lanes = |lanes: &InLanes, values: &[Vec<f64>]| -> Vec<Vec<f64>> {
+        let mut scratch = lanes.scratch();
+        let mut all = Vec::new();
+        let drawn = |piece: usize, k: usize| values[piece][k];
+        lanes.pieces(values.len(), drawn, &mut scratch, |_, found, _| {
+            for piece in 0..values.len() {
+                all.push(found.numbers.iter().map(|n| n.0[piece]).collect());
+            }
+        });
+        all
+    };
+    // What lanes miss of the file's own design they miss of all pieces nearly alike.
+    let own = by_lanes(&lanes, std::slice::from_ref(&question.own));
+    for (number, (tells, linear)) in lanes.numbers.iter_mut().zip(linear).enumerate() {
+        if let Some((_, more)) = tells {
+            *more = linear.own - own[0][number];
+        }
+    }
+    let values: Vec<Vec<f64>> = (0..CHECKED.min(question.samples))
+        .map(|piece| question.values(piece))
+        .collect();
+    let found = by_lanes(&lanes, &values);
+    let numbers: Vec<usize> = (0..linear.len()).collect();
+    let exact = values.iter().map(|v| question.piece(v, &numbers, &[]).ok());
+    let exact: Vec<_> = exact.collect();
+    for (number, tells) in lanes.numbers.iter_mut().enumerate() {
+        if tells.is_none() {
+            continue;
+        }
+        let own = linear[number].own;
+        let known = exact.iter().zip(&found).filter_map(|(exact, found)| {
+            let exact = exact.as_ref()?.0[number];
+            Some((exact, found[number]))
+        });
+        let (mut largest, mut spread) = (0.0_f64, linear[number].deviation);
+        for (exact, found) in known {
+            let miss = (exact - found).abs();
+            // Neither knows it.
+            let miss = if exact.is_nan() && found.is_nan() {
+                0.0
+            } else {
+                miss
+            };
+            largest = if miss.is_nan() {
+                f64::INFINITY
+            } else {
+                largest.max(miss)
+            };
+            spread = spread.max((exact - own).abs());
+        }
+        let rounding = SAME * own.abs().max(spread);
+        match largest <= (LANES_AGREE * spread).max(rounding) && own.is_finite() {
+            true => missed[number] = Some(largest),
+            false => *tells = None,
+        }
+    }
+    question.lanes = Some(lanes);
+    missed
+}
+
+/// What is followed along the motion: what is plotted, or what the study that is run plots or tabulates.
+fn curves(model: &Model, over: &OverStudy, kind: &StudyKind) -> Vec<Quantity> {
+    let along = kind.along();
+    let of = |plots: &[Plot]| {
+        let mut found: Vec<Quantity> = Vec::new();
+        let mut add = |q: Quantity| {
+            if found.iter().all(|known| known.measure != q.measure) {
+                found.push(q);
+            }
+        };
+        for plot in plots {
+            match plot {
+                Plot::Curves(columns) => columns.iter().for_each(|c| {
+                    add(Quantity {
+                        name: c.name.clone(),
+                        measure: c.measure.clone(),
+                        dimension: c.dimension,
+                    });
+                }),
+                Plot::Path(point) => coordinates(model, *point).into_iter().for_each(&mut add),
+                Plot::Hodograph(_) => {}
+            }
+        }
+        found
+    };
+    let own = of(&over.asked.plots);
+    if !own.is_empty() {
+        return own;
+    }
+    let mut found = of(&along.plots);
+    if found.is_empty() {
+        found = Asked::of_motion(model, along).columns;
+    }
+    found.retain(|q| !crate::columns::is_number(model, &q.measure));
+    found.truncate(CURVES);
+    found
+}
+
+/// Both coordinates of a point.
+fn coordinates(model: &Model, point: PointId) -> [Quantity; 2] {
+    let name = model.points.get(point.index()).map_or("", |p| &p.name);
+    let one = |axis: &str, pose: PoseMeasure| Quantity {
+        name: format!("{axis}({name})"),
+        measure: Expr::Leaf(Leaf::Pose(pose)),
+        dimension: Dimension::LENGTH,
+    };
+    [
+        one("x", PoseMeasure::X(point)),
+        one("y", PoseMeasure::Y(point)),
+    ]
+}
+
+/// The motion of the file's own design with what is followed along it.
+fn own_motion(
+    model: &Model,
+    name: &str,
+    bench: &Bench<'_>,
+    curves: &[Quantity],
+    progress: &mut dyn Progress,
+) -> Result<StudyResult, Vec<Diagnostic>> {
+    let columns = curves.iter().map(|q| kempe_model::Column {
+        name: q.name.clone(),
+        measure: q.measure.clone(),
+        dimension: q.dimension,
+    });
+    let along = MotionStudy {
+        rows: bench.over.kind.along().rows.clone(),
+        columns: columns.collect(),
+        plots: Vec::new(),
+        circuit: false,
+    };
+    match &bench.over.kind {
+        StudyKind::Simulate(it) => {
+            let it = kempe_model::SimulateStudy {
+                along,
+                ..it.clone()
+            };
+            simulation(model, name, &it, &[], progress).map(|(result, _)| result)
+        }
+        StudyKind::Forces(_) => run_along(model, name, &along, true, progress),
+        _ => run_along(model, name, &along, false, progress),
+    }
+}

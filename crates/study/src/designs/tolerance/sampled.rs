@@ -1,0 +1,310 @@
+//! Pieces are drawn, moved and measured: in lanes what lanes can tell, the rest one piece after the other.
+
+use kempe_batch::{Executor, Task};
+use kempe_motion::Motion;
+use kempe_motion::progress::{Done, Progress, Silent, Stage};
+
+use super::lanes::{InLanes, PIECES};
+use super::program::TOGETHER;
+use super::sobol::Sobol;
+use super::spread::Deviation;
+use crate::designs::bench::{Bench, Refused};
+use crate::quantity::Quantity;
+use crate::rows::RowPlace;
+
+/// Pieces of a task in lanes.
+const LANES_TASK: usize = 4 * PIECES;
+/// Pieces of a task that follows each.
+const MOTIONS_TASK: usize = 8;
+/// Tasks between two questions to the progress.
+const TASKS_TOGETHER: usize = 32;
+/// Of so many pieces the quantiles along the motion are told.
+pub(crate) const KEPT: usize = 2048;
+/// Of so many, where each is followed.
+pub(super) const KEPT_FOLLOWED: usize = 256;
+/// So many pieces are moved by themselves to see how far lanes are right.
+pub(super) const CHECKED: usize = 5;
+
+/// What is asked of pieces.
+pub(super) struct Question<'q, 'm> {
+    pub bench: &'q Bench<'m>,
+    pub deviations: &'q [Deviation],
+    pub own: Vec<f64>,
+    pub sobol: Sobol,
+    pub samples: usize,
+    /// What is followed along the motion, and its rows.
+    pub curves: &'q [Quantity],
+    pub rows: &'q [RowPlace],
+    pub lanes: Option<InLanes>,
+    /// Whether pieces may have dimensions that make no sense.
+    pub may_be_unsound: bool,
+}
+
+/// How a curve lies over the pieces, by row.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Band {
+    pub least: Vec<f64>,
+    pub greatest: Vec<f64>,
+    /// Values of the first pieces.
+    pub kept: Vec<Vec<f64>>,
+}
+
+/// What was found of pieces.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Pieces {
+    /// How many there are.
+    pub count: usize,
+    /// By number.
+    pub numbers: Vec<Vec<f64>>,
+    /// Whether each moves as asked.
+    pub moves: Vec<bool>,
+    /// By curve.
+    pub bands: Vec<Band>,
+}
+
+impl Pieces {
+    fn new(numbers: usize, curves: usize, rows: usize) -> Self {
+        let band = Band {
+            least: vec![f64::INFINITY; rows],
+            greatest: vec![f64::NEG_INFINITY; rows],
+            kept: vec![Vec::new(); rows],
+        };
+        Self {
+            count: 0,
+            numbers: vec![Vec::new(); numbers],
+            moves: Vec::new(),
+            bands: vec![band; curves],
+        }
+    }
+
+    /// Puts what was found of further pieces behind.
+    fn append(&mut self, part: Self) {
+        self.count += part.count;
+        self.moves.extend(part.moves);
+        for (own, more) in self.numbers.iter_mut().zip(part.numbers) {
+            own.extend(more);
+        }
+        for (own, more) in self.bands.iter_mut().zip(part.bands) {
+            own.append(more);
+        }
+    }
+}
+
+impl Band {
+    fn add(&mut self, row: usize, value: f64, keep: bool) {
+        if value < self.least[row] {
+            self.least[row] = value;
+        }
+        if value > self.greatest[row] {
+            self.greatest[row] = value;
+        }
+        if keep && value.is_finite() {
+            self.kept[row].push(value);
+        }
+    }
+
+    fn append(&mut self, more: Self) {
+        for (own, value) in self.least.iter_mut().zip(more.least) {
+            *own = own.min(value);
+        }
+        for (own, value) in self.greatest.iter_mut().zip(more.greatest) {
+            *own = own.max(value);
+        }
+        for (own, values) in self.kept.iter_mut().zip(more.kept) {
+            own.extend(values);
+        }
+    }
+}
+
+impl Question<'_, '_> {
+    /// A varied parameter of a piece.
+    pub fn drawn(&self, piece: usize, k: usize) -> f64 {
+        self.own[k] + self.deviations[k].at(self.sobol.coordinate(piece as u32, k))
+    }
+
+    /// All of them.
+    pub fn values(&self, piece: usize) -> Vec<f64> {
+        (0..self.own.len()).map(|k| self.drawn(piece, k)).collect()
+    }
+
+    /// Numbers that lanes do not tell.
+    pub fn followed_numbers(&self) -> Vec<usize> {
+        let told = |k: &usize| (self.lanes.as_ref()).is_some_and(|l| l.numbers[*k].is_some());
+        (0..self.bench.numbers.len()).filter(|k| !told(k)).collect()
+    }
+
+    fn followed_curves(&self) -> Vec<usize> {
+        let told = |k: &usize| (self.lanes.as_ref()).is_some_and(|l| l.curves[*k].is_some());
+        (0..self.curves.len()).filter(|k| !told(k)).collect()
+    }
+
+    /// Draws and measures all pieces, or as many as the progress allows.
+    pub fn answer(&self, executor: &dyn Executor, progress: &mut dyn Progress) -> Pieces {
+        let all = || Pieces::new(self.bench.numbers.len(), self.curves.len(), self.rows.len());
+        let mut found = all();
+        let (numbers, curves) = (self.followed_numbers(), self.followed_curves());
+        let follows = !numbers.is_empty() || !curves.is_empty() || self.lanes.is_none();
+        let task = if numbers.is_empty() && self.lanes.is_some() {
+            LANES_TASK
+        } else {
+            MOTIONS_TASK
+        };
+        while found.count < self.samples {
+            let until = (found.count + task * TASKS_TOGETHER).min(self.samples);
+            let starts: Vec<usize> = (found.count..until).step_by(task).collect();
+            let mut parts: Vec<Pieces> = starts.iter().map(|_| all()).collect();
+            let tasks = parts.iter_mut().zip(&starts).map(|(part, from)| {
+                let range = *from..(from + task).min(until);
+                let own = (&numbers[..], &curves[..]);
+                let task: Task<'_> = Box::new(move || {
+                    match &self.lanes {
+                        Some(lanes) => self.in_lanes(lanes, range.clone(), part),
+                        None => part.unknown(range.len()),
+                    }
+                    if follows {
+                        self.followed(own, range, part);
+                    }
+                });
+                task
+            });
+            executor.run(tasks.collect());
+            parts.into_iter().for_each(|part| found.append(part));
+            let done = Done::Of(found.count, self.samples);
+            if progress.reached(Stage::Rows, done).is_break() {
+                break;
+            }
+        }
+        found
+    }
+
+    fn in_lanes(&self, lanes: &InLanes, range: std::ops::Range<usize>, part: &mut Pieces) {
+        let mut scratch = lanes.scratch();
+        for first in range.clone().step_by(PIECES) {
+            let count = PIECES.min(range.end - first);
+            let drawn = |piece: usize, k: usize| self.drawn(first + piece, k);
+            lanes.pieces(count, drawn, &mut scratch, |from, found, curve| {
+                let own = TOGETHER.min(count - from);
+                let sound =
+                    |lane: usize| !self.may_be_unsound || self.is_sound(first + from + lane);
+                let good: Vec<bool> = (0..own)
+                    .map(|lane| found.closes[lane] && sound(lane))
+                    .collect();
+                for (numbers, value) in part.numbers.iter_mut().zip(&found.numbers) {
+                    let values = value.0.iter().zip(&good);
+                    numbers.extend(values.map(|(x, good)| if *good { *x } else { f64::NAN }));
+                }
+                for (k, band) in part.bands.iter_mut().enumerate() {
+                    if lanes.curves[k].is_none() {
+                        continue;
+                    }
+                    for row in 0..self.rows.len() {
+                        let values = curve(k, row);
+                        for (lane, good) in good.iter().enumerate() {
+                            if *good {
+                                let keep = first + from + lane < KEPT;
+                                band.add(row, values.0[lane], keep);
+                            }
+                        }
+                    }
+                }
+                part.count += own;
+                part.moves.extend(good);
+            });
+        }
+    }
+
+    /// Whether the dimensions of a piece make sense.
+    fn is_sound(&self, piece: usize) -> bool {
+        let parameters = self.bench.parameters(&self.values(piece));
+        let finite = parameters.iter().all(|x| x.is_finite());
+        finite && self.bench.model.unsound(&parameters).is_empty()
+    }
+
+    /// Moves pieces one after the other.
+    fn followed(
+        &self,
+        (numbers, curves): (&[usize], &[usize]),
+        range: std::ops::Range<usize>,
+        part: &mut Pieces,
+    ) {
+        for (index, piece) in range.enumerate() {
+            let keep = piece < KEPT_FOLLOWED;
+            let curves = if keep { curves } else { &[] };
+            if numbers.is_empty() && curves.is_empty() && self.lanes.is_some() {
+                continue;
+            }
+            let Ok((found, along)) = self.piece(&self.values(piece), numbers, curves) else {
+                part.moves[index] = false;
+                part.numbers
+                    .iter_mut()
+                    .for_each(|values| values[index] = f64::NAN);
+                continue;
+            };
+            for (k, value) in numbers.iter().zip(found) {
+                part.numbers[*k][index] = value;
+            }
+            for (row, values) in along.iter().enumerate() {
+                for (k, value) in curves.iter().zip(values) {
+                    part.bands[*k].add(row, *value, true);
+                }
+            }
+        }
+    }
+
+    /// Numbers of a piece that is moved by itself, and its curves by row.
+    pub fn piece(
+        &self,
+        values: &[f64],
+        numbers: &[usize],
+        curves: &[usize],
+    ) -> Result<(Vec<f64>, Vec<Vec<f64>>), Refused> {
+        let motion = self.bench.motion(values, &mut Silent)?;
+        let numbers = numbers.iter().map(|k| &self.bench.numbers[*k]);
+        let quantities: Vec<&Quantity> = numbers
+            .chain(curves.iter().map(|k| &self.curves[*k]))
+            .collect();
+        let behind = quantities.len() - curves.len();
+        let mut along = self.bench.along(&motion, &quantities, &mut Silent)?;
+        let mut first = along.values(RowPlace::Drive(motion.start));
+        let rows = if curves.is_empty() {
+            Vec::new()
+        } else {
+            let rows = self.rows.iter();
+            rows.map(|row| along.values(*row).split_off(behind))
+                .collect()
+        };
+        first.truncate(behind);
+        Ok((first, rows))
+    }
+
+    /// Why a piece does not move.
+    pub fn why(&self, piece: usize) -> String {
+        match self.bench.motion(&self.values(piece), &mut Silent) {
+            Err(refused) => refused.why,
+            Ok(_) => {
+                "it does not close all along on the branch of the file's own design".to_owned()
+            }
+        }
+    }
+}
+
+impl Pieces {
+    /// Pieces of which nothing is known yet.
+    fn unknown(&mut self, count: usize) {
+        self.count = count;
+        self.moves = vec![true; count];
+        self.numbers
+            .iter_mut()
+            .for_each(|values| *values = vec![f64::NAN; count]);
+    }
+}
+
+/// Path parameters of rows.
+pub(super) fn path_places(motion: &Motion, rows: &[RowPlace]) -> Vec<f64> {
+    let (model, parameters) = (&motion.mechanism().model, &motion.design.parameters);
+    let place = |row: &RowPlace| match row {
+        RowPlace::Drive(p) => *p,
+        RowPlace::Time(t) => motion.path.parameter_at(model, *t, parameters),
+    };
+    rows.iter().map(place).collect()
+}

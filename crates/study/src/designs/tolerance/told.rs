@@ -1,0 +1,579 @@
+//! What is said of pieces.
+
+use kempe_model::{Diagnostic, ToleranceStudy};
+use kempe_number::text::significant;
+use kempe_units::Unit;
+
+use super::linear::Linear;
+use super::sampled::{Band, CHECKED, KEPT, KEPT_FOLLOWED, Pieces, Question};
+use super::summary::{Counts, PARTS, Summary, Yield, quantile};
+use super::{Limited, Ready};
+use crate::quantity::Quantity;
+use crate::result::{Figure, Listing, Scalar, StudyResult};
+use crate::table::Column;
+use crate::unit::{SHORT_DIGITS, Units, shown};
+
+/// The linear and the sampled answer part where they differ by more than this part of the linear deviation ...
+const PARTED: f64 = 0.05;
+/// ... and by more than so many times what the number of pieces leaves open.
+const SURE: f64 = 3.0;
+/// Digits of parts and of ratios.
+const FEW_DIGITS: usize = 4;
+/// A parameter with less than this part of the variance is nothing beside the others.
+const NOTHING: f64 = 1e-4;
+
+pub(super) struct Teller<'t, 'm> {
+    pub ready: &'t Ready<'m>,
+    pub study: &'t ToleranceStudy,
+    pub question: &'t Question<'t, 'm>,
+    pub pieces: &'t Pieces,
+    /// By number: by how much lanes miss it.
+    pub missed: &'t [Option<f64>],
+}
+
+/// What is told of a number.
+struct Told<'t> {
+    quantity: &'t Quantity,
+    unit: Unit,
+    linear: &'t Linear,
+    sampled: Option<Summary>,
+}
+
+impl Told<'_> {
+    fn value(&self, si: f64) -> f64 {
+        shown(si, &self.unit)
+    }
+
+    /// A difference of two values.
+    fn difference(&self, si: f64) -> f64 {
+        self.unit.from_si(si) - self.unit.from_si(0.0)
+    }
+
+    fn text(&self, si: f64) -> String {
+        with_unit(self.value(si), &self.unit)
+    }
+
+    fn difference_text(&self, si: f64) -> String {
+        with_unit(self.difference(si), &self.unit)
+    }
+}
+
+fn with_unit(value: f64, unit: &Unit) -> String {
+    let text = format!("{} {}", significant(value, SHORT_DIGITS), unit.text());
+    text.trim_end().to_owned()
+}
+
+fn percent(part: f64) -> String {
+    format!("{} %", significant(100.0 * part, FEW_DIGITS))
+}
+
+impl Teller<'_, '_> {
+    /// Says all that was found beside the motion of the file's own design.
+    pub fn tell(&self, result: &mut StudyResult) {
+        let units = Units::of(self.ready.bench.model);
+        let numbers = self.ready.bench.numbers.iter().zip(&self.ready.linear);
+        let told: Vec<Told<'_>> = (numbers.zip(&self.pieces.numbers).take(self.ready.shown))
+            .map(|((quantity, linear), values)| Told {
+                unit: quantity.unit(&units),
+                quantity,
+                linear,
+                sampled: Summary::new(values),
+            })
+            .collect();
+        result.scalars = self.scalars(&told);
+        result.listings = self.listings(&told, &units);
+        self.add_bands(result, &units);
+        let histograms = told.iter().enumerate();
+        let histograms = histograms.filter_map(|(k, it)| self.histogram(k, it));
+        result.figures.extend(histograms);
+        result.diagnostics.extend(self.resting());
+        if self.pieces.count < self.question.samples {
+            // Its rows are whole, and what they tell is not.
+            result.demanded_rows = result.table.rows() + 1;
+        }
+    }
+
+    fn resting_count(&self) -> usize {
+        self.pieces.moves.iter().filter(|moves| !**moves).count()
+    }
+
+    fn good(&self, limit: &Limited) -> usize {
+        self.pieces.numbers[limit.kept]
+            .iter()
+            .filter(|x| **x >= 0.0)
+            .count()
+    }
+
+    /// Pieces that keep all limits, or without limits move.
+    fn all_good(&self) -> usize {
+        let pieces = 0..self.pieces.count;
+        let good = |piece: &usize| {
+            let mut limits = self.ready.limits.iter();
+            self.pieces.moves[*piece]
+                && limits.all(|limit| self.pieces.numbers[limit.kept][*piece] >= 0.0)
+        };
+        pieces.filter(good).count()
+    }
+
+    fn scalars(&self, told: &[Told<'_>]) -> Vec<Scalar> {
+        let mut all = Vec::new();
+        let mut tell = |name: String, value: f64, unit: &Unit| {
+            // What has no value is told in words.
+            if value.is_finite() {
+                let unit = unit.clone();
+                all.push(Scalar { name, unit, value });
+            }
+        };
+        let one = Unit::one();
+        let percent = Unit::parse("%").unwrap_or_else(|_| Unit::one());
+        let count = self.pieces.count;
+        tell("pieces".to_owned(), count as f64, &one);
+        let resting = self.resting_count();
+        if resting > 0 {
+            tell("pieces that do not move".to_owned(), resting as f64, &one);
+        }
+        if !self.study.limits.is_empty() || resting > 0 {
+            let all = Yield::new(self.all_good(), count);
+            tell("yield".to_owned(), percent.from_si(all.part), &percent);
+            let [low, high] = all.within;
+            tell("yield at least".to_owned(), percent.from_si(low), &percent);
+            tell("yield at most".to_owned(), percent.from_si(high), &percent);
+        }
+        for (limit, own) in self.study.limits.iter().zip(&self.ready.limits) {
+            let part = Yield::new(self.good(own), count).part;
+            let name = format!("yield of {}", limit.condition.text);
+            tell(name, percent.from_si(part), &percent);
+        }
+        for it in told {
+            let name = &it.quantity.name;
+            let more = |what: &str| format!("{name}, {what}");
+            tell(name.clone(), it.value(it.linear.own), &it.unit);
+            if let Some(sampled) = &it.sampled {
+                tell(more("mean"), it.value(sampled.mean), &it.unit);
+                tell(
+                    more("deviation"),
+                    it.difference(sampled.deviation),
+                    &it.unit,
+                );
+                tell(more("least"), it.value(sampled.least), &it.unit);
+                tell(more("greatest"), it.value(sampled.greatest), &it.unit);
+            }
+            if it.linear.is_known() {
+                tell(more("linear mean"), it.value(it.linear.mean), &it.unit);
+                let deviation = it.difference(it.linear.deviation);
+                tell(more("linear deviation"), deviation, &it.unit);
+                let [low, high] = it.linear.worst;
+                tell(more("worst case least"), it.value(low), &it.unit);
+                tell(more("worst case greatest"), it.value(high), &it.unit);
+            }
+        }
+        if let Some(missed) = self.worst_missed() {
+            tell(
+                "lanes differ by".to_owned(),
+                percent.from_si(missed),
+                &percent,
+            );
+        }
+        all
+    }
+
+    /// By how much lanes miss pieces that were moved by themselves, in parts of a number's deviation; none where they tell nothing.
+    fn worst_missed(&self) -> Option<f64> {
+        let pairs = self.missed.iter().zip(&self.pieces.numbers);
+        let parts = pairs.filter_map(|(missed, values)| {
+            let missed = (*missed)?;
+            let deviation = Summary::new(values)?.deviation;
+            Some(if missed == 0.0 {
+                0.0
+            } else {
+                missed / deviation
+            })
+        });
+        parts.filter(|x| x.is_finite()).reduce(f64::max)
+    }
+
+    fn listings(&self, told: &[Told<'_>], units: &Units) -> Vec<Listing> {
+        let mut all = Vec::new();
+        all.push(self.how());
+        all.extend(self.limits(units));
+        all.push(sampled(told, self.pieces.count));
+        all.push(linear(told, self.is_by_differences()));
+        all.extend(self.parted(told));
+        all.extend(told.iter().filter_map(|it| self.contributions(it, units)));
+        all
+    }
+
+    fn is_by_differences(&self) -> bool {
+        matches!(
+            self.ready.bench.over.kind,
+            kempe_model::StudyKind::Simulate(_)
+        )
+    }
+
+    /// How pieces were found.
+    fn how(&self) -> Listing {
+        let mut rows = Vec::new();
+        let mut line = |text: String| rows.push(vec![text]);
+        let names = |which: &[usize]| {
+            let names = which.iter().map(|k| &*self.ready.bench.numbers[*k].name);
+            names.collect::<Vec<_>>().join(", ")
+        };
+        let followed = self.question.followed_numbers();
+        if let Some(lanes) = &self.question.lanes {
+            let told: Vec<usize> = (0..self.ready.bench.numbers.len())
+                .filter(|k| !followed.contains(k))
+                .collect();
+            if !told.is_empty() {
+                line(format!(
+                    "in lanes on the branch of the file's own design, at {} places of the motion: {}",
+                    lanes.places(),
+                    names(&told)
+                ));
+                let miss = told.iter().filter_map(|k| {
+                    let quantity = &self.ready.bench.numbers[*k];
+                    let unit = quantity.unit(&Units::of(self.ready.bench.model));
+                    let miss = unit.from_si(self.missed[*k]?) - unit.from_si(0.0);
+                    Some(format!("{} by {}", quantity.name, with_unit(miss, &unit)))
+                });
+                let miss: Vec<String> = miss.collect();
+                let checked = CHECKED.min(self.question.samples);
+                line(format!(
+                    "of {checked} pieces that were moved by themselves they miss at most: {}",
+                    miss.join(", ")
+                ));
+            }
+        }
+        if !followed.is_empty() {
+            line(format!("each piece moved by itself: {}", names(&followed)));
+        }
+        let resting = self.resting_count();
+        if let Some(first) = self.pieces.moves.iter().position(|moves| !moves) {
+            line(format!(
+                "{resting} do not move as asked, the first of them number {}: {}",
+                first + 1,
+                self.question.why(first)
+            ));
+        }
+        Listing {
+            title: match self.pieces.count < self.question.samples {
+                true => format!(
+                    "{} pieces of {}, stopped",
+                    self.pieces.count, self.question.samples
+                ),
+                false => format!("{} pieces", self.pieces.count),
+            },
+            head: Vec::new(),
+            rows,
+        }
+    }
+
+    fn limits(&self, units: &Units) -> Option<Listing> {
+        if self.study.limits.is_empty() {
+            return None;
+        }
+        let row = |name: String, own: String, good: usize| {
+            let all = Yield::new(good, self.pieces.count);
+            let [low, high] = all.within.map(percent);
+            vec![name, own, percent(all.part), low, high]
+        };
+        let limits = self.study.limits.iter().zip(&self.ready.limits);
+        let mut rows: Vec<Vec<String>> = limits
+            .map(|(limit, own)| {
+                let unit = units.unit(limit.condition.dimension);
+                let margin = self.ready.linear[own.kept].own;
+                let margin = with_unit(unit.from_si(margin) - unit.from_si(0.0), &unit);
+                row(limit.condition.text.clone(), margin, self.good(own))
+            })
+            .collect();
+        if rows.len() > 1 || self.resting_count() > 0 {
+            rows.push(row("all".to_owned(), String::new(), self.all_good()));
+        }
+        let head = [
+            "limit",
+            "the file's own keeps it by",
+            "good",
+            "at least (95 %)",
+            "at most (95 %)",
+        ];
+        Some(Listing {
+            title: "yield".to_owned(),
+            head: head.map(str::to_owned).to_vec(),
+            rows,
+        })
+    }
+
+    /// Where the linear and the sampled answer are not the same.
+    fn parted(&self, told: &[Told<'_>]) -> Option<Listing> {
+        let rows: Vec<Vec<String>> = told
+            .iter()
+            .filter_map(|it| Some(vec![it.quantity.name.clone(), parted(it)?]))
+            .collect();
+        (!rows.is_empty()).then(|| Listing {
+            title: "where linear and sampled part".to_owned(),
+            head: ["number", "the sampled"].map(str::to_owned).to_vec(),
+            rows,
+        })
+    }
+
+    /// Which parameters the deviation of a number comes from.
+    fn contributions(&self, it: &Told<'_>, units: &Units) -> Option<Listing> {
+        if !it.linear.is_known() || it.linear.deviation == 0.0 {
+            return None;
+        }
+        let model = self.ready.bench.model;
+        let row = |k: usize| {
+            let parameter = &model.parameters[self.ready.bench.varied[k].index()];
+            let deviation = &self.ready.deviations[k];
+            let unit = units.unit(parameter.dimension);
+            let own = |si: f64| with_unit(unit.from_si(si) - unit.from_si(0.0), &unit);
+            let tolerance = match (deviation.normal, deviation.mean() == 0.0) {
+                (true, _) => format!("normal {}", own(deviation.deviation())),
+                (false, true) => format!("± {}", own(deviation.ends[1])),
+                (false, false) => {
+                    let [low, high] = deviation.ends.map(own);
+                    format!("{low} to {high}")
+                }
+            };
+            let slope = it.linear.slope[k];
+            let per = it.difference(slope) / (unit.from_si(1.0) - unit.from_si(0.0));
+            let per_unit = match (it.unit.text(), unit.text()) {
+                ("", "") => String::new(),
+                (a, "") => a.to_owned(),
+                ("", b) => format!("1/{b}"),
+                (a, b) => format!("{a}/{b}"),
+            };
+            let alone = slope.abs() * deviation.deviation();
+            vec![
+                parameter.name.clone(),
+                tolerance,
+                format!("{} {per_unit}", significant(per, FEW_DIGITS))
+                    .trim_end()
+                    .to_owned(),
+                it.difference_text(alone),
+                percent(it.linear.parts[k]),
+            ]
+        };
+        let ranked = it.linear.ranked();
+        let (told, nothing): (Vec<usize>, Vec<usize>) = ranked
+            .into_iter()
+            .partition(|k| it.linear.parts[*k] >= NOTHING);
+        let mut rows: Vec<Vec<String>> = told.into_iter().map(row).collect();
+        if !nothing.is_empty() {
+            let names = nothing.iter().map(|k| {
+                let id = self.ready.bench.varied[*k];
+                model.parameters[id.index()].name.as_str()
+            });
+            rows.push(vec![
+                names.collect::<Vec<_>>().join(", "),
+                String::new(),
+                String::new(),
+                String::new(),
+                format!("below {}", percent(NOTHING)),
+            ]);
+        }
+        let head = [
+            "parameter",
+            "tolerance",
+            "derivative",
+            "deviation alone",
+            "part",
+        ];
+        Some(Listing {
+            title: format!("contributions to {}", it.quantity.name),
+            head: head.map(str::to_owned).to_vec(),
+            rows,
+        })
+    }
+
+    /// The band of every curve behind the curve of the file's own design.
+    fn add_bands(&self, result: &mut StudyResult, units: &Units) {
+        result.figures.clear();
+        let followed = result.table.rows();
+        for (quantity, band) in self.question.curves.iter().zip(&self.pieces.bands) {
+            let unit = quantity.unit(units);
+            let column = |what: &str, values: Vec<f64>| Column {
+                values: values.iter().map(|x| unit.from_si(*x)).collect(),
+                ..Column::new(format!("{}, {what}", quantity.name), unit.clone())
+            };
+            let rows = |of: &dyn Fn(usize) -> f64| -> Vec<f64> {
+                let finite = |x: f64| if x.is_finite() { x } else { f64::NAN };
+                (0..followed).map(|row| finite(of(row))).collect()
+            };
+            let at = |values: &[f64], row: usize| values.get(row).copied().unwrap_or(f64::NAN);
+            let sorted = sorted(band);
+            let part = |part: f64| {
+                rows(&|row| sorted.get(row).map_or(f64::NAN, |own| quantile(own, part)))
+            };
+            let columns = [
+                column("least", rows(&|row| at(&band.least, row))),
+                column("5 %", part(0.05)),
+                column("95 %", part(0.95)),
+                column("greatest", rows(&|row| at(&band.greatest, row))),
+            ];
+            let own = result.table.column(&quantity.name).cloned();
+            let curves = own.into_iter().chain(columns.iter().cloned());
+            result.figures.push(Figure::Curves {
+                curves: curves.collect(),
+                limits: Vec::new(),
+            });
+            result.table.columns.extend(columns);
+        }
+        if !self.question.curves.is_empty() {
+            let most = match &self.question.lanes {
+                Some(_) => KEPT,
+                None => KEPT_FOLLOWED,
+            };
+            if most < self.pieces.count {
+                result.listings.push(Listing {
+                    title: format!(
+                        "the parts of 5 % and 95 % along the motion are those of the first {most} pieces"
+                    ),
+                    head: Vec::new(),
+                    rows: Vec::new(),
+                });
+            }
+        }
+    }
+
+    fn histogram(&self, number: usize, it: &Told<'_>) -> Option<Figure> {
+        let sampled = it.sampled.as_ref()?;
+        let counts = Counts::new(&self.pieces.numbers[number], sampled)?;
+        let limits = self.study.limits.iter().zip(&self.ready.limits);
+        let limits = limits.filter(|(_, own)| own.left == number);
+        let limits = limits.map(|(limit, own)| {
+            let kept = self.ready.linear[own.kept].own;
+            let side = if limit.at_least { -kept } else { kept };
+            (limit.condition.text.clone(), it.value(it.linear.own + side))
+        });
+        Some(Figure::Histogram {
+            number: it.quantity.name.clone(),
+            unit: it.unit.clone(),
+            edges: counts.edges.iter().map(|x| it.value(*x)).collect(),
+            counts: counts.counts,
+            limits: limits.collect(),
+        })
+    }
+
+    /// Pieces that do not move as asked.
+    fn resting(&self) -> Option<Diagnostic> {
+        let resting = self.resting_count();
+        let first = self.pieces.moves.iter().position(|moves| !moves)?;
+        let part = resting as f64 / self.pieces.count as f64;
+        let message = format!(
+            "{resting} of {} pieces do not move as asked, {}",
+            self.pieces.count,
+            percent(part)
+        );
+        let told = Diagnostic::warning("pieces-not-moving", message)
+            .at(self.study.over.span.clone(), "")
+            .note(format!("piece {}: {}", first + 1, self.question.why(first)));
+        Some(told.help("narrow the tolerances, or move the design away from its limit"))
+    }
+}
+
+fn sorted(band: &Band) -> Vec<Vec<f64>> {
+    let rows = band.kept.iter().cloned();
+    rows.map(|mut own| {
+        own.sort_unstable_by(f64::total_cmp);
+        own
+    })
+    .collect()
+}
+
+fn sampled(told: &[Told<'_>], count: usize) -> Listing {
+    let parts = PARTS.map(|part| format!("{} %", significant(100.0 * part, SHORT_DIGITS)));
+    let mut head = vec![
+        "number".to_owned(),
+        "mean".to_owned(),
+        "deviation".to_owned(),
+    ];
+    head.push("least".to_owned());
+    head.extend(parts);
+    head.push("greatest".to_owned());
+    let row = |it: &Told<'_>| {
+        let mut row = vec![it.quantity.name.clone()];
+        match &it.sampled {
+            None => row.push("no piece has a value".to_owned()),
+            Some(sampled) => {
+                row.push(it.text(sampled.mean));
+                row.push(it.difference_text(sampled.deviation));
+                row.push(it.text(sampled.least));
+                let parts = sampled.quantiles.iter();
+                row.extend(parts.map(|x| x.map_or_else(String::new, |x| it.text(x))));
+                row.push(it.text(sampled.greatest));
+            }
+        }
+        row
+    };
+    Listing {
+        title: format!("sampled, {count} pieces"),
+        head,
+        rows: told.iter().map(row).collect(),
+    }
+}
+
+fn linear(told: &[Told<'_>], differences: bool) -> Listing {
+    let head = [
+        "number",
+        "the file's own",
+        "mean",
+        "deviation",
+        "worst case from",
+        "to",
+    ];
+    let row = |it: &Told<'_>| {
+        let mut row = vec![it.quantity.name.clone(), it.text(it.linear.own)];
+        if it.linear.is_known() {
+            row.push(it.text(it.linear.mean));
+            row.push(it.difference_text(it.linear.deviation));
+            row.extend(it.linear.worst.map(|x| it.text(x)));
+        } else {
+            row.push("has no derivatives here".to_owned());
+        }
+        row
+    };
+    let by = match differences {
+        true => "differences over a deviation",
+        false => "exact derivatives",
+    };
+    Listing {
+        title: format!("linear, by {by}"),
+        head: head.map(str::to_owned).to_vec(),
+        rows: told.iter().map(row).collect(),
+    }
+}
+
+/// How the sampled answer differs from the linear one, in words, where it does.
+fn parted(it: &Told<'_>) -> Option<String> {
+    let sampled = it.sampled.as_ref()?;
+    if !it.linear.is_known() {
+        return Some("is the only one".to_owned());
+    }
+    let n = sampled.count as f64;
+    let size = it.linear.deviation.max(sampled.deviation);
+    let shift = sampled.mean - it.linear.mean;
+    let mut words = Vec::new();
+    if shift.abs() > (SURE * size / n.sqrt()).max(PARTED * size) {
+        let way = if shift > 0.0 { "above" } else { "below" };
+        words.push(format!(
+            "mean lies {} {way}",
+            it.difference_text(shift.abs())
+        ));
+    }
+    let more = sampled.deviation - it.linear.deviation;
+    let open = SURE / (2.0 * (n - 1.0).max(1.0)).sqrt();
+    if more.abs() > size * open.max(PARTED) {
+        let times = match it.linear.deviation > 0.0 {
+            true => format!(
+                "{} times the linear one",
+                significant(sampled.deviation / it.linear.deviation, FEW_DIGITS)
+            ),
+            false => "where the linear one is 0".to_owned(),
+        };
+        words.push(format!(
+            "deviation is {}, {times}",
+            it.difference_text(sampled.deviation)
+        ));
+    }
+    (!words.is_empty()).then(|| words.join("; "))
+}

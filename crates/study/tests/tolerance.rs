@@ -1,0 +1,460 @@
+//! Studies of tolerances: closed forms where they are linear, dense references where they are not, yields, pieces that do not move, lanes
+//! against motions, threads, and studies that are stopped.
+#![allow(
+    clippy::disallowed_methods,
+    reason = "numbers found by hand beside ours, not reproducible ones"
+)]
+
+use std::ops::ControlFlow;
+
+use kempe_batch::{Serial, Threads};
+use kempe_model::{Diagnostic, Model};
+use kempe_study::{Done, Silent, Stage, StudyResult, check, run, run_with};
+
+/// A slider-crank without offset: crank a, rod b, from 0 as far as asked.
+fn slider(a: f64, b: f64, to: f64, study: &str) -> String {
+    format!(
+        "units = {{ length = \"mm\", angle = \"deg\" }}\n[parameters]\na = \"{a} mm\"\nb = \"{b} mm\"\n\
+         [links]\nframe = {{ A = [0, 0], E = [0, 0], F = [100, 0] }}\ncrank = {{ A-B = \"a\" }}\nrod = {{ B-C = \"b\" }}\nblock = {{ C = [0, 0] }}\n\
+         [joints]\nguide = {{ slider = \"block\", at = \"C\", on = \"E -> F\" }}\n\
+         [drives]\nmotor = {{ turns = \"crank\", from = 0, to = {to}, speed = \"1 rad/s\" }}\n[assembly]\nC = {{ near = [{}, 0] }}\n\
+         [studies.turn]\nkind = \"motion\"\nstep = 2\ncolumns = [\"x(C)\"]\n\
+         [studies.pieces]\nkind = \"tolerance\"\nover = \"turn\"\n{study}\n",
+        a + b
+    )
+}
+
+/// A four-bar with a coupler point.
+fn four_bar(study: &str) -> String {
+    format!(
+        "units = {{ length = \"mm\", angle = \"deg\" }}\n[parameters]\na = \"20 mm\"\nb = \"50 mm\"\nc = \"40 mm\"\nd = \"60 mm\"\nidle = \"1 mm\"\n\
+         [links]\nframe = {{ A = [0, 0], D = [\"d\", 0] }}\ncrank = {{ A-B = \"a\" }}\ncoupler = {{ B-C = \"b\", P = [25, 10] }}\nrocker = {{ D-C = \"c\" }}\n\
+         [drives]\nmotor = {{ turns = \"crank\", from = 0, to = 360, speed = \"1 rad/s\" }}\n[assembly]\nC = \"left of B -> D\"\n\
+         [studies.turn]\nkind = \"motion\"\nstep = 5\ncolumns = [\"angle(rocker)\", \"y(P)\"]\n\
+         [studies.pieces]\nkind = \"tolerance\"\nover = \"turn\"\n{study}\n"
+    )
+}
+
+const LENGTHS: &str = "vary = { a = \"0.1 mm\", b = \"0.2 %\", c = { normal = \"0.05 mm\" }, d = { between = [\"0 mm\", \"0.2 mm\"] } }\n";
+
+fn model(text: &str) -> Model {
+    match Model::from_toml(text, "test", &mut |_| Err("no files".into())) {
+        Ok(checked) => checked.model,
+        Err(found) => panic!("{}", rendered(&found, text)),
+    }
+}
+
+fn rendered(found: &[Diagnostic], text: &str) -> String {
+    let lines = found.iter().map(|d| d.render_plain("test.toml", text));
+    lines.collect()
+}
+
+fn found(text: &str) -> StudyResult {
+    let model = model(text);
+    match run(&model, &model.studies[1], &mut Silent) {
+        Ok(result) => result,
+        Err(found) => panic!("{}", rendered(&found, text)),
+    }
+}
+
+fn codes(text: &str) -> Vec<&'static str> {
+    let model = model(text);
+    let told = match run(&model, &model.studies[1], &mut Silent) {
+        Ok(result) => result.diagnostics,
+        Err(found) => found,
+    };
+    // `check` says the same, but for what only pieces tell.
+    let checked = check(&model).diagnostics;
+    let early = told.iter().filter(|d| d.code != "pieces-not-moving");
+    for d in early.filter(|d| d.code != "stopped") {
+        assert!(checked.contains(d), "{} is not checked", d.message);
+    }
+    told.iter().map(|d| d.code).collect()
+}
+
+fn scalar(result: &StudyResult, name: &str) -> f64 {
+    let found = result.scalars.iter().find(|s| s.name == name);
+    let names: Vec<&str> = result.scalars.iter().map(|s| s.name.as_str()).collect();
+    found.unwrap_or_else(|| panic!("{name} of {names:?}")).value
+}
+
+fn near(found: f64, wanted: f64, within: f64) {
+    assert!(
+        (found - wanted).abs() <= within,
+        "{found} for {wanted} +- {within}"
+    );
+}
+
+/// The part of a normal distribution below a value, by a fine sum.
+fn normal_below(x: f64) -> f64 {
+    let n = 20_000;
+    let step = (x + 10.0) / f64::from(n);
+    let density = |t: f64| (-0.5 * t * t).exp() / std::f64::consts::TAU.sqrt();
+    let middle = (0..n).map(|k| density(-10.0 + step * (f64::from(k) + 0.5)));
+    middle.sum::<f64>() * step
+}
+
+fn lines(result: &StudyResult) -> String {
+    let all = result.listings.iter();
+    let rows = all.map(|l| {
+        let rows: Vec<String> = l.rows.iter().map(|r| r.join(" | ")).collect();
+        format!("{}\n{}\n{}\n", l.title, l.head.join(" | "), rows.join("\n"))
+    });
+    rows.collect()
+}
+
+#[test]
+fn a_stroke_of_two_cranks_meets_its_closed_form() {
+    let result = found(&slider(
+        20.0,
+        60.0,
+        360.0,
+        "vary = { a = \"0.1 mm\" }\ncolumns = [\"range(x(C))\"]\nlimits = [\"range(x(C)) >= 39.9 mm\", \"x(C) <= 80.05 mm\"]\n",
+    ));
+    let name = "range(x(C))";
+    near(scalar(&result, name), 40.0, 1e-9);
+    let deviation = 0.2 / 3.0_f64.sqrt();
+    near(
+        scalar(&result, &format!("{name}, linear deviation")),
+        deviation,
+        1e-9,
+    );
+    near(
+        scalar(&result, &format!("{name}, deviation")),
+        deviation,
+        2e-4 * deviation,
+    );
+    near(scalar(&result, &format!("{name}, mean")), 40.0, 1e-5);
+    near(
+        scalar(&result, &format!("{name}, worst case least")),
+        39.8,
+        1e-9,
+    );
+    near(
+        scalar(&result, &format!("{name}, worst case greatest")),
+        40.2,
+        1e-9,
+    );
+    // Even from -0.1 to 0.1: good where a differs by -0.05 at least, and by 0.05 at most.
+    near(
+        scalar(&result, "yield of range(x(C)) >= 39.9 mm"),
+        75.0,
+        0.05,
+    );
+    near(scalar(&result, "yield of x(C) <= 80.05 mm"), 75.0, 0.05);
+    near(scalar(&result, "yield"), 50.0, 0.05);
+    assert!(scalar(&result, "yield at least") < 50.0 && scalar(&result, "yield at most") > 50.0);
+    // The extremes of all pieces are near those of the tolerance, and never beyond.
+    let least = scalar(&result, &format!("{name}, least"));
+    assert!((39.8 - 1e-9..39.801).contains(&least), "{least}");
+    assert!(result.diagnostics.is_empty(), "{:?}", result.diagnostics);
+    let text = lines(&result);
+    assert!(!text.contains("linear and sampled part"), "{text}");
+}
+
+#[test]
+fn a_sum_of_even_and_normal_lengths_meets_its_closed_form() {
+    let result = found(&slider(
+        20.0,
+        60.0,
+        360.0,
+        "vary = { a = { uniform = \"0.1 mm\" }, b = { normal = \"0.05 mm\" } }\ncolumns = [\"max(x(C))\"]\nlimits = [\"max(x(C)) <= 80.1 mm\"]\nsamples = 65536\n",
+    ));
+    let name = "max(x(C))";
+    let deviation = (0.01_f64 / 3.0 + 0.0025).sqrt();
+    near(
+        scalar(&result, &format!("{name}, linear deviation")),
+        deviation,
+        1e-9,
+    );
+    near(
+        scalar(&result, &format!("{name}, deviation")),
+        deviation,
+        1e-4 * deviation,
+    );
+    // Three deviations of what is normal.
+    near(
+        scalar(&result, &format!("{name}, worst case greatest")),
+        80.25,
+        1e-9,
+    );
+    let n = 400;
+    let parts = (0..n)
+        .map(|k| normal_below((0.1 - (-0.1 + 0.2 * (f64::from(k) + 0.5) / f64::from(n))) / 0.05));
+    let wanted = 100.0 * parts.sum::<f64>() / f64::from(n);
+    near(scalar(&result, "yield"), wanted, 0.03);
+    let text = lines(&result);
+    let place = text
+        .find("contributions to max(x(C))")
+        .expect("contributions");
+    // 0.01 / 3 of 0.01 / 3 + 0.0025.
+    assert!(
+        text[place..].contains("a | ± 0.1 mm | 1 mm/mm | 0.057735 mm | 57.14 %"),
+        "{text}"
+    );
+    assert!(
+        text[place..].contains("b | normal 0.05 mm | 1 mm/mm | 0.05 mm | 42.86 %"),
+        "{text}"
+    );
+}
+
+#[test]
+fn deviations_to_one_side_shift_the_mean() {
+    let result = found(&slider(
+        20.0,
+        60.0,
+        360.0,
+        "vary = { a = { between = [\"0 mm\", \"0.3 mm\"] } }\ncolumns = [\"range(x(C))\"]\n",
+    ));
+    near(scalar(&result, "range(x(C)), linear mean"), 40.3, 1e-9);
+    near(scalar(&result, "range(x(C)), mean"), 40.3, 1e-4);
+    near(scalar(&result, "range(x(C)), worst case least"), 40.0, 1e-9);
+    near(
+        scalar(&result, "range(x(C)), worst case greatest"),
+        40.6,
+        1e-9,
+    );
+    near(
+        scalar(&result, "range(x(C)), linear deviation"),
+        0.3 / 3.0_f64.sqrt(),
+        1e-9,
+    );
+}
+
+#[test]
+fn near_a_dead_point_the_sampled_answer_meets_a_dense_one_and_parts_from_the_linear() {
+    let result = found(&slider(
+        50.0,
+        51.0,
+        90.0,
+        "vary = { a = \"0.3 mm\", b = \"0.3 mm\" }\ncolumns = [\"at(x(C), motor, 90)\"]\nsamples = 16384\n",
+    ));
+    let name = "at(x(C), motor, 90)";
+    let height = |a: f64, b: f64| (b * b - a * a).sqrt();
+    let n = 1000;
+    let at = |k: i32| 0.6 * (f64::from(k) + 0.5) / f64::from(n) - 0.3;
+    let (mut mean, mut square, mut low) = (0.0, 0.0, 0);
+    for i in 0..n {
+        for j in 0..n {
+            let h = height(50.0 + at(i), 51.0 + at(j));
+            mean += h;
+            square += h * h;
+            low += i32::from(h < 8.0);
+        }
+    }
+    let all = f64::from(n * n);
+    mean /= all;
+    let deviation = (square / all - mean * mean).sqrt();
+    near(
+        scalar(&result, &format!("{name}, mean")),
+        mean,
+        1e-4 * deviation,
+    );
+    near(
+        scalar(&result, &format!("{name}, deviation")),
+        deviation,
+        2e-4 * deviation,
+    );
+    let slope = [50.0, 51.0].map(|x| 0.3 / 3.0_f64.sqrt() * x / height(50.0, 51.0));
+    let linear = (slope[0] * slope[0] + slope[1] * slope[1]).sqrt();
+    near(
+        scalar(&result, &format!("{name}, linear deviation")),
+        linear,
+        1e-9,
+    );
+    assert!(
+        lines(&result).contains("where linear and sampled part"),
+        "{}",
+        lines(&result)
+    );
+    assert!(low > 0 && mean < height(50.0, 51.0));
+}
+
+#[test]
+fn pieces_that_cannot_be_assembled_are_bad_and_told() {
+    let text = slider(
+        50.0,
+        51.0,
+        90.0,
+        "vary = { a = \"1.5 mm\" }\ncolumns = [\"at(x(C), motor, 90)\"]\nlimits = [\"max(x(C)) >= 100 mm\"]\n",
+    );
+    let result = found(&text);
+    // A crank longer than the rod does not get there: a third of a millimetre and a half of three.
+    near(
+        scalar(&result, "pieces that do not move") / 10_000.0,
+        1.0 / 6.0,
+        1e-3,
+    );
+    // a + b >= 100 is kept by a >= 49, from 48.5 on.
+    near(scalar(&result, "yield"), 100.0 * (1.0 - 2.0 / 6.0), 0.1);
+    assert_eq!(codes(&text), ["pieces-not-moving"]);
+    let told = &result.diagnostics[0];
+    assert!(
+        told.notes.iter().any(|note| note.contains("motor")),
+        "{told:?}"
+    );
+}
+
+#[test]
+fn lanes_tell_what_motions_tell() {
+    let numbers = "columns = [\"range(angle(rocker))\", \"min(transmission_angle(C))\", \"max(y(P))\", \"mean(angle(rocker))\", \"at(distance(A, P), motor, 77)\", \
+                   \"max(angle(rocker, coupler)) + 2 rad * min(distance(P, A -> D)) / d\", \"max(d(angle(rocker), motor))\"]\n";
+    let text = four_bar(&format!("{LENGTHS}samples = 200\n{numbers}"));
+    let result = found(&text);
+    assert!(
+        scalar(&result, "lanes differ by") < 0.01,
+        "{}",
+        lines(&result)
+    );
+    assert!(
+        !lines(&result).contains("each piece moved by itself"),
+        "{}",
+        lines(&result)
+    );
+    // The same numbers, as ones that no lanes tell.
+    let followed = text.replace(
+        "columns = [\"range(angle(rocker))\"",
+        "columns = [\"range(angle(rocker)) * time_ratio(angle(rocker))^0\"",
+    );
+    let followed = found(&followed);
+    let name = "range(angle(rocker))";
+    let other = format!("{name} * time_ratio(angle(rocker))^0");
+    for what in ["mean", "deviation", "least", "greatest"] {
+        let [lanes, moved] = [(&result, name), (&followed, other.as_str())]
+            .map(|(result, name)| scalar(result, &format!("{name}, {what}")));
+        near(lanes, moved, 1e-6);
+    }
+    assert!(lines(&followed).contains("each piece moved by itself"));
+    // And nearly linear ones.
+    for number in [
+        "min(transmission_angle(C))",
+        "max(y(P))",
+        "mean(angle(rocker))",
+    ] {
+        let of = |what: &str| scalar(&result, &format!("{number}, {what}"));
+        near(
+            of("deviation"),
+            of("linear deviation"),
+            0.05 * of("deviation"),
+        );
+        near(of("mean"), of("linear mean"), 0.05 * of("deviation"));
+    }
+}
+
+#[test]
+fn bands_lie_about_the_files_own_design() {
+    let result = found(&four_bar(&format!(
+        "{LENGTHS}samples = 500\nplot = [\"angle(rocker)\"]\n"
+    )));
+    let table = &result.table;
+    assert_eq!((table.rows(), result.frames.len()), (73, 73));
+    let column = |what: &str| {
+        &table
+            .column(&format!("angle(rocker), {what}"))
+            .expect("a column")
+            .values
+    };
+    let own = &table.column("angle(rocker)").expect("a column").values;
+    for row in 0..table.rows() {
+        let bands = ["least", "5 %", "95 %", "greatest"].map(|what| column(what)[row]);
+        assert!(
+            bands.is_sorted() && bands[0] < own[row] && own[row] < bands[3],
+            "{row}: {bands:?} {}",
+            own[row]
+        );
+    }
+    assert!(result.figures.len() >= 2);
+}
+
+#[test]
+fn forces_and_friction_are_followed_piece_by_piece() {
+    let text = four_bar("vary = { a = \"0.1 mm\", mu = { normal = \"0.02\" } }\nsamples = 24\ncolumns = [\"max(torque(motor))\"]\n")
+        .replace("idle = \"1 mm\"\n", "mu = \"0.1\"\n")
+        .replace("rocker = { D-C = \"c\" }", "rocker = { D-C = \"c\", mass = 1, inertia = \"1e-3 kg m^2\" }")
+        .replace("kind = \"motion\"\nstep = 5\ncolumns = [\"angle(rocker)\", \"y(P)\"]", "kind = \"forces\"\nstep = 20\ncolumns = [\"torque(motor)\"]")
+        + "[friction]\nD = { coefficient = \"mu\", radius = \"5 mm\" }\n[gravity]\ndown = \"-y\"\n";
+    // The words of friction are looked up where they stand.
+    let text = text.replace("[gravity]\ndown = \"-y\"\n", "");
+    let result = found(&text);
+    let name = "max(torque(motor))";
+    let [own, deviation] =
+        ["linear deviation", "deviation"].map(|what| scalar(&result, &format!("{name}, {what}")));
+    assert!(
+        own > 0.0 && (deviation / own - 1.0).abs() < 0.5,
+        "{own} {deviation}"
+    );
+    assert!(lines(&result).contains("each piece moved by itself: max(torque(motor))"));
+}
+
+#[test]
+fn threads_change_no_bit_and_another_seed_does() {
+    let text = four_bar(&format!("{LENGTHS}samples = 3000\ncolumns = [\"range(angle(rocker))\", \"time_ratio(angle(rocker))\"]\n"))
+        .replace("samples = 3000", "samples = 700");
+    let model = model(&text);
+    let told = |result: StudyResult| {
+        format!(
+            "{:?}",
+            (
+                result.scalars,
+                result.table,
+                result.figures,
+                result.listings
+            )
+        )
+    };
+    let one = told(run_with(&model, &model.studies[1], &Serial, &mut Silent).expect("a result"));
+    for threads in [1, 2, 3] {
+        let other = run_with(&model, &model.studies[1], &Threads(threads), &mut Silent);
+        assert!(one == told(other.expect("a result")), "{threads} threads");
+    }
+    assert!(
+        one != told(found(
+            &text.replace("over = \"turn\"", "over = \"turn\"\nseed = 2")
+        ))
+    );
+}
+
+#[test]
+fn a_study_that_is_stopped_keeps_its_pieces() {
+    let text = four_bar(&format!(
+        "{LENGTHS}samples = 100000\ncolumns = [\"max(y(P))\"]\n"
+    ));
+    let model = model(&text);
+    let mut stop = |stage: Stage, done: Done| match (stage, done) {
+        (Stage::Rows, Done::Of(_, 100_000)) => ControlFlow::Break(()),
+        _ => ControlFlow::Continue(()),
+    };
+    let result = run(&model, &model.studies[1], &mut stop).expect("a result");
+    let pieces = scalar(&result, "pieces");
+    assert!(result.interrupted() && (1.0..100_000.0).contains(&pieces));
+    assert!(lines(&result).contains(&format!("{pieces} pieces of 100000, stopped")));
+    // The first of all.
+    let whole = found(&text.replace("100000", &format!("{pieces}")));
+    assert_eq!(
+        scalar(&result, "max(y(P)), mean"),
+        scalar(&whole, "max(y(P)), mean")
+    );
+    // Before there is any, there is nothing.
+    let mut at_once = |_: Stage, _: Done| ControlFlow::Break(());
+    let refused = run(&model, &model.studies[1], &mut at_once).expect_err("nothing yet");
+    assert_eq!(refused[0].code, "stopped");
+}
+
+#[test]
+fn what_makes_no_sense_is_told() {
+    let few = four_bar(
+        "vary = { a = \"0.1 mm\", idle = \"0.1 mm\" }\nsamples = 20\ncolumns = [\"max(y(P))\"]\nlimits = [\"max(y(P)) >= 100 mm\"]\n",
+    );
+    assert_eq!(
+        codes(&few),
+        ["limit-not-kept", "idle-parameter", "few-pieces"]
+    );
+    let beyond = four_bar("vary = { a = \"0.1 mm\" }\n").replace("a = \"20 mm\"", "a = \"45 mm\"");
+    assert!(!codes(&beyond).is_empty());
+    // Too many pieces to be held.
+    let many = model(&four_bar(
+        "vary = { a = \"0.1 mm\" }\nsamples = 100000000\n",
+    ));
+    let refused = run(&many, &many.studies[1], &mut Silent).expect_err("no room");
+    assert_eq!(refused[0].code, "too-large");
+}
