@@ -142,7 +142,7 @@ fn costs_of_limits() {
 fn all_methods_agree() {
     let study = |method: &str| {
         best(&format!(
-            "vary = {{ a = ['10 mm', '30 mm'], b = ['45 mm', '65 mm'] }}\nmaximize = 'play'\nsubject_to = 'mu >= 40 deg'\nmethod = '{method}'\ndesigns = 300\n"
+            "vary = {{ a = ['10 mm', '30 mm'], b = ['45 mm', '65 mm'] }}\nmaximize = 'play'\nsubject_to = 'mu >= 40 deg'\nmethod = '{method}'\ndesigns = 120\n"
         ))
     };
     let own = number(&study("multi-start"), "play");
