@@ -2,7 +2,8 @@
 //!
 //! The greatest value over a motion has a kink wherever another peak becomes the greatest, and an optimum often lies just there: of two
 //! peaks neither can be lowered without the other rising. Who descends must know both. A number with one `max` or `min` in it is, at
-//! each local peak, the measure inside put in its place; between two values of the parameters the peaks move smoothly.
+//! each local peak, the measure inside put in its place; a `range` is what a peak lies above a valley. Between two values of the parameters both move
+//! smoothly.
 
 use std::sync::Arc;
 
@@ -36,16 +37,34 @@ pub(super) struct Wanted {
     pub number: Quantity,
     /// 1 where it is to be small as it is, -1 where it is to be large.
     pub sign: f64,
-    /// The measure that takes its place at an instant, where it is the greatest or least of such.
-    inner: Option<Quantity>,
+    /// What it is made of at instants, where that is known.
+    inner: Option<Inner>,
+}
+
+/// What a number is made of at instants.
+struct Inner {
+    measure: Quantity,
+    kind: Kind,
+}
+
+/// How.
+#[derive(Clone, Copy)]
+enum Kind {
+    /// It is the greatest of the measure times the number's sign.
+    Peak,
+    /// It is the greatest less the least of the measure, less this.
+    Range(f64),
 }
 
 impl Wanted {
     pub fn new(mechanism: &Mechanism, number: Quantity, sign: f64) -> Self {
-        let inner = inner(mechanism, &number.measure).map(|measure| Quantity {
-            name: number.name.clone(),
-            measure,
-            dimension: number.dimension,
+        let inner = inner(mechanism, &number.measure, sign).map(|(measure, kind)| Inner {
+            measure: Quantity {
+                name: number.name.clone(),
+                measure,
+                dimension: number.dimension,
+            },
+            kind,
         });
         Self {
             number,
@@ -77,25 +96,40 @@ fn written_out(model: &Model, measure: &Measure, left: &mut usize) -> Option<Mea
     whole.then_some(out)
 }
 
-/// What takes the place of a number at an instant: its measure with what stands in its one `max` or `min`.
-fn inner(mechanism: &Mechanism, measure: &Measure) -> Option<Measure> {
+/// What a number is made of at instants: its measure with what stands in its one `max` or `min`, or in its `range`.
+fn inner(mechanism: &Mechanism, measure: &Measure, sign: f64) -> Option<(Measure, Kind)> {
     let out = written_out(&mechanism.model, measure, &mut { MOST_LEAVES })?;
     let mut over = out.leaves().filter(|leaf| matches!(leaf, Leaf::Over(..)));
     let first = over.next()?.clone();
-    let Leaf::Over(Statistic::Max | Statistic::Min, within) = &first else {
+    let Leaf::Over(statistic, within) = &first else {
         return None;
     };
-    if over.any(|other| *other != first) {
+    // Of different ones none stands for the whole; one within another has no place of its own.
+    if over.any(|other| *other != first) || is_of_whole_motion(mechanism, within) {
         return None;
     }
-    // One within another has no place of its own.
-    if is_of_whole_motion(mechanism, within) {
-        return None;
+    match statistic {
+        Statistic::Max | Statistic::Min => {
+            let measure = out.substitute(&mut |leaf| match leaf {
+                Leaf::Over(..) => (**within).clone(),
+                _ => Measure::Leaf(leaf.clone()),
+            });
+            Some((measure, Kind::Peak))
+        }
+        Statistic::Range => {
+            // range, range - c, or c - range that is to be large.
+            let less = match (&out, sign > 0.0) {
+                (Measure::Leaf(_), true) => 0.0,
+                (Measure::Sub(a, c), true) if matches!(**a, Measure::Leaf(_)) => c.as_constant()?,
+                (Measure::Sub(c, a), false) if matches!(**a, Measure::Leaf(_)) => {
+                    c.as_constant()?
+                }
+                _ => return None,
+            };
+            Some(((**within).clone(), Kind::Range(less)))
+        }
+        _ => None,
     }
-    Some(out.substitute(&mut |leaf| match leaf {
-        Leaf::Over(..) => (**within).clone(),
-        _ => Measure::Leaf(leaf.clone()),
-    }))
 }
 
 /// The pieces of numbers at a design, with their derivatives to the varied parameters: of each the largest is its value, times its sign.
@@ -124,30 +158,59 @@ pub(super) fn pieces(
             slope: slope.iter().map(|d| w.sign * d).collect(),
         }]);
     }
-    let inner: Vec<(usize, &Quantity)> = (wanted.iter().enumerate())
+    let inner: Vec<(usize, &Inner)> = (wanted.iter().enumerate())
         .filter_map(|(k, w)| Some((k, w.inner.as_ref()?)))
         .collect();
-    if inner.is_empty() {
+    let peaks = match inner.is_empty() {
+        true => Vec::new(),
+        false => peaks(bench, &motion, wanted, &inner, &all)?,
+    };
+    if peaks.is_empty() {
         return Ok(all);
     }
-    let peaks = peaks(bench, &motion, wanted, &inner, &all)?;
-    let held: Vec<Held> = peaks.iter().map(|(_, held)| *held).collect();
-    if held.is_empty() {
-        return Ok(all);
-    }
-    let measures: Vec<&Measure> = inner.iter().map(|(_, q)| &q.measure).collect();
+    let held: Vec<Held> = peaks.iter().map(|peak| peak.held).collect();
+    let measures: Vec<&Measure> = inner.iter().map(|(_, it)| &it.measure.measure).collect();
     let there = bench.sensitivities(&motion, &held, &measures)?;
-    for ((which, _), found) in peaks.iter().zip(there) {
-        let (k, _) = inner[*which];
-        let sign = wanted[k].sign;
-        let piece = Piece {
-            value: sign * found.values[*which],
-            slope: found.derivatives[*which].iter().map(|d| sign * d).collect(),
+    for (which, (k, it)) in inner.iter().enumerate() {
+        // What the measure is at its peaks of one sense, times that.
+        let of = |sense: f64| -> Vec<Piece> {
+            let own = peaks.iter().zip(&there);
+            let own = own.filter(|(peak, _)| peak.which == which && peak.sense == sense);
+            own.map(|(_, found)| Piece {
+                value: sense * found.values[which],
+                slope: found.derivatives[which].iter().map(|d| sense * d).collect(),
+            })
+            .collect()
         };
-        let sound = piece.value.is_finite() && piece.slope.iter().all(|d| d.is_finite());
-        if sound && !is_top(&piece, &all[k][0]) {
-            let value = piece.value.min(all[k][0].value);
-            all[k].push(Piece { value, ..piece });
+        let mut pieces = match it.kind {
+            Kind::Peak => of(wanted[*k].sign),
+            Kind::Range(less) => {
+                let (highs, lows) = (of(1.0), of(-1.0));
+                let pair = |high: &Piece, low: &Piece| Piece {
+                    value: high.value + low.value - less,
+                    slope: high
+                        .slope
+                        .iter()
+                        .zip(&low.slope)
+                        .map(|(a, b)| a + b)
+                        .collect(),
+                };
+                let pairs = highs
+                    .iter()
+                    .flat_map(|high| lows.iter().map(move |low| pair(high, low)));
+                pairs.collect()
+            }
+        };
+        let top = all[*k][0].clone();
+        pieces.retain(|piece| {
+            let sound = piece.value.is_finite() && piece.slope.iter().all(|d| d.is_finite());
+            sound && !is_top(piece, &top)
+        });
+        pieces.sort_by(|a, b| b.value.total_cmp(&a.value));
+        pieces.truncate(MOST);
+        for piece in pieces {
+            let value = piece.value.min(top.value);
+            all[*k].push(Piece { value, ..piece });
         }
     }
     Ok(all)
@@ -166,63 +229,87 @@ fn is_top(piece: &Piece, top: &Piece) -> bool {
     near && size(&apart) <= SAME_SLOPE * size(&top.slope)
 }
 
-/// Where measures have local peaks besides the highest: which of them, and its place.
+/// A local peak of a measure times a sense.
+struct Peak {
+    which: usize,
+    sense: f64,
+    held: Held,
+}
+
+/// Where measures have local peaks near the highest.
 fn peaks(
     bench: &Bench<'_>,
     motion: &Arc<Motion>,
     wanted: &[Wanted],
-    inner: &[(usize, &Quantity)],
+    inner: &[(usize, &Inner)],
     exact: &[Vec<Piece>],
-) -> Result<Vec<(usize, Held)>, Refused> {
+) -> Result<Vec<Peak>, Refused> {
     let duration =
         kempe_motion::drive_path::duration(&motion.mechanism().model, &motion.design.parameters);
-    let quantities: Vec<&Quantity> = inner.iter().map(|(_, q)| *q).collect();
+    let quantities: Vec<&Quantity> = inner.iter().map(|(_, it)| &it.measure).collect();
     let mut along = bench.along(motion, &quantities, &mut Silent)?;
-    let last = INSTANTS - 1;
-    let time = |i: usize| duration * i as f64 / last as f64;
+    let time = |i: usize| duration * i as f64 / (INSTANTS - 1) as f64;
     let rows: Vec<Vec<f64>> = (0..INSTANTS)
         .map(|i| along.values(RowPlace::Time(time(i))))
         .collect();
     let mut found = Vec::new();
-    for (which, (k, _)) in inner.iter().enumerate() {
-        let sign = wanted[*k].sign;
-        let h: Vec<f64> = rows.iter().map(|row| sign * row[which]).collect();
-        let sound = h.iter().copied().filter(|x| x.is_finite());
-        let (low, high) = sound.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| {
-            (a.min(x), b.max(x))
-        });
-        let range = high - low;
-        let top = exact[*k][0].value;
-        // Where the number is not the greatest of what it is at instants, peaks say nothing of it.
-        let apart = (top - high).abs();
-        if !(range > 0.0) || apart > 0.1 * range {
-            continue;
-        }
-        let mut own: Vec<(f64, Held)> = Vec::new();
-        for i in 0..INSTANTS {
-            let before = i.checked_sub(1).map_or(f64::NEG_INFINITY, |j| h[j]);
-            let after = h.get(i + 1).copied().unwrap_or(f64::NEG_INFINITY);
-            if !(h[i] >= before && h[i] > after && h[i] >= high - HIGH * range) {
+    for (which, (k, it)) in inner.iter().enumerate() {
+        let senses: &[f64] = match it.kind {
+            Kind::Peak => &[wanted[*k].sign],
+            Kind::Range(_) => &[1.0, -1.0],
+        };
+        for sense in senses {
+            let h: Vec<f64> = rows.iter().map(|row| sense * row[which]).collect();
+            let sound = h.iter().copied().filter(|x| x.is_finite());
+            let ends = (f64::INFINITY, f64::NEG_INFINITY);
+            let (low, high) = sound.fold(ends, |(a, b), x| (a.min(x), b.max(x)));
+            let range = high - low;
+            // Where the number is not the greatest of what it is at instants, peaks say nothing of it.
+            let stands_for = match it.kind {
+                Kind::Peak => (exact[*k][0].value - high).abs() <= 0.1 * range,
+                Kind::Range(_) => true,
+            };
+            if !(range > 0.0 && stands_for) {
                 continue;
             }
-            let at_end = i == 0 || i == last;
-            let (at, value) = match at_end {
-                true => (time(i), h[i]),
-                false => closed_in([time(i - 1), time(i), time(i + 1)], h[i], &mut |t| {
-                    sign * along.values(RowPlace::Time(t))[which]
-                }),
-            };
-            let held = match at_end {
-                true => Held::Break(at),
-                false => Held::Time(at),
-            };
-            own.push((value, held));
+            let mut at = |t: f64| sense * along.values(RowPlace::Time(t))[which];
+            let own = local_peaks(&h, high - HIGH * range, &time, &mut at);
+            found.extend(own.into_iter().map(|held| Peak {
+                which,
+                sense: *sense,
+                held,
+            }));
         }
-        own.sort_by(|a, b| b.0.total_cmp(&a.0));
-        own.truncate(MOST);
-        found.extend(own.into_iter().map(|(_, held)| (which, held)));
     }
     Ok(found)
+}
+
+/// Local peaks above a level among values at even times, the highest first.
+fn local_peaks(
+    h: &[f64],
+    level: f64,
+    time: &dyn Fn(usize) -> f64,
+    at: &mut dyn FnMut(f64) -> f64,
+) -> Vec<Held> {
+    let last = h.len() - 1;
+    let mut own: Vec<(f64, Held)> = Vec::new();
+    for i in 0..h.len() {
+        let before = i.checked_sub(1).map_or(f64::NEG_INFINITY, |j| h[j]);
+        let after = h.get(i + 1).copied().unwrap_or(f64::NEG_INFINITY);
+        if !(h[i] >= before && h[i] > after && h[i] >= level) {
+            continue;
+        }
+        own.push(match i == 0 || i == last {
+            true => (h[i], Held::Break(time(i))),
+            false => {
+                let (t, value) = closed_in([time(i - 1), time(i), time(i + 1)], h[i], at);
+                (value, Held::Time(t))
+            }
+        });
+    }
+    own.sort_by(|a, b| b.0.total_cmp(&a.0));
+    own.truncate(MOST);
+    own.into_iter().map(|(_, held)| held).collect()
 }
 
 /// A peak between three instants, by golden sections; its time and value.

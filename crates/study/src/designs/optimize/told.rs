@@ -132,9 +132,7 @@ impl<'b, 'm> Teller<'b, 'm> {
                 let mut result = self.shown(own.as_ref(), &all, stopped, diagnostics);
                 result.scalars = self.scalars(&best, &all[0], problem);
                 result.listings = self.listings(own.as_ref(), &all[0], &best, &how, problem);
-                result
-                    .diagnostics
-                    .extend(self.findings(&best, &all[0], problem));
+                result.diagnostics.extend(self.findings(&best, &all[0]));
                 Ok(result)
             }
             Sought::Front { front, how } => {
@@ -376,7 +374,11 @@ impl<'b, 'm> Teller<'b, 'm> {
         problem: &Designs<'_, '_>,
     ) -> Vec<Listing> {
         let mut all = vec![self.before_and_after(own, told, problem)];
-        let costs = self.costs(best, problem);
+        // Away from an optimum multipliers say nothing.
+        let costs = match best.ended.is_optimal() {
+            true => self.costs(best, problem),
+            false => Vec::new(),
+        };
         if !costs.is_empty() {
             let goal = &self.study.goals[0].number.name;
             all.push(Listing {
@@ -517,7 +519,7 @@ impl<'b, 'm> Teller<'b, 'm> {
         rows
     }
 
-    fn findings(&self, best: &Optimum, told: &Told, problem: &Designs<'_, '_>) -> Vec<Diagnostic> {
+    fn findings(&self, best: &Optimum, told: &Told) -> Vec<Diagnostic> {
         let mut found = Vec::new();
         let span = self.study.over.span.clone();
         if best.violation > KEPT {
@@ -579,7 +581,6 @@ impl<'b, 'm> Teller<'b, 'm> {
                 "give more `designs`, another `method`, or start from other values in the file",
             ));
         }
-        let _ = problem;
         found
     }
 

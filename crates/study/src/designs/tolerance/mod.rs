@@ -87,7 +87,9 @@ impl<'m> Ready<'m> {
         let over = super::study_of(model, &study.over)?;
         let mut numbers = numbers_of(model, &study.over, over);
         let mut place = |q: Quantity| {
-            let known = numbers.iter().position(|own| own.measure == q.measure);
+            let known = numbers
+                .iter()
+                .position(|own| own.measure == q.measure || own.name == q.name);
             known.unwrap_or_else(|| {
                 numbers.push(q);
                 numbers.len() - 1
