@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 use kempe_model::Model;
+use kempe_number::math;
 use kempe_study::{Silent, StudyResult, check, run};
 
 const ROCKER: &str = r#"
@@ -57,11 +58,7 @@ fn number(result: &StudyResult, name: &str) -> f64 {
 /// The swing of the crank-rocker, deg, by its dead points.
 fn swing(a: f64, b: f64) -> f64 {
     let (c, d) = (40.0, 60.0);
-    let at = |reach: f64| {
-        ((d * d + c * c - reach * reach) / (2.0 * d * c))
-            .acos()
-            .to_degrees()
-    };
+    let at = |reach: f64| math::acos((d * d + c * c - reach * reach) / (2.0 * d * c)).to_degrees();
     at(b + a) - at(b - a)
 }
 
@@ -69,9 +66,7 @@ fn swing(a: f64, b: f64) -> f64 {
 fn least_mu(a: f64, b: f64) -> f64 {
     let (c, d) = (40.0, 60.0);
     let at = |reach: f64| {
-        let mu = ((b * b + c * c - reach * reach) / (2.0 * b * c))
-            .acos()
-            .to_degrees();
+        let mu = math::acos((b * b + c * c - reach * reach) / (2.0 * b * c)).to_degrees();
         mu.min(180.0 - mu)
     };
     at(d + a).min(at(d - a))

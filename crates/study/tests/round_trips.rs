@@ -155,7 +155,7 @@ fn ten_thousand_adjustments() {
                     continue;
                 };
                 let done = tried.fetch_add(1, Ordering::Relaxed);
-                if done % 500 == 0 {
+                if done.is_multiple_of(500) {
                     println!("{done}");
                 }
                 match case.off() {

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 use kempe_model::Model;
+use kempe_number::math;
 use kempe_study::{Figure, Silent, StudyResult, check, run};
 
 const ROCKER: &str = r#"
@@ -49,11 +50,7 @@ fn swept(study: &str) -> StudyResult {
 /// The swing of a crank-rocker, deg, by its dead points in closed form.
 fn swing(a: f64, b: f64, d: f64) -> f64 {
     let c = 40.0;
-    let at = |reach: f64| {
-        ((d * d + c * c - reach * reach) / (2.0 * d * c))
-            .acos()
-            .to_degrees()
-    };
+    let at = |reach: f64| math::acos((d * d + c * c - reach * reach) / (2.0 * d * c)).to_degrees();
     at(b + a) - at(b - a)
 }
 

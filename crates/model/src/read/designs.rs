@@ -80,7 +80,7 @@ pub(crate) fn read(
     };
     match entry.kind.name {
         "sweep" => {
-            let vary = varied(cx, entry, |cx, entry, id, node| swept(cx, entry, id, node));
+            let vary = varied(cx, entry, swept);
             let combine = entry.choice(cx, "combine", &COMBINE);
             let combine = combine?.unwrap_or(Combine::Grid);
             let vary: Vec<Swept> = vary?;
@@ -117,8 +117,19 @@ pub(crate) fn read(
                 ..goal
             });
             let goals: Vec<Goal> = small?.into_iter().chain(large).collect();
-            if goals.is_empty() && !(entry.has("minimize") || entry.has("maximize")) {
-                entry.required_like(cx, "minimize", entry.example_of("minimize"))?;
+            if goals.is_empty() {
+                if !(entry.has("minimize") || entry.has("maximize")) {
+                    entry.required_like(cx, "minimize", entry.example_of("minimize"))?;
+                }
+                return cx.refuse(
+                    "missing-key",
+                    format!("{} has no goal", entry.place),
+                    entry.span,
+                    format!(
+                        "say what is to be small or large: minimize = {}",
+                        entry.example_of("minimize")
+                    ),
+                );
             }
             Some(StudyKind::Optimize(Box::new(OptimizeStudy {
                 over: over(columns?, plots?)?,

@@ -5,6 +5,7 @@
 
 mod asked;
 mod bench;
+mod idle;
 mod optimize;
 mod sweep;
 mod tolerance;

@@ -11,9 +11,11 @@ mod told;
 
 use kempe_model::{Diagnostic, Model, OptimizeStudy, ParameterId};
 use kempe_motion::progress::{Progress, Silent, Stage};
+use kempe_optimize::Problem;
 
 use super::asked::{kept, numbers_of};
 use super::bench::Bench;
+use super::idle::idle_at_own;
 use super::study_of;
 use crate::explain::stopped;
 use crate::quantity::Quantity;
@@ -73,6 +75,8 @@ fn before(
     let problem = Designs::new(bench, study);
     let mut told = own;
     told.extend(told::outside(&problem, study, &units));
+    let spans = study.vary.iter().map(|it| it.span.clone());
+    told.extend(idle_at_own(bench, problem.bounds(), spans));
     told.extend(told::idle_method(study));
     told
 }

@@ -104,14 +104,14 @@ impl<'b, 'm> Teller<'b, 'm> {
     ) -> Result<StudyResult, Vec<Diagnostic>> {
         let own = self.bench.own_values();
         let own = problem
-            .evaluate(&[own.clone()])
+            .evaluate(std::slice::from_ref(&own))
             .into_iter()
             .next()
             .map(|evaluation| Told {
                 beside: self.besides(&own),
                 note: match evaluation.is_defined() {
                     true => Some("the file's own".to_owned()),
-                    false => problem.refused.take(),
+                    false => problem.refused.clone(),
                 },
                 design: own,
                 evaluation,
@@ -147,15 +147,17 @@ impl<'b, 'm> Teller<'b, 'm> {
     /// No design can be asked at all.
     fn nothing(&self, problem: &Designs<'_, '_>) -> Diagnostic {
         let message = format!(
-            "no design within the bounds of study `{}` moves as `{}` asks",
-            self.name, self.bench.over.name
+            "no design within the bounds of study `{}` has all its numbers",
+            self.name
         );
         let error = Diagnostic::error("no-answer", message).at(self.study.over.span.clone(), "");
         let error = match &problem.refused {
             Some(why) => error.note(format!("the last that was tried: {why}")),
             None => error,
         };
-        error.help("give bounds between which the mechanism can be assembled and goes all the way")
+        error.help(
+            "give bounds between which the mechanism can be assembled, goes all the way, and what is asked of it has a finite value",
+        )
     }
 
     fn besides(&self, values: &[f64]) -> Answer {

@@ -60,6 +60,12 @@ fn tornado(
             )
         };
         let moved = most.1 - least.1;
+        let failed = (order.of.iter().zip(answers))
+            .filter(|(of, answer)| **of == Some(k) && answer.is_err());
+        let lost = match failed.count() {
+            0 => String::new(),
+            count => format!("{count} do not move as asked"),
+        };
         rows.push((
             moved,
             vec![
@@ -67,6 +73,7 @@ fn tornado(
                 at(least),
                 at(most),
                 units.text(moved, quantity.dimension),
+                lost,
             ],
         ));
     }
@@ -77,7 +84,7 @@ fn tornado(
             quantity.name,
             units.text(own, quantity.dimension)
         ),
-        head: ["parameter", "least", "largest", "moves it by"]
+        head: ["parameter", "least", "largest", "moves it by", ""]
             .map(str::to_owned)
             .to_vec(),
         rows: rows.into_iter().map(|(_, row)| row).collect(),

@@ -25,6 +25,13 @@ enum Plotted {
     Path(usize, String),
 }
 
+/// The curves of a design.
+struct DesignCurves {
+    design: usize,
+    /// The abscissa (SI) and the quantities there, point by point.
+    points: Vec<(f64, Vec<f64>)>,
+}
+
 /// Answers designs, and keeps the curves of some of them.
 pub(super) struct Families<'b, 'm> {
     bench: &'b Bench<'m>,
@@ -32,8 +39,8 @@ pub(super) struct Families<'b, 'm> {
     quantities: Vec<Quantity>,
     /// The designs whose curves are kept.
     chosen: Vec<usize>,
-    /// Of each of these its abscissa (SI) and the quantities there, point by point.
-    curves: Vec<(usize, Vec<(f64, Vec<f64>)>)>,
+    /// What is kept of these.
+    curves: Vec<DesignCurves>,
     /// What runs to the right.
     along: (String, Dimension),
 }
@@ -110,7 +117,10 @@ impl<'b, 'm> Families<'b, 'm> {
             };
             (p, along.values(place))
         });
-        self.curves.push((index, points.collect()));
+        self.curves.push(DesignCurves {
+            design: index,
+            points: points.collect(),
+        });
         if let DrivePath::Coordinate { drive, .. } = motion.path
             && let Some(drive) = self.bench.model.drives.get(drive)
         {
@@ -124,9 +134,9 @@ impl<'b, 'm> Families<'b, 'm> {
         let unit = |dimension| units.unit(dimension);
         let along = unit(self.along.1);
         let curves = |at: &dyn Fn(f64, &[f64]) -> [f64; 2]| -> Vec<PlaneCurve> {
-            let curve = |(index, points): &(usize, Vec<(f64, Vec<f64>)>)| PlaneCurve {
-                name: self.label(&order.designs[*index], units),
-                points: points.iter().map(|(p, values)| at(*p, values)).collect(),
+            let curve = |it: &DesignCurves| PlaneCurve {
+                name: self.label(&order.designs[it.design], units),
+                points: it.points.iter().map(|(p, v)| at(*p, v)).collect(),
                 dashed: false,
             };
             self.curves.iter().map(curve).collect()

@@ -13,6 +13,7 @@ use kempe_units::Unit;
 
 use super::asked::numbers_of;
 use super::bench::{Answer, Bench, Refused};
+use super::idle::idle_at_own;
 use super::study_of;
 use crate::clearance::refuses;
 use crate::explain::stopped;
@@ -63,6 +64,11 @@ fn before(
                 .at(study.over.span.clone(), "")
                 .help(format!("a sweep has at most {MOST_DESIGNS} designs: fewer values, or combine = \"one at a time\"")),
         );
+    }
+    if !refuses(&told) {
+        let order = Order::new(bench, study);
+        let spans = study.vary.iter().map(|it| it.span.clone());
+        told.extend(idle_at_own(bench, &order.ends(), spans));
     }
     told
 }

@@ -17,9 +17,9 @@ pub(super) struct Order {
 impl Order {
     /// How many designs a sweep has, where that can be counted.
     pub fn count(study: &SweepStudy) -> Option<usize> {
-        let counts = study.vary.iter().map(|swept| swept.values.count());
+        let mut counts = study.vary.iter().map(|swept| swept.values.count());
         match study.combine {
-            Combine::Grid => counts.fold(Some(1_usize), |all, n| all?.checked_mul(n)),
+            Combine::Grid => counts.try_fold(1_usize, usize::checked_mul),
             Combine::OneAtATime => Some(1 + counts.sum::<usize>()),
             Combine::Together => counts.max(),
         }
@@ -65,6 +65,18 @@ impl Order {
         }
         of.resize(designs.len(), None);
         Self { designs, of }
+    }
+
+    /// The least and the greatest value of each parameter.
+    pub fn ends(&self) -> Vec<[f64; 2]> {
+        let count = self.designs.first().map_or(0, Vec::len);
+        let of = |k: usize| {
+            let values = self.designs.iter().map(|design| design[k]);
+            values.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| {
+                [a.min(x), b.max(x)]
+            })
+        };
+        (0..count).map(of).collect()
     }
 
     /// Of a sweep of one parameter its numbers over that parameter.

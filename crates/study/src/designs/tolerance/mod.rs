@@ -34,6 +34,7 @@ use self::spread::Deviation;
 use self::told::Teller;
 use super::asked::{kept, left_side, numbers_of};
 use super::bench::Bench;
+use super::idle::idle;
 use crate::clearance::refuses;
 use crate::columns::Asked;
 use crate::explain::stopped;
@@ -144,17 +145,12 @@ impl<'m> Ready<'m> {
                 );
             }
         }
-        for (k, it) in study.vary.iter().enumerate() {
-            if self.is_idle(k) {
-                let name = &self.bench.model.parameters[it.parameter.index()].name;
-                let message = format!("`{name}` changes none of the numbers");
-                told.push(
-                    Diagnostic::warning("idle-parameter", message)
-                        .at(it.span.clone(), "")
-                        .help("leave it out, or ask for a number that depends on it"),
-                );
-            }
-        }
+        let own = self.bench.own_values();
+        let around = own.iter().zip(&self.deviations);
+        let around: Vec<[f64; 2]> = around.map(|(x, it)| it.ends.map(|end| x + end)).collect();
+        let slopes: Vec<&[f64]> = self.linear.iter().map(|it| it.slope.as_slice()).collect();
+        let spans = study.vary.iter().map(|it| it.span.clone());
+        told.extend(idle(&self.bench, &slopes, &around, spans));
         if study.samples < FEW {
             let message = format!(
                 "{} pieces are too few to tell how they differ",
@@ -167,21 +163,6 @@ impl<'m> Ready<'m> {
             );
         }
         told
-    }
-
-    /// Whether a parameter has no effect at all: no derivative, and nothing changes at either end of its tolerance.
-    fn is_idle(&self, k: usize) -> bool {
-        if self.linear.iter().any(|it| it.slope[k] != 0.0) {
-            return false;
-        }
-        let own = self.linear.iter().map(|it| it.own);
-        let own: Vec<f64> = own.collect();
-        self.deviations[k].ends.iter().all(|end| {
-            let mut values = self.bench.own_values();
-            values[k] += end;
-            let near = |(a, b): (&f64, &f64)| (a - b).abs() <= SAME * a.abs();
-            (self.bench.numbers(&values)).is_ok_and(|found| own.iter().zip(&found).all(near))
-        })
     }
 }
 

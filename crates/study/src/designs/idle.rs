@@ -1,0 +1,60 @@
+//! Parameters that change none of the numbers.
+
+use kempe_model::{Diagnostic, Span};
+
+use super::bench::Bench;
+
+/// Numbers that differ by less than this part of them are the same.
+const SAME: f64 = 1e-12;
+
+/// What is told of varied parameters that have no effect at all: no derivative (`slopes`, by number), and nothing changes at either of two values.
+pub(super) fn idle(
+    bench: &Bench<'_>,
+    slopes: &[&[f64]],
+    ends: &[[f64; 2]],
+    spans: impl Iterator<Item = Span>,
+) -> Vec<Diagnostic> {
+    let own = bench.own_values();
+    let Ok(numbers) = bench.numbers(&own) else {
+        return Vec::new();
+    };
+    let is_idle = |k: usize| {
+        slopes.iter().all(|slope| slope[k] == 0.0)
+            && ends[k].iter().all(|end| {
+                let mut values = own.clone();
+                values[k] = *end;
+                let near = |(a, b): (&f64, &f64)| (a - b).abs() <= SAME * a.abs();
+                bench
+                    .numbers(&values)
+                    .is_ok_and(|found| numbers.iter().zip(&found).all(near))
+            })
+    };
+    let all = bench.varied.iter().zip(spans).enumerate();
+    all.filter(|(k, _)| is_idle(*k))
+        .map(|(_, (id, span))| {
+            let name = &bench.model.parameters[id.index()].name;
+            Diagnostic::warning(
+                "idle-parameter",
+                format!("`{name}` changes none of the numbers"),
+            )
+            .at(span, "")
+            .help("leave it out, or ask for a number that depends on it")
+        })
+        .collect()
+}
+
+/// The same where derivatives are still to be taken; nothing of simulations, which have none.
+pub(super) fn idle_at_own(
+    bench: &Bench<'_>,
+    ends: &[[f64; 2]],
+    spans: impl Iterator<Item = Span>,
+) -> Vec<Diagnostic> {
+    if let kempe_model::StudyKind::Simulate(_) = bench.over.kind {
+        return Vec::new();
+    }
+    let Ok(sloped) = bench.slopes(&bench.own_values()) else {
+        return Vec::new();
+    };
+    let slopes: Vec<&[f64]> = sloped.iter().map(|it| it.slope.as_slice()).collect();
+    idle(bench, &slopes, ends, spans)
+}
