@@ -135,7 +135,16 @@ fn file_name(name: &str) -> String {
 
 fn names(columns: &[Column]) -> String {
     let all: Vec<&str> = columns.iter().map(|c| c.name.as_str()).collect();
-    all.join(", ")
+    // What all have in common is said once.
+    let heads: Vec<&str> = (all.iter())
+        .filter_map(|name| Some(name.rsplit_once(", ")?.0))
+        .collect();
+    match heads.first() {
+        Some(head) if heads.len() == all.len() && heads.iter().all(|h| h == head) => {
+            (*head).to_owned()
+        }
+        _ => all.join(", "),
+    }
 }
 
 /// A force below this part of the largest of the study is what rounding left of none.

@@ -229,11 +229,13 @@ impl Teller<'_, '_> {
                     lanes.places(),
                     names(&told)
                 ));
-                let miss = told.iter().filter_map(|k| {
+                let shown = told.iter().filter(|k| **k < self.ready.shown);
+                let miss = shown.filter_map(|k| {
                     let quantity = &self.ready.bench.numbers[*k];
                     let unit = quantity.unit(&Units::of(self.ready.bench.model));
                     let miss = unit.from_si(self.missed[*k]?) - unit.from_si(0.0);
-                    Some(format!("{} by {}", quantity.name, with_unit(miss, &unit)))
+                    let miss = format!("{} {}", significant(miss, 2), unit.text());
+                    Some(format!("{} by {}", quantity.name, miss.trim_end()))
                 });
                 let miss: Vec<String> = miss.collect();
                 let checked = CHECKED.min(self.question.samples);
@@ -410,10 +412,18 @@ impl Teller<'_, '_> {
                 column("95 %", part(0.95)),
                 column("greatest", rows(&|row| at(&band.greatest, row))),
             ];
-            let own = result.table.column(&quantity.name).cloned();
-            let curves = own.into_iter().chain(columns.iter().cloned());
+            let own = result.table.column(&quantity.name);
+            let own = own.map_or(&[][..], |own| &own.values);
+            // A band is thin beside the curve itself.
+            let deviation = |column: &Column| Column {
+                name: format!("deviation of {}", column.name),
+                values: (column.values.iter().zip(own))
+                    .map(|(x, own)| x - own)
+                    .collect(),
+                ..column.clone()
+            };
             result.figures.push(Figure::Curves {
-                curves: curves.collect(),
+                curves: columns.iter().map(deviation).collect(),
                 limits: Vec::new(),
             });
             result.table.columns.extend(columns);
