@@ -56,7 +56,7 @@ pub(super) fn search(
     if study.goals.len() > 1 {
         let options = PopulationOptions {
             evaluations: study.designs.unwrap_or(OF_FRONT * n),
-            size: Some(POINTS),
+            size: Some(POINTS.min(study.designs.unwrap_or(POINTS))),
             seed,
         };
         let mut front = nsga2(problem, &own, &options, &mut hears)?;
