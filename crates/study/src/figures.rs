@@ -55,6 +55,7 @@ pub fn figures(model: &Model, result: &StudyResult) -> Vec<(String, PlotSpec)> {
                 (name.clone(), hodograph(name, axes, x, noise(result)))
             }
             Figure::Plane { name, unit, curves } => (name.clone(), plane(unit, curves)),
+            Figure::Family { name, x, y, curves } => (name.clone(), family([x, y], curves)),
             Figure::Path(point) => {
                 let name = model.points.get(point.index()).map_or("", |p| &p.name);
                 (
@@ -137,7 +138,7 @@ pub(crate) fn noise(result: &StudyResult) -> f64 {
         Figure::Hodograph(_, axes) => axes.as_slice(),
         Figure::Curves { curves, .. } => curves.as_slice(),
         Figure::Within { curve, .. } => std::slice::from_ref(curve),
-        Figure::Path(_) | Figure::Plane { .. } => &[],
+        Figure::Path(_) | Figure::Plane { .. } | Figure::Family { .. } => &[],
     });
     let columns = result.table.columns.iter().chain(of_figures);
     let values = columns.filter(|c| force(&c.unit)).flat_map(Column::si);
@@ -149,19 +150,33 @@ pub(crate) fn noise(result: &StudyResult) -> f64 {
 
 /// Curves in the plane.
 fn plane(unit: &Unit, curves: &[PlaneCurve]) -> PlotSpec {
-    let curves = curves.iter().map(|curve| Curve {
+    PlotSpec {
+        x: Axis::new("x", unit.text()),
+        y: Axis::new("y", unit.text()),
+        curves: curves.iter().map(own_curve).collect(),
+        equal_aspect: true,
+        ..PlotSpec::default()
+    }
+}
+
+/// Curves over an abscissa of their own each.
+fn family(axes: [&(String, Unit); 2], curves: &[PlaneCurve]) -> PlotSpec {
+    let [x, y] = axes.map(|(name, unit)| Axis::new(name.clone(), unit.text()));
+    PlotSpec {
+        x,
+        y,
+        curves: curves.iter().map(own_curve).collect(),
+        ..PlotSpec::default()
+    }
+}
+
+fn own_curve(curve: &PlaneCurve) -> Curve {
+    Curve {
         label: curve.name.clone(),
         x: curve.points.iter().map(|p| p[0]).collect(),
         y: curve.points.iter().map(|p| p[1]).collect(),
         dashed: curve.dashed,
         ..Curve::default()
-    });
-    PlotSpec {
-        x: Axis::new("x", unit.text()),
-        y: Axis::new("y", unit.text()),
-        curves: curves.collect(),
-        equal_aspect: true,
-        ..PlotSpec::default()
     }
 }
 

@@ -25,7 +25,7 @@ pub fn figures_against(
             Figure::Within { curve, .. } => {
                 over_the_drive(result, std::slice::from_ref(curve), other)
             }
-            Figure::Plane { .. } => Vec::new(),
+            Figure::Plane { .. } | Figure::Family { .. } => Vec::new(),
             Figure::Path(point) => {
                 let name = model.points.get(point.index()).map_or("", |p| &p.name);
                 let index = other_model.points.iter().position(|p| p.name == name);
@@ -103,7 +103,10 @@ pub(crate) fn quantity<'r>(result: &'r StudyResult, name: &str) -> Option<&'r Co
         Figure::Within { curve, bound } => std::slice::from_ref(curve)
             .iter()
             .chain(std::slice::from_ref(bound)),
-        Figure::Path(_) | Figure::Hodograph(..) | Figure::Plane { .. } => [].iter().chain(&[]),
+        Figure::Path(_)
+        | Figure::Hodograph(..)
+        | Figure::Family { .. }
+        | Figure::Plane { .. } => [].iter().chain(&[]),
     });
     (result.table.columns.iter().chain(plotted)).find(|c| c.name == name)
 }

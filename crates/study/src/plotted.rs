@@ -26,14 +26,20 @@ pub(crate) fn plotted(model: &Model, result: &StudyResult) -> Vec<Column> {
             Figure::Within { curve, bound } => {
                 [curve, bound].into_iter().cloned().for_each(&mut add)
             }
-            Figure::Path(_) | Figure::Hodograph(..) | Figure::Plane { .. } => {}
+            Figure::Path(_)
+            | Figure::Hodograph(..)
+            | Figure::Family { .. }
+            | Figure::Plane { .. } => {}
         }
     }
     // A curve in the plane as it is plotted.
     let plots = result.figures.iter().zip(figures(model, result));
     for (figure, (_, plot)) in plots {
         let names = match figure {
-            Figure::Curves { .. } | Figure::Within { .. } | Figure::Plane { .. } => continue,
+            Figure::Curves { .. }
+            | Figure::Within { .. }
+            | Figure::Family { .. }
+            | Figure::Plane { .. } => continue,
             Figure::Path(point) => {
                 let name = model.points.get(point.index()).map_or("", |p| &p.name);
                 ["x", "y"].map(|axis| format!("{axis}({name})"))

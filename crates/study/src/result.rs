@@ -174,6 +174,17 @@ pub enum Figure {
     Path(PointId),
     /// The force of a joint: name, x and y.
     Hodograph(String, [Column; 2]),
+    /// Curves that run along an abscissa of their own each, such as those of several designs.
+    Family {
+        /// Its name.
+        name: String,
+        /// Name and unit of the abscissa.
+        x: (String, Unit),
+        /// Name, which may be empty, and unit of the ordinate.
+        y: (String, Unit),
+        /// Its curves.
+        curves: Vec<PlaneCurve>,
+    },
     /// Curves in the plane that belong to no motion.
     Plane {
         /// Its name.

@@ -10,6 +10,7 @@ use kempe_model::{
 
 use crate::clearance::COLUMNS;
 use crate::columns::Asked;
+use crate::designs::bytes_of_sweep;
 use crate::force_columns::standard_plots;
 use crate::result::Frame;
 use crate::rows::{count, most};
@@ -109,7 +110,8 @@ pub fn study_bytes(model: &Model, study: &Study) -> Held {
             held(model, &asked.along, row + columns * (1 + HELD) * NUMBER)
         }
         // They hold what they need in parts.
-        StudyKind::Sweep(_) | StudyKind::Tolerance(_) | StudyKind::Optimize(_) => Held {
+        StudyKind::Sweep(asked) => bytes_of_sweep(model, asked),
+        StudyKind::Tolerance(_) | StudyKind::Optimize(_) => Held {
             rows: 1.0,
             row: NUMBER,
         },
@@ -239,7 +241,9 @@ mod tests {
                 }
                 crate::Figure::Hodograph(_, [x, y]) => x.values.len() + y.values.len(),
                 crate::Figure::Within { curve, bound } => curve.values.len() + bound.values.len(),
-                crate::Figure::Path(_) | crate::Figure::Plane { .. } => 0,
+                crate::Figure::Path(_)
+                | crate::Figure::Family { .. }
+                | crate::Figure::Plane { .. } => 0,
             };
         }
         let mut bytes = numbers * NUMBER + table.notes.len() * size_of::<Option<String>>();

@@ -1,12 +1,13 @@
 //! Running a study of any kind.
 
+use kempe_batch::{Executor, Serial};
 use kempe_model::{Diagnostic, Model, MotionStudy, Study, StudyKind};
 
 use crate::adjust::adjustment;
 use crate::choice::{balance, spring};
 use crate::circuit::run_circuit;
 use crate::clearance::{clearance, contact};
-use crate::designs::{optimization, sweep, tolerance};
+use crate::designs::{Parts, Unkept, optimization, sweep, tolerance};
 use crate::findings_forces::something_acts;
 use crate::motion::run_along;
 use crate::result::StudyResult;
@@ -25,6 +26,34 @@ use kempe_motion::progress::Progress;
 pub fn run(
     model: &Model,
     study: &Study,
+    progress: &mut dyn Progress,
+) -> Result<StudyResult, Vec<Diagnostic>> {
+    run_with(model, study, &Serial, progress)
+}
+
+/// As [`run`]; studies of many designs are run in pieces on an executor. The results are the same whichever it is.
+///
+/// # Errors
+///
+/// See [`run`].
+pub fn run_with(
+    model: &Model,
+    study: &Study,
+    executor: &dyn Executor,
+    progress: &mut dyn Progress,
+) -> Result<StudyResult, Vec<Diagnostic>> {
+    run_in_parts(model, study, (executor, &mut Unkept), progress)
+}
+
+/// As [`run_with`]; what a study computes part by part is kept, and what was kept before is not computed again.
+///
+/// # Errors
+///
+/// See [`run`], and why a part is not to be had.
+pub fn run_in_parts(
+    model: &Model,
+    study: &Study,
+    (executor, parts): (&dyn Executor, &mut dyn Parts),
     progress: &mut dyn Progress,
 ) -> Result<StudyResult, Vec<Diagnostic>> {
     room_for(model, study)?;
@@ -48,7 +77,9 @@ pub fn run(
         }
         StudyKind::Vibrations(asked) => vibrations(model, &study.name, asked, progress),
         StudyKind::Adjust(asked) => adjustment(model, &study.name, asked, progress),
-        StudyKind::Sweep(asked) => sweep(model, &study.name, asked, progress),
+        StudyKind::Sweep(asked) => {
+            sweep(model, &study.name, asked, (executor, parts), progress)
+        }
         StudyKind::Tolerance(asked) => tolerance(model, &study.name, asked, progress),
         StudyKind::Optimize(asked) => optimization(model, &study.name, asked, progress),
         StudyKind::Synthesize(asked) => synthesis(model, &study.name, asked, progress),

@@ -1,0 +1,238 @@
+//! Sweeps: a study run for given values of parameters.
+//!
+//! `designs.rs` says which designs these are, `question.rs` asks one of them, `part.rs` holds what is known of some that follow each other, as
+//! bytes that can be kept, and `parts.rs` goes from part to part. What is told of all of them, `told.rs` and `family.rs` make of the parts
+//! alone, so that it is the same whether they were computed at once, in turns or by many machines.
+
+mod designs;
+mod family;
+mod part;
+mod parts;
+mod question;
+#[cfg(feature = "parquet")]
+mod rows;
+mod told;
+
+use kempe_batch::Executor;
+use kempe_model::{Diagnostic, Model, Study, StudyKind, SweepStudy};
+use kempe_motion::{Done, Progress, Silent, Stage};
+use kempe_units::Unit;
+
+use crate::explain::stopped;
+use crate::result::{Scalar, StudyResult};
+use crate::room::Held;
+use crate::table::Table;
+use part::{Part, append};
+use parts::{Layout, computed};
+use question::{DRAWN, Question};
+use told::{Own, derivatives, listed, tornado};
+
+pub use parts::Parts;
+pub(crate) use parts::Unkept;
+#[cfg(feature = "parquet")]
+pub use rows::{RowsError, write_rows};
+
+/// What is to be told of a sweep before its designs; `check` and `run` say the same.
+pub(crate) fn findings_of_sweep(model: &Model, name: &str, study: &SweepStudy) -> Vec<Diagnostic> {
+    let begun = Question::new(model, name, study).and_then(|question| begin(question, &mut Silent));
+    begun.map_or_else(|told| told, |begun| begun.told)
+}
+
+/// A sweep whose own design was moved.
+struct Begun<'m> {
+    question: Question<'m>,
+    own: Own,
+    told: Vec<Diagnostic>,
+}
+
+fn begin<'m>(
+    mut question: Question<'m>,
+    progress: &mut dyn Progress,
+) -> Result<Begun<'m>, Vec<Diagnostic>> {
+    let mut told = question.begin(progress)?;
+    let own = Own::of(&question);
+    told.extend(own.told(&question));
+    Ok(Begun {
+        question,
+        own,
+        told,
+    })
+}
+
+/// A sweep: all its designs, those of kept parts without being computed.
+pub(crate) fn sweep(
+    model: &Model,
+    name: &str,
+    study: &SweepStudy,
+    (executor, parts): (&dyn Executor, &mut dyn Parts),
+    progress: &mut dyn Progress,
+) -> Result<StudyResult, Vec<Diagnostic>> {
+    let question = Question::new(model, name, study)?;
+    let Begun {
+        question,
+        own,
+        told: diagnostics,
+    } = begin(question, progress)?;
+    let layout = Layout::of(&question);
+    let mut table = question.table();
+    let mut curves = Vec::new();
+    for number in 0..layout.count() {
+        let (part, whole) =
+            of_part(&question, &layout, number, (executor, parts), progress).map_err(|d| vec![*d])?;
+        append(&mut table, &part.designs);
+        curves.extend(part.curves);
+        if !whole {
+            break;
+        }
+    }
+    if table.rows() == 0 && question.designs.count() > 0 {
+        return Err(vec![stopped(Stage::Rows)]);
+    }
+    let demanded_rows = question.designs.count();
+    let mut figures = family::figures(&question, &table, &curves);
+    let mut listings = vec![listed(&question, &table)];
+    listings.extend(derivatives(&question, &own, &table));
+    if question.designs.one_at_a_time() {
+        let (told, drawn) = tornado(&question, &table);
+        listings.extend(told);
+        figures.splice(0..0, drawn);
+    }
+    listings.extend(family::left_out(&question));
+    if parts.rows() && !layout.row_room {
+        listings.push(rows_left_out());
+    }
+    // One parameter is what the designs go along.
+    let along = match question.designs.own.len() {
+        1 if !question.designs.one_at_a_time() => 1,
+        _ => 0,
+    };
+    Ok(StudyResult {
+        name: name.to_owned(),
+        scalars: counts(&table),
+        table,
+        figures,
+        listings,
+        contacts: Vec::new(),
+        frames: Vec::new(),
+        shapes: Vec::new(),
+        designs: Vec::new(),
+        events: Vec::new(),
+        along,
+        assemblies: (0, 0),
+        diagnostics,
+        demanded_rows,
+    })
+}
+
+/// A part that was kept, or is computed and kept, and whether it is whole.
+fn of_part(
+    question: &Question<'_>,
+    layout: &Layout,
+    number: usize,
+    (executor, parts): (&dyn Executor, &mut dyn Parts),
+    progress: &mut dyn Progress,
+) -> Result<(Part, bool), Box<Diagnostic>> {
+    let designs = layout.designs(number);
+    let rows = parts.rows() && layout.row_room;
+    if let Some(bytes) = parts.kept(number)?
+        && let Some(part) = Part::from_bytes(question, designs.start, designs.len(), &bytes)
+        && part.rows.is_some() == rows
+    {
+        let done = Done::Of(designs.end, question.designs.count());
+        let goes_on = progress.reached(Stage::Rows, done).is_continue();
+        return Ok((part, goes_on || designs.end == question.designs.count()));
+    }
+    let (mut part, whole) = computed(question, designs, rows, executor, progress);
+    if whole {
+        parts.keep(number, part.to_bytes())?;
+    }
+    part.rows = None;
+    Ok((part, whole))
+}
+
+/// How many designs there are, and how many of them have no values.
+fn counts(table: &Table) -> Vec<Scalar> {
+    let counts = [
+        ("designs", table.rows()),
+        ("designs without values", table.unreached()),
+    ];
+    let scalar = |(name, count): (&str, usize)| Scalar {
+        name: name.to_owned(),
+        unit: Unit::one(),
+        value: count as f64,
+    };
+    counts.into_iter().map(scalar).collect()
+}
+
+fn rows_left_out() -> crate::result::Listing {
+    crate::result::Listing {
+        title: "the rows of the designs would take more than 4 GiB: they are in no file; take fewer of them in the study that is run"
+            .to_owned(),
+        head: Vec::new(),
+        rows: Vec::new(),
+    }
+}
+
+/// In how many parts a study is computed; none of one that is computed as a whole.
+///
+/// # Errors
+///
+/// What of it no design can answer.
+pub fn part_count(model: &Model, study: &Study) -> Result<Option<usize>, Vec<Diagnostic>> {
+    let StudyKind::Sweep(asked) = &study.kind else {
+        return Ok(None);
+    };
+    let question = Question::new(model, &study.name, asked)?;
+    Ok(Some(Layout::of(&question).count()))
+}
+
+/// Computes the parts of a sweep that are not kept yet and are to be computed here. False where it was stopped before the last of them.
+///
+/// # Errors
+///
+/// What of it no design can answer; why a part cannot be kept.
+pub fn compute_parts(
+    model: &Model,
+    study: &Study,
+    (executor, parts): (&dyn Executor, &mut dyn Parts),
+    progress: &mut dyn Progress,
+) -> Result<bool, Vec<Diagnostic>> {
+    let StudyKind::Sweep(asked) = &study.kind else {
+        return Ok(true);
+    };
+    crate::room::room_for(model, study)?;
+    let question = Question::new(model, &study.name, asked)?;
+    let Begun { question, .. } = begin(question, progress)?;
+    let layout = Layout::of(&question);
+    for number in (0..layout.count()).filter(|it| parts.computes(*it)).collect::<Vec<_>>() {
+        let found = of_part(&question, &layout, number, (executor, parts), progress);
+        let (_, whole) = found.map_err(|d| vec![*d])?;
+        if !whole {
+            return Ok(false);
+        }
+    }
+    Ok(true)
+}
+
+/// What a sweep will hold: the numbers of all designs, and the curves of some.
+pub(crate) fn bytes_of_sweep(model: &Model, study: &SweepStudy) -> Held {
+    let designs = designs::Designs::new(model, study);
+    let count = designs.count() as f64;
+    let number = size_of::<f64>();
+    let Ok(question) = Question::new(model, "", study) else {
+        return Held {
+            rows: 1.0,
+            row: number,
+        };
+    };
+    let columns = question.table().with_evidence().len();
+    let along = question.bench.over.kind.along();
+    let rows = crate::rows::most(model, &along.rows, &model.parameter_values());
+    let curves = count.min(DRAWN as f64) * rows * (3 * question.curves() * number) as f64;
+    Held {
+        rows: count,
+        row: columns * number
+            + size_of::<Option<String>>()
+            + (curves / count.max(1.0)).ceil() as usize,
+    }
+}
