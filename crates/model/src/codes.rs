@@ -180,6 +180,7 @@ pub const LATER_CODES: &[Code] = &[
     code("no-linkage", "no linkage of the kind does what a task asks"),
     code("no-mass", "a drive that is let go moves no mass"),
     code("no-mechanism", "something that moves is asked for in a file that asks for linkages alone"),
+    code("no-parts", "shards of a study are asked for that is not computed in parts"),
     code("no-time", "forces are asked for where there is no time, and so no speed"),
     code("no-value", "a measure has no finite value"),
     code("none-accepted", "linkages do what a task asks, and none keeps what is to be accepted"),

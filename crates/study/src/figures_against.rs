@@ -103,10 +103,9 @@ pub(crate) fn quantity<'r>(result: &'r StudyResult, name: &str) -> Option<&'r Co
         Figure::Within { curve, bound } => std::slice::from_ref(curve)
             .iter()
             .chain(std::slice::from_ref(bound)),
-        Figure::Path(_)
-        | Figure::Hodograph(..)
-        | Figure::Family { .. }
-        | Figure::Plane { .. } => [].iter().chain(&[]),
+        Figure::Path(_) | Figure::Hodograph(..) | Figure::Family { .. } | Figure::Plane { .. } => {
+            [].iter().chain(&[])
+        }
     });
     (result.table.columns.iter().chain(plotted)).find(|c| c.name == name)
 }

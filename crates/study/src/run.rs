@@ -77,9 +77,7 @@ pub fn run_in_parts(
         }
         StudyKind::Vibrations(asked) => vibrations(model, &study.name, asked, progress),
         StudyKind::Adjust(asked) => adjustment(model, &study.name, asked, progress),
-        StudyKind::Sweep(asked) => {
-            sweep(model, &study.name, asked, (executor, parts), progress)
-        }
+        StudyKind::Sweep(asked) => sweep(model, &study.name, asked, (executor, parts), progress),
         StudyKind::Tolerance(asked) => tolerance(model, &study.name, asked, progress),
         StudyKind::Optimize(asked) => optimization(model, &study.name, asked, progress),
         StudyKind::Synthesize(asked) => synthesis(model, &study.name, asked, progress),

@@ -41,11 +41,7 @@ impl<W: Write + Send> ParquetWriter<W> {
     /// # Errors
     ///
     /// Those of the encoder.
-    pub fn new(
-        to: W,
-        table: &Table,
-        metadata: &[(String, String)],
-    ) -> Result<Self, ParquetError> {
+    pub fn new(to: W, table: &Table, metadata: &[(String, String)]) -> Result<Self, ParquetError> {
         let columns = table.with_evidence();
         let mut fields = Vec::with_capacity(columns.len() + 1);
         for column in &columns {

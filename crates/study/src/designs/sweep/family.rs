@@ -69,14 +69,17 @@ fn family(
             let one = columns.len() == 1;
             let family = curves.iter().flat_map(|(index, own)| {
                 let label = label(question, *index);
-                columns.iter().enumerate().map(move |(k, column)| PlaneCurve {
-                    name: match one {
-                        true => label.clone(),
-                        false => format!("{}, {label}", column.name),
-                    },
-                    points: pairs(own, 0, first + k),
-                    dashed: k > 0,
-                })
+                columns
+                    .iter()
+                    .enumerate()
+                    .map(move |(k, column)| PlaneCurve {
+                        name: match one {
+                            true => label.clone(),
+                            false => format!("{}, {label}", column.name),
+                        },
+                        points: pairs(own, 0, first + k),
+                        dashed: k > 0,
+                    })
             });
             let names: Vec<&str> = columns.iter().map(|c| c.name.as_str()).collect();
             let unit = question.curve_unit(first - 1);
@@ -97,9 +100,8 @@ fn family(
 /// A design by its parameters.
 fn label(question: &Question<'_>, index: usize) -> String {
     let designs = &question.designs;
-    let text = |k: usize, value: f64| {
-        format!("{} = {}", question.name_of(k), question.text_of(k, value))
-    };
+    let text =
+        |k: usize, value: f64| format!("{} = {}", question.name_of(k), question.text_of(k, value));
     if designs.one_at_a_time() {
         return match designs.changed(index) {
             Some((k, value)) => text(k, value),
@@ -115,7 +117,9 @@ fn label(question: &Question<'_>, index: usize) -> String {
 pub(super) fn left_out(question: &Question<'_>) -> Option<Listing> {
     let all = question.designs.count();
     (all > DRAWN && question.curves() > 1).then(|| Listing {
-        title: format!("in the pictures are the curves of {DRAWN} designs of {all}, evenly among them"),
+        title: format!(
+            "in the pictures are the curves of {DRAWN} designs of {all}, evenly among them"
+        ),
         head: Vec::new(),
         rows: Vec::new(),
     })

@@ -77,8 +77,8 @@ pub(crate) fn sweep(
     let mut table = question.table();
     let mut curves = Vec::new();
     for number in 0..layout.count() {
-        let (part, whole) =
-            of_part(&question, &layout, number, (executor, parts), progress).map_err(|d| vec![*d])?;
+        let (part, whole) = of_part(&question, &layout, number, (executor, parts), progress)
+            .map_err(|d| vec![*d])?;
         append(&mut table, &part.designs);
         curves.extend(part.curves);
         if !whole {
@@ -186,7 +186,8 @@ pub fn part_count(model: &Model, study: &Study) -> Result<Option<usize>, Vec<Dia
     Ok(Some(Layout::of(&question).count()))
 }
 
-/// Computes the parts of a sweep that are not kept yet and are to be computed here. False where it was stopped before the last of them.
+/// Computes the parts of a sweep that are not kept yet and are to be computed here: whether all of them are finished, and what is to be told
+/// of the sweep before its designs.
 ///
 /// # Errors
 ///
@@ -196,22 +197,25 @@ pub fn compute_parts(
     study: &Study,
     (executor, parts): (&dyn Executor, &mut dyn Parts),
     progress: &mut dyn Progress,
-) -> Result<bool, Vec<Diagnostic>> {
+) -> Result<(bool, Vec<Diagnostic>), Vec<Diagnostic>> {
     let StudyKind::Sweep(asked) = &study.kind else {
-        return Ok(true);
+        return Ok((true, Vec::new()));
     };
     crate::room::room_for(model, study)?;
     let question = Question::new(model, &study.name, asked)?;
-    let Begun { question, .. } = begin(question, progress)?;
+    let Begun { question, told, .. } = begin(question, progress)?;
     let layout = Layout::of(&question);
-    for number in (0..layout.count()).filter(|it| parts.computes(*it)).collect::<Vec<_>>() {
+    for number in (0..layout.count())
+        .filter(|it| parts.computes(*it))
+        .collect::<Vec<_>>()
+    {
         let found = of_part(&question, &layout, number, (executor, parts), progress);
         let (_, whole) = found.map_err(|d| vec![*d])?;
         if !whole {
-            return Ok(false);
+            return Ok((false, told));
         }
     }
-    Ok(true)
+    Ok((true, told))
 }
 
 /// What a sweep will hold: the numbers of all designs, and the curves of some.

@@ -79,7 +79,12 @@ impl Part {
     }
 
     /// From bytes; none where they do not tell so many designs of this sweep from the first on.
-    pub fn from_bytes(question: &Question<'_>, first: usize, count: usize, bytes: &[u8]) -> Option<Self> {
+    pub fn from_bytes(
+        question: &Question<'_>,
+        first: usize,
+        count: usize,
+        bytes: &[u8],
+    ) -> Option<Self> {
         let mut left = Reader(bytes);
         let designs = left.table(question.table())?;
         let mut curves = Vec::new();

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use kempe_mechanism::Mechanism;
 use kempe_model::{
-    Diagnostic, Leaf, Model, MotionStudy, ParameterId, Plot, PointId, PoseMeasure, StudyKind,
-    Severity, SweepStudy, value,
+    Diagnostic, Leaf, Model, MotionStudy, ParameterId, Plot, PointId, PoseMeasure, Severity,
+    StudyKind, SweepStudy, value,
 };
 use kempe_motion::{Motion, Progress, Silent};
 use kempe_units::{Dimension, Expr, Unit};
@@ -131,8 +131,8 @@ impl<'m> Question<'m> {
 
     /// The table of designs without rows: their numbers, what varies, and what is asked of them.
     pub fn table(&self) -> Table {
-        let varied = (0..self.designs.own.len())
-            .map(|k| Column::new(self.name_of(k), self.unit_of(k)));
+        let varied =
+            (0..self.designs.own.len()).map(|k| Column::new(self.name_of(k), self.unit_of(k)));
         let numbers = self.bench.numbers.iter();
         let numbers = numbers.map(|q| Column::new(q.name.clone(), q.unit(&self.units)));
         let first = Column::new("design", Unit::one());
@@ -149,7 +149,11 @@ impl<'m> Question<'m> {
         let places = sink.table.places;
         let mut columns = sink.table.columns;
         columns.insert(0, Column::new("design", Unit::one()));
-        let mut table = empty(&format!("{}.rows", self.name), columns.into_iter(), 1 + places);
+        let mut table = empty(
+            &format!("{}.rows", self.name),
+            columns.into_iter(),
+            1 + places,
+        );
         if knows_forces(self.bench.over) {
             table.forces = Some(crate::table::ForceColumns::default());
         }

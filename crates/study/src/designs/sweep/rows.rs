@@ -24,8 +24,8 @@ impl From<ParquetError> for RowsError {
     }
 }
 
-/// Writes the rows of all designs of a sweep as a Parquet file, a group of rows for each part. False where there are none: of other studies, and
-/// of designs without.
+/// Writes the rows of all designs of a sweep as a Parquet file, a group of rows for each part. False, and nothing is written, where there are
+/// none: of other studies, and where they have no room.
 ///
 /// # Errors
 ///
@@ -35,7 +35,7 @@ pub fn write_rows<W: Write + Send>(
     study: &Study,
     parts: &mut dyn Parts,
     metadata: &[(String, String)],
-    to: impl FnOnce() -> std::io::Result<W>,
+    to: W,
 ) -> Result<bool, RowsError> {
     let StudyKind::Sweep(asked) = &study.kind else {
         return Ok(false);
@@ -47,14 +47,12 @@ pub fn write_rows<W: Write + Send>(
     if !parts.rows() || !layout.row_room || layout.count() == 0 {
         return Ok(false);
     }
-    let to = to().map_err(|error| ParquetError::External(Box::new(error)))?;
     let mut file = ParquetWriter::new(to, &question.row_table(), metadata)?;
     for number in 0..layout.count() {
         let designs = layout.designs(number);
         let bytes = parts.kept(number).map_err(RowsError::Part)?;
-        let part = bytes.and_then(|bytes| {
-            Part::from_bytes(&question, designs.start, designs.len(), &bytes)
-        });
+        let part = bytes
+            .and_then(|bytes| Part::from_bytes(&question, designs.start, designs.len(), &bytes));
         let rows = part.and_then(|part| part.rows).ok_or_else(|| {
             let message = format!("part {} of `{}` is gone", number + 1, study.name);
             RowsError::Part(Box::new(Diagnostic::error("part-missing", message)))

@@ -124,11 +124,7 @@ pub(super) fn listed(question: &Question<'_>, table: &Table) -> Listing {
 }
 
 /// Exact derivatives at the file's own design, beside what differences of designs say that differ in one parameter alone.
-pub(super) fn derivatives(
-    question: &Question<'_>,
-    own: &Own,
-    table: &Table,
-) -> Option<Listing> {
+pub(super) fn derivatives(question: &Question<'_>, own: &Own, table: &Table) -> Option<Listing> {
     let numbers = question.bench.numbers.iter().zip(&own.sloped).enumerate();
     let rows = numbers.flat_map(|(n, (number, sloped))| {
         let unit = number.unit(&question.units);
@@ -149,9 +145,16 @@ pub(super) fn derivatives(
         })
     });
     let rows: Vec<Vec<String>> = rows.collect();
-    let head = ["number", "parameter", "derivative", "by differences", "unit"];
+    let head = [
+        "number",
+        "parameter",
+        "derivative",
+        "by differences",
+        "unit",
+    ];
     (!rows.is_empty()).then(|| Listing {
-        title: "exact derivatives at the file's own values, beside differences of the designs".to_owned(),
+        title: "exact derivatives at the file's own values, beside differences of the designs"
+            .to_owned(),
         head: head.map(str::to_owned).to_vec(),
         rows,
     })
@@ -201,7 +204,12 @@ pub(super) fn tornado(question: &Question<'_>, table: &Table) -> (Vec<Listing>, 
     ranked
         .filter_map(|(n, number)| {
             let bars = bars(question, table, n);
-            (!bars.is_empty()).then(|| (in_words(question, number, &bars), drawn(question, number, &bars)))
+            (!bars.is_empty()).then(|| {
+                (
+                    in_words(question, number, &bars),
+                    drawn(question, number, &bars),
+                )
+            })
         })
         .unzip()
 }
@@ -263,9 +271,13 @@ fn drawn(question: &Question<'_>, number: &Quantity, bars: &[Bar]) -> Figure {
         let unit = question.unit_of(bar.parameter);
         let ends = [from, to].map(number_text).join(" to ");
         PlaneCurve {
-            name: format!("{}: {ends} {}", question.name_of(bar.parameter), unit.text())
-                .trim_end()
-                .to_owned(),
+            name: format!(
+                "{}: {ends} {}",
+                question.name_of(bar.parameter),
+                unit.text()
+            )
+            .trim_end()
+            .to_owned(),
             points: vec![
                 [least, low],
                 [greatest, low],
