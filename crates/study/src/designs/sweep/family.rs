@@ -10,6 +10,9 @@ use crate::table::{Column, Table};
 /// So many numbers are plotted over the one parameter that varies.
 const NUMBERS: usize = 8;
 
+/// Curves in a picture that have a colour of their own; the next ones are dashed.
+const COLOURS: usize = 6;
+
 /// The curves of designs, what they run along first.
 type Curves = [(usize, Vec<Vec<f64>>)];
 
@@ -67,7 +70,7 @@ fn family(
         }
         Plot::Curves(columns) => {
             let one = columns.len() == 1;
-            let family = curves.iter().flat_map(|(index, own)| {
+            let family = curves.iter().enumerate().flat_map(|(n, (index, own))| {
                 let label = label(question, *index);
                 columns
                     .iter()
@@ -78,7 +81,10 @@ fn family(
                             false => format!("{}, {label}", column.name),
                         },
                         points: pairs(own, 0, first + k),
-                        dashed: k > 0,
+                        dashed: match one {
+                            true => (n / COLOURS) % 2 == 1,
+                            false => k > 0,
+                        },
                     })
             });
             let names: Vec<&str> = columns.iter().map(|c| c.name.as_str()).collect();

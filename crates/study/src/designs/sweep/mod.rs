@@ -20,7 +20,7 @@ use kempe_units::Unit;
 
 use crate::explain::stopped;
 use crate::result::{Scalar, StudyResult};
-use crate::room::Held;
+use crate::room::{Held, has_room};
 use crate::table::Table;
 use part::{Part, append};
 use parts::{Layout, computed};
@@ -34,7 +34,9 @@ pub use rows::{RowsError, write_rows};
 
 /// What is to be told of a sweep before its designs; `check` and `run` say the same.
 pub(crate) fn findings_of_sweep(model: &Model, name: &str, study: &SweepStudy) -> Vec<Diagnostic> {
-    let begun = Question::new(model, name, study).and_then(|question| begin(question, &mut Silent));
+    let begun = has_room(model, name, bytes_of_sweep(model, study))
+        .and_then(|()| Question::new(model, name, study))
+        .and_then(|question| begin(question, &mut Silent));
     begun.map_or_else(|told| told, |begun| begun.told)
 }
 
@@ -77,11 +79,11 @@ pub(crate) fn sweep(
     let mut table = question.table();
     let mut curves = Vec::new();
     for number in 0..layout.count() {
-        let (part, whole) = of_part(&question, &layout, number, (executor, parts), progress)
+        let (part, goes_on) = of_part(&question, &layout, number, (executor, parts), progress)
             .map_err(|d| vec![*d])?;
         append(&mut table, &part.designs);
         curves.extend(part.curves);
-        if !whole {
+        if !goes_on {
             break;
         }
     }
@@ -124,7 +126,7 @@ pub(crate) fn sweep(
     })
 }
 
-/// A part that was kept, or is computed and kept, and whether it is whole.
+/// A part that was kept, or is computed and kept as far as it is whole, and whether to go on.
 fn of_part(
     question: &Question<'_>,
     layout: &Layout,
@@ -140,14 +142,15 @@ fn of_part(
     {
         let done = Done::Of(designs.end, question.designs.count());
         let goes_on = progress.reached(Stage::Rows, done).is_continue();
-        return Ok((part, goes_on || designs.end == question.designs.count()));
+        return Ok((part, goes_on));
     }
-    let (mut part, whole) = computed(question, designs, rows, executor, progress);
-    if whole {
+    let all = designs.len();
+    let (mut part, goes_on) = computed(question, designs, rows, executor, progress);
+    if part.designs.rows() == all {
         parts.keep(number, part.to_bytes())?;
     }
     part.rows = None;
-    Ok((part, whole))
+    Ok((part, goes_on))
 }
 
 /// How many designs there are, and how many of them have no values.
@@ -210,8 +213,8 @@ pub fn compute_parts(
         .collect::<Vec<_>>()
     {
         let found = of_part(&question, &layout, number, (executor, parts), progress);
-        let (_, whole) = found.map_err(|d| vec![*d])?;
-        if !whole {
+        let (_, goes_on) = found.map_err(|d| vec![*d])?;
+        if !goes_on {
             return Ok((false, told));
         }
     }

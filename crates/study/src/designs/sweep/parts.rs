@@ -104,7 +104,7 @@ impl Layout {
 /// Designs that are handed to the executor together.
 const TOGETHER: usize = 16;
 
-/// A part as far as it was computed, and whether that is all of it.
+/// A part as far as it was computed, and whether to go on.
 pub(super) fn computed(
     question: &Question<'_>,
     designs: Range<usize>,
@@ -128,7 +128,7 @@ pub(super) fn computed(
         }
         let done = Done::Of(own.end, all);
         if progress.reached(Stage::Rows, done).is_break() {
-            return (part, own.end == designs.end);
+            return (part, false);
         }
     }
     (part, true)

@@ -204,10 +204,12 @@ pub(super) fn tornado(question: &Question<'_>, table: &Table) -> (Vec<Listing>, 
     ranked
         .filter_map(|(n, number)| {
             let bars = bars(question, table, n);
+            let column = table.columns.get(1 + question.designs.own.len() + n);
+            let own = column.and_then(|c| c.values.first()).copied();
             (!bars.is_empty()).then(|| {
                 (
                     in_words(question, number, &bars),
-                    drawn(question, number, &bars),
+                    drawn(question, number, &bars, own.unwrap_or(f64::NAN)),
                 )
             })
         })
@@ -262,9 +264,9 @@ fn in_words(question: &Question<'_>, number: &Quantity, bars: &[Bar]) -> Listing
 }
 
 /// Bars from the least to the greatest value of a number, the longest on top.
-fn drawn(question: &Question<'_>, number: &Quantity, bars: &[Bar]) -> Figure {
+fn drawn(question: &Question<'_>, number: &Quantity, bars: &[Bar], own: f64) -> Figure {
     let bar = |(rank, bar): (usize, &Bar)| {
-        let middle = -(rank as f64) - 1.0;
+        let middle = (bars.len() - rank) as f64;
         let (low, high) = (middle - HALF_BAR, middle + HALF_BAR);
         let [least, greatest] = bar.reach;
         let [(from, _), (to, _)] = bar.ends;
@@ -288,10 +290,15 @@ fn drawn(question: &Question<'_>, number: &Quantity, bars: &[Bar]) -> Figure {
             dashed: false,
         }
     };
+    let own = own.is_finite().then(|| PlaneCurve {
+        name: "as in the file".to_owned(),
+        points: vec![[own, 1.0 - HALF_BAR], [own, bars.len() as f64 + HALF_BAR]],
+        dashed: true,
+    });
     Figure::Family {
         name: format!("tornado-{}", number.name),
         x: (number.name.clone(), number.unit(&question.units)),
-        y: (String::new(), kempe_units::Unit::one()),
-        curves: bars.iter().enumerate().map(bar).collect(),
+        y: ("place from below".to_owned(), kempe_units::Unit::one()),
+        curves: bars.iter().enumerate().map(bar).chain(own).collect(),
     }
 }
