@@ -175,8 +175,8 @@ pub struct Run {
 #[command(
     after_help = "Examples:\n  kempe run crane.toml tie-rods --out shard-1 --shard 1/2\n  kempe run crane.toml tie-rods --out shard-2 --shard 2/2\n  \
                         kempe merge crane.toml tie-rods shard-1 shard-2 --out results\n\n\
-                        Writes the very files that kempe run crane.toml tie-rods --out results would. All parts must be there,\n\
-                        computed of the same model file with the same parameters set, by the same version; the parts stay."
+                        Writes the very files that kempe run crane.toml tie-rods --out results would. All parts must\n\
+                        be there, of the same model file with the same parameters set, by the same version; they stay."
 )]
 pub struct Merge {
     #[command(flatten)]

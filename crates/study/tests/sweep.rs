@@ -362,7 +362,7 @@ fn forces_and_simulations_are_swept_too() {
         [studies.hold]\nkind = \"forces\"\nrows = 10\n[studies.fall]\nkind = \"simulate\"\nuntil = \"0.2 s\"\nrows = 11\nrelease = [\"swing\"]\nstart = { swing = 0 }\n\
         [studies.torques]\nkind = \"sweep\"\nover = \"hold\"\nvary = { m = [1, 2] }\ncolumns = [\"max(torque(swing))\"]\nplot = [\"torque(swing)\"]\n\
         [studies.falls]\nkind = \"sweep\"\nover = \"fall\"\nvary = { m = [1, 2] }\ncolumns = [\"min(angle(arm))\"]\nplot = [\"angle(arm)\"]\n";
-    let checked = Model::from_toml(&text, "test", &mut |_| Err("no files".into()));
+    let checked = Model::from_toml(text, "test", &mut |_| Err("no files".into()));
     let model = match checked {
         Ok(checked) => checked.model,
         Err(found) => panic!("{}", rendered(&found)),

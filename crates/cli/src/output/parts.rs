@@ -278,7 +278,10 @@ impl Kept {
     fn write(&self, folder: &Path, part: usize, bytes: &[u8]) -> Result<(), Box<Diagnostic>> {
         let path = folder.join(self.name(part));
         let failed = |error: io::Error| cannot_write(&path, &error);
-        fs::create_dir_all(folder).map_err(failed)?;
+        if !folder.is_dir() {
+            fs::create_dir_all(folder).map_err(failed)?;
+            sync_folder(&super::folder_of(folder));
+        }
         match fs::symlink_metadata(&path) {
             Ok(metadata) if !metadata.is_file() || !begins_as_part(&path) => {
                 return Err(already_there(&path));
