@@ -6,6 +6,8 @@ use std::path::PathBuf;
 use clap::builder::{PossibleValue, StringValueParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
 
+use crate::output::Shard;
+
 /// A workbench for planar linkages: one short model file becomes motion, numbers and pictures.
 #[derive(Debug, Parser)]
 #[command(
@@ -40,6 +42,8 @@ pub enum Command {
     Schema,
     /// List what may be measured
     Measures(Measures),
+    /// Join the parts of a sweep that several machines computed: what one run would have written
+    Merge(Merge),
     /// Re-compute all reference values: ours, theirs, the difference, the source
     Verify(Verify),
     /// Print a completion script for a shell
@@ -126,7 +130,10 @@ pub struct Sensitivities {
                         of both; a design that cannot run beside this one does not keep this one's results from being\n\
                         written.\n\n\
                         Ctrl-C, SIGTERM and SIGHUP keep the finished rows beside an earlier result: STUDY.partial.csv,\n\
-                        report.partial.html and so on, which say inside how far the run came."
+                        report.partial.html and so on, which say inside how far the run came.\n\n\
+                        A sweep also writes STUDY.rows.parquet, the rows of all its designs. Its finished parts are kept in\n\
+                        STUDY.parts until it is whole: the same command goes on from there, however the run before ended.\n\
+                        With --shard K/N several machines share a sweep; kempe merge joins their parts."
 )]
 pub struct Run {
     #[command(flatten)]
@@ -147,7 +154,43 @@ pub struct Run {
     /// Prove the motion and its largest and smallest values by interval arithmetic; the report tells which numbers are proved
     #[arg(long)]
     pub certify: bool,
+    /// Of sweeps compute only the parts that are one machine's of several, as in --shard 2/4, and leave them in the folder for
+    /// kempe merge
+    #[arg(long, value_name = "K/N", value_parser = Shard::parse, requires = "out",
+          conflicts_with_all = ["against", "against_set", "certify", "date", "strict"])]
+    pub shard: Option<Shard>,
     /// Tell in the report when it was written; without it, the same run gives the same bytes
+    #[arg(long)]
+    pub date: bool,
+    /// Print one JSON object instead of text
+    #[arg(long)]
+    pub json: bool,
+    /// Print nothing but errors (and JSON, if asked for)
+    #[arg(long, short)]
+    pub quiet: bool,
+}
+
+/// `kempe merge`
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Examples:\n  kempe run crane.toml tie-rods --out shard-1 --shard 1/2\n  kempe run crane.toml tie-rods --out shard-2 --shard 2/2\n  \
+                        kempe merge crane.toml tie-rods shard-1 shard-2 --out results\n\n\
+                        Writes the very files that kempe run crane.toml tie-rods --out results would. All parts must\n\
+                        be there, of the same model file with the same parameters set, by the same version; they stay."
+)]
+pub struct Merge {
+    #[command(flatten)]
+    pub model: ModelFile,
+    /// The sweep
+    #[arg(value_name = "STUDY")]
+    pub study: String,
+    /// Folders to which its shards were written
+    #[arg(value_name = "PARTS", required = true)]
+    pub parts: Vec<PathBuf>,
+    /// Folder for the results
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+    /// Tell in the report when it was written
     #[arg(long)]
     pub date: bool,
     /// Print one JSON object instead of text

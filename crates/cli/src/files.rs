@@ -25,6 +25,8 @@ pub struct Loaded {
     pub set: Vec<(String, String)>,
     /// All files that the model was read from: its own, and its tables.
     pub inputs: Vec<PathBuf>,
+    /// A fingerprint of its tables.
+    pub tables: u64,
 }
 
 impl Loaded {
@@ -81,6 +83,7 @@ fn read(model: &ModelFile, speaker: &mut Speaker) -> Result<Loaded, Exit> {
     let mut tables = Tables::of(folder, model.allow_outside);
     match Model::from_bytes(&bytes, &title, &mut |name| tables.read(name), &model.set) {
         Ok(checked) => {
+            let hash = tables.hash;
             let mut inputs = tables.read;
             inputs.push(model.file.clone());
             Ok(Loaded {
@@ -89,6 +92,7 @@ fn read(model: &ModelFile, speaker: &mut Speaker) -> Result<Loaded, Exit> {
                 name,
                 set: model.set.clone(),
                 inputs,
+                tables: hash,
             })
         }
         Err(found) => {

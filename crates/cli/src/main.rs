@@ -41,6 +41,7 @@ fn obey(command: &Command) -> Exit {
         Command::New(new) => command::new::new(new),
         Command::Schema => command::lists::schema(),
         Command::Measures(measures) => command::lists::measures(measures),
+        Command::Merge(merge) => command::merge::merge(merge),
         Command::Verify(verify) => command::verify::verify(verify),
         Command::Completions(completions) => command::lists::completions(completions),
     }

@@ -26,6 +26,11 @@ pub fn design(study: &str, file: &str) -> String {
     format!("{study}/{file}")
 }
 
+/// The name of the file with the rows of all designs of a sweep: `family.rows.parquet`. No study has a dot in its name.
+pub fn rows(study: &str) -> String {
+    format!("{study}.rows.parquet")
+}
+
 /// The name of a file of the other one of two designs: `turn.against.csv`. No study has a dot in its name.
 pub fn of_other_design(name: &str) -> String {
     match name.rsplit_once('.') {

@@ -8,6 +8,7 @@
 
 mod hidden;
 mod lock;
+mod parts;
 mod record;
 mod stand;
 
@@ -22,6 +23,7 @@ use crate::read::plain;
 use lock::{Lock, Taken};
 use record::{Appearing, Mark, RECORD, Record};
 
+pub use parts::{Kept, Shard, folder_name};
 pub use stand::{Stands, may_replace};
 
 /// How long a run waits for a folder where another one writes: no longer than that one would take for a single file.
@@ -154,6 +156,19 @@ impl Output {
     ///
     /// As of [`may_write`](Self::may_write); `cannot-write` where two files would have one name.
     pub fn add(&mut self, name: &str, bytes: &[u8]) -> Result<(), Box<Diagnostic>> {
+        self.add_with(name, |file| file.write_all(bytes).map(|()| true))
+    }
+
+    /// As [`add`](Self::add); the bytes come one after the other. Where there are none to be written, there is no file.
+    ///
+    /// # Errors
+    ///
+    /// As of [`add`](Self::add).
+    pub fn add_with(
+        &mut self,
+        name: &str,
+        write: impl FnOnce(&mut File) -> io::Result<bool>,
+    ) -> Result<(), Box<Diagnostic>> {
         self.may_write([name])?;
         let path = stand::place_in(&self.folder, name);
         let lower = name.to_lowercase();
@@ -171,14 +186,26 @@ impl Output {
             self.make_inner(inner).map_err(failed)?;
         }
         let (hidden, mut file) = hidden::create(&self.folder).map_err(failed)?;
-        self.waiting.push(Waiting {
-            name: name.to_owned(),
-            mark: Mark::of(bytes),
-            hidden,
-            path: path.clone(),
-            kept: None,
-        });
-        (file.write_all(bytes).and_then(|()| file.sync_all())).map_err(failed)
+        let written = write(&mut file)
+            .and_then(|any| file.sync_all().map(|()| any))
+            .and_then(|any| match any {
+                true => Mark::of_file(&hidden).map(Some),
+                false => Ok(None),
+            });
+        match written {
+            Ok(Some(mark)) => self.waiting.push(Waiting {
+                name: name.to_owned(),
+                mark,
+                hidden,
+                path,
+                kept: None,
+            }),
+            other => {
+                let _ = fs::remove_file(&hidden);
+                other.map_err(failed)?;
+            }
+        }
+        Ok(())
     }
 
     /// Makes a folder in this one, which goes again where nothing comes into it.

@@ -6,6 +6,8 @@ use std::path::{Component, Path, PathBuf};
 
 use kempe_model::{MAX_FILE_BYTES, MAX_TABLE_BYTES};
 
+use crate::fingerprint;
+
 /// All tables of a model together have at most so many bytes.
 const MAX_ALL_BYTES: usize = 512 << 20;
 
@@ -109,6 +111,8 @@ pub struct Tables {
     left: usize,
     /// The files that were read.
     pub read: Vec<PathBuf>,
+    /// A fingerprint of what was read, in its order.
+    pub hash: u64,
 }
 
 impl Tables {
@@ -119,6 +123,7 @@ impl Tables {
             outside,
             left: MAX_ALL_BYTES,
             read: Vec::new(),
+            hash: fingerprint::NOTHING,
         }
     }
 
@@ -148,6 +153,8 @@ impl Tables {
         })?;
         if !self.read.contains(&path) {
             self.read.push(path);
+            self.hash = fingerprint::continued(self.hash, &(bytes.len() as u64).to_le_bytes());
+            self.hash = fingerprint::continued(self.hash, &bytes);
         }
         text(bytes)
     }

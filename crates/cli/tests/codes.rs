@@ -21,7 +21,7 @@ const GUARD: &str = "no small file is known to come to it";
 const WITHOUT: &[(&str, &[&str])] = &[
     (COMMAND_LINE, &[
         "bad-case", "bad-request", "cannot-draw", "cannot-write", "command-line", "crowded-picture", "file-exists", "folder-busy", "no-file", "not-written", "nothing-to-compare", "own-input",
-        "partial-result",         "stopped",
+        "no-parts", "part-damaged", "part-missing", "partial-result",         "stopped",
         "unknown-picture",
     ]),
     (BUILT, &[

@@ -180,19 +180,23 @@ fn plane(unit: &Unit, curves: &[PlaneCurve]) -> PlotSpec {
 }
 
 /// Curves of one quantity over another.
-fn graph([x, y]: [&(String, Unit); 2], curves: &[PlaneCurve]) -> PlotSpec {
-    let curves = curves.iter().map(|curve| Curve {
+fn graph(axes: [&(String, Unit); 2], curves: &[PlaneCurve]) -> PlotSpec {
+    let [x, y] = axes.map(|(name, unit)| Axis::new(name.clone(), unit.text()));
+    PlotSpec {
+        x,
+        y,
+        curves: curves.iter().map(own_curve).collect(),
+        ..PlotSpec::default()
+    }
+}
+
+fn own_curve(curve: &PlaneCurve) -> Curve {
+    Curve {
         label: curve.name.clone(),
         x: curve.points.iter().map(|p| p[0]).collect(),
         y: curve.points.iter().map(|p| p[1]).collect(),
         dashed: curve.dashed,
         ..Curve::default()
-    });
-    PlotSpec {
-        x: Axis::new(&x.0, x.1.text()),
-        y: Axis::new(&y.0, y.1.text()),
-        curves: curves.collect(),
-        ..PlotSpec::default()
     }
 }
 

@@ -573,7 +573,7 @@ fn of_study(laws: &OfLaws<'_>, study: &Study, progress: &mut dyn Progress) -> Ve
             [laws.motion().to_vec(), own].concat()
         }
         StudyKind::Synthesize(asked) => findings_of_synthesis(model, asked),
-        StudyKind::Sweep(asked) => findings_of_sweep(model, asked),
+        StudyKind::Sweep(asked) => findings_of_sweep(model, name, asked),
         StudyKind::Tolerance(asked) => findings_of_tolerance(model, asked),
         StudyKind::Optimize(asked) => findings_of_optimization(model, asked),
     };

@@ -90,6 +90,9 @@ mod words;
 
 pub use along::{Along, Row, RowForces, force_problems};
 pub use comparison::{Axis, Comparison, Design, Kind, Pair, StudyPair, compare};
+pub use designs::{Parts, compute_parts, part_count};
+#[cfg(feature = "parquet")]
+pub use designs::{RowsError, write_rows};
 pub use dimensions::dimensions;
 pub use explain::{beyond_limit, cannot_move};
 pub use extremes::{Extreme, Extremes, extremes, without_rounding};
@@ -109,7 +112,7 @@ pub use report_designs::design_picture;
 pub use result::{Event, Figure, FoundDesign, Frame, Listing, ModeShape, Scalar, StudyResult};
 pub use room::{Held, MAX_STUDY_BYTES, room_for, study_bytes};
 pub use rows::RowPlace;
-pub use run::{run, run_motion, run_with};
+pub use run::{run, run_in_parts, run_motion, run_with};
 pub use sensitivities::{Derivative, MeasureSensitivity, Sensitivities, sensitivities};
 pub use table::{Column, ForceColumns, Table};
 pub use unit::{Units, shown};

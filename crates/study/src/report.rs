@@ -5,7 +5,7 @@ use kempe_draw::report::{
 };
 use kempe_dynamics::note::{EQUILIBRIUM_LIMIT, ILL_CONDITIONED, ROUTES_AGREE};
 use kempe_measure::CLOSURE_LIMIT;
-use kempe_model::{Diagnostic, Model, MotionStudy, Study};
+use kempe_model::{Diagnostic, Model, MotionStudy, Study, StudyKind};
 
 use crate::comparison::{Comparison, Design};
 use crate::figures::marker_kind;
@@ -119,7 +119,7 @@ pub fn report(
     let motions = studies.iter().flat_map(|outcome| {
         let study = outcome.study.kind.along();
         match &outcome.result {
-            Ok(result) if result.frames.is_empty() && !result.designs.is_empty() => {
+            Ok(result) if result.frames.is_empty() && is_of_designs(outcome.study, result) => {
                 moving_designs(result)
             }
             Ok(result) if result.shapes.is_empty() => vec![motion(model, study, result, against)],
@@ -138,6 +138,11 @@ pub fn report(
         generator: origin.generator.to_owned(),
         date: origin.date.to_owned(),
     }
+}
+
+/// Whether a study has no motion of its own: it found designs, or ran another study for them.
+fn is_of_designs(study: &Study, result: &StudyResult) -> bool {
+    !result.designs.is_empty() || matches!(study.kind, StudyKind::Sweep(_))
 }
 
 /// The numbers over the whole motion of a study, if it has any.

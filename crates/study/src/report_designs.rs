@@ -64,15 +64,20 @@ const PLANE: [f64; 2] = [170.0, 130.0];
 
 /// What a study shows in the plane beside the mechanisms that it found.
 pub(crate) fn planes_section(model: &Model, result: &StudyResult) -> Option<Section> {
-    let is_plane = (result.figures.iter())
-        .any(|figure| matches!(figure, Figure::Plane { .. } | Figure::Graph { .. }));
-    if !result.frames.is_empty() || !is_plane {
+    let in_the_plane =
+        |figure: &Figure| matches!(figure, Figure::Plane { .. } | Figure::Graph { .. });
+    if !result.frames.is_empty() || !result.figures.iter().any(in_the_plane) {
         return None;
     }
+    let is_plane = |figure: &Figure| matches!(figure, Figure::Plane { .. });
+    let title = match result.figures.iter().all(is_plane) {
+        true => "in the plane",
+        false => "plots",
+    };
     let plots = figures(model, result).into_iter();
     let pictures = plots.map(|(_, plot)| Block::Picture(plot.draw(PLANE[0], PLANE[1]).scene));
     Some(Section {
-        title: format!("{}: in the plane", result.name),
+        title: format!("{}: {title}", result.name),
         blocks: pictures.collect(),
     })
 }

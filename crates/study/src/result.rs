@@ -6,6 +6,7 @@ use kempe_model::{Diagnostic, Model, ModelFile, PointId};
 use kempe_motion::events::EventKind;
 use kempe_units::Unit;
 
+use crate::report_designs::moving_designs;
 use crate::table::{Column, Table};
 use crate::unit::shown;
 
@@ -83,9 +84,13 @@ impl StudyResult {
         self.table.rows() < self.demanded_rows
     }
 
-    /// Pictures that move: one of all rows, or one for each natural vibration.
+    /// Pictures that move: one of all rows, one for each natural vibration, or those of the first designs; none of a table of designs.
     pub fn motions(&self) -> usize {
-        self.shapes.len().max(1)
+        match (self.shapes.len(), self.frames.is_empty()) {
+            (0, false) => 1,
+            (0, true) => moving_designs(self).len(),
+            (shapes, _) => shapes,
+        }
     }
 
     /// The column that the rows run along.

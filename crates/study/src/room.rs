@@ -11,7 +11,7 @@ use kempe_model::{
 
 use crate::clearance::COLUMNS;
 use crate::columns::Asked;
-use crate::designs::{DEFAULT_CURVES, KEPT, numbers_of};
+use crate::designs::{DEFAULT_CURVES, KEPT, bytes_of_sweep, numbers_of};
 use crate::force_columns::standard_plots;
 use crate::named::study_named;
 use crate::result::Frame;
@@ -112,8 +112,9 @@ pub fn study_bytes(model: &Model, study: &Study) -> Held {
             held(model, &asked.along, row + columns * (1 + HELD) * NUMBER)
         }
         // They hold what they need in parts.
+        StudyKind::Sweep(asked) => bytes_of_sweep(model, asked),
         StudyKind::Tolerance(asked) => bytes_of_tolerance(model, asked),
-        StudyKind::Sweep(_) | StudyKind::Optimize(_) => Held {
+        StudyKind::Optimize(_) => Held {
             rows: 1.0,
             row: NUMBER,
         },

@@ -7,7 +7,7 @@ use crate::adjust::adjustment;
 use crate::choice::{balance, spring};
 use crate::circuit::run_circuit;
 use crate::clearance::{clearance, contact};
-use crate::designs::{optimization, sweep, tolerance};
+use crate::designs::{Parts, Unkept, optimization, sweep, tolerance};
 use crate::findings_forces::something_acts;
 use crate::motion::run_along;
 use crate::result::StudyResult;
@@ -42,6 +42,20 @@ pub fn run_with(
     executor: &dyn Executor,
     progress: &mut dyn Progress,
 ) -> Result<StudyResult, Vec<Diagnostic>> {
+    run_in_parts(model, study, (executor, &mut Unkept), progress)
+}
+
+/// As [`run_with`]; what a study computes part by part is kept, and what was kept before is not computed again.
+///
+/// # Errors
+///
+/// See [`run`], and why a part is not to be had.
+pub fn run_in_parts(
+    model: &Model,
+    study: &Study,
+    (executor, parts): (&dyn Executor, &mut dyn Parts),
+    progress: &mut dyn Progress,
+) -> Result<StudyResult, Vec<Diagnostic>> {
     room_for(model, study)?;
     match &study.kind {
         StudyKind::Motion(motion) => run_motion(model, &study.name, motion, progress),
@@ -63,7 +77,7 @@ pub fn run_with(
         }
         StudyKind::Vibrations(asked) => vibrations(model, &study.name, asked, progress),
         StudyKind::Adjust(asked) => adjustment(model, &study.name, asked, progress),
-        StudyKind::Sweep(asked) => sweep(model, &study.name, asked, progress),
+        StudyKind::Sweep(asked) => sweep(model, &study.name, asked, (executor, parts), progress),
         StudyKind::Tolerance(asked) => tolerance(model, &study.name, asked, executor, progress),
         StudyKind::Optimize(asked) => optimization(model, &study.name, asked, progress),
         StudyKind::Synthesize(asked) => synthesis(model, &study.name, asked, progress),

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use kempe_measure::Held;
 use kempe_model::{Diagnostic, Model, ParameterId};
 use kempe_motion::drive_path::DrivePath;
-use kempe_units::{Dimension, format_digits};
+use kempe_units::{Dimension, Unit, format_digits};
 use serde::Serialize;
 
 use crate::along::force_problems;
@@ -167,12 +167,7 @@ pub fn sensitivities(
                 Derivative {
                     parameter: parameter.name.clone(),
                     value: unit.from_si(*slope) * per.to_si(1.0),
-                    unit: match (unit.text(), per.text()) {
-                        (own, "") => own.to_owned(),
-                        ("", per) => format!("1/{per}"),
-                        (own, per) if per.contains([' ', '/']) => format!("{own}/({per})"),
-                        (own, per) => format!("{own}/{per}"),
-                    },
+                    unit: unit_per(&unit, &per),
                 }
             });
         Some(MeasureSensitivity {
@@ -193,6 +188,16 @@ pub fn sensitivities(
         left_out,
         diagnostics,
     })
+}
+
+/// The unit of a derivative, such as `deg/mm`.
+pub(crate) fn unit_per(unit: &Unit, per: &Unit) -> String {
+    match (unit.text(), per.text()) {
+        (own, "") => own.to_owned(),
+        ("", per) => format!("1/{per}"),
+        (own, per) if per.contains([' ', '/']) => format!("{own}/({per})"),
+        (own, per) => format!("{own}/{per}"),
+    }
 }
 
 impl Sensitivities {

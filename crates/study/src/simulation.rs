@@ -190,7 +190,7 @@ pub(crate) fn simulation(
 }
 
 /// The rows of a study in time: so many over the whole time asked for, however early it ends.
-fn in_time(study: &MotionStudy, until: f64) -> MotionStudy {
+pub(crate) fn in_time(study: &MotionStudy, until: f64) -> MotionStudy {
     let mut study = study.clone();
     if let Rows::Count(rows) = study.rows
         && rows > 1

@@ -3,6 +3,7 @@
 pub mod check;
 pub mod draw;
 pub mod lists;
+pub mod merge;
 pub mod new;
 pub mod run;
 pub mod sensitivities;

@@ -1,6 +1,7 @@
 //! `kempe run`: the studies of a model, as tables, figures and a report.
 
 mod against;
+mod shard;
 mod summary;
 mod write;
 
@@ -8,7 +9,9 @@ use std::path::{Path, PathBuf};
 
 use kempe_batch::Threads;
 use kempe_model::{Diagnostic, Model, Study};
-use kempe_study::{StudyOutcome, encode, of_other_design, room_for, study_bytes, study_named};
+use kempe_study::{
+    StudyOutcome, encode, of_other_design, part_count, room_for, study_bytes, study_named,
+};
 
 use crate::arguments::Run;
 use crate::clock;
@@ -16,24 +19,41 @@ use crate::exit::Exit;
 use crate::files::{Loaded, load};
 use crate::interrupt;
 use crate::names;
-use crate::output::Output;
+use crate::output::{Kept, Output};
 use crate::progress::Bar;
-use crate::say::{Speaker, print_json, put};
+use crate::say::{Speaker, complain, print_json, put};
 use against::{Against, studies_of_other};
+pub use shard::no_parts;
 use summary::{against_json, compared, summary, summary_json};
 use write::{REPORT, Results, known_names, known_names_against};
 
 /// The studies of a run together hold at most so many bytes.
 const MAX_RUN_BYTES: u64 = 4 << 30;
 
+/// Why parts of a sweep are not kept, or not found.
+const UNKEPT: [&str; 4] = [
+    "cannot-write",
+    "file-exists",
+    "part-damaged",
+    "part-missing",
+];
+
 /// Runs `kempe run`.
 pub fn run(arguments: &Run) -> Exit {
+    run_from(arguments, None)
+}
+
+/// Runs `kempe run`, or joins the parts of a study that are in these folders.
+pub fn run_from(arguments: &Run, joined: Option<&[PathBuf]>) -> Exit {
     let mut speaker =
         Speaker::new(arguments.json, arguments.quiet).strictly(arguments.model.strict);
     let loaded = match load(&arguments.model, &mut speaker) {
         Ok(loaded) => loaded,
         Err(exit) => return failed(&speaker, exit),
     };
+    if let Some(shard) = arguments.shard {
+        return shard::run(arguments, shard, &loaded, &mut speaker);
+    }
     let other = match against::other(arguments, &loaded, &mut speaker) {
         Ok(other) => other,
         Err(exit) => return failed(&speaker, exit),
@@ -46,13 +66,35 @@ pub fn run(arguments: &Run) -> Exit {
         }
     };
     let (studies, output) = (prepared.studies, prepared.output);
-    interrupt::listen();
     let quiet = arguments.quiet || arguments.json;
-    let outcomes = run_all(&loaded, &studies, "", quiet, &mut speaker);
+    let mut kept = match output.is_some() {
+        true => match kept(arguments, joined, &loaded, &studies) {
+            Ok(kept) => kept,
+            Err(diagnostics) => {
+                speaker.tell(&diagnostics);
+                return failed(&speaker, Exit::Usage);
+            }
+        },
+        false => Vec::new(),
+    };
+    interrupt::listen();
+    if !quiet {
+        kept.iter().for_each(|kept| complain(&resuming(kept)));
+    }
+    let outcomes = run_all(&loaded, &studies, ("", &mut kept), quiet, &mut speaker);
+    if !quiet {
+        kept.iter().for_each(|kept| complain(&computed_again(kept)));
+    }
     let other_outcomes = match &other {
         Some(other) if !interrupt::stopped() => {
             speaker.turn_to_other(&other.name, &other.text, &other.set);
-            let outcomes = run_all(other, &prepared.of_other, " (against)", quiet, &mut speaker);
+            let outcomes = run_all(
+                other,
+                &prepared.of_other,
+                (" (against)", &mut Vec::new()),
+                quiet,
+                &mut speaker,
+            );
             speaker.turn_back(&loaded.name, &loaded.text);
             outcomes
         }
@@ -94,15 +136,20 @@ pub fn run(arguments: &Run) -> Exit {
                 stopped: stopped.then_some(missing),
                 date: arguments.date.then(clock::now),
             };
-            match results.write(output) {
-                Ok(written) => files = written,
+            match results.write(output, &mut kept) {
+                Ok(written) => {
+                    files = written;
+                    if !stopped {
+                        kept.iter().for_each(Kept::remove);
+                    }
+                }
                 Err(diagnostic) => {
                     speaker.tell(&[*diagnostic]);
                     return failed(&speaker, Exit::Usage);
                 }
             }
             if stopped {
-                speaker.insist(&partial_result(folder));
+                speaker.insist(&partial_result(folder, &kept));
             }
         }
     }
@@ -131,8 +178,12 @@ pub fn run(arguments: &Run) -> Exit {
             put(&compared(&against.comparison));
         }
     }
+    // A part that cannot be kept is no fault of the mechanism.
+    let errors = outcomes.iter().filter_map(|o| o.result.as_ref().err());
+    let unkept = errors.flatten().any(|d| UNKEPT.contains(&d.code));
     match proof {
         _ if stopped => Exit::Interrupted,
+        _ if unkept => Exit::Usage,
         Some(proof) if !proof.is_whole() => speaker.exit().max(Exit::Finding),
         _ => speaker.exit(),
     }
@@ -238,18 +289,24 @@ fn have_room(studies: &[(&Model, &Study)]) -> Result<(), Box<Diagnostic>> {
 }
 
 /// Runs one study after the other, until it is told to stop. `whose` stands behind their names while they run.
+/// Those of which parts are kept go on from there.
 fn run_all<'m>(
     loaded: &'m Loaded,
     studies: &[&'m Study],
-    whose: &str,
+    (whose, kept): (&str, &mut Vec<Kept>),
     quiet: bool,
     speaker: &mut Speaker,
 ) -> Vec<StudyOutcome<'m>> {
     let mut outcomes = Vec::new();
-    let threads = Threads(std::thread::available_parallelism().map_or(1, usize::from));
+    let threads = threads();
+    let model = &loaded.checked.model;
     for study in studies {
         let mut bar = Bar::new(&format!("{}{whose}", study.name), quiet);
-        let result = kempe_study::run_with(&loaded.checked.model, study, &threads, &mut bar);
+        let parts = kept.iter_mut().find(|kept| kept.study() == study.name);
+        let result = match parts {
+            Some(parts) => kempe_study::run_in_parts(model, study, (&threads, parts), &mut bar),
+            None => kempe_study::run_with(model, study, &threads, &mut bar),
+        };
         drop(bar);
         match &result {
             Ok(result) => speaker.tell(&result.diagnostics),
@@ -261,6 +318,73 @@ fn run_all<'m>(
         }
     }
     outcomes
+}
+
+/// As many threads as the machine has.
+fn threads() -> Threads {
+    Threads(std::thread::available_parallelism().map_or(1, usize::from))
+}
+
+/// Where the parts of the studies are that have parts.
+fn kept(
+    arguments: &Run,
+    joined: Option<&[PathBuf]>,
+    loaded: &Loaded,
+    studies: &[&Study],
+) -> Result<Vec<Kept>, Vec<Diagnostic>> {
+    let folder = arguments.out.as_deref().unwrap_or(Path::new(""));
+    let mut all = Vec::new();
+    for study in studies {
+        // What is wrong with it is told when it is run.
+        let Ok(Some(count)) = part_count(&loaded.checked.model, study) else {
+            continue;
+        };
+        all.push(match joined {
+            None => Kept::in_folder(folder, loaded, &study.name, count, None),
+            Some(folders) => {
+                let kept = Kept::joined(folders.to_vec(), loaded, &study.name, count);
+                kept.all_there(&loaded.name).map_err(|d| vec![*d])?;
+                kept
+            }
+        });
+    }
+    Ok(all)
+}
+
+/// What is said of the parts that are found where a sweep begins.
+fn resuming(kept: &Kept) -> String {
+    let Some(folder) = kept.folder() else {
+        return String::new();
+    };
+    let mut said = String::new();
+    let there = kept.there().len();
+    if there > 0 {
+        said += &format!(
+            "{}: resuming, {there} of {} parts are there\n",
+            kept.study(),
+            kept.count()
+        );
+    }
+    let strangers = kept.strangers();
+    if strangers > 0 {
+        said += &format!(
+            "{}: {} holds {strangers} parts of another model, of other parameters or of another version: they are left as they are\n",
+            kept.study(),
+            folder.display()
+        );
+    }
+    said
+}
+
+/// What is said of parts that could not be used.
+fn computed_again(kept: &Kept) -> String {
+    let said = kept.damaged().map(|path| {
+        format!(
+            "{} was not as it was written: that part was computed again\n",
+            path.display()
+        )
+    });
+    said.collect()
 }
 
 fn failed(speaker: &Speaker, exit: Exit) -> Exit {
@@ -280,15 +404,30 @@ pub fn warned(target: &Path) -> Diagnostic {
 }
 
 /// What was finished of a run that was stopped stands beside the results of an earlier one.
-fn partial_result(folder: &Path) -> Diagnostic {
+fn partial_result(folder: &Path, kept: &[Kept]) -> Diagnostic {
     let report: PathBuf = folder.join(names::of_run(REPORT, true));
     let message = format!(
         "the run was stopped: what is finished is a partial result, {}",
         report.display()
     );
-    Diagnostic::warning("partial-result", message)
-        .note("its files have .partial in their names and say so inside; those of earlier runs are as they were")
-        .help("run it again for the whole")
+    let diagnostic = Diagnostic::warning("partial-result", message)
+        .note("its files have .partial in their names and say so inside; those of earlier runs are as they were");
+    let parts = kept.iter().filter(|kept| !kept.there().is_empty());
+    let parts = parts.filter_map(|kept| {
+        let folder = kept.folder()?.display();
+        Some(format!(
+            "{} of {} parts in {folder}",
+            kept.there().len(),
+            kept.count()
+        ))
+    });
+    let parts: Vec<String> = parts.collect();
+    match parts.is_empty() {
+        true => diagnostic.help("run it again for the whole"),
+        false => diagnostic
+            .note(format!("finished parts are kept: {}", parts.join(", ")))
+            .help("run it again: it goes on from there"),
+    }
 }
 
 /// A folder holds the results of one run: where a study could not run, nothing of the others is written either.

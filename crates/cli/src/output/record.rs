@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use serde_json::{Map, Value, json};
 
 use super::hidden;
-use crate::fingerprint::{self, fnv1a64};
+use crate::fingerprint;
 use crate::read::{Unread, read_plain};
 
 /// The file with the list.
@@ -61,10 +61,11 @@ pub enum Owner {
 
 impl Mark {
     /// The mark of these bytes.
+    #[cfg(test)]
     pub fn of(bytes: &[u8]) -> Self {
         Self {
             bytes: bytes.len() as u64,
-            fnv1a64: fnv1a64(bytes),
+            fnv1a64: fingerprint::fnv1a64(bytes),
         }
     }
 
@@ -75,7 +76,7 @@ impl Mark {
     }
 
     /// The mark of a file, which may be larger than what there is room for.
-    fn of_file(path: &Path) -> io::Result<Self> {
+    pub fn of_file(path: &Path) -> io::Result<Self> {
         let mut file = fs::File::open(path)?;
         let mut block = vec![0; BLOCK];
         let mut mark = Self {

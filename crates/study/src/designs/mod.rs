@@ -12,7 +12,10 @@ mod tolerance;
 
 pub(crate) use asked::numbers_of;
 pub(crate) use optimize::{findings_of_optimization, optimization};
-pub(crate) use sweep::{findings_of_sweep, sweep};
+pub use sweep::{Parts, compute_parts, part_count};
+#[cfg(feature = "parquet")]
+pub use sweep::{RowsError, write_rows};
+pub(crate) use sweep::{Unkept, bytes_of_sweep, findings_of_sweep, sweep};
 pub(crate) use tolerance::{CURVES as DEFAULT_CURVES, KEPT, findings_of_tolerance, tolerance};
 
 use kempe_model::{Diagnostic, Model, OverStudy, ParameterId, Severity, Study};

@@ -1,5 +1,6 @@
 //! Parquet: one column of doubles a quantity, units and origin in the key-value metadata.
 
+use std::io::Write;
 use std::sync::Arc;
 
 use parquet::basic::{Compression, LogicalType, Repetition, Type as PhysicalType};
@@ -22,68 +23,107 @@ const GROUP: usize = 1 << 17;
 ///
 /// Those of the encoder.
 pub fn parquet(table: &Table, metadata: &[(String, String)]) -> Result<Vec<u8>, ParquetError> {
-    let columns = table.with_evidence();
-    let mut fields = Vec::with_capacity(columns.len() + 1);
-    for column in &columns {
-        let head = column.head();
-        let field = Type::primitive_type_builder(&head, PhysicalType::DOUBLE)
-            .with_repetition(Repetition::OPTIONAL);
-        fields.push(Arc::new(field.build()?));
-    }
-    let note = Type::primitive_type_builder("note", PhysicalType::BYTE_ARRAY)
-        .with_repetition(Repetition::OPTIONAL)
-        .with_logical_type(Some(LogicalType::String));
-    fields.push(Arc::new(note.build()?));
-    let schema = Type::group_type_builder("table")
-        .with_fields(fields)
-        .build()?;
-
-    let mut entries: Vec<KeyValue> = metadata
-        .iter()
-        .map(|(k, v)| KeyValue::new(k.clone(), v.clone()))
-        .collect();
-    entries.push(KeyValue::new("study".to_owned(), table.name.clone()));
-    for column in &columns {
-        let key = format!("unit:{}", column.name);
-        entries.push(KeyValue::new(key, column.unit.text().to_owned()));
-    }
-    let properties = WriterProperties::builder()
-        .set_compression(Compression::SNAPPY)
-        .set_dictionary_enabled(false)
-        .set_created_by(format!("kempe {}", env!("CARGO_PKG_VERSION")))
-        .set_key_value_metadata(Some(entries))
-        .build();
     let mut bytes = Vec::new();
-    let mut file = SerializedFileWriter::new(&mut bytes, Arc::new(schema), Arc::new(properties))?;
-    let mut start = 0;
-    while start < table.rows() || start == 0 {
-        let end = (start + GROUP).min(table.rows());
-        let mut group = file.next_row_group()?;
+    let mut file = ParquetWriter::new(&mut bytes, table, metadata)?;
+    file.write(table)?;
+    file.close()?;
+    Ok(bytes)
+}
+
+/// Writes a Parquet file group by group of rows.
+pub(crate) struct ParquetWriter<W: Write + Send> {
+    file: SerializedFileWriter<W>,
+}
+
+impl<W: Write + Send> ParquetWriter<W> {
+    /// A file for tables with the columns of this one.
+    ///
+    /// # Errors
+    ///
+    /// Those of the encoder.
+    pub fn new(to: W, table: &Table, metadata: &[(String, String)]) -> Result<Self, ParquetError> {
+        let columns = table.with_evidence();
+        let mut fields = Vec::with_capacity(columns.len() + 1);
         for column in &columns {
-            let block = column.values.get(start..end).unwrap_or(&[]);
-            let there: Vec<i16> = block.iter().map(|v| i16::from(!v.is_nan())).collect();
-            let values: Vec<f64> = block.iter().copied().filter(|v| !v.is_nan()).collect();
+            let head = column.head();
+            let field = Type::primitive_type_builder(&head, PhysicalType::DOUBLE)
+                .with_repetition(Repetition::OPTIONAL);
+            fields.push(Arc::new(field.build()?));
+        }
+        let note = Type::primitive_type_builder("note", PhysicalType::BYTE_ARRAY)
+            .with_repetition(Repetition::OPTIONAL)
+            .with_logical_type(Some(LogicalType::String));
+        fields.push(Arc::new(note.build()?));
+        let schema = Type::group_type_builder("table")
+            .with_fields(fields)
+            .build()?;
+
+        let mut entries: Vec<KeyValue> = metadata
+            .iter()
+            .map(|(k, v)| KeyValue::new(k.clone(), v.clone()))
+            .collect();
+        entries.push(KeyValue::new("study".to_owned(), table.name.clone()));
+        for column in &columns {
+            let key = format!("unit:{}", column.name);
+            entries.push(KeyValue::new(key, column.unit.text().to_owned()));
+        }
+        let properties = WriterProperties::builder()
+            .set_compression(Compression::SNAPPY)
+            .set_dictionary_enabled(false)
+            .set_created_by(format!("kempe {}", env!("CARGO_PKG_VERSION")))
+            .set_key_value_metadata(Some(entries))
+            .build();
+        let file = SerializedFileWriter::new(to, Arc::new(schema), Arc::new(properties))?;
+        Ok(Self { file })
+    }
+
+    /// Writes the rows of a table, in groups of their own.
+    ///
+    /// # Errors
+    ///
+    /// Those of the encoder.
+    pub fn write(&mut self, table: &Table) -> Result<(), ParquetError> {
+        let columns = table.with_evidence();
+        let mut start = 0;
+        while start < table.rows() || start == 0 {
+            let end = (start + GROUP).min(table.rows());
+            let mut group = self.file.next_row_group()?;
+            for column in &columns {
+                let block = column.values.get(start..end).unwrap_or(&[]);
+                let there: Vec<i16> = block.iter().map(|v| i16::from(!v.is_nan())).collect();
+                let values: Vec<f64> = block.iter().copied().filter(|v| !v.is_nan()).collect();
+                if let Some(mut writer) = group.next_column()? {
+                    writer
+                        .typed::<DoubleType>()
+                        .write_batch(&values, Some(&there), None)?;
+                    writer.close()?;
+                }
+            }
+            let block = table.notes.get(start..end).unwrap_or(&[]);
+            let there: Vec<i16> = block.iter().map(|n| i16::from(n.is_some())).collect();
+            let values: Vec<ByteArray> =
+                block.iter().flatten().map(|n| n.as_str().into()).collect();
             if let Some(mut writer) = group.next_column()? {
                 writer
-                    .typed::<DoubleType>()
+                    .typed::<ByteArrayType>()
                     .write_batch(&values, Some(&there), None)?;
                 writer.close()?;
             }
+            group.close()?;
+            start = end.max(1);
         }
-        let block = table.notes.get(start..end).unwrap_or(&[]);
-        let there: Vec<i16> = block.iter().map(|n| i16::from(n.is_some())).collect();
-        let values: Vec<ByteArray> = block.iter().flatten().map(|n| n.as_str().into()).collect();
-        if let Some(mut writer) = group.next_column()? {
-            writer
-                .typed::<ByteArrayType>()
-                .write_batch(&values, Some(&there), None)?;
-            writer.close()?;
-        }
-        group.close()?;
-        start = end.max(1);
+        Ok(())
     }
-    file.close()?;
-    Ok(bytes)
+
+    /// Ends the file.
+    ///
+    /// # Errors
+    ///
+    /// Those of the encoder.
+    pub fn close(self) -> Result<(), ParquetError> {
+        self.file.close()?;
+        Ok(())
+    }
 }
 
 #[cfg(test)]

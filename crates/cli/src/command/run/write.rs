@@ -1,13 +1,14 @@
 //! The files of a run.
 
+use std::io;
 use std::path::PathBuf;
 
 use kempe_draw::plot::PlotSpec;
 use kempe_draw::report::{Block, Section};
 use kempe_draw::{DrawOptions, Frame, Outline, Stage, Theme, svg};
-use kempe_model::{Diagnostic, Model, PARTIAL_TABLE, Study};
+use kempe_model::{Diagnostic, Model, PARTIAL_TABLE, Study, StudyKind};
 use kempe_study::{
-    CheckReport, MECHANISM, ModeShape, Proof, ReportAgainst, ReportOrigin, StudyOutcome,
+    CheckReport, MECHANISM, ModeShape, Proof, ReportAgainst, ReportOrigin, RowsError, StudyOutcome,
     StudyResult, design_picture, drawing_frames, drawn, encode, figures, figures_against,
     mechanism_view, outline,
 };
@@ -16,7 +17,7 @@ use super::against::Against;
 use crate::files::Loaded;
 use crate::fingerprint::fnv1a64;
 use crate::names;
-use crate::output::Output;
+use crate::output::{Kept, Output};
 
 /// Width and height of a plot, mm.
 const PLOT: [f64; 2] = [160.0, 100.0];
@@ -28,11 +29,13 @@ pub const REPORT: &str = "report.html";
 pub fn known_names(model: &Model, studies: &[&Study]) -> Vec<String> {
     let of_study = |study: &&Study| {
         let name = &study.name;
-        [
+        let own = [
             format!("{name}.csv"),
             format!("{name}.parquet"),
             names::picture(model, name, MECHANISM),
-        ]
+        ];
+        let rows = matches!(study.kind, StudyKind::Sweep(_)).then(|| names::rows(name));
+        own.into_iter().chain(rows)
     };
     let own = studies.iter().flat_map(of_study);
     own.chain([REPORT.to_owned()]).collect()
@@ -69,13 +72,23 @@ pub struct Results<'r> {
 
 impl Results<'_> {
     /// Writes all files, each whole or none. Those of a run that was stopped have names of their own and say so inside.
-    pub fn write(&self, mut output: Output) -> Result<Vec<PathBuf>, Box<Diagnostic>> {
+    pub fn write(
+        &self,
+        mut output: Output,
+        kept: &mut [Kept],
+    ) -> Result<Vec<PathBuf>, Box<Diagnostic>> {
         let partial = self.stopped.is_some();
         for result in self.outcomes.iter().filter_map(|o| o.result.as_ref().ok()) {
             if let Some((inner, _)) =
                 names::of_run(&names::design(&result.name, ""), partial).split_once('/')
             {
                 output.renew(inner);
+            }
+        }
+        for outcome in self.outcomes.iter().filter(|_| !partial) {
+            let own = kept.iter_mut().find(|k| k.study() == outcome.study.name);
+            if let (Some(parts), Ok(_)) = (own, &outcome.result) {
+                self.write_rows(outcome.study, parts, &mut output)?;
             }
         }
         let mut add = |name: &str, bytes: &[u8]| output.add(&names::of_run(name, partial), bytes);
@@ -138,6 +151,30 @@ impl Results<'_> {
         }
         add(REPORT, self.report().as_bytes())?;
         output.publish()
+    }
+
+    /// The rows of all designs of a sweep.
+    fn write_rows(
+        &self,
+        study: &Study,
+        parts: &mut Kept,
+        output: &mut Output,
+    ) -> Result<(), Box<Diagnostic>> {
+        let name = names::rows(&study.name);
+        let model = &self.loaded.checked.model;
+        let origin = origin(self.loaded, None);
+        let mut refused = None;
+        output.add_with(&name, |file| {
+            let written = kempe_study::write_rows(model, study, parts, &origin, file);
+            written.or_else(|error| match error {
+                RowsError::Written(error) => Err(io::Error::other(error)),
+                RowsError::Part(diagnostic) => {
+                    refused = Some(diagnostic);
+                    Ok(false)
+                }
+            })
+        })?;
+        refused.map_or(Ok(()), Err)
     }
 
     /// A table as CSV and Parquet, under the names that `named` makes of the study's.

@@ -1,183 +1,132 @@
-//! Curves of several designs in one picture.
+//! Families of curves: what is plotted, of several designs in one picture; and numbers over the one parameter that varies.
 
-use kempe_model::{Leaf, Measure, Plot, PoseMeasure, SweepStudy};
-use kempe_motion::Silent;
-use kempe_motion::drive_path::DrivePath;
-use kempe_units::{Dimension, Unit};
+use kempe_model::Plot;
+use kempe_units::Unit;
 
-use super::order::Order;
-use crate::designs::bench::{Answer, Bench, Refused};
-use crate::quantity::Quantity;
-use crate::result::{Figure, PlaneCurve};
-use crate::rows::RowPlace;
-use crate::unit::{Units, shown};
+use super::question::{DRAWN, Question};
+use crate::result::{Figure, Listing, PlaneCurve};
+use crate::table::{Column, Table};
 
-/// Curves in one picture at most: those of evenly chosen designs.
-const MOST_CURVES: usize = 12;
-/// Points of a curve.
-const POINTS: usize = 121;
+/// So many numbers are plotted over the one parameter that varies.
+const NUMBERS: usize = 8;
 
-/// What is plotted for several designs.
-enum Plotted {
-    /// A measure along the motion.
-    Measure(usize),
-    /// The path of a point: its coordinates.
-    Path(usize, String),
-}
+/// Curves in a picture that have a colour of their own; the next ones are dashed.
+const COLOURS: usize = 6;
 
-/// The curves of a design.
-struct DesignCurves {
-    design: usize,
-    /// The abscissa (SI) and the quantities there, point by point.
-    points: Vec<(f64, Vec<f64>)>,
-}
+/// The curves of designs, what they run along first.
+type Curves = [(usize, Vec<Vec<f64>>)];
 
-/// Answers designs, and keeps the curves of some of them.
-pub(super) struct Families<'b, 'm> {
-    bench: &'b Bench<'m>,
-    plotted: Vec<Plotted>,
-    quantities: Vec<Quantity>,
-    /// The designs whose curves are kept.
-    chosen: Vec<usize>,
-    /// What is kept of these.
-    curves: Vec<DesignCurves>,
-    /// What runs to the right.
-    along: (String, Dimension),
-}
-
-impl<'b, 'm> Families<'b, 'm> {
-    pub fn new(bench: &'b Bench<'m>, study: &SweepStudy, designs: usize) -> Self {
-        let own = &study.over.asked.plots;
-        let plots = match own.is_empty() {
-            true => &bench.over.kind.along().plots,
-            false => own,
+/// All pictures of a sweep but its tornadoes.
+pub(super) fn figures(question: &Question<'_>, table: &Table, curves: &Curves) -> Vec<Figure> {
+    let mut figures = Vec::new();
+    let varied = question.designs.own.len();
+    if varied == 1 && !question.designs.one_at_a_time() && table.rows() > 1 {
+        let numbers = table.columns.iter().skip(1 + varied).take(NUMBERS);
+        figures.extend(numbers.map(|column| Figure::Curves {
+            curves: vec![column.clone()],
+            limits: Vec::new(),
+        }));
+    }
+    let along = question.abscissa();
+    // The first curve is what they run along.
+    let mut first = 1;
+    for plot in &question.plots {
+        let family = family(question, plot, (&along, curves), first);
+        first += match plot {
+            Plot::Curves(columns) => columns.len(),
+            Plot::Path(_) => 2,
+            Plot::Hodograph(_) => 0,
         };
-        let mut plotted = Vec::new();
-        let mut quantities = Vec::new();
-        for plot in plots {
-            match plot {
-                Plot::Curves(curves) => {
-                    for column in curves {
-                        plotted.push(Plotted::Measure(quantities.len()));
-                        quantities.push(Quantity {
-                            name: column.name.clone(),
-                            measure: column.measure.clone(),
-                            dimension: column.dimension,
-                        });
-                    }
-                }
-                Plot::Path(point) => {
-                    let name = bench.model.points.get(point.index());
-                    let name = name.map_or(String::new(), |p| p.name.clone());
-                    plotted.push(Plotted::Path(quantities.len(), format!("path({name})")));
-                    for measure in [PoseMeasure::X(*point), PoseMeasure::Y(*point)] {
-                        quantities.push(Quantity {
-                            name: name.clone(),
-                            measure: Measure::Leaf(Leaf::Pose(measure)),
-                            dimension: Dimension::LENGTH,
-                        });
-                    }
-                }
-                Plot::Hodograph(_) => {}
-            }
-        }
-        let count = designs.min(MOST_CURVES);
-        let chosen = (0..count).map(|k| match count {
-            1 => 0,
-            _ => k * (designs - 1) / (count - 1),
-        });
-        Self {
-            bench,
-            chosen: match plotted.is_empty() {
-                true => Vec::new(),
-                false => chosen.collect(),
-            },
-            plotted,
-            quantities,
-            curves: Vec::new(),
-            along: ("time".to_owned(), Dimension::TIME),
-        }
+        figures.extend(family);
     }
+    figures
+}
 
-    /// The numbers of a design.
-    pub fn answer(&mut self, index: usize, values: &[f64]) -> Result<Answer, Refused> {
-        if !self.chosen.contains(&index) {
-            return self.bench.answer(values);
-        }
-        let motion = self.bench.motion(values, &mut Silent)?;
-        let answer = self.bench.answer_of(&motion)?;
-        let quantities: Vec<&Quantity> = self.quantities.iter().collect();
-        let mut along = self.bench.along(&motion, &quantities, &mut Silent)?;
-        let (low, high) = motion.demanded;
-        let points = (0..POINTS).map(|k| {
-            let p = low + (high - low) * (k as f64 / (POINTS - 1) as f64);
-            let place = match motion.path {
-                DrivePath::Coordinate { .. } => RowPlace::Drive(p),
-                DrivePath::Time { .. } => RowPlace::Time(p),
-            };
-            (p, along.values(place))
-        });
-        self.curves.push(DesignCurves {
-            design: index,
-            points: points.collect(),
-        });
-        if let DrivePath::Coordinate { drive, .. } = motion.path
-            && let Some(drive) = self.bench.model.drives.get(drive)
-        {
-            self.along = (drive.name.clone(), drive.dimension);
-        }
-        Ok(answer)
-    }
-
-    /// The pictures.
-    pub fn figures(&self, order: &Order, units: &Units) -> Vec<Figure> {
-        let unit = |dimension| units.unit(dimension);
-        let along = unit(self.along.1);
-        let curves = |at: &dyn Fn(f64, &[f64]) -> [f64; 2]| -> Vec<PlaneCurve> {
-            let curve = |it: &DesignCurves| PlaneCurve {
-                name: self.label(&order.designs[it.design], units),
-                points: it.points.iter().map(|(p, v)| at(*p, v)).collect(),
+/// One picture of several designs; what it shows begins at the `first` of their curves.
+fn family(
+    question: &Question<'_>,
+    plot: &Plot,
+    (along, curves): (&Column, &Curves),
+    first: usize,
+) -> Option<Figure> {
+    let pairs = |own: &[Vec<f64>], x: usize, y: usize| -> Vec<[f64; 2]> {
+        let (xs, ys) = (own.get(x), own.get(y));
+        let both = xs.into_iter().flatten().zip(ys.into_iter().flatten());
+        both.map(|(x, y)| [*x, *y]).collect()
+    };
+    match plot {
+        Plot::Path(point) => {
+            let name = question.model.points.get(point.index());
+            let curve = |(index, own): &(usize, Vec<Vec<f64>>)| PlaneCurve {
+                name: label(question, *index),
+                points: pairs(own, first, first + 1),
                 dashed: false,
             };
-            self.curves.iter().map(curve).collect()
-        };
-        (self.plotted.iter())
-            .map(|plotted| match plotted {
-                Plotted::Measure(k) => {
-                    let quantity = &self.quantities[*k];
-                    let own: Unit = quantity.unit(units);
-                    Figure::Graph {
-                        name: quantity.name.clone(),
-                        x: (self.along.0.clone(), along.clone()),
-                        y: (quantity.name.clone(), own.clone()),
-                        curves: curves(&|p, values| [shown(p, &along), shown(values[*k], &own)]),
-                    }
-                }
-                Plotted::Path(k, name) => {
-                    let own = unit(Dimension::LENGTH);
-                    Figure::Plane {
-                        name: name.clone(),
-                        unit: own.clone(),
-                        curves: curves(&|_, values| {
-                            [values[*k], values[k + 1]].map(|x| shown(x, &own))
-                        }),
-                    }
-                }
+            Some(Figure::Plane {
+                name: format!("path-{}", name.map_or("", |p| &p.name)),
+                unit: question.units.unit(kempe_units::Dimension::LENGTH),
+                curves: curves.iter().map(curve).collect(),
             })
-            .collect()
+        }
+        Plot::Curves(columns) => {
+            let one = columns.len() == 1;
+            let family = curves.iter().enumerate().flat_map(|(n, (index, own))| {
+                let label = label(question, *index);
+                columns
+                    .iter()
+                    .enumerate()
+                    .map(move |(k, column)| PlaneCurve {
+                        name: match one {
+                            true => label.clone(),
+                            false => format!("{}, {label}", column.name),
+                        },
+                        points: pairs(own, 0, first + k),
+                        dashed: match one {
+                            true => (n / COLOURS) % 2 == 1,
+                            false => k > 0,
+                        },
+                    })
+            });
+            let names: Vec<&str> = columns.iter().map(|c| c.name.as_str()).collect();
+            let unit = question.curve_unit(first - 1);
+            Some(Figure::Graph {
+                name: names.join(", "),
+                x: (along.name.clone(), along.unit.clone()),
+                y: (
+                    names.first().filter(|_| one).map_or("", |n| n).to_owned(),
+                    unit.unwrap_or_else(Unit::one),
+                ),
+                curves: family.collect(),
+            })
+        }
+        Plot::Hodograph(_) => None,
     }
+}
 
-    /// `a = 20 mm, b = 50 mm`: the parameters that differ between designs.
-    fn label(&self, design: &[f64], units: &Units) -> String {
-        let pairs = self.bench.varied.iter().zip(design);
-        let texts = pairs.map(|(id, value)| {
-            let parameter = &self.bench.model.parameters[id.index()];
-            format!(
-                "{} = {}",
-                parameter.name,
-                units.text(*value, parameter.dimension)
-            )
-        });
-        texts.collect::<Vec<_>>().join(", ")
+/// A design by its parameters.
+fn label(question: &Question<'_>, index: usize) -> String {
+    let designs = &question.designs;
+    let text =
+        |k: usize, value: f64| format!("{} = {}", question.name_of(k), question.text_of(k, value));
+    if designs.one_at_a_time() {
+        return match designs.changed(index) {
+            Some((k, value)) => text(k, value),
+            None => "as in the file".to_owned(),
+        };
     }
+    let values = designs.values(index);
+    let all = values.iter().enumerate().map(|(k, value)| text(k, *value));
+    all.collect::<Vec<_>>().join(", ")
+}
+
+/// That not all designs are drawn.
+pub(super) fn left_out(question: &Question<'_>) -> Option<Listing> {
+    let all = question.designs.count();
+    (all > DRAWN && question.curves() > 1).then(|| Listing {
+        title: format!(
+            "in the pictures are the curves of {DRAWN} designs of {all}, evenly among them"
+        ),
+        head: Vec::new(),
+        rows: Vec::new(),
+    })
 }

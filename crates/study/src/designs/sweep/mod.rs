@@ -1,198 +1,246 @@
-//! Sweeps: a study run for given values of parameters, a row for each design.
+//! Sweeps: a study run for given values of parameters.
 //!
-//! `order.rs` says which designs there are and in which order, `family.rs` plots curves of several of them in one picture, `effects.rs` tells what each parameter
-//! does, exactly and by the values that were tried.
+//! `designs.rs` says which designs these are, `question.rs` asks one of them, `part.rs` holds what is known of some that follow each other, as
+//! bytes that can be kept, and `parts.rs` goes from part to part. What is told of all of them, `told.rs` and `family.rs` make of the parts
+//! alone, so that it is the same whether they were computed at once, in turns or by many machines.
 
-mod effects;
+mod designs;
 mod family;
-mod order;
+mod part;
+mod parts;
+mod question;
+#[cfg(feature = "parquet")]
+mod rows;
+mod told;
 
-use kempe_model::{Diagnostic, Model, ParameterId, SweepStudy};
-use kempe_motion::progress::{Done, Progress, Silent, Stage};
+use kempe_batch::Executor;
+use kempe_model::{Diagnostic, Model, Study, StudyKind, SweepStudy};
+use kempe_motion::{Done, Progress, Silent, Stage};
 use kempe_units::Unit;
 
-use super::asked::numbers_of;
-use super::bench::{Answer, Bench, Refused};
-use super::idle::idle_at_own;
-use super::study_of;
-use crate::clearance::refuses;
 use crate::explain::stopped;
-use crate::result::StudyResult;
-use crate::table::{Column, Table};
-use crate::unit::{Units, shown};
-use effects::effects;
-use family::Families;
-use order::Order;
+use crate::result::{Scalar, StudyResult};
+use crate::room::{Held, has_room};
+use crate::table::Table;
+use part::{Part, append};
+use parts::{Layout, computed};
+use question::{DRAWN, Question};
+use told::{Own, derivatives, listed, tornado};
 
-/// So many designs one sweep has at most.
-const MOST_DESIGNS: usize = 1_000_000;
+pub use parts::Parts;
+pub(crate) use parts::Unkept;
+#[cfg(feature = "parquet")]
+pub use rows::{RowsError, write_rows};
 
-fn bench<'m>(model: &'m Model, study: &SweepStudy) -> Result<Bench<'m>, Vec<Diagnostic>> {
-    let over = study_of(model, &study.over)?;
-    let ids: Vec<ParameterId> = study.vary.iter().map(|it| it.parameter).collect();
-    Bench::new(
-        model,
-        &study.over,
-        ids,
-        numbers_of(model, &study.over, over),
-    )
+/// What is to be told of a sweep before its designs; `check` and `run` say the same.
+pub(crate) fn findings_of_sweep(model: &Model, name: &str, study: &SweepStudy) -> Vec<Diagnostic> {
+    let begun = has_room(model, name, bytes_of_sweep(model, study))
+        .and_then(|()| Question::new(model, name, study))
+        .and_then(|question| begin(question, &mut Silent));
+    begun.map_or_else(|told| told, |begun| begun.told)
 }
 
-/// What is to be told of a sweep before its rows; `check` and `run` say the same.
-pub(crate) fn findings_of_sweep(model: &Model, study: &SweepStudy) -> Vec<Diagnostic> {
-    match bench(model, study) {
-        Ok(mut bench) => before(&mut bench, study, &mut Silent),
-        Err(told) => told,
-    }
+/// A sweep whose own design was moved.
+struct Begun<'m> {
+    question: Question<'m>,
+    own: Own,
+    told: Vec<Diagnostic>,
 }
 
-fn before(
-    bench: &mut Bench<'_>,
-    study: &SweepStudy,
+fn begin<'m>(
+    mut question: Question<'m>,
     progress: &mut dyn Progress,
-) -> Vec<Diagnostic> {
-    let own = bench.begin(progress);
-    let mut told = own.unwrap_or_else(|told| told.into_iter().map(super::softened).collect());
-    let count = Order::count(study);
-    if count.is_none_or(|count| count > MOST_DESIGNS) {
-        let message = match count {
-            Some(count) => format!("a sweep of {count} designs"),
-            None => "a sweep of more designs than can be counted".to_owned(),
-        };
-        told.push(
-            Diagnostic::error("too-large", message)
-                .at(study.over.span.clone(), "")
-                .help(format!("a sweep has at most {MOST_DESIGNS} designs: fewer values, or combine = \"one at a time\"")),
-        );
-    }
-    if !refuses(&told) {
-        let order = Order::new(bench, study);
-        let spans = study.vary.iter().map(|it| it.span.clone());
-        told.extend(idle_at_own(bench, &order.ends(), spans));
-    }
-    told
+) -> Result<Begun<'m>, Vec<Diagnostic>> {
+    let mut told = question.begin(progress)?;
+    let own = Own::of(&question);
+    told.extend(own.told(&question));
+    Ok(Begun {
+        question,
+        own,
+        told,
+    })
 }
 
-/// A sweep.
+/// A sweep: all its designs, those of kept parts without being computed.
 pub(crate) fn sweep(
     model: &Model,
     name: &str,
     study: &SweepStudy,
+    (executor, parts): (&dyn Executor, &mut dyn Parts),
     progress: &mut dyn Progress,
 ) -> Result<StudyResult, Vec<Diagnostic>> {
-    let mut bench = bench(model, study)?;
-    let mut diagnostics = before(&mut bench, study, progress);
-    if refuses(&diagnostics) {
-        return Err(diagnostics);
-    }
-    let units = Units::of(model);
-    let order = Order::new(&bench, study);
-    let mut families = Families::new(&bench, study, order.designs.len());
-    let mut answers: Vec<Result<Answer, Refused>> = Vec::with_capacity(order.designs.len());
-    for (k, values) in order.designs.iter().enumerate() {
-        answers.push(families.answer(k, values));
-        let done = Done::Of(k + 1, order.designs.len());
-        if progress.reached(Stage::Rows, done).is_break() {
+    let question = Question::new(model, name, study)?;
+    let Begun {
+        question,
+        own,
+        told: diagnostics,
+    } = begin(question, progress)?;
+    let layout = Layout::of(&question);
+    let mut table = question.table();
+    let mut curves = Vec::new();
+    for number in 0..layout.count() {
+        let (part, goes_on) = of_part(&question, &layout, number, (executor, parts), progress)
+            .map_err(|d| vec![*d])?;
+        append(&mut table, &part.designs);
+        curves.extend(part.curves);
+        if !goes_on {
             break;
         }
     }
-    if answers.is_empty() {
+    if table.rows() == 0 && question.designs.count() > 0 {
         return Err(vec![stopped(Stage::Rows)]);
     }
-    let failed = answers.iter().filter(|answer| answer.is_err()).count();
-    if failed > 0 {
-        let first = answers.iter().position(Result::is_err).unwrap_or(0);
-        let why = answers[first]
-            .as_ref()
-            .err()
-            .map_or("", |refused| refused.why.as_str());
-        diagnostics.push(
-            Diagnostic::warning(
-                "rows-not-reached",
-                format!(
-                    "{failed} of {} designs of study `{name}` do not move as `{}` asks",
-                    answers.len(),
-                    study.over.name
-                ),
-            )
-            .note(format!("design {}: {why}", first + 1)),
-        );
+    let demanded_rows = question.designs.count();
+    let mut figures = family::figures(&question, &table, &curves);
+    let mut listings = vec![listed(&question, &table)];
+    listings.extend(derivatives(&question, &own, &table));
+    if question.designs.one_at_a_time() {
+        let (told, drawn) = tornado(&question, &table);
+        listings.extend(told);
+        figures.splice(0..0, drawn);
     }
-    let mut result = StudyResult {
-        name: name.to_owned(),
-        demanded_rows: order.designs.len(),
-        table: table(name, &bench, &order, &answers, &units),
+    listings.extend(family::left_out(&question));
+    if parts.rows() && !layout.row_room {
+        listings.push(rows_left_out());
+    }
+    // One parameter is what the designs go along.
+    let along = match question.designs.own.len() {
+        1 if !question.designs.one_at_a_time() => 1,
+        _ => 0,
+    };
+    Ok(StudyResult {
         beside: Vec::new(),
-        scalars: Vec::new(),
-        figures: families.figures(&order, &units),
-        listings: effects(&bench, study, &order, &answers, &units),
+        name: name.to_owned(),
+        scalars: counts(&table),
+        table,
+        figures,
+        listings,
         contacts: Vec::new(),
         frames: Vec::new(),
         shapes: Vec::new(),
         designs: Vec::new(),
         events: Vec::new(),
-        along: 0,
+        along,
         assemblies: (0, 0),
         diagnostics,
-    };
-    if let Some(figures) = order.over_one(&bench, &result.table) {
-        result.figures.splice(0..0, figures);
-    }
-    Ok(result)
+        demanded_rows,
+    })
 }
 
-/// A row for each design: its values, its numbers, or why it has none.
-fn table(
-    name: &str,
-    bench: &Bench<'_>,
-    order: &Order,
-    answers: &[Result<Answer, Refused>],
-    units: &Units,
-) -> Table {
-    let rows = answers.len();
-    let mut number = Column::new("design", Unit::one());
-    number.values = (1..=rows).map(|k| k as f64).collect();
-    let mut columns = vec![number];
-    for (k, id) in bench.varied.iter().enumerate() {
-        let parameter = &bench.model.parameters[id.index()];
-        let unit = units.unit(parameter.dimension);
-        let mut column = Column::new(&parameter.name, unit.clone());
-        column.values = order
-            .designs
-            .iter()
-            .take(rows)
-            .map(|design| shown(design[k], &unit))
-            .collect();
-        columns.push(column);
+/// A part that was kept, or is computed and kept as far as it is whole, and whether to go on.
+fn of_part(
+    question: &Question<'_>,
+    layout: &Layout,
+    number: usize,
+    (executor, parts): (&dyn Executor, &mut dyn Parts),
+    progress: &mut dyn Progress,
+) -> Result<(Part, bool), Box<Diagnostic>> {
+    let designs = layout.designs(number);
+    let rows = parts.rows() && layout.row_room;
+    if let Some(bytes) = parts.kept(number)?
+        && let Some(part) = Part::from_bytes(question, designs.start, designs.len(), &bytes)
+        && part.rows.is_some() == rows
+    {
+        let done = Done::Of(designs.end, question.designs.count());
+        let goes_on = progress.reached(Stage::Rows, done).is_continue();
+        return Ok((part, goes_on));
     }
-    for (k, quantity) in bench.numbers.iter().enumerate() {
-        let unit = quantity.unit(units);
-        let mut column = Column::new(&quantity.name, unit.clone());
-        let value = |answer: &Result<Answer, Refused>| {
-            answer.as_ref().map_or(f64::NAN, |all| all.numbers[k])
-        };
-        column.values = answers
-            .iter()
-            .map(|answer| shown(value(answer), &unit))
-            .collect();
-        columns.push(column);
+    let all = designs.len();
+    let (mut part, goes_on) = computed(question, designs, rows, executor, progress);
+    if part.designs.rows() == all {
+        parts.keep(number, part.to_bytes())?;
     }
-    let evidence = |of: fn(&Answer) -> f64| -> Vec<f64> {
-        answers
-            .iter()
-            .map(|answer| answer.as_ref().map_or(f64::NAN, of))
-            .collect()
-    };
-    Table {
+    part.rows = None;
+    Ok((part, goes_on))
+}
+
+/// How many designs there are, and how many of them have no values.
+fn counts(table: &Table) -> Vec<Scalar> {
+    let counts = [
+        ("designs", table.rows()),
+        ("designs without values", table.unreached()),
+    ];
+    let scalar = |(name, count): (&str, usize)| Scalar {
         name: name.to_owned(),
-        places: 1 + bench.varied.len(),
-        closure: evidence(|answer| answer.closure),
-        smallest_singular_value: evidence(|answer| answer.smallest_singular_value),
-        forces: None,
-        balance: None,
-        notes: (answers.iter())
-            .map(|answer| answer.as_ref().err().map(|refused| refused.why.clone()))
-            .collect(),
-        columns,
+        unit: Unit::one(),
+        value: count as f64,
+    };
+    counts.into_iter().map(scalar).collect()
+}
+
+fn rows_left_out() -> crate::result::Listing {
+    crate::result::Listing {
+        title: "the rows of the designs would take more than 4 GiB: they are in no file; take fewer of them in the study that is run"
+            .to_owned(),
+        head: Vec::new(),
+        rows: Vec::new(),
+    }
+}
+
+/// In how many parts a study is computed; none of one that is computed as a whole.
+///
+/// # Errors
+///
+/// What of it no design can answer.
+pub fn part_count(model: &Model, study: &Study) -> Result<Option<usize>, Vec<Diagnostic>> {
+    let StudyKind::Sweep(asked) = &study.kind else {
+        return Ok(None);
+    };
+    let question = Question::new(model, &study.name, asked)?;
+    Ok(Some(Layout::of(&question).count()))
+}
+
+/// Computes the parts of a sweep that are not kept yet and are to be computed here: whether all of them are finished, and what is to be told
+/// of the sweep before its designs.
+///
+/// # Errors
+///
+/// What of it no design can answer; why a part cannot be kept.
+pub fn compute_parts(
+    model: &Model,
+    study: &Study,
+    (executor, parts): (&dyn Executor, &mut dyn Parts),
+    progress: &mut dyn Progress,
+) -> Result<(bool, Vec<Diagnostic>), Vec<Diagnostic>> {
+    let StudyKind::Sweep(asked) = &study.kind else {
+        return Ok((true, Vec::new()));
+    };
+    crate::room::room_for(model, study)?;
+    let question = Question::new(model, &study.name, asked)?;
+    let Begun { question, told, .. } = begin(question, progress)?;
+    let layout = Layout::of(&question);
+    for number in (0..layout.count())
+        .filter(|it| parts.computes(*it))
+        .collect::<Vec<_>>()
+    {
+        let found = of_part(&question, &layout, number, (executor, parts), progress);
+        let (_, goes_on) = found.map_err(|d| vec![*d])?;
+        if !goes_on {
+            return Ok((false, told));
+        }
+    }
+    Ok((true, told))
+}
+
+/// What a sweep will hold: the numbers of all designs, and the curves of some.
+pub(crate) fn bytes_of_sweep(model: &Model, study: &SweepStudy) -> Held {
+    let designs = designs::Designs::new(model, study);
+    let count = designs.count() as f64;
+    let number = size_of::<f64>();
+    let Ok(question) = Question::new(model, "", study) else {
+        return Held {
+            rows: 1.0,
+            row: number,
+        };
+    };
+    let columns = question.table().with_evidence().len();
+    let along = question.bench.over.kind.along();
+    let rows = crate::rows::most(model, &along.rows, &model.parameter_values());
+    let curves = count.min(DRAWN as f64) * rows * (3 * question.curves() * number) as f64;
+    Held {
+        rows: count,
+        row: columns * number
+            + size_of::<Option<String>>()
+            + (curves / count.max(1.0)).ceil() as usize,
     }
 }

@@ -1,0 +1,135 @@
+//! Where the finished parts of a sweep are kept, and the work from part to part.
+
+use std::ops::Range;
+
+use kempe_batch::{Executor, Task};
+use kempe_model::Diagnostic;
+use kempe_motion::{Done, Progress, Stage};
+
+use super::part::{Part, designs_in_part};
+use super::question::{Answer, Question};
+use crate::rows::most;
+
+/// Numbers in the rows of all designs at most; more of them are in no file.
+const MOST_ROW_NUMBERS: f64 = (1_u64 << 29) as f64;
+
+/// Where the finished parts of a study are kept: core crates touch no files. A part has a number from 0; the study alone decides which
+/// designs are in it.
+pub trait Parts {
+    /// The bytes that were kept of a part; none where it is still to be computed.
+    ///
+    /// # Errors
+    ///
+    /// Why they cannot be had.
+    fn kept(&mut self, part: usize) -> Result<Option<Vec<u8>>, Box<Diagnostic>>;
+
+    /// Keeps the bytes of a part that was computed, or that was kept and could not be read.
+    ///
+    /// # Errors
+    ///
+    /// Why it cannot be kept.
+    fn keep(&mut self, part: usize, bytes: Vec<u8>) -> Result<(), Box<Diagnostic>>;
+
+    /// Whether a part is computed where it was not kept.
+    fn computes(&self, part: usize) -> bool {
+        let _ = part;
+        true
+    }
+
+    /// Whether the rows of every design are kept.
+    fn rows(&self) -> bool {
+        true
+    }
+}
+
+/// Keeps nothing.
+pub(crate) struct Unkept;
+
+impl Parts for Unkept {
+    fn kept(&mut self, _: usize) -> Result<Option<Vec<u8>>, Box<Diagnostic>> {
+        Ok(None)
+    }
+
+    fn keep(&mut self, _: usize, _: Vec<u8>) -> Result<(), Box<Diagnostic>> {
+        Ok(())
+    }
+
+    fn rows(&self) -> bool {
+        false
+    }
+}
+
+/// The parts of a sweep.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Layout {
+    designs: usize,
+    in_part: usize,
+    /// Whether the rows of all designs have room in a file.
+    pub row_room: bool,
+}
+
+impl Layout {
+    pub fn of(question: &Question<'_>) -> Self {
+        let designs = question.designs.count();
+        let columns = question.row_table().with_evidence().len();
+        let along = question.bench.over.kind.along();
+        let parameters = question.model.parameter_values();
+        let rows = match &question.bench.over.kind {
+            kempe_model::StudyKind::Simulate(study) => {
+                let until = kempe_model::value(&study.until, &parameters);
+                crate::rows::count(question.model, &along.rows, &parameters, until)
+            }
+            _ => most(question.model, &along.rows, &parameters),
+        };
+        let numbers = rows * columns as f64;
+        Self {
+            designs,
+            in_part: designs_in_part(designs, numbers),
+            row_room: numbers * designs as f64 <= MOST_ROW_NUMBERS,
+        }
+    }
+
+    /// How many parts there are.
+    pub fn count(&self) -> usize {
+        self.designs.div_ceil(self.in_part)
+    }
+
+    /// The designs of a part.
+    pub fn designs(&self, part: usize) -> Range<usize> {
+        let first = part.saturating_mul(self.in_part).min(self.designs);
+        first..first.saturating_add(self.in_part).min(self.designs)
+    }
+}
+
+/// Designs that are handed to the executor together.
+const TOGETHER: usize = 16;
+
+/// A part as far as it was computed, and whether to go on.
+pub(super) fn computed(
+    question: &Question<'_>,
+    designs: Range<usize>,
+    rows: bool,
+    executor: &dyn Executor,
+    progress: &mut dyn Progress,
+) -> (Part, bool) {
+    let all = question.designs.count();
+    let mut part = Part::new(question, rows);
+    for first in designs.clone().step_by(TOGETHER) {
+        let own = first..(first + TOGETHER).min(designs.end);
+        let mut found: Vec<Option<Answer>> = vec![None; own.len()];
+        let tasks = found.iter_mut().zip(own.clone());
+        let tasks = tasks.map(|(slot, index)| -> Task<'_> {
+            Box::new(move || *slot = Some(question.ask(index, rows)))
+        });
+        executor.run(tasks.collect());
+        for (answer, index) in found.into_iter().zip(own.clone()) {
+            let answer = answer.unwrap_or_else(|| question.ask(index, rows));
+            part.push(question, index, answer);
+        }
+        let done = Done::Of(own.end, all);
+        if progress.reached(Stage::Rows, done).is_break() {
+            return (part, false);
+        }
+    }
+    (part, true)
+}

@@ -1,0 +1,369 @@
+//! What a sweep asks of every design: its numbers, the rows of the study that is run, and curves of some.
+
+use std::sync::Arc;
+
+use kempe_mechanism::Mechanism;
+use kempe_model::{
+    Diagnostic, Leaf, Model, MotionStudy, ParameterId, Plot, PointId, PoseMeasure, Severity,
+    StudyKind, SweepStudy, value,
+};
+use kempe_motion::{Motion, Progress, Silent};
+use kempe_units::{Dimension, Expr, Unit};
+
+use super::designs::Designs;
+use crate::along::Along;
+use crate::columns::Asked;
+use crate::designs::asked::{knows_forces, numbers_of};
+use crate::designs::bench::{Bench, Refused};
+use crate::motion::abscissa;
+use crate::quantity::Quantity;
+use crate::rows::{RowPlace, places_along};
+use crate::simulation::in_time;
+use crate::sink::RowSink;
+use crate::table::{Column, Table};
+use crate::unit::Units;
+
+/// So many designs have their curves in a picture; of more, some that lie evenly among them.
+pub(super) const DRAWN: usize = 24;
+
+/// A sweep that is ready to be asked design by design.
+pub(super) struct Question<'m> {
+    pub model: &'m Model,
+    pub study: &'m SweepStudy,
+    pub name: String,
+    pub designs: Designs,
+    pub bench: Bench<'m>,
+    pub units: Units,
+    /// The rows of the study that is run, where it says so itself.
+    along: &'m MotionStudy,
+    /// What is plotted of several designs.
+    pub plots: Vec<Plot>,
+    /// What is evaluated in the rows: columns, and curves of designs that are drawn.
+    rows: Asked,
+    curves: Vec<Quantity>,
+    /// Which column of the rows their curves run along: as the file's own design goes, or time.
+    along_column: usize,
+}
+
+/// What is known of one design.
+#[derive(Clone, Debug)]
+pub(super) struct Answer {
+    /// Its numbers in their units, none where there are none.
+    pub numbers: Vec<f64>,
+    /// The worst closure of its rows.
+    pub closure: f64,
+    /// The least singular value of its rows.
+    pub singular_value: f64,
+    /// Why it has no value.
+    pub note: Option<String>,
+    /// Its rows, where they are asked for.
+    pub rows: Option<Table>,
+    /// What its rows run along, and its curves: where it is drawn.
+    pub curves: Option<Vec<Vec<f64>>>,
+}
+
+impl<'m> Question<'m> {
+    /// A sweep of a model.
+    ///
+    /// # Errors
+    ///
+    /// What of it no design can answer.
+    pub fn new(
+        model: &'m Model,
+        name: &str,
+        study: &'m SweepStudy,
+    ) -> Result<Self, Vec<Diagnostic>> {
+        let over = crate::designs::study_of(model, &study.over)?;
+        let varied: Vec<ParameterId> = study.vary.iter().map(|it| it.parameter).collect();
+        let numbers = numbers_of(model, &study.over, over);
+        let bench = Bench::new(model, &study.over, varied, numbers)?;
+        let along = over.kind.along();
+        let mut rows = match &over.kind {
+            StudyKind::Motion(along) => Asked::of_motion(model, along),
+            _ => Asked::of_forces(&Mechanism::new(model), along),
+        };
+        rows.scalars.clear();
+        rows.curves.clear();
+        let plots = match study.over.asked.plots.is_empty() {
+            true => &along.plots,
+            false => &study.over.asked.plots,
+        };
+        let plots: Vec<Plot> = plots
+            .iter()
+            .filter(|plot| !matches!(plot, Plot::Hodograph(_)))
+            .cloned()
+            .collect();
+        let curves = plots.iter().flat_map(|plot| plotted(model, plot));
+        Ok(Self {
+            model,
+            study,
+            name: name.to_owned(),
+            designs: Designs::new(model, study),
+            bench,
+            units: Units::of(model),
+            along,
+            curves: curves.collect(),
+            along_column: 0,
+            plots,
+            rows,
+        })
+    }
+
+    /// The unit of a parameter that varies.
+    pub fn unit_of(&self, parameter: usize) -> Unit {
+        let id = self.bench.varied.get(parameter);
+        let own = id.and_then(|id| self.model.parameters.get(id.index()));
+        self.units
+            .unit(own.map_or(Dimension::NONE, |p| p.dimension))
+    }
+
+    /// The name of a parameter that varies.
+    pub fn name_of(&self, parameter: usize) -> &str {
+        let id = self.bench.varied.get(parameter);
+        let own = id.and_then(|id| self.model.parameters.get(id.index()));
+        own.map_or("", |p| p.name.as_str())
+    }
+
+    /// A value of a parameter with its unit.
+    pub fn text_of(&self, parameter: usize, si: f64) -> String {
+        self.units.text(si, self.unit_of(parameter).dimension())
+    }
+
+    /// The table of designs without rows: their numbers, what varies, and what is asked of them.
+    pub fn table(&self) -> Table {
+        let varied =
+            (0..self.designs.own.len()).map(|k| Column::new(self.name_of(k), self.unit_of(k)));
+        let numbers = self.bench.numbers.iter();
+        let numbers = numbers.map(|q| Column::new(q.name.clone(), q.unit(&self.units)));
+        let first = Column::new("design", Unit::one());
+        empty(
+            &self.name,
+            std::iter::once(first).chain(varied).chain(numbers),
+            1 + self.designs.own.len(),
+        )
+    }
+
+    /// The table of the rows of all designs, without any.
+    pub fn row_table(&self) -> Table {
+        let sink = self.sink(&self.rows);
+        let places = sink.table.places;
+        let mut columns = sink.table.columns;
+        columns.insert(0, Column::new("design", Unit::one()));
+        let mut table = empty(
+            &format!("{}.rows", self.name),
+            columns.into_iter(),
+            1 + places,
+        );
+        if knows_forces(self.bench.over) {
+            table.forces = Some(crate::table::ForceColumns::default());
+        }
+        table
+    }
+
+    fn sink(&self, asked: &Asked) -> RowSink {
+        let time = Column::new("time", self.units.unit(Dimension::TIME));
+        RowSink::new(&self.name, self.model, &self.units, asked, time)
+    }
+
+    /// Whether a design is drawn: some that lie evenly among all, the first and the last among them.
+    pub fn is_drawn(&self, index: usize) -> bool {
+        let all = self.designs.count();
+        if self.curves.is_empty() {
+            return false;
+        }
+        if all <= DRAWN {
+            return true;
+        }
+        let nearest = |k: usize| (k as f64 * (all - 1) as f64 / (DRAWN - 1) as f64).round();
+        let near = (index as f64 * (DRAWN - 1) as f64 / (all - 1) as f64).round() as usize;
+        nearest(near) == index as f64
+    }
+
+    /// The unit of a curve.
+    pub fn curve_unit(&self, index: usize) -> Option<Unit> {
+        Some(self.curves.get(index)?.unit(&self.units))
+    }
+
+    /// How many curves a design that is drawn has, what its rows run along among them.
+    pub fn curves(&self) -> usize {
+        1 + self.curves.len()
+    }
+
+    /// What the curves of drawn designs run along, as a column without values.
+    pub fn abscissa(&self) -> Column {
+        let columns = self.sink(&Asked::default()).table.columns;
+        let column = columns.into_iter().nth(self.along_column);
+        column.unwrap_or_else(|| Column::new("time", Unit::one()))
+    }
+
+    /// Asks one design, with all its rows where that is wanted.
+    pub fn ask(&self, index: usize, rows: bool) -> Answer {
+        match self.asked(index, rows) {
+            Ok(answer) => answer,
+            Err(refused) => Answer {
+                numbers: vec![f64::NAN; self.bench.numbers.len()],
+                closure: f64::NAN,
+                singular_value: f64::NAN,
+                note: Some(refused.why),
+                rows: None,
+                curves: None,
+            },
+        }
+    }
+
+    fn asked(&self, index: usize, rows: bool) -> Result<Answer, Refused> {
+        let motion = self
+            .bench
+            .motion(&self.designs.values(index), &mut Silent)?;
+        let quantities: Vec<&Quantity> = self.bench.numbers.iter().collect();
+        // By themselves, so that they hang on nothing else that is asked.
+        let mut along = self.bench.along(&motion, &quantities, &mut Silent)?;
+        let values = along.values(RowPlace::Drive(motion.start));
+        let numbers: Vec<f64> = quantities
+            .iter()
+            .zip(&values)
+            .map(|(q, si)| q.unit(&self.units).from_si(*si))
+            .collect();
+        let drawn = self.is_drawn(index);
+        let mut asked = Asked::default();
+        if rows {
+            asked.columns.clone_from(&self.rows.columns);
+        }
+        if drawn {
+            asked.curves.clone_from(&self.curves);
+        }
+        let (table, curves) = self.rows(&motion, &asked, rows)?;
+        let lacking = quantities.iter().zip(&values).find(|(_, x)| x.is_nan());
+        Ok(Answer {
+            numbers,
+            closure: table.worst_closure(),
+            singular_value: table.least_singular_value(),
+            note: lacking.map(|(q, _)| format!("`{}` has no value", q.name)),
+            curves: drawn.then(|| {
+                let along = table.columns.get(self.along_column);
+                let along = along.map(|c| c.values.clone());
+                std::iter::once(along.unwrap_or_default())
+                    .chain(curves)
+                    .collect()
+            }),
+            rows: rows.then_some(table),
+        })
+    }
+
+    /// The rows of a design's motion, and its curves.
+    fn rows(
+        &self,
+        motion: &Arc<Motion>,
+        asked: &Asked,
+        forces: bool,
+    ) -> Result<(Table, Vec<Vec<f64>>), Refused> {
+        let parameters = &motion.design.parameters;
+        let timed;
+        let along = match &self.bench.over.kind {
+            StudyKind::Simulate(study) => {
+                timed = in_time(self.along, value(&study.until, parameters));
+                &timed
+            }
+            _ => self.along,
+        };
+        let places = places_along(motion, along, parameters);
+        let quantities: Vec<&Quantity> = asked.all().collect();
+        let needs = |q: &&Quantity| self.model.needs_forces(&q.measure);
+        let forces = knows_forces(self.bench.over) && (forces || quantities.iter().any(needs));
+        let mut sampler = Along::with_progress(
+            self.model,
+            motion,
+            &quantities,
+            forces,
+            &places,
+            &mut Silent,
+        )
+        .map_err(|told| Refused {
+            lack: 2.0,
+            why: told.first().map_or_else(String::new, |d| d.message.clone()),
+        })?;
+        let mut sink = self.sink(asked);
+        let mut curves = vec![Vec::with_capacity(places.len()); asked.curves.len()];
+        for place in places {
+            let row = sampler.row(place);
+            let own = row.sample.values.iter().skip(asked.columns.len());
+            for ((values, value), q) in curves.iter_mut().zip(own).zip(&asked.curves) {
+                values.push(q.unit(&self.units).from_si(*value));
+            }
+            sink.push(motion.mechanism(), row.sample.time, row);
+        }
+        Ok((sink.table, curves))
+    }
+
+    /// Moves the file's own design, from which others are found sooner; what is to be told of it. Where it does not move, others may.
+    ///
+    /// # Errors
+    ///
+    /// That it was stopped.
+    pub fn begin(
+        &mut self,
+        progress: &mut dyn Progress,
+    ) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> {
+        let told = match self.bench.begin(progress) {
+            Err(told) if told.iter().any(|d| d.code == "stopped") => return Err(told),
+            Ok(told) | Err(told) => told,
+        };
+        if !matches!(self.bench.over.kind, StudyKind::Simulate(_))
+            && let Ok(own) = self.bench.motion(&self.bench.own_values(), progress)
+        {
+            self.along_column = abscissa(&own, &own.design.parameters);
+        }
+        let over = &self.bench.over.name;
+        let of_own = |mut d: Diagnostic| {
+            if d.severity == Severity::Error {
+                d.severity = Severity::Warning;
+                d.message = format!(
+                    "the file's own design does not move as study `{over}` asks: {}",
+                    d.message
+                );
+            }
+            d
+        };
+        Ok(told.into_iter().map(of_own).collect())
+    }
+}
+
+/// What is evaluated for a plot.
+fn plotted(model: &Model, plot: &Plot) -> Vec<Quantity> {
+    match plot {
+        Plot::Curves(columns) => columns
+            .iter()
+            .map(|column| Quantity {
+                name: column.name.clone(),
+                measure: column.measure.clone(),
+                dimension: column.dimension,
+            })
+            .collect(),
+        Plot::Path(point) => {
+            let name = model.points.get(point.index()).map_or("", |p| &p.name);
+            let axis = |name: String, measure: fn(PointId) -> PoseMeasure| Quantity {
+                name,
+                measure: Expr::Leaf(Leaf::Pose(measure(*point))),
+                dimension: Dimension::LENGTH,
+            };
+            vec![
+                axis(format!("x({name})"), PoseMeasure::X),
+                axis(format!("y({name})"), PoseMeasure::Y),
+            ]
+        }
+        Plot::Hodograph(_) => Vec::new(),
+    }
+}
+
+fn empty(name: &str, columns: impl Iterator<Item = Column>, places: usize) -> Table {
+    Table {
+        name: name.to_owned(),
+        columns: columns.collect(),
+        places,
+        closure: Vec::new(),
+        smallest_singular_value: Vec::new(),
+        forces: None,
+        balance: None,
+        notes: Vec::new(),
+    }
+}

@@ -1,0 +1,304 @@
+//! What a sweep tells in words: its designs, exact derivatives beside differences, and which parameter changes a number most.
+
+use kempe_model::Diagnostic;
+use kempe_motion::Silent;
+
+use super::question::Question;
+use crate::designs::bench::Sloped;
+use crate::quantity::Quantity;
+use crate::result::{Figure, Listing, PlaneCurve};
+use crate::sensitivities::unit_per;
+use crate::table::{Column, Table};
+use crate::unit::{number_text, shown};
+
+/// So many designs are listed; the table has all.
+const LISTED: usize = 40;
+/// Of so many numbers it is told which parameter changes them most.
+const RANKED: usize = 8;
+/// Half the height of a bar, in the distance of two.
+const HALF_BAR: f64 = 0.35;
+/// What is told where there is nothing.
+const NONE: &str = "none";
+
+/// What is known of the file's own design.
+pub(super) struct Own {
+    /// Its numbers with their derivatives, SI; none where it does not move, or a simulation is run.
+    sloped: Vec<Sloped>,
+    /// What is to be told of its numbers.
+    told: Vec<Diagnostic>,
+}
+
+impl Own {
+    /// Asks the file's own design.
+    pub fn of(question: &Question<'_>) -> Self {
+        let bench = &question.bench;
+        let none = || Self {
+            sloped: Vec::new(),
+            told: Vec::new(),
+        };
+        // Of simulations there are no derivatives.
+        if matches!(bench.over.kind, kempe_model::StudyKind::Simulate(_)) {
+            return none();
+        }
+        let values = bench.own_values();
+        let Ok(motion) = bench.motion(&values, &mut Silent) else {
+            return none();
+        };
+        let quantities: Vec<&Quantity> = bench.numbers.iter().collect();
+        let told = match bench.along(&motion, &quantities, &mut Silent) {
+            Ok(along) => along.number_warnings(Some(&question.name), &quantities),
+            Err(_) => return none(),
+        };
+        Self {
+            sloped: bench.slopes(&values).unwrap_or_default(),
+            told,
+        }
+    }
+
+    /// What is to be told of it.
+    pub fn told(&self, question: &Question<'_>) -> Vec<Diagnostic> {
+        let idle = (0..question.designs.own.len()).filter(|k| self.is_idle(question, *k));
+        let idle = idle.map(|k| {
+            let name = question.name_of(k);
+            let message = format!(
+                "study `{}`: `{name}` changes none of the numbers",
+                question.name
+            );
+            let place = question.study.vary.get(k).map(|it| it.span.clone());
+            Diagnostic::warning("idle-parameter", message)
+                .at(place.unwrap_or_default(), "")
+                .help(format!(
+                    "leave `{name}` out, or name numbers under `columns` that depend on it"
+                ))
+        });
+        self.told.iter().cloned().chain(idle).collect()
+    }
+
+    /// Whether no number changes with a parameter: by its derivatives, and at both ends of its values.
+    fn is_idle(&self, question: &Question<'_>, k: usize) -> bool {
+        let flat = |s: &Sloped| s.slope.get(k) == Some(&0.0);
+        if self.sloped.is_empty() || !self.sloped.iter().all(flat) {
+            return false;
+        }
+        let axis = question.designs.axes.get(k).map_or(&[][..], Vec::as_slice);
+        let ends = [f64::min, f64::max].map(|of| axis.iter().copied().reduce(of));
+        ends.into_iter().flatten().all(|value| {
+            let mut values = question.bench.own_values();
+            if let Some(own) = values.get_mut(k) {
+                *own = value;
+            }
+            let same = |found: Vec<f64>| {
+                let pairs = found.iter().zip(&self.sloped);
+                pairs.into_iter().all(|(a, b)| *a == b.value)
+            };
+            question.bench.numbers(&values).is_ok_and(same)
+        })
+    }
+}
+
+/// The designs with their numbers.
+pub(super) fn listed(question: &Question<'_>, table: &Table) -> Listing {
+    let noted = table.notes.iter().take(LISTED).any(Option::is_some);
+    let mut head: Vec<String> = table.columns.iter().map(Column::head).collect();
+    head.extend(noted.then(|| "note".to_owned()));
+    let row = |row: usize| {
+        let values = table.columns.iter().map(|c| c.values.get(row));
+        let values = values.map(|v| match v {
+            Some(v) if !v.is_nan() => number_text(*v),
+            _ => String::new(),
+        });
+        let note = noted.then(|| table.notes.get(row).cloned().flatten().unwrap_or_default());
+        values.chain(note).collect()
+    };
+    let shown = table.rows().min(LISTED);
+    let more = table.rows() - shown;
+    let rest = (more > 0).then(|| vec![format!("and {more} more")]);
+    Listing {
+        title: match question.designs.one_at_a_time() {
+            true => "designs, the first as in the file".to_owned(),
+            false => "designs".to_owned(),
+        },
+        head,
+        rows: (0..shown).map(row).chain(rest).collect(),
+    }
+}
+
+/// Exact derivatives at the file's own design, beside what differences of designs say that differ in one parameter alone.
+pub(super) fn derivatives(question: &Question<'_>, own: &Own, table: &Table) -> Option<Listing> {
+    let numbers = question.bench.numbers.iter().zip(&own.sloped).enumerate();
+    let rows = numbers.flat_map(|(n, (number, sloped))| {
+        let unit = number.unit(&question.units);
+        sloped.slope.iter().enumerate().map(move |(k, slope)| {
+            let per = question.unit_of(k);
+            let exact = unit.from_si(*slope) * per.to_si(1.0);
+            let text = |x: Option<f64>| match x.filter(|x| x.is_finite()) {
+                Some(x) => number_text(x),
+                None => NONE.to_owned(),
+            };
+            vec![
+                number.name.clone(),
+                question.name_of(k).to_owned(),
+                text(Some(exact)),
+                text(difference(question, table, n, k)),
+                unit_per(&unit, &per),
+            ]
+        })
+    });
+    let rows: Vec<Vec<String>> = rows.collect();
+    let head = [
+        "number",
+        "parameter",
+        "derivative",
+        "by differences",
+        "unit",
+    ];
+    (!rows.is_empty()).then(|| Listing {
+        title: "exact derivatives at the file's own values, beside differences of the designs"
+            .to_owned(),
+        head: head.map(str::to_owned).to_vec(),
+        rows,
+    })
+}
+
+/// The slope of a number by the nearest designs below and above the file's own that differ from it in one parameter alone.
+fn difference(question: &Question<'_>, table: &Table, number: usize, k: usize) -> Option<f64> {
+    let around = alone(question, table, number, k);
+    let own = shown(*question.designs.own.get(k)?, &question.unit_of(k));
+    let below = around.iter().rev().find(|(x, _)| *x < own)?;
+    let above = around.iter().find(|(x, _)| *x > own)?;
+    Some((above.1 - below.1) / (above.0 - below.0))
+}
+
+/// The values of a parameter and of a number, in the order of the first, of all designs that have the file's own values but for that parameter.
+fn alone(question: &Question<'_>, table: &Table, number: usize, k: usize) -> Vec<(f64, f64)> {
+    let own: Vec<f64> = (question.designs.own.iter().enumerate())
+        .map(|(k, si)| shown(*si, &question.unit_of(k)))
+        .collect();
+    let at = |column: usize, row: usize| {
+        let column = table.columns.get(column);
+        column.and_then(|c| c.values.get(row)).copied()
+    };
+    let mut found: Vec<(f64, f64)> = (0..table.rows())
+        .filter(|row| {
+            let mut others = own.iter().enumerate().filter(|(other, _)| *other != k);
+            others.all(|(other, own)| at(1 + other, *row) == Some(*own))
+        })
+        .filter_map(|row| Some((at(1 + k, row)?, at(1 + own.len() + number, row)?)))
+        .collect();
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    found
+}
+
+/// A parameter with what its least and greatest values make of a number.
+struct Bar {
+    parameter: usize,
+    /// Its least and greatest value, in its unit, with the number there.
+    ends: [(f64, f64); 2],
+    /// The least and the greatest value of the number.
+    reach: [f64; 2],
+}
+
+/// Which parameter changes a number most, one at a time: in words and as a picture.
+pub(super) fn tornado(question: &Question<'_>, table: &Table) -> (Vec<Listing>, Vec<Figure>) {
+    let ranked = question.bench.numbers.iter().take(RANKED).enumerate();
+    ranked
+        .filter_map(|(n, number)| {
+            let bars = bars(question, table, n);
+            let column = table.columns.get(1 + question.designs.own.len() + n);
+            let own = column.and_then(|c| c.values.first()).copied();
+            (!bars.is_empty()).then(|| {
+                (
+                    in_words(question, number, &bars),
+                    drawn(question, number, &bars, own.unwrap_or(f64::NAN)),
+                )
+            })
+        })
+        .unzip()
+}
+
+fn bars(question: &Question<'_>, table: &Table, number: usize) -> Vec<Bar> {
+    let bar = |parameter: usize| {
+        let found = alone(question, table, number, parameter);
+        let finite = found.iter().map(|(_, y)| *y).filter(|y| y.is_finite());
+        let reach = [f64::min, f64::max].map(|of| finite.clone().reduce(of));
+        match (found.as_slice(), reach) {
+            ([first, .., last], [Some(least), Some(greatest)]) => Some(Bar {
+                parameter,
+                ends: [*first, *last],
+                reach: [least, greatest],
+            }),
+            _ => None,
+        }
+    };
+    let mut all: Vec<Bar> = (0..question.designs.own.len()).filter_map(bar).collect();
+    let size = |bar: &Bar| bar.reach[1] - bar.reach[0];
+    // Stable: equal ones stay in the order of the file.
+    all.sort_by(|a, b| size(b).total_cmp(&size(a)));
+    all
+}
+
+fn in_words(question: &Question<'_>, number: &Quantity, bars: &[Bar]) -> Listing {
+    let head = Column::new(number.name.clone(), number.unit(&question.units)).head();
+    let rows = bars.iter().map(|bar| {
+        let value = |x: f64| match x.is_finite() {
+            true => number_text(x),
+            false => NONE.to_owned(),
+        };
+        let [(from, at_from), (to, at_to)] = bar.ends;
+        let unit = question.unit_of(bar.parameter);
+        vec![
+            Column::new(question.name_of(bar.parameter), unit).head(),
+            number_text(from),
+            number_text(to),
+            value(at_from),
+            value(at_to),
+            value(bar.reach[1] - bar.reach[0]),
+        ]
+    });
+    let names = ["parameter", "least", "greatest", "there", "there", "change"];
+    Listing {
+        title: format!("what changes {head} most"),
+        head: names.map(str::to_owned).to_vec(),
+        rows: rows.collect(),
+    }
+}
+
+/// Bars from the least to the greatest value of a number, the longest on top.
+fn drawn(question: &Question<'_>, number: &Quantity, bars: &[Bar], own: f64) -> Figure {
+    let bar = |(rank, bar): (usize, &Bar)| {
+        let middle = (bars.len() - rank) as f64;
+        let (low, high) = (middle - HALF_BAR, middle + HALF_BAR);
+        let [least, greatest] = bar.reach;
+        let [(from, _), (to, _)] = bar.ends;
+        let unit = question.unit_of(bar.parameter);
+        let ends = [from, to].map(number_text).join(" to ");
+        PlaneCurve {
+            name: format!(
+                "{}: {ends} {}",
+                question.name_of(bar.parameter),
+                unit.text()
+            )
+            .trim_end()
+            .to_owned(),
+            points: vec![
+                [least, low],
+                [greatest, low],
+                [greatest, high],
+                [least, high],
+                [least, low],
+            ],
+            dashed: false,
+        }
+    };
+    let own = own.is_finite().then(|| PlaneCurve {
+        name: "as in the file".to_owned(),
+        points: vec![[own, 1.0 - HALF_BAR], [own, bars.len() as f64 + HALF_BAR]],
+        dashed: true,
+    });
+    Figure::Graph {
+        name: format!("tornado-{}", number.name),
+        x: (number.name.clone(), number.unit(&question.units)),
+        y: ("place from below".to_owned(), kempe_units::Unit::one()),
+        curves: bars.iter().enumerate().map(bar).chain(own).collect(),
+    }
+}
