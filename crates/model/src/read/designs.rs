@@ -384,6 +384,12 @@ fn even_or_around(
         .find(|key| !table.has(key));
     let wrong_count = count(cx, table, "count", 2);
     let ends = ["from", "to"].map(|key| table.get(key).map(|node| value_of(cx, id, node)));
+    if ["from", "to", "count", "by"]
+        .iter()
+        .any(|key| table.misspelt(key))
+    {
+        return None;
+    }
     if let Some(missing) = missing {
         return cx.refuse(
             "missing-key",
@@ -448,6 +454,12 @@ fn toleranced(
             let table = Entry::inner(cx, node, &node.span, place.clone(), &SPREAD)?;
             let given: Vec<&Key> = table.given(&["uniform", "between", "normal"]).collect();
             match given.as_slice() {
+                [] if ["uniform", "between", "normal"]
+                    .iter()
+                    .any(|key| table.misspelt(key)) =>
+                {
+                    return None;
+                }
                 [] => {
                     return cx.refuse(
                         "missing-key",
@@ -520,6 +532,9 @@ fn chosen(
                         None => Among::Between(between),
                         Some(node) => steps(cx, parameter, between, node)?,
                     }
+                }
+                (None, None, _) if ["between", "only"].iter().any(|key| table.misspelt(key)) => {
+                    return None;
                 }
                 (None, None, step) => {
                     if let Some(node) = step {
