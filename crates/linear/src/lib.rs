@@ -38,7 +38,7 @@ pub use elimination::{Elimination, Matrix, Plain};
 pub use fixed_point::Anderson;
 pub use lu::{Entry, Lu};
 pub use marquardt::{Residuals, smallest_squares};
-pub use positive::{factor_positive, is_pivot, solve_positive};
+pub use positive::{cholesky, factor_positive, is_pivot, solve_positive};
 pub use qr::Qr;
 pub use rank::{RANK_TOLERANCE, SparseRow, rank};
 pub use singular::smallest_singular_value;

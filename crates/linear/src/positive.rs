@@ -57,8 +57,12 @@ pub fn solve_positive<T: Number>(n: usize, l: &[T], right: &mut [T]) {
     }
 }
 
-/// `L` of `m = L L'`, by rows: what makes a matrix beside it symmetric again, which L D L' does not. The row that fails as above.
-pub(crate) fn cholesky(m: &[f64], n: usize) -> Result<Vec<f64>, usize> {
+/// `L` of `m = L L'`, by rows (A.-L. Cholesky, 1924; only the symmetric part counts): what makes a matrix beside it symmetric again, which
+/// L D L' does not.
+///
+/// # Errors
+/// The first row that has no pivot ([`is_pivot`]).
+pub fn cholesky(m: &[f64], n: usize) -> Result<Vec<f64>, usize> {
     let mut l = vec![0.0; n * n];
     for i in 0..n {
         for j in 0..=i {

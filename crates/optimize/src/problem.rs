@@ -1,0 +1,191 @@
+//! What is to be minimised: a box, objectives, constraints.
+
+/// What is to be minimised within a box.
+///
+/// Every function is the largest of its pieces, as the peak of a quantity over a motion is the largest of its local peaks. Its
+/// value is what [`evaluate`](Problem::evaluate) answers, its pieces with their derivatives what [`slopes`](Problem::slopes) does;
+/// both must agree: the value is that of the largest piece. Methods for one objective minimise the largest of all of them.
+pub trait Problem {
+    /// The least and the largest value of every variable, finite. No method looks outside.
+    fn bounds(&self) -> &[[f64; 2]];
+
+    /// How many objectives there are.
+    fn objectives(&self) -> usize {
+        1
+    }
+
+    /// How many constraints there are; each must be at most zero.
+    fn constraints(&self) -> usize {
+        0
+    }
+
+    /// Typical sizes, so that tolerances mean something; `None` takes them from values.
+    fn scales(&self) -> Option<Scales> {
+        None
+    }
+
+    /// What these designs are worth, in their order. Designs are independent of each other: lanes and threads are the implementor's.
+    fn evaluate(&mut self, designs: &[Vec<f64>]) -> Vec<Evaluation>;
+
+    /// All pieces of all functions at a design, with their derivatives; `None` where there are none.
+    fn slopes(&mut self, design: &[f64]) -> Option<Slopes>;
+}
+
+/// What a design is worth.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Evaluation {
+    /// The objectives, which are to be small.
+    pub objectives: Vec<f64>,
+    /// The constraints, which must be at most zero.
+    pub constraints: Vec<f64>,
+    /// Zero where the design can be evaluated; otherwise how far it is from that, in whatever unit: a linkage that does not assemble
+    /// by the length that is missing. The other values mean nothing then.
+    pub lack: f64,
+}
+
+impl Evaluation {
+    /// Of a design that cannot be evaluated, so far from one that can.
+    pub fn lacking(lack: f64) -> Self {
+        Self {
+            lack,
+            ..Self::default()
+        }
+    }
+
+    /// The largest objective.
+    pub fn largest(&self) -> f64 {
+        largest(self.objectives.iter().copied())
+    }
+
+    /// The largest constraint by its scale, zero where all are kept.
+    pub fn violation(&self, scales: &Scales) -> f64 {
+        let scaled = self.constraints.iter().zip(&scales.constraints);
+        largest(scaled.map(|(c, s)| c / s)).max(0.0)
+    }
+
+    /// Whether all values are there.
+    pub fn is_defined(&self) -> bool {
+        self.lack <= 0.0
+    }
+}
+
+/// Every function as its pieces.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Slopes {
+    /// Pieces of every objective, at least one each.
+    pub objectives: Vec<Vec<Piece>>,
+    /// Pieces of every constraint, at least one each.
+    pub constraints: Vec<Vec<Piece>>,
+}
+
+impl Slopes {
+    /// Whether every function has pieces of `n` variables that are numbers.
+    fn is_sound(&self, objectives: usize, constraints: usize, n: usize) -> bool {
+        let sound = |f: &Vec<Piece>| !f.is_empty() && f.iter().all(|p| p.is_sound(n));
+        self.objectives.len() == objectives
+            && self.constraints.len() == constraints
+            && self.objectives.iter().chain(&self.constraints).all(sound)
+    }
+}
+
+/// A smooth function, a part of a larger one, at a design.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Piece {
+    /// Its value.
+    pub value: f64,
+    /// Its derivative to every variable.
+    pub slope: Vec<f64>,
+}
+
+impl Piece {
+    /// Whether all of it are numbers.
+    fn is_sound(&self, n: usize) -> bool {
+        self.value.is_finite() && self.slope.len() == n && self.slope.iter().all(|x| x.is_finite())
+    }
+}
+
+/// Typical sizes of functions, positive.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Scales {
+    /// Of every objective.
+    pub objectives: Vec<f64>,
+    /// Of every constraint.
+    pub constraints: Vec<f64>,
+}
+
+impl Scales {
+    /// Sizes of one.
+    pub fn unit(objectives: usize, constraints: usize) -> Self {
+        Self {
+            objectives: vec![1.0; objectives],
+            constraints: vec![1.0; constraints],
+        }
+    }
+
+    /// The median size of the values of all designs that can be evaluated, one where that is zero or nothing.
+    pub fn typical(evaluations: &[Evaluation], objectives: usize, constraints: usize) -> Self {
+        let of = |values: &dyn Fn(&Evaluation) -> f64| {
+            let defined = evaluations.iter().filter(|e| e.is_defined());
+            let mut sizes: Vec<f64> = defined.map(|e| values(e).abs()).collect();
+            sizes.sort_by(f64::total_cmp);
+            sound_scale(sizes.get(sizes.len() / 2).copied().unwrap_or(1.0))
+        };
+        Self {
+            objectives: (0..objectives).map(|k| of(&|e| e.objectives[k])).collect(),
+            constraints: (0..constraints)
+                .map(|k| of(&|e| e.constraints[k]))
+                .collect(),
+        }
+    }
+
+    /// Whether there are as many as asked for and all are positive numbers.
+    pub(crate) fn fits(&self, objectives: usize, constraints: usize) -> bool {
+        let positive = |s: &f64| *s > 0.0 && s.is_finite();
+        self.objectives.len() == objectives
+            && self.constraints.len() == constraints
+            && self
+                .objectives
+                .iter()
+                .chain(&self.constraints)
+                .all(positive)
+    }
+}
+
+/// The size, or one where it is no positive number.
+pub(crate) fn sound_scale(size: f64) -> f64 {
+    match size > 0.0 && size.is_finite() {
+        true => size,
+        false => 1.0,
+    }
+}
+
+/// The largest of some numbers; less than all where there are none.
+pub(crate) fn largest(values: impl Iterator<Item = f64>) -> f64 {
+    values.fold(f64::NEG_INFINITY, f64::max)
+}
+
+/// What a problem says of designs, with what is no number or is missing as a lack.
+pub(crate) fn evaluate(problem: &mut dyn Problem, designs: &[Vec<f64>]) -> Vec<Evaluation> {
+    let (objectives, constraints) = (problem.objectives(), problem.constraints());
+    let mut evaluations = problem.evaluate(designs);
+    evaluations.resize(designs.len(), Evaluation::lacking(f64::INFINITY));
+    for evaluation in &mut evaluations {
+        let values = || (evaluation.objectives.iter()).chain(&evaluation.constraints);
+        let sound = evaluation.objectives.len() == objectives
+            && evaluation.constraints.len() == constraints
+            && values().all(|x| x.is_finite());
+        if evaluation.lack.is_nan() || (evaluation.is_defined() && !sound) {
+            *evaluation = Evaluation::lacking(f64::INFINITY);
+        }
+    }
+    evaluations
+}
+
+/// The pieces at a design; `None` where any is no number.
+pub(crate) fn slopes(problem: &mut dyn Problem, design: &[f64]) -> Option<Slopes> {
+    let (objectives, constraints) = (problem.objectives(), problem.constraints());
+    let slopes = problem.slopes(design)?;
+    slopes
+        .is_sound(objectives, constraints, design.len())
+        .then_some(slopes)
+}

@@ -1,0 +1,65 @@
+//! How long work tells how far it has come, how it is stopped, and why it ended.
+
+use std::ops::ControlFlow;
+
+/// How far the work has come.
+#[derive(Clone, Copy, Debug)]
+pub struct Progress<'a> {
+    /// Designs evaluated.
+    pub evaluations: usize,
+    /// Of so many at most.
+    pub budget: usize,
+    /// The best design so far and its largest objective; for Pareto fronts one of them.
+    pub best: Option<(&'a [f64], f64)>,
+    /// The largest violation of its constraints by their scales; infinite where it cannot be evaluated.
+    pub violation: f64,
+}
+
+/// Hears how far the work has come, and says whether it may go on. Its answer changes nothing else.
+pub type Hears<'a> = &'a mut dyn FnMut(&Progress) -> ControlFlow<()>;
+
+/// Hears nothing and never stops.
+pub fn silent(_: &Progress) -> ControlFlow<()> {
+    ControlFlow::Continue(())
+}
+
+/// Why work ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Ended {
+    /// What it looks for is found, within its tolerances.
+    Converged,
+    /// No step is better any more than rounding shows, and the conditions of an optimum are kept loosely.
+    Settled,
+    /// The largest violation of the constraints has a minimum here that is none of zero.
+    Infeasible,
+    /// No step is better, though this is no optimum: derivatives that are not those of the values, or a place from which all ways
+    /// lead to designs that cannot be evaluated.
+    Stuck,
+    /// All evaluations or iterations that were allowed are used.
+    Budget,
+    /// The start cannot be evaluated, or has no derivatives, or does not fit the bounds.
+    Undefined,
+    /// Whoever listened stopped it.
+    Stopped,
+}
+
+impl Ended {
+    /// Whether the answer keeps the first-order conditions of an optimum.
+    pub fn is_optimal(self) -> bool {
+        matches!(self, Self::Converged | Self::Settled)
+    }
+
+    /// For people.
+    pub fn text(self) -> &'static str {
+        match self {
+            Self::Converged => "converged",
+            Self::Settled => "converged as far as rounding allows",
+            Self::Infeasible => "the constraints cannot all be kept",
+            Self::Stuck => "no step is better, though this is no optimum",
+            Self::Budget => "all allowed evaluations are used",
+            Self::Undefined => "the start cannot be evaluated",
+            Self::Stopped => "stopped",
+        }
+    }
+}
