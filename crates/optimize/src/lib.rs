@@ -4,17 +4,35 @@
 //! | --- | --- |
 //! | `problem.rs` | what is minimised: a box, objectives and constraints that are the largest of their pieces |
 //! | `progress.rs` | how long work tells how far it has come, and why it ended |
-//! | `space.rs` | the box |
+//! | `space.rs`, `halton.rs` | the box, and points that fill it evenly |
 //! | `quadratic.rs` | convex quadratic programmes |
-//! | `sqp.rs` | local optima with their multipliers |
+//! | `sqp.rs` | local optima with their multipliers, or what conflicts |
+//! | `multi_start.rs` | all local optima that many starts lead to |
+//! | `standing.rs` | which of two designs is better |
+//! | `generations.rs` | what methods of populations share |
+//! | `differential_evolution.rs`, `cma_es.rs` | the global optimum of one objective, as far as evaluations go |
 
+mod cma_es;
+mod differential_evolution;
+mod generations;
+mod halton;
+mod multi_start;
 mod problem;
 mod progress;
 mod quadratic;
 mod space;
 mod sqp;
+mod standing;
 
+pub use cma_es::{CmaEs, CmaEsOptions, cma_es};
+pub use differential_evolution::{
+    DifferentialEvolution, DifferentialEvolutionOptions, Trial, differential_evolution,
+};
+pub use generations::{FEASIBLE, Found, Generations, generations};
+pub use halton::halton;
+pub use multi_start::{MultiStartOptions, Optima, multi_start};
 pub use problem::{Evaluation, Piece, Problem, Scales, Slopes};
 pub use progress::{Ended, Hears, Progress, silent};
 pub use quadratic::{Minimum, NoMinimum, Quadratic, Row, minimise};
 pub use sqp::{Multipliers, Optimum, SqpOptions, sqp};
+pub use standing::{Candidate, Standing};

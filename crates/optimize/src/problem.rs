@@ -138,6 +138,24 @@ impl Scales {
         }
     }
 
+    /// The larger of both.
+    pub(crate) fn at_least(&self, least: &Self) -> Self {
+        let larger = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a.max(*b)).collect();
+        Self {
+            objectives: larger(&self.objectives, &least.objectives),
+            constraints: larger(&self.constraints, &least.constraints),
+        }
+    }
+
+    /// All of them as many times as large.
+    pub(crate) fn times(&self, factor: f64) -> Self {
+        let times = |a: &[f64]| a.iter().map(|a| a * factor).collect();
+        Self {
+            objectives: times(&self.objectives),
+            constraints: times(&self.constraints),
+        }
+    }
+
     /// Whether there are as many as asked for and all are positive numbers.
     pub(crate) fn fits(&self, objectives: usize, constraints: usize) -> bool {
         let positive = |s: &f64| *s > 0.0 && s.is_finite();

@@ -56,8 +56,9 @@ pub struct SqpOptions {
     pub settled: f64,
     /// The largest violation of a constraint, in its scale.
     pub feasibility: f64,
-    /// Typical sizes, if the problem names none; `None` takes the larger of value and slope (over the box's width) at the start.
-    pub scales: Option<Scales>,
+    /// Where the problem names no scales, they are the larger of value and slope (over the box's width) at the start, and not less than
+    /// these.
+    pub least: Option<Scales>,
 }
 
 impl Default for SqpOptions {
@@ -68,7 +69,7 @@ impl Default for SqpOptions {
             optimality: 1e-8,
             settled: 1e-6,
             feasibility: 1e-9,
-            scales: None,
+            least: None,
         }
     }
 }
@@ -167,9 +168,14 @@ pub fn sqp(
         return Optimum::undefined(design, evaluation, 1);
     };
     let (objectives, constraints) = (problem.objectives(), problem.constraints());
-    let given = problem.scales().or_else(|| options.scales.clone());
-    let scales = given.filter(|s| s.fits(objectives, constraints));
-    let scales = scales.unwrap_or_else(|| Sizes::of(&slopes, &space));
+    let fits = |s: &Scales| s.fits(objectives, constraints);
+    let scales = problem.scales().filter(fits).unwrap_or_else(|| {
+        let own = Sizes::of(&slopes, &space);
+        match options.least.as_ref().filter(|s| fits(s)) {
+            Some(least) => own.at_least(least),
+            None => own,
+        }
+    });
     let sizes = Sizes::new(&scales);
     let place = Local::new(design, evaluation, &slopes, &sizes, &space);
     let mut run = Run {

@@ -91,7 +91,7 @@ pub(super) fn least(
             .evaluations
             .saturating_sub(spent)
             .max(options.evaluations / 4),
-        scales: None,
+        least: None,
         ..options.clone()
     };
     let mut listen = |progress: &Progress| {

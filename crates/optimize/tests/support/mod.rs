@@ -10,12 +10,15 @@ pub type D<const N: usize> = Dual<f64, N>;
 /// Pieces of every objective and of every constraint; `None` where undefined.
 pub type Functions<const N: usize> = (Vec<Vec<D<N>>>, Vec<Vec<D<N>>>);
 
+/// The functions at a design.
+pub type Formulas<const N: usize> = dyn Fn(&[D<N>; N]) -> Option<Functions<N>>;
+
 /// A problem of `N` variables.
 pub struct Case<const N: usize> {
     pub bounds: Vec<[f64; 2]>,
     pub objectives: usize,
     pub constraints: usize,
-    pub functions: Box<dyn Fn(&[D<N>; N]) -> Option<Functions<N>>>,
+    pub functions: Box<Formulas<N>>,
     /// How many designs were asked.
     pub asked: usize,
 }
