@@ -11,28 +11,40 @@
 //! | `standing.rs` | which of two designs is better |
 //! | `generations.rs` | what methods of populations share |
 //! | `differential_evolution.rs`, `cma_es.rs` | the global optimum of one objective, as far as evaluations go |
+//! | `nsga2.rs`, `dominance.rs`, `variation.rs` | fronts of several objectives, which designs others leave behind, children of designs |
+//! | `refine.rs` | a front moved to where the first-order conditions of Pareto optima are kept |
+//! | `hypervolume.rs` | how much a front dominates |
 
 mod cma_es;
 mod differential_evolution;
+mod dominance;
 mod generations;
 mod halton;
+mod hypervolume;
 mod multi_start;
+mod nsga2;
 mod problem;
 mod progress;
 mod quadratic;
+mod refine;
 mod space;
 mod sqp;
 mod standing;
+mod variation;
 
 pub use cma_es::{CmaEs, CmaEsOptions, cma_es};
 pub use differential_evolution::{
     DifferentialEvolution, DifferentialEvolutionOptions, Trial, differential_evolution,
 };
+pub use dominance::dominates;
 pub use generations::{FEASIBLE, Found, Generations, generations};
 pub use halton::halton;
+pub use hypervolume::hypervolume;
 pub use multi_start::{MultiStartOptions, Optima, multi_start};
+pub use nsga2::{Front, Member, Nsga2, Nsga2Options, nsga2};
 pub use problem::{Evaluation, Piece, Problem, Scales, Slopes};
 pub use progress::{Ended, Hears, Progress, silent};
 pub use quadratic::{Minimum, NoMinimum, Quadratic, Row, minimise};
+pub use refine::{Refined, RefinedFront, refine};
 pub use sqp::{Multipliers, Optimum, SqpOptions, sqp};
 pub use standing::{Candidate, Standing};
