@@ -1,4 +1,6 @@
 //! Sweeps: which designs they have, what is told of each, and that their parts make the same whole.
+// Rows are Parquet: without it there is nothing to hold sweeps against.
+#![cfg(feature = "parquet")]
 #![allow(
     clippy::disallowed_methods,
     reason = "numbers found by hand beside ours, not reproducible ones"
