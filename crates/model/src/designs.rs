@@ -81,6 +81,8 @@ pub struct ToleranceStudy {
     pub over: OverStudy,
     /// The parameters that differ from piece to piece.
     pub vary: Vec<Toleranced>,
+    /// Where it is said that joints have the play of the file's clearances, in directions that differ from piece to piece; none where they have none.
+    pub clearance: Option<Span>,
     /// How many pieces are drawn.
     pub samples: usize,
     /// Which ones.
@@ -232,6 +234,7 @@ impl ToleranceStudy {
     pub(crate) fn visit_places(&mut self, f: &mut dyn FnMut(&mut Span)) {
         self.over.visit_places(f);
         self.vary.iter_mut().for_each(|it| f(&mut it.span));
+        self.clearance.iter_mut().for_each(&mut *f);
         self.limits.iter_mut().for_each(|it| f(&mut it.span));
     }
 

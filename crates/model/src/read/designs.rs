@@ -92,13 +92,19 @@ pub(crate) fn read(
             })))
         }
         "tolerance" => {
-            let vary = varied(cx, entry, toleranced);
+            let clearance = clearance(cx, entry);
+            // Where joints have play nothing else needs to differ.
+            let vary = match (&clearance, entry.has("vary")) {
+                (Some(Some(_)), false) => Some(Vec::new()),
+                _ => varied(cx, entry, toleranced),
+            };
             let limits = limits(cx, entry, "limits", forces);
             let samples = count(cx, entry, "samples", SAMPLES);
             let seed = count(cx, entry, "seed", 1);
             Some(StudyKind::Tolerance(Box::new(ToleranceStudy {
                 over: over(columns?, plots?)?,
                 vary: vary?,
+                clearance: clearance?,
                 samples: samples?,
                 seed: seed?,
                 limits: limits?,
@@ -198,6 +204,13 @@ fn over(cx: &mut Context<'_>, entry: &Entry<'_>, others: &Others<'_>) -> Option<
         Some(forces) => Some((name.to_owned(), forces)),
         None => wrong_kind(cx),
     }
+}
+
+/// Where it is said that joints have play, if it is.
+fn clearance(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<Option<Span>> {
+    let counts = entry.flag(cx, "clearance")?;
+    let node = entry.get("clearance").filter(|_| counts);
+    Some(node.map(|node| node.span.clone()))
 }
 
 /// The parameters that vary, each with what is said of it.

@@ -54,6 +54,9 @@ impl Writer<'_> {
             };
             (it.parameter, spread)
         });
+        if study.clearance.is_some() {
+            put("clearance", Item::Flag(true));
+        }
         limits("limits", &study.limits, put);
         put("samples", Item::Number(study.samples as f64));
         put("seed", Item::Number(study.seed as f64));
