@@ -60,7 +60,10 @@ pub(crate) fn read(
     others: &Others<'_>,
 ) -> Option<StudyKind> {
     let over = over(cx, entry, others);
-    let forces = over.as_ref().is_none_or(|(_, forces)| *forces);
+    if let Some((_, Runs::Whole)) = over {
+        no_measures(cx, entry)?;
+    }
+    let forces = (over.as_ref()).is_none_or(|(_, runs)| *runs != Runs::Motion);
     let columns = numbers(cx, entry, "columns", forces);
     let plots = match entry.kind.key("plot") {
         Some(_) => curves(cx, entry, forces),
@@ -150,17 +153,47 @@ pub(crate) fn read(
     }
 }
 
-/// The study that is run, and whether it knows forces.
-fn over(cx: &mut Context<'_>, entry: &Entry<'_>, others: &Others<'_>) -> Option<(String, bool)> {
+/// What is asked of a study that is run for many designs.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Runs {
+    /// Measures of a motion.
+    Motion,
+    /// Measures of a motion and of its forces.
+    Forces,
+    /// What it tells itself.
+    Whole,
+}
+
+/// Of a study that is run as a whole no measures can be asked.
+fn no_measures(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<()> {
+    let mut given = ["columns", "plot"].into_iter();
+    let Some(key) = given.find(|key| entry.has(key)) else {
+        return Some(());
+    };
+    let span = entry.get(key).map(|node| node.span.clone());
+    cx.refuse(
+        "bad-choice",
+        format!(
+            "{} asks for measures of a study that is run as a whole",
+            entry.place_of(key)
+        ),
+        &span.unwrap_or_default(),
+        "leave it out: the numbers are those that the study tells, the curves those that it plots",
+    )
+}
+
+/// The study that is run, and what can be asked of it.
+fn over(cx: &mut Context<'_>, entry: &Entry<'_>, others: &Others<'_>) -> Option<(String, Runs)> {
+    let sweeps = entry.kind.name == "sweep";
     let forces_of = |kind: &StudyKind| match kind {
-        StudyKind::Motion(along) if along.circuit => None,
-        StudyKind::Motion(_) => Some(false),
-        StudyKind::Forces(_) | StudyKind::Simulate(_) => Some(true),
-        _ => None,
+        StudyKind::Motion(along) if !along.circuit => Some(Runs::Motion),
+        StudyKind::Forces(_) | StudyKind::Simulate(_) => Some(Runs::Forces),
+        _ => sweeps.then_some(Runs::Whole),
     };
     let Some(node) = entry.get("over") else {
         let along = |kind: &&StudyKind| {
-            forces_of(kind).is_some() && !matches!(kind, StudyKind::Simulate(_))
+            let along = matches!(forces_of(kind), Some(Runs::Motion | Runs::Forces));
+            along && !matches!(kind, StudyKind::Simulate(_))
         };
         let known = others
             .own
@@ -188,7 +221,7 @@ fn over(cx: &mut Context<'_>, entry: &Entry<'_>, others: &Others<'_>) -> Option<
             "bad-choice",
             format!("{} cannot be run for many designs", entry.place_of("over")),
             &node.span,
-            "name a study of motion or forces, or a simulation; not one of a whole circuit",
+            "name a study of motion or forces, or a simulation; sweeps take any study but those of many designs",
         )
     };
     if others.of_designs.contains(&name) {

@@ -8,7 +8,6 @@ use kempe_motion::{Done, Progress, Stage};
 
 use super::part::{Part, designs_in_part};
 use super::question::{Answer, Question};
-use crate::rows::most;
 
 /// Numbers in the rows of all designs at most; more of them are in no file.
 const MOST_ROW_NUMBERS: f64 = (1_u64 << 29) as f64;
@@ -72,16 +71,7 @@ impl Layout {
     pub fn of(question: &Question<'_>) -> Self {
         let designs = question.designs.count();
         let columns = question.row_table().with_evidence().len();
-        let along = question.bench.over.kind.along();
-        let parameters = question.model.parameter_values();
-        let rows = match &question.bench.over.kind {
-            kempe_model::StudyKind::Simulate(study) => {
-                let until = kempe_model::value(&study.until, &parameters);
-                crate::rows::count(question.model, &along.rows, &parameters, until)
-            }
-            _ => most(question.model, &along.rows, &parameters),
-        };
-        let numbers = rows * columns as f64;
+        let numbers = question.most_rows() * columns as f64;
         Self {
             designs,
             in_part: designs_in_part(designs, numbers),
