@@ -621,6 +621,12 @@ impl<'b, 'm> Teller<'b, 'm> {
         }
         let first = 1 + self.study.vary.len();
         result.along = first;
+        let known = own.as_ref().filter(|own| own.evaluation.is_defined());
+        let own_goals: Option<Vec<f64>> = known.map(|own| {
+            let goals = 0..self.study.goals.len();
+            let shown = goals.map(|k| shown(self.goal(k, &own.evaluation), &self.goal_unit(k)));
+            shown.collect()
+        });
         let goals = result
             .table
             .columns
@@ -628,9 +634,11 @@ impl<'b, 'm> Teller<'b, 'm> {
             .skip(first + 1)
             .take(self.study.goals.len() - 1);
         result.figures = goals
-            .map(|column| Figure::Curves {
-                curves: vec![column.clone()],
-                limits: Vec::new(),
+            .zip(1..)
+            .map(|(column, k)| Figure::Front {
+                x: result.table.columns[first].clone(),
+                y: column.clone(),
+                own: own_goals.as_ref().map(|own| [own[0], own[k]]),
             })
             .collect();
         let ends = self.ends(own.as_ref(), &all);
