@@ -161,6 +161,8 @@ pub struct Chosen {
 pub enum Among {
     /// All between two.
     Between([Scalar; 2]),
+    /// All between two positive ones, every factor alike: as many from 1 to 10 as from 10 to 100.
+    Factors([Scalar; 2]),
     /// Those between two that are whole multiples of a step.
     Steps {
         /// The least and the greatest.
@@ -262,7 +264,7 @@ impl OptimizeStudy {
     pub(crate) fn visit_scalars(&mut self, f: &mut dyn FnMut(&mut Scalar)) {
         for chosen in &mut self.vary {
             match &mut chosen.among {
-                Among::Between(both) => both.iter_mut().for_each(&mut *f),
+                Among::Between(both) | Among::Factors(both) => both.iter_mut().for_each(&mut *f),
                 Among::Steps { between, step } => {
                     between.iter_mut().for_each(&mut *f);
                     f(step);

@@ -28,7 +28,9 @@ use crate::designs::{
 };
 use crate::document::{Key, Node, Value};
 use crate::ids::{ParameterId, Scalar, Span};
-use crate::key_table::designs::{AMONG, COMBINE, MAX_VARIED, OPTIMIZE_METHODS, SPREAD, SWEPT};
+use crate::key_table::designs::{
+    AMONG, COMBINE, MAX_VARIED, OPTIMIZE_METHODS, SPACING, SPREAD, SWEPT,
+};
 use crate::read::adjust::free_parameter;
 use crate::read::column::column;
 use crate::read::context::Context;
@@ -559,6 +561,7 @@ fn chosen(
     let among = match &node.value {
         Value::Table(_) => {
             let table = Entry::inner(cx, node, &node.span, place.clone(), &AMONG)?;
+            let log = table.choice(cx, "spacing", &SPACING)?.unwrap_or(false);
             match (table.get("between"), table.get("only"), table.get("step")) {
                 (Some(_), Some(_), _) | (_, Some(_), Some(_)) => {
                     table.contradiction(
@@ -569,12 +572,23 @@ fn chosen(
                     );
                     return None;
                 }
+                (_, Some(_), _) | (_, _, Some(_)) if log => {
+                    let other = if table.has("only") { "only" } else { "step" };
+                    table.contradiction(
+                        cx,
+                        &["spacing", other],
+                        "its values are given one by one",
+                        "leave one of them out",
+                    );
+                    return None;
+                }
                 (None, Some(node), None) => {
                     Among::Only(listed(cx, parameter, node, &place, example)?)
                 }
                 (Some(node), None, step) => {
                     let between = in_order(cx, parameter, node, &place, example)?;
                     match step {
+                        None if log => factors(cx, parameter, between, node)?,
                         None => Among::Between(between),
                         Some(node) => steps(cx, parameter, between, node)?,
                     }
@@ -603,6 +617,25 @@ fn chosen(
         among,
         span,
     })
+}
+
+/// Values between two that are spaced by factors, and so are positive.
+fn factors(
+    cx: &mut Context<'_>,
+    id: ParameterId,
+    between: [Scalar; 2],
+    node: &Node,
+) -> Option<Among> {
+    if cx.number(&between[0]) > 0.0 {
+        return Some(Among::Factors(between));
+    }
+    let name = cx.model.parameters[id.index()].name.clone();
+    cx.refuse(
+        "bad-size",
+        format!("`{name}` is spaced by factors, and its least value is not above 0"),
+        &node.span,
+        "begin above 0, or leave `spacing` out",
+    )
 }
 
 /// Whole multiples of a step between two values.

@@ -13,7 +13,7 @@ use super::question::{Answer, Question};
 const MOST_ROW_NUMBERS: f64 = (1_u64 << 29) as f64;
 
 /// Where the finished parts of a study are kept: core crates touch no files. A part has a number from 0; the study alone decides which
-/// designs are in it.
+/// designs are in it. Of a study that looks for something, parts are what it has asked so far, one after the other, and how many there will be is not known.
 pub trait Parts {
     /// The bytes that were kept of a part; none where it is still to be computed.
     ///
