@@ -6,7 +6,10 @@ mod mechanisms;
 mod reports;
 
 use kempe_draw::plot::{Axis, Curve, Hodograph, Limit, PlotSpec};
-use kempe_draw::report::{Block, Check, MOST_ROWS, Note, PointVectors, Report, VectorKind};
+use kempe_draw::report::{
+    Block, Check, Column, FrontDesign, FrontReport, MOST_ROWS, Note, PointVectors, Report,
+    VectorKind,
+};
 use kempe_draw::*;
 use proptest::prelude::*;
 
@@ -50,6 +53,31 @@ fn evil_report() -> Report {
             plot.markers.iter_mut().for_each(|m| m.label = text());
         }
     }
+    let column = || Column::new(text(), text(), vec![1.0, 2.0]);
+    report.fronts = vec![FrontReport {
+        name: text(),
+        about: text(),
+        columns: vec![column(), column()],
+        goals: vec![0, 1],
+        own: Some(vec![1.5; 2]),
+        plot: PlotSpec {
+            title: text(),
+            ..report.motions[0].plots[0].clone()
+        },
+        designs: vec![
+            FrontDesign {
+                name: text(),
+                file: text(),
+                note: text(),
+                moving: Some((
+                    report.motions[0].view.clone(),
+                    report.motions[0].frames.clone(),
+                )),
+                motion: text(),
+            };
+            2
+        ],
+    }];
     for section in report.first.iter_mut().chain(&mut report.sections) {
         section.title = text();
         section.blocks = vec![Block::Paragraph(text()), Block::List(vec![text()])];
@@ -60,15 +88,19 @@ fn evil_report() -> Report {
 #[test]
 fn no_text_gets_out_of_its_place() {
     let html = evil_report().to_html();
-    // the page's own two script elements, and no other element from a text
-    assert_eq!(html.matches("<script").count(), 2);
-    assert_eq!(html.matches("</script").count(), 2);
+    // the page's own three script elements, and no other element from a text
+    assert_eq!(html.matches("<script").count(), 3);
+    assert_eq!(html.matches("</script").count(), 3);
     assert_eq!(html.matches("<img").count(), 0);
     assert!(!html.contains("\u{2028}\u{0}"));
-    let start = html.find("id=\"data\">").unwrap() + 10;
-    let json = &html[start..start + html[start..].find("</script>").unwrap()];
-    let data: serde_json::Value = serde_json::from_str(json).unwrap();
-    assert_eq!(data[0]["name"], EVIL);
+    for (id, count) in [("data", 2), ("fronts", 1)] {
+        let head = format!("id=\"{id}\">");
+        let start = html.find(&head).unwrap() + head.len();
+        let json = &html[start..start + html[start..].find("</script>").unwrap()];
+        let data: serde_json::Value = serde_json::from_str(json).unwrap();
+        assert_eq!(data.as_array().map(Vec::len), Some(count));
+        assert_eq!(data[0]["name"], EVIL);
+    }
     let case = mechanisms::crank_rocker();
     let mut view = case.view.clone();
     view.title = EVIL.into();

@@ -13,12 +13,13 @@
 //! | `generations.rs` | what methods of populations share |
 //! | `differential_evolution.rs`, `cma_es.rs` | the global optimum of one objective, as far as evaluations go |
 //! | `nsga2.rs`, `dominance.rs`, `variation.rs` | fronts of several objectives, which designs others leave behind, children of designs |
-//! | `refine.rs` | a front moved to where the first-order conditions of Pareto optima are kept |
+//! | `front.rs`, `refine.rs`, `widen.rs` | ways down to first-order optimal designs of a front; all its designs moved along them; its ends, and what fills its gaps |
 //! | `hypervolume.rs` | how much a front dominates |
 
 mod cma_es;
 mod differential_evolution;
 mod dominance;
+mod front;
 mod generations;
 mod halton;
 mod hypervolume;
@@ -32,6 +33,7 @@ mod space;
 mod sqp;
 mod standing;
 mod variation;
+mod widen;
 mod workers;
 
 pub use cma_es::{CmaEs, CmaEsOptions, cma_es};
@@ -39,6 +41,7 @@ pub use differential_evolution::{
     DifferentialEvolution, DifferentialEvolutionOptions, Trial, differential_evolution,
 };
 pub use dominance::dominates;
+pub use front::{Refined, RefinedFront};
 pub use generations::{FEASIBLE, Found, Generated, Generations, generations};
 pub use halton::halton;
 pub use hypervolume::hypervolume;
@@ -47,7 +50,8 @@ pub use nsga2::{Front, Member, Nsga2, Nsga2Options, nsga2};
 pub use problem::{Evaluation, Piece, Problem, Scales, Slopes, evaluate_all};
 pub use progress::{Ended, Hears, Progress, silent};
 pub use quadratic::{Minimum, NoMinimum, Quadratic, Row, minimise};
-pub use refine::{Refined, RefinedFront, refine};
+pub use refine::refine;
 pub use sqp::{Multipliers, Optimum, SqpOptions, descents, sqp};
 pub use standing::{Candidate, Standing};
+pub use widen::widen;
 pub use workers::{Alone, Task, Workers};

@@ -8,8 +8,8 @@ use std::ops::ControlFlow;
 
 use kempe_number::{Number, Random, math, powi};
 use kempe_optimize::{
-    Alone, Candidate, Ended, Generations, Nsga2, Nsga2Options, RefinedFront, SqpOptions,
-    evaluate_all, hypervolume, nsga2, refine, silent,
+    Alone, Candidate, Ended, Generations, Nsga2, Nsga2Options, Problem, RefinedFront, SqpOptions,
+    evaluate_all, hypervolume, nsga2, refine, silent, widen,
 };
 use support::{Case, D, cube};
 
@@ -286,6 +286,139 @@ fn dtlz_fronts_of_three_objectives() {
         p.iter().map(|x| x * x).sum::<f64>().sqrt() - 1.0
     });
     check("DTLZ2", got, [0.85, 0.87, 1e-6]);
+}
+
+/// Squares of distances to two centres, and a quarter of a circle, which is hollow.
+fn bulging() -> Case<2> {
+    several(cube(2, -2.0, 2.0), 2, |[x, y]| {
+        vec![x.square() + y.square(), (*x - 1.0).square() + y.square()]
+    })
+}
+
+fn hollow() -> Case<2> {
+    several(vec![[0.0, 1.0], [-1.0, 1.0]], 2, |[x, y]| {
+        let (sin, cos) = (*x * FRAC_PI_2).sin_cos();
+        let far = y.square() + 1.0;
+        vec![sin * far, cos * far]
+    })
+}
+
+/// Fronts of which only designs near the middle are known, led to their ends and filled.
+#[test]
+fn a_front_reaches_its_ends_and_has_no_gaps() {
+    let on_both: [(Case<2>, fn(&[f64]) -> f64); 2] = [
+        (bulging(), |f| f[0].sqrt() + f[1].sqrt() - 1.0),
+        (hollow(), |f| f[0] * f[0] + f[1] * f[1] - 1.0),
+    ];
+    for (case, off) in on_both {
+        let known: Vec<Candidate> = [[0.45, 0.3], [0.5, -0.2], [0.6, 0.1]]
+            .iter()
+            .map(|design| Candidate {
+                design: design.to_vec(),
+                evaluation: Problem::evaluate(&case, design),
+            })
+            .collect();
+        let options = SqpOptions::default();
+        let refined = refine(&case, &known, (&options, usize::MAX), &Alone, &mut silent);
+        assert!(refined.members.len() <= 3);
+        let with = (&options, usize::MAX);
+        let widened = widen(
+            &case,
+            refined.members.clone(),
+            21,
+            with,
+            &Alone,
+            &mut silent,
+        );
+        println!("{} evaluations", widened.evaluations);
+        let all = refined_objectives(&widened);
+        assert!(all.len() >= 15 && all.len() <= 21, "{}", all.len());
+        assert!(widened.residual < 1e-6 && widened.evaluations < 400);
+        for (end, wanted) in [(0, [0.0, 1.0]), (all.len() - 1, [1.0, 0.0])] {
+            let misses = all[end].iter().zip(wanted).map(|(f, w)| (f - w).abs());
+            assert!(misses.fold(0.0, f64::max) < 1e-6, "{:?}", all[end]);
+        }
+        assert!(all.iter().all(|f| off(f).abs() < 1e-6), "{all:?}");
+        let gaps = all.windows(2).map(|pair| {
+            let both = pair[0].iter().zip(&pair[1]);
+            both.map(|(a, b)| (b - a).abs()).sum::<f64>()
+        });
+        assert!(gaps.fold(0.0, f64::max) < 0.25);
+        // What may not be asked is not asked.
+        let with = (&options, 0);
+        let none = widen(
+            &case,
+            refined.members.clone(),
+            21,
+            with,
+            &Alone,
+            &mut silent,
+        );
+        assert!(none.evaluations <= 4, "{}", none.evaluations);
+        // Stopped, it has what it had.
+        let mut stop = |_: &kempe_optimize::Progress| ControlFlow::Break(());
+        let with = (&options, usize::MAX);
+        let stopped = widen(&case, refined.members.clone(), 21, with, &Alone, &mut stop);
+        assert_eq!(stopped.ended, Ended::Stopped);
+        assert_eq!(stopped.members, refined.members);
+    }
+}
+
+/// ZDT3's front is in five pieces: what lies between two of them is found empty, once.
+#[test]
+fn gaps_of_a_front_in_pieces_stay_open() {
+    let front = nsga2(&zdt3(), &options(4_000), &Alone, &mut silent);
+    let case = zdt3();
+    let options = SqpOptions::default();
+    let refined = refine(
+        &case,
+        &front.members,
+        (&options, 1_500),
+        &Alone,
+        &mut silent,
+    );
+    let before = hypervolume(&refined_objectives(&refined), &[1.1; 2]);
+    let widened = widen(
+        &case,
+        refined.members,
+        120,
+        (&options, 1_500),
+        &Alone,
+        &mut silent,
+    );
+    let after = hypervolume(&refined_objectives(&widened), &[1.1; 2]);
+    println!(
+        "ZDT3 {before} -> {after}, {} evaluations",
+        widened.evaluations
+    );
+    assert!(after >= before && widened.evaluations < 2_500);
+}
+
+#[test]
+fn three_objectives_get_their_ends() {
+    let front = nsga2(&dtlz2(), &options(2_000), &Alone, &mut silent);
+    let case = dtlz2();
+    let options = SqpOptions::default();
+    let refined = refine(
+        &case,
+        &front.members,
+        (&options, 4_000),
+        &Alone,
+        &mut silent,
+    );
+    let widened = widen(
+        &case,
+        refined.members,
+        100,
+        (&options, 4_000),
+        &Alone,
+        &mut silent,
+    );
+    for k in 0..3 {
+        let of = refined_objectives(&widened);
+        let least = of.iter().map(|p| p[k]).fold(f64::INFINITY, f64::min);
+        assert!(least < 1e-7, "{k}: {least}");
+    }
 }
 
 /// N. Srinivas and K. Deb (1994): the front is where x = -2.5.

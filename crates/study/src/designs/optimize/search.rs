@@ -8,7 +8,7 @@ use kempe_motion::progress::{Done, Progress, Stage};
 use kempe_optimize::{
     Candidate, CmaEsOptions, DifferentialEvolutionOptions, Ended, Evaluation, Found,
     MultiStartOptions, Multipliers, Nsga2Options, Optimum, Progress as Told, Scales, SqpOptions,
-    Task, Workers, cma_es, differential_evolution, multi_start, nsga2, refine, sqp,
+    Task, Workers, cma_es, differential_evolution, multi_start, nsga2, refine, sqp, widen,
 };
 
 use super::discrete::{all_of, with_choices};
@@ -182,17 +182,24 @@ pub(super) fn search(
         let points = match found.feasible && !stopped {
             true => {
                 let left = all.saturating_sub(found.evaluations);
-                let options = (&local(), left);
+                let options = (&local(), left / 2);
                 let refined = refine(problem, &found.members, options, workers, &mut hears);
                 stopped |= refined.ended == Ended::Stopped;
-                let members = refined.members.iter();
+                let mut members = refined.members;
+                if !stopped {
+                    let options = (&local(), left.saturating_sub(refined.evaluations));
+                    let widened = widen(problem, members, POINTS, options, workers, &mut hears);
+                    stopped |= widened.ended == Ended::Stopped;
+                    members = widened.members;
+                }
+                let members = members.iter();
                 members.map(|m| point(&m.candidate, m.residual)).collect()
             }
             false => (found.members.iter())
                 .map(|c| point(c, f64::INFINITY))
                 .collect::<Vec<_>>(),
         };
-        let how = "NSGA-II; each point moved down until no step betters all goals".to_owned();
+        let how = "NSGA-II; each point moved down until no step betters all goals; ends and gaps of the front filled".to_owned();
         let front = Front { points, stopped };
         return (!front.points.is_empty()).then_some(Sought::Front { front, how });
     }

@@ -1,0 +1,339 @@
+//! Ways down to first-order optimal designs of a front.
+//!
+//! The largest of some objectives' changes from a target, each by the front's range, is minimised (A. Pascoletti and P. Serafini, 1984; of pieces, it is
+//! one objective of [`sqp`](crate::sqp())). Objectives whose multipliers are zero there might fall further while the others stay: these are minimised next, with
+//! the others kept, so that no merely weak optimum is left.
+
+use crate::dominance::dominates;
+use crate::problem::{self, Evaluation, Piece, Problem, Scales, Slopes, sound_scale};
+use crate::progress::{Ended, Hears, Progress};
+use crate::sqp::{Going, Optimum, SqpOptions, side_by_side};
+use crate::standing::Candidate;
+use crate::workers::Workers;
+
+/// A share of the multipliers that is nothing.
+const NOTHING: f64 = 1e-9;
+/// A fall of an objective by more than this, of the front's range, is worth a design of which less is known.
+const SOMETHING: f64 = 1e-6;
+
+/// A design of a refined front.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Refined {
+    /// The design and what it is worth.
+    pub candidate: Candidate,
+    /// How far the first-order conditions are missed, in the front's ranges over the box's width; infinite where steps could not begin.
+    pub residual: f64,
+    /// The multipliers of the objectives, each by its range, summing to one. Divided by the ranges their ratios are what one objective costs
+    /// in units of another.
+    pub shares: Vec<f64>,
+    /// Why the steps ended.
+    pub ended: Ended,
+}
+
+/// A refined front.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RefinedFront {
+    /// The designs, by their first objective; none dominates another.
+    pub members: Vec<Refined>,
+    /// Designs evaluated.
+    pub evaluations: usize,
+    /// The largest residual of those whose steps began.
+    pub residual: f64,
+    /// [`Ended::Converged`] where all were refined.
+    pub ended: Ended,
+}
+
+impl RefinedFront {
+    /// What is left of some designs where none dominates or repeats another.
+    pub(crate) fn of(mut members: Vec<Refined>, evaluations: usize, ended: Ended) -> Self {
+        keep_undominated(&mut members);
+        let residuals = members.iter().map(|m| m.residual);
+        Self {
+            residual: residuals.filter(|r| r.is_finite()).fold(0.0, f64::max),
+            members,
+            evaluations,
+            ended,
+        }
+    }
+}
+
+/// From the least to the largest value of every objective; one where that is nothing.
+pub(crate) fn ranges<'a>(
+    all: impl Iterator<Item = &'a Candidate> + Clone,
+    objectives: usize,
+) -> Vec<f64> {
+    let range = |k: usize| {
+        let values = all.clone().filter_map(|c| c.evaluation.objectives.get(k));
+        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| {
+            (l.min(*v), h.max(*v))
+        });
+        sound_scale(high - low)
+    };
+    (0..objectives).map(range).collect()
+}
+
+/// What becomes of an objective on a way down.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Role {
+    /// It is among those of which the largest change is minimised.
+    Lessened,
+    /// It may not rise over its target.
+    Kept,
+    /// It may be anything, and is lessened when those that are lessened now can fall no more.
+    Free,
+}
+
+/// A way down.
+pub(crate) struct Way {
+    start: Vec<f64>,
+    target: Vec<f64>,
+    roles: Vec<Role>,
+    to_end: bool,
+    /// Where it led to, or what it refines.
+    pub member: Option<Refined>,
+    goes_on: bool,
+}
+
+impl Way {
+    /// From a design to one that is no worse in any objective.
+    pub fn of(candidate: &Candidate) -> Self {
+        let target = candidate.evaluation.objectives.clone();
+        let objectives = target.len();
+        Self {
+            member: Some(Refined {
+                candidate: candidate.clone(),
+                residual: f64::INFINITY,
+                shares: vec![0.0; objectives],
+                ended: Ended::Stopped,
+            }),
+            ..Self::towards(candidate.design.clone(), target)
+        }
+    }
+
+    /// From a design to one that is as much better or worse in every objective than a target, by the front's ranges.
+    pub fn towards(start: Vec<f64>, target: Vec<f64>) -> Self {
+        Self {
+            roles: vec![Role::Lessened; target.len()],
+            start,
+            target,
+            to_end: false,
+            member: None,
+            goes_on: true,
+        }
+    }
+
+    /// From a design to the least of one objective, and there to the least of the others.
+    pub fn to_end(candidate: &Candidate, objective: usize) -> Self {
+        let mut way = Self::towards(
+            candidate.design.clone(),
+            candidate.evaluation.objectives.clone(),
+        );
+        way.to_end = true;
+        way.roles = vec![Role::Free; way.target.len()];
+        way.roles[objective] = Role::Lessened;
+        way
+    }
+
+    /// Takes over where steps led to, and says which objectives are lessened next.
+    fn take(
+        &mut self,
+        problem: &dyn Problem,
+        ranges: &[f64],
+        found: Optimum,
+        options: &SqpOptions,
+    ) {
+        self.goes_on = false;
+        // The problem's own values there, and whose pieces the multipliers are.
+        let evaluation = problem::evaluate(problem, &found.design);
+        let slopes = problem::slopes(problem, &found.design);
+        let first = self.roles.iter().all(|role| *role != Role::Kept);
+        let usable = found.violation <= options.feasibility && evaluation.is_defined();
+        let (true, Some(slopes)) = (usable, slopes) else {
+            if let (true, Some(member)) = (first, &mut self.member) {
+                member.ended = found.ended;
+            }
+            return;
+        };
+        if !first && self.to_end && !found.ended.is_optimal() {
+            // Where what is kept has its least value at one place, conditions of first order say nothing of the others.
+            let both = self.target.iter().zip(&evaluation.objectives).zip(ranges);
+            let falls = both.map(|((before, now), range)| (before - now) / range);
+            if falls.fold(0.0, f64::max) <= SOMETHING {
+                return;
+            }
+        }
+        let mut pieces = found.multipliers.objectives.iter().flatten();
+        let mut shares = vec![0.0; self.roles.len()];
+        for (k, own) in slopes.objectives.iter().enumerate() {
+            if self.roles[k] == Role::Lessened {
+                shares[k] = pieces.by_ref().take(own.len()).sum();
+            }
+        }
+        let before = self.member.take().filter(|_| !first);
+        self.target.clone_from(&evaluation.objectives);
+        self.start.clone_from(&found.design);
+        self.member = Some(Refined {
+            shares: before.map_or(shares.clone(), |before| before.shares),
+            candidate: Candidate {
+                design: found.design,
+                evaluation,
+            },
+            residual: found.residual,
+            ended: found.ended,
+        });
+        let held = self.roles.iter().zip(&shares);
+        let mut held = held.filter(|(role, share)| **role == Role::Lessened && **share > NOTHING);
+        let moves = held.next().is_some();
+        for (role, share) in self.roles.iter_mut().zip(&shares) {
+            *role = match role {
+                Role::Lessened if *share <= NOTHING => Role::Lessened,
+                Role::Free => Role::Lessened,
+                Role::Lessened | Role::Kept => Role::Kept,
+            };
+        }
+        let left = self.roles.contains(&Role::Lessened);
+        self.goes_on = left && moves && found.ended != Ended::Stopped;
+    }
+}
+
+/// Goes all ways to their ends, side by side; options hold for every descent of every way, and all together evaluate so many designs at most. How many
+/// were evaluated before is told besides. The answer is how many these are now, and why it ended.
+pub(crate) fn go(
+    problem: &dyn Problem,
+    ways: &mut [Way],
+    ranges: &[f64],
+    (options, budget, before): (&SqpOptions, usize, usize),
+    workers: &dyn Workers,
+    hears: Hears,
+) -> (usize, Ended) {
+    let (mut evaluations, mut ended) = (before, Ended::Converged);
+    let all = budget.min(before + ways.len() * options.evaluations);
+    loop {
+        let asked: Vec<usize> = (0..ways.len()).filter(|k| ways[*k].goes_on).collect();
+        if asked.is_empty() || ended == Ended::Stopped {
+            break;
+        }
+        if evaluations >= budget {
+            ended = Ended::Budget;
+            break;
+        }
+        let scalarised = asked.iter().map(|k| Scalarised {
+            target: ways[*k].target.clone(),
+            ranges: ranges.to_vec(),
+            roles: ways[*k].roles.clone(),
+            problem,
+        });
+        let scalarised: Vec<Scalarised> = scalarised.collect();
+        let starts = asked.iter().zip(&scalarised).map(|(k, own)| {
+            let own: &dyn Problem = own;
+            (own, ways[*k].start.clone())
+        });
+        let left = budget.saturating_sub(evaluations);
+        let found = side_by_side(starts.collect(), (options, left), workers, &mut |going| {
+            let told = hears(&Progress {
+                evaluations: evaluations + going.iter().map(Going::evaluations).sum::<usize>(),
+                budget: all,
+                best: None,
+                violation: 0.0,
+            });
+            if told.is_break() {
+                ended = Ended::Stopped;
+            }
+            told
+        });
+        for (k, optimum) in asked.into_iter().zip(found) {
+            evaluations += optimum.evaluations + 1;
+            ways[k].take(problem, ranges, optimum, options);
+        }
+    }
+    (evaluations, ended)
+}
+
+/// Objectives by their ranges from a target: the largest of some is minimised, others may not rise.
+struct Scalarised<'a> {
+    problem: &'a dyn Problem,
+    target: Vec<f64>,
+    ranges: Vec<f64>,
+    roles: Vec<Role>,
+}
+
+impl Scalarised<'_> {
+    fn kept(&self) -> usize {
+        self.roles.iter().filter(|r| **r == Role::Kept).count()
+    }
+}
+
+impl Problem for Scalarised<'_> {
+    fn bounds(&self) -> &[[f64; 2]] {
+        self.problem.bounds()
+    }
+
+    fn constraints(&self) -> usize {
+        self.problem.constraints() + self.kept()
+    }
+
+    fn scales(&self) -> Option<Scales> {
+        let mut scales = self.problem.scales()?;
+        scales.objectives = vec![1.0];
+        scales.constraints.extend(vec![1.0; self.kept()]);
+        Some(scales)
+    }
+
+    fn evaluate(&self, design: &[f64]) -> Evaluation {
+        let mut evaluation = problem::evaluate(self.problem, design);
+        if !evaluation.is_defined() {
+            return evaluation;
+        }
+        let mut largest = f64::NEG_INFINITY;
+        for (k, value) in evaluation.objectives.iter().enumerate() {
+            let change = (value - self.target[k]) / self.ranges[k];
+            match self.roles[k] {
+                Role::Lessened => largest = largest.max(change),
+                Role::Kept => evaluation.constraints.push(change),
+                Role::Free => {}
+            }
+        }
+        evaluation.objectives = vec![largest];
+        evaluation
+    }
+
+    fn slopes(&self, design: &[f64]) -> Option<Slopes> {
+        let mut slopes = self.problem.slopes(design)?;
+        let mut pieces = Vec::new();
+        for (k, own) in slopes.objectives.drain(..).enumerate() {
+            let (target, range) = (self.target[k], self.ranges[k]);
+            let changed = own.into_iter().map(|p| Piece {
+                value: (p.value - target) / range,
+                slope: p.slope.into_iter().map(|g| g / range).collect(),
+            });
+            match self.roles[k] {
+                Role::Lessened => pieces.extend(changed),
+                Role::Kept => slopes.constraints.push(changed.collect()),
+                Role::Free => {}
+            }
+        }
+        slopes.objectives = vec![pieces];
+        Some(slopes)
+    }
+}
+
+/// Leaves out what others dominate, and what they repeat.
+fn keep_undominated(members: &mut Vec<Refined>) {
+    let objectives: Vec<Vec<f64>> = members
+        .iter()
+        .map(|m| m.candidate.evaluation.objectives.clone())
+        .collect();
+    let mut place = 0;
+    members.retain(|_| {
+        let own = &objectives[place];
+        let dominated = objectives.iter().any(|other| dominates(other, own));
+        let repeated = objectives[..place].contains(own);
+        place += 1;
+        !dominated && !repeated
+    });
+    members.sort_by(|a, b| {
+        let [a, b] = [a, b].map(|m| &m.candidate.evaluation.objectives);
+        let orders = a.iter().zip(b).map(|(x, y)| x.total_cmp(y));
+        orders.fold(std::cmp::Ordering::Equal, std::cmp::Ordering::then)
+    });
+}

@@ -1,0 +1,176 @@
+//! A front led to its ends, and filled where it is thin.
+//!
+//! The ends are the least of each objective. Of two objectives, the widest gaps between neighbours are filled by ways down towards the chord between
+//! them, which the front crosses if it has anything there, hollow or not (I. Das and J. E. Dennis's normal-boundary intersection, 1998, between neighbours).
+
+use crate::front::{Refined, RefinedFront, Way, go, ranges};
+use crate::problem::{Problem, evaluate_all};
+use crate::progress::{Ended, Hears};
+use crate::sqp::SqpOptions;
+use crate::standing::Candidate;
+use crate::workers::Workers;
+
+/// Gaps are filled so many times at most.
+const ROUNDS: usize = 6;
+/// A gap this many times as wide as others should be is one.
+const WIDE: f64 = 1.6;
+/// A design that is nearer to a gap's end than this part of the gap does not fill it.
+const NEAR: f64 = 0.02;
+
+/// Leads a front to its ends and fills its gaps up to so many designs, side by side; options hold for every descent, and all together evaluate so many
+/// designs at most. A front that nobody refined has its designs where they were.
+pub fn widen(
+    problem: &dyn Problem,
+    front: Vec<Refined>,
+    points: usize,
+    (options, budget): (&SqpOptions, usize),
+    workers: &dyn Workers,
+    hears: Hears,
+) -> RefinedFront {
+    let objectives = problem.objectives();
+    let scales = |all: &[Refined]| ranges(all.iter().map(|m| &m.candidate), objectives);
+    let ends = (0..objectives).filter_map(|k| {
+        let value = |m: &&Refined| m.candidate.evaluation.objectives[k];
+        let best = front.iter().min_by(|a, b| value(a).total_cmp(&value(b)))?;
+        Some(Way::to_end(&best.candidate, k))
+    });
+    let mut ways: Vec<Way> = ends.collect();
+    let with = (options, budget, 0);
+    let (mut evaluations, mut ended) =
+        go(problem, &mut ways, &scales(&front), with, workers, hears);
+    let joined = |front: Vec<Refined>, ways: Vec<Way>| {
+        let found = ways.into_iter().filter_map(|way| way.member);
+        RefinedFront::of(front.into_iter().chain(found).collect(), 0, ended).members
+    };
+    let mut members = joined(front, ways);
+    // The left ends of gaps that nothing fills.
+    let mut empty: Vec<Vec<f64>> = Vec::new();
+    for _ in 0..ROUNDS {
+        if objectives != 2 || ended != Ended::Converged || evaluations >= budget {
+            break;
+        }
+        let ranges = scales(&members);
+        let gaps = gaps(&members, &ranges, points, &empty);
+        if gaps.is_empty() {
+            break;
+        }
+        let places: Vec<Place> = gaps.iter().flat_map(|gap| gap.places(&members)).collect();
+        let blends: Vec<Vec<f64>> = places.iter().map(|place| place.blend.clone()).collect();
+        let known = evaluate_all(problem, &blends, workers);
+        evaluations += blends.len();
+        let starts = places.into_iter().zip(known);
+        let ways = starts.map(|(place, known)| match known.is_defined() {
+            true => Way::towards(place.blend, place.target),
+            false => Way::towards(place.nearer, place.target),
+        });
+        let mut ways: Vec<Way> = ways.collect();
+        let with = (options, budget, evaluations);
+        (evaluations, ended) = go(problem, &mut ways, &ranges, with, workers, hears);
+        let ends = gaps.iter().map(|gap| gap.ends(&members).map(objectives_of));
+        let ends: Vec<[Vec<f64>; 2]> = ends.collect();
+        let found = ways.into_iter().filter_map(|way| way.member);
+        members = RefinedFront::of(members.into_iter().chain(found).collect(), 0, ended).members;
+        let filled = |[a, b]: &[Vec<f64>; 2]| {
+            let margin = NEAR * (b[0] - a[0]);
+            let mut own = members.iter().map(|m| m.candidate.evaluation.objectives[0]);
+            own.any(|f| f > a[0] + margin && f < b[0] - margin)
+        };
+        let unfilled = ends.into_iter().filter(|ends| !filled(ends));
+        empty.extend(unfilled.map(|[a, _]| a));
+    }
+    if objectives == 2 {
+        thin(&mut members, points);
+    }
+    RefinedFront::of(members, evaluations, ended)
+}
+
+/// Leaves out designs of a front of two objectives where it is thickest, until there are no more than asked for; its ends stay.
+fn thin(members: &mut Vec<Refined>, points: usize) {
+    while members.len() > points.max(2) {
+        let ranges = ranges(members.iter().map(|m| &m.candidate), 2);
+        let room = members
+            .windows(3)
+            .map(|three| width(&three[0], &three[2], &ranges));
+        let thickest = room.enumerate().min_by(|(_, a), (_, b)| a.total_cmp(b));
+        members.remove(thickest.map_or(0, |(k, _)| k) + 1);
+    }
+}
+
+/// How far two designs are apart, by the front's ranges.
+fn width(a: &Refined, b: &Refined, ranges: &[f64]) -> f64 {
+    let [a, b] = [a, b].map(|m| &m.candidate.evaluation.objectives);
+    let both = a.iter().zip(b).zip(ranges);
+    both.map(|((a, b), range)| ((b - a) / range).abs()).sum()
+}
+
+/// Between a member and the next, so many designs are missing.
+struct Gap {
+    after: usize,
+    missing: usize,
+}
+
+impl Gap {
+    fn ends<'m>(&self, members: &'m [Refined]) -> [&'m Candidate; 2] {
+        [self.after, self.after + 1].map(|k| &members[k].candidate)
+    }
+
+    /// Places on the chord between its ends.
+    fn places(&self, members: &[Refined]) -> Vec<Place> {
+        let [a, b] = self.ends(members);
+        let between = |a: &[f64], b: &[f64], part: f64| -> Vec<f64> {
+            let both = a.iter().zip(b);
+            both.map(|(a, b)| a + part * (b - a)).collect()
+        };
+        let parts = (1..=self.missing).map(|k| k as f64 / (self.missing + 1) as f64);
+        let place = parts.map(|part| Place {
+            blend: between(&a.design, &b.design, part),
+            nearer: if part <= 0.5 { a } else { b }.design.clone(),
+            target: between(&a.evaluation.objectives, &b.evaluation.objectives, part),
+        });
+        place.collect()
+    }
+}
+
+/// A place on the chord between two designs.
+struct Place {
+    /// The design between them.
+    blend: Vec<f64>,
+    /// The nearer of both.
+    nearer: Vec<f64>,
+    /// The objectives there.
+    target: Vec<f64>,
+}
+
+fn objectives_of(candidate: &Candidate) -> Vec<f64> {
+    candidate.evaluation.objectives.clone()
+}
+
+/// The gaps of a front of two objectives that should have so many designs evenly, the widest first.
+fn gaps(members: &[Refined], ranges: &[f64], points: usize, empty: &[Vec<f64>]) -> Vec<Gap> {
+    // What is too much in the end where it was thick is left out.
+    let left = (2 * points).saturating_sub(members.len());
+    let widths = members.windows(2).map(|pair| {
+        let known = empty.contains(&objectives_of(&pair[0].candidate));
+        if known {
+            0.0
+        } else {
+            width(&pair[0], &pair[1], ranges)
+        }
+    });
+    let widths: Vec<f64> = widths.collect();
+    let wanted = widths.iter().sum::<f64>() / points.saturating_sub(1).max(1) as f64;
+    let mut order: Vec<usize> = (0..widths.len()).collect();
+    order.sort_by(|a, b| widths[*b].total_cmp(&widths[*a]).then(a.cmp(b)));
+    let mut all: Vec<Gap> = Vec::new();
+    let mut placed = 0;
+    for after in order {
+        let missing = (widths[after] / wanted).round() as usize;
+        let missing = missing.saturating_sub(1).max(1).min(left - placed);
+        if missing == 0 || widths[after].is_nan() || widths[after] <= WIDE * wanted {
+            break;
+        }
+        placed += missing;
+        all.push(Gap { after, missing });
+    }
+    all
+}
