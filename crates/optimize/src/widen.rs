@@ -17,6 +17,9 @@ const WIDE: f64 = 1.6;
 /// A design that is nearer to a gap's end than this part of the gap does not fill it.
 const NEAR: f64 = 0.02;
 
+/// Designs that a way down tries, about: no more ways are begun than can be gone to their ends.
+const OF_WAY: usize = 10;
+
 /// Leads a front to its ends and fills its gaps up to so many designs, side by side; options hold for every descent, and all together evaluate so many
 /// designs at most. A front that nobody refined has its designs where they were.
 pub fn widen(
@@ -50,7 +53,8 @@ pub fn widen(
             break;
         }
         let ranges = scales(&members);
-        let gaps = gaps(&members, &ranges, points, &empty);
+        let most = (budget - evaluations) / OF_WAY;
+        let gaps = gaps(&members, &ranges, (points, most), &empty);
         if gaps.is_empty() {
             break;
         }
@@ -145,10 +149,15 @@ fn objectives_of(candidate: &Candidate) -> Vec<f64> {
     candidate.evaluation.objectives.clone()
 }
 
-/// The gaps of a front of two objectives that should have so many designs evenly, the widest first.
-fn gaps(members: &[Refined], ranges: &[f64], points: usize, empty: &[Vec<f64>]) -> Vec<Gap> {
+/// The gaps of a front of two objectives that should have so many designs evenly, the widest first, with so many missing at most.
+fn gaps(
+    members: &[Refined],
+    ranges: &[f64],
+    (points, most): (usize, usize),
+    empty: &[Vec<f64>],
+) -> Vec<Gap> {
     // What is too much in the end where it was thick is left out.
-    let left = (2 * points).saturating_sub(members.len());
+    let left = (2 * points).saturating_sub(members.len()).min(most);
     let widths = members.windows(2).map(|pair| {
         let known = empty.contains(&objectives_of(&pair[0].candidate));
         if known {

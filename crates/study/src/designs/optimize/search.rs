@@ -26,6 +26,8 @@ const OF_FRONT: usize = 600;
 const POINTS: usize = 40;
 /// Generations of a front at least, where the file allows few designs.
 const GENERATIONS: usize = 5;
+/// Designs that a point's way down tries, about.
+const OF_POINT: usize = 10;
 /// Steps and designs of one descent.
 const STEPS: usize = 150;
 const OF_DESCENT: usize = 1000;
@@ -183,7 +185,8 @@ pub(super) fn search(
             true => {
                 let left = all.saturating_sub(found.evaluations);
                 let options = (&local(), left / 2);
-                let refined = refine(problem, &found.members, options, workers, &mut hears);
+                let some = evenly(&found.members, (left / 2 / OF_POINT).max(study.goals.len()));
+                let refined = refine(problem, &some, options, workers, &mut hears);
                 stopped |= refined.ended == Ended::Stopped;
                 let mut members = refined.members;
                 if !stopped {
@@ -307,6 +310,15 @@ pub(super) fn search(
     }
     optima.in_parameters(problem);
     Some(Sought::Optima { optima, how })
+}
+
+/// So many at most of a list, from its first to its last.
+fn evenly<T: Clone>(all: &[T], most: usize) -> Vec<T> {
+    if all.len() <= most {
+        return all.to_vec();
+    }
+    let place = |k: usize| k * (all.len() - 1) / most.saturating_sub(1).max(1);
+    (0..most).map(|k| all[place(k)].clone()).collect()
 }
 
 /// What a population found: the optimum that its best led to, or its best where that is better.
