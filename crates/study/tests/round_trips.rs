@@ -1,6 +1,6 @@
 //! Ten thousand random linkages, read in some positions, whose lengths a study finds again.
 //!
-//! Takes an hour on two cores: `cargo nextest run -p kempe-study --run-ignored only -E 'binary(round_trips)' --no-capture`.
+//! Takes half an hour on two cores: `cargo nextest run -p kempe-study --run-ignored only -E 'binary(round_trips)' --no-capture`.
 
 use std::fmt::Write as _;
 use std::sync::atomic::{AtomicU64, Ordering};
