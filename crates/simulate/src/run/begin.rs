@@ -252,7 +252,7 @@ pub fn ready(
         let instant = plant.instant();
         placed = Placed {
             poses: instant.poses.clone(),
-            near: instant.angles.clone(),
+            near: instant.angles().collect(),
         };
     }
     // Switches may go by pressures, and pressures by loads that are switched.
