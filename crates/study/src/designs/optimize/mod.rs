@@ -1,28 +1,31 @@
 //! Studies that optimise: the design that does something best, with what it hangs on.
 //!
 //! `problem.rs` puts designs before the methods of `kempe-optimize`, `pieces.rs` tells them where over a motion other peaks lie near the highest, `search.rs`
-//! runs a method, `discrete.rs` takes values of a catalogue, `told.rs` says what was found.
+//! runs a method, `discrete.rs` takes values of a catalogue, `journal.rs` keeps what was asked, `told.rs` says what was found.
 
 mod discrete;
+mod journal;
 mod pieces;
 mod problem;
 mod search;
 mod told;
 
-use kempe_model::{Diagnostic, Model, OptimizeStudy, ParameterId};
+use kempe_batch::Executor;
+use kempe_model::{Diagnostic, Model, OptimizeStudy, ParameterId, Study, StudyKind};
 use kempe_motion::progress::{Progress, Silent, Stage};
 use kempe_optimize::Problem;
 
 use super::asked::{kept, numbers_of};
 use super::bench::Bench;
 use super::idle::idle_at_own;
-use super::study_of;
+use super::{Parts, Unkept, study_of};
 use crate::explain::stopped;
 use crate::quantity::Quantity;
 use crate::result::StudyResult;
 use crate::unit::Units;
+use journal::Journal;
 use problem::Designs;
-use search::search;
+use search::{Listener, On, search};
 use told::Teller;
 
 /// The bench of a study, and a second one for what is told of designs besides.
@@ -76,7 +79,7 @@ fn before(
     let mut told = own;
     told.extend(told::outside(&problem, study, &units));
     let spans = study.vary.iter().map(|it| it.span.clone());
-    told.extend(idle_at_own(bench, problem.bounds(), spans));
+    told.extend(idle_at_own(bench, problem.ranges(), spans));
     told.extend(told::idle_method(study));
     told
 }
@@ -86,6 +89,33 @@ pub(crate) fn optimization(
     model: &Model,
     name: &str,
     study: &OptimizeStudy,
+    with: (&dyn Executor, &mut dyn Parts),
+    progress: &mut dyn Progress,
+) -> Result<StudyResult, Vec<Diagnostic>> {
+    optimum(model, name, study, with, true, progress)
+}
+
+/// The same with differences in the place of exact derivatives, for the benchmark that holds them against each other.
+#[doc(hidden)]
+pub fn optimum_by_differences(
+    model: &Model,
+    study: &Study,
+    executor: &dyn Executor,
+) -> Result<StudyResult, Vec<Diagnostic>> {
+    let StudyKind::Optimize(asked) = &study.kind else {
+        return Err(Vec::new());
+    };
+    let with: (&dyn Executor, &mut dyn Parts) = (executor, &mut Unkept);
+    optimum(model, &study.name, asked, with, false, &mut Silent)
+}
+
+/// The optimum of a study; `exact` where its derivatives are, but for simulations.
+fn optimum(
+    model: &Model,
+    name: &str,
+    study: &OptimizeStudy,
+    (executor, parts): (&dyn Executor, &mut dyn Parts),
+    exact: bool,
     progress: &mut dyn Progress,
 ) -> Result<StudyResult, Vec<Diagnostic>> {
     let (mut bench, mut beside) = benches(model, study)?;
@@ -93,11 +123,29 @@ pub(crate) fn optimization(
     // What was found of the file's own motion helps there, too.
     beside.share(&bench);
     let mut problem = Designs::new(&bench, study);
-    let Some(found) = search(&mut problem, study, progress) else {
-        return Err([diagnostics, vec![stopped(Stage::Trying)]].concat());
+    problem.differences |= !exact;
+    let shape = [
+        study.vary.len(),
+        problem.objectives(),
+        problem.constraints(),
+    ];
+    let alone = |failed: Box<Diagnostic>| vec![*failed];
+    problem.journal = Journal::open(parts, shape).map_err(alone)?;
+    let mut listener = Listener::new(&problem, parts, progress);
+    let found = search(&problem, study, &On(executor), &mut listener);
+    if let Some(failed) = listener.failed {
+        return Err(alone(failed));
+    }
+    let Some(found) = found else {
+        return Err([diagnostics, vec![stopped(Stage::Searching)]].concat());
     };
     let teller = Teller::new(&bench, &beside, study, name);
     teller
-        .result(&mut problem, found, diagnostics.clone())
+        .result(&problem, found, diagnostics.clone())
         .map_err(|refused| [diagnostics, refused].concat())
+}
+
+/// In how many parts at most a study is kept that looks for something: how many there will be is not known before. None of any other study.
+pub fn most_parts(study: &Study) -> Option<usize> {
+    matches!(study.kind, StudyKind::Optimize(_)).then_some(journal::MOST_PARTS)
 }

@@ -1,8 +1,13 @@
 //! What is optimised, as the methods see it: parameters in a box, numbers of designs on the bench.
 
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use kempe_model::{Among, Model, OptimizeStudy, StudyKind, value};
+use kempe_number::math;
 use kempe_optimize::{Evaluation, Piece, Problem, Slopes};
 
+use super::journal::{Journal, lock};
 use super::pieces::{Wanted, pieces};
 use crate::designs::asked::kept;
 use crate::designs::bench::{Bench, Refused};
@@ -10,18 +15,36 @@ use crate::designs::bench::{Bench, Refused};
 /// Steps of differences where there are no exact derivatives, in parts of the box: simulations keep ten digits and more.
 const DIFFERENCE: f64 = 1e-5;
 
-/// Designs of a study as a problem.
+/// A design that cannot be asked, and why.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Nearest {
+    /// How far it is from one that can.
+    lack: f64,
+    /// The values of its parameters, SI.
+    pub values: Vec<f64>,
+    /// Why.
+    pub why: String,
+}
+
+/// Designs of a study as a problem. Its variables are the parameters, SI, or their logarithms.
 pub(super) struct Designs<'b, 'm> {
     pub bench: &'b Bench<'m>,
     /// What is to be small or large, then what must be kept.
     pub wanted: Vec<Wanted>,
     goals: usize,
     bounds: Vec<[f64; 2]>,
-    /// Why the last design that cannot be asked cannot.
-    pub refused: Option<String>,
-    /// Designs that were asked for their numbers, and for their derivatives.
-    pub asked: usize,
-    pub sloped: usize,
+    /// The least and the greatest value of every parameter, SI.
+    ranges: Vec<[f64; 2]>,
+    /// Whether a variable is the logarithm of its parameter.
+    logs: Vec<bool>,
+    /// Whether derivatives are differences.
+    pub differences: bool,
+    /// What was asked before, and what was asked since.
+    pub journal: Journal,
+    /// The nearest of the designs that cannot be asked.
+    nearest: Mutex<Option<Nearest>>,
+    asked: AtomicUsize,
+    sloped: AtomicUsize,
 }
 
 impl<'b, 'm> Designs<'b, 'm> {
@@ -35,47 +58,120 @@ impl<'b, 'm> Designs<'b, 'm> {
         });
         let limits = study.subject_to.iter();
         let limits = limits.map(|limit| Wanted::new(mechanism, kept(model, limit), -1.0));
+        let logs: Vec<bool> = (study.vary.iter())
+            .map(|chosen| matches!(chosen.among, Among::Factors(_)))
+            .collect();
+        let ranges = ranges(model, study);
+        let bounds = ranges.iter().zip(&logs);
+        let bounds = bounds.map(|(range, log)| range.map(|x| if *log { math::ln(x) } else { x }));
         Self {
             bench,
             wanted: goals.chain(limits).collect(),
             goals: study.goals.len(),
-            bounds: bounds(model, study),
-            refused: None,
-            asked: 0,
-            sloped: 0,
+            bounds: bounds.collect(),
+            ranges,
+            logs,
+            differences: matches!(bench.over.kind, StudyKind::Simulate(_)),
+            journal: Journal::default(),
+            nearest: Mutex::new(None),
+            asked: AtomicUsize::new(0),
+            sloped: AtomicUsize::new(0),
         }
     }
 
-    fn evaluated(&mut self, values: &[f64]) -> Evaluation {
-        self.asked += 1;
+    /// The least and the greatest value of every parameter, SI.
+    pub fn ranges(&self) -> &[[f64; 2]] {
+        &self.ranges
+    }
+
+    /// Designs that were asked for their numbers, for derivatives by differences besides.
+    pub fn asked(&self) -> usize {
+        self.asked.load(Ordering::Relaxed)
+    }
+
+    /// Designs that were asked for derivatives.
+    pub fn sloped(&self) -> usize {
+        self.sloped.load(Ordering::Relaxed)
+    }
+
+    /// The nearest of the designs that cannot be asked; where two are as near, the one of the least values.
+    pub fn nearest(&self) -> Option<Nearest> {
+        lock(&self.nearest).clone()
+    }
+
+    /// The parameters of a design, SI.
+    pub fn values(&self, design: &[f64]) -> Vec<f64> {
+        let all = design.iter().zip(&self.logs).zip(&self.ranges);
+        all.map(|((x, log), [low, high])| match log {
+            true => math::exp(*x).clamp(*low, *high),
+            false => *x,
+        })
+        .collect()
+    }
+
+    /// The design of these parameters.
+    pub fn variables(&self, values: &[f64]) -> Vec<f64> {
+        let all = values.iter().zip(&self.logs).zip(&self.ranges);
+        all.map(|((x, log), [low, high])| match log {
+            true => math::ln(x.clamp(*low, *high)),
+            false => *x,
+        })
+        .collect()
+    }
+
+    /// By how much each parameter grows with its variable.
+    pub fn growth(&self, values: &[f64]) -> Vec<f64> {
+        let all = values.iter().zip(&self.logs);
+        all.map(|(x, log)| if *log { *x } else { 1.0 }).collect()
+    }
+
+    /// What parameters are worth, SI, asked for the sake of what is told.
+    pub fn look(&self, values: &[f64]) -> (Evaluation, Option<String>) {
         let numbers = match self.bench.numbers(values) {
             Ok(numbers) => numbers,
-            Err(refused) => return self.lacking(refused),
+            Err(Refused { lack, why }) => return (Evaluation::lacking(lack), Some(why)),
         };
         if let Some(k) = numbers.iter().position(|x| !x.is_finite()) {
             let why = format!("`{}` has no finite value", self.wanted[k].number.name);
-            return self.lacking(Refused { lack: 1.0, why });
+            return (Evaluation::lacking(1.0), Some(why));
         }
         let signed = numbers.iter().zip(&self.wanted).map(|(x, w)| w.sign * x);
         let mut objectives: Vec<f64> = signed.collect();
         let constraints = objectives.split_off(self.goals);
-        Evaluation {
+        let evaluation = Evaluation {
             objectives,
             constraints,
             lack: 0.0,
+        };
+        (evaluation, None)
+    }
+
+    /// Remembers why a design cannot be asked, if none was nearer.
+    fn refuse(&self, values: &[f64], lack: f64, why: &str) {
+        let mut nearest = lock(&self.nearest);
+        let order = |a: &[f64], b: &[f64]| {
+            let orders = a.iter().zip(b).map(|(x, y)| x.total_cmp(y));
+            orders.fold(std::cmp::Ordering::Equal, std::cmp::Ordering::then)
+        };
+        let nearer = nearest.as_ref().is_none_or(|other| {
+            let by_lack = lack.total_cmp(&other.lack);
+            by_lack.then_with(|| order(values, &other.values)).is_lt()
+        });
+        if nearer {
+            *nearest = Some(Nearest {
+                lack,
+                values: values.to_vec(),
+                why: why.to_owned(),
+            });
         }
     }
 
-    fn lacking(&mut self, refused: Refused) -> Evaluation {
-        self.refused = Some(refused.why);
-        Evaluation::lacking(refused.lack)
-    }
-
     /// Pieces by central differences: each number is one.
-    fn differences(&mut self, design: &[f64]) -> Option<Vec<Vec<Piece>>> {
-        let own = self.bench.numbers(design).ok()?;
+    fn by_differences(&self, design: &[f64]) -> Option<Vec<Vec<Piece>>> {
+        let numbers = |design: &[f64]| self.bench.numbers(&self.values(design)).ok();
+        let own = numbers(design)?;
         let mut slopes = vec![vec![0.0; design.len()]; own.len()];
-        for (k, [low, high]) in self.bounds.clone().into_iter().enumerate() {
+        for (k, [low, high]) in self.bounds.iter().copied().enumerate() {
             let step = DIFFERENCE * (high - low);
             let at = |x: f64| {
                 let mut moved = design.to_vec();
@@ -84,11 +180,10 @@ impl<'b, 'm> Designs<'b, 'm> {
             };
             let (below, first) = at(design[k] - step);
             let (above, second) = at(design[k] + step);
-            self.asked += 2;
-            let (first, second) = (
-                self.bench.numbers(&first).ok()?,
-                self.bench.numbers(&second).ok()?,
-            );
+            if !(above > below) {
+                continue;
+            }
+            let (first, second) = (numbers(&first)?, numbers(&second)?);
             for (slope, (a, b)) in slopes.iter_mut().zip(first.iter().zip(&second)) {
                 slope[k] = (b - a) / (above - below);
             }
@@ -101,6 +196,17 @@ impl<'b, 'm> Designs<'b, 'm> {
             }]
         });
         Some(piece.collect())
+    }
+
+    /// Pieces with exact derivatives to the variables.
+    fn exact(&self, values: &[f64]) -> Option<Vec<Vec<Piece>>> {
+        let mut all = pieces(self.bench, &self.wanted, values).ok()?;
+        let growth = self.growth(values);
+        for piece in all.iter_mut().flatten() {
+            let slope = piece.slope.iter_mut().zip(&growth);
+            slope.for_each(|(d, growth)| *d *= growth);
+        }
+        Some(all)
     }
 }
 
@@ -117,33 +223,43 @@ impl Problem for Designs<'_, '_> {
         self.wanted.len() - self.goals
     }
 
-    fn evaluate(&mut self, designs: &[Vec<f64>]) -> Vec<Evaluation> {
-        designs
-            .iter()
-            .map(|design| self.evaluated(design))
-            .collect()
+    fn evaluate(&self, design: &[f64]) -> Evaluation {
+        self.asked.fetch_add(1, Ordering::Relaxed);
+        let values = self.values(design);
+        let (evaluation, why) = self.journal.evaluation(&values, || self.look(&values));
+        if let Some(why) = why {
+            self.refuse(&values, evaluation.lack, &why);
+        }
+        evaluation
     }
 
-    fn slopes(&mut self, design: &[f64]) -> Option<Slopes> {
-        self.sloped += 1;
-        let mut objectives = match self.bench.over.kind {
-            StudyKind::Simulate(_) => self.differences(design)?,
-            _ => pieces(self.bench, &self.wanted, design).ok()?,
-        };
-        let constraints = objectives.split_off(self.goals);
-        Some(Slopes {
-            objectives,
-            constraints,
+    fn slopes(&self, design: &[f64]) -> Option<Slopes> {
+        self.sloped.fetch_add(1, Ordering::Relaxed);
+        let values = self.values(design);
+        if self.differences {
+            let moved = self.bounds.iter().filter(|[low, high]| high > low);
+            self.asked.fetch_add(2 * moved.count(), Ordering::Relaxed);
+        }
+        self.journal.slopes(&values, || {
+            let mut objectives = match self.differences {
+                true => self.by_differences(design)?,
+                false => self.exact(&values)?,
+            };
+            let constraints = objectives.split_off(self.goals);
+            Some(Slopes {
+                objectives,
+                constraints,
+            })
         })
     }
 }
 
 /// The least and the greatest value of every parameter, SI; discrete values lie between the ends of all.
-fn bounds(model: &Model, study: &OptimizeStudy) -> Vec<[f64; 2]> {
+fn ranges(model: &Model, study: &OptimizeStudy) -> Vec<[f64; 2]> {
     let parameters = model.parameter_values::<f64>();
     let number = |x| value::<f64>(x, &parameters);
     let ends = study.vary.iter().map(|chosen| match &chosen.among {
-        Among::Between([low, high]) => [number(low), number(high)],
+        Among::Between([low, high]) | Among::Factors([low, high]) => [number(low), number(high)],
         Among::Steps { .. } | Among::Only(_) => {
             let all = choices(model, &chosen.among);
             let low = all.iter().copied().fold(f64::INFINITY, f64::min);
@@ -162,7 +278,7 @@ pub(super) fn choices(model: &Model, among: &Among) -> Vec<f64> {
     let parameters = model.parameter_values::<f64>();
     let number = |x| value::<f64>(x, &parameters);
     let mut all: Vec<f64> = match among {
-        Among::Between(_) => Vec::new(),
+        Among::Between(_) | Among::Factors(_) => Vec::new(),
         Among::Only(values) => values.iter().map(number).collect(),
         Among::Steps { between, step } => {
             let step = number(step);
