@@ -62,6 +62,17 @@ const SIMULATE: &str = "[studies.s]\nkind = \"simulate\"\nuntil = \"10 ms\"\nrow
 const CONTACT: &str = "[clearance]\nB = { radial = \"50 um\", radius = \"5 mm\", restitution = 0.3 }\n\
     [studies.s]\nkind = \"clearance\"\nmodel = \"three-state\"\nuntil = \"1 ms\"\nrows = 3\ncolumns = [\"angle(rocker)\"]\n";
 
+/// The simulation for another time.
+fn for_long(until: &str) -> String {
+    SIMULATE.replace("10 ms", until)
+}
+
+/// The same pendulums, the lower one turned twice round in a second.
+fn turned_twice(rest: &str) -> String {
+    let law = "to = 720, speed = \"720 deg/s\"";
+    pendulums(rest).replace("to = 90, speed = \"90 deg/s\"", law)
+}
+
 /// What each file is, and words of what is told of it by both.
 fn refused() -> Vec<(&'static str, String, &'static str)> {
     let held = |rest: &str| crank_rocker("turns = \"crank\", at = 30", rest);
@@ -93,21 +104,36 @@ fn refused() -> Vec<(&'static str, String, &'static str)> {
         ),
         (
             "a stop on a drive that keeps its law",
-            pendulums(SIMULATE) + "release = \"free\"\nstops = { lift = [\"none\", 45] }\n",
+            pendulums(&for_long("1 s")) + "release = \"free\"\nstops = { lift = [\"none\", 45] }\n",
             "nothing that is let go gives way at the upper stop of lift",
         ),
         (
             "a stop that gives, on a link that a kept drive turns",
-            pendulums(SIMULATE)
+            pendulums(&for_long("1 s"))
                 + "release = \"free\"\nstops = { arm = { between = [\"none\", 45], stiffness = \"5 N m/deg\" } }\n",
             "nothing that is let go gives way at the upper stop of arm",
         ),
         (
             "a stop that time alone closes",
             held("[measures]\nh = \"10 mm - 1 mm * time / 1 s\"\n")
-                + SIMULATE
+                + &for_long("20 s")
                 + "stops = { h = [0, \"none\"] }\n",
             "nothing that is let go gives way at the lower stop of h",
+        ),
+        (
+            "a stop that a kept drive comes to in its second turn",
+            turned_twice(&for_long("1 s")) + "release = \"free\"\nstops = { arm = [\"none\", 700] }\n",
+            "nothing that is let go gives way at the upper stop of arm",
+        ),
+        (
+            "a tolerance that tells nothing",
+            held(SIMULATE) + "tolerance = 10\n",
+            "a `tolerance` of 10 tells nothing of the motion",
+        ),
+        (
+            "the same where joints have play",
+            held(CONTACT) + "tolerance = 0.02\n",
+            "a `tolerance` of 0.02 tells nothing of the motion",
         ),
         (
             "oil whose start is outside the stroke",
@@ -185,6 +211,38 @@ fn what_is_let_go_need_not_come_to_the_end_of_its_law() {
                 "turns = \"rocker\", from = 110, to = 200, speed = 10",
                 CONTACT,
             ),
+        ),
+    ] {
+        for command in ["check", "run"] {
+            let (told, code) = asked(command, &model);
+            assert_eq!(told, [] as [Value; 0], "{what}: {command}");
+            assert_eq!(code, Some(0), "{what}: {command}");
+        }
+    }
+}
+
+#[test]
+fn stops_that_nothing_comes_to_are_no_hindrance() {
+    let free = "release = \"free\"\n";
+    for (what, model) in [
+        (
+            "a law that takes longer",
+            pendulums(SIMULATE) + free + "stops = { lift = [\"none\", 45] }\n",
+        ),
+        (
+            "a law that ends before",
+            pendulums(&for_long("2 s")) + free + "stops = { lift = [\"none\", 91] }\n",
+        ),
+        (
+            "a link that turns twice",
+            turned_twice(&for_long("1 s")) + free + "stops = { arm = [\"none\", 721] }\n",
+        ),
+        (
+            "a time that does not come",
+            pendulums("[measures]\nh = \"10 mm - 1 mm * time / 1 s\"\n")
+                + &for_long("1 s")
+                + free
+                + "stops = { h = [0, \"none\"] }\n",
         ),
     ] {
         for command in ["check", "run"] {

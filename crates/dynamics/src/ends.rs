@@ -83,7 +83,7 @@ impl Ends {
             }
             Self::Links([(link_a, a), (link_b, b)]) => {
                 let angle = |link: &LinkId, body: &BodyId| {
-                    at.angles[body.index()] + geometry.seat_angles[link.index()]
+                    at.angle(*body) + geometry.seat_angles[link.index()]
                 };
                 Extension {
                     length: angle(link_b, b) - angle(link_a, a),

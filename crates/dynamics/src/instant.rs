@@ -5,7 +5,7 @@ use kempe_mechanism::configuration::input_of;
 use kempe_mechanism::constraint::{Input, Situation};
 use kempe_mechanism::{BodyId, Configuration, Geometry, Mechanism, Pose};
 use kempe_model::DriveId;
-use kempe_number::{Jet, Number};
+use kempe_number::{Dual, Jet, Number};
 
 use crate::vector::{add, left, times};
 
@@ -17,8 +17,6 @@ pub type Rates<B = f64> = Jet<B, 3>;
 pub struct Instant<T> {
     /// Poses of the bodies.
     pub poses: Vec<Pose<T>>,
-    /// Unwrapped angles of the bodies, rad.
-    pub angles: Vec<T>,
     /// Velocity of the bodies' origins (m/s) and angular speed (rad/s).
     pub velocities: Vec<[T; 3]>,
     /// Acceleration of the bodies' origins (m/s^2) and angular acceleration (rad/s^2).
@@ -58,7 +56,6 @@ impl<T: Number> Instant<T> {
         let zero = [T::zero(); 3];
         Self {
             poses: vec![Pose::identity(); bodies],
-            angles: vec![T::zero(); bodies],
             velocities: vec![zero; bodies],
             accelerations: vec![zero; bodies],
             coefficients: vec![vec![zero; bodies]; drives],
@@ -70,6 +67,16 @@ impl<T: Number> Instant<T> {
             amounts: vec![T::zero(); amounts],
             time: 0.0,
         }
+    }
+
+    /// The unwrapped angle of a body, rad.
+    pub fn angle(&self, body: BodyId) -> T {
+        self.poses[body.index()].angle_near(self.near[body.index()])
+    }
+
+    /// The unwrapped angles of the bodies, rad.
+    pub fn angles(&self) -> impl Iterator<Item = T> {
+        (0..self.poses.len()).map(|body| self.angle(BodyId(body as u32)))
     }
 
     /// From a body's origin to a point given in the body's coordinates, along the frame's axes.
@@ -150,7 +157,6 @@ impl<B: Number> Instant<Rates<B>> {
             let pose = state.pose(BodyId(body as u32));
             let velocity = slopes(&pose);
             self.poses[body] = pose.map(cut);
-            self.angles[body] = self.poses[body].angle_near(state.near[body]);
             self.velocities[body] = velocity.map(cut);
             self.accelerations[body] = velocity.map(|v| cut(v.differentiate()));
         }
@@ -203,9 +209,6 @@ impl Instant<Rates> {
         for (from, to) in self.poses.iter().zip(&mut out.poses) {
             *to = from.value();
         }
-        for (from, to) in self.angles.iter().zip(&mut out.angles) {
-            *to = from.value();
-        }
         three(&self.velocities, &mut out.velocities);
         three(&self.accelerations, &mut out.accelerations);
         for (from, to) in self.coefficients.iter().zip(&mut out.coefficients) {
@@ -248,7 +251,6 @@ impl Instant<f64> {
         for (body, pose) in state.poses.iter().enumerate().skip(1) {
             let (first, second) = slopes_of(pose);
             self.poses[body] = pose.value();
-            self.angles[body] = self.poses[body].angle_near(near[body]);
             self.velocities[body] = first;
             self.accelerations[body] = second;
         }
@@ -262,11 +264,18 @@ impl Instant<f64> {
         self.near.copy_from_slice(near);
     }
 
-    /// Takes the kinematic coefficients of a drive from poses that were solved as series in its coordinate alone.
-    pub fn set_coefficients(&mut self, drive: DriveId, state: &Configuration<Jet<f64, 2>>) {
-        let out = &mut self.coefficients[drive.index()];
-        for (out, pose) in out.iter_mut().zip(&state.poses).skip(1) {
-            *out = slopes(pose).map(|slope| slope.value());
+    /// Takes the kinematic coefficients of some drives from poses that were solved with their derivatives to the coordinates of these.
+    pub fn set_coefficients<const K: usize>(
+        &mut self,
+        drives: &[DriveId],
+        state: &Configuration<Dual<f64, K>>,
+    ) {
+        for (k, drive) in drives.iter().enumerate().take(K) {
+            let out = &mut self.coefficients[drive.index()];
+            for (out, pose) in out.iter_mut().zip(&state.poses).skip(1) {
+                let turns = pose.c.re * pose.s.eps[k] - pose.s.re * pose.c.eps[k];
+                *out = [pose.x.eps[k], pose.y.eps[k], turns];
+            }
         }
     }
 
@@ -313,7 +322,6 @@ impl Instant<f64> {
         for (body, pose) in state.poses.iter().enumerate().skip(1) {
             let (first, second) = slopes_of(pose);
             self.poses[body] = pose.value();
-            self.angles[body] = self.poses[body].angle_near(near[body]);
             for k in 0..3 {
                 self.velocities[body][k] = first[k] * speed;
                 self.accelerations[body][k] = first[k] * acceleration + second[k] * square;

@@ -148,14 +148,3 @@ pub(crate) fn act<T: ForceNumber>(
         contact.act(at, |body, w| wrench::add(&mut on_bodies[body.index()], w));
     }
 }
-
-/// The power that contacts give to the mechanism, W: what they take up and give back, and what is lost in them.
-pub(crate) fn power<T: ForceNumber>(contacts: &[JointContact], at: &Instant<T>) -> T {
-    let mut sum = T::zero();
-    for contact in contacts {
-        contact.act(at, |body, w| {
-            sum += wrench::power(w, at.velocities[body.index()]);
-        });
-    }
-    sum
-}

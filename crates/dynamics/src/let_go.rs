@@ -13,9 +13,8 @@ use crate::equilibrium::Rubbing;
 use crate::forces::Forces;
 use crate::inertia::Moved;
 use crate::instant::Instant;
-use crate::joint_contact;
 use crate::virtual_power;
-use crate::wrench::Wrench;
+use crate::wrench::{self, Wrench};
 
 /// Coordinates that are let go at an instant: their mass matrix, factorized, and what accelerates them. Storage is reused.
 #[derive(Clone, Debug, Default)]
@@ -235,13 +234,29 @@ impl Forces<f64> {
         sums
     }
 
-    /// What a drive that keeps its law gives at an instant after [`Forces::let_go`], N or N m.
-    pub fn given_by(&mut self, at: &Instant<f64>, drive: DriveId) -> f64 {
-        if self.acting.friction.is_empty() {
-            self.take_up(at);
-            return virtual_power::project(&self.needed, &at.coefficients[drive.index()]).value;
+    /// What a drive that keeps its law gives at an instant after [`Forces::let_go`] of the coordinates `free`, N or N m.
+    pub fn given_by(
+        &self,
+        at: &Instant<f64>,
+        drive: DriveId,
+        free: &[DriveId],
+        found: &LetGo,
+    ) -> f64 {
+        if !self.acting.friction.is_empty() {
+            return self.drives[drive.index()].value;
         }
-        self.drives[drive.index()].value
+        // What the bodies needed while nothing that is let go accelerated, and what that carries.
+        let needed = virtual_power::project(&self.needed, &at.coefficients[drive.index()]).value;
+        let accelerations = &found.accelerations;
+        (self.acting.masses.iter()).fold(needed, |sum, mass| {
+            let arm = mass.arm(at);
+            let moved = |drive: &DriveId| mass.moved(arm, &at.coefficients[drive.index()]);
+            let own = moved(&drive);
+            let by = free.iter().zip(accelerations);
+            by.fold(sum, |sum, (other, a)| {
+                sum + a * mass.coupling(&own, &moved(other))
+            })
+        })
     }
 
     /// How the joints that rub slide at an instant; loads are those last found.
@@ -263,9 +278,13 @@ impl Forces<f64> {
             true => 0.0,
             false => self.equilibrium.friction_power(&self.acting.friction),
         };
-        rubs + energy::of_loads(&self.acting, &self.design, at, storage)
-            + energy::of_motors(&self.acting, at)
-            + joint_contact::power(&self.acting.contacts, at)
+        let contacts = self.by_contacts.iter().zip(&at.velocities);
+        let by_contacts: f64 = contacts.map(|(w, v)| wrench::power(*w, *v)).sum();
+        let by_loads = match self.acting.loads.is_empty() {
+            true => 0.0,
+            false => energy::of_loads(&self.acting, &self.design, at, storage),
+        };
+        rubs + by_loads + energy::of_motors(&self.acting, at) + by_contacts
             - energy::dissipation(&self.acting, &self.design.geometry, at)
     }
 }

@@ -558,7 +558,7 @@ static IN_TIME: [Key; 6] = [
     may("start", T::Values(&T::AnyOf(&[T::AnyValue, T::Two(&T::AnyValue)])), "{ motor = \"30 deg\", motor_rate = \"2 rad/s\" }", "Where drives that are let go start, and with `_rate` how fast; where their laws start, and at rest, unless said otherwise. Where contact may be lost, also joints with play: B = [\"3 um\", \"-2 um\"]."),
     may("stops", T::Values(&T::AnyOf(&[T::Two(&END), T::Table(&STOP)])), "{ rocker = [\"-10 deg\", \"95 deg\"] }", "Least and largest angle of a link, coordinate of a drive or value of a measure, where it is stopped."),
     may("end_when", T::AnyOf(&[T::Measure, T::List(&T::Measure, 1)]), "\"angle(rocker) <= 0 deg\"", "It ends when this comes to hold."),
-    may("tolerance", positive(D::NONE), "1e-10", "Error of a step, in parts of what moves; 1e-13 unless said otherwise."),
+    may("tolerance", positive(D::NONE), "1e-10", "Error of a step, in parts of what moves, at most 0.01; 1e-13 unless said otherwise."),
     may("method", METHOD_WORDS, "\"implicit\"", "How steps are made; as suits unless said otherwise."),
 ];
 

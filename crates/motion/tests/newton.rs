@@ -142,3 +142,39 @@ fn trees_give_what_the_poses_of_all_bodies_give() {
         "only {seen} of the generator's mechanisms have a tree"
     );
 }
+
+/// Poses hang on guesses only where the plan goes by them: without them they are the same to the last bit, and so are turns.
+#[test]
+fn poses_solved_alone_are_those_solved_with_guesses() {
+    let (mut seen, mut without) = (0, 0);
+    let generated = (0..SEEDS).map(|seed| Case::of(&make(&recipe(seed)).spec));
+    let files = [
+        "gallery/chebyshev",
+        "gallery/andrews-squeezer",
+        "gallery/drag-link",
+    ];
+    for case in files.into_iter().map(Case::example).chain(generated) {
+        let Ok(motion) = case.motion() else { continue };
+        let (low, high) = motion.reached();
+        let (mut one, mut other) = (motion.solver::<f64>(), motion.solver::<f64>());
+        for k in 0..40 {
+            let p = low + (high - low) * (f64::from(k) + 0.5) / 40.0;
+            motion.solve(&motion.design, p, &mut one);
+            motion.solve_alone(&motion.design, p, &mut other);
+            let poses = one.state.poses.iter().zip(&other.state.poses);
+            for (a, b) in poses.skip(1) {
+                let bits = |pose: &kempe_mechanism::Pose<f64>| {
+                    [pose.x, pose.y, pose.c, pose.s].map(f64::to_bits)
+                };
+                assert_eq!(bits(a), bits(b), "at {p}");
+            }
+            for (a, b) in one.branch.near.iter().zip(&other.branch.near) {
+                assert!((a - b).abs() < 1.0, "{a} {b} at {p}");
+            }
+        }
+        seen += 1;
+        let steps = &case.mechanism.plan.steps;
+        without += usize::from(!steps.iter().any(kempe_mechanism::plan::Step::needs_guess));
+    }
+    assert!(seen > 50 && without > 20, "{seen} {without}");
+}

@@ -186,7 +186,7 @@ fn rattle(runs: &mut Runs) {
             .links
             .last()
             .expect("links");
-        for tolerance in [1e-8, 1e-10, 1e-13] {
+        for tolerance in [1e-8, 1e-9, 1e-10, 1e-13] {
             let question = Question {
                 contacts: vec![Contact {
                     joint: Released::Pin { point, link },
@@ -226,7 +226,16 @@ fn rattle(runs: &mut Runs) {
 
 fn main() {
     let mut runs = Runs::new();
+    // Those whose names have this in them.
+    let only = std::env::args().skip(1).find(|text| !text.starts_with('-'));
+    let asked = |name: &str| {
+        only.as_ref()
+            .is_none_or(|only| name.contains(only.as_str()))
+    };
     for case in cases() {
+        if !asked(case.name) {
+            continue;
+        }
         let path = format!(
             "{}/../../examples/benchmarks/{}.toml",
             env!("CARGO_MANIFEST_DIR"),
@@ -235,7 +244,7 @@ fn main() {
         let text = std::fs::read_to_string(&path).expect("a benchmark");
         let read = Model::from_toml(&text, case.name, &mut |_| Err("no files".into()));
         let Ok(read) = read else { panic!("{path}") };
-        for tolerance in [1e-4, 1e-7, 1e-10, 1e-13] {
+        for tolerance in [1e-4, 1e-7, 1e-8, 1e-10, 1e-13] {
             let (design, question) = question(&read.model, tolerance);
             assert!(question.until == case.until, "{}: another time", case.name);
             let (took, found) =
@@ -258,6 +267,8 @@ fn main() {
             runs.add(case.name, tolerance, error, took, found.evaluations, &hand);
         }
     }
-    rattle(&mut runs);
+    if asked("rattle") {
+        rattle(&mut runs);
+    }
     runs.keep();
 }

@@ -3,6 +3,7 @@
 use kempe_linear::Lu;
 use kempe_measure::measure::{Along, History, measure};
 use kempe_model::{DriveId, Measure};
+use kempe_motion::Progress;
 use kempe_number::Jet;
 
 use crate::joints::Place;
@@ -15,6 +16,9 @@ const PASSES: usize = 500;
 const NEAR: f64 = 1e-3;
 /// An impulse that changes by less than this part is settled.
 const SETTLED: f64 = 1e-15;
+
+/// So many times a stop that goes by itself is looked at on its way.
+const LOOKS: usize = 1000;
 
 /// Beside the start is this far off (in path scales).
 const BESIDE: f64 = 1e-3;
@@ -116,6 +120,29 @@ impl Plant {
             })
         };
         by_itself(y) && by_itself(&beside)
+    }
+
+    /// Whether a stop that [goes by itself](Self::goes_by_itself) from the start, `y`, on closes until a time, s, or nobody can tell.
+    pub fn closes_by_itself(
+        &mut self,
+        stop: usize,
+        until: f64,
+        y: &[f64],
+        progress: &mut dyn Progress,
+    ) -> bool {
+        let mut is_open = |k: usize| {
+            let time = until * k as f64 / LOOKS as f64;
+            let open = self.look(time, y).then(|| self.open(stop, time, y));
+            // Angles and guesses go on from here.
+            let known = self.places.go_on(&self.coordinates, progress).is_ok();
+            known && open.flatten().is_some_and(|open| open > 0.0)
+        };
+        let open = (0..=LOOKS).take_while(|k| is_open(*k)).count();
+        // And back to the start.
+        for k in (0..open).rev() {
+            is_open(k);
+        }
+        open <= LOOKS
     }
 
     /// How far a stop is open at a state.

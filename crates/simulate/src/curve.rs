@@ -216,16 +216,22 @@ where
     if !motion.reaches(p) || motion.limit_at(p).is_some() {
         return false;
     }
-    match motion.bridge(p) {
+    let known = match motion.bridge(p) {
         Some(event) => {
             motion.branch_at(p, &mut solver.branch);
             solver.state.poses = across(motion, side_design, event, p, side);
+            false
         }
-        None => motion.solve(design, Jet::variable(p), solver),
+        None => {
+            motion.solve_alone(design, Jet::variable(p), solver);
+            p == q
+        }
+    };
+    if !known {
+        let coordinates = &mut solver.coordinates;
+        (motion.path).coordinates_for(Jet::variable(q), &[], coordinates);
+        solver.state.set_inputs(motion.mechanism(), coordinates);
     }
-    let coordinates = &mut solver.coordinates;
-    (motion.path).coordinates_for(Jet::variable(q), &[], coordinates);
-    solver.state.set_inputs(motion.mechanism(), coordinates);
     solver
         .state
         .poses

@@ -263,19 +263,19 @@ pub(crate) fn touched(contacts: &[JointContact], laws: &[Law], end: f64) -> Vec<
                 to: touching.to.min(end),
                 ..*touching
             };
-            let depth = |time: f64| -at(place, time)[0];
-            let force = |time: f64| {
-                let [gap, rate] = at(place, time);
-                normal.force(-gap, -rate, touching.counts_as)
-            };
+            let depth = |[gap, _]: [f64; 2]| -gap;
+            let force = |[gap, rate]: [f64; 2]| normal.force(-gap, -rate, touching.counts_as);
+            let at = |time: f64| at(place, time);
+            let times = looked_at(&touching, &knots);
+            let seen: Vec<[f64; 2]> = times.iter().map(|time| at(*time)).collect();
             all.push(Touched {
                 at: Place {
                     contact: index,
                     place,
                 },
-                parting: (touching.to < end).then(|| at(place, touching.to)[1]),
-                depth: largest(depth, &touching, &knots),
-                force: largest(force, &touching, &knots),
+                parting: (touching.to < end).then(|| at(touching.to)[1]),
+                depth: largest(at, depth, &times, &seen),
+                force: largest(at, force, &times, &seen),
                 touching,
             });
         }
@@ -284,8 +284,8 @@ pub(crate) fn touched(contacts: &[JointContact], laws: &[Law], end: f64) -> Vec<
     all
 }
 
-/// The largest value during a touch, and when: `knots` are the ends of the steps in which the motion was found.
-fn largest(value: impl Fn(f64) -> f64, during: &Touching, knots: &[f64]) -> [f64; 2] {
+/// Times during a touch that are looked at, both ends included: `knots` are the ends of the steps in which the motion was found.
+fn looked_at(during: &Touching, knots: &[f64]) -> Vec<f64> {
     let first = knots.partition_point(|t| *t <= during.from);
     let inside = knots.iter().skip(first).take_while(|t| **t < during.to);
     let ends: Vec<f64> = std::iter::once(during.from)
@@ -296,20 +296,42 @@ fn largest(value: impl Fn(f64) -> f64, during: &Touching, knots: &[f64]) -> [f64
         let [from, to] = [pair[0], pair[1]];
         (0..LOOKS).map(move |k| from + (to - from) * k as f64 / LOOKS as f64)
     });
-    let times: Vec<f64> = parts.chain([during.to]).collect();
-    let values: Vec<f64> = times.iter().map(|t| value(*t)).collect();
+    parts.chain([during.to]).collect()
+}
+
+/// The largest value of what is seen, and when: at these times this was `seen`.
+fn largest(
+    at: impl Fn(f64) -> [f64; 2],
+    of: impl Fn([f64; 2]) -> f64,
+    times: &[f64],
+    seen: &[[f64; 2]],
+) -> [f64; 2] {
+    let value = |time: f64| of(at(time));
+    let values: Vec<f64> = seen.iter().map(|seen| of(*seen)).collect();
     let best = (1..times.len()).fold(0, |best, k| if values[k] > values[best] { k } else { best });
     let (mut low, mut high) = (
         times[best.saturating_sub(1)],
         times[(best + 1).min(times.len() - 1)],
     );
     let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
+    let inner = |low: f64, high: f64| {
+        let part = golden * (high - low);
+        [high - part, low + part]
+    };
+    let [mut a, mut b] = inner(low, high);
+    let [mut at_a, mut at_b] = [value(a), value(b)];
     for _ in 0..STEPS {
-        let (a, b) = (high - golden * (high - low), low + golden * (high - low));
-        if value(a) < value(b) {
+        // One of the two places inside stays, and what is known there.
+        if at_a < at_b {
             low = a;
+            (a, at_a) = (b, at_b);
+            b = inner(low, high)[1];
+            at_b = value(b);
         } else {
             high = b;
+            (b, at_b) = (a, at_a);
+            a = inner(low, high)[0];
+            at_a = value(a);
         }
     }
     let found = 0.5 * (low + high);

@@ -109,6 +109,8 @@ pub(crate) struct Plant {
     pub let_go: LetGo,
     pub(crate) instant: Instant<f64>,
     parameters: Vec<Rates>,
+    /// Drives that keep their laws.
+    kept: Vec<DriveId>,
     /// Drives that keep laws by which they move, with the times at which these end, s.
     law_ends: Vec<(DriveId, f64)>,
     /// How the coordinates that are let go tell the place.
@@ -189,6 +191,10 @@ impl Plant {
             given: vec![0.0; free.len()],
             pushes: Vec::new(),
             let_go: LetGo::default(),
+            kept: (0..model.drives.len() as u32)
+                .map(DriveId)
+                .filter(|drive| !free.contains(drive))
+                .collect(),
             law_ends: (driven.iter())
                 .map(|drive| (*drive, model.drives[drive.index()].law.duration(parameters)))
                 .collect(),
@@ -227,6 +233,8 @@ impl Plant {
     /// `own` are the model's.
     pub fn telling(mut self, tells: Vec<Tells>, followed: Vec<(DriveId, f64)>, own: usize) -> Self {
         (self.tells, self.followed, self.own) = (tells, followed, own);
+        let follows = |drive: &DriveId| self.followed.iter().any(|(it, _)| it == drive);
+        self.kept.retain(|drive| !follows(drive));
         self
     }
 
@@ -261,6 +269,12 @@ impl Plant {
         self.free.len() == 1 && self.driven.is_empty()
     }
 
+    /// Whether nothing holds it, and nothing rubs that is looked at by itself: how it accelerates in a state does not hang on what was
+    /// looked at before.
+    pub fn is_as_it_moves(&self) -> bool {
+        !self.mode.stuck && self.mode.resting.is_empty() && self.mode.rubs.is_empty()
+    }
+
     /// The instant last looked at.
     pub fn instant(&self) -> &Instant<f64> {
         &self.instant
@@ -275,8 +289,9 @@ impl Plant {
             self.end.next_down()
         };
         let drives = &self.forces.design.mechanism.model.drives;
-        for (q, drive) in self.coordinates.iter_mut().zip(drives) {
-            *q = drive.law.at(Jet::variable(time), &self.parameters);
+        for kept in &self.kept {
+            let law = &drives[kept.index()].law;
+            self.coordinates[kept.index()] = law.at(Jet::variable(time), &self.parameters);
         }
         // Where its law ends a drive stands from then on.
         for (drive, end) in &self.law_ends {
@@ -513,7 +528,8 @@ impl Plant {
         let mut power: f64 = along.sum();
         for drive in &self.driven {
             let speed = self.coordinates[drive.index()].coefficient(1);
-            power += self.forces.given_by(&self.instant, *drive) * speed;
+            let given = (self.forces).given_by(&self.instant, *drive, &self.free, &self.let_go);
+            power += given * speed;
         }
         let (forces, storage) = (&self.forces, &mut self.storage);
         power + forces.power_from_outside(&self.instant, storage)

@@ -418,15 +418,20 @@ impl Run {
         }
         let mut rates = vec![0.0; found.len()];
         let mut at = |time: f64, run: &mut Self| -> Option<Vec<[f64; 3]>> {
-            if time == it.time() {
+            let at_end = time == it.time();
+            if at_end {
                 found.copy_from_slice(it.state());
             } else if !it.between(&mut run.plant, time, found) {
                 return None;
             }
-            if !run.plant.accelerate(time, found, &mut rates) {
-                return None;
-            }
-            Some(run.plant.drives_at(time, found, &rates))
+            let known = match at_end && run.plant.is_as_it_moves() {
+                true => {
+                    rates.copy_from_slice(it.rates());
+                    run.plant.look(time, found)
+                }
+                false => run.plant.accelerate(time, found, &mut rates),
+            };
+            known.then(|| run.plant.drives_at(time, found, &rates))
         };
         let mut quarters: [Vec<[f64; 3]>; 3] = Default::default();
         for (quarter, part) in quarters.iter_mut().zip([0.25, 0.5, 0.75]) {

@@ -5,9 +5,9 @@ use std::sync::Arc;
 use kempe_dynamics::{Instant, Rates};
 use kempe_measure::{Series, State};
 use kempe_mechanism::evidence::is_finite;
-use kempe_mechanism::{Branch, Configuration, Design, PlanNumber};
+use kempe_mechanism::{Branch, Configuration, Design};
 use kempe_model::DriveId;
-use kempe_number::{Jet, Number};
+use kempe_number::{Dual, Jet, Number};
 
 use crate::start::Start;
 
@@ -20,28 +20,65 @@ pub(crate) struct Several {
     solved: Configuration<Rates>,
     /// The branch with the poses last solved for guesses.
     here: Branch,
-    slopes: Alone<2>,
-    bends: Alone<3>,
+    slopes: Slopes,
+    bends: Alone,
     rich: Arc<Design<Series<f64>>>,
 }
 
-/// Poses as series in one coordinate alone, the others at rest.
-struct Alone<const N: usize> {
-    design: Design<Jet<f64, N>>,
-    solved: Configuration<Jet<f64, N>>,
-    coordinates: Vec<Jet<f64, N>>,
+/// So many derivatives are found at once.
+const AT_ONCE: usize = 3;
+
+/// Poses with their derivatives to some coordinates.
+struct Slopes {
+    design: Design<Dual<f64, AT_ONCE>>,
+    solved: Configuration<Dual<f64, AT_ONCE>>,
+    coordinates: Vec<Dual<f64, AT_ONCE>>,
 }
 
-impl<const N: usize> Alone<N>
-where
-    Jet<f64, N>: PlanNumber,
-{
+impl Slopes {
     fn new(design: &Design<f64>) -> Self {
         let mechanism = &design.mechanism;
         Self {
-            design: design.lift(Jet::from_f64),
+            design: design.lift(Dual::constant),
             solved: Configuration::new(mechanism).without_determinants(),
-            coordinates: vec![Jet::zero(); mechanism.model.drives.len()],
+            coordinates: vec![Dual::constant(0.0); mechanism.model.drives.len()],
+        }
+    }
+
+    /// About these coordinates, in those of at most so many drives.
+    fn solve(
+        &mut self,
+        branch: &Branch,
+        coordinates: &[Rates],
+        drives: &[DriveId],
+    ) -> &Configuration<Dual<f64, AT_ONCE>> {
+        for (one, q) in self.coordinates.iter_mut().zip(coordinates) {
+            *one = Dual::constant(q.value());
+        }
+        for (k, drive) in drives.iter().enumerate() {
+            let at = &mut self.coordinates[drive.index()];
+            *at = Dual::variable(at.re, k);
+        }
+        (self.solved).set_inputs(&self.design.mechanism, &self.coordinates);
+        self.design.solve(branch, &mut self.solved);
+        &self.solved
+    }
+}
+
+/// Poses as series in one coordinate alone, the others at rest.
+struct Alone {
+    design: Design<Rates>,
+    solved: Configuration<Rates>,
+    coordinates: Vec<Rates>,
+}
+
+impl Alone {
+    fn new(design: &Design<f64>) -> Self {
+        let mechanism = &design.mechanism;
+        Self {
+            design: design.lift(Rates::constant),
+            solved: Configuration::new(mechanism).without_determinants(),
+            coordinates: vec![Rates::constant(0.0); mechanism.model.drives.len()],
         }
     }
 
@@ -51,7 +88,7 @@ where
         branch: &Branch,
         coordinates: &[Rates],
         drive: DriveId,
-    ) -> &Configuration<Jet<f64, N>> {
+    ) -> &Configuration<Rates> {
         for (one, q) in self.coordinates.iter_mut().zip(coordinates) {
             *one = Jet::constant(q.value());
         }
@@ -71,9 +108,9 @@ impl Several {
             moving,
             here: branch.clone(),
             branch,
-            design: start.design.lift(Rates::from_f64),
+            design: start.design.lift(Rates::constant),
             solved: Configuration::new(mechanism).without_determinants(),
-            slopes: Alone::new(&start.design),
+            slopes: Slopes::new(&start.design),
             bends: Alone::new(&start.design),
             rich: Arc::new(start.design.lift(Series::from_f64)),
         }
@@ -96,9 +133,9 @@ impl Several {
         for (guess, pose) in self.here.guess.iter_mut().zip(&self.solved.poses) {
             *guess = pose.value();
         }
-        for drive in &self.moving {
-            let alone = self.slopes.solve(&self.here, coordinates, *drive);
-            out.set_coefficients(*drive, alone);
+        for drives in self.moving.chunks(AT_ONCE) {
+            let along = self.slopes.solve(&self.here, coordinates, drives);
+            out.set_coefficients(drives, along);
         }
         true
     }

@@ -164,7 +164,7 @@ impl Tellers {
         let instant = old.instant();
         let placed = Placed {
             poses: instant.poses.clone(),
-            near: instant.angles.clone(),
+            near: instant.angles().collect(),
         };
         let own = self.design.mechanism.model.drives.len();
         let mut instead: Vec<(DriveId, LinkId, f64)> = Vec::new();
@@ -185,9 +185,9 @@ impl Tellers {
                 ahead: seat(link),
             };
             if k == place {
-                let body = self.design.mechanism.body_of(link).index();
-                state[k] = instant.angles[body] + seat(link);
-                state[n + k] = instant.velocities[body][2];
+                let body = self.design.mechanism.body_of(link);
+                state[k] = instant.angle(body) + seat(link);
+                state[n + k] = instant.velocities[body.index()][2];
                 scales[k] = 1.0;
             }
             coordinates.push(state[k]);

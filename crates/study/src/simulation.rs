@@ -32,7 +32,7 @@ use crate::shows::Shows;
 use self::balance::{balance, held_at, hidden, out_of_balance};
 use self::happened::happened;
 use self::how::how;
-use self::question::{Named, question, unfollowed};
+use self::question::{Named, question, too_coarse, unfollowed};
 use self::told::Told;
 pub(crate) use self::told::place_name;
 use self::why::{cavitation, early, explain};
@@ -97,6 +97,7 @@ impl Prepared {
         let design = design(model);
         let mut refused = unfollowed(&design, name, study);
         refused.extend(not_simulated(&design.mechanism, study));
+        refused.extend(too_coarse(name, study, &design.parameters));
         if !refused.is_empty() {
             return Err(refused);
         }

@@ -399,3 +399,26 @@ fn starts_that_cannot_be_are_refused() {
     assert_eq!(code, "no-clearance-there");
     assert!(told.contains("several links"), "{told}");
 }
+
+/// The summary lists some contacts, JSON tells all of them, with the numbers of the result.
+#[test]
+fn json_tells_every_contact() {
+    for (law, many) in [("rigid", true), ("exact", false)] {
+        let result = result(&FOUR_BAR.replace("LAW", law));
+        assert_eq!(result.contacts.len() > 30, many, "{law}");
+        let told = kempe_study::encode::result(&result, false);
+        let told = told["contacts"].as_array().unwrap();
+        assert_eq!(told.len(), result.contacts.len(), "{law}");
+        for (told, met) in told.iter().zip(&result.contacts) {
+            assert_eq!(told["joint"], "B");
+            assert_eq!(told["time_si"].as_f64(), Some(met.time));
+            assert_eq!(told["speed_si"].as_f64(), Some(met.speed));
+            assert_eq!(told["speed_after_si"].as_f64(), met.speed_after);
+            let touch = met.touch.as_ref();
+            assert_eq!(touch.is_none(), many, "{law}");
+            assert_eq!(told["until_si"].as_f64(), touch.map(|it| it.until));
+            assert_eq!(told["force_si"].as_f64(), touch.map(|it| it.force));
+            assert_eq!(told["depth_si"].as_f64(), touch.map(|it| it.depth));
+        }
+    }
+}

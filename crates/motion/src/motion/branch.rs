@@ -1,6 +1,7 @@
 //! The branch of a motion anywhere on it: assembly modes, guesses and turn counts from the trace.
 
 use kempe_mechanism::Branch;
+use kempe_mechanism::plan::Step;
 use kempe_mechanism::pose::Pose;
 
 use super::Motion;
@@ -16,8 +17,8 @@ pub(crate) struct Patch {
 }
 
 impl Motion {
-    /// Fills the branch for a path parameter: modes, guesses and turn counts.
-    pub fn branch_at(&self, p: f64, branch: &mut Branch) {
+    /// Fills the modes of the branch for a path parameter; the node before it.
+    fn modes_at(&self, p: f64, branch: &mut Branch) -> usize {
         let node = interval(&self.parameters, p);
         let patch = self
             .patches
@@ -27,6 +28,33 @@ impl Motion {
         if let Some(patch) = self.patches.get(patch) {
             branch.signs.clone_from(&patch.signs);
         }
+        node
+    }
+
+    /// Fills modes and turn counts of the branch for a path parameter, its guesses only where a plan [goes by
+    /// them](kempe_mechanism::plan::Step::needs_guess): all that a solution takes, for less.
+    pub fn branch_to_solve_at(&self, p: f64, branch: &mut Branch) {
+        if (self.mechanism().plan.steps.iter()).any(Step::needs_guess) {
+            return self.branch_at(p, branch);
+        }
+        let node = self.modes_at(p, branch);
+        let (Some(from), Some(to)) = (self.nodes.get(node), self.nodes.get(node + 1)) else {
+            return;
+        };
+        let (begin, end) = (self.parameters[node], self.parameters[node + 1]);
+        let part = match end > begin {
+            true => (p - begin) / (end - begin),
+            false => 0.0,
+        };
+        for body in 1..self.mechanism().bodies {
+            let [from, to] = [from, to].map(|node| node.z[3 * (body - 1) + 2]);
+            branch.near[body] = from + part * (to - from);
+        }
+    }
+
+    /// Fills the branch for a path parameter: modes, guesses and turn counts.
+    pub fn branch_at(&self, p: f64, branch: &mut Branch) {
+        let node = self.modes_at(p, branch);
         let (Some(from), Some(to)) = (self.nodes.get(node), self.nodes.get(node + 1)) else {
             return;
         };

@@ -59,4 +59,11 @@ impl Motion {
         (self.path).coordinates_for(p, &design.parameters, &mut solver.coordinates);
         solver.run(self, design);
     }
+
+    /// The same for whom guesses are of no use afterwards: those of the solver's branch may be old.
+    pub fn solve_alone<T: PlanNumber>(&self, design: &Design<T>, p: T, solver: &mut Solver<T>) {
+        self.branch_to_solve_at(p.value(), &mut solver.branch);
+        (self.path).coordinates_for(p, &design.parameters, &mut solver.coordinates);
+        solver.run(self, design);
+    }
 }

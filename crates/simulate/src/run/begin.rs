@@ -37,7 +37,7 @@ pub enum Unsimulated {
     Lacks(Lack),
     /// Something that the simulation goes by has no value at the start.
     NoValue(Sought),
-    /// What this stop bounds goes by drives that keep their laws, or by time, and by nothing that is let go.
+    /// What this stop bounds goes by drives that keep their laws, or by time, and by nothing that is let go, and comes to it.
     KeptFromStop(usize),
     /// It starts beyond this stop, by so much.
     BeyondStop(usize, f64),
@@ -237,7 +237,9 @@ pub fn ready(
         .chain(vec![0.0; plant.inner.pressures() + 1])
         .collect();
     for stop in 0..question.stops.len() {
-        if plant.goes_by_itself(stop, &y) {
+        if plant.goes_by_itself(stop, &y)
+            && plant.closes_by_itself(stop, question.until, &y, progress)
+        {
             return Err(Unsimulated::KeptFromStop(stop));
         }
     }
@@ -252,7 +254,7 @@ pub fn ready(
         let instant = plant.instant();
         placed = Placed {
             poses: instant.poses.clone(),
-            near: instant.angles.clone(),
+            near: instant.angles().collect(),
         };
     }
     // Switches may go by pressures, and pressures by loads that are switched.

@@ -5,7 +5,7 @@ use kempe_model::Diagnostic;
 use kempe_motion::events::EventKind;
 use serde_json::{Value, json};
 
-use crate::result::{Event, FoundDesign, Scalar, StudyResult};
+use crate::result::{ContactMet, Event, FoundDesign, Scalar, StudyResult};
 use crate::table::{Column, Table};
 
 /// A table: its columns with name, unit and values.
@@ -57,6 +57,9 @@ pub fn result(result: &StudyResult, with_table: bool) -> Value {
         "worst_condition": result.table.worst_condition().map(|(_, c)| c),
         "diagnostics": result.diagnostics.iter().map(diagnostic).collect::<Vec<_>>(),
     });
+    if !result.contacts.is_empty() {
+        out["contacts"] = result.contacts.iter().map(contact).collect();
+    }
     if !result.designs.is_empty() {
         out["designs"] = result.designs.iter().map(design).collect();
     }
@@ -64,6 +67,21 @@ pub fn result(result: &StudyResult, with_table: bool) -> Value {
         out["table"] = table(&result.table);
     }
     out
+}
+
+/// A contact in a joint with play. What no contact has that takes no time is null, and so is the speed after one that lasts.
+fn contact(contact: &ContactMet) -> Value {
+    let touch = contact.touch;
+    json!({
+        "joint": contact.joint,
+        "place": contact.place,
+        "time_si": contact.time,
+        "speed_si": contact.speed,
+        "speed_after_si": contact.speed_after,
+        "until_si": touch.map(|it| it.until),
+        "force_si": touch.map(|it| it.force),
+        "depth_si": touch.map(|it| it.depth),
+    })
 }
 
 /// A mechanism that was found, with its file.

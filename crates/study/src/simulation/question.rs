@@ -16,6 +16,8 @@ use super::told::{Told, place_name};
 const TOLERANCE: f64 = 1e-13;
 /// No step is better than that.
 const FINEST: f64 = 1e-15;
+/// With a larger error of its steps nothing is told of a motion.
+const COARSEST: f64 = 0.01;
 
 /// Something that stops the motion, in words.
 pub(super) struct Named {
@@ -99,6 +101,24 @@ pub(super) fn question(
         contacts: Vec::new(),
     };
     (question, names)
+}
+
+/// That the error of a step that is asked for says nothing of a motion.
+pub(super) fn too_coarse(
+    name: &str,
+    study: &SimulateStudy,
+    parameters: &[f64],
+) -> Option<Diagnostic> {
+    let tolerance = value(study.tolerance.as_ref()?, parameters);
+    let coarse = !(tolerance <= COARSEST);
+    coarse.then(|| {
+        let message = format!(
+            "study `{name}`: a `tolerance` of {tolerance} tells nothing of the motion: it is the error of a step, in parts of what moves"
+        );
+        Diagnostic::error("cannot-simulate", message).help(format!(
+            "ask for {COARSEST} at most; {TOLERANCE:e}, what it is unless said otherwise, takes little more time"
+        ))
+    })
 }
 
 /// What goes by the pressure of a cylinder that the study does not let go.
