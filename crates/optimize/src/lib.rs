@@ -6,6 +6,7 @@
 //! | `progress.rs` | how long work tells how far it has come, and why it ended |
 //! | `space.rs` | the box |
 //! | `quadratic.rs` | convex quadratic programmes |
+//! | `least_squares.rs` | sums of squares, from far away to near an optimum |
 //! | `sqp.rs` | local optima with their multipliers |
 //! | `rank.rs` | which of two designs is the better one |
 //! | `sequence.rs` | points that fill a box evenly |
@@ -20,6 +21,7 @@ mod cma_es;
 mod evolution;
 mod front;
 mod hypervolume;
+mod least_squares;
 mod multi_start;
 mod population;
 mod problem;
@@ -34,6 +36,7 @@ pub use cma_es::cma_es;
 pub use evolution::differential_evolution;
 pub use front::{Front, FrontPoint, dominates, nsga2, refine};
 pub use hypervolume::hypervolume;
+pub use least_squares::{Descent, Linear, Squares, least_squares};
 pub use multi_start::{MultiStartOptions, Optima, multi_start};
 pub use population::{Found, Member, PopulationOptions};
 pub use problem::{Evaluation, Piece, Problem, Scales, Slopes};

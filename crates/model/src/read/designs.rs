@@ -17,7 +17,7 @@
 //! over       = "lifting"
 //! vary       = { k = ["350 mm", "500 mm"], m = ["500 mm", "700 mm"] }
 //! minimize   = "max(load)"
-//! subject_to = ["range(y(M)) >= 450 mm"]
+//! subject_to = ["range(y(M)) >= 450 mm"]     # or, instead of minimize, fit = { … }: see fit.rs
 //! ```
 
 use kempe_units::{Comparison, Dimension, Expr, check_condition, parse_condition};
@@ -26,6 +26,7 @@ use crate::designs::{
     Among, Change, Chosen, Combine, Goal, Limit, OptimizeStudy, OverStudy, Spread, SweepStudy,
     Swept, SweptValues, ToleranceStudy, Toleranced,
 };
+use crate::diagnostic::Diagnostic;
 use crate::document::{Key, Node, Value};
 use crate::ids::{ParameterId, Scalar, Span};
 use crate::key_table::designs::{AMONG, COMBINE, MAX_VARIED, OPTIMIZE_METHODS, SPREAD, SWEPT};
@@ -33,6 +34,7 @@ use crate::read::adjust::free_parameter;
 use crate::read::column::column;
 use crate::read::context::Context;
 use crate::read::entry::Entry;
+use crate::read::fit;
 use crate::read::measure_names::Measures;
 use crate::read::nature::nature;
 use crate::read::plots::plot;
@@ -59,8 +61,10 @@ pub(crate) fn read(
     name: &Key,
     others: &Others<'_>,
 ) -> Option<StudyKind> {
-    let over = over(cx, entry, others);
+    let fit = entry.kind.key("fit").and_then(|_| entry.get("fit"));
+    let over = over(cx, entry, others, fit.is_some());
     let forces = over.as_ref().is_none_or(|(_, forces)| *forces);
+    let over_name = over.as_ref().map(|(name, _)| name.clone());
     let columns = numbers(cx, entry, "columns", forces);
     let plots = match entry.kind.key("plot") {
         Some(_) => curves(cx, entry, forces),
@@ -117,7 +121,30 @@ pub(crate) fn read(
                 ..goal
             });
             let goals: Vec<Goal> = small?.into_iter().chain(large).collect();
-            if goals.is_empty() {
+            let vary: Vec<Chosen> = vary?;
+            let fit = match fit {
+                None => None,
+                Some(node) => {
+                    let of_motion = over_fits(cx, entry, others, &over_name);
+                    let varied: Vec<ParameterId> = vary.iter().map(|it| it.parameter).collect();
+                    let fit = fit::read(cx, entry, node, &varied);
+                    of_motion?;
+                    Some(fit?)
+                }
+            };
+            if let (Some(fit), Some(goal)) = (&fit, goals.first()) {
+                let told = Diagnostic::error(
+                    "over-specified",
+                    format!("{} has a fit and another goal", entry.place),
+                );
+                cx.push(
+                    told.at(fit.span.clone(), "what is missed here is to be small")
+                        .see(goal.span.clone(), "and this is a goal, too")
+                        .help("leave one of them out; what must be kept besides belongs under `subject_to`"),
+                );
+                return None;
+            }
+            if goals.is_empty() && fit.is_none() {
                 if !(entry.has("minimize") || entry.has("maximize")) {
                     entry.required_like(cx, "minimize", entry.example_of("minimize"))?;
                 }
@@ -133,8 +160,9 @@ pub(crate) fn read(
             }
             Some(StudyKind::Optimize(Box::new(OptimizeStudy {
                 over: over(columns?, plots?)?,
-                vary: vary?,
+                vary,
                 goals,
+                fit,
                 subject_to: subject_to?,
                 method: method?,
                 seed: seed?,
@@ -145,9 +173,14 @@ pub(crate) fn read(
 }
 
 /// The study that is run, and whether it knows forces.
-fn over(cx: &mut Context<'_>, entry: &Entry<'_>, others: &Others<'_>) -> Option<(String, bool)> {
+fn over(
+    cx: &mut Context<'_>,
+    entry: &Entry<'_>,
+    others: &Others<'_>,
+    circuits: bool,
+) -> Option<(String, bool)> {
     let forces_of = |kind: &StudyKind| match kind {
-        StudyKind::Motion(along) if along.circuit => None,
+        StudyKind::Motion(along) if along.circuit && !circuits => None,
         StudyKind::Motion(_) => Some(false),
         StudyKind::Forces(_) | StudyKind::Simulate(_) => Some(true),
         _ => None,
@@ -197,6 +230,42 @@ fn over(cx: &mut Context<'_>, entry: &Entry<'_>, others: &Others<'_>) -> Option<
     match forces_of((*kind)?) {
         Some(forces) => Some((name.to_owned(), forces)),
         None => wrong_kind(cx),
+    }
+}
+
+/// Whether what is run has paths that can be fitted as they are asked.
+fn over_fits(
+    cx: &mut Context<'_>,
+    entry: &Entry<'_>,
+    others: &Others<'_>,
+    name: &Option<String>,
+) -> Option<()> {
+    let name = name.as_deref()?;
+    let (_, kind) = others.own.iter().find(|(known, _)| *known == name)?;
+    let span = entry.get("over").map_or(entry.span, |node| &node.span);
+    match (*kind)? {
+        StudyKind::Simulate(_) => cx.refuse(
+            "bad-choice",
+            format!("{}: the path of a simulation is not fitted", entry.place),
+            span,
+            "name a study of motion or forces, whose drives keep their laws",
+        ),
+        StudyKind::Motion(along) if along.circuit => {
+            let idle = entry.given(&["subject_to", "columns"]).next();
+            match idle {
+                None => Some(()),
+                Some(key) => cx.refuse(
+                    "contradictory-values",
+                    format!(
+                        "`{}` is of a motion, and `{name}` is a whole circuit",
+                        key.name
+                    ),
+                    &key.span,
+                    "leave it out, or name a study in which a drive goes one way",
+                ),
+            }
+        }
+        _ => Some(()),
     }
 }
 
