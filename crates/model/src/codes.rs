@@ -188,6 +188,7 @@ pub const LATER_CODES: &[Code] = &[
     code("no-value", "a measure has no finite value"),
     code("none-accepted", "linkages do what a task asks, and none keeps what is to be accepted"),
     code("not-balanced", "what was found for the forces does not meet equilibrium"),
+    code("not-closed", "a way that is to close does not come back to its start"),
     code("not-converged", "the best design that was found is not shown to be an optimum"),
     code("not-in-equilibrium", "vibrations are asked for about a pose that does not rest"),
     code("not-measurable", "a measure cannot be evaluated on this motion"),

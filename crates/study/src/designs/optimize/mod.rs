@@ -1,15 +1,16 @@
 //! Studies that optimise: the design that does something best, with what it hangs on.
 //!
 //! `problem.rs` puts designs before the methods of `kempe-optimize`, `pieces.rs` tells them where over a motion other peaks lie near the highest, `search.rs`
-//! runs a method, `discrete.rs` takes values of a catalogue, `told.rs` says what was found.
+//! runs a method, `fit/` fits paths and motions, `discrete.rs` takes values of a catalogue, `told.rs` says what was found.
 
 mod discrete;
+mod fit;
 mod pieces;
 mod problem;
 mod search;
 mod told;
 
-use kempe_model::{Diagnostic, Model, OptimizeStudy, ParameterId};
+use kempe_model::{Diagnostic, Model, OptimizeStudy, ParameterId, Severity};
 use kempe_motion::progress::{Progress, Silent, Stage};
 use kempe_optimize::Problem;
 
@@ -57,6 +58,7 @@ fn benches<'m>(
 
 /// What is to be told of a study before any design is tried; `check` and `run` say the same.
 pub(crate) fn findings_of_optimization(model: &Model, study: &OptimizeStudy) -> Vec<Diagnostic> {
+    let study = &fit::with_goal(study);
     match benches(model, study) {
         Ok((mut bench, _)) => before(&mut bench, study, &mut Silent),
         Err(told) => told,
@@ -76,7 +78,12 @@ fn before(
     let mut told = own;
     told.extend(told::outside(&problem, study, &units));
     let spans = study.vary.iter().map(|it| it.span.clone());
-    told.extend(idle_at_own(bench, problem.bounds(), spans));
+    match (&problem.fit, &study.fit) {
+        (Some(fitted), Some(asked)) => {
+            told.extend(fit::before(fitted, asked, study, problem.bounds()))
+        }
+        _ => told.extend(idle_at_own(bench, problem.bounds(), spans)),
+    }
     told.extend(told::idle_method(study));
     told
 }
@@ -88,8 +95,15 @@ pub(crate) fn optimization(
     study: &OptimizeStudy,
     progress: &mut dyn Progress,
 ) -> Result<StudyResult, Vec<Diagnostic>> {
+    let study = &fit::with_goal(study);
     let (mut bench, mut beside) = benches(model, study)?;
     let diagnostics = before(&mut bench, study, progress);
+    if diagnostics
+        .iter()
+        .any(|told| told.severity == Severity::Error)
+    {
+        return Err(diagnostics);
+    }
     // What was found of the file's own motion helps there, too.
     beside.share(&bench);
     let mut problem = Designs::new(&bench, study);
@@ -97,7 +111,10 @@ pub(crate) fn optimization(
         return Err([diagnostics, vec![stopped(Stage::Trying)]].concat());
     };
     let teller = Teller::new(&bench, &beside, study, name);
-    teller
-        .result(&mut problem, found, diagnostics.clone())
-        .map_err(|refused| [diagnostics, refused].concat())
+    let told = teller.result(&mut problem, found, diagnostics.clone());
+    let mut result = told.map_err(|refused| [diagnostics, refused].concat())?;
+    if let (Some(fitted), Some(asked)) = (&problem.fit, &study.fit) {
+        fit::tell(fitted, asked, &study.vary, &mut result);
+    }
+    Ok(result)
 }

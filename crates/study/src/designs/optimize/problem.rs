@@ -3,6 +3,7 @@
 use kempe_model::{Among, Model, OptimizeStudy, StudyKind, value};
 use kempe_optimize::{Evaluation, Piece, Problem, Slopes};
 
+use super::fit::{Fitted, sum};
 use super::pieces::{Wanted, pieces};
 use crate::designs::asked::kept;
 use crate::designs::bench::{Bench, Refused};
@@ -15,6 +16,8 @@ pub(super) struct Designs<'b, 'm> {
     pub bench: &'b Bench<'m>,
     /// What is to be small or large, then what must be kept.
     pub wanted: Vec<Wanted>,
+    /// What is fitted; its sum of squares stands in the place of the one goal.
+    pub fit: Option<Fitted<'b, 'm>>,
     goals: usize,
     bounds: Vec<[f64; 2]>,
     /// Why the last design that cannot be asked cannot.
@@ -38,6 +41,7 @@ impl<'b, 'm> Designs<'b, 'm> {
         Self {
             bench,
             wanted: goals.chain(limits).collect(),
+            fit: study.fit.as_ref().map(|fit| Fitted::new(bench, fit)),
             goals: study.goals.len(),
             bounds: bounds(model, study),
             refused: None,
@@ -48,7 +52,7 @@ impl<'b, 'm> Designs<'b, 'm> {
 
     fn evaluated(&mut self, values: &[f64]) -> Evaluation {
         self.asked += 1;
-        let numbers = match self.bench.numbers(values) {
+        let numbers = match self.numbers(values) {
             Ok(numbers) => numbers,
             Err(refused) => return self.lacking(refused),
         };
@@ -64,6 +68,20 @@ impl<'b, 'm> Designs<'b, 'm> {
             constraints,
             lack: 0.0,
         }
+    }
+
+    /// The numbers of a design, that of the fit in its place.
+    pub fn numbers(&self, values: &[f64]) -> Result<Vec<f64>, Refused> {
+        let Some(fit) = &self.fit else {
+            return self.bench.numbers(values);
+        };
+        if self.wanted.len() == 1 {
+            return Ok(vec![fit.seen(values)?.met.square()]);
+        }
+        let motion = self.bench.motion(values, &mut kempe_motion::Silent)?;
+        let mut numbers = self.bench.answer_of(&motion)?.numbers;
+        numbers[0] = fit.seen_of(&motion)?.met.square();
+        Ok(numbers)
     }
 
     fn lacking(&mut self, refused: Refused) -> Evaluation {
@@ -128,8 +146,13 @@ impl Problem for Designs<'_, '_> {
         self.sloped += 1;
         let mut objectives = match self.bench.over.kind {
             StudyKind::Simulate(_) => self.differences(design)?,
+            _ if self.fit.is_some() && self.wanted.len() == 1 => vec![Vec::new()],
             _ => pieces(self.bench, &self.wanted, design).ok()?,
         };
+        if let Some(fit) = &self.fit {
+            let mut seen = fit.seen(design).ok()?;
+            objectives[0] = vec![sum(&fit.residuals(&mut seen).ok()?)];
+        }
         let constraints = objectives.split_off(self.goals);
         Some(Slopes {
             objectives,

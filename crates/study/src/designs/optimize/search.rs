@@ -10,6 +10,7 @@ use kempe_optimize::{
 };
 
 use super::discrete::{all_of, with_choices};
+use super::fit::{downhill, fitted};
 use super::problem::Designs;
 
 /// Designs that are looked at to choose starts from, for each parameter, and how many starts.
@@ -72,6 +73,9 @@ pub(super) fn search(
     }
     let method = study.method.unwrap_or(OptimizeMethod::MultiStart);
     let (mut optima, mut how) = match method {
+        OptimizeMethod::Local | OptimizeMethod::MultiStart if problem.fit.is_some() => {
+            fitted(problem, study, &local(), &mut hears)
+        }
         OptimizeMethod::Local => {
             let options = SqpOptions {
                 evaluations: study.designs.unwrap_or(OF_DESCENT),
@@ -111,15 +115,11 @@ pub(super) fn search(
                 "{name} over {} designs, then downhill from the best",
                 found.evaluations
             );
-            let mut best = sqp(
-                problem,
-                &found.design,
-                &local(),
-                &mut |told| match found.stopped {
-                    true => ControlFlow::Break(()),
-                    false => hears(told),
-                },
-            );
+            let from = downhill(problem, &found.design);
+            let mut best = sqp(problem, &from, &local(), &mut |told| match found.stopped {
+                true => ControlFlow::Break(()),
+                false => hears(told),
+            });
             // A descent that fails leaves what there was.
             if !best.evaluation.is_defined()
                 || best.objective() > found.evaluation.largest() && found.violation <= 0.0

@@ -10,6 +10,7 @@ use super::problem::Designs;
 use super::search::Sought;
 use crate::designs::bench::{Answer, Bench};
 use crate::motion::run_along;
+use crate::run::run_motion;
 use crate::result::{Figure, FoundDesign, Listing, Scalar, StudyResult};
 use crate::table::{Column, Table};
 use crate::unit::{Units, shown};
@@ -302,7 +303,7 @@ impl<'b, 'm> Teller<'b, 'm> {
         let model = read.map_or(model, |checked| checked.model);
         let motion = match &self.bench.over.kind {
             StudyKind::Motion(along) => {
-                run_along(&model, &self.bench.over.name, along, false, &mut Silent)
+                run_motion(&model, &self.bench.over.name, along, &mut Silent)
             }
             StudyKind::Forces(along) => {
                 run_along(&model, &self.bench.over.name, along, true, &mut Silent)
