@@ -31,7 +31,6 @@ pub(in super::super) fn before(
     study: &OptimizeStudy,
     bounds: &[[f64; 2]],
 ) -> Vec<Diagnostic> {
-    let bench = fitted.bench;
     let mut told: Vec<Diagnostic> = never_open(fitted, fit, bounds)
         .into_iter()
         .chain(never_passed(fitted, fit, bounds))

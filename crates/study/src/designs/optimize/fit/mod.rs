@@ -138,9 +138,19 @@ pub(super) struct Fitted<'b, 'm> {
     segments: usize,
 }
 
+/// How given places are paired with places of the way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Pairing {
+    /// As the file asks.
+    Asked,
+    /// Where places are free: the parts of the given curve's length with those of the motion. It tells nothing of how a design fits, and leads to
+    /// fits from far away, where nearest places say little.
+    Leading,
+}
+
 /// How a design meets the given places.
 pub(super) struct Seen {
-    pub way: Way,
+    way: Way,
     pub met: Met,
 }
 
@@ -209,13 +219,22 @@ impl<'b, 'm> Fitted<'b, 'm> {
     ///
     /// Why it does not.
     pub fn seen(&self, values: &[f64]) -> Result<Seen, Refused> {
+        self.seen_as(values, Pairing::Asked)
+    }
+
+    /// The same with places paired as said.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::seen`].
+    fn seen_as(&self, values: &[f64], pairing: Pairing) -> Result<Seen, Refused> {
         if self.circuit {
             let circuit = self.bench.circuit(values)?;
             let way = Way::of_circuit(&circuit, &self.asked, self.closed || circuit.closed);
-            return self.met(way.ok_or_else(unmeasured)?);
+            return self.met(way.ok_or_else(unmeasured)?, pairing);
         }
         let motion = self.bench.motion(values, &mut kempe_motion::Silent)?;
-        self.seen_of(&motion)
+        self.along(&motion, pairing)
     }
 
     /// The same of a design whose motion is known.
@@ -224,12 +243,16 @@ impl<'b, 'm> Fitted<'b, 'm> {
     ///
     /// As [`Self::seen`].
     pub fn seen_of(&self, motion: &Arc<Motion>) -> Result<Seen, Refused> {
+        self.along(motion, Pairing::Asked)
+    }
+
+    fn along(&self, motion: &Arc<Motion>, pairing: Pairing) -> Result<Seen, Refused> {
         let model = &motion.mechanism().model;
         if self.closed && !is_cycle(model, &motion.design.parameters) {
             return Err(self.open());
         }
         let way = Way::of_motion(motion, &self.asked, self.closed);
-        self.met(way.ok_or_else(unmeasured)?)
+        self.met(way.ok_or_else(unmeasured)?, pairing)
     }
 
     fn open(&self) -> Refused {
@@ -239,7 +262,7 @@ impl<'b, 'm> Fitted<'b, 'm> {
         }
     }
 
-    fn met(&self, mut way: Way) -> Result<Seen, Refused> {
+    fn met(&self, mut way: Way, pairing: Pairing) -> Result<Seen, Refused> {
         if let Timing::At(drive, _) = &self.timing {
             let times = self.times(&way, *drive)?;
             let met = pace::at_times(&mut way, &self.given, &times);
@@ -257,6 +280,11 @@ impl<'b, 'm> Fitted<'b, 'm> {
         }
         let segments = self.segments * way.strokes();
         let nodes = Nodes::new(&mut way, segments).ok_or_else(unmeasured)?;
+        if pairing == Pairing::Leading {
+            let parts = pace::parts(&self.given, By::Length, way.closed);
+            let met = pace::paced(&mut way, &nodes, &self.given, By::Time, &parts);
+            return Self::sound(way, met.ok_or_else(unmeasured)?);
+        }
         let met = match &self.timing {
             Timing::Nearest => nearest::each(&mut way, &nodes, &self.given),
             Timing::Even => self.paced(&mut way, &nodes, By::Time)?,
@@ -267,7 +295,8 @@ impl<'b, 'm> Fitted<'b, 'm> {
     }
 
     fn paced(&self, way: &mut Way, nodes: &Nodes, by: By) -> Result<Met, Refused> {
-        pace::paced(way, nodes, &self.given, by).ok_or_else(unmeasured)
+        let parts = pace::parts(&self.given, by, way.closed);
+        pace::paced(way, nodes, &self.given, by, &parts).ok_or_else(unmeasured)
     }
 
     fn sound(way: Way, met: Met) -> Result<Seen, Refused> {
@@ -292,6 +321,11 @@ impl<'b, 'm> Fitted<'b, 'm> {
         })
     }
 
+    /// Whether places are free to be met anywhere.
+    fn is_free(&self) -> bool {
+        matches!(self.timing, Timing::Ordered | Timing::Nearest)
+    }
+
     /// The misses with their derivatives to the varied parameters; what is free of where places are met is eliminated.
     ///
     /// # Errors
@@ -304,7 +338,9 @@ impl<'b, 'm> Fitted<'b, 'm> {
         let more: Vec<Measure> = match (&self.timing, &self.asked.length) {
             (Timing::At(Some(drive), _), _) => vec![of_drive(*drive), rate(&of_drive(*drive))],
             (_, Some(length)) => vec![length.clone()],
-            (Timing::Even, _) => vec![Expr::Leaf(Leaf::Time)],
+            _ if met.moving.iter().any(|m| matches!(m, Moving::Paced(_))) => {
+                vec![Expr::Leaf(Leaf::Time)]
+            }
             _ => Vec::new(),
         };
         let measures: Vec<&Measure> = self.asked.places.iter().chain(&more).collect();

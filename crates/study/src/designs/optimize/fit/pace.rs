@@ -155,14 +155,19 @@ fn speed(here: &Here) -> f64 {
 }
 
 /// Places at given parts of the way; a closed one is begun where, and gone the way, that is best.
-pub(super) fn paced(way: &mut Way, nodes: &Nodes, given: &Given, by: By) -> Option<Met> {
+pub(super) fn paced(
+    way: &mut Way,
+    nodes: &Nodes,
+    given: &Given,
+    by: By,
+    parts: &[f64],
+) -> Option<Met> {
     let (n, closed) = (given.places.len(), way.closed);
-    let parts = parts(given, by, closed);
     let mut met = Met::new(n);
     let mut paced = Paced::new(way, nodes, by)?;
     let (mut shift, mut sense) = (0.0, 1.0);
     if closed {
-        (shift, sense) = begun(&mut paced, given, &parts);
+        (shift, sense) = begun(&mut paced, given, parts);
     }
     let mut tangents = Vec::new();
     for (place, part) in parts.iter().enumerate() {

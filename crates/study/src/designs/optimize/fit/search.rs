@@ -3,14 +3,17 @@
 use std::ops::ControlFlow;
 
 use kempe_model::{OptimizeMethod, OptimizeStudy};
+use kempe_number::math;
 use kempe_optimize::{
-    Descent, Ended, Even, Hears, Linear, Optima, Optimum, Piece, Problem, Progress, SqpOptions,
-    Squares, least_squares, sqp,
+    Descent, Ended, Even, Hears, Linear, Optima, Optimum, Piece, Problem, Progress, Scales,
+    SqpOptions, Squares, least_squares, sqp,
 };
+
+use kempe_units::Dimension;
 
 use super::super::pieces::{Wanted, pieces};
 use super::super::problem::Designs;
-use super::{Fitted, SQUARES};
+use super::{Fitted, Pairing, SQUARES};
 
 /// Designs that are looked at, for each parameter, where the file does not say.
 const LOOKED_AT: usize = 60;
@@ -25,6 +28,8 @@ const ON: [usize; 2] = [4, 24];
 const STEPS: usize = 250;
 /// So many of the best are shown to be optima, or how far they are from it.
 const SHOWN: usize = 3;
+/// How many times the extent of what is given lengths may be near it.
+const SIZES: f64 = 4.0;
 /// Designs nearer to each other than this part of the box are one start, or one optimum.
 const APART: f64 = 0.03;
 const SAME: f64 = 1e-4;
@@ -37,6 +42,7 @@ struct Sums<'p, 'b, 'm> {
     /// What must be kept, behind the goal.
     wanted: &'p [Wanted],
     bounds: &'p [[f64; 2]],
+    pairing: Pairing,
 }
 
 impl Squares for Sums<'_, '_, '_> {
@@ -46,7 +52,8 @@ impl Squares for Sums<'_, '_, '_> {
 
     fn square(&self, design: &[f64]) -> Option<(f64, Vec<f64>)> {
         if self.wanted.len() == 1 {
-            return Some((self.fit.seen(design).ok()?.met.square(), Vec::new()));
+            let seen = self.fit.seen_as(design, self.pairing).ok()?;
+            return Some((seen.met.square(), Vec::new()));
         }
         let bench = self.fit.bench;
         let motion = bench.motion(design, &mut kempe_motion::Silent).ok()?;
@@ -54,12 +61,12 @@ impl Squares for Sums<'_, '_, '_> {
         let signed = numbers.iter().zip(self.wanted).map(|(x, w)| w.sign * x);
         let kept: Vec<f64> = signed.skip(1).collect();
         let sound = kept.iter().all(|x| x.is_finite());
-        let seen = self.fit.seen_of(&motion).ok()?;
+        let seen = self.fit.along(&motion, self.pairing).ok()?;
         sound.then_some((seen.met.square(), kept))
     }
 
     fn linear(&self, design: &[f64]) -> Option<Linear> {
-        let mut seen = self.fit.seen(design).ok()?;
+        let mut seen = self.fit.seen_as(design, self.pairing).ok()?;
         let residuals = self.fit.residuals(&mut seen).ok()?;
         let constraints: Vec<Vec<Piece>> = match self.wanted.len() {
             1 => Vec::new(),
@@ -86,6 +93,53 @@ fn distance(a: &[f64], b: &[f64], bounds: &[[f64; 2]]) -> f64 {
         .filter(|(_, [low, high])| high > low)
         .map(|((a, b), [low, high])| (a - b).abs() / (high - low))
         .fold(0.0, f64::max)
+}
+
+/// Bounds within which lengths are of the size of what is given: nearer to fits than most of a wide box.
+fn near(fit: &Fitted<'_, '_>, bounds: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let places = &fit.given.places;
+    let ends = [0, 1].map(|axis| {
+        let values = places.iter().map(|p| p[axis]);
+        values.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| {
+            [a.min(x), b.max(x)]
+        })
+    });
+    let extents = ends.iter().map(|[low, high]| high - low);
+    let extent = extents.fold(0.0, f64::max);
+    let far = ends.as_flattened().iter();
+    let far = far.map(|x| x.abs()).fold(0.0, f64::max);
+    let model = fit.bench.model;
+    let varied = fit.bench.varied.iter().zip(bounds);
+    varied
+        .map(|(id, [low, high])| {
+            if model.parameters[id.index()].dimension != Dimension::LENGTH {
+                return [*low, *high];
+            }
+            // Lengths are some extents, coordinates about as far away as what is given.
+            let most = match *low > 0.0 {
+                true => SIZES * extent,
+                false => far + SIZES / 2.0 * extent,
+            };
+            let some = [low.max(-most), high.min(most)];
+            if some[0] < some[1] {
+                some
+            } else {
+                [*low, *high]
+            }
+        })
+        .collect()
+}
+
+/// A design by its place in the unit box: in turns within the bounds and near what is given, there also with sizes even in their ratios.
+fn place(unit: &[f64], bounds: &[[f64; 2]], near: &[[f64; 2]], turn: usize) -> Vec<f64> {
+    let ends = if turn.is_multiple_of(3) { bounds } else { near };
+    let places = unit.iter().zip(ends);
+    places
+        .map(|(u, [low, high])| match turn % 3 == 1 && *low > 0.0 {
+            true => low * math::powf(high / low, *u),
+            false => low + u * (high - low),
+        })
+        .collect()
 }
 
 /// What has been done, and who hears of it.
@@ -122,11 +176,9 @@ impl Work<'_> {
                 let Some(descent) = descent else { continue };
                 self.done += descent.evaluations;
                 self.slopes += descent.slopes;
-                if self
-                    .best
-                    .as_ref()
-                    .is_none_or(|best| is_better(&descent, best))
-                {
+                let asked = sums.pairing == Pairing::Asked;
+                let known = self.best.as_ref();
+                if asked && known.is_none_or(|best| is_better(&descent, best)) {
                     self.best = Some(descent.clone());
                 }
                 found.push(descent);
@@ -216,34 +268,55 @@ pub(in super::super) fn fitted(
             fit,
             wanted: &problem.wanted,
             bounds: &bounds,
+            pairing: Pairing::Asked,
         };
+        // From far away nearest places say little: half of the designs are led by the parts of the curve's length first.
+        let leading = Sums {
+            pairing: Pairing::Leading,
+            ..sums
+        };
+        let ways: &[&Sums<'_, '_, '_>] = match fit.is_free() {
+            true => &[&leading, &sums],
+            false => &[&sums],
+        };
+        let near = near(fit, &bounds);
         let mut even = Even::new(n, study.seed as u64);
-        let mut seen: Vec<(Vec<f64>, f64)> = Vec::new();
-        while work.done < looked_at && !stopped {
-            let count = (looked_at - work.done).min(4 * AT_ONCE);
+        let mut seen: Vec<Vec<(Vec<f64>, f64)>> = vec![Vec::new(); ways.len()];
+        let mut drawn = 0;
+        while drawn < looked_at && !stopped {
+            let count = (looked_at - drawn).min(4 * AT_ONCE);
             let some: Vec<Vec<f64>> = (0..count)
-                .map(|_| {
-                    let unit = even.point().into_iter().zip(&bounds);
-                    unit.map(|(u, [low, high])| low + u * (high - low))
-                        .collect()
-                })
+                .map(|k| place(&even.point(), &bounds, &near, drawn + k))
                 .collect();
-            let squares = each(&some, |design| sums.square(design));
-            let known = some.into_iter().zip(squares);
-            seen.extend(known.filter_map(|(design, it)| Some((design, it?.0))));
-            work.done += count;
+            for (way, seen) in ways.iter().zip(&mut seen) {
+                let squares = each(&some, |design| way.square(design));
+                let known = some.iter().cloned().zip(squares);
+                seen.extend(known.filter_map(|(design, it)| Some((design, it?.0))));
+                work.done += count;
+            }
+            drawn += count;
             stopped = work.tell().is_break();
         }
-        seen.sort_by(|a, b| a.1.total_cmp(&b.1));
-        let mut starts = vec![own.clone()];
-        let designs = seen.iter().map(|(design, _)| design);
-        starts.extend(apart(designs, &bounds, APART, led));
-        if !stopped {
-            (found, stopped) = work.led(&sums, &starts, FIRST_STEPS);
+        for (way, mut seen) in ways.iter().zip(seen) {
+            seen.sort_by(|a, b| a.1.total_cmp(&b.1));
+            let designs = seen.iter().map(|(design, _)| design);
+            let mut starts = vec![own.clone()];
+            starts.extend(apart(designs, &bounds, APART, led / ways.len()));
+            if way.pairing == Pairing::Leading && !stopped {
+                let (some, ended) = work.led(&leading, &starts, FIRST_STEPS);
+                starts = some.into_iter().map(|it| it.design).collect();
+                stopped = ended;
+            }
+            if !stopped {
+                let (some, ended) = work.led(&sums, &starts, FIRST_STEPS);
+                found.extend(some);
+                stopped = ended;
+            }
         }
+        found.sort_by(order);
         if !stopped {
             let designs = found.iter().map(|it| &it.design);
-            let starts = apart(designs, &bounds, APART, on);
+            let starts = apart(designs, &bounds, SAME, on);
             let (better, ended) = work.led(&sums, &starts, STEPS);
             stopped = ended;
             found.extend(better);
@@ -261,13 +334,18 @@ pub(in super::super) fn fitted(
     problem.asked += work.done;
     problem.sloped += work.slopes;
     let (done, budget) = (work.done, work.budget);
+    let size = problem.fit.as_ref().map_or(0.0, size);
     let mut list: Vec<Optimum> = Vec::new();
     let mut starts: Vec<Vec<f64>> = best.into_iter().take(SHOWN).collect();
     if starts.is_empty() {
         starts.push(own);
     }
     for start in starts {
-        let optimum = sqp(problem, &start, local, &mut |told| match stopped {
+        let options = SqpOptions {
+            scales: scales(problem, &start, size),
+            ..local.clone()
+        };
+        let optimum = sqp(problem, &start, &options, &mut |told| match stopped {
             true => ControlFlow::Break(()),
             false => (work.hears)(&Progress {
                 evaluations: done + told.evaluations,
@@ -317,6 +395,45 @@ pub(in super::super) fn fitted(
     (optima, how)
 }
 
+/// The size of what is given.
+fn size(fit: &Fitted<'_, '_>) -> f64 {
+    let all = fit.given.places.iter().map(super::square);
+    all.fold(0.0, f64::max).sqrt()
+}
+
+/// A fit that is missed by less than this part of the size of what is given is exact.
+const EXACT: f64 = 1e-10;
+
+/// In what an optimum of a fit counts: the product of misses and slopes, so that 1 is a slope along which all of the misses vanishes, whatever the
+/// width of the box.
+fn scales(problem: &mut Designs<'_, '_>, design: &[f64], size: f64) -> Option<Scales> {
+    let slopes = problem.slopes(design)?;
+    let square = slopes.objectives.first()?.first()?.value;
+    let bounds = problem.bounds();
+    let over = |piece: &Piece| {
+        let all = piece.slope.iter().zip(bounds);
+        let all = all.map(|(d, [low, high])| (d * (high - low)).abs());
+        all.fold(0.0, f64::max)
+    };
+    let fit = problem.fit.as_ref()?;
+    let residuals = fit.residuals(&mut fit.seen(design).ok()?).ok()?;
+    let longest = (0..design.len()).map(|k| {
+        let squares: f64 = residuals.iter().map(|r| r.slope[k] * r.slope[k]).sum();
+        squares.sqrt() * (bounds[k][1] - bounds[k][0])
+    });
+    let longest = longest.fold(0.0, f64::max);
+    let constraints = slopes.constraints.iter().map(|pieces| {
+        let sizes = pieces.iter().map(|p| over(p).max(p.value.abs()));
+        let size = sizes.fold(0.0, f64::max);
+        if size > 0.0 { size } else { 1.0 }
+    });
+    let objective = 2.0 * square.sqrt().max(EXACT * size) * longest;
+    Some(Scales {
+        objectives: vec![if objective > 0.0 { objective } else { 1.0 }],
+        constraints: constraints.collect(),
+    })
+}
+
 /// The design to which the squares lead down from one; itself where nothing is fitted.
 pub(in super::super) fn downhill(problem: &mut Designs<'_, '_>, design: &[f64]) -> Vec<f64> {
     let bounds = problem.bounds().to_vec();
@@ -327,6 +444,7 @@ pub(in super::super) fn downhill(problem: &mut Designs<'_, '_>, design: &[f64]) 
         fit,
         wanted: &problem.wanted,
         bounds: &bounds,
+        pairing: Pairing::Asked,
     };
     match least_squares(&sums, design, STEPS) {
         Some(found) => {
