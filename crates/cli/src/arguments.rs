@@ -133,6 +133,7 @@ pub struct Sensitivities {
                         report.partial.html and so on, which say inside how far the run came.\n\n\
                         A sweep also writes STUDY.rows.parquet, the rows of all its designs. Its finished parts are kept in\n\
                         STUDY.parts until it is whole: the same command goes on from there, however the run before ended.\n\
+                        A study that optimises keeps there what it has asked of designs, and goes on in the same way.\n\
                         With --shard K/N several machines share a sweep; kempe merge joins their parts."
 )]
 pub struct Run {

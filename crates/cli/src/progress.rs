@@ -21,6 +21,8 @@ pub struct Bar {
     since: Instant,
     bar: Option<ProgressBar>,
     stage: Option<Stage>,
+    /// The best so far, in words.
+    best: String,
     wanted: bool,
 }
 
@@ -32,6 +34,7 @@ impl Bar {
             since: Instant::now(),
             bar: None,
             stage: None,
+            best: String::new(),
             wanted: !quiet && std::io::stderr().is_terminal(),
         }
     }
@@ -49,14 +52,36 @@ impl Bar {
             if let Ok(style) = ProgressStyle::with_template(template) {
                 bar.set_style(style);
             }
-            bar.set_message(format!("{}: {}", self.name, stage.text()));
             (self.bar, self.stage) = (Some(bar), Some(stage));
+            self.say();
         }
         self.bar.as_ref()
     }
 }
 
+impl Bar {
+    /// What is done and, where there is any, the best so far.
+    fn say(&self) {
+        if let (Some(bar), Some(stage)) = (&self.bar, self.stage) {
+            bar.set_message(message(&self.name, stage, &self.best));
+        }
+    }
+}
+
+/// What stands before a bar.
+fn message(name: &str, stage: Stage, best: &str) -> String {
+    match (stage, best) {
+        (Stage::Searching, best) if !best.is_empty() => format!("{name}: best so far {best}"),
+        _ => format!("{name}: {}", stage.text()),
+    }
+}
+
 impl Progress for Bar {
+    fn found(&mut self, best: &str) {
+        best.clone_into(&mut self.best);
+        self.say();
+    }
+
     /// Stops on Ctrl-C.
     fn reached(&mut self, stage: Stage, done: Done) -> ControlFlow<()> {
         let (length, template) = match done {
@@ -88,5 +113,27 @@ impl Drop for Bar {
         if let Some(bar) = &self.bar {
             bar.finish_and_clear();
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_best_so_far_stands_where_it_is_looked_for() {
+        let of = |stage, best| message("lift", stage, best);
+        assert_eq!(
+            of(Stage::Searching, ""),
+            "lift: looking for the best design"
+        );
+        assert_eq!(
+            of(Stage::Searching, "peak = 3 N, limits kept"),
+            "lift: best so far peak = 3 N, limits kept"
+        );
+        assert_eq!(
+            of(Stage::Measuring, "peak = 3 N"),
+            format!("lift: {}", Stage::Measuring.text())
+        );
     }
 }

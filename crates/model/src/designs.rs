@@ -82,6 +82,8 @@ pub struct ToleranceStudy {
     pub over: OverStudy,
     /// The parameters that differ from piece to piece.
     pub vary: Vec<Toleranced>,
+    /// Where it is said that joints have the play of the file's clearances, in directions that differ from piece to piece; none where they have none.
+    pub clearance: Option<Span>,
     /// How many pieces are drawn.
     pub samples: usize,
     /// Which ones.
@@ -162,6 +164,8 @@ pub struct Chosen {
 pub enum Among {
     /// All between two.
     Between([Scalar; 2]),
+    /// All between two positive ones, every factor alike: as many from 1 to 10 as from 10 to 100.
+    Factors([Scalar; 2]),
     /// Those between two that are whole multiples of a step.
     Steps {
         /// The least and the greatest.
@@ -235,6 +239,7 @@ impl ToleranceStudy {
     pub(crate) fn visit_places(&mut self, f: &mut dyn FnMut(&mut Span)) {
         self.over.visit_places(f);
         self.vary.iter_mut().for_each(|it| f(&mut it.span));
+        self.clearance.iter_mut().for_each(&mut *f);
         self.limits.iter_mut().for_each(|it| f(&mut it.span));
     }
 
@@ -265,7 +270,7 @@ impl OptimizeStudy {
     pub(crate) fn visit_scalars(&mut self, f: &mut dyn FnMut(&mut Scalar)) {
         for chosen in &mut self.vary {
             match &mut chosen.among {
-                Among::Between(both) => both.iter_mut().for_each(&mut *f),
+                Among::Between(both) | Among::Factors(both) => both.iter_mut().for_each(&mut *f),
                 Among::Steps { between, step } => {
                     between.iter_mut().for_each(&mut *f);
                     f(step);

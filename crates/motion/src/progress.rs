@@ -20,6 +20,8 @@ pub enum Stage {
     Proving,
     /// What could be put on the mechanism is tried, unit by unit.
     Trying,
+    /// The best of many designs is looked for.
+    Searching,
     /// What is let go moves in time.
     Simulating,
     /// What is let go sinks to equilibrium.
@@ -38,6 +40,7 @@ impl Stage {
             Self::Measuring => "measuring over the motion",
             Self::Proving => "proving the motion",
             Self::Trying => "trying what each unit does",
+            Self::Searching => "looking for the best design",
             Self::Simulating => "simulating",
             Self::Settling => "finding equilibrium",
             Self::Rows => "computing rows",
@@ -80,6 +83,11 @@ impl From<Option<f64>> for Done {
 pub trait Progress {
     /// The work has come so far.
     fn reached(&mut self, stage: Stage, done: Done) -> ControlFlow<()>;
+
+    /// The best that was found so far, in words; told before [`reached`](Self::reached), and only where it changed.
+    fn found(&mut self, best: &str) {
+        let _ = best;
+    }
 }
 
 /// Hears nothing and never stops.

@@ -8,8 +8,8 @@ use crate::problem::{Piece, largest, sound_scale};
 use crate::quadratic::{Quadratic, Row, minimise};
 use crate::space::Space;
 
-/// What squares are to be small of. Designs are independent of each other: nothing is remembered of one.
-pub trait Squares {
+/// What squares are to be small of. What a design is worth hangs on the design alone, so that several may be asked at once.
+pub trait Squares: Sync {
     /// The least and the largest value of every variable, finite.
     fn bounds(&self) -> &[[f64; 2]];
 

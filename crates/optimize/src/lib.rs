@@ -3,45 +3,54 @@
 //! | file | for |
 //! | --- | --- |
 //! | `problem.rs` | what is minimised: a box, objectives and constraints that are the largest of their pieces |
+//! | `workers.rs` | who does pieces of work that do not depend on each other |
 //! | `progress.rs` | how long work tells how far it has come, and why it ended |
-//! | `space.rs` | the box |
+//! | `space.rs`, `halton.rs` | the box, and points that fill it evenly |
 //! | `quadratic.rs` | convex quadratic programmes |
 //! | `least_squares.rs` | sums of squares, from far away to near an optimum |
-//! | `sqp.rs` | local optima with their multipliers |
-//! | `rank.rs` | which of two designs is the better one |
-//! | `sequence.rs` | points that fill a box evenly |
-//! | `multi_start.rs` | local optima from many starts |
-//! | `population.rs` | what methods share that ask for whole generations |
-//! | `evolution.rs` | differential evolution |
-//! | `cma_es.rs` | a normal distribution that adapts |
-//! | `front.rs` | Pareto fronts, and their points made optimal to first order |
+//! | `sqp.rs` | local optima with their multipliers, or what conflicts |
+//! | `multi_start.rs` | all local optima that many starts lead to |
+//! | `standing.rs` | which of two designs is better |
+//! | `generations.rs` | what methods of populations share |
+//! | `differential_evolution.rs`, `cma_es.rs` | the global optimum of one objective, as far as evaluations go |
+//! | `nsga2.rs`, `dominance.rs`, `variation.rs` | fronts of several objectives, which designs others leave behind, children of designs |
+//! | `refine.rs` | a front moved to where the first-order conditions of Pareto optima are kept |
 //! | `hypervolume.rs` | how much a front dominates |
 
 mod cma_es;
-mod evolution;
-mod front;
+mod differential_evolution;
+mod dominance;
+mod generations;
+mod halton;
 mod hypervolume;
 mod least_squares;
 mod multi_start;
-mod population;
+mod nsga2;
 mod problem;
 mod progress;
 mod quadratic;
-mod rank;
-mod sequence;
+mod refine;
 mod space;
 mod sqp;
+mod standing;
+mod variation;
+mod workers;
 
-pub use cma_es::cma_es;
-pub use evolution::differential_evolution;
-pub use front::{Front, FrontPoint, dominates, nsga2, refine};
+pub use cma_es::{CmaEs, CmaEsOptions, cma_es};
+pub use differential_evolution::{
+    DifferentialEvolution, DifferentialEvolutionOptions, Trial, differential_evolution,
+};
+pub use dominance::dominates;
+pub use generations::{FEASIBLE, Found, Generated, Generations, generations};
+pub use halton::halton;
 pub use hypervolume::hypervolume;
 pub use least_squares::{Descent, Linear, Squares, least_squares};
 pub use multi_start::{MultiStartOptions, Optima, multi_start};
-pub use population::{Found, Member, PopulationOptions};
-pub use problem::{Evaluation, Piece, Problem, Scales, Slopes};
+pub use nsga2::{Front, Member, Nsga2, Nsga2Options, nsga2};
+pub use problem::{Evaluation, Piece, Problem, Scales, Slopes, evaluate_all};
 pub use progress::{Ended, Hears, Progress, silent};
 pub use quadratic::{Minimum, NoMinimum, Quadratic, Row, minimise};
-pub use rank::compare;
-pub use sequence::Even;
-pub use sqp::{Multipliers, Optimum, SqpOptions, sqp};
+pub use refine::{Refined, RefinedFront, refine};
+pub use sqp::{Multipliers, Optimum, SqpOptions, descents, sqp};
+pub use standing::{Candidate, Standing};
+pub use workers::{Alone, Task, Workers, each};

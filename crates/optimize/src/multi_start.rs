@@ -1,208 +1,222 @@
-//! Local optima from many starts.
+//! All local optima that steps from many places lead to.
+//!
+//! The box is sampled evenly, cheaply and in batches; steps start, side by side, from the best places that are not near to each other, as in A. H. G.
+//! Rinnooy Kan and G. T. Timmer's multi-start methods (1987).
 
-use std::ops::ControlFlow;
-
-use crate::problem::{self, Evaluation, Problem, Scales};
+use crate::halton::halton;
+use crate::problem::{Problem, Scales, evaluate_all};
 use crate::progress::{Ended, Hears, Progress};
-use crate::rank::compare;
-use crate::sequence::Even;
 use crate::space::Space;
-use crate::sqp::{Optimum, SqpOptions, sqp};
+use crate::sqp::{Going, Optimum, SqpOptions, side_by_side};
+use crate::standing::{Candidate, Standing, ranked};
+use crate::workers::Workers;
 
-/// Two optima nearer to each other than this part of the box are one.
-const SAME: f64 = 1e-4;
-/// Starts lie at least this part of the box apart from each other, for one variable.
-const APART: f64 = 0.05;
+/// Samples for each variable, if nothing else is asked.
+const SAMPLES: usize = 100;
+/// Samples evaluated at once.
+const BATCH: usize = 32;
+/// Starts are at least this part of the box apart at first; half of it, and so on, where there are not enough.
+const APART: f64 = 0.25;
+/// Optima nearer than this part of the box whose objectives agree to the other part are one.
+const NEAR: f64 = 1e-3;
+const AGREE: f64 = 1e-6;
 
-/// How many starts, and which.
+/// Limits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MultiStartOptions {
-    /// Designs that are looked at, evenly in the box, to choose starts from.
-    pub looked_at: usize,
-    /// Starts, the given one besides.
+    /// Designs that are evaluated to find starts; `None`: a hundred for each variable.
+    pub samples: Option<usize>,
+    /// From how many of them steps start.
     pub starts: usize,
-    /// Which even points.
+    /// A design from which steps start besides, wherever it is.
+    pub start: Option<Vec<f64>>,
+    /// Designs evaluated at most, all together; what is begun then is finished.
+    pub evaluations: usize,
+    /// Of each start.
+    pub sqp: SqpOptions,
+    /// What all chance comes from.
     pub seed: u64,
-    /// Of each descent.
-    pub local: SqpOptions,
 }
 
 impl Default for MultiStartOptions {
     fn default() -> Self {
         Self {
-            looked_at: 200,
+            samples: None,
             starts: 12,
+            start: None,
+            evaluations: usize::MAX,
+            sqp: SqpOptions::default(),
             seed: 1,
-            local: SqpOptions::default(),
         }
     }
 }
 
-/// Local optima that differ, the best first.
+/// Local optima.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Optima {
-    /// The optima: those that keep all constraints first.
-    pub list: Vec<Optimum>,
-    /// How many descents led to each.
-    pub reached: Vec<usize>,
-    /// Whether whoever listened stopped it.
-    pub stopped: bool,
+    /// Every distinct place that steps led to, with how many starts did, the best first; one that is no optimum says so by its end.
+    pub optima: Vec<(Optimum, usize)>,
+    /// The best sample, should no start have become an optimum.
+    pub best_sample: Option<Candidate>,
+    /// Designs evaluated, all together.
+    pub evaluations: usize,
+    /// Starts that were followed.
+    pub starts: usize,
+    /// Why it ended: [`Ended::Converged`] where all starts were followed.
+    pub ended: Ended,
 }
 
-/// Descends from a design and from the best of many that lie evenly in the box.
+/// Local optima from all over the box.
 pub fn multi_start(
-    problem: &mut dyn Problem,
-    start: &[f64],
+    problem: &dyn Problem,
     options: &MultiStartOptions,
+    workers: &dyn Workers,
     hears: Hears,
 ) -> Optima {
     let space = Space::new(problem.bounds());
-    let mut optima = Optima {
-        list: Vec::new(),
-        reached: Vec::new(),
-        stopped: false,
+    let n = space.bounds.len();
+    let samples = match options.starts {
+        0 => 0,
+        starts => options.samples.unwrap_or(SAMPLES * n).max(starts),
     };
-    let budget = options.looked_at + (options.starts + 1) * options.local.evaluations;
-    let mut best: Option<(Vec<f64>, f64, f64)> = None;
-    let mut done = 0;
-    let tell = |hears: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
-                done: usize,
-                best: &Option<(Vec<f64>, f64, f64)>| {
-        hears(&Progress {
-            evaluations: done,
+    let given = usize::from(options.start.is_some());
+    let budget = samples + (options.starts + given) * options.sqp.evaluations;
+    let budget = budget.min(options.evaluations);
+    let designs = halton(options.seed, samples, n);
+    let mut candidates: Vec<Candidate> = Vec::with_capacity(samples);
+    let mut ended = Ended::Converged;
+    for batch in designs.chunks(BATCH) {
+        let batch: Vec<Vec<f64>> = batch.iter().map(|u| space.design(u)).collect();
+        let evaluations = evaluate_all(problem, &batch, workers);
+        let both = batch.into_iter().zip(evaluations);
+        candidates.extend(both.map(|(design, evaluation)| Candidate { design, evaluation }));
+        let progress = Progress {
+            evaluations: candidates.len(),
             budget,
-            best: best
-                .as_ref()
-                .map(|(design, objective, _)| (design.as_slice(), *objective)),
-            violation: best
-                .as_ref()
-                .map_or(f64::INFINITY, |(_, _, violation)| *violation),
-        })
-        .is_break()
-    };
-    let mut starts = vec![space.within(start)];
-    if options.starts > 0 && options.looked_at > 0 {
-        let mut even = Even::new(start.len(), options.seed);
-        let designs: Vec<Vec<f64>> = (0..options.looked_at)
-            .map(|_| space.design(&even.point()))
-            .collect();
-        let evaluations = problem::evaluate(problem, &designs);
-        done += designs.len();
-        let scales = scales_of(problem, &evaluations);
-        starts.extend(chosen(
-            &space,
-            &designs,
-            &evaluations,
-            &scales,
-            options.starts,
-        ));
-    }
-    for from in starts {
-        let found = sqp(problem, &from, &options.local, &mut |progress| match tell(
-            &mut *hears,
-            done + progress.evaluations,
-            &best,
-        ) {
-            true => ControlFlow::Break(()),
-            false => ControlFlow::Continue(()),
-        });
-        done += found.evaluations;
-        let stopped = found.ended == Ended::Stopped;
-        if found.evaluation.is_defined() {
-            let better = best.as_ref().is_none_or(|(_, objective, violation)| {
-                (
-                    found.violation > options.local.feasibility,
-                    found.violation,
-                    found.objective(),
-                ) < (
-                    *violation > options.local.feasibility,
-                    *violation,
-                    *objective,
-                )
-            });
-            if better {
-                best = Some((found.design.clone(), found.objective(), found.violation));
-            }
-            optima.add(found, &space);
-        }
-        if stopped {
-            optima.stopped = true;
-            break;
-        }
-    }
-    optima.sort(options.local.feasibility);
-    optima
-}
-
-impl Optima {
-    fn add(&mut self, found: Optimum, space: &Space) {
-        let mut known = self.list.iter();
-        let same = known.position(|other| space.distance(&other.design, &found.design) <= SAME);
-        match same {
-            Some(k) => {
-                self.reached[k] += 1;
-                let other = &self.list[k];
-                if found.violation <= other.violation.max(1e-12)
-                    && found.objective() < other.objective()
-                {
-                    self.list[k] = found;
-                }
-            }
-            None => {
-                self.list.push(found);
-                self.reached.push(1);
-            }
-        }
-    }
-
-    fn sort(&mut self, feasibility: f64) {
-        let mut order: Vec<usize> = (0..self.list.len()).collect();
-        let key = |k: &usize| {
-            let it = &self.list[*k];
-            let missed = if it.violation <= feasibility {
-                0.0
-            } else {
-                it.violation
-            };
-            (missed, it.objective())
+            best: None,
+            violation: f64::INFINITY,
         };
-        order.sort_by(|a, b| {
-            let (a, b) = (key(a), key(b));
-            a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1))
-        });
-        self.list = order.iter().map(|k| self.list[*k].clone()).collect();
-        self.reached = order.iter().map(|k| self.reached[*k]).collect();
-    }
-}
-
-/// Sizes of objectives and constraints: the problem's own, or typical ones.
-pub(crate) fn scales_of(problem: &dyn Problem, evaluations: &[Evaluation]) -> Scales {
-    let (objectives, constraints) = (problem.objectives(), problem.constraints());
-    let own = problem.scales().filter(|s| s.fits(objectives, constraints));
-    own.unwrap_or_else(|| Scales::typical(evaluations, objectives, constraints))
-}
-
-/// The best designs that lie apart from each other.
-fn chosen(
-    space: &Space,
-    designs: &[Vec<f64>],
-    evaluations: &[Evaluation],
-    scales: &Scales,
-    count: usize,
-) -> Vec<Vec<f64>> {
-    let mut order: Vec<usize> = (0..designs.len())
-        .filter(|k| evaluations[*k].is_defined())
-        .collect();
-    order.sort_by(|a, b| compare(&evaluations[*a], &evaluations[*b], scales).then(a.cmp(b)));
-    let mut list: Vec<Vec<f64>> = Vec::new();
-    for k in order {
-        if list.len() >= count {
+        if hears(&progress).is_break() {
+            ended = Ended::Stopped;
             break;
         }
-        let near = |other: &Vec<f64>| space.distance(other, &designs[k]) < APART;
-        if !list.iter().any(near) {
-            list.push(designs[k].clone());
-        }
     }
-    list
+    let sampled = candidates.len();
+    let scales = scales_of(problem, &candidates);
+    let tolerance = options.sqp.feasibility;
+    let order = ranked(&candidates, &scales, tolerance);
+    let best_sample = order.first().map(|k| candidates[*k].clone());
+    let mut starts: Vec<Vec<f64>> = Vec::new();
+    if ended != Ended::Stopped {
+        starts.extend(options.start.as_ref().map(|start| space.within(start)));
+        starts.extend(choose(&candidates, &order, options.starts, &space));
+    }
+    let followed = starts.len();
+    let starts = starts.into_iter().map(|start| (problem, start)).collect();
+    let left = options.evaluations.saturating_sub(sampled);
+    let found = side_by_side(starts, (&options.sqp, left), workers, &mut |all| {
+        let places = all.iter().filter_map(Going::at);
+        // The best is told, of all that go.
+        let best = places.min_by(|a, b| {
+            (a.2 > tolerance).cmp(&(b.2 > tolerance)).then(
+                match a.2 > tolerance && b.2 > tolerance {
+                    true => a.2.total_cmp(&b.2),
+                    false => a.1.total_cmp(&b.1),
+                },
+            )
+        });
+        let told = hears(&Progress {
+            evaluations: sampled + all.iter().map(Going::evaluations).sum::<usize>(),
+            budget,
+            best: best.map(|(design, value, _)| (design, value)),
+            violation: best.map_or(f64::INFINITY, |(_, _, violation)| violation),
+        });
+        if told.is_break() {
+            ended = Ended::Stopped;
+        }
+        told
+    });
+    let evaluations = sampled + found.iter().map(|o| o.evaluations).sum::<usize>();
+    let mut reached: Vec<(Optimum, usize)> = Vec::new();
+    for optimum in found {
+        add(&mut reached, optimum, &space);
+    }
+    Optima {
+        optima: sorted(reached, &scales, tolerance),
+        best_sample,
+        evaluations,
+        starts: followed,
+        ended,
+    }
+}
+
+/// The problem's scales, or what is typical of the samples.
+fn scales_of(problem: &dyn Problem, candidates: &[Candidate]) -> Scales {
+    let (objectives, constraints) = (problem.objectives(), problem.constraints());
+    let given = problem.scales().filter(|s| s.fits(objectives, constraints));
+    given.unwrap_or_else(|| {
+        let evaluations: Vec<_> = candidates.iter().map(|c| c.evaluation.clone()).collect();
+        Scales::typical(&evaluations, objectives, constraints)
+    })
+}
+
+/// The best samples that are not near to each other and can be evaluated.
+fn choose(
+    candidates: &[Candidate],
+    order: &[usize],
+    wanted: usize,
+    space: &Space,
+) -> Vec<Vec<f64>> {
+    let usable: Vec<&Vec<f64>> = (order.iter().map(|k| &candidates[*k]))
+        .filter(|c| c.evaluation.is_defined())
+        .map(|c| &c.design)
+        .collect();
+    let mut chosen: Vec<Vec<f64>> = Vec::new();
+    let mut apart = APART;
+    while chosen.len() < wanted.min(usable.len()) && apart > NEAR {
+        for design in &usable {
+            let far = chosen
+                .iter()
+                .all(|other| space.distance(design, other) > apart);
+            if far && chosen.len() < wanted {
+                chosen.push((*design).clone());
+            }
+        }
+        apart /= 2.0;
+    }
+    chosen
+}
+
+/// Puts an optimum beside those that were reached before, or counts it to the one that it is.
+fn add(reached: &mut Vec<(Optimum, usize)>, optimum: Optimum, space: &Space) {
+    let same = |other: &Optimum| {
+        let (a, b) = (other.objective(), optimum.objective());
+        other.ended.is_optimal() == optimum.ended.is_optimal()
+            && (a - b).abs() <= AGREE * a.abs().max(b.abs()).max(f64::MIN_POSITIVE)
+            && space.distance(&other.design, &optimum.design) <= NEAR
+    };
+    match reached.iter_mut().find(|(other, _)| same(other)) {
+        Some((other, times)) => {
+            *times += 1;
+            if optimum.objective() < other.objective() && optimum.violation <= other.violation {
+                *other = optimum;
+            }
+        }
+        None => reached.push((optimum, 1)),
+    }
+}
+
+/// The best first; of equals an optimum.
+fn sorted(
+    mut reached: Vec<(Optimum, usize)>,
+    scales: &Scales,
+    tolerance: f64,
+) -> Vec<(Optimum, usize)> {
+    let stand = |o: &Optimum| match o.violation <= tolerance {
+        true => Standing::Feasible(o.objective()),
+        false => Standing::of(&o.evaluation, scales, 0.0),
+    };
+    let optimal = |o: &Optimum| u8::from(!o.ended.is_optimal());
+    reached.sort_by(|(a, _), (b, _)| stand(a).order(&stand(b)).then(optimal(a).cmp(&optimal(b))));
+    reached
 }

@@ -1,11 +1,15 @@
 //! What is to be minimised: a box, objectives, constraints.
 
+use crate::workers::{Workers, each};
+
 /// What is to be minimised within a box.
 ///
 /// Every function is the largest of its pieces, as the peak of a quantity over a motion is the largest of its local peaks. Its
 /// value is what [`evaluate`](Problem::evaluate) answers, its pieces with their derivatives what [`slopes`](Problem::slopes) does;
 /// both must agree: the value is that of the largest piece. Methods for one objective minimise the largest of all of them.
-pub trait Problem {
+///
+/// What a design is worth hangs on the design alone, so that several may be asked at once.
+pub trait Problem: Sync {
     /// The least and the largest value of every variable, finite. No method looks outside.
     fn bounds(&self) -> &[[f64; 2]];
 
@@ -24,11 +28,11 @@ pub trait Problem {
         None
     }
 
-    /// What these designs are worth, in their order. Designs are independent of each other: lanes and threads are the implementor's.
-    fn evaluate(&mut self, designs: &[Vec<f64>]) -> Vec<Evaluation>;
+    /// What a design is worth.
+    fn evaluate(&self, design: &[f64]) -> Evaluation;
 
     /// All pieces of all functions at a design, with their derivatives; `None` where there are none.
-    fn slopes(&mut self, design: &[f64]) -> Option<Slopes>;
+    fn slopes(&self, design: &[f64]) -> Option<Slopes>;
 }
 
 /// What a design is worth.
@@ -138,6 +142,24 @@ impl Scales {
         }
     }
 
+    /// The larger of both.
+    pub(crate) fn at_least(&self, least: &Self) -> Self {
+        let larger = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a.max(*b)).collect();
+        Self {
+            objectives: larger(&self.objectives, &least.objectives),
+            constraints: larger(&self.constraints, &least.constraints),
+        }
+    }
+
+    /// All of them as many times as large.
+    pub(crate) fn times(&self, factor: f64) -> Self {
+        let times = |a: &[f64]| a.iter().map(|a| a * factor).collect();
+        Self {
+            objectives: times(&self.objectives),
+            constraints: times(&self.constraints),
+        }
+    }
+
     /// Whether there are as many as asked for and all are positive numbers.
     pub(crate) fn fits(&self, objectives: usize, constraints: usize) -> bool {
         let positive = |s: &f64| *s > 0.0 && s.is_finite();
@@ -164,25 +186,32 @@ pub(crate) fn largest(values: impl Iterator<Item = f64>) -> f64 {
     values.fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// What a problem says of designs, with what is no number or is missing as a lack.
-pub(crate) fn evaluate(problem: &mut dyn Problem, designs: &[Vec<f64>]) -> Vec<Evaluation> {
-    let (objectives, constraints) = (problem.objectives(), problem.constraints());
-    let mut evaluations = problem.evaluate(designs);
-    evaluations.resize(designs.len(), Evaluation::lacking(f64::INFINITY));
-    for evaluation in &mut evaluations {
-        let values = || (evaluation.objectives.iter()).chain(&evaluation.constraints);
-        let sound = evaluation.objectives.len() == objectives
-            && evaluation.constraints.len() == constraints
-            && values().all(|x| x.is_finite());
-        if evaluation.lack.is_nan() || (evaluation.is_defined() && !sound) {
-            *evaluation = Evaluation::lacking(f64::INFINITY);
-        }
+/// What a problem says of a design, with what is no number or is missing as a lack.
+pub(crate) fn evaluate(problem: &dyn Problem, design: &[f64]) -> Evaluation {
+    let evaluation = problem.evaluate(design);
+    let values = || (evaluation.objectives.iter()).chain(&evaluation.constraints);
+    let sound = evaluation.objectives.len() == problem.objectives()
+        && evaluation.constraints.len() == problem.constraints()
+        && values().all(|x| x.is_finite());
+    match evaluation.lack.is_nan() || (evaluation.is_defined() && !sound) {
+        true => Evaluation::lacking(f64::INFINITY),
+        false => evaluation,
     }
-    evaluations
+}
+
+/// What designs are worth, in their order.
+pub fn evaluate_all(
+    problem: &dyn Problem,
+    designs: &[Vec<f64>],
+    workers: &dyn Workers,
+) -> Vec<Evaluation> {
+    each(workers, designs.iter().collect(), |design| {
+        evaluate(problem, design)
+    })
 }
 
 /// The pieces at a design; `None` where any is no number.
-pub(crate) fn slopes(problem: &mut dyn Problem, design: &[f64]) -> Option<Slopes> {
+pub(crate) fn slopes(problem: &dyn Problem, design: &[f64]) -> Option<Slopes> {
     let (objectives, constraints) = (problem.objectives(), problem.constraints());
     let slopes = problem.slopes(design)?;
     slopes

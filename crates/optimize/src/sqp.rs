@@ -8,33 +8,21 @@
 //! level (`local.rs`, `quadratic.rs` of the crate). That is the penalty `objective + weight * largest violation` itself, linearised, so a
 //! quadratic programme is never infeasible (the elastic mode), and its step always lessens the penalty (R. Fletcher's S-l-infinity-QP,
 //! 1985). The weight rises by the steering rules of R. H. Byrd, J. Nocedal and R. A. Waltz (2008). Steps are searched in
-//! `search.rs`. Where the violation comes to rest, `violation.rs` minimises it alone.
+//! `search.rs`. Where the violation comes to rest, it is minimised alone (`violation.rs`). `descent.rs` goes from step to step, so that several
+//! descents can go side by side.
 
 mod curvature;
+mod descent;
 mod local;
 mod search;
 mod violation;
 
-use crate::problem::{self, Evaluation, Problem, Scales};
-use crate::progress::{Ended, Hears, Progress};
-use crate::quadratic::{Minimum, minimise};
-use crate::space::Space;
-use curvature::Curvature;
-use local::{Local, Sizes};
-use search::Search;
+use std::ops::ControlFlow;
 
-/// The weight of the largest violation, when the work starts; it rises by the factor as long as needed.
-const WEIGHT: f64 = 10.0;
-const WEIGHT_FACTOR: f64 = 10.0;
-const MOST_WEIGHT: f64 = 1e10;
-/// What part of the best lessening of the violation a step must reach.
-const STEERED: f64 = 0.5;
-/// A violation that no step lessens by this part is at rest.
-const AT_REST: f64 = 1e-6;
-/// A step that promises less than this part of the penalty is rounding.
-const PROMISE: f64 = 1e-15;
-/// How often the violation alone is minimised at most.
-const RESTORATIONS: usize = 3;
+use crate::problem::{Evaluation, Problem, Scales};
+use crate::progress::{Ended, Hears, Progress};
+use crate::workers::{Alone, Task, Workers, each};
+pub(crate) use descent::Descent;
 
 /// Limits and tolerances.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,8 +37,9 @@ pub struct SqpOptions {
     pub settled: f64,
     /// The largest violation of a constraint, in its scale.
     pub feasibility: f64,
-    /// Typical sizes, if the problem names none; `None` takes the larger of value and slope (over the box's width) at the start.
-    pub scales: Option<Scales>,
+    /// Where the problem names no scales, they are the larger of value and slope (over the box's width) at the start, and not less than
+    /// these.
+    pub least: Option<Scales>,
 }
 
 impl Default for SqpOptions {
@@ -61,7 +50,7 @@ impl Default for SqpOptions {
             optimality: 1e-8,
             settled: 1e-6,
             feasibility: 1e-9,
-            scales: None,
+            least: None,
         }
     }
 }
@@ -96,7 +85,7 @@ pub struct Optimum {
     pub multipliers: Multipliers,
     /// How far the first-order conditions (W. Karush 1939, H. W. Kuhn and A. W. Tucker 1951) are missed: the largest component of the
     /// Lagrangian's slope over the box's width, or the multipliers times what their pieces are below the largest, in the
-    /// objective's scale.
+    /// objective's scale. Where [`Ended::Infeasible`], those of the least violation.
     pub residual: f64,
     /// The largest violation of a constraint, in its scale.
     pub violation: f64,
@@ -141,246 +130,118 @@ impl Optimum {
 
 /// The local minimum that steps from a start lead to, of the largest objective subject to the constraints, within the box.
 pub fn sqp(
-    problem: &mut dyn Problem,
+    problem: &dyn Problem,
     start: &[f64],
     options: &SqpOptions,
+    workers: &dyn Workers,
     hears: Hears,
 ) -> Optimum {
-    let space = Space::new(problem.bounds());
-    if !space.holds(start.len()) {
-        let nothing = Evaluation::lacking(f64::INFINITY);
-        return Optimum::undefined(start.to_vec(), nothing, 0);
+    let mut descent = match Descent::begin(problem, start, options) {
+        Ok(descent) => descent,
+        Err(undefined) => return *undefined,
+    };
+    loop {
+        if hears(&descent.progress()).is_break() {
+            return descent.end(Ended::Stopped);
+        }
+        if let Some(ended) = descent.step(workers) {
+            return descent.end(ended);
+        }
     }
-    let design = space.within(start);
-    let evaluation = problem::evaluate(problem, std::slice::from_ref(&design)).swap_remove(0);
-    let slopes = (evaluation.is_defined())
-        .then(|| problem::slopes(problem, &design))
-        .flatten();
-    let Some(slopes) = slopes else {
-        return Optimum::undefined(design, evaluation, 1);
-    };
-    let (objectives, constraints) = (problem.objectives(), problem.constraints());
-    let given = problem.scales().or_else(|| options.scales.clone());
-    let scales = given.filter(|s| s.fits(objectives, constraints));
-    let scales = scales.unwrap_or_else(|| Sizes::of(&slopes, &space));
-    let sizes = Sizes::new(&scales);
-    let place = Local::new(design, evaluation, &slopes, &sizes, &space);
-    let mut run = Run {
-        curvature: Curvature::first(&place),
-        search: Search {
-            problem,
-            space,
-            sizes,
-            evaluations: 1,
-            slopes: 1,
-        },
-        options,
-        place,
-        weight: WEIGHT,
-        iterations: 0,
-        restorations: 0,
-        conflict: Vec::new(),
-    };
-    let ended = run.steps(hears);
-    run.answer(ended, scales)
 }
 
-/// A minimisation on its way.
-struct Run<'a, 'b> {
-    search: Search<'a>,
-    options: &'b SqpOptions,
-    place: Local,
-    curvature: Curvature,
-    /// Of the largest violation in the penalty.
-    weight: f64,
-    iterations: usize,
-    restorations: usize,
-    conflict: Vec<(usize, f64)>,
+/// A descent among others.
+pub(crate) enum Going<'a> {
+    /// It goes on.
+    On(Box<Descent<'a>>),
+    /// It has ended.
+    Over(Box<Optimum>),
 }
 
-impl Run<'_, '_> {
-    /// Goes on until there is a reason to end.
-    fn steps(&mut self, hears: Hears) -> Ended {
-        loop {
-            let spent = self.search.evaluations >= self.options.evaluations;
-            if spent || self.iterations >= self.options.iterations {
-                return self.kept_or(Ended::Budget, hears);
-            }
-            if self.tell(hears) {
-                return Ended::Stopped;
-            }
-            self.iterations += 1;
-            let Some((minimum, at_rest)) = self.programme() else {
-                if self.curvature.is_fresh() {
-                    return self.kept_or(Ended::Stuck, hears);
-                }
-                self.curvature = Curvature::first(&self.place);
-                continue;
-            };
-            if at_rest {
-                match self.restore(hears) {
-                    Some(ended) => return ended,
-                    None => continue,
-                }
-            }
-            let kept = self.place.violation <= self.options.feasibility;
-            let residual = self
-                .place
-                .residual(&minimum, &self.curvature.times(&minimum.step));
-            if kept && residual <= self.options.optimality {
-                return Ended::Converged;
-            }
-            let penalty = self.place.penalty(self.weight);
-            let promise = penalty - self.place.promised(&minimum, self.weight);
-            let worth = promise > PROMISE * penalty.abs().max(self.place.size());
-            let next = worth
-                .then(|| {
-                    self.search
-                        .step(&self.place, &minimum, &self.curvature, self.weight, promise)
-                })
-                .flatten();
-            match next {
-                Some(next) => {
-                    self.curvature
-                        .update(&self.place, &next, &minimum, &self.search.space);
-                    self.place = next;
-                }
-                None if !self.curvature.is_fresh() => {
-                    self.curvature = Curvature::first(&self.place);
-                }
-                None => return self.kept_or(Ended::Stuck, hears),
-            }
+/// Local minima from several starts, each of its own problem, a step of each at a time, until all of them together have evaluated `budget` designs.
+/// Between the steps `told` hears all of them; where it says that it is enough, each ends where it is.
+pub(crate) fn side_by_side(
+    starts: Vec<(&dyn Problem, Vec<f64>)>,
+    (options, budget): (&SqpOptions, usize),
+    workers: &dyn Workers,
+    told: &mut dyn FnMut(&[Going]) -> ControlFlow<()>,
+) -> Vec<Optimum> {
+    let begin = |(problem, start): (_, Vec<f64>)| match Descent::begin(problem, &start, options) {
+        Ok(descent) => Going::On(Box::new(descent)),
+        Err(undefined) => Going::Over(undefined),
+    };
+    let mut all = each(workers, starts, begin);
+    let mut early = Ended::Stopped;
+    while all.iter().any(|one| matches!(one, Going::On(_))) {
+        if told(&all).is_break() {
+            break;
+        }
+        if all.iter().map(Going::evaluations).sum::<usize>() >= budget {
+            early = Ended::Budget;
+            break;
+        }
+        let mut ends: Vec<Option<Ended>> = all.iter().map(|_| None).collect();
+        let tasks = all.iter_mut().zip(&mut ends);
+        let tasks = tasks.filter_map(|(one, end)| match one {
+            Going::On(descent) => Some(Box::new(move || *end = descent.step(&Alone)) as Task<'_>),
+            Going::Over(_) => None,
+        });
+        workers.run(tasks.collect());
+        let both = all.into_iter().zip(ends);
+        all = both
+            .map(|(one, end)| match (one, end) {
+                (Going::On(descent), Some(end)) => Going::Over(Box::new(descent.end(end))),
+                (one, _) => one,
+            })
+            .collect();
+    }
+    let over = |one| match one {
+        Going::On(descent) => descent.end(early),
+        Going::Over(optimum) => *optimum,
+    };
+    all.into_iter().map(over).collect()
+}
+
+/// Local minima from several starts, each of its own problem, side by side; where all of them together have evaluated `budget` designs, each ends where
+/// it is. What is told is the sum of their evaluations.
+pub fn descents(
+    starts: Vec<(&dyn Problem, Vec<f64>)>,
+    options: &SqpOptions,
+    budget: usize,
+    workers: &dyn Workers,
+    hears: Hears,
+) -> Vec<Optimum> {
+    let most = budget.min(starts.len() * options.evaluations);
+    side_by_side(starts, (options, budget), workers, &mut |all| {
+        hears(&Progress {
+            evaluations: all.iter().map(Going::evaluations).sum(),
+            budget: most,
+            best: None,
+            violation: f64::INFINITY,
+        })
+    })
+}
+
+impl Going<'_> {
+    /// Designs that it evaluated.
+    pub fn evaluations(&self) -> usize {
+        match self {
+            Self::On(descent) => descent.evaluations(),
+            Self::Over(optimum) => optimum.evaluations,
         }
     }
 
-    /// Whether whoever listens says that it is enough.
-    fn tell(&self, hears: Hears) -> bool {
-        let progress = Progress {
-            evaluations: self.search.evaluations,
-            budget: self.options.evaluations,
-            best: Some((&self.place.design, self.place.evaluation.largest())),
-            violation: self.place.violation,
-        };
-        hears(&progress).is_break()
-    }
-
-    /// The next step, with the weight raised as far as the violation asks for it, and whether no step lessens the violation.
-    fn programme(&mut self) -> Option<(Minimum, bool)> {
-        let tolerance = self.options.feasibility;
-        let solve = |weight: f64| {
-            minimise(
-                &self
-                    .place
-                    .programme(self.curvature.matrix(), weight, &self.search.space),
-            )
-            .ok()
-        };
-        let mut minimum = solve(self.weight)?;
-        let left = |m: &Minimum| m.levels.get(1).copied().unwrap_or(0.0);
-        let now = self.place.violation;
-        if now <= tolerance || left(&minimum) <= tolerance {
-            return Some((minimum, false));
-        }
-        let least = minimise(&self.place.feasibility(&self.search.space)).ok()?;
-        let least = least.levels.first().copied().unwrap_or(0.0).max(0.0);
-        if now - least <= AT_REST * now {
-            return Some((minimum, true));
-        }
-        let enough = match least <= tolerance {
-            true => tolerance,
-            false => now - STEERED * (now - least),
-        };
-        while left(&minimum) > enough && self.weight < MOST_WEIGHT {
-            self.weight *= WEIGHT_FACTOR;
-            minimum = solve(self.weight)?;
-        }
-        Some((minimum, false))
-    }
-
-    /// Goes to where the largest violation is least, and on from there if that is nothing; otherwise why it ends.
-    fn restore(&mut self, hears: Hears) -> Option<Ended> {
-        if self.restorations >= RESTORATIONS {
-            return Some(Ended::Stuck);
-        }
-        self.restorations += 1;
-        let found = violation::least(&mut self.search, &self.place, self.options, hears);
-        let better = found.violation() < self.place.violation;
-        if better && let Some(place) = self.search.at(found.design.clone()) {
-            self.place = place;
-        }
-        self.curvature = Curvature::first(&self.place);
-        match found.ended {
-            Ended::Stopped if self.place.violation > self.options.feasibility => {
-                Some(Ended::Stopped)
-            }
-            _ if self.place.violation <= self.options.feasibility => None,
-            ended if ended.is_optimal() => {
-                self.conflict = found.conflict;
-                Some(Ended::Infeasible)
-            }
-            Ended::Budget => Some(Ended::Budget),
-            _ => Some(Ended::Stuck),
-        }
-    }
-
-    /// This end where the constraints are kept; otherwise first the least violation is looked for.
-    fn kept_or(&mut self, ended: Ended, hears: Hears) -> Ended {
-        match self.place.violation > self.options.feasibility {
-            true if self.restorations < RESTORATIONS => match self.restore(hears) {
-                Some(other) => other,
-                None if ended == Ended::Budget => ended,
-                None => self.steps(hears),
-            },
-            _ => ended,
-        }
-    }
-
-    /// What was found.
-    fn answer(mut self, ended: Ended, scales: Scales) -> Optimum {
-        // Once with the curvature, once without: the multipliers that miss the conditions by less.
-        let unit = Curvature::unit(self.place.design.len());
-        let mut best: Option<(f64, Minimum)> = None;
-        for curvature in [&self.curvature, &unit] {
-            let programme =
-                self.place
-                    .programme(curvature.matrix(), self.weight, &self.search.space);
-            if let Ok(minimum) = minimise(&programme) {
-                let residual = self
-                    .place
-                    .residual(&minimum, &curvature.times(&minimum.step));
-                if best.as_ref().is_none_or(|(other, _)| residual < *other) {
-                    best = Some((residual, minimum));
-                }
-            }
-        }
-        let residual = best
-            .as_ref()
-            .map_or(f64::INFINITY, |(residual, _)| *residual);
-        let kept = self.place.violation <= self.options.feasibility;
-        let ended = match ended {
-            Ended::Stuck if kept && residual <= self.options.optimality => Ended::Converged,
-            Ended::Stuck if kept && residual <= self.options.settled => Ended::Settled,
-            ended => ended,
-        };
-        let shares = best.filter(|_| ended != Ended::Infeasible);
-        let shares = shares.map(|(_, minimum)| minimum.multipliers);
-        let multipliers =
-            self.place
-                .multipliers(shares.as_deref(), &self.search.sizes, &self.search.space);
-        self.conflict
-            .sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
-        Optimum {
-            design: self.place.design,
-            evaluation: self.place.evaluation,
-            multipliers,
-            residual,
-            violation: self.place.violation,
-            conflict: self.conflict,
-            scales,
-            iterations: self.iterations,
-            evaluations: self.search.evaluations,
-            slopes: self.search.slopes,
-            ended,
+    /// Where it is: the design, its largest objective and violation; none where there is nothing yet.
+    pub fn at(&self) -> Option<(&[f64], f64, f64)> {
+        match self {
+            Self::On(descent) => Some(descent.at()),
+            Self::Over(optimum) => (optimum.evaluation.is_defined()).then(|| {
+                (
+                    optimum.design.as_slice(),
+                    optimum.objective(),
+                    optimum.violation,
+                )
+            }),
         }
     }
 }

@@ -1,315 +1,399 @@
-//! Local optima of standard problems (W. Hock and K. Schittkowski 1981; minimax problems after K. Madsen and H. Schjaer-Jacobsen 1978).
-#![allow(clippy::unwrap_used)]
+//! Largest of pieces, conflicts, degenerate and undefined places, and what multipliers mean.
 
 mod support;
 
-use kempe_number::Number;
-use kempe_optimize::{Ended, Optimum, SqpOptions, silent, sqp};
-use support::{D, Given, c, sq};
+use std::ops::ControlFlow;
 
-const WIDE: [f64; 2] = [-50.0, 50.0];
+use kempe_number::{Number, powi};
+use kempe_optimize::{Alone, Ended, Optimum, SqpOptions, silent, sqp};
+use support::{Case, D, cube};
 
-fn solve(mut problem: Given, start: &[f64]) -> Optimum {
-    sqp(&mut problem, start, &SqpOptions::default(), &mut silent)
-}
-
-fn reaches(name: &str, problem: Given, start: &[f64], best: f64, at: &[f64]) -> Optimum {
-    let found = solve(problem, start);
-    let off = (found.objective() - best).abs();
-    assert!(found.ended.is_optimal(), "{name}: {found:#?}");
-    assert!(
-        off <= 1e-7 * best.abs().max(1.0),
-        "{name}: {} for {best}",
-        found.objective()
-    );
-    for (x, y) in found.design.iter().zip(at) {
-        assert!(
-            (x - y).abs() < 1e-4 * y.abs().max(1.0),
-            "{name}: {:?}",
-            found.design
-        );
-    }
-    assert!(
-        found.residual < 1e-5 && found.violation < 1e-8,
-        "{name}: {found:#?}"
+fn solve<const N: usize>(name: &str, case: &Case<N>, start: [f64; N]) -> Optimum {
+    let found = sqp(case, &start, &SqpOptions::default(), &Alone, &mut silent);
+    println!(
+        "{name}: {:.12} residual {:.1e} violation {:.1e} steps {} evaluations {} slopes {} {:?} at {:?} {:?}",
+        found.objective(),
+        found.residual,
+        found.violation,
+        found.iterations,
+        found.evaluations,
+        found.slopes,
+        found.ended,
+        found.design,
+        found.conflict
     );
     found
 }
 
-fn rosenbrock(x: &[D]) -> D {
-    c(100.0) * sq(x[1] - x[0] * x[0]) + sq(c(1.0) - x[0])
+#[track_caller]
+fn is_optimum(found: &Optimum, wanted: f64) {
+    assert!(found.ended.is_optimal(), "{found:?}");
+    let missed = (found.objective() - wanted).abs() / wanted.abs().max(1.0);
+    assert!(missed < 1e-7, "{} {wanted}", found.objective());
+    let shares: f64 = found.multipliers.objectives.iter().flatten().sum();
+    assert!((shares - 1.0).abs() < 1e-9);
 }
 
+/// C. Charalambous and J. W. Bandler (1976), problem 1: optimum 1.9522245.
 #[test]
-fn without_constraints_and_with_bounds() {
-    let hs1 =
-        |bounds: [f64; 2]| Given::new(&[WIDE, bounds], [1, 0], |x| Some(vec![vec![rosenbrock(x)]]));
-    reaches("HS1", hs1([-1.5, 50.0]), &[-2.0, 1.0], 0.0, &[1.0, 1.0]);
-    // HS2: x2 >= 1.5 is active, and costs.
-    let found = reaches(
-        "HS2",
-        hs1([1.5, 50.0]),
-        &[1.3, 1.6],
-        0.0504261879,
-        &[1.224370749, 1.5],
-    );
-    let cost = found.multipliers.bounds[1][0];
-    assert!(
-        (cost - 200.0 * (1.5 - 1.224370749_f64 * 1.224370749)).abs() < 1e-3,
-        "{cost}"
-    );
-    let hs5 = Given::new(&[[-1.5, 4.0], [-3.0, 3.0]], [1, 0], |x| {
-        let sum = x[0] + x[1];
-        let (s, _) = sum.sin_cos();
-        Some(vec![vec![
-            s + sq(x[0] - x[1]) - c(1.5) * x[0] + c(2.5) * x[1] + c(1.0),
-        ]])
+fn minimax_of_charalambous_and_bandler() {
+    let case = Case::<2>::pieces(cube(2, -10.0, 10.0), 0, |[x, y]| {
+        let pieces = vec![
+            x.square() + powi(*y, 4),
+            (-*x + 2.0).square() + (-*y + 2.0).square(),
+            (*y - *x).exp() * 2.0,
+        ];
+        (pieces, vec![])
     });
-    let best = -(3.0_f64.sqrt() / 2.0 + std::f64::consts::PI / 3.0);
-    reaches("HS5", hs5, &[0.0, 0.0], best, &[-0.547197551, -1.547197551]);
-    let hs38 = Given::new(&[[-10.0, 10.0]; 4], [1, 0], |x| {
-        let f = rosenbrock(x)
-            + c(90.0) * sq(x[3] - sq(x[2]))
-            + sq(c(1.0) - x[2])
-            + c(10.1) * (sq(x[1] - c(1.0)) + sq(x[3] - c(1.0)))
-            + c(19.8) * (x[1] - c(1.0)) * (x[3] - c(1.0));
-        Some(vec![vec![f]])
-    });
-    reaches("HS38", hs38, &[-3.0, -1.0, -3.0, -1.0], 0.0, &[1.0; 4]);
+    let found = solve("CB2", &case, [2.0, 2.0]);
+    is_optimum(&found, 1.952_224_493_87);
 }
 
+/// The same authors' second problem: optimum 2 at (1, 1), where all three pieces meet.
 #[test]
-fn with_constraints() {
-    let hs21 = Given::new(&[[2.0, 50.0], WIDE], [1, 1], |x| {
-        Some(vec![
-            vec![c(0.01) * sq(x[0]) + sq(x[1]) - c(100.0)],
-            vec![c(10.0) - c(10.0) * x[0] + x[1]],
-        ])
+fn minimax_where_more_pieces_meet_than_needed() {
+    let case = Case::<2>::pieces(cube(2, -10.0, 10.0), 0, |[x, y]| {
+        let pieces = vec![
+            powi(*x, 4) + y.square(),
+            (-*x + 2.0).square() + (-*y + 2.0).square(),
+            (*y - *x).exp() * 2.0,
+        ];
+        (pieces, vec![])
     });
-    reaches("HS21", hs21, &[2.0, -1.0], -99.96, &[2.0, 0.0]);
-    let hs24 = Given::new(&[[0.0, 50.0]; 2], [1, 3], |x| {
-        let r = 3.0_f64.sqrt();
-        let f = (sq(x[0] - c(3.0)) - c(9.0)) * x[1] * x[1] * x[1] * c(1.0 / (27.0 * r));
-        Some(vec![
-            vec![f],
-            vec![x[1] - x[0] * c(1.0 / r)],
-            vec![-(x[0] + c(r) * x[1])],
-            vec![x[0] + c(r) * x[1] - c(6.0)],
-        ])
-    });
-    reaches("HS24", hs24, &[1.0, 0.5], -1.0, &[3.0, 3.0_f64.sqrt()]);
-    let hs35 = Given::new(&[[0.0, 50.0]; 3], [1, 1], |x| {
-        let f = c(9.0) - c(8.0) * x[0] - c(6.0) * x[1] - c(4.0) * x[2]
-            + c(2.0) * sq(x[0])
-            + c(2.0) * sq(x[1])
-            + sq(x[2])
-            + c(2.0) * x[0] * x[1]
-            + c(2.0) * x[0] * x[2];
-        Some(vec![vec![f], vec![x[0] + x[1] + c(2.0) * x[2] - c(3.0)]])
-    });
-    let found = reaches(
-        "HS35",
-        hs35,
-        &[0.5; 3],
-        1.0 / 9.0,
-        &[4.0 / 3.0, 7.0 / 9.0, 4.0 / 9.0],
-    );
-    // What the constraint costs: df/db of the optimum as it is eased.
-    assert!((found.multipliers.cost(0) - 2.0 / 9.0).abs() < 1e-6);
-    let hs43 = Given::new(&[WIDE; 4], [1, 3], |x| {
-        let [a, b, d, e] = [x[0], x[1], x[2], x[3]];
-        let f = sq(a) + sq(b) + c(2.0) * sq(d) + sq(e) - c(5.0) * a - c(5.0) * b - c(21.0) * d
-            + c(7.0) * e;
-        Some(vec![
-            vec![f],
-            vec![sq(a) + sq(b) + sq(d) + sq(e) + a - b + d - e - c(8.0)],
-            vec![sq(a) + c(2.0) * sq(b) + sq(d) + c(2.0) * sq(e) - a - e - c(10.0)],
-            vec![c(2.0) * sq(a) + sq(b) + sq(d) + c(2.0) * a - b - e - c(5.0)],
-        ])
-    });
-    reaches("HS43", hs43, &[0.0; 4], -44.0, &[0.0, 1.0, 2.0, -1.0]);
-    let hs71 = Given::new(&[[1.0, 5.0]; 4], [1, 3], |x| {
-        let f = x[0] * x[3] * (x[0] + x[1] + x[2]) + x[2];
-        let ball = x.iter().fold(c(-40.0), |s, x| s + sq(*x));
-        Some(vec![
-            vec![f],
-            vec![c(25.0) - x[0] * x[1] * x[2] * x[3]],
-            vec![ball],
-            vec![-ball],
-        ])
-    });
-    reaches(
-        "HS71",
-        hs71,
-        &[1.0, 5.0, 5.0, 1.0],
-        17.0140173,
-        &[1.0, 4.7429994, 3.8211503, 1.3794082],
-    );
-    let hs76 = Given::new(&[[0.0, 50.0]; 4], [1, 3], |x| {
-        let f = sq(x[0]) + c(0.5) * sq(x[1]) + sq(x[2]) + c(0.5) * sq(x[3]) - x[0] * x[2]
-            + x[2] * x[3]
-            - x[0]
-            - c(3.0) * x[1]
-            + x[2]
-            - x[3];
-        Some(vec![
-            vec![f],
-            vec![x[0] + c(2.0) * x[1] + x[2] + x[3] - c(5.0)],
-            vec![c(3.0) * x[0] + x[1] + c(2.0) * x[2] - x[3] - c(4.0)],
-            vec![c(1.5) - x[1] - c(4.0) * x[2]],
-        ])
-    });
-    let found = reaches(
-        "HS76",
-        hs76,
-        &[0.5; 4],
-        -4.6818181818,
-        &[0.2727273, 2.0909091, 0.0, 0.5454545],
-    );
-    assert!(found.multipliers.cost(0) > 0.1);
-    let hs100 = Given::new(&[WIDE; 7], [1, 4], |x| {
-        let p = |x: D, n: i32| (1..n).fold(x, |y, _| y * x);
-        let f = sq(x[0] - c(10.0))
-            + c(5.0) * sq(x[1] - c(12.0))
-            + p(x[2], 4)
-            + c(3.0) * sq(x[3] - c(11.0))
-            + c(10.0) * p(x[4], 6)
-            + c(7.0) * sq(x[5])
-            + p(x[6], 4)
-            - c(4.0) * x[5] * x[6]
-            - c(10.0) * x[5]
-            - c(8.0) * x[6];
-        Some(vec![
-            vec![f],
-            vec![
-                c(2.0) * sq(x[0]) + c(3.0) * p(x[1], 4) + x[2] + c(4.0) * sq(x[3]) + c(5.0) * x[4]
-                    - c(127.0),
-            ],
-            vec![c(7.0) * x[0] + c(3.0) * x[1] + c(10.0) * sq(x[2]) + x[3] - x[4] - c(282.0)],
-            vec![c(23.0) * x[0] + sq(x[1]) + c(6.0) * sq(x[5]) - c(8.0) * x[6] - c(196.0)],
-            vec![
-                c(4.0) * sq(x[0]) + sq(x[1]) - c(3.0) * x[0] * x[1]
-                    + c(2.0) * sq(x[2])
-                    + c(5.0) * x[5]
-                    - c(11.0) * x[6],
-            ],
-        ])
-    });
-    reaches(
-        "HS100",
-        hs100,
-        &[1.0, 2.0, 0.0, 4.0, 0.0, 1.0, 1.0],
-        680.6300573,
-        &[
-            2.330499, 1.951372, -0.4775414, 4.365726, -0.6244870, 1.038131, 1.594227,
-        ],
-    );
+    let found = solve("CB3", &case, [2.0, 2.0]);
+    is_optimum(&found, 2.0);
 }
 
+/// J. B. Rosen and S. Suzuki (1965) as a minimax: optimum -44.
 #[test]
-fn the_largest_of_several() {
-    // C. Charalambous and J. W. Bandler (1976), problems 1 and 2.
-    let cb = Given::new(&[[-10.0, 10.0]; 2], [1, 0], |x| {
-        let three = c(2.0) * (x[1] - x[0]).exp();
-        Some(vec![vec![
-            sq(x[0]) + sq(x[1]) * sq(x[1]),
-            sq(c(2.0) - x[0]) + sq(c(2.0) - x[1]),
-            three,
-        ]])
-    });
-    let found = reaches("CB2", cb, &[2.0, 2.0], 1.9522245, &[1.139038, 0.899560]);
-    let shares = &found.multipliers.objectives[0];
-    assert!(
-        (shares.iter().sum::<f64>() - 1.0).abs() < 1e-9 && shares[2] < 1e-9,
-        "{shares:?}"
-    );
-    let cb3 = Given::new(&[[-10.0, 10.0]; 2], [1, 0], |x| {
-        let three = c(2.0) * (x[1] - x[0]).exp();
-        Some(vec![vec![
-            sq(sq(x[0])) + sq(x[1]),
-            sq(c(2.0) - x[0]) + sq(c(2.0) - x[1]),
-            three,
-        ]])
-    });
-    reaches("CB3", cb3, &[2.0, 2.0], 2.0, &[1.0, 1.0]);
-    // J. B. Rosen and S. Suzuki (1965) as a minimax problem.
-    let rosen = Given::new(&[WIDE; 4], [1, 0], |x| {
-        let [a, b, d, e] = [x[0], x[1], x[2], x[3]];
-        let f =
-            sq(a) + sq(b) + c(2.0) * sq(d) + sq(e) - c(5.0) * (a + b) - c(21.0) * d + c(7.0) * e;
-        let ten = |g: D| f - c(10.0) * g;
-        Some(vec![vec![
+fn minimax_of_rosen_and_suzuki() {
+    let case = Case::<4>::pieces(cube(4, -10.0, 10.0), 0, |[a, b, c, d]| {
+        let (a2, b2, c2, d2) = (a.square(), b.square(), c.square(), d.square());
+        let f = a2 + b2 + c2 * 2.0 + d2 - *a * 5.0 - *b * 5.0 - *c * 21.0 + *d * 7.0;
+        let pieces = vec![
             f,
-            ten(c(8.0) - sq(a) - sq(b) - sq(d) - sq(e) - a + b - d + e),
-            ten(c(10.0) - sq(a) - c(2.0) * sq(b) - sq(d) - c(2.0) * sq(e) + a + e),
-            ten(c(5.0) - c(2.0) * sq(a) - sq(b) - sq(d) - c(2.0) * a + b + e),
-        ]])
+            f + (a2 + b2 + c2 + d2 + *a - *b + *c - *d - 8.0) * 10.0,
+            f + (a2 + b2 * 2.0 + c2 + d2 * 2.0 - *a - *d - 10.0) * 10.0,
+            f + (a2 * 2.0 + b2 + c2 + *a * 2.0 - *b - *d - 5.0) * 10.0,
+        ];
+        (pieces, vec![])
     });
-    reaches(
-        "Rosen-Suzuki",
-        rosen,
-        &[0.0; 4],
-        -44.0,
-        &[0.0, 1.0, 2.0, -1.0],
-    );
+    let found = solve("Rosen-Suzuki", &case, [0.0; 4]);
+    is_optimum(&found, -44.0);
 }
 
+/// E. Polak, D. H. Mayne and J. E. Higgins (1991), in L. Luksan and J. Vlcek's collection (2000) Polak 1 and Polak 6: optima e and -44.
 #[test]
-fn what_cannot_be_kept_together_is_named() {
-    // x >= 2 and x <= 1 cannot both be; the third can.
-    let problem = Given::new(&[[-5.0, 5.0]; 2], [1, 3], |x| {
-        Some(vec![
-            vec![sq(x[0]) + sq(x[1])],
-            vec![c(2.0) - x[0]],
-            vec![x[0] - c(1.0)],
-            vec![x[1] - c(4.0)],
-        ])
+fn minimax_of_polak() {
+    let case = Case::<2>::pieces(cube(2, -60.0, 60.0), 0, |[x, y]| {
+        let size = x.square() * 0.001;
+        let piece = |side: f64| (size + (*y + side).square()).exp();
+        (vec![piece(-1.0), piece(1.0)], vec![])
     });
-    let found = solve(problem, &[0.0, 3.0]);
-    assert_eq!(found.ended, Ended::Infeasible, "{found:#?}");
-    let named: Vec<usize> = found
+    let found = solve("Polak 1", &case, [50.0, 0.05]);
+    is_optimum(&found, std::f64::consts::E);
+    let case = Case::<4>::pieces(cube(4, -10.0, 10.0), 0, |[a, b, c, d]| {
+        let p = *a - powi(*d + 1.0, 4);
+        let q = *b - powi(p, 4);
+        let (p2, q2, c2, d2) = (p.square(), q.square(), c.square(), d.square());
+        let f = p2 + q2 + c2 * 2.0 + d2 - p * 5.0 - q * 5.0 - *c * 21.0 + *d * 7.0;
+        let pieces = vec![
+            f,
+            f + (p2 + q2 + c2 + d2 + p - q + *c - *d - 8.0) * 10.0,
+            f + (p2 + q2 * 2.0 + c2 + d2 * 2.0 - p - *d - 10.0) * 10.0,
+            f + (p2 + q2 + c2 + p * 2.0 - q - *d - 5.0) * 10.0,
+        ];
+        (pieces, vec![])
+    });
+    let found = solve("Polak 6", &case, [0.0; 4]);
+    is_optimum(&found, -44.0);
+}
+
+/// H. H. Rosenbrock's valley (1960) whose end is beyond a bound.
+#[test]
+fn a_bound_ends_a_valley() {
+    let case = Case::<2>::smooth(vec![[-2.0, 0.5], [-2.0, 2.0]], 0, |[x, y]| {
+        (
+            (*y - x.square()).square() * 100.0 + (-*x + 1.0).square(),
+            vec![],
+        )
+    });
+    let found = solve("boxed Rosenbrock", &case, [-1.2, 1.0]);
+    is_optimum(&found, 0.25);
+    assert_eq!(found.design[0], 0.5);
+    // What a longer range of x is worth there: 2 (1 - x).
+    assert!((found.multipliers.bounds[0][1] - 1.0).abs() < 1e-5);
+}
+
+/// The largest of a travelling wave's local peaks: their number and order changes on the way.
+#[test]
+fn peaks_may_come_and_go() {
+    let case = Case::<2>::pieces(cube(2, -2.0, 2.0), 0, |[a, b]| {
+        // |cos 3t + a cos t + b sin 2t| over half a turn, as its samples' local peaks: the best mix of waves.
+        let at = |k: i32| {
+            let t = f64::from(k) * std::f64::consts::PI / 2000.0;
+            let (s, c) = (kempe_number::math::sin(2.0 * t), kempe_number::math::cos(t));
+            let value: D<2> = *a * c
+                + *b * s
+                + kempe_number::math::cos(3.0 * t)
+                + kempe_number::math::cos(5.0 * t) * 0.3;
+            value.abs()
+        };
+        let samples: Vec<D<2>> = (0..=2000).map(at).collect();
+        let peaks = (0..samples.len()).filter(|k| {
+            let own = samples[*k].re;
+            (*k == 0 || samples[k - 1].re <= own)
+                && (k + 1 == samples.len() || samples[k + 1].re < own)
+        });
+        (peaks.map(|k| samples[k]).collect(), vec![])
+    });
+    let found = solve("peaks", &case, [1.5, 1.0]);
+    assert!(found.ended.is_optimal());
+    // The problem is convex: no other place near by is better.
+    for (da, db) in [
+        (1e-3, 0.0),
+        (-1e-3, 0.0),
+        (0.0, 1e-3),
+        (0.0, -1e-3),
+        (1e-3, 1e-3),
+        (-1e-3, 1e-3),
+    ] {
+        let near = vec![found.design[0] + da, found.design[1] + db];
+        let there = kempe_optimize::Problem::evaluate(&case, &near);
+        assert!(there.largest() > found.objective());
+    }
+}
+
+/// Two discs a gap apart and a third constraint that never matters: the nearest approach is in the middle of the gap.
+#[test]
+fn a_conflict_is_named() {
+    let case = Case::<2>::smooth(cube(2, -10.0, 10.0), 3, |[x, y]| {
+        let disc = |at: f64| (*x - at).square() + y.square() - 1.0;
+        (*y * 3.0 + *x, vec![disc(-2.0), -*y - 9.0, disc(2.0)])
+    });
+    let found = solve("conflict", &case, [5.0, 7.0]);
+    assert_eq!(found.ended, Ended::Infeasible);
+    assert!(
+        found.design.iter().all(|x| x.abs() < 1e-4),
+        "{:?}",
+        found.design
+    );
+    let mut names: Vec<usize> = found
         .conflict
         .iter()
-        .filter(|(_, share)| *share > 1e-6)
-        .map(|(k, _)| *k)
+        .filter(|c| c.1 > 1e-6)
+        .map(|c| c.0)
         .collect();
+    names.sort_unstable();
+    assert_eq!(names, [0, 2]);
+    let shares: f64 = found.conflict.iter().map(|c| c.1).sum();
+    assert!((shares - 1.0).abs() < 1e-9);
+}
+
+/// Constraints that cannot be kept even by their linear parts.
+#[test]
+fn rows_that_conflict_are_named() {
+    let case = Case::<2>::smooth(cube(2, 0.0, 1.0), 3, |[x, y]| {
+        (*x, vec![*x + *y - 0.5, -*x - *y + 0.7, *x - 2.0])
+    });
+    let found = solve("rows", &case, [0.9, 0.1]);
+    assert_eq!(found.ended, Ended::Infeasible);
+    let names: Vec<usize> = found.conflict.iter().map(|c| c.0).collect();
+    assert_eq!(names.len(), 2);
+    assert!(names.contains(&0) && names.contains(&1));
+}
+
+/// The same constraint four times, one of them squared: no regular point.
+#[test]
+fn redundant_constraints_do_no_harm() {
+    let case = Case::<2>::smooth(cube(2, -3.0, 3.0), 4, |[x, y]| {
+        let row = *x + *y - 1.0;
+        (
+            (*x - 2.0).square() + (*y - 1.0).square(),
+            vec![row, row * 2.0, row * 0.5, *x * 3.0 + *y * 3.0 - 3.0],
+        )
+    });
+    let found = solve("redundant", &case, [-2.0, -2.0]);
+    is_optimum(&found, 2.0);
+    let paid: f64 = (0..4)
+        .zip([1.0, 2.0, 0.5, 3.0])
+        .map(|(k, size)| found.multipliers.cost(k) * size)
+        .sum();
+    assert!((paid - 2.0).abs() < 1e-6, "{paid}");
+}
+
+/// An equation as two constraints: their multipliers have no bound.
+#[test]
+fn an_equation_may_be_two_constraints() {
+    let case = Case::<3>::smooth(cube(3, -5.0, 5.0), 2, |[x, y, z]| {
+        let sphere = x.square() + y.square() + z.square() - 4.0;
+        (*x + *y * 2.0 - *z, vec![sphere, -sphere])
+    });
+    let found = solve("sphere", &case, [1.0, 1.0, 1.0]);
+    is_optimum(&found, -2.0 * 6.0_f64.sqrt());
+}
+
+/// Full steps along a circle raise both the objective and the violation (N. Maratos, 1978).
+#[test]
+fn full_steps_are_corrected_along_a_curve() {
+    let case = Case::<2>::smooth(cube(2, -2.0, 2.0), 2, |[x, y]| {
+        let circle = x.square() + y.square() - 1.0;
+        (circle * 2.0 - *x, vec![circle, -circle])
+    });
+    let found = solve("Maratos", &case, [0.0, 1.0]);
+    is_optimum(&found, -1.0);
+    assert!(found.iterations < 30, "{}", found.iterations);
+}
+
+/// Nothing is known beyond a curve that the steps want to cross, and the optimum lies just before it.
+#[test]
+fn undefined_designs_shorten_steps() {
+    let mut case = Case::<2>::smooth(cube(2, 0.0, 2.0), 0, |_| unreachable!());
+    case.functions = Box::new(|[x, y]| {
+        let room = (
+            -x.square() - y.square() + 1.0,
+            x.re * x.re + y.re * y.re < 1.0,
+        );
+        room.1
+            .then(|| (vec![vec![-*x - *y - room.0.sqrt() * 0.01]], vec![]))
+    });
+    let found = solve("undefined", &case, [0.1, 0.2]);
+    // Of -x - y - e sqrt(1 - x^2 - y^2) the minimum is -sqrt(2 + e^2).
+    is_optimum(&found, -(2.0_f64 + 1e-4).sqrt());
+    assert_eq!(
+        sqp(
+            &case,
+            &[1.5, 1.5],
+            &SqpOptions::default(),
+            &Alone,
+            &mut silent
+        )
+        .ended,
+        Ended::Undefined
+    );
+}
+
+/// Multipliers are what the optimum gains where a constraint is eased.
+#[test]
+fn multipliers_are_derivatives_of_the_optimum() {
+    let problem = |ease: [f64; 3]| {
+        Case::<3>::pieces(
+            vec![[-3.0, 3.0], [-3.0, 3.0], [-3.0, 0.3 + ease[2]]],
+            2,
+            move |[x, y, z]| {
+                let one = (*x - 2.0).square() + y.square() + (*z - 1.0).square() * 2.0;
+                let two = x.square() + (*y - 2.0).square() * 1.5 + (*z - 1.0).square() * 2.0;
+                let sum = x.square() + y.square() + z.square() - 1.5 - ease[0];
+                let halves = vec![*x - *y * 0.2 - 0.6 - ease[1], *x * 0.5 + *z - 3.0 - ease[1]];
+                (vec![one, two], vec![vec![sum], halves])
+            },
+        )
+    };
+    let options = SqpOptions {
+        optimality: 1e-11,
+        ..SqpOptions::default()
+    };
+    let of = |ease: [f64; 3]| {
+        sqp(
+            &problem(ease),
+            &[0.1, 0.1, 0.1],
+            &options,
+            &Alone,
+            &mut silent,
+        )
+    };
+    let found = of([0.0; 3]);
+    assert!(found.ended.is_optimal(), "{found:?}");
+    let costs = [
+        found.multipliers.cost(0),
+        found.multipliers.cost(1),
+        found.multipliers.bounds[2][1],
+    ];
+    for k in 0..3 {
+        let at = |ease: f64| {
+            let mut all = [0.0; 3];
+            all[k] = ease;
+            of(all).objective()
+        };
+        let gain = (at(-1e-4) - at(1e-4)) / 2e-4;
+        println!("cost {k}: {} {gain}", costs[k]);
+        assert!((gain - costs[k]).abs() < 1e-5, "{k}: {gain} {}", costs[k]);
+    }
     assert!(
-        named.len() == 2 && named.contains(&0) && named.contains(&1),
-        "{named:?}"
+        costs.iter().filter(|c| **c > 0.01).count() >= 2,
+        "{costs:?}"
     );
 }
 
 #[test]
-fn where_it_is_not_defined_steps_are_shorter() {
-    // The root is not there beyond 1; the least lies near it.
-    let problem = Given::new(&[[-5.0, 5.0]], [1, 0], |x| {
-        let inside = c(1.0) - x[0];
-        (inside.re > 0.0).then(|| vec![vec![-x[0] - inside.ln() * c(0.1)]])
+fn who_listens_may_stop_it() {
+    let case = Case::<2>::smooth(cube(2, -2.0, 2.0), 0, |[x, y]| {
+        (
+            (*y - x.square()).square() * 100.0 + (-*x + 1.0).square(),
+            vec![],
+        )
     });
-    let found = solve(problem, &[-4.0]);
-    assert!(
-        found.ended.is_optimal() && (found.design[0] - 0.9).abs() < 1e-5,
-        "{found:#?}"
+    let mut told = 0;
+    let mut stop = |_: &kempe_optimize::Progress| {
+        told += 1;
+        if told > 4 {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
+    };
+    let found = sqp(
+        &case,
+        &[-1.2, 1.0],
+        &SqpOptions::default(),
+        &Alone,
+        &mut stop,
     );
+    assert_eq!(found.ended, Ended::Stopped);
+    assert!(found.objective() < 24.2 && found.iterations == 4);
 }
 
+/// A variable whose bounds meet is none.
+#[test]
+fn a_fixed_variable_stays() {
+    let case = Case::<2>::smooth(vec![[0.5, 0.5], [-2.0, 2.0]], 0, |[x, y]| {
+        ((*y - *x).square() + *y, vec![])
+    });
+    let found = solve("fixed", &case, [1.0, 1.0]);
+    is_optimum(&found, 0.25);
+    assert_eq!(found.design[0], 0.5);
+}
+
+/// A variable whose bounds meet stays where it is, to the bit; the others find their optimum beside it.
+#[test]
+fn a_variable_may_be_fixed() {
+    let case = Case::<3>::smooth(
+        vec![[-5.0, 5.0], [1.3, 1.3], [-5.0, 5.0]],
+        1,
+        |[x, y, z]| {
+            let f = (*x - *y).square() + (*z + *y * 2.0).square() + x.square();
+            (f, vec![-*x + 1.0])
+        },
+    );
+    let found = solve("fixed", &case, [3.0, 1.3, 2.0]);
+    is_optimum(&found, 0.09 + 1.0);
+    assert_eq!(found.design[1], 1.3);
+    assert_eq!(found.multipliers.bounds[1], [0.0; 2]);
+}
+
+/// The same constraint twice, in other units and nearly the same: together they cost what one would.
 #[test]
 fn constraints_twice_over_do_not_matter() {
-    let problem = Given::new(&[WIDE; 2], [1, 4], |x| {
-        let g = c(1.0) - x[0] - x[1];
-        Some(vec![
-            vec![sq(x[0]) + sq(x[1])],
-            vec![g, g],
-            vec![g],
-            vec![c(2.0) * g],
-            vec![g * c(1.0 + 1e-12)],
-        ])
+    let case = Case::<2>::pieces(cube(2, -50.0, 50.0), 4, |[x, y]| {
+        let g = -*x - *y + 1.0;
+        let constraints = vec![vec![g, g], vec![g], vec![g * 2.0], vec![g * (1.0 + 1e-12)]];
+        (vec![x.square() + y.square()], constraints)
     });
-    let found = reaches("twice", problem, &[3.0, -2.0], 0.5, &[0.5, 0.5]);
-    let cost: f64 = [1.0, 1.0, 2.0, 1.0]
-        .iter()
-        .enumerate()
-        .map(|(k, s)| s * found.multipliers.cost(k))
+    let found = solve("twice", &case, [3.0, -2.0]);
+    is_optimum(&found, 0.5);
+    let costs = (0..4).zip([1.0, 1.0, 2.0, 1.0]);
+    let cost: f64 = costs
+        .map(|(k, size)| size * found.multipliers.cost(k))
         .sum();
     assert!((cost - 1.0).abs() < 1e-5, "{cost}");
 }

@@ -1,6 +1,6 @@
 //! The plots a study asks for.
 
-use kempe_draw::plot::{Axis, Beyond, Curve, Limit, Marker, MarkerKind, PlotSpec};
+use kempe_draw::plot::{Axis, Beyond, Curve, Limit, Marker, MarkerKind, PlotSpec, Scale};
 use kempe_model::Model;
 use kempe_motion::events::EventKind;
 use kempe_units::{Dimension, Unit};
@@ -56,6 +56,7 @@ pub fn figures(model: &Model, result: &StudyResult) -> Vec<(String, PlotSpec)> {
             }
             Figure::Plane { name, unit, curves } => (name.clone(), plane(unit, curves)),
             Figure::Graph { name, x, y, curves } => (name.clone(), graph([x, y], curves)),
+            Figure::Front { x, y, own } => (y.name.clone(), front(x, y, *own)),
             Figure::Histogram {
                 number,
                 unit,
@@ -160,6 +161,7 @@ pub(crate) fn noise(result: &StudyResult) -> f64 {
         Figure::Path(_)
         | Figure::Plane { .. }
         | Figure::Graph { .. }
+        | Figure::Front { .. }
         | Figure::Histogram { .. } => &[],
     });
     let columns = result.table.columns.iter().chain(of_figures);
@@ -197,6 +199,42 @@ fn own_curve(curve: &PlaneCurve) -> Curve {
         y: curve.points.iter().map(|p| p[1]).collect(),
         dashed: curve.dashed,
         ..Curve::default()
+    }
+}
+
+/// Room around the outermost dots, in parts of what they span.
+const DOTS_MARGIN: f64 = 0.05;
+
+/// Designs as dots in two goals.
+pub(crate) fn front(x: &Column, y: &Column, own: Option<[f64; 2]>) -> PlotSpec {
+    let axis = |column: &Column, k: usize| {
+        let values = column.values.iter().copied().chain(own.map(|own| own[k]));
+        let limits = Scale::range(values, false, DOTS_MARGIN);
+        Axis {
+            limits: Some(limits),
+            ..Axis::new(column.name.clone(), column.unit.text())
+        }
+    };
+    let mut curves = vec![Curve {
+        label: own.map_or(String::new(), |_| "the front".to_owned()),
+        x: x.values.clone(),
+        y: y.values.clone(),
+        dots: true,
+        ..Curve::default()
+    }];
+    curves.extend(own.map(|own| Curve {
+        label: "the file's own".to_owned(),
+        x: vec![own[0]],
+        y: vec![own[1]],
+        dots: true,
+        dashed: true,
+        ..Curve::default()
+    }));
+    PlotSpec {
+        x: axis(x, 0),
+        y: axis(y, 1),
+        curves,
+        ..PlotSpec::default()
     }
 }
 

@@ -25,7 +25,10 @@ pub fn figures_against(
             Figure::Within { curve, .. } => {
                 over_the_drive(result, std::slice::from_ref(curve), other)
             }
-            Figure::Plane { .. } | Figure::Graph { .. } | Figure::Histogram { .. } => Vec::new(),
+            Figure::Plane { .. }
+            | Figure::Graph { .. }
+            | Figure::Front { .. }
+            | Figure::Histogram { .. } => Vec::new(),
             Figure::Path(point) => {
                 let name = model.points.get(point.index()).map_or("", |p| &p.name);
                 let index = other_model.points.iter().position(|p| p.name == name);
@@ -107,6 +110,7 @@ pub(crate) fn quantity<'r>(result: &'r StudyResult, name: &str) -> Option<&'r Co
         | Figure::Hodograph(..)
         | Figure::Plane { .. }
         | Figure::Graph { .. }
+        | Figure::Front { .. }
         | Figure::Histogram { .. } => [].iter().chain(&[]),
     });
     (result.table.columns.iter().chain(plotted)).find(|c| c.name == name)
@@ -136,6 +140,7 @@ fn overlay(plot: &mut PlotSpec, others: Vec<Beside>, matched: &Matched) {
             x,
             y,
             dashed: true,
+            dots: false,
             // Several quantities keep their colours; a lone one leaves another colour free.
             color: Some(if alone { 1 } else { beside.index }),
         })

@@ -90,7 +90,9 @@ mod words;
 
 pub use along::{Along, Row, RowForces, force_problems};
 pub use comparison::{Axis, Comparison, Design, Kind, Pair, StudyPair, compare};
-pub use designs::{Parts, compute_parts, part_count};
+#[doc(hidden)]
+pub use designs::optimum_by_differences;
+pub use designs::{Parts, compute_parts, most_parts, part_count};
 #[cfg(feature = "parquet")]
 pub use designs::{RowsError, write_rows};
 pub use dimensions::dimensions;

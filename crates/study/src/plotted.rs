@@ -30,6 +30,7 @@ pub(crate) fn plotted(model: &Model, result: &StudyResult) -> Vec<Column> {
             | Figure::Hodograph(..)
             | Figure::Plane { .. }
             | Figure::Graph { .. }
+            | Figure::Front { .. }
             | Figure::Histogram { .. } => {}
         }
     }
@@ -41,6 +42,7 @@ pub(crate) fn plotted(model: &Model, result: &StudyResult) -> Vec<Column> {
             | Figure::Within { .. }
             | Figure::Plane { .. }
             | Figure::Graph { .. }
+            | Figure::Front { .. }
             | Figure::Histogram { .. } => continue,
             Figure::Path(point) => {
                 let name = model.points.get(point.index()).map_or("", |p| &p.name);

@@ -18,7 +18,8 @@ use crate::plotted::plotted;
 use crate::point_vectors::point_vectors;
 use crate::report_against::{beside, findings_of_other, other_source};
 use crate::report_designs::{
-    along_the_motion, designs_section, histograms_section, moving_designs, planes_section,
+    along_the_motion, designs_section, front_report, histograms_section, moving_designs,
+    planes_section,
 };
 use crate::report_shapes::mode_shapes;
 use crate::result::StudyResult;
@@ -127,9 +128,11 @@ pub fn report(
             Err(_) => Vec::new(),
         }
     });
+    let fronts = studies.iter().filter_map(|s| s.result.as_ref().ok());
     Report {
         title: model.title.clone(),
         file_name: origin.file_name.to_owned(),
+        fronts: fronts.filter_map(front_report).collect(),
         motions: motions.collect(),
         first: warnings_section(&findings).into_iter().collect(),
         sections,

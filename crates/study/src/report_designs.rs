@@ -1,14 +1,16 @@
 //! Mechanisms that a study found in the report: side by side, and the first ones moving.
 
 use kempe_draw::plot::PlotSpec;
-use kempe_draw::report::{Block, MotionReport, Section};
+use kempe_draw::report::{Block, FrontDesign, FrontReport, MotionReport, Section};
 use kempe_draw::scene::Scene;
 use kempe_draw::{DrawOptions, Stage};
+use kempe_draw::{Frame as PoseFrame, MechanismView};
 use kempe_model::Model;
 
-use crate::figures::{chosen, figures};
-use crate::report::motion;
+use crate::figures::{chosen, figures, front};
+use crate::report::{motion, shown};
 use crate::result::{Figure, FoundDesign, StudyResult};
+use crate::table::Column;
 use crate::view::{drawing_frames, mechanism_view};
 
 /// So many move in the page; the files of all move when they are run.
@@ -59,6 +61,65 @@ pub(crate) fn designs_section(result: &StudyResult) -> Option<Section> {
     })
 }
 
+/// The front that a study found, to choose a design from.
+pub(crate) fn front_report(result: &StudyResult) -> Option<FrontReport> {
+    let pairs: Vec<(&Column, &Column, Option<[f64; 2]>)> = (result.figures.iter())
+        .filter_map(|figure| match figure {
+            Figure::Front { x, y, own } => Some((x, y, *own)),
+            _ => None,
+        })
+        .collect();
+    let (x, y, own) = *pairs.first()?;
+    let columns = &result.table.columns;
+    let named = std::iter::once(x).chain(pairs.iter().map(|(_, y, _)| *y));
+    let place = |goal: &Column| columns.iter().position(|c| c.name == goal.name);
+    let goals: Option<Vec<usize>> = named.map(place).collect();
+    let own = own.map(|[first, _]| {
+        let others = pairs
+            .iter()
+            .map(|(.., own)| own.map_or(f64::NAN, |own| own[1]));
+        std::iter::once(first).chain(others).collect()
+    });
+    let count = result.table.rows();
+    let design = |row: usize| {
+        let found = result.designs.get(row);
+        FrontDesign {
+            name: found.map_or_else(|| (row + 1).to_string(), |it| it.name.clone()),
+            file: found.map_or_else(String::new, |it| {
+                format!("{}/{}.toml", result.name, it.name)
+            }),
+            note: result
+                .table
+                .notes
+                .get(row)
+                .cloned()
+                .flatten()
+                .unwrap_or_default(),
+            moving: found.and_then(moving),
+            motion: found.map_or_else(String::new, |it| format!("{}-{}", result.name, it.name)),
+        }
+    };
+    Some(FrontReport {
+        name: result.name.clone(),
+        about: format!(
+            "{count} designs. None is better than another in all goals: what one gains in the one it loses in another. A click on a point or a row shows it."
+        ),
+        columns: columns.iter().map(shown).collect(),
+        goals: goals?,
+        own,
+        plot: front(x, y, pairs[0].2),
+        designs: (0..count).map(design).collect(),
+    })
+}
+
+/// A mechanism that was found with its poses.
+fn moving(design: &FoundDesign) -> Option<(MechanismView, Vec<PoseFrame>)> {
+    let motion = design.motion.as_ref()?;
+    let study = design.model.studies.first();
+    let view = mechanism_view(&design.model, study.map(|s| s.kind.along()));
+    Some((view, drawing_frames(&design.model, motion)))
+}
+
 /// Width and height of a picture of the plane, mm.
 const PLANE: [f64; 2] = [170.0, 130.0];
 
@@ -107,9 +168,22 @@ pub(crate) fn histograms_section(model: &Model, result: &StudyResult) -> Option<
 /// Width and height of a histogram, mm.
 const HISTOGRAM: [f64; 2] = [140.0, 80.0];
 
-/// The first ones with their motions.
+/// So many of a list at most, the first and the last among them.
+fn evenly<T>(list: &[T], most: usize) -> Vec<&T> {
+    let count = list.len().min(most);
+    let last = list.len().saturating_sub(1);
+    let place = |k: usize| k * last / count.saturating_sub(1).max(1);
+    (0..count).filter_map(|k| list.get(place(k))).collect()
+}
+
+/// The first ones with their motions; of a front some evenly from end to end.
 pub(crate) fn moving_designs(result: &StudyResult) -> Vec<MotionReport> {
-    let moving = result.designs.iter().filter_map(|design| {
+    let is_front = |figure: &Figure| matches!(figure, Figure::Front { .. });
+    let shown: Vec<&FoundDesign> = match result.figures.iter().any(is_front) {
+        true => evenly(&result.designs, MOVING),
+        false => result.designs.iter().collect(),
+    };
+    let moving = shown.into_iter().filter_map(|design| {
         let study = design.model.studies.first()?;
         let own = motion(
             &design.model,

@@ -192,6 +192,15 @@ pub enum Figure {
         /// Its curves, in these units.
         curves: Vec<PlaneCurve>,
     },
+    /// Designs in two goals, none of them better than another in all goals of its study.
+    Front {
+        /// The first goal, one value for each design.
+        x: Column,
+        /// The other one.
+        y: Column,
+        /// Both of the file's own design, in their columns' units.
+        own: Option<[f64; 2]>,
+    },
     /// How often a number has its values.
     Histogram {
         /// Its name.

@@ -273,6 +273,7 @@ mod tests {
                 crate::Figure::Path(_)
                 | crate::Figure::Plane { .. }
                 | crate::Figure::Graph { .. }
+                | crate::Figure::Front { .. }
                 | crate::Figure::Histogram { .. } => 0,
             };
         }

@@ -79,7 +79,9 @@ pub fn run_in_parts(
         StudyKind::Adjust(asked) => adjustment(model, &study.name, asked, progress),
         StudyKind::Sweep(asked) => sweep(model, &study.name, asked, (executor, parts), progress),
         StudyKind::Tolerance(asked) => tolerance(model, &study.name, asked, executor, progress),
-        StudyKind::Optimize(asked) => optimization(model, &study.name, asked, progress),
+        StudyKind::Optimize(asked) => {
+            optimization(model, &study.name, asked, (executor, parts), progress)
+        }
         StudyKind::Synthesize(asked) => synthesis(model, &study.name, asked, progress),
     }
 }

@@ -390,3 +390,70 @@ fn forces_and_simulations_are_swept_too() {
     );
     assert!(falls.table.worst_closure().is_finite());
 }
+
+/// Studies that are not moved along a path alone, by their names; `a` and `play` are parameters.
+const WHOLE: &str = "[studies.worn]\nkind = \"clearance\"\nmodel = \"continuous\"\nstep = 30\ncolumns = [\"angle\"]\nplot = [\"angle\"]\n\
+    [studies.rattle]\nkind = \"clearance\"\nmodel = \"three-state\"\nuntil = \"4 ms\"\nstep = \"1 ms\"\ncolumns = [\"angle\"]\n\
+    [studies.round]\nkind = \"motion\"\ncircuit = true\nstep = 30\ncolumns = [\"angle\"]\n\
+    [studies.set]\nkind = \"adjust\"\nunknown = [\"b\"]\nmatch = [{ motor = \"30 deg\", angle = \"103 deg\" }]\n";
+
+#[test]
+fn any_study_is_swept_as_it_runs_alone() {
+    let text = |a: f64, play: f64, sweep: &str| {
+        let text = FOUR_BAR.replace(
+            "a = \"20 mm\"",
+            &format!("a = \"{a} mm\"\nplay = \"{play} um\""),
+        );
+        let heavy = "mass = \"0.5 kg\", inertia = \"100 kg mm^2\" }";
+        let text = text.replace("P = [25, 10] }", &format!("P = [25, 10], {heavy}"));
+        let text = text.replace("D-C = 40 }", &format!("D-C = 40, {heavy}"));
+        format!(
+            "{text}{WHOLE}[clearance]\nC = {{ radial = \"play\", radius = \"5 mm\", restitution = 0.5 }}\n{sweep}"
+        )
+    };
+    let read = |text: &str| {
+        let read = Model::from_toml(text, "test", &mut |_| Err("no files".into()));
+        read.unwrap_or_else(|found| panic!("{}", rendered(&found)))
+            .model
+    };
+    for (k, over) in ["worn", "rattle", "round", "set"].into_iter().enumerate() {
+        let sweep = format!(
+            "[studies.some]\nkind = \"sweep\"\nover = \"{over}\"\nvary = {{ a = [19, 21], play = [\"20 um\", \"60 um\"] }}\n"
+        );
+        let model = read(&text(20.0, 50.0, &sweep));
+        let mut parts = Memory::default();
+        let study = model.studies.last().expect("the sweep");
+        let swept = run_in_parts(&model, study, (&Threads(2), &mut parts), &mut Silent)
+            .unwrap_or_else(|found| panic!("{over}: {}", rendered(&found)));
+        for (row, (a, play)) in [(19.0, 20.0), (19.0, 60.0), (21.0, 20.0), (21.0, 60.0)]
+            .into_iter()
+            .enumerate()
+        {
+            let alone = read(&text(a, play, ""));
+            let alone = run(&alone, &alone.studies[1 + k], &mut Silent);
+            let alone = alone.unwrap_or_else(|found| panic!("{over}: {}", rendered(&found)));
+            assert!(!alone.scalars.is_empty(), "{over} tells no number");
+            for scalar in &alone.scalars {
+                let found = column(&swept, &scalar.name)[row];
+                let both_nothing = found.is_nan() && scalar.value.is_nan();
+                assert!(
+                    both_nothing
+                        || (found - scalar.value).abs() <= 1e-9 * scalar.value.abs().max(1e-9),
+                    "{over} {}: {found} for {}",
+                    scalar.name,
+                    scalar.value
+                );
+            }
+        }
+        // From its parts the same again.
+        let again = run_in_parts(&model, study, (&Serial, &mut parts), &mut Silent);
+        assert_eq!(swept.table, again.expect("a sweep").table, "{over}");
+        // No measure can be asked of it besides.
+        let asked = sweep.replace("vary", "columns = [\"swing\"]\nvary");
+        let refused = Model::from_toml(&text(20.0, 50.0, &asked), "test", &mut |_| {
+            Err(String::new())
+        });
+        let refused = refused.expect_err("refused");
+        assert!(refused.iter().any(|d| d.code == "bad-choice"), "{over}");
+    }
+}

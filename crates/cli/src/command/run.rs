@@ -10,7 +10,8 @@ use std::path::{Path, PathBuf};
 use kempe_batch::Threads;
 use kempe_model::{Diagnostic, Model, Study};
 use kempe_study::{
-    StudyOutcome, encode, of_other_design, part_count, room_for, study_bytes, study_named,
+    StudyOutcome, encode, most_parts, of_other_design, part_count, room_for, study_bytes,
+    study_named,
 };
 
 use crate::arguments::Run;
@@ -30,7 +31,7 @@ use write::{REPORT, Results, known_names, known_names_against};
 /// The studies of a run together hold at most so many bytes.
 const MAX_RUN_BYTES: u64 = 4 << 30;
 
-/// Why parts of a sweep are not kept, or not found.
+/// Why parts are not kept, or not found.
 const UNKEPT: [&str; 4] = [
     "cannot-write",
     "file-exists",
@@ -335,6 +336,10 @@ fn kept(
     let folder = arguments.out.as_deref().unwrap_or(Path::new(""));
     let mut all = Vec::new();
     for study in studies {
+        if let (Some(most), None) = (most_parts(study), joined) {
+            all.push(Kept::of_search(folder, loaded, &study.name, most));
+            continue;
+        }
         // What is wrong with it is told when it is run.
         let Ok(Some(count)) = part_count(&loaded.checked.model, study) else {
             continue;
@@ -351,7 +356,7 @@ fn kept(
     Ok(all)
 }
 
-/// What is said of the parts that are found where a sweep begins.
+/// What is said of the parts that are found where a sweep or a search begins.
 fn resuming(kept: &Kept) -> String {
     let Some(folder) = kept.folder() else {
         return String::new();
@@ -360,9 +365,14 @@ fn resuming(kept: &Kept) -> String {
     let there = kept.there().len();
     if there > 0 {
         said += &format!(
-            "{}: resuming, {there} of {} parts are there\n",
+            "{}: resuming, {} {} there\n",
             kept.study(),
-            kept.count()
+            kept.there_of_all(),
+            if there == 1 && kept.is_search() {
+                "is"
+            } else {
+                "are"
+            }
         );
     }
     let strangers = kept.strangers();
@@ -415,11 +425,7 @@ fn partial_result(folder: &Path, kept: &[Kept]) -> Diagnostic {
     let parts = kept.iter().filter(|kept| !kept.there().is_empty());
     let parts = parts.filter_map(|kept| {
         let folder = kept.folder()?.display();
-        Some(format!(
-            "{} of {} parts in {folder}",
-            kept.there().len(),
-            kept.count()
-        ))
+        Some(format!("{} in {folder}", kept.there_of_all()))
     });
     let parts: Vec<String> = parts.collect();
     match parts.is_empty() {

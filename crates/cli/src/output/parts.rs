@@ -1,4 +1,4 @@
-//! Finished parts of a sweep as files, so that nothing of long work is lost: `family.parts/0123456789abcdef-000007.part`.
+//! Finished parts of a sweep or of a search as files, so that nothing of long work is lost: `family.parts/0123456789abcdef-000007.part`.
 //!
 //! A part is written under a hidden name, forced to the disk and renamed. The first half of its name is a fingerprint of all that its
 //! numbers depend on: the model and its tables, parameters set on the command line, the study and the program's version. So parts of
@@ -67,12 +67,14 @@ impl std::fmt::Display for Shard {
     }
 }
 
-/// The parts of one sweep.
+/// The parts of one sweep, or of one search.
 pub struct Kept {
     study: String,
     fingerprint: u64,
-    /// How many parts there are.
+    /// How many parts there are; of a search at most.
     count: usize,
+    /// Whether it is a search, of which nobody knows how many parts there will be: each goes on where the one before ends.
+    search: bool,
     /// Where parts are written; none where they are only joined.
     folder: Option<PathBuf>,
     /// Where they are looked for besides.
@@ -107,12 +109,21 @@ impl Kept {
         }
     }
 
+    /// What a search asked, of which there are so many parts at most, written to a folder for results and found there.
+    pub fn of_search(folder: &Path, loaded: &Loaded, study: &str, most: usize) -> Self {
+        Self {
+            search: true,
+            ..Self::in_folder(folder, loaded, study, most, None)
+        }
+    }
+
     /// The parts of a study that lie in several folders.
     pub fn joined(folders: Vec<PathBuf>, loaded: &Loaded, study: &str, count: usize) -> Self {
         Self {
             study: study.to_owned(),
             fingerprint: fingerprint(loaded, study),
             count,
+            search: false,
             folder: None,
             others: folders,
             shard: None,
@@ -131,6 +142,11 @@ impl Kept {
         self.count
     }
 
+    /// Whether they are of a search.
+    pub fn is_search(&self) -> bool {
+        self.search
+    }
+
     /// Where they are written.
     pub fn folder(&self) -> Option<&Path> {
         self.folder.as_deref()
@@ -142,7 +158,19 @@ impl Kept {
             let mut places = self.places(*part);
             places.any(|path| fs::symlink_metadata(path).is_ok())
         };
-        (0..self.count).filter(is_there).collect()
+        match self.search {
+            true => (0..self.count).take_while(is_there).collect(),
+            false => (0..self.count).filter(is_there).collect(),
+        }
+    }
+
+    /// How many parts are there, in words: of how many, where that is known.
+    pub fn there_of_all(&self) -> String {
+        match (self.there().len(), self.search) {
+            (1, true) => "1 part of the search".to_owned(),
+            (there, true) => format!("{there} parts of the search"),
+            (there, false) => format!("{there} of {} parts", self.count),
+        }
     }
 
     /// How many parts are to be computed here.
@@ -216,7 +244,7 @@ impl Kept {
         let Some(folder) = &self.folder else {
             return;
         };
-        for part in 0..self.count {
+        for part in self.there() {
             let _ = fs::remove_file(folder.join(self.name(part)));
         }
         hidden::remove_leftovers(folder);

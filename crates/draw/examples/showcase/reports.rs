@@ -229,6 +229,7 @@ pub fn report(cases: &[Case]) -> Report {
     Report {
         title: "Crank-rocker".into(),
         file_name: "examples/seeds/crank-rocker.toml".into(),
+        fronts: Vec::new(),
         motions,
         other_source: None,
         first: vec![Section {

@@ -74,6 +74,16 @@ pub(super) fn curve_paths(curve: &Curve, frame: Frame, x: &Scale, y: &Scale) -> 
         .collect()
 }
 
+/// The values of a curve that lie inside the axes.
+pub(super) fn curve_dots(curve: &Curve, frame: Frame, x: &Scale, y: &Scale) -> Vec<Point> {
+    let places = curve.x.iter().zip(&curve.y);
+    let inside = |p: &Point| (0..2).all(|k| p[k] >= frame[k] && p[k] <= frame[k + 2]);
+    places
+        .filter_map(|(vx, vy)| x.at(*vx).zip(y.at(*vy)).map(|(a, b)| [a, b]))
+        .filter(inside)
+        .collect()
+}
+
 /// The part of a line inside the axes (Liang and Barsky 1984).
 fn clip(a: Point, b: Point, frame: Frame) -> Option<(Point, Point)> {
     let (mut enter, mut leave) = (0.0_f64, 1.0_f64);

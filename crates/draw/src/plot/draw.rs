@@ -1,10 +1,10 @@
 //! Layout of a plot.
 
 use super::axis::{Scale, Ticks, power_text};
-use super::curve::curve_paths;
+use super::curve::{curve_dots, curve_paths};
 use super::frame::Frame;
 use super::{Curve, Limit, MarkerKind, PlotPicture, PlotSpec, hodograph};
-use crate::scene::{Align, Group, Item, Layer, Path, Scene, Style, Text};
+use crate::scene::{Align, Group, Item, Layer, Path, Point, Scene, Style, Text};
 use crate::text::{shortened, width as text_width};
 use crate::tokens::Token;
 
@@ -12,6 +12,8 @@ use crate::tokens::Token;
 const SMALL: f64 = 2.9;
 const MEDIUM: f64 = 3.2;
 const LARGE: f64 = 3.8;
+/// Radius of a dot, mm.
+const DOT: f64 = 0.9;
 
 pub(super) fn draw(plot: &PlotSpec, width: f64, height: f64) -> PlotPicture {
     let named: Vec<(usize, &Curve)> = plot
@@ -108,6 +110,15 @@ pub(super) fn draw(plot: &PlotSpec, width: f64, height: f64) -> PlotPicture {
     };
     groups.extend(cross);
     for (index, curve) in plot.curves.iter().enumerate() {
+        if curve.dots {
+            let items = curve_dots(curve, frame, &x, &y);
+            let dot = |at: &Point| Item::circle(*at, DOT, dot_style(curve, index));
+            groups.push(Group::new(
+                Layer::Curve(index),
+                items.iter().map(dot).collect(),
+            ));
+            continue;
+        }
         let paths = curve_paths(curve, frame, &x, &y);
         let style = Style::stroke(curve.token(index), 0.55);
         let style = if curve.dashed {
@@ -174,6 +185,15 @@ fn equalize(x: &mut Scale, y: &mut Scale) {
     }
 }
 
+/// A full dot, or an empty one of what is dashed.
+fn dot_style(curve: &Curve, index: usize) -> Style {
+    let token = curve.token(index);
+    match curve.dashed {
+        true => Style::stroke(token, 0.4),
+        false => Style::fill(token),
+    }
+}
+
 /// Writes the legend in rows below `top`, at most so high; returns the height where it ends.
 fn legend(
     named: &[(usize, &Curve)],
@@ -202,10 +222,10 @@ fn legend(
             style
         };
         let middle = y + SMALL * 0.33;
-        items.push(Item::path(
-            Path::polyline(&[[x, middle], [x + 6.0, middle]]),
-            style,
-        ));
+        items.push(match curve.dots {
+            true => Item::circle([x + 3.0, middle], DOT, dot_style(curve, *index)),
+            false => Item::path(Path::polyline(&[[x, middle], [x + 6.0, middle]]), style),
+        });
         items.push(Item::Text(Text::new([x + 7.5, y], SMALL, label)));
         x += needed;
     }

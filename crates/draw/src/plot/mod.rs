@@ -59,6 +59,8 @@ pub struct Curve {
     pub y: Vec<f64>,
     /// Dashed.
     pub dashed: bool,
+    /// Its values are dots that nothing joins.
+    pub dots: bool,
     /// The number of its colour; its place among the curves when `None`.
     pub color: Option<usize>,
     /// Of a curve of another design: what a reader is told of it at the rows of the motion.

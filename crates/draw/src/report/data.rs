@@ -44,7 +44,6 @@ impl Rows {
 
 /// All of a motion as one JSON object.
 pub(super) fn motion(motion: &MotionReport, rows: &Rows, stage: &Stage, shown: usize) -> String {
-    let [width, height] = stage.size();
     let traces = motion
         .view
         .traces
@@ -63,28 +62,19 @@ pub(super) fn motion(motion: &MotionReport, rows: &Rows, stage: &Stage, shown: u
             json::string(&gap.reason),
         ])
     });
-    let drawn = motion.frames.get(shown);
-    let anchors = stage.anchors();
-    let anchors = anchors.iter().map(|a| anchor(*a, drawn, &stage.context));
     let mut fields = vec![
         ("name", json::string(&motion.name)),
         ("all", rows.all.to_string()),
         ("row", json::array(rows.kept.iter().map(usize::to_string))),
     ];
     fields.extend(columns::columns(motion, rows));
+    fields.extend(mechanism(stage, &motion.frames, rows, shown));
     fields.extend([
-        (
-            "size",
-            json::array([json::decimal(width, 3), json::decimal(height, 3)]),
-        ),
         ("shown", shown.to_string()),
-        ("links", links(&motion.frames, rows, &stage.context)),
         (
             "named",
             json::array(motion.view.points.iter().map(|n| json::string(n))),
         ),
-        ("points", points(&stage.context)),
-        ("anchors", json::array(anchors)),
         ("traces", json::array(traces)),
         ("arrow", super::loads::arrow()),
         ("loads", super::loads::loads(stage)),
@@ -98,6 +88,28 @@ pub(super) fn motion(motion: &MotionReport, rows: &Rows, stage: &Stage, shown: u
         ("against", against(motion, rows, stage, shown)),
     ]);
     json::object(&fields)
+}
+
+/// What moves the drawing of a mechanism: its sheet, where its links are row after row, its points on them, and what each part hangs on.
+pub(super) fn mechanism(
+    stage: &Stage,
+    frames: &[Frame],
+    rows: &Rows,
+    shown: usize,
+) -> Vec<(&'static str, String)> {
+    let [width, height] = stage.size();
+    let drawn = frames.get(shown);
+    let anchors = stage.anchors();
+    let anchors = anchors.iter().map(|a| anchor(*a, drawn, &stage.context));
+    vec![
+        (
+            "size",
+            json::array([json::decimal(width, 3), json::decimal(height, 3)]),
+        ),
+        ("links", links(frames, rows, &stage.context)),
+        ("points", points(&stage.context)),
+        ("anchors", json::array(anchors)),
+    ]
 }
 
 /// The other design: what moves its outline, and its values; null where there is none.

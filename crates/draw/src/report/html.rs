@@ -1,13 +1,13 @@
 //! The page: template, style and script put together.
 
-use super::{Report, Section, motion, sections};
+use super::{Report, Section, front, motion, sections};
 use crate::escape::escape;
 use crate::tokens;
 
 const TEMPLATE: &str = include_str!("template.html");
 const STYLE: &str = include_str!("style.css");
 /// In the order in which each needs those before it.
-const SCRIPTS: [&str; 15] = [
+const SCRIPTS: [&str; 16] = [
     include_str!("script/numbers.js"),
     include_str!("script/elements.js"),
     include_str!("script/arrows.js"),
@@ -23,6 +23,7 @@ const SCRIPTS: [&str; 15] = [
     include_str!("script/enlarge.js"),
     include_str!("script/choose.js"),
     include_str!("script/player.js"),
+    include_str!("script/front.js"),
 ];
 
 pub(super) fn page(report: &Report) -> String {
@@ -40,6 +41,9 @@ pub(super) fn page(report: &Report) -> String {
         panels.push_str(&built.html);
         data.push(built.json);
     }
+    let built = report.fronts.iter().enumerate();
+    let built = built.map(|(index, front)| front::build(front, index, &report.motions));
+    let (fronts, front_data): (Vec<_>, Vec<_>) = built.map(|it| (it.html, it.json)).unzip();
     if report.motions.len() < 2 {
         tabs.clear();
     } else {
@@ -74,6 +78,8 @@ pub(super) fn page(report: &Report) -> String {
         "style" => STYLE.to_string(),
         "first" => first.clone(),
         "tabs" => tabs.clone(),
+        "fronts" => fronts.concat(),
+        "front_data" => format!("[{}]", front_data.join(",\n")),
         "motions" => panels.clone(),
         "sections" => findings.clone(),
         "data" => format!("[{}]", data.join(",\n")),

@@ -23,6 +23,7 @@ fn plot(motion: &MotionReport, rows: &Rows, spec: &PlotSpec) -> String {
         let mut fields = vec![
             ("label", json::string(&c.label)),
             ("dashed", c.dashed.to_string()),
+            ("dots", c.dots.to_string()),
             ("color", c.color.unwrap_or(index).to_string()),
             ("own", own.to_string()),
         ];

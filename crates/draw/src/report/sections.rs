@@ -100,7 +100,7 @@ fn facts(facts: &[(String, String)]) -> String {
     )
 }
 
-fn table(head: &[String], rows: &[Vec<String>]) -> String {
+pub(super) fn table(head: &[String], rows: &[Vec<String>]) -> String {
     // A head stands above its numbers.
     let numbers = |column: usize| {
         let mut cells = (rows.iter()).filter_map(|r| r.get(column).filter(|c| !c.is_empty()));

@@ -31,6 +31,9 @@ pub(crate) const OPTIMIZE_METHODS: [(&str, OptimizeMethod); 4] = [
     ("cma-es", OptimizeMethod::CmaEs),
 ];
 
+/// How values between two are spaced: whether evenly in the logarithm.
+pub(crate) const SPACING: [(&str, bool); 2] = [("even", false), ("log", true)];
+
 const OVER: Key = may("over", T::Name(Named::Study), "\"turn\"",
     "The study that is run for every design, of motion or forces or a simulation; may be left out where the file has one of motion or forces alone.");
 
@@ -72,8 +75,9 @@ pub(crate) static TOLERANCE: Kind = kind("study", "tolerance",
     &[&[
         must("kind", STUDY_KINDS, "\"tolerance\"", "What kind of study it is."),
         OVER,
-        must("vary", T::Values(&T::AnyOf(&[T::AnyValue, T::Table(&SPREAD)])), "{ area = \"0.1 mm^2\" }",
-            "Parameters with their tolerances: by how much they may differ from their values to either side, an amount or a part."),
+        may("vary", T::Values(&T::AnyOf(&[T::AnyValue, T::Table(&SPREAD)])), "{ area = \"0.1 mm^2\" }",
+            "Parameters with their tolerances: by how much they may differ from their values to either side, an amount or a part. Needed where no `clearance` is counted."),
+        may("clearance", T::Flag, "true", "Whether joints have the play that [clearance] gives them, pressed to one side that differs from piece to piece."),
         may("limits", CONDITIONS, "[\"range(angle(rocker)) >= 59 deg\"]", "What a piece must keep to be good; what has a value at every instant must keep it all along."),
         may("samples", T::Count(MAX_DESIGNS), "100000", "How many pieces are drawn; 10000 unless said otherwise."),
         SEED,
@@ -143,6 +147,8 @@ pub(crate) static AMONG: Kind = kind("choice", "choice",
     "The values among which a parameter is chosen.",
     &[&[
         may("between", T::Two(&T::AnyValue), "[\"1 mm^2\", \"2 mm^2\"]", "Its least and its greatest value."),
+        may("spacing", T::Words(&words(&SPACING)), "\"log\"",
+            "How a search that looks all over goes between them: evenly unless said otherwise, or evenly in the logarithm, for values over several decades."),
         may("step", T::AnyValue, "\"0.5 mm^2\"", "It is a whole multiple of this."),
         may("only", T::List(&T::AnyValue, 1), "[\"1 mm^2\", \"2 mm^2\"]", "It is one of these, as of a catalogue."),
     ]]);

@@ -29,7 +29,9 @@ use crate::designs::{
 use crate::diagnostic::Diagnostic;
 use crate::document::{Key, Node, Value};
 use crate::ids::{ParameterId, Scalar, Span};
-use crate::key_table::designs::{AMONG, COMBINE, MAX_VARIED, OPTIMIZE_METHODS, SPREAD, SWEPT};
+use crate::key_table::designs::{
+    AMONG, COMBINE, MAX_VARIED, OPTIMIZE_METHODS, SPACING, SPREAD, SWEPT,
+};
 use crate::read::adjust::free_parameter;
 use crate::read::column::column;
 use crate::read::context::Context;
@@ -63,7 +65,10 @@ pub(crate) fn read(
 ) -> Option<StudyKind> {
     let fit = entry.kind.key("fit").and_then(|_| entry.get("fit"));
     let over = over(cx, entry, others, fit.is_some());
-    let forces = over.as_ref().is_none_or(|(_, forces)| *forces);
+    if let Some((_, Runs::Whole)) = over {
+        no_measures(cx, entry)?;
+    }
+    let forces = (over.as_ref()).is_none_or(|(_, runs)| *runs != Runs::Motion);
     let over_name = over.as_ref().map(|(name, _)| name.clone());
     let columns = numbers(cx, entry, "columns", forces);
     let plots = match entry.kind.key("plot") {
@@ -96,13 +101,19 @@ pub(crate) fn read(
             })))
         }
         "tolerance" => {
-            let vary = varied(cx, entry, toleranced);
+            let clearance = clearance(cx, entry);
+            // Where joints have play nothing else needs to differ.
+            let vary = match (&clearance, entry.has("vary")) {
+                (Some(Some(_)), false) => Some(Vec::new()),
+                _ => varied(cx, entry, toleranced),
+            };
             let limits = limits(cx, entry, "limits", forces);
             let samples = count(cx, entry, "samples", SAMPLES);
             let seed = count(cx, entry, "seed", 1);
             Some(StudyKind::Tolerance(Box::new(ToleranceStudy {
                 over: over(columns?, plots?)?,
                 vary: vary?,
+                clearance: clearance?,
                 samples: samples?,
                 seed: seed?,
                 limits: limits?,
@@ -172,22 +183,52 @@ pub(crate) fn read(
     }
 }
 
-/// The study that is run, and whether it knows forces.
+/// What is asked of a study that is run for many designs.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Runs {
+    /// Measures of a motion.
+    Motion,
+    /// Measures of a motion and of its forces.
+    Forces,
+    /// What it tells itself.
+    Whole,
+}
+
+/// Of a study that is run as a whole no measures can be asked.
+fn no_measures(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<()> {
+    let mut given = ["columns", "plot"].into_iter();
+    let Some(key) = given.find(|key| entry.has(key)) else {
+        return Some(());
+    };
+    let span = entry.get(key).map(|node| node.span.clone());
+    cx.refuse(
+        "bad-choice",
+        format!(
+            "{} asks for measures of a study that is run as a whole",
+            entry.place_of(key)
+        ),
+        &span.unwrap_or_default(),
+        "leave it out: the numbers are those that the study tells, the curves those that it plots",
+    )
+}
+
+/// The study that is run, and what can be asked of it; whole circuits can be fitted alone.
 fn over(
     cx: &mut Context<'_>,
     entry: &Entry<'_>,
     others: &Others<'_>,
     circuits: bool,
-) -> Option<(String, bool)> {
+) -> Option<(String, Runs)> {
+    let sweeps = entry.kind.name == "sweep";
     let forces_of = |kind: &StudyKind| match kind {
-        StudyKind::Motion(along) if along.circuit && !circuits => None,
-        StudyKind::Motion(_) => Some(false),
-        StudyKind::Forces(_) | StudyKind::Simulate(_) => Some(true),
-        _ => None,
+        StudyKind::Motion(along) if circuits || !along.circuit => Some(Runs::Motion),
+        StudyKind::Forces(_) | StudyKind::Simulate(_) => Some(Runs::Forces),
+        _ => sweeps.then_some(Runs::Whole),
     };
     let Some(node) = entry.get("over") else {
         let along = |kind: &&StudyKind| {
-            forces_of(kind).is_some() && !matches!(kind, StudyKind::Simulate(_))
+            let along = matches!(forces_of(kind), Some(Runs::Motion | Runs::Forces));
+            along && !matches!(kind, StudyKind::Simulate(_))
         };
         let known = others
             .own
@@ -215,7 +256,7 @@ fn over(
             "bad-choice",
             format!("{} cannot be run for many designs", entry.place_of("over")),
             &node.span,
-            "name a study of motion or forces, or a simulation; not one of a whole circuit",
+            "name a study of motion or forces, or a simulation; sweeps take any study but those of many designs",
         )
     };
     if others.of_designs.contains(&name) {
@@ -267,6 +308,13 @@ fn over_fits(
         }
         _ => Some(()),
     }
+}
+
+/// Where it is said that joints have play, if it is.
+fn clearance(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<Option<Span>> {
+    let counts = entry.flag(cx, "clearance")?;
+    let node = entry.get("clearance").filter(|_| counts);
+    Some(node.map(|node| node.span.clone()))
 }
 
 /// The parameters that vary, each with what is said of it.
@@ -582,6 +630,7 @@ fn chosen(
     let among = match &node.value {
         Value::Table(_) => {
             let table = Entry::inner(cx, node, &node.span, place.clone(), &AMONG)?;
+            let log = table.choice(cx, "spacing", &SPACING)?.unwrap_or(false);
             match (table.get("between"), table.get("only"), table.get("step")) {
                 (Some(_), Some(_), _) | (_, Some(_), Some(_)) => {
                     table.contradiction(
@@ -592,12 +641,23 @@ fn chosen(
                     );
                     return None;
                 }
+                (_, Some(_), _) | (_, _, Some(_)) if log => {
+                    let other = if table.has("only") { "only" } else { "step" };
+                    table.contradiction(
+                        cx,
+                        &["spacing", other],
+                        "its values are given one by one",
+                        "leave one of them out",
+                    );
+                    return None;
+                }
                 (None, Some(node), None) => {
                     Among::Only(listed(cx, parameter, node, &place, example)?)
                 }
                 (Some(node), None, step) => {
                     let between = in_order(cx, parameter, node, &place, example)?;
                     match step {
+                        None if log => factors(cx, parameter, between, node)?,
                         None => Among::Between(between),
                         Some(node) => steps(cx, parameter, between, node)?,
                     }
@@ -626,6 +686,25 @@ fn chosen(
         among,
         span,
     })
+}
+
+/// Values between two that are spaced by factors, and so are positive.
+fn factors(
+    cx: &mut Context<'_>,
+    id: ParameterId,
+    between: [Scalar; 2],
+    node: &Node,
+) -> Option<Among> {
+    if cx.number(&between[0]) > 0.0 {
+        return Some(Among::Factors(between));
+    }
+    let name = cx.model.parameters[id.index()].name.clone();
+    cx.refuse(
+        "bad-size",
+        format!("`{name}` is spaced by factors, and its least value is not above 0"),
+        &node.span,
+        "begin above 0, or leave `spacing` out",
+    )
 }
 
 /// Whole multiples of a step between two values.

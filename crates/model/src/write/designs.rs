@@ -9,7 +9,7 @@ use crate::designs::{
 use crate::fit::{Fit, Timing, Traced};
 use crate::ids::{ParameterId, Scalar};
 use crate::item::Item;
-use crate::key_table::designs::{COMBINE, OPTIMIZE_METHODS, TIMINGS};
+use crate::key_table::designs::{COMBINE, OPTIMIZE_METHODS, SPACING, TIMINGS};
 use crate::key_table::word_of;
 use crate::study::Plot;
 use crate::write::spelling::Writer;
@@ -55,6 +55,9 @@ impl Writer<'_> {
             };
             (it.parameter, spread)
         });
+        if study.clearance.is_some() {
+            put("clearance", Item::Flag(true));
+        }
         limits("limits", &study.limits, put);
         put("samples", Item::Number(study.samples as f64));
         put("seed", Item::Number(study.seed as f64));
@@ -66,6 +69,10 @@ impl Writer<'_> {
             let (_, dimension) = self.named_parameter(it.parameter);
             let among = match &it.among {
                 Among::Between(both) => self.listed(both, dimension),
+                Among::Factors(both) => Item::Table(vec![
+                    ("between".to_owned(), self.listed(both, dimension)),
+                    ("spacing".to_owned(), Item::text(word_of(&SPACING, &true))),
+                ]),
                 Among::Steps { between, step } => Item::Table(vec![
                     ("between".to_owned(), self.listed(between, dimension)),
                     ("step".to_owned(), self.scalar(step, dimension)),

@@ -172,9 +172,10 @@ impl Local {
         after(true) + drift + weight * after(false).max(0.0)
     }
 
-    /// The step: the objective's linearised parts below the first level, the constraints' below the second, with this curvature.
-    pub fn programme(&self, hessian: &[f64], weight: f64, space: &Space) -> Quadratic {
-        self.shifted(hessian, weight, space, &[], &[])
+    /// The step: the objective's linearised parts below the first level, the constraints' below the second, with this curvature, no
+    /// component larger than the radius.
+    pub fn programme(&self, hessian: &[f64], weight: f64, space: &Space, radius: f64) -> Quadratic {
+        self.shifted(hessian, weight, (space, radius), &[], &[])
     }
 
     /// The same, with the values of parts changed by `shifts` (none, or one for each), and with more parts.
@@ -182,7 +183,7 @@ impl Local {
         &self,
         hessian: &[f64],
         weight: f64,
-        space: &Space,
+        (space, radius): (&Space, f64),
         shifts: &[f64],
         more: &[Part],
     ) -> Quadratic {
@@ -195,7 +196,7 @@ impl Local {
         };
         let mut rows: Vec<Row> = self.parts.iter().zip(shifts).map(row).collect();
         let mut weights = vec![1.0];
-        self.bound_rows(space, &mut rows);
+        self.bound_rows(space, radius, &mut rows);
         rows.extend(more.iter().map(|p| row((p, 0.0))));
         if self.has_constraints() {
             weights.push(weight);
@@ -210,13 +211,13 @@ impl Local {
     }
 
     /// The step that lessens the largest linearised violation most.
-    pub fn feasibility(&self, space: &Space) -> Quadratic {
+    pub fn feasibility(&self, space: &Space, radius: f64) -> Quadratic {
         let n = self.design.len();
         let constraints = self.of_objectives(false);
         let mut rows: Vec<Row> = constraints
             .map(|p| row(&p.slope, -p.value, Some(0)))
             .collect();
-        self.bound_rows(space, &mut rows);
+        self.bound_rows(space, radius, &mut rows);
         rows.push(row(&vec![0.0; n], 0.0, Some(0)));
         Quadratic {
             hessian: diagonal(n, FLAT),
@@ -226,8 +227,8 @@ impl Local {
         }
     }
 
-    /// The box: the least, then the largest value of every variable that has a width.
-    fn bound_rows(&self, space: &Space, rows: &mut Vec<Row>) {
+    /// The box: the least, then the largest value of every variable that has a width, no farther than a radius.
+    fn bound_rows(&self, space: &Space, radius: f64, rows: &mut Vec<Row>) {
         let n = self.design.len();
         for (k, x) in self.design.iter().enumerate() {
             let ([low, high], width) = (space.bounds[k], space.widths[k]);
@@ -237,15 +238,15 @@ impl Local {
                         .map(|j| if j == k { sign } else { 0.0 })
                         .collect::<Vec<_>>()
                 };
-                rows.push(row(&unit(-1.0), (x - low) / width, None));
-                rows.push(row(&unit(1.0), (high - x) / width, None));
+                rows.push(row(&unit(-1.0), ((x - low) / width).min(radius), None));
+                rows.push(row(&unit(1.0), ((high - x) / width).min(radius), None));
             }
         }
     }
 
     /// How far the first-order conditions are missed here with these multipliers; `bent` is the curvature times the step, which the
     /// Lagrangian's slope is the opposite of.
-    pub fn residual(&self, minimum: &Minimum, bent: &[f64]) -> f64 {
+    pub fn residual(&self, minimum: &Minimum, bent: &[f64], space: &Space, radius: f64) -> f64 {
         let top = self.top();
         let missed = self
             .parts
@@ -255,17 +256,24 @@ impl Local {
                 Of::Objective(_) => m * (top - p.value),
                 Of::Constraint(_) => m * (self.violation - p.value),
             });
-        let bounds = minimum.multipliers[self.parts.len()..].iter();
-        let bounds = bounds
-            .zip(self.bound_room(&minimum.step))
-            .map(|(m, room)| m * room);
-        let slope = largest(bent.iter().map(|x| x.abs()));
-        slope.max(missed.chain(bounds).fold(0.0, |sum, x| sum + x))
-    }
-
-    /// What a step that is stopped by bounds uses up: the room of each row of [`Self::bound_rows`], where it has a multiplier.
-    fn bound_room<'a>(&self, step: &'a [f64]) -> impl Iterator<Item = f64> + use<'a> {
-        step.iter().flat_map(|d| [d.abs(), d.abs()])
+        let mut missed = missed.fold(0.0, |sum, x| sum + x);
+        let mut slopes = bent.to_vec();
+        let mut bounds = minimum.multipliers[self.parts.len()..].iter();
+        for (k, d) in minimum.step.iter().enumerate() {
+            let ([low, high], width) = (space.bounds[k], space.widths[k]);
+            if width > 0.0 {
+                for (sign, room) in [(-1.0, self.design[k] - low), (1.0, high - self.design[k])] {
+                    let m = bounds.next().copied().unwrap_or(0.0);
+                    match room > radius * width {
+                        // The radius is no bound of the problem.
+                        true => slopes[k] += sign * m,
+                        // What a step that a bound ends uses up is the room that was left.
+                        false => missed += m * d.abs(),
+                    }
+                }
+            }
+        }
+        largest(slopes.iter().map(|x| x.abs())).max(missed)
     }
 
     /// The multipliers of a programme's rows in the units of the problem; zeros without one.

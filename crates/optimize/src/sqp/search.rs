@@ -1,25 +1,46 @@
 //! How far to go along a step: as far as the penalty falls by a part of what is promised (L. Armijo, 1966).
 
-use crate::problem::{self, Evaluation, Problem};
+use crate::problem::Evaluation;
 use crate::quadratic::{Minimum, minimise};
 use crate::space::Space;
+use crate::workers::{Alone, Workers, each};
 
 use super::curvature::Curvature;
-use super::local::{Local, Of, Part, Sizes, scaled};
+use super::local::{Local, Part, Sizes, dot, scaled};
+use super::violation::View;
 
 /// The part of the promise that must be kept.
 const KEPT: f64 = 1e-4;
 /// The penalty may seem to rise by this part of it from rounding.
 const NOISE: f64 = 4e-16;
-/// Shorter steps are tried so many at once, each half the one before, and so often.
-const AT_ONCE: usize = 4;
+/// Four shorter steps at once are tried so often.
 const ROUNDS: usize = 9;
 /// A corrected step is at most so many times as long.
 const CORRECTED: f64 = 2.0;
 
+/// A step, as it was asked.
+#[derive(Clone, Copy)]
+pub(super) struct Step<'a> {
+    pub minimum: &'a Minimum,
+    pub curvature: &'a Curvature,
+    /// Of the violation.
+    pub weight: f64,
+    /// No component is larger.
+    pub radius: f64,
+    /// By how much the penalty is to fall.
+    pub promise: f64,
+}
+
+/// Whether a part of a step brings the penalty down far enough.
+fn is_enough(place: &Local, step: Step, part: f64, penalty: f64) -> bool {
+    let from = place.penalty(step.weight);
+    let noise = NOISE * from.abs().max(place.size());
+    penalty <= from - KEPT * part * step.promise + noise
+}
+
 /// The problem, with what was asked of it.
 pub(super) struct Search<'a> {
-    pub problem: &'a mut dyn Problem,
+    pub view: View<'a>,
     pub space: Space,
     pub sizes: Sizes,
     pub evaluations: usize,
@@ -29,7 +50,9 @@ pub(super) struct Search<'a> {
 impl Search<'_> {
     /// A design with its slopes, where it has any.
     pub fn at(&mut self, design: Vec<f64>) -> Option<Local> {
-        let evaluation = self.evaluate(std::slice::from_ref(&design)).swap_remove(0);
+        let evaluation = self
+            .evaluate(std::slice::from_ref(&design), &Alone)
+            .swap_remove(0);
         self.with_slopes(design, evaluation)
     }
 
@@ -39,7 +62,7 @@ impl Search<'_> {
             return None;
         }
         self.slopes += 1;
-        let slopes = problem::slopes(self.problem, &design)?;
+        let slopes = self.view.slopes(&design)?;
         Some(Local::new(
             design,
             evaluation,
@@ -49,9 +72,12 @@ impl Search<'_> {
         ))
     }
 
-    fn evaluate(&mut self, designs: &[Vec<f64>]) -> Vec<Evaluation> {
+    fn evaluate(&mut self, designs: &[Vec<f64>], workers: &dyn Workers) -> Vec<Evaluation> {
         self.evaluations += designs.len();
-        problem::evaluate(self.problem, designs)
+        let view = &self.view;
+        each(workers, designs.iter().collect(), |design: &Vec<f64>| {
+            view.evaluate(design)
+        })
     }
 
     /// The penalty of a design; infinite where there is none.
@@ -63,52 +89,43 @@ impl Search<'_> {
         objective + weight * violation
     }
 
-    /// The first place along a step that is good enough: the whole step, a corrected one, shorter ones.
-    pub fn step(
-        &mut self,
-        place: &Local,
-        minimum: &Minimum,
-        curvature: &Curvature,
-        weight: f64,
-        promise: f64,
-    ) -> Option<Local> {
-        let from = place.penalty(weight);
-        let noise = NOISE * from.abs().max(place.size());
-        let good = |penalty: f64, part: f64| penalty <= from - KEPT * part * promise + noise;
+    /// The place a whole step away if it is good enough, or a corrected one.
+    pub fn whole(&mut self, place: &Local, step: Step) -> Option<Local> {
+        let Step {
+            minimum, weight, ..
+        } = step;
         let whole = self.space.moved(&place.design, &minimum.step, 1.0);
         if whole == place.design {
             return None;
         }
-        let evaluation = self.evaluate(std::slice::from_ref(&whole)).swap_remove(0);
-        let defined = evaluation.is_defined();
-        let short = good(self.penalty(&evaluation, weight), 1.0);
-        let there = self.with_slopes_if(defined, whole, evaluation);
-        if short && there.is_some() {
-            return there;
+        let evaluation = self
+            .evaluate(std::slice::from_ref(&whole), &Alone)
+            .swap_remove(0);
+        let enough = is_enough(place, step, 1.0, self.penalty(&evaluation, weight));
+        let there = self.with_slopes(whole, evaluation)?;
+        if enough {
+            return Some(there);
         }
-        if let Some(there) = there
-            && let Some(corrected) = self.corrected(place, &there, minimum, curvature, weight)
-            && good(corrected.penalty(weight), 1.0)
-        {
-            return Some(corrected);
-        }
+        let corrected = self.corrected(place, &there, step)?;
+        is_enough(place, step, 1.0, corrected.penalty(weight)).then_some(corrected)
+    }
+
+    /// The first place along a step, halved again and again, that is good enough.
+    pub fn shorter(&mut self, place: &Local, step: Step, workers: &dyn Workers) -> Option<Local> {
+        let Step {
+            minimum, weight, ..
+        } = step;
         let mut part = 1.0;
         for _ in 0..ROUNDS {
-            let parts: Vec<f64> = (0..AT_ONCE)
-                .map(|_| {
-                    part /= 2.0;
-                    part
-                })
-                .collect();
-            let designs: Vec<Vec<f64>> = (parts.iter())
-                .map(|part| self.space.moved(&place.design, &minimum.step, *part))
-                .collect();
-            let evaluations = self.evaluate(&designs);
+            let parts = [0.5, 0.25, 0.125, 0.0625].map(|p| p * part);
+            part = parts[3];
+            let designs = parts.map(|part| self.space.moved(&place.design, &minimum.step, part));
+            let evaluations = self.evaluate(&designs, workers);
             for ((design, evaluation), part) in designs.into_iter().zip(evaluations).zip(parts) {
                 if design == place.design {
                     return None;
                 }
-                if good(self.penalty(&evaluation, weight), part)
+                if is_enough(place, step, part, self.penalty(&evaluation, weight))
                     && let Some(next) = self.with_slopes(design, evaluation)
                 {
                     return Some(next);
@@ -118,27 +135,16 @@ impl Search<'_> {
         None
     }
 
-    fn with_slopes_if(
-        &mut self,
-        wanted: bool,
-        design: Vec<f64>,
-        evaluation: Evaluation,
-    ) -> Option<Local> {
-        wanted
-            .then(|| self.with_slopes(design, evaluation))
-            .flatten()
-    }
-
     /// The step with what the whole one taught: the parts' values as they are there (R. Fletcher's second-order correction, 1982), and the
     /// parts that are only there.
-    fn corrected(
-        &mut self,
-        place: &Local,
-        there: &Local,
-        minimum: &Minimum,
-        curvature: &Curvature,
-        weight: f64,
-    ) -> Option<Local> {
+    fn corrected(&mut self, place: &Local, there: &Local, asked: Step) -> Option<Local> {
+        let Step {
+            minimum,
+            curvature,
+            weight,
+            radius,
+            ..
+        } = asked;
         let step = &minimum.step;
         let mut met = vec![false; there.parts.len()];
         let shifts: Vec<f64> = (place.parts.iter())
@@ -150,23 +156,23 @@ impl Search<'_> {
                 None => 0.0,
             })
             .collect();
-        let top = place.top();
         let new = there.parts.iter().zip(met).filter(|(_, met)| !met);
         let new: Vec<Part> = new
             .map(|(part, _)| {
-                let back: f64 = part.slope.iter().zip(step).map(|(g, d)| g * d).sum();
+                let back = dot(&part.slope, step);
                 Part {
                     value: part.value - back,
                     ..part.clone()
                 }
             })
             .collect();
-        debug_assert!(
-            new.iter()
-                .all(|p| matches!(p.of, Of::Objective(_) | Of::Constraint(_)))
-                && top.is_finite()
+        let programme = place.shifted(
+            curvature.matrix(),
+            weight,
+            (&self.space, radius),
+            &shifts,
+            &new,
         );
-        let programme = place.shifted(curvature.matrix(), weight, &self.space, &shifts, &new);
         let corrected = minimise(&programme).ok()?;
         let size = |d: &[f64]| d.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
         if size(&corrected.step) > CORRECTED * size(step) {

@@ -1,126 +1,73 @@
-//! The least of the largest violation, and which constraints it hangs on.
+//! What a descent minimises: a problem, or the largest violation of its constraints alone.
 
-use std::ops::ControlFlow;
+use crate::problem::{self, Evaluation, Piece, Problem, Scales, Slopes, largest};
 
-use crate::problem::{Evaluation, Problem, Scales, Slopes};
-use crate::progress::{Ended, Hears, Progress};
+use super::local::Sizes;
 
-use super::local::{Local, Sizes};
-use super::search::Search;
-use super::{SqpOptions, sqp};
-
-/// The violation as an objective: all constraints, each by its scale, are pieces of it.
-struct Violation<'a> {
-    problem: &'a mut dyn Problem,
-    sizes: Sizes,
+/// A problem as a descent sees it.
+#[derive(Clone)]
+pub(super) struct View<'a> {
+    pub problem: &'a dyn Problem,
+    /// Where the violation alone is minimised, what the constraints count in: all of them, each by its scale, are pieces of one objective.
+    pub violation: Option<Sizes>,
 }
 
-impl Problem for Violation<'_> {
-    fn bounds(&self) -> &[[f64; 2]] {
-        self.problem.bounds()
-    }
-
-    fn scales(&self) -> Option<Scales> {
-        Some(Scales::unit(1, 0))
-    }
-
-    fn evaluate(&mut self, designs: &[Vec<f64>]) -> Vec<Evaluation> {
-        let mut evaluations = self.problem.evaluate(designs);
-        for evaluation in &mut evaluations {
-            if evaluation.is_defined() {
-                let scaled = evaluation.constraints.iter().zip(&self.sizes.constraints);
-                // A number that is none must stay so: the largest would hide it.
-                let largest = scaled
-                    .map(|(c, s)| c / s)
-                    .fold(f64::NEG_INFINITY, kempe_number::math::max);
-                evaluation.objectives = vec![largest];
-                evaluation.constraints.clear();
-            }
+impl View<'_> {
+    /// How many objectives and constraints there are.
+    pub fn functions(&self) -> [usize; 2] {
+        match self.violation {
+            Some(_) => [1, 0],
+            None => [self.problem.objectives(), self.problem.constraints()],
         }
-        evaluations
     }
 
-    fn slopes(&mut self, design: &[f64]) -> Option<Slopes> {
-        let mut pieces = Vec::new();
-        let slopes = self.problem.slopes(design)?;
-        for (own, size) in slopes.constraints.into_iter().zip(&self.sizes.constraints) {
-            pieces.extend(own.into_iter().map(|mut piece| {
-                piece.value /= size;
-                piece.slope.iter_mut().for_each(|g| *g /= size);
-                piece
-            }));
+    pub fn scales(&self) -> Option<Scales> {
+        match self.violation {
+            Some(_) => Some(Scales::unit(1, 0)),
+            None => self.problem.scales(),
         }
+    }
+
+    pub fn evaluate(&self, design: &[f64]) -> Evaluation {
+        let mut evaluation = problem::evaluate(self.problem, design);
+        if let (Some(sizes), true) = (&self.violation, evaluation.is_defined()) {
+            let scaled = evaluation.constraints.iter().zip(&sizes.constraints);
+            evaluation.objectives = vec![largest(scaled.map(|(c, s)| c / s))];
+            evaluation.constraints.clear();
+        }
+        evaluation
+    }
+
+    pub fn slopes(&self, design: &[f64]) -> Option<Slopes> {
+        let slopes = problem::slopes(self.problem, design)?;
+        let Some(sizes) = &self.violation else {
+            return Some(slopes);
+        };
+        let own = slopes.constraints.into_iter().zip(&sizes.constraints);
+        let pieces = own.flat_map(|(own, size)| {
+            own.into_iter().map(move |piece| Piece {
+                value: piece.value / size,
+                slope: piece.slope.iter().map(|g| g / size).collect(),
+            })
+        });
         Some(Slopes {
-            objectives: vec![pieces],
+            objectives: vec![pieces.collect()],
             constraints: Vec::new(),
         })
     }
-}
 
-/// Where the violation is least.
-pub(super) struct Least {
-    pub design: Vec<f64>,
-    value: f64,
-    pub ended: Ended,
-    /// Constraints with their shares.
-    pub conflict: Vec<(usize, f64)>,
-}
-
-impl Least {
-    /// The largest violation, scaled.
-    pub fn violation(&self) -> f64 {
-        self.value.max(0.0)
-    }
-}
-
-/// Minimises the violation from a place on; stops where there is none.
-pub(super) fn least(
-    search: &mut Search,
-    place: &Local,
-    options: &SqpOptions,
-    hears: Hears,
-) -> Least {
-    let spent = search.evaluations;
-    let mut problem = Violation {
-        problem: search.problem,
-        sizes: search.sizes.clone(),
-    };
-    let options = SqpOptions {
-        evaluations: options
-            .evaluations
-            .saturating_sub(spent)
-            .max(options.evaluations / 4),
-        scales: None,
-        ..options.clone()
-    };
-    let mut listen = |progress: &Progress| {
-        let kept = progress.best.is_some_and(|(_, value)| value <= 0.0);
-        let told = hears(&Progress {
-            evaluations: spent + progress.evaluations,
-            budget: options.evaluations,
-            violation: progress.best.map_or(f64::INFINITY, |(_, value)| value),
-            best: None,
-        });
-        if kept { ControlFlow::Break(()) } else { told }
-    };
-    let found = sqp(&mut problem, &place.design, &options, &mut listen);
-    // Which constraint each piece belongs to: they stand in their order.
-    let slopes = problem.problem.slopes(&found.design);
-    let counts = slopes.map_or(Vec::new(), |s| s.constraints.iter().map(Vec::len).collect());
-    let mut shares = found.multipliers.objectives.iter().flatten();
-    let mut conflict = Vec::new();
-    for (constraint, count) in counts.into_iter().enumerate() {
-        let share: f64 = shares.by_ref().take(count).sum();
-        if share > 0.0 {
-            conflict.push((constraint, share));
+    /// Constraints with their shares of the multipliers of the least violation at a design, which are those of its pieces in their order.
+    pub fn conflict(&self, design: &[f64], shares: &[f64]) -> Vec<(usize, f64)> {
+        let slopes = self.problem.slopes(design);
+        let counts = slopes.map_or(Vec::new(), |s| s.constraints.iter().map(Vec::len).collect());
+        let mut shares = shares.iter();
+        let mut conflict = Vec::new();
+        for (constraint, count) in counts.into_iter().enumerate() {
+            let share: f64 = shares.by_ref().take(count).sum();
+            if share > 0.0 {
+                conflict.push((constraint, share));
+            }
         }
-    }
-    search.evaluations += found.evaluations;
-    search.slopes += found.slopes + 1;
-    Least {
-        value: found.objective(),
-        design: found.design,
-        ended: found.ended,
-        conflict,
+        conflict
     }
 }

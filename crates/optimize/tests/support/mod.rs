@@ -1,53 +1,70 @@
-//! Problems with derivatives by dual numbers.
-#![allow(dead_code)]
+//! Test problems from formulas on dual numbers.
+#![allow(dead_code, reason = "every test file takes what it needs")]
 
-use kempe_number::{Dual, Number};
-use kempe_optimize::{Evaluation, Piece, Problem, Slopes};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// A number with derivatives to at most ten variables.
-pub type D = Dual<f64, 10>;
+use kempe_number::Dual;
+use kempe_optimize::{Evaluation, Piece, Problem, Slopes, Task, Workers};
 
-/// Pieces of every function at a place; none where it is not defined.
-pub type Functions = fn(&[D]) -> Option<Vec<Vec<D>>>;
+/// A number with its derivatives.
+pub type D<const N: usize> = Dual<f64, N>;
 
-/// A problem of functions: the objectives first.
-pub struct Given {
+/// Pieces of every objective and of every constraint; `None` where undefined.
+pub type Functions<const N: usize> = (Vec<Vec<D<N>>>, Vec<Vec<D<N>>>);
+
+/// The functions at a design.
+pub type Formulas<const N: usize> = dyn Fn(&[D<N>; N]) -> Option<Functions<N>> + Send + Sync;
+
+/// A problem of `N` variables.
+pub struct Case<const N: usize> {
     pub bounds: Vec<[f64; 2]>,
     pub objectives: usize,
     pub constraints: usize,
-    pub functions: Functions,
-    /// Designs that were evaluated.
-    pub asked: usize,
+    pub functions: Box<Formulas<N>>,
+    /// How many designs were asked.
+    pub asked: AtomicUsize,
 }
 
-impl Given {
-    pub fn new(
-        bounds: &[[f64; 2]],
-        [objectives, constraints]: [usize; 2],
-        functions: Functions,
+impl<const N: usize> Case<N> {
+    /// Smooth objective and constraints.
+    pub fn smooth(
+        bounds: Vec<[f64; 2]>,
+        constraints: usize,
+        functions: impl Fn(&[D<N>; N]) -> (D<N>, Vec<D<N>>) + Send + Sync + 'static,
+    ) -> Self {
+        Self::pieces(bounds, constraints, move |x| {
+            let (objective, constraints) = functions(x);
+            (
+                vec![objective],
+                constraints.into_iter().map(|c| vec![c]).collect(),
+            )
+        })
+    }
+
+    /// One objective of pieces, constraints of pieces.
+    pub fn pieces(
+        bounds: Vec<[f64; 2]>,
+        constraints: usize,
+        functions: impl Fn(&[D<N>; N]) -> (Vec<D<N>>, Vec<Vec<D<N>>>) + Send + Sync + 'static,
     ) -> Self {
         Self {
-            bounds: bounds.to_vec(),
-            objectives,
+            bounds,
+            objectives: 1,
             constraints,
-            functions,
-            asked: 0,
+            functions: Box::new(move |x| {
+                let (objective, constraints) = functions(x);
+                Some((vec![objective], constraints))
+            }),
+            asked: AtomicUsize::new(0),
         }
     }
 
-    fn at(&self, design: &[f64]) -> Option<Vec<Vec<D>>> {
-        let x: Vec<D> = (design.iter().enumerate())
-            .map(|(k, x)| {
-                let mut eps = [0.0; 10];
-                eps[k] = 1.0;
-                D { re: *x, eps }
-            })
-            .collect();
-        (self.functions)(&x)
+    fn at(&self, design: &[f64]) -> Option<Functions<N>> {
+        (self.functions)(&std::array::from_fn(|k| D::variable(design[k], k)))
     }
 }
 
-impl Problem for Given {
+impl<const N: usize> Problem for Case<N> {
     fn bounds(&self) -> &[[f64; 2]] {
         &self.bounds
     }
@@ -60,52 +77,61 @@ impl Problem for Given {
         self.constraints
     }
 
-    fn evaluate(&mut self, designs: &[Vec<f64>]) -> Vec<Evaluation> {
-        self.asked += designs.len();
-        let one = |design: &Vec<f64>| {
-            let Some(all) = self.at(design) else {
-                return Evaluation::lacking(1.0);
-            };
-            let largest = |pieces: &Vec<D>| {
-                pieces
-                    .iter()
-                    .map(|p| p.re)
-                    .fold(f64::NEG_INFINITY, f64::max)
-            };
-            let mut objectives: Vec<f64> = all.iter().map(largest).collect();
-            let constraints = objectives.split_off(self.objectives);
-            Evaluation {
-                objectives,
-                constraints,
+    fn evaluate(&self, design: &[f64]) -> Evaluation {
+        self.asked.fetch_add(1, Ordering::Relaxed);
+        let largest =
+            |pieces: &Vec<D<N>>| pieces.iter().fold(f64::NEG_INFINITY, |m, p| m.max(p.re));
+        for (x, [low, high]) in design.iter().zip(&self.bounds) {
+            assert!(low <= x && x <= high, "a design outside of its box: {x}");
+        }
+        match self.at(design) {
+            None => Evaluation::lacking(1.0),
+            Some((objectives, constraints)) => Evaluation {
+                objectives: objectives.iter().map(largest).collect(),
+                constraints: constraints.iter().map(largest).collect(),
                 lack: 0.0,
-            }
-        };
-        designs.iter().map(one).collect()
+            },
+        }
     }
 
-    fn slopes(&mut self, design: &[f64]) -> Option<Slopes> {
-        let n = design.len();
-        let piece = |p: &D| Piece {
+    fn slopes(&self, design: &[f64]) -> Option<Slopes> {
+        let piece = |p: &D<N>| Piece {
             value: p.re,
-            slope: p.eps[..n].to_vec(),
+            slope: p.eps.to_vec(),
         };
-        let all = self.at(design)?;
-        let mut objectives: Vec<Vec<Piece>> = (all.iter())
-            .map(|pieces| pieces.iter().map(piece).collect())
-            .collect();
-        let constraints = objectives.split_off(self.objectives);
+        let (objectives, constraints) = self.at(design)?;
+        let all = |f: Vec<Vec<D<N>>>| {
+            f.iter()
+                .map(|pieces| pieces.iter().map(piece).collect())
+                .collect()
+        };
         Some(Slopes {
-            objectives,
-            constraints,
+            objectives: all(objectives),
+            constraints: all(constraints),
         })
     }
 }
 
-/// A plain number among them.
-pub fn c(x: f64) -> D {
-    D::from_f64(x)
+/// A box of the same bounds for every variable.
+pub fn cube(n: usize, low: f64, high: f64) -> Vec<[f64; 2]> {
+    vec![[low, high]; n]
 }
 
-pub fn sq(x: D) -> D {
-    x * x
+/// Several threads, which take pieces as they come.
+pub struct Threads(pub usize);
+
+impl Workers for Threads {
+    fn run(&self, tasks: Vec<Task<'_>>) {
+        let queue = std::sync::Mutex::new(tasks.into_iter());
+        let next = || queue.lock().expect("a queue").next();
+        std::thread::scope(|scope| {
+            for _ in 0..self.0 {
+                scope.spawn(|| {
+                    while let Some(task) = next() {
+                        task();
+                    }
+                });
+            }
+        });
+    }
 }

@@ -53,6 +53,8 @@ pub(super) struct Bench<'m> {
     /// The mechanism, moving from its start through all rows, and from the first row.
     through: Arc<Mechanism>,
     from_first: Arc<Mechanism>,
+    /// Whether the first row stands elsewhere than the file's start.
+    first_is_elsewhere: bool,
 }
 
 /// The mechanism with given values of its parameters, moved.
@@ -75,6 +77,7 @@ impl<'m> Bench<'m> {
         let data = Data::new(model, study);
         let start = starts(&own);
         let first = data.rows.iter().find_map(|row| row.at.clone());
+        let first_is_elsewhere = first.as_ref().is_some_and(|first| *first != start);
         let through = |start: &[f64]| {
             let laws = laws_through(start, &data);
             own.with_laws(|drive| Some(laws[drive].clone()))
@@ -95,6 +98,7 @@ impl<'m> Bench<'m> {
             own: own.mechanism.clone(),
             through: through.mechanism.clone(),
             from_first: from_first.mechanism.clone(),
+            first_is_elsewhere,
         }
     }
 
@@ -153,7 +157,7 @@ impl<'m> Bench<'m> {
 
     /// Where motions can begin: what is told of the whole motion begins where the file says.
     pub fn begins(&self) -> &'static [Begin] {
-        match self.data.rows.iter().all(|row| row.at.is_some()) {
+        match self.first_is_elsewhere && self.data.rows.iter().all(|row| row.at.is_some()) {
             true => &[Begin::Start, Begin::FirstRow],
             false => &[Begin::Start],
         }

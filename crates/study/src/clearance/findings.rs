@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use kempe_dynamics::Acting;
-use kempe_dynamics::clearance::Clearances;
 use kempe_mechanism::{Design, Mechanism};
 use kempe_model::{ClearanceStudy, Diagnostic, Measure, Model, Severity};
 use kempe_motion::Motion;
@@ -66,12 +65,7 @@ pub(crate) fn findings_of_clearance(
 ) -> Vec<Diagnostic> {
     let it = Prepared::new(model, name, study);
     let repeated = || {
-        let plays = &it.joints.plays;
-        let mut clearances = Clearances::new(motion?, plays, false, &[]).ok()?;
-        clearances.go_to(0.0).ok()?;
-        let repeated: Vec<bool> = (0..plays.len())
-            .map(|joint| clearances.is_undetermined(joint))
-            .collect();
+        let repeated = it.joints.repeated(motion?)?;
         repeat_each_other(name, &it.joints, &repeated)
     };
     let repeated = if refuses(&it.findings) {

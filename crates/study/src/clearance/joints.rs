@@ -1,9 +1,12 @@
 //! Which joints have how much play.
 
-use kempe_dynamics::clearance::Play;
+use std::sync::Arc;
+
+use kempe_dynamics::clearance::{Clearances, Play};
 use kempe_mechanism::constraint::Source;
 use kempe_mechanism::{Mechanism, NotReleased};
 use kempe_model::{Clearance, ClearanceAt, Diagnostic, JointKind, LinkId, Model, Released, value};
+use kempe_motion::Motion;
 use kempe_units::Dimension;
 
 use crate::unit::Units;
@@ -32,7 +35,7 @@ impl Joints {
                 continue;
             }
             seen.push(*source);
-            let Some(clearance) = of(mechanism, *source) else {
+            let Some(clearance) = clearance_of(mechanism, *source) else {
                 continue;
             };
             let radial = value(&clearance.radial, parameters);
@@ -60,6 +63,15 @@ impl Joints {
         it
     }
 
+    /// By joint with play: whether other joints repeat it where a motion starts, so that it opens only as these let it; `None` where that is
+    /// not known.
+    pub fn repeated(&self, motion: &Arc<Motion>) -> Option<Vec<bool>> {
+        let mut clearances = Clearances::new(motion, &self.plays, false, &[]).ok()?;
+        clearances.go_to(0.0).ok()?;
+        let all = 0..self.plays.len();
+        Some(all.map(|joint| clearances.is_undetermined(joint)).collect())
+    }
+
     /// That some pins were left out.
     pub fn left_out(&self, model: &Model) -> Option<Diagnostic> {
         let names = self.carry_wheels.join(", ");
@@ -77,7 +89,7 @@ impl Joints {
 }
 
 /// The entry that tells of a joint.
-pub(super) fn of(mechanism: &Mechanism, source: Source) -> Option<&Clearance> {
+pub(crate) fn clearance_of(mechanism: &Mechanism, source: Source) -> Option<&Clearance> {
     let model = &mechanism.model;
     let entries = || model.clearances.iter().rev();
     let of_all = || entries().find(|c| c.at == ClearanceAt::All);
@@ -168,7 +180,7 @@ pub(crate) fn not_released(mechanism: &Mechanism, why: NotReleased) -> Diagnosti
         _ => return Diagnostic::error("no-clearance-there", why.to_string()),
     };
     let name = joint_name(&mechanism.model, source);
-    no_clearance_there(&name, reason, of(mechanism, source))
+    no_clearance_there(&name, reason, clearance_of(mechanism, source))
 }
 
 fn no_clearance_there(name: &str, reason: &str, clearance: Option<&Clearance>) -> Diagnostic {

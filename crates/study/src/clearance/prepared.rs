@@ -9,7 +9,7 @@ use kempe_model::{
     Model, PlayAt, Released, Scalar, value,
 };
 
-use super::joints::{Joints, joint_name, not_released, of};
+use super::joints::{Joints, clearance_of, joint_name, not_released};
 use crate::along::force_problems;
 use crate::prepared::design;
 use crate::words::list;
@@ -75,7 +75,7 @@ fn contacts(mechanism: &Mechanism, plays: &[Play], states: ContactStates) -> Vec
     let of_all = clearances.iter().find(|c| c.at == ClearanceAt::All);
     let others = of_all.map_or_else(ContactProperties::default, |c| c.contact.clone());
     let contact = |play: &Play| {
-        let entry = of(mechanism, play.joint)?;
+        let entry = clearance_of(mechanism, play.joint)?;
         let joint = match play.joint {
             Source::Pin { point, link } => Released::Pin { point, link },
             Source::Joint(id) => Released::Joint(id),

@@ -12,6 +12,7 @@ mod tolerance;
 
 pub(crate) use asked::numbers_of;
 pub(crate) use optimize::{findings_of_optimization, optimization};
+pub use optimize::{most_parts, optimum_by_differences};
 pub use sweep::{Parts, compute_parts, part_count};
 #[cfg(feature = "parquet")]
 pub use sweep::{RowsError, write_rows};

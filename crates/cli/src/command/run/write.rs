@@ -86,7 +86,8 @@ impl Results<'_> {
             }
         }
         for outcome in self.outcomes.iter().filter(|_| !partial) {
-            let own = kept.iter_mut().find(|k| k.study() == outcome.study.name);
+            let mut own = kept.iter_mut().filter(|k| !k.is_search());
+            let own = own.find(|k| k.study() == outcome.study.name);
             if let (Some(parts), Ok(_)) = (own, &outcome.result) {
                 self.write_rows(outcome.study, parts, &mut output)?;
             }

@@ -16,7 +16,7 @@ const halo = { stroke: "var(--background)", "stroke-width": 3, "stroke-linejoin"
 // Draws a plot into an empty svg element and returns where values lie.
 function chart(svg, spec, width, height) {
   svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
-  const captions = element("g", {}), named = spec.curves.map((c) => [c.label, c.color, c.dashed]).filter(([label]) => label);
+  const captions = element("g", {}), named = spec.curves.map((c) => [c.label, c.color, c.dashed, c.dots]).filter(([label]) => label);
   let top = EDGE;
   if (spec.title) { words(captions, fitting(spec.title, width - 2 * EDGE), EDGE, top + FONT, { "font-weight": 600 }); top += LINE + 4; }
   if (named.length > 1) top = legend(captions, named, width, top, height * 0.4);
@@ -43,7 +43,7 @@ function chart(svg, spec, width, height) {
   const inside = element("g", { "clip-path": `url(#${clip})` }, svg);
   for (const limit of spec.limits) shade(inside, limit, spec.curves, x, y);
   if (vectors) crossing(inside, frame, x);
-  for (const c of spec.curves) element("path", { d: line(finite(c), x, y), fill: "none", stroke: c.color, "stroke-width": 2, "stroke-linejoin": "round", "stroke-linecap": "round", "stroke-dasharray": c.dashed ? "7 5" : "none" }, inside);
+  for (const c of spec.curves) if (c.dots) dots(inside, c, x, y); else element("path", { d: line(finite(c), x, y), fill: "none", stroke: c.color, "stroke-width": 2, "stroke-linejoin": "round", "stroke-linecap": "round", "stroke-dasharray": c.dashed ? "7 5" : "none" }, inside);
   for (const limit of spec.limits) drawLimit(svg, inside, limit, drawn, frame, x, y);
   if (vectors) nameTips(svg, spec, vectors, frame, x, y, drawn);
   const middle = [(left + right) / 2, (top + bottom) / 2], center = { "text-anchor": "middle" };
@@ -56,13 +56,14 @@ function chart(svg, spec, width, height) {
 // The names of the curves in lines below `top`, at most so high; returns where they end.
 function legend(parent, named, width, top, room) {
   let x = EDGE, y = top + FONT;
-  for (const [label, stroke, dashed] of named) {
+  for (const [label, stroke, dashed, loose] of named) {
     const name = fitting(label, width - 60), needed = 28 + wide(name) + 16;
     if (x + needed > width && x > EDGE) {
       [x, y] = [EDGE, y + LINE + 2];
       if (y - top > room) { words(parent, "…", x, y); break; }
     }
-    element("path", { d: `M${x} ${y - 4}h22`, stroke, "stroke-width": 2.5, "stroke-dasharray": dashed ? "7 5" : "none" }, parent);
+    if (loose) element("circle", { cx: x + 11, cy: y - 4, ...dotted(stroke, dashed) }, parent);
+    else element("path", { d: `M${x} ${y - 4}h22`, stroke, "stroke-width": 2.5, "stroke-dasharray": dashed ? "7 5" : "none" }, parent);
     words(parent, name, x + 28, y);
     x += needed;
   }
@@ -117,6 +118,18 @@ function markers(svg, marks, { left, right, top, bottom }, x, drawn) {
     words(svg, label, 0, 0, { ...halo, fill: `var(${token})`, "text-anchor": low ? "start" : "end", transform: `translate(${round(beside)} ${low ? bottom - 5 : top + 4}) rotate(-90)` });
     free = at + LINE;
   }
+}
+
+// How a dot looks: full, or empty of what is dashed.
+const dotted = (color, dashed) => ({ r: 4, fill: dashed ? "none" : color, stroke: color, "stroke-width": 1.6 });
+
+// The values of a curve as dots that nothing joins.
+function dots(parent, curve, x, y) {
+  const [xs, ys] = finite(curve);
+  xs.forEach((v, k) => {
+    const px = x.at(v), py = y.at(ys[k]);
+    if (px != null && py != null) element("circle", { cx: round(px), cy: round(py), ...dotted(curve.color, curve.dashed) }, parent);
+  });
 }
 
 // A curve as a path; it breaks where a value is missing, and a lone value between two gaps is a dot.

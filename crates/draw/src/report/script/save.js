@@ -18,6 +18,7 @@ function standalone(svg) {
   copy.querySelectorAll(".live").forEach((e) => e.remove());
   for (const name of ["class", "style", "tabindex"]) copy.removeAttribute(name);
   for (const [name, value] of Object.entries({ xmlns: SVG, width, height, "font-family": getComputedStyle(document.documentElement).fontFamily })) copy.setAttribute(name, value);
+  copy.setAttribute("role", "img");
   copy.prepend(element("rect", { width, height, fill: "var(--background)" }));
   const title = element("title", {});
   title.textContent = svg.getAttribute("aria-label");

@@ -5,28 +5,36 @@
 
 use kempe_model::OptimizeStudy;
 use kempe_optimize::{
-    Evaluation, Hears, Optima, Optimum, Problem, Scales, Slopes, SqpOptions, compare, sqp,
+    Ended, Evaluation, FEASIBLE, Hears, Optimum, Problem, Progress, Scales, Slopes, Standing,
+    Workers, descents, evaluate_all,
 };
 
 use super::problem::{Designs, choices};
-use super::search::plain;
+use super::search::{Optima, local, plain};
 
 /// So many combinations are tried one by one.
 const MOST_TRIED: usize = 2000;
 /// So many combinations of neighbours are tried about one design.
 const MOST_NEIGHBOURS: usize = 64;
+/// So many combinations are tried between two questions whether to go on.
+const TOGETHER: usize = 32;
 /// So many of the best are kept.
 const KEPT: usize = 10;
 
 /// The best of all combinations, where every parameter is discrete and there are few.
-pub(super) fn all_of(problem: &mut Designs<'_, '_>, study: &OptimizeStudy) -> Option<Optima> {
+pub(super) fn all_of(
+    problem: &Designs<'_, '_>,
+    study: &OptimizeStudy,
+    workers: &dyn Workers,
+    hears: Hears,
+) -> Option<Optima> {
     let values: Vec<Vec<f64>> = (study.vary.iter())
         .map(|chosen| choices(problem.bench.model, &chosen.among))
         .collect();
     let count = values
         .iter()
         .try_fold(1_usize, |all, list| all.checked_mul(list.len()))?;
-    if count == 0 || count > MOST_TRIED {
+    if count == 0 || count > MOST_TRIED.min(study.designs.unwrap_or(usize::MAX)) {
         return None;
     }
     let designs: Vec<Vec<f64>> = (0..count)
@@ -41,10 +49,25 @@ pub(super) fn all_of(problem: &mut Designs<'_, '_>, study: &OptimizeStudy) -> Op
                 .collect()
         })
         .collect();
-    let evaluations = problem.evaluate(&designs);
+    let mut evaluations = Vec::with_capacity(count);
+    let mut stopped = false;
+    for some in designs.chunks(TOGETHER) {
+        evaluations.extend(evaluate_all(problem, some, workers));
+        let told = hears(&Progress {
+            evaluations: evaluations.len(),
+            budget: count,
+            best: None,
+            violation: f64::INFINITY,
+        });
+        if told.is_break() && evaluations.len() < count {
+            stopped = true;
+            break;
+        }
+    }
     let scales = Scales::typical(&evaluations, problem.objectives(), problem.constraints());
+    let stand = |e: &Evaluation| Standing::of(e, &scales, FEASIBLE);
     let mut all: Vec<(Vec<f64>, Evaluation)> = designs.into_iter().zip(evaluations).collect();
-    all.sort_by(|a, b| compare(&a.1, &b.1, &scales));
+    all.sort_by(|a, b| stand(&a.1).order(&stand(&b.1)));
     all.truncate(KEPT);
     let list: Vec<Optimum> = (all.into_iter())
         .map(|(design, evaluation)| {
@@ -52,19 +75,27 @@ pub(super) fn all_of(problem: &mut Designs<'_, '_>, study: &OptimizeStudy) -> Op
                 true => evaluation.violation(&scales),
                 false => f64::INFINITY,
             };
-            plain(design, evaluation, violation)
+            let ended = if stopped {
+                Ended::Stopped
+            } else {
+                Ended::Converged
+            };
+            Optimum {
+                ended,
+                ..plain(design, evaluation, violation)
+            }
         })
         .collect();
     Some(Optima {
         reached: vec![1; list.len()],
         list,
-        stopped: false,
+        stopped,
     })
 }
 
 /// A problem some of whose variables stand still.
 struct Held<'p, 'b, 'm> {
-    inner: &'p mut Designs<'b, 'm>,
+    inner: &'p Designs<'b, 'm>,
     bounds: Vec<[f64; 2]>,
 }
 
@@ -77,21 +108,22 @@ impl Problem for Held<'_, '_, '_> {
         self.inner.constraints()
     }
 
-    fn evaluate(&mut self, designs: &[Vec<f64>]) -> Vec<Evaluation> {
-        self.inner.evaluate(designs)
+    fn evaluate(&self, design: &[f64]) -> Evaluation {
+        self.inner.evaluate(design)
     }
 
-    fn slopes(&mut self, design: &[f64]) -> Option<Slopes> {
+    fn slopes(&self, design: &[f64]) -> Option<Slopes> {
         self.inner.slopes(design)
     }
 }
 
-/// Designs with values of the catalogues near to those that were found; `None` where no parameter is discrete.
+/// Designs with values of the catalogues near to those that were found, for which so many designs are tried at most; `None` where no parameter is discrete.
 pub(super) fn with_choices(
-    problem: &mut Designs<'_, '_>,
+    problem: &Designs<'_, '_>,
     study: &OptimizeStudy,
     found: &Optima,
-    options: &SqpOptions,
+    budget: usize,
+    workers: &dyn Workers,
     hears: Hears,
 ) -> Option<Optima> {
     let model = problem.bench.model;
@@ -103,13 +135,9 @@ pub(super) fn with_choices(
     if values.iter().all(Vec::is_empty) {
         return None;
     }
-    let mut list: Vec<Optimum> = Vec::new();
-    for optimum in found
-        .list
-        .iter()
-        .filter(|it| it.evaluation.is_defined())
-        .take(3)
-    {
+    let mut held: Vec<(Held, Vec<f64>)> = Vec::new();
+    let defined = found.list.iter().filter(|it| it.evaluation.is_defined());
+    for optimum in defined.take(3) {
         let near: Vec<Vec<f64>> = optimum
             .design
             .iter()
@@ -131,24 +159,28 @@ pub(super) fn with_choices(
                 bounds[k] = [value, value];
                 start[k] = value;
             }
-            let mut held = Held {
-                inner: &mut *problem,
-                bounds,
-            };
-            list.push(sqp(&mut held, &start, options, hears));
+            let inner = problem;
+            held.push((Held { inner, bounds }, start));
         }
     }
+    let starts = held.iter().map(|(held, start)| {
+        let held: &dyn Problem = held;
+        (held, start.clone())
+    });
+    let mut list = descents(starts.collect(), &local(), budget, workers, hears);
+    let stopped = list.iter().any(|it| it.ended == Ended::Stopped);
     let scales = list
         .iter()
         .map(|it| it.scales.clone())
         .find(|s| !s.objectives.is_empty())?;
-    list.sort_by(|a, b| compare(&a.evaluation, &b.evaluation, &scales));
+    let stand = |e: &Evaluation| Standing::of(e, &scales, FEASIBLE);
+    list.sort_by(|a, b| stand(&a.evaluation).order(&stand(&b.evaluation)));
     list.dedup_by(|a, b| a.design == b.design);
     list.truncate(KEPT);
     Some(Optima {
         reached: vec![1; list.len()],
         list,
-        stopped: found.stopped,
+        stopped: found.stopped || stopped,
     })
 }
 

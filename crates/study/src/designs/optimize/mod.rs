@@ -1,29 +1,32 @@
 //! Studies that optimise: the design that does something best, with what it hangs on.
 //!
 //! `problem.rs` puts designs before the methods of `kempe-optimize`, `pieces.rs` tells them where over a motion other peaks lie near the highest, `search.rs`
-//! runs a method, `fit/` fits paths and motions, `discrete.rs` takes values of a catalogue, `told.rs` says what was found.
+//! runs a method, `fit/` fits paths and motions, `discrete.rs` takes values of a catalogue, `journal.rs` keeps what was asked, `told.rs` says what was found.
 
 mod discrete;
 mod fit;
+mod journal;
 mod pieces;
 mod problem;
 mod search;
 mod told;
 
-use kempe_model::{Diagnostic, Model, OptimizeStudy, ParameterId, Severity};
+use kempe_batch::Executor;
+use kempe_model::{Diagnostic, Model, OptimizeStudy, ParameterId, Severity, Study, StudyKind};
 use kempe_motion::progress::{Progress, Silent, Stage};
 use kempe_optimize::Problem;
 
 use super::asked::{kept, numbers_of};
 use super::bench::Bench;
 use super::idle::idle_at_own;
-use super::study_of;
+use super::{Parts, Unkept, study_of};
 use crate::explain::stopped;
 use crate::quantity::Quantity;
 use crate::result::StudyResult;
 use crate::unit::Units;
+use journal::Journal;
 use problem::Designs;
-use search::search;
+use search::{Listener, On, search};
 use told::Teller;
 
 /// The bench of a study, and a second one for what is told of designs besides.
@@ -80,9 +83,9 @@ fn before(
     let spans = study.vary.iter().map(|it| it.span.clone());
     match (&problem.fit, &study.fit) {
         (Some(fitted), Some(asked)) => {
-            told.extend(fit::before(fitted, asked, study, problem.bounds()))
+            told.extend(fit::before(fitted, asked, study, problem.ranges()))
         }
-        _ => told.extend(idle_at_own(bench, problem.bounds(), spans)),
+        _ => told.extend(idle_at_own(bench, problem.ranges(), spans)),
     }
     told.extend(told::idle_method(study));
     told
@@ -93,6 +96,33 @@ pub(crate) fn optimization(
     model: &Model,
     name: &str,
     study: &OptimizeStudy,
+    with: (&dyn Executor, &mut dyn Parts),
+    progress: &mut dyn Progress,
+) -> Result<StudyResult, Vec<Diagnostic>> {
+    optimum(model, name, study, with, true, progress)
+}
+
+/// The same with differences in the place of exact derivatives, for the benchmark that holds them against each other.
+#[doc(hidden)]
+pub fn optimum_by_differences(
+    model: &Model,
+    study: &Study,
+    executor: &dyn Executor,
+) -> Result<StudyResult, Vec<Diagnostic>> {
+    let StudyKind::Optimize(asked) = &study.kind else {
+        return Err(Vec::new());
+    };
+    let with: (&dyn Executor, &mut dyn Parts) = (executor, &mut Unkept);
+    optimum(model, &study.name, asked, with, false, &mut Silent)
+}
+
+/// The optimum of a study; `exact` where its derivatives are, but for simulations.
+fn optimum(
+    model: &Model,
+    name: &str,
+    study: &OptimizeStudy,
+    (executor, parts): (&dyn Executor, &mut dyn Parts),
+    exact: bool,
     progress: &mut dyn Progress,
 ) -> Result<StudyResult, Vec<Diagnostic>> {
     let study = &fit::with_goal(study);
@@ -107,14 +137,32 @@ pub(crate) fn optimization(
     // What was found of the file's own motion helps there, too.
     beside.share(&bench);
     let mut problem = Designs::new(&bench, study);
-    let Some(found) = search(&mut problem, study, progress) else {
-        return Err([diagnostics, vec![stopped(Stage::Trying)]].concat());
+    problem.differences |= !exact;
+    let shape = [
+        study.vary.len(),
+        problem.objectives(),
+        problem.constraints(),
+    ];
+    let alone = |failed: Box<Diagnostic>| vec![*failed];
+    problem.journal = Journal::open(parts, shape).map_err(alone)?;
+    let mut listener = Listener::new(&problem, parts, progress);
+    let found = search(&problem, study, &On(executor), &mut listener);
+    if let Some(failed) = listener.failed {
+        return Err(alone(failed));
+    }
+    let Some(found) = found else {
+        return Err([diagnostics, vec![stopped(Stage::Searching)]].concat());
     };
     let teller = Teller::new(&bench, &beside, study, name);
-    let told = teller.result(&mut problem, found, diagnostics.clone());
+    let told = teller.result(&problem, found, diagnostics.clone());
     let mut result = told.map_err(|refused| [diagnostics, refused].concat())?;
     if let (Some(fitted), Some(asked)) = (&problem.fit, &study.fit) {
         fit::tell(fitted, asked, &study.vary, &mut result);
     }
     Ok(result)
+}
+
+/// In how many parts at most a study is kept that looks for something: how many there will be is not known before. None of any other study.
+pub fn most_parts(study: &Study) -> Option<usize> {
+    matches!(study.kind, StudyKind::Optimize(_)).then_some(journal::MOST_PARTS)
 }

@@ -1,9 +1,14 @@
 //! What is optimised, as the methods see it: parameters in a box, numbers of designs on the bench.
 
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use kempe_model::{Among, Model, OptimizeStudy, StudyKind, value};
+use kempe_number::math;
 use kempe_optimize::{Evaluation, Piece, Problem, Slopes};
 
 use super::fit::{Fitted, sum};
+use super::journal::{Journal, SUMS, lock};
 use super::pieces::{Wanted, pieces};
 use crate::designs::asked::kept;
 use crate::designs::bench::{Bench, Refused};
@@ -11,7 +16,18 @@ use crate::designs::bench::{Bench, Refused};
 /// Steps of differences where there are no exact derivatives, in parts of the box: simulations keep ten digits and more.
 const DIFFERENCE: f64 = 1e-5;
 
-/// Designs of a study as a problem.
+/// A design that cannot be asked, and why.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Nearest {
+    /// How far it is from one that can.
+    lack: f64,
+    /// The values of its parameters, SI.
+    pub values: Vec<f64>,
+    /// Why.
+    pub why: String,
+}
+
+/// Designs of a study as a problem. Its variables are the parameters, SI, or their logarithms.
 pub(super) struct Designs<'b, 'm> {
     pub bench: &'b Bench<'m>,
     /// What is to be small or large, then what must be kept.
@@ -20,11 +36,18 @@ pub(super) struct Designs<'b, 'm> {
     pub fit: Option<Fitted<'b, 'm>>,
     goals: usize,
     bounds: Vec<[f64; 2]>,
-    /// Why the last design that cannot be asked cannot.
-    pub refused: Option<String>,
-    /// Designs that were asked for their numbers, and for their derivatives.
-    pub asked: usize,
-    pub sloped: usize,
+    /// The least and the greatest value of every parameter, SI.
+    ranges: Vec<[f64; 2]>,
+    /// Whether a variable is the logarithm of its parameter.
+    logs: Vec<bool>,
+    /// Whether derivatives are differences.
+    pub differences: bool,
+    /// What was asked before, and what was asked since.
+    pub journal: Journal,
+    /// The nearest of the designs that cannot be asked.
+    nearest: Mutex<Option<Nearest>>,
+    asked: AtomicUsize,
+    sloped: AtomicUsize,
 }
 
 impl<'b, 'm> Designs<'b, 'm> {
@@ -38,39 +61,85 @@ impl<'b, 'm> Designs<'b, 'm> {
         });
         let limits = study.subject_to.iter();
         let limits = limits.map(|limit| Wanted::new(mechanism, kept(model, limit), -1.0));
+        let logs: Vec<bool> = (study.vary.iter())
+            .map(|chosen| matches!(chosen.among, Among::Factors(_)))
+            .collect();
+        let ranges = ranges(model, study);
+        let bounds = ranges.iter().zip(&logs);
+        let bounds = bounds.map(|(range, log)| range.map(|x| if *log { math::ln(x) } else { x }));
         Self {
             bench,
             wanted: goals.chain(limits).collect(),
             fit: study.fit.as_ref().map(|fit| Fitted::new(bench, fit)),
             goals: study.goals.len(),
-            bounds: bounds(model, study),
-            refused: None,
-            asked: 0,
-            sloped: 0,
+            bounds: bounds.collect(),
+            ranges,
+            logs,
+            differences: matches!(bench.over.kind, StudyKind::Simulate(_)),
+            journal: Journal::default(),
+            nearest: Mutex::new(None),
+            asked: AtomicUsize::new(0),
+            sloped: AtomicUsize::new(0),
         }
     }
 
-    fn evaluated(&mut self, values: &[f64]) -> Evaluation {
-        self.asked += 1;
-        let numbers = match self.numbers(values) {
-            Ok(numbers) => numbers,
-            Err(refused) => return self.lacking(refused),
-        };
-        if let Some(k) = numbers.iter().position(|x| !x.is_finite()) {
-            let why = format!("`{}` has no finite value", self.wanted[k].number.name);
-            return self.lacking(Refused { lack: 1.0, why });
-        }
-        let signed = numbers.iter().zip(&self.wanted).map(|(x, w)| w.sign * x);
-        let mut objectives: Vec<f64> = signed.collect();
-        let constraints = objectives.split_off(self.goals);
-        Evaluation {
-            objectives,
-            constraints,
-            lack: 0.0,
-        }
+    /// The least and the greatest value of every parameter, SI.
+    pub fn ranges(&self) -> &[[f64; 2]] {
+        &self.ranges
     }
 
-    /// The numbers of a design, that of the fit in its place.
+    /// Designs that were asked for their numbers, for derivatives by differences besides.
+    pub fn asked(&self) -> usize {
+        self.asked.load(Ordering::Relaxed)
+    }
+
+    /// Designs that were asked for derivatives.
+    pub fn sloped(&self) -> usize {
+        self.sloped.load(Ordering::Relaxed)
+    }
+
+    /// Counts designs that were asked for their numbers, and for derivatives.
+    pub fn count(&self, asked: usize, sloped: usize) {
+        self.asked.fetch_add(asked, Ordering::Relaxed);
+        self.sloped.fetch_add(sloped, Ordering::Relaxed);
+    }
+
+    /// The nearest of the designs that cannot be asked; where two are as near, the one of the least values.
+    pub fn nearest(&self) -> Option<Nearest> {
+        lock(&self.nearest).clone()
+    }
+
+    /// The parameters of a design, SI.
+    pub fn values(&self, design: &[f64]) -> Vec<f64> {
+        let all = design.iter().zip(&self.logs).zip(&self.ranges);
+        all.map(|((x, log), [low, high])| match log {
+            true => math::exp(*x).clamp(*low, *high),
+            false => *x,
+        })
+        .collect()
+    }
+
+    /// The design of these parameters.
+    pub fn variables(&self, values: &[f64]) -> Vec<f64> {
+        let all = values.iter().zip(&self.logs).zip(&self.ranges);
+        all.map(|((x, log), [low, high])| match log {
+            true => math::ln(x.clamp(*low, *high)),
+            false => *x,
+        })
+        .collect()
+    }
+
+    /// By how much each parameter grows with its variable.
+    pub fn growth(&self, values: &[f64]) -> Vec<f64> {
+        let all = values.iter().zip(&self.logs);
+        all.map(|(x, log)| if *log { *x } else { 1.0 }).collect()
+    }
+
+    /// The numbers of parameters, SI, that of the fit in its place.
+    ///
+    /// # Errors
+    ///
+    /// Why they have none.
     pub fn numbers(&self, values: &[f64]) -> Result<Vec<f64>, Refused> {
         let Some(fit) = &self.fit else {
             return self.bench.numbers(values);
@@ -84,16 +153,53 @@ impl<'b, 'm> Designs<'b, 'm> {
         Ok(numbers)
     }
 
-    fn lacking(&mut self, refused: Refused) -> Evaluation {
-        self.refused = Some(refused.why);
-        Evaluation::lacking(refused.lack)
+    /// What parameters are worth, SI, asked for the sake of what is told.
+    pub fn look(&self, values: &[f64]) -> (Evaluation, Option<String>) {
+        let numbers = match self.numbers(values) {
+            Ok(numbers) => numbers,
+            Err(Refused { lack, why }) => return (Evaluation::lacking(lack), Some(why)),
+        };
+        if let Some(k) = numbers.iter().position(|x| !x.is_finite()) {
+            let why = format!("`{}` has no finite value", self.wanted[k].number.name);
+            return (Evaluation::lacking(1.0), Some(why));
+        }
+        let signed = numbers.iter().zip(&self.wanted).map(|(x, w)| w.sign * x);
+        let mut objectives: Vec<f64> = signed.collect();
+        let constraints = objectives.split_off(self.goals);
+        let evaluation = Evaluation {
+            objectives,
+            constraints,
+            lack: 0.0,
+        };
+        (evaluation, None)
+    }
+
+    /// Remembers why a design cannot be asked, if none was nearer.
+    fn refuse(&self, values: &[f64], lack: f64, why: &str) {
+        let mut nearest = lock(&self.nearest);
+        let order = |a: &[f64], b: &[f64]| {
+            let orders = a.iter().zip(b).map(|(x, y)| x.total_cmp(y));
+            orders.fold(std::cmp::Ordering::Equal, std::cmp::Ordering::then)
+        };
+        let nearer = nearest.as_ref().is_none_or(|other| {
+            let by_lack = lack.total_cmp(&other.lack);
+            by_lack.then_with(|| order(values, &other.values)).is_lt()
+        });
+        if nearer {
+            *nearest = Some(Nearest {
+                lack,
+                values: values.to_vec(),
+                why: why.to_owned(),
+            });
+        }
     }
 
     /// Pieces by central differences: each number is one.
-    fn differences(&mut self, design: &[f64]) -> Option<Vec<Vec<Piece>>> {
-        let own = self.bench.numbers(design).ok()?;
+    fn by_differences(&self, design: &[f64]) -> Option<Vec<Vec<Piece>>> {
+        let numbers = |design: &[f64]| self.numbers(&self.values(design)).ok();
+        let own = numbers(design)?;
         let mut slopes = vec![vec![0.0; design.len()]; own.len()];
-        for (k, [low, high]) in self.bounds.clone().into_iter().enumerate() {
+        for (k, [low, high]) in self.bounds.iter().copied().enumerate() {
             let step = DIFFERENCE * (high - low);
             let at = |x: f64| {
                 let mut moved = design.to_vec();
@@ -102,11 +208,10 @@ impl<'b, 'm> Designs<'b, 'm> {
             };
             let (below, first) = at(design[k] - step);
             let (above, second) = at(design[k] + step);
-            self.asked += 2;
-            let (first, second) = (
-                self.bench.numbers(&first).ok()?,
-                self.bench.numbers(&second).ok()?,
-            );
+            if !(above > below) {
+                continue;
+            }
+            let (first, second) = (numbers(&first)?, numbers(&second)?);
             for (slope, (a, b)) in slopes.iter_mut().zip(first.iter().zip(&second)) {
                 slope[k] = (b - a) / (above - below);
             }
@@ -119,6 +224,35 @@ impl<'b, 'm> Designs<'b, 'm> {
             }]
         });
         Some(piece.collect())
+    }
+
+    /// Pieces of what must be kept beside a fit, with exact derivatives to the parameters.
+    pub fn limits(&self, values: &[f64]) -> Option<Vec<Vec<Piece>>> {
+        match self.wanted.get(self.goals..) {
+            Some(limits) if !limits.is_empty() => Some(
+                pieces(self.bench, &self.wanted, values)
+                    .ok()?
+                    .split_off(self.goals),
+            ),
+            _ => Some(Vec::new()),
+        }
+    }
+
+    /// Pieces with exact derivatives to the variables.
+    fn exact(&self, values: &[f64]) -> Option<Vec<Vec<Piece>>> {
+        let mut all = match &self.fit {
+            None => pieces(self.bench, &self.wanted, values).ok()?,
+            Some(fit) => {
+                let residuals = fit.residuals(&mut fit.seen(values).ok()?).ok()?;
+                [vec![vec![sum(&residuals)]], self.limits(values)?].concat()
+            }
+        };
+        let growth = self.growth(values);
+        for piece in all.iter_mut().flatten() {
+            let slope = piece.slope.iter_mut().zip(&growth);
+            slope.for_each(|(d, growth)| *d *= growth);
+        }
+        Some(all)
     }
 }
 
@@ -135,38 +269,45 @@ impl Problem for Designs<'_, '_> {
         self.wanted.len() - self.goals
     }
 
-    fn evaluate(&mut self, designs: &[Vec<f64>]) -> Vec<Evaluation> {
-        designs
-            .iter()
-            .map(|design| self.evaluated(design))
-            .collect()
+    fn evaluate(&self, design: &[f64]) -> Evaluation {
+        self.asked.fetch_add(1, Ordering::Relaxed);
+        let values = self.values(design);
+        let (evaluation, why) = self
+            .journal
+            .evaluation(SUMS, &values, || self.look(&values));
+        if let Some(why) = why {
+            self.refuse(&values, evaluation.lack, &why);
+        }
+        evaluation
     }
 
-    fn slopes(&mut self, design: &[f64]) -> Option<Slopes> {
-        self.sloped += 1;
-        let mut objectives = match self.bench.over.kind {
-            StudyKind::Simulate(_) => self.differences(design)?,
-            _ if self.fit.is_some() && self.wanted.len() == 1 => vec![Vec::new()],
-            _ => pieces(self.bench, &self.wanted, design).ok()?,
-        };
-        if let Some(fit) = &self.fit {
-            let mut seen = fit.seen(design).ok()?;
-            objectives[0] = vec![sum(&fit.residuals(&mut seen).ok()?)];
+    fn slopes(&self, design: &[f64]) -> Option<Slopes> {
+        self.sloped.fetch_add(1, Ordering::Relaxed);
+        let values = self.values(design);
+        if self.differences {
+            let moved = self.bounds.iter().filter(|[low, high]| high > low);
+            self.asked.fetch_add(2 * moved.count(), Ordering::Relaxed);
         }
-        let constraints = objectives.split_off(self.goals);
-        Some(Slopes {
-            objectives,
-            constraints,
+        self.journal.slopes(SUMS, &values, || {
+            let mut objectives = match self.differences {
+                true => self.by_differences(design)?,
+                false => self.exact(&values)?,
+            };
+            let constraints = objectives.split_off(self.goals);
+            Some(Slopes {
+                objectives,
+                constraints,
+            })
         })
     }
 }
 
 /// The least and the greatest value of every parameter, SI; discrete values lie between the ends of all.
-fn bounds(model: &Model, study: &OptimizeStudy) -> Vec<[f64; 2]> {
+fn ranges(model: &Model, study: &OptimizeStudy) -> Vec<[f64; 2]> {
     let parameters = model.parameter_values::<f64>();
     let number = |x| value::<f64>(x, &parameters);
     let ends = study.vary.iter().map(|chosen| match &chosen.among {
-        Among::Between([low, high]) => [number(low), number(high)],
+        Among::Between([low, high]) | Among::Factors([low, high]) => [number(low), number(high)],
         Among::Steps { .. } | Among::Only(_) => {
             let all = choices(model, &chosen.among);
             let low = all.iter().copied().fold(f64::INFINITY, f64::min);
@@ -185,7 +326,7 @@ pub(super) fn choices(model: &Model, among: &Among) -> Vec<f64> {
     let parameters = model.parameter_values::<f64>();
     let number = |x| value::<f64>(x, &parameters);
     let mut all: Vec<f64> = match among {
-        Among::Between(_) => Vec::new(),
+        Among::Between(_) | Among::Factors(_) => Vec::new(),
         Among::Only(values) => values.iter().map(number).collect(),
         Among::Steps { between, step } => {
             let step = number(step);

@@ -2,16 +2,20 @@
 
 use std::ops::ControlFlow;
 
-use kempe_model::{OptimizeMethod, OptimizeStudy};
+use kempe_batch::Executor;
+use kempe_model::{Diagnostic, OptimizeMethod, OptimizeStudy};
 use kempe_motion::progress::{Done, Progress, Stage};
 use kempe_optimize::{
-    Ended, Evaluation, Front, MultiStartOptions, Optima, Optimum, PopulationOptions,
-    Progress as Told, SqpOptions, cma_es, differential_evolution, multi_start, nsga2, refine, sqp,
+    Candidate, CmaEsOptions, DifferentialEvolutionOptions, Ended, Evaluation, Found,
+    MultiStartOptions, Multipliers, Nsga2Options, Optimum, Progress as Told, Scales, SqpOptions,
+    Task, Workers, cma_es, differential_evolution, multi_start, nsga2, refine, sqp,
 };
 
 use super::discrete::{all_of, with_choices};
-use super::fit::{downhill, fitted};
+use super::fit::{fitted, led};
 use super::problem::Designs;
+use crate::designs::Parts;
+use crate::unit::Units;
 
 /// Designs that are looked at to choose starts from, for each parameter, and how many starts.
 const LOOKED_AT: usize = 24;
@@ -21,9 +25,41 @@ const GLOBAL: usize = 400;
 /// Designs of a front for each parameter, and points of it.
 const OF_FRONT: usize = 600;
 const POINTS: usize = 40;
+/// Generations of a front at least, where the file allows few designs.
+const GENERATIONS: usize = 5;
 /// Steps and designs of one descent.
 const STEPS: usize = 150;
 const OF_DESCENT: usize = 1000;
+/// A violation up to this part of its scale is none for what is told on the way.
+const KEPT: f64 = 1e-7;
+
+/// Local optima that differ, the best first.
+pub(super) struct Optima {
+    /// The optima, their designs and multipliers SI.
+    pub list: Vec<Optimum>,
+    /// How many descents led to each.
+    pub reached: Vec<usize>,
+    /// Whether whoever listened stopped it.
+    pub stopped: bool,
+}
+
+/// A design of a front.
+pub(super) struct FrontPoint {
+    /// The values of its parameters, SI.
+    pub design: Vec<f64>,
+    pub evaluation: Evaluation,
+    /// How far the first-order conditions are missed; infinite where they were not looked at.
+    pub residual: f64,
+    /// The largest violation, in the constraints' scales.
+    pub violation: f64,
+}
+
+/// A front.
+pub(super) struct Front {
+    /// By the first goal. Where no design keeps all limits, the nearest to it alone.
+    pub points: Vec<FrontPoint>,
+    pub stopped: bool,
+}
 
 /// What was found.
 pub(super) enum Sought {
@@ -33,7 +69,7 @@ pub(super) enum Sought {
     Front { front: Front, how: String },
 }
 
-fn local() -> SqpOptions {
+pub(super) fn local() -> SqpOptions {
     SqpOptions {
         iterations: STEPS,
         evaluations: OF_DESCENT,
@@ -41,112 +77,280 @@ fn local() -> SqpOptions {
     }
 }
 
+/// Workers that an executor is.
+pub(super) struct On<'e>(pub &'e dyn Executor);
+
+impl Workers for On<'_> {
+    fn run(&self, tasks: Vec<Task<'_>>) {
+        self.0.run(tasks);
+    }
+}
+
+/// What hears how far a search is: keeps what was asked, tells the best so far, and asks whether to go on.
+pub(super) struct Listener<'l> {
+    pub progress: &'l mut dyn Progress,
+    pub parts: &'l mut dyn Parts,
+    /// Parts that are kept.
+    pub kept: usize,
+    /// Why a part could not be kept.
+    pub failed: Option<Box<Diagnostic>>,
+    /// The best that was told, and its violation.
+    best: Option<(f64, f64)>,
+}
+
+impl<'l> Listener<'l> {
+    pub fn new(
+        problem: &Designs<'_, '_>,
+        parts: &'l mut dyn Parts,
+        progress: &'l mut dyn Progress,
+    ) -> Self {
+        Self {
+            progress,
+            parts,
+            kept: problem.journal.parts(),
+            failed: None,
+            best: None,
+        }
+    }
+
+    /// Hears it.
+    fn hear(
+        &mut self,
+        problem: &Designs<'_, '_>,
+        study: &OptimizeStudy,
+        told: &Told,
+    ) -> ControlFlow<()> {
+        if let Err(failed) = problem.journal.keep(&mut self.kept, self.parts) {
+            self.failed = Some(failed);
+            return ControlFlow::Break(());
+        }
+        if let (Some((_, value)), [goal]) = (told.best, study.goals.as_slice())
+            && self.best != Some((value, told.violation))
+            && told.violation.is_finite()
+        {
+            self.best = Some((value, told.violation));
+            let sign = if goal.maximize { -1.0 } else { 1.0 };
+            let dimension = problem.bench.numbers[0].dimension;
+            let number = Units::of(problem.bench.model).text(sign * value, dimension);
+            let kept = match (study.subject_to.is_empty(), told.violation <= KEPT) {
+                (true, _) => "",
+                (false, true) => ", all limits kept",
+                (false, false) => ", not all limits kept",
+            };
+            self.progress
+                .found(&format!("{} = {number}{kept}", goal.number.name));
+        }
+        let done = Done::Of(told.evaluations, told.budget.max(told.evaluations));
+        self.progress.reached(Stage::Searching, done)
+    }
+}
+
 /// The best designs that a study's method finds; `None` where it was stopped before there was one.
 pub(super) fn search(
-    problem: &mut Designs<'_, '_>,
+    problem: &Designs<'_, '_>,
     study: &OptimizeStudy,
-    progress: &mut dyn Progress,
+    workers: &dyn Workers,
+    listener: &mut Listener<'_>,
 ) -> Option<Sought> {
-    let own = problem.bench.own_values();
+    let own = problem.variables(&problem.bench.own_values());
     let n = own.len();
     let seed = study.seed as u64;
-    let mut hears = |told: &Told| {
-        let done = Done::Of(told.evaluations, told.budget.max(told.evaluations));
-        progress.reached(Stage::Trying, done)
-    };
+    // What the file allows, all together.
+    let all = study.designs.unwrap_or(usize::MAX);
+    let mut hears = |told: &Told| listener.hear(problem, study, told);
     if study.goals.len() > 1 {
-        let options = PopulationOptions {
-            evaluations: study.designs.unwrap_or(OF_FRONT * n),
-            size: Some(POINTS.min(study.designs.unwrap_or(POINTS))),
+        // Most are left for the ways down, which need more the more points there are.
+        let evaluations = study.designs.map_or(OF_FRONT * n, |all| all.div_ceil(3));
+        let options = Nsga2Options {
+            evaluations,
+            population: POINTS.min(evaluations.div_ceil(GENERATIONS)),
+            start: Some(own),
             seed,
         };
-        let mut front = nsga2(problem, &own, &options, &mut hears)?;
-        if !front.stopped {
-            refine(problem, &mut front, &local(), &mut hears);
-        }
+        let found = nsga2(problem, &options, workers, &mut hears);
+        let scales = &found.scales;
+        let violation = |c: &Candidate| match c.evaluation.is_defined() {
+            true => c.evaluation.violation(scales),
+            false => f64::INFINITY,
+        };
+        let point = |candidate: &Candidate, residual: f64| FrontPoint {
+            design: problem.values(&candidate.design),
+            violation: violation(candidate),
+            evaluation: candidate.evaluation.clone(),
+            residual,
+        };
+        let mut stopped = found.ended == Ended::Stopped;
+        let points = match found.feasible && !stopped {
+            true => {
+                let left = all.saturating_sub(found.evaluations);
+                let options = (&local(), left);
+                let refined = refine(problem, &found.members, options, workers, &mut hears);
+                stopped |= refined.ended == Ended::Stopped;
+                let members = refined.members.iter();
+                members.map(|m| point(&m.candidate, m.residual)).collect()
+            }
+            false => (found.members.iter())
+                .map(|c| point(c, f64::INFINITY))
+                .collect::<Vec<_>>(),
+        };
         let how = "NSGA-II; each point moved down until no step betters all goals".to_owned();
+        let front = Front { points, stopped };
         return (!front.points.is_empty()).then_some(Sought::Front { front, how });
     }
-    if let Some(optima) = all_of(problem, study) {
+    if let Some(optima) = all_of(problem, study, workers, &mut hears) {
         let how = "all combinations of the values were tried".to_owned();
         return Some(Sought::Optima { optima, how });
     }
     let method = study.method.unwrap_or(OptimizeMethod::MultiStart);
     let (mut optima, mut how) = match method {
         OptimizeMethod::Local | OptimizeMethod::MultiStart if problem.fit.is_some() => {
-            fitted(problem, study, &local(), &mut hears)
+            fitted(problem, study, workers, &mut hears)?
         }
         OptimizeMethod::Local => {
             let options = SqpOptions {
                 evaluations: study.designs.unwrap_or(OF_DESCENT),
                 ..local()
             };
-            let found = sqp(problem, &own, &options, &mut hears);
-            (one(found), "downhill from the file's own design".to_owned())
+            let found = sqp(problem, &own, &options, workers, &mut hears);
+            let stopped = found.ended == Ended::Stopped;
+            let how = "downhill from the file's own design".to_owned();
+            (one(found, stopped), how)
         }
         OptimizeMethod::MultiStart => {
-            let looked_at = study.designs.map_or(LOOKED_AT * n, |all| all / 2);
+            let looked_at = study.designs.map_or(LOOKED_AT * n, |all| all / 3);
             let options = MultiStartOptions {
-                looked_at,
-                starts: STARTS,
+                samples: Some(looked_at),
+                starts: STARTS.min(looked_at),
+                start: Some(own),
+                evaluations: all,
+                sqp: local(),
                 seed,
-                local: local(),
             };
-            let found = multi_start(problem, &own, &options, &mut hears);
+            let found = multi_start(problem, &options, workers, &mut hears);
             let how =
                 format!("downhill from the file's own design and the best of {looked_at} others");
-            (found, how)
+            let (mut list, mut reached): (Vec<_>, Vec<_>) = found.optima.into_iter().unzip();
+            // Where nothing leads downhill there is what was looked at.
+            if !list.iter().any(|it: &Optimum| it.evaluation.is_defined()) {
+                let best = found.best_sample.map(|best| {
+                    let violation = if problem.wanted.len() > 1 {
+                        f64::INFINITY
+                    } else {
+                        0.0
+                    };
+                    plain(best.design, best.evaluation, violation)
+                });
+                (list, reached) = (best.into_iter().collect(), vec![1]);
+            }
+            let stopped = found.ended == Ended::Stopped;
+            (
+                Optima {
+                    list,
+                    reached,
+                    stopped,
+                },
+                how,
+            )
         }
         OptimizeMethod::DifferentialEvolution | OptimizeMethod::CmaEs => {
-            let options = PopulationOptions {
-                evaluations: study.designs.unwrap_or(GLOBAL * n),
-                size: None,
-                seed,
-            };
+            // A part is left for the way down.
+            let evaluations = study
+                .designs
+                .map_or(GLOBAL * n, |all| (all * 2).div_ceil(3));
+            let polish = problem.fit.is_none().then(|| SqpOptions {
+                evaluations: OF_DESCENT.min(all.saturating_sub(evaluations)).max(1),
+                ..local()
+            });
             let (found, name) = match method {
-                OptimizeMethod::CmaEs => (cma_es(problem, &own, &options, &mut hears), "CMA-ES"),
-                _ => (
-                    differential_evolution(problem, &own, &options, &mut hears),
-                    "differential evolution",
-                ),
+                OptimizeMethod::CmaEs => {
+                    let options = CmaEsOptions {
+                        evaluations,
+                        start: Some(own),
+                        polish,
+                        seed,
+                        ..CmaEsOptions::default()
+                    };
+                    let found = cma_es(problem, &options, workers, &mut hears);
+                    (found, "CMA-ES")
+                }
+                _ => {
+                    let options = DifferentialEvolutionOptions {
+                        evaluations,
+                        start: Some(own),
+                        polish,
+                        seed,
+                        ..DifferentialEvolutionOptions::default()
+                    };
+                    let found = differential_evolution(problem, &options, workers, &mut hears);
+                    (found, "differential evolution")
+                }
             };
-            let found = found?;
+            let descent = found.polished.as_ref().map_or(0, |it| it.evaluations);
             let how = format!(
                 "{name} over {} designs, then downhill from the best",
-                found.evaluations
+                found.evaluations - descent
             );
-            let from = downhill(problem, &found.design);
-            let mut best = sqp(problem, &from, &local(), &mut |told| match found.stopped {
-                true => ControlFlow::Break(()),
-                false => hears(told),
-            });
-            // A descent that fails leaves what there was.
-            if !best.evaluation.is_defined()
-                || best.objective() > found.evaluation.largest() && found.violation <= 0.0
-            {
-                best.design = found.design;
-                best.evaluation = found.evaluation;
-                best.violation = found.violation;
+            let best = best_of(found)?;
+            match &problem.fit {
+                None => (best, how),
+                Some(_) => (led(problem, best, workers, &mut hears)?, how),
             }
-            (one(best), how)
         }
     };
     let defined = |it: &Optimum| it.evaluation.is_defined();
     if !optima.list.iter().any(defined) && optima.stopped {
         return None;
     }
-    if let Some(repaired) = with_choices(problem, study, &optima, &local(), &mut hears) {
+    let left = all.saturating_sub(problem.asked());
+    if let Some(repaired) = with_choices(problem, study, &optima, left, workers, &mut hears) {
         optima = repaired;
         how += "; values of a catalogue by rounding to their neighbours, the rest moved again";
     }
+    optima.in_parameters(problem);
     Some(Sought::Optima { optima, how })
 }
 
-fn one(found: Optimum) -> Optima {
+/// What a population found: the optimum that its best led to, or its best where that is better.
+fn best_of(found: Found) -> Option<Optima> {
+    let stopped = found.ended == Ended::Stopped;
+    let best = found.best?;
+    let polished = found.polished.filter(|it| it.design == best.design);
+    let own = polished.unwrap_or_else(|| {
+        let violation = match found.standing {
+            kempe_optimize::Standing::Feasible(_) => 0.0,
+            kempe_optimize::Standing::Violating(by) | kempe_optimize::Standing::Lacking(by) => by,
+        };
+        let ended = if stopped {
+            Ended::Stopped
+        } else {
+            Ended::Stuck
+        };
+        Optimum {
+            ended,
+            ..plain(best.design, best.evaluation, violation)
+        }
+    });
+    Some(one(own, stopped))
+}
+
+fn one(found: Optimum, stopped: bool) -> Optima {
     Optima {
-        stopped: found.ended == Ended::Stopped,
         list: vec![found],
         reached: vec![1],
+        stopped,
+    }
+}
+
+impl Optima {
+    /// Designs and multipliers of bounds of the parameters, not of the variables.
+    pub fn in_parameters(&mut self, problem: &Designs<'_, '_>) {
+        for optimum in &mut self.list {
+            optimum.design = problem.values(&optimum.design);
+            let growth = problem.growth(&optimum.design);
+            for (both, growth) in optimum.multipliers.bounds.iter_mut().zip(growth) {
+                both.iter_mut().for_each(|cost| *cost /= growth);
+            }
+        }
     }
 }
 
@@ -155,11 +359,11 @@ pub(super) fn plain(design: Vec<f64>, evaluation: Evaluation, violation: f64) ->
     Optimum {
         design,
         evaluation,
-        multipliers: Default::default(),
+        multipliers: Multipliers::default(),
         residual: f64::NAN,
         violation,
         conflict: Vec::new(),
-        scales: Default::default(),
+        scales: Scales::default(),
         iterations: 0,
         evaluations: 0,
         slopes: 0,

@@ -3,11 +3,11 @@
 use kempe_model::{Diagnostic, Model, OptimizeStudy, Severity, StudyKind};
 use kempe_motion::progress::Silent;
 use kempe_number::text::significant;
-use kempe_optimize::{Ended, Evaluation, Front, Optimum, Problem};
+use kempe_optimize::{Ended, Evaluation, Optimum};
 use kempe_units::{Dimension, Unit};
 
 use super::problem::Designs;
-use super::search::Sought;
+use super::search::{Front, Sought};
 use crate::designs::bench::{Answer, Bench};
 use crate::motion::run_along;
 use crate::result::{Figure, FoundDesign, Listing, Scalar, StudyResult};
@@ -18,6 +18,8 @@ use crate::words::list;
 
 /// A multiplier below this part of the objective's scale is none.
 const FREE: f64 = 1e-9;
+/// What is said of a search that was stopped.
+const STOPPED: &str = "stopped before its end: the best so far";
 /// Designs that become files.
 const MOST_FILES: usize = 40;
 /// A limit that is missed by less, in its scale, is kept.
@@ -48,7 +50,7 @@ pub(super) fn outside(
     units: &Units,
 ) -> Vec<Diagnostic> {
     let own = problem.bench.own_values();
-    let places = own.iter().zip(problem.bounds()).zip(&study.vary);
+    let places = own.iter().zip(problem.ranges()).zip(&study.vary);
     let odd = places.filter(|((x, [low, high]), _)| *x < low || *x > high);
     odd.map(|((x, [low, high]), chosen)| {
         let parameter = &problem.bench.model.parameters[chosen.parameter.index()];
@@ -99,24 +101,18 @@ impl<'b, 'm> Teller<'b, 'm> {
     /// The result of a study, or why there is none.
     pub fn result(
         &self,
-        problem: &mut Designs<'_, '_>,
+        problem: &Designs<'_, '_>,
         found: Sought,
         diagnostics: Vec<Diagnostic>,
     ) -> Result<StudyResult, Vec<Diagnostic>> {
         let own = self.bench.own_values();
-        let own = problem
-            .evaluate(std::slice::from_ref(&own))
-            .into_iter()
-            .next()
-            .map(|evaluation| Told {
-                beside: self.besides(&own),
-                note: match evaluation.is_defined() {
-                    true => Some("the file's own".to_owned()),
-                    false => problem.refused.clone(),
-                },
-                design: own,
-                evaluation,
-            });
+        let (evaluation, why) = problem.look(&own);
+        let own = Some(Told {
+            beside: self.besides(&own),
+            note: why.or(Some("the file's own".to_owned())),
+            design: own,
+            evaluation,
+        });
         match found {
             Sought::Optima { optima, how } => {
                 let stopped = optima.stopped;
@@ -132,7 +128,8 @@ impl<'b, 'm> Teller<'b, 'm> {
                 let all: Vec<Told> = told.map(|(it, reached)| self.told(it, *reached)).collect();
                 let mut result = self.shown(own.as_ref(), &all, stopped, diagnostics);
                 result.scalars = self.scalars(&best, &all[0], problem);
-                result.listings = self.listings(own.as_ref(), &all[0], &best, &how, problem);
+                result.listings =
+                    self.listings(own.as_ref(), &all[0], &best, (&how, stopped), problem);
                 result.diagnostics.extend(self.findings(&best, &all[0]));
                 Ok(result)
             }
@@ -151,11 +148,26 @@ impl<'b, 'm> Teller<'b, 'm> {
             "no design within the bounds of study `{}` has all its numbers",
             self.name
         );
-        let error = Diagnostic::error("no-answer", message).at(self.study.over.span.clone(), "");
-        let error = match &problem.refused {
-            Some(why) => error.note(format!("the last that was tried: {why}")),
-            None => error,
-        };
+        let mut error =
+            Diagnostic::error("no-answer", message).at(self.study.over.span.clone(), "");
+        if let Some(nearest) = problem.nearest() {
+            let values = self.study.vary.iter().zip(&nearest.values);
+            let values = values.map(|(chosen, x)| {
+                let parameter = &self.bench.model.parameters[chosen.parameter.index()];
+                format!(
+                    "{} = {}",
+                    parameter.name,
+                    self.units.text(*x, parameter.dimension)
+                )
+            });
+            let values: Vec<String> = values.collect();
+            error = error.note(format!(
+                "{} designs were tried; the nearest to one that has them, {}, fails: {}",
+                problem.asked(),
+                list(&values),
+                nearest.why
+            ));
+        }
         error.help(
             "give bounds between which the mechanism can be assembled, goes all the way, and what is asked of it has a finite value",
         )
@@ -363,8 +375,8 @@ impl<'b, 'm> Teller<'b, 'm> {
             tell("first-order residual", best.residual, Unit::one());
         }
         tell("largest violation", best.violation, Unit::one());
-        tell("designs tried", problem.asked as f64, Unit::one());
-        tell("derivatives taken", problem.sloped as f64, Unit::one());
+        tell("designs tried", problem.asked() as f64, Unit::one());
+        tell("derivatives taken", problem.sloped() as f64, Unit::one());
         all
     }
 
@@ -373,7 +385,7 @@ impl<'b, 'm> Teller<'b, 'm> {
         own: Option<&Told>,
         told: &Told,
         best: &Optimum,
-        how: &str,
+        (how, stopped): (&str, bool),
         problem: &Designs<'_, '_>,
     ) -> Vec<Listing> {
         let mut all = vec![self.before_and_after(own, told, problem)];
@@ -394,7 +406,8 @@ impl<'b, 'm> Teller<'b, 'm> {
         }
         let tried = format!(
             "{} designs tried, derivatives of {}",
-            problem.asked, problem.sloped
+            problem.asked(),
+            problem.sloped()
         );
         let mut rows = vec![vec![how.to_owned()], vec![tried]];
         rows.push(vec![match best.residual.is_finite() {
@@ -405,6 +418,9 @@ impl<'b, 'm> Teller<'b, 'm> {
             ),
             false => best.ended.text().to_owned(),
         }]);
+        if stopped {
+            rows.push(vec![STOPPED.to_owned()]);
+        }
         all.push(Listing {
             title: "how it was found".to_owned(),
             head: Vec::new(),
@@ -449,7 +465,7 @@ impl<'b, 'm> Teller<'b, 'm> {
         }
         for (k, chosen) in self.study.vary.iter().enumerate() {
             let parameter = &self.bench.model.parameters[chosen.parameter.index()];
-            let [low, high] = problem.bounds()[k];
+            let [low, high] = problem.ranges()[k];
             let range = format!(
                 "{} to {}",
                 text(Some(low), parameter.dimension),
@@ -504,7 +520,7 @@ impl<'b, 'm> Teller<'b, 'm> {
         }
         for (k, chosen) in self.study.vary.iter().enumerate() {
             let parameter = &self.bench.model.parameters[chosen.parameter.index()];
-            let [low, high] = problem.bounds()[k];
+            let [low, high] = problem.ranges()[k];
             let Some(both) = best.multipliers.bounds.get(k) else {
                 continue;
             };
@@ -615,13 +631,19 @@ impl<'b, 'm> Teller<'b, 'm> {
         };
         tell("points", all.len() as f64);
         tell("points optimal to first order", optimal as f64);
-        tell("designs tried", problem.asked as f64);
-        tell("derivatives taken", problem.sloped as f64);
+        tell("designs tried", problem.asked() as f64);
+        tell("derivatives taken", problem.sloped() as f64);
         if let Some(volume) = dominated(&all, own.as_ref()) {
             tell("hypervolume", volume);
         }
         let first = 1 + self.study.vary.len();
         result.along = first;
+        let known = own.as_ref().filter(|own| own.evaluation.is_defined());
+        let own_goals: Option<Vec<f64>> = known.map(|own| {
+            let goals = 0..self.study.goals.len();
+            let shown = goals.map(|k| shown(self.goal(k, &own.evaluation), &self.goal_unit(k)));
+            shown.collect()
+        });
         let goals = result
             .table
             .columns
@@ -629,9 +651,11 @@ impl<'b, 'm> Teller<'b, 'm> {
             .skip(first + 1)
             .take(self.study.goals.len() - 1);
         result.figures = goals
-            .map(|column| Figure::Curves {
-                curves: vec![column.clone()],
-                limits: Vec::new(),
+            .zip(1..)
+            .map(|(column, k)| Figure::Front {
+                x: result.table.columns[first].clone(),
+                y: column.clone(),
+                own: own_goals.as_ref().map(|own| [own[0], own[k]]),
             })
             .collect();
         let ends = self.ends(own.as_ref(), &all);
@@ -643,7 +667,8 @@ impl<'b, 'm> Teller<'b, 'm> {
                 vec![how.to_owned()],
                 vec![format!(
                     "{} designs tried, derivatives of {}",
-                    problem.asked, problem.sloped
+                    problem.asked(),
+                    problem.sloped()
                 )],
                 vec![format!(
                     "{optimal} of {} points are optimal to first order",
@@ -651,6 +676,11 @@ impl<'b, 'm> Teller<'b, 'm> {
                 )],
             ],
         });
+        if front.stopped
+            && let Some(how) = result.listings.last_mut()
+        {
+            how.rows.push(vec![STOPPED.to_owned()]);
+        }
         let missed = front.points.iter().all(|p| p.violation > KEPT);
         if missed {
             result.diagnostics.push(

@@ -12,6 +12,7 @@ mod question;
 #[cfg(feature = "parquet")]
 mod rows;
 mod told;
+mod whole;
 
 use kempe_batch::Executor;
 use kempe_model::{Diagnostic, Model, Study, StudyKind, SweepStudy};
@@ -234,8 +235,7 @@ pub(crate) fn bytes_of_sweep(model: &Model, study: &SweepStudy) -> Held {
         };
     };
     let columns = question.table().with_evidence().len();
-    let along = question.bench.over.kind.along();
-    let rows = crate::rows::most(model, &along.rows, &model.parameter_values());
+    let rows = question.most_rows();
     let curves = count.min(DRAWN as f64) * rows * (3 * question.curves() * number) as f64;
     Held {
         rows: count,

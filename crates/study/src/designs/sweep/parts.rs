@@ -8,13 +8,12 @@ use kempe_motion::{Done, Progress, Stage};
 
 use super::part::{Part, designs_in_part};
 use super::question::{Answer, Question};
-use crate::rows::most;
 
 /// Numbers in the rows of all designs at most; more of them are in no file.
 const MOST_ROW_NUMBERS: f64 = (1_u64 << 29) as f64;
 
 /// Where the finished parts of a study are kept: core crates touch no files. A part has a number from 0; the study alone decides which
-/// designs are in it.
+/// designs are in it. Of a study that looks for something, parts are what it has asked so far, one after the other, and how many there will be is not known.
 pub trait Parts {
     /// The bytes that were kept of a part; none where it is still to be computed.
     ///
@@ -72,16 +71,7 @@ impl Layout {
     pub fn of(question: &Question<'_>) -> Self {
         let designs = question.designs.count();
         let columns = question.row_table().with_evidence().len();
-        let along = question.bench.over.kind.along();
-        let parameters = question.model.parameter_values();
-        let rows = match &question.bench.over.kind {
-            kempe_model::StudyKind::Simulate(study) => {
-                let until = kempe_model::value(&study.until, &parameters);
-                crate::rows::count(question.model, &along.rows, &parameters, until)
-            }
-            _ => most(question.model, &along.rows, &parameters),
-        };
-        let numbers = rows * columns as f64;
+        let numbers = question.most_rows() * columns as f64;
         Self {
             designs,
             in_part: designs_in_part(designs, numbers),

@@ -11,6 +11,7 @@ use kempe_motion::{Motion, Progress, Silent};
 use kempe_units::{Dimension, Expr, Unit};
 
 use super::designs::Designs;
+use super::whole::{Whole, is_whole};
 use crate::along::Along;
 use crate::columns::Asked;
 use crate::designs::asked::{knows_forces, numbers_of};
@@ -33,6 +34,8 @@ pub(super) struct Question<'m> {
     pub name: String,
     pub designs: Designs,
     pub bench: Bench<'m>,
+    /// What is known of a study that is run as a whole.
+    whole: Option<Whole>,
     pub units: Units,
     /// The rows of the study that is run, where it says so itself.
     along: &'m MotionStudy,
@@ -75,7 +78,14 @@ impl<'m> Question<'m> {
     ) -> Result<Self, Vec<Diagnostic>> {
         let over = crate::designs::study_of(model, &study.over)?;
         let varied: Vec<ParameterId> = study.vary.iter().map(|it| it.parameter).collect();
-        let numbers = numbers_of(model, &study.over, over);
+        let whole = match is_whole(&over.kind) {
+            true => Some(Whole::new(model, over)?),
+            false => None,
+        };
+        let numbers = match &whole {
+            Some(_) => Vec::new(),
+            None => numbers_of(model, &study.over, over),
+        };
         let bench = Bench::new(model, &study.over, varied, numbers)?;
         let along = over.kind.along();
         let mut rows = match &over.kind {
@@ -94,7 +104,14 @@ impl<'m> Question<'m> {
             .cloned()
             .collect();
         let curves = plots.iter().flat_map(|plot| plotted(model, plot));
+        let curves: Vec<Quantity> = curves.collect();
+        let (plots, curves) = match &whole {
+            Some(whole) => (whole.plots.clone(), Vec::new()),
+            None => (plots, curves),
+        };
+        let along_column = whole.as_ref().map_or(0, |whole| whole.along);
         Ok(Self {
+            whole,
             model,
             study,
             name: name.to_owned(),
@@ -102,8 +119,8 @@ impl<'m> Question<'m> {
             bench,
             units: Units::of(model),
             along,
-            curves: curves.collect(),
-            along_column: 0,
+            curves,
+            along_column,
             plots,
             rows,
         })
@@ -129,12 +146,39 @@ impl<'m> Question<'m> {
         self.units.text(si, self.unit_of(parameter).dimension())
     }
 
+    /// The numbers of every design, without values.
+    pub fn numbers(&self) -> Vec<Column> {
+        match &self.whole {
+            Some(whole) => whole.numbers.clone(),
+            None => (self.bench.numbers.iter())
+                .map(|q| Column::new(q.name.clone(), q.unit(&self.units)))
+                .collect(),
+        }
+    }
+
+    /// Whether derivatives of the numbers are known.
+    pub fn has_derivatives(&self) -> bool {
+        self.whole.is_none() && !matches!(self.bench.over.kind, StudyKind::Simulate(_))
+    }
+
+    /// How many rows a design has at most.
+    pub fn most_rows(&self) -> f64 {
+        let parameters = self.model.parameter_values();
+        match (&self.whole, &self.bench.over.kind) {
+            (Some(whole), _) => whole.rows.max(1) as f64,
+            (None, StudyKind::Simulate(study)) => {
+                let until = value(&study.until, &parameters);
+                crate::rows::count(self.model, &self.along.rows, &parameters, until)
+            }
+            _ => crate::rows::most(self.model, &self.along.rows, &parameters),
+        }
+    }
+
     /// The table of designs without rows: their numbers, what varies, and what is asked of them.
     pub fn table(&self) -> Table {
         let varied =
             (0..self.designs.own.len()).map(|k| Column::new(self.name_of(k), self.unit_of(k)));
-        let numbers = self.bench.numbers.iter();
-        let numbers = numbers.map(|q| Column::new(q.name.clone(), q.unit(&self.units)));
+        let numbers = self.numbers();
         let first = Column::new("design", Unit::one());
         empty(
             &self.name,
@@ -145,18 +189,22 @@ impl<'m> Question<'m> {
 
     /// The table of the rows of all designs, without any.
     pub fn row_table(&self) -> Table {
-        let sink = self.sink(&self.rows);
-        let places = sink.table.places;
-        let mut columns = sink.table.columns;
+        let own = match &self.whole {
+            Some(whole) => whole.table.clone(),
+            None => Table {
+                forces: knows_forces(self.bench.over).then(Default::default),
+                ..self.sink(&self.rows).table
+            },
+        };
+        let places = own.places;
+        let mut columns = own.columns;
         columns.insert(0, Column::new("design", Unit::one()));
         let mut table = empty(
             &format!("{}.rows", self.name),
             columns.into_iter(),
             1 + places,
         );
-        if knows_forces(self.bench.over) {
-            table.forces = Some(crate::table::ForceColumns::default());
-        }
+        table.forces = own.forces;
         table
     }
 
@@ -168,7 +216,7 @@ impl<'m> Question<'m> {
     /// Whether a design is drawn: some that lie evenly among all, the first and the last among them.
     pub fn is_drawn(&self, index: usize) -> bool {
         let all = self.designs.count();
-        if self.curves.is_empty() {
+        if self.curves() == 1 {
             return false;
         }
         if all <= DRAWN {
@@ -181,23 +229,35 @@ impl<'m> Question<'m> {
 
     /// The unit of a curve.
     pub fn curve_unit(&self, index: usize) -> Option<Unit> {
+        if let Some(whole) = &self.whole {
+            let column = whole.table.columns.get(*whole.curves.get(index)?)?;
+            return Some(column.unit.clone());
+        }
         Some(self.curves.get(index)?.unit(&self.units))
     }
 
     /// How many curves a design that is drawn has, what its rows run along among them.
     pub fn curves(&self) -> usize {
-        1 + self.curves.len()
+        let of_whole = self.whole.as_ref().map(|whole| whole.curves.len());
+        1 + of_whole.unwrap_or(self.curves.len())
     }
 
     /// What the curves of drawn designs run along, as a column without values.
     pub fn abscissa(&self) -> Column {
-        let columns = self.sink(&Asked::default()).table.columns;
+        let columns = match &self.whole {
+            Some(whole) => whole.table.columns.clone(),
+            None => self.sink(&Asked::default()).table.columns,
+        };
         let column = columns.into_iter().nth(self.along_column);
         column.unwrap_or_else(|| Column::new("time", Unit::one()))
     }
 
     /// Asks one design, with all its rows where that is wanted.
     pub fn ask(&self, index: usize, rows: bool) -> Answer {
+        if let Some(whole) = &self.whole {
+            let values = self.designs.values(index);
+            return whole.ask(&self.bench, &values, rows, self.is_drawn(index));
+        }
         match self.asked(index, rows) {
             Ok(answer) => answer,
             Err(refused) => Answer {
@@ -304,6 +364,9 @@ impl<'m> Question<'m> {
         &mut self,
         progress: &mut dyn Progress,
     ) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> {
+        if self.whole.is_some() {
+            return Ok(Vec::new());
+        }
         let told = match self.bench.begin(progress) {
             Err(told) if told.iter().any(|d| d.code == "stopped") => return Err(told),
             Ok(told) | Err(told) => told,

@@ -36,8 +36,7 @@ impl Own {
             sloped: Vec::new(),
             told: Vec::new(),
         };
-        // Of simulations there are no derivatives.
-        if matches!(bench.over.kind, kempe_model::StudyKind::Simulate(_)) {
+        if !question.has_derivatives() {
             return none();
         }
         let values = bench.own_values();
@@ -200,7 +199,8 @@ struct Bar {
 
 /// Which parameter changes a number most, one at a time: in words and as a picture.
 pub(super) fn tornado(question: &Question<'_>, table: &Table) -> (Vec<Listing>, Vec<Figure>) {
-    let ranked = question.bench.numbers.iter().take(RANKED).enumerate();
+    let numbers = question.numbers();
+    let ranked = numbers.iter().take(RANKED).enumerate();
     ranked
         .filter_map(|(n, number)| {
             let bars = bars(question, table, n);
@@ -237,8 +237,8 @@ fn bars(question: &Question<'_>, table: &Table, number: usize) -> Vec<Bar> {
     all
 }
 
-fn in_words(question: &Question<'_>, number: &Quantity, bars: &[Bar]) -> Listing {
-    let head = Column::new(number.name.clone(), number.unit(&question.units)).head();
+fn in_words(question: &Question<'_>, number: &Column, bars: &[Bar]) -> Listing {
+    let head = number.head();
     let rows = bars.iter().map(|bar| {
         let value = |x: f64| match x.is_finite() {
             true => number_text(x),
@@ -264,7 +264,7 @@ fn in_words(question: &Question<'_>, number: &Quantity, bars: &[Bar]) -> Listing
 }
 
 /// Bars from the least to the greatest value of a number, the longest on top.
-fn drawn(question: &Question<'_>, number: &Quantity, bars: &[Bar], own: f64) -> Figure {
+fn drawn(question: &Question<'_>, number: &Column, bars: &[Bar], own: f64) -> Figure {
     let bar = |(rank, bar): (usize, &Bar)| {
         let middle = (bars.len() - rank) as f64;
         let (low, high) = (middle - HALF_BAR, middle + HALF_BAR);
@@ -297,7 +297,7 @@ fn drawn(question: &Question<'_>, number: &Quantity, bars: &[Bar], own: f64) -> 
     });
     Figure::Graph {
         name: format!("tornado-{}", number.name),
-        x: (number.name.clone(), number.unit(&question.units)),
+        x: (number.name.clone(), number.unit.clone()),
         y: ("place from below".to_owned(), kempe_units::Unit::one()),
         curves: bars.iter().enumerate().map(bar).chain(own).collect(),
     }

@@ -1,6 +1,6 @@
 //! What tolerances do where everything is linear.
 
-use super::spread::Deviation;
+use super::source::Source;
 
 /// The linear answer for a number, SI.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,20 +15,19 @@ pub(super) struct Linear {
     pub worst: [f64; 2],
     /// By parameter: the derivative.
     pub slope: Vec<f64>,
-    /// By parameter: its part of the variance.
+    /// By source: its part of the variance.
     pub parts: Vec<f64>,
 }
 
 impl Linear {
-    /// By a number's derivatives; parameters differ independently.
-    pub fn new(own: f64, slope: Vec<f64>, deviations: &[Deviation]) -> Self {
-        let pairs = || slope.iter().zip(deviations);
-        let mean = pairs().fold(own, |sum, (slope, d)| sum + slope * d.mean());
-        let alone: Vec<f64> = pairs().map(|(slope, d)| slope * d.deviation()).collect();
+    /// By a number's derivatives; sources differ independently.
+    pub fn new(own: f64, slope: Vec<f64>, sources: &[Source]) -> Self {
+        let mean = sources.iter().fold(own, |sum, it| sum + it.mean(&slope));
+        let alone: Vec<f64> = sources.iter().map(|it| it.deviation(&slope)).collect();
         let variance: f64 = alone.iter().map(|x| x * x).sum();
-        let worst = pairs().fold([own; 2], |[low, high], (slope, d)| {
-            let ends = d.ends.map(|end| slope * end);
-            [low + ends[0].min(ends[1]), high + ends[0].max(ends[1])]
+        let worst = sources.iter().fold([own; 2], |[low, high], it| {
+            let ends = it.worst(&slope);
+            [low + ends[0], high + ends[1]]
         });
         let part = |x: &f64| match variance > 0.0 {
             true => x * x / variance,
@@ -49,7 +48,7 @@ impl Linear {
         self.deviation.is_finite() && self.own.is_finite()
     }
 
-    /// Parameters by their part, the largest first.
+    /// Sources by their part, the largest first.
     pub fn ranked(&self) -> Vec<usize> {
         let mut all: Vec<usize> = (0..self.parts.len()).collect();
         all.sort_by(|a, b| self.parts[*b].total_cmp(&self.parts[*a]));

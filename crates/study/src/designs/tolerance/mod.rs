@@ -10,26 +10,30 @@ mod direction_numbers;
 mod extreme;
 mod lanes;
 mod linear;
+mod play;
 mod program;
 mod sampled;
 mod sobol;
+mod source;
 mod spread;
 mod summary;
 mod told;
 
 use kempe_batch::Executor;
 use kempe_model::{
-    Diagnostic, Leaf, Model, MotionStudy, OverStudy, Plot, PointId, PoseMeasure, StudyKind,
-    ToleranceStudy,
+    Diagnostic, Leaf, Model, MotionStudy, OverStudy, ParameterId, Plot, PointId, PoseMeasure,
+    StudyKind, ToleranceStudy, Toleranced,
 };
 use kempe_motion::progress::{Progress, Silent, Stage};
 use kempe_units::{Dimension, Expr};
 
 use self::lanes::InLanes;
 use self::linear::Linear;
+use self::play::Played;
 pub(crate) use self::sampled::KEPT;
 use self::sampled::{CHECKED, Question, path_places};
 use self::sobol::Sobol;
+use self::source::{Kind, Source};
 use self::spread::Deviation;
 use self::told::Teller;
 use super::asked::{kept, left_side, numbers_of};
@@ -55,10 +59,35 @@ const FAR_OUT: f64 = 2.5;
 
 /// What is to be told of a study before any piece is drawn; `check` and `run` say the same.
 pub(crate) fn findings_of_tolerance(model: &Model, study: &ToleranceStudy) -> Vec<Diagnostic> {
-    match Ready::new(model, study, &mut Silent) {
-        Ok(ready) => ready.told,
+    match played(model, study) {
+        Ok(played) => match Ready::new(model, played.as_ref(), study, &mut Silent) {
+            Ok(ready) => ready.told,
+            Err(told) => told,
+        },
         Err(told) => told,
     }
+}
+
+/// The joints with play, where they count.
+///
+/// # Errors
+/// Why they cannot.
+fn played(model: &Model, study: &ToleranceStudy) -> Result<Option<Played>, Vec<Diagnostic>> {
+    let Some(asked) = &study.clearance else {
+        return Ok(None);
+    };
+    let over = super::study_of(model, &study.over)?;
+    let played = Played::new(model, &over.kind, asked)?;
+    let all = study.vary.len() + played.joints.len();
+    if all > Sobol::MOST {
+        let message = format!(
+            "{all} parameters and joints differ, more than the {} that are told apart",
+            Sobol::MOST
+        );
+        let error = Diagnostic::error("bad-choice", message).at(asked.clone(), "");
+        return Err(vec![error.help("leave out those that hardly count")]);
+    }
+    Ok(Some(played))
 }
 
 /// A limit of the study: where its number and how far it is kept stand among the numbers of the bench.
@@ -70,7 +99,10 @@ struct Limited {
 /// A study whose own design moves, with the linear answer.
 struct Ready<'m> {
     bench: Bench<'m>,
-    deviations: Vec<Deviation>,
+    /// What differs: parameters, and then joints with play.
+    sources: Vec<Source>,
+    /// What these are called.
+    names: Vec<String>,
     /// So many of the bench's numbers are told, the first ones.
     shown: usize,
     limits: Vec<Limited>,
@@ -82,9 +114,12 @@ struct Ready<'m> {
 impl<'m> Ready<'m> {
     fn new(
         model: &'m Model,
+        played: Option<&'m Played>,
         study: &ToleranceStudy,
         progress: &mut dyn Progress,
     ) -> Result<Self, Vec<Diagnostic>> {
+        // The same but for joints that stand open by no length in its own design.
+        let model = played.map_or(model, |it| &it.model);
         let over = super::study_of(model, &study.over)?;
         let mut numbers = numbers_of(model, &study.over, over);
         let mut place = |q: Quantity| {
@@ -105,24 +140,41 @@ impl<'m> Ready<'m> {
             let kept = numbers.len() - 1;
             limits.push(Limited { left, kept });
         }
-        let varied = study.vary.iter().map(|it| it.parameter).collect();
+        let varied = study.vary.iter().map(|it| it.parameter);
+        let opened = played.iter().flat_map(|it| it.parameters.iter().copied());
+        let varied: Vec<ParameterId> = varied.chain(opened).collect();
         let mut bench = Bench::new(model, &study.over, varied, numbers)?;
         let mut told = match &over.kind {
             StudyKind::Simulate(it) => findings_of_simulation(model, &over.name, it, &[], progress),
             _ => bench.begin(progress)?,
         };
+        told.extend(played.iter().flat_map(|it| it.told.iter().cloned()));
         if refuses(&told) {
             return Err(told);
         }
         let own = bench.own_values();
         let parameters = model.parameter_values();
-        let deviations: Vec<Deviation> = (study.vary.iter().zip(&own))
-            .map(|(it, own)| Deviation::new(&it.spread, &parameters, *own))
-            .collect();
-        let linear = linear(&bench, &own, &deviations).map_err(|why| vec![of_own(study, why)])?;
+        let parameter = |(first, (it, own)): (usize, (&Toleranced, &f64))| {
+            let kind = Kind::Parameter(Deviation::new(&it.spread, &parameters, *own));
+            Source { first, kind }
+        };
+        let alone = study.vary.iter().zip(&own).enumerate().map(parameter);
+        let joints = played.iter().flat_map(|it| &it.joints).map(|it| Source {
+            first: study.vary.len() + it.first,
+            kind: it.kind.clone(),
+        });
+        let sources: Vec<Source> = alone.chain(joints).collect();
+        let names = sources.iter().map(|it| {
+            let id = bench.varied[it.first];
+            let name = &model.parameters[id.index()].name;
+            name.clone()
+        });
+        let names = names.collect();
+        let linear = linear(&bench, &own, &sources).map_err(|why| vec![of_own(study, why)])?;
         let it = Self {
             bench,
-            deviations,
+            sources,
+            names,
             shown,
             limits,
             linear,
@@ -146,7 +198,7 @@ impl<'m> Ready<'m> {
             }
         }
         let own = self.bench.own_values();
-        let around = own.iter().zip(&self.deviations);
+        let around = own.iter().zip(deviations(&self.sources));
         let around: Vec<[f64; 2]> = around.map(|(x, it)| it.ends.map(|end| x + end)).collect();
         let slopes: Vec<&[f64]> = self.linear.iter().map(|it| it.slope.as_slice()).collect();
         let spans = study.vary.iter().map(|it| it.span.clone());
@@ -166,6 +218,14 @@ impl<'m> Ready<'m> {
     }
 }
 
+/// How parameters differ, without joints.
+fn deviations(sources: &[Source]) -> impl Iterator<Item = &Deviation> {
+    sources.iter().filter_map(|it| match &it.kind {
+        Kind::Parameter(deviation) => Some(deviation),
+        _ => None,
+    })
+}
+
 /// Why the file's own design has no numbers.
 fn of_own(study: &ToleranceStudy, why: String) -> Diagnostic {
     let error = Diagnostic::error("no-answer", why).at(study.over.span.clone(), "");
@@ -176,17 +236,17 @@ fn of_own(study: &ToleranceStudy, why: String) -> Diagnostic {
 const SAME: f64 = 1e-12;
 
 /// The linear answers, by exact derivatives; of a simulation, which has none, by differences over a standard deviation.
-fn linear(bench: &Bench<'_>, own: &[f64], deviations: &[Deviation]) -> Result<Vec<Linear>, String> {
+fn linear(bench: &Bench<'_>, own: &[f64], sources: &[Source]) -> Result<Vec<Linear>, String> {
     if !matches!(bench.over.kind, StudyKind::Simulate(_)) {
         let found = bench.slopes(own).map_err(|refused| refused.why)?;
         let all = found.into_iter();
         return Ok(all
-            .map(|it| Linear::new(it.value, it.slope, deviations))
+            .map(|it| Linear::new(it.value, it.slope, sources))
             .collect());
     }
     let middle = bench.numbers(own).map_err(|refused| refused.why)?;
     let mut slopes = vec![Vec::new(); middle.len()];
-    for (k, deviation) in deviations.iter().enumerate() {
+    for (k, deviation) in deviations(sources).enumerate() {
         let step = deviation.deviation();
         let beside = |sign: f64| {
             let mut values = own.to_vec();
@@ -203,7 +263,7 @@ fn linear(bench: &Bench<'_>, own: &[f64], deviations: &[Deviation]) -> Result<Ve
     }
     let pairs = middle.into_iter().zip(slopes);
     Ok(pairs
-        .map(|(own, slope)| Linear::new(own, slope, deviations))
+        .map(|(own, slope)| Linear::new(own, slope, sources))
         .collect())
 }
 
@@ -215,7 +275,8 @@ pub(crate) fn tolerance(
     executor: &dyn Executor,
     progress: &mut dyn Progress,
 ) -> Result<StudyResult, Vec<Diagnostic>> {
-    let ready = Ready::new(model, study, progress)?;
+    let played = played(model, study)?;
+    let ready = Ready::new(model, played.as_ref(), study, progress)?;
     let curves = curves(model, &study.over, &ready.bench.over.kind);
     let mut base = own_motion(model, name, &ready.bench, &curves, progress)?;
     if base.interrupted() {
@@ -245,19 +306,21 @@ pub(crate) fn tolerance(
         }
         _ => places_along(&motion, along, &motion.design.parameters),
     };
-    let ends: Vec<[f64; 2]> = ready.deviations.iter().map(|it| it.ends).collect();
+    let ends: Vec<[f64; 2]> = deviations(&ready.sources).map(|it| it.ends).collect();
     let lanes = match &bench.over.kind {
+        // Joints that stand open are drives that stand elsewhere.
+        _ if played.is_some() => None,
         StudyKind::Simulate(_) => None,
         _ => InLanes::new(bench, &motion, &curves, &path_places(&motion, &rows), &ends),
     };
     let mut question = Question {
         bench,
-        deviations: &ready.deviations,
-        sobol: Sobol::new(own.len(), study.seed as u64),
+        sources: &ready.sources,
+        sobol: Sobol::new(ready.sources.len(), study.seed as u64),
         samples: study.samples,
         curves: &curves,
         rows: &rows,
-        may_be_unsound: may_be_unsound(bench, &own, &ready.deviations),
+        may_be_unsound: may_be_unsound(bench, &own, &ready.sources),
         lanes,
         own,
     };
@@ -275,17 +338,24 @@ pub(crate) fn tolerance(
 }
 
 /// Whether pieces may have dimensions that make no sense: then all are looked at.
-fn may_be_unsound(bench: &Bench<'_>, own: &[f64], deviations: &[Deviation]) -> bool {
+fn may_be_unsound(bench: &Bench<'_>, own: &[f64], sources: &[Source]) -> bool {
+    let deviations: Vec<&Deviation> = deviations(sources).collect();
     let far = |k: usize, end: usize| own[k] + FAR_OUT * deviations[k].ends[end];
     let sound = |values: &[f64]| bench.design(values).is_ok();
-    let one_by_one = (0..own.len()).all(|k| {
+    let one_by_one = (0..deviations.len()).all(|k| {
         [0, 1].into_iter().all(|end| {
             let mut values = own.to_vec();
             values[k] = far(k, end);
             sound(&values)
         })
     });
-    let together = |end: usize| (0..own.len()).map(|k| far(k, end)).collect::<Vec<f64>>();
+    let together = |end: usize| {
+        let mut values = own.to_vec();
+        for (k, value) in values.iter_mut().enumerate().take(deviations.len()) {
+            *value = far(k, end);
+        }
+        values
+    };
     !(one_by_one && sound(&together(0)) && sound(&together(1)))
 }
 

@@ -7,7 +7,7 @@ use kempe_motion::progress::{Done, Progress, Silent, Stage};
 use super::lanes::{InLanes, PIECES};
 use super::program::TOGETHER;
 use super::sobol::Sobol;
-use super::spread::Deviation;
+use super::source::{Kind, Source};
 use crate::designs::bench::{Bench, Refused};
 use crate::quantity::Quantity;
 use crate::rows::RowPlace;
@@ -28,7 +28,7 @@ pub(super) const CHECKED: usize = 5;
 /// What is asked of pieces.
 pub(super) struct Question<'q, 'm> {
     pub bench: &'q Bench<'m>,
-    pub deviations: &'q [Deviation],
+    pub sources: &'q [Source],
     pub own: Vec<f64>,
     pub sobol: Sobol,
     pub samples: usize,
@@ -117,14 +117,30 @@ impl Band {
 }
 
 impl Question<'_, '_> {
-    /// A varied parameter of a piece.
-    pub fn drawn(&self, piece: usize, k: usize) -> f64 {
-        self.own[k] + self.deviations[k].at(self.sobol.coordinate(piece as u32, k))
+    /// A varied parameter of a piece, where parameters alone differ.
+    fn drawn(&self, piece: usize, k: usize) -> f64 {
+        match &self.sources[k].kind {
+            Kind::Parameter(deviation) => {
+                self.own[k] + deviation.at(self.sobol.coordinate(piece as u32, k))
+            }
+            _ => self.values(piece)[k],
+        }
     }
 
-    /// All of them.
+    /// The varied parameters of a piece.
     pub fn values(&self, piece: usize) -> Vec<f64> {
-        (0..self.own.len()).map(|k| self.drawn(piece, k)).collect()
+        let mut values = self.own.clone();
+        let mut parameters = Vec::new();
+        for (k, source) in self.sources.iter().enumerate() {
+            let is_play = !matches!(source.kind, Kind::Parameter(_));
+            // How much play there is may hang on what else differs.
+            if is_play && parameters.is_empty() {
+                parameters = self.bench.parameters(&values);
+            }
+            let part = self.sobol.coordinate(piece as u32, k);
+            source.put(part, &parameters, &mut values);
+        }
+        values
     }
 
     /// Numbers that lanes do not tell.

@@ -12,10 +12,6 @@ use super::direction_numbers::DIRECTION_NUMBERS;
 /// Binary digits of a coordinate.
 const DIGITS: usize = 32;
 
-/// Coordinates there are direction numbers for.
-#[cfg(test)]
-const DIMENSIONS: usize = DIRECTION_NUMBERS.len() + 1;
-
 /// A scrambled sequence.
 #[derive(Clone, Debug)]
 pub(super) struct Sobol {
@@ -26,7 +22,10 @@ pub(super) struct Sobol {
 }
 
 impl Sobol {
-    /// The sequence in so many dimensions, at most 64, under a seed.
+    /// Coordinates there are direction numbers for.
+    pub const MOST: usize = DIRECTION_NUMBERS.len() + 1;
+
+    /// The sequence in so many dimensions, at most [`Sobol::MOST`], under a seed.
     pub fn new(dimensions: usize, seed: u64) -> Self {
         let mut random = Random(seed);
         let directions = (0..dimensions).map(|k| directions(k).map(u32::reverse_bits));
@@ -94,8 +93,8 @@ mod tests {
     #[test]
     fn every_coordinate_is_stratified() {
         for seed in [1, 2, 99] {
-            let sobol = Sobol::new(DIMENSIONS, seed);
-            for dimension in 0..DIMENSIONS {
+            let sobol = Sobol::new(Sobol::MOST, seed);
+            for dimension in 0..Sobol::MOST {
                 let mut seen = [false; 256];
                 for number in 0..256 {
                     let x = sobol.coordinate(number, dimension);
@@ -129,8 +128,8 @@ mod tests {
     /// Pairs of neighbouring coordinates fill their square: 2^10 points, one in each of 32 x 32 squares but for few.
     #[test]
     fn pairs_of_coordinates_fill_their_square() {
-        let sobol = Sobol::new(DIMENSIONS, 5);
-        for dimension in 1..DIMENSIONS {
+        let sobol = Sobol::new(Sobol::MOST, 5);
+        for dimension in 1..Sobol::MOST {
             let mut seen = vec![false; 1024];
             for number in 0..4096 {
                 let [x, y] = [dimension - 1, dimension]

@@ -6,6 +6,7 @@ use kempe_units::Unit;
 
 use super::linear::Linear;
 use super::sampled::{Band, CHECKED, KEPT, KEPT_FOLLOWED, Pieces, Question};
+use super::source::Kind;
 use super::summary::{Counts, PARTS, Summary, Yield, quantile};
 use super::{Limited, Ready};
 use crate::quantity::Quantity;
@@ -248,6 +249,9 @@ impl Teller<'_, '_> {
         if !followed.is_empty() {
             line(format!("each piece moved by itself: {}", names(&followed)));
         }
+        if self.ready.sources.len() > self.study.vary.len() {
+            line("joints with play stay pressed to one side all along a piece's motion: what changing sides adds is not counted".to_owned());
+        }
         let resting = self.resting_count();
         if let Some(first) = self.pieces.moves.iter().position(|moves| !moves) {
             line(format!(
@@ -324,19 +328,23 @@ impl Teller<'_, '_> {
         }
         let model = self.ready.bench.model;
         let row = |k: usize| {
-            let parameter = &model.parameters[self.ready.bench.varied[k].index()];
-            let deviation = &self.ready.deviations[k];
+            let source = &self.ready.sources[k];
+            let parameter = &model.parameters[self.ready.bench.varied[source.first].index()];
             let unit = units.unit(parameter.dimension);
             let own = |si: f64| with_unit(unit.from_si(si) - unit.from_si(0.0), &unit);
-            let tolerance = match (deviation.normal, deviation.mean() == 0.0) {
-                (true, _) => format!("normal {}", own(deviation.deviation())),
-                (false, true) => format!("± {}", own(deviation.ends[1])),
-                (false, false) => {
-                    let [low, high] = deviation.ends.map(own);
-                    format!("{low} to {high}")
-                }
+            let tolerance = match &source.kind {
+                Kind::Round { own: play, .. } => format!("{} all round", own(*play)),
+                Kind::Across { own: play, .. } => format!("{} to either side", own(*play)),
+                Kind::Parameter(deviation) => match (deviation.normal, deviation.mean() == 0.0) {
+                    (true, _) => format!("normal {}", own(deviation.deviation())),
+                    (false, true) => format!("± {}", own(deviation.ends[1])),
+                    (false, false) => {
+                        let [low, high] = deviation.ends.map(own);
+                        format!("{low} to {high}")
+                    }
+                },
             };
-            let slope = it.linear.slope[k];
+            let slope = source.slope(&it.linear.slope);
             let per = it.difference(slope) / (unit.from_si(1.0) - unit.from_si(0.0));
             let per_unit = match (it.unit.text(), unit.text()) {
                 ("", "") => String::new(),
@@ -344,9 +352,9 @@ impl Teller<'_, '_> {
                 ("", b) => format!("1/{b}"),
                 (a, b) => format!("{a}/{b}"),
             };
-            let alone = slope.abs() * deviation.deviation();
+            let alone = source.deviation(&it.linear.slope);
             vec![
-                parameter.name.clone(),
+                self.ready.names[k].clone(),
                 tolerance,
                 format!("{} {per_unit}", significant(per, FEW_DIGITS))
                     .trim_end()
@@ -361,10 +369,7 @@ impl Teller<'_, '_> {
             .partition(|k| it.linear.parts[*k] >= NOTHING);
         let mut rows: Vec<Vec<String>> = told.into_iter().map(row).collect();
         if !nothing.is_empty() {
-            let names = nothing.iter().map(|k| {
-                let id = self.ready.bench.varied[*k];
-                model.parameters[id.index()].name.as_str()
-            });
+            let names = nothing.iter().map(|k| self.ready.names[*k].as_str());
             rows.push(vec![
                 names.collect::<Vec<_>>().join(", "),
                 String::new(),
@@ -373,8 +378,9 @@ impl Teller<'_, '_> {
                 format!("below {}", percent(NOTHING)),
             ]);
         }
+        let joints = self.ready.sources.len() > self.study.vary.len();
         let head = [
-            "parameter",
+            if joints { "what differs" } else { "parameter" },
             "tolerance",
             "derivative",
             "deviation alone",

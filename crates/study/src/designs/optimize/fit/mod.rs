@@ -2,7 +2,7 @@
 //!
 //! Where along its way each place is met is no unknown of the search: it follows from the design, and is eliminated from the residuals' derivatives
 //! (variable projection: G. H. Golub and V. Pereyra 1973, in L. Kaufman's form of 1975). `way.rs` is the way of what is traced, `order.rs` and `nearest.rs`
-//! find where places are met that have no timing, `pace.rs` the others, `search.rs` looks for designs, `begin.rs` says what cannot be fitted, `told.rs` what
+//! find where places are met that have no timing, `pace.rs` the others, `search.rs` looks for designs, `sums.rs` is what it goes down, `begin.rs` says what cannot be fitted, `told.rs` what
 //! is told besides.
 
 mod begin;
@@ -10,6 +10,7 @@ mod nearest;
 mod order;
 mod pace;
 mod search;
+mod sums;
 mod told;
 mod way;
 
@@ -29,7 +30,7 @@ use crate::designs::bench::{Bench, Refused};
 pub(super) use begin::before;
 use nearest::Nodes;
 use pace::By;
-pub(super) use search::{downhill, fitted};
+pub(super) use search::{fitted, led};
 pub(super) use told::tell;
 use way::{Asked, Way};
 

@@ -1,18 +1,19 @@
 //! Looks for the designs that fit best: many are looked at, the best that lie apart are led down a few steps, the best of these all the way.
 
+use std::cmp::Ordering;
 use std::ops::ControlFlow;
 
-use kempe_model::{OptimizeMethod, OptimizeStudy};
+use kempe_model::OptimizeStudy;
 use kempe_number::math;
 use kempe_optimize::{
-    Descent, Ended, Even, Hears, Linear, Optima, Optimum, Piece, Problem, Progress, Scales,
-    SqpOptions, Squares, least_squares, sqp,
+    Descent, Ended, Hears, Optimum, Problem, Progress, Squares, Workers, each, halton,
+    least_squares, sqp,
 };
-
 use kempe_units::Dimension;
 
-use super::super::pieces::{Wanted, pieces};
 use super::super::problem::Designs;
+use super::super::search::{Optima, local};
+use super::sums::{Sums, is_alone, scaled, sums};
 use super::{Fitted, Pairing, SQUARES};
 
 /// Designs that are looked at, for each parameter, where the file does not say.
@@ -33,58 +34,11 @@ const SIZES: f64 = 4.0;
 /// Designs nearer to each other than this part of the box are one start, or one optimum.
 const APART: f64 = 0.03;
 const SAME: f64 = 1e-4;
-/// Starts that are led at once, between which is heard whether the work may go on.
-const AT_ONCE: usize = 4;
-
-/// A fit as sums of squares.
-struct Sums<'p, 'b, 'm> {
-    fit: &'p Fitted<'b, 'm>,
-    /// What must be kept, behind the goal.
-    wanted: &'p [Wanted],
-    bounds: &'p [[f64; 2]],
-    pairing: Pairing,
-}
-
-impl Squares for Sums<'_, '_, '_> {
-    fn bounds(&self) -> &[[f64; 2]] {
-        self.bounds
-    }
-
-    fn square(&self, design: &[f64]) -> Option<(f64, Vec<f64>)> {
-        if self.wanted.len() == 1 {
-            let seen = self.fit.seen_as(design, self.pairing).ok()?;
-            return Some((seen.met.square(), Vec::new()));
-        }
-        let bench = self.fit.bench;
-        let motion = bench.motion(design, &mut kempe_motion::Silent).ok()?;
-        let numbers = bench.answer_of(&motion).ok()?.numbers;
-        let signed = numbers.iter().zip(self.wanted).map(|(x, w)| w.sign * x);
-        let kept: Vec<f64> = signed.skip(1).collect();
-        let sound = kept.iter().all(|x| x.is_finite());
-        let seen = self.fit.along(&motion, self.pairing).ok()?;
-        sound.then_some((seen.met.square(), kept))
-    }
-
-    fn linear(&self, design: &[f64]) -> Option<Linear> {
-        let mut seen = self.fit.seen_as(design, self.pairing).ok()?;
-        let residuals = self.fit.residuals(&mut seen).ok()?;
-        let constraints: Vec<Vec<Piece>> = match self.wanted.len() {
-            1 => Vec::new(),
-            _ => pieces(self.fit.bench, self.wanted, design)
-                .ok()?
-                .split_off(1),
-        };
-        Some(Linear {
-            residuals,
-            constraints,
-        })
-    }
-}
-
-/// What is found of each of some designs, in their order. They are independent of each other: whoever has threads may share them out here.
-fn each<T>(designs: &[Vec<f64>], find: impl Fn(&[f64]) -> T) -> Vec<T> {
-    designs.iter().map(|design| find(design)).collect()
-}
+/// Descents, and designs looked at, between which is heard whether the work may go on.
+const AT_ONCE: usize = 16;
+const LOOKED_AT_ONCE: usize = 64;
+/// Violations below this, in their scale, are none.
+const KEPT: f64 = 1e-8;
 
 /// The largest difference of two designs, in parts of the box.
 fn distance(a: &[f64], b: &[f64], bounds: &[[f64; 2]]) -> f64 {
@@ -96,7 +50,7 @@ fn distance(a: &[f64], b: &[f64], bounds: &[[f64; 2]]) -> f64 {
 }
 
 /// Bounds within which lengths are of the size of what is given: nearer to fits than most of a wide box.
-fn near(fit: &Fitted<'_, '_>, bounds: &[[f64; 2]]) -> Vec<[f64; 2]> {
+fn near(problem: &Designs<'_, '_>, fit: &Fitted<'_, '_>) -> Vec<[f64; 2]> {
     let places = &fit.given.places;
     let ends = [0, 1].map(|axis| {
         let values = places.iter().map(|p| p[axis]);
@@ -109,107 +63,115 @@ fn near(fit: &Fitted<'_, '_>, bounds: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let far = ends.as_flattened().iter();
     let far = far.map(|x| x.abs()).fold(0.0, f64::max);
     let model = fit.bench.model;
-    let varied = fit.bench.varied.iter().zip(bounds);
-    varied
-        .map(|(id, [low, high])| {
-            if model.parameters[id.index()].dimension != Dimension::LENGTH {
-                return [*low, *high];
-            }
-            // Lengths are some extents, coordinates about as far away as what is given.
-            let most = match *low > 0.0 {
-                true => SIZES * extent,
-                false => far + SIZES / 2.0 * extent,
-            };
-            let some = [low.max(-most), high.min(most)];
-            if some[0] < some[1] {
-                some
-            } else {
-                [*low, *high]
-            }
-        })
-        .collect()
+    let varied = fit.bench.varied.iter().zip(problem.ranges());
+    let ranges = varied.map(|(id, [low, high])| {
+        if model.parameters[id.index()].dimension != Dimension::LENGTH {
+            return [*low, *high];
+        }
+        // Lengths are some extents, coordinates about as far away as what is given.
+        let most = match *low > 0.0 {
+            true => SIZES * extent,
+            false => far + SIZES / 2.0 * extent,
+        };
+        let some = [low.max(-most), high.min(most)];
+        match some[0] < some[1] {
+            true => some,
+            false => [*low, *high],
+        }
+    });
+    ranges.collect()
 }
 
 /// A design by its place in the unit box: in turns within the bounds and near what is given, there also with sizes even in their ratios.
-fn place(unit: &[f64], bounds: &[[f64; 2]], near: &[[f64; 2]], turn: usize) -> Vec<f64> {
-    let ends = if turn.is_multiple_of(3) { bounds } else { near };
-    let places = unit.iter().zip(ends);
-    places
-        .map(|(u, [low, high])| match turn % 3 == 1 && *low > 0.0 {
-            true => low * math::powf(high / low, *u),
-            false => low + u * (high - low),
-        })
-        .collect()
+fn place(problem: &Designs<'_, '_>, unit: &[f64], near: &[[f64; 2]], turn: usize) -> Vec<f64> {
+    if turn.is_multiple_of(3) {
+        let places = unit.iter().zip(problem.bounds());
+        return places
+            .map(|(u, [low, high])| low + u * (high - low))
+            .collect();
+    }
+    let places = unit.iter().zip(near);
+    let values = places.map(|(u, [low, high])| match turn % 3 == 1 && *low > 0.0 {
+        true => low * math::powf(high / low, *u),
+        false => low + u * (high - low),
+    });
+    problem.variables(&values.collect::<Vec<f64>>())
 }
 
 /// What has been done, and who hears of it.
 struct Work<'h> {
+    workers: &'h dyn Workers,
     hears: Hears<'h>,
     done: usize,
+    /// So many designs are moved about, and never many more than so many.
     budget: usize,
-    slopes: usize,
+    most: usize,
     best: Option<Descent>,
+    stopped: bool,
 }
 
 impl Work<'_> {
-    fn tell(&mut self) -> ControlFlow<()> {
+    fn is_over(&self) -> bool {
+        self.stopped || self.done >= self.most
+    }
+
+    fn tell(&mut self) {
         let best = self.best.as_ref();
-        (self.hears)(&Progress {
+        let told = (self.hears)(&Progress {
             evaluations: self.done,
             budget: self.budget.max(self.done),
             best: best.map(|it| (it.design.as_slice(), it.square)),
             violation: best.map_or(f64::INFINITY, |it| it.violation),
-        })
+        });
+        self.stopped |= told.is_break();
     }
 
-    /// Designs led down so many steps, the best first; and whether it was stopped.
-    fn led(
-        &mut self,
-        sums: &Sums<'_, '_, '_>,
-        starts: &[Vec<f64>],
-        steps: usize,
-    ) -> (Vec<Descent>, bool) {
+    /// The sums of squares of designs that have some, in their order.
+    fn looked(&mut self, sums: &Sums<'_, '_, '_>, designs: &[Vec<f64>]) -> Vec<(Vec<f64>, f64)> {
+        let squares = each(self.workers, designs.iter().collect(), |design| {
+            sums.square(design)
+        });
+        self.done += designs.len();
+        let known = designs.iter().zip(squares);
+        known
+            .filter_map(|(design, it)| Some((design.clone(), it?.0)))
+            .collect()
+    }
+
+    /// Designs led down so many steps, the best first.
+    fn led(&mut self, sums: &Sums<'_, '_, '_>, starts: &[Vec<f64>], steps: usize) -> Vec<Descent> {
         let mut found: Vec<Descent> = Vec::new();
-        let mut stopped = false;
         for some in starts.chunks(AT_ONCE) {
-            for descent in each(some, |start| least_squares(sums, start, steps)) {
-                let Some(descent) = descent else { continue };
+            if self.is_over() {
+                break;
+            }
+            let descents = each(self.workers, some.iter().collect(), |start| {
+                least_squares(sums, start, steps)
+            });
+            for descent in descents.into_iter().flatten() {
                 self.done += descent.evaluations;
-                self.slopes += descent.slopes;
-                let asked = sums.pairing == Pairing::Asked;
                 let known = self.best.as_ref();
-                if asked && known.is_none_or(|best| is_better(&descent, best)) {
+                let better = known.is_none_or(|best| order(&descent, best).is_lt());
+                if sums.pairing == Pairing::Asked && better {
                     self.best = Some(descent.clone());
                 }
                 found.push(descent);
             }
-            if self.tell().is_break() {
-                stopped = true;
-                break;
-            }
+            self.tell();
         }
         found.sort_by(order);
-        (found, stopped)
+        found
     }
 }
 
-/// Violations below this, in their scale, are none.
-const KEPT: f64 = 1e-8;
-
-fn order(a: &Descent, b: &Descent) -> std::cmp::Ordering {
-    let missed = |it: &Descent| {
-        if it.violation > KEPT {
-            it.violation
-        } else {
-            0.0
-        }
-    };
-    let by = missed(a).total_cmp(&missed(b));
+/// Which descent ended better.
+fn order(a: &Descent, b: &Descent) -> Ordering {
+    let by = missed(a.violation).total_cmp(&missed(b.violation));
     by.then(a.square.total_cmp(&b.square))
 }
 
-fn is_better(a: &Descent, b: &Descent) -> bool {
-    order(a, b).is_lt()
+fn missed(violation: f64) -> f64 {
+    if violation > KEPT { violation } else { 0.0 }
 }
 
 /// Those of designs in their order that lie apart.
@@ -224,8 +186,9 @@ fn apart<'d>(
         if list.len() >= count {
             break;
         }
-        if !list
-            .iter()
+        let known = list.iter();
+        if !known
+            .clone()
             .any(|other| distance(other, design, bounds) < least)
         {
             list.push(design.clone());
@@ -234,224 +197,170 @@ fn apart<'d>(
     list
 }
 
-/// The best designs of a fit, and how they were found.
+/// The best designs of a fit, and how they were found; `None` where nothing is fitted.
 pub(in super::super) fn fitted(
-    problem: &mut Designs<'_, '_>,
+    problem: &Designs<'_, '_>,
     study: &OptimizeStudy,
-    local: &SqpOptions,
+    workers: &dyn Workers,
     hears: Hears,
-) -> (Optima, String) {
-    let own = problem.bench.own_values();
+) -> Option<(Optima, String)> {
+    let asked = sums(problem, Pairing::Asked)?;
+    let own = problem.variables(&problem.bench.own_values());
     let n = own.len();
-    let bounds = problem.bounds().to_vec();
-    let alone = study.method == Some(OptimizeMethod::Local);
+    let alone = is_alone(study);
+    let most = study.designs.unwrap_or(usize::MAX);
     let looked_at = match alone {
         true => 0,
-        false => study.designs.unwrap_or(LOOKED_AT * n).max(1),
+        // The rest is for the ways down.
+        false => study.designs.map_or(LOOKED_AT * n, |all| all.div_ceil(6)),
     };
     let led = match alone {
         true => 0,
         false => (looked_at / LED_OF).max(LED_LEAST),
     };
     let on = (led / ON_OF).clamp(ON[0], ON[1]);
+    let about = 2 * looked_at + 2 * led * FIRST_STEPS + on * STEPS / 4;
     let mut work = Work {
+        workers,
         hears,
         done: 0,
-        budget: looked_at + led * FIRST_STEPS + on * STEPS / 4,
-        slopes: 0,
+        budget: about.min(most),
+        most,
         best: None,
+        stopped: false,
     };
-    let mut found: Vec<Descent> = Vec::new();
-    let mut stopped = false;
-    if let Some(fit) = &problem.fit {
-        let sums = Sums {
-            fit,
-            wanted: &problem.wanted,
-            bounds: &bounds,
-            pairing: Pairing::Asked,
-        };
-        // From far away nearest places say little: half of the designs are led by the parts of the curve's length first.
-        let leading = Sums {
-            pairing: Pairing::Leading,
-            ..sums
-        };
-        let ways: &[&Sums<'_, '_, '_>] = match fit.is_free() {
-            true => &[&leading, &sums],
-            false => &[&sums],
-        };
-        let near = near(fit, &bounds);
-        let mut even = Even::new(n, study.seed as u64);
-        let mut seen: Vec<Vec<(Vec<f64>, f64)>> = vec![Vec::new(); ways.len()];
-        let mut drawn = 0;
-        while drawn < looked_at && !stopped {
-            let count = (looked_at - drawn).min(4 * AT_ONCE);
-            let some: Vec<Vec<f64>> = (0..count)
-                .map(|k| place(&even.point(), &bounds, &near, drawn + k))
-                .collect();
-            for (way, seen) in ways.iter().zip(&mut seen) {
-                let squares = each(&some, |design| way.square(design));
-                let known = some.iter().cloned().zip(squares);
-                seen.extend(known.filter_map(|(design, it)| Some((design, it?.0))));
-                work.done += count;
-            }
-            drawn += count;
-            stopped = work.tell().is_break();
-        }
-        for (way, mut seen) in ways.iter().zip(seen) {
-            seen.sort_by(|a, b| a.1.total_cmp(&b.1));
-            let designs = seen.iter().map(|(design, _)| design);
-            let mut starts = vec![own.clone()];
-            starts.extend(apart(designs, &bounds, APART, led / ways.len()));
-            if way.pairing == Pairing::Leading && !stopped {
-                let (some, ended) = work.led(&leading, &starts, FIRST_STEPS);
-                starts = some.into_iter().map(|it| it.design).collect();
-                stopped = ended;
-            }
-            if !stopped {
-                let (some, ended) = work.led(&sums, &starts, FIRST_STEPS);
-                found.extend(some);
-                stopped = ended;
-            }
-        }
-        found.sort_by(order);
-        if !stopped {
-            let designs = found.iter().map(|it| &it.design);
-            let starts = apart(designs, &bounds, SAME, on);
-            let (better, ended) = work.led(&sums, &starts, STEPS);
-            stopped = ended;
-            found.extend(better);
-            found.sort_by(order);
-        }
-    }
-    let designs = found.iter().map(|it| &it.design);
-    let best = apart(designs, &bounds, SAME, found.len());
-    let reached = best.iter().map(|design| {
-        let same = found.iter();
-        same.filter(|it| distance(&it.design, design, &bounds) < SAME)
-            .count()
-    });
-    let reached: Vec<usize> = reached.collect();
-    problem.asked += work.done;
-    problem.sloped += work.slopes;
-    let (done, budget) = (work.done, work.budget);
-    let size = problem.fit.as_ref().map_or(0.0, size);
-    let mut list: Vec<Optimum> = Vec::new();
-    let mut starts: Vec<Vec<f64>> = best.into_iter().take(SHOWN).collect();
-    if starts.is_empty() {
-        starts.push(own);
-    }
-    for start in starts {
-        let options = SqpOptions {
-            scales: scales(problem, &start, size),
-            ..local.clone()
-        };
-        let optimum = sqp(problem, &start, &options, &mut |told| match stopped {
-            true => ControlFlow::Break(()),
-            false => (work.hears)(&Progress {
-                evaluations: done + told.evaluations,
-                budget: budget.max(done + told.evaluations),
-                ..*told
-            }),
-        });
-        stopped |= optimum.ended == Ended::Stopped;
-        list.push(optimum);
-    }
-    let mut optima: Vec<(Optimum, usize)> = Vec::new();
-    for (optimum, count) in list.into_iter().zip(reached.into_iter().chain([1])) {
-        let same = |other: &&mut (Optimum, usize)| {
-            distance(&other.0.design, &optimum.design, &bounds) < SAME
-        };
-        match optima.iter_mut().find(same) {
-            Some(known) => known.1 += count,
-            None => optima.push((optimum, count)),
-        }
-    }
-    optima.sort_by(|(a, _), (b, _)| {
-        let missed = |it: &Optimum| {
-            if it.violation > KEPT {
-                it.violation
-            } else {
-                0.0
-            }
-        };
-        let defined = |it: &Optimum| !it.evaluation.is_defined();
-        let by = defined(a)
-            .cmp(&defined(b))
-            .then(missed(a).total_cmp(&missed(b)));
-        by.then(a.objective().total_cmp(&b.objective()))
-    });
-    let (list, reached) = optima.into_iter().unzip();
+    let found = descents(&asked, (study, &own), (looked_at, led, on), &mut work);
     let how = match alone {
         true => format!("{SQUARES}: downhill from the file's own design"),
         false => format!(
             "{SQUARES}: {looked_at} designs looked at, the best of them and the file's own led downhill"
         ),
     };
-    let optima = Optima {
+    Some((shown(&asked, found, own, &mut work), how))
+}
+
+/// Descents from all over the box, the best first.
+fn descents(
+    asked: &Sums<'_, '_, '_>,
+    (study, own): (&OptimizeStudy, &[f64]),
+    (looked_at, led, on): (usize, usize, usize),
+    work: &mut Work<'_>,
+) -> Vec<Descent> {
+    let (problem, fit) = (asked.problem, asked.fit);
+    let bounds = problem.bounds();
+    // From far away nearest places say little: half of the designs are led by the parts of the curve's length first.
+    let leading = sums(problem, Pairing::Leading).filter(|_| fit.is_free());
+    let ways: Vec<&Sums<'_, '_, '_>> = leading.iter().chain([asked]).collect();
+    let near = near(problem, fit);
+    let units = halton(study.seed as u64, looked_at, own.len());
+    let designs = units.iter().enumerate();
+    let designs: Vec<Vec<f64>> = designs
+        .map(|(k, unit)| place(problem, unit, &near, k))
+        .collect();
+    let mut seen: Vec<Vec<(Vec<f64>, f64)>> = vec![Vec::new(); ways.len()];
+    for some in designs.chunks(LOOKED_AT_ONCE) {
+        if work.is_over() {
+            break;
+        }
+        for (way, seen) in ways.iter().zip(&mut seen) {
+            seen.extend(work.looked(way, some));
+        }
+        work.tell();
+    }
+    let mut found: Vec<Descent> = Vec::new();
+    for (way, mut seen) in ways.iter().zip(seen) {
+        seen.sort_by(|a, b| a.1.total_cmp(&b.1));
+        let designs = seen.iter().map(|(design, _)| design);
+        let mut starts = vec![own.to_vec()];
+        starts.extend(apart(designs, bounds, APART, led / ways.len()));
+        if way.pairing == Pairing::Leading {
+            let some = work.led(way, &starts, FIRST_STEPS);
+            starts = some.into_iter().map(|it| it.design).collect();
+        }
+        found.extend(work.led(asked, &starts, FIRST_STEPS));
+    }
+    found.sort_by(order);
+    let designs = found.iter().map(|it| &it.design);
+    let starts = apart(designs, bounds, SAME, on);
+    found.extend(work.led(asked, &starts, STEPS));
+    found.sort_by(order);
+    found
+}
+
+/// The best of what descents found, shown to be optima or not.
+fn shown(
+    asked: &Sums<'_, '_, '_>,
+    found: Vec<Descent>,
+    own: Vec<f64>,
+    work: &mut Work<'_>,
+) -> Optima {
+    let bounds = asked.problem.bounds();
+    let designs = found.iter().map(|it| &it.design);
+    let mut best = apart(designs, bounds, SAME, SHOWN);
+    if best.is_empty() {
+        best.push(own);
+    }
+    let (done, budget) = (work.done, work.budget);
+    let mut optima: Vec<(Optimum, usize)> = Vec::new();
+    for start in best {
+        let same = |design: &[f64]| distance(design, &start, bounds) < SAME;
+        let reached = found.iter().filter(|it| same(&it.design)).count().max(1);
+        let problem = scaled(asked, &start);
+        let optimum = sqp(&problem, &start, &local(), work.workers, &mut |told| {
+            if work.stopped {
+                return ControlFlow::Break(());
+            }
+            (work.hears)(&Progress {
+                evaluations: done + told.evaluations,
+                budget: budget.max(done + told.evaluations),
+                ..*told
+            })
+        });
+        work.stopped |= optimum.ended == Ended::Stopped;
+        let known = optima.iter_mut();
+        match known.into_iter().find(|(other, _)| {
+            let apart = distance(&other.design, &optimum.design, bounds);
+            apart < SAME
+        }) {
+            Some(known) => known.1 += reached,
+            None => optima.push((optimum, reached)),
+        }
+    }
+    optima.sort_by(|(a, _), (b, _)| {
+        let undefined = |it: &Optimum| !it.evaluation.is_defined();
+        (undefined(a).cmp(&undefined(b)))
+            .then(missed(a.violation).total_cmp(&missed(b.violation)))
+            .then(a.objective().total_cmp(&b.objective()))
+    });
+    let (list, reached) = optima.into_iter().unzip();
+    Optima {
         list,
         reached,
-        stopped,
-    };
-    (optima, how)
-}
-
-/// The size of what is given.
-fn size(fit: &Fitted<'_, '_>) -> f64 {
-    let all = fit.given.places.iter().map(super::square);
-    all.fold(0.0, f64::max).sqrt()
-}
-
-/// A fit that is missed by less than this part of the size of what is given is exact.
-const EXACT: f64 = 1e-10;
-
-/// In what an optimum of a fit counts: the product of misses and slopes, so that 1 is a slope along which all of the misses vanishes, whatever the
-/// width of the box.
-fn scales(problem: &mut Designs<'_, '_>, design: &[f64], size: f64) -> Option<Scales> {
-    let slopes = problem.slopes(design)?;
-    let square = slopes.objectives.first()?.first()?.value;
-    let bounds = problem.bounds();
-    let over = |piece: &Piece| {
-        let all = piece.slope.iter().zip(bounds);
-        let all = all.map(|(d, [low, high])| (d * (high - low)).abs());
-        all.fold(0.0, f64::max)
-    };
-    let fit = problem.fit.as_ref()?;
-    let residuals = fit.residuals(&mut fit.seen(design).ok()?).ok()?;
-    let longest = (0..design.len()).map(|k| {
-        let squares: f64 = residuals.iter().map(|r| r.slope[k] * r.slope[k]).sum();
-        squares.sqrt() * (bounds[k][1] - bounds[k][0])
-    });
-    let longest = longest.fold(0.0, f64::max);
-    let constraints = slopes.constraints.iter().map(|pieces| {
-        let sizes = pieces.iter().map(|p| over(p).max(p.value.abs()));
-        let size = sizes.fold(0.0, f64::max);
-        if size > 0.0 { size } else { 1.0 }
-    });
-    let objective = 2.0 * square.sqrt().max(EXACT * size) * longest;
-    Some(Scales {
-        objectives: vec![if objective > 0.0 { objective } else { 1.0 }],
-        constraints: constraints.collect(),
-    })
-}
-
-/// The design to which the squares lead down from one; itself where nothing is fitted.
-pub(in super::super) fn downhill(problem: &mut Designs<'_, '_>, design: &[f64]) -> Vec<f64> {
-    let bounds = problem.bounds().to_vec();
-    let Some(fit) = &problem.fit else {
-        return design.to_vec();
-    };
-    let sums = Sums {
-        fit,
-        wanted: &problem.wanted,
-        bounds: &bounds,
-        pairing: Pairing::Asked,
-    };
-    match least_squares(&sums, design, STEPS) {
-        Some(found) => {
-            problem.asked += found.evaluations;
-            problem.sloped += found.slopes;
-            found.design
-        }
-        None => design.to_vec(),
+        stopped: work.stopped,
     }
+}
+
+/// The optima to which the squares lead from the best design of another method; `None` where nothing is fitted.
+pub(in super::super) fn led(
+    problem: &Designs<'_, '_>,
+    best: Optima,
+    workers: &dyn Workers,
+    hears: Hears,
+) -> Option<Optima> {
+    let asked = sums(problem, Pairing::Asked)?;
+    let start = best.list.first()?.design.clone();
+    let mut work = Work {
+        workers,
+        hears,
+        done: problem.asked(),
+        budget: problem.asked() + STEPS,
+        most: usize::MAX,
+        best: None,
+        stopped: best.stopped,
+    };
+    let found = work.led(&asked, std::slice::from_ref(&start), STEPS);
+    if found.is_empty() {
+        return Some(best);
+    }
+    Some(shown(&asked, found, start, &mut work))
 }

@@ -1,0 +1,399 @@
+//! One descent, from step to step.
+
+use crate::problem::{Evaluation, Problem, Scales};
+use crate::progress::{Ended, Progress};
+use crate::quadratic::{Minimum, minimise};
+use crate::space::Space;
+use crate::workers::Workers;
+
+use super::curvature::Curvature;
+use super::local::{Local, Sizes};
+use super::search::{Search, Step};
+use super::violation::View;
+use super::{Optimum, SqpOptions};
+
+/// The weight of the largest violation, when the work starts; it rises by the factor as long as needed.
+const WEIGHT: f64 = 10.0;
+const WEIGHT_FACTOR: f64 = 10.0;
+const MOST_WEIGHT: f64 = 1e10;
+/// What part of the best lessening of the violation a step must reach.
+const STEERED: f64 = 0.5;
+/// A violation that no step lessens by this part is at rest.
+const AT_REST: f64 = 1e-6;
+/// A step that promises less than this part of the penalty is rounding.
+const PROMISE: f64 = 1e-15;
+/// A step that is too long although it was corrected is asked again, each component at most this part of it, so often before
+/// shorter ones are tried along it; a radius that sufficed grows by the factor.
+const NARROWER: f64 = 0.3;
+const NARROWED: usize = 4;
+const WIDER: f64 = 4.0;
+/// So many steps one after the other may lessen the residual without any that shows in the penalty.
+const UNHEARD: usize = 4;
+/// How often the violation alone is minimised at most.
+const RESTORATIONS: usize = 3;
+
+/// A minimisation on its way.
+pub(crate) struct Descent<'a> {
+    search: Search<'a>,
+    options: SqpOptions,
+    place: Local,
+    curvature: Curvature,
+    /// Of the largest violation in the penalty.
+    weight: f64,
+    /// Steps' components are at most this.
+    radius: f64,
+    /// How many steps one after the other promised less than rounding shows.
+    unheard: usize,
+    /// How often the radius was made smaller here.
+    narrowed: usize,
+    iterations: usize,
+    restorations: usize,
+    /// The violation alone is minimised first, and how to end if it then is nothing.
+    restoring: Option<(Box<Descent<'a>>, Option<Ended>)>,
+    conflict: Vec<(usize, f64)>,
+    /// How far the conditions of the least violation are missed, where that is the answer.
+    missed: f64,
+    scales: Scales,
+}
+
+impl<'a> Descent<'a> {
+    /// At a start.
+    ///
+    /// # Errors
+    ///
+    /// What there is of a start that cannot be evaluated or has no derivatives.
+    pub fn begin(
+        problem: &'a dyn Problem,
+        start: &[f64],
+        options: &SqpOptions,
+    ) -> Result<Self, Box<Optimum>> {
+        let view = View {
+            problem,
+            violation: None,
+        };
+        Self::of(view, start, options)
+    }
+
+    fn of(view: View<'a>, start: &[f64], options: &SqpOptions) -> Result<Self, Box<Optimum>> {
+        let undefined = |design: Vec<f64>, evaluation: Evaluation, count: usize| {
+            Box::new(Optimum::undefined(design, evaluation, count))
+        };
+        let space = Space::new(view.problem.bounds());
+        if !space.holds(start.len()) {
+            let nothing = Evaluation::lacking(f64::INFINITY);
+            return Err(undefined(start.to_vec(), nothing, 0));
+        }
+        let design = space.within(start);
+        let evaluation = view.evaluate(&design);
+        let slopes = (evaluation.is_defined())
+            .then(|| view.slopes(&design))
+            .flatten();
+        let Some(slopes) = slopes else {
+            return Err(undefined(design, evaluation, 1));
+        };
+        let [objectives, constraints] = view.functions();
+        let fits = |s: &Scales| s.fits(objectives, constraints);
+        let scales = view.scales().filter(fits).unwrap_or_else(|| {
+            let own = Sizes::of(&slopes, &space);
+            match options.least.as_ref().filter(|s| fits(s)) {
+                Some(least) => own.at_least(least),
+                None => own,
+            }
+        });
+        let sizes = Sizes::new(&scales);
+        let place = Local::new(design, evaluation, &slopes, &sizes, &space);
+        Ok(Self {
+            curvature: Curvature::first(&place),
+            search: Search {
+                view,
+                space,
+                sizes,
+                evaluations: 1,
+                slopes: 1,
+            },
+            options: options.clone(),
+            place,
+            weight: WEIGHT,
+            radius: f64::INFINITY,
+            unheard: 0,
+            narrowed: 0,
+            iterations: 0,
+            restorations: 0,
+            restoring: None,
+            conflict: Vec::new(),
+            missed: f64::INFINITY,
+            scales,
+        })
+    }
+
+    /// Designs evaluated.
+    pub fn evaluations(&self) -> usize {
+        let inner = self
+            .restoring
+            .as_ref()
+            .map_or(0, |(it, _)| it.evaluations());
+        self.search.evaluations + inner
+    }
+
+    /// The design, its largest objective and violation.
+    pub fn at(&self) -> (&[f64], f64, f64) {
+        let place = &self.place;
+        (&place.design, place.evaluation.largest(), place.violation)
+    }
+
+    /// How far it has come.
+    pub fn progress(&self) -> Progress<'_> {
+        let (design, value, violation) = self.at();
+        Progress {
+            evaluations: self.evaluations(),
+            budget: self.options.evaluations,
+            best: Some((design, value)),
+            violation,
+        }
+    }
+
+    /// One step; why it ends, where there is a reason.
+    pub fn step(&mut self, workers: &dyn Workers) -> Option<Ended> {
+        if let Some((inner, _)) = &mut self.restoring {
+            // What is kept is enough.
+            let ended = match inner.place.evaluation.largest() <= 0.0 {
+                true => Some(Ended::Stopped),
+                false => inner.step(workers),
+            };
+            return ended.and_then(|ended| self.restored(ended));
+        }
+        let spent = self.search.evaluations >= self.options.evaluations;
+        if spent || self.iterations >= self.options.iterations {
+            return self.kept_or(Ended::Budget);
+        }
+        self.iterations += 1;
+        let Some((minimum, at_rest)) = self.programme() else {
+            if self.curvature.is_fresh() {
+                return self.kept_or(Ended::Stuck);
+            }
+            self.renew();
+            return None;
+        };
+        if at_rest {
+            return self.restore(None);
+        }
+        let kept = self.place.violation <= self.options.feasibility;
+        let residual = self.place.residual(
+            &minimum,
+            &self.curvature.times(&minimum.step),
+            &self.search.space,
+            self.radius,
+        );
+        if kept && residual <= self.options.optimality {
+            return Some(Ended::Converged);
+        }
+        let penalty = self.place.penalty(self.weight);
+        let promise = penalty - self.place.promised(&minimum, self.weight);
+        let worth = promise > PROMISE * penalty.abs().max(self.place.size());
+        let step = Step {
+            minimum: &minimum,
+            curvature: &self.curvature,
+            weight: self.weight,
+            radius: self.radius,
+            promise,
+        };
+        self.unheard = if worth { 0 } else { self.unheard + 1 };
+        let mut next = None;
+        if self.unheard <= UNHEARD {
+            next = self.search.whole(&self.place, step);
+        }
+        if worth && next.is_none() {
+            if self.place.parts.len() > 1 && self.narrowed < NARROWED {
+                self.narrowed += 1;
+                self.radius = NARROWER * length(&minimum.step);
+                return None;
+            }
+            next = self.search.shorter(&self.place, step, workers);
+        }
+        match next {
+            Some(next) => {
+                self.curvature
+                    .update(&self.place, &next, &minimum, &self.search.space);
+                self.radius = match self.narrowed {
+                    0 => self.radius * WIDER,
+                    _ => self.radius.max(length(&minimum.step)),
+                };
+                self.narrowed = 0;
+                self.place = next;
+            }
+            None if !self.curvature.is_fresh() => self.renew(),
+            None => return self.kept_or(Ended::Stuck),
+        }
+        None
+    }
+
+    /// Forgets what was learnt on the way.
+    fn renew(&mut self) {
+        self.curvature = Curvature::first(&self.place);
+        self.radius = f64::INFINITY;
+        self.narrowed = 0;
+    }
+
+    /// The next step, with the weight raised as far as the violation asks for it, and whether no step lessens the violation.
+    fn programme(&mut self) -> Option<(Minimum, bool)> {
+        let tolerance = self.options.feasibility;
+        let solve = |weight: f64| {
+            minimise(&self.place.programme(
+                self.curvature.matrix(),
+                weight,
+                &self.search.space,
+                self.radius,
+            ))
+            .ok()
+        };
+        let mut minimum = solve(self.weight)?;
+        let left = |m: &Minimum| m.levels.get(1).copied().unwrap_or(0.0);
+        let now = self.place.violation;
+        if now <= tolerance || left(&minimum) <= tolerance {
+            return Some((minimum, false));
+        }
+        let least = minimise(&self.place.feasibility(&self.search.space, self.radius)).ok()?;
+        let least = least.levels.first().copied().unwrap_or(0.0).max(0.0);
+        if now - least <= AT_REST * now {
+            return Some((minimum, true));
+        }
+        let enough = match least <= tolerance {
+            true => tolerance,
+            false => now - STEERED * (now - least),
+        };
+        while left(&minimum) > enough && self.weight < MOST_WEIGHT {
+            self.weight *= WEIGHT_FACTOR;
+            minimum = solve(self.weight)?;
+        }
+        Some((minimum, false))
+    }
+
+    /// Begins to go to where the largest violation is least. Where that is nothing, it goes on from there, or ends so.
+    fn restore(&mut self, then: Option<Ended>) -> Option<Ended> {
+        if self.restorations >= RESTORATIONS {
+            return Some(Ended::Stuck);
+        }
+        self.restorations += 1;
+        let options = SqpOptions {
+            evaluations: (self.options.evaluations)
+                .saturating_sub(self.search.evaluations)
+                .max(self.options.evaluations / 4),
+            least: None,
+            ..self.options.clone()
+        };
+        let view = View {
+            problem: self.search.view.problem,
+            violation: Some(self.search.sizes.clone()),
+        };
+        match Self::of(view, &self.place.design, &options) {
+            Ok(inner) => {
+                self.restoring = Some((Box::new(inner), then));
+                None
+            }
+            Err(_) => Some(Ended::Stuck),
+        }
+    }
+
+    /// Takes over where the violation is least, now that looking for it has ended; why all ends, where it does.
+    fn restored(&mut self, ended: Ended) -> Option<Ended> {
+        let (inner, then) = self.restoring.take()?;
+        let view = inner.search.view.clone();
+        let found = inner.end(ended);
+        self.search.evaluations += found.evaluations;
+        self.search.slopes += found.slopes + 1;
+        if found.objective().max(0.0) < self.place.violation
+            && let Some(place) = self.search.at(found.design.clone())
+        {
+            self.place = place;
+        }
+        self.renew();
+        match found.ended {
+            _ if self.place.violation <= self.options.feasibility => then,
+            ended if ended.is_optimal() => {
+                let shares: Vec<f64> = found.multipliers.objectives.concat();
+                self.conflict = view.conflict(&found.design, &shares);
+                self.missed = found.residual;
+                Some(Ended::Infeasible)
+            }
+            Ended::Stopped => Some(Ended::Stopped),
+            Ended::Budget => Some(Ended::Budget),
+            _ => Some(Ended::Stuck),
+        }
+    }
+
+    /// This end where the constraints are kept; otherwise first the least violation is looked for.
+    fn kept_or(&mut self, ended: Ended) -> Option<Ended> {
+        let missed = self.place.violation > self.options.feasibility;
+        match missed && self.restorations < RESTORATIONS {
+            true => self.restore((ended == Ended::Budget).then_some(ended)),
+            false => Some(ended),
+        }
+    }
+
+    /// What was found, where it ends so.
+    pub fn end(mut self, ended: Ended) -> Optimum {
+        if self.restoring.is_some() {
+            self.restored(Ended::Stopped);
+        }
+        // Once with the curvature, once without: the multipliers that miss the conditions by less.
+        let unit = Curvature::unit(self.place.design.len());
+        let mut best: Option<(f64, Minimum)> = None;
+        for curvature in [&self.curvature, &unit] {
+            let programme = self.place.programme(
+                curvature.matrix(),
+                self.weight,
+                &self.search.space,
+                f64::INFINITY,
+            );
+            if let Ok(minimum) = minimise(&programme) {
+                let residual = self.place.residual(
+                    &minimum,
+                    &curvature.times(&minimum.step),
+                    &self.search.space,
+                    f64::INFINITY,
+                );
+                if best.as_ref().is_none_or(|(other, _)| residual < *other) {
+                    best = Some((residual, minimum));
+                }
+            }
+        }
+        let residual = best
+            .as_ref()
+            .map_or(f64::INFINITY, |(residual, _)| *residual);
+        let kept = self.place.violation <= self.options.feasibility;
+        let ended = match ended {
+            Ended::Stuck if kept && residual <= self.options.optimality => Ended::Converged,
+            Ended::Stuck if kept && residual <= self.options.settled => Ended::Settled,
+            ended => ended,
+        };
+        let residual = match ended {
+            Ended::Infeasible => self.missed,
+            _ => residual,
+        };
+        let shares = best.filter(|_| ended != Ended::Infeasible);
+        let shares = shares.map(|(_, minimum)| minimum.multipliers);
+        let multipliers =
+            self.place
+                .multipliers(shares.as_deref(), &self.search.sizes, &self.search.space);
+        self.conflict
+            .sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+        Optimum {
+            design: self.place.design,
+            evaluation: self.place.evaluation,
+            multipliers,
+            residual,
+            violation: self.place.violation,
+            conflict: self.conflict,
+            scales: self.scales,
+            iterations: self.iterations,
+            evaluations: self.search.evaluations,
+            slopes: self.search.slopes,
+            ended,
+        }
+    }
+}
+
+/// The largest component.
+fn length(step: &[f64]) -> f64 {
+    step.iter().fold(0.0, |m, x| m.max(x.abs()))
+}

@@ -1,0 +1,76 @@
+//! Which of two designs is better: K. Deb's rules (2000).
+//!
+//! A design that keeps all constraints is better than one that does not; of two that keep them the one of the smaller objective, of two that
+//! do not the one that violates them less. One that cannot be evaluated is worse than every one that can; of two of these the one that
+//! lacks less is better, so that there is a slope towards what can be evaluated, not a cliff.
+
+use std::cmp::Ordering;
+
+use crate::problem::{Evaluation, Scales};
+
+/// How good a design is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Standing {
+    /// It keeps all constraints and has this largest objective.
+    Feasible(f64),
+    /// So much it violates its constraints, all together, each by its scale.
+    Violating(f64),
+    /// It cannot be evaluated, and is so far from that.
+    Lacking(f64),
+}
+
+impl Standing {
+    /// Of what a design is worth; violations up to the tolerance are none.
+    pub fn of(evaluation: &Evaluation, scales: &Scales, tolerance: f64) -> Self {
+        if !evaluation.is_defined() {
+            return Self::Lacking(evaluation.lack);
+        }
+        let scaled = evaluation.constraints.iter().zip(&scales.constraints);
+        let violations = scaled.map(|(c, s)| c / s).filter(|v| *v > tolerance);
+        let violation: f64 = violations.fold(0.0, |sum, v| sum + v);
+        match violation > 0.0 {
+            true => Self::Violating(violation),
+            false => Self::Feasible(evaluation.largest()),
+        }
+    }
+
+    /// Its kind, the best first, and its value.
+    fn key(self) -> (u8, f64) {
+        match self {
+            Self::Feasible(value) => (0, value),
+            Self::Violating(value) => (1, value),
+            Self::Lacking(value) => (2, value),
+        }
+    }
+
+    /// The better one first.
+    pub fn order(&self, other: &Self) -> Ordering {
+        let ((a, x), (b, y)) = (self.key(), other.key());
+        a.cmp(&b).then(x.total_cmp(&y))
+    }
+
+    /// By how much it is better than another of its kind; `None` if the other is of another kind.
+    pub(crate) fn ahead(self, other: Self) -> Option<f64> {
+        let ((a, x), (b, y)) = (self.key(), other.key());
+        (a == b).then(|| (y - x).max(0.0))
+    }
+}
+
+/// A design with what it is worth.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Candidate {
+    /// The design.
+    pub design: Vec<f64>,
+    /// What it is worth.
+    pub evaluation: Evaluation,
+}
+
+/// The places of candidates, the best first; of equals the first first.
+pub(crate) fn ranked(candidates: &[Candidate], scales: &Scales, tolerance: f64) -> Vec<usize> {
+    let standings: Vec<Standing> = (candidates.iter())
+        .map(|c| Standing::of(&c.evaluation, scales, tolerance))
+        .collect();
+    let mut places: Vec<usize> = (0..candidates.len()).collect();
+    places.sort_by(|a, b| standings[*a].order(&standings[*b]).then(a.cmp(b)));
+    places
+}

@@ -1,0 +1,154 @@
+//! Sweeps over studies that are run as a whole for every design, as any other program would: their numbers are those that they tell.
+//!
+//! Studies of motion, forces and simulations are moved on the bench, where any measure can be asked of them; these are the rest.
+
+use kempe_model::{Diagnostic, Model, Plot, Study, StudyKind};
+use kempe_motion::Silent;
+
+use super::question::Answer;
+use crate::designs::bench::Bench;
+use crate::result::StudyResult;
+use crate::run::run;
+use crate::table::{Column, Table};
+
+/// What a study tells, as it does of the file's own design.
+pub(super) struct Whole {
+    /// Its numbers, without values.
+    pub numbers: Vec<Column>,
+    /// Its table, without rows.
+    pub table: Table,
+    /// How many rows it has.
+    pub rows: usize,
+    /// Which column its rows run along.
+    pub along: usize,
+    /// What of its plots has columns in the table.
+    pub plots: Vec<Plot>,
+    /// Which columns these are.
+    pub curves: Vec<usize>,
+}
+
+/// Whether a study is run as a whole.
+pub(super) fn is_whole(kind: &StudyKind) -> bool {
+    match kind {
+        StudyKind::Motion(along) => along.circuit,
+        StudyKind::Forces(_) | StudyKind::Simulate(_) => false,
+        _ => true,
+    }
+}
+
+impl Whole {
+    /// Runs the file's own design, so that it is known what the study tells.
+    ///
+    /// # Errors
+    /// Why it does not run.
+    pub fn new(model: &Model, over: &Study) -> Result<Self, Vec<Diagnostic>> {
+        let own = run(model, over, &mut Silent)?;
+        let numbers = own.scalars.iter();
+        let numbers = numbers.map(|s| Column::new(s.name.clone(), s.unit.clone()));
+        let numbers: Vec<Column> = numbers.collect();
+        let rows = own.table.rows();
+        let table = without_rows(own.table);
+        let place = |name: &str| table.columns.iter().position(|c| c.name == name);
+        let mut plots = Vec::new();
+        let mut curves = Vec::new();
+        for plot in &over.kind.along().plots {
+            let Plot::Curves(columns) = plot else {
+                continue;
+            };
+            let places: Option<Vec<usize>> = columns.iter().map(|c| place(&c.name)).collect();
+            if let Some(places) = places {
+                plots.push(plot.clone());
+                curves.extend(places);
+            }
+        }
+        Ok(Self {
+            numbers,
+            rows,
+            along: own.along,
+            plots,
+            curves,
+            table,
+        })
+    }
+
+    /// What a design tells.
+    pub fn ask(&self, bench: &Bench<'_>, values: &[f64], rows: bool, drawn: bool) -> Answer {
+        let none = |why: String| Answer {
+            numbers: vec![f64::NAN; self.numbers.len()],
+            closure: f64::NAN,
+            singular_value: f64::NAN,
+            note: Some(why),
+            rows: rows.then(|| self.table.clone()),
+            curves: drawn.then(|| vec![Vec::new(); 1 + self.curves.len()]),
+        };
+        if let Err(refused) = bench.design(values) {
+            return none(refused.why);
+        }
+        let (model, _) = bench.model_with(values);
+        let result = match run(&model, bench.over, &mut Silent) {
+            Ok(result) => result,
+            Err(told) => {
+                let first = told.first().map(|d| d.message.clone());
+                return none(first.unwrap_or_default());
+            }
+        };
+        let numbers: Vec<f64> = self.numbers.iter().map(|it| number(&result, it)).collect();
+        let lacking = self.numbers.iter().zip(&numbers).find(|(_, x)| x.is_nan());
+        let note = lacking.map(|(it, _)| format!("`{}` has no value", it.name));
+        let table = self.matched(result.table);
+        let curve = |k: &usize| table.columns[*k].values.clone();
+        Answer {
+            closure: table.worst_closure(),
+            singular_value: table.least_singular_value(),
+            note,
+            curves: drawn.then(|| {
+                let along = std::iter::once(&self.along);
+                along.chain(&self.curves).map(curve).collect()
+            }),
+            rows: rows.then_some(table),
+            numbers,
+        }
+    }
+
+    /// A design's table with the columns of the file's own design: one that it does not have is empty there.
+    fn matched(&self, table: Table) -> Table {
+        let rows = table.rows();
+        let own = |wanted: &Column| {
+            let found = table.columns.iter().find(|c| c.name == wanted.name);
+            let values = found.map(|c| c.values.clone());
+            Column {
+                values: values.unwrap_or_else(|| vec![f64::NAN; rows]),
+                ..wanted.clone()
+            }
+        };
+        Table {
+            columns: self.table.columns.iter().map(own).collect(),
+            forces: self.table.forces.as_ref().and(table.forces),
+            balance: None,
+            ..table
+        }
+    }
+}
+
+fn number(result: &StudyResult, wanted: &Column) -> f64 {
+    let found = result.scalars.iter().find(|s| s.name == wanted.name);
+    found.map_or(f64::NAN, |s| s.value)
+}
+
+fn without_rows(table: Table) -> Table {
+    let columns = table.columns.into_iter();
+    Table {
+        columns: columns
+            .map(|c| Column {
+                values: Vec::new(),
+                ..c
+            })
+            .collect(),
+        closure: Vec::new(),
+        smallest_singular_value: Vec::new(),
+        forces: table.forces.map(|_| Default::default()),
+        balance: None,
+        notes: Vec::new(),
+        ..table
+    }
+}

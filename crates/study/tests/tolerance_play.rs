@@ -1,0 +1,218 @@
+//! Joints with play beside parameters that differ: closed forms, what studies of clearance tell to first order, and what cannot be counted.
+#![allow(
+    clippy::disallowed_methods,
+    reason = "numbers found by hand beside ours, not reproducible ones"
+)]
+
+use kempe_batch::{Serial, Threads};
+use kempe_model::Model;
+use kempe_study::{Silent, StudyResult, check, run, run_with};
+
+fn model(text: &str) -> Model {
+    let read = Model::from_toml(text, "test", &mut |_| Err("no files".into()));
+    read.unwrap_or_else(|told| panic!("{told:?}")).model
+}
+
+fn found(text: &str, study: usize) -> StudyResult {
+    let model = model(text);
+    run(&model, &model.studies[study], &mut Silent).unwrap_or_else(|told| panic!("{told:?}"))
+}
+
+fn scalar(result: &StudyResult, name: &str) -> f64 {
+    let found = result.scalars.iter().find(|s| s.name == name);
+    found
+        .unwrap_or_else(|| panic!("no {name} in {:?}", result.scalars))
+        .value
+}
+
+fn near(found: f64, wanted: f64, within: f64) {
+    assert!(
+        (found - wanted).abs() <= within,
+        "{found} for {wanted} +- {within}"
+    );
+}
+
+/// A four-bar with play at its pins.
+fn four_bar(clearance: &str, study: &str) -> String {
+    format!(
+        "units = {{ length = \"mm\", angle = \"deg\" }}\n[parameters]\nc = \"40 mm\"\nplay = \"50 um\"\n\
+         [links]\nframe = {{ A = [0, 0], D = [60, 0] }}\ncrank = {{ A-B = 20 }}\ncoupler = {{ B-C = 50, P = [25, 10], mass = \"1 kg\" }}\nrocker = {{ D-C = \"c\" }}\n\
+         [drives]\nmotor = {{ turns = \"crank\", from = 0, to = 180, speed = \"1 rad/s\" }}\n[assembly]\nC = \"left of B -> D\"\n\
+         [clearance]\n{clearance}\n\
+         [studies.turn]\nkind = \"motion\"\nstep = 10\ncolumns = [\"angle(rocker)\", \"y(P)\"]\n\
+         [studies.forces]\nkind = \"forces\"\nstep = 10\n\
+         [studies.worn]\nkind = \"clearance\"\nmodel = \"continuous\"\nstep = 10\ncolumns = [\"angle(rocker)\", \"y(P)\"]\n\
+         [studies.pieces]\nkind = \"tolerance\"\nover = \"turn\"\n{study}\n"
+    )
+}
+
+#[test]
+fn first_order_is_that_of_a_study_of_clearance() {
+    let text = four_bar(
+        "all = { radial = \"play\" }\nC = { radial = \"20 um\" }",
+        "clearance = true\nsamples = 100\ncolumns = [\"at(angle(rocker), motor, 70)\", \"at(y(P), motor, 130)\"]",
+    );
+    let (pieces, worn) = (found(&text, 3), found(&text, 2));
+    for (name, number, row) in [
+        ("angle(rocker)", "at(angle(rocker), motor, 70)", 7),
+        ("y(P)", "at(y(P), motor, 130)", 13),
+    ] {
+        let column = |what: &str| {
+            let column = worn.table.column(&format!("{name} {what}"));
+            column.expect("a column to first order").values[row]
+        };
+        near(
+            scalar(&pieces, &format!("{number}, linear deviation")),
+            column("rms"),
+            1e-9,
+        );
+        let own = scalar(&pieces, number);
+        near(
+            scalar(&pieces, &format!("{number}, worst case greatest")) - own,
+            column("worst case"),
+            1e-9,
+        );
+        near(
+            own - scalar(&pieces, &format!("{number}, worst case least")),
+            column("worst case"),
+            1e-9,
+        );
+    }
+}
+
+#[test]
+fn a_pin_all_round_meets_its_closed_form() {
+    // B stands where A does and further on by the crank: its height differs by that of a point on a circle.
+    let text = four_bar(
+        "A = { radial = \"play\" }",
+        "clearance = true\nsamples = 2048\ncolumns = [\"at(y(B), motor, 40)\"]",
+    );
+    let result = found(&text, 3);
+    let (number, play) = ("at(y(B), motor, 40)", 0.05);
+    let middle = 20.0 * 40.0_f64.to_radians().sin();
+    let told = |what: &str| scalar(&result, &format!("{number}, {what}"));
+    near(told("linear deviation"), play * 0.5_f64.sqrt(), 1e-12);
+    near(told("deviation"), play * 0.5_f64.sqrt(), 2e-5);
+    near(told("mean"), middle, 1e-6);
+    near(told("least"), middle - play, 1e-5);
+    near(told("greatest"), middle + play, 1e-5);
+    // The part below x of a height on a circle: 1/2 + asin(x / play) / pi.
+    let sampled = result
+        .listings
+        .iter()
+        .find(|l| l.title.starts_with("sampled"));
+    let row = &sampled.expect("what was sampled").rows[0];
+    let low: f64 = row[5].trim_end_matches(" mm").parse().expect("a length");
+    near(
+        low - middle,
+        -play * (0.45 * std::f64::consts::PI).sin(),
+        1e-4,
+    );
+}
+
+#[test]
+fn a_slider_is_pressed_to_either_side() {
+    let text = "units = { length = \"mm\", angle = \"deg\" }\n[parameters]\na = \"20 mm\"\nplay = \"a / 400\"\n\
+         [links]\nframe = { A = [0, 0], E = [0, 0], F = [100, 0] }\ncrank = { A-B = \"a\" }\nrod = { B-C = 60 }\nblock = { C = [0, 0] }\n\
+         [joints]\nguide = { slider = \"block\", at = \"C\", on = \"E -> F\" }\n\
+         [drives]\nmotor = { turns = \"crank\", from = 0, to = 90, speed = \"1 rad/s\" }\n[assembly]\nC = { near = [80, 0] }\n\
+         [clearance]\nguide = { radial = \"play\" }\n\
+         [studies.turn]\nkind = \"motion\"\nstep = 10\ncolumns = [\"x(C)\"]\n\
+         [studies.pieces]\nkind = \"tolerance\"\nover = \"turn\"\nclearance = true\nsamples = 400\ncolumns = [\"at(y(C), motor, 30)\", \"at(x(C), motor, 90)\"]\nVARY\n";
+    let result = found(&text.replace("VARY", ""), 1);
+    for what in [
+        "deviation",
+        "linear deviation",
+        "greatest",
+        "worst case greatest",
+    ] {
+        // Each piece has it to one side: the deviation of few pieces is a little larger.
+        near(
+            scalar(&result, &format!("at(y(C), motor, 30), {what}")),
+            0.05,
+            1e-4,
+        );
+    }
+    let ends = [-0.05_f64, 0.05].map(|y| (60.0_f64.powi(2) - (20.0 - y).powi(2)).sqrt());
+    let number = "at(x(C), motor, 90)";
+    near(scalar(&result, &format!("{number}, least")), ends[0], 1e-9);
+    near(
+        scalar(&result, &format!("{number}, greatest")),
+        ends[1],
+        1e-9,
+    );
+    // Play that goes with a length which differs itself.
+    let both = text.replace("VARY", "vary = { a = { between = [\"0 mm\", \"4 mm\"] } }");
+    let both = found(&both, 1);
+    let greatest = scalar(&both, "at(y(C), motor, 30), greatest");
+    assert!((0.059..0.06).contains(&greatest), "{greatest}");
+}
+
+#[test]
+fn pieces_are_the_same_on_any_number_of_threads_and_as_linear_says() {
+    let text = four_bar(
+        "all = { radial = \"play\" }",
+        "vary = { c = \"0.05 mm\" }\nclearance = true\nsamples = 256\ncolumns = [\"range(y(P))\", \"min(transmission_angle(C))\"]",
+    );
+    let model = model(&text);
+    let [one, four] = [&Serial as &dyn kempe_batch::Executor, &Threads(4)].map(|executor| {
+        run_with(&model, &model.studies[3], executor, &mut Silent).expect("a result")
+    });
+    assert_eq!(format!("{:?}", one.scalars), format!("{:?}", four.scalars));
+    for number in ["range(y(P))", "min(transmission_angle(C))"] {
+        let [linear, sampled] = ["linear deviation", "deviation"]
+            .map(|what| scalar(&one, &format!("{number}, {what}")));
+        near(sampled, linear, 0.03 * linear);
+    }
+    // Forces of a piece, too: they hang on where its pins stand.
+    let forces = text
+        .replace("over = \"turn\"", "over = \"forces\"")
+        .replace("samples = 256", "samples = 64")
+        .replace(
+            "\"range(y(P))\"",
+            "\"max(torque(motor))\", \"max(reaction(B))\"",
+        );
+    let forces = found(&forces, 3);
+    for number in ["max(torque(motor))", "max(reaction(B))"] {
+        let [linear, sampled] = ["linear deviation", "deviation"]
+            .map(|what| scalar(&forces, &format!("{number}, {what}")));
+        assert!(linear > 0.0, "{number}");
+        near(sampled, linear, 0.2 * linear);
+    }
+}
+
+#[test]
+fn what_cannot_be_counted_is_told() {
+    let codes = |text: &str| -> Vec<&'static str> {
+        let model = model(text);
+        let told = match run(&model, &model.studies[3], &mut Silent) {
+            Ok(result) => result.diagnostics,
+            Err(told) => told,
+        };
+        let checked = check(&model).diagnostics;
+        assert!(
+            told.iter().all(|d| checked.contains(d)),
+            "{told:?}\n{checked:?}"
+        );
+        assert!(told.iter().all(|d| d.help.is_some()), "{told:?}");
+        told.iter().map(|d| d.code).collect()
+    };
+    let study = "clearance = true\nsamples = 50\ncolumns = [\"range(y(P))\"]";
+    assert_eq!(
+        codes(&four_bar("A = { radial = 0 }", study)),
+        ["no-clearance-there"]
+    );
+    let simulated = four_bar("A = { radial = 0.1 }", study).replace(
+        "kind = \"motion\"\nstep = 10",
+        "kind = \"simulate\"\nuntil = \"0.1 s\"\nstep = \"0.05 s\"",
+    );
+    assert_eq!(codes(&simulated), ["no-clearance-there"]);
+    // A third crank repeats the other two.
+    let repeated = four_bar("all = { radial = 0.1 }", study)
+        .replace("D = [60, 0] }", "D = [60, 0], G = [30, 0] }")
+        .replace("coupler = { B-C = 50, P = [25, 10], mass = \"1 kg\" }", "coupler = { B-C = 60, H = [30, 0], P = [25, 10], mass = \"1 kg\" }\nmiddle = { G-H = 20 }")
+        .replace("D-C = \"c\"", "D-C = 20")
+        .replace("from = 0, to = 180", "from = 20, to = 160")
+;
+    assert_eq!(codes(&repeated), ["no-clearance-there"]);
+}
