@@ -46,7 +46,7 @@ pub(crate) fn read(
     let entry = Entry::inner(cx, node, &node.span, study.place_of("fit"), &FIT)?;
     let traced = traced(cx, &entry);
     let closed = entry.flag(cx, "closed");
-    let turned = entry.has("link");
+    let turned = entry.has("link") && !entry.has("point");
     let to = entry.required(cx, "to");
     let given = to.and_then(|to| match &to.value {
         Value::Table(_) => from_table(cx, &entry, to, turned),

@@ -11,6 +11,8 @@ mod order;
 mod pace;
 mod search;
 mod sums;
+#[cfg(test)]
+mod tests;
 mod told;
 mod way;
 

@@ -6,8 +6,8 @@ use kempe_optimize::{Evaluation, Linear, Piece, Problem, Scales, Slopes, Squares
 use super::super::problem::Designs;
 use super::{Fitted, Pairing, square};
 
-/// A fit that is missed by less than this part of the size of what is given is exact.
-const EXACT: f64 = 1e-10;
+/// Misses below this part of the size of what is given count as this part: where a fit is exact, rounding leaves nothing to go by.
+const EXACT: f64 = 1e-6;
 
 /// A fit as sums of squares, its places paired in one way.
 pub(super) struct Sums<'p, 'b, 'm> {
