@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use kempe_model::OptimizeStudy;
 use kempe_number::math;
 use kempe_optimize::{
-    Descent, Ended, Hears, Optimum, Problem, Progress, Squares, Workers, each, halton,
+    Descent, Ended, Hears, Optimum, Problem, Progress, SqpOptions, Squares, Workers, each, halton,
     least_squares, sqp,
 };
 use kempe_units::Dimension;
@@ -27,6 +27,8 @@ const ON_OF: usize = 5;
 const ON: [usize; 2] = [4, 24];
 /// Steps all the way down.
 const STEPS: usize = 250;
+/// Of the designs that are allowed one of so many is left for showing what is an optimum.
+const SHOWN_OF: usize = 8;
 /// So many of the best are shown to be optima, or how far they are from it.
 const SHOWN: usize = 3;
 /// How many times the extent of what is given lengths may be near it.
@@ -106,6 +108,8 @@ struct Work<'h> {
     /// So many designs are moved about, and never many more than so many.
     budget: usize,
     most: usize,
+    /// So many are left, besides, for showing what is an optimum.
+    left: usize,
     best: Option<Descent>,
     stopped: bool,
 }
@@ -145,6 +149,9 @@ impl Work<'_> {
             if self.is_over() {
                 break;
             }
+            // What is left is for all of them.
+            let left = (self.most - self.done).div_ceil(some.len());
+            let steps = steps.min(left);
             let descents = each(self.workers, some.iter().collect(), |start| {
                 least_squares(sums, start, steps)
             });
@@ -208,7 +215,10 @@ pub(in super::super) fn fitted(
     let own = problem.variables(&problem.bench.own_values());
     let n = own.len();
     let alone = is_alone(study);
-    let most = study.designs.unwrap_or(usize::MAX);
+    let left = study
+        .designs
+        .map_or(usize::MAX, |all| all.div_ceil(SHOWN_OF));
+    let most = study.designs.map_or(usize::MAX, |all| all - left);
     let looked_at = match alone {
         true => 0,
         // The rest is for the ways down.
@@ -226,6 +236,7 @@ pub(in super::super) fn fitted(
         done: 0,
         budget: about.min(most),
         most,
+        left,
         best: None,
         stopped: false,
     };
@@ -249,7 +260,7 @@ fn descents(
     let (problem, fit) = (asked.problem, asked.fit);
     let bounds = problem.bounds();
     // From far away nearest places say little: half of the designs are led by the parts of the curve's length first.
-    let leading = sums(problem, Pairing::Leading).filter(|_| fit.is_free());
+    let leading = sums(problem, Pairing::Leading).filter(|_| fit.is_led());
     let ways: Vec<&Sums<'_, '_, '_>> = leading.iter().chain([asked]).collect();
     let near = near(problem, fit);
     let units = halton(study.seed as u64, looked_at, own.len());
@@ -306,7 +317,11 @@ fn shown(
         let same = |design: &[f64]| distance(design, &start, bounds) < SAME;
         let reached = found.iter().filter(|it| same(&it.design)).count().max(1);
         let problem = scaled(asked, &start);
-        let optimum = sqp(&problem, &start, &local(), work.workers, &mut |told| {
+        let options = SqpOptions {
+            evaluations: work.left.min(local().evaluations),
+            ..local()
+        };
+        let optimum = sqp(&problem, &start, &options, work.workers, &mut |told| {
             if work.stopped {
                 return ControlFlow::Break(());
             }
@@ -317,6 +332,7 @@ fn shown(
             })
         });
         work.stopped |= optimum.ended == Ended::Stopped;
+        work.left = work.left.saturating_sub(optimum.evaluations).max(1);
         let known = optima.iter_mut();
         match known.into_iter().find(|(other, _)| {
             let apart = distance(&other.design, &optimum.design, bounds);
@@ -355,6 +371,7 @@ pub(in super::super) fn led(
         done: problem.asked(),
         budget: problem.asked() + STEPS,
         most: usize::MAX,
+        left: usize::MAX,
         best: None,
         stopped: best.stopped,
     };
