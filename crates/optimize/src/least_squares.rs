@@ -57,6 +57,9 @@ const RAISED: f64 = 6.0;
 const SHORT_COLUMN: f64 = 1e-4;
 /// Squares that fall by less than this part twice in a row are settled.
 const SETTLED: f64 = 1e-12;
+/// Along curved constraints steps that know no curvature of theirs creep: such parts so often in a row, and the rest is for others.
+const CREEPING: f64 = 1e-5;
+const CREEPS: usize = 4;
 /// The weight of the largest violation beside the squares, in parts of these; it rises by the factor where that is too little.
 const WEIGHT: f64 = 10.0;
 const WEIGHT_FACTOR: f64 = 10.0;
@@ -91,7 +94,7 @@ pub fn least_squares(problem: &dyn Squares, start: &[f64], steps: usize) -> Opti
         evaluations: 1,
         slopes: 1,
     };
-    let (mut damping, mut weight, mut small) = (DAMPING, WEIGHT, 0);
+    let (mut damping, mut weight, mut small, mut creeps) = (DAMPING, WEIGHT, 0, 0);
     let mut local = Some(linear);
     for _ in 0..steps {
         if !(at.square > 0.0) && at.violation <= KEPT {
@@ -125,10 +128,14 @@ pub fn least_squares(problem: &dyn Squares, start: &[f64], steps: usize) -> Opti
             Some(there) if merit(&there) < merit(&at) => {
                 let fell = merit(&at) - merit(&there);
                 small = if fell <= SETTLED { small + 1 } else { 0 };
+                creeps = if fell <= CREEPING { creeps + 1 } else { 0 };
                 at = there;
                 damping = (damping * EASED).max(LEAST_DAMPING);
                 if small > 1 {
                     descent.settled = true;
+                    break;
+                }
+                if creeps > CREEPS && !scales.is_empty() {
                     break;
                 }
             }

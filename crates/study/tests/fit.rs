@@ -160,7 +160,7 @@ const PLAIN: Bar = Bar([0.0, 0.0, 0.0, 40.0, 15.0, 40.0, 35.0, 20.0, 20.0]);
 #[test]
 fn random_four_bars_are_found_again_from_far_away() {
     let mut random = Random(11);
-    for _ in 0..4 {
+    for _ in 0..3 {
         let bar = Bar::random(&mut random);
         let start = TAU * random.uniform();
         let places: Vec<Vec<f64>> = (0..14)
@@ -171,7 +171,7 @@ fn random_four_bars_are_found_again_from_far_away() {
             })
             .collect();
         let fit = format!(
-            "{}\nfit = {{ point = 'P', to = {}, closed = true }}",
+            "{}\ndesigns = 3000\nfit = {{ point = 'P', to = {}, closed = true }}",
             wide(1.0),
             list(&places)
         );
@@ -281,47 +281,67 @@ fn a_motion_gives_the_very_linkage() {
     }
 }
 
-/// Places at even parts of the path's length, open and closed.
+/// Places which divide the line through them as they divide the path.
 #[test]
 fn places_by_the_paths_length() {
     let mut random = Random(15);
     for closed in [false, true] {
         let bar = Bar::random(&mut random);
         let end = if closed { TAU } else { 4.0 };
-        let count = 40_000;
-        let at = |k: usize| bar.pose(end * k as f64 / f64::from(count));
+        let count = 4000;
+        let angle = |k: f64| end * k / f64::from(count);
         let mut sums = vec![0.0];
-        for k in 1..=count as usize {
-            let [p, q] = [at(k - 1), at(k)];
-            sums.push(sums[k - 1] + hypot(q[0] - p[0], q[1] - p[1]));
+        for k in 1..=count {
+            // A chord of a smooth curve, mended by that of its halves: L. F. Richardson.
+            let [a, b, c] = [-1.0, -0.5, 0.0].map(|j| bar.pose(angle(f64::from(k) + j)));
+            let chord = |p: [f64; 3], q: [f64; 3]| hypot(q[0] - p[0], q[1] - p[1]);
+            let halves = chord(a, b) + chord(b, c);
+            sums.push(sums[k as usize - 1] + halves + (halves - chord(a, c)) / 3.0);
         }
         let whole = sums.last().copied().unwrap();
-        // So many that the line through them is divided as the path is, but for some parts in a thousand.
-        let n = 60;
-        let parts = (0..n).map(|k| match closed {
-            true => f64::from(k) / f64::from(n),
-            false => f64::from(k) / f64::from(n - 1),
-        });
-        let places: Vec<Vec<f64>> = parts
-            .map(|part| {
-                let k = sums.partition_point(|s| *s < part * whole);
-                at(k.min(count as usize))[..2].to_vec()
-            })
-            .collect();
+        let at = |part: f64| -> Vec<f64> {
+            let k = sums
+                .partition_point(|s| *s < part * whole)
+                .clamp(1, sums.len() - 1);
+            let along = (part * whole - sums[k - 1]) / (sums[k] - sums[k - 1]);
+            bar.pose(angle(k as f64 - 1.0 + along))[..2].to_vec()
+        };
+        let n = 12;
+        let last = if closed {
+            f64::from(n)
+        } else {
+            f64::from(n - 1)
+        };
+        let mut parts: Vec<f64> = (0..n).map(|k| f64::from(k) / last).collect();
+        for _ in 0..60 {
+            let places: Vec<Vec<f64>> = parts.iter().map(|part| at(*part)).collect();
+            let mut line = vec![0.0];
+            let next = places.iter().skip(1).chain(closed.then(|| &places[0]));
+            for (p, q) in places.iter().zip(next) {
+                line.push(line[line.len() - 1] + hypot(q[0] - p[0], q[1] - p[1]));
+            }
+            let all = line.last().copied().unwrap();
+            parts = line.iter().take(n as usize).map(|s| s / all).collect();
+        }
+        let places: Vec<Vec<f64>> = parts.iter().map(|part| at(*part)).collect();
         let fit = format!(
-            "{}\nfit = {{ point = 'P', to = {}, timing = 'arc-length', closed = {closed} }}",
+            "{}\nmethod = 'local'\nfit = {{ point = 'P', to = {}, timing = 'arc-length', closed = {closed} }}",
             wide(1.0),
             list(&places)
         );
-        let result = best(&PLAIN.model(1.0, [0.0, end], &fit));
+        let mut off = bar;
+        off.0[3..].iter_mut().for_each(|x| *x *= 1.06);
+        let result = best(&off.model(1.0, [0.0, end], &fit));
         let other = found(&result, 1.0);
-        assert!(number(&result, "largest miss") < 0.1, "{bar:?} {other:?}");
-        let fine: Vec<[f64; 2]> = (0..20_000)
-            .map(|k| other.pose(end * f64::from(k) / 20_000.0))
-            .map(|[x, y, _]| [x, y])
-            .collect();
-        let given: Vec<[f64; 2]> = places.iter().map(|p| [p[0], p[1]]).collect();
-        assert!(apart(&given, &fine) < 0.1, "{bar:?} {other:?}");
+        assert!(number(&result, "largest miss") < 1e-5, "{bar:?} {other:?}");
+        let path = |bar: Bar| -> Vec<[f64; 2]> {
+            let all = (0..20_000).map(|k| bar.pose(end * f64::from(k) / 20_000.0));
+            all.map(|[x, y, _]| [x, y]).collect()
+        };
+        assert!(
+            apart(&path(bar)[..19_900], &path(other)) < 0.05,
+            "{bar:?} {other:?}"
+        );
     }
 }
 
@@ -403,7 +423,7 @@ fn limits_and_bounds_are_kept() {
     let angles: Vec<f64> = (0..8).map(|k| 0.7 * f64::from(k)).collect();
     let places: Vec<Vec<f64>> = angles.iter().map(|a| bar.pose(*a)[..2].to_vec()).collect();
     let study = format!(
-        "vary = {{ crank = [10, 30], u = [20, 24] }}\nsubject_to = 'max(x(P)) <= 38 mm'\n\
+        "vary = {{ crank = [10, 30], u = [20, 24] }}\nsubject_to = 'max(x(P)) <= 36 mm'\n\
          fit = {{ point = 'P', to = {}, timing = {{ motor = {angles:?} }} }}",
         list(&places)
     );
@@ -431,19 +451,19 @@ fn limits_and_bounds_are_kept() {
     };
     let own = squares(with(crank, u));
     assert!((number(&result, "sum of squares") - own).abs() < 1e-8 * own);
-    assert!(right(with(crank, u)) < 38.0 + 1e-6 && (20.0..=24.0).contains(&u));
+    assert!(right(with(crank, u)) < 36.0 + 1e-6 && (20.0..=24.0).contains(&u));
     let mut dense = f64::INFINITY;
     for i in 0..=200 {
         for j in 0..=80 {
             let bar = with(10.0 + 0.1 * f64::from(i), 20.0 + 0.05 * f64::from(j));
-            if squares(bar) < dense && right(bar) <= 38.0 {
+            if squares(bar) < dense && right(bar) <= 36.0 {
                 dense = squares(bar);
             }
         }
     }
     assert!(own <= dense + 1e-9 && own > 0.9 * dense, "{own} {dense}");
     // The limit holds it: without it the fit is better.
-    let free = study.replace("subject_to = 'max(x(P)) <= 38 mm'\n", "");
+    let free = study.replace("subject_to = 'max(x(P)) <= 36 mm'\n", "");
     let free = number(
         &best(&start.model(1.0, [0.0, TAU], &free)),
         "sum of squares",
@@ -463,7 +483,7 @@ fn what_is_told_of_a_fit() {
     let squares = number(&result, "sum of squares");
     assert!((number(&result, "rms miss") - (squares / 4.0).sqrt()).abs() < 1e-12 * squares.sqrt());
     let table = &result.beside[0];
-    assert_eq!(table.name, "fitted-places");
+    assert_eq!(table.name, "places");
     let column = |name: &str| {
         &table
             .column(name)

@@ -146,8 +146,8 @@ pub(super) struct Fitted<'b, 'm> {
 enum Pairing {
     /// As the file asks.
     Asked,
-    /// Where places are free: the parts of the given curve's length with those of the motion, of a circuit, along which no time runs, in their order. It
-    /// tells nothing of how a design fits, and leads to fits from far away, where nearest places say little.
+    /// Where places are free: the parts of the given curve's length with those of the motion. It tells nothing of how a design fits, and leads to
+    /// fits from far away, where nearest places say little.
     Leading,
 }
 
@@ -283,10 +283,6 @@ impl<'b, 'm> Fitted<'b, 'm> {
         }
         let segments = self.segments * way.strokes();
         let nodes = Nodes::new(&mut way, segments).ok_or_else(unmeasured)?;
-        if pairing == Pairing::Leading && self.circuit {
-            let met = nearest::ordered(&mut way, &nodes, &self.given);
-            return Self::sound(way, met);
-        }
         if pairing == Pairing::Leading {
             let parts = pace::parts(&self.given, By::Length, way.closed);
             let met = pace::paced(&mut way, &nodes, &self.given, By::Time, &parts);
@@ -328,13 +324,10 @@ impl<'b, 'm> Fitted<'b, 'm> {
         })
     }
 
-    /// Whether places are free to be met anywhere, so that another pairing may lead.
+    /// Whether places are free to be met anywhere, and time runs along, so that another pairing may lead.
     fn is_led(&self) -> bool {
-        match self.timing {
-            Timing::Nearest => true,
-            Timing::Ordered => !self.circuit,
-            _ => false,
-        }
+        let free = matches!(self.timing, Timing::Ordered | Timing::Nearest);
+        free && !self.circuit
     }
 
     /// The misses with their derivatives to the varied parameters; what is free of where places are met is eliminated.

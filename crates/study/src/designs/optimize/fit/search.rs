@@ -16,19 +16,21 @@ use super::super::search::{Optima, local};
 use super::sums::{Sums, is_alone, scaled, sums};
 use super::{Fitted, Pairing, SQUARES};
 
-/// Designs that are looked at, for each parameter, where the file does not say.
-const LOOKED_AT: usize = 60;
-/// Of those looked at one of so many is led down at first, and so many at least.
-const LED_OF: usize = 8;
-const LED_LEAST: usize = 12;
-/// First steps; of those led so far one of so many goes on, and so many at least and at most.
+/// Designs that are moved for each parameter, where the file does not say how many.
+const MOVED: usize = 600;
+/// Of all designs one of so many is looked at to choose starts from, one of so many moved in first steps from these, and one of so many in showing what is an
+/// optimum; the others are for the ways down.
+const LOOKED_AT_OF: usize = 6;
+const FIRST_OF: usize = 6;
+const SHOWN_OF: usize = 8;
+/// First steps, and from how many starts at least.
 const FIRST_STEPS: usize = 12;
-const ON_OF: usize = 5;
-const ON: [usize; 2] = [4, 24];
+const LED_LEAST: usize = 4;
+/// So many of those led so far go on at least and at most, and so many designs each needs on the mean.
+const ON: [usize; 2] = [2, 24];
+const EACH: usize = 120;
 /// Steps all the way down.
 const STEPS: usize = 250;
-/// Of the designs that are allowed one of so many is left for showing what is an optimum.
-const SHOWN_OF: usize = 8;
 /// So many of the best are shown to be optima, or how far they are from it.
 const SHOWN: usize = 3;
 /// How many times the extent of what is given lengths may be near it.
@@ -105,8 +107,7 @@ struct Work<'h> {
     workers: &'h dyn Workers,
     hears: Hears<'h>,
     done: usize,
-    /// So many designs are moved about, and never many more than so many.
-    budget: usize,
+    /// So many designs are moved at most.
     most: usize,
     /// So many are left, besides, for showing what is an optimum.
     left: usize,
@@ -123,7 +124,7 @@ impl Work<'_> {
         let best = self.best.as_ref();
         let told = (self.hears)(&Progress {
             evaluations: self.done,
-            budget: self.budget.max(self.done),
+            budget: self.most.max(self.done),
             best: best.map(|it| (it.design.as_slice(), it.square)),
             violation: best.map_or(f64::INFINITY, |it| it.violation),
         });
@@ -215,32 +216,18 @@ pub(in super::super) fn fitted(
     let own = problem.variables(&problem.bench.own_values());
     let n = own.len();
     let alone = is_alone(study);
-    let left = study
-        .designs
-        .map_or(usize::MAX, |all| all.div_ceil(SHOWN_OF));
-    let most = study.designs.map_or(usize::MAX, |all| all - left);
-    let looked_at = match alone {
-        true => 0,
-        // The rest is for the ways down.
-        false => study.designs.map_or(LOOKED_AT * n, |all| all.div_ceil(6)),
-    };
-    let led = match alone {
-        true => 0,
-        false => (looked_at / LED_OF).max(LED_LEAST),
-    };
-    let on = (led / ON_OF).clamp(ON[0], ON[1]);
-    let about = 2 * looked_at + 2 * led * FIRST_STEPS + on * STEPS / 4;
+    let all = study.designs.unwrap_or(MOVED * n).max(1);
+    let left = all.div_ceil(SHOWN_OF);
     let mut work = Work {
         workers,
         hears,
         done: 0,
-        budget: about.min(most),
-        most,
+        most: all - left.min(all - 1),
         left,
         best: None,
         stopped: false,
     };
-    let found = descents(&asked, (study, &own), (looked_at, led, on), &mut work);
+    let (found, looked_at) = descents(&asked, study, &own, all, &mut work);
     let how = match alone {
         true => format!("{SQUARES}: downhill from the file's own design"),
         false => format!(
@@ -250,18 +237,25 @@ pub(in super::super) fn fitted(
     Some((shown(&asked, found, own, &mut work), how))
 }
 
-/// Descents from all over the box, the best first.
+/// Descents from all over the box, the best first, and how many designs were looked at.
 fn descents(
     asked: &Sums<'_, '_, '_>,
-    (study, own): (&OptimizeStudy, &[f64]),
-    (looked_at, led, on): (usize, usize, usize),
+    study: &OptimizeStudy,
+    own: &[f64],
+    all: usize,
     work: &mut Work<'_>,
-) -> Vec<Descent> {
+) -> (Vec<Descent>, usize) {
     let (problem, fit) = (asked.problem, asked.fit);
+    if is_alone(study) {
+        let start = own.to_vec();
+        return (work.led(asked, std::slice::from_ref(&start), STEPS), 0);
+    }
     let bounds = problem.bounds();
     // From far away nearest places say little: half of the designs are led by the parts of the curve's length first.
     let leading = sums(problem, Pairing::Leading).filter(|_| fit.is_led());
     let ways: Vec<&Sums<'_, '_, '_>> = leading.iter().chain([asked]).collect();
+    let looked_at = (all / LOOKED_AT_OF / ways.len()).max(1);
+    let led = (all / FIRST_OF / FIRST_STEPS).max(LED_LEAST);
     let near = near(problem, fit);
     let units = halton(study.seed as u64, looked_at, own.len());
     let designs = units.iter().enumerate();
@@ -291,11 +285,12 @@ fn descents(
         found.extend(work.led(asked, &starts, FIRST_STEPS));
     }
     found.sort_by(order);
+    let on = work.most.saturating_sub(work.done) / EACH;
     let designs = found.iter().map(|it| &it.design);
-    let starts = apart(designs, bounds, SAME, on);
+    let starts = apart(designs, bounds, SAME, on.clamp(ON[0], ON[1]));
     found.extend(work.led(asked, &starts, STEPS));
     found.sort_by(order);
-    found
+    (found, looked_at)
 }
 
 /// The best of what descents found, shown to be optima or not.
@@ -311,7 +306,7 @@ fn shown(
     if best.is_empty() {
         best.push(own);
     }
-    let (done, budget) = (work.done, work.budget);
+    let (done, budget) = (work.done, work.most + work.left);
     let mut optima: Vec<(Optimum, usize)> = Vec::new();
     for start in best {
         let same = |design: &[f64]| distance(design, &start, bounds) < SAME;
@@ -369,9 +364,8 @@ pub(in super::super) fn led(
         workers,
         hears,
         done: problem.asked(),
-        budget: problem.asked() + STEPS,
-        most: usize::MAX,
-        left: usize::MAX,
+        most: problem.asked() + STEPS,
+        left: local().evaluations,
         best: None,
         stopped: best.stopped,
     };

@@ -1,6 +1,7 @@
 //! What is told of a fit besides: where each place is met, by how much it is missed, and how it looks.
 
 use kempe_model::{Chosen, Fit};
+use kempe_number::math;
 use kempe_units::{Dimension, Unit};
 
 use super::{Fitted, Seen, square};
@@ -11,6 +12,9 @@ use crate::unit::{Units, shown};
 
 /// Places of a drawn path for each stroke.
 const DRAWN: usize = 360;
+/// Half a cross, in parts of the picture, and how many times as long the arm is that points along an angle.
+const CROSS: f64 = 0.012;
+const LONGER: f64 = 4.0;
 
 /// Adds to the result of a study what its best design meets.
 pub(in super::super) fn tell(
@@ -56,16 +60,18 @@ pub(in super::super) fn tell(
             .scalars
             .insert((1 + k).min(result.scalars.len()), scalar);
     }
-    result
-        .beside
-        .push(table(fitted, fit, &mut seen, &units, &result.name));
-    let mut curves = vec![given(fitted, fit, &length)];
-    curves.push(path(&mut seen, "found", false, &length));
-    curves.push(rays(&seen, &length, fitted));
+    result.beside.push(table(fitted, fit, &mut seen, &units));
+    let way = path(&mut seen);
+    let mut curves = vec![
+        given(fitted, fit, &way, &length),
+        PlaneCurve::lines("found", false, [way], &length),
+        rays(&seen, &length, fitted),
+    ];
     if let Some(own) = own
         && let Ok(mut seen) = fitted.seen(&design(own))
     {
-        curves.push(path(&mut seen, "the file's own", true, &length));
+        let way = path(&mut seen);
+        curves.push(PlaneCurve::lines("the file's own", true, [way], &length));
     }
     let name = match fit.link() {
         Some(link) => &fitted.bench.model.links[link.index()].name,
@@ -79,7 +85,7 @@ pub(in super::super) fn tell(
 }
 
 /// The given places, where they are met and by how much they are missed.
-fn table(fitted: &Fitted<'_, '_>, fit: &Fit, seen: &mut Seen, units: &Units, name: &str) -> Table {
+fn table(fitted: &Fitted<'_, '_>, fit: &Fit, seen: &mut Seen, units: &Units) -> Table {
     let (length, angle) = (units.unit(Dimension::LENGTH), units.unit(Dimension::ANGLE));
     let (met, places) = (&seen.met, &fitted.given.places);
     let column = |name: &str, unit: &Unit, values: Vec<f64>| {
@@ -135,7 +141,7 @@ fn table(fitted: &Fitted<'_, '_>, fit: &Fit, seen: &mut Seen, units: &Units, nam
         met.misses.iter().map(|m| square(m).sqrt()).collect(),
     ));
     Table {
-        name: format!("{name}-places"),
+        name: "places".to_owned(),
         columns,
         places: 1,
         closure: vec![f64::NAN; count],
@@ -146,30 +152,48 @@ fn table(fitted: &Fitted<'_, '_>, fit: &Fit, seen: &mut Seen, units: &Units, nam
     }
 }
 
-/// The given curve.
-fn given(fitted: &Fitted<'_, '_>, fit: &Fit, unit: &Unit) -> PlaneCurve {
-    let places = fitted.given.places.iter().map(|p| [p[0], p[1]]);
-    let first = fitted.given.places.first().filter(|_| fit.closed);
-    let closing = first.map(|p| [p[0], p[1]]);
-    PlaneCurve::lines(
-        "given",
-        false,
-        [places.chain(closing).collect::<Vec<_>>()],
-        unit,
-    )
+/// The given places as crosses; of a link the longer arm points along its angle.
+fn given(fitted: &Fitted, fit: &Fit, way: &[[f64; 2]], unit: &Unit) -> PlaneCurve {
+    let places = &fitted.given.places;
+    let extent = |axis: usize| {
+        let all = places.iter().map(|p| p[axis]);
+        let all = all.chain(way.iter().map(|p| p[axis]));
+        let ends = all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
+            [low.min(x), high.max(x)]
+        });
+        ends[1] - ends[0]
+    };
+    let size = CROSS * extent(0).max(extent(1));
+    let lines = places.iter().flat_map(|p| {
+        let (angle, longer) = match fit.link() {
+            Some(_) => (p[2] / fitted.asked.radius, LONGER),
+            None => (0.0, 1.0),
+        };
+        let (s, c) = (math::sin(angle), math::cos(angle));
+        let at = |along: f64, beside: f64| {
+            [
+                p[0] + size * (along * c - beside * s),
+                p[1] + size * (along * s + beside * c),
+            ]
+        };
+        [
+            [at(-1.0, 0.0), at(longer, 0.0)],
+            [at(0.0, -1.0), at(0.0, 1.0)],
+        ]
+    });
+    PlaneCurve::lines("given", false, lines, unit)
 }
 
 /// The path of a design.
-fn path(seen: &mut Seen, name: &str, dashed: bool, unit: &Unit) -> PlaneCurve {
+fn path(seen: &mut Seen) -> Vec<[f64; 2]> {
     let count = DRAWN * seen.way.strokes();
     let step = seen.way.end() / count as f64;
-    let places: Vec<[f64; 2]> = (0..=count)
+    (0..=count)
         .map(|k| {
             let at = seen.way.here(step * k as f64).at;
             [at[0], at[1]]
         })
-        .collect();
-    PlaneCurve::lines(name, dashed, [places], unit)
+        .collect()
 }
 
 /// From each given place to where it is met.
