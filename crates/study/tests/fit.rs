@@ -171,7 +171,7 @@ fn random_four_bars_are_found_again_from_far_away() {
             })
             .collect();
         let fit = format!(
-            "{}\ndesigns = 3000\nfit = {{ point = 'P', to = {}, closed = true }}",
+            "{}\nfit = {{ point = 'P', to = {}, closed = true }}",
             wide(1.0),
             list(&places)
         );
@@ -288,7 +288,7 @@ fn places_by_the_paths_length() {
     for closed in [false, true] {
         let bar = Bar::random(&mut random);
         let end = if closed { TAU } else { 4.0 };
-        let count = 4000;
+        let count = 40_000;
         let angle = |k: f64| end * k / f64::from(count);
         let mut sums = vec![0.0];
         for k in 1..=count {
