@@ -31,7 +31,7 @@ const WITHOUT: &[(&str, &[&str])] = &[
         "spring-idle", "stops-crossed",
     ]),
     (PROGRAM, &[
-        "another-design", "no-time", "not-on-the-motion", "not-reached", "not-the-path", "settled-parameter", "wrong-length",
+        "another-design", "no-time", "not-reached", "not-the-path", "settled-parameter", "wrong-length",
     ]),
     (GUARD, &[
         "assemblies-incomplete", "branches-entangled", "changes-too-fast", "circuit-open", "friction-at-rest", "friction-not-converged",

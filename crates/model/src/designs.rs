@@ -1,5 +1,6 @@
 //! Studies of many designs: another study, run again with other values of some parameters.
 
+use crate::fit::Fit;
 use crate::ids::{ParameterId, Scalar, Span};
 use crate::study::{Column, Condition, MotionStudy};
 
@@ -133,8 +134,10 @@ pub struct OptimizeStudy {
     pub over: OverStudy,
     /// The parameters that may be chosen.
     pub vary: Vec<Chosen>,
-    /// What is to be small or large; several make a front.
+    /// What is to be small or large; several make a front. None where something is fitted.
     pub goals: Vec<Goal>,
+    /// The path or motion that is fitted instead.
+    pub fit: Option<Fit>,
     /// What must be kept.
     pub subject_to: Vec<Limit>,
     /// How it is looked for; as suits where it is not said.
@@ -257,6 +260,9 @@ impl OptimizeStudy {
         self.over.visit_places(f);
         self.vary.iter_mut().for_each(|it| f(&mut it.span));
         self.goals.iter_mut().for_each(|it| f(&mut it.span));
+        if let Some(fit) = &mut self.fit {
+            fit.visit_places(f);
+        }
         self.subject_to.iter_mut().for_each(|it| f(&mut it.span));
     }
 
@@ -271,6 +277,9 @@ impl OptimizeStudy {
                 }
                 Among::Only(values) => values.iter_mut().for_each(&mut *f),
             }
+        }
+        if let Some(fit) = &mut self.fit {
+            fit.visit_scalars(f);
         }
     }
 }

@@ -20,6 +20,7 @@ mod drives;
 mod dwell;
 mod ends;
 mod entry;
+mod fit;
 mod force_names;
 mod friction;
 mod guidance;

@@ -189,6 +189,12 @@ fn of_designs(kind: &str, values: &str) -> String {
     format!("{{ kind = '{kind}', {goal}vary = {{ area = {values} }} }}")
 }
 
+/// A study that fits something.
+fn of_fit(fit: &str) -> String {
+    let vary = "vary = { area = ['0.5 mm^2', '2 mm^2'] }";
+    format!("{{ kind = 'optimize', {vary}, fit = {fit} }}")
+}
+
 /// A file in which a key of a kind has a value, what else its entry needs being there.
 fn with(section: &str, kind: &Kind, key: &str, value: &str) -> String {
     let inner = |needed: &[(&str, &str)]| {
@@ -250,6 +256,27 @@ fn with(section: &str, kind: &Kind, key: &str, value: &str) -> String {
                 _ => &[],
             };
             ("x", of_designs("optimize", &inner(needed)))
+        }
+        "fit" => {
+            let of_link = ["link", "at", "radius"].contains(&key);
+            let needed: &[(&str, &str)] = match of_link {
+                true => &[
+                    ("link", "'rocker'"),
+                    ("at", "'C'"),
+                    ("radius", "1"),
+                    ("to", "[[1, 2, 3], [3, 4, 5]]"),
+                ],
+                false => &[("point", "'C'"), ("to", "[[1, 2], [3, 4], [5, 4]]")],
+            };
+            ("x", of_fit(&inner(needed)))
+        }
+        "place table" => {
+            let to = inner(&[("table", "'t.csv'")]);
+            let traced = match key {
+                "angle" => "link = 'rocker', at = 'C', radius = 1",
+                _ => "point = 'C'",
+            };
+            ("x", of_fit(&format!("{{ {traced}, to = {to} }}")))
         }
         "point table" => {
             let table = inner(&[("table", "'t.csv'")]);

@@ -7,6 +7,7 @@
 //! | `progress.rs` | how long work tells how far it has come, and why it ended |
 //! | `space.rs`, `halton.rs` | the box, and points that fill it evenly |
 //! | `quadratic.rs` | convex quadratic programmes |
+//! | `least_squares.rs` | sums of squares, from far away to near an optimum |
 //! | `sqp.rs` | local optima with their multipliers, or what conflicts |
 //! | `multi_start.rs` | all local optima that many starts lead to |
 //! | `standing.rs` | which of two designs is better |
@@ -23,6 +24,7 @@ mod front;
 mod generations;
 mod halton;
 mod hypervolume;
+mod least_squares;
 mod multi_start;
 mod nsga2;
 mod problem;
@@ -45,6 +47,7 @@ pub use front::{Refined, RefinedFront};
 pub use generations::{FEASIBLE, Found, Generated, Generations, generations};
 pub use halton::halton;
 pub use hypervolume::hypervolume;
+pub use least_squares::{Descent, Linear, Squares, least_squares};
 pub use multi_start::{MultiStartOptions, Optima, multi_start};
 pub use nsga2::{Front, Member, Nsga2, Nsga2Options, nsga2};
 pub use problem::{Evaluation, Piece, Problem, Scales, Slopes, evaluate_all};
@@ -54,4 +57,4 @@ pub use refine::refine;
 pub use sqp::{Multipliers, Optimum, SqpOptions, descents, sqp};
 pub use standing::{Candidate, Standing};
 pub use widen::widen;
-pub use workers::{Alone, Task, Workers};
+pub use workers::{Alone, Task, Workers, each};

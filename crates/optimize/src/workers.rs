@@ -20,7 +20,7 @@ impl Workers for Alone {
 }
 
 /// What becomes of each item, in their order.
-pub(crate) fn each<T: Send, R: Send>(
+pub fn each<T: Send, R: Send>(
     workers: &dyn Workers,
     items: Vec<T>,
     work: impl Fn(T) -> R + Sync,

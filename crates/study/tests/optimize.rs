@@ -293,8 +293,8 @@ fn the_published_steering_linkage() {
     }
 }
 
-/// Studies of every method, with limits, a front, values of a catalogue and a simulation's differences.
-const ALL: [&str; 7] = [
+/// Studies of every method, with limits, a front, values of a catalogue, and fits.
+const ALL: [&str; 10] = [
     "vary = { a = ['10 mm', '30 mm'], b = ['45 mm', '65 mm'] }\nmaximize = 'play'\nsubject_to = 'mu >= 40 deg'\n",
     "vary = { a = ['10 mm', '30 mm'], b = ['45 mm', '65 mm'] }\nmaximize = 'play'\nsubject_to = 'mu >= 40 deg'\nmethod = 'differential evolution'\ndesigns = 150\n",
     "vary = { a = ['10 mm', '30 mm'], b = ['45 mm', '65 mm'] }\nmaximize = 'play'\nsubject_to = 'mu >= 40 deg'\nmethod = 'cma-es'\ndesigns = 150\n",
@@ -302,6 +302,10 @@ const ALL: [&str; 7] = [
     "vary = { a = ['10 mm', '30 mm'], b = ['45 mm', '65 mm'] }\nmaximize = ['play', 'min(mu)']\ndesigns = 300\n",
     "vary = { a = { only = ['15 mm', '18 mm', '22 mm', '28 mm'] }, b = { between = ['46 mm', '60 mm'], spacing = 'log' } }\nmaximize = 'play'\nsubject_to = 'mu >= 40 deg'\n",
     "vary = { a = { only = ['15 mm', '18 mm', '22 mm', '28 mm'] }, b = { between = ['46 mm', '60 mm'], step = '2 mm' } }\nmaximize = 'play'\n",
+    "vary = { a = ['10 mm', '30 mm'], b = ['45 mm', '65 mm'] }\nfit = { link = 'coupler', at = 'C', radius = 20, to = [[70, 38, 30], [55, 39, 35], [45, 36, 50]] }\ndesigns = 150\n",
+    "vary = { a = ['10 mm', '30 mm'], b = { between = ['45 mm', '65 mm'], spacing = 'log' } }\nfit = { point = 'C', to = [[70, 38], [55, 39], [45, 36]], timing = 'even' }\nsubject_to = 'mu >= 40 deg'\n\
+     method = 'differential evolution'\ndesigns = 100\n",
+    "vary = { a = { only = ['15 mm', '18 mm', '22 mm', '28 mm'] }, b = ['45 mm', '65 mm'] }\nfit = { point = 'C', to = [[70, 38], [55, 39], [45, 36]], closed = true, timing = 'even' }\ndesigns = 100\n",
 ];
 
 fn model_of(study: &str) -> Model {
@@ -318,8 +322,8 @@ fn told(result: &StudyResult) -> String {
         .map(|d| d.file.toml.as_str())
         .collect();
     format!(
-        "{:?}\n{:?}\n{:?}\n{:?}\n{files:?}",
-        result.table, result.scalars, result.listings, result.diagnostics
+        "{:?}\n{:?}\n{:?}\n{:?}\n{:?}\n{files:?}",
+        result.table, result.beside, result.scalars, result.listings, result.diagnostics
     )
 }
 

@@ -1,8 +1,11 @@
 //! The keys of studies of many designs: sweeps, tolerances, optima.
 
-use super::{MEASURES, STUDY_KINDS, kind, may, must, words};
+use kempe_units::Dimension as D;
+
+use super::{LINK, MEASURES, POINT, STUDY_KINDS, kind, may, must, positive, words};
 use crate::designs::{Combine, OptimizeMethod};
 use crate::keys::{Key, Kind, Named, Takes as T};
+use super::synthesis::EITHER;
 
 /// So many parameters may vary.
 pub(crate) const MAX_VARIED: usize = 64;
@@ -102,12 +105,41 @@ pub(crate) static OPTIMIZE: Kind = kind("study", "optimize",
             "The parameters that are chosen, each between its least and its greatest value."),
         may("minimize", MEASURES, "\"max(x(C))\"", "What is to be small: a number over the motion; several make a front of designs of which none is better in all."),
         may("maximize", MEASURES, "\"min(x(C))\"", "What is to be large."),
+        may("fit", T::Table(&FIT), "{ point = \"C\", to = [[20, 30], [25, 32], [30, 32]] }", "What is to be fitted in least squares, instead: the path of a point or the motion of a link, to places that are given."),
         may("subject_to", CONDITIONS, "[\"range(angle(rocker)) >= 59 deg\"]", "What must be kept; what has a value at every instant must keep it all along."),
         may("method", T::Words(&words(&OPTIMIZE_METHODS)), "\"multi-start\"",
             "How it is looked for: from many starts unless said otherwise."),
         SEED,
         may("designs", T::Count(MAX_DESIGNS), "20000", "How many designs are tried at most."),
         NUMBERS,
+    ]]);
+
+/// How places are met along the motion.
+pub(crate) const TIMINGS: [(&str, usize); 4] = [("ordered", 0), ("nearest", 1), ("even", 2), ("arc-length", 3)];
+
+pub(crate) static FIT: Kind = kind("fit", "fit",
+    "fit = { point = \"C\", to = [[20, 30], [25, 32], [30, 32]] }",
+    "Places that a point or a link is to come near to.",
+    &[&[
+        may("point", POINT, "\"C\"", "The point whose path is fitted."),
+        may("link", LINK, "\"rocker\"", "The link whose motion is fitted, instead."),
+        may("at", POINT, "\"C\"", "Of a link the point whose places are given."),
+        may("radius", positive(D::LENGTH), "\"50 mm\"", "Of a link how much an angle counts: as the arc that lies so far from the point."),
+        must("to", T::AnyOf(&[T::List(&T::List(&EITHER, 2), 2), T::Table(&FIT_TABLE)]), "[[20, 30], [25, 32], [30, 32]]",
+            "The places: [x, y], of a link [x, y, angle]; or a table of them."),
+        may("timing", T::AnyOf(&[T::Words(&words(&TIMINGS)), T::Values(&T::AnyOf(&[T::List(&T::AnyValue, 2), T::Name(Named::Column)]))]), "\"arc-length\"",
+            "Where along the motion they are met: wherever is nearest in their order unless said otherwise, or each by itself; at even times; where the path is passed to the same part of its length; or where a drive or the time has given values, as in { motor = [30, 45, 60] }."),
+        may("closed", T::Flag, "true", "Whether the way closes, and may be begun anywhere and gone either way."),
+    ]]);
+
+pub(crate) static FIT_TABLE: Kind = kind("place table", "to",
+    "to = { table = \"curve.csv\", x = \"x\", y = \"y\" }",
+    "Places from a table beside the file.",
+    &[&[
+        must("table", T::Name(Named::File), "\"curve.csv\"", "The file, in the model's folder."),
+        may("x", T::Name(Named::Column), "\"x\"", "Its column of x; `x` unless said otherwise."),
+        may("y", T::Name(Named::Column), "\"y\"", "Its column of y; `y` unless said otherwise."),
+        may("angle", T::Name(Named::Column), "\"angle\"", "Its column of angles, of a link; `angle` unless said otherwise."),
     ]]);
 
 pub(crate) static AMONG: Kind = kind("choice", "choice",

@@ -29,7 +29,7 @@ pub(crate) const OUTPUTS: [(&str, DwellOutput); 3] = [
     ("slot", DwellOutput::Slot),
 ];
 
-const EITHER: T = T::AnyOf(&[any(D::ANGLE), any(D::LENGTH)]);
+pub(super) const EITHER: T = T::AnyOf(&[any(D::ANGLE), any(D::LENGTH)]);
 
 static HEAD: [Key; 1] = [must("kind", STUDY_KINDS, "\"synthesize\"", "What kind of study it is.")];
 

@@ -17,7 +17,7 @@
 //! over       = "lifting"
 //! vary       = { k = ["350 mm", "500 mm"], m = ["500 mm", "700 mm"] }
 //! minimize   = "max(load)"
-//! subject_to = ["range(y(M)) >= 450 mm"]
+//! subject_to = ["range(y(M)) >= 450 mm"]     # or, instead of minimize, fit = { … }: see fit.rs
 //! ```
 
 use kempe_units::{Comparison, Dimension, Expr, check_condition, parse_condition};
@@ -26,6 +26,7 @@ use crate::designs::{
     Among, Change, Chosen, Combine, Goal, Limit, OptimizeStudy, OverStudy, Spread, SweepStudy,
     Swept, SweptValues, ToleranceStudy, Toleranced,
 };
+use crate::diagnostic::Diagnostic;
 use crate::document::{Key, Node, Value};
 use crate::ids::{ParameterId, Scalar, Span};
 use crate::key_table::designs::{
@@ -35,6 +36,7 @@ use crate::read::adjust::free_parameter;
 use crate::read::column::column;
 use crate::read::context::Context;
 use crate::read::entry::Entry;
+use crate::read::fit;
 use crate::read::measure_names::Measures;
 use crate::read::nature::nature;
 use crate::read::plots::plot;
@@ -61,11 +63,13 @@ pub(crate) fn read(
     name: &Key,
     others: &Others<'_>,
 ) -> Option<StudyKind> {
-    let over = over(cx, entry, others);
+    let fit = entry.kind.key("fit").and_then(|_| entry.get("fit"));
+    let over = over(cx, entry, others, fit.is_some());
     if let Some((_, Runs::Whole)) = over {
         no_measures(cx, entry)?;
     }
     let forces = (over.as_ref()).is_none_or(|(_, runs)| *runs != Runs::Motion);
+    let over_name = over.as_ref().map(|(name, _)| name.clone());
     let columns = numbers(cx, entry, "columns", forces);
     let plots = match entry.kind.key("plot") {
         Some(_) => curves(cx, entry, forces),
@@ -128,7 +132,30 @@ pub(crate) fn read(
                 ..goal
             });
             let goals: Vec<Goal> = small?.into_iter().chain(large).collect();
-            if goals.is_empty() {
+            let vary: Vec<Chosen> = vary?;
+            let fit = match fit {
+                None => None,
+                Some(node) => {
+                    let of_motion = over_fits(cx, entry, others, &over_name);
+                    let varied: Vec<ParameterId> = vary.iter().map(|it| it.parameter).collect();
+                    let fit = fit::read(cx, entry, node, &varied);
+                    of_motion?;
+                    Some(fit?)
+                }
+            };
+            if let (Some(fit), Some(goal)) = (&fit, goals.first()) {
+                let told = Diagnostic::error(
+                    "over-specified",
+                    format!("{} has a fit and another goal", entry.place),
+                );
+                cx.push(
+                    told.at(fit.span.clone(), "what is missed here is to be small")
+                        .see(goal.span.clone(), "and this is a goal, too")
+                        .help("leave one of them out; what must be kept besides belongs under `subject_to`"),
+                );
+                return None;
+            }
+            if goals.is_empty() && fit.is_none() {
                 if !(entry.has("minimize") || entry.has("maximize")) {
                     entry.required_like(cx, "minimize", entry.example_of("minimize"))?;
                 }
@@ -144,8 +171,9 @@ pub(crate) fn read(
             }
             Some(StudyKind::Optimize(Box::new(OptimizeStudy {
                 over: over(columns?, plots?)?,
-                vary: vary?,
+                vary,
                 goals,
+                fit,
                 subject_to: subject_to?,
                 method: method?,
                 seed: seed?,
@@ -184,11 +212,16 @@ fn no_measures(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<()> {
     )
 }
 
-/// The study that is run, and what can be asked of it.
-fn over(cx: &mut Context<'_>, entry: &Entry<'_>, others: &Others<'_>) -> Option<(String, Runs)> {
+/// The study that is run, and what can be asked of it; whole circuits can be fitted alone.
+fn over(
+    cx: &mut Context<'_>,
+    entry: &Entry<'_>,
+    others: &Others<'_>,
+    circuits: bool,
+) -> Option<(String, Runs)> {
     let sweeps = entry.kind.name == "sweep";
     let forces_of = |kind: &StudyKind| match kind {
-        StudyKind::Motion(along) if !along.circuit => Some(Runs::Motion),
+        StudyKind::Motion(along) if circuits || !along.circuit => Some(Runs::Motion),
         StudyKind::Forces(_) | StudyKind::Simulate(_) => Some(Runs::Forces),
         _ => sweeps.then_some(Runs::Whole),
     };
@@ -238,6 +271,42 @@ fn over(cx: &mut Context<'_>, entry: &Entry<'_>, others: &Others<'_>) -> Option<
     match forces_of((*kind)?) {
         Some(forces) => Some((name.to_owned(), forces)),
         None => wrong_kind(cx),
+    }
+}
+
+/// Whether what is run has paths that can be fitted as they are asked.
+fn over_fits(
+    cx: &mut Context<'_>,
+    entry: &Entry<'_>,
+    others: &Others<'_>,
+    name: &Option<String>,
+) -> Option<()> {
+    let name = name.as_deref()?;
+    let (_, kind) = others.own.iter().find(|(known, _)| *known == name)?;
+    let span = entry.get("over").map_or(entry.span, |node| &node.span);
+    match (*kind)? {
+        StudyKind::Simulate(_) => cx.refuse(
+            "bad-choice",
+            format!("{}: the path of a simulation is not fitted", entry.place),
+            span,
+            "name a study of motion or forces, whose drives keep their laws",
+        ),
+        StudyKind::Motion(along) if along.circuit => {
+            let idle = entry.given(&["subject_to", "columns"]).next();
+            match idle {
+                None => Some(()),
+                Some(key) => cx.refuse(
+                    "contradictory-values",
+                    format!(
+                        "`{}` is of a motion, and `{name}` is a whole circuit",
+                        key.name
+                    ),
+                    &key.span,
+                    "leave it out, or name a study in which a drive goes one way",
+                ),
+            }
+        }
+        _ => Some(()),
     }
 }
 

@@ -6,9 +6,10 @@ use crate::designs::{
     Among, Change, Combine, Goal, Limit, OptimizeStudy, OverStudy, Spread, SweepStudy, SweptValues,
     ToleranceStudy,
 };
+use crate::fit::{Fit, Timing, Traced};
 use crate::ids::{ParameterId, Scalar};
 use crate::item::Item;
-use crate::key_table::designs::{COMBINE, OPTIMIZE_METHODS, SPACING};
+use crate::key_table::designs::{COMBINE, OPTIMIZE_METHODS, SPACING, TIMINGS};
 use crate::key_table::word_of;
 use crate::study::Plot;
 use crate::write::spelling::Writer;
@@ -90,6 +91,9 @@ impl Writer<'_> {
                 put(key, Item::List(names));
             }
         }
+        if let Some(fit) = &study.fit {
+            put("fit", self.fit(fit));
+        }
         limits("subject_to", &study.subject_to, put);
         if let Some(method) = &study.method {
             put("method", Item::text(word_of(&OPTIMIZE_METHODS, method)));
@@ -98,6 +102,50 @@ impl Writer<'_> {
         if let Some(designs) = study.designs {
             put("designs", Item::Number(designs as f64));
         }
+    }
+
+    fn fit(&self, fit: &Fit) -> Item {
+        let mut entries = Vec::new();
+        match &fit.traced {
+            Traced::Point(point) => {
+                entries.push(("point".to_owned(), Item::text(self.point(*point))));
+            }
+            Traced::Link { link, at, radius } => {
+                entries.push(("link".to_owned(), Item::text(self.link(*link))));
+                entries.push(("at".to_owned(), Item::text(self.point(*at))));
+                let radius = self.scalar(radius, Dimension::LENGTH);
+                entries.push(("radius".to_owned(), radius));
+            }
+        }
+        let places = fit.to.iter().map(|given| {
+            let place = given.place.iter();
+            let place = place.map(|x| self.scalar(x, Dimension::LENGTH));
+            let angle = given.angle.iter();
+            let angle = angle.map(|angle| self.scalar(angle, Dimension::ANGLE));
+            Item::List(place.chain(angle).collect())
+        });
+        entries.push(("to".to_owned(), Item::List(places.collect())));
+        let word = |index: usize| Item::text(word_of(&TIMINGS, &index));
+        let timing = match &fit.timing {
+            Timing::Ordered => None,
+            Timing::Nearest => Some(word(1)),
+            Timing::Even => Some(word(2)),
+            Timing::ArcLength => Some(word(3)),
+            Timing::At(drive, values) => {
+                let known = drive.and_then(|drive| {
+                    let dimension = self.model.drives.get(drive.index())?.dimension;
+                    Some((self.drive(drive), dimension))
+                });
+                let (name, dimension) = known.unwrap_or(("time", Dimension::TIME));
+                let values = self.listed(values, dimension);
+                Some(Item::Table(vec![(name.to_owned(), values)]))
+            }
+        };
+        entries.extend(timing.map(|timing| ("timing".to_owned(), timing)));
+        if fit.closed {
+            entries.push(("closed".to_owned(), Item::Flag(true)));
+        }
+        Item::Table(entries)
     }
 
     fn over(&self, over: &OverStudy, put: &mut dyn FnMut(&str, Item)) {

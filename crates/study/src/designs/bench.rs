@@ -8,6 +8,7 @@ use kempe_mechanism::{Design, Mechanism};
 use kempe_model::{
     Diagnostic, Measure, Model, ModelFile, OverStudy, ParameterId, Study, StudyKind, value,
 };
+use kempe_motion::circuit::Circuit;
 use kempe_motion::{Motion, MotionError, Progress, Silent};
 
 use super::asked::knows_forces;
@@ -201,7 +202,12 @@ impl<'m> Bench<'m> {
             },
             why: cannot_move(&design, &error).message,
         })?;
-        match beyond_ends(&moved) {
+        // A circuit goes as far as it goes.
+        let ends = match &self.over.kind {
+            StudyKind::Motion(along) if along.circuit => None,
+            _ => beyond_ends(&moved),
+        };
+        match ends {
             None => Ok(moved),
             Some(told) => {
                 let (asked, reached) = (moved.demanded, moved.reached());
@@ -212,6 +218,22 @@ impl<'m> Bench<'m> {
                 })
             }
         }
+    }
+
+    /// The whole circuit of the design with these values.
+    ///
+    /// # Errors
+    ///
+    /// Why it cannot be followed.
+    pub fn circuit(&self, values: &[f64]) -> Result<Circuit, Refused> {
+        let design = self.design(values)?;
+        Circuit::new(&design).map_err(|error| Refused {
+            lack: match error {
+                MotionError::CannotAssemble { .. } => 1.0 + open_by(&design, &error),
+                _ => 2.0,
+            },
+            why: cannot_move(&design, &error).message,
+        })
     }
 
     /// What moves along a motion on the bench, ready to be sampled for quantities.

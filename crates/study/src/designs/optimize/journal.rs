@@ -18,7 +18,12 @@ const STEP: usize = 64;
 /// So many parts there are at most: what is asked after them is not kept.
 pub(super) const MOST_PARTS: usize = 4096;
 
-/// The parameters of a design, by their bits.
+/// What is asked of designs: the numbers that methods see, or those of a fit of which they see the sum, its places paired as the number says.
+pub(super) type Of = u64;
+/// The numbers that methods see.
+pub(super) const SUMS: Of = 0;
+
+/// What is asked, and the parameters of a design by their bits.
 type Key = Vec<u64>;
 
 /// An answer, and why there is none.
@@ -46,8 +51,9 @@ pub(super) fn lock<T>(it: &Mutex<T>) -> MutexGuard<'_, T> {
     it.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-fn key(values: &[f64]) -> Key {
-    values.iter().map(|x| x.to_bits()).collect()
+fn key(of: Of, values: &[f64]) -> Key {
+    let bits = values.iter().map(|x| x.to_bits());
+    [of].into_iter().chain(bits).collect()
 }
 
 impl Journal {
@@ -90,10 +96,11 @@ impl Journal {
     /// What a design is worth: looked up, or asked.
     pub fn evaluation(
         &self,
+        of: Of,
         values: &[f64],
         ask: impl FnOnce() -> (Evaluation, Option<String>),
     ) -> (Evaluation, Option<String>) {
-        let key = key(values);
+        let key = key(of, values);
         if let Some(known) = self.evaluations.get(&key) {
             return known.clone();
         }
@@ -103,8 +110,13 @@ impl Journal {
     }
 
     /// The slopes of a design: looked up, or asked.
-    pub fn slopes(&self, values: &[f64], ask: impl FnOnce() -> Option<Slopes>) -> Option<Slopes> {
-        let key = key(values);
+    pub fn slopes(
+        &self,
+        of: Of,
+        values: &[f64],
+        ask: impl FnOnce() -> Option<Slopes>,
+    ) -> Option<Slopes> {
+        let key = key(of, values);
         if let Some(known) = self.slopes.get(&key) {
             return known.clone();
         }
@@ -230,7 +242,7 @@ impl Reader<'_> {
     fn one(&mut self) -> Option<(Key, Answer)> {
         let [letter] = self.take()?;
         let [variables, objectives, constraints] = self.shape;
-        let key: Option<Key> = (0..variables).map(|_| self.bits()).collect();
+        let key: Option<Key> = (0..=variables).map(|_| self.bits()).collect();
         let key = key?;
         let answer = match letter {
             b'e' => {
@@ -281,22 +293,25 @@ mod tests {
             lack: 0.0,
         };
         let all = [
-            (key(&[0.1, -0.0]), Answer::Evaluation(evaluation, None)),
             (
-                key(&[f64::MIN_POSITIVE, 2.0]),
+                key(SUMS, &[0.1, -0.0]),
+                Answer::Evaluation(evaluation, None),
+            ),
+            (
+                key(SUMS, &[f64::MIN_POSITIVE, 2.0]),
                 Answer::Evaluation(
                     Evaluation::lacking(0.25),
                     Some("it does not close: ä".to_owned()),
                 ),
             ),
             (
-                key(&[1.0, 2.0]),
+                key(1, &[1.0, 2.0]),
                 Answer::Slopes(Some(Slopes {
                     objectives: vec![vec![piece(1.0), piece(0.5)]],
                     constraints: vec![vec![piece(2.0)], vec![piece(3.0)]],
                 })),
             ),
-            (key(&[3.0, 4.0]), Answer::Slopes(None)),
+            (key(2, &[3.0, 4.0]), Answer::Slopes(None)),
         ];
         let mut bytes = Vec::new();
         all.iter().for_each(|answer| write(&mut bytes, answer));

@@ -1,9 +1,10 @@
 //! Studies that optimise: the design that does something best, with what it hangs on.
 //!
 //! `problem.rs` puts designs before the methods of `kempe-optimize`, `pieces.rs` tells them where over a motion other peaks lie near the highest, `search.rs`
-//! runs a method, `discrete.rs` takes values of a catalogue, `journal.rs` keeps what was asked, `told.rs` says what was found.
+//! runs a method, `fit/` fits paths and motions, `discrete.rs` takes values of a catalogue, `journal.rs` keeps what was asked, `told.rs` says what was found.
 
 mod discrete;
+mod fit;
 mod journal;
 mod pieces;
 mod problem;
@@ -11,7 +12,7 @@ mod search;
 mod told;
 
 use kempe_batch::Executor;
-use kempe_model::{Diagnostic, Model, OptimizeStudy, ParameterId, Study, StudyKind};
+use kempe_model::{Diagnostic, Model, OptimizeStudy, ParameterId, Severity, Study, StudyKind};
 use kempe_motion::progress::{Progress, Silent, Stage};
 use kempe_optimize::Problem;
 
@@ -60,6 +61,7 @@ fn benches<'m>(
 
 /// What is to be told of a study before any design is tried; `check` and `run` say the same.
 pub(crate) fn findings_of_optimization(model: &Model, study: &OptimizeStudy) -> Vec<Diagnostic> {
+    let study = &fit::with_goal(study);
     match benches(model, study) {
         Ok((mut bench, _)) => before(&mut bench, study, &mut Silent),
         Err(told) => told,
@@ -79,7 +81,12 @@ fn before(
     let mut told = own;
     told.extend(told::outside(&problem, study, &units));
     let spans = study.vary.iter().map(|it| it.span.clone());
-    told.extend(idle_at_own(bench, problem.ranges(), spans));
+    match (&problem.fit, &study.fit) {
+        (Some(fitted), Some(asked)) => {
+            told.extend(fit::before(fitted, asked, study, problem.ranges()))
+        }
+        _ => told.extend(idle_at_own(bench, problem.ranges(), spans)),
+    }
     told.extend(told::idle_method(study));
     told
 }
@@ -118,8 +125,15 @@ fn optimum(
     exact: bool,
     progress: &mut dyn Progress,
 ) -> Result<StudyResult, Vec<Diagnostic>> {
+    let study = &fit::with_goal(study);
     let (mut bench, mut beside) = benches(model, study)?;
     let diagnostics = before(&mut bench, study, progress);
+    if diagnostics
+        .iter()
+        .any(|told| told.severity == Severity::Error)
+    {
+        return Err(diagnostics);
+    }
     // What was found of the file's own motion helps there, too.
     beside.share(&bench);
     let mut problem = Designs::new(&bench, study);
@@ -140,9 +154,12 @@ fn optimum(
         return Err([diagnostics, vec![stopped(Stage::Searching)]].concat());
     };
     let teller = Teller::new(&bench, &beside, study, name);
-    teller
-        .result(&problem, found, diagnostics.clone())
-        .map_err(|refused| [diagnostics, refused].concat())
+    let told = teller.result(&problem, found, diagnostics.clone());
+    let mut result = told.map_err(|refused| [diagnostics, refused].concat())?;
+    if let (Some(fitted), Some(asked)) = (&problem.fit, &study.fit) {
+        fit::tell(fitted, asked, &study.vary, &mut result);
+    }
+    Ok(result)
 }
 
 /// In how many parts at most a study is kept that looks for something: how many there will be is not known before. None of any other study.

@@ -7,7 +7,8 @@ use kempe_model::{Among, Model, OptimizeStudy, StudyKind, value};
 use kempe_number::math;
 use kempe_optimize::{Evaluation, Piece, Problem, Slopes};
 
-use super::journal::{Journal, lock};
+use super::fit::{Fitted, sum};
+use super::journal::{Journal, SUMS, lock};
 use super::pieces::{Wanted, pieces};
 use crate::designs::asked::kept;
 use crate::designs::bench::{Bench, Refused};
@@ -31,6 +32,8 @@ pub(super) struct Designs<'b, 'm> {
     pub bench: &'b Bench<'m>,
     /// What is to be small or large, then what must be kept.
     pub wanted: Vec<Wanted>,
+    /// What is fitted; its sum of squares stands in the place of the one goal.
+    pub fit: Option<Fitted<'b, 'm>>,
     goals: usize,
     bounds: Vec<[f64; 2]>,
     /// The least and the greatest value of every parameter, SI.
@@ -67,6 +70,7 @@ impl<'b, 'm> Designs<'b, 'm> {
         Self {
             bench,
             wanted: goals.chain(limits).collect(),
+            fit: study.fit.as_ref().map(|fit| Fitted::new(bench, fit)),
             goals: study.goals.len(),
             bounds: bounds.collect(),
             ranges,
@@ -92,6 +96,12 @@ impl<'b, 'm> Designs<'b, 'm> {
     /// Designs that were asked for derivatives.
     pub fn sloped(&self) -> usize {
         self.sloped.load(Ordering::Relaxed)
+    }
+
+    /// Counts designs that were asked for their numbers, and for derivatives.
+    pub fn count(&self, asked: usize, sloped: usize) {
+        self.asked.fetch_add(asked, Ordering::Relaxed);
+        self.sloped.fetch_add(sloped, Ordering::Relaxed);
     }
 
     /// The nearest of the designs that cannot be asked; where two are as near, the one of the least values.
@@ -125,9 +135,27 @@ impl<'b, 'm> Designs<'b, 'm> {
         all.map(|(x, log)| if *log { *x } else { 1.0 }).collect()
     }
 
+    /// The numbers of parameters, SI, that of the fit in its place.
+    ///
+    /// # Errors
+    ///
+    /// Why they have none.
+    pub fn numbers(&self, values: &[f64]) -> Result<Vec<f64>, Refused> {
+        let Some(fit) = &self.fit else {
+            return self.bench.numbers(values);
+        };
+        if self.wanted.len() == 1 {
+            return Ok(vec![fit.seen(values)?.met.square()]);
+        }
+        let motion = self.bench.motion(values, &mut kempe_motion::Silent)?;
+        let mut numbers = self.bench.answer_of(&motion)?.numbers;
+        numbers[0] = fit.seen_of(&motion)?.met.square();
+        Ok(numbers)
+    }
+
     /// What parameters are worth, SI, asked for the sake of what is told.
     pub fn look(&self, values: &[f64]) -> (Evaluation, Option<String>) {
-        let numbers = match self.bench.numbers(values) {
+        let numbers = match self.numbers(values) {
             Ok(numbers) => numbers,
             Err(Refused { lack, why }) => return (Evaluation::lacking(lack), Some(why)),
         };
@@ -168,7 +196,7 @@ impl<'b, 'm> Designs<'b, 'm> {
 
     /// Pieces by central differences: each number is one.
     fn by_differences(&self, design: &[f64]) -> Option<Vec<Vec<Piece>>> {
-        let numbers = |design: &[f64]| self.bench.numbers(&self.values(design)).ok();
+        let numbers = |design: &[f64]| self.numbers(&self.values(design)).ok();
         let own = numbers(design)?;
         let mut slopes = vec![vec![0.0; design.len()]; own.len()];
         for (k, [low, high]) in self.bounds.iter().copied().enumerate() {
@@ -198,9 +226,27 @@ impl<'b, 'm> Designs<'b, 'm> {
         Some(piece.collect())
     }
 
+    /// Pieces of what must be kept beside a fit, with exact derivatives to the parameters.
+    pub fn limits(&self, values: &[f64]) -> Option<Vec<Vec<Piece>>> {
+        match self.wanted.get(self.goals..) {
+            Some(limits) if !limits.is_empty() => Some(
+                pieces(self.bench, &self.wanted, values)
+                    .ok()?
+                    .split_off(self.goals),
+            ),
+            _ => Some(Vec::new()),
+        }
+    }
+
     /// Pieces with exact derivatives to the variables.
     fn exact(&self, values: &[f64]) -> Option<Vec<Vec<Piece>>> {
-        let mut all = pieces(self.bench, &self.wanted, values).ok()?;
+        let mut all = match &self.fit {
+            None => pieces(self.bench, &self.wanted, values).ok()?,
+            Some(fit) => {
+                let residuals = fit.residuals(&mut fit.seen(values).ok()?).ok()?;
+                [vec![vec![sum(&residuals)]], self.limits(values)?].concat()
+            }
+        };
         let growth = self.growth(values);
         for piece in all.iter_mut().flatten() {
             let slope = piece.slope.iter_mut().zip(&growth);
@@ -226,7 +272,9 @@ impl Problem for Designs<'_, '_> {
     fn evaluate(&self, design: &[f64]) -> Evaluation {
         self.asked.fetch_add(1, Ordering::Relaxed);
         let values = self.values(design);
-        let (evaluation, why) = self.journal.evaluation(&values, || self.look(&values));
+        let (evaluation, why) = self
+            .journal
+            .evaluation(SUMS, &values, || self.look(&values));
         if let Some(why) = why {
             self.refuse(&values, evaluation.lack, &why);
         }
@@ -240,7 +288,7 @@ impl Problem for Designs<'_, '_> {
             let moved = self.bounds.iter().filter(|[low, high]| high > low);
             self.asked.fetch_add(2 * moved.count(), Ordering::Relaxed);
         }
-        self.journal.slopes(&values, || {
+        self.journal.slopes(SUMS, &values, || {
             let mut objectives = match self.differences {
                 true => self.by_differences(design)?,
                 false => self.exact(&values)?,

@@ -12,6 +12,7 @@ use kempe_optimize::{
 };
 
 use super::discrete::{all_of, with_choices};
+use super::fit::{fitted, led};
 use super::problem::Designs;
 use crate::designs::Parts;
 use crate::unit::Units;
@@ -212,6 +213,9 @@ pub(super) fn search(
     }
     let method = study.method.unwrap_or(OptimizeMethod::MultiStart);
     let (mut optima, mut how) = match method {
+        OptimizeMethod::Local | OptimizeMethod::MultiStart if problem.fit.is_some() => {
+            fitted(problem, study, workers, &mut hears)?
+        }
         OptimizeMethod::Local => {
             let options = SqpOptions {
                 evaluations: study.designs.unwrap_or(OF_DESCENT),
@@ -263,7 +267,7 @@ pub(super) fn search(
             let evaluations = study
                 .designs
                 .map_or(GLOBAL * n, |all| (all * 2).div_ceil(3));
-            let polish = Some(SqpOptions {
+            let polish = problem.fit.is_none().then(|| SqpOptions {
                 evaluations: OF_DESCENT.min(all.saturating_sub(evaluations)).max(1),
                 ..local()
             });
@@ -296,7 +300,11 @@ pub(super) fn search(
                 "{name} over {} designs, then downhill from the best",
                 found.evaluations - descent
             );
-            (best_of(found)?, how)
+            let best = best_of(found)?;
+            match &problem.fit {
+                None => (best, how),
+                Some(_) => (led(problem, best, workers, &mut hears)?, how),
+            }
         }
     };
     let defined = |it: &Optimum| it.evaluation.is_defined();

@@ -11,6 +11,7 @@ use super::search::{Front, Sought};
 use crate::designs::bench::{Answer, Bench};
 use crate::motion::run_along;
 use crate::result::{Figure, FoundDesign, Listing, Scalar, StudyResult};
+use crate::run::run_motion;
 use crate::table::{Column, Table};
 use crate::unit::{Units, shown};
 use crate::words::list;
@@ -314,7 +315,7 @@ impl<'b, 'm> Teller<'b, 'm> {
         let model = read.map_or(model, |checked| checked.model);
         let motion = match &self.bench.over.kind {
             StudyKind::Motion(along) => {
-                run_along(&model, &self.bench.over.name, along, false, &mut Silent)
+                run_motion(&model, &self.bench.over.name, along, &mut Silent)
             }
             StudyKind::Forces(along) => {
                 run_along(&model, &self.bench.over.name, along, true, &mut Silent)

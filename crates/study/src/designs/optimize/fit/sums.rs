@@ -1,0 +1,183 @@
+//! A fit as the sums of squares that descents go down, and in what an optimum of one counts.
+
+use kempe_model::OptimizeStudy;
+use kempe_optimize::{Evaluation, Linear, Piece, Problem, Scales, Slopes, Squares};
+
+use super::super::problem::Designs;
+use super::{Fitted, Pairing, square};
+
+/// Misses below this part of the size of what is given count as this part: where a fit is exact, rounding leaves nothing to go by.
+const EXACT: f64 = 1e-6;
+
+/// A fit as sums of squares, its places paired in one way.
+pub(super) struct Sums<'p, 'b, 'm> {
+    pub problem: &'p Designs<'b, 'm>,
+    pub fit: &'p Fitted<'b, 'm>,
+    pub pairing: Pairing,
+}
+
+impl Pairing {
+    /// How the journal tells it.
+    fn number(self) -> u64 {
+        match self {
+            Self::Asked => 1,
+            Self::Leading => 2,
+        }
+    }
+}
+
+impl Sums<'_, '_, '_> {
+    /// The sum of squares of parameters, SI, and what must be kept.
+    fn numbers(&self, values: &[f64]) -> Option<(f64, Vec<f64>)> {
+        let wanted = &self.problem.wanted;
+        if wanted.len() == 1 {
+            let seen = self.fit.seen_as(values, self.pairing).ok()?;
+            return Some((seen.met.square(), Vec::new()));
+        }
+        let bench = self.problem.bench;
+        let motion = bench.motion(values, &mut kempe_motion::Silent).ok()?;
+        let numbers = bench.answer_of(&motion).ok()?.numbers;
+        let signed = numbers.iter().zip(wanted).map(|(x, w)| w.sign * x);
+        let kept: Vec<f64> = signed.skip(1).collect();
+        let sound = kept.iter().all(|x| x.is_finite());
+        let seen = self.fit.along(&motion, self.pairing).ok()?;
+        sound.then_some((seen.met.square(), kept))
+    }
+
+    /// The residuals of parameters, SI, and what must be kept, with their derivatives to the variables.
+    fn slopes(&self, values: &[f64]) -> Option<Slopes> {
+        let mut seen = self.fit.seen_as(values, self.pairing).ok()?;
+        let mut slopes = Slopes {
+            objectives: vec![self.fit.residuals(&mut seen).ok()?],
+            constraints: self.problem.limits(values)?,
+        };
+        let growth = self.problem.growth(values);
+        let pieces = slopes.objectives.iter_mut().chain(&mut slopes.constraints);
+        for piece in pieces.flatten() {
+            let slope = piece.slope.iter_mut().zip(&growth);
+            slope.for_each(|(d, growth)| *d *= growth);
+        }
+        Some(slopes)
+    }
+}
+
+impl Squares for Sums<'_, '_, '_> {
+    fn bounds(&self) -> &[[f64; 2]] {
+        self.problem.bounds()
+    }
+
+    fn square(&self, design: &[f64]) -> Option<(f64, Vec<f64>)> {
+        self.problem.count(1, 0);
+        let values = self.problem.values(design);
+        let of = self.pairing.number();
+        let (told, _) = self.problem.journal.evaluation(of, &values, || {
+            let told = match self.numbers(&values) {
+                Some((square, constraints)) => Evaluation {
+                    objectives: vec![square],
+                    constraints,
+                    lack: 0.0,
+                },
+                None => Evaluation::lacking(1.0),
+            };
+            (told, None)
+        });
+        told.is_defined()
+            .then(|| (told.objectives[0], told.constraints))
+    }
+
+    fn linear(&self, design: &[f64]) -> Option<Linear> {
+        self.problem.count(0, 1);
+        let values = self.problem.values(design);
+        let of = self.pairing.number();
+        let slopes = self
+            .problem
+            .journal
+            .slopes(of, &values, || self.slopes(&values))?;
+        Some(Linear {
+            residuals: slopes.objectives.into_iter().next()?,
+            constraints: slopes.constraints,
+        })
+    }
+}
+
+/// A fit as methods see it, with the scales in which an optimum of it counts.
+pub(super) struct Scaled<'p, 'b, 'm> {
+    pub problem: &'p Designs<'b, 'm>,
+    pub scales: Option<Scales>,
+}
+
+impl Problem for Scaled<'_, '_, '_> {
+    fn bounds(&self) -> &[[f64; 2]] {
+        self.problem.bounds()
+    }
+
+    fn constraints(&self) -> usize {
+        self.problem.constraints()
+    }
+
+    fn scales(&self) -> Option<Scales> {
+        self.scales.clone()
+    }
+
+    fn evaluate(&self, design: &[f64]) -> Evaluation {
+        self.problem.evaluate(design)
+    }
+
+    fn slopes(&self, design: &[f64]) -> Option<Slopes> {
+        self.problem.slopes(design)
+    }
+}
+
+/// The fit at a design with the scales in which an optimum there counts: the product of misses and slopes, so that 1 is a slope along which all of the
+/// misses vanishes, whatever the width of the box.
+pub(super) fn scaled<'p, 'b, 'm>(sums: &Sums<'p, 'b, 'm>, design: &[f64]) -> Scaled<'p, 'b, 'm> {
+    Scaled {
+        problem: sums.problem,
+        scales: scales(sums, design),
+    }
+}
+
+fn scales(sums: &Sums<'_, '_, '_>, design: &[f64]) -> Option<Scales> {
+    let linear = sums.linear(design)?;
+    let squares = linear.residuals.iter().map(|r| r.value * r.value);
+    let missed = squares.sum::<f64>().sqrt();
+    let all = sums.fit.given.places.iter().map(square);
+    let size = all.fold(0.0, f64::max).sqrt();
+    let bounds = sums.bounds();
+    let over = |piece: &Piece| {
+        let all = piece.slope.iter().zip(bounds);
+        let all = all.map(|(d, [low, high])| (d * (high - low)).abs());
+        all.fold(0.0, f64::max)
+    };
+    let longest = bounds.iter().enumerate().map(|(k, [low, high])| {
+        let squares = linear.residuals.iter().map(|r| r.slope[k] * r.slope[k]);
+        squares.sum::<f64>().sqrt() * (high - low)
+    });
+    let longest = longest.fold(0.0, f64::max);
+    let positive = |size: f64| if size > 0.0 { size } else { 1.0 };
+    let constraints = linear.constraints.iter().map(|pieces| {
+        let sizes = pieces.iter().map(|p| over(p).max(p.value.abs()));
+        positive(sizes.fold(0.0, f64::max))
+    });
+    Some(Scales {
+        objectives: vec![positive(2.0 * missed.max(EXACT * size) * longest)],
+        constraints: constraints.collect(),
+    })
+}
+
+/// What is asked of a study's fit, its places paired so; none where nothing is fitted.
+pub(super) fn sums<'p, 'b, 'm>(
+    problem: &'p Designs<'b, 'm>,
+    pairing: Pairing,
+) -> Option<Sums<'p, 'b, 'm>> {
+    Some(Sums {
+        problem,
+        fit: problem.fit.as_ref()?,
+        pairing,
+    })
+}
+
+/// Whether a study asks for nothing but the descent from its own design.
+pub(super) fn is_alone(study: &OptimizeStudy) -> bool {
+    study.method == Some(kempe_model::OptimizeMethod::Local)
+}
