@@ -341,6 +341,11 @@ impl Finder<'_> {
             [section, _, of, _, name] if section == "studies" && of == "match" => {
                 self.named_key(name, within(0, name), key);
             }
+            [section, _, of, timing, name]
+                if section == "studies" && of == "fit" && timing == "timing" =>
+            {
+                self.named_key(name, within(0, name), key);
+            }
             [section, _, name] if section == "links" => {
                 let single = is_point_name(name).then_some((0, name.as_str()));
                 let pair = pair_of(name).map(|(a, b)| {

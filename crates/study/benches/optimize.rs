@@ -10,7 +10,7 @@ use kempe_model::{Model, Study};
 use kempe_study::{Silent, StudyResult, optimum_by_differences, run_with};
 
 /// Repeats, of which the fastest counts.
-const REPEATS: usize = 5;
+const REPEATS: usize = 3;
 
 fn model(file: &str, change: &dyn Fn(String) -> String) -> Model {
     let path = format!("{}/../../examples/seeds/{file}", env!("CARGO_MANIFEST_DIR"));
@@ -74,7 +74,7 @@ fn main() {
         told(
             "differences",
             goal,
-            fastest(REPEATS, || {
+            fastest(1, || {
                 optimum_by_differences(&model, study, &Serial).expect("a result")
             }),
         );
@@ -97,7 +97,7 @@ fn main() {
             let model = model(file, &method_of);
             let study = study(&model, name);
             let with = |executor: &dyn Executor| {
-                fastest(2, || {
+                fastest(1, || {
                     run_with(&model, study, executor, &mut Silent).expect("a result")
                 })
             };
