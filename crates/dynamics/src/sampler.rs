@@ -162,6 +162,11 @@ impl ForceSampler {
         self.sampler.time_of(drive, value)
     }
 
+    /// When the motion passes a path parameter first, s; NaN where it does not.
+    pub fn time_at(&self, p: f64) -> f64 {
+        self.sampler.time_at(p)
+    }
+
     /// The row at a path parameter: the first time the motion passes it.
     pub fn at_parameter(&mut self, p: f64) -> ForceSample {
         let sample = self.sampler.at_parameter(p);

@@ -15,7 +15,7 @@ use kempe_units::Expr;
 
 use crate::block::{Block, Heading};
 use crate::session::Asked;
-use crate::sweep::{Sweep, rows};
+use crate::sweep::{Valued, values};
 use crate::way::{Way, extent, motion_over};
 use crate::{Error, Session};
 
@@ -483,7 +483,8 @@ impl Session {
         let places = it.places.clone();
         for first in (0..given.len()).step_by(together) {
             let last = (first + together).min(given.len());
-            let mut found: Vec<Option<Result<Sweep, String>>> = vec![None; last - first];
+            let mut found: Vec<Option<Result<Vec<Valued>, String>>> = Vec::new();
+            found.resize_with(last - first, || None);
             let refused = &it.refused;
             let tasks = (found.iter_mut().zip(first..last))
                 .filter(|(_, design)| !refused.contains_key(design))
@@ -495,7 +496,7 @@ impl Session {
             run(self.threads, |executor| executor.run(tasks));
             for (slot, design) in found.into_iter().zip(first..last) {
                 match slot {
-                    Some(Ok(sweep)) => it.take(design, others, &sweep),
+                    Some(Ok(rows)) => it.take(design, others, rows),
                     Some(Err(reason)) => {
                         let reason: Arc<str> = reason.into();
                         for place in 0..places.len() {
@@ -520,11 +521,11 @@ impl Session {
         range: (f64, f64),
         places: &[f64],
         asked: &Asked,
-    ) -> Result<Sweep, String> {
+    ) -> Result<Vec<Valued>, String> {
         let design = self.compiled.design(given);
         let motion =
             motion_over(&design, way, range, &mut Silent).map_err(|tally| tally.message)?;
-        rows(&self.compiled, &motion, way, places, asked, &mut Silent).map_err(|error| {
+        values(&self.compiled, &motion, way, places, asked).map_err(|error| {
             let first = error.diagnostics.into_iter().next();
             first.map_or_else(String::new, |tally| tally.message)
         })
@@ -533,15 +534,13 @@ impl Session {
 
 impl Many {
     /// Enters what was found of a design.
-    fn take(&mut self, design: usize, columns: &[usize], sweep: &Sweep) {
-        for (column, found) in columns.iter().zip(&sweep.columns) {
-            for (place, value) in found.values.iter().enumerate() {
-                self.columns[*column].values[place * self.designs + design] = *value;
+    fn take(&mut self, design: usize, columns: &[usize], rows: Vec<Valued>) {
+        for (place, row) in rows.into_iter().enumerate() {
+            for (column, value) in columns.iter().zip(row.values) {
+                self.columns[*column].values[place * self.designs + design] = value;
             }
-        }
-        for row in 0..sweep.rows() {
-            if let Some(reason) = sweep.reason(row) {
-                self.unreached.insert((design, row), reason.into());
+            if let Some(reason) = row.reason {
+                self.unreached.insert((design, place), reason.into());
             }
         }
     }

@@ -219,21 +219,8 @@ pub(crate) fn rows(
     let (mechanism, units) = (motion.mechanism(), compiled.units());
     let quantities: Vec<_> = asked.quantities.iter().collect();
     let forces = asked.any_forces();
-    let rows: Vec<RowPlace> = (places.iter())
-        .map(|place| match way {
-            Way::Time => RowPlace::Time(*place),
-            Way::Drive(_) => RowPlace::Drive(*place),
-        })
-        .collect();
-    let mut along = Along::with_progress(
-        &mechanism.model,
-        motion,
-        &quantities,
-        forces,
-        &rows,
-        progress,
-    )
-    .map_err(|diagnostics| compiled.errors(diagnostics))?;
+    let rows = way.rows(places);
+    let mut along = along(compiled, motion, &rows, asked, progress)?;
     let (name, dimension) = way.places(compiled);
     let column = |heading: Heading| Block::new(heading, places.len());
     let mut sweep = Sweep {
@@ -250,15 +237,9 @@ pub(crate) fn rows(
         asked: places.len(),
     };
     for (done, place) in places.iter().enumerate() {
-        let beyond = match way {
-            Way::Time => on_the_motion(&motion.design, *place).err(),
-            Way::Drive(_) => None,
-        };
         sweep.along.values.push(*place);
-        match beyond {
-            Some(diagnostic) => {
-                sweep.push_unreached(format!("not reached: {}", diagnostic.message))
-            }
+        match beyond(motion, way, *place) {
+            Some(reason) => sweep.push_unreached(reason),
             None => {
                 let mut row = along.row(rows[done]);
                 let note = row.note(mechanism);
@@ -274,6 +255,78 @@ pub(crate) fn rows(
         }
     }
     Ok(sweep)
+}
+
+/// What gives the rows of a motion.
+fn along(
+    compiled: &Compiled,
+    motion: &Arc<Motion>,
+    rows: &[RowPlace],
+    asked: &Asked,
+    progress: &mut dyn Progress,
+) -> Result<Along, Error> {
+    let quantities: Vec<_> = asked.quantities.iter().collect();
+    let (model, forces) = (&motion.mechanism().model, asked.any_forces());
+    Along::with_progress(model, motion, &quantities, forces, rows, progress)
+        .map_err(|diagnostics| compiled.errors(diagnostics))
+}
+
+/// Why there is no row at a place that lies beyond the laws of drives.
+fn beyond(motion: &Motion, way: Way, place: f64) -> Option<String> {
+    let refused = match way {
+        Way::Time => on_the_motion(&motion.design, place).err(),
+        Way::Drive(_) => None,
+    };
+    refused.map(|diagnostic| format!("not reached: {}", diagnostic.message))
+}
+
+/// Measures at places of a motion without the evidence of the rows: by place their values, or why some of them are missing.
+pub(crate) fn values(
+    compiled: &Compiled,
+    motion: &Arc<Motion>,
+    way: Way,
+    places: &[f64],
+    asked: &Asked,
+) -> Result<Vec<Valued>, Error> {
+    let rows = way.rows(places);
+    let mut along = along(compiled, motion, &rows, asked, &mut Silent)?;
+    let timed = asked.timed.contains(&true);
+    let valued = rows.iter().zip(places).map(|(row, place)| {
+        if let Some(reason) = beyond(motion, way, *place) {
+            let values = vec![f64::NAN; asked.quantities.len()];
+            let reason = Some(reason);
+            return Valued { values, reason };
+        }
+        if !timed || along.time_at(*row).is_finite() {
+            let values = along.values(*row);
+            if !values.iter().any(|value| value.is_nan()) {
+                let reason = None;
+                return Valued { values, reason };
+            }
+        }
+        // The row with all that is known of it says what is wrong.
+        let mut whole = along.row(*row);
+        let note = whole.note(motion.mechanism());
+        asked.without_time(&mut whole.sample);
+        let sample = whole.sample;
+        let names = asked
+            .quantities
+            .iter()
+            .map(|quantity| quantity.name.as_str());
+        let lacks = without_value(names, &sample);
+        let reached = sample.closure.is_finite();
+        Valued {
+            reason: note.filter(|_| lacks.is_some() || !reached).or(lacks),
+            values: sample.values,
+        }
+    });
+    Ok(valued.collect())
+}
+
+/// Values at a place, and why some are missing.
+pub(crate) struct Valued {
+    pub values: Vec<f64>,
+    pub reason: Option<String>,
 }
 
 impl Sweep {
@@ -292,13 +345,7 @@ impl Sweep {
 
     fn push(&mut self, row: kempe_study::Row, note: Option<String>) {
         let sample = row.sample;
-        let note = note.or_else(|| {
-            let values = self.columns.iter().zip(&sample.values);
-            let names: Vec<&str> = (values.filter(|(_, value)| value.is_nan()))
-                .map(|(column, _)| column.name())
-                .collect();
-            (!names.is_empty()).then(|| no_value(&names.join(", "), sample.time))
-        });
+        let note = note.or_else(|| without_value(self.columns.iter().map(Block::name), &sample));
         self.time.values.push(sample.time);
         for (column, value) in self.columns.iter_mut().zip(&sample.values) {
             column.values.push(*value);
@@ -330,6 +377,14 @@ impl Asked {
             *value = f64::NAN;
         }
     }
+}
+
+/// Which measures of these names have no value at a row, and why.
+fn without_value<'n>(names: impl Iterator<Item = &'n str>, sample: &Sample) -> Option<String> {
+    let both = names.zip(&sample.values);
+    let lacking = both.filter(|(_, value)| value.is_nan());
+    let names: Vec<&str> = lacking.map(|(name, _)| name).collect();
+    (!names.is_empty()).then(|| no_value(&names.join(", "), sample.time))
 }
 
 /// Why a measure has no value at a pose that was reached.

@@ -7,7 +7,7 @@ use kempe_model::{Diagnostic, Law};
 use kempe_motion::drive_path::{DrivePath, duration};
 use kempe_motion::trace::Path as _;
 use kempe_motion::{Demand, EndReason, Motion};
-use kempe_study::{Progress, cannot_move};
+use kempe_study::{Progress, RowPlace, cannot_move};
 use kempe_units::Dimension;
 
 use crate::{Compiled, Error, Pose, Session};
@@ -38,6 +38,15 @@ impl Way {
             Ok(drive) => Ok(Self::Drive(drive.index())),
             Err(_) if name == "time" => Ok(Self::Time),
             Err(error) => Err(error),
+        }
+    }
+
+    /// Rows at places along it.
+    pub fn rows(self, places: &[f64]) -> Vec<RowPlace> {
+        let places = places.iter().copied();
+        match self {
+            Self::Drive(_) => places.map(RowPlace::Drive).collect(),
+            Self::Time => places.map(RowPlace::Time).collect(),
         }
     }
 

@@ -133,6 +133,11 @@ impl<F: ForceSource> Sampler<F> {
         self.measurer.states.clock()
     }
 
+    /// When the motion passes a path parameter first, s; NaN where it does not.
+    pub fn time_at(&self, p: f64) -> f64 {
+        self.clock().time_at(p)
+    }
+
     /// The row at a path parameter: the first time the motion passes it.
     pub fn at_parameter(&mut self, p: f64) -> Sample {
         self.row(p, self.clock().time_at(p))

@@ -159,6 +159,15 @@ impl Along {
         }
     }
 
+    /// When the row at a place is, s; NaN where the motion does not pass it in time.
+    pub fn time_at(&self, place: RowPlace) -> f64 {
+        match (self, place) {
+            (_, RowPlace::Time(t)) => t,
+            (Self::Motion(sampler), RowPlace::Drive(p)) => sampler.time_at(p),
+            (Self::Forces(sampler), RowPlace::Drive(p)) => sampler.time_at(p),
+        }
+    }
+
     /// What is to be told of the numbers over the motion that a measure contains.
     fn notes_of(&self, measure: &Measure) -> Vec<StatisticNote> {
         match self {
