@@ -37,7 +37,7 @@ kind = "optimize"
 over = "turn"
 vary = { a = ["15 mm", "25 mm"], c = ["36 mm", "46 mm"] }
 maximize = ["swing", "least"]
-designs = 12
+designs = 80
 "#;
 
 /// The table of the front as it is read from its file: heads, and rows of fields.
