@@ -45,8 +45,8 @@ pub struct RefinedFront {
 
 impl RefinedFront {
     /// What is left of some designs where none dominates or repeats another.
-    pub(crate) fn of(mut members: Vec<Refined>, evaluations: usize, ended: Ended) -> Self {
-        keep_undominated(&mut members);
+    pub(crate) fn of(members: Vec<Refined>, evaluations: usize, ended: Ended) -> Self {
+        let members = undominated(members);
         let residuals = members.iter().map(|m| m.residual);
         Self {
             residual: residuals.filter(|r| r.is_finite()).fold(0.0, f64::max),
@@ -317,8 +317,8 @@ impl Problem for Scalarised<'_> {
     }
 }
 
-/// Leaves out what others dominate, and what they repeat.
-fn keep_undominated(members: &mut Vec<Refined>) {
+/// Those that no other dominates or repeats, by their first objective.
+pub(crate) fn undominated(mut members: Vec<Refined>) -> Vec<Refined> {
     let objectives: Vec<Vec<f64>> = members
         .iter()
         .map(|m| m.candidate.evaluation.objectives.clone())
@@ -336,4 +336,5 @@ fn keep_undominated(members: &mut Vec<Refined>) {
         let orders = a.iter().zip(b).map(|(x, y)| x.total_cmp(y));
         orders.fold(std::cmp::Ordering::Equal, std::cmp::Ordering::then)
     });
+    members
 }

@@ -56,5 +56,5 @@ pub use quadratic::{Minimum, NoMinimum, Quadratic, Row, minimise};
 pub use refine::refine;
 pub use sqp::{Multipliers, Optimum, SqpOptions, descents, sqp};
 pub use standing::{Candidate, Standing};
-pub use widen::widen;
+pub use widen::{joined, widen};
 pub use workers::{Alone, Task, Workers, each};

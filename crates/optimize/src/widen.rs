@@ -3,7 +3,7 @@
 //! The ends are the least of each objective. Of two objectives, the widest gaps between neighbours are filled by ways down towards the chord between
 //! them, which the front crosses if it has anything there, hollow or not (I. Das and J. E. Dennis's normal-boundary intersection, 1998, between neighbours).
 
-use crate::front::{Refined, RefinedFront, Way, go, ranges};
+use crate::front::{Refined, RefinedFront, Way, go, ranges, undominated};
 use crate::problem::{Problem, evaluate_all};
 use crate::progress::{Ended, Hears};
 use crate::sqp::SqpOptions;
@@ -41,11 +41,7 @@ pub fn widen(
     let with = (options, budget, 0);
     let (mut evaluations, mut ended) =
         go(problem, &mut ways, &scales(&front), with, workers, hears);
-    let joined = |front: Vec<Refined>, ways: Vec<Way>| {
-        let found = ways.into_iter().filter_map(|way| way.member);
-        RefinedFront::of(front.into_iter().chain(found).collect(), 0, ended).members
-    };
-    let mut members = joined(front, ways);
+    let mut members = with_found(front, ways);
     // The left ends of gaps that nothing fills.
     let mut empty: Vec<Vec<f64>> = Vec::new();
     for _ in 0..ROUNDS {
@@ -72,8 +68,7 @@ pub fn widen(
         (evaluations, ended) = go(problem, &mut ways, &ranges, with, workers, hears);
         let ends = gaps.iter().map(|gap| gap.ends(&members).map(objectives_of));
         let ends: Vec<[Vec<f64>; 2]> = ends.collect();
-        let found = ways.into_iter().filter_map(|way| way.member);
-        members = RefinedFront::of(members.into_iter().chain(found).collect(), 0, ended).members;
+        members = with_found(members, ways);
         let filled = |[a, b]: &[Vec<f64>; 2]| {
             let margin = NEAR * (b[0] - a[0]);
             let mut own = members.iter().map(|m| m.candidate.evaluation.objectives[0]);
@@ -82,10 +77,23 @@ pub fn widen(
         let unfilled = ends.into_iter().filter(|ends| !filled(ends));
         empty.extend(unfilled.map(|[a, _]| a));
     }
-    if objectives == 2 {
+    RefinedFront::of(joined(members, points), evaluations, ended)
+}
+
+/// A front with what ways led to.
+fn with_found(front: Vec<Refined>, ways: Vec<Way>) -> Vec<Refined> {
+    let found = ways.into_iter().filter_map(|way| way.member);
+    undominated(front.into_iter().chain(found).collect())
+}
+
+/// What none of some designs betters, by their first objective; of two objectives so many at most.
+pub fn joined(members: Vec<Refined>, points: usize) -> Vec<Refined> {
+    let mut members = undominated(members);
+    let two = |m: &Refined| m.candidate.evaluation.objectives.len() == 2;
+    if members.iter().all(two) {
         thin(&mut members, points);
     }
-    RefinedFront::of(members, evaluations, ended)
+    members
 }
 
 /// Leaves out designs of a front of two objectives where it is thickest, until there are no more than asked for; its ends stay.

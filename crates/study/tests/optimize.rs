@@ -268,6 +268,85 @@ fn a_front_reaches_from_the_best_of_one_goal_to_the_best_of_the_other() {
     }
 }
 
+/// The numbers of a front by its columns.
+fn columns<const N: usize>(result: &StudyResult, names: [&str; N]) -> [Vec<f64>; N] {
+    names.map(|name| result.table.column(name).unwrap().values.clone())
+}
+
+/// Values of a catalogue on a front: all designs have some, and of a dense table of those nothing is better.
+#[test]
+fn fronts_take_values_of_a_catalogue() {
+    let result = best(
+        "vary = { a = { only = ['15 mm', '18 mm', '22 mm'] }, b = ['50 mm', '60 mm'] }\nmaximize = ['play', 'min(mu)']\ndesigns = 300\n",
+    );
+    let [a, b, play, mu] = columns(&result, ["a", "b", "play", "min(mu)"]);
+    assert!(a.len() > 8, "{a:?}");
+    for value in &a {
+        let known = [15.0, 18.0, 22.0]
+            .iter()
+            .any(|it| (value - it).abs() < 1e-9);
+        assert!(known, "{a:?}");
+    }
+    let distinct = |x: f64| a.iter().any(|it| (it - x).abs() < 1e-9);
+    assert!(distinct(15.0) && distinct(18.0) && distinct(22.0), "{a:?}");
+    for i in 0..a.len() {
+        assert!((play[i] - swing(a[i], b[i])).abs() < 1e-6);
+        for other in [15.0, 18.0, 22.0] {
+            for k in 0..=400 {
+                let length = 50.0 + 10.0 * f64::from(k) / 400.0;
+                let better =
+                    swing(other, length) > play[i] + 1e-6 && least_mu(other, length) > mu[i] + 1e-6;
+                assert!(!better, "{} {} by {other} {length}", a[i], b[i]);
+            }
+        }
+    }
+    // Where there is nothing else all are tried, and the front is that of all.
+    let result = best(
+        "vary = { a = { only = ['15 mm', '18 mm', '22 mm'] }, b = { between = ['48 mm', '60 mm'], step = '2 mm' } }\nmaximize = ['play', 'min(mu)']\n",
+    );
+    let [a, b] = columns(&result, ["a", "b"]);
+    let every = [15.0, 18.0, 22.0].into_iter();
+    let every = every.flat_map(|a| (24..=30).map(move |k| [a, 2.0 * f64::from(k)]));
+    let every: Vec<[f64; 2]> = every.collect();
+    let of = |[a, b]: [f64; 2]| [swing(a, b), least_mu(a, b)];
+    let best_of_all = every.iter().filter(|own| {
+        let own = of(**own);
+        let better = |other: [f64; 2]| {
+            other[0] >= own[0] - 1e-9
+                && other[1] >= own[1] - 1e-9
+                && (other[0] > own[0] + 1e-9 || other[1] > own[1] + 1e-9)
+        };
+        !every.iter().any(|other| better(of(*other)))
+    });
+    let mut wanted: Vec<[f64; 2]> = best_of_all.copied().collect();
+    let mut found: Vec<[f64; 2]> = a.iter().zip(&b).map(|(a, b)| [*a, *b]).collect();
+    let order = |x: &[f64; 2], y: &[f64; 2]| x[0].total_cmp(&y[0]).then(x[1].total_cmp(&y[1]));
+    wanted.sort_by(order);
+    found.sort_by(order);
+    assert_eq!(found.len(), wanted.len(), "{found:?} {wanted:?}");
+    for (found, wanted) in found.iter().zip(&wanted) {
+        let both = found.iter().zip(wanted);
+        assert!(both.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) < 1e-9);
+    }
+    let names: Vec<&str> = result.scalars.iter().map(|s| s.name.as_str()).collect();
+    assert!(
+        !names.contains(&"points optimal to first order"),
+        "{names:?}"
+    );
+}
+
+/// How a front was found tells no more than was done.
+#[test]
+fn a_front_that_is_none_says_so() {
+    let result = best(
+        "vary = { a = ['15 mm', '22 mm'], b = ['48 mm', '60 mm'] }\nmaximize = ['play', 'min(mu)']\nsubject_to = 'play >= 170 deg'\ndesigns = 60\n",
+    );
+    let told = format!("{:?}", result.listings);
+    assert!(told.contains("no design keeps all limits"), "{told}");
+    assert!(!told.contains("gaps"), "{told}");
+    assert!(result.diagnostics.iter().any(|d| d.code == "infeasible"));
+}
+
 /// The steering linkage: 58414.257 N for a window of 180 degrees, by differential evolution and SLSQP over areas of triangles.
 #[test]
 fn the_published_steering_linkage() {
@@ -294,7 +373,8 @@ fn the_published_steering_linkage() {
 }
 
 /// Studies of every method, with limits, a front, values of a catalogue, and fits.
-const ALL: [&str; 10] = [
+const ALL: [&str; 11] = [
+    "vary = { a = { only = ['15 mm', '18 mm', '22 mm'] }, b = ['50 mm', '60 mm'] }\nmaximize = ['play', 'min(mu)']\ndesigns = 120\n",
     "vary = { a = ['10 mm', '30 mm'], b = ['45 mm', '65 mm'] }\nmaximize = 'play'\nsubject_to = 'mu >= 40 deg'\n",
     "vary = { a = ['10 mm', '30 mm'], b = ['45 mm', '65 mm'] }\nmaximize = 'play'\nsubject_to = 'mu >= 40 deg'\nmethod = 'differential evolution'\ndesigns = 150\n",
     "vary = { a = ['10 mm', '30 mm'], b = ['45 mm', '65 mm'] }\nmaximize = 'play'\nsubject_to = 'mu >= 40 deg'\nmethod = 'cma-es'\ndesigns = 150\n",

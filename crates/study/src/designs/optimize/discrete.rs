@@ -5,8 +5,8 @@
 
 use kempe_model::OptimizeStudy;
 use kempe_optimize::{
-    Ended, Evaluation, FEASIBLE, Hears, Optimum, Problem, Progress, Scales, Slopes, Standing,
-    Workers, descents, evaluate_all,
+    Candidate, Ended, Evaluation, FEASIBLE, Hears, Optimum, Problem, Progress, Scales, Slopes,
+    Standing, Workers, descents, evaluate_all,
 };
 
 use super::problem::{Designs, choices};
@@ -21,16 +21,23 @@ const TOGETHER: usize = 32;
 /// So many of the best are kept.
 const KEPT: usize = 10;
 
-/// The best of all combinations, where every parameter is discrete and there are few.
-pub(super) fn all_of(
+/// Designs that were all tried.
+pub(super) struct Tried {
+    /// The best first.
+    pub best_first: Vec<Candidate>,
+    /// Sizes of objectives and constraints.
+    pub scales: Scales,
+    pub stopped: bool,
+}
+
+/// All combinations of values, where every parameter is discrete and there are few.
+pub(super) fn tried(
     problem: &Designs<'_, '_>,
     study: &OptimizeStudy,
     workers: &dyn Workers,
     hears: Hears,
-) -> Option<Optima> {
-    let values: Vec<Vec<f64>> = (study.vary.iter())
-        .map(|chosen| choices(problem.bench.model, &chosen.among))
-        .collect();
+) -> Option<Tried> {
+    let values = values_of(problem, study);
     let count = values
         .iter()
         .try_fold(1_usize, |all, list| all.checked_mul(list.len()))?;
@@ -65,17 +72,35 @@ pub(super) fn all_of(
         }
     }
     let scales = Scales::typical(&evaluations, problem.objectives(), problem.constraints());
-    let stand = |e: &Evaluation| Standing::of(e, &scales, FEASIBLE);
-    let mut all: Vec<(Vec<f64>, Evaluation)> = designs.into_iter().zip(evaluations).collect();
-    all.sort_by(|a, b| stand(&a.1).order(&stand(&b.1)));
-    all.truncate(KEPT);
-    let list: Vec<Optimum> = (all.into_iter())
-        .map(|(design, evaluation)| {
+    let both = designs.into_iter().zip(evaluations);
+    let mut best_first: Vec<Candidate> = both
+        .map(|(design, evaluation)| Candidate { design, evaluation })
+        .collect();
+    let stand = |c: &Candidate| Standing::of(&c.evaluation, &scales, FEASIBLE);
+    best_first.sort_by(|a, b| stand(a).order(&stand(b)));
+    Some(Tried {
+        best_first,
+        scales,
+        stopped,
+    })
+}
+
+/// The best of all combinations, where every parameter is discrete and there are few.
+pub(super) fn all_of(
+    problem: &Designs<'_, '_>,
+    study: &OptimizeStudy,
+    workers: &dyn Workers,
+    hears: Hears,
+) -> Option<Optima> {
+    let tried = tried(problem, study, workers, hears)?;
+    let best = tried.best_first.into_iter().take(KEPT);
+    let list: Vec<Optimum> = best
+        .map(|Candidate { design, evaluation }| {
             let violation = match evaluation.is_defined() {
-                true => evaluation.violation(&scales),
+                true => evaluation.violation(&tried.scales),
                 false => f64::INFINITY,
             };
-            let ended = if stopped {
+            let ended = if tried.stopped {
                 Ended::Stopped
             } else {
                 Ended::Converged
@@ -89,19 +114,30 @@ pub(super) fn all_of(
     Some(Optima {
         reached: vec![1; list.len()],
         list,
-        stopped,
+        stopped: tried.stopped,
     })
 }
 
+/// The values of every parameter that is discrete; of the others none.
+fn values_of(problem: &Designs<'_, '_>, study: &OptimizeStudy) -> Vec<Vec<f64>> {
+    let all = study.vary.iter();
+    all.map(|chosen| choices(problem.bench.model, &chosen.among))
+        .collect()
+}
+
 /// A problem some of whose variables stand still.
-struct Held<'p, 'b, 'm> {
+pub(super) struct Held<'p, 'b, 'm> {
     inner: &'p Designs<'b, 'm>,
-    bounds: Vec<[f64; 2]>,
+    pub bounds: Vec<[f64; 2]>,
 }
 
 impl Problem for Held<'_, '_, '_> {
     fn bounds(&self) -> &[[f64; 2]] {
         &self.bounds
+    }
+
+    fn objectives(&self) -> usize {
+        self.inner.objectives()
     }
 
     fn constraints(&self) -> usize {
@@ -117,6 +153,46 @@ impl Problem for Held<'_, '_, '_> {
     }
 }
 
+/// What values of the catalogues lie next to designs.
+pub(super) struct Near {
+    /// By parameter; of those that may have any value none.
+    values: Vec<Vec<f64>>,
+}
+
+impl Near {
+    /// Of a study; `None` where no parameter is discrete.
+    pub fn of(problem: &Designs<'_, '_>, study: &OptimizeStudy) -> Option<Self> {
+        let values = values_of(problem, study);
+        (!values.iter().all(Vec::is_empty)).then_some(Self { values })
+    }
+
+    /// The problem with these parameters held at values next to those of a design, and the design with these: one of each combination.
+    pub fn held<'p, 'b, 'm>(
+        &self,
+        problem: &'p Designs<'b, 'm>,
+        design: &[f64],
+    ) -> Vec<(Held<'p, 'b, 'm>, Vec<f64>)> {
+        let near = design.iter().zip(&self.values);
+        let near: Vec<Vec<f64>> = near.map(|(x, all)| neighbours(*x, all)).collect();
+        let counts = near.iter().map(|n| n.len().max(1));
+        let count = counts.product::<usize>().min(MOST_NEIGHBOURS);
+        let one = |combination: usize| {
+            let mut left = combination;
+            let mut bounds = problem.bounds().to_vec();
+            let mut start = design.to_vec();
+            for (k, near) in near.iter().enumerate().filter(|(_, near)| !near.is_empty()) {
+                let value = near[left % near.len()];
+                left /= near.len();
+                bounds[k] = [value, value];
+                start[k] = value;
+            }
+            let inner = problem;
+            (Held { inner, bounds }, start)
+        };
+        (0..count).map(one).collect()
+    }
+}
+
 /// Designs with values of the catalogues near to those that were found, for which so many designs are tried at most; `None` where no parameter is discrete.
 pub(super) fn with_choices(
     problem: &Designs<'_, '_>,
@@ -126,43 +202,12 @@ pub(super) fn with_choices(
     workers: &dyn Workers,
     hears: Hears,
 ) -> Option<Optima> {
-    let model = problem.bench.model;
-    let values: Vec<Vec<f64>> = study
-        .vary
-        .iter()
-        .map(|chosen| choices(model, &chosen.among))
-        .collect();
-    if values.iter().all(Vec::is_empty) {
-        return None;
-    }
-    let mut held: Vec<(Held, Vec<f64>)> = Vec::new();
+    let near = Near::of(problem, study)?;
     let defined = found.list.iter().filter(|it| it.evaluation.is_defined());
-    for optimum in defined.take(3) {
-        let near: Vec<Vec<f64>> = optimum
-            .design
-            .iter()
-            .zip(&values)
-            .map(|(x, all)| neighbours(*x, all))
-            .collect();
-        let count = near
-            .iter()
-            .map(|n| n.len().max(1))
-            .product::<usize>()
-            .min(MOST_NEIGHBOURS);
-        for combination in 0..count {
-            let mut left = combination;
-            let mut bounds = problem.bounds().to_vec();
-            let mut start = optimum.design.clone();
-            for (k, near) in near.iter().enumerate().filter(|(_, near)| !near.is_empty()) {
-                let value = near[left % near.len()];
-                left /= near.len();
-                bounds[k] = [value, value];
-                start[k] = value;
-            }
-            let inner = problem;
-            held.push((Held { inner, bounds }, start));
-        }
-    }
+    let held = defined.take(3);
+    let held: Vec<(Held, Vec<f64>)> = held
+        .flat_map(|optimum| near.held(problem, &optimum.design))
+        .collect();
     let starts = held.iter().map(|(held, start)| {
         let held: &dyn Problem = held;
         (held, start.clone())

@@ -6,13 +6,14 @@ use kempe_batch::Executor;
 use kempe_model::{Diagnostic, OptimizeMethod, OptimizeStudy};
 use kempe_motion::progress::{Done, Progress, Stage};
 use kempe_optimize::{
-    Candidate, CmaEsOptions, DifferentialEvolutionOptions, Ended, Evaluation, Found,
-    MultiStartOptions, Multipliers, Nsga2Options, Optimum, Progress as Told, Scales, SqpOptions,
-    Task, Workers, cma_es, differential_evolution, multi_start, nsga2, refine, sqp, widen,
+    CmaEsOptions, DifferentialEvolutionOptions, Ended, Evaluation, Found, MultiStartOptions,
+    Multipliers, Optimum, Progress as Told, Scales, SqpOptions, Task, Workers, cma_es,
+    differential_evolution, multi_start, sqp,
 };
 
 use super::discrete::{all_of, with_choices};
 use super::fit::{fitted, led};
+use super::front::{Front, front};
 use super::problem::Designs;
 use crate::designs::Parts;
 use crate::unit::Units;
@@ -22,18 +23,11 @@ const LOOKED_AT: usize = 24;
 const STARTS: usize = 6;
 /// Designs of a global search for each parameter, where the file does not say.
 const GLOBAL: usize = 400;
-/// Designs of a front for each parameter, and points of it.
-const OF_FRONT: usize = 600;
-const POINTS: usize = 40;
-/// Generations of a front at least, where the file allows few designs.
-const GENERATIONS: usize = 5;
-/// Designs that a point's way down tries, about.
-const OF_POINT: usize = 10;
 /// Steps and designs of one descent.
 const STEPS: usize = 150;
 const OF_DESCENT: usize = 1000;
-/// A violation up to this part of its scale is none for what is told on the way.
-const KEPT: f64 = 1e-7;
+/// A violation up to this part of its scale is none.
+pub(super) const KEPT: f64 = 1e-7;
 
 /// Local optima that differ, the best first.
 pub(super) struct Optima {
@@ -42,24 +36,6 @@ pub(super) struct Optima {
     /// How many descents led to each.
     pub reached: Vec<usize>,
     /// Whether whoever listened stopped it.
-    pub stopped: bool,
-}
-
-/// A design of a front.
-pub(super) struct FrontPoint {
-    /// The values of its parameters, SI.
-    pub design: Vec<f64>,
-    pub evaluation: Evaluation,
-    /// How far the first-order conditions are missed; infinite where they were not looked at.
-    pub residual: f64,
-    /// The largest violation, in the constraints' scales.
-    pub violation: f64,
-}
-
-/// A front.
-pub(super) struct Front {
-    /// By the first goal. Where no design keeps all limits, the nearest to it alone.
-    pub points: Vec<FrontPoint>,
     pub stopped: bool,
 }
 
@@ -161,51 +137,8 @@ pub(super) fn search(
     let all = study.designs.unwrap_or(usize::MAX);
     let mut hears = |told: &Told| listener.hear(problem, study, told);
     if study.goals.len() > 1 {
-        // Most are left for the ways down, which need more the more points there are.
-        let evaluations = study.designs.map_or(OF_FRONT * n, |all| all.div_ceil(3));
-        let options = Nsga2Options {
-            evaluations,
-            population: POINTS.min(evaluations.div_ceil(GENERATIONS)),
-            start: Some(own),
-            seed,
-        };
-        let found = nsga2(problem, &options, workers, &mut hears);
-        let scales = &found.scales;
-        let violation = |c: &Candidate| match c.evaluation.is_defined() {
-            true => c.evaluation.violation(scales),
-            false => f64::INFINITY,
-        };
-        let point = |candidate: &Candidate, residual: f64| FrontPoint {
-            design: problem.values(&candidate.design),
-            violation: violation(candidate),
-            evaluation: candidate.evaluation.clone(),
-            residual,
-        };
-        let mut stopped = found.ended == Ended::Stopped;
-        let points = match found.feasible && !stopped {
-            true => {
-                let left = all.saturating_sub(found.evaluations);
-                let options = (&local(), left / 2);
-                let some = evenly(&found.members, (left / 2 / OF_POINT).max(study.goals.len()));
-                let refined = refine(problem, &some, options, workers, &mut hears);
-                stopped |= refined.ended == Ended::Stopped;
-                let mut members = refined.members;
-                if !stopped {
-                    let options = (&local(), left.saturating_sub(refined.evaluations));
-                    let widened = widen(problem, members, POINTS, options, workers, &mut hears);
-                    stopped |= widened.ended == Ended::Stopped;
-                    members = widened.members;
-                }
-                let members = members.iter();
-                members.map(|m| point(&m.candidate, m.residual)).collect()
-            }
-            false => (found.members.iter())
-                .map(|c| point(c, f64::INFINITY))
-                .collect::<Vec<_>>(),
-        };
-        let how = "NSGA-II; each point moved down until no step betters all goals; ends and gaps of the front filled".to_owned();
-        let front = Front { points, stopped };
-        return (!front.points.is_empty()).then_some(Sought::Front { front, how });
+        let (front, how) = front(problem, study, workers, &mut hears)?;
+        return Some(Sought::Front { front, how });
     }
     if let Some(optima) = all_of(problem, study, workers, &mut hears) {
         let how = "all combinations of the values were tried".to_owned();
@@ -318,15 +251,6 @@ pub(super) fn search(
     }
     optima.in_parameters(problem);
     Some(Sought::Optima { optima, how })
-}
-
-/// So many at most of a list, from its first to its last.
-fn evenly<T: Clone>(all: &[T], most: usize) -> Vec<T> {
-    if all.len() <= most {
-        return all.to_vec();
-    }
-    let place = |k: usize| k * (all.len() - 1) / most.saturating_sub(1).max(1);
-    (0..most).map(|k| all[place(k)].clone()).collect()
 }
 
 /// What a population found: the optimum that its best led to, or its best where that is better.

@@ -6,8 +6,9 @@ use kempe_number::text::significant;
 use kempe_optimize::{Ended, Evaluation, Optimum};
 use kempe_units::{Dimension, Unit};
 
+use super::front::Front;
 use super::problem::Designs;
-use super::search::{Front, Sought};
+use super::search::Sought;
 use crate::designs::bench::{Answer, Bench};
 use crate::motion::run_along;
 use crate::result::{Figure, FoundDesign, Listing, Scalar, StudyResult};
@@ -630,7 +631,9 @@ impl<'b, 'm> Teller<'b, 'm> {
             });
         };
         tell("points", all.len() as f64);
-        tell("points optimal to first order", optimal as f64);
+        if front.has_conditions {
+            tell("points optimal to first order", optimal as f64);
+        }
         tell("designs tried", problem.asked() as f64);
         tell("derivatives taken", problem.sloped() as f64);
         if let Some(volume) = dominated(&all, own.as_ref()) {
@@ -660,27 +663,25 @@ impl<'b, 'm> Teller<'b, 'm> {
             .collect();
         let ends = self.ends(own.as_ref(), &all);
         result.listings = vec![ends];
+        let (asked, sloped) = (problem.asked(), problem.sloped());
+        let mut rows = vec![
+            how.to_owned(),
+            format!("{asked} designs tried, derivatives of {sloped}"),
+        ];
+        if front.has_conditions {
+            rows.push(format!(
+                "{optimal} of {} points are optimal to first order",
+                all.len()
+            ));
+        }
+        if front.stopped {
+            rows.push(STOPPED.to_owned());
+        }
         result.listings.push(Listing {
             title: "how it was found".to_owned(),
             head: Vec::new(),
-            rows: vec![
-                vec![how.to_owned()],
-                vec![format!(
-                    "{} designs tried, derivatives of {}",
-                    problem.asked(),
-                    problem.sloped()
-                )],
-                vec![format!(
-                    "{optimal} of {} points are optimal to first order",
-                    all.len()
-                )],
-            ],
+            rows: rows.into_iter().map(|row| vec![row]).collect(),
         });
-        if front.stopped
-            && let Some(how) = result.listings.last_mut()
-        {
-            how.rows.push(vec![STOPPED.to_owned()]);
-        }
         let missed = front.points.iter().all(|p| p.violation > KEPT);
         if missed {
             result.diagnostics.push(

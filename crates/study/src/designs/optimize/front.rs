@@ -1,0 +1,248 @@
+//! Fronts of several goals: designs none of which is better than another in all of them.
+
+use kempe_model::OptimizeStudy;
+use kempe_optimize::{
+    Candidate, Ended, Hears, Nsga2Options, Problem, Progress, Refined, Scales, Workers, dominates,
+    evaluate_all, joined, nsga2, refine, widen,
+};
+
+use super::discrete::{Held, Near, Tried, tried};
+use super::problem::Designs;
+use super::search::{KEPT, local};
+
+/// Designs that are looked at for each parameter, where the file does not say, and points of a front.
+const LOOKED_AT: usize = 600;
+const POINTS: usize = 40;
+/// Generations at least, where the file allows few designs.
+const GENERATIONS: usize = 5;
+/// Designs that a point's way down tries, about.
+const OF_POINT: usize = 10;
+
+/// A design of a front.
+pub(super) struct FrontPoint {
+    /// The values of its parameters, SI.
+    pub design: Vec<f64>,
+    pub evaluation: kempe_optimize::Evaluation,
+    /// How far the first-order conditions are missed; infinite where they were not looked at.
+    pub residual: f64,
+    /// The largest violation, in the constraints' scales.
+    pub violation: f64,
+}
+
+/// A front.
+pub(super) struct Front {
+    /// By the first goal. Where no design keeps all limits, the nearest to it alone.
+    pub points: Vec<FrontPoint>,
+    pub stopped: bool,
+    /// Whether there are conditions of first order: not of values that were all tried.
+    pub has_conditions: bool,
+}
+
+/// The front of a study, and how it was found; `None` where it was stopped before there was one.
+pub(super) fn front(
+    problem: &Designs<'_, '_>,
+    study: &OptimizeStudy,
+    workers: &dyn Workers,
+    hears: Hears,
+) -> Option<(Front, String)> {
+    let all = study.designs.unwrap_or(usize::MAX);
+    // Of one work in several pieces: all that was tried so far.
+    let hears: Hears = &mut |told: &Progress| {
+        let asked = problem.asked().max(told.evaluations);
+        let left = told.budget.saturating_sub(told.evaluations);
+        hears(&Progress {
+            evaluations: asked,
+            budget: all.min(asked.saturating_add(left)),
+            ..*told
+        })
+    };
+    if let Some(tried) = tried(problem, study, workers, hears) {
+        let how = "all combinations of the values were tried".to_owned();
+        return Some((best_of(problem, tried), how));
+    }
+    // Most are left for the ways down, which need more the more points there are.
+    let own = problem.variables(&problem.bench.own_values());
+    let default = LOOKED_AT * own.len();
+    let evaluations = study.designs.map_or(default, |all| all.div_ceil(3));
+    let options = Nsga2Options {
+        evaluations,
+        population: POINTS.min(evaluations.div_ceil(GENERATIONS)),
+        start: Some(own),
+        seed: study.seed as u64,
+    };
+    let found = nsga2(problem, &options, workers, hears);
+    let mut stopped = found.ended == Ended::Stopped;
+    let unrefined = |candidate: &Candidate| Refined {
+        candidate: candidate.clone(),
+        residual: f64::INFINITY,
+        shares: Vec::new(),
+        ended: Ended::Stopped,
+    };
+    let mut how = "NSGA-II".to_owned();
+    let mut members: Vec<Refined> = found.members.iter().map(unrefined).collect();
+    if !found.feasible {
+        how += "; no design keeps all limits, this one comes nearest";
+    }
+    let choices = Near::of(problem, study);
+    if found.feasible && !stopped {
+        let left = all.saturating_sub(found.evaluations);
+        // What values of a catalogue ask for besides.
+        let own = if choices.is_some() { left / 2 } else { left };
+        let down = (own, study.goals.len());
+        (members, stopped) = filled(problem, &found.members, down, workers, hears);
+        how += "; each point moved down until no step betters all goals, and on to the least of each goal";
+        if study.goals.len() == 2 {
+            how += "; gaps filled";
+        }
+    }
+    if let (Some(near), false) = (&choices, stopped) {
+        let left = match study.designs {
+            Some(all) => all.saturating_sub(problem.asked()),
+            None => default,
+        };
+        let scales = &found.scales;
+        (members, stopped) = near_front(problem, near, &members, (left, scales), workers, hears);
+        how += "; values of a catalogue by rounding to their neighbours, the rest moved again";
+    }
+    let points = members.into_iter().map(|member| FrontPoint {
+        design: problem.values(&member.candidate.design),
+        violation: violation(&member.candidate, &found.scales),
+        evaluation: member.candidate.evaluation,
+        residual: member.residual,
+    });
+    let front = Front {
+        points: points.collect(),
+        stopped,
+        has_conditions: true,
+    };
+    (!front.points.is_empty()).then_some((front, how))
+}
+
+fn violation(candidate: &Candidate, scales: &Scales) -> f64 {
+    match candidate.evaluation.is_defined() {
+        true => candidate.evaluation.violation(scales),
+        false => f64::INFINITY,
+    }
+}
+
+/// What none of the designs that were tried betters in all goals; where none keeps all limits, the nearest to that.
+fn best_of(problem: &Designs<'_, '_>, tried: Tried) -> Front {
+    let scales = &tried.scales;
+    let keeps = |c: &&Candidate| violation(c, scales) <= KEPT;
+    let kept: Vec<&Candidate> = tried.best_first.iter().filter(keeps).collect();
+    let mut best: Vec<&Candidate> = (kept.iter().copied())
+        .filter(|one| {
+            let goals = &one.evaluation.objectives;
+            !(kept.iter()).any(|other| dominates(&other.evaluation.objectives, goals))
+        })
+        .collect();
+    best.sort_by(|a, b| {
+        let [a, b] = [a, b].map(|c| c.evaluation.objectives[0]);
+        a.total_cmp(&b)
+    });
+    if best.is_empty() {
+        best.extend(tried.best_first.first());
+    }
+    let points = best.into_iter().map(|candidate| FrontPoint {
+        design: problem.values(&candidate.design),
+        evaluation: candidate.evaluation.clone(),
+        residual: f64::INFINITY,
+        violation: violation(candidate, scales),
+    });
+    Front {
+        points: points.collect(),
+        stopped: tried.stopped,
+        has_conditions: false,
+    }
+}
+
+/// A front moved down, led to its ends and filled, for which so many designs are tried; and whether it was stopped.
+fn filled(
+    problem: &dyn Problem,
+    members: &[Candidate],
+    (budget, goals): (usize, usize),
+    workers: &dyn Workers,
+    hears: Hears,
+) -> (Vec<Refined>, bool) {
+    // Of two goals gaps are filled afterwards, so that few designs lead as far as many.
+    let some = match goals {
+        2 => evenly(members, (budget / 2 / OF_POINT).max(goals)),
+        _ => members.to_vec(),
+    };
+    let options = (&local(), budget / 2);
+    let refined = refine(problem, &some, options, workers, hears);
+    if refined.ended == Ended::Stopped {
+        return (refined.members, true);
+    }
+    let options = (&local(), budget.saturating_sub(refined.evaluations));
+    let widened = widen(problem, refined.members, POINTS, options, workers, hears);
+    (widened.members, widened.ended == Ended::Stopped)
+}
+
+/// So many at most of a list, from its first to its last.
+fn evenly<T: Clone>(all: &[T], most: usize) -> Vec<T> {
+    if all.len() <= most {
+        return all.to_vec();
+    }
+    let place = |k: usize| k * (all.len() - 1) / most.saturating_sub(1).max(1);
+    (0..most).map(|k| all[place(k)].clone()).collect()
+}
+
+/// The front of designs with values of the catalogues next to those of a front: one is sought for every combination, and what none of the others
+/// betters is kept.
+fn near_front(
+    problem: &Designs<'_, '_>,
+    near: &Near,
+    members: &[Refined],
+    (budget, scales): (usize, &Scales),
+    workers: &dyn Workers,
+    hears: Hears,
+) -> (Vec<Refined>, bool) {
+    let mut all: Vec<(Held, Vec<Vec<f64>>)> = Vec::new();
+    for member in members {
+        for (held, start) in near.held(problem, &member.candidate.design) {
+            match all
+                .iter_mut()
+                .find(|(known, _)| known.bounds == held.bounds)
+            {
+                Some((_, starts)) => starts.push(start),
+                None => all.push((held, vec![start])),
+            }
+        }
+    }
+    let each = budget / all.len().max(1);
+    let goals = problem.objectives();
+    let mut found: Vec<Refined> = Vec::new();
+    let mut nearest: Option<(f64, Candidate)> = None;
+    for (held, starts) in &all {
+        let starts = evenly(starts, (each / 2 / OF_POINT).max(goals));
+        let known = evaluate_all(held, &starts, workers).into_iter();
+        let known = starts.into_iter().zip(known);
+        let known = known.map(|(design, evaluation)| Candidate { design, evaluation });
+        let known: Vec<Candidate> = known.filter(|c| c.evaluation.is_defined()).collect();
+        let own = each.saturating_sub(known.len());
+        let (own, stopped) = filled(held, &known, (own, goals), workers, hears);
+        for member in own {
+            let missed = violation(&member.candidate, scales);
+            if nearest.as_ref().is_none_or(|(least, _)| missed < *least) {
+                nearest = Some((missed, member.candidate.clone()));
+            }
+            // Limits that rounding broke may not be kept again.
+            if missed <= KEPT {
+                found.push(member);
+            }
+        }
+        if stopped {
+            return (joined(found, POINTS), true);
+        }
+    }
+    if found.is_empty() {
+        found.extend(nearest.map(|(_, candidate)| Refined {
+            candidate,
+            residual: f64::INFINITY,
+            shares: Vec::new(),
+            ended: Ended::Stuck,
+        }));
+    }
+    (joined(found, POINTS), false)
+}
