@@ -481,6 +481,44 @@ C = \"left of B -> D\"
     }
 }
 
+/// Forces of many designs are those of rows with all their evidence, to the bit, and what is missing is missing for the same reason: beyond a limit, and
+/// where no law passes a place.
+#[test]
+fn forces_of_many_designs_are_those_of_rows_to_the_bit() {
+    let path = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../examples/seeds/tractor-hitch.toml"
+    );
+    let mut s = Model::from_path(path).unwrap().compile().unwrap().session();
+    let weights = [9000.0, 12_000.0];
+    let designs = Designs::from_columns([("weight", weights.to_vec())]).expect("designs");
+    let places = [0.36, 0.40, 0.47, 0.53, 0.9];
+    let measures = ["force(lift)", "reaction(K)", "speed(M)", "max(force(lift))"];
+    let v = s.many(&designs, places, measures).expect("values");
+    assert!(v.in_lanes.iter().all(|lanes| !lanes));
+    let (mut there, mut missing) = (0, 0);
+    for (design, weight) in weights.iter().enumerate() {
+        s.set("weight", *weight).expect("it can be set");
+        let t = s.sweep("lift", places, measures).expect("rows");
+        for place in 0..places.len() {
+            for measure in 0..measures.len() {
+                let many = v.get(measure, place, design);
+                let one = t.columns[measure].values[place];
+                assert_eq!(many.is_nan(), one.is_nan(), "{measure} {place}");
+                if one.is_nan() {
+                    missing += 1;
+                    assert_eq!(v.reason(measure, place, design), t.reason(place));
+                    assert!(t.reason(place).is_some());
+                } else {
+                    there += 1;
+                    assert_eq!(many.to_bits(), one.to_bits(), "{measure} {place}");
+                }
+            }
+        }
+    }
+    assert!(there >= 16 && missing >= 8, "{there} {missing}");
+}
+
 #[test]
 fn designs_that_do_not_close_or_make_no_sense_are_counted_with_their_reasons() {
     let mut s = crank_rocker();
