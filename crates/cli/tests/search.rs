@@ -6,7 +6,9 @@ use std::fs;
 use std::path::Path;
 use std::time::Duration;
 
-use support::{RECORD, contents, ends, folder, kempe, names, said, signal, start};
+use support::{
+    Dice, RECORD, contents, ends, folder, kempe, killed, names, said, same, signal, start,
+};
 
 /// A search whose every design takes a while, so that it can be killed on its way: a crank-rocker whose largest angular acceleration is to be small.
 const MODEL: &str = "units = { length = \"mm\", angle = \"deg\" }\n[parameters]\na = \"20 mm\"\nb = \"50 mm\"\nc = \"40 mm\"\n[links]\n\
@@ -37,16 +39,6 @@ fn whole(at: &Path) -> Vec<(String, Vec<u8>)> {
     all
 }
 
-fn same(found: &[(String, Vec<u8>)], wanted: &[(String, Vec<u8>)]) {
-    let names = |all: &[(String, Vec<u8>)]| -> Vec<String> {
-        all.iter().map(|(name, _)| name.clone()).collect()
-    };
-    assert_eq!(names(found), names(wanted));
-    for ((name, own), (_, other)) in found.iter().zip(wanted) {
-        assert!(own == other, "{name} differs");
-    }
-}
-
 /// How many parts of a search there are.
 fn parts(at: &Path) -> usize {
     let folder = at.join("out/best.parts");
@@ -56,19 +48,6 @@ fn parts(at: &Path) -> usize {
             .filter(|name| !name.starts_with('.'))
             .count(),
         false => 0,
-    }
-}
-
-/// Numbers that look random and are the same each time (Knuth's linear congruences).
-struct Dice(u64);
-
-impl Dice {
-    fn roll(&mut self, below: u64) -> u64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 33) % below
     }
 }
 
@@ -84,22 +63,8 @@ fn a_search_that_is_killed_at_any_moment_goes_on_to_the_same_bytes() {
         let wanted = whole(&at.join("whole"));
         assert!(wanted.iter().any(|(name, _)| name == "01.toml"));
         for _ in 0..2 {
-            let mut kept = 0;
-            for _ in 0..3 {
-                let mut child = start(at, &RUN);
-                let more = kept + 1 + dice.roll(4) as usize;
-                while parts(at) < more && child.try_wait().expect("a state").is_none() {
-                    std::thread::sleep(Duration::from_millis(1));
-                }
-                std::thread::sleep(Duration::from_millis(dice.roll(40)));
-                child.kill().expect("killed");
-                child.wait().expect("it ended");
-                let now = parts(at);
-                // Where it came to its end, it starts anew.
-                let ended = at.join("out/report.html").exists();
-                assert!(now >= kept || ended, "parts are lost");
-                kept = now;
-            }
+            let more = |dice: &mut Dice| 1 + dice.roll(4) as usize;
+            let kept = killed(at, &RUN, 3, || parts(at), more, &mut dice);
             let output = kempe(at, &RUN);
             assert_eq!(output.status.code(), Some(0), "{}", said(&output));
             if kept > 0 {

@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use support::{RECORD, command, contents, ends, folder, kempe, names, said, start};
+use support::{Dice, RECORD, command, contents, ends, folder, kempe, killed, names, said, same};
 
 /// 96 designs in 6 parts, some of which cannot turn.
 const MODEL: &str = "units = { length = \"mm\", angle = \"deg\" }\n[parameters]\na = \"20 mm\"\nb = \"50 mm\"\n[links]\n\
@@ -52,16 +52,6 @@ fn undisturbed(at: &Path) -> Vec<(String, Vec<u8>)> {
     all
 }
 
-fn same(found: &[(String, Vec<u8>)], wanted: &[(String, Vec<u8>)]) {
-    let names = |all: &[(String, Vec<u8>)]| -> Vec<String> {
-        all.iter().map(|(name, _)| name.clone()).collect()
-    };
-    assert_eq!(names(found), names(wanted));
-    for ((name, own), (_, other)) in found.iter().zip(wanted) {
-        assert!(own == other, "{name} differs");
-    }
-}
-
 /// The files of parts in a folder.
 fn parts(at: &Path) -> Vec<PathBuf> {
     let Ok(entries) = fs::read_dir(at) else {
@@ -81,19 +71,6 @@ fn parts(at: &Path) -> Vec<PathBuf> {
     all
 }
 
-/// Numbers that look random and are the same each time (Knuth's linear congruences).
-struct Dice(u64);
-
-impl Dice {
-    fn roll(&mut self, below: u64) -> u64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 33) % below
-    }
-}
-
 #[test]
 fn a_run_that_is_killed_at_any_moment_goes_on_to_the_same_bytes() {
     let folder = place();
@@ -101,26 +78,9 @@ fn a_run_that_is_killed_at_any_moment_goes_on_to_the_same_bytes() {
     let wanted = undisturbed(at);
     let mut dice = Dice(20_261_124);
     for _ in 0..4 {
-        let mut kept = 0;
-        for _ in 0..3 {
-            let mut child = start(at, &RUN);
-            let more = kept + dice.roll(3) as usize;
-            while parts(&at.join("out/family.parts")).len() < more
-                && child.try_wait().expect("a state").is_none()
-            {
-                std::thread::sleep(Duration::from_millis(1));
-            }
-            std::thread::sleep(Duration::from_millis(dice.roll(40)));
-            child.kill().expect("killed");
-            child.wait().expect("it ended");
-            let now = parts(&at.join("out/family.parts")).len();
-            // Where it came to its end, it starts anew.
-            assert!(
-                now >= kept || at.join("out/report.html").exists(),
-                "parts are lost"
-            );
-            kept = now;
-        }
+        let there = || parts(&at.join("out/family.parts")).len();
+        let more = |dice: &mut Dice| dice.roll(3) as usize;
+        let kept = killed(at, &RUN, 3, there, more, &mut dice);
         let output = kempe(at, &RUN);
         assert_eq!(output.status.code(), Some(0), "{}", said(&output));
         if kept > 0 {

@@ -9,7 +9,7 @@ use kempe_linear::symmetric_eigen;
 use kempe_number::{Random, math};
 
 use crate::generations::{Found, Generations, STRICTLY, find};
-use crate::problem::{Evaluation, Problem, Scales};
+use crate::problem::{self, Evaluation, Problem, Scales};
 use crate::progress::Hears;
 use crate::space::Space;
 use crate::sqp::SqpOptions;
@@ -109,9 +109,7 @@ impl CmaEs {
             bounds: problem.bounds().to_vec(),
             options: options.clone(),
             random: Random(options.seed),
-            scales: problem
-                .scales()
-                .filter(|s| s.fits(functions[0], functions[1])),
+            scales: problem::scales(problem),
             mean: Vec::new(),
             step: 0.0,
             covariance: Vec::new(),

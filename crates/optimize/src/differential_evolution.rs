@@ -6,7 +6,7 @@ use kempe_number::{Random, math};
 
 use crate::generations::{Found, Generations, STRICTLY, find};
 use crate::halton::halton;
-use crate::problem::{Evaluation, Problem, Scales};
+use crate::problem::{self, Evaluation, Problem, Scales};
 use crate::progress::Hears;
 use crate::space::Space;
 use crate::sqp::SqpOptions;
@@ -97,14 +97,11 @@ impl DifferentialEvolution {
     /// The start of a search.
     pub fn new(problem: &dyn Problem, options: &DifferentialEvolutionOptions) -> Self {
         let functions = [problem.objectives(), problem.constraints()];
-        let given = problem
-            .scales()
-            .filter(|s| s.fits(functions[0], functions[1]));
         Self {
             bounds: problem.bounds().to_vec(),
             options: options.clone(),
             random: Random(options.seed),
-            scales: given,
+            scales: problem::scales(problem),
             population: Vec::new(),
             archive: Vec::new(),
             memory: vec![[FIRST; 2]; MEMORY],

@@ -4,7 +4,7 @@
 //! Rinnooy Kan and G. T. Timmer's multi-start methods (1987).
 
 use crate::halton::halton;
-use crate::problem::{Problem, Scales, evaluate_all};
+use crate::problem::{self, Problem, Scales, evaluate_all};
 use crate::progress::{Ended, Hears, Progress};
 use crate::space::Space;
 use crate::sqp::{Going, Optimum, SqpOptions, side_by_side};
@@ -153,8 +153,7 @@ pub fn multi_start(
 /// The problem's scales, or what is typical of the samples.
 fn scales_of(problem: &dyn Problem, candidates: &[Candidate]) -> Scales {
     let (objectives, constraints) = (problem.objectives(), problem.constraints());
-    let given = problem.scales().filter(|s| s.fits(objectives, constraints));
-    given.unwrap_or_else(|| {
+    problem::scales(problem).unwrap_or_else(|| {
         let evaluations: Vec<_> = candidates.iter().map(|c| c.evaluation.clone()).collect();
         Scales::typical(&evaluations, objectives, constraints)
     })

@@ -5,7 +5,7 @@ use kempe_number::Random;
 use crate::dominance::{crowding, fronts};
 use crate::generations::{FEASIBLE, Generated, Generations, STRICTLY, generations};
 use crate::halton::halton;
-use crate::problem::{Evaluation, Problem, Scales};
+use crate::problem::{self, Evaluation, Problem, Scales};
 use crate::progress::{Ended, Hears};
 use crate::space::Space;
 use crate::standing::{Candidate, Standing};
@@ -76,9 +76,7 @@ impl Nsga2 {
             bounds: problem.bounds().to_vec(),
             options: options.clone(),
             random: Random(options.seed),
-            scales: problem
-                .scales()
-                .filter(|s| s.fits(functions[0], functions[1])),
+            scales: problem::scales(problem),
             population: Vec::new(),
             asked: Vec::new(),
             evaluations: 0,

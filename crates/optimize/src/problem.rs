@@ -186,6 +186,12 @@ pub(crate) fn largest(values: impl Iterator<Item = f64>) -> f64 {
     values.fold(f64::NEG_INFINITY, f64::max)
 }
 
+/// The problem's own scales, if it has some that fit it.
+pub(crate) fn scales(problem: &dyn Problem) -> Option<Scales> {
+    let (objectives, constraints) = (problem.objectives(), problem.constraints());
+    problem.scales().filter(|s| s.fits(objectives, constraints))
+}
+
 /// What a problem says of a design, with what is no number or is missing as a lack.
 pub(crate) fn evaluate(problem: &dyn Problem, design: &[f64]) -> Evaluation {
     let evaluation = problem.evaluate(design);

@@ -1,6 +1,9 @@
 //! Fits of paths and motions: linkages sampled by closed forms and found again, in any size and with any timing; what limits do to them; what is told.
 #![allow(clippy::unwrap_used)]
 
+#[path = "support/read.rs"]
+mod read;
+
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
@@ -8,6 +11,7 @@ use kempe_model::Model;
 use kempe_number::Random;
 use kempe_number::math::{acos, atan2, cos, hypot, sin};
 use kempe_study::{Silent, StudyResult, run};
+use read::read;
 
 /// The parameters of a four-bar: pivot, tilt, ground, crank, coupler, rocker, the point along and beside the coupler.
 const NAMES: [&str; 9] = [
@@ -90,19 +94,6 @@ impl Bar {
         )
         .unwrap();
         read(&text)
-    }
-}
-
-fn read(text: &str) -> Model {
-    match Model::from_toml(text, "test", &mut |_| Err(String::new())) {
-        Ok(checked) => checked.model,
-        Err(found) => panic!(
-            "{}",
-            found
-                .iter()
-                .map(|d| d.render_plain("test", text))
-                .collect::<String>()
-        ),
     }
 }
 

@@ -1,6 +1,9 @@
 //! Optimisation of mechanisms: optima against closed forms and published ones, what limits cost, catalogues, fronts, what cannot be.
 #![allow(clippy::unwrap_used)]
 
+#[path = "support/read.rs"]
+mod read;
+
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 
@@ -10,6 +13,7 @@ use kempe_number::math;
 use kempe_study::{
     Done, Parts, Progress, Silent, Stage, StudyResult, check, run, run_in_parts, run_with,
 };
+use read::read;
 
 const ROCKER: &str = r#"
 units = { length = "mm", angle = "deg" }
@@ -31,19 +35,6 @@ mu = "transmission_angle(C)"
 [studies.turn]
 kind = "motion"
 "#;
-
-fn read(text: &str) -> Model {
-    match Model::from_toml(text, "test", &mut |_| Err(String::new())) {
-        Ok(checked) => checked.model,
-        Err(found) => panic!(
-            "{}",
-            found
-                .iter()
-                .map(|d| d.render_plain("test", text))
-                .collect::<String>()
-        ),
-    }
-}
 
 fn best(study: &str) -> StudyResult {
     let model = read(&format!(

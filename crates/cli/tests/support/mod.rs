@@ -89,3 +89,55 @@ pub fn signal(child: &Child, name: &str) {
         .status();
     assert!(sent.expect("kill runs").success());
 }
+
+/// The files that are expected, with what they hold, and no others.
+pub fn same(found: &[(String, Vec<u8>)], wanted: &[(String, Vec<u8>)]) {
+    let names = |all: &[(String, Vec<u8>)]| -> Vec<String> {
+        all.iter().map(|(name, _)| name.clone()).collect()
+    };
+    assert_eq!(names(found), names(wanted));
+    for ((name, own), (_, other)) in found.iter().zip(wanted) {
+        assert!(own == other, "{name} differs");
+    }
+}
+
+/// Numbers that look random and are the same each time (Knuth's linear congruences).
+pub struct Dice(pub u64);
+
+impl Dice {
+    pub fn roll(&mut self, below: u64) -> u64 {
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 33) % below
+    }
+}
+
+/// Starts the same run again and again, with results in `out`, and kills it a moment after it has so many parts more; how many there are in the end.
+pub fn killed(
+    at: &Path,
+    run: &[&str],
+    times: usize,
+    parts: impl Fn() -> usize,
+    mut more: impl FnMut(&mut Dice) -> usize,
+    dice: &mut Dice,
+) -> usize {
+    let mut kept = 0;
+    for _ in 0..times {
+        let mut child = start(at, run);
+        let wanted = kept + more(dice);
+        while parts() < wanted && child.try_wait().expect("a state").is_none() {
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        std::thread::sleep(Duration::from_millis(dice.roll(40)));
+        child.kill().expect("killed");
+        child.wait().expect("it ended");
+        let now = parts();
+        // Where it came to its end, it starts anew.
+        let ended = at.join("out/report.html").exists();
+        assert!(now >= kept || ended, "parts are lost");
+        kept = now;
+    }
+    kept
+}
