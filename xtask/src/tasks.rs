@@ -44,7 +44,8 @@ pub fn test(fast: bool) -> Result<(), String> {
         step(cargo(&test, &[]));
     }
     if !fast {
-        step(wasm::wasm());
+        // The tests were built with the program.
+        step(wasm::against_program());
         let doc = ["doc", "--workspace", "--locked", "--no-deps"];
         step(cargo(&doc, &[("RUSTDOCFLAGS", "-D warnings")]));
     }

@@ -38,12 +38,22 @@ const DEBIAN_SOURCE: &str = "/usr/lib/rustlib/src/rust/library/std";
 const DEBIAN_LINKER: &str = "wasm-ld-19";
 const DEBIAN_PACKAGES: &[&str] = &["rustc-web", "cargo-web", "rust-web-src", "lld-19"];
 
-/// Builds the module and holds its answers against the native program's.
+/// Builds the module and the native program, and holds the module's answers against the program's.
 ///
 /// # Errors
 ///
 /// What is missing, did not build or differs.
 pub fn wasm() -> Result<(), String> {
+    cargo(&["build", "--locked", "--package", "kempe-cli"], &[])?;
+    against_program()
+}
+
+/// Builds the module and holds its answers against those of the native program that stands there.
+///
+/// # Errors
+///
+/// What is missing, did not build or differs.
+pub fn against_program() -> Result<(), String> {
     let missing = EXAMPLES.iter().filter(|example| !model(example).is_file());
     let missing: Vec<&str> = missing.copied().collect();
     if !missing.is_empty() {
@@ -56,7 +66,6 @@ pub fn wasm() -> Result<(), String> {
     let module = build(&builder()?)?;
     let size = fs::metadata(&module).map_or(0, |m| m.len());
     println!("{} has {:.1} MB", module.display(), size as f64 * 1e-6);
-    cargo(&["build", "--locked", "--package", "kempe-cli"], &[])?;
     let results = target_folder().join("wasm-native");
     if results.exists() {
         fs::remove_dir_all(&results).map_err(|error| format!("{}: {error}", results.display()))?;
