@@ -14,6 +14,7 @@ mod quadrature;
 pub mod row_note;
 mod sampler;
 pub mod sensitivity;
+pub mod side_by_side;
 pub mod state;
 mod states_along;
 mod statistic_note;

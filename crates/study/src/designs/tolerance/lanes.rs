@@ -4,14 +4,15 @@ use std::sync::Arc;
 
 use kempe_batch::{Batch, Designs, Layout};
 use kempe_measure::DesignsInLanes;
+use kempe_measure::side_by_side::{Many, TOGETHER, ends};
 use kempe_model::{Measure, ParameterId, value};
 use kempe_motion::Motion;
 use kempe_motion::drive_path::{DrivePath, law_knots};
-use kempe_number::{Lanes, Number, math};
+use kempe_number::{InstructionSet, Lanes, Number, math};
 use kempe_units::Expr;
 
 use super::extreme::{THROUGH, largest};
-use super::program::{Many, Of, Program, Seen, TOGETHER};
+use super::program::{Of, Program, Seen};
 use crate::designs::bench::Bench;
 use crate::quantity::Quantity;
 
@@ -75,6 +76,20 @@ pub(super) struct Found {
     pub numbers: Vec<Many>,
     /// Whether each piece closes everywhere.
     pub closes: [bool; TOGETHER],
+}
+
+/// How curves of some pieces run.
+pub(super) struct Along<'l> {
+    of: &'l InLanes,
+    tracks: &'l [Vec<Many>],
+}
+
+impl Along<'_> {
+    /// A curve of the study at a row; none where lanes do not tell it.
+    pub fn curve(&self, curve: usize, row: usize) -> Option<&Many> {
+        let (track, place) = (self.of.curves[curve]?, self.of.rows.get(row)?);
+        Some(&self.tracks[track][*place])
+    }
 }
 
 impl InLanes {
@@ -214,7 +229,7 @@ impl InLanes {
         count: usize,
         drawn: impl Fn(usize, usize) -> f64,
         scratch: &mut Scratch,
-        mut each: impl FnMut(usize, Found, &dyn Fn(usize, usize) -> Many),
+        mut each: impl FnMut(usize, Found, Along<'_>),
     ) {
         let groups = count.min(PIECES).div_ceil(TOGETHER);
         let parameters: Vec<Vec<Many>> = (0..groups)
@@ -269,10 +284,12 @@ impl InLanes {
                         parameters: &parameters[group],
                         seats: &seats[group],
                     };
-                    closing[group] += seen.closing() * 0.0;
+                    for (sum, x) in closing[group].0.iter_mut().zip(seen.closing()) {
+                        *sum += x * 0.0;
+                    }
                     for (k, track) in self.program.tracks.iter().enumerate() {
                         if let Some(made_of) = &track.made_of {
-                            scratch.tracks[group * tracks + k][place] = seen.value(made_of);
+                            seen.put(made_of, &mut scratch.tracks[group * tracks + k][place]);
                         }
                     }
                 }
@@ -289,11 +306,7 @@ impl InLanes {
                 numbers: self.numbers_of(tracks, own),
                 closes: closing[group].0.map(|x| x == 0.0),
             };
-            let curve = |curve: usize, row: usize| match (self.curves[curve], self.rows.get(row)) {
-                (Some(track), Some(place)) => tracks[track][*place],
-                _ => Many::from_f64(f64::NAN),
-            };
-            each(group * TOGETHER, found, &curve);
+            each(group * TOGETHER, found, Along { of: self, tracks });
         }
     }
 
@@ -362,28 +375,12 @@ impl InLanes {
 
     /// The least and the greatest value over the grid, between its places too.
     fn extremes(&self, values: &[Many]) -> (Many, Many) {
-        let mut ends = [(Many::from_f64(f64::INFINITY), [0_u32; TOGETHER]); 2];
-        ends[1].0 = Many::from_f64(f64::NEG_INFINITY);
-        let [(low, low_at), (high, high_at)] = &mut ends;
-        let mut sum = Many::zero();
-        for (place, value) in values.iter().enumerate() {
-            sum += *value * 0.0;
-            for k in 0..TOGETHER {
-                let x = value.0[k];
-                if x < low.0[k] {
-                    (low.0[k], low_at[k]) = (x, place as u32);
-                }
-                if x > high.0[k] {
-                    (high.0[k], high_at[k]) = (x, place as u32);
-                }
-            }
-        }
-        let between = |lane: usize, at: u32, sign: f64| {
+        let ends = ends(InstructionSet::detect(), values);
+        let between = |lane: usize, at: usize, sign: f64| {
             // What is infinite or no number somewhere has no extreme here.
-            if sum.0[lane] != 0.0 {
+            if ends.finite.0[lane] != 0.0 {
                 return f64::NAN;
             }
-            let at = at as usize;
             let from = at
                 .saturating_sub(THROUGH / 2)
                 .min(self.grid.saturating_sub(THROUGH));
@@ -395,8 +392,8 @@ impl InLanes {
             sign * largest(&self.places[from..from + n], &own[..n], at - from)
         };
         (
-            Many::from_fn(|k| between(k, low_at[k], -1.0)),
-            Many::from_fn(|k| between(k, high_at[k], 1.0)),
+            Many::from_fn(|k| between(k, ends.low_at[k], -1.0)),
+            Many::from_fn(|k| between(k, ends.high_at[k], 1.0)),
         )
     }
 }

@@ -1,17 +1,12 @@
 //! Which numbers lanes can tell, and from what.
 
 use kempe_measure::is_of_poses;
+use kempe_measure::side_by_side::{Many, TOGETHER, angle};
 use kempe_mechanism::BodyId;
 use kempe_model::{Leaf, Measure, PointId, PoseMeasure, Statistic};
 use kempe_motion::Motion;
 use kempe_number::{Lanes, Number, math};
 use kempe_units::Expr;
-
-/// Pieces that are worked on together.
-pub(super) const TOGETHER: usize = 64;
-
-/// A number of several pieces.
-pub(super) type Many = Lanes<TOGETHER>;
 
 /// A formula of more leaves than this, named measures written out, is not taken apart for lanes.
 const MOST_LEAVES: usize = 400;
@@ -279,10 +274,15 @@ pub(super) struct Seen<'a> {
 
 impl Seen<'_> {
     #[inline(always)]
-    fn column(&self, column: usize) -> Many {
+    fn numbers(&self, column: usize) -> &[f64; TOGETHER] {
         let from = column * self.count + self.first;
         let own = self.columns.get(from..).and_then(|it| it.first_chunk());
-        own.map_or(Many::from_f64(f64::NAN), |it| Lanes(*it))
+        own.unwrap_or(&[f64::NAN; TOGETHER])
+    }
+
+    #[inline(always)]
+    fn column(&self, column: usize) -> Many {
+        Lanes(*self.numbers(column))
     }
 
     fn point(&self, point: usize) -> [Many; 2] {
@@ -296,13 +296,18 @@ impl Seen<'_> {
     }
 
     /// Finite where a piece closes.
-    pub fn closing(&self) -> Many {
-        self.column(0)
+    pub fn closing(&self) -> &[f64; TOGETHER] {
+        self.numbers(0)
     }
 
-    /// The value of a measure.
-    pub fn value(&self, made_of: &Expr<At>) -> Many {
-        made_of.eval(&mut |at| self.at(at))
+    /// Puts down the value of a measure.
+    pub fn put(&self, made_of: &Expr<At>, value: &mut Many) {
+        match made_of {
+            // Most often it is a coordinate as it stands, which is copied once.
+            Expr::Leaf(At::X(point)) => value.0.copy_from_slice(self.numbers(2 * point)),
+            Expr::Leaf(At::Y(point)) => value.0.copy_from_slice(self.numbers(2 * point + 1)),
+            _ => *value = made_of.eval(&mut |at| self.at(at)),
+        }
     }
 
     fn at(&self, at: &At) -> Many {
@@ -314,7 +319,7 @@ impl Seen<'_> {
             At::Angle(body, link) => {
                 let first = 2 * self.points + 4 * body;
                 let (c, s) = (self.column(first + 2), self.column(first + 3));
-                angle(c, s, self.near[body]) + self.seats[link]
+                angle(&c, &s, self.near[body]) + self.seats[link]
             }
             At::Distance(a, b) => {
                 let [x, y] = self.way(a, b);
@@ -330,7 +335,7 @@ impl Seen<'_> {
             }
             At::Between(corner, [a, b], folded, number) => {
                 let [c, s] = self.between(corner, [a, b], folded);
-                angle(c, s, self.near_betweens[number])
+                angle(&c, &s, self.near_betweens[number])
             }
         }
     }
@@ -358,29 +363,4 @@ impl Seen<'_> {
             }
         }
     }
-}
-
-/// The tangent of an angle from that of the file's own design below which a short series is exact.
-const NEAR: f64 = 0.125;
-
-/// The angle of a direction, not of unit length, to within half a turn of another: near it by a series, which is quicker by far for many.
-fn angle(c: Many, s: Many, [near, sin, cos]: [f64; 3]) -> Many {
-    let (y, x) = (s * cos - c * sin, c * cos + s * sin);
-    let mut is_near = true;
-    for k in 0..TOGETHER {
-        // What is no number comes out as none either way.
-        is_near &= !(y.0[k].abs() > NEAR * x.0[k]);
-    }
-    if !is_near {
-        return y.atan2(x) + near;
-    }
-    let t = y / x;
-    let square = t * t;
-    // t - t^3 / 3 + t^5 / 5 ...: the first term left out is below 1e-17 of the angle.
-    let mut sum = Many::from_f64(1.0 / 17.0);
-    for k in (0..8).rev() {
-        let sign = if k % 2 == 0 { 1.0 } else { -1.0 };
-        sum = sum * square + sign / f64::from(2 * k + 1);
-    }
-    t * sum + near
 }

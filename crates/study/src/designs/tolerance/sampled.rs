@@ -1,11 +1,12 @@
 //! Pieces are drawn, moved and measured: in lanes what lanes can tell, the rest one piece after the other.
 
 use kempe_batch::{Executor, Task};
+use kempe_measure::side_by_side::{TOGETHER, widen};
 use kempe_motion::Motion;
 use kempe_motion::progress::{Done, Progress, Silent, Stage};
+use kempe_number::InstructionSet;
 
 use super::lanes::{InLanes, PIECES};
-use super::program::TOGETHER;
 use super::sobol::Sobol;
 use super::source::{Kind, Source};
 use crate::designs::bench::{Bench, Refused};
@@ -103,6 +104,14 @@ impl Band {
         }
     }
 
+    /// Those of many pieces; the first ones are kept.
+    fn add_all(&mut self, row: usize, values: &[f64; TOGETHER], keep: usize) {
+        let range = [self.least[row], self.greatest[row]];
+        [self.least[row], self.greatest[row]] = widen(InstructionSet::detect(), range, values);
+        let kept = values.iter().take(keep).filter(|x| x.is_finite());
+        self.kept[row].extend(kept);
+    }
+
     fn append(&mut self, more: Self) {
         for (own, value) in self.least.iter_mut().zip(more.least) {
             *own = own.min(value);
@@ -198,7 +207,7 @@ impl Question<'_, '_> {
         for first in range.clone().step_by(PIECES) {
             let count = PIECES.min(range.end - first);
             let drawn = |piece: usize, k: usize| self.drawn(first + piece, k);
-            lanes.pieces(count, drawn, &mut scratch, |from, found, curve| {
+            lanes.pieces(count, drawn, &mut scratch, |from, found, along| {
                 let own = TOGETHER.min(count - from);
                 let sound =
                     |lane: usize| !self.may_be_unsound || self.is_sound(first + from + lane);
@@ -209,18 +218,21 @@ impl Question<'_, '_> {
                     let values = value.0.iter().zip(&good);
                     numbers.extend(values.map(|(x, good)| if *good { *x } else { f64::NAN }));
                 }
+                let all_good = own == TOGETHER && good.iter().all(|good| *good);
+                let keep = KEPT.saturating_sub(first + from).min(own);
                 for (k, band) in part.bands.iter_mut().enumerate() {
-                    if lanes.curves[k].is_none() {
-                        continue;
-                    }
                     for row in 0..self.rows.len() {
-                        let values = curve(k, row);
-                        for (lane, good) in good.iter().enumerate() {
-                            if *good {
-                                let keep = first + from + lane < KEPT;
-                                band.add(row, values.0[lane], keep);
-                            }
+                        let Some(values) = along.curve(k, row) else {
+                            break;
+                        };
+                        let mut counted = *values;
+                        if !all_good {
+                            let lanes = counted.0.iter_mut().enumerate();
+                            let bad =
+                                lanes.filter(|(lane, _)| !good.get(*lane).is_some_and(|it| *it));
+                            bad.for_each(|(_, value)| *value = f64::NAN);
                         }
+                        band.add_all(row, &counted.0, keep);
                     }
                 }
                 part.count += own;

@@ -27,30 +27,33 @@ impl Summary {
         let n = count as f64;
         let mean = first + finite.iter().map(|x| x - first).sum::<f64>() / n;
         let square: f64 = finite.iter().map(|x| (x - mean) * (x - mean)).sum();
-        finite.sort_unstable_by(f64::total_cmp);
+        let least = finite.iter().copied().min_by(f64::total_cmp);
+        let greatest = finite.iter().copied().max_by(f64::total_cmp);
         Some(Self {
             count,
             mean,
             deviation: (square / (n - 1.0).max(1.0)).sqrt(),
-            least: finite[0],
-            greatest: finite[count - 1],
+            least: least.unwrap_or(first),
+            greatest: greatest.unwrap_or(first),
             quantiles: PARTS.map(|part| {
                 let few = part.min(1.0 - part) * n < 1.0;
-                (!few).then(|| quantile(&finite, part))
+                (!few).then(|| quantile(&mut finite, part))
             }),
         })
     }
 }
 
-/// The value that a part of sorted values stays below.
-pub(super) fn quantile(sorted: &[f64], part: f64) -> f64 {
-    let Some(last) = sorted.len().checked_sub(1) else {
+/// The value that a part of all values stays below; their order changes.
+pub(super) fn quantile(values: &mut [f64], part: f64) -> f64 {
+    let Some(last) = values.len().checked_sub(1) else {
         return f64::NAN;
     };
-    let place = (part * sorted.len() as f64 - 0.5).clamp(0.0, last as f64);
+    let place = (part * values.len() as f64 - 0.5).clamp(0.0, last as f64);
     let below = place.floor() as usize;
-    let above = (below + 1).min(last);
-    sorted[below] + (place - below as f64) * (sorted[above] - sorted[below])
+    let (_, value, higher) = values.select_nth_unstable_by(below, f64::total_cmp);
+    let value = *value;
+    let above = higher.iter().copied().min_by(f64::total_cmp);
+    value + (place - below as f64) * (above.unwrap_or(value) - value)
 }
 
 /// How many of all are good, with the interval in which that lies at 95 %: E. B. Wilson, J. Amer. Statist. Assoc. 22 (1927) 209-212.

@@ -5,7 +5,7 @@ use kempe_number::text::significant;
 use kempe_units::Unit;
 
 use super::linear::Linear;
-use super::sampled::{Band, CHECKED, KEPT, KEPT_FOLLOWED, Pieces, Question};
+use super::sampled::{CHECKED, KEPT, KEPT_FOLLOWED, Pieces, Question};
 use super::source::Kind;
 use super::summary::{Counts, PARTS, Summary, Yield, quantile};
 use super::{Limited, Ready};
@@ -408,14 +408,15 @@ impl Teller<'_, '_> {
                 (0..followed).map(|row| finite(of(row))).collect()
             };
             let at = |values: &[f64], row: usize| values.get(row).copied().unwrap_or(f64::NAN);
-            let sorted = sorted(band);
-            let part = |part: f64| {
-                rows(&|row| sorted.get(row).map_or(f64::NAN, |own| quantile(own, part)))
-            };
+            let mut kept = band.kept.clone();
+            let [few, most] = [0.05, 0.95].map(|part| -> Vec<f64> {
+                let rows = kept.iter_mut();
+                rows.map(|own| quantile(own, part)).collect()
+            });
             let columns = [
                 column("least", rows(&|row| at(&band.least, row))),
-                column("5 %", part(0.05)),
-                column("95 %", part(0.95)),
+                column("5 %", rows(&|row| at(&few, row))),
+                column("95 %", rows(&|row| at(&most, row))),
                 column("greatest", rows(&|row| at(&band.greatest, row))),
             ];
             let own = result.table.column(&quantity.name);
@@ -485,15 +486,6 @@ impl Teller<'_, '_> {
             .note(format!("piece {}: {}", first + 1, self.question.why(first)));
         Some(told.help("narrow the tolerances, or move the design away from its limit"))
     }
-}
-
-fn sorted(band: &Band) -> Vec<Vec<f64>> {
-    let rows = band.kept.iter().cloned();
-    rows.map(|mut own| {
-        own.sort_unstable_by(f64::total_cmp);
-        own
-    })
-    .collect()
 }
 
 fn sampled(told: &[Told<'_>], count: usize) -> Listing {

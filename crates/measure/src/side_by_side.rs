@@ -1,0 +1,201 @@
+//! What is made of numbers of many designs side by side, on the best vector instructions that the processor has.
+
+use kempe_number::{InstructionSet, Lanes, Number, multiversion};
+
+/// Designs that stand side by side.
+pub const TOGETHER: usize = 64;
+
+/// A number of all of them.
+pub type Many = Lanes<TOGETHER>;
+
+/// The tangent of an angle from that of the file's own design below which a short series is exact.
+const NEAR: f64 = 0.125;
+/// Designs that fit into registers.
+const ABREAST: usize = 8;
+
+/// The least and the greatest of what runs along a motion, by design.
+#[derive(Clone, Debug)]
+pub struct Ends {
+    /// The least.
+    pub low: Many,
+    /// The first place where it is.
+    pub low_at: [usize; TOGETHER],
+    /// The greatest.
+    pub high: Many,
+    /// The first place where it is.
+    pub high_at: [usize; TOGETHER],
+    /// Zero for designs of which it is a finite number all along.
+    pub finite: Many,
+}
+
+/// The angle of a direction, not of unit length, to within half a turn of another (that angle, its sine and its cosine): near it by a
+/// series, which is quicker by far for many.
+pub fn angle(c: &Many, s: &Many, from: [f64; 3]) -> Many {
+    let mut found = Many::zero();
+    match angles_near(InstructionSet::detect(), c, s, from, &mut found) {
+        true => found,
+        false => {
+            let [near, sin, cos] = from;
+            let (y, x) = (*s * cos - *c * sin, *c * cos + *s * sin);
+            y.atan2(x) + near
+        }
+    }
+}
+
+multiversion! {
+    fn angles_near(set: InstructionSet, c: &Many, s: &Many, from: [f64; 3], found: &mut Many) -> bool = by_series;
+}
+
+/// Whether all are near, and then the angles.
+#[cfg_attr(not(debug_assertions), inline(always))]
+fn by_series(c: &Many, s: &Many, [near, sin, cos]: [f64; 3], found: &mut Many) -> bool {
+    let mut is_near = true;
+    for first in (0..TOGETHER).step_by(ABREAST) {
+        let [c, s] = [c, s].map(|it| Lanes::<ABREAST>::from_fn(|k| it.0[first + k]));
+        let (y, x) = (s * cos - c * sin, c * cos + s * sin);
+        for k in 0..ABREAST {
+            // What is no number comes out as none either way.
+            is_near &= !(y.0[k].abs() > NEAR * x.0[k]);
+        }
+        let t = y / x;
+        let square = t * t;
+        // t - t^3 / 3 + t^5 / 5 ...: the first term left out is below 1e-17 of the angle.
+        let mut sum = Lanes::from_f64(1.0 / 17.0);
+        for k in (0..8).rev() {
+            let sign = if k % 2 == 0 { 1.0 } else { -1.0 };
+            sum = sum * square + sign / f64::from(2 * k + 1);
+        }
+        found.0[first..first + ABREAST].copy_from_slice(&(t * sum + near).0);
+    }
+    is_near
+}
+
+multiversion! {
+    /// The least and the greatest of what runs along a motion.
+    pub fn ends(set: InstructionSet, values: &[Many]) -> Ends = ends_in_lanes;
+}
+
+#[cfg_attr(not(debug_assertions), inline(always))]
+fn ends_in_lanes(values: &[Many]) -> Ends {
+    let mut all = Ends {
+        low: Many::zero(),
+        low_at: [0; TOGETHER],
+        high: Many::zero(),
+        high_at: [0; TOGETHER],
+        finite: Many::zero(),
+    };
+    for first in (0..TOGETHER).step_by(ABREAST) {
+        let mut low = [f64::INFINITY; ABREAST];
+        let mut high = [f64::NEG_INFINITY; ABREAST];
+        let (mut low_at, mut high_at, mut finite) =
+            ([0.0; ABREAST], [0.0; ABREAST], [0.0; ABREAST]);
+        for (place, value) in values.iter().enumerate() {
+            // As a number of the same width as the values.
+            let place = place as f64;
+            for k in 0..ABREAST {
+                let x = value.0[first + k];
+                finite[k] += x * 0.0;
+                let (lower, higher) = (x < low[k], x > high[k]);
+                low[k] = if lower { x } else { low[k] };
+                low_at[k] = if lower { place } else { low_at[k] };
+                high[k] = if higher { x } else { high[k] };
+                high_at[k] = if higher { place } else { high_at[k] };
+            }
+        }
+        for k in 0..ABREAST {
+            let lane = first + k;
+            (all.low.0[lane], all.high.0[lane]) = (low[k], high[k]);
+            (all.low_at[lane], all.high_at[lane]) = (low_at[k] as usize, high_at[k] as usize);
+            all.finite.0[lane] = finite[k];
+        }
+    }
+    all
+}
+
+multiversion! {
+    /// Widens the range from the least to the greatest of some values by those of designs; what is no number does not count.
+    pub fn widen(set: InstructionSet, range: [f64; 2], values: &[f64; TOGETHER]) -> [f64; 2] = widen_in_lanes;
+}
+
+#[cfg_attr(not(debug_assertions), inline(always))]
+fn widen_in_lanes(range: [f64; 2], values: &[f64; TOGETHER]) -> [f64; 2] {
+    let (mut low, mut high) = ([range[0]; ABREAST], [range[1]; ABREAST]);
+    for eight in values.chunks_exact(ABREAST) {
+        for k in 0..ABREAST {
+            low[k] = if eight[k] < low[k] { eight[k] } else { low[k] };
+            high[k] = if eight[k] > high[k] {
+                eight[k]
+            } else {
+                high[k]
+            };
+        }
+    }
+    low.iter()
+        .zip(&high)
+        .fold(range, |[a, b], (low, high)| [a.min(*low), b.max(*high)])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use kempe_number::{Random, math};
+
+    /// Numbers between -1 and 1.
+    fn drawn(random: &mut Random) -> Many {
+        Many::from_fn(|_| 2.0 * random.uniform() - 1.0)
+    }
+
+    #[test]
+    fn angles_are_those_of_the_arc_tangent_near_and_far() {
+        let mut random = Random(7);
+        for reach in [0.1, 0.124, 0.126, 3.0] {
+            let near = 40.0 * random.uniform() - 20.0;
+            let (sin, cos) = math::sin_cos(near);
+            let length = drawn(&mut random) * 0.5 + 1.0;
+            let own = drawn(&mut random) * reach + near;
+            let (s, c) = own.sin_cos();
+            let found = angle(&(c * length), &(s * length), [near, sin, cos]);
+            for k in 0..TOGETHER {
+                assert!((found.0[k] - own.0[k]).abs() < 2e-14, "{reach}: {k}");
+            }
+        }
+    }
+
+    #[test]
+    fn ends_are_the_first_of_all_and_what_is_no_number_is_told() {
+        let mut random = Random(3);
+        let mut values: Vec<Many> = (0..50).map(|_| drawn(&mut random)).collect();
+        values[20].0[5] = f64::NAN;
+        values[30].0[6] = f64::INFINITY;
+        values[10].0[7] = -2.0;
+        values[40].0[7] = -2.0;
+        let found = ends(InstructionSet::detect(), &values);
+        for k in 0..TOGETHER {
+            let own: Vec<f64> = values.iter().map(|value| value.0[k]).collect();
+            let low = own.iter().copied().fold(f64::INFINITY, f64::min);
+            let high = own.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            assert_eq!((found.low.0[k], found.high.0[k]), (low, high));
+            assert_eq!(own.iter().position(|x| *x == low), Some(found.low_at[k]));
+            assert_eq!(own.iter().position(|x| *x == high), Some(found.high_at[k]));
+            assert_eq!(found.finite.0[k] == 0.0, k != 5 && k != 6);
+        }
+    }
+
+    #[test]
+    fn a_range_is_widened_by_numbers_alone() {
+        let mut random = Random(4);
+        let mut values = drawn(&mut random);
+        (values.0[3], values.0[60]) = (-5.0, 4.0);
+        assert_eq!(
+            widen(InstructionSet::detect(), [-1.0, 1.0], &values.0),
+            [-5.0, 4.0]
+        );
+        assert_eq!(
+            widen(InstructionSet::detect(), [-6.0, 7.0], &values.0),
+            [-6.0, 7.0]
+        );
+        let none = [f64::NAN; TOGETHER];
+        let empty = [f64::INFINITY, f64::NEG_INFINITY];
+        assert_eq!(widen(InstructionSet::detect(), empty, &none), empty);
+    }
+}
