@@ -13,6 +13,11 @@ use crate::spline::{piece, spline_at};
 /// their rounding, and drives that end together do so to the last bit.
 pub const SAME_END: f64 = 1e-12;
 
+/// Secants that close in on a time before bisection does.
+const SECANTS: usize = 3;
+/// How far to both sides of a secant's root the time is looked for, in parts of it.
+const NEAR_SECANT: f64 = 4.0 * f64::EPSILON;
+
 /// A piece of a law with its place in time.
 struct TimedPiece<'a, T> {
     piece: &'a LawPiece,
@@ -226,7 +231,8 @@ impl TimedPiece<'_, f64> {
             .find_map(|w| self.crossing(x, *w.first()?, *w.last()?))
     }
 
-    /// The time in `[low, high]`, between which the coordinate is monotone, where it is `x`; by bisection to the last bit.
+    /// The time in `[low, high]`, between which the coordinate is monotone, where it is `x`: by secants to near it, then by bisection to the
+    /// last bit.
     fn crossing(&self, x: f64, mut low: f64, mut high: f64) -> Option<f64> {
         let rising = self.at(high) >= self.at(low);
         let beyond = |t: f64| {
@@ -240,6 +246,20 @@ impl TimedPiece<'_, f64> {
         let reached = |t: f64| (t == self.duration && self.to == x) || beyond(t);
         if !reached(high) || (beyond(low) && self.at(low) != x) {
             return None;
+        }
+        for _ in 0..SECANTS {
+            let (below, above) = (self.at(low), self.at(high));
+            let near = low + (x - below) / (above - below) * (high - low);
+            let margin = NEAR_SECANT * near.abs();
+            for time in [near - margin, near + margin] {
+                if low < time && time < high {
+                    if reached(time) {
+                        high = time
+                    } else {
+                        low = time
+                    }
+                }
+            }
         }
         loop {
             let middle = low + (high - low) / 2.0;
