@@ -11,7 +11,7 @@ use kempe_batch::{Serial, Threads};
 use kempe_model::{Diagnostic, Model};
 use kempe_number::math;
 use kempe_study::{
-    Done, Parts, Progress, Silent, Stage, StudyResult, check, run, run_in_parts, run_with,
+    Done, Figure, Parts, Progress, Silent, Stage, StudyResult, check, run, run_in_parts, run_with,
 };
 use read::read;
 
@@ -336,6 +336,27 @@ fn a_front_that_is_none_says_so() {
     assert!(told.contains("no design keeps all limits"), "{told}");
     assert!(!told.contains("gaps"), "{told}");
     assert!(result.diagnostics.iter().any(|d| d.code == "infeasible"));
+}
+
+/// A goal that is varied itself stands once in the table, and the front is drawn over it.
+#[test]
+fn a_goal_may_be_what_is_varied() {
+    let result = best(
+        "vary = { a = ['15 mm', '22 mm'], b = ['48 mm', '60 mm'] }\nmaximize = 'play'\nminimize = 'b'\ndesigns = 60\n",
+    );
+    let names: Vec<&str> = (result.table.columns.iter())
+        .map(|c| c.name.as_str())
+        .collect();
+    for (k, name) in names.iter().enumerate() {
+        assert!(!names[..k].contains(name), "{names:?}");
+    }
+    let drawn = result.figures.iter().find_map(|figure| match figure {
+        Figure::Front { x, y, .. } => Some([x.name.as_str(), y.name.as_str()]),
+        _ => None,
+    });
+    let mut drawn = drawn.expect("a front");
+    drawn.sort_unstable();
+    assert_eq!(drawn, ["b", "play"]);
 }
 
 /// The steering linkage: 58414.257 N for a window of 180 degrees, by differential evolution and SLSQP over areas of triangles.

@@ -1,6 +1,6 @@
 //! What is said of designs that were found.
 
-use kempe_model::{Diagnostic, Model, OptimizeStudy, Severity, StudyKind};
+use kempe_model::{Diagnostic, Goal, Model, OptimizeStudy, Severity, StudyKind};
 use kempe_motion::progress::Silent;
 use kempe_number::text::significant;
 use kempe_optimize::{Ended, Evaluation, Optimum};
@@ -249,6 +249,10 @@ impl<'b, 'm> Teller<'b, 'm> {
             columns.push(column);
         }
         for (k, goal) in self.study.goals.iter().enumerate() {
+            // A goal may be what is varied.
+            if columns.iter().any(|known| known.name == goal.number.name) {
+                continue;
+            }
             let unit = self.goal_unit(k);
             let mut column = Column::new(&goal.number.name, unit.clone());
             column.values = rows
@@ -639,7 +643,10 @@ impl<'b, 'm> Teller<'b, 'm> {
         if let Some(volume) = dominated(&all, own.as_ref()) {
             tell("hypervolume", volume);
         }
-        let first = 1 + self.study.vary.len();
+        let columns = &result.table.columns;
+        let place = |goal: &Goal| columns.iter().position(|c| c.name == goal.number.name);
+        let goals: Vec<usize> = self.study.goals.iter().filter_map(place).collect();
+        let first = goals.first().copied().unwrap_or(0);
         result.along = first;
         let known = own.as_ref().filter(|own| own.evaluation.is_defined());
         let own_goals: Option<Vec<f64>> = known.map(|own| {
@@ -647,17 +654,11 @@ impl<'b, 'm> Teller<'b, 'm> {
             let shown = goals.map(|k| shown(self.goal(k, &own.evaluation), &self.goal_unit(k)));
             shown.collect()
         });
-        let goals = result
-            .table
-            .columns
-            .iter()
-            .skip(first + 1)
-            .take(self.study.goals.len() - 1);
-        result.figures = goals
-            .zip(1..)
-            .map(|(column, k)| Figure::Front {
+        let figures = goals.iter().enumerate().skip(1);
+        result.figures = figures
+            .map(|(k, goal)| Figure::Front {
                 x: result.table.columns[first].clone(),
-                y: column.clone(),
+                y: result.table.columns[*goal].clone(),
                 own: own_goals.as_ref().map(|own| [own[0], own[k]]),
             })
             .collect();
