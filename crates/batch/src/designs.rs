@@ -136,40 +136,21 @@ pub(super) struct Work<'a> {
     pub runs: &'a [Vec<MotionPlace<'a>>],
 }
 
-/// Solves designs, lanes over them; returns how many poses close.
-pub(super) fn solve_designs(set: InstructionSet, work: &Work<'_>, out: &mut [&mut [f64]]) -> usize {
-    if has_wide_registers(set) {
-        solve_widely(set, work, out)
-    } else {
-        in_lanes::<8, false>(work, out)
-    }
+multiversion! {
+    /// Solves designs, lanes over them; returns how many poses close. Sixteen lanes are few enough registers to work in if they are wide.
+    pub(super) fn solve_designs(set: InstructionSet, work: &Work<'_>, out: &mut [&mut [f64]]) -> usize
+        = in_lanes::<16, false>, baseline = in_lanes::<8, false>;
 }
 
-/// [`solve_designs`] for mechanisms whose branch is more than signs, but solved in lanes all the same.
-pub(super) fn solve_trees(set: InstructionSet, work: &Work<'_>, out: &mut [&mut [f64]]) -> usize {
-    if has_wide_registers(set) {
-        solve_trees_widely(set, work, out)
-    } else {
-        in_lanes::<8, true>(work, out)
-    }
+multiversion! {
+    /// [`solve_designs`] for mechanisms whose branch is more than signs, but solved in lanes all the same.
+    pub(super) fn solve_trees(set: InstructionSet, work: &Work<'_>, out: &mut [&mut [f64]]) -> usize
+        = in_lanes::<16, true>, baseline = in_lanes::<8, true>;
 }
 
 /// [`solve_designs`] for mechanisms that take longest for what is not done in lanes.
 pub(super) fn solve_guessed(_: InstructionSet, work: &Work<'_>, out: &mut [&mut [f64]]) -> usize {
     in_lanes::<4, true>(work, out)
-}
-
-/// Whether sixteen lanes are few enough registers to work in.
-fn has_wide_registers(set: InstructionSet) -> bool {
-    cfg!(target_arch = "x86_64") && set.min(InstructionSet::detect()) > InstructionSet::Baseline
-}
-
-multiversion! {
-    fn solve_widely(set: InstructionSet, work: &Work<'_>, out: &mut [&mut [f64]]) -> usize = in_lanes::<16, false>;
-}
-
-multiversion! {
-    fn solve_trees_widely(set: InstructionSet, work: &Work<'_>, out: &mut [&mut [f64]]) -> usize = in_lanes::<16, true>;
 }
 
 #[cfg_attr(not(debug_assertions), inline(always))]

@@ -67,7 +67,8 @@ impl InstructionSet {
 /// The function after `=` does the work. It and all it calls in its hot loops must be `#[inline(always)]`, so that
 /// the loops over [`Lanes`](crate::Lanes) are compiled anew in each version. One call costs a load and a jump, so let
 /// it do microseconds of work. When the first parameter is written `set: InstructionSet`, the caller chooses the
-/// version (tests compare all of them); a set the processor lacks is lowered to what it has.
+/// version (tests compare all of them); a set the processor lacks is lowered to what it has. Then another function of the same
+/// results may stand in where there is no more than the baseline: `= wide, baseline = narrow;`.
 ///
 /// # Example
 /// ```
@@ -96,7 +97,7 @@ macro_rules! multiversion {
     (
         $(#[$attribute:meta])*
         $visibility:vis fn $name:ident(set: InstructionSet $(, $argument:ident: $type:ty)* $(,)?) $(-> $result:ty)?
-            = $inner:path;
+            = $inner:path, baseline = $narrow:path;
     ) => {
         $(#[$attribute])*
         $visibility fn $name(set: $crate::InstructionSet $(, $argument: $type)*) $(-> $result)? {
@@ -119,8 +120,19 @@ macro_rules! multiversion {
                 #[cfg(target_arch = "x86_64")]
                 #[allow(unsafe_code, reason = "calling code for detected features; see `InstructionSet`")]
                 $crate::InstructionSet::Avx2 => unsafe { avx2($($argument),*) },
-                _ => $inner($($argument),*),
+                _ => $narrow($($argument),*),
             }
+        }
+    };
+    (
+        $(#[$attribute:meta])*
+        $visibility:vis fn $name:ident(set: InstructionSet $(, $argument:ident: $type:ty)* $(,)?) $(-> $result:ty)?
+            = $inner:path;
+    ) => {
+        $crate::multiversion! {
+            $(#[$attribute])*
+            $visibility fn $name(set: InstructionSet $(, $argument: $type)*) $(-> $result)?
+                = $inner, baseline = $inner;
         }
     };
     (
