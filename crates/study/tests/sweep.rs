@@ -74,6 +74,18 @@ fn the_last_parameter_of_a_grid_goes_fastest() {
     assert!(result.table.least_singular_value() > 1e-3);
 }
 
+/// Readers of tables find columns by name: what is varied, or asked for twice, has one.
+#[test]
+fn what_is_asked_for_twice_stands_once() {
+    let result =
+        ran("vary = { a = [15, 20] }\ncolumns = [\"a\", \"swing\", \"swing\", \"max(angle)\"]");
+    let names: Vec<&str> = (result.table.columns.iter())
+        .map(|c| c.name.as_str())
+        .collect();
+    assert_eq!(names, ["design", "a", "swing", "max(angle)"]);
+    assert_eq!(column(&result, "a"), [15.0, 20.0]);
+}
+
 #[test]
 fn one_at_a_time_the_rest_is_as_in_the_file() {
     let result = ran(

@@ -10,14 +10,17 @@ use crate::quantity::Quantity;
 /// each of its columns.
 pub(crate) fn numbers_of(model: &Model, over: &OverStudy, study: &Study) -> Vec<Quantity> {
     if !over.asked.columns.is_empty() {
-        let columns = over.asked.columns.iter();
-        return columns
-            .map(|column| Quantity {
-                name: column.name.clone(),
-                measure: column.measure.clone(),
-                dimension: column.dimension,
-            })
-            .collect();
+        let mut found: Vec<Quantity> = Vec::new();
+        for column in &over.asked.columns {
+            if found.iter().all(|known| known.name != column.name) {
+                found.push(Quantity {
+                    name: column.name.clone(),
+                    measure: column.measure.clone(),
+                    dimension: column.dimension,
+                });
+            }
+        }
+        return found;
     }
     let forces = knows_forces(study);
     let known = |q: &Quantity| forces || !model.needs_forces(&q.measure);

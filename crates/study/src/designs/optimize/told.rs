@@ -365,16 +365,14 @@ impl<'b, 'm> Teller<'b, 'm> {
                 value,
             });
         };
-        let unit = self.goal_unit(0);
-        tell(
-            &self.study.goals[0].number.name,
-            shown(self.goal(0, &told.evaluation), &unit),
-            unit,
-        );
+        let (goal, unit) = (&self.study.goals[0].number.name, self.goal_unit(0));
+        tell(goal, shown(self.goal(0, &told.evaluation), &unit), unit);
         for (k, chosen) in self.study.vary.iter().enumerate() {
             let parameter = &self.bench.model.parameters[chosen.parameter.index()];
             let unit = self.units.unit(parameter.dimension);
-            tell(&parameter.name, shown(told.design[k], &unit), unit);
+            if parameter.name != *goal {
+                tell(&parameter.name, shown(told.design[k], &unit), unit);
+            }
         }
         if best.residual.is_finite() {
             tell("first-order residual", best.residual, Unit::one());

@@ -82,10 +82,14 @@ impl<'m> Question<'m> {
             true => Some(Whole::new(model, over)?),
             false => None,
         };
-        let numbers = match &whole {
+        let mut numbers = match &whole {
             Some(_) => Vec::new(),
             None => numbers_of(model, &study.over, over),
         };
+        // What is varied has a column as it is.
+        let is_varied =
+            |name: &str| (varied.iter()).any(|id| model.parameters[id.index()].name == name);
+        numbers.retain(|number| !is_varied(&number.name));
         let bench = Bench::new(model, &study.over, varied, numbers)?;
         let along = over.kind.along();
         let mut rows = match &over.kind {
