@@ -463,6 +463,13 @@ fn nohup_keeps_a_run_from_being_stopped() {
     child.wait().expect("ended");
 }
 
+/// Of all cases, one that takes no time.
+#[cfg(target_os = "linux")]
+const CASE: &str = concat!(
+    env!("CARGO_MANIFEST_DIR"),
+    "/../../validation/a01-pendulum.toml"
+);
+
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_standard_output_is_an_error() {
@@ -485,8 +492,8 @@ fn a_full_standard_output_is_an_error() {
         &["schema"],
         &["measures"],
         &["measures", "--json"],
-        &["verify"],
-        &["verify", "--json"],
+        &["verify", CASE],
+        &["verify", CASE, "--json"],
         &["completions", "bash"],
     ] {
         let full = fs::OpenOptions::new()
