@@ -242,9 +242,14 @@ impl TimedPiece<'_, f64> {
                 self.at(t) <= x
             }
         };
-        // the end counts as reached although the last bits of the formula may miss it
-        let reached = |t: f64| (t == self.duration && self.to == x) || beyond(t);
-        if !reached(high) || (beyond(low) && self.at(low) != x) {
+        if self.at(low) == x {
+            return Some(low);
+        }
+        // The end is reached at the end: the formula may miss it by its last bits, and near rest it is there long before by rounding.
+        if high == self.duration && self.to == x {
+            return Some(high);
+        }
+        if !beyond(high) || beyond(low) {
             return None;
         }
         for _ in 0..SECANTS {
@@ -253,7 +258,7 @@ impl TimedPiece<'_, f64> {
             let margin = NEAR_SECANT * near.abs();
             for time in [near - margin, near + margin] {
                 if low < time && time < high {
-                    if reached(time) {
+                    if beyond(time) {
                         high = time
                     } else {
                         low = time
@@ -264,9 +269,9 @@ impl TimedPiece<'_, f64> {
         loop {
             let middle = low + (high - low) / 2.0;
             if middle <= low || middle >= high {
-                return Some(if beyond(low) { low } else { high });
+                return Some(high);
             }
-            if reached(middle) {
+            if beyond(middle) {
                 high = middle
             } else {
                 low = middle
@@ -539,6 +544,40 @@ mod tests {
                 assert!((law.at(t, &[]) - x).abs() < 1e-14, "{law:?} {x} {t}");
             }
             assert_eq!(law.first_time(9.0, &[]), None);
+        }
+    }
+
+    /// Near rest rounding hides the last of the way.
+    #[test]
+    fn the_end_is_reached_at_the_end() {
+        for by in RiseLaw::ALL {
+            for to in [1.7, -2.0, 0.3] {
+                let piece = LawPiece::Rise {
+                    to: c(to),
+                    duration: c(0.8),
+                    by,
+                };
+                let law = Law {
+                    from: c(0.5),
+                    pieces: vec![piece],
+                };
+                assert_eq!(law.first_time(to, &[]), Some(0.8), "{by:?}");
+            }
+        }
+    }
+
+    /// Of a law by a formula the first time is the very first at which it is there, up to what rounding hides.
+    #[test]
+    fn nothing_is_there_before_the_first_time() {
+        for law in laws() {
+            for k in 1..50 {
+                let x = 0.5 + 0.49 * f64::from(k) / 50.0;
+                let t = law.first_time(x, &[]).unwrap();
+                for part in 0..1000 {
+                    let earlier = t * (1.0 - 1e-9) * f64::from(part) / 1000.0;
+                    assert!(law.at(earlier, &[]) < x, "{law:?} {x} {t} {earlier}");
+                }
+            }
         }
     }
 }
