@@ -78,7 +78,7 @@ impl<'m> Question<'m> {
     ) -> Result<Self, Vec<Diagnostic>> {
         let over = crate::designs::study_of(model, &study.over)?;
         let varied: Vec<ParameterId> = study.vary.iter().map(|it| it.parameter).collect();
-        let whole = match is_whole(&over.kind) {
+        let mut whole = match is_whole(&over.kind) {
             true => Some(Whole::new(model, over)?),
             false => None,
         };
@@ -90,6 +90,9 @@ impl<'m> Question<'m> {
         let is_varied =
             |name: &str| (varied.iter()).any(|id| model.parameters[id.index()].name == name);
         numbers.retain(|number| !is_varied(&number.name));
+        if let Some(whole) = &mut whole {
+            whole.numbers.retain(|number| !is_varied(&number.name));
+        }
         let bench = Bench::new(model, &study.over, varied, numbers)?;
         let along = over.kind.along();
         let mut rows = match &over.kind {
