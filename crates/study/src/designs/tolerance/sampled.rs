@@ -225,14 +225,14 @@ impl Question<'_, '_> {
                         let Some(values) = along.curve(k, row) else {
                             break;
                         };
-                        let mut counted = *values;
-                        if !all_good {
-                            let lanes = counted.0.iter_mut().enumerate();
-                            let bad =
-                                lanes.filter(|(lane, _)| !good.get(*lane).is_some_and(|it| *it));
-                            bad.for_each(|(_, value)| *value = f64::NAN);
+                        let counted = |lane: usize| match good.get(lane) {
+                            Some(true) => values.0[lane],
+                            _ => f64::NAN,
+                        };
+                        match all_good {
+                            true => band.add_all(row, &values.0, keep),
+                            false => band.add_all(row, &std::array::from_fn(counted), keep),
                         }
-                        band.add_all(row, &counted.0, keep);
                     }
                 }
                 part.count += own;
