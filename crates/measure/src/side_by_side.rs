@@ -140,6 +140,12 @@ mod tests {
     use super::*;
     use kempe_number::{Random, math};
 
+    const SETS: [InstructionSet; 3] = [
+        InstructionSet::Baseline,
+        InstructionSet::Avx2,
+        InstructionSet::Avx512,
+    ];
+
     /// Numbers between -1 and 1.
     fn drawn(random: &mut Random) -> Many {
         Many::from_fn(|_| 2.0 * random.uniform() - 1.0)
@@ -154,10 +160,24 @@ mod tests {
             let length = drawn(&mut random) * 0.5 + 1.0;
             let own = drawn(&mut random) * reach + near;
             let (s, c) = own.sin_cos();
-            let found = angle(&(c * length), &(s * length), [near, sin, cos]);
+            let (c, s, from) = (c * length, s * length, [near, sin, cos]);
+            let found = angle(&c, &s, from);
             for k in 0..TOGETHER {
                 assert!((found.0[k] - own.0[k]).abs() < 2e-14, "{reach}: {k}");
             }
+            let by = |set| {
+                let mut found = Many::zero();
+                (angles_near(set, &c, &s, from, &mut found), found)
+            };
+            assert!(
+                SETS.into_iter()
+                    .all(|set| by(set) == by(InstructionSet::Baseline))
+            );
+            let all_near = own
+                .0
+                .iter()
+                .all(|x| (x - near).abs() <= math::atan2(NEAR, 1.0));
+            assert_eq!(by(InstructionSet::Baseline).0, all_near);
         }
     }
 
@@ -178,6 +198,11 @@ mod tests {
             assert_eq!(own.iter().position(|x| *x == low), Some(found.low_at[k]));
             assert_eq!(own.iter().position(|x| *x == high), Some(found.high_at[k]));
             assert_eq!(found.finite.0[k] == 0.0, k != 5 && k != 6);
+        }
+        for set in SETS {
+            let other = ends(set, &values);
+            assert_eq!((other.low, other.low_at), (found.low, found.low_at));
+            assert_eq!((other.high, other.high_at), (found.high, found.high_at));
         }
     }
 
