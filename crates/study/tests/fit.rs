@@ -1,7 +1,7 @@
 //! Fits of paths and motions: linkages sampled by closed forms and found again, in any size and with any timing; what limits do to them; what is told.
 #![allow(clippy::unwrap_used)]
 
-#[path = "support/read.rs"]
+#[path = "../../model/tests/support/read.rs"]
 mod read;
 
 use std::f64::consts::TAU;

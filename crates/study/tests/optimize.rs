@@ -1,7 +1,7 @@
 //! Optimisation of mechanisms: optima against closed forms and published ones, what limits cost, catalogues, fronts, what cannot be.
 #![allow(clippy::unwrap_used)]
 
-#[path = "support/read.rs"]
+#[path = "../../model/tests/support/read.rs"]
 mod read;
 
 use std::collections::BTreeMap;

@@ -1,6 +1,11 @@
 //! Shared by the integration tests: model files with what acts on them added in code.
 #![allow(dead_code, reason = "each test uses a part of it")]
 
+#[path = "../../../model/tests/support/read.rs"]
+mod read;
+
+pub use read::read as model;
+
 use kempe_dynamics::{ForceSample, ForceSampler};
 use kempe_mechanism::{Design, Mechanism};
 use kempe_model::{
@@ -17,20 +22,6 @@ pub fn example(name: &str) -> String {
         env!("CARGO_MANIFEST_DIR")
     );
     std::fs::read_to_string(path).expect("an example file")
-}
-
-/// A model from its text.
-pub fn model(text: &str) -> Model {
-    match Model::from_toml(text, "test", &mut |name| Err(format!("no {name}"))) {
-        Ok(checked) => checked.model,
-        Err(found) => panic!(
-            "{}",
-            found
-                .iter()
-                .map(|d| d.render_plain("test", text))
-                .collect::<String>()
-        ),
-    }
 }
 
 pub fn link(model: &Model, name: &str) -> LinkId {

@@ -4,7 +4,7 @@ use kempe_model::Model;
 
 /// The model of a text; what is wrong with it is told.
 pub fn read(text: &str) -> Model {
-    match Model::from_toml(text, "test", &mut |_| Err(String::new())) {
+    match Model::from_toml(text, "test", &mut |name| Err(format!("no {name}"))) {
         Ok(checked) => checked.model,
         Err(found) => panic!(
             "{}",
