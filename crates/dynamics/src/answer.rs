@@ -77,7 +77,8 @@ impl<T: ForceNumber> Forces<T> {
                 Some(motor) => {
                     let speed = at.drive_speeds[d.index()];
                     let torque = motor.torque(speed);
-                    Some(speed.choose(torque, -torque))
+                    // A start from rest may be a little slower than that, by rounding.
+                    Some((speed + self.still(*d)).choose(torque, -torque))
                 }
                 None => self.cylinder(*d).and_then(|c| {
                     let force = drive(d)?.value;
@@ -118,8 +119,13 @@ impl<T: ForceNumber> Forces<T> {
     /// The sense in which a drive moves: -1, 0 or 1; of an interval that may move either way all between.
     pub fn drive_direction(&self, at: &Instant<T>, drive: DriveId) -> T::Plain {
         let speed = at.drive_speeds[drive.index()].plain();
-        let usual = self.equilibrium.pace.speeds.get(drive.index());
-        let still = T::Plain::from_f64(STILL * usual.copied().unwrap_or(0.0));
+        let still = T::Plain::from_f64(self.still(drive));
         speed.direction(T::Plain::zero(), [still, T::Plain::zero()])
+    }
+
+    /// A speed of a drive that is none.
+    fn still(&self, drive: DriveId) -> f64 {
+        let usual = self.equilibrium.pace.speeds.get(drive.index());
+        STILL * usual.copied().unwrap_or(0.0)
     }
 }

@@ -16,6 +16,8 @@ pub const ILL_CONDITIONED: f64 = 1e8;
 pub const EQUILIBRIUM_LIMIT: f64 = 1e-9;
 /// A torque that holds an idle body, over the largest torque of a drive, above which a row is marked.
 pub const IDLE_LIMIT: f64 = 1e-9;
+/// An effort that is this part of what it would be without friction is none: what a simulation lets go gives no more.
+const GIVES: f64 = 1e-6;
 
 /// What a careful engineer would want to be told about the forces of a row.
 #[derive(Clone, Debug, PartialEq)]
@@ -335,8 +337,10 @@ pub(crate) fn notes(forces: &Forces<Rates>, at: &Instant<Rates>, condition: f64)
     }
     for (index, drive) in forces.drives.iter().enumerate() {
         let speed = at.drive_speeds[index].value();
+        let gives = drive.value.value();
+        let smoothly = forces.frictionless(index, 0);
         let braked =
-            forces.frictionless(index, 0) * speed < 0.0 && drive.value.value() * speed > 0.0;
+            smoothly * speed < 0.0 && gives * speed > 0.0 && gives.abs() > GIVES * smoothly.abs();
         // What tells the place of a drive that is let go moves nothing.
         let kind = forces.design.mechanism.model.drives.get(index);
         let drives = !kind.is_some_and(|d| matches!(d.kind, DriveKind::StandIn(_)));

@@ -3,7 +3,7 @@
 use kempe_mechanism::plan::{Condition, Dyad, Step, Swing};
 use kempe_mechanism::structure::{BodyId, Marker};
 use kempe_mechanism::{Branch, Configuration, Design, Mechanism};
-use kempe_model::{Diagnostic, Drive, LinkId};
+use kempe_model::{Diagnostic, Drive, LinkId, Model};
 use kempe_motion::assemble::Assemblies;
 use kempe_motion::check::mobility_standing;
 use kempe_motion::drive_path::DrivePath;
@@ -126,16 +126,10 @@ pub fn cannot_move(design: &Design<f64>, error: &MotionError) -> Diagnostic {
             }
             model.drives.iter().fold(diagnostic, |d, drive| d.see(drive.span.clone(), "where it starts"))
         }
-        MotionError::Entangled { at } => Diagnostic::error(
-            "branches-entangled",
-            format!(
-                "{} branches come so near each other that the motion could not be kept on one of them",
-                match model.drives.as_slice() {
-                    [_] => start_text(mechanism, *at),
-                    _ => format!("at time = {}", Units::of(model).text(*at, Dimension::TIME)),
-                }
-            ),
-        )
+        MotionError::Entangled { at } => entangled(&match model.drives.as_slice() {
+            [_] => start_text(mechanism, *at),
+            _ => at_time(model, *at),
+        })
         .help("change a length a little, or keep the drive away from that place"),
         MotionError::Stopped { stage } => stopped(*stage),
         MotionError::Scale { size } => Diagnostic::error(
@@ -206,6 +200,26 @@ pub(crate) fn stopped(stage: Stage) -> Diagnostic {
 }
 
 /// `at motor = 0 deg`, or where it starts.
+/// What was simulated, but is no motion that could be followed.
+pub(crate) fn cannot_follow(design: &Design<f64>, error: &MotionError) -> Diagnostic {
+    match error {
+        MotionError::Entangled { at } => entangled(&at_time(&design.mechanism.model, *at))
+            .help("change a length a little, or start farther from the dead point or change point"),
+        _ => cannot_move(design, error),
+    }
+}
+
+fn entangled(at: &str) -> Diagnostic {
+    let message = format!(
+        "{at} branches come so near each other that the motion could not be kept on one of them"
+    );
+    Diagnostic::error("branches-entangled", message)
+}
+
+fn at_time(model: &Model, time: f64) -> String {
+    format!("at time = {}", Units::of(model).text(time, Dimension::TIME))
+}
+
 fn start_text(mechanism: &Mechanism, at: f64) -> String {
     let model = &mechanism.model;
     match model.drives.as_slice() {

@@ -21,7 +21,7 @@ use kempe_simulate::{Ending, Question, Ready, Simulated, ready};
 use kempe_units::Expr;
 
 use crate::along::not_simulated;
-use crate::explain::cannot_move;
+use crate::explain::cannot_follow;
 use crate::motion::rows_of;
 use crate::motion_findings::{motion_findings, refused as refused_motion};
 use crate::prepared::design;
@@ -58,7 +58,7 @@ fn motion(
     found: &Simulated,
     progress: &mut dyn Progress,
 ) -> Result<Arc<Motion>, Vec<Diagnostic>> {
-    (found.motion(progress)).map_err(|error| vec![cannot_move(design, &error)])
+    (found.motion(progress)).map_err(|error| vec![cannot_follow(design, &error)])
 }
 
 /// What is to be told of a simulation, where joints have contacts also of these, before anything moves: what keeps it from starting, and

@@ -59,7 +59,9 @@ pub(super) fn balance(
         column.and_then(|c| c.get(row)).copied().unwrap_or(f64::NAN)
     };
     let rows = 0..times.len();
-    let works: Vec<f64> = times.iter().map(|t| found.work.at(*t, &[])).collect();
+    // What is struck at once has cost its work before the first row.
+    let work = |t: f64| found.work.at(t, &[]) - found.work.at(0.0, &[]);
+    let works: Vec<f64> = times.iter().map(|t| work(*t)).collect();
     let energy = |row: usize| value(0, row) + value(1, row);
     let moved = |row: usize| {
         let (kinetic, potential) = (value(0, row), value(1, row) - value(1, 0));
