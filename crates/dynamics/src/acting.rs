@@ -81,13 +81,22 @@ impl<T: ForceNumber> Acting<T> {
             .filter_map(|(c, machine)| Oil::new(mechanism, c, machine, parameters, &mut problems))
             .collect();
         let mut friction = Friction::all(mechanism, geometry, parameters, &mut problems);
-        let followed = 0..actions.followed_friction;
-        for (place, it) in followed.zip(friction.iter_mut().filter(|f| f.is_dry())) {
-            it.sense = Sense::Amount(amounts.len());
+        let mut contacts = JointContact::all(mechanism, geometry, parameters, &mut problems);
+        // Of what rubs joints come first, then contacts.
+        let mut part = (0..actions.followed_friction).map(|place| {
             amounts.push(Amount {
                 measure: Measure::Leaf(Leaf::Inner(InnerState::Friction(place))),
                 curve: None,
             });
+            amounts.len() - 1
+        });
+        for it in friction.iter_mut().filter(|f| f.is_dry()) {
+            if let Some(amount) = part.next() {
+                it.sense = Sense::Amount(amount);
+            }
+        }
+        for it in contacts.iter_mut().filter(|c| c.sticks()) {
+            it.parts = part.by_ref().take(it.places()).collect();
         }
         let it = Self {
             gravity,
@@ -99,7 +108,7 @@ impl<T: ForceNumber> Acting<T> {
                 .map(|m| Motor::new(mechanism, m, parameters, &mut problems))
                 .collect(),
             turning: Turning::all(mechanism),
-            contacts: JointContact::all(mechanism, geometry, parameters, &mut problems),
+            contacts,
             loads,
             amounts,
             cylinders,

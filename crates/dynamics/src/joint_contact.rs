@@ -6,11 +6,12 @@
 
 mod compile;
 
-use kempe_contact::{BlockInGuide, Body, Friction, Normal, PinWithPlay, Touch};
-use kempe_mechanism::BodyId;
+use kempe_contact::{BlockInGuide, Body, Friction, Normal, Onset, PinWithPlay, Touch};
+use kempe_mechanism::constraint::Input;
 use kempe_mechanism::structure::Source;
+use kempe_mechanism::{BodyId, Pose};
 use kempe_model::{DriveId, Touching};
-use kempe_number::Number;
+use kempe_number::{Jet, Number};
 
 use crate::instant::Instant;
 use crate::number::ForceNumber;
@@ -53,6 +54,9 @@ pub struct JointContact {
     pub resists: Resists,
     /// When it touches at every place, in order: one place of a pin, the four corners of a block. Nothing where it resists at once.
     pub touches: Vec<Vec<Touching>>,
+    /// The amounts that tell which part of the greatest friction acts at every place, positive where it resists sliding along the slip
+    /// ([`Touch::slip`]); none where the sliding speed tells.
+    pub parts: Vec<usize>,
     /// The bodies of the bore or guide, and of the pin or block.
     bodies: [BodyId; 2],
     shape: Shape,
@@ -77,31 +81,92 @@ impl JointContact {
         }
     }
 
-    /// Where it touches or would touch at an instant, place by place; `visit` is handed the bodies, too.
-    fn each_touch<T: ForceNumber>(
-        &self,
-        at: &Instant<T>,
-        mut visit: impl FnMut(usize, &Touch<T>, &[Body<T>; 2]),
-    ) {
-        let bodies = self.bodies.map(|body| Body {
+    /// Whether friction holds what rests: which part of it acts is a matter of the whole mechanism then.
+    pub fn sticks(&self) -> bool {
+        match &self.resists {
+            Resists::ByLaw { friction, .. } => {
+                friction.onset == Onset::Sign && friction.kinetic > 0.0
+            }
+            Resists::AtOnce { .. } => false,
+        }
+    }
+
+    /// The bodies at an instant.
+    fn bodies<T: ForceNumber>(&self, at: &Instant<T>) -> [Body<T>; 2] {
+        self.bodies.map(|body| Body {
             pose: at.poses[body.index()],
             motion: at.velocities[body.index()],
-        });
-        let open = self.along.map(|drive| at.inputs[drive.index()]);
+        })
+    }
+
+    /// Where it touches or would touch, place by place, where the coordinates of its rows are these.
+    fn each_touch<T: Number>(
+        &self,
+        bodies: &[Body<T>; 2],
+        open: [Input<T>; 2],
+        mut visit: impl FnMut(usize, &Touch<T>),
+    ) {
         match &self.shape {
             Shape::Pin(pin) => {
                 // The rows tell where the bore's centre is, seen from the pin's.
                 let apart = open.map(|row| -row.value);
-                visit(0, &pin.lift().touch_at(&bodies, apart), &bodies);
+                visit(0, &pin.lift().touch_at(bodies, apart));
             }
             Shape::Block(block) => {
                 let [angle, off] = open;
-                let all = (block.lift()).touches_at(&bodies, off.value, [angle.c, angle.s]);
+                let all = (block.lift()).touches_at(bodies, off.value, [angle.c, angle.s]);
                 for (place, touch) in all.iter().enumerate() {
-                    visit(place, touch, &bodies);
+                    visit(place, touch);
                 }
             }
         }
+    }
+
+    /// How its bodies slide over each other at a place that touches, with the accelerations at an instant, by the coordinates of some drives;
+    /// nothing where it does not touch.
+    pub fn slides(&self, place: usize, at: &Instant<f64>, drives: &[DriveId]) -> Option<Slides> {
+        let Resists::ByLaw { normal, friction } = &self.resists else {
+            return None;
+        };
+        let began = self.began(place, at.time)?;
+        let bodies = self.bodies.map(|body| in_time(at, body));
+        let open = self.along.map(|drive| {
+            let (input, speed) = (&at.inputs[drive.index()], at.drive_speeds[drive.index()]);
+            Input {
+                c: Jet::from_coefficients([input.c, -input.s * speed]),
+                s: Jet::from_coefficients([input.s, input.c * speed]),
+                value: Jet::from_coefficients([input.value, speed]),
+            }
+        });
+        let mut found = None;
+        self.each_touch(&bodies, open, |k, touch| {
+            if k == place {
+                let pressing = normal.force(-touch.gap.value(), touch.approach.value(), began);
+                found = Some((*touch.slip.coefficients(), friction.kinetic * pressing));
+            }
+        });
+        let ([speed, gain], limit) = found?;
+        let open = self.along.map(|drive| at.inputs[drive.index()]);
+        let slope = |drive: &DriveId| {
+            let coefficients = &at.coefficients[drive.index()];
+            let bodies = self.bodies.map(|body| Body {
+                pose: at.poses[body.index()],
+                motion: coefficients[body.index()],
+            });
+            let mut slope = 0.0;
+            self.each_touch(&bodies, open, |k, touch| {
+                if k == place {
+                    slope = touch.slip;
+                }
+            });
+            slope
+        };
+        Some(Slides {
+            speed,
+            gain,
+            limit,
+            gradient: drives.iter().map(slope).collect(),
+        })
     }
 
     /// What it does to its bodies at an instant, about their origins: `add` is called for each.
@@ -117,12 +182,18 @@ impl JointContact {
             return;
         }
         let (normal, friction) = (normal.lift(), friction.lift());
-        self.each_touch(at, |place, touch, bodies| {
+        let bodies = self.bodies(at);
+        let open = self.along.map(|drive| at.inputs[drive.index()]);
+        self.each_touch(&bodies, open, |place, touch| {
             let Some(began) = self.began(place, at.time) else {
                 return;
             };
-            let forces = touch.forces(&normal, &friction, T::from_f64(began));
-            let wrenches = touch.wrenches(bodies, forces);
+            let [pressing, by_speed] = touch.forces(&normal, &friction, T::from_f64(began));
+            let along = match self.parts.get(place) {
+                Some(part) => -(at.amounts[*part] * friction.kinetic * pressing),
+                None => by_speed,
+            };
+            let wrenches = touch.wrenches(&bodies, [pressing, along]);
             for (body, wrench) in self.bodies.iter().zip(wrenches) {
                 add(*body, wrench);
             }
@@ -135,6 +206,36 @@ impl JointContact {
         let next = touches.partition_point(|touch| touch.from <= time);
         let last = touches.get(next.checked_sub(1)?)?;
         (time < last.to).then_some(last.counts_as)
+    }
+}
+
+/// How bodies slide over each other where they touch.
+#[derive(Clone, Debug)]
+pub struct Slides {
+    /// How fast, m/s: see [`Touch::slip`].
+    pub speed: f64,
+    /// The rate of that, m/s^2.
+    pub gain: f64,
+    /// The greatest friction, N.
+    pub limit: f64,
+    /// Derivatives of the speed to those of the drives' coordinates.
+    pub gradient: Vec<f64>,
+}
+
+/// A body as it moves and accelerates at an instant.
+fn in_time(at: &Instant<f64>, body: BodyId) -> Body<Jet<f64, 2>> {
+    let (pose, velocity) = (&at.poses[body.index()], at.velocities[body.index()]);
+    let acceleration = at.accelerations[body.index()];
+    let series = |value: f64, rate: f64| Jet::from_coefficients([value, rate]);
+    let [x, y, turning] = velocity;
+    Body {
+        pose: Pose {
+            x: series(pose.x, x),
+            y: series(pose.y, y),
+            c: series(pose.c, -pose.s * turning),
+            s: series(pose.s, pose.c * turning),
+        },
+        motion: [0, 1, 2].map(|k| series(velocity[k], acceleration[k])),
     }
 }
 

@@ -24,6 +24,10 @@ pub struct LetGo {
     pub accelerations: Vec<f64>,
     change: Vec<f64>,
     moved: Vec<Moved<f64>>,
+    /// Whether all forces were found as it accelerates: [`Forces::left_by_friction`].
+    solved: bool,
+    /// What the terms of those forces would give along each coordinate, all in one sense: rounding of accelerations is to be counted in this.
+    by_terms: Vec<f64>,
 }
 
 impl LetGo {
@@ -46,9 +50,25 @@ impl LetGo {
         }
     }
 
+    /// The root of what masses make of the squares of the accelerations, as rows are seen that are halved.
+    pub fn acceleration(&self) -> f64 {
+        let n = self.accelerations.len();
+        let part = |i: usize| -> f64 {
+            let rows = self.accelerations.iter().enumerate().skip(i);
+            rows.map(|(k, a)| self.factors[k * n + i] * a).sum()
+        };
+        (0..n).map(|i| part(i) * part(i)).sum::<f64>().sqrt()
+    }
+
     /// What is left of forces given along the coordinates, N or N m, where they accelerate so far: [`Forces::left_by_friction`].
     pub fn left(&self) -> &[f64] {
         &self.change
+    }
+
+    /// How the terms of what was left last would accelerate the coordinates, all in one sense: where they hold the balance, rounding of
+    /// accelerations is to be counted in this.
+    pub fn by_terms(&self) -> &[f64] {
+        &self.by_terms
     }
 
     /// Lets the coordinates accelerate by so much more.
@@ -139,11 +159,12 @@ impl Forces<f64> {
         if self.acting.friction.is_empty() {
             return Ok(());
         }
-        let first = size_of(&found.accelerations).max(SLIGHT);
+        let mut first = size_of(&found.accelerations).max(SLIGHT);
         let mut before = f64::INFINITY;
         let mut mixing = Anderson::default();
         for correction in 0..CORRECTIONS {
             self.left_by_friction(at, free, given, found);
+            first = first.max(size_of(&found.by_terms));
             solve_positive(free.len(), &found.factors, &mut found.change);
             let mut more = std::mem::take(&mut found.change);
             if correction >= SLOW {
@@ -178,6 +199,7 @@ impl Forces<f64> {
         found: &mut LetGo,
     ) -> Result<(), NotLetGo> {
         self.take_up(at);
+        found.solved = false;
         found.factorize(&self.acting, at, free)?;
         let needed = |it: &Self, drive: &DriveId| {
             virtual_power::project(&it.needed, &at.coefficients[drive.index()]).value
@@ -204,10 +226,17 @@ impl Forces<f64> {
         found: &mut LetGo,
     ) {
         self.solve(at);
+        found.solved = true;
         found.change.clear();
         let forces = free.iter().zip(given);
         (found.change)
             .extend(forces.map(|(drive, given)| given - self.drives[drive.index()].value));
+        found.by_terms.clear();
+        let forces = free.iter().zip(given);
+        (found.by_terms).extend(
+            forces.map(|(drive, given)| given.abs() + self.drives[drive.index()].by_power.scale),
+        );
+        solve_positive(free.len(), &found.factors, &mut found.by_terms);
     }
 }
 
@@ -242,7 +271,7 @@ impl Forces<f64> {
         free: &[DriveId],
         found: &LetGo,
     ) -> f64 {
-        if !self.acting.friction.is_empty() {
+        if found.solved {
             return self.drives[drive.index()].value;
         }
         // What the bodies needed while nothing that is let go accelerated, and what that carries.

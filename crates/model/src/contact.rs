@@ -79,8 +79,26 @@ pub struct ContactProperties {
     pub damping: Option<Scalar>,
     /// Coefficient of friction.
     pub friction: Option<Scalar>,
-    /// Sliding speeds between which friction sets in, m/s.
-    pub friction_speeds: Option<[Scalar; 2]>,
+    /// How it sets in.
+    pub onset: Option<FrictionOnset>,
+}
+
+/// How the friction of a contact sets in where it hardly slides.
+#[derive(Clone, Debug, PartialEq)]
+pub enum FrictionOnset {
+    /// At once (Coulomb): what rests is held until that takes more than the coefficient allows.
+    Sticks,
+    /// From one sliding speed to another, m/s, those of all contacts unless said otherwise: what should rest creeps.
+    Ramp(Option<[Scalar; 2]>),
+}
+
+impl FrictionOnset {
+    fn speeds_mut(&mut self) -> Option<&mut [Scalar; 2]> {
+        match self {
+            Self::Sticks => None,
+            Self::Ramp(speeds) => speeds.as_mut(),
+        }
+    }
 }
 
 impl ContactProperties {
@@ -98,7 +116,8 @@ impl ContactProperties {
             &mut self.damping,
             &mut self.friction,
         ];
-        let two = self.friction_speeds.iter_mut().flatten();
+        let two = self.onset.iter_mut().filter_map(FrictionOnset::speeds_mut);
+        let two = two.flatten();
         single.into_iter().flatten().chain(two)
     }
 
@@ -117,7 +136,7 @@ impl ContactProperties {
             spring: of(&self.spring, &others.spring),
             damping: of(&self.damping, &others.damping),
             friction: of(&self.friction, &others.friction),
-            friction_speeds: (self.friction_speeds.clone()).or(others.friction_speeds.clone()),
+            onset: self.onset.clone().or(others.onset.clone()),
         }
     }
 }

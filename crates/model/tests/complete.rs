@@ -108,6 +108,7 @@ fn keys_of_the_kind_that_are_not_there_yet() {
         "spring",
         "damping",
         "friction",
+        "stiction",
         "friction_speeds",
     ];
     let pin = [&["radial", "on", "radius"], contact.as_slice()].concat();

@@ -12,6 +12,7 @@ use kempe_model::{DriveId, InnerState};
 
 use crate::contact::{Gap, dot};
 use crate::inner::Moved;
+use crate::joints::Place;
 use crate::lack::Lack;
 use crate::plant::Plant;
 use crate::sticking::{leave_out, limited, shared, spanned, together, yielding};
@@ -37,6 +38,8 @@ const LEFT_OVER: f64 = 1e-10;
 pub enum Rubs {
     /// A joint.
     Joint(Source),
+    /// A place of a joint with play.
+    Contact(Place),
     /// The seals of the cylinder of a drive.
     Seals(DriveId),
 }
@@ -46,6 +49,8 @@ pub enum Rubs {
 enum Acts {
     /// A joint: its place among the friction that acts, and that of its part among the amounts.
     Joint(usize, usize),
+    /// A place of a joint with play.
+    Contact(Place),
     /// The seals of a cylinder, by its place among those that oil moves.
     Seals(usize),
 }
@@ -59,6 +64,8 @@ pub(crate) enum Rub {
     Held,
     /// Nothing that is let go moves it.
     Idle,
+    /// Its bodies do not touch.
+    Apart,
 }
 
 /// A place that rubs.
@@ -129,11 +136,12 @@ fn sum(rows: &[Vec<f64>], forces: &[f64]) -> Vec<f64> {
 /// How many places rub where these drives are let go.
 pub(crate) fn places_that_rub(acting: &Acting<f64>, free: &[DriveId]) -> usize {
     let joints = acting.friction.iter().filter(|f| f.is_dry());
+    let contacts = acting.contacts.iter().filter(|c| c.sticks());
     let seals = acting
         .oils
         .iter()
         .filter(|oil| oil.friction > 0.0 && free.contains(&oil.drive));
-    joints.count() + seals.count()
+    joints.count() + contacts.map(|c| c.places()).sum::<usize>() + seals.count()
 }
 
 impl Plant {
@@ -144,6 +152,7 @@ impl Plant {
                 let constraint = self.forces.acting.friction[index].constraint;
                 Rubs::Joint(self.forces.design.mechanism.constraints[constraint].1)
             }
+            Acts::Contact(at) => Rubs::Contact(at),
             Acts::Seals(moved) => Rubs::Seals(self.free[self.inner.moved[moved].free]),
         });
         sites.collect()
@@ -168,7 +177,7 @@ impl Plant {
             .iter()
             .filter_map(|site| match site.what {
                 Acts::Seals(moved) => Some((self.inner.moved[moved], site.inner)),
-                Acts::Joint(..) => None,
+                Acts::Joint(..) | Acts::Contact(_) => None,
             });
         sites.collect()
     }
@@ -189,22 +198,29 @@ impl Plant {
                     if f.turns() { 1.0 } else { size },
                 ))
             });
+        let contacts = self.forces.acting.contacts.iter().enumerate();
+        let contacts = contacts
+            .filter(|(_, it)| it.sticks())
+            .flat_map(|(contact, it)| (0..it.places()).map(move |place| Place { contact, place }))
+            .map(|at| (Acts::Contact(at), size));
         let seals = self.inner.moved.iter().enumerate();
         let seals = seals
             .filter(|(_, m)| self.forces.acting.oils[m.oil].friction > 0.0)
             .map(|(index, _)| (Acts::Seals(index), size));
-        let sites = joints
-            .chain(seals)
-            .enumerate()
-            .filter_map(|(place, (what, size))| {
-                Some(Site {
-                    what,
-                    inner: model.inner_place(InnerState::Friction(place))?,
-                    size,
-                    fastest: 0.0,
-                    resists: 0.0,
-                })
-            });
+        let sites =
+            joints
+                .chain(contacts)
+                .chain(seals)
+                .enumerate()
+                .filter_map(|(place, (what, size))| {
+                    Some(Site {
+                        what,
+                        inner: model.inner_place(InnerState::Friction(place))?,
+                        size,
+                        fastest: 0.0,
+                        resists: 0.0,
+                    })
+                });
         self.rubbing.sites = sites.collect();
         // Nothing rubs until that is decided: what is found before, such as pressures that hold, counts no friction.
         self.mode.rubs = vec![Rub::Idle; self.rubbing.sites.len()];
@@ -216,11 +232,11 @@ impl Plant {
         for (site, rub) in self.rubbing.sites.iter().zip(&self.mode.rubs) {
             self.inner.values[site.inner] = match rub {
                 Rub::Slides(sense) => *sense,
-                Rub::Held | Rub::Idle => 0.0,
+                Rub::Held | Rub::Idle | Rub::Apart => 0.0,
             };
             if let Acts::Joint(index, amount) = site.what {
                 self.forces.acting.friction[index].sense = match rub {
-                    Rub::Slides(_) | Rub::Idle => Sense::Amount(amount),
+                    Rub::Slides(_) | Rub::Idle | Rub::Apart => Sense::Amount(amount),
                     Rub::Held => Sense::Resists(site.resists),
                 };
             }
@@ -233,7 +249,7 @@ impl Plant {
         match sites.find(|(site, _)| matches!(site.what, Acts::Seals(k) if k == moved)) {
             Some((_, Rub::Slides(sense))) => sense * friction,
             // What holds is found with the rest.
-            Some((_, Rub::Held | Rub::Idle)) | None => 0.0,
+            Some((_, Rub::Held | Rub::Idle | Rub::Apart)) | None => 0.0,
         }
     }
 
@@ -252,6 +268,17 @@ impl Plant {
                     gradient: (self.free.iter())
                         .map(|d| r.slope(&self.instant, *d))
                         .collect(),
+                })
+            }
+            Acts::Contact(at) => {
+                let contact = &self.forces.acting.contacts[at.contact];
+                let slides = contact.slides(at.place, &self.instant, &self.free);
+                slides.map(|s| Here {
+                    speed: s.speed,
+                    gain: s.gain,
+                    limit: s.limit,
+                    viscous: 0.0,
+                    gradient: s.gradient,
                 })
             }
             Acts::Seals(moved) => {
@@ -282,6 +309,12 @@ impl Plant {
         };
         let sites = self.rubbing.sites.iter();
         sites.map(|site| of(site).unwrap_or_else(nothing)).collect()
+    }
+
+    /// Whether friction may hold the bodies of a joint with play at a place.
+    pub fn may_stick(&self, at: Place) -> bool {
+        let contacts = &self.forces.acting.contacts;
+        contacts.get(at.contact).is_some_and(|it| it.sticks())
     }
 
     /// Whether anything is held that is looked at by itself.
@@ -381,10 +414,8 @@ impl Plant {
         let (forces, instant) = (&mut self.forces, &mut self.instant);
         (forces.let_go_smoothly(instant, &self.free, &given, &mut self.let_go))
             .map_err(Lack::of)?;
-        let rows = {
-            let here = self.rubbing_here();
-            self.rows(&gaps, &here, places)
-        };
+        let pose = self.rubbing_here();
+        let rows = self.rows(&gaps, &pose, places);
         let back = self.back;
         let (mut before, mut first) = (f64::INFINITY, 0.0_f64);
         let mut mixing = Anderson::default();
@@ -396,8 +427,12 @@ impl Plant {
             }
             for k in places {
                 let site = &self.rubbing.sites[*k];
-                if let Acts::Seals(moved) = site.what {
-                    self.given[self.inner.moved[moved].free] -= site.resists;
+                match site.what {
+                    // With its load, by what acts.
+                    Acts::Joint(..) => {}
+                    Acts::Contact(_) | Acts::Seals(_) => {
+                        add(&mut self.given, -site.resists, &pose[*k].gradient);
+                    }
                 }
             }
             (self.forces).left_by_friction(
@@ -478,7 +513,9 @@ impl Plant {
             if !change.is_finite() {
                 return Err(Lack::Friction);
             }
-            first = first.max(whole).max(change);
+            let terms = self.let_go.by_terms().iter().zip(&self.scales);
+            let terms = terms.map(|(a, s)| (a / s).abs()).fold(0.0, f64::max);
+            first = first.max(whole).max(change).max(terms);
             let rounds = change <= NEARLY * first && change > 0.5 * before;
             before = change;
             if rounds || change <= SETTLED * whole || change == 0.0 {
@@ -532,6 +569,12 @@ impl Plant {
         Some((1.0 - most.min(2.0), first.map(|(k, _)| *k).collect()))
     }
 
+    /// Whether nothing presses in these places, at the state last looked at.
+    pub fn presses_nowhere(&mut self, places: &[usize]) -> bool {
+        let here = self.rubbing_here();
+        places.iter().all(|k| here[*k].limit == 0.0)
+    }
+
     /// A speed that is none in a place.
     pub fn hardly(&self, place: usize) -> f64 {
         let fastest = self.rubbing.sites.iter().map(|s| s.fastest / s.size);
@@ -551,7 +594,7 @@ impl Plant {
         let speed = here.get(place)?.speed;
         match self.mode.rubs.get(place)? {
             Rub::Slides(sense) => Some(speed * sense),
-            Rub::Idle | Rub::Held => Some(self.hardly(place) - speed.abs()),
+            Rub::Idle | Rub::Held | Rub::Apart => Some(self.hardly(place) - speed.abs()),
         }
     }
 
@@ -575,8 +618,12 @@ impl Plant {
         let mut candidates = Vec::new();
         for (k, here) in here.iter().enumerate() {
             let site = &self.rubbing.sites[k];
+            if matches!(site.what, Acts::Contact(at) if !self.is_touching(at)) {
+                self.mode.rubs[k] = Rub::Apart;
+                continue;
+            }
             let rests = here.speed.abs() <= self.hardly(k);
-            let was_held = !jumped && !matches!(self.mode.rubs[k], Rub::Slides(_));
+            let was_held = !jumped && matches!(self.mode.rubs[k], Rub::Held | Rub::Idle);
             self.mode.rubs[k] = if lets_go.contains(&k) {
                 let sense = match site.resists {
                     _ if !rests => here.speed,
@@ -612,12 +659,20 @@ impl Plant {
             .zip(&here)
             .map(|(site, here)| here.gain.abs() / site.size);
         let most = most.fold(0.0, f64::max);
+        let all = self.let_go.acceleration();
         for (place, k) in candidates.iter().enumerate() {
             let (after, terms) = (
                 found.after[found.stops + place],
                 found.terms[found.stops + place],
             );
-            let slides = after.abs() > LEFT_OVER * terms.max(most * self.rubbing.sites[*k].size);
+            // No row accelerates by more than all that is let go, seen as rows are.
+            let row = {
+                let mut row = here[*k].gradient.clone();
+                self.let_go.halve(&mut row);
+                dot(&row, &row).sqrt()
+            };
+            let sizes = [terms, most * self.rubbing.sites[*k].size, row * all];
+            let slides = after.abs() > LEFT_OVER * sizes.into_iter().fold(0.0, f64::max);
             self.mode.rubs[*k] = match (slides, found.moves[place]) {
                 (true, _) => Rub::Slides(after.signum()),
                 (false, true) => Rub::Held,
@@ -679,7 +734,7 @@ impl Plant {
         let places = self.rubbing.sites.iter().zip(&self.mode.rubs).zip(&here);
         let parts = places.map(|((site, rub), here)| match rub {
             Rub::Slides(sense) => *sense,
-            Rub::Idle => 0.0,
+            Rub::Idle | Rub::Apart => 0.0,
             Rub::Held => match site.resists - here.viscous {
                 0.0 => 0.0,
                 // Where nothing presses there is no limit to speak of.

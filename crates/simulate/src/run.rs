@@ -173,7 +173,9 @@ impl Run {
         }
         let n = self.plant.free.len();
         for (at, speed) in self.plant.pressed(TOUCHED, &self.y, &rates[n..2 * n]) {
-            self.meets(at, speed);
+            if !self.meets(at, speed) {
+                return Err(self.plant.lacks());
+            }
         }
         self.rest(0.0, &[]);
         let rests = !self.plant.mode.resting.is_empty();

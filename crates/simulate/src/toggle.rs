@@ -74,6 +74,17 @@ impl Toggle {
         }
     }
 
+    /// Whether it goes back as soon as what turned it holds no more: there is no way between.
+    pub fn has_one_threshold(&self) -> bool {
+        match &self.turned {
+            Turned::By([on, off]) => {
+                let not = |what: &Measure| Expr::Neg(Box::new(what.clone()));
+                *off == not(on)
+            }
+            Turned::Every(..) => false,
+        }
+    }
+
     /// Whether it counts.
     pub fn counts(&self) -> bool {
         matches!(self.turned, Turned::Every(..))

@@ -60,7 +60,7 @@ pub(crate) fn watches(plant: &Plant, conditions: &[bool]) -> Vec<Watch> {
             match rub {
                 Rub::Slides(_) => list.push(Watch::Turned(place)),
                 Rub::Idle => list.push(Watch::Stirs(place)),
-                Rub::Held => {}
+                Rub::Held | Rub::Apart => {}
             }
         }
         for (index, stop) in plant.stops.iter().enumerate() {

@@ -5,8 +5,8 @@ use kempe_mechanism::constraint::Constraint;
 use kempe_mechanism::structure::{LineRef, Source};
 use kempe_mechanism::{BodyId, Geometry, Mechanism};
 use kempe_model::{
-    Contact, ContactLaw, ContactStates, Dissipation, DriveId, DriveKind, JointId, JointKind,
-    LinkId, LinkPointRef, PointId, Released, Scalar, value,
+    Contact, ContactLaw, ContactStates, Dissipation, DriveId, DriveKind, FrictionOnset, JointId,
+    JointKind, LinkId, LinkPointRef, PointId, Released, Scalar, value,
 };
 use kempe_units::Dimension;
 
@@ -75,6 +75,7 @@ impl Compile<'_> {
             along: self.along()?,
             resists: self.resists(&shape)?,
             touches: touches.collect(),
+            parts: Vec::new(),
             bodies,
             shape,
         })
@@ -310,11 +311,17 @@ impl Compile<'_> {
         if let Shape::Pin(_) = shape {
             self.has_radius()?;
         }
-        let [from, to] = match &words.friction_speeds {
-            Some(speeds) => [&speeds[0], &speeds[1]].map(|v| value(v, self.parameters)),
-            None => FRICTION_SPEEDS,
+        let friction = match &words.onset {
+            Some(FrictionOnset::Sticks) => Friction::coulomb(coefficient),
+            None | Some(FrictionOnset::Ramp(None)) => {
+                let [from, to] = FRICTION_SPEEDS;
+                Friction::ambrosio(coefficient, from, to)
+            }
+            Some(FrictionOnset::Ramp(Some(speeds))) => {
+                let [from, to] = speeds.each_ref().map(|v| value(v, self.parameters));
+                Friction::ambrosio(coefficient, from, to)
+            }
         };
-        let friction = Friction::ambrosio(coefficient, from, to).checked();
-        friction.map_err(|why| self.unfit(why))
+        friction.checked().map_err(|why| self.unfit(why))
     }
 }

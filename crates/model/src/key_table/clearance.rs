@@ -53,7 +53,7 @@ static BLOCK: [Key; 2] = [
     may("length", not_negative(D::LENGTH), "\"40 mm\"", "Length of the slider along its guide, where contact may be lost: its corners touch."),
     may("height", not_negative(D::LENGTH), "\"20 mm\"", "Height of the slider across its guide; 0 unless said otherwise."),
 ];
-static TOUCHING: [Key; 9] = [
+static TOUCHING: [Key; 10] = [
     may("law", LAW_WORDS, "\"exact\"", "How bodies resist where contact may be lost: rigid at once, the others by Hertz's law with what dissipates; exact unless said otherwise, of sliders rigid."),
     may("restitution", not_negative(D::NONE), "0.9", "The part of the speed that an impact gives back."),
     may("stiffness", positive(D::NONE), "6.6e10", "Stiffness of Hertz's law, in N/m^1.5; from the radii and the material unless said otherwise."),
@@ -62,6 +62,7 @@ static TOUCHING: [Key; 9] = [
     may("spring", positive(D::STIFFNESS), "\"5e7 N/m\"", "Stiffness of the contact of two states."),
     may("damping", not_negative(D::DAMPING), "\"200 N s/m\"", "Damping of the contact of two states; 0 unless said otherwise."),
     may("friction", not_negative(D::NONE), "0.03", "Coefficient of friction of the contact; 0 unless said otherwise."),
+    may("stiction", T::Flag, "true", "Whether friction holds what rests (Coulomb), and does not set in between two speeds, so that it creeps."),
     may("friction_speeds", T::Two(&not_negative(D::SPEED)), "[\"1 mm/s\", \"10 mm/s\"]", "Sliding speeds from which on friction begins to act, and acts in full: 1 and 10 mm/s unless said otherwise."),
 ];
 

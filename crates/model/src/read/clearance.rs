@@ -17,7 +17,7 @@
 use kempe_units::Dimension;
 
 use crate::clearance::{Clearance, ClearanceAt, ClearanceModel, ClearanceRates, ClearanceStudy};
-use crate::contact::{ContactProperties, ContactStates, ContactStudy};
+use crate::contact::{ContactProperties, ContactStates, ContactStudy, FrictionOnset};
 use crate::diagnostic::Diagnostic;
 use crate::document::{Key, Node, Value};
 use crate::ids::{LinkId, PointId, Scalar};
@@ -36,7 +36,7 @@ const MAX: usize = 100_000;
 pub(crate) fn read(cx: &mut Context<'_>, entries: &[&(Key, Node)]) {
     cx.clearances_given = !entries.is_empty();
     for entry in cx.limited(entries, MAX, "clearances") {
-        let clearance = read_one(cx, entry);
+        let clearance = read_one(cx, entry, entries);
         cx.model.clearances.extend(clearance);
     }
     for diagnostic in cx.model.clearances_too_large(&cx.values) {
@@ -44,7 +44,19 @@ pub(crate) fn read(cx: &mut Context<'_>, entries: &[&(Key, Node)]) {
     }
 }
 
-fn read_one(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<Clearance> {
+/// Whether another entry tells of a key, with which what this one says beside it means something: that of `all`, or for `all` any.
+fn told_by_others(entries: &[&(Key, Node)], own: &Key, key: &str) -> bool {
+    let of_all = |it: &Key| it.name == OF_ALL.name;
+    entries.iter().any(|(other, node)| {
+        let tells = match &node.value {
+            Value::Table(keys) => keys.get(key).is_some(),
+            _ => false,
+        };
+        tells && of_all(other) != of_all(own)
+    })
+}
+
+fn read_one(cx: &mut Context<'_>, entry: &(Key, Node), all: &[&(Key, Node)]) -> Option<Clearance> {
     let (key, _) = entry;
     let mut at = place(cx, key)?;
     let kind = match at {
@@ -56,6 +68,14 @@ fn read_one(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<Clearance> {
     let radial = entry.needed(cx, "radial");
     if let ClearanceAt::Pin { point, on } = &mut at {
         *on = links(cx, &entry, *point)?;
+    }
+    for (keys, without) in [
+        (["damping"].as_slice(), "spring"),
+        (&["stiction", "friction_speeds"], "friction"),
+    ] {
+        if !told_by_others(all, key, without) {
+            entry.idle(cx, keys, without);
+        }
     }
     let contact = contact(cx, &entry);
     Some(Clearance {
@@ -166,10 +186,7 @@ fn place(cx: &mut Context<'_>, key: &Key) -> Option<ClearanceAt> {
 /// What an entry says of the bodies that touch.
 fn contact(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<ContactProperties> {
     let law = entry.choice(cx, "law", &LAWS);
-    let speeds = match entry.get("friction_speeds") {
-        None => Some(None),
-        Some(node) => friction_speeds(cx, entry, node).map(Some),
-    };
+    let onset = onset(cx, entry);
     let restitution = restitution(cx, entry);
     // A pin has no length and a slider no radius.
     let mut value = |key: &str| match entry.kind.key(key).is_some() {
@@ -179,8 +196,6 @@ fn contact(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<ContactProperties>
     let (radius, length, height) = (value("radius"), value("length"), value("height"));
     let (stiffness, modulus, poisson) = (value("stiffness"), value("modulus"), value("poisson"));
     let (spring, damping, friction) = (value("spring"), value("damping"), value("friction"));
-    entry.idle(cx, &["damping"], "spring");
-    entry.idle(cx, &["friction_speeds"], "friction");
     Some(ContactProperties {
         radius: radius?,
         length: length?,
@@ -193,7 +208,31 @@ fn contact(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<ContactProperties>
         spring: spring?,
         damping: damping?,
         friction: friction?,
-        friction_speeds: speeds?,
+        onset: onset?,
+    })
+}
+
+/// How friction sets in; nothing where the file does not say.
+fn onset(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<Option<FrictionOnset>> {
+    let sticks = entry.flag(cx, "stiction");
+    let speeds = match entry.get("friction_speeds") {
+        None => None,
+        Some(node) => Some(friction_speeds(cx, entry, node)?),
+    };
+    let sticks = sticks?;
+    if sticks && speeds.is_some() {
+        entry.contradiction(
+            cx,
+            &["stiction", "friction_speeds"],
+            "friction that holds at rest sets in at once",
+            "leave `friction_speeds` out, or `stiction`",
+        );
+        return None;
+    }
+    Some(match (sticks, speeds) {
+        (true, _) => Some(FrictionOnset::Sticks),
+        (false, Some(speeds)) => Some(FrictionOnset::Ramp(Some(speeds))),
+        (false, None) => entry.has("stiction").then_some(FrictionOnset::Ramp(None)),
     })
 }
 

@@ -3,7 +3,7 @@
 use kempe_units::{Dimension, Unit};
 
 use crate::clearance::ClearanceAt;
-use crate::contact::ContactProperties;
+use crate::contact::{ContactProperties, FrictionOnset};
 use crate::ids::{FRAME, LinkId, LinkPointRef, PointId, Scalar};
 use crate::item::{File, Item};
 use crate::key_table::clearance::{LAWS, OF_ALL};
@@ -124,9 +124,16 @@ impl Writer<'_> {
         if let Some(law) = &contact.law {
             entries.push(self.text("law", word_of(&LAWS, law)));
         }
-        if let Some(speeds) = &contact.friction_speeds {
-            let speeds = speeds.iter().map(|v| self.scalar(v, Dimension::SPEED));
-            entries.push(("friction_speeds".to_owned(), Item::List(speeds.collect())));
+        match &contact.onset {
+            None => {}
+            Some(FrictionOnset::Ramp(Some(speeds))) => {
+                let speeds = speeds.iter().map(|v| self.scalar(v, Dimension::SPEED));
+                entries.push(("friction_speeds".to_owned(), Item::List(speeds.collect())));
+            }
+            Some(onset) => {
+                let sticks = *onset == FrictionOnset::Sticks;
+                entries.push(("stiction".to_owned(), Item::Flag(sticks)));
+            }
         }
     }
 

@@ -18,8 +18,11 @@ use super::{Run, TOUCHED};
 const LEFT_OVER: f64 = 1e-9;
 /// A flight from a stop that lasts this part of the whole time is none: it rests.
 const CHATTER: f64 = 1e-9;
-/// Nor is one that rises by this much (in path scales): hardly more than rounding.
+/// Nor is one that rises by this much (in path scales), hardly more than rounding, or by no more than it is closed by.
 const RISE: f64 = 2e-15;
+
+/// This part of the whole time behind an instant is looked at where it tells too little itself.
+const SOON: f64 = 1e-7;
 
 /// What an impact struck.
 #[derive(Debug, Default)]
@@ -92,7 +95,8 @@ impl Run {
                 continue;
             }
             let rise = -0.5 * gap.rate * gap.rate / opening;
-            let stays = flight <= CHATTER * self.question.until || rise <= RISE * scale;
+            let stays =
+                flight <= CHATTER * self.question.until || rise <= (RISE * scale).max(-gap.open);
             if closed && opening < 0.0 && gap.rate >= -LEFT_OVER * struck && stays {
                 self.plant.mode.resting.push(stop);
                 self.still();
@@ -184,12 +188,17 @@ impl Run {
             }
             Watch::Meets(at) => {
                 let speed = -self.plant.opening(at, &self.y)[1];
-                self.meets(at, speed);
+                if !self.meets(at, speed) {
+                    return Some(self.no_way_at_once());
+                }
             }
             Watch::Separates(at) => {
                 self.plant.part(at, self.time);
                 let [_, speed] = self.plant.opening(at, &self.y);
                 self.tell(Happened::Separates { at, speed });
+                if self.plant.may_stick(at) && !self.rub(false, None, &[]) {
+                    return Some(self.no_way_at_once());
+                }
             }
             Watch::Leaves(place) => {
                 let stop = self.plant.mode.resting.remove(place);
@@ -210,7 +219,15 @@ impl Run {
                 }
             }
             Watch::Slips => {
-                let first = self.plant.firmness(self.time, &self.y);
+                let mut first = self.plant.firmness(self.time, &self.y);
+                // Where nothing presses yet, what gives way shows as soon as something does.
+                let nothing = |(_, places): &(f64, Vec<usize>)| self.plant.presses_nowhere(places);
+                if first.as_ref().is_some_and(nothing) {
+                    first = match self.soon() {
+                        Ok((time, y)) => self.plant.firmness(time, &y),
+                        Err(ending) => return Some(ending),
+                    };
+                }
                 if !first.is_some_and(|(_, first)| self.rub(false, None, &first)) {
                     return Some(self.no_way_at_once());
                 }
@@ -236,6 +253,23 @@ impl Run {
         None
     }
 
+    /// A time just behind, with the state that it comes to; the ending where that is not known.
+    fn soon(&mut self) -> Result<(f64, Vec<f64>), Ending> {
+        let mut rates = vec![0.0; self.y.len()];
+        if !self.plant.accelerate(self.time, &self.y, &mut rates) {
+            return Err(self.no_way_at_once());
+        }
+        let (n, by) = (self.plant.free.len(), SOON * self.question.until);
+        let mut y = self.y.clone();
+        for (x, rate) in y.iter_mut().zip(&rates) {
+            *x += by * rate;
+        }
+        for k in 0..n {
+            y[k] += 0.5 * by * by * rates[n + k];
+        }
+        Ok((self.time + by, y))
+    }
+
     /// What is watched has no value any more.
     fn without_value(&self, watch: Watch) -> Option<Ending> {
         let sought = match watch {
@@ -246,10 +280,11 @@ impl Run {
         Some(Ending::NoValue(sought))
     }
 
-    /// Bodies of a joint with play come together.
-    pub(super) fn meets(&mut self, at: Place, speed: f64) {
+    /// Bodies of a joint with play come together: false where what friction holds then is not known.
+    pub(super) fn meets(&mut self, at: Place, speed: f64) -> bool {
         self.plant.touch(at, self.time, speed);
         self.tell(Happened::Meets { at, speed });
+        !self.plant.may_stick(at) || self.rub(false, None, &[])
     }
 
     /// Turns something on or off.
@@ -259,6 +294,7 @@ impl Run {
         };
         toggle.turn();
         let (what, value, counts) = (toggle.what, toggle.value, toggle.counts());
+        let at_once = toggle.has_one_threshold();
         self.ends[condition] = toggle.awaits.clone();
         match what {
             Toggled::Switch(switch) => {
@@ -278,7 +314,7 @@ impl Run {
         }
         let awaited = &self.ends[condition];
         self.conditions[condition] =
-            (self.plant.value(awaited, self.time, &self.y)).is_some_and(|x| x < 0.0);
+            at_once || (self.plant.value(awaited, self.time, &self.y)).is_some_and(|x| x < 0.0);
     }
 
     /// An impact at a stop, and at all others that are closed and closing.

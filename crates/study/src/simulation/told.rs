@@ -185,6 +185,10 @@ impl<'a> Told<'a> {
     fn rubs(&self, at: Rubs) -> String {
         match at {
             Rubs::Joint(source) => source_name(self.model, source),
+            Rubs::Contact(at) => match self.contacts.get(at.contact).map(|c| c.joint) {
+                Some(pin @ Released::Pin { .. }) => source_name(self.model, pin.into()),
+                _ => self.place(at),
+            },
             Rubs::Seals(drive) => {
                 format!(
                     "the seals of {}",

@@ -63,10 +63,7 @@ pub(super) fn early(told: &Told<'_>, found: &Simulated) -> Option<Diagnostic> {
             "it takes more steps than are made".to_owned(),
             "ask for a shorter time or a larger `tolerance`, or for method = \"implicit\" where something is stiff",
         ),
-        Ending::TooManyEvents => (
-            repeats(told, found),
-            "look for stops between which it rattles, or for what it switches to and fro; let the stop take more of the speed, or ask for a shorter time",
-        ),
+        Ending::TooManyEvents => repeats(told, found),
     };
     let model = told.model;
     let drives: Vec<String> = (found.laws.iter().zip(&model.drives))
@@ -91,19 +88,38 @@ pub(super) fn early(told: &Told<'_>, found: &Simulated) -> Option<Diagnostic> {
     )
 }
 
-/// What happens again and again.
-fn repeats(told: &Told<'_>, found: &Simulated) -> String {
+/// What happens again and again, and what can be done.
+fn repeats(told: &Told<'_>, found: &Simulated) -> (String, &'static str) {
+    const RATTLES: &str = "look for stops between which it rattles, or for what it switches to and fro; let the stop take more of the speed, or ask for a shorter time";
+    const SWITCHES: &str = "where it is on and where it is off it goes back at once: give the switch an `off` of its own, apart from `on`";
+    const HOLDS: &str = "ask for a smaller `tolerance`, or for a shorter time";
     let Some(line) = most_frequent(told, found, REPEATS) else {
-        return "more happens than is followed".to_owned();
+        return ("more happens than is followed".to_owned(), RATTLES);
+    };
+    let what = told.what(&line.first.what);
+    let (what, help) = match line.first.what {
+        Happened::Switches { .. } => (what, SWITCHES),
+        Happened::Counts { .. } | Happened::Cavitates { .. } | Happened::Ends { .. } => {
+            (what, RATTLES)
+        }
+        Happened::Sticks | Happened::Slips | Happened::Holds { .. } | Happened::LetsGo { .. } => {
+            (what, HOLDS)
+        }
+        Happened::Meets { .. }
+        | Happened::Separates { .. }
+        | Happened::Strikes { .. }
+        | Happened::Touches { .. }
+        | Happened::Rests { .. }
+        | Happened::Leaves { .. } => (format!("it {what}"), RATTLES),
     };
     let time = |t: f64| told.units.text(t, Dimension::TIME);
-    format!(
-        "more happens than is followed: it {} {} times between {} and {}",
-        told.what(&line.first.what),
+    let why = format!(
+        "more happens than is followed: {what} {} times between {} and {}",
         line.count,
         time(line.first.time),
         time(line.last)
-    )
+    );
+    (why, help)
 }
 
 /// Why nothing is known of accelerations just ahead.
@@ -136,6 +152,10 @@ fn lacks(told: &Told<'_>, lack: Lack) -> (String, &'static str) {
         Lack::Oil(drive) => (
             format!("on one side of the cylinder of `{}` there is no oil left", told.drive(drive)),
             "give more `volume`, or let its stroke end before, by `closed` and `stroke` or by `stops`",
+        ),
+        Lack::Mass if !told.contacts.is_empty() => (
+            "what is let go moves no mass: its acceleration is not determined".to_owned(),
+            "give every link that a joint with play lets go its mass and inertia, or take play from the joint",
         ),
         Lack::Mass => (
             "what is let go moves no mass: its acceleration is not determined".to_owned(),

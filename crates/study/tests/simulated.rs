@@ -1,0 +1,232 @@
+//! What simulations say of friction, impacts, switches and motors, as a user runs them.
+#![allow(clippy::unwrap_used)]
+
+use kempe_model::Model;
+use kempe_study::{Silent, StudyResult, run};
+
+fn model(text: &str) -> Model {
+    let read = Model::from_toml(text, "simulated", &mut |_| Err("no files".into()));
+    read.unwrap().model
+}
+
+fn result(text: &str) -> StudyResult {
+    let model = model(text);
+    run(&model, &model.studies[0], &mut Silent).unwrap()
+}
+
+fn column(result: &StudyResult, name: &str) -> Vec<f64> {
+    let found = result.table.column(name);
+    found.unwrap_or_else(|| panic!("{name}")).values.clone()
+}
+
+fn worst_energy(result: &StudyResult) -> f64 {
+    let balance = result.table.balance.as_ref().unwrap();
+    balance.energy.iter().fold(0.0, |most, x| most.max(x.abs()))
+}
+
+fn codes(result: &StudyResult) -> Vec<&'static str> {
+    result.diagnostics.iter().map(|d| d.code).collect()
+}
+
+/// A block on a line.
+const BLOCK: &str = r#"
+units = { length = "m", angle = "rad" }
+[links]
+frame = { O = [0, 0], X = [1, 0] }
+block = { A = [0, 0], mass = 2, inertia = 0, center = "A" }
+[joints]
+way = { slider = "block", at = "A", on = "O -> X" }
+[drives]
+d = { slides = "block", at = 0 }
+"#;
+
+/// What coasts against friction is held by nothing: the effort of a drive that is let go is rounding, whatever its sign.
+#[test]
+fn nothing_locks_that_coasts() {
+    let found = result(&format!(
+        "{BLOCK}[friction]\nway = {{ coefficient = 0.1 }}\n[loads]\npull = {{ force = [\"0.5 N\", 0], at = \"A\", on = \"block\" }}\n\
+         [studies.go]\nkind = \"simulate\"\nstart = {{ d_rate = \"1 m/s\" }}\nuntil = \"3 s\"\nstep = \"10 ms\"\n\
+         columns = [\"d\", \"rate(d)\"]\n"
+    ));
+    assert_eq!(codes(&found), [""; 0]);
+    // 0.981 m/s^2 less 0.25 m/s^2 brake it.
+    let way = *column(&found, "d").last().unwrap();
+    assert!((way - 0.5 / (0.981 - 0.25)).abs() < 1e-9, "{way} m");
+}
+
+/// What strikes a stop at once has lost its energy before the first row.
+#[test]
+fn an_impact_at_the_start_is_in_no_row() {
+    let found = result(
+        r#"
+units = { length = "m", angle = "deg" }
+gravity = 0
+[links]
+frame = { O = [0, 0] }
+rod   = { O-P = 1, mass = 2, inertia = 0.15 }
+[drives]
+p = { turns = "rod", at = 30 }
+[studies.a]
+kind    = "simulate"
+start   = { p_rate = "2 rad/s" }
+stops   = { p = { between = ["none", 30], restitution = 0.5 } }
+until   = "0.1 s"
+rows    = 3
+columns = ["kinetic_energy"]
+"#,
+    );
+    assert_eq!(codes(&found), [""; 0]);
+    assert!(worst_energy(&found) < 1e-13);
+    // Thin, as long as 1 m and with its centre in the middle: it goes back at 1 rad/s.
+    let energy = column(&found, "kinetic_energy");
+    assert!(
+        energy
+            .iter()
+            .all(|e| (e / (0.5 * (0.15 + 0.5)) - 1.0).abs() < 1e-12),
+        "{energy:?}"
+    );
+}
+
+/// A governor with one threshold goes on where it is off and off where it is on: that is no motion, and it is told; with two it keeps the
+/// speed between them.
+#[test]
+fn a_switch_that_goes_to_and_fro_is_told() {
+    let governed = |switch: &str| {
+        format!(
+            "{BLOCK}gravity = 0\n[switches]\ns = {{ {switch} }}\n\
+             [loads]\nl = {{ force = [\"6 N * switch(s) - 2 N\", 0], at = \"A\", on = \"block\" }}\n\
+             [studies.a]\nkind = \"simulate\"\nuntil = \"2 s\"\nrows = 41\ncolumns = [\"rate(d)\", \"switch(s)\"]\n"
+        )
+        .replace("gravity = 0\n", "")
+        .replace("[links]", "gravity = 0\n[links]")
+    };
+    for on in ["rate(d) <= 1 m/s", "rate(d) < 1.1 m/s", "1 m/s >= rate(d)"] {
+        let found = result(&governed(&format!("on = \"{on}\"")));
+        assert_eq!(codes(&found), ["simulation-ended"], "{on}");
+        let told = &found.diagnostics[0];
+        assert!(
+            told.help.iter().any(|it| it.contains("`off` of its own")),
+            "{told:?}"
+        );
+    }
+    let found = result(&governed(
+        "on = \"rate(d) <= 0.9 m/s\", off = \"rate(d) >= 1 m/s\", starts = \"on\"",
+    ));
+    assert_eq!(codes(&found), [""; 0]);
+    let speed = column(&found, "rate(d)");
+    assert!(
+        speed[11..]
+            .iter()
+            .all(|v| (0.9 - 1e-9..1.0 + 1e-9).contains(v)),
+        "{speed:?}"
+    );
+}
+
+/// At rest a motor has left what it gives forwards, though rounding starts it backwards.
+#[test]
+fn a_motor_at_rest_has_its_first_torque() {
+    let found = result(
+        r#"
+units = { length = "m", angle = "rad" }
+gravity = 0
+[links]
+frame = { O = [0, 0] }
+rod   = { O-P = 1, mass = 2, inertia = 0.15, center = [0.5, 0] }
+[drives]
+pivot = { turns = "rod", from = 0, to = 100, speed = "1 rad/s" }
+[motors]
+pivot = { curve = [["0 rpm", "12 N m"], ["3000 rpm", "0 N m"]] }
+[loads]
+l = { torque = "-0.02 N m s * rate(pivot)", on = "rod" }
+[studies.go]
+kind    = "simulate"
+until   = "2 s"
+step    = "10 ms"
+columns = ["torque(pivot)", "capacity(pivot)"]
+"#,
+    );
+    for name in ["torque(pivot)", "capacity(pivot)"] {
+        let first = column(&found, name)[0];
+        assert!((first - 12.0).abs() < 1e-9, "{name} {first}");
+    }
+}
+
+/// Held by its seals a cylinder breaks away with no acceleration at all, while large forces are in balance: it goes on, whatever the numbers.
+#[test]
+fn a_cylinder_breaks_away_from_its_seals() {
+    let lifted = |valve: &str, friction: &str| {
+        format!(
+            r#"
+units = {{ length = "m", angle = "rad", pressure = "bar" }}
+[links]
+frame = {{ O = [0, 0], F = [0, -0.25] }}
+arm   = {{ O-P = 1, B = [0.25, 0], mass = "120 kg", inertia = "10 kg m^2", center = [0.5, 0] }}
+[drives]
+lift = {{ cylinder = "F-B", at = "0.25 m * sqrt(2)" }}
+[assembly]
+arm = {{ near = 0 }}
+[cylinders.lift]
+bore     = "100 mm"
+rod      = "60 mm"
+supply   = "200 bar"
+back     = "3 bar"
+friction = "{friction}"
+[cylinders.lift.oil]
+bulk_modulus = "1.5 GPa"
+volume  = ["1 L", "1 L"]
+valve   = {valve}
+flow    = "0.2 L/s"
+drop    = "1 MPa"
+damping = "20 kN s/m"
+closed  = "0.3 m"
+stroke  = "0.15 m"
+leakage = "1e-12 m^3/s/Pa"
+[studies.lift]
+kind    = "simulate"
+until   = "20 ms"
+step    = "10 ms"
+columns = ["angle(arm)"]
+"#
+        )
+    };
+    for valve in ["0.05", "0.3", "0.5", "1", "-0.3", "-1"] {
+        for friction in ["1 N", "300 N", "1000 N"] {
+            let found = result(&lifted(valve, friction));
+            assert_eq!(codes(&found), [""; 0], "{valve} {friction}");
+        }
+    }
+    // An integrator of its own (Radau, friction by its sign) found this at 10 ms.
+    let angle = column(&result(&lifted("0.5", "300 N")), "angle(arm)")[1];
+    assert!((angle - 0.0017791).abs() < 1e-6, "{angle} rad");
+}
+
+/// A bob on a pin with play comes to rest on its stop, leaves it as it gives and grazes it again: that is no rattling without end.
+#[test]
+fn what_grazes_a_stop_rests_on_it() {
+    for tolerance in ["1e-8", "1e-9", "1e-10", "1e-11"] {
+        let found = result(&format!(
+            r#"
+units = {{ length = "mm", angle = "deg" }}
+[links]
+frame = {{ O = [0, 0] }}
+rod   = {{ O-P = 100, mass = "1 kg", inertia = "1000 kg mm^2" }}
+[clearance]
+O = {{ radial = "1 mm", radius = "5 mm", law = "hertz", stiffness = 1e9 }}
+[drives]
+pivot = {{ turns = "rod", at = -90 }}
+[studies.stopin]
+kind      = "clearance"
+model     = "three-state"
+release   = "pivot"
+until     = "0.1 s"
+rows      = 21
+start     = {{ O = ["1 mm", "-90 deg"], pivot_rate = "5 rad/s" }}
+stops     = {{ pivot = {{ between = [-100, -80], restitution = 0.5 }} }}
+tolerance = {tolerance}
+"#
+        ));
+        assert_eq!(codes(&found), [""; 0], "{tolerance}");
+        assert_eq!(found.table.rows(), 21);
+        assert!(worst_energy(&found) < 1e-7);
+    }
+}
