@@ -690,3 +690,36 @@ fn infinite_numbers_over_the_motion_are_told_by_every_question() {
             .is_empty()
     );
 }
+
+/// Where a measure turns back at once its extreme stays where both sides meet: derivatives are those of differences, and none of what is
+/// a right angle in every design near.
+#[test]
+fn derivatives_of_extremes_at_folds_are_those_of_differences() {
+    let asked = [
+        "max(transmission_angle(C))",
+        "max(angle(A, B, C))",
+        "min(abs(angle(rocker) - 123 deg))",
+        "max(y(P) - 40 mm * abs(angle(rocker) - 123 deg) / 1 rad)",
+        "min(x(P) + 90 mm * abs(angle(rocker) - 100 deg) / 1 rad)",
+        "range(abs(angle(rocker) - 110 deg))",
+        "max(y(P))",
+    ];
+    let derivatives = |a: f64| {
+        let mut s = crank_rocker();
+        s.set("a", a).expect("a length");
+        s.derivatives(asked, ["a"]).expect("derivatives")
+    };
+    let (a, by) = (0.0201, 1e-7);
+    let (found, low, high) = (derivatives(a), derivatives(a - by), derivatives(a + by));
+    let mut folds = 0;
+    for (k, name) in asked.iter().enumerate() {
+        let difference = (high.values[k] - low.values[k]) / (2.0 * by);
+        let exact = found.get(k, 0);
+        assert!(
+            (exact - difference).abs() <= 1e-5 * difference.abs().max(1.0),
+            "{name}: {exact} for {difference}"
+        );
+        folds += usize::from(difference != 0.0);
+    }
+    assert!(folds >= 4);
+}

@@ -398,15 +398,16 @@ fn study_text(model: &Model, study: &Study, parameters: &[f64], units: &Units) -
         StudyKind::Synthesize(asked) => return crate::synthesis::in_words(asked),
         StudyKind::Sweep(asked) => {
             let ids: Vec<_> = asked.vary.iter().map(|it| it.parameter).collect();
-            return crate::designs::in_words(model, "a sweep", &asked.over, &ids);
+            return crate::designs::in_words(model, "a sweep", &asked.over, &ids, None);
         }
         StudyKind::Tolerance(asked) => {
             let ids: Vec<_> = asked.vary.iter().map(|it| it.parameter).collect();
-            return crate::designs::in_words(model, "tolerances", &asked.over, &ids);
+            let play = asked.clearance.as_ref().map(|_| "the play of joints");
+            return crate::designs::in_words(model, "tolerances", &asked.over, &ids, play);
         }
         StudyKind::Optimize(asked) => {
             let ids: Vec<_> = asked.vary.iter().map(|it| it.parameter).collect();
-            return crate::designs::in_words(model, "an optimum", &asked.over, &ids);
+            return crate::designs::in_words(model, "an optimum", &asked.over, &ids, None);
         }
     };
     let along = study.kind.along();

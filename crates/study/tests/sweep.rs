@@ -469,3 +469,15 @@ fn any_study_is_swept_as_it_runs_alone() {
         assert!(refused.iter().any(|d| d.code == "bad-choice"), "{over}");
     }
 }
+
+#[test]
+fn a_sweep_of_which_no_design_moves_is_no_success() {
+    let none = ran("vary = { a = [\"200 mm\", \"210 mm\"] }\ncolumns = [\"swing\"]");
+    let told = none.diagnostics.iter().find(|d| d.code == "no-answer");
+    assert!(
+        told.unwrap().message.contains("none of its 2 designs"),
+        "{told:?}"
+    );
+    let some = ran("vary = { a = [\"20 mm\", \"210 mm\"] }\ncolumns = [\"swing\"]");
+    assert!(some.diagnostics.iter().all(|d| d.code != "no-answer"));
+}

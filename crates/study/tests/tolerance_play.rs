@@ -216,3 +216,42 @@ fn what_cannot_be_counted_is_told() {
 ;
     assert_eq!(codes(&repeated), ["no-clearance-there"]);
 }
+
+/// A clearance that is a parameter varies as any other: it is not idle, the worst case has all of it, and the linear deviation is that of the
+/// pieces.
+#[test]
+fn a_play_that_differs_counts() {
+    let text = four_bar(
+        "all = { radial = \"play\" }\nC = { radial = \"0.1 mm\" }",
+        "clearance = true\nsamples = 20000\nvary = { play = { between = [\"-0.04 mm\", \"0.1 mm\"] } }\n\
+         columns = [\"at(angle(rocker), motor, 90)\", \"at(y(P), motor, 90)\"]",
+    );
+    let result = found(&text, 3);
+    assert!(
+        result
+            .diagnostics
+            .iter()
+            .all(|d| d.code != "idle-parameter")
+    );
+    for number in ["at(angle(rocker), motor, 90)", "at(y(P), motor, 90)"] {
+        let told = |what: &str| scalar(&result, &format!("{what} of {number}"));
+        let linear = result
+            .listings
+            .iter()
+            .find(|it| it.title.starts_with("linear"));
+        let row = linear
+            .unwrap()
+            .rows
+            .iter()
+            .find(|row| row[0] == number)
+            .unwrap();
+        let value = |k: usize| -> f64 { row[k].split(' ').next().unwrap().parse().unwrap() };
+        near(value(3) / told("deviation"), 1.0, 0.03);
+        assert!(
+            value(4) <= told("smallest") && told("largest") <= value(5),
+            "{row:?}"
+        );
+        // Of linear kind: no piece comes to half of the way out of it.
+        assert!(told("largest") - told("smallest") > 0.6 * (value(5) - value(4)));
+    }
+}

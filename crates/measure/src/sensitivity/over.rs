@@ -12,6 +12,10 @@ use crate::statistics::time_ratio;
 
 /// Intervals of time over which path lengths and means are integrated, besides the breaks of the laws.
 const GRID: usize = 45;
+/// So far beside an extreme, as a part of the motion, both of its sides are looked at where it does not turn back smoothly.
+const BESIDE: f64 = 1e-6;
+/// Where it is smooth the rate at that distance is about what the bend makes of it; at a fold it is many times as much.
+const STEEP: f64 = 100.0;
 
 impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
     /// A statistic of a measure over the motion.
@@ -89,6 +93,11 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
         let place = self.at_time(Varying::from_f64(time));
         let series = self.series(measure, place);
         let (rate, bend) = (series.coefficient(1), series.coefficient(2).re * 2.0);
+        if rate.re.abs() > BESIDE * self.sampler.duration() * bend.abs()
+            && let Some(found) = self.fold(measure, time)
+        {
+            return found;
+        }
         (
             Varying {
                 re: time,
@@ -96,6 +105,29 @@ impl<F: ForceSource, G: ForceSource<Varying>> Varied<'_, F, G> {
             },
             series.coefficient(0),
         )
+    }
+
+    /// Time and value of an extreme at which a measure turns back at once, as the size of what passes zero does: it stays where both sides
+    /// meet. `None` where it does not turn back so.
+    fn fold(&mut self, measure: &Measure, time: f64) -> Option<(Varying, Varying)> {
+        let by = BESIDE * self.sampler.duration();
+        let [before, after] = [-by, by].map(|beside| {
+            let place = self.at_time(Varying::from_f64(time + beside));
+            let series = self.series(measure, place);
+            let (value, rate) = (series.coefficient(0), series.coefficient(1));
+            // Each side by its own course, at the time itself.
+            let bend = series.coefficient(2);
+            let there = value - rate * beside + bend * (beside * beside);
+            let rate = rate - bend * (2.0 * beside);
+            (there, rate, bend.re.abs() * 2.0 * by)
+        });
+        let steep = |(_, rate, smooth): &(Varying, Varying, f64)| rate.re.abs() > STEEP * smooth;
+        let turns = before.1.re * after.1.re < 0.0 && steep(&before) && steep(&after);
+        turns.then(|| {
+            let moves = (after.0 - before.0) / (before.1 - after.1);
+            let value = before.0 + before.1 * moves;
+            (Varying { re: time, ..moves }, value)
+        })
     }
 
     /// Length of path swept by a point until a time.

@@ -22,9 +22,16 @@ pub(crate) use tolerance::{CURVES as DEFAULT_CURVES, KEPT, findings_of_tolerance
 use kempe_model::{Diagnostic, Model, OverStudy, ParameterId, Severity, Study};
 
 /// What a study of designs asks for, in words, for `check`.
-pub(crate) fn in_words(model: &Model, what: &str, over: &OverStudy, ids: &[ParameterId]) -> String {
+pub(crate) fn in_words(
+    model: &Model,
+    what: &str,
+    over: &OverStudy,
+    ids: &[ParameterId],
+    besides: Option<&'static str>,
+) -> String {
     let names = ids.iter().filter_map(|id| model.parameters.get(id.index()));
-    let names: Vec<&str> = names.map(|p| p.name.as_str()).collect();
+    let names = names.map(|p| p.name.as_str()).chain(besides);
+    let names: Vec<&str> = names.collect();
     format!("{what} of `{}` over {}", over.name, names.join(", "))
 }
 

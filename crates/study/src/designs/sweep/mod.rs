@@ -74,7 +74,7 @@ pub(crate) fn sweep(
     let Begun {
         question,
         own,
-        told: diagnostics,
+        told: mut diagnostics,
     } = begin(question, progress)?;
     let layout = Layout::of(&question);
     let mut table = question.table();
@@ -92,6 +92,7 @@ pub(crate) fn sweep(
         return Err(vec![stopped(Stage::Rows)]);
     }
     let demanded_rows = question.designs.count();
+    diagnostics.extend(no_values(&question, &table));
     let mut figures = family::figures(&question, &table, &curves);
     let mut listings = vec![listed(&question, &table)];
     listings.extend(derivatives(&question, &own, &table));
@@ -153,6 +154,24 @@ fn of_part(
     }
     part.rows = None;
     Ok((part, goes_on))
+}
+
+/// That no design has any values.
+fn no_values(question: &Question<'_>, table: &Table) -> Option<Diagnostic> {
+    let count = table.rows();
+    if count == 0 || table.unreached() < count {
+        return None;
+    }
+    let message = format!(
+        "study `{}`: none of its {count} designs has values",
+        question.name
+    );
+    let error = Diagnostic::error("no-answer", message).at(question.study.over.span.clone(), "");
+    let error = match table.notes.iter().flatten().next() {
+        Some(note) => error.note(format!("the first: {note}")),
+        None => error,
+    };
+    Some(error.help("vary within what the mechanism can do: `kempe check` tells how it moves"))
 }
 
 /// How many designs there are, and how many of them have no values.

@@ -33,7 +33,7 @@ use self::play::Played;
 pub(crate) use self::sampled::KEPT;
 use self::sampled::{CHECKED, Question, path_places};
 use self::sobol::Sobol;
-use self::source::{Kind, Source};
+use self::source::{Kind, Play, Source};
 use self::spread::Deviation;
 use self::told::Teller;
 use super::asked::{kept, left_side, numbers_of};
@@ -158,12 +158,22 @@ impl<'m> Ready<'m> {
             let kind = Kind::Parameter(Deviation::new(&it.spread, &parameters, *own));
             Source { first, kind }
         };
-        let alone = study.vary.iter().zip(&own).enumerate().map(parameter);
+        let alone: Vec<Source> = (study.vary.iter().zip(&own))
+            .enumerate()
+            .map(parameter)
+            .collect();
+        let differ: Vec<&Deviation> = deviations(&alone).collect();
+        let among = |play: &Play| (play.clone()).among(&own, &differ, |v| bench.parameters(v));
         let joints = played.iter().flat_map(|it| &it.joints).map(|it| Source {
             first: study.vary.len() + it.first,
-            kind: it.kind.clone(),
+            kind: match &it.kind {
+                Kind::Round(play) => Kind::Round(among(play)),
+                Kind::Across(play) => Kind::Across(among(play)),
+                Kind::Parameter(deviation) => Kind::Parameter(deviation.clone()),
+            },
         });
-        let sources: Vec<Source> = alone.chain(joints).collect();
+        let joints: Vec<Source> = joints.collect();
+        let sources = [alone, joints].concat();
         let names = sources.iter().map(|it| {
             let id = bench.varied[it.first];
             let name = &model.parameters[id.index()].name;
@@ -200,7 +210,16 @@ impl<'m> Ready<'m> {
         let own = self.bench.own_values();
         let around = own.iter().zip(deviations(&self.sources));
         let around: Vec<[f64; 2]> = around.map(|(x, it)| it.ends.map(|end| x + end)).collect();
-        let slopes: Vec<&[f64]> = self.linear.iter().map(|it| it.slope.as_slice()).collect();
+        // What changes how much play there is changes what that does.
+        let mut opens = vec![0.0; own.len()];
+        for (k, ends) in around.iter().enumerate() {
+            let mut plays = self.sources.iter().filter_map(Source::play);
+            if plays.any(|it| it.hangs_on(k, *ends, &own, |v| self.bench.parameters(v))) {
+                opens[k] = 1.0;
+            }
+        }
+        let slopes = self.linear.iter().map(|it| it.slope.as_slice());
+        let slopes: Vec<&[f64]> = slopes.chain([opens.as_slice()]).collect();
         let spans = study.vary.iter().map(|it| it.span.clone());
         told.extend(idle(&self.bench, &slopes, &around, spans));
         if study.samples < FEW {

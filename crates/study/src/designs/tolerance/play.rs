@@ -11,7 +11,7 @@ use kempe_model::{
 use kempe_motion::progress::Silent;
 use kempe_units::{Dimension, Expr};
 
-use super::source::{Kind, Source};
+use super::source::{Kind, Play, Source};
 use crate::clearance::{Joints, clearance_of, not_released};
 use crate::prepared::{design, motion};
 use crate::words::list;
@@ -94,16 +94,16 @@ impl Played {
             let Some(clearance) = clearance_of(&closed.mechanism, play.joint) else {
                 continue;
             };
-            let (radial, own) = (clearance.radial.clone(), play.radial);
+            let counted = Play::new(clearance.radial.clone(), play.radial);
             let first = it.parameters.len();
             let kind = match play.joint {
                 Of::Joint(id) => {
                     it.open(Released::Joint(id), name, asked);
-                    Kind::Across { radial, own }
+                    Kind::Across(counted)
                 }
                 Of::Pin { point, link } => {
                     it.open(Released::Pin { point, link }, name, asked);
-                    Kind::Round { radial, own }
+                    Kind::Round(counted)
                 }
                 Of::Drive(_) => continue,
             };

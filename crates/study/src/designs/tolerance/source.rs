@@ -18,10 +18,80 @@ pub(super) struct Source {
 pub(super) enum Kind {
     /// As a parameter does.
     Parameter(Deviation),
-    /// A pin with play: it stands off by all of it, in any direction. With the play of the file's own design, m.
-    Round { radial: Scalar, own: f64 },
+    /// A pin with play: it stands off by all of it, in any direction.
+    Round(Play),
     /// A slider or a pin in a slot: it stands off its line by all of its play, to either side.
-    Across { radial: Scalar, own: f64 },
+    Across(Play),
+}
+
+/// The play of a joint, which may hang on parameters that differ themselves.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Play {
+    /// As a formula of the parameters.
+    radial: Scalar,
+    /// That of the file's own design, m.
+    pub own: f64,
+    /// The root of its mean square, and the most that it comes to, m, by its linear changes.
+    effective: f64,
+    most: f64,
+}
+
+impl Play {
+    /// One that is the same in all pieces.
+    pub fn new(radial: Scalar, own: f64) -> Self {
+        Self {
+            radial,
+            own,
+            effective: own,
+            most: own,
+        }
+    }
+
+    /// The same where parameters of values `own` differ; `parameters` makes all parameters of values.
+    pub fn among(
+        self,
+        own: &[f64],
+        deviations: &[&Deviation],
+        parameters: impl Fn(&[f64]) -> Vec<f64>,
+    ) -> Self {
+        let changed = |k: usize, by: f64| {
+            let mut values = own.to_vec();
+            values[k] += by;
+            value::<f64>(&self.radial, &parameters(&values)) - self.own
+        };
+        let (mut mean, mut variance, mut most) = (self.own, 0.0, self.own);
+        for (k, deviation) in deviations.iter().enumerate() {
+            mean += changed(k, deviation.mean());
+            let by =
+                changed(k, deviation.mean() + deviation.deviation()) - changed(k, deviation.mean());
+            variance += by * by;
+            let ends = deviation.ends.map(|end| changed(k, end));
+            most += ends[0].max(ends[1]).max(0.0);
+        }
+        Self {
+            effective: match variance == 0.0 {
+                true => mean,
+                false => (mean * mean + variance).sqrt(),
+            },
+            most,
+            ..self
+        }
+    }
+
+    /// Whether a parameter changes it, of the values `own` that differ by one of two ends.
+    pub fn hangs_on(
+        &self,
+        k: usize,
+        [low, high]: [f64; 2],
+        own: &[f64],
+        parameters: impl Fn(&[f64]) -> Vec<f64>,
+    ) -> bool {
+        [low, high].iter().any(|end| {
+            let mut values = own.to_vec();
+            values[k] = *end;
+            value::<f64>(&self.radial, &parameters(&values)) != self.own
+        })
+    }
 }
 
 impl Source {
@@ -29,7 +99,7 @@ impl Source {
     pub fn slope(&self, slopes: &[f64]) -> f64 {
         let at = |k: usize| slopes.get(k).copied().unwrap_or(f64::NAN);
         match self.kind {
-            Kind::Round { .. } => math::hypot(at(self.first), at(self.first + 1)),
+            Kind::Round(_) => math::hypot(at(self.first), at(self.first + 1)),
             _ => at(self.first),
         }
     }
@@ -47,8 +117,8 @@ impl Source {
         let slope = self.slope(slopes).abs();
         match &self.kind {
             Kind::Parameter(deviation) => slope * deviation.deviation(),
-            Kind::Round { own, .. } => slope * own * 0.5_f64.sqrt(),
-            Kind::Across { own, .. } => slope * own,
+            Kind::Round(play) => slope * play.effective * 0.5_f64.sqrt(),
+            Kind::Across(play) => slope * play.effective,
         }
     }
 
@@ -57,25 +127,23 @@ impl Source {
         let slope = self.slope(slopes);
         let ends = match &self.kind {
             Kind::Parameter(deviation) => deviation.ends.map(|end| slope * end),
-            Kind::Round { own, .. } | Kind::Across { own, .. } => [-slope * own, slope * own],
+            Kind::Round(play) | Kind::Across(play) => [-slope * play.most, slope * play.most],
         };
         [ends[0].min(ends[1]), ends[0].max(ends[1])]
     }
 
-    /// The play of a piece with these parameters, m; none of a parameter.
-    fn play(&self, parameters: &[f64]) -> Option<f64> {
+    /// The play of a joint; none of a parameter.
+    pub fn play(&self) -> Option<&Play> {
         match &self.kind {
             Kind::Parameter(_) => None,
-            Kind::Round { radial, .. } | Kind::Across { radial, .. } => {
-                Some(value(radial, parameters))
-            }
+            Kind::Round(play) | Kind::Across(play) => Some(play),
         }
     }
 
     /// Puts a piece's values where this source has them, for the number between 0 and 1 that was drawn of it. `parameters` are those of the
     /// piece; sources behind the file's own parameters need them.
     pub fn put(&self, part: f64, parameters: &[f64], values: &mut [f64]) {
-        let play = self.play(parameters).unwrap_or(0.0);
+        let play = self.play().map_or(0.0, |it| value(&it.radial, parameters));
         let mut add = |k: usize, x: f64| {
             if let Some(value) = values.get_mut(self.first + k) {
                 *value += x;
@@ -83,12 +151,12 @@ impl Source {
         };
         match &self.kind {
             Kind::Parameter(deviation) => add(0, deviation.at(part)),
-            Kind::Round { .. } => {
+            Kind::Round(_) => {
                 let (sin, cos) = math::sin_cos(std::f64::consts::TAU * part);
                 add(0, play * cos);
                 add(1, play * sin);
             }
-            Kind::Across { .. } => add(0, if part < 0.5 { -play } else { play }),
+            Kind::Across(_) => add(0, if part < 0.5 { -play } else { play }),
         }
     }
 }

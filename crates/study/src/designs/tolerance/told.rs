@@ -18,6 +18,8 @@ use crate::unit::{SHORT_DIGITS, Units, shown};
 const PARTED: f64 = 0.05;
 /// ... and by more than so many times what the number of pieces leaves open.
 const SURE: f64 = 3.0;
+/// What is less than this part of a number is rounding of it.
+const ROUNDING: f64 = 1e-9;
 /// Digits of parts and of ratios.
 const FEW_DIGITS: usize = 4;
 /// A parameter with less than this part of the variance is nothing beside the others.
@@ -333,8 +335,8 @@ impl Teller<'_, '_> {
             let unit = units.unit(parameter.dimension);
             let own = |si: f64| with_unit(unit.from_si(si) - unit.from_si(0.0), &unit);
             let tolerance = match &source.kind {
-                Kind::Round { own: play, .. } => format!("{} all round", own(*play)),
-                Kind::Across { own: play, .. } => format!("{} to either side", own(*play)),
+                Kind::Round(play) => format!("{} all round", own(play.own)),
+                Kind::Across(play) => format!("{} to either side", own(play.own)),
                 Kind::Parameter(deviation) => match (deviation.normal, deviation.mean() == 0.0) {
                     (true, _) => format!("normal {}", own(deviation.deviation())),
                     (false, true) => format!("± {}", own(deviation.ends[1])),
@@ -559,9 +561,11 @@ fn parted(it: &Told<'_>) -> Option<String> {
     }
     let n = sampled.count as f64;
     let size = it.linear.deviation.max(sampled.deviation);
+    // Of no piece is a number known better.
+    let least = ROUNDING * it.linear.own.abs().max(sampled.mean.abs());
     let shift = sampled.mean - it.linear.mean;
     let mut words = Vec::new();
-    if shift.abs() > (SURE * size / n.sqrt()).max(PARTED * size) {
+    if shift.abs() > least && shift.abs() > (SURE * size / n.sqrt()).max(PARTED * size) {
         let way = if shift > 0.0 { "above" } else { "below" };
         words.push(format!(
             "mean lies {} {way}",
@@ -570,7 +574,7 @@ fn parted(it: &Told<'_>) -> Option<String> {
     }
     let more = sampled.deviation - it.linear.deviation;
     let open = SURE / (2.0 * (n - 1.0).max(1.0)).sqrt();
-    if more.abs() > size * open.max(PARTED) {
+    if more.abs() > least && more.abs() > size * open.max(PARTED) {
         let times = match it.linear.deviation > 0.0 {
             true => format!(
                 "{} times the linear one",
