@@ -169,7 +169,7 @@ impl<'m> Ready<'m> {
             kind: match &it.kind {
                 Kind::Round(play) => Kind::Round(among(play)),
                 Kind::Across(play) => Kind::Across(among(play)),
-                Kind::Parameter(deviation) => Kind::Parameter(deviation.clone()),
+                Kind::Parameter(deviation) => Kind::Parameter(*deviation),
             },
         });
         let joints: Vec<Source> = joints.collect();
