@@ -199,7 +199,6 @@ pub(crate) fn stopped(stage: Stage) -> Diagnostic {
     )
 }
 
-/// `at motor = 0 deg`, or where it starts.
 /// What was simulated, but is no motion that could be followed.
 pub(crate) fn cannot_follow(design: &Design<f64>, error: &MotionError) -> Diagnostic {
     match error {
@@ -220,6 +219,7 @@ fn at_time(model: &Model, time: f64) -> String {
     format!("at time = {}", Units::of(model).text(time, Dimension::TIME))
 }
 
+/// `at motor = 0 deg`, or where it starts.
 fn start_text(mechanism: &Mechanism, at: f64) -> String {
     let model = &mechanism.model;
     match model.drives.as_slice() {

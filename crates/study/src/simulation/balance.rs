@@ -60,8 +60,9 @@ pub(super) fn balance(
     };
     let rows = 0..times.len();
     // What is struck at once has cost its work before the first row.
-    let work = |t: f64| found.work.at(t, &[]) - found.work.at(0.0, &[]);
-    let works: Vec<f64> = times.iter().map(|t| work(*t)).collect();
+    let before = found.work.at(0.0, &[]);
+    let works = times.iter().map(|t| found.work.at(*t, &[]) - before);
+    let works: Vec<f64> = works.collect();
     let energy = |row: usize| value(0, row) + value(1, row);
     let moved = |row: usize| {
         let (kinetic, potential) = (value(0, row), value(1, row) - value(1, 0));
