@@ -19,7 +19,7 @@ const PARTED: f64 = 0.05;
 /// ... and by more than so many times what the number of pieces leaves open.
 const SURE: f64 = 3.0;
 /// What is less than this part of a number is rounding of it.
-const ROUNDING: f64 = 1e-9;
+const ROUNDING: f64 = 1e-12;
 /// Digits of parts and of ratios.
 const FEW_DIGITS: usize = 4;
 /// A parameter with less than this part of the variance is nothing beside the others.
