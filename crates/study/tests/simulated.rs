@@ -93,11 +93,10 @@ columns = ["kinetic_energy"]
 fn a_switch_that_goes_to_and_fro_is_told() {
     let governed = |switch: &str| {
         format!(
-            "{BLOCK}gravity = 0\n[switches]\ns = {{ {switch} }}\n\
+            "{BLOCK}[switches]\ns = {{ {switch} }}\n\
              [loads]\nl = {{ force = [\"6 N * switch(s) - 2 N\", 0], at = \"A\", on = \"block\" }}\n\
              [studies.a]\nkind = \"simulate\"\nuntil = \"2 s\"\nrows = 41\ncolumns = [\"rate(d)\", \"switch(s)\"]\n"
         )
-        .replace("gravity = 0\n", "")
         .replace("[links]", "gravity = 0\n[links]")
     };
     for on in ["rate(d) <= 1 m/s", "rate(d) < 1.1 m/s", "1 m/s >= rate(d)"] {
