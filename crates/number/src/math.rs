@@ -20,7 +20,7 @@ const ROUND: f64 = 6_755_399_441_055_744.0;
 
 /// Sine and cosine of `x` rad; NaN for infinities and NaN.
 ///
-/// Within 1 ulp of the exact values (0.76 observed over 40 000 arguments; hard ones in `tests/sin_cos.rs`). The same steps run in
+/// Within 1 ulp of the exact values (0.76 observed over 40 000 arguments; hard ones in `tests/all/sin_cos.rs`). The same steps run in
 /// [`Lanes`](crate::Lanes), so scalar and lanes agree bit for bit.
 #[inline(always)]
 pub fn sin_cos(x: f64) -> (f64, f64) {

@@ -1,0 +1,4 @@
+//! The tests of `kempe-linear`, one program: each file is a room of its own.
+
+mod eigen;
+mod singular;

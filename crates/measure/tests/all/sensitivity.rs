@@ -1,0 +1,275 @@
+//! Derivatives of measures to dimensions and laws: against high-order differences of models built anew.
+#![allow(clippy::unwrap_used)]
+
+use crate::support::{Case, Rng};
+use kempe_measure::{Held, Sampler, sensitivities};
+use kempe_model::{LawPiece, Measure, Model, Parameter, ParameterId, Place, Scalar};
+use kempe_units::{Dimension, Expr};
+
+/// Agreement asked for, relative to the derivative (or to value per size, where that is more).
+const EXACT: f64 = 1e-8;
+
+/// Every number that is a dimension or belongs to a law made a parameter of its own.
+fn parametrised(mut model: Model) -> Model {
+    let mut added: Vec<Parameter> = Vec::new();
+    let first = model.parameters.len();
+    let mut free = |scalar: &mut Scalar, dimension: Dimension| {
+        if let Expr::Const(value) = *scalar
+            && value != 0.0
+        {
+            *scalar = Expr::Leaf(ParameterId((first + added.len()) as u32));
+            added.push(Parameter {
+                name: format!("free_{}", added.len()),
+                value: Expr::Const(value),
+                dimension,
+                span: 0..0,
+            });
+        }
+    };
+    for point in model.links.iter_mut().flat_map(|l| &mut l.points) {
+        match &mut point.place {
+            Place::Cartesian { x, y } => {
+                free(x, Dimension::LENGTH);
+                free(y, Dimension::LENGTH);
+            }
+            Place::Polar { radius, angle } => {
+                free(radius, Dimension::LENGTH);
+                free(angle, Dimension::ANGLE);
+            }
+            Place::Triangle {
+                from_distance,
+                to_distance,
+                ..
+            } => {
+                free(from_distance, Dimension::LENGTH);
+                free(to_distance, Dimension::LENGTH);
+            }
+        }
+    }
+    for drive in &mut model.drives {
+        free(&mut drive.law.from, drive.dimension);
+        for piece in &mut drive.law.pieces {
+            match piece {
+                LawPiece::ConstantSpeed { to, speed: more }
+                | LawPiece::ConstantAcceleration {
+                    to,
+                    acceleration: more,
+                }
+                | LawPiece::Rise {
+                    to, duration: more, ..
+                } => {
+                    free(to, drive.dimension);
+                    free(more, Dimension::NONE);
+                }
+                LawPiece::Dwell { duration } => free(duration, Dimension::NONE),
+                LawPiece::Table { .. } | LawPiece::Polynomials(_) => {}
+            }
+        }
+    }
+    model.parameters.extend(added);
+    model
+}
+
+fn example(path: &str) -> Model {
+    let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/");
+    let text = std::fs::read_to_string(format!("{root}{path}.toml")).unwrap();
+    let folder = path.split('/').next().unwrap();
+    let mut files = |file: &str| {
+        std::fs::read_to_string(format!("{root}{folder}/{file}")).map_err(|e| e.to_string())
+    };
+    Model::from_toml(&text, path, &mut files).unwrap().model
+}
+
+fn values(model: &Model, held: Held, measures: &[&Measure]) -> Option<Vec<f64>> {
+    let case = Case::from_model(model.clone());
+    let motion = case.motion().ok()?;
+    let mut sampler = Sampler::new(&motion, measures).unwrap();
+    let sample = match held {
+        Held::Path(p) => sampler.at_parameter(p),
+        Held::Time(t) | Held::Break(t) => sampler.at_time(t),
+    };
+    sample.note.is_none().then_some(sample.values)
+}
+
+/// Central differences of eighth order.
+fn difference(
+    model: &Model,
+    held: Held,
+    measures: &[&Measure],
+    parameter: ParameterId,
+    h: f64,
+) -> Option<Vec<f64>> {
+    const WEIGHTS: [f64; 4] = [4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0];
+    let base = model.parameter_values::<f64>()[parameter.index()];
+    let mut sum = vec![0.0; measures.len()];
+    for (k, weight) in WEIGHTS.iter().enumerate() {
+        for side in [1.0, -1.0] {
+            let mut moved = model.clone();
+            let step = side * (k as f64 + 1.0) * h;
+            moved.parameters[parameter.index()].value = Expr::Const(base + step);
+            let list = values(&moved, held, measures)?;
+            for (sum, value) in sum.iter_mut().zip(list) {
+                *sum += side * weight * value / h;
+            }
+        }
+    }
+    Some(sum)
+}
+
+/// Compares all named measures at some places with some parameters; returns the worst miss and how many were compared.
+fn compare(path: &str, places: &[f64], count: usize, rng: &mut Rng) -> (f64, usize) {
+    compare_model(path, example(path), places, count, rng)
+}
+
+fn compare_model(
+    path: &str,
+    model: Model,
+    places: &[f64],
+    count: usize,
+    rng: &mut Rng,
+) -> (f64, usize) {
+    let model = parametrised(model);
+    let case = Case::from_model(model.clone());
+    let motion = case.motion().unwrap();
+    // Forces are another sampler's.
+    let known: Vec<_> = (model.measures.iter())
+        .filter(|m| !m.needs_forces)
+        .collect();
+    let named: Vec<&Measure> = known.iter().map(|m| &m.measure).collect();
+    let (low, high) = motion.reached();
+    let sampler = Sampler::new(&motion, &[]).unwrap();
+    let duration = sampler.duration();
+    let (mut worst, mut compared) = (0.0_f64, 0);
+    for part in places {
+        for held in [
+            Held::Path(low + part * (high - low)),
+            Held::Time(part * duration),
+        ] {
+            let chosen: Vec<ParameterId> = (0..count)
+                .map(|_| ParameterId(rng.below(model.parameters.len()) as u32))
+                .collect();
+            let exact = sensitivities(&motion, held, &named, &chosen).unwrap();
+            let plain = values(&model, held, &named).unwrap();
+            for (column, &parameter) in chosen.iter().enumerate() {
+                let kind = model.parameters[parameter.index()].dimension;
+                let base = model.parameter_values::<f64>()[parameter.index()];
+                let unit = if kind == Dimension::LENGTH {
+                    motion.size()
+                } else {
+                    base.abs()
+                };
+                let rough = |h: f64| difference(&model, held, &named, parameter, h * unit);
+                let Some(far) = rough(2e-4) else { continue };
+                let mut near = None;
+                for (index, measure) in known.iter().enumerate() {
+                    let (value, slope) = (plain[index], exact.derivatives[index][column]);
+                    assert!(
+                        (exact.values[index] - value).abs() <= 1e-9 * value.abs().max(1e-3),
+                        "{path} {} {held:?}: {} but {value}",
+                        measure.name,
+                        exact.values[index]
+                    );
+                    // Beyond whole turns there is no time ratio to compare with.
+                    if measure.name == "ratio" && far[index].is_nan() {
+                        continue;
+                    }
+                    let scale = slope.abs().max(value.abs() / unit).max(1e-3);
+                    let mut miss = (slope - far[index]).abs() / scale;
+                    if !(miss <= EXACT) {
+                        // Which of two extremes is the larger may change within the longer step.
+                        let list = near.get_or_insert_with(|| rough(2e-5).unwrap());
+                        miss = (slope - list[index]).abs() / scale;
+                    }
+                    assert!(
+                        miss <= EXACT,
+                        "{path} {held:?} d({})/d({} = {base}): {slope} but {} ({miss:e})",
+                        measure.name,
+                        model.parameters[parameter.index()].name,
+                        far[index]
+                    );
+                    compared += 1;
+                    worst = worst.max(miss);
+                }
+            }
+        }
+    }
+    (worst, compared)
+}
+
+#[test]
+fn derivatives_agree_with_differences_of_rebuilt_models() {
+    let mut rng = Rng(7);
+    let mut all = 0;
+    for (path, places) in [
+        ("seeds/crank-rocker", &[0.137, 0.61][..]),
+        ("seeds/slider-crank", &[0.31]),
+        ("seeds/door-lock", &[0.21, 0.83]),
+        ("seeds/tractor-hitch", &[0.4]),
+        ("seeds/luffing-crane", &[0.4]),
+        ("gallery/class-iii", &[0.17, 0.77]),
+        ("gallery/stephenson-ii", &[0.35]),
+        ("gallery/geared-five-bar", &[0.72]),
+        ("gallery/excavator", &[0.55]),
+        ("gallery/shaper", &[0.23]),
+        ("gallery/groove-cam", &[0.31, 0.87]),
+        ("gallery/overhead-door", &[0.43]),
+    ] {
+        let (worst, compared) = compare(path, places, 2, &mut rng);
+        println!("{path}: {compared} derivatives, worst miss {worst:.1e}");
+        all += compared;
+    }
+    assert!(all > 200, "{all}");
+}
+
+#[test]
+fn what_goes_over_a_motion_is_differentiated() {
+    let text = r#"
+[links]
+frame   = { A = [0, 0], D = [6, 0] }
+crank   = { A-B = 2 }
+coupler = { B-C = 5, P = [2.5, 1] }
+rocker  = { D-C = 4 }
+[drives]
+motor = { turns = "crank", from = "0.3 rad", to = "4.9 rad", acceleration = "0.7 rad/s^2" }
+[assembly]
+C = "left of B -> D"
+[measures]
+p3    = "angle(rocker)"
+turn  = "angle(B -> D)"
+way   = "path_length(P)"
+whole = "max(way)"
+bend  = "curvature(P)"
+low   = "min(y(P))"
+high  = "max(y(P))"
+mean  = "mean(x(P))"
+gain  = "mechanical_advantage(p3, motor)"
+third = "d(x(P), motor, 3)"
+pole  = "instant_center_x(coupler, frame)"
+jerk  = "rate(x(P), 3)"
+"#;
+    let model = Model::from_toml(text, "over", &mut |_| Err(String::new()))
+        .unwrap()
+        .model;
+    let (_, compared) = compare_model("over", model, &[0.43], 3, &mut Rng(11));
+    assert!(compared > 60, "{compared}");
+}
+
+#[test]
+fn a_parameter_carries_what_is_built_on_it() {
+    let text = "[parameters]\na = \"2 m\"\nb = \"a * a / 1 m\"\n[links]\nframe = { A = [0, 0] }\nbar = { A-B = \"b\" }\n\
+        [drives]\nmotor = { turns = \"bar\", from = 0, to = \"2 rad\", speed = \"1 rad/s\" }\n[measures]\nx = \"x(B)\"\n";
+    let case = Case::read(text, "built");
+    let motion = case.must_move();
+    let measure = &case.model.measures[0].measure;
+    let both = [ParameterId(0), ParameterId(1)];
+    let found = sensitivities(&motion, Held::Path(1.2), &[measure], &both).unwrap();
+    let cosine = kempe_number::math::cos(1.2);
+    assert!((found.values[0] - 4.0 * cosine).abs() < 1e-15);
+    assert!((found.derivatives[0][0] - 4.0 * cosine).abs() < 1e-15);
+    assert!((found.derivatives[0][1] - cosine).abs() < 1e-15);
+    // Beyond the motion nothing is said; without parameters only values.
+    let beyond = sensitivities(&motion, Held::Path(70.0), &[measure], &both).unwrap();
+    assert!(beyond.values[0].is_nan() && beyond.derivatives[0].iter().all(|d| d.is_nan()));
+    let plain = sensitivities(&motion, Held::Time(1.2), &[measure], &[]).unwrap();
+    assert!(plain.derivatives[0].is_empty() && plain.values == found.values);
+}

@@ -1,0 +1,566 @@
+//! Fronts of E. Zitzler, K. Deb and L. Thiele's problems (ZDT, 2000) and of K. Deb, L. Thiele, M. Laumanns and E. Zitzler's (DTLZ, 2002) beside the
+//! analytic ones.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+use std::ops::ControlFlow;
+
+use crate::support::{Case, D, cube};
+use kempe_number::{Number, Random, math, powi};
+use kempe_optimize::{
+    Alone, Candidate, Ended, Generations, Nsga2, Nsga2Options, Problem, RefinedFront, SqpOptions,
+    evaluate_all, hypervolume, nsga2, refine, silent, widen,
+};
+
+/// Square root with a slope that is a number at zero.
+fn root<const N: usize>(x: D<N>) -> D<N> {
+    if x.re < 1e-300 { x * 1e10 } else { x.sqrt() }
+}
+
+fn several<const N: usize>(
+    bounds: Vec<[f64; 2]>,
+    objectives: usize,
+    f: impl Fn(&[D<N>; N]) -> Vec<D<N>> + Send + Sync + 'static,
+) -> Case<N> {
+    Case {
+        bounds,
+        objectives,
+        constraints: 0,
+        functions: Box::new(move |x| Some((f(x).into_iter().map(|f| vec![f]).collect(), vec![]))),
+        asked: Default::default(),
+    }
+}
+
+fn mean_of_rest<const N: usize>(x: &[D<N>; N]) -> D<N> {
+    x[1..].iter().fold(D::constant(0.0), |sum, x| sum + *x) / (N as f64 - 1.0)
+}
+
+fn zdt1() -> Case<30> {
+    several(cube(30, 0.0, 1.0), 2, |x| {
+        let g = mean_of_rest(x) * 9.0 + 1.0;
+        vec![x[0], g - root(x[0] * g)]
+    })
+}
+
+fn zdt2() -> Case<30> {
+    several(cube(30, 0.0, 1.0), 2, |x| {
+        let g = mean_of_rest(x) * 9.0 + 1.0;
+        vec![x[0], g - x[0].square() / g]
+    })
+}
+
+fn zdt3() -> Case<30> {
+    several(cube(30, 0.0, 1.0), 2, |x| {
+        let g = mean_of_rest(x) * 9.0 + 1.0;
+        let wave = (x[0] * (10.0 * PI)).sin_cos().0;
+        vec![x[0], g - root(x[0] * g) - x[0] * wave]
+    })
+}
+
+fn zdt4() -> Case<10> {
+    let mut bounds = cube(10, -5.0, 5.0);
+    bounds[0] = [0.0, 1.0];
+    several(bounds, 2, |x| {
+        let term = |x: &D<10>| x.square() - (*x * (4.0 * PI)).sin_cos().1 * 10.0 + 10.0;
+        let g = x[1..].iter().fold(D::constant(1.0), |sum, x| sum + term(x));
+        vec![x[0], g - root(x[0] * g)]
+    })
+}
+
+fn zdt6() -> Case<10> {
+    several(cube(10, 0.0, 1.0), 2, |x| {
+        let one = -((x[0] * -4.0).exp() * powi((x[0] * (6.0 * PI)).sin_cos().0, 6)) + 1.0;
+        let mean = mean_of_rest(x);
+        // The fourth root rises without bound at zero.
+        let steep = if mean.re < 1e-60 {
+            mean * 1e15
+        } else {
+            mean.sqrt().sqrt()
+        };
+        let g = steep * 9.0 + 1.0;
+        vec![one, g - one.square() / g]
+    })
+}
+
+fn dtlz1() -> Case<7> {
+    several(cube(7, 0.0, 1.0), 3, |x| {
+        let term = |x: &D<7>| (*x - 0.5).square() - ((*x - 0.5) * (20.0 * PI)).sin_cos().1;
+        let g = (x[2..].iter().fold(D::constant(5.0), |sum, x| sum + term(x))) * 100.0 + 1.0;
+        let one = |x: D<7>| -x + 1.0;
+        vec![
+            x[0] * x[1] * g * 0.5,
+            x[0] * one(x[1]) * g * 0.5,
+            one(x[0]) * g * 0.5,
+        ]
+    })
+}
+
+fn dtlz2() -> Case<12> {
+    several(cube(12, 0.0, 1.0), 3, |x| {
+        let g = x[2..]
+            .iter()
+            .fold(D::constant(1.0), |sum, x| sum + (*x - 0.5).square());
+        let ((s0, c0), (s1, c1)) = ((x[0] * FRAC_PI_2).sin_cos(), (x[1] * FRAC_PI_2).sin_cos());
+        vec![c0 * c1 * g, c0 * s1 * g, s0 * g]
+    })
+}
+
+fn objectives(members: &[Candidate]) -> Vec<Vec<f64>> {
+    members
+        .iter()
+        .map(|c| c.evaluation.objectives.clone())
+        .collect()
+}
+
+fn refined_objectives(front: &RefinedFront) -> Vec<Vec<f64>> {
+    front
+        .members
+        .iter()
+        .map(|m| m.candidate.evaluation.objectives.clone())
+        .collect()
+}
+
+/// The front before and after refining: its part of the analytic volume, and how far refined designs are from the analytic front.
+fn compare<const N: usize>(
+    name: &str,
+    case: impl Fn() -> Case<N>,
+    options: &Nsga2Options,
+    reference: &[f64],
+    analytic: f64,
+    miss: impl Fn(&[f64]) -> f64,
+) -> [f64; 3] {
+    let own = case();
+    let front = nsga2(&own, options, &Alone, &mut silent);
+    let before = hypervolume(&objectives(&front.members), reference) / analytic;
+    let refined = refine(
+        &own,
+        &front.members,
+        (&SqpOptions::default(), usize::MAX),
+        &Alone,
+        &mut silent,
+    );
+    let points = refined_objectives(&refined);
+    let after = hypervolume(&points, reference) / analytic;
+    // Where steps ended at an optimum, the designs are on the front.
+    let optimal = refined.members.iter().filter(|m| m.ended.is_optimal());
+    let optimal = optimal.map(|m| miss(&m.candidate.evaluation.objectives).abs());
+    let misses: Vec<f64> = optimal.collect();
+    assert!(misses.len() + 2 >= points.len(), "{name}");
+    let worst = misses.iter().copied().fold(0.0, f64::max);
+    let mean = misses.iter().sum::<f64>() / misses.len() as f64;
+    println!(
+        "{name}: volume {before:.5} -> {after:.5}, {} -> {} designs, evaluations {} + {}, miss {worst:.1e} (mean {mean:.1e}) residual {:.1e}",
+        front.members.len(),
+        points.len(),
+        front.evaluations,
+        refined.evaluations,
+        refined.residual
+    );
+    let mut ends: Vec<(Ended, usize)> = Vec::new();
+    for m in &refined.members {
+        match ends.iter_mut().find(|e| e.0 == m.ended) {
+            Some(e) => e.1 += 1,
+            None => ends.push((m.ended, 1)),
+        }
+    }
+    println!("  {ends:?}");
+    [before, after, worst]
+}
+
+/// How far off the front a design is that is off its end, where a root's slope has no bound.
+fn off_end(f: f64, miss: f64) -> f64 {
+    if f < 1e-9 { 0.0 } else { miss }
+}
+
+fn check(name: &str, [before, after, worst]: [f64; 3], least: [f64; 3]) {
+    assert!(before > least[0] && before < 1.0 + 1e-9, "{name}: {before}");
+    assert!(after > least[1] && after < 1.0 + 1e-9, "{name}: {after}");
+    assert!(worst < least[2], "{name}: {worst}");
+}
+
+fn options(evaluations: usize) -> Nsga2Options {
+    Nsga2Options {
+        evaluations,
+        ..Nsga2Options::default()
+    }
+}
+
+/// Volume below a front of f2 over f1 from zero to one, up to a reference, by Simpson's rule in the root of f1.
+fn volume_of(f2: impl Fn(f64) -> f64, from: f64, reference: f64) -> f64 {
+    let steps = 20_000;
+    let (a, b) = (from.sqrt(), 1.0);
+    let h: f64 = (b - a) / f64::from(steps);
+    let at = |k: i32| {
+        let root = a + h * f64::from(k);
+        (reference - f2(root * root)) * 2.0 * root
+    };
+    let inner: f64 = (1..steps)
+        .map(|k| at(k) * if k % 2 == 1 { 4.0 } else { 2.0 })
+        .sum();
+    (at(0) + at(steps) + inner) * h / 3.0 + (reference - 1.0) * (reference - f2(1.0))
+}
+
+#[test]
+fn zdt1_and_2() {
+    let convex = |f: f64| 1.0 - f.sqrt();
+    let got = compare(
+        "ZDT1",
+        zdt1,
+        &options(15_000),
+        &[1.1; 2],
+        volume_of(convex, 0.0, 1.1),
+        |p| off_end(p[0], p[1] - convex(p[0])),
+    );
+    check("ZDT1", got, [0.97, 0.99, 1e-6]);
+    let hollow = |f: f64| 1.0 - f * f;
+    let got = compare(
+        "ZDT2",
+        zdt2,
+        &options(15_000),
+        &[1.1; 2],
+        volume_of(hollow, 0.0, 1.1),
+        |p| p[1] - hollow(p[0]),
+    );
+    check("ZDT2", got, [0.95, 0.985, 1e-6]);
+}
+
+#[test]
+fn zdt3_has_a_front_in_pieces() {
+    let curve = |f: f64| 1.0 - f.sqrt() - f * math::sin(10.0 * PI * f);
+    // What dominates up to a place: the least of the curve so far.
+    let steps = 200_000;
+    let mut least = f64::INFINITY;
+    let mut volume = 0.0;
+    for k in 0..steps {
+        let f = (f64::from(k) + 0.5) / f64::from(steps);
+        least = least.min(curve(f));
+        volume += (1.1 - least) / f64::from(steps);
+    }
+    volume += 0.1 * (1.1 - least);
+    let got = compare("ZDT3", zdt3, &options(15_000), &[1.1; 2], volume, |p| {
+        off_end(p[0], p[1] - curve(p[0]))
+    });
+    check("ZDT3", got, [0.97, 0.985, 1e-6]);
+}
+
+#[test]
+fn zdt4_has_many_local_fronts() {
+    let convex = |f: f64| 1.0 - f.sqrt();
+    let got = compare(
+        "ZDT4",
+        zdt4,
+        &options(30_000),
+        &[1.1; 2],
+        volume_of(convex, 0.0, 1.1),
+        |p| off_end(p[0], p[1] - convex(p[0])),
+    );
+    check("ZDT4", got, [0.95, 0.985, 1e-6]);
+}
+
+#[test]
+fn zdt6_is_uneven() {
+    let hollow = |f: f64| 1.0 - f * f;
+    let from = 0.280_775_318_8;
+    let got = compare(
+        "ZDT6",
+        zdt6,
+        &options(20_000),
+        &[1.1; 2],
+        volume_of(hollow, from, 1.1),
+        |p| p[1] - hollow(p[0]),
+    );
+    // All along the front a fourth root rises without bound: derivatives lead near it, not onto it.
+    check("ZDT6", got, [0.95, 0.97, 0.05]);
+}
+
+#[test]
+fn dtlz_fronts_of_three_objectives() {
+    let volume = 0.6_f64 * 0.6 * 0.6 - 0.125 / 6.0;
+    let got = compare("DTLZ1", dtlz1, &options(40_000), &[0.6; 3], volume, |p| {
+        p.iter().sum::<f64>() - 0.5
+    });
+    check("DTLZ1", got, [0.9, 0.95, 1e-6]);
+    let volume = 1.1_f64 * 1.1 * 1.1 - PI / 6.0;
+    let got = compare("DTLZ2", dtlz2, &options(15_000), &[1.1; 3], volume, |p| {
+        p.iter().map(|x| x * x).sum::<f64>().sqrt() - 1.0
+    });
+    check("DTLZ2", got, [0.85, 0.87, 1e-6]);
+}
+
+/// Squares of distances to two centres, and a quarter of a circle, which is hollow.
+fn bulging() -> Case<2> {
+    several(cube(2, -2.0, 2.0), 2, |[x, y]| {
+        vec![x.square() + y.square(), (*x - 1.0).square() + y.square()]
+    })
+}
+
+fn hollow() -> Case<2> {
+    several(vec![[0.0, 1.0], [-1.0, 1.0]], 2, |[x, y]| {
+        let (sin, cos) = (*x * FRAC_PI_2).sin_cos();
+        let far = y.square() + 1.0;
+        vec![sin * far, cos * far]
+    })
+}
+
+/// Fronts of which only designs near the middle are known, led to their ends and filled.
+#[test]
+fn a_front_reaches_its_ends_and_has_no_gaps() {
+    // On the one roots sum to one, on the other squares.
+    for (case, power) in [(bulging(), 0.5), (hollow(), 2.0)] {
+        let off = |f: &[f64]| f.iter().map(|x| math::powf(*x, power)).sum::<f64>() - 1.0;
+        let known: Vec<Candidate> = [[0.45, 0.3], [0.5, -0.2], [0.6, 0.1]]
+            .iter()
+            .map(|design| Candidate {
+                design: design.to_vec(),
+                evaluation: Problem::evaluate(&case, design),
+            })
+            .collect();
+        let options = SqpOptions::default();
+        let refined = refine(&case, &known, (&options, usize::MAX), &Alone, &mut silent);
+        assert!(refined.members.len() <= 3);
+        let with = (&options, usize::MAX);
+        let widened = widen(
+            &case,
+            refined.members.clone(),
+            21,
+            with,
+            &Alone,
+            &mut silent,
+        );
+        println!("{} evaluations", widened.evaluations);
+        let all = refined_objectives(&widened);
+        assert!(all.len() >= 15 && all.len() <= 21, "{}", all.len());
+        assert!(widened.residual < 1e-6 && widened.evaluations < 400);
+        for (end, wanted) in [(0, [0.0, 1.0]), (all.len() - 1, [1.0, 0.0])] {
+            let misses = all[end].iter().zip(wanted).map(|(f, w)| (f - w).abs());
+            assert!(misses.fold(0.0, f64::max) < 1e-6, "{:?}", all[end]);
+        }
+        assert!(all.iter().all(|f| off(f).abs() < 1e-6), "{all:?}");
+        let gaps = all.windows(2).map(|pair| {
+            let both = pair[0].iter().zip(&pair[1]);
+            both.map(|(a, b)| (b - a).abs()).sum::<f64>()
+        });
+        assert!(gaps.fold(0.0, f64::max) < 0.25);
+        // What may not be asked is not asked.
+        let with = (&options, 0);
+        let none = widen(
+            &case,
+            refined.members.clone(),
+            21,
+            with,
+            &Alone,
+            &mut silent,
+        );
+        assert!(none.evaluations <= 4, "{}", none.evaluations);
+        // Stopped, it has what it had.
+        let mut stop = |_: &kempe_optimize::Progress| ControlFlow::Break(());
+        let with = (&options, usize::MAX);
+        let stopped = widen(&case, refined.members.clone(), 21, with, &Alone, &mut stop);
+        assert_eq!(stopped.ended, Ended::Stopped);
+        assert_eq!(stopped.members, refined.members);
+    }
+}
+
+/// ZDT3's front is in five pieces: what lies between two of them is found empty, once.
+#[test]
+fn gaps_of_a_front_in_pieces_stay_open() {
+    let front = nsga2(&zdt3(), &options(4_000), &Alone, &mut silent);
+    let case = zdt3();
+    let options = SqpOptions::default();
+    let refined = refine(
+        &case,
+        &front.members,
+        (&options, 1_500),
+        &Alone,
+        &mut silent,
+    );
+    let before = hypervolume(&refined_objectives(&refined), &[1.1; 2]);
+    let widened = widen(
+        &case,
+        refined.members,
+        120,
+        (&options, 1_500),
+        &Alone,
+        &mut silent,
+    );
+    let after = hypervolume(&refined_objectives(&widened), &[1.1; 2]);
+    println!(
+        "ZDT3 {before} -> {after}, {} evaluations",
+        widened.evaluations
+    );
+    assert!(after >= before && widened.evaluations < 2_500);
+}
+
+#[test]
+fn three_objectives_get_their_ends() {
+    let front = nsga2(&dtlz2(), &options(2_000), &Alone, &mut silent);
+    let case = dtlz2();
+    let options = SqpOptions::default();
+    let refined = refine(
+        &case,
+        &front.members,
+        (&options, 4_000),
+        &Alone,
+        &mut silent,
+    );
+    let widened = widen(
+        &case,
+        refined.members,
+        100,
+        (&options, 4_000),
+        &Alone,
+        &mut silent,
+    );
+    for k in 0..3 {
+        let of = refined_objectives(&widened);
+        let least = of.iter().map(|p| p[k]).fold(f64::INFINITY, f64::min);
+        assert!(least < 1e-7, "{k}: {least}");
+    }
+}
+
+/// N. Srinivas and K. Deb (1994): the front is where x = -2.5.
+#[test]
+fn constraints_bound_a_front() {
+    let case = Case::<2> {
+        bounds: cube(2, -20.0, 20.0),
+        objectives: 2,
+        constraints: 2,
+        functions: Box::new(|[x, y]| {
+            let f1 = (*x - 2.0).square() + (*y - 1.0).square() + 2.0;
+            let f2 = *x * 9.0 - (*y - 1.0).square();
+            let rows = vec![
+                vec![x.square() + y.square() - 225.0],
+                vec![*x - *y * 3.0 + 10.0],
+            ];
+            Some((vec![vec![f1], vec![f2]], rows))
+        }),
+        asked: Default::default(),
+    };
+    let front = nsga2(&case, &options(8_000), &Alone, &mut silent);
+    assert!(
+        front
+            .members
+            .iter()
+            .all(|c| c.evaluation.constraints.iter().all(|g| *g <= 0.0))
+    );
+    let refined = refine(
+        &case,
+        &front.members,
+        (&SqpOptions::default(), usize::MAX),
+        &Alone,
+        &mut silent,
+    );
+    println!(
+        "SRN: {} -> {} residual {:.1e} evaluations {}",
+        front.members.len(),
+        refined.members.len(),
+        refined.residual,
+        refined.evaluations
+    );
+    assert!(refined.members.len() > 50 && refined.residual < 1e-6);
+    for member in &refined.members {
+        let x = &member.candidate.design;
+        // On x = -2.5 inside, on a constraint at the front's end.
+        let ends = (x[0] * x[0] + x[1] * x[1] - 225.0)
+            .abs()
+            .min((x[0] - 3.0 * x[1] + 10.0).abs());
+        assert!((x[0] + 2.5).abs() < 1e-4 || ends < 1e-5, "{x:?}");
+    }
+}
+
+#[test]
+fn volumes_are_those_of_closed_forms() {
+    assert_eq!(hypervolume(&[], &[1.0, 1.0]), 0.0);
+    assert_eq!(hypervolume(&[vec![2.0, 0.0]], &[1.0, 1.0]), 0.0);
+    assert_eq!(hypervolume(&[vec![0.25]], &[1.0]), 0.75);
+    assert_eq!(
+        hypervolume(
+            &[vec![0.0, 0.5], vec![0.5, 0.0], vec![0.5, 0.5]],
+            &[1.0, 1.0]
+        ),
+        0.75
+    );
+    // Corners of a simplex: of m boxes of one side half, 1 - the part that all leave.
+    for m in 2..6 {
+        let points: Vec<Vec<f64>> = (0..m)
+            .map(|k| (0..m).map(|j| if j == k { 0.5 } else { 0.0 }).collect())
+            .collect();
+        let wanted = 1.0 - powi(0.5, m);
+        let found = hypervolume(&points, &vec![1.0; m as usize]);
+        assert!((found - wanted).abs() < 1e-14, "{m} {found} {wanted}");
+    }
+}
+
+#[test]
+fn volumes_are_those_of_counted_points() {
+    let mut random = Random(5);
+    for m in 2..6 {
+        let points: Vec<Vec<f64>> = (0..12)
+            .map(|_| (0..m).map(|_| random.uniform()).collect())
+            .collect();
+        let found = hypervolume(&points, &vec![1.0; m]);
+        let throws = 60_000;
+        let hits = (0..throws).filter(|_| {
+            let at: Vec<f64> = (0..m).map(|_| random.uniform()).collect();
+            points
+                .iter()
+                .any(|p| p.iter().zip(&at).all(|(p, x)| p <= x))
+        });
+        let counted = hits.count() as f64 / f64::from(throws);
+        assert!((found - counted).abs() < 0.008, "{m}: {found} {counted}");
+        let mut turned = points.clone();
+        turned.reverse();
+        assert!((hypervolume(&turned, &vec![1.0; m]) - found).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn the_same_seed_gives_the_same_front() {
+    let options = options(2_000);
+    let mut one = Nsga2::new(&zdt1(), &options);
+    let mut two = one.clone();
+    for (state, part) in [(&mut one, 1), (&mut two, 33)] {
+        let case = zdt1();
+        while state.evaluations() < state.budget() {
+            let designs = state.ask();
+            let evaluations = designs
+                .chunks(part)
+                .flat_map(|some| evaluate_all(&case, some, &Alone))
+                .collect();
+            state.tell(evaluations);
+        }
+    }
+    assert_eq!(one, two);
+    assert_eq!(
+        one.front(),
+        nsga2(&zdt1(), &options, &Alone, &mut silent).members
+    );
+}
+
+#[test]
+fn a_front_is_kept_when_stopped() {
+    let mut stop = |p: &kempe_optimize::Progress| match p.evaluations > 3_000 {
+        true => ControlFlow::Break(()),
+        false => ControlFlow::Continue(()),
+    };
+    let front = nsga2(&zdt1(), &options(10_000), &Alone, &mut stop);
+    assert_eq!(front.ended, Ended::Stopped);
+    assert!(front.evaluations < 3_200 && front.members.len() > 5);
+    let mut told = 0;
+    let mut stop = |_: &kempe_optimize::Progress| {
+        told += 1;
+        if told > 40 {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
+    };
+    let refined = refine(
+        &zdt1(),
+        &front.members,
+        (&SqpOptions::default(), usize::MAX),
+        &Alone,
+        &mut stop,
+    );
+    assert_eq!(refined.ended, Ended::Stopped);
+    assert!(!refined.members.is_empty());
+}

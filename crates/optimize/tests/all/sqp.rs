@@ -1,0 +1,397 @@
+//! Largest of pieces, conflicts, degenerate and undefined places, and what multipliers mean.
+
+use std::ops::ControlFlow;
+
+use crate::support::{Case, D, cube};
+use kempe_number::{Number, powi};
+use kempe_optimize::{Alone, Ended, Optimum, SqpOptions, silent, sqp};
+
+fn solve<const N: usize>(name: &str, case: &Case<N>, start: [f64; N]) -> Optimum {
+    let found = sqp(case, &start, &SqpOptions::default(), &Alone, &mut silent);
+    println!(
+        "{name}: {:.12} residual {:.1e} violation {:.1e} steps {} evaluations {} slopes {} {:?} at {:?} {:?}",
+        found.objective(),
+        found.residual,
+        found.violation,
+        found.iterations,
+        found.evaluations,
+        found.slopes,
+        found.ended,
+        found.design,
+        found.conflict
+    );
+    found
+}
+
+#[track_caller]
+fn is_optimum(found: &Optimum, wanted: f64) {
+    assert!(found.ended.is_optimal(), "{found:?}");
+    let missed = (found.objective() - wanted).abs() / wanted.abs().max(1.0);
+    assert!(missed < 1e-7, "{} {wanted}", found.objective());
+    let shares: f64 = found.multipliers.objectives.iter().flatten().sum();
+    assert!((shares - 1.0).abs() < 1e-9);
+}
+
+/// C. Charalambous and J. W. Bandler (1976), problem 1: optimum 1.9522245.
+#[test]
+fn minimax_of_charalambous_and_bandler() {
+    let case = Case::<2>::pieces(cube(2, -10.0, 10.0), 0, |[x, y]| {
+        let pieces = vec![
+            x.square() + powi(*y, 4),
+            (-*x + 2.0).square() + (-*y + 2.0).square(),
+            (*y - *x).exp() * 2.0,
+        ];
+        (pieces, vec![])
+    });
+    let found = solve("CB2", &case, [2.0, 2.0]);
+    is_optimum(&found, 1.952_224_493_87);
+}
+
+/// The same authors' second problem: optimum 2 at (1, 1), where all three pieces meet.
+#[test]
+fn minimax_where_more_pieces_meet_than_needed() {
+    let case = Case::<2>::pieces(cube(2, -10.0, 10.0), 0, |[x, y]| {
+        let pieces = vec![
+            powi(*x, 4) + y.square(),
+            (-*x + 2.0).square() + (-*y + 2.0).square(),
+            (*y - *x).exp() * 2.0,
+        ];
+        (pieces, vec![])
+    });
+    let found = solve("CB3", &case, [2.0, 2.0]);
+    is_optimum(&found, 2.0);
+}
+
+/// J. B. Rosen and S. Suzuki (1965) as a minimax: optimum -44.
+#[test]
+fn minimax_of_rosen_and_suzuki() {
+    let case = Case::<4>::pieces(cube(4, -10.0, 10.0), 0, |[a, b, c, d]| {
+        let (a2, b2, c2, d2) = (a.square(), b.square(), c.square(), d.square());
+        let f = a2 + b2 + c2 * 2.0 + d2 - *a * 5.0 - *b * 5.0 - *c * 21.0 + *d * 7.0;
+        let pieces = vec![
+            f,
+            f + (a2 + b2 + c2 + d2 + *a - *b + *c - *d - 8.0) * 10.0,
+            f + (a2 + b2 * 2.0 + c2 + d2 * 2.0 - *a - *d - 10.0) * 10.0,
+            f + (a2 * 2.0 + b2 + c2 + *a * 2.0 - *b - *d - 5.0) * 10.0,
+        ];
+        (pieces, vec![])
+    });
+    let found = solve("Rosen-Suzuki", &case, [0.0; 4]);
+    is_optimum(&found, -44.0);
+}
+
+/// E. Polak, D. H. Mayne and J. E. Higgins (1991), in L. Luksan and J. Vlcek's collection (2000) Polak 1 and Polak 6: optima e and -44.
+#[test]
+fn minimax_of_polak() {
+    let case = Case::<2>::pieces(cube(2, -60.0, 60.0), 0, |[x, y]| {
+        let size = x.square() * 0.001;
+        let piece = |side: f64| (size + (*y + side).square()).exp();
+        (vec![piece(-1.0), piece(1.0)], vec![])
+    });
+    let found = solve("Polak 1", &case, [50.0, 0.05]);
+    is_optimum(&found, std::f64::consts::E);
+    let case = Case::<4>::pieces(cube(4, -10.0, 10.0), 0, |[a, b, c, d]| {
+        let p = *a - powi(*d + 1.0, 4);
+        let q = *b - powi(p, 4);
+        let (p2, q2, c2, d2) = (p.square(), q.square(), c.square(), d.square());
+        let f = p2 + q2 + c2 * 2.0 + d2 - p * 5.0 - q * 5.0 - *c * 21.0 + *d * 7.0;
+        let pieces = vec![
+            f,
+            f + (p2 + q2 + c2 + d2 + p - q + *c - *d - 8.0) * 10.0,
+            f + (p2 + q2 * 2.0 + c2 + d2 * 2.0 - p - *d - 10.0) * 10.0,
+            f + (p2 + q2 + c2 + p * 2.0 - q - *d - 5.0) * 10.0,
+        ];
+        (pieces, vec![])
+    });
+    let found = solve("Polak 6", &case, [0.0; 4]);
+    is_optimum(&found, -44.0);
+}
+
+/// H. H. Rosenbrock's valley (1960) whose end is beyond a bound.
+#[test]
+fn a_bound_ends_a_valley() {
+    let case = Case::<2>::smooth(vec![[-2.0, 0.5], [-2.0, 2.0]], 0, |[x, y]| {
+        (
+            (*y - x.square()).square() * 100.0 + (-*x + 1.0).square(),
+            vec![],
+        )
+    });
+    let found = solve("boxed Rosenbrock", &case, [-1.2, 1.0]);
+    is_optimum(&found, 0.25);
+    assert_eq!(found.design[0], 0.5);
+    // What a longer range of x is worth there: 2 (1 - x).
+    assert!((found.multipliers.bounds[0][1] - 1.0).abs() < 1e-5);
+}
+
+/// The largest of a travelling wave's local peaks: their number and order changes on the way.
+#[test]
+fn peaks_may_come_and_go() {
+    let case = Case::<2>::pieces(cube(2, -2.0, 2.0), 0, |[a, b]| {
+        // |cos 3t + a cos t + b sin 2t| over half a turn, as its samples' local peaks: the best mix of waves.
+        let at = |k: i32| {
+            let t = f64::from(k) * std::f64::consts::PI / 2000.0;
+            let (s, c) = (kempe_number::math::sin(2.0 * t), kempe_number::math::cos(t));
+            let value: D<2> = *a * c
+                + *b * s
+                + kempe_number::math::cos(3.0 * t)
+                + kempe_number::math::cos(5.0 * t) * 0.3;
+            value.abs()
+        };
+        let samples: Vec<D<2>> = (0..=2000).map(at).collect();
+        let peaks = (0..samples.len()).filter(|k| {
+            let own = samples[*k].re;
+            (*k == 0 || samples[k - 1].re <= own)
+                && (k + 1 == samples.len() || samples[k + 1].re < own)
+        });
+        (peaks.map(|k| samples[k]).collect(), vec![])
+    });
+    let found = solve("peaks", &case, [1.5, 1.0]);
+    assert!(found.ended.is_optimal());
+    // The problem is convex: no other place near by is better.
+    for (da, db) in [
+        (1e-3, 0.0),
+        (-1e-3, 0.0),
+        (0.0, 1e-3),
+        (0.0, -1e-3),
+        (1e-3, 1e-3),
+        (-1e-3, 1e-3),
+    ] {
+        let near = vec![found.design[0] + da, found.design[1] + db];
+        let there = kempe_optimize::Problem::evaluate(&case, &near);
+        assert!(there.largest() > found.objective());
+    }
+}
+
+/// Two discs a gap apart and a third constraint that never matters: the nearest approach is in the middle of the gap.
+#[test]
+fn a_conflict_is_named() {
+    let case = Case::<2>::smooth(cube(2, -10.0, 10.0), 3, |[x, y]| {
+        let disc = |at: f64| (*x - at).square() + y.square() - 1.0;
+        (*y * 3.0 + *x, vec![disc(-2.0), -*y - 9.0, disc(2.0)])
+    });
+    let found = solve("conflict", &case, [5.0, 7.0]);
+    assert_eq!(found.ended, Ended::Infeasible);
+    assert!(
+        found.design.iter().all(|x| x.abs() < 1e-4),
+        "{:?}",
+        found.design
+    );
+    let mut names: Vec<usize> = found
+        .conflict
+        .iter()
+        .filter(|c| c.1 > 1e-6)
+        .map(|c| c.0)
+        .collect();
+    names.sort_unstable();
+    assert_eq!(names, [0, 2]);
+    let shares: f64 = found.conflict.iter().map(|c| c.1).sum();
+    assert!((shares - 1.0).abs() < 1e-9);
+}
+
+/// Constraints that cannot be kept even by their linear parts.
+#[test]
+fn rows_that_conflict_are_named() {
+    let case = Case::<2>::smooth(cube(2, 0.0, 1.0), 3, |[x, y]| {
+        (*x, vec![*x + *y - 0.5, -*x - *y + 0.7, *x - 2.0])
+    });
+    let found = solve("rows", &case, [0.9, 0.1]);
+    assert_eq!(found.ended, Ended::Infeasible);
+    let names: Vec<usize> = found.conflict.iter().map(|c| c.0).collect();
+    assert_eq!(names.len(), 2);
+    assert!(names.contains(&0) && names.contains(&1));
+}
+
+/// The same constraint four times, one of them squared: no regular point.
+#[test]
+fn redundant_constraints_do_no_harm() {
+    let case = Case::<2>::smooth(cube(2, -3.0, 3.0), 4, |[x, y]| {
+        let row = *x + *y - 1.0;
+        (
+            (*x - 2.0).square() + (*y - 1.0).square(),
+            vec![row, row * 2.0, row * 0.5, *x * 3.0 + *y * 3.0 - 3.0],
+        )
+    });
+    let found = solve("redundant", &case, [-2.0, -2.0]);
+    is_optimum(&found, 2.0);
+    let paid: f64 = (0..4)
+        .zip([1.0, 2.0, 0.5, 3.0])
+        .map(|(k, size)| found.multipliers.cost(k) * size)
+        .sum();
+    assert!((paid - 2.0).abs() < 1e-6, "{paid}");
+}
+
+/// An equation as two constraints: their multipliers have no bound.
+#[test]
+fn an_equation_may_be_two_constraints() {
+    let case = Case::<3>::smooth(cube(3, -5.0, 5.0), 2, |[x, y, z]| {
+        let sphere = x.square() + y.square() + z.square() - 4.0;
+        (*x + *y * 2.0 - *z, vec![sphere, -sphere])
+    });
+    let found = solve("sphere", &case, [1.0, 1.0, 1.0]);
+    is_optimum(&found, -2.0 * 6.0_f64.sqrt());
+}
+
+/// Full steps along a circle raise both the objective and the violation (N. Maratos, 1978).
+#[test]
+fn full_steps_are_corrected_along_a_curve() {
+    let case = Case::<2>::smooth(cube(2, -2.0, 2.0), 2, |[x, y]| {
+        let circle = x.square() + y.square() - 1.0;
+        (circle * 2.0 - *x, vec![circle, -circle])
+    });
+    let found = solve("Maratos", &case, [0.0, 1.0]);
+    is_optimum(&found, -1.0);
+    assert!(found.iterations < 30, "{}", found.iterations);
+}
+
+/// Nothing is known beyond a curve that the steps want to cross, and the optimum lies just before it.
+#[test]
+fn undefined_designs_shorten_steps() {
+    let mut case = Case::<2>::smooth(cube(2, 0.0, 2.0), 0, |_| unreachable!());
+    case.functions = Box::new(|[x, y]| {
+        let room = (
+            -x.square() - y.square() + 1.0,
+            x.re * x.re + y.re * y.re < 1.0,
+        );
+        room.1
+            .then(|| (vec![vec![-*x - *y - room.0.sqrt() * 0.01]], vec![]))
+    });
+    let found = solve("undefined", &case, [0.1, 0.2]);
+    // Of -x - y - e sqrt(1 - x^2 - y^2) the minimum is -sqrt(2 + e^2).
+    is_optimum(&found, -(2.0_f64 + 1e-4).sqrt());
+    assert_eq!(
+        sqp(
+            &case,
+            &[1.5, 1.5],
+            &SqpOptions::default(),
+            &Alone,
+            &mut silent
+        )
+        .ended,
+        Ended::Undefined
+    );
+}
+
+/// Multipliers are what the optimum gains where a constraint is eased.
+#[test]
+fn multipliers_are_derivatives_of_the_optimum() {
+    let problem = |ease: [f64; 3]| {
+        Case::<3>::pieces(
+            vec![[-3.0, 3.0], [-3.0, 3.0], [-3.0, 0.3 + ease[2]]],
+            2,
+            move |[x, y, z]| {
+                let one = (*x - 2.0).square() + y.square() + (*z - 1.0).square() * 2.0;
+                let two = x.square() + (*y - 2.0).square() * 1.5 + (*z - 1.0).square() * 2.0;
+                let sum = x.square() + y.square() + z.square() - 1.5 - ease[0];
+                let halves = vec![*x - *y * 0.2 - 0.6 - ease[1], *x * 0.5 + *z - 3.0 - ease[1]];
+                (vec![one, two], vec![vec![sum], halves])
+            },
+        )
+    };
+    let options = SqpOptions {
+        optimality: 1e-11,
+        ..SqpOptions::default()
+    };
+    let of = |ease: [f64; 3]| {
+        sqp(
+            &problem(ease),
+            &[0.1, 0.1, 0.1],
+            &options,
+            &Alone,
+            &mut silent,
+        )
+    };
+    let found = of([0.0; 3]);
+    assert!(found.ended.is_optimal(), "{found:?}");
+    let costs = [
+        found.multipliers.cost(0),
+        found.multipliers.cost(1),
+        found.multipliers.bounds[2][1],
+    ];
+    for k in 0..3 {
+        let at = |ease: f64| {
+            let mut all = [0.0; 3];
+            all[k] = ease;
+            of(all).objective()
+        };
+        let gain = (at(-1e-4) - at(1e-4)) / 2e-4;
+        println!("cost {k}: {} {gain}", costs[k]);
+        assert!((gain - costs[k]).abs() < 1e-5, "{k}: {gain} {}", costs[k]);
+    }
+    assert!(
+        costs.iter().filter(|c| **c > 0.01).count() >= 2,
+        "{costs:?}"
+    );
+}
+
+#[test]
+fn who_listens_may_stop_it() {
+    let case = Case::<2>::smooth(cube(2, -2.0, 2.0), 0, |[x, y]| {
+        (
+            (*y - x.square()).square() * 100.0 + (-*x + 1.0).square(),
+            vec![],
+        )
+    });
+    let mut told = 0;
+    let mut stop = |_: &kempe_optimize::Progress| {
+        told += 1;
+        if told > 4 {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
+    };
+    let found = sqp(
+        &case,
+        &[-1.2, 1.0],
+        &SqpOptions::default(),
+        &Alone,
+        &mut stop,
+    );
+    assert_eq!(found.ended, Ended::Stopped);
+    assert!(found.objective() < 24.2 && found.iterations == 4);
+}
+
+/// A variable whose bounds meet is none.
+#[test]
+fn a_fixed_variable_stays() {
+    let case = Case::<2>::smooth(vec![[0.5, 0.5], [-2.0, 2.0]], 0, |[x, y]| {
+        ((*y - *x).square() + *y, vec![])
+    });
+    let found = solve("fixed", &case, [1.0, 1.0]);
+    is_optimum(&found, 0.25);
+    assert_eq!(found.design[0], 0.5);
+}
+
+/// A variable whose bounds meet stays where it is, to the bit; the others find their optimum beside it.
+#[test]
+fn a_variable_may_be_fixed() {
+    let case = Case::<3>::smooth(
+        vec![[-5.0, 5.0], [1.3, 1.3], [-5.0, 5.0]],
+        1,
+        |[x, y, z]| {
+            let f = (*x - *y).square() + (*z + *y * 2.0).square() + x.square();
+            (f, vec![-*x + 1.0])
+        },
+    );
+    let found = solve("fixed", &case, [3.0, 1.3, 2.0]);
+    is_optimum(&found, 0.09 + 1.0);
+    assert_eq!(found.design[1], 1.3);
+    assert_eq!(found.multipliers.bounds[1], [0.0; 2]);
+}
+
+/// The same constraint twice, in other units and nearly the same: together they cost what one would.
+#[test]
+fn constraints_twice_over_do_not_matter() {
+    let case = Case::<2>::pieces(cube(2, -50.0, 50.0), 4, |[x, y]| {
+        let g = -*x - *y + 1.0;
+        let constraints = vec![vec![g, g], vec![g], vec![g * 2.0], vec![g * (1.0 + 1e-12)]];
+        (vec![x.square() + y.square()], constraints)
+    });
+    let found = solve("twice", &case, [3.0, -2.0]);
+    is_optimum(&found, 0.5);
+    let costs = (0..4).zip([1.0, 1.0, 2.0, 1.0]);
+    let cost: f64 = costs
+        .map(|(k, size)| size * found.multipliers.cost(k))
+        .sum();
+    assert!((cost - 1.0).abs() < 1e-5, "{cost}");
+}

@@ -1,0 +1,46 @@
+//! The tests of `kempe-study`, one program: each file is a room of its own.
+
+mod adjust;
+mod choice;
+mod clearance;
+mod closer;
+mod comparison;
+mod contact;
+mod dimensions;
+mod drawn;
+mod drawn_elsewhere;
+mod examples;
+mod fit;
+mod forces;
+mod motion;
+mod mutants;
+mod optimize;
+mod pictures;
+mod point_rates;
+mod proof;
+mod rests;
+mod round_trips;
+mod scale;
+mod simulated;
+mod stiction;
+mod sweep;
+mod synthesis;
+mod synthesis_cognates;
+mod synthesis_dwell;
+mod synthesis_motion;
+mod synthesis_path;
+mod tolerance;
+mod tolerance_play;
+mod verify;
+mod vibrations;
+
+#[path = "../support/beside.rs"]
+mod beside;
+#[path = "../support/bounded.rs"]
+mod bounded;
+#[path = "../../../model/tests/support/mutants.rs"]
+mod mutation;
+#[path = "../../../model/tests/support/read.rs"]
+mod read;
+#[path = "../support/examples.rs"]
+mod support;
