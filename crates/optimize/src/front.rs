@@ -149,8 +149,21 @@ impl Way {
         let first = self.roles.iter().all(|role| *role != Role::Kept);
         let usable = found.violation <= options.feasibility && evaluation.is_defined();
         let (true, Some(slopes)) = (usable, slopes) else {
-            if let (true, Some(member)) = (first, &mut self.member) {
-                member.ended = found.ended;
+            match &mut self.member {
+                // Where steps end is worth a place though nothing of first order is known there, as at a change point.
+                member if usable && worth(member.as_ref(), &evaluation) => {
+                    *member = Some(Refined {
+                        candidate: Candidate {
+                            design: found.design,
+                            evaluation,
+                        },
+                        residual: f64::INFINITY,
+                        shares: vec![0.0; self.roles.len()],
+                        ended: found.ended,
+                    });
+                }
+                Some(member) if first => member.ended = found.ended,
+                _ => {}
             }
             return;
         };
@@ -194,6 +207,13 @@ impl Way {
         let left = self.roles.contains(&Role::Lessened);
         self.goes_on = left && moves && found.ended != Ended::Stopped;
     }
+}
+
+/// Whether a design is worth the place of what a way has: where there is nothing, or it is better.
+fn worth(member: Option<&Refined>, evaluation: &Evaluation) -> bool {
+    let better =
+        |m: &Refined| dominates(&evaluation.objectives, &m.candidate.evaluation.objectives);
+    member.is_none_or(better)
 }
 
 /// Goes all ways to their ends, side by side; options hold for every descent of every way, and all together evaluate so many designs at most. How many

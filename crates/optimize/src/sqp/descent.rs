@@ -7,7 +7,7 @@ use crate::space::Space;
 use crate::workers::Workers;
 
 use super::curvature::Curvature;
-use super::local::{Local, Sizes};
+use super::local::{Local, Sizes, scaled};
 use super::search::{Search, Step};
 use super::violation::View;
 use super::{Optimum, SqpOptions};
@@ -110,6 +110,8 @@ impl<'a> Descent<'a> {
                 sizes,
                 evaluations: 1,
                 slopes: 1,
+                feasibility: options.feasibility,
+                bare: None,
             },
             options: options.clone(),
             place,
@@ -334,6 +336,19 @@ impl<'a> Descent<'a> {
     pub fn end(mut self, ended: Ended) -> Optimum {
         if self.restoring.is_some() {
             self.restored(Ended::Stopped);
+        }
+        if let Some((design, evaluation)) = self.search.bare_below(&self.place) {
+            return Optimum {
+                violation: scaled(&evaluation, &self.search.sizes).1.max(0.0),
+                scales: self.scales,
+                iterations: self.iterations,
+                slopes: self.search.slopes,
+                ended: match ended {
+                    Ended::Stopped | Ended::Budget => ended,
+                    _ => Ended::Stuck,
+                },
+                ..Optimum::undefined(design, evaluation, self.search.evaluations)
+            };
         }
         // Once with the curvature, once without: the multipliers that miss the conditions by less.
         let unit = Curvature::unit(self.place.design.len());

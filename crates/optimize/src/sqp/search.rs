@@ -13,6 +13,8 @@ use super::violation::View;
 const KEPT: f64 = 1e-4;
 /// The penalty may seem to rise by this part of it from rounding.
 const NOISE: f64 = 4e-16;
+/// What is worth being without slopes is better by more than this, in the objective's size.
+const BETTER: f64 = 1e-9;
 /// Four shorter steps at once are tried so often.
 const ROUNDS: usize = 9;
 /// A corrected step is at most so many times as long.
@@ -45,6 +47,10 @@ pub(super) struct Search<'a> {
     pub sizes: Sizes,
     pub evaluations: usize,
     pub slopes: usize,
+    /// Constraints that are missed by no more than this are kept.
+    pub feasibility: f64,
+    /// The best of those that keep the constraints and have no slopes, as where a bound is a corner of a function: steps end there.
+    pub bare: Option<(Vec<f64>, Evaluation)>,
 }
 
 impl Search<'_> {
@@ -62,7 +68,10 @@ impl Search<'_> {
             return None;
         }
         self.slopes += 1;
-        let slopes = self.view.slopes(&design)?;
+        let Some(slopes) = self.view.slopes(&design) else {
+            self.keep_bare(design, evaluation);
+            return None;
+        };
         Some(Local::new(
             design,
             evaluation,
@@ -70,6 +79,24 @@ impl Search<'_> {
             &self.sizes,
             &self.space,
         ))
+    }
+
+    fn keep_bare(&mut self, design: Vec<f64>, evaluation: Evaluation) {
+        let (objective, violation) = scaled(&evaluation, &self.sizes);
+        let known = self.bare.as_ref();
+        let better = known.is_none_or(|(_, known)| objective < scaled(known, &self.sizes).0);
+        if violation <= self.feasibility && better {
+            self.bare = Some((design, evaluation));
+        }
+    }
+
+    /// The best without slopes, where it is better than a place by more than rounding, or that keeps no constraints.
+    pub fn bare_below(&mut self, place: &Local) -> Option<(Vec<f64>, Evaluation)> {
+        let below = |(_, evaluation): &(Vec<f64>, Evaluation)| {
+            let here = scaled(&place.evaluation, &self.sizes).0;
+            place.violation > self.feasibility || scaled(evaluation, &self.sizes).0 < here - BETTER
+        };
+        self.bare.take().filter(below)
     }
 
     fn evaluate(&mut self, designs: &[Vec<f64>], workers: &dyn Workers) -> Vec<Evaluation> {
