@@ -323,6 +323,43 @@ fn fronts_take_values_of_a_catalogue() {
     );
 }
 
+/// A front over a catalogue reaches what any value of it allows, where the best lies on a change point at the end of another parameter, too.
+#[test]
+fn a_front_over_a_catalogue_has_its_ends() {
+    let catalogue = [10.0, 15.0, 20.0, 25.0, 28.0];
+    let result = best(
+        "vary = { a = { only = ['10 mm', '15 mm', '20 mm', '25 mm', '28 mm'] }, b = ['45 mm', '65 mm'] }\nmaximize = ['play', 'min(mu)']\ndesigns = 300\n",
+    );
+    let [play, mu] = columns(&result, ["play", "min(mu)"]);
+    let of = |a: f64| {
+        let b = (0..=20_000).map(|k| 45.0 + 20.0 * f64::from(k) / 20_000.0);
+        b.filter(move |b| a + 60.0 <= b + 40.0)
+            .map(move |b| [swing(a, b), least_mu(a, b)])
+    };
+    let all: Vec<[f64; 2]> = catalogue.into_iter().flat_map(of).collect();
+    for (k, found) in [&play, &mu].into_iter().enumerate() {
+        let best = all.iter().map(|it| it[k]).fold(0.0, f64::max);
+        let reached = found.iter().copied().fold(0.0, f64::max);
+        assert!(
+            (reached - best).abs() < 1e-4 * best,
+            "{k}: {reached} of {best}"
+        );
+    }
+    // What lies under the stairs of the front, against that of a dense search.
+    let under = |mut points: Vec<[f64; 2]>| {
+        points.sort_by(|p, q| q[0].total_cmp(&p[0]));
+        let (mut area, mut height) = (0.0, 0.0_f64);
+        for [x, y] in points {
+            area += x * (y - height).max(0.0);
+            height = height.max(y);
+        }
+        area
+    };
+    let found = under(play.iter().zip(&mu).map(|(x, y)| [*x, *y]).collect());
+    let dense = under(all);
+    assert!(found > 0.992 * dense, "{found} of {dense}");
+}
+
 /// How a front was found tells no more than was done.
 #[test]
 fn a_front_that_is_none_says_so() {

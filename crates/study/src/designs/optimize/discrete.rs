@@ -153,21 +153,35 @@ impl Problem for Held<'_, '_, '_> {
     }
 }
 
-/// What values of the catalogues lie next to designs.
-pub(super) struct Near {
+/// Values of catalogues.
+pub(super) struct Catalogues {
     /// By parameter; of those that may have any value none.
     values: Vec<Vec<f64>>,
 }
 
-impl Near {
+/// A combination of values of the catalogues: the problem with them held, and designs with them from which others are found.
+pub(super) type Combination<'p, 'b, 'm> = (Held<'p, 'b, 'm>, Vec<Vec<f64>>);
+
+impl Catalogues {
     /// Of a study; `None` where no parameter is discrete.
     pub fn of(problem: &Designs<'_, '_>, study: &OptimizeStudy) -> Option<Self> {
         let values = values_of(problem, study);
         (!values.iter().all(Vec::is_empty)).then_some(Self { values })
     }
 
-    /// The problem with these parameters held at values next to those of a design, and the design with these: one of each combination.
-    pub fn held<'p, 'b, 'm>(
+    /// A design with the nearest values.
+    pub fn rounded(&self, design: &[f64]) -> Vec<f64> {
+        let nearest = |x: f64, all: &[f64]| {
+            let near = neighbours(x, all).into_iter();
+            near.min_by(|a, b| (a - x).abs().total_cmp(&(b - x).abs()))
+        };
+        let both = design.iter().zip(&self.values);
+        both.map(|(x, all)| nearest(*x, all).unwrap_or(*x))
+            .collect()
+    }
+
+    /// The combinations of values next to those of a design, with the design at each.
+    fn near<'p, 'b, 'm>(
         &self,
         problem: &'p Designs<'b, 'm>,
         design: &[f64],
@@ -178,18 +192,91 @@ impl Near {
         let count = counts.product::<usize>().min(MOST_NEIGHBOURS);
         let one = |combination: usize| {
             let mut left = combination;
-            let mut bounds = problem.bounds().to_vec();
             let mut start = design.to_vec();
             for (k, near) in near.iter().enumerate().filter(|(_, near)| !near.is_empty()) {
-                let value = near[left % near.len()];
+                start[k] = near[left % near.len()];
                 left /= near.len();
-                bounds[k] = [value, value];
-                start[k] = value;
             }
-            let inner = problem;
-            (Held { inner, bounds }, start)
+            (self.held(problem, &start), start)
         };
         (0..count).map(one).collect()
+    }
+
+    /// The combinations of designs that have values of the catalogues, in the order of the designs, and then those that differ from one of
+    /// these by one step in one value.
+    pub fn about<'p, 'b, 'm>(
+        &self,
+        problem: &'p Designs<'b, 'm>,
+        designs: &[Vec<f64>],
+    ) -> Vec<Combination<'p, 'b, 'm>> {
+        let mut all: Vec<Combination> = Vec::new();
+        let mut put = |start: Vec<f64>| {
+            let held = self.held(problem, &start);
+            match all
+                .iter()
+                .position(|(known, _)| known.bounds == held.bounds)
+            {
+                Some(place) => all[place].1.push(start),
+                None if all.len() < MOST_NEIGHBOURS => all.push((held, vec![start])),
+                None => {}
+            }
+        };
+        designs.iter().cloned().for_each(&mut put);
+        for design in designs {
+            for (k, values) in self.values.iter().enumerate() {
+                let Some(own) = values.iter().position(|value| *value == design[k]) else {
+                    continue;
+                };
+                let steps = [own.checked_sub(1), Some(own + 1)].into_iter().flatten();
+                for value in steps.filter_map(|k| values.get(k)) {
+                    let mut start = design.clone();
+                    start[k] = *value;
+                    put(start);
+                }
+            }
+        }
+        all
+    }
+
+    /// The problem with a design's values of the catalogues held.
+    fn held<'p, 'b, 'm>(&self, problem: &'p Designs<'b, 'm>, design: &[f64]) -> Held<'p, 'b, 'm> {
+        let bounds = problem.bounds().iter().zip(design).zip(&self.values);
+        let bounds = bounds.map(|((bounds, x), values)| match values.is_empty() {
+            true => *bounds,
+            false => [*x, *x],
+        });
+        Held {
+            inner: problem,
+            bounds: bounds.collect(),
+        }
+    }
+}
+
+/// A problem whose designs all have the nearest values of the catalogues.
+pub(super) struct Rounded<'p, 'b, 'm> {
+    pub inner: &'p Designs<'b, 'm>,
+    pub to: &'p Catalogues,
+}
+
+impl Problem for Rounded<'_, '_, '_> {
+    fn bounds(&self) -> &[[f64; 2]] {
+        self.inner.bounds()
+    }
+
+    fn objectives(&self) -> usize {
+        self.inner.objectives()
+    }
+
+    fn constraints(&self) -> usize {
+        self.inner.constraints()
+    }
+
+    fn evaluate(&self, design: &[f64]) -> Evaluation {
+        self.inner.evaluate(&self.to.rounded(design))
+    }
+
+    fn slopes(&self, design: &[f64]) -> Option<Slopes> {
+        self.inner.slopes(&self.to.rounded(design))
     }
 }
 
@@ -202,11 +289,11 @@ pub(super) fn with_choices(
     workers: &dyn Workers,
     hears: Hears,
 ) -> Option<Optima> {
-    let near = Near::of(problem, study)?;
+    let catalogues = Catalogues::of(problem, study)?;
     let defined = found.list.iter().filter(|it| it.evaluation.is_defined());
     let held = defined.take(3);
     let held: Vec<(Held, Vec<f64>)> = held
-        .flat_map(|optimum| near.held(problem, &optimum.design))
+        .flat_map(|optimum| catalogues.near(problem, &optimum.design))
         .collect();
     let starts = held.iter().map(|(held, start)| {
         let held: &dyn Problem = held;

@@ -6,7 +6,7 @@ use kempe_optimize::{
     evaluate_all, joined, nsga2, refine, widen,
 };
 
-use super::discrete::{Held, Near, Tried, tried};
+use super::discrete::{Catalogues, Rounded, Tried, tried};
 use super::problem::Designs;
 use super::search::{KEPT, local};
 
@@ -70,7 +70,18 @@ pub(super) fn front(
         start: Some(own),
         seed: study.seed as u64,
     };
-    let found = nsga2(problem, &options, workers, hears);
+    let catalogues = Catalogues::of(problem, study);
+    let found = match &catalogues {
+        None => nsga2(problem, &options, workers, hears),
+        Some(to) => {
+            let inner = problem;
+            let mut found = nsga2(&Rounded { inner, to }, &options, workers, hears);
+            for member in &mut found.members {
+                member.design = to.rounded(&member.design);
+            }
+            found
+        }
+    };
     let mut stopped = found.ended == Ended::Stopped;
     let unrefined = |candidate: &Candidate| Refined {
         candidate: candidate.clone(),
@@ -79,30 +90,35 @@ pub(super) fn front(
         ended: Ended::Stopped,
     };
     let mut how = "NSGA-II".to_owned();
+    if catalogues.is_some() {
+        how += " over values of the catalogue";
+    }
     let mut members: Vec<Refined> = found.members.iter().map(unrefined).collect();
     if !found.feasible {
         how += "; no design keeps all limits, this one comes nearest";
     }
-    let choices = Near::of(problem, study);
     if found.feasible && !stopped {
-        let left = all.saturating_sub(found.evaluations);
-        // What values of a catalogue ask for besides.
-        let own = if choices.is_some() { left / 2 } else { left };
-        let down = (own, study.goals.len());
-        (members, stopped) = filled(problem, &found.members, down, workers, hears);
+        let left = match (&catalogues, study.designs) {
+            (_, Some(all)) => all.saturating_sub(problem.asked()),
+            (None, None) => usize::MAX,
+            (Some(_), None) => default,
+        };
+        let scales = &found.scales;
+        match &catalogues {
+            None => {
+                let down = (left, study.goals.len());
+                (members, stopped) = filled(problem, &found.members, down, workers, hears);
+            }
+            Some(catalogues) => {
+                let about = (catalogues, (left, scales));
+                (members, stopped) = over_combinations(problem, members, about, workers, hears);
+                how += ", those next to it too";
+            }
+        }
         how += "; each point moved down until no step betters all goals, and on to the least of each goal";
         if study.goals.len() == 2 {
             how += "; gaps filled";
         }
-    }
-    if let (Some(near), false) = (&choices, stopped) {
-        let left = match study.designs {
-            Some(all) => all.saturating_sub(problem.asked()),
-            None => default,
-        };
-        let scales = &found.scales;
-        (members, stopped) = near_front(problem, near, &members, (left, scales), workers, hears);
-        how += "; values of a catalogue by rounding to their neighbours, the rest moved again";
     }
     let points = members.into_iter().map(|member| FrontPoint {
         design: problem.values(&member.candidate.design),
@@ -188,61 +204,37 @@ fn evenly<T: Clone>(all: &[T], most: usize) -> Vec<T> {
     (0..most).map(|k| all[place(k)].clone()).collect()
 }
 
-/// The front of designs with values of the catalogues next to those of a front: one is sought for every combination, and what none of the others
-/// betters is kept.
-fn near_front(
+/// A front with values of the catalogues moved down: one is sought for every combination on it or next to it, and what nothing else betters is kept.
+fn over_combinations(
     problem: &Designs<'_, '_>,
-    near: &Near,
-    members: &[Refined],
-    (budget, scales): (usize, &Scales),
+    members: Vec<Refined>,
+    (catalogues, (budget, scales)): (&Catalogues, (usize, &Scales)),
     workers: &dyn Workers,
     hears: Hears,
 ) -> (Vec<Refined>, bool) {
-    let mut all: Vec<(Held, Vec<Vec<f64>>)> = Vec::new();
-    for member in members {
-        for (held, start) in near.held(problem, &member.candidate.design) {
-            match all
-                .iter_mut()
-                .find(|(known, _)| known.bounds == held.bounds)
-            {
-                Some((_, starts)) => starts.push(start),
-                None => all.push((held, vec![start])),
-            }
-        }
-    }
+    let designs = members.iter().map(|m| m.candidate.design.clone());
+    let all = catalogues.about(problem, &designs.collect::<Vec<_>>());
     let each = budget / all.len().max(1);
     let goals = problem.objectives();
     let mut found: Vec<Refined> = Vec::new();
-    let mut nearest: Option<(f64, Candidate)> = None;
+    let mut was_stopped = false;
     for (held, starts) in &all {
         let starts = evenly(starts, (each / 2 / OF_POINT).max(goals));
         let known = evaluate_all(held, &starts, workers).into_iter();
         let known = starts.into_iter().zip(known);
         let known = known.map(|(design, evaluation)| Candidate { design, evaluation });
         let known: Vec<Candidate> = known.filter(|c| c.evaluation.is_defined()).collect();
-        let own = each.saturating_sub(known.len());
-        let (own, stopped) = filled(held, &known, (own, goals), workers, hears);
-        for member in own {
-            let missed = violation(&member.candidate, scales);
-            if nearest.as_ref().is_none_or(|(least, _)| missed < *least) {
-                nearest = Some((missed, member.candidate.clone()));
-            }
-            // Limits that rounding broke may not be kept again.
-            if missed <= KEPT {
-                found.push(member);
-            }
-        }
+        let left = each.saturating_sub(known.len());
+        let (own, stopped) = filled(held, &known, (left, goals), workers, hears);
+        // Limits that another value broke may not be kept again.
+        let kept = |member: &Refined| violation(&member.candidate, scales) <= KEPT;
+        found.extend(own.into_iter().filter(kept));
         if stopped {
-            return (joined(found, POINTS), true);
+            was_stopped = true;
+            break;
         }
     }
-    if found.is_empty() {
-        found.extend(nearest.map(|(_, candidate)| Refined {
-            candidate,
-            residual: f64::INFINITY,
-            shares: Vec::new(),
-            ended: Ended::Stuck,
-        }));
-    }
-    (joined(found, POINTS), false)
+    // What was there before is lost to what betters it alone; behind, as of the same goals the first stays.
+    found.extend(members);
+    (joined(found, POINTS), was_stopped)
 }
