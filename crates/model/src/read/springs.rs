@@ -85,13 +85,7 @@ fn read_spring(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<Spring> {
     let preload = entry.value_or(cx, "preload", 0.0);
     // without stiffness it is a constant force, but not without any
     let constant = entry.has("preload");
-    let sign = if constant {
-        Sign::NotNegative
-    } else {
-        Sign::Positive
-    };
-    let stiffness = entry.required(cx, "stiffness");
-    let stiffness = stiffness.and_then(|node| entry.signed(cx, "stiffness", node, sign));
+    let stiffness = strength(cx, &entry, "stiffness", constant);
     let no_rate = constant && stiffness.as_ref().is_some_and(|k| cx.number(k) == 0.0);
     let free = if no_rate && !entry.has("free") {
         Some(Expr::Const(0.0))
@@ -128,6 +122,15 @@ fn read_spring(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<Spring> {
     })
 }
 
+/// How strong it is. A plain number that does nothing is a mistake, unless `zero` may be; parameters may lead there.
+fn strength(cx: &mut Context<'_>, entry: &Entry<'_>, key: &str, zero: bool) -> Option<Scalar> {
+    let node = entry.required(cx, key)?;
+    let dimension = entry.dimension(key);
+    let strength = cx.scalar(node, dimension)?;
+    let zero = zero || strength.leaves().next().is_some();
+    cx.sized(strength, &node.span, dimension, &entry.place_of(key), zero)
+}
+
 fn stops(cx: &mut Context<'_>, entry: &Entry<'_>) -> Option<[Option<Scalar>; 2]> {
     let [low, high] = entry.bounds(cx, "stops")?.unwrap_or([None, None]);
     if let (Some(low), Some(high)) = (&low, &high)
@@ -149,13 +152,7 @@ fn read_damper(cx: &mut Context<'_>, entry: &(Key, Node)) -> Option<Damper> {
     let mut entry = Entry::new(cx, entry, &DAMPER)?;
     let between = between(cx, &mut entry, TORSION_DAMPER)?;
     // a closer may damp one way only
-    let sign = if entry.has("closing") {
-        Sign::NotNegative
-    } else {
-        Sign::Positive
-    };
-    let damping = entry.required(cx, "damping");
-    let damping = damping.and_then(|node| entry.signed(cx, "damping", node, sign));
+    let damping = strength(cx, &entry, "damping", entry.has("closing"));
     let closing = entry.value(cx, "closing");
     Some(Damper {
         name: key.name.clone(),

@@ -280,17 +280,29 @@ impl Context<'_> {
         zero: bool,
     ) -> Option<Scalar> {
         let scalar = self.scalar(node, dimension)?;
+        self.sized(scalar, &node.span, dimension, what, zero)
+    }
+
+    /// One that was read, which must be positive (or, with `zero`, not negative).
+    pub fn sized(
+        &mut self,
+        scalar: Scalar,
+        span: &Span,
+        dimension: Dimension,
+        what: &str,
+        zero: bool,
+    ) -> Option<Scalar> {
         let x = self.number(&scalar);
         if x > 0.0 || (zero && x == 0.0) {
             if let Some(how) = beyond(x, dimension) {
-                return self.out_of_range(how, what, &node.span, dimension);
+                return self.out_of_range(how, what, span, dimension);
             }
             let keeps = if zero {
                 Keeps::NotNegative
             } else {
                 Keeps::Positive
             };
-            self.bound(&scalar, &node.span, what, dimension, keeps);
+            self.bound(&scalar, span, what, dimension, keeps);
             return Some(scalar);
         }
         let found = if x == 0.0 {
@@ -306,7 +318,7 @@ impl Context<'_> {
         let or_zero = if zero { "0, or " } else { "" };
         self.push(
             Diagnostic::error("bad-size", format!("{what} {wanted}, found {found}"))
-                .at(node.span.clone(), format!("this is {found}"))
+                .at(span.clone(), format!("this is {found}"))
                 .help(format!(
                     "give {or_zero}a positive value, such as {}",
                     self.example(dimension)
