@@ -6,9 +6,11 @@ use super::bench::Bench;
 
 /// Numbers that differ by less than this part of them are the same.
 const SAME: f64 = 1e-12;
+/// What a derivative says of either of two values is nothing below this part of a number: extremes are located, which leaves rounding.
+const FLAT: f64 = 1e-9;
 
 /// What is told of varied parameters that have no effect at all: no derivative (`slopes`, by number), and nothing changes at either of two values.
-pub(super) fn idle(
+pub(crate) fn idle(
     bench: &Bench<'_>,
     slopes: &[&[f64]],
     ends: &[[f64; 2]],
@@ -19,7 +21,13 @@ pub(super) fn idle(
         return Vec::new();
     };
     let is_idle = |k: usize| {
-        slopes.iter().all(|slope| slope[k] == 0.0)
+        let farthest = ends[k].map(|end| (end - own[k]).abs());
+        let farthest = farthest[0].max(farthest[1]);
+        // What else has a slope has none at all.
+        let all_numbers = || numbers.iter().copied().chain(std::iter::repeat(0.0));
+        let flat =
+            |(slope, number): (&&[f64], f64)| (slope[k] * farthest).abs() <= FLAT * number.abs();
+        slopes.iter().zip(all_numbers()).all(flat)
             && ends[k].iter().all(|end| {
                 let mut values = own.clone();
                 values[k] = *end;

@@ -5,6 +5,7 @@ use kempe_motion::Silent;
 
 use super::question::Question;
 use crate::designs::bench::Sloped;
+use crate::designs::idle::idle;
 use crate::quantity::Quantity;
 use crate::result::{Figure, Listing, PlaneCurve};
 use crate::sensitivities::unit_per;
@@ -56,42 +57,19 @@ impl Own {
 
     /// What is to be told of it.
     pub fn told(&self, question: &Question<'_>) -> Vec<Diagnostic> {
-        let idle = (0..question.designs.own.len()).filter(|k| self.is_idle(question, *k));
-        let idle = idle.map(|k| {
-            let name = question.name_of(k);
-            let message = format!(
-                "study `{}`: `{name}` changes none of the numbers",
-                question.name
-            );
-            let place = question.study.vary.get(k).map(|it| it.span.clone());
-            Diagnostic::warning("idle-parameter", message)
-                .at(place.unwrap_or_default(), "")
-                .help(format!(
-                    "leave `{name}` out, or name numbers under `columns` that depend on it"
-                ))
+        let slopes: Vec<&[f64]> = self.sloped.iter().map(|it| it.slope.as_slice()).collect();
+        let ends = question.designs.axes.iter().zip(&question.designs.own);
+        let ends = ends.map(|(axis, own)| {
+            let all = axis.iter().copied();
+            [f64::min, f64::max].map(|of| all.clone().reduce(of).unwrap_or(*own))
         });
+        let ends: Vec<[f64; 2]> = ends.collect();
+        let spans = question.study.vary.iter().map(|it| it.span.clone());
+        let idle = match slopes.is_empty() {
+            true => Vec::new(),
+            false => idle(&question.bench, &slopes, &ends, spans),
+        };
         self.told.iter().cloned().chain(idle).collect()
-    }
-
-    /// Whether no number changes with a parameter: by its derivatives, and at both ends of its values.
-    fn is_idle(&self, question: &Question<'_>, k: usize) -> bool {
-        let flat = |s: &Sloped| s.slope.get(k) == Some(&0.0);
-        if self.sloped.is_empty() || !self.sloped.iter().all(flat) {
-            return false;
-        }
-        let axis = question.designs.axes.get(k).map_or(&[][..], Vec::as_slice);
-        let ends = [f64::min, f64::max].map(|of| axis.iter().copied().reduce(of));
-        ends.into_iter().flatten().all(|value| {
-            let mut values = question.bench.own_values();
-            if let Some(own) = values.get_mut(k) {
-                *own = value;
-            }
-            let same = |found: Vec<f64>| {
-                let pairs = found.iter().zip(&self.sloped);
-                pairs.into_iter().all(|(a, b)| *a == b.value)
-            };
-            question.bench.numbers(&values).is_ok_and(same)
-        })
     }
 }
 
