@@ -1,9 +1,10 @@
 //! Natural vibrations of a mechanism some of whose drives are let go: about one pose, or about the poses of a motion.
 //!
 //! `bench.rs` brings the mechanism to a pose and makes it linear there, `pose.rs` tells the modes of one pose, `sweep.rs` their
-//! frequencies along a motion, `shapes.rs` makes poses of a mode that can be looked at.
+//! frequencies along a motion, `shapes.rs` makes poses of a mode that can be looked at, `numbers.rs` the numbers by which designs differ.
 
 mod bench;
+mod numbers;
 mod pose;
 mod shapes;
 mod sweep;
@@ -13,6 +14,7 @@ use kempe_motion::Progress;
 
 use crate::result::StudyResult;
 
+pub(crate) use numbers::numbers_of_modes;
 pub(crate) use shapes::SHAPE_POSES;
 
 /// What is to be told of a study of natural vibrations without its rows: of one about a pose everything, of one along a motion what

@@ -462,3 +462,45 @@ fn rows_beyond_the_reach_are_rows_with_a_note_for_check_too() {
     assert_eq!(codes(&result), ["rows-not-reached"]);
     assert_eq!(checked(text), [""; 0]);
 }
+
+/// Frequencies of several designs, one of which has no spring at all: `omega = sqrt(k / I)`.
+#[test]
+fn a_sweep_tells_the_frequencies_of_every_design() {
+    let sweep = |of: &str, more: &str| {
+        ran_study(
+            &format!(
+                "units = {{ length = \"mm\", angle = \"deg\" }}\ngravity = 0\n[parameters]\nk = \"0.5 N m/rad\"\n[links]\nframe = {{ O = [0, 0] }}\n\
+                 arm = {{ O-A = 100, mass = \"1 kg\", inertia = \"0.02 kg m^2\", center = \"O\" }}\n\
+                 lid = {{ A-C = 50, mass = \"0.1 kg\", inertia = \"0.001 kg m^2\", center = \"A\" }}\n\
+                 [springs]\nback = {{ links = [\"frame\", \"arm\"], stiffness = \"k\", free = \"30 deg\" }}\n\
+                 [drives]\nmotor = {{ turns = \"arm\", from = 0, to = 40, speed = \"1 rad/s\" }}\nhinge = {{ turns = \"lid\", from = 0, to = 90, speed = \"1 rad/s\" }}\n\
+                 [studies.modes]\nkind = \"vibrations\"\nrelease = [\"motor\"]\n{of}\n\
+                 [studies.some]\nkind = \"sweep\"\nover = \"modes\"\nvary = {{ k = [0, 0.5, 2] }}\n{more}\n"
+            ),
+            1,
+        )
+    };
+    let exact = |k: f64| (k / (0.02 + 0.1 * 0.01)).sqrt() / TAU;
+    let about = sweep("equilibrium = false", "");
+    let [none, half, two] = column(&about, "frequency_1")[..] else {
+        panic!("three designs");
+    };
+    assert_eq!(none, 0.0);
+    close(half, exact(0.5), 1e-9);
+    close(two, exact(2.0), 1e-9);
+    assert_eq!(column(&about, "motor"), [0.0; 3]);
+    let settled = sweep("", "");
+    close(column(&settled, "motor")[2], 30.0, 1e-9);
+    // Along the motion of the lid, whose centre lies on its hinge.
+    let along = sweep("rows = 3", "");
+    for name in ["min(frequency_1)", "max(frequency_1)"] {
+        close(column(&along, name)[1], exact(0.5), 1e-9);
+    }
+    let drawn = along.figures.iter().any(|figure| match figure {
+        kempe_study::Figure::Graph { name, curves, .. } => {
+            name == "frequency_1" && curves.len() == 3
+        }
+        _ => false,
+    });
+    assert!(drawn, "{:?}", along.figures.len());
+}

@@ -1,6 +1,6 @@
 //! Families of curves: what is plotted, of several designs in one picture; and numbers over the one parameter that varies.
 
-use kempe_model::Plot;
+use kempe_model::{Plot, PointId};
 use kempe_units::Unit;
 
 use super::question::{DRAWN, Question};
@@ -15,6 +15,29 @@ const COLOURS: usize = 6;
 
 /// The curves of designs, what they run along first.
 type Curves = [(usize, Vec<Vec<f64>>)];
+
+/// What is drawn of several designs in one picture.
+#[derive(Clone, Debug)]
+pub(super) enum Drawn {
+    /// Columns, by their names.
+    Curves(Vec<String>),
+    /// The path of a point.
+    Path(PointId),
+}
+
+impl Drawn {
+    /// What a plot of one design is of several; hodographs are not drawn of several.
+    pub fn of(plot: &Plot) -> Option<Self> {
+        match plot {
+            Plot::Curves(columns) => {
+                let names = columns.iter().map(|column| column.name.clone());
+                Some(Self::Curves(names.collect()))
+            }
+            Plot::Path(point) => Some(Self::Path(*point)),
+            Plot::Hodograph(_) => None,
+        }
+    }
+}
 
 /// All pictures of a sweep but its tornadoes.
 pub(super) fn figures(question: &Question<'_>, table: &Table, curves: &Curves) -> Vec<Figure> {
@@ -31,13 +54,11 @@ pub(super) fn figures(question: &Question<'_>, table: &Table, curves: &Curves) -
     // The first curve is what they run along.
     let mut first = 1;
     for plot in &question.plots {
-        let family = family(question, plot, (&along, curves), first);
+        figures.push(family(question, plot, (&along, curves), first));
         first += match plot {
-            Plot::Curves(columns) => columns.len(),
-            Plot::Path(_) => 2,
-            Plot::Hodograph(_) => 0,
+            Drawn::Curves(names) => names.len(),
+            Drawn::Path(_) => 2,
         };
-        figures.extend(family);
     }
     figures
 }
@@ -45,61 +66,57 @@ pub(super) fn figures(question: &Question<'_>, table: &Table, curves: &Curves) -
 /// One picture of several designs; what it shows begins at the `first` of their curves.
 fn family(
     question: &Question<'_>,
-    plot: &Plot,
+    plot: &Drawn,
     (along, curves): (&Column, &Curves),
     first: usize,
-) -> Option<Figure> {
+) -> Figure {
     let pairs = |own: &[Vec<f64>], x: usize, y: usize| -> Vec<[f64; 2]> {
         let (xs, ys) = (own.get(x), own.get(y));
         let both = xs.into_iter().flatten().zip(ys.into_iter().flatten());
         both.map(|(x, y)| [*x, *y]).collect()
     };
     match plot {
-        Plot::Path(point) => {
+        Drawn::Path(point) => {
             let name = question.model.points.get(point.index());
             let curve = |(index, own): &(usize, Vec<Vec<f64>>)| PlaneCurve {
                 name: label(question, *index),
                 points: pairs(own, first, first + 1),
                 dashed: false,
             };
-            Some(Figure::Plane {
+            Figure::Plane {
                 name: format!("path-{}", name.map_or("", |p| &p.name)),
                 unit: question.units.unit(kempe_units::Dimension::LENGTH),
                 curves: curves.iter().map(curve).collect(),
-            })
+            }
         }
-        Plot::Curves(columns) => {
-            let one = columns.len() == 1;
+        Drawn::Curves(names) => {
+            let one = names.len() == 1;
             let family = curves.iter().enumerate().flat_map(|(n, (index, own))| {
                 let label = label(question, *index);
-                columns
-                    .iter()
-                    .enumerate()
-                    .map(move |(k, column)| PlaneCurve {
-                        name: match one {
-                            true => label.clone(),
-                            false => format!("{}, {label}", column.name),
-                        },
-                        points: pairs(own, 0, first + k),
-                        dashed: match one {
-                            true => (n / COLOURS) % 2 == 1,
-                            false => k > 0,
-                        },
-                    })
+                names.iter().enumerate().map(move |(k, column)| PlaneCurve {
+                    name: match one {
+                        true => label.clone(),
+                        false => format!("{column}, {label}"),
+                    },
+                    points: pairs(own, 0, first + k),
+                    dashed: match one {
+                        true => (n / COLOURS) % 2 == 1,
+                        false => k > 0,
+                    },
+                })
             });
-            let names: Vec<&str> = columns.iter().map(|c| c.name.as_str()).collect();
             let unit = question.curve_unit(first - 1);
-            Some(Figure::Graph {
+            let alone = names.first().filter(|_| one);
+            Figure::Graph {
                 name: names.join(", "),
                 x: (along.name.clone(), along.unit.clone()),
                 y: (
-                    names.first().filter(|_| one).map_or("", |n| n).to_owned(),
+                    alone.cloned().unwrap_or_default(),
                     unit.unwrap_or_else(Unit::one),
                 ),
                 curves: family.collect(),
-            })
+            }
         }
-        Plot::Hodograph(_) => None,
     }
 }
 

@@ -11,6 +11,7 @@ use kempe_motion::{Motion, Progress, Silent};
 use kempe_units::{Dimension, Expr, Unit};
 
 use super::designs::Designs;
+use super::family::Drawn;
 use super::whole::{Whole, is_whole};
 use crate::along::Along;
 use crate::columns::Asked;
@@ -40,7 +41,7 @@ pub(super) struct Question<'m> {
     /// The rows of the study that is run, where it says so itself.
     along: &'m MotionStudy,
     /// What is plotted of several designs.
-    pub plots: Vec<Plot>,
+    pub plots: Vec<Drawn>,
     /// What is evaluated in the rows: columns, and curves of designs that are drawn.
     rows: Asked,
     curves: Vec<Quantity>,
@@ -105,13 +106,9 @@ impl<'m> Question<'m> {
             true => &along.plots,
             false => &study.over.asked.plots,
         };
-        let plots: Vec<Plot> = plots
-            .iter()
-            .filter(|plot| !matches!(plot, Plot::Hodograph(_)))
-            .cloned()
-            .collect();
         let curves = plots.iter().flat_map(|plot| plotted(model, plot));
         let curves: Vec<Quantity> = curves.collect();
+        let plots: Vec<Drawn> = plots.iter().filter_map(Drawn::of).collect();
         let (plots, curves) = match &whole {
             Some(whole) => (whole.plots.clone(), Vec::new()),
             None => (plots, curves),

@@ -2,14 +2,16 @@
 //!
 //! Studies of motion, forces and simulations are moved on the bench, where any measure can be asked of them; these are the rest.
 
-use kempe_model::{Diagnostic, Model, Plot, Study, StudyKind};
+use kempe_model::{Diagnostic, Model, Study, StudyKind};
 use kempe_motion::Silent;
 
+use super::family::Drawn;
 use super::question::Answer;
 use crate::designs::bench::Bench;
-use crate::result::StudyResult;
+use crate::result::{Figure, Scalar, StudyResult};
 use crate::run::run;
 use crate::table::{Column, Table};
+use crate::vibrations::numbers_of_modes;
 
 /// What a study tells, as it does of the file's own design.
 pub(super) struct Whole {
@@ -22,7 +24,7 @@ pub(super) struct Whole {
     /// Which column its rows run along.
     pub along: usize,
     /// What of its plots has columns in the table.
-    pub plots: Vec<Plot>,
+    pub plots: Vec<Drawn>,
     /// Which columns these are.
     pub curves: Vec<usize>,
 }
@@ -43,21 +45,23 @@ impl Whole {
     /// Why it does not run.
     pub fn new(model: &Model, over: &Study) -> Result<Self, Vec<Diagnostic>> {
         let own = run(model, over, &mut Silent)?;
-        let numbers = own.scalars.iter();
-        let numbers = numbers.map(|s| Column::new(s.name.clone(), s.unit.clone()));
+        let numbers = numbers_of(model, over, &own).into_iter();
+        let numbers = numbers.map(|s| Column::new(s.name, s.unit));
         let numbers: Vec<Column> = numbers.collect();
         let rows = own.table.rows();
         let table = without_rows(own.table);
         let place = |name: &str| table.columns.iter().position(|c| c.name == name);
         let mut plots = Vec::new();
         let mut curves = Vec::new();
-        for plot in &over.kind.along().plots {
-            let Plot::Curves(columns) = plot else {
+        for figure in &own.figures {
+            let Figure::Curves { curves: drawn, .. } = figure else {
                 continue;
             };
-            let places: Option<Vec<usize>> = columns.iter().map(|c| place(&c.name)).collect();
+            let places: Option<Vec<usize>> = drawn.iter().map(|c| place(&c.name)).collect();
             if let Some(places) = places {
-                plots.push(plot.clone());
+                plots.push(Drawn::Curves(
+                    drawn.iter().map(|c| c.name.clone()).collect(),
+                ));
                 curves.extend(places);
             }
         }
@@ -92,7 +96,8 @@ impl Whole {
                 return none(first.unwrap_or_default());
             }
         };
-        let numbers: Vec<f64> = self.numbers.iter().map(|it| number(&result, it)).collect();
+        let told = numbers_of(&model, bench.over, &result);
+        let numbers: Vec<f64> = self.numbers.iter().map(|it| number(&told, it)).collect();
         let lacking = self.numbers.iter().zip(&numbers).find(|(_, x)| x.is_nan());
         let note = lacking.map(|(it, _)| format!("`{}` has no value", it.name));
         let table = self.matched(result.table);
@@ -130,8 +135,16 @@ impl Whole {
     }
 }
 
-fn number(result: &StudyResult, wanted: &Column) -> f64 {
-    let found = result.scalars.iter().find(|s| s.name == wanted.name);
+/// The numbers of a design: what its summary tells, and of vibrations what they are.
+fn numbers_of(model: &Model, over: &Study, result: &StudyResult) -> Vec<Scalar> {
+    match &over.kind {
+        StudyKind::Vibrations(study) => numbers_of_modes(model, study, result),
+        _ => result.scalars.clone(),
+    }
+}
+
+fn number(told: &[Scalar], wanted: &Column) -> f64 {
+    let found = told.iter().find(|s| s.name == wanted.name);
     found.map_or(f64::NAN, |s| s.value)
 }
 
