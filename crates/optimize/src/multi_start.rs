@@ -191,7 +191,8 @@ fn add(reached: &mut Vec<(Optimum, usize)>, optimum: Optimum, space: &Space) {
     let same = |other: &Optimum| {
         let (a, b) = (other.objective(), optimum.objective());
         other.ended.is_optimal() == optimum.ended.is_optimal()
-            && (a - b).abs() <= AGREE * a.abs().max(b.abs()).max(f64::MIN_POSITIVE)
+            && ((a - b).abs() <= AGREE * a.abs().max(b.abs()).max(f64::MIN_POSITIVE)
+                || [other, &optimum].map(|o| o.ended) == [Ended::Least; 2])
             && space.distance(&other.design, &optimum.design) <= NEAR
     };
     match reached.iter_mut().find(|(other, _)| same(other)) {

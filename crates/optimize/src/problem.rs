@@ -28,6 +28,11 @@ pub trait Problem: Sync {
         None
     }
 
+    /// What the largest objective is never below, by what it is; minus infinity where nothing is known of it.
+    fn least(&self) -> f64 {
+        f64::NEG_INFINITY
+    }
+
     /// What a design is worth.
     fn evaluate(&self, design: &[f64]) -> Evaluation;
 

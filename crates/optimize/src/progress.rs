@@ -31,6 +31,8 @@ pub enum Ended {
     Converged,
     /// No step is better any more than rounding shows, and the conditions of an optimum are kept loosely.
     Settled,
+    /// The objective is as small as it can be at all, whatever the derivatives say.
+    Least,
     /// The largest violation of the constraints has a minimum here that is none of zero.
     Infeasible,
     /// No step is better, though this is no optimum: derivatives that are not those of the values, or a place from which all ways
@@ -45,9 +47,9 @@ pub enum Ended {
 }
 
 impl Ended {
-    /// Whether the answer keeps the first-order conditions of an optimum.
+    /// Whether the answer is an optimum: keeps its first-order conditions, or is the least that can be.
     pub fn is_optimal(self) -> bool {
-        matches!(self, Self::Converged | Self::Settled)
+        matches!(self, Self::Converged | Self::Settled | Self::Least)
     }
 
     /// For people.
@@ -55,6 +57,7 @@ impl Ended {
         match self {
             Self::Converged => "converged",
             Self::Settled => "converged as far as rounding allows",
+            Self::Least => "as good as it can be at all",
             Self::Infeasible => "the constraints cannot all be kept",
             Self::Stuck => "no step is better, though this is no optimum",
             Self::Budget => "all allowed evaluations are used",

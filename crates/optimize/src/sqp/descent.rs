@@ -10,7 +10,7 @@ use super::curvature::Curvature;
 use super::local::{Local, Sizes, scaled};
 use super::search::{Search, Step};
 use super::violation::View;
-use super::{Optimum, SqpOptions};
+use super::{Multipliers, Optimum, SqpOptions};
 
 /// The weight of the largest violation, when the work starts; it rises by the factor as long as needed.
 const WEIGHT: f64 = 10.0;
@@ -27,6 +27,8 @@ const PROMISE: f64 = 1e-15;
 const NARROWER: f64 = 0.3;
 const NARROWED: usize = 4;
 const WIDER: f64 = 4.0;
+/// An objective this little above the least that can be is there, in its size.
+const LEAST: f64 = 1e-9;
 /// So many steps one after the other may lessen the residual without any that shows in the penalty.
 const UNHEARD: usize = 4;
 /// How often the violation alone is minimised at most.
@@ -333,7 +335,24 @@ impl<'a> Descent<'a> {
     }
 
     /// What was found, where it ends so.
-    pub fn end(mut self, ended: Ended) -> Optimum {
+    pub fn end(self, ended: Ended) -> Optimum {
+        let least = self.search.view.least();
+        let (size, feasibility) = (self.search.sizes.objective, self.options.feasibility);
+        let mut found = self.without_least(ended);
+        let reached = found.violation <= feasibility
+            && found.evaluation.is_defined()
+            && found.objective() - least <= LEAST * size;
+        if reached && !found.ended.is_optimal() && found.ended != Ended::Stopped {
+            found.ended = Ended::Least;
+            // At a corner of all pieces they do not tell the conditions.
+            found.residual = f64::INFINITY;
+            found.multipliers = Multipliers::default();
+        }
+        found
+    }
+
+    /// What was found, by values and derivatives alone.
+    fn without_least(mut self, ended: Ended) -> Optimum {
         if self.restoring.is_some() {
             self.restored(Ended::Stopped);
         }

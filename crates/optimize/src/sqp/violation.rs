@@ -28,6 +28,14 @@ impl View<'_> {
         }
     }
 
+    /// What the objective is never below.
+    pub fn least(&self) -> f64 {
+        match self.violation {
+            Some(_) => f64::NEG_INFINITY,
+            None => self.problem.least(),
+        }
+    }
+
     pub fn evaluate(&self, design: &[f64]) -> Evaluation {
         let mut evaluation = problem::evaluate(self.problem, design);
         if let (Some(sizes), true) = (&self.violation, evaluation.is_defined()) {

@@ -360,6 +360,33 @@ fn a_front_over_a_catalogue_has_its_ends() {
     assert!(found > 0.992 * dense, "{found} of {dense}");
 }
 
+/// A coupler that does not turn at all is that of a parallelogram. There the goal is nothing, and no derivatives tell that it is an optimum.
+#[test]
+fn a_goal_that_is_nothing_is_an_optimum() {
+    let text = ROCKER
+        .replace("D-C = 40", "D-C = 30")
+        .replace("to = 360", "to = 120");
+    let text = text.replace("from = 0", "from = 30");
+    for (goal, least) in [
+        ("minimize = 'range(angle(coupler))'", 0.0),
+        ("maximize = '5 deg - 2*range(angle(coupler))'", 5.0),
+    ] {
+        let study = format!(
+            "[studies.best]\nkind = 'optimize'\nover = 'turn'\n{goal}\nvary = {{ a = ['10 mm', '40 mm'], b = ['45 mm', '75 mm'] }}\n"
+        );
+        let model = read(&format!("{text}{study}"));
+        let result = run(&model, &model.studies[1], &mut Silent).unwrap();
+        let codes: Vec<&str> = result.diagnostics.iter().map(|d| d.code).collect();
+        assert_eq!(codes, [""; 0], "{goal}");
+        for (name, exact) in [("a", 30.0), ("b", 60.0)] {
+            let found = number(&result, name);
+            assert!((found - exact).abs() < 1e-6, "{goal}: {name} {found}");
+        }
+        let reached = result.scalars[0].value;
+        assert!((reached - least).abs() < 1e-7, "{goal}: {reached}");
+    }
+}
+
 /// How a front was found tells no more than was done.
 #[test]
 fn a_front_that_is_none_says_so() {

@@ -144,6 +144,10 @@ impl Problem for Held<'_, '_, '_> {
         self.inner.constraints()
     }
 
+    fn least(&self) -> f64 {
+        self.inner.least()
+    }
+
     fn evaluate(&self, design: &[f64]) -> Evaluation {
         self.inner.evaluate(design)
     }
@@ -269,6 +273,10 @@ impl Problem for Rounded<'_, '_, '_> {
 
     fn constraints(&self) -> usize {
         self.inner.constraints()
+    }
+
+    fn least(&self) -> f64 {
+        self.inner.least()
     }
 
     fn evaluate(&self, design: &[f64]) -> Evaluation {

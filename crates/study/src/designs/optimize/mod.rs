@@ -7,6 +7,7 @@ mod discrete;
 mod fit;
 mod front;
 mod journal;
+mod least;
 mod pieces;
 mod problem;
 mod search;

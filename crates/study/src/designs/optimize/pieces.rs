@@ -30,7 +30,7 @@ const ROUNDS: usize = 12;
 const SAME: f64 = 1e-5;
 const SAME_SLOPE: f64 = 1e-2;
 /// Measures that name others more often than this are not looked into.
-const MOST_LEAVES: usize = 200;
+pub(super) const MOST_LEAVES: usize = 200;
 
 /// A number that is to be small.
 pub(super) struct Wanted {
@@ -75,7 +75,7 @@ impl Wanted {
 }
 
 /// A measure with those that it names written out; `None` where that is long.
-fn written_out(model: &Model, measure: &Measure, left: &mut usize) -> Option<Measure> {
+pub(super) fn written_out(model: &Model, measure: &Measure, left: &mut usize) -> Option<Measure> {
     let mut whole = true;
     let out = measure.substitute(&mut |leaf| {
         *left = left.saturating_sub(1);

@@ -9,6 +9,7 @@ use kempe_optimize::{Evaluation, Piece, Problem, Slopes};
 
 use super::fit::{Fitted, sum};
 use super::journal::{Journal, SUMS, lock};
+use super::least::least;
 use super::pieces::{Wanted, pieces};
 use crate::designs::asked::kept;
 use crate::designs::bench::{Bench, Refused};
@@ -35,6 +36,8 @@ pub(super) struct Designs<'b, 'm> {
     /// What is fitted; its sum of squares stands in the place of the one goal.
     pub fit: Option<Fitted<'b, 'm>>,
     goals: usize,
+    /// What the largest of the goals cannot be below.
+    least: f64,
     bounds: Vec<[f64; 2]>,
     /// The least and the greatest value of every parameter, SI.
     ranges: Vec<[f64; 2]>,
@@ -61,6 +64,11 @@ impl<'b, 'm> Designs<'b, 'm> {
         });
         let limits = study.subject_to.iter();
         let limits = limits.map(|limit| Wanted::new(mechanism, kept(model, limit), -1.0));
+        let goals: Vec<Wanted> = goals.collect();
+        let leasts = goals
+            .iter()
+            .map(|goal| least(mechanism, &goal.number.measure, goal.sign));
+        let least = leasts.fold(f64::NEG_INFINITY, f64::max);
         let logs: Vec<bool> = (study.vary.iter())
             .map(|chosen| matches!(chosen.among, Among::Factors(_)))
             .collect();
@@ -69,9 +77,10 @@ impl<'b, 'm> Designs<'b, 'm> {
         let bounds = bounds.map(|(range, log)| range.map(|x| if *log { math::ln(x) } else { x }));
         Self {
             bench,
-            wanted: goals.chain(limits).collect(),
+            wanted: goals.into_iter().chain(limits).collect(),
             fit: study.fit.as_ref().map(|fit| Fitted::new(bench, fit)),
             goals: study.goals.len(),
+            least,
             bounds: bounds.collect(),
             ranges,
             logs,
@@ -267,6 +276,10 @@ impl Problem for Designs<'_, '_> {
 
     fn constraints(&self) -> usize {
         self.wanted.len() - self.goals
+    }
+
+    fn least(&self) -> f64 {
+        self.least
     }
 
     fn evaluate(&self, design: &[f64]) -> Evaluation {
