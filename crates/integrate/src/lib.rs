@@ -7,8 +7,10 @@
 //! | `integrator.rs` | the door: one of both, or whichever suits, chosen as it goes |
 //! | `track.rs`, `tolerance.rs` | what the methods share: the solution so far, lengths of steps, the size of an error |
 //! | `crossing.rs` | where something becomes zero within a step |
+//! | `dip.rs` | where something is below zero within a step at whose ends it is not |
 
 mod crossing;
+mod dip;
 mod dop853;
 mod integrator;
 mod radau5;
@@ -16,6 +18,7 @@ mod tolerance;
 mod track;
 
 pub use crossing::crossing;
+pub use dip::dip;
 pub use integrator::{Integrator, Method, Used};
 pub use tolerance::Tolerance;
 pub use track::Stopped;

@@ -57,6 +57,11 @@ impl Amounts {
         self.list.iter().map(|(amount, _)| &amount.measure)
     }
 
+    /// All of them.
+    pub fn all(&self) -> impl Iterator<Item = &Amount<f64>> {
+        self.list.iter().map(|(amount, _)| amount)
+    }
+
     /// Whether any of them asks for the pose.
     pub fn ask_pose(&self) -> bool {
         self.list.iter().any(|(_, by)| matches!(by, By::Pose))

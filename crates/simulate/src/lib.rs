@@ -15,6 +15,8 @@
 //! | `amounts.rs` | values that loads, valves and motors go by |
 //! | `inner.rs`, `toggle.rs` | pressures of cylinders, and what is switched on and off |
 //! | `watch.rs` | what is looked for between steps |
+//! | `first.rs` | what of it happens first in a step |
+//! | `step_limits.rs` | how far a step may go, whatever its errors are |
 //! | `contact.rs` | stops: impacts, and what holds a rest |
 //! | `joints.rs` | joints with play, whose bodies touch and part |
 //! | `run.rs` | from step to step and from event to event; `run/begin.rs` what keeps it from beginning, `run/events.rs` what events do |
@@ -24,6 +26,7 @@
 mod amounts;
 mod contact;
 mod curve;
+mod first;
 mod happening;
 mod inner;
 mod joints;
@@ -36,6 +39,7 @@ mod rubbing;
 mod run;
 mod several;
 mod start;
+mod step_limits;
 mod sticking;
 mod tellers;
 mod toggle;

@@ -11,14 +11,15 @@ use kempe_motion::{Done, Progress, Stage};
 
 pub use self::begin::{Ready, Unsimulated, ready, simulate};
 
+use crate::first::first;
 use crate::happening::{Happened, Happening, Held};
 use crate::lack::{Lack, Sought};
 use crate::plant::{Mode, Plant};
 use crate::question::Question;
 use crate::record::{Ending, Record, Simulated};
+use crate::step_limits::StepLimits;
 use crate::tellers::{Exchanged, NEAR, Tellers};
 use crate::toggle::{Toggle, Toggled};
-use crate::watch::first;
 
 /// Most steps and events: what is kept of a step or of a stretch between two events takes some hundred bytes.
 const STEPS: usize = 1_000_000;
@@ -93,6 +94,7 @@ struct Run {
     /// Whether coordinates have other sizes than those for which the integrator was made.
     resized: bool,
     tellers: Tellers,
+    limits: StepLimits,
     /// What loads, valves and throttles gave at the start.
     at_start: Vec<f64>,
 }
@@ -245,7 +247,8 @@ impl Run {
             if self.time >= end {
                 break None;
             }
-            let mut next = end.min(self.time + std::mem::replace(&mut part, f64::INFINITY));
+            let mut next = end.min(self.limits.after(self.time));
+            next = next.min(self.time + std::mem::replace(&mut part, f64::INFINITY));
             if is_held {
                 next = next.min(self.time + until / LOOKS);
             }

@@ -1,8 +1,5 @@
 //! What is looked for between steps.
 
-use std::cell::Cell;
-
-use kempe_integrate::{Integrator, crossing};
 use kempe_model::Measure;
 
 use crate::joints::Place;
@@ -10,13 +7,8 @@ use crate::plant::Plant;
 use crate::question::Resistance;
 use crate::rubbing::Rub;
 
-/// Places within a step that are looked at.
-const PARTS: usize = 8;
 /// A gap that begins closed is not passed above this (in path scales).
 const GRAZES: f64 = 1e-13;
-/// Halvings towards the beginning of a step before what began at zero counts as never having been open.
-const HALVINGS: usize = 40;
-
 /// A cylinder whose points are this near each other (in mechanism sizes) has no length.
 const NO_LENGTH: f64 = 1e-9;
 
@@ -103,7 +95,7 @@ pub(crate) struct Event {
 }
 
 impl Watch {
-    fn value(self, plant: &mut Plant, ends: &[Measure], time: f64, y: &[f64]) -> Option<f64> {
+    pub fn value(self, plant: &mut Plant, ends: &[Measure], time: f64, y: &[f64]) -> Option<f64> {
         match self {
             Self::Strikes(k) | Self::Touches(k) => plant.open(k, time, y),
             Self::Parts(k) => plant.open(k, time, y).map(|open| -open),
@@ -120,7 +112,7 @@ impl Watch {
 
 impl Watch {
     /// By how much its value may be below zero where it begins there: by the rounding of a gap.
-    fn slack(self, plant: &mut Plant, time: f64, y: &[f64]) -> f64 {
+    pub fn slack(self, plant: &mut Plant, time: f64, y: &[f64]) -> f64 {
         let scale = match self {
             Self::Strikes(k) | Self::Touches(k) | Self::Parts(k) => {
                 let gap = plant.gap(k, time, y);
@@ -135,111 +127,4 @@ impl Watch {
         let any = plant.scales.iter().copied().fold(0.0, f64::max);
         GRAZES * if scale > 0.0 { scale } else { any }
     }
-}
-
-/// What happens first in the last step, and when. Conditions that come to be false on the way are armed from then on.
-pub(crate) fn first(
-    it: &mut Integrator,
-    plant: &mut Plant,
-    ends: &[Measure],
-    conditions: &mut [bool],
-    y: &mut [f64],
-) -> Option<Event> {
-    let (from, to) = (it.before(), it.time());
-    let place = |k: usize| match k {
-        PARTS => to,
-        k => from + (to - from) * (k as f64 / PARTS as f64),
-    };
-    let mut earliest: Option<Event> = None;
-    for watch in watches(plant, conditions) {
-        // Whether there was a pose but no value where it was asked for last.
-        let valueless = Cell::new(false);
-        let mut at = |time: f64, plant: &mut Plant, y: &mut [f64]| -> f64 {
-            let there = it.between(plant, time, y);
-            let value = there.then(|| watch.value(plant, ends, time, y)).flatten();
-            valueless.set(value.is_some_and(|x| !x.is_finite()));
-            value.unwrap_or(f64::NAN)
-        };
-        let mut armed = !matches!(watch, Watch::Ends(_, false));
-        let mut low = from;
-        let mut open = at(from, plant, y) > 0.0;
-        // What begins closed may be off by rounding.
-        let slack = if open {
-            0.0
-        } else {
-            watch.slack(plant, from, y)
-        };
-        // The last place at which it had a value, and whether it had none at the last.
-        let (mut known, mut lost) = (from, valueless.get());
-        for k in 1..=PARTS {
-            let high = place(k);
-            // What comes behind the first event does not come.
-            if earliest.is_some_and(|first| first.time < high) && !armed {
-                break;
-            }
-            let value = at(high, plant, y);
-            // At an instant alone it may have none, as the curvature of a path where its point turns back.
-            if valueless.get() && lost {
-                let mut none = high;
-                for _ in 0..HALVINGS {
-                    let middle = 0.5 * (known + none);
-                    at(middle, plant, y);
-                    *(if valueless.get() {
-                        &mut none
-                    } else {
-                        &mut known
-                    }) = middle;
-                }
-                if earliest.is_none_or(|first| known < first.time) {
-                    earliest = Some(Event {
-                        time: known,
-                        watch,
-                        has_value: false,
-                    });
-                }
-                break;
-            }
-            lost = valueless.get();
-            if !lost {
-                known = high;
-            }
-            if value > 0.0 || (value == 0.0 && open) {
-                (low, open, armed) = (high, true, true);
-                continue;
-            }
-            if !armed || value.is_nan() || (!open && value >= -slack) {
-                continue;
-            }
-            let found = if open {
-                crossing(|t| at(t, plant, y), low, high)
-            } else {
-                // It begins at zero: open a little later, or never.
-                let mut part = high - low;
-                let opens = (0..HALVINGS).find_map(|_| {
-                    part *= 0.5;
-                    (at(low + part, plant, y) > 0.0).then_some(low + part)
-                });
-                match opens {
-                    Some(opens) => crossing(|t| at(t, plant, y), opens, high),
-                    None => Some(low),
-                }
-            };
-            if let Some(time) = found
-                && earliest.is_none_or(|first| time < first.time)
-            {
-                earliest = Some(Event {
-                    time,
-                    watch,
-                    has_value: true,
-                });
-            }
-            break;
-        }
-        if let Watch::Ends(k, _) = watch
-            && let Some(known) = conditions.get_mut(k)
-        {
-            *known |= armed;
-        }
-    }
-    earliest
 }

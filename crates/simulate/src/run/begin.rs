@@ -19,6 +19,7 @@ use crate::question::Question;
 use crate::record::{Machine, Pilots, Record, Simulated};
 use crate::rubbing::places_that_rub;
 use crate::start::{NoStart, start};
+use crate::step_limits::StepLimits;
 use crate::tellers::Tellers;
 use crate::toggle::Toggle;
 
@@ -275,6 +276,16 @@ pub fn ready(
     plant.asked_along = asked
         .into_iter()
         .any(|what| asks_along(&design.mechanism, what, &question.free));
+    let knots = (plant.driven.iter()).flat_map(|drive| {
+        let law = &model.drives[drive.index()].law;
+        law.knots(&parameters)
+    });
+    let limits = StepLimits::new(
+        &design.mechanism,
+        question.until,
+        plant.amounts.all(),
+        knots,
+    );
     let mut run = Run {
         record: Record::new(coordinates, beside(&plant, &y)),
         time: 0.0,
@@ -295,6 +306,7 @@ pub fn ready(
         at_start: Vec::new(),
         question,
         tellers,
+        limits,
         plant,
     };
     run.begin()?;

@@ -1,6 +1,7 @@
 //! The tests of `kempe-study`, one program: each file is a room of its own.
 
 mod adjust;
+mod between_steps;
 mod choice;
 mod clearance;
 mod closer;

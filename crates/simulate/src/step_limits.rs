@@ -1,0 +1,119 @@
+//! How far a step may go, whatever its errors are: what goes by time may begin and end within it.
+
+use kempe_dynamics::amount::Amount;
+use kempe_measure::measure::visit_leaves;
+use kempe_mechanism::Mechanism;
+use kempe_model::{Leaf, Measure};
+use kempe_units::Expr;
+
+/// Steps there are at least in the whole time, where expressions go by it: nobody knows where these have corners.
+const LEAST: f64 = 500.0;
+/// Points of tables at which steps end, at most: of more they are looked at as expressions are.
+const MOST: f64 = 50_000.0;
+/// A step is not ended for what is nearer than this part of the whole time.
+const NOTHING: f64 = 1e-12;
+
+/// How far steps may go.
+pub(crate) struct StepLimits {
+    /// Times beyond which none goes, rising.
+    ends: Vec<f64>,
+    /// The longest.
+    longest: f64,
+    nothing: f64,
+}
+
+impl StepLimits {
+    /// Of a simulation of this duration, by what acts; laws of drives tell their knots themselves.
+    pub fn new<'a>(
+        mechanism: &Mechanism,
+        until: f64,
+        amounts: impl Iterator<Item = &'a Amount<f64>>,
+        laws: impl Iterator<Item = f64>,
+    ) -> Self {
+        let mut ends: Vec<f64> = laws.collect();
+        let mut longest = f64::INFINITY;
+        for amount in amounts {
+            match times(amount, until) {
+                Some(times) => ends.extend(times),
+                None if goes_by_time(mechanism, &amount.measure) => longest = until / LEAST,
+                None => {}
+            }
+        }
+        ends.sort_by(f64::total_cmp);
+        ends.dedup();
+        Self {
+            ends,
+            longest,
+            nothing: NOTHING * until,
+        }
+    }
+
+    /// Where a step from a time ends at the latest.
+    pub fn after(&self, time: f64) -> f64 {
+        let next = self.ends.partition_point(|end| *end <= time + self.nothing);
+        let next = self.ends.get(next).copied().unwrap_or(f64::INFINITY);
+        next.min(time + self.longest)
+    }
+}
+
+/// The times of the points of a table over time, where these are not too many.
+fn times(amount: &Amount<f64>, until: f64) -> Option<Vec<f64>> {
+    let (Expr::Leaf(Leaf::Time), Some((table, _))) = (&amount.measure, &amount.curve) else {
+        return None;
+    };
+    let own = table.knots();
+    let rounds = table
+        .period()
+        .map_or(1.0, |period| (until / period).ceil() + 1.0);
+    if rounds * own.len() as f64 > MOST {
+        return None;
+    }
+    let begins = match (table.period(), own.first()) {
+        (Some(period), Some(first)) => -(first / period).ceil() * period,
+        _ => 0.0,
+    };
+    let period = table.period().unwrap_or(0.0);
+    let shifts = (0..rounds as usize).map(|k| begins + period * k as f64);
+    Some(
+        shifts
+            .flat_map(|shift| own.iter().map(move |time| shift + time))
+            .collect(),
+    )
+}
+
+fn goes_by_time(mechanism: &Mechanism, measure: &Measure) -> bool {
+    let mut found = false;
+    visit_leaves(mechanism, measure, &mut |leaf| {
+        found |= matches!(leaf, Leaf::Time);
+    });
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use kempe_dynamics::table::Table;
+
+    #[test]
+    fn points_of_tables_that_repeat_are_met_from_the_start() {
+        for (first, period) in [(0.0, 1.0), (2.5, 1.0), (-3.25, 1.5), (0.75, 0.8)] {
+            let at = [first, first + 0.25, first + 0.5];
+            let table = Table::new(&at, &[0.0, 1.0, 0.0], Some(period)).unwrap();
+            let amount = Amount {
+                measure: Expr::Leaf(Leaf::Time),
+                curve: Some((table, 1.0)),
+            };
+            let times = times(&amount, 10.0).unwrap();
+            for x in at {
+                let mut met = x - ((x / period).floor() * period);
+                while met < 10.0 {
+                    assert!(
+                        times.iter().any(|t| (t - met).abs() < 1e-12),
+                        "{first} {met}"
+                    );
+                    met += period;
+                }
+            }
+        }
+    }
+}
