@@ -171,7 +171,10 @@ fn follow(
 /// all but stands still, turning on and on counts as that too.
 pub(crate) fn runs_away(z: &[f64], start: &[f64], standing: bool) -> bool {
     let mut bodies = z.chunks_exact(3).zip(start.chunks_exact(3));
-    far(z, start, FAR) || (standing && bodies.any(|(p, q)| (p[2] - q[2]).abs() > WHIRLING))
+    let driven = |z: &[f64]| z.last().copied().unwrap_or(0.0);
+    // What a drive carries along goes as far as the drive does.
+    let most = FAR.max(2.0 * (driven(z) - driven(start)).abs());
+    far(z, start, most) || (standing && bodies.any(|(p, q)| (p[2] - q[2]).abs() > WHIRLING))
 }
 
 /// Whether some body is farther from where it was at the start, in mechanism sizes.

@@ -127,3 +127,14 @@ fn a_pin_touches_its_bore_at_the_top_of_its_throw() {
         }
     }
 }
+
+/// A straight guide has no dead point, however far the block goes, in times the size of the file.
+#[test]
+fn a_straight_guide_ends_nowhere() {
+    let found = block(
+        "[loads]\nf = { force = [\"1 N\", 0], at = \"C\" }",
+        "until = \"300 s\"\ncolumns = [\"s\"]",
+    );
+    assert!(found.diagnostics.is_empty(), "{:?}", found.diagnostics);
+    near(*column(&found, "s").last().unwrap(), 45_000.0, 1e-4);
+}
