@@ -9,7 +9,8 @@ const SAME: f64 = 1e-12;
 /// What a derivative says of either of two values is nothing below this part of a number: extremes are located, which leaves rounding.
 const FLAT: f64 = 1e-9;
 
-/// What is told of varied parameters that have no effect at all: no derivative (`slopes`, by number), and nothing changes at either of two values.
+/// What is told of varied parameters that have no effect at all: no derivative (`slopes`, by number), and nothing changes
+/// at either of two values, with the others as in the file or at an end.
 pub(crate) fn idle(
     bench: &Bench<'_>,
     slopes: &[&[f64]],
@@ -20,22 +21,38 @@ pub(crate) fn idle(
     let Ok(numbers) = bench.numbers(&own) else {
         return Vec::new();
     };
+    // What has no effect at the file's own design alone may have one where the others are not as there.
+    let elsewhere: Vec<(Vec<f64>, Vec<f64>)> = [0, 1]
+        .into_iter()
+        .filter_map(|end| {
+            let there: Vec<f64> = ends.iter().map(|ends| ends[end]).collect();
+            let numbers = bench.numbers(&there).ok()?;
+            Some((there, numbers))
+        })
+        .collect();
+    let same = |at: &[f64], numbers: &[f64], k: usize| {
+        let near = |(a, b): (&f64, &f64)| (a - b).abs() <= SAME * a.abs();
+        ends[k].iter().all(|end| {
+            let mut values = at.to_vec();
+            values[k] = *end;
+            let found = bench.numbers(&values);
+            found.is_ok_and(|found| numbers.iter().zip(&found).all(near))
+        })
+    };
     let is_idle = |k: usize| {
         let farthest = ends[k].map(|end| (end - own[k]).abs());
         let farthest = farthest[0].max(farthest[1]);
+        // What has one value, that of the file, cannot show whether it has one.
+        if farthest == 0.0 || ends[k][0] == ends[k][1] {
+            return false;
+        }
         // What else has a slope has none at all.
         let all_numbers = || numbers.iter().copied().chain(std::iter::repeat(0.0));
         let flat =
             |(slope, number): (&&[f64], f64)| (slope[k] * farthest).abs() <= FLAT * number.abs();
         slopes.iter().zip(all_numbers()).all(flat)
-            && ends[k].iter().all(|end| {
-                let mut values = own.clone();
-                values[k] = *end;
-                let near = |(a, b): (&f64, &f64)| (a - b).abs() <= SAME * a.abs();
-                bench
-                    .numbers(&values)
-                    .is_ok_and(|found| numbers.iter().zip(&found).all(near))
-            })
+            && same(&own, &numbers, k)
+            && elsewhere.iter().all(|(at, numbers)| same(at, numbers, k))
     };
     let all = bench.varied.iter().zip(spans).enumerate();
     all.filter(|(k, _)| is_idle(*k))
