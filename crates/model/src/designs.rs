@@ -117,11 +117,11 @@ pub enum Spread {
 /// Something that a design must keep.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Limit {
-    /// As written, its left side, and what is not negative where it holds.
+    /// As written, and what is not negative where it holds.
     pub condition: Condition,
-    /// The left side alone.
-    pub left: Column,
-    /// Whether the left side must be the larger one.
+    /// What is limited: the left side, or the right one where the left is of numbers and parameters alone.
+    pub limited: Column,
+    /// Whether that must be the larger side.
     pub at_least: bool,
     /// Where it stands in the file.
     pub span: Span,
@@ -288,5 +288,5 @@ impl OptimizeStudy {
 pub(crate) fn measures_of(limits: &mut [Limit]) -> impl Iterator<Item = &mut crate::Measure> {
     limits
         .iter_mut()
-        .flat_map(|limit| [&mut limit.condition.above, &mut limit.left.measure])
+        .flat_map(|limit| [&mut limit.condition.above, &mut limit.limited.measure])
 }

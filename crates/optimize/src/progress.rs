@@ -38,6 +38,8 @@ pub enum Ended {
     /// No step is better, though this is no optimum: derivatives that are not those of the values, or a place from which all ways
     /// lead to designs that cannot be evaluated.
     Stuck,
+    /// It leads to where the objective falls without bound, as far as numbers tell.
+    Unbounded,
     /// All evaluations or iterations that were allowed are used.
     Budget,
     /// The start cannot be evaluated, or has no derivatives, or does not fit the bounds.
@@ -60,6 +62,7 @@ impl Ended {
             Self::Least => "as good as it can be at all",
             Self::Infeasible => "the constraints cannot all be kept",
             Self::Stuck => "no step is better, though this is no optimum",
+            Self::Unbounded => "the goal has no bound there: it is at a pole",
             Self::Budget => "all allowed evaluations are used",
             Self::Undefined => "the start cannot be evaluated",
             Self::Stopped => "stopped",

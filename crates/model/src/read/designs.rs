@@ -32,6 +32,7 @@ use crate::ids::{ParameterId, Scalar, Span};
 use crate::key_table::designs::{
     AMONG, COMBINE, MAX_VARIED, OPTIMIZE_METHODS, SPACING, SPREAD, SWEPT,
 };
+use crate::measure::{Leaf, Measure};
 use crate::read::adjust::free_parameter;
 use crate::read::column::column;
 use crate::read::context::Context;
@@ -801,14 +802,28 @@ fn limits(cx: &mut Context<'_>, entry: &Entry<'_>, key: &str, forces: bool) -> O
     whole.then_some(found)
 }
 
+/// Whether a measure is the same for every motion: of numbers and parameters alone.
+fn is_fixed(measure: &Measure) -> bool {
+    measure
+        .leaves()
+        .all(|leaf| matches!(leaf, Leaf::Parameter(_)))
+}
+
 fn limit(cx: &mut Context<'_>, node: &Node, place: &str, forces: bool) -> Option<Limit> {
     let text = cx.text(node, place, "\"range(angle(rocker)) >= 59 deg\"")?;
     let checked = parse_condition(&text.content).and_then(|tree| {
         let found = check_condition(&tree, &mut Measures(cx))?;
-        let written = text.content.get(..tree.comparison_span.start);
-        Ok((written.unwrap_or_default().trim().to_owned(), found))
+        let comparison = &tree.comparison_span;
+        let sides = [
+            text.content.get(..comparison.start),
+            text.content.get(comparison.end..),
+        ];
+        Ok((
+            sides.map(|side| side.unwrap_or_default().trim().to_owned()),
+            found,
+        ))
     });
-    let (written, condition) = match checked {
+    let ([left, right], condition) = match checked {
         Ok(found) => found,
         Err(issues) => {
             cx.issues(text, issues);
@@ -819,9 +834,15 @@ fn limit(cx: &mut Context<'_>, node: &Node, place: &str, forces: bool) -> Option
         condition.comparison,
         Comparison::Greater | Comparison::GreaterEqual
     );
+    // What is written on either side may be what is limited.
+    let reversed = is_fixed(&condition.left) && !is_fixed(&condition.right);
+    let (written, limited) = match reversed {
+        true => (right, condition.right.clone()),
+        false => (left, condition.left.clone()),
+    };
     let (large, small) = match at_least {
-        true => (condition.left.clone(), condition.right),
-        false => (condition.right, condition.left.clone()),
+        true => (condition.left, condition.right),
+        false => (condition.right, condition.left),
     };
     let above = Expr::Sub(Box::new(large), Box::new(small));
     if !forces && nature(&above, &cx.natures).forces {
@@ -838,12 +859,12 @@ fn limit(cx: &mut Context<'_>, node: &Node, place: &str, forces: bool) -> Option
             above,
             dimension: condition.dimension,
         },
-        left: Column {
+        limited: Column {
             name: written,
-            measure: condition.left,
+            measure: limited,
             dimension: condition.dimension,
         },
-        at_least,
+        at_least: at_least != reversed,
         span: node.span.clone(),
     })
 }

@@ -67,24 +67,24 @@ pub(crate) fn kept(model: &Model, limit: &Limit) -> Quantity {
     }
 }
 
-/// The left side of a limit as a number over the motion: where it has a value at every instant, the one nearest to the limit.
-pub(crate) fn left_side(model: &Model, limit: &Limit) -> Quantity {
-    let left = &limit.left;
-    let (name, measure) = match is_one_number(model, &left.measure) {
-        true => (left.name.clone(), left.measure.clone()),
+/// What a limit limits as a number over the motion: where it has a value at every instant, the one nearest to the limit.
+pub(crate) fn limited_side(model: &Model, limit: &Limit) -> Quantity {
+    let limited = &limit.limited;
+    let (name, measure) = match is_one_number(model, &limited.measure) {
+        true => (limited.name.clone(), limited.measure.clone()),
         false => {
             let (word, statistic) = match limit.at_least {
                 true => ("min", Statistic::Min),
                 false => ("max", Statistic::Max),
             };
-            let measure = over_motion(statistic, left.measure.clone());
-            (format!("{word}({})", left.name), measure)
+            let measure = over_motion(statistic, limited.measure.clone());
+            (format!("{word}({})", limited.name), measure)
         }
     };
     Quantity {
         name,
         measure,
-        dimension: left.dimension,
+        dimension: limited.dimension,
     }
 }
 

@@ -9,6 +9,7 @@ use kempe_model::{
     Diagnostic, Measure, Model, ModelFile, OverStudy, ParameterId, Study, StudyKind, value,
 };
 use kempe_motion::circuit::Circuit;
+use kempe_motion::events::EventKind;
 use kempe_motion::{Motion, MotionError, Progress, Silent};
 
 use super::asked::knows_forces;
@@ -40,6 +41,8 @@ pub(crate) struct Answer {
     /// Evidence of the pose in which its motion starts, as of a table's row.
     pub closure: f64,
     pub smallest_singular_value: f64,
+    /// Whether branches cross on its way.
+    pub crosses: bool,
 }
 
 /// A number with its derivatives to the varied parameters, SI.
@@ -282,6 +285,7 @@ impl<'m> Bench<'m> {
             numbers: row.values,
             closure: row.closure,
             smallest_singular_value: row.smallest_singular_value,
+            crosses: crosses(motion),
         })
     }
 
@@ -344,3 +348,14 @@ impl<'m> Bench<'m> {
 fn open_by(design: &Design<f64>, error: &MotionError) -> f64 {
     crate::explain::open_by(design, error).unwrap_or(1.0)
 }
+
+/// Whether branches cross on the way of a motion.
+pub(crate) fn crosses(motion: &Motion) -> bool {
+    motion
+        .events
+        .iter()
+        .any(|event| event.kind == EventKind::ChangePoint)
+}
+
+/// What is noted of a design on whose way branches cross.
+pub(crate) const CROSSES: &str = "through a change point";

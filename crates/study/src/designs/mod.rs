@@ -40,6 +40,14 @@ fn study_of<'m>(model: &'m Model, over: &OverStudy) -> Result<&'m Study, Vec<Dia
     crate::named::study_named(model, &over.name).map_err(|unknown| vec![unknown])
 }
 
+/// That some of what was asked for a number has none, `missing` of so many designs or pieces.
+fn valueless(name: &str, missing: usize, of: &str, over: &OverStudy) -> Diagnostic {
+    let message = format!("`{name}` has no value in {missing} of {of}");
+    Diagnostic::warning("no-value", message)
+        .at(over.span.clone(), "")
+        .help("a root, logarithm or arc of a number outside its range, a quotient by zero, or a place that is not on the motion")
+}
+
 /// What is wrong with the file's own design does not keep others from being tried.
 fn softened(mut told: Diagnostic) -> Diagnostic {
     if told.severity == Severity::Error {

@@ -387,6 +387,75 @@ fn a_goal_that_is_nothing_is_an_optimum() {
     }
 }
 
+/// Near a dead point the gain of a drive has no bound, and the search ends where it is as large as numbers can be.
+#[test]
+fn a_pole_is_no_optimum() {
+    let goal = "abs(at(mechanical_advantage(angle(rocker), motor), motor, 36))";
+    let vary = "vary = { a = ['15 mm', '25 mm'] }\n";
+    for method in ["multi-start", "local", "cma-es", "differential evolution"] {
+        let result = best(&format!("{vary}maximize = '{goal}'\nmethod = '{method}'\n"));
+        let of_pole = result
+            .diagnostics
+            .iter()
+            .find(|d| d.code == "not-converged");
+        let told = of_pole.map_or("", |d| d.message.as_str());
+        assert!(told.contains("it is at a pole"), "{method}: {told}");
+        let held = result.listings.iter().any(|l| l.title.contains("holds"));
+        let names: Vec<&str> = result.scalars.iter().map(|s| s.name.as_str()).collect();
+        assert!(
+            !held && !names.contains(&"first-order residual"),
+            "{method}"
+        );
+    }
+    // Kept away from there it is an optimum as any other, however steep.
+    let result = best(&format!(
+        "{vary}maximize = '{goal}'\nsubject_to = '{goal} <= 1e7'\n"
+    ));
+    assert!(result.diagnostics.is_empty(), "{:?}", result.diagnostics);
+}
+
+/// The file's own design may move part of the way: it is a place to begin from, with the reason told.
+#[test]
+fn the_search_may_begin_where_a_design_does_not_move_all_the_way() {
+    let text = ROCKER.replace("\"20 mm\"", "\"34 mm\"");
+    let model = read(&format!(
+        "{text}[studies.best]\nkind = 'optimize'\nover = 'turn'\nvary = {{ a = ['15 mm', '33 mm'] }}\nmaximize = 'play'\nsubject_to = 'mu >= 20 deg'\n"
+    ));
+    let result = run(&model, &model.studies[1], &mut Silent).unwrap();
+    let a = number(&result, "a");
+    assert!((number(&result, "play") - swing(a, 50.0)).abs() < 1e-7);
+    assert!((least_mu(a, 50.0) - 20.0).abs() < 1e-6);
+    let of_own = result
+        .diagnostics
+        .iter()
+        .any(|d| d.message.contains("limit"));
+    assert!(of_own, "{:?}", result.diagnostics);
+}
+
+/// Where the best lies on a linkage whose branches cross, what is told of it holds of it alone.
+#[test]
+fn an_optimum_at_a_change_point_says_so() {
+    let result = best("vary = { a = ['15 mm', '30 mm'] }\nmaximize = 'play'\nover = 'turn'\n");
+    let notes = result.table.notes.iter().flatten();
+    assert!(
+        notes
+            .last()
+            .is_some_and(|note| note.contains("change point"))
+    );
+    assert!(told(&result).contains("the best moves through a change point"));
+}
+
+/// With few designs a front has points that are nowhere near an optimum.
+#[test]
+fn a_front_without_an_optimal_point_warns() {
+    let result = best(
+        "vary = { a = ['15 mm', '25 mm'], b = ['45 mm', '60 mm'] }\nmaximize = ['play', 'min(mu)']\ndesigns = 8\n",
+    );
+    assert_eq!(number(&result, "points optimal to first order"), 0.0);
+    let codes: Vec<&str> = result.diagnostics.iter().map(|d| d.code).collect();
+    assert_eq!(codes, ["not-converged"]);
+}
+
 /// How a front was found tells no more than was done.
 #[test]
 fn a_front_that_is_none_says_so() {

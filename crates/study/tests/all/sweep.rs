@@ -198,6 +198,54 @@ fn a_parameter_without_effect_is_told_by_check_and_run() {
     assert_eq!(idle(&check(&model(sweep)).diagnostics), wanted);
 }
 
+/// One value cannot show that nothing changes, and what has no effect at the file's own design may have one beside it.
+#[test]
+fn what_may_have_an_effect_is_not_told_to_have_none() {
+    let idle = |sweep: &str| {
+        let found = ran(sweep).diagnostics.into_iter();
+        found.filter(|d| d.code == "idle-parameter").count()
+    };
+    assert_eq!(idle("vary = { a = [20] }\ncolumns = ['swing']"), 0);
+    let mixed = "swing + (a - 20 mm)*(idle - 3 mm)/(1 mm^2)*(1 deg)";
+    let both = format!("columns = [\"{mixed}\"]");
+    assert_eq!(idle(&format!("vary = {{ idle = [2, 4] }}\n{both}")), 1);
+    assert_eq!(
+        idle(&format!("vary = {{ idle = [2, 4], a = [18, 21] }}\n{both}")),
+        0
+    );
+}
+
+/// A number that some designs have and others have not is told once for all, beside the notes of the rows.
+#[test]
+fn numbers_that_some_designs_lack_are_told() {
+    let root = "sqrt(60 - swing/(1 deg))";
+    let result = ran(&format!(
+        "vary = {{ a = [18, 19, 20, 22] }}\ncolumns = [\"{root}\"]"
+    ));
+    let found = result.diagnostics.iter().find(|d| d.code == "no-value");
+    let told = found.map(|d| d.message.as_str());
+    assert_eq!(
+        told,
+        Some(&*format!("`{root}` has no value in 2 of 4 designs"))
+    );
+    let values = column(&result, root);
+    let wanted = [18.0, 19.0, 20.0, 22.0].map(|a| (60.0 - swing(a, 50.0)).sqrt());
+    for (found, wanted) in values.iter().zip(wanted) {
+        let same = (found - wanted).abs() < 1e-6;
+        assert!(
+            same || found.is_nan() && wanted.is_nan(),
+            "{found} {wanted}"
+        );
+    }
+}
+
+#[test]
+fn designs_whose_branches_cross_are_noted() {
+    let result = ran("vary = { a = ['29 mm', '30 mm'] }\ncolumns = ['swing']");
+    let notes: Vec<Option<&str>> = result.table.notes.iter().map(Option::as_deref).collect();
+    assert_eq!(notes, [None, Some("through a change point")]);
+}
+
 #[test]
 fn curves_of_all_designs_are_in_one_picture_up_to_some() {
     let result =

@@ -65,8 +65,8 @@ fn codes(text: &str) -> Vec<&'static str> {
     };
     // `check` says the same, but for what only pieces tell.
     let checked = check(&model).diagnostics;
-    let early = told.iter().filter(|d| d.code != "pieces-not-moving");
-    for d in early.filter(|d| d.code != "stopped") {
+    let of_pieces = ["pieces-not-moving", "no-value", "stopped"];
+    for d in told.iter().filter(|d| !of_pieces.contains(&d.code)) {
         assert!(checked.contains(d), "{} is not checked", d.message);
     }
     told.iter().map(|d| d.code).collect()
@@ -293,6 +293,52 @@ fn pieces_that_cannot_be_assembled_are_bad_and_told() {
         told.notes.iter().any(|note| note.contains("motor")),
         "{told:?}"
     );
+}
+
+/// A number that some pieces have not is told with how many these are: its mean is that of the others.
+#[test]
+fn pieces_without_a_value_are_counted() {
+    // The stroke of a slider-crank is twice its crank: half of the pieces have more than 40 mm.
+    let root = "sqrt(40 - range(x(C))/(1 mm))";
+    let study = format!("vary = {{ a = \"1 mm\" }}\nsamples = 400\ncolumns = [\"{root}\"]");
+    let text = slider(20.0, 50.0, 360.0, &study);
+    assert_eq!(codes(&text), ["no-value"]);
+    let result = found(&text);
+    let missing = scalar(&result, &format!("{root}, pieces without a value"));
+    near(missing, 200.0, 4.0);
+    // Of the others the root is that of twice what the crank lacks, even from 0 to 1 mm.
+    near(
+        scalar(&result, &format!("{root}, mean")),
+        2.0_f64.sqrt() * 2.0 / 3.0,
+        0.01,
+    );
+}
+
+/// A limit may be written from either side, and is shown and counted alike.
+#[test]
+fn limits_may_begin_with_a_number() {
+    let of = |limit: &str| {
+        let study = format!("vary = {{ a = \"1 mm\" }}\nsamples = 400\nlimits = [\"{limit}\"]");
+        let result = found(&slider(20.0, 50.0, 360.0, &study));
+        let good = scalar(&result, &format!("yield of {limit}"));
+        let marks: Vec<String> = result.figures.iter().map(|f| format!("{f:?}")).collect();
+        let numbers: Vec<String> = result.scalars.iter().map(|s| s.name.clone()).collect();
+        let of_number = numbers.into_iter().filter(|name| name.contains("mean"));
+        (
+            good,
+            of_number.collect::<Vec<_>>(),
+            marks.join("").replace(limit, "LIMIT"),
+        )
+    };
+    let plain = of("range(x(C)) <= 40.5 mm");
+    assert_eq!(plain, of("40.5 mm >= range(x(C))"));
+    let of_limit: Vec<&String> = plain
+        .1
+        .iter()
+        .filter(|name| name.contains("range"))
+        .collect();
+    assert_eq!(of_limit, ["range(x(C)), mean", "range(x(C)), linear mean"]);
+    near(plain.0, 62.5, 1.0);
 }
 
 #[test]

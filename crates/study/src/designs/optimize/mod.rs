@@ -51,7 +51,7 @@ fn benches<'m>(
     )?;
     let sides = study.subject_to.iter();
     let mut told: Vec<Quantity> = sides
-        .map(|limit| super::asked::left_side(model, limit))
+        .map(|limit| super::asked::limited_side(model, limit))
         .collect();
     if !study.over.asked.columns.is_empty() {
         let over = study_of(model, &study.over)?;
@@ -77,7 +77,8 @@ fn before(
     progress: &mut dyn Progress,
 ) -> Vec<Diagnostic> {
     let own = bench.begin(progress);
-    let own = own.unwrap_or_else(|told| told.into_iter().map(super::softened).collect());
+    let own = own.unwrap_or_else(|told| told);
+    let own: Vec<Diagnostic> = own.into_iter().map(super::softened).collect();
     let units = Units::of(bench.model);
     let problem = Designs::new(bench, study);
     let mut told = own;

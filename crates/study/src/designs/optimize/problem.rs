@@ -16,6 +16,11 @@ use crate::designs::bench::{Bench, Refused};
 
 /// Steps of differences where there are no exact derivatives, in parts of the box: simulations keep ten digits and more.
 const DIFFERENCE: f64 = 1e-5;
+/// A goal that is this part of itself, or less, a step of `BESIDE` of the bounds away has no bound.
+const POLE: f64 = 1e-3;
+const BESIDE: f64 = 1e-3;
+/// Only where the goal is so many times that of the design where it is nearest to nothing, a pole is looked for.
+const LARGE: f64 = 1e6;
 
 /// A design that cannot be asked, and why.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,6 +54,8 @@ pub(super) struct Designs<'b, 'm> {
     pub journal: Journal,
     /// The nearest of the designs that cannot be asked.
     nearest: Mutex<Option<Nearest>>,
+    /// The least size of the one goal at any design that has one.
+    least_size: Mutex<f64>,
     asked: AtomicUsize,
     sloped: AtomicUsize,
 }
@@ -87,6 +94,7 @@ impl<'b, 'm> Designs<'b, 'm> {
             differences: matches!(bench.over.kind, StudyKind::Simulate(_)),
             journal: Journal::default(),
             nearest: Mutex::new(None),
+            least_size: Mutex::new(f64::INFINITY),
             asked: AtomicUsize::new(0),
             sloped: AtomicUsize::new(0),
         }
@@ -181,6 +189,23 @@ impl<'b, 'm> Designs<'b, 'm> {
             lack: 0.0,
         };
         (evaluation, None)
+    }
+
+    /// Whether the one goal, found here, is so good only for a pole: beside it, it is nearly nothing.
+    pub fn is_pole(&self, design: &[f64], goal: f64) -> bool {
+        if !(goal < 0.0 && -goal > LARGE * *lock(&self.least_size)) {
+            return false;
+        }
+        let beside = |(k, [low, high]): (usize, &[f64; 2])| {
+            [-1.0, 1.0].into_iter().any(|side| {
+                let mut moved = design.to_vec();
+                moved[k] = (design[k] + side * BESIDE * (high - low)).clamp(*low, *high);
+                let (evaluation, _) = self.look(&self.values(&moved));
+                let there = evaluation.objectives.first();
+                there.is_some_and(|there| there.abs() < POLE * -goal)
+            })
+        };
+        self.bounds.iter().enumerate().any(beside)
     }
 
     /// Remembers why a design cannot be asked, if none was nearer.
@@ -288,8 +313,13 @@ impl Problem for Designs<'_, '_> {
         let (evaluation, why) = self
             .journal
             .evaluation(SUMS, &values, || self.look(&values));
-        if let Some(why) = why {
-            self.refuse(&values, evaluation.lack, &why);
+        match (why, evaluation.objectives.as_slice()) {
+            (Some(why), _) => self.refuse(&values, evaluation.lack, &why),
+            (None, [goal]) => {
+                let mut least = lock(&self.least_size);
+                *least = least.min(goal.abs());
+            }
+            _ => {}
         }
         evaluation
     }

@@ -249,6 +249,7 @@ pub(super) fn search(
         optima = repaired;
         how += "; values of a catalogue by rounding to their neighbours, the rest moved again";
     }
+    optima.tell_poles(problem);
     optima.in_parameters(problem);
     Some(Sought::Optima { optima, how })
 }
@@ -285,6 +286,18 @@ fn one(found: Optimum, stopped: bool) -> Optima {
 }
 
 impl Optima {
+    /// What has no bound is no optimum, though its slopes are nothing beside it.
+    fn tell_poles(&mut self, problem: &Designs<'_, '_>) {
+        for optimum in &mut self.list {
+            let is_defined = optimum.evaluation.is_defined();
+            if is_defined && problem.is_pole(&optimum.design, optimum.objective()) {
+                optimum.ended = Ended::Unbounded;
+                optimum.residual = f64::INFINITY;
+                optimum.multipliers = Multipliers::default();
+            }
+        }
+    }
+
     /// Designs and multipliers of bounds of the parameters, not of the variables.
     pub fn in_parameters(&mut self, problem: &Designs<'_, '_>) {
         for optimum in &mut self.list {

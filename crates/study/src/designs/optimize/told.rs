@@ -9,7 +9,7 @@ use kempe_units::{Dimension, Unit};
 use super::front::Front;
 use super::problem::Designs;
 use super::search::Sought;
-use crate::designs::bench::{Answer, Bench};
+use crate::designs::bench::{Answer, Bench, CROSSES};
 use crate::motion::run_along;
 use crate::result::{Figure, FoundDesign, Listing, Scalar, StudyResult};
 use crate::run::run_motion;
@@ -179,6 +179,7 @@ impl<'b, 'm> Teller<'b, 'm> {
             numbers: vec![f64::NAN; self.beside.numbers.len()],
             closure: f64::NAN,
             smallest_singular_value: f64::NAN,
+            crosses: false,
         })
     }
 
@@ -193,10 +194,14 @@ impl<'b, 'm> Teller<'b, 'm> {
         if !it.ended.is_optimal() {
             notes.push(it.ended.text().to_owned());
         }
+        let beside = self.besides(&it.design);
+        if beside.crosses {
+            notes.push(CROSSES.to_owned());
+        }
         Told {
             design: it.design.clone(),
             evaluation: it.evaluation.clone(),
-            beside: self.besides(&it.design),
+            beside,
             note: (!notes.is_empty()).then(|| notes.join("; ")),
         }
     }
@@ -421,6 +426,11 @@ impl<'b, 'm> Teller<'b, 'm> {
             ),
             false => best.ended.text().to_owned(),
         }]);
+        if told.beside.crosses {
+            rows.push(vec![format!(
+                "the best moves {CROSSES}: what designs beside it do may be far from it"
+            )]);
+        }
         if stopped {
             rows.push(vec![STOPPED.to_owned()]);
         }
@@ -599,9 +609,10 @@ impl<'b, 'm> Teller<'b, 'm> {
                     significant(best.residual, 2)
                 ));
             }
-            found.push(told.help(
-                "give more `designs`, another `method`, or start from other values in the file",
-            ));
+            found.push(told.help(match best.ended {
+                Ended::Unbounded => "keep it away from there by `subject_to` or narrower bounds, or ask for what has one",
+                _ => "give more `designs`, another `method`, or start from other values in the file",
+            }));
         }
         found
     }
@@ -616,11 +627,17 @@ impl<'b, 'm> Teller<'b, 'm> {
     ) -> StudyResult {
         let all: Vec<Told> = (front.points.iter())
             .filter(|p| p.evaluation.is_defined())
-            .map(|p| Told {
-                design: p.design.clone(),
-                evaluation: p.evaluation.clone(),
-                beside: self.besides(&p.design),
-                note: (p.violation > KEPT).then(|| "not all limits are kept".to_owned()),
+            .map(|p| {
+                let beside = self.besides(&p.design);
+                let missed = (p.violation > KEPT).then_some("not all limits are kept");
+                let crosses = beside.crosses.then_some(CROSSES);
+                let notes: Vec<&str> = missed.into_iter().chain(crosses).collect();
+                Told {
+                    design: p.design.clone(),
+                    evaluation: p.evaluation.clone(),
+                    beside,
+                    note: (!notes.is_empty()).then(|| notes.join("; ")),
+                }
             })
             .collect();
         let mut result = self.shown(None, &all, front.stopped, diagnostics);
@@ -693,6 +710,16 @@ impl<'b, 'm> Teller<'b, 'm> {
                 )
                 .at(self.study.over.span.clone(), "")
                 .help("ask for less of one of them, or widen the bounds"),
+            );
+        } else if front.has_conditions && optimal == 0 && !front.stopped {
+            let message = format!(
+                "no point of the front of study `{}` is shown to be an optimum",
+                self.name
+            );
+            result.diagnostics.push(
+                Diagnostic::warning("not-converged", message)
+                    .at(self.study.over.span.clone(), "")
+                    .help("give more `designs`, or start from other values in the file"),
             );
         }
         result

@@ -93,6 +93,7 @@ pub(crate) fn sweep(
     }
     let demanded_rows = question.designs.count();
     diagnostics.extend(no_values(&question, &table));
+    diagnostics.extend(some_without(&question, &table));
     let mut figures = family::figures(&question, &table, &curves);
     let mut listings = vec![listed(&question, &table)];
     listings.extend(derivatives(&question, &own, &table));
@@ -172,6 +173,23 @@ fn no_values(question: &Question<'_>, table: &Table) -> Option<Diagnostic> {
         None => error,
     };
     Some(error.help("vary within what the mechanism can do: `kempe check` tells how it moves"))
+}
+
+/// Numbers that some designs lack which have others.
+fn some_without(question: &Question<'_>, table: &Table) -> Vec<Diagnostic> {
+    let (rows, unreached) = (table.rows(), table.unreached());
+    let numbers = table.columns.iter().skip(table.places);
+    let missing = numbers.map(|column| {
+        let without = column.values.iter().filter(|x| !x.is_finite()).count();
+        (&column.name, without.saturating_sub(unreached))
+    });
+    missing
+        .filter(|(_, missing)| *missing > 0 && unreached < rows)
+        .map(|(name, missing)| {
+            let of = format!("{rows} designs");
+            super::valueless(name, missing, &of, &question.study.over)
+        })
+        .collect()
 }
 
 /// How many designs there are, and how many of them have no values.

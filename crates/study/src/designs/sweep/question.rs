@@ -16,7 +16,7 @@ use super::whole::{Whole, is_whole};
 use crate::along::Along;
 use crate::columns::Asked;
 use crate::designs::asked::{knows_forces, numbers_of};
-use crate::designs::bench::{Bench, Refused};
+use crate::designs::bench::{Bench, CROSSES, Refused, crosses};
 use crate::motion::abscissa;
 use crate::quantity::Quantity;
 use crate::rows::{RowPlace, places_along};
@@ -298,11 +298,14 @@ impl<'m> Question<'m> {
         }
         let (table, curves) = self.rows(&motion, &asked, rows)?;
         let lacking = quantities.iter().zip(&values).find(|(_, x)| x.is_nan());
+        let lacking = lacking.map(|(q, _)| format!("`{}` has no value", q.name));
+        let crosses = crosses(&motion).then(|| CROSSES.to_owned());
+        let notes: Vec<String> = lacking.into_iter().chain(crosses).collect();
         Ok(Answer {
             numbers,
             closure: table.worst_closure(),
             singular_value: table.least_singular_value(),
-            note: lacking.map(|(q, _)| format!("`{}` has no value", q.name)),
+            note: (!notes.is_empty()).then(|| notes.join("; ")),
             curves: drawn.then(|| {
                 let along = table.columns.get(self.along_column);
                 let along = along.map(|c| c.values.clone());

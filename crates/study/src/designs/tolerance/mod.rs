@@ -36,7 +36,7 @@ use self::sobol::Sobol;
 use self::source::{Kind, Play, Source};
 use self::spread::Deviation;
 use self::told::Teller;
-use super::asked::{kept, left_side, numbers_of};
+use super::asked::{kept, limited_side, numbers_of};
 use super::bench::Bench;
 use super::idle::idle;
 use crate::clearance::refuses;
@@ -92,7 +92,7 @@ fn played(model: &Model, study: &ToleranceStudy) -> Result<Option<Played>, Vec<D
 
 /// A limit of the study: where its number and how far it is kept stand among the numbers of the bench.
 struct Limited {
-    left: usize,
+    limited: usize,
     kept: usize,
 }
 
@@ -131,14 +131,14 @@ impl<'m> Ready<'m> {
                 numbers.len() - 1
             })
         };
-        let lefts = study.limits.iter().map(|limit| left_side(model, limit));
-        let lefts: Vec<usize> = lefts.map(&mut place).collect();
+        let sides = study.limits.iter().map(|limit| limited_side(model, limit));
+        let sides: Vec<usize> = sides.map(&mut place).collect();
         let shown = numbers.len();
         let mut limits = Vec::new();
-        for (limit, left) in study.limits.iter().zip(lefts) {
+        for (limit, limited) in study.limits.iter().zip(sides) {
             numbers.push(kept(model, limit));
             let kept = numbers.len() - 1;
-            limits.push(Limited { left, kept });
+            limits.push(Limited { limited, kept });
         }
         let varied = study.vary.iter().map(|it| it.parameter);
         let opened = played.iter().flat_map(|it| it.parameters.iter().copied());

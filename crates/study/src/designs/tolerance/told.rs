@@ -9,6 +9,7 @@ use super::sampled::{CHECKED, KEPT, KEPT_FOLLOWED, Pieces, Question};
 use super::source::Kind;
 use super::summary::{Counts, PARTS, Summary, Yield, quantile};
 use super::{Limited, Ready};
+use crate::designs::valueless;
 use crate::quantity::Quantity;
 use crate::result::{Figure, Listing, Scalar, StudyResult};
 use crate::table::Column;
@@ -90,10 +91,35 @@ impl Teller<'_, '_> {
         let histograms = histograms.filter_map(|(k, it)| self.histogram(k, it));
         result.figures.extend(histograms);
         result.diagnostics.extend(self.resting());
+        result.diagnostics.extend(self.valueless());
         if self.pieces.count < self.question.samples {
             // Its rows are whole, and what they tell is not.
             result.demanded_rows = result.table.rows() + 1;
         }
+    }
+
+    /// Of each number that is told, how many pieces that move have none.
+    fn missing(&self) -> Vec<usize> {
+        let without = |values: &Vec<f64>| {
+            let pieces = values.iter().zip(&self.pieces.moves);
+            pieces
+                .filter(|(x, moves)| **moves && !x.is_finite())
+                .count()
+        };
+        let numbers = self.pieces.numbers.iter().take(self.ready.shown);
+        numbers.map(without).collect()
+    }
+
+    fn valueless(&self) -> Vec<Diagnostic> {
+        let numbers = self.ready.bench.numbers.iter().zip(self.missing());
+        let of = format!(
+            "{} pieces; what is told of it is of the others",
+            self.pieces.count
+        );
+        numbers
+            .filter(|(_, missing)| *missing > 0)
+            .map(|(number, missing)| valueless(&number.name, missing, &of, &self.study.over))
+            .collect()
     }
 
     fn resting_count(&self) -> usize {
@@ -147,10 +173,13 @@ impl Teller<'_, '_> {
             let name = format!("yield of {}", limit.condition.text);
             tell(name, percent.from_si(part), &percent);
         }
-        for it in told {
+        for (it, missing) in told.iter().zip(self.missing()) {
             let name = &it.quantity.name;
             let more = |what: &str| format!("{name}, {what}");
             tell(name.clone(), it.value(it.linear.own), &it.unit);
+            if missing > 0 {
+                tell(more("pieces without a value"), missing as f64, &one);
+            }
             if let Some(sampled) = &it.sampled {
                 tell(more("mean"), it.value(sampled.mean), &it.unit);
                 tell(
@@ -458,7 +487,7 @@ impl Teller<'_, '_> {
         let sampled = it.sampled.as_ref()?;
         let counts = Counts::new(&self.pieces.numbers[number], sampled)?;
         let limits = self.study.limits.iter().zip(&self.ready.limits);
-        let limits = limits.filter(|(_, own)| own.left == number);
+        let limits = limits.filter(|(_, own)| own.limited == number);
         let limits = limits.map(|(limit, own)| {
             let kept = self.ready.linear[own.kept].own;
             let side = if limit.at_least { -kept } else { kept };
