@@ -10,6 +10,7 @@ use crate::rubbing::Rub;
 use crate::toggle::Toggled;
 use crate::watch::{Event, Watch};
 
+use super::rests::LEFT_OVER;
 use super::{Run, TOUCHED};
 
 /// This part of the whole time behind an instant is looked at where it tells too little itself.
@@ -266,8 +267,9 @@ impl Run {
             held,
         };
         for (stop, [before, after]) in stops.iter().zip(&impact.rates) {
-            // What opens already is not struck.
-            if *before >= 0.0 {
+            // What opens already is not struck, nor what it lay on before.
+            let lay = self.plant.rubs_at(*stop) && struck.held.resting.contains(stop);
+            if *before >= 0.0 || lay && -before <= LEFT_OVER * fastest {
                 continue;
             }
             struck.stops.push(*stop);

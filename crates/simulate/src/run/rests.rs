@@ -11,7 +11,7 @@ use super::events::Struck;
 use super::{Run, TOUCHED};
 
 /// A rate this part of that before an impact is none: what should be zero is left over by rounding.
-const LEFT_OVER: f64 = 1e-9;
+pub(super) const LEFT_OVER: f64 = 1e-9;
 /// A flight from a stop that lasts this part of the whole time is none: it rests.
 const CHATTER: f64 = 1e-9;
 /// Nor is one that rises by this much (in path scales), hardly more than rounding, or by no more than it is closed by.
@@ -49,7 +49,9 @@ impl Run {
             let rise = -0.5 * gap.rate * gap.rate / opening;
             let stays =
                 flight <= CHATTER * self.question.until || rise <= (RISE * scale).max(-gap.open);
-            if closed && opening < 0.0 && gap.rate >= -LEFT_OVER * struck && stays {
+            // What closes is what an impact left, or what it would come to in no time.
+            let closes = -gap.rate > LEFT_OVER * struck && -flight > CHATTER * self.question.until;
+            if closed && opening < 0.0 && !closes && stays {
                 self.plant.mode.resting.push(stop);
                 self.still();
                 rests.push(stop);

@@ -218,6 +218,29 @@ fn a_corner_that_strikes_slips_or_sticks() {
     assert!(seen[0] > 0 && seen[1] > 0, "{seen:?}");
 }
 
+/// By Newton's law a tall block whose foot sticks would fly off with three tenths more energy than it came with (T. R. Kane): it keeps what
+/// it had, and gives back less of the speed.
+#[test]
+fn a_foot_that_sticks_gives_no_energy() {
+    let mut block = Block::lying(0.9);
+    (block.height, block.inertia, block.restitution) = (0.2, 1.2e-5, 1.0);
+    block.gravity = [0.0, 0.0];
+    block.start = [[0.0, -0.38], [0.0, -0.5], [-1e-3, 0.0]];
+    let found = block.run(2.1e-3);
+    let strike = found.happenings[0];
+    let Happened::Strikes { before, after, .. } = strike.what else {
+        panic!("{strike:?}");
+    };
+    let energy = |time: f64| {
+        let [[_, vx], [_, spin], [_, vy]] = [0, 1, 2].map(|drive| at(&found, drive, time));
+        0.5 * (MASS * (vx * vx + vy * vy) + block.inertia * spin * spin)
+    };
+    let [first, last] = [-1e-12, 1e-12].map(|by| energy(strike.time + by));
+    near(last / first, 1.0, 1e-9, "energy");
+    let back = -after / before;
+    assert!(back > 0.1 && back < 0.9, "{back}");
+}
+
 /// Blocks thrown against both walls, seen in a mirror along the guide or across it: they do the same, whichever corners have which numbers.
 #[test]
 fn mirrors_change_nothing() {
