@@ -27,8 +27,8 @@ pub(crate) struct Cones<'a> {
 }
 
 impl Cones<'_> {
-    /// The forces along the rows, where these are their rates without them: no gap's rate is negative that has none to begin with, and one that is pushed at has
-    /// none; what may stick has no rate, or its force is at its limit against it. Nothing where no forces do that.
+    /// The forces along the rows, where these are their rates without them: no gap closes, and what is pushed at does not open; what may
+    /// stick has no rate, or its force is at its limit against it. Nothing where no forces do that.
     pub fn forces(&self, free: &[f64]) -> Option<Vec<f64>> {
         let (all, places) = (self.rows.len(), self.limits.len());
         let pushes = all - places;

@@ -113,33 +113,6 @@ impl Plant {
         all.collect()
     }
 
-    /// The rates of the gaps (rows) by unit pushes of the stops on which it rests, with friction where bodies slide there. That it wedges
-    /// itself, if it does.
-    pub(crate) fn yielding_with_friction(&self, gaps: &[Gap]) -> Result<Vec<Vec<f64>>, Lack> {
-        let mut pushing = self.with_friction(gaps);
-        for response in &mut pushing {
-            self.let_go.respond(response);
-        }
-        let row = |gap: &Gap| pushing.iter().map(|by| dot(&gap.gradient, by)).collect();
-        let yields: Vec<Vec<f64>> = gaps.iter().map(row).collect();
-        match left_by_friction(&self.yielding(gaps), &yields) > WEDGED {
-            true => Ok(yields),
-            false => Err(self.wedged(&self.mode.resting)),
-        }
-    }
-
-    /// That what slides wedges itself, at the first of some stops that rubs.
-    pub(crate) fn wedged(&self, stops: &[usize]) -> Lack {
-        let rubs = stops.iter().find(|stop| self.rubs_at(**stop));
-        match rubs
-            .and_then(|stop| self.stops.get(*stop))
-            .map(|stop| &stop.opens)
-        {
-            Some(Opens::Joint(at)) => Lack::Wedged(*at),
-            Some(Opens::Measure(_)) | None => Lack::Friction,
-        }
-    }
-
     /// The same, and all rows along which forces act, where these are the rows of the gaps and of places.
     pub(crate) fn pushing(
         &self,
@@ -155,6 +128,31 @@ impl Plant {
             }
         }
         (pushing, by)
+    }
+
+    /// The rates of the gaps (rows) by unit pushes of the stops on which it rests, with friction where bodies slide there. That it wedges
+    /// itself, if it does.
+    pub(crate) fn yielding_with_friction(&self, gaps: &[Gap]) -> Result<Vec<Vec<f64>>, Lack> {
+        let mut pushing = self.with_friction(gaps);
+        for response in &mut pushing {
+            self.let_go.respond(response);
+        }
+        let row = |gap: &Gap| pushing.iter().map(|by| dot(&gap.gradient, by)).collect();
+        let yields: Vec<Vec<f64>> = gaps.iter().map(row).collect();
+        match left_by_friction(&self.yielding(gaps), &yields) <= WEDGED {
+            true => Err(self.wedged(&self.mode.resting)),
+            false => Ok(yields),
+        }
+    }
+
+    /// That what slides wedges itself, at the first of some stops that rubs.
+    pub(crate) fn wedged(&self, stops: &[usize]) -> Lack {
+        let rubs = stops.iter().find(|stop| self.rubs_at(**stop));
+        let stop = rubs.and_then(|stop| self.stops.get(*stop));
+        match stop.map(|stop| &stop.opens) {
+            Some(Opens::Joint(at)) => Lack::Wedged(*at),
+            Some(Opens::Measure(_)) | None => Lack::Friction,
+        }
     }
 
     /// How far friction goes in some places, where that hangs on pushes of stops on which it rests: nothing at all where it does so nowhere.

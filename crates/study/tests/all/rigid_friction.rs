@@ -217,3 +217,22 @@ fn speeds_at_which_friction_sets_in_are_refused() {
     let refused = run(&model, &model.studies[0], &mut Silent).unwrap_err();
     assert_eq!(refused[0].code, "no-contact-law");
 }
+
+/// A block of which each impact lifts the other corner comes to rest all the same, after ever shorter times; beside a stop that takes part in it.
+#[test]
+fn what_rocks_comes_to_rest() {
+    let text = "units = { length = \"mm\" }\n[links]\nframe = { O = [0, 0], X = [1000, 0] }\n\
+         block = { C = [0, 0], mass = 1, inertia = \"MOMENT kg mm^2\" }\n[joints]\n\
+         way = { slider = \"block\", at = \"C\", on = \"O -> X\" }\n[drives]\ntravel = { slides = \"way\", at = 100 }\n\
+         [clearance]\nway = { radial = 1, length = 70, height = 60, restitution = 0, friction = 0.4 }\n\
+         [studies.s]\nkind = \"clearance\"\nmodel = \"three-state\"\nrelease = \"travel\"\nuntil = \"0.3 s\"\nrows = 31\n\
+         start = { travel_rate = \"1 m/s\", way_rate = [\"-0.5 m/s\", \"4 rad/s\"] }\n\
+         stops = { travel = { between = [\"none\", \"110 mm\"], restitution = 0.5 } }\n\
+         columns = [\"kinetic_energy\", \"potential_energy\"]\n";
+    for moment in ["300", "1500", "2900"] {
+        let found = result(&text.replace("MOMENT", moment));
+        is_sound(&found, moment);
+        assert!(*column(&found, "kinetic_energy").last().unwrap() < 1e-20);
+        assert_eq!(*column(&found, "way touching").last().unwrap(), 2.0);
+    }
+}
