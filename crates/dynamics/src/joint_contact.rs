@@ -36,10 +36,12 @@ pub enum Resists {
         /// The force along the sliding.
         friction: Friction<f64>,
     },
-    /// At once. What holds them is the effort of the coordinates.
+    /// At once. What presses is the effort of the coordinates.
     AtOnce {
         /// The part of the speed that an impact gives back.
         restitution: f64,
+        /// The coefficient of friction, which sets in at once.
+        friction: f64,
     },
 }
 
@@ -55,7 +57,7 @@ pub struct JointContact {
     /// When it touches at every place, in order: one place of a pin, the four corners of a block. Nothing where it resists at once.
     pub touches: Vec<Vec<Touching>>,
     /// The amounts that tell which part of the greatest friction acts at every place, positive where it resists sliding along the slip
-    /// ([`Touch::slip`]); none where the sliding speed tells.
+    /// ([`Touch::slip`]); none where the sliding speed tells. Where it resists at once they tell the friction itself, N.
     pub parts: Vec<usize>,
     /// The bodies of the bore or guide, and of the pin or block.
     bodies: [BodyId; 2],
@@ -87,7 +89,15 @@ impl JointContact {
             Resists::ByLaw { friction, .. } => {
                 friction.onset == Onset::Sign && friction.kinetic > 0.0
             }
-            Resists::AtOnce { .. } => false,
+            Resists::AtOnce { friction, .. } => *friction > 0.0,
+        }
+    }
+
+    /// The coefficient of friction of what resists at once; none of what gives.
+    pub fn friction_at_once(&self) -> f64 {
+        match self.resists {
+            Resists::AtOnce { friction, .. } => friction,
+            Resists::ByLaw { .. } => 0.0,
         }
     }
 
@@ -123,12 +133,18 @@ impl JointContact {
     }
 
     /// How its bodies slide over each other at a place that touches, with the accelerations at an instant, by the coordinates of some drives;
-    /// nothing where it does not touch.
+    /// nothing where it gives and does not touch. What presses where it resists at once is not known here: the limit is that of 1 N.
     pub fn slides(&self, place: usize, at: &Instant<f64>, drives: &[DriveId]) -> Option<Slides> {
-        let Resists::ByLaw { normal, friction } = &self.resists else {
-            return None;
+        let began = match self.resists {
+            Resists::ByLaw { .. } => self.began(place, at.time)?,
+            Resists::AtOnce { .. } => 0.0,
         };
-        let began = self.began(place, at.time)?;
+        let limit_at = |touch: &Touch<Jet<f64, 2>>| match &self.resists {
+            Resists::ByLaw { normal, friction } => {
+                friction.kinetic * normal.force(-touch.gap.value(), touch.approach.value(), began)
+            }
+            Resists::AtOnce { friction, .. } => *friction,
+        };
         let bodies = self.bodies.map(|body| in_time(at, body));
         let open = self.along.map(|drive| {
             let (input, speed) = (&at.inputs[drive.index()], at.drive_speeds[drive.index()]);
@@ -141,8 +157,7 @@ impl JointContact {
         let mut found = None;
         self.each_touch(&bodies, open, |k, touch| {
             if k == place {
-                let pressing = normal.force(-touch.gap.value(), touch.approach.value(), began);
-                found = Some((*touch.slip.coefficients(), friction.kinetic * pressing));
+                found = Some((*touch.slip.coefficients(), limit_at(touch)));
             }
         });
         let ([speed, gain], limit) = found?;
@@ -176,7 +191,7 @@ impl JointContact {
         mut add: impl FnMut(BodyId, Wrench<T>),
     ) {
         let Resists::ByLaw { normal, friction } = &self.resists else {
-            return;
+            return self.rub(at, add);
         };
         if (0..self.places()).all(|place| self.began(place, at.time).is_none()) {
             return;
@@ -194,6 +209,23 @@ impl JointContact {
                 None => by_speed,
             };
             let wrenches = touch.wrenches(&bodies, [pressing, along]);
+            for (body, wrench) in self.bodies.iter().zip(wrenches) {
+                add(*body, wrench);
+            }
+        });
+    }
+
+    /// What friction does to its bodies where it resists at once.
+    fn rub<T: ForceNumber>(&self, at: &Instant<T>, mut add: impl FnMut(BodyId, Wrench<T>)) {
+        if self.parts.is_empty() {
+            return;
+        }
+        let bodies = self.bodies(at);
+        let open = self.along.map(|drive| at.inputs[drive.index()]);
+        self.each_touch(&bodies, open, |place, touch| {
+            let resists = self.parts.get(place).map(|part| at.amounts[*part]);
+            let along = resists.map_or_else(T::zero, |resists| -resists);
+            let wrenches = touch.wrenches(&bodies, [T::zero(), along]);
             for (body, wrench) in self.bodies.iter().zip(wrenches) {
                 add(*body, wrench);
             }

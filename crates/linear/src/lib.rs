@@ -8,6 +8,7 @@
 //! | `positive.rs` | symmetric systems that are positive, as those of masses are, and which row says that they are not |
 //! | `complex.rs`, `affine.rs` | complex systems, and linear equations that leave variables free |
 //! | `tridiagonal.rs` | splines |
+//! | `complementarity.rs` | pairs of unknowns of which one is zero, as contacts have them |
 //! | `rank.rs` | the rank of large sparse matrices |
 //! | `singular.rs` | how near to losing rank a matrix is |
 //! | `dependent.rs` | least squares with columns that may explain each other |
@@ -16,6 +17,7 @@
 //! | `symmetric.rs`, `eigenvalues.rs` | eigenvalues: of symmetric matrices with their vectors, of any real matrix |
 
 mod affine;
+mod complementarity;
 mod complex;
 mod dependent;
 mod eigenvalues;
@@ -31,6 +33,7 @@ mod symmetric;
 mod tridiagonal;
 
 pub use affine::{Affine, eliminate};
+pub use complementarity::complementary;
 pub use complex::{C, solve_complex};
 pub use dependent::independent_least_squares;
 pub use eigenvalues::eigenvalues;

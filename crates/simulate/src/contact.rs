@@ -238,6 +238,9 @@ impl Plant {
             Some(Resistance::Rigid { restitution }) => restitution,
             _ => 0.0,
         };
+        if stops.iter().any(|stop| self.rubs_at(*stop)) {
+            return self.strike_rubbing(stops, &gaps, y);
+        }
         let matrix = self.yielding(&gaps);
         // 0 <= impulse, 0 <= rate after + restitution * rate before, one of them 0: by projected Gauss-Seidel.
         let wanted: Vec<f64> = (gaps.iter().zip(stops))
@@ -260,14 +263,25 @@ impl Plant {
             }
         }
         polish(&matrix, &wanted, &mut impulses);
+        self.take_impulses(&gaps, &matrix, &impulses, y)
+    }
+
+    /// Changes the speeds of a state by impulses along gaps, which yield to each other as the matrix says.
+    pub(crate) fn take_impulses(
+        &self,
+        gaps: &[Gap],
+        matrix: &[Vec<f64>],
+        impulses: &[f64],
+        y: &mut [f64],
+    ) -> Option<Impact> {
         let n = self.free.len();
-        let mut change = along(&gaps, &impulses, n);
+        let mut change = along(gaps, impulses, n);
         self.let_go.respond(&mut change);
         // Drives that keep their laws give what momentum along them changes beyond what the contacts give, and move as they do.
         let carried = (self.forces).carried(&self.instant, &self.driven, &self.free, &change);
         let by_driven = carried.iter().zip(&self.driven).enumerate();
         let by_driven = by_driven.map(|(k, (carried, drive))| {
-            let by_contacts = gaps.iter().zip(&impulses);
+            let by_contacts = gaps.iter().zip(impulses);
             let by_contacts: f64 = by_contacts.map(|(gap, p)| p * gap.by_driven[k]).sum();
             (carried - by_contacts) * self.coordinates[drive.index()].coefficient(1)
         });

@@ -76,7 +76,7 @@ pub(crate) fn opened(
 pub(crate) fn rigid_stops(contacts: &[JointContact]) -> Vec<(Place, Barrier)> {
     let stops = contacts.iter().enumerate().flat_map(|(contact, it)| {
         let restitution = match it.resists {
-            Resists::AtOnce { restitution } => Some(restitution),
+            Resists::AtOnce { restitution, .. } => Some(restitution),
             Resists::ByLaw { .. } => None,
         };
         let places = restitution.map(|restitution| {

@@ -3,6 +3,8 @@
 use kempe_dynamics::NotLetGo;
 use kempe_model::DriveId;
 
+use crate::joints::Place;
+
 /// Something by which a simulation goes and that may have no value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sought {
@@ -37,6 +39,8 @@ pub enum Lack {
     Force,
     /// Friction jams it, or lets it move in more than one way.
     Friction,
+    /// What slides at this place of a joint with play wedges itself: no push there holds the bodies apart, or no one alone.
+    Wedged(Place),
     /// The stops on which it rests repeat each other, so that what each of them pushes is not known.
     Rest,
 }

@@ -18,12 +18,14 @@
 //! | `first.rs` | what of it happens first in a step |
 //! | `step_limits.rs` | how far a step may go, whatever its errors are |
 //! | `contact.rs` | stops: impacts, and what holds a rest |
+//! | `rigid.rs`, `oblique.rs`, `cone.rs` | friction of rigid contacts: what rubs by what presses, impacts, and forces in Coulomb's cone |
 //! | `joints.rs` | joints with play, whose bodies touch and part |
-//! | `run.rs` | from step to step and from event to event; `run/begin.rs` what keeps it from beginning, `run/events.rs` what events do |
+//! | `run.rs` | from step to step and from event to event; `run/begin.rs` what keeps it from beginning, `run/events.rs` what events do, `run/rests.rs` where it comes to rest |
 //! | `lack.rs` | why a state has no accelerations, and what has no value |
 //! | `record.rs` | what was found, as laws of the drives |
 
 mod amounts;
+mod cone;
 mod contact;
 mod curve;
 mod first;
@@ -31,10 +33,12 @@ mod happening;
 mod inner;
 mod joints;
 mod lack;
+mod oblique;
 mod places;
 mod plant;
 mod question;
 mod record;
+mod rigid;
 mod rubbing;
 mod run;
 mod several;

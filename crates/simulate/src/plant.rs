@@ -363,6 +363,11 @@ impl Plant {
 
     /// Accelerations and pushes where the stops hold on which it rests.
     pub(crate) fn held(&mut self, time: f64, y: &[f64]) -> Result<(), Lack> {
+        if self.has_rigid_friction() {
+            // What pushes here is not known yet, nor what rubs by it.
+            self.pushes.clear();
+            self.take_senses();
+        }
         if self.holds_somewhere() {
             return self.hold_still(time, y);
         }
@@ -492,7 +497,11 @@ impl Plant {
         let stops = self.mode.resting.clone();
         let gaps: Option<Vec<Gap>> = stops.iter().map(|s| self.gap(*s, time, y)).collect();
         let gaps = gaps.ok_or(Lack::Pose)?;
-        let matrix = self.yielding(&gaps);
+        let rubs = self.rubs_rigidly();
+        let matrix = match rubs {
+            false => self.yielding(&gaps),
+            true => self.yielding_with_friction(&gaps)?,
+        };
         let mut factors = Lu::new(gaps.len());
         if !factors.factor(|row, column| matrix[row][column]) {
             return Err(Lack::Rest);
@@ -515,6 +524,9 @@ impl Plant {
             factors.solve(&mut more);
             for (push, more) in self.pushes.iter_mut().zip(more) {
                 *push += more;
+            }
+            if rubs {
+                self.take_senses();
             }
             let along = along(&gaps, &self.pushes, self.free.len());
             self.let_go_at(time, y, &along)?;

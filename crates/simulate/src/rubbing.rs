@@ -10,6 +10,7 @@ use kempe_linear::Anderson;
 use kempe_mechanism::structure::Source;
 use kempe_model::{DriveId, InnerState};
 
+use crate::cone::{Cones, Limit};
 use crate::contact::{Gap, dot};
 use crate::inner::Moved;
 use crate::joints::Place;
@@ -46,11 +47,13 @@ pub enum Rubs {
 
 /// What a place is to the plant.
 #[derive(Clone, Copy, Debug)]
-enum Acts {
+pub(crate) enum Acts {
     /// A joint: its place among the friction that acts, and that of its part among the amounts.
     Joint(usize, usize),
-    /// A place of a joint with play.
+    /// A place of a joint with play whose bodies give.
     Contact(Place),
+    /// One whose bodies do not, and its stop.
+    Rigid(Place, usize),
     /// The seals of a cylinder, by its place among those that oil moves.
     Seals(usize),
 }
@@ -70,22 +73,22 @@ pub(crate) enum Rub {
 
 /// A place that rubs.
 #[derive(Clone, Copy, Debug)]
-struct Site {
-    what: Acts,
+pub(crate) struct Site {
+    pub what: Acts,
     /// The place of its part among the inner states.
-    inner: usize,
+    pub inner: usize,
     /// Speed that counts as 1/s: 1 of what turns, the mechanism's size of what slides.
     size: f64,
     /// The fastest that it was seen to slide.
     fastest: f64,
     /// What it resists with while it is held, N m or N.
-    resists: f64,
+    pub resists: f64,
 }
 
 /// The places that rub.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Rubbing {
-    sites: Vec<Site>,
+    pub sites: Vec<Site>,
 }
 
 /// A place at the state last looked at.
@@ -101,6 +104,8 @@ struct Here {
 
 /// Rows at an instant: how they accelerate, which forces act along them, and how large these may be.
 struct Now<'a> {
+    /// The rows along which forces act: of stops that rub while they slide not those of their gaps.
+    by: &'a [Vec<f64>],
     accelerations: &'a [f64],
     forces: &'a [f64],
     limits: &'a [f64],
@@ -113,6 +118,9 @@ struct Acted {
     /// How rows accelerate, and the size of what adds up to that.
     after: Vec<f64>,
     terms: Vec<f64>,
+    /// What rows would accelerate by at most where all forces acted along them alone: terms of which some vanish by symmetry leave rounding
+    /// of this size.
+    by_all: Vec<f64>,
     /// Which of the places anything moves that is let go.
     moves: Vec<bool>,
 }
@@ -152,7 +160,7 @@ impl Plant {
                 let constraint = self.forces.acting.friction[index].constraint;
                 Rubs::Joint(self.forces.design.mechanism.constraints[constraint].1)
             }
-            Acts::Contact(at) => Rubs::Contact(at),
+            Acts::Contact(at) | Acts::Rigid(at, _) => Rubs::Contact(at),
             Acts::Seals(moved) => Rubs::Seals(self.free[self.inner.moved[moved].free]),
         });
         sites.collect()
@@ -177,7 +185,7 @@ impl Plant {
             .iter()
             .filter_map(|site| match site.what {
                 Acts::Seals(moved) => Some((self.inner.moved[moved], site.inner)),
-                Acts::Joint(..) | Acts::Contact(_) => None,
+                Acts::Joint(..) | Acts::Contact(_) | Acts::Rigid(..) => None,
             });
         sites.collect()
     }
@@ -202,7 +210,10 @@ impl Plant {
         let contacts = contacts
             .filter(|(_, it)| it.sticks())
             .flat_map(|(contact, it)| (0..it.places()).map(move |place| Place { contact, place }))
-            .map(|at| (Acts::Contact(at), size));
+            .map(|at| match self.stop_of(at) {
+                None => (Acts::Contact(at), size),
+                Some(stop) => (Acts::Rigid(at, stop), size),
+            });
         let seals = self.inner.moved.iter().enumerate();
         let seals = seals
             .filter(|(_, m)| self.forces.acting.oils[m.oil].friction > 0.0)
@@ -241,6 +252,7 @@ impl Plant {
                 };
             }
         }
+        self.take_rigid();
     }
 
     /// What the seals of a cylinder resist with, by its place among those that oil moves.
@@ -270,13 +282,17 @@ impl Plant {
                         .collect(),
                 })
             }
-            Acts::Contact(at) => {
+            Acts::Contact(at) | Acts::Rigid(at, _) => {
                 let contact = &self.forces.acting.contacts[at.contact];
                 let slides = contact.slides(at.place, &self.instant, &self.free);
+                let presses = match site.what {
+                    Acts::Rigid(_, stop) => self.push_of(stop).max(0.0),
+                    _ => 1.0,
+                };
                 slides.map(|s| Here {
                     speed: s.speed,
                     gain: s.gain,
-                    limit: s.limit,
+                    limit: s.limit * presses,
                     viscous: 0.0,
                     gradient: s.gradient,
                 })
@@ -416,6 +432,7 @@ impl Plant {
             .map_err(Lack::of)?;
         let pose = self.rubbing_here();
         let rows = self.rows(&gaps, &pose, places);
+        let (pushing, by) = self.pushing(&gaps, &rows);
         let back = self.back;
         let (mut before, mut first) = (f64::INFINITY, 0.0_f64);
         let mut mixing = Anderson::default();
@@ -429,7 +446,7 @@ impl Plant {
                 let site = &self.rubbing.sites[*k];
                 match site.what {
                     // With its load, by what acts.
-                    Acts::Joint(..) => {}
+                    Acts::Joint(..) | Acts::Rigid(..) => {}
                     Acts::Contact(_) | Acts::Seals(_) => {
                         add(&mut self.given, -site.resists, &pose[*k].gradient);
                     }
@@ -461,17 +478,19 @@ impl Plant {
                 return Err(Lack::Friction);
             }
             let now = Now {
+                by: &by,
                 accelerations: &accelerations,
                 forces: &forces,
                 limits: &limits,
             };
-            let found = choose(&rows, gaps.len(), &now).ok_or(Lack::Friction)?;
+            let found =
+                choose(&rows, gaps.len(), &now).ok_or_else(|| self.wedged(&self.mode.resting))?;
             let mut more = self.let_go.left().to_vec();
-            let gradients = gaps.iter().map(|gap| &gap.gradient);
-            let gradients = gradients.chain(places.iter().map(|k| &here[*k].gradient));
+            let gradients = pushing
+                .iter()
+                .chain(places.iter().map(|k| &here[*k].gradient));
             let mut changes = vec![0.0; self.free.len()];
-            for ((gradient, row), (new, old)) in gradients.zip(&rows).zip(found.iter().zip(&forces))
-            {
+            for ((gradient, row), (new, old)) in gradients.zip(&by).zip(found.iter().zip(&forces)) {
                 add(&mut changes, new - old, row);
                 // What hardly slides by any coordinate is none of the rows.
                 if row.iter().any(|x| *x != 0.0) {
@@ -524,18 +543,19 @@ impl Plant {
                     .iter()
                     .zip(&rows)
                     .map(|(a, row)| a + dot(row, &changes));
+                let long = |row: &Vec<f64>| dot(row, row).sqrt();
+                let forces = by.iter().zip(&found).map(|(by, f)| long(by) * f.abs());
+                let forces: f64 = forces.sum();
                 return Ok(Acted {
                     stops: gaps.len(),
+                    by_all: rows.iter().map(|row| forces * long(row)).collect(),
                     after: after.collect(),
                     moves: (rows[gaps.len()..].iter())
                         .map(|row| row.iter().any(|x| *x != 0.0))
                         .collect(),
                     terms: (accelerations.iter().zip(&rows))
                         .map(|(a, row)| {
-                            let by = rows
-                                .iter()
-                                .zip(&found)
-                                .map(|(r, f)| (dot(row, r) * f).abs());
+                            let by = by.iter().zip(&found).map(|(r, f)| (dot(row, r) * f).abs());
                             a.abs() + by.sum::<f64>()
                         })
                         .collect(),
@@ -618,7 +638,12 @@ impl Plant {
         let mut candidates = Vec::new();
         for (k, here) in here.iter().enumerate() {
             let site = &self.rubbing.sites[k];
-            if matches!(site.what, Acts::Contact(at) if !self.is_touching(at)) {
+            let apart = match site.what {
+                Acts::Contact(at) => !self.is_touching(at),
+                Acts::Rigid(_, stop) => !self.mode.resting.contains(&stop),
+                Acts::Joint(..) | Acts::Seals(_) => false,
+            };
+            if apart {
                 self.mode.rubs[k] = Rub::Apart;
                 continue;
             }
@@ -646,12 +671,23 @@ impl Plant {
         for k in candidates {
             self.rubbing.sites[*k].resists = 0.0;
         }
-        let found = self.act_in(time, y, candidates, |rows, _, now| {
-            let whole = sum(rows, now.forces);
+        let ties = self.limits_by_pushes(candidates);
+        let found = self.act_in(time, y, candidates, |rows, stops, now| {
+            let whole = sum(now.by, now.forces);
             let free: Vec<f64> = (now.accelerations.iter().zip(rows))
                 .map(|(a, row)| a - dot(row, &whole))
                 .collect();
-            Some(limited(rows, &free, now.limits))
+            match &ties {
+                None => Some(limited(rows, &free, now.limits)),
+                Some(ties) => {
+                    let limits = ties.iter().zip(&now.limits[stops..]);
+                    let limits: Vec<Limit> = limits
+                        .map(|(tie, limit)| tie.unwrap_or(Limit::Fixed(*limit)))
+                        .collect();
+                    let (by, limits) = (now.by, limits.as_slice());
+                    Cones { rows, by, limits }.forces(&free)
+                }
+            }
         })?;
         let here = self.rubbing_here();
         let sites = self.rubbing.sites.iter();
@@ -665,19 +701,28 @@ impl Plant {
                 found.after[found.stops + place],
                 found.terms[found.stops + place],
             );
+            let by_all = match ties {
+                Some(_) => found.by_all[found.stops + place],
+                None => 0.0,
+            };
             // No row accelerates by more than all that is let go, seen as rows are.
             let row = {
                 let mut row = here[*k].gradient.clone();
                 self.let_go.halve(&mut row);
                 dot(&row, &row).sqrt()
             };
-            let sizes = [terms, most * self.rubbing.sites[*k].size, row * all];
+            let sizes = [terms, by_all, most * self.rubbing.sites[*k].size, row * all];
             let slides = after.abs() > LEFT_OVER * sizes.into_iter().fold(0.0, f64::max);
             self.mode.rubs[*k] = match (slides, found.moves[place]) {
                 (true, _) => Rub::Slides(after.signum()),
                 (false, true) => Rub::Held,
                 (false, false) => Rub::Idle,
             };
+        }
+        if ties.is_some() {
+            let opens =
+                (0..found.stops).map(|stop| found.after[stop] > LEFT_OVER * found.by_all[stop]);
+            self.leave(&opens.collect::<Vec<bool>>());
         }
         self.take_senses();
         Ok(())
@@ -727,12 +772,14 @@ impl Plant {
 
     /// The parts of their greatest friction that act in all places, at a state.
     pub fn friction_parts(&mut self, time: f64, y: &[f64]) -> Option<Vec<f64>> {
-        if self.holds_somewhere() && self.held(time, y).is_err() {
+        let hangs = self.holds_somewhere() || self.rubs_rigidly();
+        if hangs && self.held(time, y).is_err() {
             return None;
         }
         let here = self.rubbing_here();
         let places = self.rubbing.sites.iter().zip(&self.mode.rubs).zip(&here);
         let parts = places.map(|((site, rub), here)| match rub {
+            _ if matches!(site.what, Acts::Rigid(..)) => self.inner.values[site.inner],
             Rub::Slides(sense) => *sense,
             Rub::Idle | Rub::Apart => 0.0,
             Rub::Held => match site.resists - here.viscous {

@@ -2,6 +2,7 @@
 
 mod begin;
 mod events;
+mod rests;
 
 use std::sync::Arc;
 
@@ -179,9 +180,7 @@ impl Run {
                 return Err(self.plant.lacks());
             }
         }
-        self.rest(0.0, &[]);
-        let rests = !self.plant.mode.resting.is_empty();
-        match !rests || self.rub(false, None, &[]) {
+        match self.rest_at_start() {
             true => Ok(()),
             false => Err(self.plant.lacks()),
         }
@@ -406,7 +405,7 @@ impl Run {
                 }
             }
         }
-        if self.plant.holds_somewhere() {
+        if self.plant.holds_somewhere() || self.plant.rubs_rigidly() {
             let first = 1 + self.plant.inner.pressures();
             for k in 0..COEFFICIENTS {
                 let time = from + k as f64 / (COEFFICIENTS - 1) as f64 * (to - from);

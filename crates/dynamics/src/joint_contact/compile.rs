@@ -241,12 +241,10 @@ impl Compile<'_> {
                 Normal::kelvin_voigt(spring, damping)
             }
             (ContactStates::Three, ContactLaw::Rigid) => {
-                if self.number(&words.friction).unwrap_or(0.0) > 0.0 {
-                    let rubs = self.problem("takes no time, and its friction is not known yet");
-                    return Err(rubs.remedy("friction = 0, or a law that gives"));
-                }
-                let restitution = restitution.unwrap_or(0.0);
-                return Ok(Resists::AtOnce { restitution });
+                return Ok(Resists::AtOnce {
+                    restitution: restitution.unwrap_or(0.0),
+                    friction: self.friction_at_once(shape)?,
+                });
             }
             (ContactStates::Three, ContactLaw::Hertz) => Normal::hertz(self.stiffness(shape)?),
             (ContactStates::Three, ContactLaw::Dissipating(dissipation)) => {
@@ -300,6 +298,27 @@ impl Compile<'_> {
             None => Err((self.problem("needs the radius of its pin"))
                 .remedy("radius = \"10 mm\", beside radial")),
         }
+    }
+
+    /// The coefficient of what takes no time: its friction sets in at once, too.
+    fn friction_at_once(&self, shape: &Shape) -> Result<f64, Problem> {
+        let words = &self.contact.properties;
+        let coefficient = self.number(&words.friction).unwrap_or(0.0);
+        if coefficient == 0.0 {
+            return Ok(0.0);
+        }
+        if let Shape::Pin(_) = shape {
+            self.has_radius()?;
+        }
+        if let Some(FrictionOnset::Ramp(Some(_))) = words.onset {
+            let creeps = self.problem("takes no time, and no speeds at which its friction sets in");
+            let remedy = "stiction = true in the place of friction_speeds, or a law that gives";
+            return Err(creeps.remedy(remedy));
+        }
+        let friction = Friction::coulomb(coefficient).checked();
+        friction
+            .map(|friction| friction.kinetic)
+            .map_err(|why| self.unfit(why))
     }
 
     fn friction(&self, shape: &Shape) -> Result<Friction<f64>, Problem> {

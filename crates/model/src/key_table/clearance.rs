@@ -61,8 +61,8 @@ static TOUCHING: [Key; 10] = [
     may("poisson", not_negative(D::NONE), "0.3", "Poisson's ratio of both bodies; that of steel unless said otherwise."),
     may("spring", positive(D::STIFFNESS), "\"5e7 N/m\"", "Stiffness of the contact of two states."),
     may("damping", not_negative(D::DAMPING), "\"200 N s/m\"", "Damping of the contact of two states; 0 unless said otherwise."),
-    may("friction", not_negative(D::NONE), "0.03", "Coefficient of friction of the contact; 0 unless said otherwise."),
-    may("stiction", T::Flag, "true", "Whether friction holds what rests (Coulomb), and does not set in between two speeds, so that it creeps."),
+    may("friction", not_negative(D::NONE), "0.03", "Coefficient of friction of the contact, rigid or not; 0 unless said otherwise."),
+    may("stiction", T::Flag, "true", "Whether friction holds what rests (Coulomb), and does not set in between two speeds, so that it creeps. At a rigid contact it always does."),
     may("friction_speeds", T::Two(&not_negative(D::SPEED)), "[\"1 mm/s\", \"10 mm/s\"]", "Sliding speeds from which on friction begins to act, and acts in full: 1 and 10 mm/s unless said otherwise."),
 ];
 

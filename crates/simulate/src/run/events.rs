@@ -1,25 +1,17 @@
-//! What events do: impacts, rests, friction that sticks and slips, switches.
+//! What events do: impacts, friction that sticks and slips, switches.
 
-use kempe_linear::Lu;
-
-use crate::contact::{Gap, along};
 use crate::happening::Happened;
 use crate::joints::Place;
 use crate::lack::Sought;
+use crate::plant::Mode;
 use crate::question::Resistance;
 use crate::record::Ending;
 use crate::rubbing::Rub;
 use crate::toggle::Toggled;
 use crate::watch::{Event, Watch};
 
+use super::rests::LEFT_OVER;
 use super::{Run, TOUCHED};
-
-/// A rate this part of that before an impact is none: what should be zero is left over by rounding.
-const LEFT_OVER: f64 = 1e-9;
-/// A flight from a stop that lasts this part of the whole time is none: it rests.
-const CHATTER: f64 = 1e-9;
-/// Nor is one that rises by this much (in path scales), hardly more than rounding, or by no more than it is closed by.
-const RISE: f64 = 2e-15;
 
 /// This part of the whole time behind an instant is looked at where it tells too little itself.
 const SOON: f64 = 1e-7;
@@ -28,9 +20,11 @@ const SOON: f64 = 1e-7;
 #[derive(Debug, Default)]
 pub(super) struct Struck {
     /// The fastest rate before.
-    fastest: f64,
+    pub fastest: f64,
     /// The stops.
-    stops: Vec<usize>,
+    pub stops: Vec<usize>,
+    /// How it was held before.
+    pub held: Mode,
 }
 
 impl Run {
@@ -41,11 +35,29 @@ impl Run {
             return true;
         }
         let before = self.plant.mode.clone();
+        let decided = self.decide(jumped, turns, lets_go);
+        if decided {
+            self.tell_rubbing(&before);
+        }
+        decided
+    }
+
+    /// The same, and nothing is told.
+    pub(super) fn decide(&mut self, jumped: bool, turns: Option<usize>, lets_go: &[usize]) -> bool {
         let state = (self.time, self.y.as_mut_slice());
         let decided = (self.plant).decide_rubbing(state, jumped, turns, lets_go);
         self.plant.lack = decided.err();
-        if decided.is_err() {
-            return false;
+        decided.is_ok()
+    }
+
+    /// Tells of what friction holds that it did not hold before, and of what it lets go.
+    pub(super) fn tell_rubbing(&mut self, before: &Mode) {
+        let left = before
+            .resting
+            .iter()
+            .filter(|stop| !self.plant.mode.resting.contains(stop));
+        for stop in left.copied().collect::<Vec<_>>() {
+            self.tell(Happened::Leaves { stop });
         }
         let (rubs, stuck) = (self.plant.mode.rubs.clone(), self.plant.mode.stuck);
         if stuck || before.stuck {
@@ -54,7 +66,7 @@ impl Run {
                 (true, false) => self.tell(Happened::Slips),
                 _ => {}
             }
-            return true;
+            return;
         }
         let places = self.plant.what_rubs();
         for ((before, now), at) in before.rubs.iter().zip(&rubs).zip(places) {
@@ -64,98 +76,6 @@ impl Run {
                 _ => {}
             }
         }
-        true
-    }
-
-    /// Takes up the stops on which it comes to rest: closed, hardly opening, and pressed on. `struck` is the fastest rate of an
-    /// impact just before; on `before` it rested already.
-    pub(super) fn rest(&mut self, struck: f64, before: &[usize]) {
-        let mut rates = vec![0.0; self.y.len()];
-        if self.plant.mode.stuck || !self.plant.accelerate(self.time, &self.y, &mut rates) {
-            return;
-        }
-        let n = self.plant.free.len();
-        for stop in 0..self.plant.stops.len() {
-            let rigid = matches!(self.plant.stops[stop].resistance, Resistance::Rigid { .. });
-            let mode = &self.plant.mode;
-            if !rigid || mode.resting.contains(&stop) || mode.beside.contains(&stop) {
-                continue;
-            }
-            let Some(gap) = self.plant.gap(stop, self.time, &self.y) else {
-                continue;
-            };
-            let scale = gap.scale(&self.plant.scales);
-            let opening = gap.opening(&rates[n..2 * n]);
-            // The flight to come, back to where it began.
-            let flight = -2.0 * gap.rate / opening;
-            let closed = gap.open.abs() <= TOUCHED * scale;
-            let still = opening.abs() <= LEFT_OVER * gap.terms(&rates[n..2 * n]);
-            if closed && still && !self.plant.mode.resting.is_empty() {
-                self.plant.mode.beside.push(stop);
-                continue;
-            }
-            let rise = -0.5 * gap.rate * gap.rate / opening;
-            let stays =
-                flight <= CHATTER * self.question.until || rise <= (RISE * scale).max(-gap.open);
-            if closed && opening < 0.0 && gap.rate >= -LEFT_OVER * struck && stays {
-                self.plant.mode.resting.push(stop);
-                self.still();
-                if !before.contains(&stop) {
-                    self.tell(Happened::Rests { stop });
-                }
-                // What it does to the others changes.
-                if !self.plant.accelerate(self.time, &self.y, &mut rates) {
-                    return;
-                }
-            }
-        }
-    }
-
-    /// Takes what is left of the rates of all stops on which it rests from the speeds, at once: one alone would move the others.
-    fn still(&mut self) {
-        let n = self.plant.free.len();
-        if self.plant.is_alone() {
-            self.y[1] = 0.0;
-            return;
-        }
-        let resting = self.plant.mode.resting.clone();
-        let gaps: Option<Vec<Gap>> = (resting.iter())
-            .map(|stop| self.plant.gap(*stop, self.time, &self.y))
-            .collect();
-        let Some(gaps) = gaps else { return };
-        let matrix = self.plant.yielding(&gaps);
-        let mut factors = Lu::new(gaps.len());
-        if !factors.factor(|row, column| matrix[row][column]) {
-            return;
-        }
-        let mut impulses: Vec<f64> = gaps.iter().map(|gap| -gap.rate).collect();
-        factors.solve(&mut impulses);
-        let mut change = along(&gaps, &impulses, n);
-        self.plant.let_go.respond(&mut change);
-        for (v, change) in self.y[n..2 * n].iter_mut().zip(&change) {
-            *v += change;
-        }
-    }
-
-    /// Takes up the stops on which it rests after something was struck, or jerked. `before` are those on which it did: what it leaves is
-    /// told, unless it was struck.
-    pub(super) fn settle(&mut self, struck: Struck, before: &[usize]) -> bool {
-        // What holds what is known before what rests, and again where that changes it.
-        let known = self.rub(true, None, &[]);
-        let resting = self.plant.mode.resting.len();
-        self.rest(struck.fastest, before);
-        let changed = self.plant.mode.resting.len() != resting;
-        let known = known && (!changed || self.rub(false, None, &[]));
-        let leaves = before.iter().filter(|stop| {
-            let mode = &self.plant.mode;
-            !mode.resting.contains(stop)
-                && !mode.beside.contains(stop)
-                && !struck.stops.contains(stop)
-        });
-        for stop in leaves.copied().collect::<Vec<_>>() {
-            self.tell(Happened::Leaves { stop });
-        }
-        known
     }
 
     /// What an event does.
@@ -327,23 +247,29 @@ impl Run {
             }
             let gap = self.plant.gap(other, self.time, &self.y)?;
             let scale = gap.scale(&self.plant.scales);
-            if gap.open <= TOUCHED * scale && gap.rate <= 0.0 {
+            // Impacts of what rubs are solved with all that it lies on.
+            let lies = self.plant.rubs_at(other) && self.plant.mode.resting.contains(&other);
+            if gap.open <= TOUCHED * scale && (gap.rate <= 0.0 || lies) {
                 stops.push(other);
             }
         }
         // What is struck again holds by the impact, if it does.
+        let held = self.plant.mode.clone();
         self.plant.mode.resting.clear();
         self.plant.mode.beside.clear();
+        self.plant.rub_where_it_rests();
         let impact = self.plant.strike(&stops, self.time, &mut self.y)?;
         let rates = impact.rates.iter().map(|[before, _]| before.abs());
         let fastest = rates.fold(0.0, f64::max);
         let mut struck = Struck {
             fastest,
             stops: Vec::new(),
+            held,
         };
         for (stop, [before, after]) in stops.iter().zip(&impact.rates) {
-            // What opens already is not struck.
-            if *before >= 0.0 {
+            // What opens already is not struck, nor what it lay on before.
+            let lay = self.plant.rubs_at(*stop) && struck.held.resting.contains(stop);
+            if *before >= 0.0 || lay && -before <= LEFT_OVER * fastest {
                 continue;
             }
             struck.stops.push(*stop);

@@ -6,6 +6,7 @@ mod block;
 mod clearance;
 mod dead_points;
 mod hydraulics;
+mod rigid;
 mod rubbing;
 
 #[path = "../common/mod.rs"]

@@ -165,6 +165,13 @@ fn lacks(told: &Told<'_>, lack: Lack) -> (String, &'static str) {
             "friction jams it, or lets it move in more than one way: its acceleration is not determined".to_owned(),
             "lower the coefficients, or start elsewhere",
         ),
+        Lack::Wedged(at) => (
+            format!(
+                "friction wedges {}: the bodies slide so that what holds them apart presses them together as much, and no acceleration is possible, or several are (Painlevé's paradox)",
+                place_name(told.model, told.contacts, at)
+            ),
+            "lower the friction of that contact, let its bodies give by another `law`, or end the study before",
+        ),
         Lack::Force => (
             "a force is infinite there, or has no direction, as that of a spring or damper whose ends lie upon each other".to_owned(),
             "keep the ends of what acts apart, by `stops` or by where they are",

@@ -20,6 +20,7 @@ mod pictures;
 mod point_rates;
 mod proof;
 mod rests;
+mod rigid_friction;
 mod round_trips;
 mod scale;
 mod simulated;
