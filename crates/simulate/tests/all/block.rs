@@ -4,7 +4,7 @@
 
 use crate::common::{Free, at};
 use kempe_contact::{Dissipation, factor};
-use kempe_model::{ClearanceAt, Contact, ContactStates, Released, value};
+use kempe_model::ContactStates;
 use kempe_number::math::sin_cos;
 use kempe_simulate::Ending;
 
@@ -157,19 +157,7 @@ fn off(law: Law, words: &str, rises: bool, states: ContactStates, times: &[f64])
     let mut free = Free::new(&text(words, rises), *times.last().unwrap());
     free.question.free.clear();
     free.question.start.clear();
-    let clearance = &free.model.clearances[0];
-    let ClearanceAt::Joint(joint) = clearance.at else {
-        panic!("not at a joint");
-    };
-    free.question.contacts = vec![Contact {
-        joint: Released::Joint(joint),
-        clearance: value(&clearance.radial, &free.design.parameters),
-        properties: clearance.contact.clone(),
-        states,
-        start: [[0.0; 2]; 2],
-        touches: Vec::new(),
-        span: 0..0,
-    }];
+    free.play(states, [[0.0; 2]; 2]);
     let found = free.run();
     assert_eq!(found.ending, Ending::Until);
     let known = Block::follow(law, times, 1e-7);

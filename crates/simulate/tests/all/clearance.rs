@@ -3,7 +3,7 @@
 
 use crate::common::{Free, at};
 use crate::known;
-use kempe_model::{Contact, ContactStates, Released, value};
+use kempe_model::ContactStates;
 use kempe_number::math::atan2;
 use kempe_simulate::{Ending, Happened, Touched};
 
@@ -11,35 +11,15 @@ const SLIDER_CRANK: &str =
     include_str!("../../../../examples/benchmarks/clearance-slider-crank.toml");
 const SLIDER: &str = include_str!("../../../../examples/benchmarks/clearance-slider.toml");
 
-/// The first clearance of the file, at this joint.
-fn with_play(free: &mut Free, joint: Released, states: ContactStates) {
-    let clearance = &free.model.clearances[0];
-    free.question.contacts = vec![Contact {
-        joint,
-        clearance: value(&clearance.radial, &free.design.parameters),
-        properties: clearance.contact.clone(),
-        states,
-        start: [[0.0; 2]; 2],
-        touches: Vec::new(),
-        span: 0..0,
-    }];
-}
+/// In the middle of the play.
+const REST: [[f64; 2]; 2] = [[0.0; 2]; 2];
 
 fn slider_crank(friction: f64, until: f64) -> Free {
     let text = SLIDER_CRANK.replace("mu       = 0 ", &format!("mu       = {friction} "));
     let mut free = Free::new(&text, until);
     free.question.free.clear();
     free.question.start.clear();
-    let clearance = &free.model.clearances[0];
-    let kempe_model::ClearanceAt::Pin { point, .. } = clearance.at else {
-        panic!("not at a pin");
-    };
-    let link = *free.model.points[point.index()].links.last().unwrap();
-    with_play(
-        &mut free,
-        Released::Pin { point, link },
-        ContactStates::Three,
-    );
+    free.play(ContactStates::Three, REST);
     free
 }
 
@@ -123,12 +103,7 @@ turn = { turns = "bob", at = 0 }
         let mut free = Free::new(&text, 0.05);
         free.question.free.clear();
         free.question.start.clear();
-        let link = free.model.points[0].links[1];
-        let pin = Released::Pin {
-            point: kempe_model::PointId(0),
-            link,
-        };
-        with_play(&mut free, pin, ContactStates::Three);
+        free.play(ContactStates::Three, REST);
         let found = free.run();
         let touch = found.touched[0];
         let fall = (2.0 * 9.81 * 0.01_f64).sqrt();
@@ -143,12 +118,7 @@ turn = { turns = "bob", at = 0 }
     let mut free = Free::new(FALLING, 0.06);
     free.question.free.clear();
     free.question.start.clear();
-    let link = free.model.points[0].links[1];
-    let pin = Released::Pin {
-        point: kempe_model::PointId(0),
-        link,
-    };
-    with_play(&mut free, pin, ContactStates::Two);
+    free.play(ContactStates::Two, REST);
     let touch = free.run().touched[0];
     let (m, k, g) = (2.0_f64, 1e6_f64, 9.81);
     let w = (k / m).sqrt();
@@ -169,10 +139,7 @@ fn a_block_strikes_with_two_corners_and_comes_to_lie_on_its_guide() {
     // P. Flores, R. Leine and C. Glocker's slider: both corners of a side strike at once.
     let mut free = Free::new(SLIDER, 0.01);
     free.question.start[0][1] = 150.0;
-    let kempe_model::ClearanceAt::Joint(joint) = free.model.clearances[0].at else {
-        panic!("not at a joint");
-    };
-    with_play(&mut free, Released::Joint(joint), ContactStates::Three);
+    free.play(ContactStates::Three, REST);
     let found = free.run();
     assert_eq!(found.ending, Ending::Until);
     let first = found.happenings[0];
@@ -224,11 +191,7 @@ swing = { turns = "arm", at = -90 }
 "#;
     let touches = [0.02, 0.2].map(|until| {
         let mut free = Free::new(HANGING, until);
-        let pin = Released::Pin {
-            point: kempe_model::PointId(0),
-            link: free.model.points[0].links[1],
-        };
-        with_play(&mut free, pin, ContactStates::Three);
+        free.play(ContactStates::Three, REST);
         free.run().touched[0]
     });
     let [short, long] = touches;

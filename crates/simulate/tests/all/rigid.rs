@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 use crate::common::{Free, at};
-use kempe_model::{ClearanceAt, Contact, ContactStates, Released, value};
+use kempe_model::ContactStates;
 use kempe_motion::Silent;
 use kempe_number::math::{cos, sin};
 use kempe_simulate::{Ending, Happened, Lack, Place, Rubs, Simulated, Unsimulated, simulate};
@@ -64,19 +64,7 @@ impl Block {
         );
         let mut free = Free::new(&text, until);
         free.question.start = vec![*along];
-        let clearance = &free.model.clearances[0];
-        let ClearanceAt::Joint(joint) = clearance.at else {
-            panic!("not at a joint");
-        };
-        free.question.contacts = vec![Contact {
-            joint: Released::Joint(joint),
-            clearance: value(&clearance.radial, &free.design.parameters),
-            properties: clearance.contact.clone(),
-            states: ContactStates::Three,
-            start: [*angle, *across],
-            touches: Vec::new(),
-            span: 0..0,
-        }];
+        free.play(ContactStates::Three, [*angle, *across]);
         free
     }
 
@@ -345,19 +333,7 @@ fn a_bore_comes_to_roll_on_its_pin() {
         "#;
     let mut free = Free::new(BOB, 1.0);
     free.question.start = vec![[0.0, 2.0]];
-    let clearance = &free.model.clearances[0];
-    free.question.contacts = vec![Contact {
-        joint: Released::Pin {
-            point: kempe_model::PointId(0),
-            link: free.model.points[0].links[1],
-        },
-        clearance: 0.01,
-        properties: clearance.contact.clone(),
-        states: ContactStates::Three,
-        start: [[0.0, 0.0], [-0.01, 0.0]],
-        touches: Vec::new(),
-        span: 0..0,
-    }];
+    free.play(ContactStates::Three, [[0.0, 0.0], [-0.01, 0.0]]);
     let found = free.run();
     assert_eq!(found.ending, Ending::Until);
     let holds = found.happenings.iter().find_map(|h| match h.what {

@@ -2,7 +2,10 @@
 #![allow(clippy::unwrap_used, dead_code)]
 
 use kempe_mechanism::{Design, Mechanism};
-use kempe_model::{Center, DriveId, Inertia, Measure, Model, Place};
+use kempe_model::{
+    Center, ClearanceAt, Contact, ContactStates, DriveId, Inertia, Measure, Model, Place, Released,
+    value,
+};
 use kempe_motion::Silent;
 use kempe_simulate::{Method, Question, Resistance, Simulated, Stop, simulate};
 use kempe_units::Expr;
@@ -52,6 +55,28 @@ impl Free {
             gap,
             resistance: Resistance::Rigid { restitution },
         });
+    }
+
+    /// Gives its joint the first clearance of the file; where its bodies start there, see [`Contact::start`].
+    pub fn play(&mut self, states: ContactStates, start: [[f64; 2]; 2]) {
+        let clearance = &self.model.clearances[0];
+        let joint = match clearance.at {
+            ClearanceAt::Pin { point, .. } => Released::Pin {
+                point,
+                link: *self.model.points[point.index()].links.last().unwrap(),
+            },
+            ClearanceAt::Joint(joint) => Released::Joint(joint),
+            ClearanceAt::All => panic!("at no joint"),
+        };
+        self.question.contacts = vec![Contact {
+            joint,
+            clearance: value(&clearance.radial, &self.design.parameters),
+            properties: clearance.contact.clone(),
+            states,
+            start,
+            touches: Vec::new(),
+            span: 0..0,
+        }];
     }
 
     pub fn run(&self) -> Simulated {
