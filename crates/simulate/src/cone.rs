@@ -3,7 +3,7 @@
 //! Rows are those of [`crate::sticking`]: a force along one changes how fast all of them accelerate, or an impulse their speeds. What
 //! slides in a known sense rubs in proportion to what presses there, so that its push acts along another row than that of its gap.
 
-use kempe_linear::complementary;
+use kempe_linear::{Qr, complementary};
 
 use crate::contact::dot;
 
@@ -89,23 +89,13 @@ pub(crate) fn left_by_friction(smooth: &[Vec<f64>], rubbing: &[Vec<f64>]) -> f64
 
 fn determinant(matrix: &[Vec<f64>]) -> f64 {
     let n = matrix.len();
-    let mut left = matrix.to_vec();
-    let mut product = 1.0;
-    for k in 0..n {
-        let larger = |a: &usize, b: &usize| left[*a][k].abs().total_cmp(&left[*b][k].abs());
-        let pivot = (k..n).max_by(larger).unwrap_or(k);
-        if pivot != k {
-            left.swap(pivot, k);
-            product = -product;
-        }
-        let own = left[k].clone();
-        product *= own[k];
-        for row in &mut left[k + 1..] {
-            let factor = row[k] / own[k];
-            for (x, own) in row.iter_mut().zip(&own).skip(k) {
-                *x -= factor * own;
-            }
+    let mut factors = Qr::with_capacity(n, n);
+    factors.reset(n, n);
+    for (r, row) in matrix.iter().enumerate() {
+        for (c, x) in row.iter().enumerate() {
+            factors.add(r, c, *x);
         }
     }
-    product
+    factors.factor();
+    factors.determinant()
 }

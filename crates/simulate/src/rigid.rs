@@ -121,11 +121,9 @@ impl Plant {
     ) -> (Vec<Vec<f64>>, Vec<Vec<f64>>) {
         let pushing = self.with_friction(gaps);
         let mut by = rows.to_vec();
-        for (k, (stop, along)) in self.mode.resting.iter().zip(&pushing).enumerate() {
-            if self.slip(*stop).is_some() {
-                by[k].clone_from(along);
-                self.let_go.halve(&mut by[k]);
-            }
+        for (row, along) in by.iter_mut().zip(&pushing) {
+            row.clone_from(along);
+            self.let_go.halve(row);
         }
         (pushing, by)
     }

@@ -770,7 +770,7 @@ impl Plant {
         Ok(())
     }
 
-    /// The parts of their greatest friction that act in all places, at a state.
+    /// The parts of their greatest friction that act in all places, at a state; of rigid contacts the friction itself, N.
     pub fn friction_parts(&mut self, time: f64, y: &[f64]) -> Option<Vec<f64>> {
         let hangs = self.holds_somewhere() || self.rubs_rigidly();
         if hangs && self.held(time, y).is_err() {
