@@ -66,6 +66,13 @@ impl Space {
         )
     }
 
+    /// The step from one design to another, in parts of the widths.
+    pub fn step(&self, from: &[f64], to: &[f64]) -> Vec<f64> {
+        (from.iter().zip(to).zip(&self.widths))
+            .map(|((a, b), w)| if *w > 0.0 { (b - a) / w } else { 0.0 })
+            .collect()
+    }
+
     /// The largest difference of two designs, in parts of the widths.
     pub fn distance(&self, a: &[f64], b: &[f64]) -> f64 {
         (a.iter().zip(b).zip(&self.widths))

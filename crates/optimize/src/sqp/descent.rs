@@ -9,6 +9,7 @@ use crate::workers::Workers;
 use super::curvature::Curvature;
 use super::local::{Local, Sizes, scaled};
 use super::search::{Search, Step};
+use super::unseen::Seen;
 use super::violation::View;
 use super::{Multipliers, Optimum, SqpOptions};
 
@@ -33,6 +34,10 @@ const LEAST: f64 = 1e-9;
 const UNHEARD: usize = 4;
 /// How often the violation alone is minimised at most.
 const RESTORATIONS: usize = 3;
+/// How often a place of rest is left by a way that was not taken.
+const LEFT: usize = 4;
+/// A multiplier larger than this holds a design, in the objective's size for the box.
+const HOLDS: f64 = 1e-9;
 
 /// A minimisation on its way.
 pub(crate) struct Descent<'a> {
@@ -48,6 +53,10 @@ pub(crate) struct Descent<'a> {
     unheard: usize,
     /// How often the radius was made smaller here.
     narrowed: usize,
+    /// Directions that it went.
+    seen: Seen,
+    /// How often it may leave a place of rest.
+    leaves: usize,
     iterations: usize,
     restorations: usize,
     /// The violation alone is minimised first, and how to end if it then is nothing.
@@ -121,6 +130,8 @@ impl<'a> Descent<'a> {
             radius: f64::INFINITY,
             unheard: 0,
             narrowed: 0,
+            seen: Seen::default(),
+            leaves: LEFT,
             iterations: 0,
             restorations: 0,
             restoring: None,
@@ -189,7 +200,7 @@ impl<'a> Descent<'a> {
             self.radius,
         );
         if kept && residual <= self.options.optimality {
-            return Some(Ended::Converged);
+            return self.rest(&minimum, Ended::Converged, workers);
         }
         let penalty = self.place.penalty(self.weight);
         let promise = penalty - self.place.promised(&minimum, self.weight);
@@ -216,6 +227,8 @@ impl<'a> Descent<'a> {
         }
         match next {
             Some(next) => {
+                let step = self.search.space.step(&self.place.design, &next.design);
+                self.seen.learn(&step);
                 self.curvature
                     .update(&self.place, &next, &minimum, &self.search.space);
                 self.radius = match self.narrowed {
@@ -226,8 +239,29 @@ impl<'a> Descent<'a> {
                 self.place = next;
             }
             None if !self.curvature.is_fresh() => self.renew(),
+            None if kept => return self.rest(&minimum, Ended::Stuck, workers),
             None => return self.kept_or(Ended::Stuck),
         }
+        None
+    }
+
+    /// This end, unless a way that it never took leads down from here: then it goes on there.
+    fn rest(&mut self, minimum: &Minimum, ended: Ended, workers: &dyn Workers) -> Option<Ended> {
+        let allowed = (self.options.evaluations).saturating_sub(self.search.evaluations);
+        if self.leaves == 0 {
+            return Some(ended);
+        }
+        let n = self.place.design.len();
+        let held = self.place.held(minimum, HOLDS, &self.search.space);
+        let mut ways = self.seen.ways(&held, n);
+        ways.truncate(allowed);
+        let Some((way, place)) = self.search.below(&self.place, &ways, self.weight, workers) else {
+            return Some(ended);
+        };
+        self.leaves -= 1;
+        self.seen.learn(&ways[way]);
+        self.place = place;
+        self.renew();
         None
     }
 

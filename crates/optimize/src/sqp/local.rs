@@ -276,6 +276,32 @@ impl Local {
         largest(slopes.iter().map(|x| x.abs())).max(missed)
     }
 
+    /// Directions that a step may not go without leaving what holds the design, by multipliers larger than `least`: slopes of constraints, what
+    /// slopes of the objective's parts differ by, and variables on their bounds or without room.
+    pub fn held(&self, minimum: &Minimum, least: f64, space: &Space) -> Vec<Vec<f64>> {
+        let unit = |k: usize| (0..self.design.len()).map(move |j| f64::from(u8::from(j == k)));
+        let mut held: Vec<Vec<f64>> = Vec::new();
+        let mut first: Option<&[f64]> = None;
+        for (part, m) in self.parts.iter().zip(&minimum.multipliers) {
+            match (part.of, first) {
+                _ if *m <= least => {}
+                (Of::Constraint(_), _) => held.push(part.slope.clone()),
+                (Of::Objective(_), None) => first = Some(&part.slope),
+                (Of::Objective(_), Some(first)) => {
+                    held.push(first.iter().zip(&part.slope).map(|(a, b)| a - b).collect());
+                }
+            }
+        }
+        let mut bounds = minimum.multipliers[self.parts.len()..].iter();
+        for (k, width) in space.widths.iter().enumerate() {
+            let mut holds = || bounds.next().is_some_and(|m| *m > least);
+            if !(*width > 0.0) || [holds(), holds()].contains(&true) {
+                held.push(unit(k).collect());
+            }
+        }
+        held
+    }
+
     /// The multipliers of a programme's rows in the units of the problem; zeros without one.
     pub fn multipliers(&self, rows: Option<&[f64]>, sizes: &Sizes, space: &Space) -> Multipliers {
         let mut all = Multipliers {

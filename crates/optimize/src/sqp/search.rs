@@ -162,6 +162,27 @@ impl Search<'_> {
         None
     }
 
+    /// The best place that ways lead to, and which way, where the penalty is less there by more than rounding.
+    pub fn below(
+        &mut self,
+        place: &Local,
+        ways: &[Vec<f64>],
+        weight: f64,
+        workers: &dyn Workers,
+    ) -> Option<(usize, Local)> {
+        let moved = ways.iter().map(|way| self.space.moved(&place.design, way, 1.0));
+        let moved = moved.enumerate().filter(|(_, it)| *it != place.design);
+        let (ways, designs): (Vec<usize>, Vec<Vec<f64>>) = moved.unzip();
+        let evaluations = self.evaluate(&designs, workers);
+        let most = place.penalty(weight) - BETTER;
+        let penalties = evaluations.iter().map(|it| self.penalty(it, weight));
+        let below = penalties.enumerate().filter(|(_, it)| *it < most);
+        let (k, _) = below.min_by(|a, b| a.1.total_cmp(&b.1))?;
+        let mut both = designs.into_iter().zip(evaluations);
+        let (design, evaluation) = both.nth(k)?;
+        Some((ways[k], self.with_slopes(design, evaluation)?))
+    }
+
     /// The step with what the whole one taught: the parts' values as they are there (R. Fletcher's second-order correction, 1982), and the
     /// parts that are only there.
     fn corrected(&mut self, place: &Local, there: &Local, asked: Step) -> Option<Local> {

@@ -395,3 +395,44 @@ fn constraints_twice_over_do_not_matter() {
         .sum();
     assert!((cost - 1.0).abs() < 1e-5, "{cost}");
 }
+
+/// First-order conditions hold at a design that is its own mirror image, be it the worst of all: it is left.
+#[test]
+fn a_worst_design_whose_slopes_are_nothing_is_left() {
+    let case = Case::<2>::smooth(vec![[-1.0, 2.0], [-1.0, 2.0]], 0, |[x, y]| {
+        (y.square() - x.square(), vec![])
+    });
+    let found = solve("a ridge, reached along it", &case, [0.0, 1.0]);
+    is_optimum(&found, -4.0);
+    let found = solve("a ridge from its saddle", &case, [0.0, 0.0]);
+    is_optimum(&found, -4.0);
+    // No variable alone leads down.
+    let case = Case::<2>::smooth(cube(2, -1.0, 1.0), 0, |[x, y]| (*x * *y, vec![]));
+    is_optimum(&solve("a product", &case, [0.0, 0.0]), -1.0);
+    // Two variables that can change places.
+    let case = Case::<2>::smooth(cube(2, -1.0, 1.0), 0, |[x, y]| {
+        ((*x + *y - 1.0).square() - (*x - *y).square(), vec![])
+    });
+    is_optimum(&solve("interchangeable", &case, [0.2, 0.2]), -3.0);
+}
+
+/// The same of a violation.
+#[test]
+fn a_largest_violation_is_left() {
+    let case = Case::<2>::smooth(cube(2, -2.0, 2.0), 1, |[x, y]| {
+        (y.square() + x.square(), vec![-x.square() + 1.0])
+    });
+    let found = solve("outside of a strip", &case, [0.0, 1.0]);
+    is_optimum(&found, 1.0);
+}
+
+/// A least design is not left, and costs no more than the ways that were not seen.
+#[test]
+fn a_least_design_stays() {
+    let case = Case::<2>::smooth(cube(2, -1.0, 1.0), 0, |[x, y]| {
+        (x.square() + y.square() + *x * *y, vec![])
+    });
+    let found = solve("a bowl", &case, [0.0, 0.0]);
+    is_optimum(&found, 0.0);
+    assert_eq!((found.evaluations, found.design), (1 + 8, vec![0.0, 0.0]));
+}
