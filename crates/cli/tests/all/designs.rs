@@ -95,3 +95,28 @@ fn scripts_get_the_files_without_a_folder() {
     fs::write(at.join("one.toml"), text).expect("written");
     ran(at, &["run", "one.toml"]);
 }
+
+#[test]
+fn a_file_in_the_way_of_what_is_looked_for_is_told_before_the_search() {
+    let folder = folder();
+    let at = folder.path();
+    // More designs than anybody waits for: were they looked at first, this test would not end.
+    let search = "units = { length = \"mm\", angle = \"deg\" }\n[parameters]\na = \"30 mm\"\nb = \"80 mm\"\n[links]\nframe = { O = [0, 0], C = [100, 0] }\n\
+         crank = { O-A = \"a\" }\ncoupler = { A-B = \"b\" }\nrocker = { B-C = 70 }\n[drives]\nmotor = { turns = \"crank\", from = 0, to = 360, speed = 1 }\n\
+         [assembly]\nB = { near = [90, 70] }\n[studies.turn]\nkind = \"motion\"\n[studies.best]\nkind = \"optimize\"\nover = \"turn\"\n\
+         vary = { a = [\"20 mm\", \"35 mm\"], b = [\"70 mm\", \"90 mm\"] }\nmaximize = \"range(angle(rocker))\"\nmethod = \"differential evolution\"\ndesigns = 100000000\n";
+    fs::write(at.join("best.toml"), search).expect("written");
+    fs::create_dir_all(at.join("out/best")).expect("made");
+    fs::write(at.join("out/best/01.toml"), "mine").expect("written");
+    let output = kempe(at, &["run", "best.toml", "--out", "out"]);
+    assert_eq!(output.status.code(), Some(2), "{}", said(&output));
+    let said = said(&output);
+    assert!(
+        said.contains("file-exists") && said.contains("01.toml"),
+        "{said}"
+    );
+    assert_eq!(
+        fs::read(at.join("out/best/01.toml")).expect("mine"),
+        b"mine"
+    );
+}

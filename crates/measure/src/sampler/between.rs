@@ -94,6 +94,46 @@ impl<F: ForceSource> Sampler<F> {
         let measures = between.asked.measures.iter();
         measures.map(|m| moment.series(m, Along::Time)).collect()
     }
+
+    /// Bounds of one of the measures, of which so many coefficients are known, from its series where they begin and the last of them on the whole
+    /// stretch (B. Taylor): where parts of a formula cancel each other, these are far narrower. The measure must be smooth.
+    pub(crate) fn from_its_start(
+        &self,
+        between: &Between,
+        [a, b]: [&Kept; 2],
+        (measure, known): (usize, usize),
+        bounds: &Series<Interval>,
+    ) -> Series<Interval> {
+        let history = History {
+            lengths: a.lengths.clone(),
+            ..(self.measurer.directions)
+                .history(self.motion(), a.state.abscissa.clock.coefficient(0))
+        };
+        let moment = Moment::new(&a.state, &history, &self.measurer.statistics, None);
+        let start = moment.series(&between.asked.measures[measure], Along::Time);
+        let step = Interval::new(0.0, b.state.time - a.state.time);
+        let Some(last) = known.checked_sub(1) else {
+            return *bounds;
+        };
+        Jet::from_coefficients(std::array::from_fn(|k| {
+            let own = bounds.coefficient(k);
+            if k >= last {
+                return own;
+            }
+            let weighted = |n: usize| match n == last {
+                true => bounds.coefficient(n) * BINOMIAL[n][k],
+                false => interval(start.coefficient(n) * BINOMIAL[n][k]),
+            };
+            let lower = (k..last).rev();
+            let from_start = lower.fold(weighted(last), |sum, n| sum * step + weighted(n));
+            let both = own.intersect(from_start);
+            // What is rounding in one of them may lie beside the other.
+            match both.is_empty() {
+                true => from_start,
+                false => both,
+            }
+        }))
+    }
 }
 
 impl Between {

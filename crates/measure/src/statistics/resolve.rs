@@ -8,7 +8,7 @@ use kempe_model::Measure;
 use kempe_number::Interval;
 
 use super::stretches::SmoothStretch;
-use super::wild::is_wild;
+use super::wild::{is_smooth, is_wild};
 use crate::force_source::ForceSource;
 use crate::measure::{ORDER, Series, order_of};
 use crate::sampler::{Between, Kept, Sampler};
@@ -33,6 +33,8 @@ pub(super) struct Resolution {
     surveyed: Vec<Option<usize>>,
     /// How many coefficients of every measure are known.
     known: Vec<usize>,
+    /// Which measures have no jump and no kink.
+    smooth: Vec<bool>,
     /// The size of every measure.
     size: Vec<f64>,
     /// What it can be at most, seen from afar: near a pole it grows no more.
@@ -86,12 +88,15 @@ impl Resolution {
             ORDER - order.min(ORDER)
         });
         let known = known.collect();
+        let smooth = own.iter().map(|measure| is_smooth(mechanism, measure));
+        let smooth = smooth.collect();
         let samples: usize = stretches.iter().map(|s| s.intervals).sum();
         let mut it = Self {
             size: vec![0.0; own.len()],
             most: vec![0.0; own.len()],
             open: vec![false; own.len()],
             known,
+            smooth,
             budget: BUDGET.0 + BUDGET.1 * samples,
             duration: sampler.duration(),
             between: sampler.between(asked),
@@ -177,7 +182,7 @@ impl Resolution {
         for (index, bounds) in bounds.iter().enumerate() {
             self.take_up(index, bounds.coefficient(0).mig());
         }
-        let open = |(index, bounds): (usize, &Series<Interval>)| {
+        let is_open = |index: usize, bounds: &Series<Interval>| {
             let mut power = 1.0;
             // Beside a pole a measure counts as what it is there, and no more than from afar elsewhere.
             let size = self.size[index].max(bounds.coefficient(0).mig());
@@ -188,8 +193,15 @@ impl Resolution {
                 change > SHOWN[k] * size
             })
         };
+        let is_open = |(index, bounds): (usize, &Series<Interval>)| {
+            let narrower = || {
+                let of = (index, self.known[index]);
+                sampler.from_its_start(&self.between, [a.1, b.1], of, bounds)
+            };
+            is_open(index, bounds) && !(self.smooth[index] && !is_open(index, &narrower()))
+        };
         let open: Vec<usize> = (bounds.iter().enumerate())
-            .filter(|of| open(*of))
+            .filter(|of| is_open(*of))
             .map(|(index, _)| index)
             .collect();
         if follow && open.is_empty() {

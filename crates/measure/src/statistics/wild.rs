@@ -1,8 +1,8 @@
-//! Which measures can change faster than what they are of.
+//! Which measures can change faster than what they are of, and which have no jump and no kink wherever their bounds are finite.
 
 use kempe_mechanism::Mechanism;
 use kempe_model::{Leaf, Measure, PoseMeasure};
-use kempe_units::Expr;
+use kempe_units::{Builtin, Expr};
 
 /// Whether a measure can have peaks or poles that the poses and drives do not show: those that quotients, roots and functions
 /// make. Sums and products change as fast as what is in them.
@@ -60,6 +60,42 @@ fn wild_leaf(mechanism: &Mechanism, leaf: &Leaf, known: &mut [Option<bool>]) -> 
                 | PoseMeasure::PathLength(_)
         ),
     }
+}
+
+/// Whether a measure has all its derivatives wherever it and they are bounded: no jump, no kink, nothing folded.
+pub(super) fn is_smooth(mechanism: &Mechanism, measure: &Measure) -> bool {
+    use Builtin::{Abs, Atan2, Max, Min};
+    let own = match measure {
+        Expr::Call(builtin, _) => !matches!(builtin, Abs | Min | Max | Atan2),
+        Expr::Leaf(Leaf::Named(index)) => {
+            let named = mechanism.model.measures.get(*index);
+            named.is_some_and(|named| is_smooth(mechanism, &named.measure))
+        }
+        Expr::Leaf(Leaf::Rate(inner, _)) => is_smooth(mechanism, inner),
+        Expr::Leaf(Leaf::Pose(pose)) => matches!(
+            pose,
+            PoseMeasure::X(_)
+                | PoseMeasure::Y(_)
+                | PoseMeasure::XOn(..)
+                | PoseMeasure::YOn(..)
+                | PoseMeasure::Angle(_)
+                | PoseMeasure::AngleBetween(..)
+                | PoseMeasure::Distance(..)
+                | PoseMeasure::DistanceToLine(..)
+                | PoseMeasure::Travel(..)
+                | PoseMeasure::Speed(_)
+                | PoseMeasure::Acceleration(_)
+                | PoseMeasure::AngularSpeed(_)
+                | PoseMeasure::AngularAcceleration(_)
+        ),
+        Expr::Leaf(leaf) => matches!(
+            leaf,
+            Leaf::Parameter(_) | Leaf::Drive(_) | Leaf::Time | Leaf::Over(..)
+        ),
+        _ => true,
+    };
+    let parts = measure.children();
+    own && parts.into_iter().all(|part| is_smooth(mechanism, part))
 }
 
 fn is_constant(measure: &Measure) -> bool {

@@ -170,7 +170,9 @@ impl Search<'_> {
         weight: f64,
         workers: &dyn Workers,
     ) -> Option<(usize, Local)> {
-        let moved = ways.iter().map(|way| self.space.moved(&place.design, way, 1.0));
+        let moved = ways
+            .iter()
+            .map(|way| self.space.moved(&place.design, way, 1.0));
         let moved = moved.enumerate().filter(|(_, it)| *it != place.design);
         let (ways, designs): (Vec<usize>, Vec<Vec<f64>>) = moved.unzip();
         let evaluations = self.evaluate(&designs, workers);

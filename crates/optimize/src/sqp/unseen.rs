@@ -10,6 +10,8 @@ const MOVED: f64 = 1e-6;
 const LEFT: f64 = 1e-3;
 /// How far ways are tried, in parts of the box: far enough that a curvature shows.
 const TRIED: f64 = 0.01;
+/// Ways between two directions are tried where no more than so many are left: there are too many of them otherwise.
+const PAIRED: usize = 4;
 
 /// The span of the steps that were taken, as orthonormal directions in parts of the box.
 #[derive(Clone, Debug, Default)]
@@ -42,7 +44,7 @@ impl Seen {
     }
 
     /// Steps to try, that neither steps nor the directions that hold the design have a part in: along an orthonormal basis of what is left, each
-    /// way, and between any two of it.
+    /// way, and where it is short between any two of it.
     pub fn ways(&self, held: &[Vec<f64>], n: usize) -> Vec<Vec<f64>> {
         let mut all = self.clone();
         for direction in held {
@@ -64,7 +66,11 @@ impl Seen {
         let mut ways = Vec::new();
         for (k, one) in left.iter().enumerate() {
             ways.extend([1.0, -1.0].map(|sign| along(&[(one, sign)])));
-            for other in &left[k + 1..] {
+            let others = match left.len() <= PAIRED {
+                true => &left[k + 1..],
+                false => &[],
+            };
+            for other in others {
                 for (a, b) in [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)] {
                     ways.push(along(&[(one, a), (other, b)]));
                 }

@@ -35,7 +35,13 @@ pub fn known_names(model: &Model, studies: &[&Study]) -> Vec<String> {
             names::picture(model, name, MECHANISM),
         ];
         let rows = matches!(study.kind, StudyKind::Sweep(_)).then(|| names::rows(name));
-        own.into_iter().chain(rows)
+        // How many mechanisms a search finds it tells when it has ended.
+        let finds = matches!(
+            study.kind,
+            StudyKind::Optimize(_) | StudyKind::Synthesize(_) | StudyKind::Adjust(_)
+        );
+        let first = finds.then(|| names::design(name, "01.toml"));
+        own.into_iter().chain(rows).chain(first)
     };
     let own = studies.iter().flat_map(of_study);
     own.chain([REPORT.to_owned()]).collect()
