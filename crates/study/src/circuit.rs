@@ -156,6 +156,7 @@ pub(crate) fn run_circuit(
         assemblies: (circuit.assemblies.list.len(), circuit.assemblies.rejected),
         diagnostics,
         demanded_rows: count,
+        stopped_at: None,
     })
 }
 

@@ -150,6 +150,7 @@ pub(crate) fn rows_of(
         assemblies: (motion.assemblies.list.len(), motion.assemblies.rejected),
         diagnostics,
         demanded_rows: places.len(),
+        stopped_at: None,
     };
     Ok((result, hidden))
 }

@@ -255,11 +255,8 @@ fn summary(result: &StudyResult) -> String {
     };
     text = text.trim_end().to_owned();
     text.push('.');
-    if result.interrupted() {
-        text.push_str(&format!(
-            " Stopped early: {} rows were asked for.",
-            result.demanded_rows
-        ));
+    if let Some(how_far) = result.how_far() {
+        text.push_str(&format!(" Stopped early: {how_far}."));
     }
     text
 }

@@ -46,6 +46,8 @@ pub struct StudyResult {
     pub diagnostics: Vec<Diagnostic>,
     /// Rows that were asked for; the table has fewer when the study was stopped.
     pub demanded_rows: usize,
+    /// How far it came where it was stopped and its rows do not tell that: "230 of 1000 pieces".
+    pub stopped_at: Option<String>,
 }
 
 /// A contact of the bodies of a joint with play, SI.
@@ -79,9 +81,17 @@ pub struct TouchMet {
 }
 
 impl StudyResult {
-    /// Whether the study was stopped before its last row.
+    /// Whether the study was stopped before its end.
     pub fn interrupted(&self) -> bool {
-        self.table.rows() < self.demanded_rows
+        self.how_far().is_some()
+    }
+
+    /// How far it came where it was stopped before its end: "12 of 37 rows".
+    pub fn how_far(&self) -> Option<String> {
+        let rows = self.table.rows();
+        let of_rows = || format!("{rows} of {} rows", self.demanded_rows);
+        let fewer = rows < self.demanded_rows;
+        self.stopped_at.clone().or_else(|| fewer.then(of_rows))
     }
 
     /// Pictures that move: one of all rows, one for each natural vibration, or those of the first designs; none of a table of designs.

@@ -315,7 +315,7 @@ fn ctrl_c_keeps_the_finished_rows() {
         far
     });
     let said = String::from_utf8_lossy(&output.stdout).into_owned();
-    assert!(said.contains("of 400000, stopped"), "{said}");
+    assert!(said.contains("of 400000 rows, stopped"), "{said}");
     assert!(lines() < 400_001, "{}", lines());
 }
 

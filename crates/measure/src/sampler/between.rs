@@ -97,7 +97,7 @@ impl<F: ForceSource> Sampler<F> {
 
     /// Bounds of one of the measures, of which so many coefficients are known, from its series where they begin and the last of them on the whole
     /// stretch (B. Taylor): where parts of a formula cancel each other, these are far narrower. The measure must be smooth.
-    pub(crate) fn from_its_start(
+    pub(crate) fn bounds_of_smooth(
         &self,
         between: &Between,
         [a, b]: [&Kept; 2],

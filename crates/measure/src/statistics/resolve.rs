@@ -196,9 +196,9 @@ impl Resolution {
         let is_open = |(index, bounds): (usize, &Series<Interval>)| {
             let narrower = || {
                 let of = (index, self.known[index]);
-                sampler.from_its_start(&self.between, [a.1, b.1], of, bounds)
+                sampler.bounds_of_smooth(&self.between, [a.1, b.1], of, bounds)
             };
-            is_open(index, bounds) && !(self.smooth[index] && !is_open(index, &narrower()))
+            is_open(index, bounds) && (!self.smooth[index] || is_open(index, &narrower()))
         };
         let open: Vec<usize> = (bounds.iter().enumerate())
             .filter(|of| is_open(*of))

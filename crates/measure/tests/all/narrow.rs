@@ -236,3 +236,19 @@ fn derivatives_of_numbers_over_narrow_peaks_are_those_of_the_numbers() {
     assert!(found.values[2].is_nan());
     assert!(near(found.derivatives[3][0], found.values[3] / 2.0));
 }
+
+/// What cancels but for rounding is nothing that changes too fast, and what remains of it is seen where it is narrow.
+#[test]
+fn differences_that_cancel_are_known_to() {
+    let text = "nothing = \"max(x(B) - 1 m * cos(angle(k)))\"\n\
+         small = \"max(x(B) - 1 m * cos(angle(k)) + 1e-6 m * sin(7 * m))\"\n\
+         peak = \"max(x(B) - 1 m * cos(angle(k)) + 1e-6 m * exp(-((q - 2.34567) / 1e-4)^2))\"\n";
+    let found = numbers(&crank_rocker(text).must_move());
+    let [nothing, small, peak] = [0, 1, 2].map(|k| &found[k]);
+    assert!(nothing.0.abs() < 1e-15, "{nothing:?}");
+    assert!((small.0 - 1e-6).abs() < 1e-15, "{small:?}");
+    assert!((peak.0 - 1e-6).abs() < 1e-13, "{peak:?}");
+    for (value, notes) in [nothing, small, peak] {
+        assert!(notes.is_empty(), "{value} {notes:?}");
+    }
+}

@@ -234,6 +234,7 @@ impl<'b, 'm> Teller<'b, 'm> {
             assemblies: motion.map_or((0, 0), |m| (m.assemblies.list.len(), m.assemblies.rejected)),
             diagnostics,
             demanded_rows: table.rows(),
+            stopped_at: None,
             table,
         })
     }

@@ -154,6 +154,7 @@ pub(crate) fn clearance(
         assemblies: (motion.assemblies.list.len(), motion.assemblies.rejected),
         diagnostics,
         demanded_rows: places.len(),
+        stopped_at: None,
     })
 }
 

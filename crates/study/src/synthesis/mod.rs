@@ -256,6 +256,7 @@ pub(crate) fn synthesis(
         assemblies: (0, 0),
         diagnostics,
         demanded_rows,
+        stopped_at: None,
     })
 }
 

@@ -56,6 +56,7 @@ pub(super) fn about(
     Ok(StudyResult {
         name: bench.name.to_owned(),
         demanded_rows: table.rows(),
+        stopped_at: None,
         beside: Vec::new(),
         contacts: Vec::new(),
         listings: vec![listing(&bench, &it.modes, &counted, &place)],

@@ -166,6 +166,7 @@ pub(super) fn along(
         assemblies,
         diagnostics,
         demanded_rows: total,
+        stopped_at: None,
     })
 }
 

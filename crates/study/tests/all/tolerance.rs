@@ -474,6 +474,8 @@ fn a_study_that_is_stopped_keeps_its_pieces() {
     let pieces = scalar(&result, "pieces");
     assert!(result.interrupted() && (1.0..100_000.0).contains(&pieces));
     assert!(lines(&result).contains(&format!("{pieces} pieces of 100000, stopped")));
+    assert_eq!(result.how_far(), Some(format!("{pieces} of 100000 pieces")));
+    assert_eq!(result.demanded_rows, result.table.rows());
     // The first of all.
     let whole = found(&text.replace("100000", &format!("{pieces}")));
     assert_eq!(

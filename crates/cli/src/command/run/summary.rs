@@ -31,14 +31,13 @@ pub fn summary(
             continue;
         };
         let table = &result.table;
-        let rows = match table.rows() {
-            1 => "1 row".to_owned(),
-            rows => format!("{rows} rows"),
+        let rows = match (table.rows(), &result.stopped_at, result.how_far()) {
+            (rows, Some(at), _) => format!("{rows} rows, stopped at {at}"),
+            (_, None, Some(how_far)) => format!("{how_far}, stopped"),
+            (1, ..) => "1 row".to_owned(),
+            (rows, ..) => format!("{rows} rows"),
         };
         out.push_str(&format!("{}: {rows}", result.name));
-        if result.interrupted() {
-            out.push_str(&format!(" of {}, stopped", result.demanded_rows));
-        }
         if table.unreached() > 0 {
             out.push_str(&format!(", {} not reached", table.unreached()));
         }

@@ -316,10 +316,10 @@ fn shape_pictures(model: &Model, study: &Study, result: &StudyResult) -> Vec<(St
 
 /// How much of a study a run has that was stopped.
 fn how_far(result: &StudyResult) -> String {
-    let (name, rows, all) = (&result.name, result.table.rows(), result.demanded_rows);
-    match result.interrupted() {
-        true => format!("{rows} of {all} rows of {name}, the run was stopped"),
-        false => format!("all {rows} rows of {name}, but the run was stopped before its end"),
+    let (name, rows) = (&result.name, result.table.rows());
+    match result.how_far() {
+        Some(how_far) => format!("{how_far} of {name}, the run was stopped"),
+        None => format!("all {rows} rows of {name}, but the run was stopped before its end"),
     }
 }
 

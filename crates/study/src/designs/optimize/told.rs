@@ -127,7 +127,12 @@ impl<'b, 'm> Teller<'b, 'm> {
                     .zip(&optima.reached)
                     .filter(|(it, _)| it.evaluation.is_defined());
                 let all: Vec<Told> = told.map(|(it, reached)| self.told(it, *reached)).collect();
-                let mut result = self.shown(own.as_ref(), &all, stopped, diagnostics);
+                let mut result = self.shown(
+                    own.as_ref(),
+                    &all,
+                    stopped.then(|| problem.asked()),
+                    diagnostics,
+                );
                 result.scalars = self.scalars(&best, &all[0], problem);
                 result.listings =
                     self.listings(own.as_ref(), &all[0], &best, (&how, stopped), problem);
@@ -228,7 +233,7 @@ impl<'b, 'm> Teller<'b, 'm> {
         &self,
         own: Option<&Told>,
         all: &[Told],
-        stopped: bool,
+        stopped: Option<usize>,
         diagnostics: Vec<Diagnostic>,
     ) -> StudyResult {
         let rows: Vec<(&Told, f64)> = own
@@ -298,7 +303,7 @@ impl<'b, 'm> Teller<'b, 'm> {
             balance: None,
             notes: rows.iter().map(|(told, _)| told.note.clone()).collect(),
         };
-        let demanded_rows = table.rows() + usize::from(stopped);
+        let demanded_rows = table.rows();
         StudyResult {
             name: self.name.to_owned(),
             table,
@@ -315,6 +320,7 @@ impl<'b, 'm> Teller<'b, 'm> {
             assemblies: (0, 0),
             diagnostics: told,
             demanded_rows,
+            stopped_at: stopped.map(|tried| format!("{tried} designs tried")),
         }
     }
 
@@ -640,7 +646,12 @@ impl<'b, 'm> Teller<'b, 'm> {
                 }
             })
             .collect();
-        let mut result = self.shown(None, &all, front.stopped, diagnostics);
+        let mut result = self.shown(
+            None,
+            &all,
+            front.stopped.then(|| problem.asked()),
+            diagnostics,
+        );
         let optimal = front.points.iter().filter(|p| p.residual <= 1e-5).count();
         let mut tell = |name: &str, value: f64| {
             result.scalars.push(Scalar {

@@ -127,6 +127,7 @@ pub(crate) fn sweep(
         assemblies: (0, 0),
         diagnostics,
         demanded_rows,
+        stopped_at: None,
     })
 }
 

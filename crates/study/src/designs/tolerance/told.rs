@@ -94,7 +94,10 @@ impl Teller<'_, '_> {
         result.diagnostics.extend(self.valueless());
         if self.pieces.count < self.question.samples {
             // Its rows are whole, and what they tell is not.
-            result.demanded_rows = result.table.rows() + 1;
+            result.stopped_at = Some(format!(
+                "{} of {} pieces",
+                self.pieces.count, self.question.samples
+            ));
         }
     }
 
