@@ -8,13 +8,13 @@
 mod extremes;
 mod knots;
 mod mean;
+mod nature;
 mod pole;
 mod resolve;
 mod rounds;
 mod stretches;
 mod survey;
 mod time_ratio;
-mod wild;
 
 pub(crate) use self::rounds::rounds;
 pub(crate) use self::time_ratio::time_ratio;

@@ -4,6 +4,7 @@
 //! Measures of such poses are evaluated on intervals: whatever a formula does between samples, a narrow peak or a pole, its
 //! bounds show. The bounds of the poses are no proof; those of the formulas on them are.
 
+use std::cell::OnceCell;
 use std::sync::Arc;
 
 use kempe_mechanism::Design;
@@ -29,6 +30,8 @@ const BINOMIAL: [[f64; ORDER]; ORDER] = [
 pub(crate) struct Kept {
     state: State<f64>,
     lengths: Vec<(PointId, f64)>,
+    /// Those of the measures that are bounded, once they are asked for.
+    series: OnceCell<Vec<Series<f64>>>,
 }
 
 /// The poses that two samples tell of the middle between them agree to this: directions as they are, places in mechanism sizes.
@@ -75,7 +78,11 @@ impl<F: ForceSource> Sampler<F> {
     pub(crate) fn keep(&mut self, between: &Between) -> Kept {
         let state = self.measurer.state().clone();
         let lengths = self.lengths_at(&between.asked.lengths, state.time);
-        Kept { state, lengths }
+        Kept {
+            state,
+            lengths,
+            series: OnceCell::new(),
+        }
     }
 
     /// The series in time that measures can have anywhere from one moment to a later one; empty where nothing is known.
@@ -95,44 +102,51 @@ impl<F: ForceSource> Sampler<F> {
         measures.map(|m| moment.series(m, Along::Time)).collect()
     }
 
-    /// Bounds of one of the measures, of which so many coefficients are known, from its series where they begin and the last of them on the whole
-    /// stretch (B. Taylor): where parts of a formula cancel each other, these are far narrower. The measure must be smooth.
+    /// Bounds of one of the measures, of which so many coefficients are known: of all but the last from its series at both ends, each as far as
+    /// the middle, with the last one's bounds as the remainder (B. Taylor). Where parts of a formula cancel each other, these are far narrower.
+    /// The measure must be smooth; where it has a kink all the same, its two ends do not meet, and the bounds hold both.
     pub(crate) fn bounds_of_smooth(
         &self,
         between: &Between,
-        [a, b]: [&Kept; 2],
+        ends: [&Kept; 2],
         (measure, known): (usize, usize),
         bounds: &Series<Interval>,
     ) -> Series<Interval> {
-        let history = History {
-            lengths: a.lengths.clone(),
-            ..(self.measurer.directions)
-                .history(self.motion(), a.state.abscissa.clock.coefficient(0))
-        };
-        let moment = Moment::new(&a.state, &history, &self.measurer.statistics, None);
-        let start = moment.series(&between.asked.measures[measure], Along::Time);
-        let step = Interval::new(0.0, b.state.time - a.state.time);
         let Some(last) = known.checked_sub(1) else {
             return *bounds;
+        };
+        let half = 0.5 * (ends[1].state.time - ends[0].state.time);
+        let steps = [Interval::new(0.0, half), Interval::new(-half, 0.0)];
+        let side = |end: usize, k: usize| {
+            let series = self.series_of(between, ends[end])[measure];
+            shifted(k, last, steps[end], |n| match n == last {
+                true => bounds.coefficient(n) * BINOMIAL[n][k],
+                false => interval(series.coefficient(n) * BINOMIAL[n][k]),
+            })
         };
         Jet::from_coefficients(std::array::from_fn(|k| {
             let own = bounds.coefficient(k);
             if k >= last {
                 return own;
             }
-            let weighted = |n: usize| match n == last {
-                true => bounds.coefficient(n) * BINOMIAL[n][k],
-                false => interval(start.coefficient(n) * BINOMIAL[n][k]),
-            };
-            let lower = (k..last).rev();
-            let from_start = lower.fold(weighted(last), |sum, n| sum * step + weighted(n));
-            let both = own.intersect(from_start);
-            // What is rounding in one of them may lie beside the other.
-            match both.is_empty() {
-                true => from_start,
-                false => both,
-            }
+            let both = own.intersect(side(0, k).hull(side(1, k)));
+            // One of them may be a single number, and rounding lie beside it.
+            if both.is_empty() { own } else { both }
         }))
+    }
+
+    /// The series in time of measures at a kept moment.
+    fn series_of<'k>(&self, between: &Between, at: &'k Kept) -> &'k [Series<f64>] {
+        at.series.get_or_init(|| {
+            let p = at.state.abscissa.clock.coefficient(0);
+            let history = History {
+                lengths: at.lengths.clone(),
+                ..self.measurer.directions.history(self.motion(), p)
+            };
+            let moment = Moment::new(&at.state, &history, &self.measurer.statistics, None);
+            let measures = between.asked.measures.iter();
+            measures.map(|m| moment.series(m, Along::Time)).collect()
+        })
     }
 }
 
@@ -192,11 +206,16 @@ fn interval(x: f64) -> Interval {
     Interval::new(x, x)
 }
 
-/// A coefficient of a series a step away.
-fn shifted(series: &Series<f64>, k: usize, step: Interval) -> Interval {
-    let weighted = |n: usize| interval(series.coefficient(n) * BINOMIAL[n][k]);
-    let higher = (k..ORDER - 1).rev();
-    higher.fold(weighted(ORDER - 1), |sum, n| sum * step + weighted(n))
+/// The k-th coefficient of a series a step away, from its coefficients up to the last, weighted as they count in it.
+fn shifted(
+    k: usize,
+    last: usize,
+    step: Interval,
+    weighted: impl Fn(usize) -> Interval,
+) -> Interval {
+    (k..last)
+        .rev()
+        .fold(weighted(last), |sum, n| sum * step + weighted(n))
 }
 
 /// Two series about two places, and whatever lies between them: each holds as far as the middle.
@@ -213,8 +232,13 @@ fn bounded(series: [&Series<f64>; 2], at: [f64; 2], over: Interval) -> Series<In
         ],
     };
     Jet::from_coefficients(std::array::from_fn(|k| {
-        let side = |end: usize| shifted(series[end], k, halves[end] - at[end]);
-        let meets = |end: usize| shifted(series[end], k, interval(middle) - at[end]).midpoint();
+        let away = |end: usize, step: Interval| {
+            shifted(k, ORDER - 1, step, |n| {
+                interval(series[end].coefficient(n) * BINOMIAL[n][k])
+            })
+        };
+        let side = |end: usize| away(end, halves[end] - at[end]);
+        let meets = |end: usize| away(end, interval(middle) - at[end]).midpoint();
         let differ = (meets(0) - meets(1)).abs();
         side(0).hull(side(1)) + Interval::new(-differ, differ)
     }))

@@ -7,8 +7,8 @@
 use kempe_model::Measure;
 use kempe_number::Interval;
 
+use super::nature::Nature;
 use super::stretches::SmoothStretch;
-use super::wild::{is_smooth, is_wild};
 use crate::force_source::ForceSource;
 use crate::measure::{ORDER, Series, order_of};
 use crate::sampler::{Between, Kept, Sampler};
@@ -67,9 +67,12 @@ impl Resolution {
         let mechanism = motion.mechanism();
         let mut surveyed = Vec::new();
         let mut own: Vec<Measure> = Vec::new();
+        let mut smooth = Vec::new();
         let mut take = |measure: &Measure, index| {
-            if is_wild(mechanism, measure) {
+            let nature = Nature::of(mechanism, measure);
+            if nature.wild {
                 own.push(measure.clone());
+                smooth.push(nature.smooth);
                 surveyed.push(index);
             }
         };
@@ -88,8 +91,6 @@ impl Resolution {
             ORDER - order.min(ORDER)
         });
         let known = known.collect();
-        let smooth = own.iter().map(|measure| is_smooth(mechanism, measure));
-        let smooth = smooth.collect();
         let samples: usize = stretches.iter().map(|s| s.intervals).sum();
         let mut it = Self {
             size: vec![0.0; own.len()],
@@ -193,15 +194,15 @@ impl Resolution {
                 change > SHOWN[k] * size
             })
         };
-        let is_open = |(index, bounds): (usize, &Series<Interval>)| {
-            let narrower = || {
-                let of = (index, self.known[index]);
-                sampler.bounds_of_smooth(&self.between, [a.1, b.1], of, bounds)
-            };
-            is_open(index, bounds) && (!self.smooth[index] || is_open(index, &narrower()))
+        let narrower = |index: usize, bounds: &Series<Interval>| {
+            let of = (index, self.known[index]);
+            sampler.bounds_of_smooth(&self.between, [a.1, b.1], of, bounds)
         };
         let open: Vec<usize> = (bounds.iter().enumerate())
-            .filter(|of| is_open(*of))
+            .filter(|(index, bounds)| is_open(*index, bounds))
+            .filter(|(index, bounds)| {
+                !self.smooth[*index] || is_open(*index, &narrower(*index, bounds))
+            })
             .map(|(index, _)| index)
             .collect();
         if follow && open.is_empty() {

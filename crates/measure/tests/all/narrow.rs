@@ -252,3 +252,19 @@ fn differences_that_cancel_are_known_to() {
         assert!(notes.is_empty(), "{value} {notes:?}");
     }
 }
+
+/// What named measures are of is looked at once each: a formula that names the one before it twice, 40 deep, has 2^40 leaves.
+#[test]
+fn measures_that_name_each_other_twice_are_looked_at_once() {
+    let mut text = "d0 = \"x(B) - 1 m * cos(angle(k)) + 1e-6 m * sin(7 * m)\"\n".to_owned();
+    for k in 1..=40 {
+        text += &format!("d{k} = \"0.5 * d{0} + 0.5 * d{0}\"\n", k - 1);
+    }
+    text += "most = \"max(d40)\"\n";
+    let motion = crank_rocker(&text).must_move();
+    let (value, notes) = numbers(&motion).swap_remove(41);
+    assert!(
+        (value - 1e-6).abs() < 1e-15 && notes.is_empty(),
+        "{value} {notes:?}"
+    );
+}

@@ -1,0 +1,111 @@
+//! Which measures can change faster than what they are of, and which have no jump and no kink.
+
+use kempe_mechanism::Mechanism;
+use kempe_model::{Leaf, Measure, PoseMeasure};
+use kempe_units::{Builtin, Expr};
+
+/// What the formula of a measure alone tells of how it goes between samples.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Nature {
+    /// It can have peaks or poles that the poses and drives do not show: those that quotients, roots and functions make. Sums
+    /// and products change as fast as what is in them.
+    pub wild: bool,
+    /// It has all its derivatives wherever it and they are bounded: no jump, no kink, nothing folded.
+    pub smooth: bool,
+}
+
+const TAME: Nature = Nature {
+    wild: false,
+    smooth: true,
+};
+
+impl Nature {
+    /// Of a measure.
+    pub fn of(mechanism: &Mechanism, measure: &Measure) -> Self {
+        let mut known = vec![None; mechanism.model.measures.len()];
+        nature(mechanism, measure, &mut known)
+    }
+
+    fn with(self, other: Self) -> Self {
+        Self {
+            wild: self.wild || other.wild,
+            smooth: self.smooth && other.smooth,
+        }
+    }
+}
+
+/// Of named measures what is known already is kept.
+fn nature(mechanism: &Mechanism, measure: &Measure, known: &mut [Option<Nature>]) -> Nature {
+    let own = match measure {
+        Expr::Leaf(leaf) => of_leaf(mechanism, leaf, known),
+        Expr::Div(a, b) if is_constant(b) => return nature(mechanism, a, known),
+        Expr::Div(..) | Expr::Powf(..) => Nature { wild: true, ..TAME },
+        Expr::Powi(_, exponent) => Nature {
+            wild: *exponent < 0,
+            ..TAME
+        },
+        Expr::Call(builtin, _) => Nature {
+            wild: true,
+            smooth: !matches!(
+                builtin,
+                Builtin::Abs | Builtin::Min | Builtin::Max | Builtin::Atan2
+            ),
+        },
+        Expr::Const(_) | Expr::Neg(_) | Expr::Add(..) | Expr::Sub(..) | Expr::Mul(..) => TAME,
+    };
+    let parts = measure.children().into_iter();
+    parts.fold(own, |all, part| all.with(nature(mechanism, part, known)))
+}
+
+fn of_leaf(mechanism: &Mechanism, leaf: &Leaf, known: &mut [Option<Nature>]) -> Nature {
+    let rough = Nature {
+        smooth: false,
+        ..TAME
+    };
+    match leaf {
+        // A number over the motion is the same everywhere.
+        Leaf::Parameter(_) | Leaf::Drive(_) | Leaf::Time | Leaf::Over(..) => TAME,
+        // Forces are not bounded here.
+        Leaf::Inner(_) | Leaf::Force(_) => rough,
+        Leaf::Named(index) => {
+            if let Some(found) = known[*index] {
+                return found;
+            }
+            let named = mechanism.model.measures.get(*index);
+            let found = named.map_or(rough, |named| nature(mechanism, &named.measure, known));
+            known[*index] = Some(found);
+            found
+        }
+        Leaf::Rate(inner, _) => nature(mechanism, inner, known),
+        Leaf::Coefficient(inner, ..) => nature(mechanism, inner, known).with(rough),
+        Leaf::Pose(pose) => of_pose(pose),
+    }
+}
+
+fn of_pose(pose: &PoseMeasure) -> Nature {
+    let [wild, smooth] = match pose {
+        PoseMeasure::X(_)
+        | PoseMeasure::Y(_)
+        | PoseMeasure::XOn(..)
+        | PoseMeasure::YOn(..)
+        | PoseMeasure::Angle(_)
+        | PoseMeasure::AngleBetween(..)
+        | PoseMeasure::DistanceToLine(..)
+        | PoseMeasure::Travel(..)
+        | PoseMeasure::AngularSpeed(_)
+        | PoseMeasure::AngularAcceleration(_) => [false, true],
+        PoseMeasure::Distance(..) | PoseMeasure::Speed(_) | PoseMeasure::Acceleration(_) => {
+            [true, true]
+        }
+        PoseMeasure::PathLength(_) => [false, false],
+        _ => [true, false],
+    };
+    Nature { wild, smooth }
+}
+
+fn is_constant(measure: &Measure) -> bool {
+    match measure {
+        Expr::Leaf(leaf) => matches!(leaf, Leaf::Parameter(_)),
+        _ => measure.children().into_iter().all(is_constant),
+    }
+}
