@@ -35,9 +35,16 @@ const UNHEARD: usize = 4;
 /// How often the violation alone is minimised at most.
 const RESTORATIONS: usize = 3;
 /// How often a place of rest is left by a way that was not taken.
-const LEFT: usize = 4;
+const LEAVES: usize = 4;
 /// A multiplier larger than this holds a design, in the objective's size for the box.
 const HOLDS: f64 = 1e-9;
+
+/// A place that keeps the constraints and where a descent came to rest.
+struct Rest {
+    place: Local,
+    curvature: Curvature,
+    ended: Ended,
+}
 
 /// A minimisation on its way.
 pub(crate) struct Descent<'a> {
@@ -57,6 +64,8 @@ pub(crate) struct Descent<'a> {
     seen: Seen,
     /// How often it may leave a place of rest.
     leaves: usize,
+    /// The best place of rest that it left.
+    left: Option<Rest>,
     iterations: usize,
     restorations: usize,
     /// The violation alone is minimised first, and how to end if it then is nothing.
@@ -131,7 +140,8 @@ impl<'a> Descent<'a> {
             unheard: 0,
             narrowed: 0,
             seen: Seen::default(),
-            leaves: LEFT,
+            leaves: LEAVES,
+            left: None,
             iterations: 0,
             restorations: 0,
             restoring: None,
@@ -247,10 +257,10 @@ impl<'a> Descent<'a> {
 
     /// This end, unless a way that it never took leads down from here: then it goes on there.
     fn rest(&mut self, minimum: &Minimum, ended: Ended, workers: &dyn Workers) -> Option<Ended> {
-        let allowed = (self.options.evaluations).saturating_sub(self.search.evaluations);
         if self.leaves == 0 {
             return Some(ended);
         }
+        let allowed = (self.options.evaluations).saturating_sub(self.search.evaluations);
         let n = self.place.design.len();
         let held = self.place.held(minimum, HOLDS, &self.search.space);
         let mut ways = self.seen.ways(&held, n);
@@ -260,7 +270,19 @@ impl<'a> Descent<'a> {
         };
         self.leaves -= 1;
         self.seen.learn(&ways[way]);
-        self.place = place;
+        let rest = Rest {
+            place: std::mem::replace(&mut self.place, place),
+            curvature: self.curvature.clone(),
+            ended,
+        };
+        let value = |rest: &Rest| rest.place.evaluation.largest();
+        if self
+            .left
+            .as_ref()
+            .is_none_or(|best| value(&rest) < value(best))
+        {
+            self.left = Some(rest);
+        }
         self.renew();
         None
     }
@@ -368,6 +390,23 @@ impl<'a> Descent<'a> {
         }
     }
 
+    /// Goes back to the best place of rest that it left, unless it found a better one since; why it ends then.
+    fn back(&mut self, ended: Ended) -> Ended {
+        let kept = self.place.violation <= self.options.feasibility;
+        let value = self.place.evaluation.largest();
+        match self.left.take() {
+            Some(left) if !(kept && value < left.place.evaluation.largest()) => {
+                (self.place, self.curvature) = (left.place, left.curvature);
+                self.conflict.clear();
+                match ended {
+                    Ended::Stopped | Ended::Budget => ended,
+                    _ => left.ended,
+                }
+            }
+            _ => ended,
+        }
+    }
+
     /// What was found, where it ends so.
     pub fn end(self, ended: Ended) -> Optimum {
         let least = self.search.view.least();
@@ -390,6 +429,7 @@ impl<'a> Descent<'a> {
         if self.restoring.is_some() {
             self.restored(Ended::Stopped);
         }
+        let ended = self.back(ended);
         if let Some((design, evaluation)) = self.search.bare_below(&self.place) {
             return Optimum {
                 violation: scaled(&evaluation, &self.search.sizes).1.max(0.0),

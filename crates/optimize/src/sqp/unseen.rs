@@ -7,7 +7,7 @@ use super::local::dot;
 /// A direction that the descent moved along by less than this part of the box is not known.
 const MOVED: f64 = 1e-6;
 /// What is left of a direction when those that are known are taken away counts from this length on.
-const LEFT: f64 = 1e-3;
+const NEW: f64 = 1e-3;
 /// How far ways are tried, in parts of the box: far enough that a curvature shows.
 const TRIED: f64 = 0.01;
 /// Ways between two directions are tried where no more than so many are left: there are too many of them otherwise.
@@ -24,9 +24,9 @@ impl Seen {
     }
 
     /// Adds what is new of a direction, where that is longer than `least`.
-    fn add(&mut self, direction: &[f64], least: f64) -> bool {
+    fn add(&mut self, direction: &[f64], least: f64) {
         if self.0.len() >= direction.len() {
-            return false;
+            return;
         }
         let mut new = direction.to_vec();
         // Twice is enough for rounding (W. Kahan; L. Giraud et al., 2005).
@@ -36,11 +36,10 @@ impl Seen {
         }
         let length = dot(&new, &new).sqrt();
         if !(length > least) {
-            return false;
+            return;
         }
         new.iter_mut().for_each(|x| *x /= length);
         self.0.push(new);
-        true
     }
 
     /// Steps to try, that neither steps nor the directions that hold the design have a part in: along an orthonormal basis of what is left, each
@@ -49,12 +48,12 @@ impl Seen {
         let mut all = self.clone();
         for direction in held {
             let length = dot(direction, direction).sqrt();
-            all.add(direction, LEFT * length);
+            all.add(direction, NEW * length);
         }
         let known = all.0.len();
         for k in 0..n {
             let unit: Vec<f64> = (0..n).map(|j| f64::from(u8::from(j == k))).collect();
-            all.add(&unit, LEFT);
+            all.add(&unit, NEW);
         }
         let left = &all.0[known..];
         let along = |parts: &[(&Vec<f64>, f64)]| -> Vec<f64> {

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use crate::support::{Case, D, cube};
-use kempe_number::{Number, powi};
+use kempe_number::{Number, Random, powi};
 use kempe_optimize::{Alone, Ended, Optimum, SqpOptions, silent, sqp};
 
 fn solve<const N: usize>(name: &str, case: &Case<N>, start: [f64; N]) -> Optimum {
@@ -435,4 +435,31 @@ fn a_least_design_stays() {
     let found = solve("a bowl", &case, [0.0, 0.0]);
     is_optimum(&found, 0.0);
     assert_eq!((found.evaluations, found.design), (1 + 8, vec![0.0, 0.0]));
+}
+
+/// Whatever is found by a way that was never taken, the place of rest that it left is the answer where that is better.
+#[test]
+fn a_place_of_rest_is_left_for_a_better_one_only() {
+    let mut random = Random(7);
+    let mut among = |from: f64, to: f64| from + (to - from) * random.uniform();
+    for k in 0..2000 {
+        let waves: [[f64; 4]; 8] =
+            std::array::from_fn(|_| [1.0, 10.0, 10.0, 10.0].map(|most| among(-most, most)));
+        let room = if k % 2 == 0 { 0.0 } else { among(0.0, 0.1) };
+        let case = Case::<3>::smooth(cube(3, -1.0, 1.0), 1, move |[x, y, z]| {
+            let wave =
+                |[size, a, b, c]: [f64; 4]| (-(*x * a + *y * b + *z * c).sin_cos().1 + 1.0) * size;
+            let [f, c] = [&waves[..4], &waves[4..]].map(|some| {
+                some.iter()
+                    .fold(x.square() * 0.0, |sum, it| sum + wave(*it))
+            });
+            (f, vec![c - room])
+        });
+        let found = solve("waves", &case, [0.0; 3]);
+        let told = found.conflict.is_empty() && found.ended != Ended::Infeasible;
+        assert!(
+            told && found.violation <= 1e-9 && found.objective() <= 0.0,
+            "{waves:?} {room} {found:?}"
+        );
+    }
 }
