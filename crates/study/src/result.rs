@@ -46,7 +46,7 @@ pub struct StudyResult {
     pub diagnostics: Vec<Diagnostic>,
     /// Rows that were asked for; the table has fewer when the study was stopped.
     pub demanded_rows: usize,
-    /// How far it came where it was stopped and its rows do not tell that: "230 of 1000 pieces".
+    /// How far it came where it was stopped and its rows do not tell that: "230 of 1000 pieces", "0.4 s of 2 s".
     pub stopped_at: Option<String>,
 }
 

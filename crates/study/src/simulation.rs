@@ -18,7 +18,7 @@ use kempe_model::{Contact, Diagnostic, Model, MotionStudy, Rows, SimulateStudy};
 use kempe_motion::Motion;
 use kempe_motion::progress::Progress;
 use kempe_simulate::{Ending, Question, Ready, Simulated, ready};
-use kempe_units::Expr;
+use kempe_units::{Dimension, Expr};
 
 use crate::along::not_simulated;
 use crate::explain::cannot_follow;
@@ -184,7 +184,10 @@ pub(crate) fn simulation(
             &model.parameter_values(),
             question.until,
         );
-        result.demanded_rows = (all as usize).max(result.table.rows() + 1);
+        result.demanded_rows = all as usize;
+        // Contacts have rows of their own.
+        let [end, until] = [found.end, question.until].map(|t| told.units.text(t, Dimension::TIME));
+        result.stopped_at = Some(format!("{end} of {until}"));
     }
     result.diagnostics = diagnostics;
     Ok((result, found))

@@ -47,6 +47,7 @@ pub fn result(result: &StudyResult, with_table: bool) -> Value {
         "rows_demanded": result.demanded_rows,
         "rows_not_reached": result.table.unreached(),
         "interrupted": result.interrupted(),
+        "how_far": result.how_far(),
         "values": result.scalars.iter().map(scalar).collect::<Vec<_>>(),
         "listings": result.listings.iter().map(|l| json!({ "title": l.title, "head": l.head, "rows": l.rows })).collect::<Vec<_>>(),
         "events": result.events.iter().map(event).collect::<Vec<_>>(),

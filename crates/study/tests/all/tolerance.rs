@@ -473,7 +473,7 @@ fn a_study_that_is_stopped_keeps_its_pieces() {
     let result = run(&model, &model.studies[1], &mut stop).expect("a result");
     let pieces = scalar(&result, "pieces");
     assert!(result.interrupted() && (1.0..100_000.0).contains(&pieces));
-    assert!(lines(&result).contains(&format!("{pieces} pieces of 100000, stopped")));
+    assert!(lines(&result).contains(&format!("stopped at {pieces} of 100000 pieces")));
     assert_eq!(result.how_far(), Some(format!("{pieces} of 100000 pieces")));
     assert_eq!(result.demanded_rows, result.table.rows());
     // The first of all.

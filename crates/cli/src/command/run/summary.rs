@@ -31,12 +31,16 @@ pub fn summary(
             continue;
         };
         let table = &result.table;
-        let rows = match (table.rows(), &result.stopped_at, result.how_far()) {
-            (rows, Some(at), _) => format!("{rows} rows, stopped at {at}"),
-            (_, None, Some(how_far)) => format!("{how_far}, stopped"),
-            (1, ..) => "1 row".to_owned(),
-            (rows, ..) => format!("{rows} rows"),
+        let mut rows = match table.rows() {
+            1 => "1 row".to_owned(),
+            rows => format!("{rows} rows"),
         };
+        if let Some(how_far) = result.how_far() {
+            rows = match result.stopped_at {
+                Some(_) => format!("{rows}, stopped at {how_far}"),
+                None => format!("{how_far}, stopped"),
+            };
+        }
         out.push_str(&format!("{}: {rows}", result.name));
         if table.unreached() > 0 {
             out.push_str(&format!(", {} not reached", table.unreached()));

@@ -320,7 +320,7 @@ impl<'b, 'm> Teller<'b, 'm> {
             assemblies: (0, 0),
             diagnostics: told,
             demanded_rows,
-            stopped_at: stopped.map(|tried| format!("{tried} designs tried")),
+            stopped_at: stopped.map(|tried| format!("{tried} designs")),
         }
     }
 

@@ -92,13 +92,14 @@ impl Teller<'_, '_> {
         result.figures.extend(histograms);
         result.diagnostics.extend(self.resting());
         result.diagnostics.extend(self.valueless());
-        if self.pieces.count < self.question.samples {
-            // Its rows are whole, and what they tell is not.
-            result.stopped_at = Some(format!(
-                "{} of {} pieces",
-                self.pieces.count, self.question.samples
-            ));
-        }
+        // Its rows are whole, and what they tell is not.
+        result.stopped_at = self.stopped_at();
+    }
+
+    /// How many pieces there are where it was stopped before there were all.
+    fn stopped_at(&self) -> Option<String> {
+        let (count, all) = (self.pieces.count, self.question.samples);
+        (count < all).then(|| format!("{count} of {all} pieces"))
     }
 
     /// Of each number that is told, how many pieces that move have none.
@@ -295,12 +296,9 @@ impl Teller<'_, '_> {
             ));
         }
         Listing {
-            title: match self.pieces.count < self.question.samples {
-                true => format!(
-                    "{} pieces of {}, stopped",
-                    self.pieces.count, self.question.samples
-                ),
-                false => format!("{} pieces", self.pieces.count),
+            title: match self.stopped_at() {
+                Some(at) => format!("stopped at {at}"),
+                None => format!("{} pieces", self.pieces.count),
             },
             head: Vec::new(),
             rows,
