@@ -468,6 +468,49 @@ fn a_front_that_is_none_says_so() {
     assert!(result.diagnostics.iter().any(|d| d.code == "infeasible"));
 }
 
+/// Of several goals as of one: which limits contradict each other, and by how much each is missed.
+#[test]
+fn a_front_that_cannot_be_names_what_contradicts_each_other() {
+    let result = best(
+        "vary = { a = ['10 mm', '30 mm'], b = ['45 mm', '65 mm'] }\nmaximize = ['play', 'min(mu)']\nsubject_to = ['mu >= 50 deg', 'play >= 90 deg', 'b >= 46 mm']\ndesigns = 600\n",
+    );
+    assert_eq!(result.table.rows(), 1);
+    let mut told = result.diagnostics.iter();
+    let notes = &told.find(|d| d.code == "infeasible").unwrap().notes;
+    let [by, conflict] = notes.as_slice() else {
+        panic!("{notes:?}")
+    };
+    let named = [
+        ("mu >= 50 deg", 50.0, "min(mu)"),
+        ("play >= 90 deg", 90.0, "play"),
+    ];
+    for (limit, wanted, column) in named {
+        let (_, rest) = by.split_once(&format!("`{limit}` is missed by ")).unwrap();
+        let missed: f64 = rest.split(' ').next().unwrap().parse().unwrap();
+        let [found] = columns(&result, [column]);
+        assert!((wanted - found[0] - missed).abs() < 1e-4, "{by} {found:?}");
+        assert!(conflict.contains(limit), "{conflict}");
+    }
+    assert!(!conflict.contains("b >= 46"), "{conflict}");
+}
+
+/// What keeps all limits may be too narrow for chance: ways down lead there, and the front goes on from it.
+#[test]
+fn a_front_between_narrow_limits_is_reached() {
+    let result = best(
+        "vary = { a = ['15 mm', '22 mm'], b = ['48 mm', '60 mm'] }\nmaximize = ['play', 'min(mu)']\nsubject_to = ['a - 0.3 * b >= 1 mm', 'a - 0.3 * b <= 1.0001 mm']\ndesigns = 900\n",
+    );
+    let none = result.diagnostics.is_empty();
+    assert!(none, "{:?} {}", result.diagnostics, told(&result));
+    let [a, b] = columns(&result, ["a", "b"]);
+    assert!(result.table.rows() >= 10, "{}", told(&result));
+    for (a, b) in a.into_iter().zip(b) {
+        let side = a - 0.3 * b;
+        assert!((1.0 - 1e-6..1.0001 + 1e-6).contains(&side), "{a} {b}");
+    }
+    assert!(number(&result, "points optimal to first order") >= 10.0);
+}
+
 /// A goal that is varied itself stands once in the table, and the front is drawn over it.
 #[test]
 fn a_goal_may_be_what_is_varied() {

@@ -168,22 +168,31 @@ fn the_file_s_own_design_need_not_move() {
 
 #[test]
 fn exact_derivatives_stand_beside_differences() {
-    let result = ran("vary = { a = { by = \"0.001 mm\" } }\ncolumns = [\"swing\"]");
+    // The second bends at the file's own value.
+    let result = ran(
+        "vary = { a = { by = \"0.001 mm\" } }\ncolumns = [\"swing\", \"max(2 * a + abs(a - 20 mm))\"]",
+    );
     let told = result
         .listings
         .iter()
         .find(|l| l.title.starts_with("exact derivatives"));
-    let row = &told.expect("derivatives").rows[0];
-    let numbers: Vec<f64> = row[2..4]
-        .iter()
-        .map(|x| x.parse().expect("a number"))
-        .collect();
+    let rows = &told.expect("derivatives").rows;
+    let slopes = |row: usize| -> Vec<f64> {
+        let texts = rows[row][2..5].iter();
+        texts.map(|x| x.parse().expect("a number")).collect()
+    };
+    let numbers = slopes(0);
     let slope = (swing(20.001, 50.0) - swing(19.999, 50.0)) / 0.002;
     assert!(
         numbers.iter().all(|x| (x - slope).abs() < 1e-4 * slope),
-        "{row:?}, {slope}"
+        "{rows:?}, {slope}"
     );
-    assert_eq!(row[4], "deg/mm");
+    assert_eq!(rows[0][5], "deg/mm");
+    let bent = slopes(1);
+    assert!(
+        (bent[1] - 1.0).abs() < 1e-6 && (bent[2] - 3.0).abs() < 1e-6,
+        "{bent:?}"
+    );
 }
 
 #[test]

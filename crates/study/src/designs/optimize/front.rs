@@ -3,10 +3,11 @@
 use kempe_model::OptimizeStudy;
 use kempe_optimize::{
     Candidate, Ended, Hears, Nsga2Options, Problem, Progress, Refined, Scales, Workers, dominates,
-    evaluate_all, joined, nsga2, refine, widen,
+    evaluate_all, joined, refine, widen,
 };
 
-use super::discrete::{Catalogues, Rounded, Tried, tried};
+use super::beginning::{Beginning, Missed, beginning};
+use super::discrete::{Catalogues, Tried, tried};
 use super::problem::Designs;
 use super::search::{KEPT, local};
 
@@ -33,6 +34,8 @@ pub(super) struct FrontPoint {
 pub(super) struct Front {
     /// By the first goal. Where no design keeps all limits, the nearest to it alone.
     pub points: Vec<FrontPoint>,
+    /// Where no design keeps all limits.
+    pub missed: Option<Missed>,
     pub stopped: bool,
     /// Whether there are conditions of first order: not of values that were all tried.
     pub has_conditions: bool,
@@ -71,46 +74,34 @@ pub(super) fn front(
         seed: study.seed as u64,
     };
     let catalogues = Catalogues::of(problem, study);
-    let found = match &catalogues {
-        None => nsga2(problem, &options, workers, hears),
-        Some(to) => {
-            let inner = problem;
-            let mut found = nsga2(&Rounded { inner, to }, &options, workers, hears);
-            for member in &mut found.members {
-                member.design = to.rounded(&member.design);
-            }
-            found
-        }
+    let catalogues = catalogues.as_ref();
+    let left = || match (catalogues, study.designs) {
+        (_, Some(all)) => all.saturating_sub(problem.asked()),
+        (None, None) => usize::MAX,
+        (Some(_), None) => default,
     };
-    let mut stopped = found.ended == Ended::Stopped;
+    let Beginning {
+        members: begun,
+        missed,
+        scales,
+        mut how,
+        mut stopped,
+    } = beginning(problem, catalogues, (options, &left), workers, hears);
     let unrefined = |candidate: &Candidate| Refined {
         candidate: candidate.clone(),
         residual: f64::INFINITY,
         shares: Vec::new(),
         ended: Ended::Stopped,
     };
-    let mut how = "NSGA-II".to_owned();
-    if catalogues.is_some() {
-        how += " over values of the catalogue";
-    }
-    let mut members: Vec<Refined> = found.members.iter().map(unrefined).collect();
-    if !found.feasible {
-        how += "; no design keeps all limits, this one comes nearest";
-    }
-    if found.feasible && !stopped {
-        let left = match (&catalogues, study.designs) {
-            (_, Some(all)) => all.saturating_sub(problem.asked()),
-            (None, None) => usize::MAX,
-            (Some(_), None) => default,
-        };
-        let scales = &found.scales;
-        match &catalogues {
+    let mut members: Vec<Refined> = begun.iter().map(unrefined).collect();
+    if missed.is_none() && !stopped {
+        match catalogues {
             None => {
-                let down = (left, study.goals.len());
-                (members, stopped) = filled(problem, &found.members, down, workers, hears);
+                let down = (left(), study.goals.len());
+                (members, stopped) = filled(problem, &begun, down, workers, hears);
             }
             Some(catalogues) => {
-                let about = (catalogues, (left, scales));
+                let about = (catalogues, (left(), &scales));
                 (members, stopped) = over_combinations(problem, members, about, workers, hears);
                 how += ", those next to it too";
             }
@@ -122,12 +113,13 @@ pub(super) fn front(
     }
     let points = members.into_iter().map(|member| FrontPoint {
         design: problem.values(&member.candidate.design),
-        violation: violation(&member.candidate, &found.scales),
+        violation: violation(&member.candidate, &scales),
         evaluation: member.candidate.evaluation,
         residual: member.residual,
     });
     let front = Front {
         points: points.collect(),
+        missed,
         stopped,
         has_conditions: true,
     };
@@ -156,7 +148,11 @@ fn best_of(problem: &Designs<'_, '_>, tried: Tried) -> Front {
         let [a, b] = [a, b].map(|c| c.evaluation.objectives[0]);
         a.total_cmp(&b)
     });
-    if best.is_empty() {
+    let missed = best.is_empty().then(|| Missed {
+        scales: tried.scales.clone(),
+        conflict: Vec::new(),
+    });
+    if missed.is_some() {
         best.extend(tried.best_first.first());
     }
     let points = best.into_iter().map(|candidate| FrontPoint {
@@ -167,6 +163,7 @@ fn best_of(problem: &Designs<'_, '_>, tried: Tried) -> Front {
     });
     Front {
         points: points.collect(),
+        missed,
         stopped: tried.stopped,
         has_conditions: false,
     }

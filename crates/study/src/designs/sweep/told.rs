@@ -112,11 +112,18 @@ pub(super) fn derivatives(question: &Question<'_>, own: &Own, table: &Table) -> 
                 Some(x) => number_text(x),
                 None => NONE.to_owned(),
             };
+            let own = [
+                *question.designs.own.get(k).unwrap_or(&f64::NAN),
+                sloped.value,
+            ];
+            let own = [shown(own[0], &per), shown(own[1], &unit)];
+            let [below, above] = beside(question, table, (n, k), own);
             vec![
                 number.name.clone(),
                 question.name_of(k).to_owned(),
                 text(Some(exact)),
-                text(difference(question, table, n, k)),
+                text(below),
+                text(above),
                 unit_per(&unit, &per),
             ]
         })
@@ -126,7 +133,8 @@ pub(super) fn derivatives(question: &Question<'_>, own: &Own, table: &Table) -> 
         "number",
         "parameter",
         "derivative",
-        "by differences",
+        "from below",
+        "to above",
         "unit",
     ];
     (!rows.is_empty()).then(|| Listing {
@@ -137,13 +145,18 @@ pub(super) fn derivatives(question: &Question<'_>, own: &Own, table: &Table) -> 
     })
 }
 
-/// The slope of a number by the nearest designs below and above the file's own that differ from it in one parameter alone.
-fn difference(question: &Question<'_>, table: &Table, number: usize, k: usize) -> Option<f64> {
+/// The slope of a number from the nearest design below the file's own and to the nearest above that differ from it in one parameter alone. They are far from
+/// each other where it bends, as where the largest value over the motion changes from one peak to another.
+fn beside(
+    question: &Question<'_>,
+    table: &Table,
+    (number, k): (usize, usize),
+    [x, y]: [f64; 2],
+) -> [Option<f64>; 2] {
     let around = alone(question, table, number, k);
-    let own = shown(*question.designs.own.get(k)?, &question.unit_of(k));
-    let below = around.iter().rev().find(|(x, _)| *x < own)?;
-    let above = around.iter().find(|(x, _)| *x > own)?;
-    Some((above.1 - below.1) / (above.0 - below.0))
+    let below = around.iter().rev().find(|(other, _)| *other < x);
+    let above = around.iter().find(|(other, _)| *other > x);
+    [below, above].map(|other| other.map(|other| (other.1 - y) / (other.0 - x)))
 }
 
 /// The values of a parameter and of a number, in the order of the first, of all designs that have the file's own values but for that parameter.

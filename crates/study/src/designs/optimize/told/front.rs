@@ -1,0 +1,179 @@
+//! What is said of a front.
+
+use kempe_model::{Diagnostic, Goal};
+use kempe_units::Unit;
+
+use super::{KEPT, STOPPED, Teller, Told};
+use crate::designs::bench::CROSSES;
+use crate::designs::optimize::front::Front;
+use crate::designs::optimize::problem::Designs;
+use crate::result::{Figure, Listing, Scalar, StudyResult};
+use crate::unit::shown;
+
+impl Teller<'_, '_> {
+    pub(super) fn front(
+        &self,
+        own: Option<Told>,
+        front: &Front,
+        how: &str,
+        problem: &Designs<'_, '_>,
+        diagnostics: Vec<Diagnostic>,
+    ) -> StudyResult {
+        let all: Vec<Told> = (front.points.iter())
+            .filter(|p| p.evaluation.is_defined())
+            .map(|p| {
+                let beside = self.besides(&p.design);
+                let missed = (p.violation > KEPT).then_some("not all limits are kept");
+                let crosses = beside.crosses.then_some(CROSSES);
+                let notes: Vec<&str> = missed.into_iter().chain(crosses).collect();
+                Told {
+                    design: p.design.clone(),
+                    evaluation: p.evaluation.clone(),
+                    beside,
+                    note: (!notes.is_empty()).then(|| notes.join("; ")),
+                }
+            })
+            .collect();
+        let mut result = self.shown(
+            None,
+            &all,
+            front.stopped.then(|| problem.asked()),
+            diagnostics,
+        );
+        let optimal = front.points.iter().filter(|p| p.residual <= 1e-5).count();
+        let mut tell = |name: &str, value: f64| {
+            result.scalars.push(Scalar {
+                name: name.to_owned(),
+                unit: Unit::one(),
+                value,
+            });
+        };
+        tell("points", all.len() as f64);
+        if front.has_conditions {
+            tell("points optimal to first order", optimal as f64);
+        }
+        tell("designs tried", problem.asked() as f64);
+        tell("derivatives taken", problem.sloped() as f64);
+        if let Some(volume) = dominated(&all, own.as_ref()) {
+            tell("hypervolume", volume);
+        }
+        let columns = &result.table.columns;
+        let place = |goal: &Goal| columns.iter().position(|c| c.name == goal.number.name);
+        let goals: Vec<usize> = self.study.goals.iter().filter_map(place).collect();
+        let first = goals.first().copied().unwrap_or(0);
+        result.along = first;
+        let known = own.as_ref().filter(|own| own.evaluation.is_defined());
+        let own_goals: Option<Vec<f64>> = known.map(|own| {
+            let goals = 0..self.study.goals.len();
+            let shown = goals.map(|k| shown(self.goal(k, &own.evaluation), &self.goal_unit(k)));
+            shown.collect()
+        });
+        let figures = goals.iter().enumerate().skip(1);
+        result.figures = figures
+            .map(|(k, goal)| Figure::Front {
+                x: result.table.columns[first].clone(),
+                y: result.table.columns[*goal].clone(),
+                own: own_goals.as_ref().map(|own| [own[0], own[k]]),
+            })
+            .collect();
+        let ends = self.ends(own.as_ref(), &all);
+        result.listings = vec![ends];
+        let (asked, sloped) = (problem.asked(), problem.sloped());
+        let mut rows = vec![
+            how.to_owned(),
+            format!("{asked} designs tried, derivatives of {sloped}"),
+        ];
+        if front.has_conditions {
+            rows.push(format!(
+                "{optimal} of {} points are optimal to first order",
+                all.len()
+            ));
+        }
+        if front.stopped {
+            rows.push(STOPPED.to_owned());
+        }
+        result.listings.push(Listing {
+            title: "how it was found".to_owned(),
+            head: Vec::new(),
+            rows: rows.into_iter().map(|row| vec![row]).collect(),
+        });
+        if let (Some(missed), Some(nearest)) = (&front.missed, front.points.first()) {
+            let least = (&nearest.evaluation, &missed.scales);
+            let told = self.infeasible(least, &missed.conflict);
+            result.diagnostics.push(told);
+        } else if front.has_conditions && optimal == 0 && !front.stopped {
+            let message = format!(
+                "no point of the front of study `{}` is shown to be an optimum",
+                self.name
+            );
+            result.diagnostics.push(
+                Diagnostic::warning("not-converged", message)
+                    .at(self.study.over.span.clone(), "")
+                    .help("give more `designs`, or start from other values in the file"),
+            );
+        }
+        result
+    }
+
+    /// The designs at the ends of a front, one for each goal, beside the file's own.
+    fn ends(&self, own: Option<&Told>, all: &[Told]) -> Listing {
+        let text = |told: Option<&Told>, k: usize| {
+            let value = told.map_or(f64::NAN, |told| self.goal(k, &told.evaluation));
+            match value.is_finite() {
+                true => self.units.text(value, self.bench.numbers[k].dimension),
+                false => String::new(),
+            }
+        };
+        let goals = 0..self.study.goals.len();
+        let best = |k: usize| {
+            let by = |a: &&Told, b: &&Told| {
+                a.evaluation.objectives[k].total_cmp(&b.evaluation.objectives[k])
+            };
+            all.iter().min_by(by)
+        };
+        let mut head = vec![String::new(), "in the file".to_owned()];
+        head.extend(
+            goals
+                .clone()
+                .map(|k| format!("best {}", self.study.goals[k].number.name)),
+        );
+        let rows = goals.clone().map(|k| {
+            let mut row = vec![self.study.goals[k].number.name.clone(), text(own, k)];
+            row.extend(goals.clone().map(|end| text(best(end), k)));
+            row
+        });
+        Listing {
+            title: "the ends of the front".to_owned(),
+            head,
+            rows: rows.collect(),
+        }
+    }
+}
+
+/// The part of the box between the best of each goal and the worst on the front (and of the file's own design, where that is worse) that the front dominates.
+fn dominated(all: &[Told], own: Option<&Told>) -> Option<f64> {
+    let goals = all.first()?.evaluation.objectives.len();
+    let known = own.filter(|own| own.evaluation.is_defined());
+    let ends: Vec<[f64; 2]> = (0..goals)
+        .map(|k| {
+            let values = all
+                .iter()
+                .chain(known)
+                .map(|told| told.evaluation.objectives[k]);
+            values.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| {
+                [a.min(x), b.max(x)]
+            })
+        })
+        .collect();
+    if ends.iter().any(|[low, high]| !(high > low)) {
+        return None;
+    }
+    let unit = |told: &Told| -> Vec<f64> {
+        let places = told.evaluation.objectives.iter().zip(&ends);
+        places
+            .map(|(x, [low, high])| (x - low) / (high - low))
+            .collect()
+    };
+    let points: Vec<Vec<f64>> = all.iter().map(unit).collect();
+    Some(kempe_optimize::hypervolume(&points, &vec![1.0; goals]))
+}

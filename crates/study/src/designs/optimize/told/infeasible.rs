@@ -1,0 +1,50 @@
+//! What is said where no design keeps all limits.
+
+use kempe_model::Diagnostic;
+use kempe_optimize::{Evaluation, Scales};
+
+use super::{KEPT, Teller};
+use crate::words::list;
+
+/// A limit with less than this share in what keeps the violation from being less has none.
+const SHARE: f64 = 1e-6;
+
+impl Teller<'_, '_> {
+    /// By how much the design that misses them least misses the limits, in these scales, and which of them contradict each other there, by
+    /// their shares.
+    pub(super) fn infeasible(
+        &self,
+        (least, scales): (&Evaluation, &Scales),
+        conflict: &[(usize, f64)],
+    ) -> Diagnostic {
+        let limits = self.study.subject_to.iter().enumerate();
+        let missed = limits.filter_map(|(k, limit)| {
+            let by = least.constraints.get(k)?;
+            let scale = scales.constraints.get(k).copied().unwrap_or(1.0);
+            let by =
+                (*by > KEPT * scale).then(|| self.units.text(*by, limit.condition.dimension))?;
+            Some(format!("`{}` is missed by {by}", limit.condition.text))
+        });
+        let missed: Vec<String> = missed.collect();
+        let message = format!(
+            "no design was found that keeps all limits of study `{}`",
+            self.name
+        );
+        let mut told = Diagnostic::warning("infeasible", message)
+            .at(self.study.over.span.clone(), "")
+            .note(format!(
+                "the least violation that was reached: {}",
+                list(&missed)
+            ));
+        let holding = conflict.iter().filter(|(_, share)| *share > SHARE);
+        let names = holding.filter_map(|(k, _)| {
+            let limit = self.study.subject_to.get(*k)?;
+            Some(format!("`{}`", limit.condition.text))
+        });
+        let names: Vec<String> = names.collect();
+        if names.len() > 1 {
+            told = told.note(format!("there {} contradict each other", list(&names)));
+        }
+        told.help("ask for less of one of them, or widen the bounds")
+    }
+}

@@ -1,0 +1,333 @@
+//! What is said of designs that were found.
+
+mod before;
+mod front;
+mod infeasible;
+mod one;
+
+use kempe_model::{Diagnostic, Model, OptimizeStudy, Severity, StudyKind};
+use kempe_motion::progress::Silent;
+use kempe_optimize::{Evaluation, Optimum};
+use kempe_units::Unit;
+
+use super::problem::Designs;
+use super::search::Sought;
+use crate::designs::bench::{Answer, Bench, CROSSES};
+use crate::motion::run_along;
+use crate::result::{FoundDesign, StudyResult};
+use crate::run::run_motion;
+use crate::table::{Column, Table};
+use crate::unit::{Units, shown};
+use crate::words::list;
+
+/// What is said of a search that was stopped.
+const STOPPED: &str = "stopped before its end: the best so far";
+/// Designs that become files.
+const MOST_FILES: usize = 40;
+/// A limit that is missed by less, in its scale, is kept.
+const KEPT: f64 = 1e-7;
+
+pub(super) use before::{idle_method, outside};
+
+pub(super) struct Teller<'b, 'm> {
+    bench: &'b Bench<'m>,
+    /// Numbers that are told besides: the left sides of limits, then those of the study.
+    beside: &'b Bench<'m>,
+    study: &'b OptimizeStudy,
+    name: &'b str,
+    units: Units,
+}
+
+/// A design that is told of.
+struct Told {
+    design: Vec<f64>,
+    evaluation: Evaluation,
+    /// Left sides of limits and further numbers, with the evidence of where the motion starts.
+    beside: Answer,
+    note: Option<String>,
+}
+
+impl<'b, 'm> Teller<'b, 'm> {
+    pub fn new(
+        bench: &'b Bench<'m>,
+        beside: &'b Bench<'m>,
+        study: &'b OptimizeStudy,
+        name: &'b str,
+    ) -> Self {
+        Self {
+            bench,
+            beside,
+            study,
+            name,
+            units: Units::of(bench.model),
+        }
+    }
+
+    /// The result of a study, or why there is none.
+    pub fn result(
+        &self,
+        problem: &Designs<'_, '_>,
+        found: Sought,
+        diagnostics: Vec<Diagnostic>,
+    ) -> Result<StudyResult, Vec<Diagnostic>> {
+        let own = self.bench.own_values();
+        let (evaluation, why) = problem.look(&own);
+        let own = Some(Told {
+            beside: self.besides(&own),
+            note: why.or(Some("the file's own".to_owned())),
+            design: own,
+            evaluation,
+        });
+        match found {
+            Sought::Optima { optima, how } => {
+                let stopped = optima.stopped;
+                let Some(best) = optima.list.first().filter(|it| it.evaluation.is_defined()) else {
+                    return Err(vec![self.nothing(problem)]);
+                };
+                let best = best.clone();
+                let told = optima
+                    .list
+                    .iter()
+                    .zip(&optima.reached)
+                    .filter(|(it, _)| it.evaluation.is_defined());
+                let all: Vec<Told> = told.map(|(it, reached)| self.told(it, *reached)).collect();
+                let mut result = self.shown(
+                    own.as_ref(),
+                    &all,
+                    stopped.then(|| problem.asked()),
+                    diagnostics,
+                );
+                result.scalars = self.scalars(&best, &all[0], problem);
+                result.listings =
+                    self.listings(own.as_ref(), &all[0], &best, (&how, stopped), problem);
+                result.diagnostics.extend(self.findings(&best, &all[0]));
+                Ok(result)
+            }
+            Sought::Front { front, how } => {
+                if !front.points.iter().any(|p| p.evaluation.is_defined()) {
+                    return Err(vec![self.nothing(problem)]);
+                }
+                Ok(self.front(own, &front, &how, problem, diagnostics))
+            }
+        }
+    }
+
+    /// No design can be asked at all.
+    fn nothing(&self, problem: &Designs<'_, '_>) -> Diagnostic {
+        let message = format!(
+            "no design within the bounds of study `{}` has all its numbers",
+            self.name
+        );
+        let mut error =
+            Diagnostic::error("no-answer", message).at(self.study.over.span.clone(), "");
+        if let Some(nearest) = problem.nearest() {
+            let values = self.study.vary.iter().zip(&nearest.values);
+            let values = values.map(|(chosen, x)| {
+                let parameter = &self.bench.model.parameters[chosen.parameter.index()];
+                format!(
+                    "{} = {}",
+                    parameter.name,
+                    self.units.text(*x, parameter.dimension)
+                )
+            });
+            let values: Vec<String> = values.collect();
+            error = error.note(format!(
+                "{} designs were tried; the nearest to one that has them, {}, fails: {}",
+                problem.asked(),
+                list(&values),
+                nearest.why
+            ));
+        }
+        error.help(
+            "give bounds between which the mechanism can be assembled, goes all the way, and what is asked of it has a finite value",
+        )
+    }
+
+    fn besides(&self, values: &[f64]) -> Answer {
+        self.beside.answer(values).unwrap_or_else(|_| Answer {
+            numbers: vec![f64::NAN; self.beside.numbers.len()],
+            closure: f64::NAN,
+            smallest_singular_value: f64::NAN,
+            crosses: false,
+        })
+    }
+
+    fn told(&self, it: &Optimum, reached: usize) -> Told {
+        let mut notes = Vec::new();
+        if reached > 1 {
+            notes.push(format!("reached from {reached} starts"));
+        }
+        if it.violation > KEPT {
+            notes.push("not all limits are kept".to_owned());
+        }
+        if !it.ended.is_optimal() {
+            notes.push(it.ended.text().to_owned());
+        }
+        let beside = self.besides(&it.design);
+        if beside.crosses {
+            notes.push(CROSSES.to_owned());
+        }
+        Told {
+            design: it.design.clone(),
+            evaluation: it.evaluation.clone(),
+            beside,
+            note: (!notes.is_empty()).then(|| notes.join("; ")),
+        }
+    }
+
+    /// The value of a goal as the file has it.
+    fn goal(&self, goal: usize, evaluation: &Evaluation) -> f64 {
+        let sign = if self.study.goals[goal].maximize {
+            -1.0
+        } else {
+            1.0
+        };
+        evaluation
+            .objectives
+            .get(goal)
+            .map_or(f64::NAN, |x| sign * x)
+    }
+
+    fn goal_unit(&self, goal: usize) -> Unit {
+        self.bench.numbers[goal].unit(&self.units)
+    }
+
+    /// The table, the files and all that does not hang on the method.
+    fn shown(
+        &self,
+        own: Option<&Told>,
+        all: &[Told],
+        stopped: Option<usize>,
+        diagnostics: Vec<Diagnostic>,
+    ) -> StudyResult {
+        let rows: Vec<(&Told, f64)> = own
+            .map(|own| (own, 0.0))
+            .into_iter()
+            .chain(
+                all.iter()
+                    .zip(1..)
+                    .map(|(told, number)| (told, f64::from(number))),
+            )
+            .collect();
+        let mut number = Column::new("design", Unit::one());
+        number.values = rows.iter().map(|(_, number)| *number).collect();
+        let mut columns = vec![number];
+        for (k, chosen) in self.study.vary.iter().enumerate() {
+            let parameter = &self.bench.model.parameters[chosen.parameter.index()];
+            let unit = self.units.unit(parameter.dimension);
+            let mut column = Column::new(&parameter.name, unit.clone());
+            column.values = rows
+                .iter()
+                .map(|(told, _)| shown(told.design[k], &unit))
+                .collect();
+            columns.push(column);
+        }
+        for (k, goal) in self.study.goals.iter().enumerate() {
+            // A goal may be what is varied.
+            if columns.iter().any(|known| known.name == goal.number.name) {
+                continue;
+            }
+            let unit = self.goal_unit(k);
+            let mut column = Column::new(&goal.number.name, unit.clone());
+            column.values = rows
+                .iter()
+                .map(|(told, _)| shown(self.goal(k, &told.evaluation), &unit))
+                .collect();
+            columns.push(column);
+        }
+        for (k, quantity) in self.beside.numbers.iter().enumerate() {
+            if columns.iter().any(|known| known.name == quantity.name) {
+                continue;
+            }
+            let unit = quantity.unit(&self.units);
+            let mut column = Column::new(&quantity.name, unit.clone());
+            column.values = rows
+                .iter()
+                .map(|(told, _)| shown(told.beside.numbers[k], &unit))
+                .collect();
+            columns.push(column);
+        }
+        let mut designs = Vec::new();
+        let mut told = diagnostics;
+        for (k, it) in all.iter().take(MOST_FILES).enumerate() {
+            let (design, more) = self.design(k + 1, all.len(), it);
+            told.extend(more.into_iter().filter(|_| k == 0));
+            designs.push(design);
+        }
+        let evidence = |of: fn(&Answer) -> f64| -> Vec<f64> {
+            rows.iter().map(|(told, _)| of(&told.beside)).collect()
+        };
+        let table = Table {
+            name: self.name.to_owned(),
+            columns,
+            places: 1 + self.study.vary.len(),
+            closure: evidence(|it| it.closure),
+            smallest_singular_value: evidence(|it| it.smallest_singular_value),
+            forces: None,
+            balance: None,
+            notes: rows.iter().map(|(told, _)| told.note.clone()).collect(),
+        };
+        let demanded_rows = table.rows();
+        StudyResult {
+            name: self.name.to_owned(),
+            table,
+            beside: Vec::new(),
+            scalars: Vec::new(),
+            figures: Vec::new(),
+            listings: Vec::new(),
+            contacts: Vec::new(),
+            frames: Vec::new(),
+            shapes: Vec::new(),
+            designs,
+            events: Vec::new(),
+            along: 0,
+            assemblies: (0, 0),
+            diagnostics: told,
+            demanded_rows,
+            stopped_at: stopped.map(|tried| format!("{tried} designs")),
+        }
+    }
+
+    /// A design as a file, moved by the study that is run.
+    fn design(&self, number: usize, of: usize, told: &Told) -> (FoundDesign, Vec<Diagnostic>) {
+        let (model, file) = self.bench.model_with(&told.design);
+        let read = Model::from_toml(&file.toml, &model.title, &mut file.tables.files());
+        let model = read.map_or(model, |checked| checked.model);
+        let motion = match &self.bench.over.kind {
+            StudyKind::Motion(along) => {
+                run_motion(&model, &self.bench.over.name, along, &mut Silent)
+            }
+            StudyKind::Forces(along) => {
+                run_along(&model, &self.bench.over.name, along, true, &mut Silent)
+            }
+            _ => Err(Vec::new()),
+        };
+        let (motion, more) = match motion {
+            Ok(motion) => (Some(Box::new(motion)), Vec::new()),
+            Err(more) => {
+                let soft = more.into_iter().map(|mut d| {
+                    d.severity = Severity::Warning;
+                    d
+                });
+                (None, soft.collect())
+            }
+        };
+        let digits = of.to_string().len().max(2);
+        let goals = (0..self.study.goals.len()).map(|k| {
+            let value = self.units.text(
+                self.goal(k, &told.evaluation),
+                self.bench.numbers[k].dimension,
+            );
+            format!("{} = {value}", self.study.goals[k].number.name)
+        });
+        let name = format!("{number:0digits$}");
+        let design = FoundDesign {
+            title: format!("{name}: {}", goals.collect::<Vec<_>>().join(", ")),
+            name,
+            file,
+            model,
+            motion,
+        };
+        (design, more)
+    }
+}

@@ -1,0 +1,241 @@
+//! What is said of the best of all designs.
+
+use kempe_model::Diagnostic;
+use kempe_number::text::significant;
+use kempe_optimize::{Ended, Optimum};
+use kempe_units::{Dimension, Unit};
+
+use super::{KEPT, STOPPED, Teller, Told};
+use crate::designs::bench::CROSSES;
+use crate::designs::optimize::problem::Designs;
+use crate::result::{Listing, Scalar};
+use crate::unit::shown;
+
+/// A multiplier below this part of the objective's scale is none.
+const FREE: f64 = 1e-9;
+
+impl Teller<'_, '_> {
+    pub(super) fn scalars(
+        &self,
+        best: &Optimum,
+        told: &Told,
+        problem: &Designs<'_, '_>,
+    ) -> Vec<Scalar> {
+        let mut all = Vec::new();
+        let mut tell = |name: &str, value: f64, unit: Unit| {
+            all.push(Scalar {
+                name: name.to_owned(),
+                unit,
+                value,
+            });
+        };
+        let (goal, unit) = (&self.study.goals[0].number.name, self.goal_unit(0));
+        tell(goal, shown(self.goal(0, &told.evaluation), &unit), unit);
+        for (k, chosen) in self.study.vary.iter().enumerate() {
+            let parameter = &self.bench.model.parameters[chosen.parameter.index()];
+            let unit = self.units.unit(parameter.dimension);
+            if parameter.name != *goal {
+                tell(&parameter.name, shown(told.design[k], &unit), unit);
+            }
+        }
+        if best.residual.is_finite() {
+            tell("first-order residual", best.residual, Unit::one());
+        }
+        tell("largest violation", best.violation, Unit::one());
+        tell("designs tried", problem.asked() as f64, Unit::one());
+        tell("derivatives taken", problem.sloped() as f64, Unit::one());
+        all
+    }
+
+    pub(super) fn listings(
+        &self,
+        own: Option<&Told>,
+        told: &Told,
+        best: &Optimum,
+        (how, stopped): (&str, bool),
+        problem: &Designs<'_, '_>,
+    ) -> Vec<Listing> {
+        let mut all = vec![self.before_and_after(own, told, problem)];
+        // Away from an optimum multipliers say nothing.
+        let costs = match best.ended.is_optimal() {
+            true => self.costs(best, problem),
+            false => Vec::new(),
+        };
+        if !costs.is_empty() {
+            let goal = &self.study.goals[0].number.name;
+            all.push(Listing {
+                title: format!("what holds {goal} where it is"),
+                head: ["held by", "eased by", "changes it by"]
+                    .map(str::to_owned)
+                    .to_vec(),
+                rows: costs,
+            });
+        }
+        let tried = format!(
+            "{} designs tried, derivatives of {}",
+            problem.asked(),
+            problem.sloped()
+        );
+        let mut rows = vec![vec![how.to_owned()], vec![tried]];
+        rows.push(vec![match best.residual.is_finite() {
+            true => format!(
+                "{}: first-order residual {}",
+                best.ended.text(),
+                significant(best.residual, 2)
+            ),
+            false => best.ended.text().to_owned(),
+        }]);
+        if told.beside.crosses {
+            rows.push(vec![format!(
+                "the best moves {CROSSES}: what designs beside it do may be far from it"
+            )]);
+        }
+        if stopped {
+            rows.push(vec![STOPPED.to_owned()]);
+        }
+        all.push(Listing {
+            title: "how it was found".to_owned(),
+            head: Vec::new(),
+            rows,
+        });
+        all
+    }
+
+    fn before_and_after(
+        &self,
+        own: Option<&Told>,
+        told: &Told,
+        problem: &Designs<'_, '_>,
+    ) -> Listing {
+        let text = |x: Option<f64>, dimension: Dimension| match x {
+            Some(x) if x.is_finite() => self.units.text(x, dimension),
+            _ => String::new(),
+        };
+        let mut rows = Vec::new();
+        for (k, goal) in self.study.goals.iter().enumerate() {
+            let dimension = self.bench.numbers[k].dimension;
+            let word = if goal.maximize {
+                "as large as can be"
+            } else {
+                "as small as can be"
+            };
+            rows.push(vec![
+                goal.number.name.clone(),
+                text(own.map(|own| self.goal(k, &own.evaluation)), dimension),
+                text(Some(self.goal(k, &told.evaluation)), dimension),
+                word.to_owned(),
+            ]);
+        }
+        for (k, limit) in self.study.subject_to.iter().enumerate() {
+            let quantity = &self.beside.numbers[k];
+            rows.push(vec![
+                quantity.name.clone(),
+                text(own.map(|own| own.beside.numbers[k]), quantity.dimension),
+                text(Some(told.beside.numbers[k]), quantity.dimension),
+                limit.condition.text.clone(),
+            ]);
+        }
+        for (k, chosen) in self.study.vary.iter().enumerate() {
+            let parameter = &self.bench.model.parameters[chosen.parameter.index()];
+            let [low, high] = problem.ranges()[k];
+            let range = format!(
+                "{} to {}",
+                text(Some(low), parameter.dimension),
+                text(Some(high), parameter.dimension)
+            );
+            rows.push(vec![
+                parameter.name.clone(),
+                text(own.map(|own| own.design[k]), parameter.dimension),
+                text(Some(told.design[k]), parameter.dimension),
+                range,
+            ]);
+        }
+        Listing {
+            title: "before and after".to_owned(),
+            head: ["", "in the file", "found", "wanted"]
+                .map(str::to_owned)
+                .to_vec(),
+            rows,
+        }
+    }
+
+    /// What each limit and bound that is met costs.
+    fn costs(&self, best: &Optimum, problem: &Designs<'_, '_>) -> Vec<Vec<String>> {
+        let scale = best.scales.objectives.first().copied().unwrap_or(1.0);
+        let goal = &self.bench.numbers[0];
+        let sign = if self.study.goals[0].maximize {
+            1.0
+        } else {
+            -1.0
+        };
+        let mut rows = Vec::new();
+        let mut tell = |what: String, cost: f64, dimension: Dimension| {
+            let unit = self.units.unit(dimension);
+            let one = unit.to_si(1.0) - unit.to_si(0.0);
+            let step = match unit.text() {
+                "" => "1".to_owned(),
+                text => format!("1 {text}"),
+            };
+            let by = self.units.text(sign * cost * one, goal.dimension);
+            rows.push(vec![what, step, by]);
+        };
+        for (k, limit) in self.study.subject_to.iter().enumerate() {
+            let cost = best.multipliers.cost(k);
+            let own = best.scales.constraints.get(k).copied().unwrap_or(1.0);
+            if cost * own > FREE * scale {
+                tell(
+                    limit.condition.text.clone(),
+                    cost,
+                    limit.condition.dimension,
+                );
+            }
+        }
+        for (k, chosen) in self.study.vary.iter().enumerate() {
+            let parameter = &self.bench.model.parameters[chosen.parameter.index()];
+            let [low, high] = problem.ranges()[k];
+            let Some(both) = best.multipliers.bounds.get(k) else {
+                continue;
+            };
+            for (cost, end, word) in [(both[0], low, ">="), (both[1], high, "<=")] {
+                if cost * (high - low) > FREE * scale {
+                    let end = self.units.text(end, parameter.dimension);
+                    tell(
+                        format!("{} {word} {end}", parameter.name),
+                        cost,
+                        parameter.dimension,
+                    );
+                }
+            }
+        }
+        rows
+    }
+
+    pub(super) fn findings(&self, best: &Optimum, told: &Told) -> Vec<Diagnostic> {
+        let mut found = Vec::new();
+        if best.violation > KEPT {
+            let least = (&told.evaluation, &best.scales);
+            found.push(self.infeasible(least, &best.conflict));
+        } else if !best.ended.is_optimal() && best.ended != Ended::Stopped {
+            let mut told = Diagnostic::warning(
+                "not-converged",
+                format!(
+                    "the best design of study `{}` is not shown to be an optimum: {}",
+                    self.name,
+                    best.ended.text()
+                ),
+            )
+            .at(self.study.over.span.clone(), "");
+            if best.residual.is_finite() {
+                told = told.note(format!(
+                    "the first-order conditions are missed by {}",
+                    significant(best.residual, 2)
+                ));
+            }
+            found.push(told.help(match best.ended {
+                Ended::Unbounded => "keep it away from there by `subject_to` or narrower bounds, or ask for what has one",
+                _ => "give more `designs`, another `method`, or start from other values in the file",
+            }));
+        }
+        found
+    }
+}
