@@ -141,7 +141,6 @@ pub fn sensitivities_at<F: ForceSource, G: ForceSource<Varying>>(
             let place = varied.place(*held);
             let results: Vec<Varying> = measures.iter().map(|m| varied.value(m, place)).collect();
             for (index, result) in results.iter().enumerate() {
-                it.values[index] = result.re;
                 // What has no value has no derivatives either.
                 let slopes = result.eps.iter().take(chunk.len());
                 it.derivatives[index]
@@ -149,7 +148,7 @@ pub fn sensitivities_at<F: ForceSource, G: ForceSource<Varying>>(
             }
         }
     }
-    // What is infinite somewhere has no derivatives, and the value that rows have.
+    // The values are those that rows have. What is infinite somewhere has no derivatives.
     for (it, held) in all.iter_mut().zip(held) {
         let plain = match *held {
             Held::Path(p) => sampler.values_at_parameter(p),
@@ -157,8 +156,8 @@ pub fn sensitivities_at<F: ForceSource, G: ForceSource<Varying>>(
         };
         for (index, value) in plain.into_iter().enumerate() {
             let infinite = |note: &StatisticNote| matches!(note, StatisticNote::Infinite { .. });
+            it.values[index] = value;
             if value.is_infinite() || it.notes[index].iter().any(infinite) {
-                it.values[index] = value;
                 it.derivatives[index].fill(f64::NAN);
             }
         }

@@ -452,6 +452,25 @@ fn listed(
     values.into_iter().collect()
 }
 
+/// Values of a catalogue that stand there twice: one of them may be a slip of the pen.
+fn told_twice(cx: &mut Context<'_>, id: ParameterId, values: &[Scalar], node: &Node) {
+    let numbers: Vec<f64> = values.iter().map(|value| cx.number(value)).collect();
+    // The same in another unit may differ by rounding.
+    let same = |a: f64, b: f64| (a - b).abs() <= 1e-12 * a.abs();
+    let again = (1..numbers.len()).find(|k| numbers[..*k].iter().any(|x| same(*x, numbers[*k])));
+    if let (Some(k), Value::Array(items)) = (again, &node.value) {
+        let name = &cx.model.parameters[id.index()].name;
+        let told = Diagnostic::warning(
+            "over-specified",
+            format!("the values of `{name}` name one twice"),
+        );
+        cx.push(
+            told.at(items[k].span.clone(), "named before")
+                .help("leave it out, or correct it"),
+        );
+    }
+}
+
 fn swept(
     cx: &mut Context<'_>,
     entry: &Entry<'_>,
@@ -653,7 +672,9 @@ fn chosen(
                     return None;
                 }
                 (None, Some(node), None) => {
-                    Among::Only(listed(cx, parameter, node, &place, example)?)
+                    let values = listed(cx, parameter, node, &place, example)?;
+                    told_twice(cx, parameter, &values, node);
+                    Among::Only(values)
                 }
                 (Some(node), None, step) => {
                     let between = in_order(cx, parameter, node, &place, example)?;

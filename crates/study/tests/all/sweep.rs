@@ -527,6 +527,35 @@ fn any_study_is_swept_as_it_runs_alone() {
     }
 }
 
+/// What tells no numbers is swept by what its rows come to.
+#[test]
+fn a_circuit_without_numbers_is_swept_by_its_rows() {
+    let text = |a: &str, sweep: &str| {
+        let text = FOUR_BAR.replace("a = \"20 mm\"", &format!("a = \"{a} mm\""));
+        let (text, _) = text.split_once("[measures]").unwrap_or((&text, ""));
+        format!("{text}\n[studies.round]\nkind = \"motion\"\ncircuit = true\nstep = 30\n{sweep}")
+    };
+    let read = |text: &str| {
+        let read = Model::from_toml(text, "test", &mut |_| Err("no files".into()));
+        read.unwrap_or_else(|found| panic!("{}", rendered(&found)))
+            .model
+    };
+    let last = |text: &str| {
+        let model = read(text);
+        let study = model.studies.last().expect("a study");
+        run(&model, study, &mut Silent).unwrap_or_else(|found| panic!("{}", rendered(&found)))
+    };
+    let sweep = "[studies.some]\nkind = \"sweep\"\nover = \"round\"\nvary = { a = [19, 21] }\n";
+    let swept = last(&text("20", sweep));
+    for (row, a) in ["19", "21"].into_iter().enumerate() {
+        let alone = column(&last(&text(a, "")), "x(C)");
+        let least = alone.iter().copied().fold(f64::INFINITY, f64::min);
+        let greatest = alone.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        assert_eq!(column(&swept, "x(C), least in its rows")[row], least);
+        assert_eq!(column(&swept, "x(C), greatest in its rows")[row], greatest);
+    }
+}
+
 #[test]
 fn a_sweep_of_which_no_design_moves_is_no_success() {
     let none = ran("vary = { a = [\"200 mm\", \"210 mm\"] }\ncolumns = [\"swing\"]");

@@ -460,6 +460,28 @@ fn threads_change_no_bit_and_another_seed_does() {
     );
 }
 
+/// What is 0 but for rounding has no parameter that it comes from, and the file's own value is the one that its study tells.
+#[test]
+fn what_is_rounding_is_ranked_by_nothing() {
+    let text = four_bar(&format!(
+        "{LENGTHS}samples = 200\ncolumns = [\"max(distance(A, B) - a)\", \"min(abs(x(P) - 30 mm))\", \"max(y(P))\"]\n"
+    ));
+    let result = found(&text);
+    let of = |name: &str| {
+        let title = format!("contributions to {name}");
+        let mut all = result.listings.iter();
+        all.find(|l| l.title == title).map(|l| l.rows.clone())
+    };
+    for name in ["max(distance(A, B) - a)", "min(abs(x(P) - 30 mm))"] {
+        let told = of(name);
+        let rounding = told.is_none_or(|rows| rows == [["none: it differs by rounding alone"]]);
+        assert!(rounding, "{name}: {}", lines(&result));
+    }
+    assert!(!lines(&result).contains("where linear and sampled part"));
+    assert!(of("max(y(P))").unwrap().len() > 1);
+    assert!(scalar(&result, "min(abs(x(P) - 30 mm))") >= 0.0);
+}
+
 #[test]
 fn a_study_that_is_stopped_keeps_its_pieces() {
     let text = four_bar(&format!(

@@ -135,12 +135,29 @@ impl Whole {
     }
 }
 
-/// The numbers of a design: what its summary tells, and of vibrations what they are.
+/// The numbers of a design: what its summary tells, and of vibrations what they are. That is what its rows come to where it tells no others, as of a circuit.
 fn numbers_of(model: &Model, over: &Study, result: &StudyResult) -> Vec<Scalar> {
     match &over.kind {
         StudyKind::Vibrations(study) => numbers_of_modes(model, study, result),
+        _ if result.scalars.is_empty() => {
+            let columns = result.table.columns.iter().enumerate();
+            let told = columns.filter(|(k, _)| *k != result.along);
+            told.flat_map(|(_, column)| in_rows(column)).collect()
+        }
         _ => result.scalars.clone(),
     }
+}
+
+/// The least and the greatest value of a column.
+fn in_rows(column: &Column) -> [Scalar; 2] {
+    let finite = column.values.iter().copied().filter(|x| x.is_finite());
+    let ends = [f64::min, f64::max].map(|of| finite.clone().reduce(of).unwrap_or(f64::NAN));
+    let named = [("least", ends[0]), ("greatest", ends[1])];
+    named.map(|(word, value)| Scalar {
+        name: format!("{}, {word} in its rows", column.name),
+        unit: column.unit.clone(),
+        value,
+    })
 }
 
 fn number(told: &[Scalar], wanted: &Column) -> f64 {

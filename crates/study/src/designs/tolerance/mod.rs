@@ -349,6 +349,7 @@ pub(crate) fn tolerance(
         ready: &ready,
         study,
         question: &question,
+        size: motion.size(),
         pieces: &pieces,
         missed: &missed,
     };

@@ -2,7 +2,7 @@
 
 use kempe_model::{Diagnostic, ToleranceStudy};
 use kempe_number::text::significant;
-use kempe_units::Unit;
+use kempe_units::{Dimension, Unit};
 
 use super::linear::Linear;
 use super::sampled::{CHECKED, KEPT, KEPT_FOLLOWED, Pieces, Question};
@@ -19,7 +19,7 @@ use crate::unit::{SHORT_DIGITS, Units, shown};
 const PARTED: f64 = 0.05;
 /// ... and by more than so many times what the number of pieces leaves open.
 const SURE: f64 = 3.0;
-/// What is less than this part of a number is rounding of it.
+/// What is less than this part of a number, or of the lengths and angles that it is the difference of, is rounding.
 const ROUNDING: f64 = 1e-12;
 /// Digits of parts and of ratios.
 const FEW_DIGITS: usize = 4;
@@ -30,6 +30,8 @@ pub(super) struct Teller<'t, 'm> {
     pub ready: &'t Ready<'m>,
     pub study: &'t ToleranceStudy,
     pub question: &'t Question<'t, 'm>,
+    /// Of the mechanism, m.
+    pub size: f64,
     pub pieces: &'t Pieces,
     /// By number: by how much lanes miss it.
     pub missed: &'t [Option<f64>],
@@ -41,9 +43,17 @@ struct Told<'t> {
     unit: Unit,
     linear: &'t Linear,
     sampled: Option<Summary>,
+    /// The mechanism's size for a length, one for an angle; of other numbers it is not known what they are made of.
+    scale: f64,
 }
 
 impl Told<'_> {
+    /// What is rounding of it.
+    fn rounding(&self) -> f64 {
+        let mean = self.sampled.as_ref().map_or(0.0, |it| it.mean.abs());
+        ROUNDING * self.linear.own.abs().max(mean).max(self.scale)
+    }
+
     fn value(&self, si: f64) -> f64 {
         shown(si, &self.unit)
     }
@@ -82,6 +92,11 @@ impl Teller<'_, '_> {
                 quantity,
                 linear,
                 sampled: Summary::new(values),
+                scale: match quantity.dimension {
+                    Dimension::LENGTH => self.size,
+                    Dimension::ANGLE => 1.0,
+                    _ => 0.0,
+                },
             })
             .collect();
         result.scalars = self.scalars(&told);
@@ -358,6 +373,7 @@ impl Teller<'_, '_> {
         if !it.linear.is_known() || it.linear.deviation == 0.0 {
             return None;
         }
+        let title = format!("contributions to {}", it.quantity.name);
         let model = self.ready.bench.model;
         let row = |k: usize| {
             let source = &self.ready.sources[k];
@@ -395,6 +411,13 @@ impl Teller<'_, '_> {
                 percent(it.linear.parts[k]),
             ]
         };
+        if it.linear.deviation <= it.rounding() {
+            return Some(Listing {
+                title,
+                head: Vec::new(),
+                rows: vec![vec!["none: it differs by rounding alone".to_owned()]],
+            });
+        }
         let ranked = it.linear.ranked();
         let (told, nothing): (Vec<usize>, Vec<usize>) = ranked
             .into_iter()
@@ -419,7 +442,7 @@ impl Teller<'_, '_> {
             "part",
         ];
         Some(Listing {
-            title: format!("contributions to {}", it.quantity.name),
+            title,
             head: head.map(str::to_owned).to_vec(),
             rows,
         })
@@ -592,7 +615,7 @@ fn parted(it: &Told<'_>) -> Option<String> {
     let n = sampled.count as f64;
     let size = it.linear.deviation.max(sampled.deviation);
     // Of no piece is a number known better.
-    let least = ROUNDING * it.linear.own.abs().max(sampled.mean.abs());
+    let least = it.rounding();
     let shift = sampled.mean - it.linear.mean;
     let mut words = Vec::new();
     if shift.abs() > least && shift.abs() > (SURE * size / n.sqrt()).max(PARTED * size) {
