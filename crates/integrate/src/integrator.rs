@@ -212,6 +212,15 @@ impl Integrator {
         self.other = Some(std::mem::replace(&mut self.now, next));
     }
 
+    /// How fast the solution goes at a time within the last step, into `rates`, as that step itself has it: where the system is stiff, rates
+    /// of states that are a little off are far off. `false` where the step was explicit, as rates of states serve better then.
+    pub fn slopes(&self, time: f64, rates: &mut [f64]) -> bool {
+        match &self.now {
+            Steps::Explicit(_) => false,
+            Steps::Implicit(it) => it.slopes(time, rates),
+        }
+    }
+
     /// The state at a time within the last step, into `state`. `false` where rates that are needed for it are not there.
     pub fn between(&mut self, system: &mut impl System, time: f64, state: &mut [f64]) -> bool {
         either!(&mut self.now, it => it.between(system, time, state))

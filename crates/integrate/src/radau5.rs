@@ -11,7 +11,7 @@ mod collocation;
 mod matrices;
 mod newton;
 
-use collocation::{ERROR, REAL, STAGES, polynomial};
+use collocation::{ERROR, REAL, STAGES, polynomial, slope};
 use kempe_number::math::powf;
 use matrices::{Matrices, Missing};
 use newton::{Newton, Outcome, ROUNDS};
@@ -295,6 +295,21 @@ impl Radau5 {
         for (k, value) in state.iter_mut().enumerate().take(size) {
             let stages = [0, 1, 2].map(|stage| self.last[stage * size + k]);
             *value = track.earlier[k] + polynomial(stages, part);
+        }
+        true
+    }
+
+    /// How fast the polynomial through the last step's stages goes at a time within it, into `rates`; `false` where there is none.
+    pub(crate) fn slopes(&self, time: f64, rates: &mut [f64]) -> bool {
+        let track = &self.track;
+        let (step, size) = (track.length(), track.size());
+        if !self.ended || step == 0.0 {
+            return false;
+        }
+        let part = (time - track.before) / step;
+        for (k, rate) in rates.iter_mut().enumerate().take(size) {
+            let stages = [0, 1, 2].map(|stage| self.last[stage * size + k]);
+            *rate = slope(stages, part) / step;
         }
         true
     }

@@ -428,12 +428,14 @@ impl Run {
             } else if !it.between(&mut run.plant, time, found) {
                 return None;
             }
-            let known = match at_end && run.plant.is_as_it_moves() {
-                true => {
+            let moves = run.plant.is_as_it_moves();
+            let known = match moves {
+                true if it.slopes(time, &mut rates) => run.plant.look(time, found),
+                true if at_end => {
                     rates.copy_from_slice(it.rates());
                     run.plant.look(time, found)
                 }
-                false => run.plant.accelerate(time, found, &mut rates),
+                _ => run.plant.accelerate(time, found, &mut rates),
             };
             known.then(|| run.plant.drives_at(time, found, &rates))
         };

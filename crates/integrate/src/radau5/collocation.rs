@@ -78,9 +78,23 @@ pub(super) fn from_stages(x: [f64; STAGES]) -> [f64; STAGES] {
 
 /// How far a component has come at a part of the step, from what it is at the stages: the polynomial through these and
 /// nothing at the beginning.
-pub(super) fn polynomial([first, second, last]: [f64; STAGES], part: f64) -> f64 {
+pub(super) fn polynomial(stages: [f64; STAGES], part: f64) -> f64 {
+    let [_, b, end] = NODES;
+    let [last, one, upper, cubic] = differences(stages);
+    last + (part - end) * (one + (part - b) * (upper + (part - NODES[0]) * cubic))
+}
+
+/// How fast the polynomial goes there.
+pub(super) fn slope(stages: [f64; STAGES], part: f64) -> f64 {
     let [a, b, end] = NODES;
-    // Newton's form, from the end.
+    let [_, one, upper, cubic] = differences(stages);
+    let (x, y, z) = (part - end, part - b, part - a);
+    one + upper * (x + y) + cubic * (x * y + x * z + y * z)
+}
+
+/// The polynomial in Newton's form, from the end.
+fn differences([first, second, last]: [f64; STAGES]) -> [f64; 4] {
+    let [a, b, end] = NODES;
     let slope = |x: f64, y: f64, from: f64, to: f64| (y - x) / (to - from);
     let (one, two, three) = (
         slope(second, last, b, end),
@@ -88,8 +102,7 @@ pub(super) fn polynomial([first, second, last]: [f64; STAGES], part: f64) -> f64
         slope(0.0, first, 0.0, a),
     );
     let (upper, lower) = (slope(two, one, a, end), slope(three, two, 0.0, b));
-    let cubic = slope(lower, upper, 0.0, end);
-    last + (part - end) * (one + (part - b) * (upper + (part - a) * cubic))
+    [last, one, upper, slope(lower, upper, 0.0, end)]
 }
 
 #[cfg(test)]
@@ -151,5 +164,6 @@ mod tests {
         }
         let cube = NODES.map(|x| powi(x, 3) - 2.0 * x);
         assert!((polynomial(cube, 1.7) - (powi(1.7, 3) - 3.4)).abs() < 1e-13);
+        assert!((slope(cube, 1.7) - (3.0 * powi(1.7, 2) - 2.0)).abs() < 1e-13);
     }
 }

@@ -1,9 +1,11 @@
 //! Benchmarks of multibody dynamics against solutions found apart from Kempe.
 #![allow(clippy::unwrap_used, clippy::excessive_precision)]
 
+use std::f64::consts::FRAC_PI_2;
+
 use crate::common::{Free, at};
 use crate::known;
-use kempe_number::math::sin_cos;
+use kempe_number::math::{exp, sin_cos};
 use kempe_simulate::{Ending, Happened, Method, Resistance, Stop};
 
 const PENDULUM: &str = include_str!("../../../../examples/benchmarks/pendulum.toml");
@@ -262,6 +264,24 @@ fn it_finds_by_itself_that_a_mechanism_is_stiff() {
     );
     let [q, v] = at(&found, 0, 10.0);
     assert!((v + 9.81e-6 * sin_cos(q).1).abs() < 1e-10, "{v}");
+}
+
+/// A spring and a damper on a link of hardly any inertia: rates of 1e11/s, and after nothing of time theta = 90 deg (1 - exp(-k t / c)). Accelerations of
+/// states that are off by what rounding and tolerance leave would be off by far more than it accelerates.
+#[test]
+fn a_link_of_hardly_any_inertia_takes_long_steps() {
+    let text = "gravity = [0, 0]\n[links]\nframe = { O = [0, 0] }\narm = { O-P = 0.1, mass = \"1e-9 kg\", inertia = \"1e-12 kg m^2\" }\n\
+        [drives]\npivot = { turns = \"arm\", at = 0 }\n[dampers]\nhinge = { links = [\"frame\", \"arm\"], damping = \"0.1 N m s\" }\n\
+        [springs]\ndoor = { links = [\"frame\", \"arm\"], stiffness = \"3 N m/rad\", free = \"90 deg\" }\n";
+    let found = Free::new(text, 1.0).run();
+    assert_eq!(found.ending, Ending::Until);
+    assert!(found.evaluations < 200_000, "{:?}", found.used);
+    for time in [0.01, 0.03, 0.1, 0.3, 1.0] {
+        let [q, v] = at(&found, 0, time);
+        let left = FRAC_PI_2 * exp(-30.0 * time);
+        assert!((q - (FRAC_PI_2 - left)).abs() < 1e-8, "{time} {q}");
+        assert!((v - 30.0 * left).abs() < 1e-6, "{time} {v}");
+    }
 }
 
 #[test]
