@@ -179,7 +179,11 @@ pub(crate) fn find(
             design: optimum.design.clone(),
             evaluation: optimum.evaluation.clone(),
         };
-        if better(&new, &best) {
+        // The least violation by its own scales is the answer where nothing keeps all constraints.
+        let feasible = best
+            .as_ref()
+            .is_some_and(|best| matches!(stand(best), Standing::Feasible(_)));
+        if better(&new, &best) || (optimum.ended == Ended::Infeasible && !feasible) {
             best = Some(new);
         }
         if optimum.ended == Ended::Stopped {

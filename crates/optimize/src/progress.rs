@@ -35,8 +35,8 @@ pub enum Ended {
     Least,
     /// The largest violation of the constraints has a minimum here that is none of zero.
     Infeasible,
-    /// No step is better, though this is no optimum: derivatives that are not those of the values, or a place from which all ways
-    /// lead to designs that cannot be evaluated.
+    /// No step is better, though the first-order conditions are not met: a kink that is none of the pieces, derivatives that are not those of the values, or a
+    /// place from which all ways lead to designs that cannot be evaluated.
     Stuck,
     /// It leads to where the objective falls without bound, as far as numbers tell.
     Unbounded,
@@ -61,7 +61,9 @@ impl Ended {
             Self::Settled => "converged as far as rounding allows",
             Self::Least => "as good as it can be at all",
             Self::Infeasible => "the constraints cannot all be kept",
-            Self::Stuck => "no step is better, though this is no optimum",
+            Self::Stuck => {
+                "no step is better, and the first-order conditions are not met, as at a kink"
+            }
             Self::Unbounded => "the goal has no bound there: it is at a pole",
             Self::Budget => "all allowed evaluations are used",
             Self::Undefined => "the start cannot be evaluated",

@@ -82,17 +82,18 @@ pub struct Optimum {
     pub design: Vec<f64>,
     /// What it is worth.
     pub evaluation: Evaluation,
-    /// What it hangs on. Where [`Ended::Infeasible`], all are zero but those of [`conflict`](Self::conflict).
+    /// What it hangs on. Where [`Ended::Infeasible`], if what cannot be kept is eased by as much as it is missed.
     pub multipliers: Multipliers,
     /// How far the first-order conditions (W. Karush 1939, H. W. Kuhn and A. W. Tucker 1951) are missed: the largest component of the
     /// Lagrangian's slope over the box's width, or the multipliers times what their pieces are below the largest, in the
-    /// objective's scale. Where [`Ended::Infeasible`], those of the least violation.
+    /// objective's scale. Where [`Ended::Infeasible`], the same.
     pub residual: f64,
     /// The largest violation of a constraint, in its scale.
     pub violation: f64,
-    /// Where [`Ended::Infeasible`]: constraints that cannot be kept together, with their shares of the multipliers of the least
-    /// largest violation. They sum to one; the largest are first.
-    pub conflict: Vec<(usize, f64)>,
+    /// Where [`Ended::Infeasible`]: constraints that cannot be kept together, with their shares of the multipliers of the least largest violation, the
+    /// largest first; those of the first entry sum to one. What contradicts each other even where these are eased so far follows, and so on: the others are
+    /// kept, and the objective is the least that it then can be.
+    pub conflicts: Vec<Vec<(usize, f64)>>,
     /// The scales that residual and violation count in.
     pub scales: Scales,
     /// Steps taken.
@@ -119,7 +120,7 @@ impl Optimum {
             multipliers: Multipliers::default(),
             residual: f64::INFINITY,
             violation: f64::INFINITY,
-            conflict: Vec::new(),
+            conflicts: Vec::new(),
             scales: Scales::default(),
             iterations: 0,
             evaluations,

@@ -194,9 +194,13 @@ pub fn sensitivities(
 pub(crate) fn unit_per(unit: &Unit, per: &Unit) -> String {
     match (unit.text(), per.text()) {
         (own, "") => own.to_owned(),
-        ("", per) => format!("1/{per}"),
-        (own, per) if per.contains([' ', '/']) => format!("{own}/({per})"),
-        (own, per) => format!("{own}/{per}"),
+        (own, per) => {
+            let own = if own.is_empty() { "1" } else { own };
+            match per.contains([' ', '/']) {
+                true => format!("{own}/({per})"),
+                false => format!("{own}/{per}"),
+            }
+        }
     }
 }
 

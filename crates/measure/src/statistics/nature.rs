@@ -10,7 +10,7 @@ pub(super) struct Nature {
     /// It can have peaks or poles that the poses and drives do not show: those that quotients, roots and functions make. Sums
     /// and products change as fast as what is in them.
     pub wild: bool,
-    /// It has all its derivatives wherever it and they are bounded: no jump, no kink, nothing folded.
+    /// It has all its derivatives wherever it and they are bounded: no jump, nothing folded, and no kink but that of a size, whose two sides tell of each other.
     pub smooth: bool,
 }
 
@@ -46,10 +46,7 @@ fn nature(mechanism: &Mechanism, measure: &Measure, known: &mut [Option<Nature>]
         },
         Expr::Call(builtin, _) => Nature {
             wild: true,
-            smooth: !matches!(
-                builtin,
-                Builtin::Abs | Builtin::Min | Builtin::Max | Builtin::Atan2
-            ),
+            smooth: !matches!(builtin, Builtin::Min | Builtin::Max | Builtin::Atan2),
         },
         Expr::Const(_) | Expr::Neg(_) | Expr::Add(..) | Expr::Sub(..) | Expr::Mul(..) => TAME,
     };

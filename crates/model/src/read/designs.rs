@@ -257,7 +257,7 @@ fn over(
             "bad-choice",
             format!("{} cannot be run for many designs", entry.place_of("over")),
             &node.span,
-            "name a study of motion or forces, or a simulation; sweeps take any study but those of many designs",
+            "name a study of motion without `circuit = true`, of forces, or a simulation; sweeps take any study but those of many designs",
         )
     };
     if others.of_designs.contains(&name) {

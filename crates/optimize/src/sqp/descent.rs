@@ -32,6 +32,8 @@ const WIDER: f64 = 4.0;
 const LEAST: f64 = 1e-9;
 /// So many steps one after the other may lessen the residual without any that shows in the penalty.
 const UNHEARD: usize = 4;
+/// While the violation alone is minimised, what is eased is so by this much more, in its scale, so that it holds nothing that bounds hold already.
+const EASED: f64 = 1e-7;
 /// How often the violation alone is minimised at most.
 const RESTORATIONS: usize = 3;
 /// How often a place of rest is left by a way that was not taken.
@@ -70,9 +72,8 @@ pub(crate) struct Descent<'a> {
     restorations: usize,
     /// The violation alone is minimised first, and how to end if it then is nothing.
     restoring: Option<(Box<Descent<'a>>, Option<Ended>)>,
-    conflict: Vec<(usize, f64)>,
-    /// How far the conditions of the least violation are missed, where that is the answer.
-    missed: f64,
+    /// Constraints that contradict each other, with their shares, and others that do where these are eased.
+    conflicts: Vec<Vec<(usize, f64)>>,
     scales: Scales,
 }
 
@@ -90,6 +91,7 @@ impl<'a> Descent<'a> {
         let view = View {
             problem,
             violation: None,
+            eased: Vec::new(),
         };
         Self::of(view, start, options)
     }
@@ -145,8 +147,7 @@ impl<'a> Descent<'a> {
             iterations: 0,
             restorations: 0,
             restoring: None,
-            conflict: Vec::new(),
-            missed: f64::INFINITY,
+            conflicts: Vec::new(),
             scales,
         })
     }
@@ -163,7 +164,17 @@ impl<'a> Descent<'a> {
     /// The design, its largest objective and violation.
     pub fn at(&self) -> (&[f64], f64, f64) {
         let place = &self.place;
-        (&place.design, place.evaluation.largest(), place.violation)
+        (
+            &place.design,
+            place.evaluation.largest(),
+            self.violation(place.evaluation.clone()),
+        )
+    }
+
+    /// The largest violation of what is not eased.
+    fn violation(&self, evaluation: Evaluation) -> f64 {
+        let own = self.search.view.not_eased(evaluation);
+        scaled(&own, &self.search.sizes).1.max(0.0)
     }
 
     /// How far it has come.
@@ -181,7 +192,8 @@ impl<'a> Descent<'a> {
     pub fn step(&mut self, workers: &dyn Workers) -> Option<Ended> {
         if let Some((inner, _)) = &mut self.restoring {
             // What is kept is enough.
-            let ended = match inner.place.evaluation.largest() <= 0.0 {
+            let kept = inner.place.violation <= inner.options.feasibility;
+            let ended = match kept && inner.place.evaluation.largest() <= 0.0 {
                 true => Some(Ended::Stopped),
                 false => inner.step(workers),
             };
@@ -330,7 +342,9 @@ impl<'a> Descent<'a> {
 
     /// Begins to go to where the largest violation is least. Where that is nothing, it goes on from there, or ends so.
     fn restore(&mut self, then: Option<Ended>) -> Option<Ended> {
-        if self.restorations >= RESTORATIONS {
+        let view = &self.search.view;
+        let all_eased = (0..view.problem.constraints()).all(|k| view.is_eased(k));
+        if self.restorations >= RESTORATIONS || all_eased {
             return Some(Ended::Stuck);
         }
         self.restorations += 1;
@@ -341,12 +355,18 @@ impl<'a> Descent<'a> {
             least: None,
             ..self.options.clone()
         };
+        let sizes = self.search.sizes.clone();
+        let eased = view.eased.iter().zip(&sizes.constraints);
         let view = View {
-            problem: self.search.view.problem,
-            violation: Some(self.search.sizes.clone()),
+            problem: view.problem,
+            eased: eased
+                .map(|(eased, size)| eased.map(|by| by + EASED * size))
+                .collect(),
+            violation: Some(sizes),
         };
         match Self::of(view, &self.place.design, &options) {
-            Ok(inner) => {
+            Ok(mut inner) => {
+                inner.restorations = RESTORATIONS;
                 self.restoring = Some((Box::new(inner), then));
                 None
             }
@@ -361,8 +381,8 @@ impl<'a> Descent<'a> {
         let found = inner.end(ended);
         self.search.evaluations += found.evaluations;
         self.search.slopes += found.slopes + 1;
-        if found.objective().max(0.0) < self.place.violation
-            && let Some(place) = self.search.at(found.design.clone())
+        if let Some(place) = self.search.at(found.design.clone())
+            && place.violation < self.place.violation
         {
             self.place = place;
         }
@@ -370,15 +390,44 @@ impl<'a> Descent<'a> {
         match found.ended {
             _ if self.place.violation <= self.options.feasibility => then,
             ended if ended.is_optimal() => {
-                let shares: Vec<f64> = found.multipliers.objectives.concat();
-                self.conflict = view.conflict(&found.design, &shares);
-                self.missed = found.residual;
-                Some(Ended::Infeasible)
+                self.conflicts
+                    .push(view.conflict(&found.design, &found.multipliers));
+                match self.ease(found.objective()) {
+                    true => then,
+                    false => Some(Ended::Infeasible),
+                }
             }
             Ended::Stopped => Some(Ended::Stopped),
             Ended::Budget => Some(Ended::Budget),
             _ => Some(Ended::Stuck),
         }
+    }
+
+    /// Eases the constraints that contradict each other by this much, in their scales, so that the others are kept as far as they can be, and the objective
+    /// is not forgotten. `false` where there is nothing to ease, or a place that keeps all is known.
+    fn ease(&mut self, by: f64) -> bool {
+        let view = &mut self.search.view;
+        if self.left.is_some() || view.violation.is_some() {
+            return false;
+        }
+        view.eased.resize(view.problem.constraints(), None);
+        let conflict = self.conflicts.last().into_iter().flatten();
+        let new: Vec<usize> = conflict
+            .map(|(constraint, _)| *constraint)
+            .filter(|constraint| !view.is_eased(*constraint))
+            .collect();
+        for constraint in &new {
+            view.eased[*constraint] = Some(by * self.search.sizes.constraints[*constraint]);
+        }
+        let place = self.search.at(self.place.design.clone());
+        let Some(place) = place.filter(|_| !new.is_empty()) else {
+            return false;
+        };
+        self.place = place;
+        self.restorations = 0;
+        self.weight = WEIGHT;
+        self.renew();
+        true
     }
 
     /// This end where the constraints are kept; otherwise first the least violation is looked for.
@@ -397,7 +446,7 @@ impl<'a> Descent<'a> {
         match self.left.take() {
             Some(left) if !(kept && value < left.place.evaluation.largest()) => {
                 (self.place, self.curvature) = (left.place, left.curvature);
-                self.conflict.clear();
+                self.conflicts.clear();
                 match ended {
                     Ended::Stopped | Ended::Budget => ended,
                     _ => left.ended,
@@ -411,7 +460,16 @@ impl<'a> Descent<'a> {
     pub fn end(self, ended: Ended) -> Optimum {
         let least = self.search.view.least();
         let (size, feasibility) = (self.search.sizes.objective, self.options.feasibility);
+        let (view, sizes) = (self.search.view.clone(), self.search.sizes.clone());
         let mut found = self.without_least(ended);
+        if !found.conflicts.is_empty() {
+            found.evaluation = view.not_eased(found.evaluation);
+            found.violation = scaled(&found.evaluation, &sizes).1.max(0.0);
+            if found.ended != Ended::Stopped {
+                found.ended = Ended::Infeasible;
+            }
+            return found;
+        }
         let reached = found.violation <= feasibility
             && found.evaluation.is_defined()
             && found.objective() - least <= LEAST * size;
@@ -470,28 +528,25 @@ impl<'a> Descent<'a> {
             .map_or(f64::INFINITY, |(residual, _)| *residual);
         let kept = self.place.violation <= self.options.feasibility;
         let ended = match ended {
-            Ended::Stuck if kept && residual <= self.options.optimality => Ended::Converged,
-            Ended::Stuck if kept && residual <= self.options.settled => Ended::Settled,
+            Ended::Stuck | Ended::Budget if kept && residual <= self.options.optimality => {
+                Ended::Converged
+            }
+            Ended::Stuck | Ended::Budget if kept && residual <= self.options.settled => {
+                Ended::Settled
+            }
             ended => ended,
         };
-        let residual = match ended {
-            Ended::Infeasible => self.missed,
-            _ => residual,
-        };
-        let shares = best.filter(|_| ended != Ended::Infeasible);
-        let shares = shares.map(|(_, minimum)| minimum.multipliers);
+        let shares = best.map(|(_, minimum)| minimum.multipliers);
         let multipliers =
             self.place
                 .multipliers(shares.as_deref(), &self.search.sizes, &self.search.space);
-        self.conflict
-            .sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
         Optimum {
             design: self.place.design,
             evaluation: self.place.evaluation,
             multipliers,
             residual,
             violation: self.place.violation,
-            conflict: self.conflict,
+            conflicts: self.conflicts,
             scales: self.scales,
             iterations: self.iterations,
             evaluations: self.search.evaluations,

@@ -18,7 +18,7 @@ fn solve<const N: usize>(name: &str, case: &Case<N>, start: [f64; N]) -> Optimum
         found.slopes,
         found.ended,
         found.design,
-        found.conflict
+        found.conflicts
     );
     found
 }
@@ -176,16 +176,39 @@ fn a_conflict_is_named() {
         "{:?}",
         found.design
     );
-    let mut names: Vec<usize> = found
-        .conflict
+    assert_eq!(found.conflicts.len(), 1);
+    let mut names: Vec<usize> = found.conflicts[0]
         .iter()
         .filter(|c| c.1 > 1e-6)
         .map(|c| c.0)
         .collect();
     names.sort_unstable();
     assert_eq!(names, [0, 2]);
-    let shares: f64 = found.conflict.iter().map(|c| c.1).sum();
+    let shares: f64 = found.conflicts[0].iter().map(|c| c.1).sum();
     assert!((shares - 1.0).abs() < 1e-9);
+}
+
+/// What can be kept beside a conflict is kept, each conflict is named by itself, and the objective is the least that is left.
+#[test]
+fn what_need_not_be_missed_is_not() {
+    let case = Case::<3>::smooth(cube(3, 0.0, 10.0), 4, |[x, y, z]| {
+        let limits = vec![-*x + 12.0, -*y + 7.0, *y - 6.0, *z - 3.0];
+        ((*z - 5.0).square() - *x, limits)
+    });
+    for start in [[5.0, 5.0, 3.0], [0.0, 0.0, 0.0], [9.0, 1.0, 10.0]] {
+        let found = solve("two conflicts", &case, start);
+        assert_eq!(found.ended, Ended::Infeasible);
+        let [x, y, z] = [0, 1, 2].map(|k| found.design[k]);
+        assert!((x - 10.0).abs() < 1e-6 && (z - 3.0).abs() < 1e-6, "{x} {z}");
+        assert!((6.0..=7.0).contains(&y), "{y}");
+        let names: Vec<Vec<usize>> = (found.conflicts.iter())
+            .map(|group| group.iter().map(|c| c.0).collect())
+            .collect();
+        let mut pair = names[1].clone();
+        pair.sort_unstable();
+        assert_eq!((&names[0][..], &pair[..]), (&[0][..], &[1, 2][..]));
+        assert!((found.evaluation.constraints[0] - 2.0).abs() < 1e-6);
+    }
 }
 
 /// Constraints that cannot be kept even by their linear parts.
@@ -196,7 +219,7 @@ fn rows_that_conflict_are_named() {
     });
     let found = solve("rows", &case, [0.9, 0.1]);
     assert_eq!(found.ended, Ended::Infeasible);
-    let names: Vec<usize> = found.conflict.iter().map(|c| c.0).collect();
+    let names: Vec<usize> = found.conflicts[0].iter().map(|c| c.0).collect();
     assert_eq!(names.len(), 2);
     assert!(names.contains(&0) && names.contains(&1));
 }
@@ -456,7 +479,7 @@ fn a_place_of_rest_is_left_for_a_better_one_only() {
             (f, vec![c - room])
         });
         let found = solve("waves", &case, [0.0; 3]);
-        let told = found.conflict.is_empty() && found.ended != Ended::Infeasible;
+        let told = found.conflicts.is_empty() && found.ended != Ended::Infeasible;
         assert!(
             told && found.violation <= 1e-9 && found.objective() <= 0.0,
             "{waves:?} {room} {found:?}"

@@ -477,7 +477,7 @@ fn any_study_is_swept_as_it_runs_alone() {
         let text = text.replace("P = [25, 10] }", &format!("P = [25, 10], {heavy}"));
         let text = text.replace("D-C = 40 }", &format!("D-C = 40, {heavy}"));
         format!(
-            "{text}{WHOLE}[clearance]\nC = {{ radial = \"play\", radius = \"5 mm\", restitution = 0.5 }}\n{sweep}"
+            "{text}{WHOLE}[friction]\nB = {{ coefficient = 0.1, radius = \"3 mm\" }}\n[clearance]\nC = {{ radial = \"play\", radius = \"5 mm\", restitution = 0.5 }}\n{sweep}"
         )
     };
     let read = |text: &str| {
@@ -485,6 +485,7 @@ fn any_study_is_swept_as_it_runs_alone() {
         read.unwrap_or_else(|found| panic!("{}", rendered(&found)))
             .model
     };
+    let mut warned = 0;
     for (k, over) in ["worn", "rattle", "round", "set"].into_iter().enumerate() {
         let sweep = format!(
             "[studies.some]\nkind = \"sweep\"\nover = \"{over}\"\nvary = {{ a = [19, 21], play = [\"20 um\", \"60 um\"] }}\n"
@@ -514,6 +515,13 @@ fn any_study_is_swept_as_it_runs_alone() {
                 );
             }
         }
+        let own = read(&text(20.0, 50.0, ""));
+        let own = run(&own, &own.studies[1 + k], &mut Silent).unwrap();
+        for told in &own.diagnostics {
+            let mut all = swept.diagnostics.iter();
+            assert!(all.any(|d| d.message == told.message), "{over}: {told:?}");
+        }
+        warned += own.diagnostics.len();
         // From its parts the same again.
         let again = run_in_parts(&model, study, (&Serial, &mut parts), &mut Silent);
         assert_eq!(swept.table, again.expect("a sweep").table, "{over}");
@@ -525,6 +533,7 @@ fn any_study_is_swept_as_it_runs_alone() {
         let refused = refused.expect_err("refused");
         assert!(refused.iter().any(|d| d.code == "bad-choice"), "{over}");
     }
+    assert!(warned > 0);
 }
 
 /// What tells no numbers is swept by what its rows come to.

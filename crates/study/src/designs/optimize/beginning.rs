@@ -26,7 +26,7 @@ pub(super) struct Missed {
     /// Sizes of objectives and constraints.
     pub scales: Scales,
     /// Which limits keep the violation from being less, and their shares; none where that is not known.
-    pub conflict: Vec<(usize, f64)>,
+    pub conflicts: Vec<Vec<(usize, f64)>>,
 }
 
 /// Finds them, where there are catalogues with their values. `left` says how many designs may be tried yet.
@@ -69,14 +69,14 @@ pub(super) fn beginning(
             found.members.extend(kept.into_iter().map(candidate));
         } else {
             how += "; no design keeps all limits, this one comes nearest";
-            let mut conflict = Vec::new();
+            let mut conflicts = Vec::new();
             if let Some(nearest) = nearest.into_iter().next() {
-                (found.scales, conflict) = (nearest.scales.clone(), nearest.conflict.clone());
+                (found.scales, conflicts) = (nearest.scales.clone(), nearest.conflicts.clone());
                 found.members = vec![candidate(nearest)];
             }
             missed = Some(Missed {
                 scales: found.scales.clone(),
-                conflict,
+                conflicts,
             });
         }
     }

@@ -318,7 +318,7 @@ pub(super) fn plain(design: Vec<f64>, evaluation: Evaluation, violation: f64) ->
         multipliers: Multipliers::default(),
         residual: f64::NAN,
         violation,
-        conflict: Vec::new(),
+        conflicts: Vec::new(),
         scales: Scales::default(),
         iterations: 0,
         evaluations: 0,

@@ -181,7 +181,7 @@ fn some_without(question: &Question<'_>, table: &Table) -> Vec<Diagnostic> {
     let (rows, unreached) = (table.rows(), table.unreached());
     let numbers = table.columns.iter().skip(table.places);
     let missing = numbers.map(|column| {
-        let without = column.values.iter().filter(|x| !x.is_finite()).count();
+        let without = column.values.iter().filter(|x| x.is_nan()).count();
         (&column.name, without.saturating_sub(unreached))
     });
     missing

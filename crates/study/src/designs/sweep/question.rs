@@ -36,7 +36,7 @@ pub(super) struct Question<'m> {
     pub designs: Designs,
     pub bench: Bench<'m>,
     /// What is known of a study that is run as a whole.
-    whole: Option<Whole>,
+    pub whole: Option<Whole>,
     pub units: Units,
     /// The rows of the study that is run, where it says so itself.
     along: &'m MotionStudy,

@@ -33,9 +33,10 @@ impl Own {
     /// Asks the file's own design.
     pub fn of(question: &Question<'_>) -> Self {
         let bench = &question.bench;
+        // A study that is run as a whole tells what it tells alone.
         let none = || Self {
             sloped: Vec::new(),
-            told: Vec::new(),
+            told: (question.whole.as_ref()).map_or(Vec::new(), |whole| whole.told.clone()),
         };
         if !question.has_derivatives() {
             return none();

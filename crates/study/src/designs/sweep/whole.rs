@@ -17,6 +17,8 @@ use crate::vibrations::numbers_of_modes;
 pub(super) struct Whole {
     /// Its numbers, without values.
     pub numbers: Vec<Column>,
+    /// What is to be told of it.
+    pub told: Vec<Diagnostic>,
     /// Its table, without rows.
     pub table: Table,
     /// How many rows it has.
@@ -48,6 +50,7 @@ impl Whole {
         let numbers = numbers_of(model, over, &own).into_iter();
         let numbers = numbers.map(|s| Column::new(s.name, s.unit));
         let numbers: Vec<Column> = numbers.collect();
+        let told = own.diagnostics;
         let rows = own.table.rows();
         let table = without_rows(own.table);
         let place = |name: &str| table.columns.iter().position(|c| c.name == name);
@@ -71,6 +74,7 @@ impl Whole {
             along: own.along,
             plots,
             curves,
+            told,
             table,
         })
     }

@@ -12,6 +12,7 @@ use super::{Limited, Ready};
 use crate::designs::valueless;
 use crate::quantity::Quantity;
 use crate::result::{Figure, Listing, Scalar, StudyResult};
+use crate::sensitivities::unit_per;
 use crate::table::Column;
 use crate::unit::{SHORT_DIGITS, Units, shown};
 
@@ -394,12 +395,7 @@ impl Teller<'_, '_> {
             };
             let slope = source.slope(&it.linear.slope);
             let per = it.difference(slope) / (unit.from_si(1.0) - unit.from_si(0.0));
-            let per_unit = match (it.unit.text(), unit.text()) {
-                ("", "") => String::new(),
-                (a, "") => a.to_owned(),
-                ("", b) => format!("1/{b}"),
-                (a, b) => format!("{a}/{b}"),
-            };
+            let per_unit = unit_per(&it.unit, &unit);
             let alone = source.deviation(&it.linear.slope);
             vec![
                 self.ready.names[k].clone(),

@@ -99,7 +99,7 @@ impl Teller<'_, '_> {
         });
         if let (Some(missed), Some(nearest)) = (&front.missed, front.points.first()) {
             let least = (&nearest.evaluation, &missed.scales);
-            let told = self.infeasible(least, &missed.conflict);
+            let told = self.infeasible(least, &missed.conflicts);
             result.diagnostics.push(told);
         } else if front.has_conditions && optimal == 0 && !front.stopped {
             let message = format!(

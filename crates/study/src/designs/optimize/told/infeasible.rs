@@ -6,16 +6,13 @@ use kempe_optimize::{Evaluation, Scales};
 use super::{KEPT, Teller};
 use crate::words::list;
 
-/// A limit with less than this share in what keeps the violation from being less has none.
-const SHARE: f64 = 1e-6;
-
 impl Teller<'_, '_> {
     /// By how much the design that misses them least misses the limits, in these scales, and which of them contradict each other there, by
     /// their shares.
     pub(super) fn infeasible(
         &self,
         (least, scales): (&Evaluation, &Scales),
-        conflict: &[(usize, f64)],
+        conflicts: &[Vec<(usize, f64)>],
     ) -> Diagnostic {
         let limits = self.study.subject_to.iter().enumerate();
         let missed = limits.filter_map(|(k, limit)| {
@@ -36,14 +33,15 @@ impl Teller<'_, '_> {
                 "the least violation that was reached: {}",
                 list(&missed)
             ));
-        let holding = conflict.iter().filter(|(_, share)| *share > SHARE);
-        let names = holding.filter_map(|(k, _)| {
-            let limit = self.study.subject_to.get(*k)?;
-            Some(format!("`{}`", limit.condition.text))
-        });
-        let names: Vec<String> = names.collect();
-        if names.len() > 1 {
-            told = told.note(format!("there {} contradict each other", list(&names)));
+        for conflict in conflicts {
+            let names = conflict.iter().filter_map(|(k, _)| {
+                let limit = self.study.subject_to.get(*k)?;
+                Some(format!("`{}`", limit.condition.text))
+            });
+            let names: Vec<String> = names.collect();
+            if names.len() > 1 {
+                told = told.note(format!("there {} contradict each other", list(&names)));
+            }
         }
         told.help("ask for less of one of them, or widen the bounds")
     }

@@ -5,7 +5,7 @@ mod front;
 mod infeasible;
 mod one;
 
-use kempe_model::{Diagnostic, Model, OptimizeStudy, Severity, StudyKind};
+use kempe_model::{Diagnostic, Model, OptimizeMethod, OptimizeStudy, Severity, StudyKind};
 use kempe_motion::progress::Silent;
 use kempe_optimize::{Evaluation, Optimum};
 use kempe_units::Unit;
@@ -114,10 +114,16 @@ impl<'b, 'm> Teller<'b, 'm> {
 
     /// No design can be asked at all.
     fn nothing(&self, problem: &Designs<'_, '_>) -> Diagnostic {
-        let message = format!(
-            "no design within the bounds of study `{}` has all its numbers",
-            self.name
-        );
+        let message = match self.study.method {
+            Some(OptimizeMethod::Local) => format!(
+                "the design that study `{}` begins with has not all its numbers",
+                self.name
+            ),
+            _ => format!(
+                "no design within the bounds of study `{}` has all its numbers",
+                self.name
+            ),
+        };
         let mut error =
             Diagnostic::error("no-answer", message).at(self.study.over.span.clone(), "");
         if let Some(nearest) = problem.nearest() {
@@ -137,6 +143,11 @@ impl<'b, 'm> Teller<'b, 'm> {
                 list(&values),
                 nearest.why
             ));
+        }
+        if self.study.method == Some(OptimizeMethod::Local) {
+            return error.help(
+                "`local` goes downhill from the file's own design: let that move as asked, or take another `method`",
+            );
         }
         error.help(
             "give bounds between which the mechanism can be assembled, goes all the way, and what is asked of it has a finite value",

@@ -214,7 +214,7 @@ impl Teller<'_, '_> {
         let mut found = Vec::new();
         if best.violation > KEPT {
             let least = (&told.evaluation, &best.scales);
-            found.push(self.infeasible(least, &best.conflict));
+            found.push(self.infeasible(least, &best.conflicts));
         } else if !best.ended.is_optimal() && best.ended != Ended::Stopped {
             let mut told = Diagnostic::warning(
                 "not-converged",
