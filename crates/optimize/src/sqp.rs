@@ -86,7 +86,7 @@ pub struct Optimum {
     pub multipliers: Multipliers,
     /// How far the first-order conditions (W. Karush 1939, H. W. Kuhn and A. W. Tucker 1951) are missed: the largest component of the
     /// Lagrangian's slope over the box's width, or the multipliers times what their pieces are below the largest, in the
-    /// objective's scale. Where [`Ended::Infeasible`], the same.
+    /// objective's scale. Where [`Ended::Infeasible`], those of the least violations.
     pub residual: f64,
     /// The largest violation of a constraint, in its scale.
     pub violation: f64,

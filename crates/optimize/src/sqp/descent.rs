@@ -74,6 +74,8 @@ pub(crate) struct Descent<'a> {
     restoring: Option<(Box<Descent<'a>>, Option<Ended>)>,
     /// Constraints that contradict each other, with their shares, and others that do where these are eased.
     conflicts: Vec<Vec<(usize, f64)>>,
+    /// How far the conditions of the least violations are missed.
+    missed: f64,
     scales: Scales,
 }
 
@@ -148,6 +150,7 @@ impl<'a> Descent<'a> {
             restorations: 0,
             restoring: None,
             conflicts: Vec::new(),
+            missed: 0.0,
             scales,
         })
     }
@@ -392,6 +395,7 @@ impl<'a> Descent<'a> {
             ended if ended.is_optimal() => {
                 self.conflicts
                     .push(view.conflict(&found.design, &found.multipliers));
+                self.missed = self.missed.max(found.residual);
                 match self.ease(found.objective()) {
                     true => then,
                     false => Some(Ended::Infeasible),
@@ -419,6 +423,8 @@ impl<'a> Descent<'a> {
         for constraint in &new {
             view.eased[*constraint] = Some(by * self.search.sizes.constraints[*constraint]);
         }
+        // What it was worth where less was eased.
+        self.search.bare = None;
         let place = self.search.at(self.place.design.clone());
         let Some(place) = place.filter(|_| !new.is_empty()) else {
             return false;
@@ -460,13 +466,17 @@ impl<'a> Descent<'a> {
     pub fn end(self, ended: Ended) -> Optimum {
         let least = self.search.view.least();
         let (size, feasibility) = (self.search.sizes.objective, self.options.feasibility);
-        let (view, sizes) = (self.search.view.clone(), self.search.sizes.clone());
+        let (view, sizes, missed) = (
+            self.search.view.clone(),
+            self.search.sizes.clone(),
+            self.missed,
+        );
         let mut found = self.without_least(ended);
         if !found.conflicts.is_empty() {
             found.evaluation = view.not_eased(found.evaluation);
             found.violation = scaled(&found.evaluation, &sizes).1.max(0.0);
             if found.ended != Ended::Stopped {
-                found.ended = Ended::Infeasible;
+                (found.ended, found.residual) = (Ended::Infeasible, missed);
             }
             return found;
         }
