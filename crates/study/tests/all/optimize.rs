@@ -445,6 +445,40 @@ fn an_optimum_at_a_change_point_says_so() {
     assert!(told(&result).contains("the best moves through a change point"));
 }
 
+/// The largest of several numbers by a formula, in a goal and in a limit: the optimum is where they are equally large, and shown to be one.
+#[test]
+fn kinks_of_formulas_are_followed() {
+    let vary = "vary = { a = ['15 mm', '30 mm'], b = ['45 mm', '60 mm'] }\nmethod = 'local'\n";
+    let least = best(&format!(
+        "{vary}minimize = 'max(a + b - 70 mm, 24 mm - a, 2 * (52 mm - b))'\n"
+    ));
+    let signed = best(&format!(
+        "{vary}maximize = '5 mm - max(a + b - 70 mm, 24 mm - a, 2 * (52 mm - b)) / 2'\n"
+    ));
+    for found in [least, signed] {
+        assert!(found.diagnostics.is_empty(), "{:?}", found.diagnostics);
+        assert!(
+            (number(&found, "a") - 21.6).abs() < 1e-6 && (number(&found, "b") - 50.8).abs() < 1e-6
+        );
+    }
+    // The swing that the size of a difference lets through, found at its corner.
+    let limited = best(&format!(
+        "{vary}maximize = 'play'\nsubject_to = 'abs(a - 20 mm) + abs(b - 52 mm) <= 3 mm'\n"
+    ));
+    assert!(limited.diagnostics.is_empty(), "{:?}", limited.diagnostics);
+    let (a, b) = (number(&limited, "a"), number(&limited, "b"));
+    assert!(
+        ((a - 20.0).abs() + (b - 52.0).abs() - 3.0).abs() < 1e-6,
+        "{a} {b}"
+    );
+    let corners = [(17.0, 52.0), (23.0, 52.0), (20.0, 49.0), (20.0, 55.0)];
+    let most = corners
+        .iter()
+        .map(|(a, b)| swing(*a, *b))
+        .fold(0.0, f64::max);
+    assert!(number(&limited, "play") >= most - 1e-6, "{a} {b}");
+}
+
 /// With few designs a front has points that are nowhere near an optimum.
 #[test]
 fn a_front_without_an_optimal_point_warns() {

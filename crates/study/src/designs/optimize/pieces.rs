@@ -3,7 +3,7 @@
 //! The greatest value over a motion has a kink wherever another peak becomes the greatest, and an optimum often lies just there: of two
 //! peaks neither can be lowered without the other rising. Who descends must know both. A number with one `max` or `min` in it is, at
 //! each local peak, the measure inside put in its place; a `range` is what a peak lies above a valley. Between two values of the parameters both move
-//! smoothly.
+//! smoothly. The largest of several numbers, as a formula has it, has such kinks, too: all of them are pieces.
 
 use std::sync::Arc;
 
@@ -12,6 +12,7 @@ use kempe_mechanism::Mechanism;
 use kempe_model::{Leaf, Measure, Model, Statistic};
 use kempe_motion::{Motion, Silent};
 use kempe_optimize::Piece;
+use kempe_units::Builtin;
 
 use crate::columns::is_of_whole_motion;
 use crate::designs::bench::{Bench, Refused};
@@ -29,6 +30,8 @@ const ROUNDS: usize = 12;
 /// Two peaks that differ by these parts of their value and of their slope are one.
 const SAME: f64 = 1e-5;
 const SAME_SLOPE: f64 = 1e-2;
+/// A number that is the largest of more than so many by its formula is not parted into these.
+const MOST_PARTS: usize = 32;
 /// Measures that name others more often than this are not looked into.
 pub(super) const MOST_LEAVES: usize = 200;
 
@@ -37,6 +40,14 @@ pub(super) struct Wanted {
     pub number: Quantity,
     /// 1 where it is to be small as it is, -1 where it is to be large.
     pub sign: f64,
+    /// The numbers of which it is the largest by its formula; itself where it is of none.
+    parts: Vec<Part>,
+}
+
+/// A number of which another is the largest.
+struct Part {
+    number: Quantity,
+    sign: f64,
     /// What it is made of at instants, where that is known.
     inner: Option<Inner>,
 }
@@ -58,18 +69,24 @@ enum Kind {
 
 impl Wanted {
     pub fn new(mechanism: &Mechanism, number: Quantity, sign: f64) -> Self {
-        let inner = inner(mechanism, &number.measure, sign).map(|(measure, kind)| Inner {
-            measure: Quantity {
-                name: number.name.clone(),
-                measure,
-                dimension: number.dimension,
-            },
-            kind,
-        });
+        let parts = largest_of(&mechanism.model, &number.measure, sign).into_iter();
+        let named = |measure: Measure| Quantity {
+            name: number.name.clone(),
+            measure,
+            dimension: number.dimension,
+        };
+        let part = |(measure, sign): (Measure, f64)| Part {
+            inner: inner(mechanism, &measure, sign).map(|(measure, kind)| Inner {
+                measure: named(measure),
+                kind,
+            }),
+            number: named(measure),
+            sign,
+        };
         Self {
+            parts: parts.map(part).collect(),
             number,
             sign,
-            inner,
         }
     }
 }
@@ -94,6 +111,71 @@ pub(super) fn written_out(model: &Model, measure: &Measure, left: &mut usize) ->
         }
     });
     whole.then_some(out)
+}
+
+/// Numbers, each with its sign, of which one times its sign is the largest by its formula, as `max(a, b)`, `abs(a)` and sums of these are: where two are equally
+/// large it has a kink. Where there is none, or there are too many, it alone.
+fn largest_of(model: &Model, measure: &Measure, sign: f64) -> Vec<(Measure, f64)> {
+    let out = written_out(model, measure, &mut { MOST_LEAVES });
+    let parts = out.map_or(Vec::new(), |out| parted(&out, sign));
+    match (2..=MOST_PARTS).contains(&parts.len()) {
+        true => parts,
+        false => vec![(measure.clone(), sign)],
+    }
+}
+
+fn parted(measure: &Measure, sign: f64) -> Vec<(Measure, f64)> {
+    let of = |part: &Measure, sign: f64| parted(part, sign);
+    let sum = |a: Vec<(Measure, f64)>, b: Vec<(Measure, f64)>| -> Vec<(Measure, f64)> {
+        if a.len() * b.len() == 1 || a.len() * b.len() > MOST_PARTS {
+            return vec![(measure.clone(), sign)];
+        }
+        let signed = |(part, own): &(Measure, f64)| match *own == sign {
+            true => Box::new(part.clone()),
+            false => Box::new(Measure::Neg(Box::new(part.clone()))),
+        };
+        let pairs = a.iter().flat_map(|a| b.iter().map(move |b| (a, b)));
+        pairs
+            .map(|(a, b)| (Measure::Add(signed(a), signed(b)), sign))
+            .collect()
+    };
+    match measure {
+        Measure::Call(Builtin::Max, all) if sign > 0.0 => {
+            all.iter().flat_map(|part| of(part, sign)).collect()
+        }
+        Measure::Call(Builtin::Min, all) if sign < 0.0 => {
+            all.iter().flat_map(|part| of(part, sign)).collect()
+        }
+        Measure::Call(Builtin::Abs, all) if sign > 0.0 => {
+            let signs = all.iter().flat_map(|part| [(part, 1.0), (part, -1.0)]);
+            signs.flat_map(|(part, sign)| of(part, sign)).collect()
+        }
+        Measure::Neg(part) => of(part, -sign),
+        Measure::Add(a, b) => sum(of(a, sign), of(b, sign)),
+        Measure::Sub(a, b) => sum(of(a, sign), of(b, -sign)),
+        Measure::Mul(a, b) => match (a.as_constant(), b.as_constant()) {
+            (Some(k), _) => scaled(k, b, sign),
+            (_, Some(k)) => scaled(k, a, sign),
+            _ => vec![(measure.clone(), sign)],
+        },
+        Measure::Div(a, b) => match b.as_constant() {
+            Some(k) => scaled(1.0 / k, a, sign),
+            None => vec![(measure.clone(), sign)],
+        },
+        _ => vec![(measure.clone(), sign)],
+    }
+}
+
+/// The parts of a number so many times as large.
+fn scaled(factor: f64, measure: &Measure, sign: f64) -> Vec<(Measure, f64)> {
+    let parts = parted(measure, sign * factor.signum()).into_iter();
+    let size = Measure::Const(factor.abs());
+    parts
+        .map(|(part, sign)| {
+            let both = Measure::Mul(Box::new(size.clone()), Box::new(part));
+            (both, sign)
+        })
+        .collect()
 }
 
 /// What a number is made of at instants: its measure with what stands in its one `max` or `min`, or in its `range`.
@@ -140,6 +222,18 @@ fn inner(mechanism: &Mechanism, measure: &Measure, sign: f64) -> Option<(Measure
 pub(super) fn pieces(
     bench: &Bench<'_>,
     wanted: &[Wanted],
+    values: &[f64],
+) -> Result<Vec<Vec<Piece>>, Refused> {
+    let parts: Vec<&Part> = wanted.iter().flat_map(|w| &w.parts).collect();
+    let mut found = pieces_of(bench, &parts, values)?.into_iter();
+    let own = |w: &Wanted| found.by_ref().take(w.parts.len()).flatten().collect();
+    Ok(wanted.iter().map(own).collect())
+}
+
+/// The same of parts.
+fn pieces_of(
+    bench: &Bench<'_>,
+    wanted: &[&Part],
     values: &[f64],
 ) -> Result<Vec<Vec<Piece>>, Refused> {
     let motion = bench.motion(values, &mut Silent)?;
@@ -240,7 +334,7 @@ struct Peak {
 fn peaks(
     bench: &Bench<'_>,
     motion: &Arc<Motion>,
-    wanted: &[Wanted],
+    wanted: &[&Part],
     inner: &[(usize, &Inner)],
     exact: &[Vec<Piece>],
 ) -> Result<Vec<Peak>, Refused> {
