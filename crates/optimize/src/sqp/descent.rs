@@ -420,13 +420,19 @@ impl<'a> Descent<'a> {
             .map(|(constraint, _)| *constraint)
             .filter(|constraint| !view.is_eased(*constraint))
             .collect();
+        if new.is_empty() {
+            return false;
+        }
         for constraint in &new {
             view.eased[*constraint] = Some(by * self.search.sizes.constraints[*constraint]);
         }
         // What it was worth where less was eased.
         self.search.bare = None;
-        let place = self.search.at(self.place.design.clone());
-        let Some(place) = place.filter(|_| !new.is_empty()) else {
+        let Some(place) = self.search.at(self.place.design.clone()) else {
+            // The place at hand is worth what it was before.
+            for constraint in &new {
+                self.search.view.eased[*constraint] = None;
+            }
             return false;
         };
         self.place = place;
