@@ -128,11 +128,7 @@ pub fn sensitivities_at<F: ForceSource, G: ForceSource<Varying>>(
         }
     };
     let mut all: Vec<Sensitivities> = held.iter().map(|held| empty(held, &sampler)).collect();
-    // Without parameters the values are still wanted.
-    let chunks = parameters
-        .chunks(CHUNK)
-        .chain(parameters.is_empty().then_some(parameters));
-    for chunk in chunks {
+    for chunk in parameters.chunks(CHUNK) {
         let values = varied_parameters(motion, chunk);
         let forces = varying(&values);
         let mut varied = Varied::new(motion, &mut sampler, &values, forces);
