@@ -20,6 +20,9 @@ const SHOWN: [f64; ORDER] = [0.5, 0.25, 0.05, 5e-3, 1e-4];
 const FIRST: usize = 48;
 /// A measure counts at least as this part of what it could be at most.
 const UNSEEN: f64 = 1e-9;
+/// A measure no larger than so many times the rounding of what it is made of is zero but for rounding: it counts as
+/// so many times that rounding, a millionth of what it is made of.
+const ROUNDING: [f64; 2] = [1e3, 1e9];
 /// Halvings of an interval at most, and of the whole motion: what is narrower still is a pole, a jump or a kink, and nearer to
 /// it the bounds of poses are rounding.
 const HALVINGS: [i32; 2] = [36, 40];
@@ -35,10 +38,12 @@ pub(super) struct Resolution {
     known: Vec<usize>,
     /// Which measures have no jump and no kink.
     smooth: Vec<bool>,
-    /// The size of every measure.
+    /// The size of every measure, as far as samples tell.
     size: Vec<f64>,
     /// What it can be at most, seen from afar: near a pole it grows no more.
     most: Vec<f64>,
+    /// What rounding makes of it.
+    rounding: Vec<f64>,
     /// Whether samples would have had to be put in for it when there were no more.
     open: Vec<bool>,
     budget: usize,
@@ -95,6 +100,7 @@ impl Resolution {
         let mut it = Self {
             size: vec![0.0; own.len()],
             most: vec![0.0; own.len()],
+            rounding: vec![0.0; own.len()],
             open: vec![false; own.len()],
             known,
             smooth,
@@ -127,6 +133,10 @@ impl Resolution {
                     take_up(size, value.coefficient(0));
                 }
                 let now = sampler.keep(&self.between);
+                let alone = sampler.bounds(&self.between, &now, &now);
+                for (rounding, bounds) in self.rounding.iter_mut().zip(&alone) {
+                    take_up(rounding, bounds.coefficient(0).width());
+                }
                 if let Some(before) = &before {
                     let bounds = sampler.bounds(&self.between, before, &now);
                     for (most, bounds) in self.most.iter_mut().zip(&bounds) {
@@ -136,10 +146,18 @@ impl Resolution {
                 before = Some(now);
             }
         }
-        for (size, most) in self.size.iter_mut().zip(&mut self.most) {
+        for (size, most) in self.size.iter().zip(&mut self.most) {
             *most = most.max(*size);
-            *size = size.max(UNSEEN * *most);
         }
+    }
+
+    /// The size that changes of a measure are held against.
+    fn size_of(&self, index: usize) -> f64 {
+        let [zero, seen] = ROUNDING.map(|times| times * self.rounding[index]);
+        let least = UNSEEN * self.most[index];
+        let size = self.size[index];
+        let least = if size <= zero { least.max(seen) } else { least };
+        size.max(least)
     }
 
     /// Takes up a value of a measure as its size.
@@ -186,7 +204,7 @@ impl Resolution {
         let is_open = |index: usize, bounds: &Series<Interval>| {
             let mut power = 1.0;
             // Beside a pole a measure counts as what it is there, and no more than from afar elsewhere.
-            let size = self.size[index].max(bounds.coefficient(0).mig());
+            let size = self.size_of(index).max(bounds.coefficient(0).mig());
             (0..self.known[index]).any(|k| {
                 let change = bounds.coefficient(k).width() * power;
                 power *= width;

@@ -268,3 +268,17 @@ fn measures_that_name_each_other_twice_are_looked_at_once() {
         "{value} {notes:?}"
     );
 }
+
+/// What is zero but for rounding changes by nothing that anyone could look at more closely.
+#[test]
+fn what_is_zero_but_for_rounding_is_not_looked_at_closely() {
+    let found = numbers(
+        &crank_rocker(
+            "a = \"max(distance(A, B) - 1 m)\"\nb = \"range(distance(C, D) - 2 m)\"\n",
+        )
+        .must_move(),
+    );
+    for (value, notes) in &found[..2] {
+        assert!(value.abs() < 1e-14 && notes.is_empty(), "{found:?}");
+    }
+}
