@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
-use kempe_study::{Done, Progress, Stage};
+use kempe_study::{Done, Progress, Stage, Watch};
 
 use crate::interrupt;
 
@@ -80,6 +80,10 @@ impl Progress for Bar {
     fn found(&mut self, best: &str) {
         best.clone_into(&mut self.best);
         self.say();
+    }
+
+    fn watch(&self) -> Watch {
+        Watch::new(interrupt::stopped)
     }
 
     /// Stops on Ctrl-C.

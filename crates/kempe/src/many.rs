@@ -623,10 +623,10 @@ struct AnyExecutor(usize);
 
 #[cfg(not(target_family = "wasm"))]
 impl Executor for AnyExecutor {
-    fn run(&self, tasks: Vec<Task<'_>>) {
+    fn run_heard(&self, tasks: Vec<Task<'_>>, between: &mut dyn FnMut()) {
         match self.0 {
-            1 => Serial.run(tasks),
-            threads => kempe_batch::Threads(threads).run(tasks),
+            1 => Serial.run_heard(tasks, between),
+            threads => kempe_batch::Threads(threads).run_heard(tasks, between),
         }
     }
 }

@@ -15,5 +15,5 @@ pub mod trace;
 
 pub use check::{Findings, Reach, check, check_with_progress};
 pub use motion::{Demand, EndReason, LeftDrawing, Motion, MotionError, Placed, SIZES, Solver};
-pub use progress::{Done, Progress, Silent, Stage};
+pub use progress::{Done, Progress, Silent, Stage, Watch};
 pub use stance::Stance;

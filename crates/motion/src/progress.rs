@@ -2,7 +2,9 @@
 //!
 //! Nothing here knows a clock, a thread or a terminal: whoever starts the work brings what hears it.
 
+use std::fmt;
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 /// What the work is at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -87,6 +89,46 @@ pub trait Progress {
     /// The best that was found so far, in words; told before [`reached`](Self::reached), and only where it changed.
     fn found(&mut self, best: &str) {
         let _ = best;
+    }
+
+    /// What says on any thread whether to stop: work on many designs asks it in the middle of each. By default nothing does.
+    fn watch(&self) -> Watch {
+        Watch::default()
+    }
+}
+
+/// Says on any thread whether work is to stop; the default never does.
+#[derive(Clone, Default)]
+pub struct Watch(Option<Arc<dyn Fn() -> bool + Send + Sync>>);
+
+impl Watch {
+    /// Asks this, often.
+    pub fn new(stops: impl Fn() -> bool + Send + Sync + 'static) -> Self {
+        Self(Some(Arc::new(stops)))
+    }
+
+    /// Whether to stop.
+    pub fn stops(&self) -> bool {
+        self.0.as_ref().is_some_and(|stops| stops())
+    }
+}
+
+impl fmt::Debug for Watch {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("Watch").field(&self.stops()).finish()
+    }
+}
+
+impl Progress for Watch {
+    fn reached(&mut self, _: Stage, _: Done) -> ControlFlow<()> {
+        match self.stops() {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        }
+    }
+
+    fn watch(&self) -> Watch {
+        self.clone()
     }
 }
 

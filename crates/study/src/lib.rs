@@ -101,7 +101,7 @@ pub use extremes::{Extreme, Extremes, extremes, without_rounding};
 pub use figures::{MECHANISM, figures};
 pub use figures_against::figures_against;
 pub use findings::{Grashof, Group, Report as CheckReport, check, check_with_progress};
-pub use kempe_motion::progress::{Done, Progress, Silent, Stage};
+pub use kempe_motion::progress::{Done, Progress, Silent, Stage, Watch};
 pub use named::study_named;
 pub use number_notes::number_notes;
 pub use pose::{Setting, ShownPose, loaded_at, pose_at};

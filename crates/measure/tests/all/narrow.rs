@@ -273,10 +273,8 @@ fn measures_that_name_each_other_twice_are_looked_at_once() {
 #[test]
 fn what_is_zero_but_for_rounding_is_not_looked_at_closely() {
     let found = numbers(
-        &crank_rocker(
-            "a = \"max(distance(A, B) - 1 m)\"\nb = \"range(distance(C, D) - 2 m)\"\n",
-        )
-        .must_move(),
+        &crank_rocker("a = \"max(distance(A, B) - 1 m)\"\nb = \"range(distance(C, D) - 2 m)\"\n")
+            .must_move(),
     );
     for (value, notes) in &found[..2] {
         assert!(value.abs() < 1e-14 && notes.is_empty(), "{found:?}");

@@ -1,6 +1,6 @@
 //! One design after the other on the bench: moved, and asked for numbers over its motion.
 
-use std::sync::Arc;
+use std::sync::{Arc, PoisonError, RwLock};
 
 use kempe_dynamics::sensitivities_at as with_forces;
 use kempe_measure::{Held, NoForces, Sensitivities, sensitivities_at};
@@ -10,7 +10,7 @@ use kempe_model::{
 };
 use kempe_motion::circuit::Circuit;
 use kempe_motion::events::EventKind;
-use kempe_motion::{Motion, MotionError, Progress, Silent};
+use kempe_motion::{Motion, MotionError, Progress, Watch};
 
 use super::asked::knows_forces;
 use super::study_of;
@@ -65,6 +65,8 @@ pub(crate) struct Bench<'m> {
     own: Design<f64>,
     /// The motion by the file's own values, from which others are found sooner.
     first: Option<Arc<Motion>>,
+    /// What says whether the designs at hand are still wanted.
+    watch: Arc<RwLock<Watch>>,
 }
 
 impl<'m> Bench<'m> {
@@ -99,6 +101,7 @@ impl<'m> Bench<'m> {
                 numbers,
                 own,
                 first: None,
+                watch: Arc::default(),
             }),
         }
     }
@@ -115,6 +118,24 @@ impl<'m> Bench<'m> {
         let told = motion_findings(&first);
         self.first = Some(first);
         Ok(told)
+    }
+
+    /// Does work on designs, of which each stops where this says so. What is asked of designs afterwards, to tell what was found,
+    /// goes on to its end.
+    pub fn watched<T>(&self, watch: Watch, work: impl FnOnce() -> T) -> T {
+        let watch_with = |watch: Watch| {
+            *self.watch.write().unwrap_or_else(PoisonError::into_inner) = watch;
+        };
+        watch_with(watch);
+        let done = work();
+        watch_with(Watch::default());
+        done
+    }
+
+    /// What says whether the designs at hand are still wanted. What was answered when they are not may be cut short.
+    pub fn watch(&self) -> Watch {
+        let watch = self.watch.read();
+        watch.unwrap_or_else(PoisonError::into_inner).clone()
     }
 
     /// Takes over what another bench of the same model knows of the file's own motion.
@@ -268,7 +289,7 @@ impl<'m> Bench<'m> {
     ///
     /// Why it does not move as asked.
     pub fn answer(&self, values: &[f64]) -> Result<Answer, Refused> {
-        let motion = self.motion(values, &mut Silent)?;
+        let motion = self.motion(values, &mut self.watch())?;
         self.answer_of(&motion)
     }
 
@@ -279,7 +300,7 @@ impl<'m> Bench<'m> {
     /// What cannot be measured.
     pub fn answer_of(&self, motion: &Arc<Motion>) -> Result<Answer, Refused> {
         let quantities: Vec<&Quantity> = self.numbers.iter().collect();
-        let mut along = self.along(motion, &quantities, &mut Silent)?;
+        let mut along = self.along(motion, &quantities, &mut self.watch())?;
         let row = along.row(RowPlace::Drive(motion.start)).sample;
         Ok(Answer {
             numbers: row.values,
@@ -304,7 +325,7 @@ impl<'m> Bench<'m> {
     ///
     /// Why it does not move as asked.
     pub fn slopes(&self, values: &[f64]) -> Result<Vec<Sloped>, Refused> {
-        let motion = self.motion(values, &mut Silent)?;
+        let motion = self.motion(values, &mut self.watch())?;
         let measures: Vec<&Measure> = self.numbers.iter().map(|q| &q.measure).collect();
         let found = self.sensitivities(&motion, &[Held::Path(motion.start)], &measures);
         let found = found?.pop();

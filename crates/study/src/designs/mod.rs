@@ -8,6 +8,7 @@ mod bench;
 mod idle;
 mod optimize;
 mod sweep;
+mod together;
 mod tolerance;
 
 pub(crate) use asked::numbers_of;

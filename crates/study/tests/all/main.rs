@@ -40,6 +40,8 @@ mod vibrations;
 mod beside;
 #[path = "../support/bounded.rs"]
 mod bounded;
+#[path = "../support/impatient.rs"]
+mod impatient;
 #[path = "../../../model/tests/support/mutants.rs"]
 mod mutation;
 #[path = "../../../model/tests/support/read.rs"]

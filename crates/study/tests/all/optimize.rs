@@ -4,8 +4,9 @@
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 
+use crate::impatient::Impatient;
 use crate::read::read;
-use kempe_batch::{Serial, Threads};
+use kempe_batch::{Executor, Serial, Threads};
 use kempe_model::{Diagnostic, Model};
 use kempe_number::math;
 use kempe_study::{
@@ -710,6 +711,17 @@ fn a_search_goes_on_to_the_same_bytes() {
                     "{said}"
                 );
             }
+            assert!(room.parts.len() >= kept);
+            kept = room.parts.len();
+        }
+        // In the middle of a design, too.
+        for asks in [300, 3000, 30_000] {
+            let executor = Threads(2);
+            let mut patience = Impatient::after(asks);
+            let with: (&dyn Executor, &mut dyn Parts) = (&executor, &mut room);
+            let result = run_in_parts(&model, &model.studies[1], with, &mut patience);
+            let said = format!("{:?}", result.map(|it| it.listings));
+            assert_eq!(patience.is_out(), said.contains("stop"), "{said}");
             assert!(room.parts.len() >= kept);
             kept = room.parts.len();
         }

@@ -9,6 +9,7 @@
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 
+use crate::impatient::Impatient;
 use kempe_batch::{Serial, Threads};
 use kempe_model::{Diagnostic, Model};
 use kempe_study::{
@@ -349,6 +350,15 @@ fn parts_make_the_same_whole_however_they_were_computed() {
             "stopped at {stop}"
         );
         assert!(told(&model, &mut kept) == whole, "stopped at {stop}");
+    }
+    // Or in the middle of any design.
+    for asks in [40, 1000, 5000] {
+        let mut kept = Memory::default();
+        let mut until = Impatient::after(asks);
+        let partial = run_in_parts(&model, study, (&Threads(2), &mut kept), &mut until);
+        let rows = partial.map_or(0, |partial| partial.table.rows());
+        assert!(until.is_out() && rows < 100, "{rows} after {asks}");
+        assert!(told(&model, &mut kept) == whole, "stopped after {asks}");
     }
     // What is no part is computed again.
     let mut wrong = Memory::default();

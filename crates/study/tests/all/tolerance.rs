@@ -7,6 +7,7 @@
 
 use std::ops::ControlFlow;
 
+use crate::impatient::Impatient;
 use kempe_batch::{Serial, Threads};
 use kempe_model::{Diagnostic, Model};
 use kempe_study::{Done, Silent, Stage, StudyResult, check, run, run_with};
@@ -503,6 +504,17 @@ fn a_study_that_is_stopped_keeps_its_pieces() {
         scalar(&result, "max(y(P)), mean"),
         scalar(&whole, "max(y(P)), mean")
     );
+    // In the middle of a piece that is moved by itself, it is those before it.
+    let text = text.replace("[\"max(y(P))\"]", "[\"max(y(P))\", \"mean(speed(P))\"]");
+    let model = self::model(&text);
+    let mut until = Impatient::after(20_000);
+    let result = run(&model, &model.studies[1], &mut until).expect("a result");
+    let pieces = scalar(&result, "pieces");
+    assert!(result.interrupted() && (1.0..100_000.0).contains(&pieces));
+    let whole = found(&text.replace("100000", &format!("{pieces}")));
+    for name in ["max(y(P)), mean", "mean(speed(P)), mean"] {
+        assert_eq!(scalar(&result, name), scalar(&whole, name));
+    }
     // Before there is any, there is nothing.
     let mut at_once = |_: Stage, _: Done| ControlFlow::Break(());
     let refused = run(&model, &model.studies[1], &mut at_once).expect_err("nothing yet");

@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use kempe_model::Diagnostic;
+use kempe_motion::Watch;
 use kempe_optimize::{Evaluation, Piece, Slopes};
 
 use crate::designs::Parts;
@@ -44,6 +45,8 @@ pub(super) struct Journal {
     parts: usize,
     /// Whether anything is kept.
     keeps: bool,
+    /// What says whether answers may be cut short: these are not kept.
+    pub watch: Watch,
 }
 
 /// What a lock holds, whatever became of who held it.
@@ -126,7 +129,7 @@ impl Journal {
     }
 
     fn add(&self, key: Key, answer: impl FnOnce() -> Answer) {
-        if self.keeps {
+        if self.keeps && !self.watch.stops() {
             lock(&self.new).push((key, answer()));
         }
     }

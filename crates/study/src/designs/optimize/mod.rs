@@ -149,14 +149,22 @@ fn optimum(
     ];
     let alone = |failed: Box<Diagnostic>| vec![*failed];
     problem.journal = Journal::open(parts, shape).map_err(alone)?;
+    problem.journal.watch = progress.watch();
     let mut listener = Listener::new(&problem, parts, progress);
-    let found = search(&problem, study, &On(executor), &mut listener);
+    let watch = problem.journal.watch.clone();
+    let (found, cut) = bench.watched(watch, || {
+        let found = search(&problem, study, &On(executor), &mut listener);
+        (found, bench.watch().stops())
+    });
     if let Some(failed) = listener.failed {
         return Err(alone(failed));
     }
-    let Some(found) = found else {
+    let Some(mut found) = found.filter(|it| !cut || it.has_any()) else {
         return Err([diagnostics, vec![stopped(Stage::Searching)]].concat());
     };
+    if cut {
+        found.stop();
+    }
     let teller = Teller::new(&bench, &beside, study, name);
     let told = teller.result(&problem, found, diagnostics.clone());
     let mut result = told.map_err(|refused| [diagnostics, refused].concat())?;

@@ -10,7 +10,7 @@ use std::sync::Arc;
 use kempe_measure::Held;
 use kempe_mechanism::Mechanism;
 use kempe_model::{Leaf, Measure, Model, Statistic};
-use kempe_motion::{Motion, Silent};
+use kempe_motion::Motion;
 use kempe_optimize::Piece;
 use kempe_units::Builtin;
 
@@ -236,7 +236,7 @@ fn pieces_of(
     wanted: &[&Part],
     values: &[f64],
 ) -> Result<Vec<Vec<Piece>>, Refused> {
-    let motion = bench.motion(values, &mut Silent)?;
+    let motion = bench.motion(values, &mut bench.watch())?;
     let measures: Vec<&Measure> = wanted.iter().map(|w| &w.number.measure).collect();
     let exact = bench.sensitivities(&motion, &[Held::Path(motion.start)], &measures)?;
     let exact = exact.into_iter().next();
@@ -341,7 +341,7 @@ fn peaks(
     let duration =
         kempe_motion::drive_path::duration(&motion.mechanism().model, &motion.design.parameters);
     let quantities: Vec<&Quantity> = inner.iter().map(|(_, it)| &it.measure).collect();
-    let mut along = bench.along(motion, &quantities, &mut Silent)?;
+    let mut along = bench.along(motion, &quantities, &mut bench.watch())?;
     let time = |i: usize| duration * i as f64 / (INSTANTS - 1) as f64;
     let rows: Vec<Vec<f64>> = (0..INSTANTS)
         .map(|i| along.values(RowPlace::Time(time(i))))

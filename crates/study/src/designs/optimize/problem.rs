@@ -164,7 +164,7 @@ impl<'b, 'm> Designs<'b, 'm> {
         if self.wanted.len() == 1 {
             return Ok(vec![fit.seen(values)?.met.square()]);
         }
-        let motion = self.bench.motion(values, &mut kempe_motion::Silent)?;
+        let motion = self.bench.motion(values, &mut self.bench.watch())?;
         let mut numbers = self.bench.answer_of(&motion)?.numbers;
         numbers[0] = fit.seen_of(&motion)?.met.square();
         Ok(numbers)
@@ -313,6 +313,9 @@ impl Problem for Designs<'_, '_> {
         let (evaluation, why) = self
             .journal
             .evaluation(SUMS, &values, || self.look(&values));
+        if self.bench.watch().stops() {
+            return Evaluation::lacking(f64::INFINITY);
+        }
         match (why, evaluation.objectives.as_slice()) {
             (Some(why), _) => self.refuse(&values, evaluation.lack, &why),
             (None, [goal]) => {

@@ -47,6 +47,31 @@ pub(super) enum Sought {
     Front { front: Front, how: String },
 }
 
+impl Sought {
+    /// Whether any design was found that has all its numbers.
+    pub fn has_any(&self) -> bool {
+        match self {
+            Self::Optima { optima, .. } => optima.list.iter().any(|it| it.evaluation.is_defined()),
+            Self::Front { front, .. } => front.points.iter().any(|it| it.evaluation.is_defined()),
+        }
+    }
+
+    /// It was stopped in the middle of a design: what had not come to its end by itself ended there.
+    pub fn stop(&mut self) {
+        match self {
+            Self::Optima { optima, .. } => {
+                optima.stopped = true;
+                let unfinished = |it: &&mut Optimum| {
+                    matches!(it.ended, Ended::Stuck | Ended::Undefined | Ended::Budget)
+                };
+                let cut = optima.list.iter_mut().filter(unfinished);
+                cut.for_each(|it| it.ended = Ended::Stopped);
+            }
+            Self::Front { front, .. } => front.stopped = true,
+        }
+    }
+}
+
 pub(super) fn local() -> SqpOptions {
     SqpOptions {
         iterations: STEPS,

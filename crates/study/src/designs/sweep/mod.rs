@@ -36,7 +36,7 @@ pub use rows::{RowsError, write_rows};
 /// What is to be told of a sweep before its designs; `check` and `run` say the same.
 pub(crate) fn findings_of_sweep(model: &Model, name: &str, study: &SweepStudy) -> Vec<Diagnostic> {
     let begun = has_room(model, name, bytes_of_sweep(model, study))
-        .and_then(|()| Question::new(model, name, study))
+        .and_then(|()| Question::new(model, name, study, &mut Silent))
         .and_then(|question| begin(question, &mut Silent));
     begun.map_or_else(|told| told, |begun| begun.told)
 }
@@ -70,7 +70,7 @@ pub(crate) fn sweep(
     (executor, parts): (&dyn Executor, &mut dyn Parts),
     progress: &mut dyn Progress,
 ) -> Result<StudyResult, Vec<Diagnostic>> {
-    let question = Question::new(model, name, study)?;
+    let question = Question::new(model, name, study, progress)?;
     let Begun {
         question,
         own,
@@ -225,7 +225,7 @@ pub fn part_count(model: &Model, study: &Study) -> Result<Option<usize>, Vec<Dia
     let StudyKind::Sweep(asked) = &study.kind else {
         return Ok(None);
     };
-    let question = Question::new(model, &study.name, asked)?;
+    let question = Question::new(model, &study.name, asked, &mut Silent)?;
     Ok(Some(Layout::of(&question).count()))
 }
 
@@ -245,7 +245,7 @@ pub fn compute_parts(
         return Ok((true, Vec::new()));
     };
     crate::room::room_for(model, study)?;
-    let question = Question::new(model, &study.name, asked)?;
+    let question = Question::new(model, &study.name, asked, progress)?;
     let Begun { question, told, .. } = begin(question, progress)?;
     let layout = Layout::of(&question);
     for number in (0..layout.count())
@@ -266,7 +266,7 @@ pub(crate) fn bytes_of_sweep(model: &Model, study: &SweepStudy) -> Held {
     let designs = designs::Designs::new(model, study);
     let count = designs.count() as f64;
     let number = size_of::<f64>();
-    let Ok(question) = Question::new(model, "", study) else {
+    let Ok(question) = Question::new(model, "", study, &mut Silent) else {
         return Held {
             rows: 1.0,
             row: number,

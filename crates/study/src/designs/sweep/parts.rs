@@ -2,12 +2,13 @@
 
 use std::ops::Range;
 
-use kempe_batch::{Executor, Task};
+use kempe_batch::Executor;
 use kempe_model::Diagnostic;
 use kempe_motion::{Done, Progress, Stage};
 
 use super::part::{Part, designs_in_part};
-use super::question::{Answer, Question};
+use super::question::Question;
+use crate::designs::together::together;
 
 /// Numbers in the rows of all designs at most; more of them are in no file.
 const MOST_ROW_NUMBERS: f64 = (1_u64 << 29) as f64;
@@ -104,22 +105,19 @@ pub(super) fn computed(
 ) -> (Part, bool) {
     let all = question.designs.count();
     let mut part = Part::new(question, rows);
-    for first in designs.clone().step_by(TOGETHER) {
-        let own = first..(first + TOGETHER).min(designs.end);
-        let mut found: Vec<Option<Answer>> = vec![None; own.len()];
-        let tasks = found.iter_mut().zip(own.clone());
-        let tasks = tasks.map(|(slot, index)| -> Task<'_> {
-            Box::new(move || *slot = Some(question.ask(index, rows)))
-        });
-        executor.run(tasks.collect());
-        for (answer, index) in found.into_iter().zip(own.clone()) {
-            let answer = answer.unwrap_or_else(|| question.ask(index, rows));
-            part.push(question, index, answer);
-        }
-        let done = Done::Of(own.end, all);
-        if progress.reached(Stage::Rows, done).is_break() {
-            return (part, false);
-        }
-    }
-    (part, true)
+    let goes_on = question.bench.watched(progress.watch(), || {
+        let mut reached = |done| progress.reached(Stage::Rows, Done::Of(done, all));
+        designs.clone().step_by(TOGETHER).all(|first| {
+            let own = first..(first + TOGETHER).min(designs.end);
+            let mut heard = |finished| reached(first + finished);
+            let ask = |k| question.ask(first + k, rows);
+            let watch = question.bench.watch();
+            let (found, goes_on) = together(own.len(), executor, &watch, &mut heard, ask);
+            for (answer, index) in found.into_iter().zip(own.clone()) {
+                part.push(question, index, answer);
+            }
+            goes_on && reached(own.end).is_continue()
+        })
+    });
+    (part, goes_on)
 }

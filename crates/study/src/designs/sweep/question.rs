@@ -7,7 +7,7 @@ use kempe_model::{
     Diagnostic, Leaf, Model, MotionStudy, ParameterId, Plot, PointId, PoseMeasure, Severity,
     StudyKind, SweepStudy, value,
 };
-use kempe_motion::{Motion, Progress, Silent};
+use kempe_motion::{Motion, Progress};
 use kempe_units::{Dimension, Expr, Unit};
 
 use super::designs::Designs;
@@ -76,11 +76,12 @@ impl<'m> Question<'m> {
         model: &'m Model,
         name: &str,
         study: &'m SweepStudy,
+        progress: &mut dyn Progress,
     ) -> Result<Self, Vec<Diagnostic>> {
         let over = crate::designs::study_of(model, &study.over)?;
         let varied: Vec<ParameterId> = study.vary.iter().map(|it| it.parameter).collect();
         let mut whole = match is_whole(&over.kind) {
-            true => Some(Whole::new(model, over)?),
+            true => Some(Whole::new(model, over, progress)?),
             false => None,
         };
         let mut numbers = match &whole {
@@ -278,10 +279,12 @@ impl<'m> Question<'m> {
     fn asked(&self, index: usize, rows: bool) -> Result<Answer, Refused> {
         let motion = self
             .bench
-            .motion(&self.designs.values(index), &mut Silent)?;
+            .motion(&self.designs.values(index), &mut self.bench.watch())?;
         let quantities: Vec<&Quantity> = self.bench.numbers.iter().collect();
         // By themselves, so that they hang on nothing else that is asked.
-        let mut along = self.bench.along(&motion, &quantities, &mut Silent)?;
+        let mut along = self
+            .bench
+            .along(&motion, &quantities, &mut self.bench.watch())?;
         let values = along.values(RowPlace::Drive(motion.start));
         let numbers: Vec<f64> = quantities
             .iter()
@@ -343,7 +346,7 @@ impl<'m> Question<'m> {
             &quantities,
             forces,
             &places,
-            &mut Silent,
+            &mut self.bench.watch(),
         )
         .map_err(|told| Refused {
             lack: 2.0,

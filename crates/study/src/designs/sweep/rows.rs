@@ -40,7 +40,7 @@ pub fn write_rows<W: Write + Send>(
     let StudyKind::Sweep(asked) = &study.kind else {
         return Ok(false);
     };
-    let Ok(question) = Question::new(model, &study.name, asked) else {
+    let Ok(question) = Question::new(model, &study.name, asked, &mut kempe_motion::Silent) else {
         return Ok(false);
     };
     let layout = Layout::of(&question);

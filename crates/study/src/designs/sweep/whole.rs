@@ -3,7 +3,7 @@
 //! Studies of motion, forces and simulations are moved on the bench, where any measure can be asked of them; these are the rest.
 
 use kempe_model::{Diagnostic, Model, Study, StudyKind};
-use kempe_motion::Silent;
+use kempe_motion::Progress;
 
 use super::family::Drawn;
 use super::question::Answer;
@@ -45,8 +45,12 @@ impl Whole {
     ///
     /// # Errors
     /// Why it does not run.
-    pub fn new(model: &Model, over: &Study) -> Result<Self, Vec<Diagnostic>> {
-        let own = run(model, over, &mut Silent)?;
+    pub fn new(
+        model: &Model,
+        over: &Study,
+        progress: &mut dyn Progress,
+    ) -> Result<Self, Vec<Diagnostic>> {
+        let own = run(model, over, progress)?;
         let numbers = numbers_of(model, over, &own).into_iter();
         let numbers = numbers.map(|s| Column::new(s.name, s.unit));
         let numbers: Vec<Column> = numbers.collect();
@@ -93,7 +97,7 @@ impl Whole {
             return none(refused.why);
         }
         let (model, _) = bench.model_with(values);
-        let result = match run(&model, bench.over, &mut Silent) {
+        let result = match run(&model, bench.over, &mut bench.watch()) {
             Ok(result) => result,
             Err(told) => {
                 let first = told.first().map(|d| d.message.clone());

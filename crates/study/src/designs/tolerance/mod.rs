@@ -345,6 +345,9 @@ pub(crate) fn tolerance(
     };
     let missed = check(&mut question, &ready.linear);
     let pieces = question.answer(executor, progress);
+    if pieces.count == 0 {
+        return Err(vec![stopped(Stage::Rows)]);
+    }
     let teller = Teller {
         ready: &ready,
         study,

@@ -1,6 +1,6 @@
 //! Pieces are drawn, moved and measured: in lanes what lanes can tell, the rest one piece after the other.
 
-use kempe_batch::{Executor, Task};
+use kempe_batch::Executor;
 use kempe_measure::side_by_side::{TOGETHER, widen};
 use kempe_motion::Motion;
 use kempe_motion::progress::{Done, Progress, Silent, Stage};
@@ -10,6 +10,7 @@ use super::lanes::{InLanes, PIECES};
 use super::sobol::Sobol;
 use super::source::{Kind, Source};
 use crate::designs::bench::{Bench, Refused};
+use crate::designs::together::together;
 use crate::quantity::Quantity;
 use crate::rows::RowPlace;
 
@@ -174,31 +175,37 @@ impl Question<'_, '_> {
         } else {
             MOTIONS_TASK
         };
-        while found.count < self.samples {
-            let until = (found.count + task * TASKS_TOGETHER).min(self.samples);
-            let starts: Vec<usize> = (found.count..until).step_by(task).collect();
-            let mut parts: Vec<Pieces> = starts.iter().map(|_| all()).collect();
-            let tasks = parts.iter_mut().zip(&starts).map(|(part, from)| {
-                let range = *from..(from + task).min(until);
-                let own = (&numbers[..], &curves[..]);
-                let task: Task<'_> = Box::new(move || {
+        let own = (&numbers[..], &curves[..]);
+        self.bench.watched(progress.watch(), || {
+            let watch = self.bench.watch();
+            let mut reached = |count: usize| {
+                let done = Done::Of(count.min(self.samples), self.samples);
+                progress.reached(Stage::Rows, done)
+            };
+            while found.count < self.samples {
+                let first = found.count;
+                let until = (first + task * TASKS_TOGETHER).min(self.samples);
+                let ask = |k: usize| {
+                    let mut part = all();
+                    let range = first + k * task..(first + (k + 1) * task).min(until);
                     match &self.lanes {
-                        Some(lanes) => self.in_lanes(lanes, range.clone(), part),
+                        Some(lanes) => self.in_lanes(lanes, range.clone(), &mut part),
                         None => part.unknown(range.len()),
                     }
                     if follows {
-                        self.followed(own, range, part);
+                        self.followed(own, range, &mut part);
                     }
-                });
-                task
-            });
-            executor.run(tasks.collect());
-            parts.into_iter().for_each(|part| found.append(part));
-            let done = Done::Of(found.count, self.samples);
-            if progress.reached(Stage::Rows, done).is_break() {
-                break;
+                    part
+                };
+                let tasks = (until - first).div_ceil(task);
+                let mut heard = |finished| reached(first + finished * task);
+                let (parts, goes_on) = together(tasks, executor, &watch, &mut heard, ask);
+                parts.into_iter().for_each(|part| found.append(part));
+                if !goes_on || reached(found.count).is_break() {
+                    break;
+                }
             }
-        }
+        });
         found
     }
 
@@ -261,6 +268,9 @@ impl Question<'_, '_> {
             if numbers.is_empty() && curves.is_empty() && self.lanes.is_some() {
                 continue;
             }
+            if self.bench.watch().stops() {
+                return;
+            }
             let Ok((found, along)) = self.piece(&self.values(piece), numbers, curves) else {
                 part.moves[index] = false;
                 part.numbers
@@ -286,13 +296,15 @@ impl Question<'_, '_> {
         numbers: &[usize],
         curves: &[usize],
     ) -> Result<(Vec<f64>, Vec<Vec<f64>>), Refused> {
-        let motion = self.bench.motion(values, &mut Silent)?;
+        let motion = self.bench.motion(values, &mut self.bench.watch())?;
         let numbers = numbers.iter().map(|k| &self.bench.numbers[*k]);
         let quantities: Vec<&Quantity> = numbers
             .chain(curves.iter().map(|k| &self.curves[*k]))
             .collect();
         let behind = quantities.len() - curves.len();
-        let mut along = self.bench.along(&motion, &quantities, &mut Silent)?;
+        let mut along = self
+            .bench
+            .along(&motion, &quantities, &mut self.bench.watch())?;
         let mut first = along.values(RowPlace::Drive(motion.start));
         let rows = if curves.is_empty() {
             Vec::new()

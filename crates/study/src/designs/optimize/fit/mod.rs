@@ -236,7 +236,7 @@ impl<'b, 'm> Fitted<'b, 'm> {
             let way = Way::of_circuit(&circuit, &self.asked, self.closed || circuit.closed);
             return self.met(way.ok_or_else(unmeasured)?, pairing);
         }
-        let motion = self.bench.motion(values, &mut kempe_motion::Silent)?;
+        let motion = self.bench.motion(values, &mut self.bench.watch())?;
         self.along(&motion, pairing)
     }
 

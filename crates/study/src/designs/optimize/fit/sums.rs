@@ -35,7 +35,7 @@ impl Sums<'_, '_, '_> {
             return Some((seen.met.square(), Vec::new()));
         }
         let bench = self.problem.bench;
-        let motion = bench.motion(values, &mut kempe_motion::Silent).ok()?;
+        let motion = bench.motion(values, &mut bench.watch()).ok()?;
         let numbers = bench.answer_of(&motion).ok()?.numbers;
         let signed = numbers.iter().zip(wanted).map(|(x, w)| w.sign * x);
         let kept: Vec<f64> = signed.skip(1).collect();
